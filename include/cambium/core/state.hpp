@@ -1,0 +1,55 @@
+#pragma once
+
+#include <cmath>
+#include <concepts>
+#include <type_traits>
+
+#include <Eigen/Core>
+
+namespace cambium {
+
+/// Planar motion state of an agent's reference point (vehicles: centre of the rear axle), in the map frame.
+template <class Scalar>
+struct BasicState {
+  Scalar time{};     ///< [s]
+  Scalar x{};        ///< [m]
+  Scalar y{};        ///< [m]
+  Scalar heading{};  ///< counter-clockwise from +x [rad]
+  Scalar speed{};    ///< along the heading [m/s]
+
+  friend bool operator==(BasicState const&, BasicState const&) = default;
+};
+
+using State = BasicState<double>;
+
+/// A state that a world can move: trivially copyable, with the named fields of `BasicState` and whatever the dynamics add.
+template <class S>
+concept MotionState = std::copyable<S> && std::is_trivially_copyable_v<S> && requires(S s) {
+  s.time;
+  s.x;
+  s.y;
+  s.heading;
+  s.speed;
+};
+static_assert(MotionState<State>);
+
+/// (time, x, y, heading, speed) as a fixed-size vector for numerics.
+template <class Scalar>
+[[nodiscard]] Eigen::Matrix<Scalar, 5, 1> to_vector(BasicState<Scalar> const& state) {
+  return {state.time, state.x, state.y, state.heading, state.speed};
+}
+
+/// Inverse of `to_vector`.
+template <class Scalar>
+[[nodiscard]] BasicState<Scalar> from_vector(Eigen::Matrix<Scalar, 5, 1> const& v) {
+  return {v[0], v[1], v[2], v[3], v[4]};
+}
+
+/// True when every field is a finite number.
+template <MotionState S>
+[[nodiscard]] bool is_finite(S const& s) {
+  // One sum instead of five tests: it is finite exactly when no term is infinite or NaN (no state is near overflow).
+  return std::isfinite(s.time + s.x + s.y + s.heading + s.speed);
+}
+
+}  // namespace cambium
