@@ -1,0 +1,28 @@
+#!/usr/bin/env bash
+# compile.sh FLAGS: seconds to compile one translation unit with g++ -O2, minimum of three, against the budgets.
+set -euo pipefail
+flags=$1
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+
+# measure NAME BUDGET PROGRAM: prints one line of the table.
+measure() {
+  local name=$1 budget=$2 source=$folder/unit.cpp best='' seconds
+  printf '%s\n' "$3" >"$source"
+  for _ in 1 2 3; do
+    local TIMEFORMAT=%R
+    seconds=$({ time g++ "@$flags" -O2 -c -o "$folder/unit.o" "$source" >"$folder/log" 2>&1; } 2>&1) || {
+      printf '%-22s does not compile: %s\n' "$name" "$(grep -m 1 -i error "$folder/log" || true)"
+      return
+    }
+    if [[ -z $best ]] || awk "BEGIN { exit !($seconds < $best) }"; then best=$seconds; fi
+  done
+  awk -v n="$name" -v s="$best" -v b="$budget" \
+    'BEGIN { printf "%-22s %6.2f s   budget %3.0f s   %s\n", n, s, b, s <= b ? "kept" : "EXCEEDED" }'
+}
+
+g++ --version | head -n 1
+measure geometry 2 '#include <cambium/geometry.hpp>'
+measure map 3 '#include <cambium/map.hpp>'
+measure world 6 "$(cat "$(dirname "${BASH_SOURCE[0]}")"/compile_world.cpp 2>/dev/null || echo '#include <cambium/world.hpp>')"
+measure umbrella 6 '#include <cambium/cambium.hpp>'

@@ -1,0 +1,122 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cambium/behavior/behavior_set.hpp"
+#include "cambium/behavior/idm_classic.hpp"
+#include "cambium/core/random.hpp"
+#include "cambium/dynamics/single_track.hpp"
+#include "cambium/execution/interpolate.hpp"
+#include "cambium/map/build_corridor.hpp"
+#include "cambium/map/map.hpp"
+#include "cambium/scenario/lane_traffic.hpp"
+#include "cambium/world/world.hpp"
+
+namespace merging {
+
+using Simulation = cambium::World<cambium::BehaviorSet<cambium::IdmClassic>, cambium::InterpolateExecution, cambium::SingleTrack>;
+
+/// A way into the map: a lane where traffic enters, and the route straight on from there.
+struct Entrance {
+  cambium::map::Route route;
+  double length{};          ///< of the lane corridor from the entrance to its end [m]
+  double merge_at{};        ///< where its own path begins to swing onto a neighbour's, or to overlap with another's [m]
+  bool gives_up_lane = false;  ///< its lane ends in the merge: this is who merges
+};
+
+/// What the scenarios on a map have in common.
+struct Site {
+  std::shared_ptr<cambium::Map const> map;
+  std::vector<Entrance> entrances;
+  std::size_t ramp{};             ///< the entrance whose vehicles merge
+  double free_speed = 13.9;       ///< [m/s]: the speed limit there, else 50 km/h
+};
+
+/// Where, along the route's lane corridor, other lanes' traffic begins to merge with it; its length if nowhere.
+inline void find_merge(cambium::Map const& map, Entrance& entrance) {
+  double s = 0.0;
+  entrance.merge_at = entrance.length;
+  for (auto const id : entrance.route.lanes) {
+    auto const& lane = map.lane(id);
+    double at = lane.length();
+    for (auto const& overlap : lane.overlaps)
+      if (overlap.kind == cambium::map::OverlapKind::merge) at = std::min(at, overlap.begin);
+    if (is_valid(lane.merges_into)) at = std::min(at, lane.merge_begin);
+    if (at < lane.length() && s + at < entrance.merge_at) {
+      entrance.merge_at = s + at;
+      entrance.gives_up_lane = is_valid(lane.merges_into);
+    }
+    s += lane.length();
+  }
+}
+
+/// Finds the merge of a map: the entrances, and which of them is the ramp. Throws `MapError` where nothing merges.
+[[nodiscard]] inline Site find_site(std::shared_ptr<cambium::Map const> map, std::string const& file) {
+  Site site;
+  site.map = std::move(map);
+  for (auto const& lane : site.map->lanes()) {
+    if (!lane.drivable() || !lane.predecessors.empty()) continue;
+    Entrance entrance{cambium::map::straight_route(*site.map, lane.id)};
+    for (auto const id : entrance.route.lanes) entrance.length += site.map->lane(id).length();
+    find_merge(*site.map, entrance);
+    if (entrance.length > 30.0) site.entrances.push_back(std::move(entrance));
+  }
+  auto const merges = [](Entrance const& e) { return e.merge_at < e.length; };
+  auto const better = [&](Entrance const& a, Entrance const& b) {  // who gives up a lane; of those, who has the longest way to the merge
+    if (a.gives_up_lane != b.gives_up_lane) return b.gives_up_lane;
+    return a.merge_at < b.merge_at;
+  };
+  bool found = false;
+  for (std::size_t i = 0; i < site.entrances.size(); ++i) {
+    if (!merges(site.entrances[i]) || site.entrances[i].merge_at < 20.0) continue;
+    if (!found || better(site.entrances[site.ramp], site.entrances[i])) site.ramp = i;
+    found = true;
+  }
+  if (!found) throw cambium::MapError(file, "no lane of this map merges into another", "give a map with an on-ramp or a lane drop, such as maps/merging.xodr");
+  auto const limit = site.map->lane(site.entrances[site.ramp].route.lanes.front()).speed_limit;
+  if (limit > 0) site.free_speed = limit;
+  return site;
+}
+
+/// A sampled situation: the world as it begins, and who is the one that has to merge.
+struct Scenario {
+  Simulation world;
+  cambium::AgentId ego = cambium::none<cambium::AgentId>;
+  std::vector<cambium::AgentId> merging;  ///< all that come from the ramp
+};
+
+/// Dense traffic from every entrance up to its merge. The ego is the foremost vehicle of the ramp with traffic around it: the one in
+/// the middle. Its goal is the lane behind the merge.
+[[nodiscard]] inline Scenario sample_scenario(Site const& site, std::uint64_t seed, std::uint32_t number) {
+  Scenario scenario{Simulation(site.map, {.seed = seed}), {}, {}};
+  cambium::RandomStream random(seed, number, 0);
+  for (std::size_t i = 0; i < site.entrances.size(); ++i) {
+    auto const& entrance = site.entrances[i];
+    double const end = std::min(entrance.merge_at, entrance.length - 20.0);
+    cambium::LaneTraffic traffic;
+    traffic.begin = std::max(0.0, end - 250.0);
+    traffic.end = end - 5.0 * cambium::uniform01(random);
+    double const share = 0.5 + 0.4 * cambium::uniform01(random);  // of the free speed: how dense it is today
+    traffic.lowest_speed = 0.8 * share * site.free_speed;
+    traffic.highest_speed = std::min(1.2 * share, 1.0) * site.free_speed;
+    traffic.lowest_desired_speed = 0.85 * site.free_speed;
+    traffic.highest_desired_speed = 1.15 * site.free_speed;
+    auto const road = cambium::map::build_road_corridor(*site.map, entrance.route);
+    auto const& corridor = road->corridors[road->main];
+    for (auto const& vehicle : traffic.sample(random)) {
+      auto const pose = corridor.center.pose(vehicle.s);
+      Simulation::AgentSpec spec{.position = pose.position(), .heading = pose.heading, .speed = vehicle.speed, .shape = vehicle.shape, .behavior = vehicle.driver, .route = entrance.route};
+      if (i == site.ramp) spec.goal = cambium::ReachLane{entrance.route.lanes.back()};
+      auto const id = scenario.world.add(spec);
+      if (i == site.ramp) scenario.merging.push_back(id);
+    }
+  }
+  if (!scenario.merging.empty()) scenario.ego = scenario.merging[scenario.merging.size() / 2];
+  return scenario;
+}
+
+}  // namespace merging

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstddef>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include "cambium/behavior/behavior_model.hpp"
+
+namespace cambium {
+
+/// The closed set of behaviours that the agents of a world may have. An agent has one of them with parameters of its own.
+template <class... Behaviors>
+struct BehaviorSet {
+  static_assert(sizeof...(Behaviors) > 0, "cambium::BehaviorSet<...>: name at least one behaviour, as in BehaviorSet<cambium::IdmClassic>");
+  static_assert((BehaviorModel<Behaviors> && ...),
+                "cambium::BehaviorSet<...>: each alternative must be a behaviour: a copyable struct with "
+                "`template <class View> Plan<View> plan(View const&, Memory&, double dt) const` (see BehaviorModel)");
+
+  using Any = std::variant<Behaviors...>;
+  using Memory = std::variant<MemoryOf<Behaviors>...>;
+
+  /// Whether `B` is one of the set.
+  template <class B>
+  static constexpr bool contains = (std::is_same_v<B, Behaviors> || ...);
+
+  /// The memory an agent starts with.
+  [[nodiscard]] static Memory initial_memory(Any const& behavior) {
+    return initial_memory(behavior, std::index_sequence_for<Behaviors...>{});
+  }
+
+  /// Calls the agent's own behaviour with its own memory. One well-predicted branch per alternative, no virtual call.
+  template <class View>
+  [[nodiscard]] static Plan<View> plan(Any const& behavior, View const& view, Memory& memory, double dt) {
+    return plan_from<0>(behavior, view, memory, dt);
+  }
+
+ private:
+  template <std::size_t... I>
+  [[nodiscard]] static Memory initial_memory(Any const& behavior, std::index_sequence<I...>) {
+    Memory memory;
+    ((behavior.index() == I ? void(memory.template emplace<I>()) : void()), ...);
+    return memory;
+  }
+
+  template <std::size_t I, class View>
+  [[nodiscard]] static Plan<View> plan_from(Any const& behavior, View const& view, Memory& memory, double dt) {
+    if constexpr (I + 1 < sizeof...(Behaviors))
+      if (behavior.index() != I) return plan_from<I + 1>(behavior, view, memory, dt);
+    return std::get_if<I>(&behavior)->plan(view, *std::get_if<I>(&memory), dt);
+  }
+};
+
+template <class T>
+inline constexpr bool is_behavior_set = false;
+template <class... Behaviors>
+inline constexpr bool is_behavior_set<BehaviorSet<Behaviors...>> = true;
+
+}  // namespace cambium

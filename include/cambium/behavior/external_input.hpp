@@ -1,0 +1,67 @@
+#pragma once
+
+#include <algorithm>
+#include <tuple>
+
+#include "cambium/behavior/behavior_model.hpp"
+#include "cambium/dynamics/integration.hpp"
+
+namespace cambium {
+
+/// Drives as told from outside: a planner, a search or a learner sets the input (acceleration, steering) in the agent's
+/// memory by `World::memory`, and the vehicle model carries it out over the step. Heeds neither lanes nor others. Never reverses.
+struct ExternalInput {
+  /// The input until the next one is set.
+  struct Memory {
+    double acceleration = 0.0;  ///< [m/s^2]
+    double steering = 0.0;      ///< steering angle, left positive [rad]
+
+    friend bool operator==(Memory const&, Memory const&) = default;
+  };
+
+  enum class Scheme { rk4, euler };
+
+  Scheme scheme = Scheme::rk4;
+  double longest_substep = 0.1;
+
+  static constexpr char const* name = "external_input";
+  static constexpr auto parameters() {
+    return std::make_tuple(
+        parameter("scheme", &ExternalInput::scheme, "-", Range{0, 1}, "integration of the vehicle model: 0 RK4, 1 Euler"),
+        parameter("longest_substep", &ExternalInput::longest_substep, "s", Range{1e-4, 10}, "a step is integrated in equal parts no longer than this"));
+  }
+
+  template <class View>
+  [[nodiscard]] Plan<View> plan(View const& view, Memory const& memory, double dt) const {
+    auto const& model = view.dynamics();
+    auto const start = view.state();
+    auto const input = model.limited({memory.acceleration, memory.steering}, start);
+    Plan<View> plan;
+    plan.trajectory.push_back(start);
+    // A braking vehicle drives until it stands, and stands from then on.
+    double const moving = input.acceleration < 0 ? std::min(dt, -start.speed / input.acceleration) : dt;
+    if (moving > 0) plan.trajectory.push_back(integrate(model, start, input, moving));
+    if (moving < dt) {
+      auto standing = plan.trajectory.back();
+      standing.time = start.time + dt;
+      standing.speed = 0;
+      plan.trajectory.push_back(standing);
+    }
+    plan.trajectory.back().time = view.time() + dt;
+    plan.action = {input.acceleration, input.steering};
+    return plan;
+  }
+
+ private:
+  template <class Model>
+  [[nodiscard]] typename Model::State integrate(Model const& model, typename Model::State x, typename Model::Input const& u,
+                                                double duration) const {
+    auto const steps = static_cast<int>(std::ceil(duration / longest_substep));
+    for (int i = 0; i < steps; ++i)
+      x = scheme == Scheme::rk4 ? rk4_step(model, x, u, duration / steps) : euler_step(model, x, u, duration / steps);
+    return x;
+  }
+};
+static_assert(BehaviorModel<ExternalInput>);
+
+}  // namespace cambium

@@ -1,0 +1,236 @@
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <tuple>
+
+#include "cambium/core/assert.hpp"
+#include "cambium/core/error.hpp"
+#include "cambium/core/parameters.hpp"
+
+// The same stream gives the same bits on every platform with IEEE doubles (no -ffast-math): only +, -, *, /, sqrt and
+// fma are used, which are correctly rounded everywhere, and no product feeds an addition outside std::fma, so a
+// compiler that contracts products and sums into fused operations has nothing to contract.
+//
+// Draws never throw. `check_parameters(distribution)`, once, outside the step path, throws `ParameterError`.
+
+namespace cambium {
+
+/// A source of 64 random bits, all of them uniform: `RandomStream`, or a standard engine of that width.
+template <class Stream>
+concept BitStream = requires(Stream stream) {
+  { stream() } -> std::same_as<std::uint64_t>;
+  requires Stream::min()
+  == 0 && Stream::max() == std::numeric_limits<std::uint64_t>::max();
+};
+
+/// Uniform in [0, 1), a multiple of 2^-53.
+template <BitStream Stream>
+[[nodiscard]] constexpr double uniform01(Stream& stream) {
+  return static_cast<double>(stream() >> 11) * 0x1p-53;
+}
+
+/// Uniform integer in [0, n), without bias (Lemire 2019, "Fast random integer generation in an interval"). `n` > 0.
+/// Takes one draw, and rarely another (probability below n / 2^32).
+template <BitStream Stream>
+[[nodiscard]] constexpr std::uint32_t uniform_index(Stream& stream, std::uint32_t n) {
+  CAMBIUM_ASSERT(n > 0, "uniform_index: n must be positive");
+  std::uint64_t product = (stream() >> 32) * n;
+  if (static_cast<std::uint32_t>(product) < n) {
+    std::uint32_t const threshold = (0u - n) % n;
+    while (static_cast<std::uint32_t>(product) < threshold) product = (stream() >> 32) * n;
+  }
+  return static_cast<std::uint32_t>(product >> 32);
+}
+
+namespace detail {
+
+/// c + d x + e x^2 + ... by Horner's rule in fused operations.
+template <class... Rest>
+[[nodiscard]] inline double fused_polynomial(double x, double c, Rest... rest) {
+  if constexpr (sizeof...(rest) == 0) {
+    return c;
+  } else {
+    return std::fma(fused_polynomial(x, rest...), x, c);
+  }
+}
+
+/// Natural logarithm of a positive normal number, the same bits everywhere; error below 2 units in the last place.
+/// x = m 2^e with m in [sqrt(1/2), sqrt(2)); ln m = 2 artanh(f), f = (m - 1) / (m + 1), as its power series.
+[[nodiscard]] inline double portable_log(double x) {
+  constexpr double ln2_high = 0x1.62e42fefa3800p-1;  // 45 bits: exact times any exponent
+  constexpr double ln2_low = 0x1.ef35793c76730p-45;
+  constexpr std::uint64_t sqrt_half = 0x3fe6a09e667f3bcdu;
+  std::uint64_t const shifted = std::bit_cast<std::uint64_t>(x) - sqrt_half;
+  double const exponent = static_cast<double>(static_cast<std::int64_t>(shifted) >> 52);
+  double const m = std::bit_cast<double>((shifted & 0x000fffffffffffffu) + sqrt_half);
+  double const f = (m - 1.0) / (m + 1.0);
+  double const square = f * f;
+  double const twice = 2.0 * f;
+  double const series = fused_polynomial(square, 1.0 / 3, 1.0 / 5, 1.0 / 7, 1.0 / 9, 1.0 / 11, 1.0 / 13, 1.0 / 15,
+                                         1.0 / 17, 1.0 / 19, 1.0 / 21, 1.0 / 23);
+  double const log_m = std::fma(twice * square, series, twice);
+  return std::fma(exponent, ln2_high, std::fma(exponent, ln2_low, log_m));
+}
+
+/// The two tails of `normal_quantile`, near (to 1e-11) and far.
+[[nodiscard]] inline double normal_quantile_near(double r) {
+  return fused_polynomial(r, 1.42343711074968357734e0, 4.63033784615654529590e0, 5.76949722146069140550e0,
+                          3.64784832476320460504e0, 1.27045825245236838258e0, 2.41780725177450611770e-1,
+                          2.27238449892691845833e-2, 7.74545014278341407640e-4) /
+         fused_polynomial(r, 1.0, 2.05319162663775882187e0, 1.67638483018380384940e0, 6.89767334985100004550e-1,
+                          1.48103976427480074590e-1, 1.51986665636164571966e-2, 5.47593808499534494600e-4,
+                          1.05075007164441684324e-9);
+}
+[[nodiscard]] inline double normal_quantile_far(double r) {
+  return fused_polynomial(r, 6.65790464350110377720e0, 5.46378491116411436990e0, 1.78482653991729133580e0,
+                          2.96560571828504891230e-1, 2.65321895265761230930e-2, 1.24266094738807843860e-3,
+                          2.71155556874348757815e-5, 2.01033439929228813265e-7) /
+         fused_polynomial(r, 1.0, 5.99832206555887937690e-1, 1.36929880922735805310e-1, 1.48753612908506148525e-2,
+                          7.86869131145613259100e-4, 1.84631831751005468180e-5, 1.42151175831644588870e-7,
+                          2.04426310338993978564e-15);
+}
+
+/// Inverse of the standard normal distribution function for p in (0, 1), relative error 1e-16 (Wichura 1988, algorithm
+/// AS 241, PPND16).
+[[nodiscard]] inline double normal_quantile(double p) {
+  double const q = p - 0.5;
+  if (std::abs(q) <= 0.425) {
+    double const r = std::fma(-q, q, 0.180625);
+    return q * (fused_polynomial(r, 3.3871328727963666080e0, 1.3314166789178437745e2, 1.9715909503065514427e3,
+                                 1.3731693765509461125e4, 4.5921953931549871457e4, 6.7265770927008700853e4,
+                                 3.3430575583588128105e4, 2.5090809287301226727e3) /
+                fused_polynomial(r, 1.0, 4.2313330701600911252e1, 6.8718700749205790830e2, 5.3941960214247511077e3,
+                                 2.1213794301586595867e4, 3.9307895800092710610e4, 2.8729085735721942674e4,
+                                 5.2264952788528545610e3));
+  }
+  double const r = std::sqrt(-portable_log(q < 0.0 ? p : 1.0 - p));
+  double const magnitude = r <= 5.0 ? normal_quantile_near(r - 1.6) : normal_quantile_far(r - 5.0);
+  return q < 0.0 ? -magnitude : magnitude;
+}
+
+}  // namespace detail
+
+/// Uniform in [low, high]; the upper end is reached only by rounding.
+struct Uniform {
+  double low = 0.0;
+  double high = 1.0;
+
+  static constexpr char const* name = "uniform";
+  static constexpr auto parameters() {
+    return std::make_tuple(parameter("low", &Uniform::low, "-", any_finite, "Lower end."),
+                           parameter("high", &Uniform::high, "-", any_finite, "Upper end, not below the lower one."));
+  }
+  /// Throws `ParameterError` unless `low` <= `high`; called by `check_parameters`.
+  void check(std::string const& where) const {
+    if (low <= high) return;
+    throw ParameterError(where, "has high = " + detail::number_text(high) + " below low = " + detail::number_text(low),
+                         "swap the two ends");
+  }
+
+  template <BitStream Stream>
+  [[nodiscard]] double operator()(Stream& stream) const {
+    return std::fma(high - low, uniform01(stream), low);
+  }
+};
+
+/// Normal (Gaussian), one draw each, by inversion: a larger random number never gives a smaller value.
+struct Normal {
+  double mean = 0.0;
+  double deviation = 1.0;
+
+  static constexpr char const* name = "normal";
+  static constexpr auto parameters() {
+    return std::make_tuple(parameter("mean", &Normal::mean, "-", any_finite, "Mean."),
+                           parameter("deviation", &Normal::deviation, "-", non_negative, "Standard deviation."));
+  }
+
+  template <BitStream Stream>
+  [[nodiscard]] double operator()(Stream& stream) const {
+    double const p = (static_cast<double>(stream() >> 12) + 0.5) * 0x1p-52;  // exact, never 0 or 1
+    return std::fma(deviation, detail::normal_quantile(p), mean);
+  }
+};
+
+/// Exponential: the time until the next event of a Poisson process.
+struct Exponential {
+  double rate = 1.0;
+
+  static constexpr char const* name = "exponential";
+  static constexpr auto parameters() {
+    return std::make_tuple(
+        parameter("rate", &Exponential::rate, "-", positive, "Mean number of events per unit; 1 / mean."));
+  }
+
+  template <BitStream Stream>
+  [[nodiscard]] double operator()(Stream& stream) const {
+    return (0.0 - detail::portable_log(1.0 - uniform01(stream))) / rate;
+  }
+};
+
+/// An index in [0, weights.size()) with probability proportional to its weight. Weights: finite, not negative, at least
+/// one positive (asserted). O(number of weights); stores nothing.
+template <BitStream Stream>
+[[nodiscard]] std::size_t discrete_index(Stream& stream, std::span<double const> weights) {
+  double total = 0.0;
+  for (double const weight : weights) total += weight;
+  CAMBIUM_ASSERT(total > 0.0, "discrete_index: at least one weight must be positive");
+  double const target = uniform01(stream) * total;
+  double sum = 0.0;
+  std::size_t last = 0;
+  for (std::size_t i = 0; i < weights.size(); ++i) {
+    if (!(weights[i] > 0.0)) continue;
+    last = i;
+    sum += weights[i];
+    if (target < sum) break;
+  }
+  return last;
+}
+
+/// A choice among up to 16 alternatives with given weights, stored inline: trivially copyable, no heap.
+class Discrete {
+ public:
+  static constexpr std::size_t capacity = 16;
+
+  /// Throws `ParameterError` naming `where` for no weight, more than `capacity`, a negative or non-finite one, or a sum
+  /// that is zero.
+  explicit Discrete(std::span<double const> weights, std::string const& where = "discrete") : size_(weights.size()) {
+    if (weights.empty() || weights.size() > capacity) {
+      throw ParameterError(where, "has " + std::to_string(weights.size()) + " weights", "give 1 to 16");
+    }
+    double total = 0.0;
+    for (std::size_t i = 0; i < size_; ++i) {
+      if (!detail::in_range(weights[i], non_negative)) {
+        throw ParameterError(where + "[" + std::to_string(i) + "]", "is " + detail::number_text(weights[i]),
+                             "give a finite weight of at least 0");
+      }
+      weights_[i] = weights[i];
+      total += weights[i];
+    }
+    if (!detail::in_range(total, positive)) {
+      throw ParameterError(where, "has weights that sum to " + detail::number_text(total),
+                           "give a positive finite sum");
+    }
+  }
+
+  [[nodiscard]] std::span<double const> weights() const { return {weights_.data(), size_}; }
+
+  /// The chosen alternative's index.
+  template <BitStream Stream>
+  [[nodiscard]] std::size_t operator()(Stream& stream) const {
+    return discrete_index(stream, weights());
+  }
+
+ private:
+  std::array<double, capacity> weights_{};
+  std::size_t size_;
+};
+
+}  // namespace cambium

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+
+#include <boost/container/small_vector.hpp>
+
+#include "cambium/core/state.hpp"
+
+namespace cambium {
+
+/// What an agent does over a step: recorded, and seen by nobody but the agent itself and evaluators.
+struct Action {
+  double acceleration{};  ///< along the heading [m/s^2]
+  double steering{};      ///< steering angle at the front axle, left positive [rad]; 0 where the model has none
+
+  friend bool operator==(Action const&, Action const&) = default;
+};
+
+/// States in order of time. The first `InlineStates` need no heap: the models that need no search never ask for more.
+inline constexpr std::size_t inline_states = 12;
+template <MotionState S>
+using Trajectory = boost::container::small_vector<S, inline_states>;
+
+/// How a behaviour's plan is to be taken.
+enum class PlanStatus : std::uint8_t {
+  valid,        ///< covers the time asked for
+  not_started,  ///< the agent is not there yet
+  expired,      ///< the agent has nothing more to do and leaves
+  failed,       ///< the behaviour found no plan
+};
+
+/// What a behaviour wants: a trajectory from the current state over at least the next `dt`, and the action that begins it.
+template <MotionState S>
+struct BasicPlan {
+  Trajectory<S> trajectory;
+  Action action;
+  PlanStatus status = PlanStatus::valid;
+};
+
+/// The plan type that goes with a view.
+template <class View>
+using Plan = BasicPlan<typename View::State>;
+
+}  // namespace cambium

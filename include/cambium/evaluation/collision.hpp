@@ -1,0 +1,136 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <optional>
+
+#include <boost/container/small_vector.hpp>
+
+#include "cambium/core/ids.hpp"
+#include "cambium/geometry/collision.hpp"
+#include "cambium/geometry/oriented_box.hpp"
+#include "cambium/world/frame.hpp"
+
+namespace cambium {
+
+namespace detail {
+
+/// An agent in traffic as the broad phase sees it: a circle about its reference point.
+struct Circle {
+  double x, y, radius;
+  std::uint32_t slot;
+
+  [[nodiscard]] bool meets(Circle const& other) const {
+    double const dx = x - other.x, dy = y - other.y, reach = radius + other.radius;
+    return dx * dx + dy * dy <= reach * reach;
+  }
+};
+
+template <class World>
+[[nodiscard]] Circle circle_of(World const& world, std::uint32_t slot) {
+  auto const& shape = world.roster().agents[slot].shape;
+  auto const& state = world.frame().agents[slot].state;
+  double const along = std::max(shape.front, shape.rear), across = std::max(shape.left, shape.right);
+  return {state.x, state.y, along + across, slot};  // the sum of the legs: no root, and never too small
+}
+
+template <class World>
+[[nodiscard]] geometry::OrientedBox box_at(World const& world, std::uint32_t slot) {
+  return geometry::box_of(world.roster().agents[slot].shape, world.frame().agents[slot].state);
+}
+
+template <class World>
+[[nodiscard]] bool in_traffic(World const& world, std::uint32_t slot) {
+  return world.frame().agents[slot].status == AgentStatus::driving;
+}
+
+/// The first static object (in the order of their ids) that the agent touches.
+template <class World>
+[[nodiscard]] std::optional<ObjectId> touched_object(World const& world, std::uint32_t slot) {
+  if (world.roster().objects.empty()) return std::nullopt;
+  auto const box = box_at(world, slot);
+  auto const around = box.bounding_box();
+  for (auto const& object : world.roster().objects)
+    if (around.intersects(object.outline.bounding_box()) && geometry::intersects(box, object.outline)) return object.id;
+  return std::nullopt;
+}
+
+}  // namespace detail
+
+/// Whether one agent, while it takes part in traffic, touches another agent or a static object. Throws `WorldError` if the world does
+/// not have the agent. O(agents).
+struct CollisionEgo {
+  struct Result {
+    bool ego_collision = false;
+    AgentId ego_collision_with = none<AgentId>;  ///< the first other agent touched; none if it is an object
+  };
+
+  AgentId agent = none<AgentId>;
+
+  template <class World>
+  [[nodiscard]] Result evaluate(World const& world) const {
+    auto const ego = static_cast<std::uint32_t>(world.slot_of(agent));
+    if (!detail::in_traffic(world, ego)) return {};
+    auto const circle = detail::circle_of(world, ego);
+    for (std::uint32_t i = 0; i < world.size(); ++i) {
+      if (i == ego || !detail::in_traffic(world, i) || !circle.meets(detail::circle_of(world, i))) continue;
+      if (geometry::intersects(detail::box_at(world, ego), detail::box_at(world, i))) return {true, world.roster().agents[i].id};
+    }
+    return {detail::touched_object(world, ego).has_value(), none<AgentId>};
+  }
+};
+
+/// Whether any two agents that take part in traffic, or one and a static object, touch. O(n log n); no allocation up to 64 agents.
+struct CollisionAny {
+  struct Result {
+    bool any_collision = false;
+    AgentId collision_first = none<AgentId>, collision_second = none<AgentId>;  ///< a pair that touches; the second is none for an object
+  };
+
+  template <class World>
+  [[nodiscard]] Result evaluate(World const& world) const {
+    boost::container::small_vector<detail::Circle, 64> circles;
+    for (std::uint32_t i = 0; i < world.size(); ++i) {
+      if (!detail::in_traffic(world, i)) continue;
+      circles.push_back(detail::circle_of(world, i));
+      if (detail::touched_object(world, i)) return {true, world.roster().agents[i].id, none<AgentId>};
+    }
+    return sweep(world, circles);
+  }
+
+ private:
+  /// Sweep and prune along the longer axis of the scene; a few agents are simply compared with each other.
+  template <class World, class Circles>
+  [[nodiscard]] static Result sweep(World const& world, Circles& circles) {
+    constexpr std::size_t few = 16;
+    bool const sorted = circles.size() > few;
+    if (sorted) sort_along_longer_axis(circles);
+    for (std::size_t i = 0; i < circles.size(); ++i)
+      for (std::size_t j = i + 1; j < circles.size(); ++j) {
+        auto const &a = circles[i], &b = circles[j];
+        if (sorted && b.x - b.radius > a.x + a.radius) break;
+        if (!a.meets(b)) continue;
+        if (!geometry::intersects(detail::box_at(world, a.slot), detail::box_at(world, b.slot))) continue;
+        auto const& agents = world.roster().agents;
+        return {true, agents[std::min(a.slot, b.slot)].id, agents[std::max(a.slot, b.slot)].id};
+      }
+    return {};
+  }
+
+  template <class Circles>
+  static void sort_along_longer_axis(Circles& circles) {
+    auto const by_x = [](auto const& a, auto const& b) { return a.x < b.x; };
+    auto const by_y = [](auto const& a, auto const& b) { return a.y < b.y; };
+    auto const [left, right] = std::minmax_element(circles.begin(), circles.end(), by_x);
+    auto const [low, high] = std::minmax_element(circles.begin(), circles.end(), by_y);
+    if (high->y - low->y > right->x - left->x)
+      for (auto& c : circles) std::swap(c.x, c.y);  // distances do not mind
+    std::sort(circles.begin(), circles.end(), [](auto const& a, auto const& b) {
+      double const la = a.x - a.radius, lb = b.x - b.radius;
+      return la < lb || (la == lb && a.slot < b.slot);
+    });
+  }
+};
+
+}  // namespace cambium

@@ -1,0 +1,106 @@
+#pragma once
+
+#include <bit>
+#include <cmath>
+#include <cstdint>
+
+#include "cambium/geometry/pose.hpp"
+
+namespace cambium::geometry {
+
+/// pi, rounded to double.
+inline constexpr double pi = 3.14159265358979323846;
+
+namespace detail {
+
+/// `x` minus the nearest multiple of a quarter turn, in [-pi/4, pi/4] up to rounding, and that multiple.
+struct QuarterTurns {
+  double rest;
+  std::int64_t count;
+};
+
+/// For |x| <= 1e5: pi/2 is cut into parts of 33 bits, so that their products with the count are exact (Cody, Waite
+/// 1980).
+[[nodiscard]] inline QuarterTurns reduce_by_quarter_turns(double x) {
+  constexpr double two_over_pi = 0x1.45f306dc9c883p-1;
+  constexpr double part_1 = 0x1.921fb544p+0, part_2 = 0x1.0b4611a6p-34, part_3 = 0x1.3198a2e037073p-69;
+  constexpr double shifter = 0x1.8p52;  // adding it rounds to the nearest integer, left in the low bits
+  double const shifted = x * two_over_pi + shifter;
+  double const count = shifted - shifter;
+  auto const bits = std::bit_cast<std::int64_t>(shifted) - std::bit_cast<std::int64_t>(shifter);
+  return {((x - count * part_1) - count * part_2) - count * part_3, bits};
+}
+
+}  // namespace detail
+
+/// Both at once, see `sin_cos`.
+struct SinCos {
+  double sin, cos;
+};
+
+namespace detail {
+
+/// c + d x + e x^2 + ... by Horner's rule.
+template <class... Rest>
+[[nodiscard]] constexpr double polynomial(double x, double c, Rest... rest) {
+  if constexpr (sizeof...(rest) == 0) {
+    return c;
+  } else {
+    return polynomial(x, rest...) * x + c;
+  }
+}
+
+}  // namespace detail
+
+/// As `sin_cos`, for |x| <= 1e5 only: without a branch or a library call, so that a loop over it becomes SIMD code.
+[[nodiscard]] inline SinCos sin_cos_bounded(double x) {
+  // Taylor series from the third term on: the first one left out is below 5e-17 on [-pi/4, pi/4].
+  auto const [r, count] = detail::reduce_by_quarter_turns(x);
+  double const q = r * r;
+  double const sine_series = detail::polynomial(q, -1.0 / 6, 1.0 / 120, -1.0 / 5040, 1.0 / 362880, -1.0 / 39916800,
+                                                1.0 / 6227020800, -1.0 / 1307674368000);
+  double const cosine_series = detail::polynomial(q, 1.0 / 24, -1.0 / 720, 1.0 / 40320, -1.0 / 3628800, 1.0 / 479001600,
+                                                  -1.0 / 87178291200, 1.0 / 20922789888000);
+  double const sine = r + r * (q * sine_series);
+  double const cosine = 1.0 - (0.5 * q - q * q * cosine_series);
+  // Quarter turn 1 maps (sin, cos) to (cos, -sin), 2 to (-sin, -cos), 3 to (-cos, sin).
+  // By masks: the quadrant of a random angle is no branch to predict.
+  auto const sine_bits = std::bit_cast<std::uint64_t>(sine), cosine_bits = std::bit_cast<std::uint64_t>(cosine);
+  auto const turns = static_cast<std::uint64_t>(count);
+  std::uint64_t const swapped = (sine_bits ^ cosine_bits) & (0 - (turns & 1));
+  std::uint64_t const sign_of_sin = (turns & 2) << 62, sign_of_cos = ((turns + 1) & 2) << 62;
+  return {std::bit_cast<double>(sine_bits ^ swapped ^ sign_of_sin),
+          std::bit_cast<double>(cosine_bits ^ swapped ^ sign_of_cos)};
+}
+
+/// Sine and cosine of `x` [rad]: absolute error below 2.5e-16, inline and faster than the library's two calls for
+/// |x| <= 1e5; by the standard library beyond, and NaN for what is not finite.
+[[nodiscard]] inline SinCos sin_cos(double x) {
+  if (std::abs(x) <= 1e5) [[likely]] {
+    return sin_cos_bounded(x);
+  }
+  return {std::sin(x), std::cos(x)};
+}
+
+/// The same direction in (-pi, pi]; -pi becomes pi. Unchanged, to the bit, when it is there already. Reduces by the
+/// true pi: absolute error below 1e-15 for |angle| <= 1e5, and as good as the standard library's sine beyond. NaN for
+/// what is not finite.
+[[nodiscard]] inline double normalize_angle(double angle) {
+  if (angle > -pi && angle <= pi) [[likely]] {
+    return angle;
+  }
+  if (!(std::abs(angle) <= 1e5)) {
+    double const wrapped = std::atan2(std::sin(angle), std::cos(angle));
+    return wrapped <= -pi ? pi : wrapped;
+  }
+  auto const [rest, count] = detail::reduce_by_quarter_turns(angle);
+  constexpr double half_pi = pi / 2;
+  auto const quarter = static_cast<double>(((count + 1) & 3) - 1);  // -1, 0, 1 or 2
+  double const wrapped = rest + quarter * half_pi;
+  return wrapped > pi ? wrapped - 2.0 * pi : (wrapped <= -pi ? pi : wrapped);
+}
+
+/// The turn from direction `b` to direction `a`, `a - b` in (-pi, pi]: positive when `a` lies counter-clockwise of `b`.
+[[nodiscard]] inline double angle_difference(double a, double b) { return normalize_angle(a - b); }
+
+}  // namespace cambium::geometry

@@ -1,0 +1,239 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "cambium/core/assert.hpp"
+#include "cambium/core/error.hpp"
+#include "cambium/geometry/pose.hpp"
+
+namespace cambium::geometry {
+
+/// A sample of a curve: where it passes [m] and its direction there [rad].
+using LineSample = Pose;
+
+/// Where a point lies relative to a `Line`.
+struct Projection {
+  double s{};               ///< arc length of the foot point [m]; below 0 or beyond the length on the extended end segments
+  double lateral{};         ///< signed offset from the line, left positive [m]
+  std::uint32_t segment{};  ///< segment of the foot point: the hint for the next query nearby
+};
+
+/// An arc-length parametrised polyline with a heading along it. Immutable.
+///
+/// Positions are interpolated linearly. The heading is that of the chords (`from_points`: constant on each segment) or is
+/// interpolated between the headings of the samples (`from_samples`). The first and the last segment extend to infinity,
+/// so a vehicle that has passed the end still has a position. Queries take a `cursor`: the segment of the last query; with
+/// a query nearby they cost O(1), else O(number of segments between). One segment is one cache line (64 B).
+class Line {
+ public:
+  struct Segment {
+    double s, x, y;           ///< start: arc length, position
+    double ux, uy;            ///< unit direction
+    double length;            ///< [m]
+    double heading;           ///< at the start [rad]; continuous along the line, not wrapped
+    double curvature;         ///< change of heading per metre [1/m]
+  };
+
+  Line() = default;
+
+  /// Through `points`; repeated points are dropped. Throws `MapError` with fewer than two distinct points or a number that
+  /// is not finite. O(n).
+  [[nodiscard]] static Line from_points(std::span<Point const> points) {
+    Line line;
+    line.reserve(points.size());
+    for (auto const& p : points) line.append(p.x(), p.y());
+    line.finish();
+    return line;
+  }
+
+  /// Through `samples`, with their headings interpolated; samples less than 1e-9 m apart are dropped. Throws as `from_points`. O(n).
+  [[nodiscard]] static Line from_samples(std::span<LineSample const> samples) {
+    Line line;
+    line.reserve(samples.size());
+    std::vector<double> headings;
+    headings.reserve(samples.size());
+    for (auto const& sample : samples) {
+      if (!std::isfinite(sample.heading)) throw MapError("line", "a sample's heading is not a finite number");
+      if (line.append(sample.x, sample.y)) headings.push_back(sample.heading);
+    }
+    line.finish();
+    line.set_headings(headings);
+    return line;
+  }
+
+  [[nodiscard]] bool empty() const { return segments_.empty(); }
+  [[nodiscard]] double length() const { return length_; }
+  [[nodiscard]] std::span<Segment const> segments() const { return segments_; }
+
+  /// The vertices, one more than there are segments.
+  [[nodiscard]] std::vector<Point> points() const {
+    std::vector<Point> result;
+    result.reserve(segments_.size() + 1);
+    for (auto const& segment : segments_) result.emplace_back(segment.x, segment.y);
+    if (!empty()) result.push_back(end_of(segments_.back()));
+    return result;
+  }
+
+  /// The samples that make this line again by `from_samples`.
+  [[nodiscard]] std::vector<LineSample> samples() const {
+    std::vector<LineSample> result;
+    result.reserve(segments_.size() + 1);
+    for (auto const& g : segments_) result.push_back({g.x, g.y, g.heading});
+    if (!empty()) {
+      auto const& g = segments_.back();
+      Point const p = end_of(g);
+      result.push_back({p.x(), p.y(), g.heading + g.curvature * g.length});
+    }
+    return result;
+  }
+
+  /// The segment that holds `s`, searched from `cursor` and kept there. The line must not be empty.
+  Segment const& segment_at(double s, std::uint32_t& cursor) const {
+    CAMBIUM_ASSERT(!empty(), "a query on an empty line");
+    auto i = std::min(cursor, last());
+    while (i < last() && s >= segments_[i + 1].s) ++i;
+    while (i > 0 && s < segments_[i].s) --i;
+    cursor = i;
+    return segments_[i];
+  }
+
+  /// Position and heading at arc length `s`; the heading is continuous along the line and not wrapped.
+  [[nodiscard]] Pose pose(double s, std::uint32_t& cursor) const {
+    auto const& g = segment_at(s, cursor);
+    double const ds = s - g.s;
+    double const inside = std::clamp(ds, 0.0, g.length);
+    return {g.x + g.ux * ds, g.y + g.uy * ds, g.heading + g.curvature * inside};
+  }
+
+  /// As above, by binary search. O(log n).
+  [[nodiscard]] Pose pose(double s) const {
+    auto cursor = find(s);
+    return pose(s, cursor);
+  }
+
+  /// Curvature (left positive) of the interpolated heading at `s` [1/m]; 0 on a line made `from_points`. O(log n).
+  [[nodiscard]] double curvature(double s) const { return segments_[find(s)].curvature; }
+
+  /// Index of the segment that holds `s`. O(log n).
+  [[nodiscard]] std::uint32_t find(double s) const {
+    CAMBIUM_ASSERT(!empty(), "a query on an empty line");
+    auto const next = std::upper_bound(segments_.begin(), segments_.end(), s,
+                                       [](double value, Segment const& g) { return value < g.s; });
+    return next == segments_.begin() ? 0 : static_cast<std::uint32_t>(next - segments_.begin() - 1);
+  }
+
+  /// The nearest point of the line, exactly; of equally near ones the first. O(n).
+  [[nodiscard]] Projection project(Point const& p) const {
+    CAMBIUM_ASSERT(!empty(), "a query on an empty line");
+    std::uint32_t best = 0;
+    double best_squared = std::numeric_limits<double>::infinity();
+    for (std::uint32_t i = 0; i <= last(); ++i) {
+      double const squared = squared_distance(segments_[i], p);
+      if (squared < best_squared) {
+        best_squared = squared;
+        best = i;
+      }
+    }
+    return foot(best, p);
+  }
+
+  /// The foot point next to segment `hint`: descends along the line to the nearest local minimum of the distance. Equals
+  /// the exact one while the point moves less than the line's radius of curvature between queries. O(segments passed).
+  [[nodiscard]] Projection project(Point const& p, std::uint32_t hint) const {
+    CAMBIUM_ASSERT(!empty(), "a query on an empty line");
+    auto i = std::min(hint, last());
+    double along = along_of(segments_[i], p);
+    while (along > segments_[i].length && i < last()) {
+      double const next = along_of(segments_[i + 1], p);
+      if (next < 0.0) break;  // in the wedge outside a vertex: the vertex is the foot point
+      along = next;
+      ++i;
+    }
+    while (along < 0.0 && i > 0) {
+      along = along_of(segments_[i - 1], p);
+      --i;
+      if (along > segments_[i].length) break;
+    }
+    return foot(i, p);
+  }
+
+ private:
+  [[nodiscard]] std::uint32_t last() const { return static_cast<std::uint32_t>(segments_.size() - 1); }
+
+  [[nodiscard]] static Point end_of(Segment const& g) { return {g.x + g.ux * g.length, g.y + g.uy * g.length}; }
+
+  [[nodiscard]] static double along_of(Segment const& g, Point const& p) {
+    return (p.x() - g.x) * g.ux + (p.y() - g.y) * g.uy;
+  }
+
+  [[nodiscard]] static double squared_distance(Segment const& g, Point const& p) {
+    double const t = std::clamp(along_of(g, p), 0.0, g.length);
+    double const dx = p.x() - (g.x + g.ux * t), dy = p.y() - (g.y + g.uy * t);
+    return dx * dx + dy * dy;
+  }
+
+  [[nodiscard]] Projection foot(std::uint32_t i, Point const& p) const {
+    auto const& g = segments_[i];
+    double const dx = p.x() - g.x, dy = p.y() - g.y;
+    double const along = dx * g.ux + dy * g.uy;
+    double const across = g.ux * dy - g.uy * dx;
+    bool const before = along < 0.0 && i > 0, beyond = along > g.length && i < last();
+    if (!before && !beyond) return {g.s + along, across, i};
+    // The foot point is an inner vertex: the offset is the distance to it.
+    double const excess = before ? along : along - g.length;
+    return {before ? g.s : g.s + g.length, std::copysign(std::hypot(across, excess), across), i};
+  }
+
+  void reserve(std::size_t points) {
+    if (points > 1) segments_.reserve(points - 1);
+  }
+
+  /// Adds a vertex unless it repeats the last one; says whether it did.
+  bool append(double x, double y) {
+    if (!std::isfinite(x) || !std::isfinite(y)) throw MapError("line", "a point is not a finite number");
+    if (!has_first_) {
+      has_first_ = true;
+      end_x_ = x;
+      end_y_ = y;
+      return true;
+    }
+    double const dx = x - end_x_, dy = y - end_y_;
+    double const distance = std::hypot(dx, dy);
+    if (distance < 1e-9) return false;
+    double heading = std::atan2(dy, dx);
+    if (!segments_.empty()) heading = segments_.back().heading + std::remainder(heading - segments_.back().heading, 2 * pi);
+    segments_.push_back({length_, end_x_, end_y_, dx / distance, dy / distance, distance, heading, 0.0});
+    length_ += distance;
+    end_x_ = x;
+    end_y_ = y;
+    return true;
+  }
+
+  void finish() const {
+    if (segments_.empty()) throw MapError("line", "fewer than two distinct points", "give at least two points apart from each other");
+  }
+
+  void set_headings(std::span<double const> headings) {
+    double heading = headings.front();
+    for (std::size_t i = 0; i < segments_.size(); ++i) {
+      double const turn = std::remainder(headings[i + 1] - heading, 2 * pi);
+      segments_[i].heading = heading;
+      segments_[i].curvature = turn / segments_[i].length;
+      heading += turn;
+    }
+  }
+
+  static constexpr double pi = 3.14159265358979323846;
+
+  std::vector<Segment> segments_;
+  double length_ = 0.0;
+  double end_x_ = 0.0, end_y_ = 0.0;
+  bool has_first_ = false;
+};
+
+}  // namespace cambium::geometry

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+
+#include "cambium/core/state.hpp"
+#include "cambium/geometry/angle.hpp"
+#include "cambium/geometry/pose.hpp"
+#include "cambium/geometry/shape.hpp"
+
+namespace cambium::geometry {
+
+/// An axis-parallel rectangle in the map frame [m], borders included.
+struct Box {
+  double min_x, min_y, max_x, max_y;
+
+  [[nodiscard]] bool contains(Point const& p) const {
+    return p.x() >= min_x && p.x() <= max_x && p.y() >= min_y && p.y() <= max_y;
+  }
+  [[nodiscard]] bool contains(Box const& other) const {
+    return other.min_x >= min_x && other.max_x <= max_x && other.min_y >= min_y && other.max_y <= max_y;
+  }
+  [[nodiscard]] bool intersects(Box const& other) const {
+    return min_x <= other.max_x && other.min_x <= max_x && min_y <= other.max_y && other.min_y <= max_y;
+  }
+
+  friend bool operator==(Box const&, Box const&) = default;
+};
+
+/// A turned rectangle in the map frame: centre, half side lengths [m], and the direction of its length. 48 bytes.
+struct OrientedBox {
+  double x, y;
+  double half_length, half_width;
+  double cos, sin;  ///< of the heading: the unit vector along the length
+
+  [[nodiscard]] Point center() const { return {x, y}; }
+
+  /// Counter-clockwise: front left, rear left, rear right, front right.
+  [[nodiscard]] std::array<Point, 4> corners() const {
+    double const lx = half_length * cos, ly = half_length * sin;
+    double const wx = -half_width * sin, wy = half_width * cos;
+    return {Point{x + lx + wx, y + ly + wy}, Point{x - lx + wx, y - ly + wy}, Point{x - lx - wx, y - ly - wy},
+            Point{x + lx - wx, y + ly - wy}};
+  }
+
+  /// The smallest axis-parallel rectangle around it.
+  [[nodiscard]] Box bounding_box() const {
+    double const dx = half_length * std::abs(cos) + half_width * std::abs(sin);
+    double const dy = half_length * std::abs(sin) + half_width * std::abs(cos);
+    return {x - dx, y - dy, x + dx, y + dy};
+  }
+
+  /// True inside and on the border.
+  [[nodiscard]] bool contains(Point const& p) const {
+    double const dx = p.x() - x, dy = p.y() - y;
+    return std::abs(cos * dx + sin * dy) <= half_length && std::abs(cos * dy - sin * dx) <= half_width;
+  }
+};
+
+/// The rectangle of `shape` whose reference point is at (x, y) with the heading's cosine and sine given.
+[[nodiscard]] inline OrientedBox box_of(Shape const& shape, double x, double y, double cos, double sin) {
+  double const ahead = shape.center_offset(), aside = shape.center_offset_left();
+  return {x + cos * ahead - sin * aside,
+          y + sin * ahead + cos * aside,
+          0.5 * shape.length(),
+          0.5 * shape.width(),
+          cos,
+          sin};
+}
+
+/// The rectangle of `shape` at a pose of its reference point.
+[[nodiscard]] inline OrientedBox box_of(Shape const& shape, Pose const& pose) {
+  auto const [sin, cos] = sin_cos(pose.heading);
+  return box_of(shape, pose.x, pose.y, cos, sin);
+}
+
+/// The rectangle of `shape` at a motion state of its reference point.
+template <MotionState S>
+[[nodiscard]] OrientedBox box_of(Shape const& shape, S const& state) {
+  return box_of(shape, Pose{state.x, state.y, state.heading});
+}
+
+}  // namespace cambium::geometry

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cmath>
+#include <tuple>
+
+#include "cambium/core/parameters.hpp"
+
+namespace cambium::geometry {
+
+/// A rectangle around a road user, given by the distances [m] of its sides from the reference point, whose pose is the
+/// agent's. Vehicles: the reference point is the centre of the rear axle, on the ground.
+struct Shape {
+  double front = 3.6;
+  double rear = 0.9;
+  double left = 0.9;
+  double right = 0.9;
+
+  static constexpr char const* name = "shape";
+  static constexpr auto parameters() {
+    return std::make_tuple(
+        parameter("front", &Shape::front, "m", non_negative, "From the reference point forward to the front end."),
+        parameter("rear", &Shape::rear, "m", non_negative, "From the reference point back to the rear end."),
+        parameter("left", &Shape::left, "m", non_negative, "From the reference point to the left side."),
+        parameter("right", &Shape::right, "m", non_negative, "From the reference point to the right side."));
+  }
+
+  [[nodiscard]] constexpr double length() const { return front + rear; }
+  [[nodiscard]] constexpr double width() const { return left + right; }
+  /// How far the rectangle's centre lies ahead of the reference point [m].
+  [[nodiscard]] constexpr double center_offset() const { return 0.5 * (front - rear); }
+  /// How far the rectangle's centre lies to the left of the reference point [m]; 0 for symmetric vehicles.
+  [[nodiscard]] constexpr double center_offset_left() const { return 0.5 * (left - right); }
+  /// Radius [m] of the circle through the corners, about the rectangle's centre.
+  [[nodiscard]] double radius() const { return 0.5 * std::sqrt(length() * length() + width() * width()); }
+
+  friend bool operator==(Shape const&, Shape const&) = default;
+};
+
+/// How far a shape reaches along a direction [m], measured from the reference point.
+struct Extent {
+  double positive;  ///< with the direction
+  double negative;  ///< against it, also counted positive
+};
+
+/// Reach of a shape, whose heading makes an angle (given by `cos` and `sin`) with an axis, along that axis.
+[[nodiscard]] constexpr Extent extent_along(Shape const& shape, double cos, double sin) {
+  auto const reach = [&shape](double c, double s) {
+    return (c >= 0.0 ? c * shape.front : -c * shape.rear) + (s <= 0.0 ? -s * shape.left : s * shape.right);
+  };
+  return {reach(cos, sin), reach(-cos, -sin)};
+}
+
+// Presets: outer dimensions without mirrors. Reference points on the rear axle, of twin axles between the two.
+
+/// Compact to medium car, 4.5 m x 1.8 m, wheel base 2.7 m, rear overhang 0.9 m (size of a VW Golf or BMW 3 series,
+/// rounded).
+[[nodiscard]] constexpr Shape car() { return {3.6, 0.9, 0.9, 0.9}; }
+
+/// Delivery van, 6.0 m x 2.0 m, wheel base 3.7 m, rear overhang 1.3 m (size of a long Mercedes Sprinter, rounded).
+[[nodiscard]] constexpr Shape van() { return {4.7, 1.3, 1.0, 1.0}; }
+
+/// Rigid truck, 10.0 m x 2.55 m, wheel base 5.8 m, rear overhang 2.8 m. 2.55 m is the widest, 12 m the longest that EU
+/// Directive 96/53/EC (annex I) permits.
+[[nodiscard]] constexpr Shape truck() { return {7.2, 2.8, 1.275, 1.275}; }
+
+/// Articulated truck as one rectangle, 16.5 m x 2.55 m: the longest that EU Directive 96/53/EC (annex I) permits. The
+/// reference point is the middle axle of the trailer, 4.0 m from the rear end.
+[[nodiscard]] constexpr Shape articulated_truck() { return {12.5, 4.0, 1.275, 1.275}; }
+
+/// City bus, 12.0 m x 2.55 m, wheel base 5.9 m, rear overhang 3.4 m (size of a Mercedes Citaro, rounded).
+[[nodiscard]] constexpr Shape bus() { return {8.6, 3.4, 1.275, 1.275}; }
+
+/// Motorcycle with rider, 2.2 m x 0.8 m, wheel base 1.5 m.
+[[nodiscard]] constexpr Shape motorcycle() { return {1.85, 0.35, 0.4, 0.4}; }
+
+/// Bicycle with rider, 1.8 m x 0.65 m, wheel base 1.1 m.
+[[nodiscard]] constexpr Shape bicycle() { return {1.45, 0.35, 0.325, 0.325}; }
+
+/// Pedestrian, a square of 0.6 m about the reference point.
+[[nodiscard]] constexpr Shape pedestrian() { return {0.3, 0.3, 0.3, 0.3}; }
+
+}  // namespace cambium::geometry

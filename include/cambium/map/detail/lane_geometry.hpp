@@ -1,0 +1,96 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "cambium/geometry/line.hpp"
+#include "cambium/map/detail/section_sampler.hpp"
+#include "cambium/map/lane.hpp"
+
+namespace cambium::map::detail {
+
+/// Fills a lane's path, widths and borders from cross-sections: column `column` of the section. `path_of(cross)` gives the path's
+/// lateral coordinate. False where the lane has no length (its inner side degenerates, or the section is shorter than a micrometre).
+template <class PathOf>
+[[nodiscard]] bool set_geometry(Lane& lane, std::span<CrossSection const> sections, std::size_t column, PathOf const& path_of) {
+  std::vector<geometry::LineSample> path, left, right;
+  lane.widths.clear();
+  auto const add_if_apart = [](std::vector<geometry::LineSample>& samples, geometry::LineSample const& p) {
+    if (!samples.empty() && std::hypot(p.x - samples.back().x, p.y - samples.back().y) < 1e-6) return false;
+    samples.push_back(p);
+    return true;
+  };
+  auto const add = [&](CrossSection const& cross) {
+    auto const on_path = path_of(cross);
+    auto at = [&](Lateral const& l) {
+      auto p = cross.at(l);
+      if (!lane.along_road) p.heading += geometry::pi;
+      return p;
+    };
+    auto const &high = cross.borders[column], &low = cross.borders[column + 1];
+    if (add_if_apart(path, at(on_path))) {
+      double const above = high.t - on_path.t, below = on_path.t - low.t;
+      lane.widths.push_back(lane.along_road ? SideWidths{above, below} : SideWidths{below, above});
+    }
+    add_if_apart(left, at(lane.along_road ? high : low));
+    add_if_apart(right, at(lane.along_road ? low : high));
+  };
+  if (lane.along_road)
+    std::for_each(sections.begin(), sections.end(), add);
+  else
+    std::for_each(sections.rbegin(), sections.rend(), add);
+  if (path.size() < 2) return false;
+  lane.path = geometry::Line::from_samples(path);
+  lane.left = left.size() > 1 ? geometry::Line::from_samples(left) : geometry::Line{};
+  lane.right = right.size() > 1 ? geometry::Line::from_samples(right) : geometry::Line{};
+  return true;
+}
+
+/// 0 to 1 with first and second derivative 0 at both ends, and its derivative.
+struct Smoothstep {
+  double value{}, slope{};
+  explicit Smoothstep(double u) {
+    u = std::clamp(u, 0.0, 1.0);
+    value = u * u * u * (10 + u * (6 * u - 15));
+    slope = 30 * u * u * (1 - u) * (1 - u);
+  }
+};
+
+/// The path of a lane that swings onto the neighbour in column `target` between the road stations `from` and `to` (in the
+/// direction of travel: `from` > `to` on a lane driven against the road).
+[[nodiscard]] inline Lateral merging_path(CrossSection const& cross, std::size_t column, std::size_t target, double from, double to) {
+  auto const own = cross.center(column), other = cross.center(target);
+  Smoothstep const w((cross.s - from) / (to - from));
+  return {own.t + w.value * (other.t - own.t),
+          own.slope + w.value * (other.slope - own.slope) + w.slope / (to - from) * (other.t - own.t)};
+}
+
+/// Where a lane begins to narrow towards its end, as a road station; `longest` [m] before the end where it does not narrow.
+[[nodiscard]] inline double taper_begin(std::span<CrossSection const> sections, std::size_t column, bool along_road, double longest) {
+  auto const width = [&](CrossSection const& c) { return c.borders[column].t - c.borders[column + 1].t; };
+  double widest = 0.0;
+  for (auto const& cross : sections) widest = std::max(widest, width(cross));
+  auto const& end = along_road ? sections.back() : sections.front();
+  double const begin_of_lane = along_road ? sections.front().s : sections.back().s;
+  double begin = end.s;
+  if (width(end) < 0.5 * widest) {
+    auto const wide = [&](CrossSection const& c) { return width(c) > 0.95 * widest; };
+    if (along_road) {
+      auto const at = std::find_if(sections.rbegin(), sections.rend(), wide);
+      begin = at->s;
+    } else {
+      auto const at = std::find_if(sections.begin(), sections.end(), wide);
+      begin = at->s;
+    }
+  }
+  constexpr double shortest = 30.0;  // [m] a swing shorter than this is no longer comfortable
+  double const length = std::abs(end.s - begin);
+  double const swing = length == 0.0 ? longest : std::clamp(length, shortest, std::max(shortest, longest));
+  double const available = std::abs(end.s - begin_of_lane);
+  return along_road ? end.s - std::min(swing, available) : end.s + std::min(swing, available);
+}
+
+}  // namespace cambium::map::detail

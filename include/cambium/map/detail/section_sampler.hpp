@@ -1,0 +1,176 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "cambium/geometry/angle.hpp"
+#include "cambium/geometry/line.hpp"
+#include "cambium/map/cubic.hpp"
+#include "cambium/map/map.hpp"
+#include "cambium/map/reference_line.hpp"
+
+namespace cambium::map::detail {
+
+/// A lateral coordinate and its change along the road.
+struct Lateral {
+  double t{};      ///< [m], left positive
+  double slope{};  ///< dt/ds
+};
+
+/// The cross-section of a road at one station: the reference line and the t of every lane border, from left to right.
+struct CrossSection {
+  double s{};
+  CurvePoint reference;
+  std::vector<Lateral> borders;
+
+  /// Point and direction of the curve at `lateral` (with the curve's slope and the factor 1 - curvature t).
+  [[nodiscard]] geometry::LineSample at(Lateral const& lateral) const {
+    auto const [sin, cos] = geometry::sin_cos(reference.heading);
+    double const turn = std::atan2(lateral.slope, 1.0 - reference.curvature * lateral.t);
+    return {reference.x - sin * lateral.t, reference.y + cos * lateral.t, reference.heading + turn};
+  }
+  /// Middle between border `i` and the next.
+  [[nodiscard]] Lateral center(std::size_t i) const {
+    return {0.5 * (borders[i].t + borders[i + 1].t), 0.5 * (borders[i].slope + borders[i + 1].slope)};
+  }
+};
+
+/// Samples a lane section so that the lanes' centre lines and borders keep within the tolerances between two stations.
+class SectionSampler {
+ public:
+  SectionSampler(Road const& road, RoadSection const& section, MapOptions const& options)
+      : road_(road), section_(section), options_(options), walker_(road.reference_line.walker()) {
+    left_lanes_ = static_cast<std::size_t>(
+        std::count_if(section.lanes.begin(), section.lanes.end(), [](RoadLane const& lane) { return lane.number > 0; }));
+  }
+
+  /// Cross-sections from the section's begin to its end, ends included; every place where a record or a geometry begins is among
+  /// them. With `longest` > 0 no two are farther apart than that [m].
+  [[nodiscard]] std::vector<CrossSection> sample(double longest = 0.0) {
+    auto const breaks = break_points();
+    std::vector<CrossSection> result;
+    for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
+      double const inside = 0.5 * (breaks[i] + breaks[i + 1]);
+      auto const first = cross_section(breaks[i], inside);
+      auto const last = cross_section(breaks[i + 1], inside);
+      double const pieces = longest > 0 ? std::ceil((breaks[i + 1] - breaks[i]) / longest) : 1.0;
+      result.push_back(first);
+      CrossSection from = first;
+      for (int k = 1; k <= static_cast<int>(pieces); ++k) {
+        CrossSection const to = k == static_cast<int>(pieces)
+                                    ? last
+                                    : cross_section(breaks[i] + (breaks[i + 1] - breaks[i]) * k / pieces, inside);
+        refine(from, to, inside, 0, result);
+        if (k < static_cast<int>(pieces)) result.push_back(to);
+        from = to;
+      }
+      if (i + 2 == breaks.size()) result.push_back(last);
+    }
+    return result;
+  }
+
+ private:
+  [[nodiscard]] std::vector<double> break_points() const {
+    std::vector<double> points{section_.begin, section_.end};
+    auto const add = [&](double s) {
+      if (s > section_.begin && s < section_.end) points.push_back(s);
+    };
+    for (auto const& g : road_.reference_line.geometries()) add(g.s);
+    for (auto const& record : road_.lane_offset.records()) add(record.s);
+    for (auto const& lane : section_.lanes)
+      for (auto const& record : lane.width.records()) add(section_.begin + record.s);
+    std::sort(points.begin(), points.end());
+    // Breaks closer than a micrometre are one: there is nothing between them to sample.
+    std::vector<double> result{points.front()};
+    for (double const s : points)
+      if (s - result.back() > 1e-6 && section_.end - s > 1e-6) result.push_back(s);
+    result.push_back(section_.end);
+    return result;
+  }
+
+  /// Value and slope at `s` of the record in force at `inside`.
+  [[nodiscard]] static Lateral profile(CubicProfile const& p, double s, double inside) {
+    auto const* record = p.find(inside);
+    return record != nullptr ? Lateral{record->value(s), record->derivative(s)} : Lateral{p.value(s), 0.0};
+  }
+
+  [[nodiscard]] CurvePoint reference(double s, double inside) {
+    auto const& line = road_.reference_line;
+    auto const& g = line.geometries()[line.locate(inside)];
+    return g.kind == GeometryKind::spiral && line.locate(s) == line.locate(inside) ? walker_.at(s) : evaluate(g, s - g.s);
+  }
+
+  [[nodiscard]] CrossSection cross_section(double s, double inside) {
+    CrossSection cross{s, reference(s, inside), std::vector<Lateral>(section_.lanes.size() + 1)};
+    auto const offset = profile(road_.lane_offset, s, inside);
+    cross.borders[left_lanes_] = offset;
+    auto const width = [&](std::size_t lane) {
+      return profile(section_.lanes[lane].width, s - section_.begin, inside - section_.begin);
+    };
+    for (std::size_t i = left_lanes_; i-- > 0;) {
+      auto const w = width(i);
+      cross.borders[i] = {cross.borders[i + 1].t + w.t, cross.borders[i + 1].slope + w.slope};
+    }
+    for (std::size_t i = left_lanes_; i < section_.lanes.size(); ++i) {
+      auto const w = width(i);
+      cross.borders[i + 1] = {cross.borders[i].t - w.t, cross.borders[i].slope - w.slope};
+    }
+    return cross;
+  }
+
+  /// Whether a straight chord from `a` to `b` is good enough for a curve through `m`.
+  [[nodiscard]] bool fits(geometry::LineSample const& a, geometry::LineSample const& m, geometry::LineSample const& b) const {
+    double const dx = b.x - a.x, dy = b.y - a.y;
+    double const chord = std::hypot(dx, dy);
+    double const off = chord > 1e-9 ? std::abs(dx * (m.y - a.y) - dy * (m.x - a.x)) / chord : std::hypot(m.x - a.x, m.y - a.y);
+    // The middle is where an arc is farthest from its chord; the margin covers curves that are not arcs.
+    return off <= 0.7 * options_.position_tolerance &&
+           std::abs(geometry::angle_difference(b.heading, a.heading)) <= options_.heading_tolerance &&
+           std::abs(geometry::angle_difference(m.heading, a.heading)) <= options_.heading_tolerance;
+  }
+
+  [[nodiscard]] bool fits(CrossSection const& a, CrossSection const& m, CrossSection const& b) const {
+    for (std::size_t i = 0; i < a.borders.size(); ++i) {
+      if (!fits(a.at(a.borders[i]), m.at(m.borders[i]), b.at(b.borders[i]))) return false;
+      if (i + 1 < a.borders.size() && !fits(a.at(a.center(i)), m.at(m.center(i)), b.at(b.center(i)))) return false;
+    }
+    return true;
+  }
+
+  /// Appends the stations needed strictly between `a` and `b`.
+  void refine(CrossSection const& a, CrossSection const& b, double inside, int depth, std::vector<CrossSection>& result) {
+    if (depth > 16 || b.s - a.s < 1e-3 || straight(inside)) return;
+    auto const middle = cross_section(0.5 * (a.s + b.s), inside);
+    bool const has_room_to_wind = depth == 0 && b.s - a.s > 40.0;  // its middle alone says too little
+    if (!has_room_to_wind && fits(a, middle, b)) return;
+    refine(a, middle, inside, depth + 1, result);
+    result.push_back(middle);
+    refine(middle, b, inside, depth + 1, result);
+  }
+
+  /// A straight road with constant widths needs no station in between.
+  [[nodiscard]] bool straight(double inside) const {
+    auto const& line = road_.reference_line;
+    if (line.geometries()[line.locate(inside)].kind != GeometryKind::line) return false;
+    auto const linear = [&](CubicProfile const& p, double offset) {
+      auto const* record = p.find(inside - offset);
+      return record == nullptr || (record->c == 0.0 && record->d == 0.0);
+    };
+    if (!linear(road_.lane_offset, 0.0)) return false;
+    for (auto const& lane : section_.lanes)
+      if (!linear(lane.width, section_.begin)) return false;
+    return true;
+  }
+
+  Road const& road_;
+  RoadSection const& section_;
+  MapOptions const& options_;
+  ReferenceLine::Walker walker_;
+  std::size_t left_lanes_ = 0;
+};
+
+}  // namespace cambium::map::detail

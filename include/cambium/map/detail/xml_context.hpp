@@ -1,0 +1,174 @@
+#pragma once
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <initializer_list>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <pugixml.hpp>
+
+#include "cambium/core/diagnostic.hpp"
+
+namespace cambium::map::detail {
+
+/// Turns byte offsets into line numbers. Offsets asked for in rising order cost O(1) on average, others O(log lines).
+class LineTable {
+ public:
+  explicit LineTable(std::string_view text) {
+    starts_.reserve(text.size() / 48 + 2);
+    starts_.push_back(0);
+    for (std::size_t at = text.find('\n'); at != text.npos; at = text.find('\n', at + 1)) starts_.push_back(at + 1);
+  }
+
+  /// Line of the byte at `offset`, the first is 1; 0 for a negative offset.
+  [[nodiscard]] int line(std::ptrdiff_t offset) {
+    if (offset < 0) return 0;
+    auto const byte = static_cast<std::size_t>(offset);
+    if (starts_[cursor_] > byte) cursor_ = 0;
+    std::size_t steps = 0;
+    while (cursor_ + 1 < starts_.size() && starts_[cursor_ + 1] <= byte && ++steps < 16) ++cursor_;
+    if (steps == 16) {
+      auto const next = std::upper_bound(starts_.begin(), starts_.end(), byte);
+      cursor_ = static_cast<std::size_t>(next - starts_.begin()) - 1;
+    }
+    return static_cast<int>(cursor_ + 1);
+  }
+
+ private:
+  std::vector<std::size_t> starts_;
+  std::size_t cursor_ = 0;
+};
+
+/// `text` without white space at its ends.
+[[nodiscard]] inline std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view blanks = " \t\r\n";
+  std::size_t const first = text.find_first_not_of(blanks);
+  if (first == text.npos) return {};
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+/// The finite number that the whole of `text` spells, in the C locale; a leading '+' is allowed.
+template <class Number>
+[[nodiscard]] std::optional<Number> parse_number(std::string_view text) {
+  text = trimmed(text);
+  if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1);
+  Number value{};
+  auto const [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  if constexpr (std::is_floating_point_v<Number>)
+    if (!std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+/// An element's or attribute's name without its namespace prefix.
+[[nodiscard]] inline std::string_view local_name(char const* name) {
+  char const* begin = name;
+  char const* end = name;
+  for (; *end != '\0'; ++end)
+    if (*end == ':') begin = end + 1;
+  return {begin, static_cast<std::size_t>(end - begin)};
+}
+[[nodiscard]] inline std::string_view local_name(pugi::xml_node node) { return local_name(node.name()); }
+
+/// The first child element of that local name, or a null node.
+[[nodiscard]] inline pugi::xml_node find_child(pugi::xml_node parent, std::string_view name) {
+  pugi::xml_node child = parent.first_child();
+  while (child && local_name(child) != name) child = child.next_sibling();
+  return child;
+}
+
+/// Calls `visit(child, local_name)` for every child element, in the file's order.
+template <class Visit>
+void for_each_child(pugi::xml_node parent, Visit const& visit) {
+  // Only elements have names here: the parser is told to drop declarations and processing instructions.
+  for (pugi::xml_node child = parent.first_child(); child; child = child.next_sibling())
+    if (std::string_view const name = local_name(child); !name.empty()) visit(child, name);
+}
+
+/// Calls `visit(child)` for every child element of that local name, in the file's order.
+template <class Visit>
+void for_each_child(pugi::xml_node parent, std::string_view name, Visit const& visit) {
+  for_each_child(parent, [&](pugi::xml_node child, std::string_view found) {
+    if (found == name) visit(child);
+  });
+}
+
+/// Where the reader is in the file, and the list of what it found odd. Sentences are only made when there is something
+/// to say.
+class XmlContext {
+ public:
+  XmlContext(std::string_view text, std::string file, std::vector<Diagnostic>& diagnostics)
+      : lines_(text), file_(std::move(file)), diagnostics_(&diagnostics) {}
+
+  [[nodiscard]] int line(pugi::xml_node node) { return lines_.line(node.offset_debug()); }
+  [[nodiscard]] std::string const& file() const { return file_; }
+
+  void report(Severity severity, pugi::xml_node node, std::string sentence) {
+    report(severity, line(node), std::string(local_name(node)), std::move(sentence));
+  }
+  void report(Severity severity, int line, std::string element, std::string sentence) {
+    diagnostics_->push_back({severity, file_, line, std::move(element), ids(), std::move(sentence)});
+  }
+
+  /// The attribute as a finite number; reports a bad one, and a missing one if it is `needed`.
+  template <class Number>
+  [[nodiscard]] std::optional<Number> number(pugi::xml_node node, char const* attribute, bool needed = true) {
+    pugi::xml_attribute const found = node.attribute(attribute);
+    if (!found) {
+      if (needed) report(Severity::warning, node, "attribute " + std::string(attribute) + " is missing");
+      return std::nullopt;
+    }
+    std::optional<Number> const value = parse_number<Number>(found.value());
+    if (!value)
+      report(Severity::warning, node,
+             std::string(attribute) + "=\"" + found.value() + "\" is not a finite " +
+                 (std::is_integral_v<Number> ? "whole number" : "number, written like 12.5"));
+    return value;
+  }
+  /// As `number`, for an attribute that may be missing (then `fallback`) or bad (reported, then `fallback`).
+  template <class Number>
+  [[nodiscard]] Number number_or(pugi::xml_node node, char const* attribute, Number fallback) {
+    return number<Number>(node, attribute, false).value_or(fallback);
+  }
+  /// Fills all of `targets` from the attributes of those names, each needed; false when one is missing or bad.
+  [[nodiscard]] bool numbers(pugi::xml_node node, std::initializer_list<std::pair<char const*, double*>> targets) {
+    for (auto const& [name, target] : targets) {
+      std::optional<double> const value = number<double>(node, name);
+      if (!value) return false;
+      *target = *value;
+    }
+    return true;
+  }
+
+  // The reader keeps these up to date while it goes down the tree; they name the place in a diagnostic.
+  char const* road = nullptr;
+  char const* junction = nullptr;
+  std::optional<std::size_t> section;
+  std::optional<int> lane;
+
+ private:
+  [[nodiscard]] std::string ids() const {
+    std::string text;
+    auto const add = [&text](char const* kind, std::string const& id) {
+      text += (text.empty() ? "" : ", ") + std::string(kind) + " " + id;
+    };
+    if (road) add("road", road);
+    if (junction) add("junction", junction);
+    if (section) add("section", std::to_string(*section));
+    if (lane) add("lane", std::to_string(*lane));
+    return text;
+  }
+
+  LineTable lines_;
+  std::string file_;
+  std::vector<Diagnostic>* diagnostics_;
+};
+
+}  // namespace cambium::map::detail

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "cambium/core/ids.hpp"
+#include "cambium/geometry/line.hpp"
+#include "cambium/map/lane_type.hpp"
+
+namespace cambium::map {
+
+/// Distances from a lane's path to its two borders [m]; negative where the path runs outside of the lane.
+struct SideWidths {
+  double left{}, right{};
+};
+
+/// How two lanes that overlap relate.
+enum class OverlapKind : std::uint8_t {
+  merge,     ///< they come together and go on as one, or side by side too close for two vehicles
+  split,     ///< they start as one and part
+  crossing,  ///< one passes over the other
+};
+
+/// A stretch on which a vehicle in this lane and one in another lane cannot be side by side: the lanes' paths are closer
+/// than the map's overlap clearance. `begin`, `end` [m] on this lane's path, `other_begin`, `other_end` on the other's.
+struct Overlap {
+  LaneId other = none<LaneId>;
+  OverlapKind kind = OverlapKind::crossing;
+  double begin{}, end{};
+  double other_begin{}, other_end{};
+};
+
+/// One lane of one lane section, as it is driven: everything runs in the direction of travel.
+///
+/// The `path` is what a vehicle follows: the lane's centre line; but where the lane ends beside a neighbour that goes on
+/// (`merges_into`: a lane drop, the end of an acceleration lane), it swings over onto the neighbour's centre line before the
+/// end, and the neighbour's successors are this lane's successors too.
+struct Lane {
+  LaneId id = none<LaneId>;
+  RoadId road = none<RoadId>;
+  std::uint32_t section{};           ///< index of the lane section within the road
+  int number{};                      ///< the file's lane id: negative right of the reference line
+  LaneType type = LaneType::none;
+  bool along_road = true;            ///< travel direction is that of increasing road s
+  double road_begin{}, road_end{};   ///< the section's range of road s [m], road_begin < road_end
+  double speed_limit{};              ///< [m/s], 0 where the file gives none
+
+  geometry::Line path;               ///< what a vehicle follows (see above)
+  std::vector<SideWidths> widths;    ///< at the path's vertices
+  geometry::Line left, right;        ///< borders in travel direction; empty where they have no length
+
+  LaneId left_neighbor = none<LaneId>;   ///< next lane to the left with the same travel direction, drivable
+  LaneId right_neighbor = none<LaneId>;  ///< next lane to the right with the same travel direction, drivable
+  LaneId merges_into = none<LaneId>;     ///< the neighbour that this lane's path joins at its end
+  double merge_begin{};                  ///< where the path leaves the centre line [m]; only with `merges_into`
+  std::vector<LaneId> successors, predecessors;
+  std::vector<Overlap> overlaps;         ///< sorted by `begin`
+
+  /// First of this lane's values of the map-wide lane coordinate: the lane owns [index_begin, index_begin + length].
+  double index_begin{};
+
+  [[nodiscard]] double length() const { return path.length(); }
+  [[nodiscard]] bool drivable() const { return is_drivable(type); }
+
+  /// Distances from the path to the borders at path position `s` [m], interpolated between the vertices. O(log n).
+  [[nodiscard]] SideWidths widths_at(double s) const {
+    auto const i = path.find(s);
+    auto const& segment = path.segments()[i];
+    double const u = std::clamp((s - segment.s) / segment.length, 0.0, 1.0);
+    auto const &a = widths[i], &b = widths[i + 1];
+    return {a.left + u * (b.left - a.left), a.right + u * (b.right - a.right)};
+  }
+};
+
+}  // namespace cambium::map

@@ -1,0 +1,141 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cambium/core/error.hpp"
+#include "cambium/core/ids.hpp"
+#include "cambium/geometry/pose.hpp"
+#include "cambium/map/corridor.hpp"
+#include "cambium/map/cubic.hpp"
+#include "cambium/map/lane.hpp"
+#include "cambium/map/lane_tree.hpp"
+#include "cambium/map/reference_line.hpp"
+
+namespace cambium::map {
+
+/// What the map is built with.
+struct MapOptions {
+  double position_tolerance = 0.01;  ///< largest distance of a sampled lane from the exact one [m]
+  double heading_tolerance = 0.5 * 3.14159265358979323846 / 180;  ///< largest turn between two samples [rad]
+  double overlap_clearance = 2.5;    ///< paths closer than this cannot carry vehicles side by side [m]
+  double merge_view = 60.0;          ///< how far before an overlap merging lanes take each other's traffic into account [m]
+  double merge_length = 60.0;        ///< longest stretch over which an ending lane swings onto its neighbour [m]
+};
+
+/// A lane of the road cross-section: exact width as a function of the distance from the section's start.
+struct RoadLane {
+  int number{};
+  LaneId id = none<LaneId>;
+  CubicProfile width;
+};
+
+struct RoadSection {
+  double begin{}, end{};        ///< road s [m]
+  std::vector<RoadLane> lanes;  ///< from left (largest number) to right; without lane 0
+};
+
+/// A road as in the file: exact geometry. Sampled lanes are in `Map::lanes`.
+struct Road {
+  RoadId id = none<RoadId>;
+  std::string name;             ///< the file's id
+  JunctionId junction = none<JunctionId>;
+  bool left_hand_traffic = false;
+  ReferenceLine reference_line;
+  CubicProfile lane_offset, elevation;
+  std::vector<RoadSection> sections;
+  double length{};
+};
+
+/// The way from a start to a destination: lanes in order; neighbours in the list are successors, or beside each other (a lane change).
+struct Route {
+  std::vector<LaneId> lanes;
+  double length{};  ///< [m]
+};
+
+/// Finds routes: the part of a map that needs a graph library is behind this, so that worlds compile without it.
+class RouteFinder {
+ public:
+  virtual ~RouteFinder() = default;
+  /// Shortest route, nothing if there is none.
+  [[nodiscard]] virtual std::optional<Route> shortest_route(LaneId from, LaneId to) const = 0;
+};
+
+/// Roads, lanes and how they hang together. Immutable; made by `load_opendrive` or `build_map`, shared by worlds.
+class Map {
+ public:
+  struct Parts {
+    std::vector<Road> roads;
+    std::vector<Lane> lanes;
+    std::vector<std::string> junctions;  ///< the file's ids
+    MapOptions options;
+    std::unique_ptr<RouteFinder const> route_finder;
+  };
+
+  explicit Map(Parts parts) : parts_(std::move(parts)), tree_(parts_.lanes) {}
+  Map(Map const&) = delete;
+  Map& operator=(Map const&) = delete;
+
+  [[nodiscard]] std::span<Road const> roads() const { return parts_.roads; }
+  [[nodiscard]] std::span<Lane const> lanes() const { return parts_.lanes; }
+  [[nodiscard]] MapOptions const& options() const { return parts_.options; }
+
+  [[nodiscard]] Road const& road(RoadId id) const { return parts_.roads[index_of(id)]; }
+  [[nodiscard]] Lane const& lane(LaneId id) const { return parts_.lanes[index_of(id)]; }
+
+  /// The road with the file's id `name`. Throws `MapError` if there is none. O(roads).
+  [[nodiscard]] Road const& find_road(std::string_view name) const {
+    for (auto const& road : parts_.roads)
+      if (road.name == name) return road;
+    throw MapError("road " + std::string(name), "the map has no such road", "see Map::roads for those it has");
+  }
+
+  /// Lane `number` of road `name` at road position `s` [m]. Throws `MapError` if there is none. O(roads).
+  [[nodiscard]] LaneId find_lane(std::string_view name, double s, int number) const {
+    auto const& road = find_road(name);
+    for (auto const& section : road.sections)
+      if (s >= section.begin && (s < section.end || &section == &road.sections.back()))
+        for (auto const& lane : section.lanes)
+          if (lane.number == number) return lane.id;
+    throw MapError("road " + std::string(name) + ", s " + std::to_string(s), "there is no lane " + std::to_string(number),
+                   "see Map::roads for the lanes of its sections");
+  }
+
+  /// Name of a lane for messages: "road 12, section 0, lane -1".
+  [[nodiscard]] std::string describe(LaneId id) const {
+    auto const& l = lane(id);
+    return "road " + road(l.road).name + ", section " + std::to_string(l.section) + ", lane " + std::to_string(l.number);
+  }
+
+  /// Lanes of any type that hold `p`, or come within `radius` [m] of it, nearest first. O(log n).
+  [[nodiscard]] std::vector<LaneHit> lanes_near(geometry::Point const& p, double radius) const { return tree_.near(p, radius); }
+
+  /// The drivable lane that a vehicle at `pose` is in: of the lanes that hold the position the one whose direction fits best;
+  /// where none does, the nearest within `radius` [m] that does not run the other way. Nothing if there is none. O(log n).
+  [[nodiscard]] std::optional<LaneHit> nearest_lane(geometry::Pose const& pose, double radius = 5.0) const {
+    return tree_.nearest_drivable(pose, radius);
+  }
+
+  /// True when a drivable lane holds the point. O(log n), no allocation.
+  [[nodiscard]] bool on_drivable_lane(geometry::Point const& p) const { return tree_.any_drivable_at(p); }
+
+  /// Shortest way from lane to lane by length; lane changes allowed between neighbours. Nothing if there is none.
+  [[nodiscard]] std::optional<Route> shortest_route(LaneId from, LaneId to) const {
+    return parts_.route_finder ? parts_.route_finder->shortest_route(from, to) : std::nullopt;
+  }
+
+ private:
+  Parts parts_;
+  LaneTree tree_;
+};
+
+}  // namespace cambium::map
+
+namespace cambium {
+using map::Map;
+using map::MapOptions;
+}  // namespace cambium

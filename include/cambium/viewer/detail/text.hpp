@@ -1,0 +1,115 @@
+#pragma once
+
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+namespace cambium::detail {
+
+/// Appends `value` rounded to `decimals` places, without trailing zeros and independent of the locale; `null` where it
+/// is not a finite number. "-0" is written "0".
+inline void append_number(std::string& out, double value, int decimals) {
+  if (!std::isfinite(value)) {
+    out += "null";
+    return;
+  }
+  char buffer[400];  // the largest double has 309 digits before the point
+  auto const result = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::fixed, decimals);
+  std::string_view text(buffer, static_cast<std::size_t>(result.ptr - buffer));
+  if (text.find('.') != std::string_view::npos) {
+    text.remove_suffix(text.size() - 1 - text.find_last_not_of('0'));
+    if (text.back() == '.') text.remove_suffix(1);
+  }
+  out += text == "-0" ? std::string_view("0") : text;
+}
+
+/// Bytes of the UTF-8 character that `text` begins with; 0 where it begins with none (RFC 3629, without its tables for
+/// overlong forms of three and four bytes, which browsers replace themselves).
+inline std::size_t utf8_length(std::string_view text) {
+  auto const lead = static_cast<unsigned char>(text.front());
+  std::size_t const length = lead < 0x80   ? 1
+                             : lead < 0xC2 ? 0
+                             : lead < 0xE0 ? 2
+                             : lead < 0xF0 ? 3
+                             : lead < 0xF5 ? 4
+                                           : 0;
+  if (length > text.size()) return 0;
+  for (std::size_t i = 1; i < length; ++i)
+    if ((static_cast<unsigned char>(text[i]) & 0xC0U) != 0x80U) return 0;
+  return length;
+}
+
+/// `text` with each character mapped: control characters become blanks, bytes that are no UTF-8 become U+FFFD, and an
+/// ASCII character for which `replacement` gives a non-empty text becomes that text.
+template <class Replacement>
+[[nodiscard]] std::string escape(std::string_view text, Replacement const& replacement) {
+  std::string out;
+  out.reserve(text.size());
+  while (!text.empty()) {
+    std::size_t const length = utf8_length(text);
+    char const c = text.front();
+    std::string_view const other = length == 1 ? replacement(c) : std::string_view();
+    if (length == 0)
+      out += "\xEF\xBF\xBD";
+    else if (!other.empty())
+      out += other;
+    else if (length == 1 && (static_cast<unsigned char>(c) < 0x20 || c == 0x7F))
+      out += ' ';
+    else
+      out += text.substr(0, length);
+    text.remove_prefix(length == 0 ? 1 : length);
+  }
+  return out;
+}
+
+/// `text` as it can stand in HTML or XML, between tags and in quoted attributes.
+[[nodiscard]] inline std::string escape_markup(std::string_view text) {
+  return escape(text, [](char c) -> std::string_view {
+    switch (c) {
+      case '&':
+        return "&amp;";
+      case '<':
+        return "&lt;";
+      case '>':
+        return "&gt;";
+      case '"':
+        return "&quot;";
+      case '\'':
+        return "&#39;";
+      default:
+        return {};
+    }
+  });
+}
+
+/// `text` as a JSON string with its quotes, which can stand inside a `<script>` element: it has no `<`, `>` or `&`.
+[[nodiscard]] inline std::string json_string(std::string_view text) {
+  return '"' +
+         escape(text,
+                [](char c) -> std::string_view {
+                  switch (c) {
+                    case '"':
+                      return "\\\"";
+                    case '\\':
+                      return "\\\\";
+                    case '\n':
+                      return "\\n";
+                    case '\t':
+                      return "\\t";
+                    case '<':
+                      return "\\u003c";
+                    case '>':
+                      return "\\u003e";
+                    case '&':
+                      return "\\u0026";
+                    default:
+                      return {};
+                  }
+                }) +
+         '"';
+}
+
+}  // namespace cambium::detail

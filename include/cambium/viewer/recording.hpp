@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "cambium/core/error.hpp"
+#include "cambium/core/ids.hpp"
+#include "cambium/geometry/pose.hpp"
+#include "cambium/geometry/shape.hpp"
+
+namespace cambium {
+
+/// Decides an agent's colour in the viewers.
+enum class RecordedAgentKind : std::uint32_t {
+  other = 0,          ///< ordinary traffic
+  ego = 1,            ///< the agent under study; viewers follow it
+  merging = 2,        ///< an agent that changes or joins a lane
+  static_object = 3,  ///< an obstacle
+};
+
+/// Decides how a lane is filled and bordered in the viewers.
+enum class RecordedLaneKind : std::uint32_t {
+  driving = 0,   ///< a lane for vehicles
+  other = 1,     ///< shoulder, border, parking: paved, but not driven on
+  junction = 2,  ///< a lane within a junction; may overlap others
+};
+
+/// An agent of a recording: what does not change over time.
+struct RecordedAgent {
+  AgentId id = none<AgentId>;
+  geometry::Shape shape{};                            ///< distances [m] of the sides from the reference point
+  std::string label{};                                ///< any UTF-8 text, may be empty
+  RecordedAgentKind kind = RecordedAgentKind::other;  ///< colour class
+};
+
+/// Where an agent is in one frame, by its reference point in the map frame.
+struct RecordedPose {
+  double x = 0.0;             ///< [m]
+  double y = 0.0;             ///< [m]
+  double heading = 0.0;       ///< counter-clockwise from +x [rad]
+  double speed = 0.0;         ///< [m/s]
+  double acceleration = 0.0;  ///< along the heading [m/s^2]
+  bool present = false;       ///< false: not in the world at this time, the other fields mean nothing
+};
+
+/// One instant of a recording.
+struct RecordedFrame {
+  double time = 0.0;                  ///< [s]
+  std::vector<RecordedPose> poses{};  ///< one for each of `Recording::agents`, in their order
+};
+
+/// One lane as the area between two borders. Left and right are as seen along the order of the points.
+struct RecordedLane {
+  std::vector<geometry::Point> left{};   ///< [m]
+  std::vector<geometry::Point> right{};  ///< [m], in the same direction as `left`; may have another number of points
+  std::string label{};                   ///< any UTF-8 text, may be empty
+  RecordedLaneKind kind = RecordedLaneKind::driving;  ///< how it is drawn
+  bool forward = true;                                ///< traffic runs in the order of the points (false: against it)
+};
+
+/// What a viewer shows: lanes, agents, and where the agents were over time. Plain data that knows no world, so that any
+/// program can fill it.
+struct Recording {
+  std::string title{};
+  std::vector<RecordedLane> lanes{};
+  std::vector<RecordedAgent> agents{};
+  std::vector<RecordedFrame> frames{};
+  std::vector<std::string> notes{};  ///< one line each, shown below the title
+};
+
+/// Throws `Error` unless every frame has a pose for each agent and the times are finite and ascend strictly.
+inline void check_recording(Recording const& recording) {
+  for (std::size_t k = 0; k < recording.frames.size(); ++k) {
+    RecordedFrame const& frame = recording.frames[k];
+    std::string const where = "recording '" + recording.title + "', frame " + std::to_string(k);
+    if (frame.poses.size() != recording.agents.size())
+      throw Error(where,
+                  "has " + std::to_string(frame.poses.size()) + " poses for " +
+                      std::to_string(recording.agents.size()) + " agents",
+                  "give one pose for each agent, with present = false where it is away");
+    bool const ascends = k == 0 || frame.time > recording.frames[k - 1].time;
+    if (!std::isfinite(frame.time) || !ascends)
+      throw Error(where, "its time " + std::to_string(frame.time) + " s does not come after the frame before",
+                  "record frames in order of time");
+  }
+}
+
+}  // namespace cambium

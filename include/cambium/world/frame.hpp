@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "cambium/core/plan.hpp"
+#include "cambium/map/lane_position.hpp"
+
+namespace cambium {
+
+/// Whether an agent takes part in traffic, and if not, why not. Only those that drive are seen by others, and moved.
+enum class AgentStatus : std::uint8_t {
+  driving,
+  not_started,  ///< its behaviour has not begun
+  arrived,      ///< passed the end of its route
+  left_map,     ///< passed the end of the road
+  expired,      ///< its behaviour has nothing more to do
+  failed,       ///< its behaviour or execution gave no valid next state; it keeps the last valid one
+};
+
+/// What a step changes of one agent.
+template <MotionState S, class Memory>
+struct AgentRecord {
+  S state;
+  map::LanePosition lane;
+  Action action;  ///< of the step that led here
+  Memory memory;
+  AgentStatus status = AgentStatus::driving;
+
+  friend bool operator==(AgentRecord const&, AgentRecord const&) = default;
+};
+
+/// What a step changes: time and one record per agent, in the order of the roster, in one buffer.
+template <MotionState S, class Memory>
+struct Frame {
+  using Record = AgentRecord<S, Memory>;
+
+  double time = 0.0;       ///< [s]
+  std::uint64_t step = 0;  ///< steps made since the world began
+  std::vector<Record> agents;
+
+  friend bool operator==(Frame const&, Frame const&) = default;
+};
+
+}  // namespace cambium

@@ -1,0 +1,113 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "cambium/behavior/view.hpp"
+#include "cambium/geometry/angle.hpp"
+#include "cambium/goal/goal.hpp"
+#include "cambium/world/prediction.hpp"
+#include "cambium/world/traffic_index.hpp"
+
+namespace cambium {
+
+/// Another agent as seen by an observer.
+template <MotionState S>
+struct ObservedAgent {
+  AgentId id = none<AgentId>;
+  S state;
+  geometry::Shape shape;
+};
+
+/// What one agent sees of its world: a view, as small as a pointer and a number, valid until the world changes. States pass
+/// through the agent's observer model. It shows states, shapes, the map, neighbours and the agent's own route; never what
+/// the others intend: `predict` asks for a model of that.
+template <class World>
+class ObservedWorld {
+ public:
+  using State = typename World::State;
+  using Dynamics = typename World::Dynamics;
+
+  ObservedWorld(World const& world, std::uint32_t slot) : world_(&world), slot_(slot) {}
+
+  [[nodiscard]] double time() const { return world_->frame().time; }
+  [[nodiscard]] AgentId id() const { return own().id; }
+  [[nodiscard]] decltype(auto) state() const { return observed(slot_); }
+  [[nodiscard]] geometry::Shape const& shape() const { return own().shape; }
+  [[nodiscard]] Dynamics const& dynamics() const { return own().dynamics; }
+  [[nodiscard]] Action const& last_action() const { return record(slot_).action; }
+  [[nodiscard]] Goal const& goal() const { return world_->roster().goals[slot_]; }
+  [[nodiscard]] Map const& map() const { return world_->map(); }
+  [[nodiscard]] map::RoadCorridor const& road() const { return *own().road; }
+  [[nodiscard]] map::LanePosition const& lane_position() const { return record(slot_).lane; }
+  [[nodiscard]] map::LaneCorridor const& corridor() const { return road().corridors[lane_position().corridor]; }
+  [[nodiscard]] std::span<StaticObject const> objects() const { return world_->roster().objects; }
+
+  /// Numbers of the agent's own for this step: the same whatever the order of agents, threads or copies.
+  [[nodiscard]] RandomStream random(std::uint32_t purpose) const {
+    return {world_->roster().seed, static_cast<std::uint32_t>(id()), static_cast<std::uint32_t>(world_->frame().step), purpose};
+  }
+
+  /// Next road user ahead along the own lane corridor; nothing if there is none within `TrafficIndex::horizon`. O(1) while the
+  /// next one is in the same lane.
+  [[nodiscard]] std::optional<Neighbor> front() const {
+    return neighbor(world_->traffic().front(corridor(), query(lane_position()), objects_on_lanes(), true));
+  }
+  [[nodiscard]] std::optional<Neighbor> rear() const {
+    return neighbor(world_->traffic().rear(corridor(), query(lane_position()), objects_on_lanes(), true));
+  }
+
+  /// Next road user ahead along lane corridor `number` of the own road, from the place beside the agent. O(log n).
+  [[nodiscard]] std::optional<Neighbor> front(std::uint16_t number) const {
+    if (number == lane_position().corridor) return front();
+    return neighbor(world_->traffic().front(road().corridors[number], query(beside(number)), objects_on_lanes(), false));
+  }
+  [[nodiscard]] std::optional<Neighbor> rear(std::uint16_t number) const {
+    if (number == lane_position().corridor) return rear();
+    return neighbor(world_->traffic().rear(road().corridors[number], query(beside(number)), objects_on_lanes(), false));
+  }
+
+  /// Calls `f(ObservedAgent)` for every other agent in traffic, in the order of their ids.
+  template <class F>
+  void for_each_other(F&& f) const {
+    auto const& agents = world_->roster().agents;
+    for (std::uint32_t i = 0; i < agents.size(); ++i)
+      if (i != slot_ && record(i).status == AgentStatus::driving) f(ObservedAgent<State>{agents[i].id, observed(i), agents[i].shape});
+  }
+
+  /// A world of its own, as this agent sees it, in which everybody behaves as `prediction` says: to be stepped, copied and
+  /// judged. History, observers and true behaviours stay behind. O(agents), allocates: do it once, then copy.
+  template <class Set>
+  [[nodiscard]] typename World::template WithBehaviors<Set> predict(Prediction<Set> const& prediction) const {
+    return predicted_world<Set>(*world_, slot_, prediction);
+  }
+
+ private:
+  [[nodiscard]] auto const& own() const { return world_->roster().agents[slot_]; }
+  [[nodiscard]] auto const& record(std::uint32_t slot) const { return world_->frame().agents[slot]; }
+  [[nodiscard]] std::span<TrafficEntry const> objects_on_lanes() const { return world_->roster().object_entries; }
+
+  [[nodiscard]] decltype(auto) observed(std::uint32_t slot) const {
+    auto const& agent = world_->roster().agents[slot];
+    return own().observer.observe(record(slot).state, slot == slot_, random(static_cast<std::uint32_t>(agent.id)));
+  }
+
+  [[nodiscard]] TrafficQuery query(map::LanePosition const& at) const { return {slot_, at.s, shape().front, shape().rear, at.piece}; }
+
+  [[nodiscard]] map::LanePosition beside(std::uint16_t number) const {
+    auto const& s = record(slot_).state;
+    return map::locate(road(), number, {s.x, s.y, s.heading});
+  }
+
+  [[nodiscard]] std::optional<Neighbor> neighbor(std::optional<TrafficHit> const& hit) const {
+    if (!hit) return std::nullopt;
+    if (hit->is_object) return Neighbor{none<AgentId>, world_->roster().objects[hit->slot].id, hit->gap, 0.0};
+    double const along = geometry::sin_cos(record(hit->slot).lane.heading_error).cos;
+    return Neighbor{world_->roster().agents[hit->slot].id, none<ObjectId>, hit->gap, observed(hit->slot).speed * along};
+  }
+
+  World const* world_;
+  std::uint32_t slot_;
+};
+
+}  // namespace cambium

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <utility>
+
+#include "cambium/behavior/behavior_set.hpp"
+#include "cambium/map/lane_position.hpp"
+#include "cambium/observer/perfect.hpp"
+#include "cambium/world/frame.hpp"
+
+namespace cambium {
+
+/// What a planner assumes: how itself and how the others will behave, as alternatives of a behaviour set.
+template <class Set>
+struct Prediction {
+  static_assert(is_behavior_set<Set>, "cambium::Prediction<Set>: Set must be cambium::BehaviorSet<Models...>");
+  typename Set::Any ego;
+  typename Set::Any others;
+};
+
+/// Everybody behaves as `behavior`.
+template <class Set>
+[[nodiscard]] Prediction<Set> predict_all_as(typename Set::Any behavior) {
+  return {behavior, behavior};
+}
+
+/// The agent behaves as `ego`, the others as `others`.
+template <class Set>
+[[nodiscard]] Prediction<Set> predict_as(typename Set::Any ego, typename Set::Any others) {
+  return {std::move(ego), std::move(others)};
+}
+
+/// The world that agent number `slot` of `world` expects: states as it observes them, behaviours as `prediction` says. Agents
+/// that it does not see in traffic are left out.
+template <class Set, class World>
+[[nodiscard]] typename World::template WithBehaviors<Set> predicted_world(World const& world, std::uint32_t slot,
+                                                                          Prediction<Set> const& prediction) {
+  using Predicted = typename World::template WithBehaviors<Set>;
+  auto const& roster = world.roster();
+  auto const& frame = world.frame();
+  auto const& observer = roster.agents[slot];
+  auto assumed = std::make_shared<typename Predicted::RosterType>();
+  assumed->seed = roster.seed;
+  assumed->next_agent_id = roster.next_agent_id;
+  assumed->next_object_id = roster.next_object_id;
+  assumed->objects = roster.objects;
+  assumed->object_entries = roster.object_entries;
+  assumed->corridors = roster.corridors;
+  typename Predicted::FrameType seen{frame.time, frame.step, {}};
+  for (std::uint32_t i = 0; i < roster.agents.size(); ++i) {
+    auto const& agent = roster.agents[i];
+    auto const& record = frame.agents[i];
+    if (record.status != AgentStatus::driving) continue;
+    auto const& behavior = i == slot ? prediction.ego : prediction.others;
+    assumed->agents.push_back({agent.id, agent.shape, agent.road, behavior, agent.execution, agent.dynamics, PerfectObserver{}});
+    assumed->goals.push_back(roster.goals[i]);
+    RandomStream const random(roster.seed, static_cast<std::uint32_t>(observer.id), static_cast<std::uint32_t>(frame.step),
+                              static_cast<std::uint32_t>(agent.id));
+    auto const& state = observer.observer.observe(record.state, i == slot, random);
+    auto lane = record.lane;
+    if constexpr (!World::Observer::perfect)
+      lane = map::locate(*agent.road, lane.corridor, {state.x, state.y, state.heading}, lane);
+    seen.agents.push_back({state, lane, record.action, Set::initial_memory(behavior), AgentStatus::driving});
+  }
+  return Predicted(world.shared_map(), std::move(assumed), std::move(seen));
+}
+
+}  // namespace cambium

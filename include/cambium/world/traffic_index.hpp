@@ -1,0 +1,212 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "cambium/map/corridor.hpp"
+
+namespace cambium {
+
+/// A road user on the lanes: `position` in the map-wide lane coordinate (see `Lane::index_begin`), and how far it reaches from
+/// there forward and back [m]. Sorted by position, then slot.
+struct TrafficEntry {
+  double position{};
+  double front{}, rear{};
+  std::uint32_t slot{};
+
+  friend bool operator<(TrafficEntry const& a, TrafficEntry const& b) {
+    return a.position < b.position || (a.position == b.position && a.slot < b.slot);
+  }
+};
+
+/// Who asks for neighbours: a position `s` on a lane corridor and the asker's extent. `slot` breaks ties and is never found.
+struct TrafficQuery {
+  std::uint32_t slot{};
+  double s{};
+  double front{}, rear{};
+  std::uint16_t piece{};
+};
+
+/// What was found: a slot of the agents, or of the objects.
+struct TrafficHit {
+  std::uint32_t slot{};
+  bool is_object = false;
+  double gap = std::numeric_limits<double>::infinity();  ///< [m]
+};
+
+/// Who is where on the lanes, sorted, so that the next road user along a corridor is the next in the list.
+///
+/// Agents are kept in one list by lane coordinate; the order of the last step is repaired, not rebuilt (insertion sort; where it
+/// is far off, a full sort). Agents that reach over their lane's border appear in the neighbour's lane too; static objects are in a list of their own.
+/// On the corridor itself the nearest by reference point counts; from each feeder (a lane that merges in, or has just split off)
+/// likewise; of these the one with the smallest gap is the neighbour.
+class TrafficIndex {
+ public:
+  /// Farthest reference point that is a neighbour, along the corridor [m].
+  static constexpr double horizon = 400.0;
+
+  /// Takes in `count` agents. `entry_of(slot)` gives each one's `TrafficEntry` (position +infinity: not in traffic);
+  /// `add_straddling(slot, list)` appends entries in the lanes that it reaches into. No allocation once warm. O(count) when little has changed.
+  template <class EntryOf, class AddStraddling>
+  void refresh(std::size_t count, EntryOf const& entry_of, AddStraddling const& add_straddling) {
+    if (agents_.size() != count) {
+      agents_.resize(count);
+      rank_.resize(count);
+      for (std::uint32_t i = 0; i < count; ++i) agents_[i].slot = i;
+    }
+    straddling_.clear();
+    for (auto& entry : agents_) {
+      entry = entry_of(entry.slot);
+      add_straddling(entry.slot, straddling_);
+    }
+    sort_nearly_sorted(agents_);
+    std::sort(straddling_.begin(), straddling_.end());
+    for (std::uint32_t i = 0; i < count; ++i) rank_[agents_[i].slot] = i;
+  }
+
+  /// Next ahead of the asker on `corridor`. `own`: the asker's own entry lies on this corridor's piece (saves a search).
+  [[nodiscard]] std::optional<TrafficHit> front(map::LaneCorridor const& corridor, TrafficQuery const& query,
+                                                std::span<TrafficEntry const> objects, bool own) const {
+    TrafficHit best;
+    std::size_t const start = own ? rank_[query.slot] + 1 : upper(agents_, key(corridor, query), query.slot);
+    front_on_corridor(agents_, false, corridor, query, start, best);
+    if (!straddling_.empty()) front_on_corridor(straddling_, false, corridor, query, upper(straddling_, key(corridor, query), query.slot), best);
+    if (!objects.empty()) front_on_corridor(objects, true, corridor, query, upper(objects, key(corridor, query), 0), best);
+    for (auto const& feeder : corridor.feeders) {
+      if (feeder.begin > query.s + horizon) break;
+      if (feeder.end < query.s) continue;
+      front_on_feeder(agents_, false, feeder, query, best);
+      if (!straddling_.empty()) front_on_feeder(straddling_, false, feeder, query, best);
+      if (!objects.empty()) front_on_feeder(objects, true, feeder, query, best);
+    }
+    return found(best);
+  }
+
+  /// Next behind the asker on `corridor`.
+  [[nodiscard]] std::optional<TrafficHit> rear(map::LaneCorridor const& corridor, TrafficQuery const& query,
+                                               std::span<TrafficEntry const> objects, bool own) const {
+    TrafficHit best;
+    std::size_t const start = own ? rank_[query.slot] : lower(agents_, key(corridor, query), query.slot);
+    rear_on_corridor(agents_, false, corridor, query, start, best);
+    if (!straddling_.empty()) rear_on_corridor(straddling_, false, corridor, query, lower(straddling_, key(corridor, query), query.slot), best);
+    if (!objects.empty()) rear_on_corridor(objects, true, corridor, query, lower(objects, key(corridor, query), 0), best);
+    for (auto const& feeder : corridor.feeders) {
+      if (feeder.begin > query.s) break;
+      if (feeder.end < query.s - horizon) continue;
+      rear_on_feeder(agents_, false, feeder, query, best);
+      if (!straddling_.empty()) rear_on_feeder(straddling_, false, feeder, query, best);
+      if (!objects.empty()) rear_on_feeder(objects, true, feeder, query, best);
+    }
+    return found(best);
+  }
+
+ private:
+  using List = std::span<TrafficEntry const>;
+
+  [[nodiscard]] static std::optional<TrafficHit> found(TrafficHit const& best) {
+    if (best.gap == std::numeric_limits<double>::infinity()) return std::nullopt;
+    return best;
+  }
+
+  [[nodiscard]] static double key(map::LaneCorridor const& corridor, TrafficQuery const& query) {
+    return query.s + corridor.pieces[query.piece].index_offset;
+  }
+
+  /// First entry behind which (position, slot) sorts.
+  [[nodiscard]] static std::size_t upper(List list, double position, std::uint32_t slot) {
+    return static_cast<std::size_t>(std::upper_bound(list.begin(), list.end(), TrafficEntry{position, 0, 0, slot}) - list.begin());
+  }
+  [[nodiscard]] static std::size_t lower(List list, double position, std::uint32_t slot) {
+    return static_cast<std::size_t>(std::lower_bound(list.begin(), list.end(), TrafficEntry{position, 0, 0, slot}) - list.begin());
+  }
+
+  static void offer(TrafficHit& best, std::uint32_t slot, bool is_object, double gap) {
+    if (gap < best.gap) best = {slot, is_object, gap};
+  }
+
+  static void front_on_corridor(List list, bool is_object, map::LaneCorridor const& corridor, TrafficQuery const& query,
+                                std::size_t start, TrafficHit& best) {
+    auto const& pieces = corridor.pieces;
+    for (std::size_t p = query.piece, i = start;;) {
+      while (i < list.size() && list[i].slot == query.slot && !is_object) ++i;  // the asker's own, reached over from another lane
+      if (i < list.size() && list[i].position <= pieces[p].end + pieces[p].index_offset) {
+        double const s = list[i].position - pieces[p].index_offset;
+        if (s - query.s <= horizon) offer(best, list[i].slot, is_object, s - list[i].rear - (query.s + query.front));
+        return;
+      }
+      if (++p == pieces.size() || pieces[p].begin - query.s > horizon) return;
+      i = lower(list, pieces[p].begin + pieces[p].index_offset, 0);
+    }
+  }
+
+  static void rear_on_corridor(List list, bool is_object, map::LaneCorridor const& corridor, TrafficQuery const& query,
+                               std::size_t start, TrafficHit& best) {
+    auto const& pieces = corridor.pieces;
+    for (std::size_t p = query.piece, i = start;;) {  // candidates lie before i
+      while (i > 0 && list[i - 1].slot == query.slot && !is_object) --i;
+      if (i > 0 && list[i - 1].position >= pieces[p].begin + pieces[p].index_offset) {
+        auto const& entry = list[i - 1];
+        double const s = entry.position - pieces[p].index_offset;
+        if (query.s - s <= horizon) offer(best, entry.slot, is_object, query.s - query.rear - (s + entry.front));
+        return;
+      }
+      if (p-- == 0 || query.s - pieces[p].end > horizon) return;
+      i = upper(list, pieces[p].end + pieces[p].index_offset, std::numeric_limits<std::uint32_t>::max());
+    }
+  }
+
+  static void front_on_feeder(List list, bool is_object, map::Feeder const& feeder, TrafficQuery const& query, TrafficHit& best) {
+    double const from = query.s <= feeder.begin ? feeder.index_begin : feeder.index_at(query.s);
+    // Rounding of the mapping must not lose an entry: start early, then go on to the first that is ahead.
+    for (auto i = lower(list, from - 1e-6, 0); i < list.size() && list[i].position <= feeder.index_end; ++i) {
+      auto const& entry = list[i];
+      if (entry.position < feeder.index_begin || (entry.slot == query.slot && !is_object)) continue;
+      double const s = feeder.image(entry.position);
+      bool const ahead = s > query.s || (s == query.s && entry.slot > query.slot);
+      if (!ahead) continue;
+      if (s - query.s <= horizon)
+        offer(best, entry.slot, is_object, std::max(s - entry.rear, feeder.free_until) - (query.s + query.front));
+      return;
+    }
+  }
+
+  static void rear_on_feeder(List list, bool is_object, map::Feeder const& feeder, TrafficQuery const& query, TrafficHit& best) {
+    double const to = query.s >= feeder.end ? feeder.index_end : feeder.index_at(query.s);
+    for (auto i = upper(list, to + 1e-6, std::numeric_limits<std::uint32_t>::max()); i > 0 && list[i - 1].position >= feeder.index_begin; --i) {
+      auto const& entry = list[i - 1];
+      if (entry.position > feeder.index_end || (entry.slot == query.slot && !is_object)) continue;
+      double const s = feeder.image(entry.position);
+      bool const behind = s < query.s || (s == query.s && entry.slot < query.slot);
+      if (!behind) continue;
+      if (query.s - s <= horizon)
+        offer(best, entry.slot, is_object, std::max(query.s - query.rear, feeder.free_until) - (s + entry.front));
+      return;
+    }
+  }
+
+  /// Insertion sort, linear when the order has hardly changed; gives up for a full sort where it has.
+  static void sort_nearly_sorted(std::vector<TrafficEntry>& list) {
+    std::size_t moves = 0;
+    for (std::size_t i = 1; i < list.size(); ++i) {
+      if (!(list[i] < list[i - 1])) continue;
+      auto const entry = list[i];
+      std::size_t j = i;
+      for (; j > 0 && entry < list[j - 1]; --j) list[j] = list[j - 1];
+      list[j] = entry;
+      if ((moves += i - j) > 64 + 8 * list.size()) {
+        std::sort(list.begin(), list.end());
+        return;
+      }
+    }
+  }
+
+  std::vector<TrafficEntry> agents_;
+  std::vector<TrafficEntry> straddling_;
+  std::vector<std::uint32_t> rank_;
+};
+
+}  // namespace cambium

@@ -1,0 +1,24 @@
+#include "cambium/core/error.hpp"
+
+#include <string>
+
+#include <doctest/doctest.h>
+
+using namespace cambium;
+
+TEST_CASE("an error says where, what and what to do") {
+  MapError const error("merging.xodr:12", "lane -1 has no width", "add a <width> element");
+  CHECK(std::string(error.what()) == "merging.xodr:12: lane -1 has no width; add a <width> element");
+  CHECK(error.where() == "merging.xodr:12");
+}
+
+TEST_CASE("an error without a place or a remedy has no stray punctuation") {
+  CHECK(std::string(Error("", "it failed").what()) == "it failed");
+  CHECK(std::string(Error("here", "it failed").what()) == "here: it failed");
+}
+
+TEST_CASE("every kind of error is caught as an Error") {
+  CHECK_THROWS_AS(throw ParameterError("key", "is wrong"), Error);
+  CHECK_THROWS_AS(throw MapError("file", "is wrong"), Error);
+  CHECK_THROWS_AS(throw WorldError("agent 3", "is wrong"), Error);
+}

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <system_error>
+#include <vector>
+
+/// Where the tests find maps: the project's own, and the public ones of the corpus (which may be absent).
+namespace corpus {
+
+inline std::filesystem::path opendrive_folder() {
+  char const* const set = std::getenv("CAMBIUM_CORPUS");
+  std::filesystem::path const root =
+      set ? std::filesystem::path(set) : std::filesystem::path(CAMBIUM_SOURCE_DIR) / ".." / "shared";
+  return root / "opendrive";
+}
+
+/// The .xodr files of a folder in the order of their names; empty when it is not there.
+inline std::vector<std::filesystem::path> maps(std::filesystem::path const& folder) {
+  std::vector<std::filesystem::path> files;
+  std::error_code absent;
+  for (auto const& entry : std::filesystem::directory_iterator(folder, absent))
+    if (entry.path().extension() == ".xodr") files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+inline std::string read(std::filesystem::path const& path) {
+  std::ifstream in(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+/// The cells of a comma-separated table, line by line, without the heading.
+inline std::vector<std::vector<std::string>> table(std::filesystem::path const& path) {
+  std::vector<std::vector<std::string>> rows;
+  std::ifstream in(path);
+  std::string line;
+  std::getline(in, line);
+  while (std::getline(in, line)) {
+    std::vector<std::string>& row = rows.emplace_back();
+    for (std::size_t begin = 0; begin <= line.size();) {
+      std::size_t const end = std::min(line.find(',', begin), line.size());
+      row.push_back(line.substr(begin, end - begin));
+      begin = end + 1;
+    }
+  }
+  return rows;
+}
+
+}  // namespace corpus

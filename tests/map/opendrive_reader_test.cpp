@@ -1,0 +1,413 @@
+#include <doctest/doctest.h>
+
+#include <clocale>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cambium/map/opendrive_reader.hpp"
+#include "corpus.hpp"
+
+namespace {
+
+using namespace cambium::map;
+using cambium::Diagnostic;
+using cambium::MapError;
+using cambium::Severity;
+
+/// Two roads and a junction without fault; tests change a place in it.
+std::string const good_file = R"(<?xml version="1.0"?>
+<OpenDRIVE>
+  <header revMajor="1" revMinor="6" name="test" north="1" south="2" east="3" west="4"/>
+  <road name="first" length="100" id="1" junction="-1" rule="RHT">
+    <link><successor elementType="road" elementId="2" contactPoint="start"/></link>
+    <type s="0" type="rural"><speed max="50" unit="mph"/></type>
+    <planView>
+      <geometry s="0" x="0" y="0" hdg="0" length="60"><line/></geometry>
+      <geometry s="60" x="60" y="0" hdg="0" length="40"><arc curvature="0.01"/></geometry>
+    </planView>
+    <elevationProfile><elevation s="0" a="1" b="0.1" c="0" d="0"/></elevationProfile>
+    <lanes>
+      <laneOffset s="0" a="0.5" b="0" c="0" d="0"/>
+      <laneSection s="0">
+        <center><lane id="0" type="none" level="false"/></center>
+        <right>
+          <lane id="-1" type="driving" level="false">
+            <link><successor id="-1"/></link>
+            <width sOffset="0" a="3.5" b="0" c="0" d="0"/>
+            <roadMark sOffset="0" type="broken" color="white" width="0.12" laneChange="both"/>
+            <speed sOffset="5" max="36" unit="km/h"/>
+          </lane>
+          <lane id="-2" type="shoulder" level="false"><width sOffset="0" a="2" b="0" c="0" d="0"/></lane>
+        </right>
+      </laneSection>
+      <laneSection s="70">
+        <center><lane id="0" type="none" level="false"/></center>
+        <right>
+          <lane id="-1" type="driving" level="false">
+            <link><predecessor id="-1"/></link>
+            <width sOffset="0" a="3.5" b="0" c="0" d="0"/>
+          </lane>
+        </right>
+      </laneSection>
+    </lanes>
+  </road>
+  <road name="second" length="10" id="2" junction="7" rule="LHT">
+    <link><predecessor elementType="road" elementId="1" contactPoint="end"/></link>
+    <planView>
+      <geometry s="0" x="95" y="8" hdg="0.4" length="10"><spiral curvStart="0.01" curvEnd="0"/></geometry>
+    </planView>
+    <lanes><laneSection s="0">
+      <left><lane id="1" type="driving" level="false"><width sOffset="0" a="3" b="0" c="0" d="0"/></lane></left>
+      <center><lane id="0" type="none" level="false"/></center>
+    </laneSection></lanes>
+  </road>
+  <junction id="7" name="j">
+    <connection id="0" incomingRoad="1" connectingRoad="2" contactPoint="start"><laneLink from="-1" to="1"/></connection>
+  </junction>
+</OpenDRIVE>
+)";
+
+std::string replaced(std::string text, std::string const& from, std::string const& to) {
+  std::size_t const at = text.find(from);
+  REQUIRE_MESSAGE(at != text.npos, "the test's file has no " << from);
+  return text.replace(at, from.size(), to);
+}
+
+struct Reading {
+  OpenDriveDocument document;
+  std::vector<Diagnostic> diagnostics;
+
+  /// The first finding whose sentence holds `words`.
+  [[nodiscard]] Diagnostic const* find(std::string const& words) const {
+    for (Diagnostic const& d : diagnostics)
+      if (d.sentence.find(words) != std::string::npos) return &d;
+    return nullptr;
+  }
+};
+
+Reading read(std::string const& text) {
+  Reading reading;
+  reading.document = read_opendrive_document(text, "test.xodr", reading.diagnostics);
+  return reading;
+}
+
+/// What the error says that reading `text` must end with.
+std::string error_of(std::string const& text) {
+  try {
+    (void)read(text);
+  } catch (MapError const& error) {
+    return error.what();
+  }
+  return "";
+}
+
+bool contains(std::string const& text, std::string const& words) { return text.find(words) != std::string::npos; }
+
+}  // namespace
+
+TEST_CASE("a file without fault is read as it is written, without a finding") {
+  Reading const r = read(good_file);
+  for (Diagnostic const& d : r.diagnostics) MESSAGE(to_string(d));
+  CHECK(r.diagnostics.empty());
+  CHECK(r.document.header.rev_minor == 6);
+  CHECK(r.document.header.west == 4.0);
+  REQUIRE(r.document.roads.size() == 2);
+  opendrive::Road const& road = r.document.roads[0];
+  CHECK(road.id == "1");
+  CHECK(road.name == "first");
+  CHECK(road.junction.empty());
+  CHECK(road.rule == opendrive::TrafficRule::right_hand);
+  CHECK(road.line == 4);
+  CHECK_FALSE(road.predecessor.has_value());
+  REQUIRE(road.successor.has_value());
+  CHECK(road.successor->id == "2");
+  CHECK(road.successor->contact_point == opendrive::ContactPoint::start);
+  CHECK(road.successor->line == 5);
+  REQUIRE(road.types.size() == 1);
+  CHECK(road.types[0].limit == 50 * 0.44704);
+  REQUIRE(road.geometries.size() == 2);
+  CHECK(road.geometries[1] == Geometry{60.0, 60.0, 0.0, 0.0, 40.0, GeometryKind::arc, 0.01, 0.01});
+  CHECK(road.geometry_lines == std::vector{8, 9});
+  CHECK(road.elevation == std::vector<CubicRecord>{{0.0, 1.0, 0.1}});
+  CHECK(road.lane_offset == std::vector<CubicRecord>{{0.0, 0.5}});
+  opendrive::Road const& second = r.document.roads[1];
+  CHECK(second.junction == "7");
+  CHECK(second.rule == opendrive::TrafficRule::left_hand);
+  CHECK(second.geometries[0].kind == GeometryKind::spiral);
+  REQUIRE(r.document.junctions.size() == 1);
+  REQUIRE(r.document.junctions[0].connections.size() == 1);
+  CHECK(r.document.junctions[0].connections[0].connecting_road == "2");
+  CHECK(r.document.junctions[0].connections[0].lane_links[0].to == 1);
+}
+
+TEST_CASE("lanes keep their types, links, widths, marks and limits") {
+  Reading const r = read(good_file);
+  REQUIRE(r.document.roads[0].lane_sections.size() == 2);
+  opendrive::LaneSection const& section = r.document.roads[0].lane_sections[0];
+  REQUIRE(section.lanes.size() == 3);
+  CHECK(section.lanes[0].id == 0);
+  opendrive::Lane const& lane = section.lanes[1];
+  CHECK(lane.id == -1);
+  CHECK(lane.type == LaneType::driving);
+  CHECK(lane.successors == std::vector{-1});
+  CHECK(lane.predecessors.empty());
+  CHECK(lane.widths == std::vector<CubicRecord>{{0.0, 3.5}});
+  REQUIRE(lane.road_marks.size() == 1);
+  CHECK(lane.road_marks[0].type == "broken");
+  CHECK(lane.road_marks[0].lane_change == opendrive::LaneChange::both);
+  REQUIRE(lane.speeds.size() == 1);
+  CHECK(lane.speeds[0].s == 5.0);
+  CHECK(lane.speeds[0].limit == 10.0);
+  CHECK(lane.line == 17);
+  CHECK(section.find(-2)->type == LaneType::shoulder);
+  CHECK(section.find(5) == nullptr);
+}
+
+TEST_CASE("what is no OpenDRIVE file at all is an error that says where, what and what to do") {
+  CHECK(contains(error_of(""), "test.xodr:1: the file is not well-formed XML"));
+  CHECK(contains(error_of("no xml"), "the file is not well-formed XML"));
+  std::string const truncated = error_of(good_file.substr(0, good_file.find("<elevation ")));
+  CHECK(contains(truncated, "test.xodr:11: the file is not well-formed XML"));
+  CHECK(contains(truncated, "export it again"));
+  CHECK(contains(error_of("<?xml version=\"1.0\"?>\n\n<osm/>"), "test.xodr:3: the root element is <osm>"));
+  CHECK(contains(error_of("<OpenDRIVE><header/></OpenDRIVE>"), "no usable road"));
+  std::string const nothing_left = error_of(R"(<OpenDRIVE>
+    <road id="1" length="1"><planView><geometry s="0" x="0" y="0" hdg="0" length="1">
+    <paramPoly3/></geometry></planView></road></OpenDRIVE>)");
+  CHECK(contains(nothing_left, "no usable road"));
+  CHECK(contains(nothing_left, "test.xodr:3: warning: <paramPoly3> of road 1"));
+}
+
+namespace {
+
+/// A fault, and what is to be said and done about it.
+struct Fault {
+  char const* name;
+  char const* from;   ///< this text of the good file ...
+  char const* to;     ///< ... becomes this one
+  char const* words;  ///< part of the finding's sentence; empty: nothing is found
+  int line;
+  std::size_t roads = 2;  ///< that are left
+};
+
+Fault const faults[]{
+    {"no header", R"(<header revMajor="1" revMinor="6" name="test" north="1" south="2" east="3" west="4"/>)", "",
+     "the file has no header", 0},
+    {"header without revision", R"(revMajor="1" revMinor="6")", "", "", 0},
+    {"section without lane 0", R"(<center><lane id="0" type="none" level="false"/></center>)", "", "has no lane 0", 14},
+    {"arc of curvature 0", R"(curvature="0.01")", R"(curvature="0")", "", 0},
+    {"spiral that is an arc", R"(curvEnd="0")", R"(curvEnd="0.01")", "", 0},
+    {"zero-length geometry", R"(length="40"><arc curvature="0.01"/></geometry>)",
+     R"(length="40"><arc curvature="0.01"/></geometry><geometry s="100" x="1" y="1" hdg="0" length="0"><line/></geometry>)",
+     "length 0 was left out", 9},
+    {"tiny geometry", R"(length="40"><arc curvature="0.01"/></geometry>)",
+     R"(length="40"><arc curvature="0.01"/></geometry><geometry s="100" x="1" y="1" hdg="0" length="1e-15"><line/></geometry>)",
+     "", 0},
+    {"negative length", R"(length="60")", R"(length="-60")", "the length is negative", 8, 1},
+    {"unknown geometry", "<line/>", "<clothoidSpline/>", "none of line, arc, spiral", 8, 1},
+    {"unsupported geometry", "<line/>", "<poly3 a=\"0\" b=\"0\" c=\"0\" d=\"0\"/>", "not supported yet", 8, 1},
+    {"geometry without a kind", "<line/>", "", "none of line, arc, spiral", 8, 1},
+    {"empty plan view",
+     R"(<geometry s="0" x="95" y="8" hdg="0.4" length="10"><spiral curvStart="0.01" curvEnd="0"/></geometry>)", "",
+     "has no geometry", 39, 1},
+    {"userData before the kind", "<line/>", "<userData code=\"x\"/><line/>", "", 0},
+    {"userData behind the kind", "<line/>", "<line/><userData code=\"x\"/>", "", 0},
+    {"comment in a geometry", "<line/>", "<!-- <arc/> --><line/>", "", 0},
+    {"gap in the lane ids", R"(<lane id="-2")", R"(<lane id="-4")", "no lane between -1 and -4", 23},
+    {"lane id that is no number", R"(<lane id="-2")", R"(<lane id="two")", "id=\"two\" is not a finite whole number",
+     23},
+    {"lane id twice", R"(<lane id="-2")", R"(<lane id="-1")", "lane id -1 is there twice", 23},
+    {"lane on the wrong side", R"(<lane id="1")", R"(<lane id="-1")", "lane -1 is written as left", 43},
+    {"negative width", R"(a="3.5")", R"(a="-0.5")", "", 0},
+    {"no width", R"(<width sOffset="0" a="2" b="0" c="0" d="0"/>)", "", "neither width nor border", 23},
+    {"width that is not a number", R"(a="3.5")", R"(a="NaN")", "a=\"NaN\" is not a finite number", 19},
+    {"infinite width", R"(a="3.5")", R"(a="inf")", "a=\"inf\" is not a finite number", 19},
+    {"comma in a number", R"(a="3.5")", R"(a="3,5")", "a=\"3,5\" is not a finite number", 19},
+    {"text in a number", R"(x="60")", R"(x="60 m")", "x=\"60 m\" is not a finite number", 9, 1},
+    {"missing attribute", R"( hdg="0" length="60")", R"( length="60")", "attribute hdg is missing", 8, 1},
+    {"road longer than its geometry", R"(length="100")", R"(length="130")", "geometries end at 100 m", 4},
+    {"road without length", R"( length="100")", "", "the length is missing", 4},
+    {"geometries with a gap in s", R"(s="60" x="60")", R"(s="60.5" x="60")", "0.5 m behind the end", 9},
+    {"lane offset that starts late", R"(laneOffset s="0")", R"(laneOffset s="20")", "", 0},
+    {"width that starts late", R"(<width sOffset="0" a="2")", R"(<width sOffset="9" a="2")",
+     "first width record starts", 23},
+    {"road id twice", R"(id="2" junction="7")", R"(id="1" junction="7")", "id 1 is there twice", 37, 1},
+    {"road without id", R"(id="2" junction="7")", R"(junction="7")", "it has no id", 37, 1},
+    {"link to a road that is not there", R"(elementId="2")", R"(elementId="55")", "no usable road 55", 5},
+    {"connection to a road that is not there", R"(connectingRoad="2")", R"(connectingRoad="99")",
+     "no usable road \"99\"", 48},
+    {"junction that is not there", R"(junction="7")", R"(junction="8")", "no junction 8", 37},
+    {"no contact point", R"( contactPoint="start")", "", "contactPoint is missing", 5},
+    {"lane section behind the end", R"(<laneSection s="70">)", R"(<laneSection s="170">)", "behind the road's end", 26},
+    {"lane link to a lane that is not there", R"(<successor id="-1"/>)", R"(<successor id="-8"/>)", "no lane -8", 17},
+    {"no lane sections", R"(<laneSection s="0">
+      <left>)",
+     R"(<other s="0"><left>)", "XML", 0, 0},
+    {"unknown lane type", R"(type="shoulder")", R"(type="hovercraft")", "\"hovercraft\" is not known", 23},
+    {"unknown unit", R"(unit="mph")", R"(unit="knots")", "none of m/s, km/h, mph", 6},
+    {"curl without end", R"(curvature="0.01")", R"(curvature="1e9")", "more than 1000 rad", 9, 1},
+    {"unknown rule", R"(rule="LHT")", R"(rule="MIDDLE")", "neither RHT nor LHT", 37},
+};
+
+}  // namespace
+
+TEST_CASE("every fault has its stated outcome: what is left, what is said, and for which line") {
+  for (Fault const& fault : faults) {
+    std::string const name = fault.name;
+    CAPTURE(name);
+    std::string const text = replaced(good_file, fault.from, fault.to);
+    if (fault.roads == 0) {
+      CHECK(contains(error_of(text), fault.words));
+      continue;
+    }
+    Reading const r = read(text);
+    CHECK(r.document.roads.size() == fault.roads);
+    if (std::string(fault.words).empty()) {
+      CHECK_MESSAGE(r.diagnostics.empty(), to_string(r.diagnostics.front()));
+      continue;
+    }
+    Diagnostic const* const found = r.find(fault.words);
+    for (Diagnostic const& d : r.diagnostics)
+      if (!found) MESSAGE(to_string(d));
+    REQUIRE(found);
+    CHECK(found->line == fault.line);
+    CHECK(found->file == "test.xodr");
+  }
+}
+
+TEST_CASE("a finding names its lane in full") {
+  Reading const r = read(replaced(good_file, R"(a="3.5")", R"(a="3,5")"));
+  REQUIRE(r.diagnostics.size() >= 1);
+  CHECK(to_string(r.diagnostics[0]) ==
+        "test.xodr:19: warning: <width> of road 1, section 0, lane -1: a=\"3,5\" is not a finite number; the record "
+        "was left out");
+}
+
+TEST_CASE("geometries in the wrong order are sorted, with their lines") {
+  Reading const r =
+      read(replaced(replaced(good_file, R"(s="0" x="0")", R"(s="40" x="0")"), R"(s="60" x="60")", R"(s="0" x="60")"));
+  CHECK(r.find("geometries are not in the order of s"));
+  CHECK(r.document.roads[0].geometries[0].kind == GeometryKind::arc);
+  CHECK(r.document.roads[0].geometry_lines == std::vector{9, 8});
+  CHECK(r.document.roads[0].geometry_length() == 100.0);
+}
+
+TEST_CASE("several predecessors of a lane are all kept") {
+  Reading const r =
+      read(replaced(good_file, R"(<predecessor id="-1"/>)", R"(<predecessor id="-1"/><predecessor id="-2"/>)"));
+  CHECK(r.document.roads[0].lane_sections[1].find(-1)->predecessors == std::vector{-1, -2});
+}
+
+TEST_CASE("speed limits are in m/s, none is infinite, undefined is empty") {
+  auto const limit = [](char const* speed) {
+    return read(replaced(good_file, R"(max="50" unit="mph")", speed)).document.roads[0].types[0].limit;
+  };
+  CHECK(limit(R"(max="13.5")") == 13.5);
+  CHECK(limit(R"(max="72" unit="km/h")") == 20.0);
+  CHECK(limit(R"(max="no limit")") == std::numeric_limits<double>::infinity());
+  CHECK_FALSE(limit(R"(max="undefined")").has_value());
+}
+
+TEST_CASE("a namespace prefix and a byte order mark change nothing") {
+  std::string text = good_file;
+  for (std::size_t at = 0; (at = text.find('<', at)) != text.npos; ++at)
+    if (text[at + 1] != '?') text.insert(at + (text[at + 1] == '/' ? 2 : 1), "odr:");
+  Reading const r = read("\xEF\xBB\xBF" + text);
+  CHECK(r.diagnostics.empty());
+  REQUIRE(r.document.roads.size() == 2);
+  CHECK(r.document.roads[0].lane_sections[0].lanes[1].line == 17);
+  CHECK(r.document.roads[0].geometries.size() == 2);
+}
+
+TEST_CASE("numbers are read the same in every locale") {
+  char const* const german = std::setlocale(LC_ALL, "de_DE.UTF-8");
+  if (!german) MESSAGE("there is no German locale here; the C locale was used");
+  Reading const r = read(replaced(good_file, R"(a="3.5")", R"(a=" +35e-1 ")"));
+  std::setlocale(LC_ALL, "C");
+  CHECK(r.diagnostics.empty());
+  CHECK(r.document.roads[0].lane_sections[0].lanes[1].widths[0].a == 3.5);
+}
+
+TEST_CASE("every lane type survives being written and read") {
+  for (int i = 0; i <= static_cast<int>(LaneType::other); ++i)
+    CHECK(lane_type_from_string(to_string(static_cast<LaneType>(i))) == static_cast<LaneType>(i));
+  CHECK(is_drivable(LaneType::entry));
+  CHECK(is_drivable(lane_type_from_string("mwyExit")));
+  CHECK_FALSE(is_drivable(LaneType::shoulder));
+  CHECK_FALSE(is_drivable(lane_type_from_string("DRIVING")));
+}
+
+TEST_CASE("a truncated or mutilated file never does worse than an error") {
+  for (std::size_t length = 0; length < good_file.size(); length += 7) (void)error_of(good_file.substr(0, length));
+  int readable = 0;
+  for (std::size_t at = 60; at < good_file.size(); ++at) {  // one character goes: attributes, numbers and names are hit
+    std::string text = good_file;
+    text.erase(at, 1);
+    readable += error_of(text).empty() ? 1 : 0;
+  }
+  CHECK(readable > 1000);
+}
+
+TEST_CASE("every map of the corpus is read, or refused for a geometry that comes later") {
+  auto const maps = corpus::maps(corpus::opendrive_folder());
+  if (maps.empty()) {
+    MESSAGE("skipped: no corpus in " << corpus::opendrive_folder());
+    return;
+  }
+  CHECK(maps.size() == 28);
+  std::size_t roads = 0;
+  int refused = 0;
+  for (auto const& map : maps) {
+    std::vector<Diagnostic> diagnostics;
+    try {
+      roads += read_opendrive_document(corpus::read(map), map.filename().string(), diagnostics).roads.size();
+    } catch (MapError const& error) {
+      ++refused;
+      CHECK(contains(error.what(), "not supported yet"));
+    }
+    for (Diagnostic const& d : diagnostics) CHECK(d.severity != Severity::error);
+  }
+  MESSAGE(roads << " roads of " << maps.size() << " maps, " << refused << " maps refused");
+  CHECK(roads >= 690);
+  CHECK(refused <= 2);
+}
+
+TEST_CASE("our own maps are read without a finding, and their lines go on without gap or kink") {
+  for (auto const& map : corpus::maps(std::filesystem::path(CAMBIUM_SOURCE_DIR) / "maps")) {
+    CAPTURE(map.string());
+    Reading const r = read(corpus::read(map));
+    CHECK(r.diagnostics.empty());
+    for (auto const& road : r.document.roads)
+      for (std::size_t i = 0; i + 1 < road.geometries.size(); ++i) {
+        CurvePoint const end = evaluate(road.geometries[i], road.geometries[i].length);
+        CurvePoint const next = evaluate(road.geometries[i + 1], 0.0);
+        CHECK(std::hypot(end.x - next.x, end.y - next.y) < 1e-9);
+        CHECK(std::abs(end.heading - next.heading) < 1e-12);
+        CHECK(std::abs(end.curvature - next.curvature) < 1e-12);
+      }
+  }
+}
+
+TEST_CASE("the merging map's ramp ends where the acceleration lane begins, and beside the main lanes") {
+  auto const path = std::filesystem::path(CAMBIUM_SOURCE_DIR) / "maps" / "merging.xodr";
+  OpenDriveDocument const document = read(corpus::read(path)).document;
+  auto const line_of = [&](std::string const& id) {
+    for (auto const& road : document.roads)
+      if (road.id == id) return make_reference_line(road, document.header.offset);
+    return ReferenceLine();
+  };
+  ReferenceLine const way = line_of("11");
+  CurvePoint const ramp = way.at(way.length());
+  CurvePoint const main = line_of("3").at(0.0);
+  CHECK(ramp.x == doctest::Approx(main.x + 7.0 * std::sin(main.heading)).epsilon(1e-12));
+  CHECK(ramp.y == doctest::Approx(main.y - 7.0 * std::cos(main.heading)).epsilon(1e-12));
+  CHECK(std::abs(ramp.heading - main.heading) < 1e-12);
+  for (double s = 0.0; s < way.length(); s += 1.0) {  // its left border stays right of the main lanes' border
+    CurvePoint const p = way.at(s);
+    double const lateral = std::cos(main.heading) * (p.y - main.y) - std::sin(main.heading) * (p.x - main.x);
+    CHECK(lateral < -7.0);
+  }
+}

@@ -1,0 +1,183 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "cambium/map/opendrive_reader.hpp"
+#include "cambium/map/reference_line.hpp"
+#include "corpus.hpp"
+
+namespace {
+
+using namespace cambium::map;
+
+double angle_between(double a, double b) { return std::abs(std::remainder(a - b, 2.0 * std::numbers::pi)); }
+
+Geometry spiral(double curvature_start, double curvature_end, double length) {
+  return {0.0, 3.0, -2.0, 0.7, length, GeometryKind::spiral, curvature_start, curvature_end};
+}
+
+/// End of a spiral by Simpson's rule in long double: another rule, another precision, no shared code.
+CurvePoint simpson_end(Geometry const& g, double to) {
+  constexpr int steps = 20000;
+  long double const h = static_cast<long double>(to) / steps;
+  long double const rate = (static_cast<long double>(g.curvature_end) - g.curvature_start) / g.length;
+  long double x = 0, y = 0;
+  for (int i = 0; i <= steps; ++i) {
+    long double const u = i * h;
+    long double const angle = g.heading + u * (g.curvature_start + rate * u / 2);
+    int const weight = i == 0 || i == steps ? 1 : i % 2 == 1 ? 4 : 2;
+    x += weight * std::cos(angle);
+    y += weight * std::sin(angle);
+  }
+  return {g.x + static_cast<double>(x * h / 3), g.y + static_cast<double>(y * h / 3), 0.0, 0.0, 0.0};
+}
+
+/// What the oracle's rows of one map were compared to.
+struct Comparison {
+  int rows = 0;
+  int left_out = 0;  ///< rows of roads that the reader does not read yet
+  double position = 0.0;
+  double heading = 0.0;
+  double curvature = 0.0;
+};
+
+Comparison compare_with_oracle(std::filesystem::path const& map) {
+  std::vector<cambium::Diagnostic> diagnostics;
+  OpenDriveDocument const document = read_opendrive_document(corpus::read(map), map.filename().string(), diagnostics);
+  std::unordered_map<std::string, ReferenceLine> lines;
+  for (auto const& road : document.roads) lines[road.id] = make_reference_line(road, document.header.offset);
+  Comparison result;
+  for (auto const& row : corpus::table(map.parent_path() / "oracle" / map.stem().concat(".csv"))) {
+    if (row[4] != "L" && row[4] != "A" && row[4] != "S") continue;
+    if (!lines.contains(row[0])) {
+      ++result.left_out;
+      continue;
+    }
+    CurvePoint const p = lines[row[0]].at(std::stod(row[1]));
+    ++result.rows;
+    result.position = std::max(result.position, std::hypot(p.x - std::stod(row[14]), p.y - std::stod(row[15])));
+    result.heading = std::max(result.heading, angle_between(p.heading, std::stod(row[16])));
+    result.curvature = std::max(result.curvature, std::abs(p.curvature - std::stod(row[17])));
+  }
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("reference lines agree with the oracle on every line, arc and spiral of the corpus") {
+  auto const maps = corpus::maps(corpus::opendrive_folder());
+  if (maps.empty()) {
+    MESSAGE("skipped: no corpus in " << corpus::opendrive_folder());
+    return;
+  }
+  int rows = 0;
+  for (auto const& map : maps) {
+    Comparison c;
+    try {
+      c = compare_with_oracle(map);
+    } catch (cambium::MapError const&) {
+      MESSAGE(map.stem().string() << ": no road of lines, arcs and spirals");
+      continue;
+    }
+    rows += c.rows;
+    MESSAGE(map.stem().string() << ": " << c.rows << " rows (" << c.left_out << " left out), largest difference "
+                                << c.position << " m, " << c.heading << " rad, " << c.curvature << " 1/m");
+    CAPTURE(map.stem().string());
+    CHECK(c.position < 1e-6);
+    CHECK(c.heading < 1e-8);
+    CHECK(c.curvature < 1e-8);
+  }
+  CHECK(rows > 4000);
+}
+
+TEST_CASE("spirals agree with an independent quadrature, however flat, tight or close to an arc they are") {
+  std::vector<Geometry> const cases{spiral(0.0, 0.01, 100.0),       spiral(0.02, -0.02, 60.0),
+                                    spiral(0.1, 0.1 + 1e-9, 100.0), spiral(0.005, 0.005, 500.0),
+                                    spiral(1e-7, -1e-7, 1000.0),    spiral(0.0, 0.0, 1000.0),
+                                    spiral(0.01, 0.0101, 1000.0),   spiral(-1e-12, 1e-12, 1000.0),
+                                    spiral(0.5, -1.5, 20.0),        spiral(0.0, 1e-3, 1e-9)};
+  for (Geometry const& g : cases)
+    for (double const fraction : {0.0, 0.01, 0.3, 0.5, 0.99, 1.0, 1.01}) {
+      double const ds = fraction * g.length;
+      CurvePoint const p = evaluate(g, ds);
+      CurvePoint const expected = simpson_end(g, ds);
+      CAPTURE(g.curvature_start);
+      CAPTURE(g.curvature_end);
+      CAPTURE(ds);
+      CHECK(std::hypot(p.x - expected.x, p.y - expected.y) < 1e-9);
+      CHECK(p.heading == doctest::Approx(g.heading + 0.5 * ds * (g.curvature_start + p.curvature)).epsilon(1e-14));
+    }
+}
+
+TEST_CASE("an arc is exact for every curvature, down to none") {
+  for (double const k : {0.2, -0.2, 1e-3, 1e-5, 1e-6, -1e-7, 1e-9, 1e-300, 0.0}) {
+    Geometry const arc{0.0, 5.0, 7.0, 0.3, 1000.0, GeometryKind::arc, k, k};
+    CurvePoint const p = evaluate(arc, 1000.0);
+    Geometry as_spiral = arc;
+    as_spiral.kind = GeometryKind::spiral;
+    CurvePoint const q = evaluate(as_spiral, 1000.0);
+    CAPTURE(k);
+    CHECK(std::hypot(p.x - q.x, p.y - q.y) < 1e-10);
+    CHECK(p.heading == 0.3 + 1000.0 * k);
+    CHECK(p.curvature == k);
+  }
+  CurvePoint const quarter = evaluate({0.0, 0.0, 0.0, 0.0, 100.0, GeometryKind::arc, 0.1, 0.1}, 5.0 * std::numbers::pi);
+  CHECK(quarter.x == doctest::Approx(10.0).epsilon(1e-14));
+  CHECK(quarter.y == doctest::Approx(10.0).epsilon(1e-14));
+}
+
+TEST_CASE("a geometry holds from its start up to the next, and the ends are extrapolated") {
+  ReferenceLine const line({{10.0, 10.0, 0.0, 0.0, 5.0, GeometryKind::arc, 0.1, 0.1},
+                            {0.0, 0.0, 0.0, 0.0, 10.0, GeometryKind::line, 0.0, 0.0}});
+  CHECK(line.length() == 15.0);
+  CHECK(line.at(9.999).curvature == 0.0);
+  CHECK(line.at(10.0).curvature == 0.1);
+  CHECK(line.at(-4.0).x == -4.0);
+  CHECK(line.at(20.0).heading == doctest::Approx(1.0));
+  CHECK(line.locate(-1.0) == 0);
+  CHECK(line.locate(99.0) == 1);
+}
+
+TEST_CASE("the curvature is the heading's derivative, and the tangent the position's") {
+  Geometry const g = spiral(0.03, -0.01, 80.0);
+  double const h = 1e-4;
+  for (double const ds : {0.0, 20.0, 60.0, 80.0}) {
+    CurvePoint const before = evaluate(g, ds - h), at = evaluate(g, ds), behind = evaluate(g, ds + h);
+    CHECK((behind.heading - before.heading) / (2 * h) == doctest::Approx(at.curvature).epsilon(1e-8));
+    CHECK((behind.curvature - before.curvature) / (2 * h) == doctest::Approx(at.curvature_derivative).epsilon(1e-8));
+    CHECK(angle_between(std::atan2(behind.y - before.y, behind.x - before.x), at.heading) < 1e-8);
+  }
+}
+
+TEST_CASE("walking along a line gives the same points as asking for each") {
+  ReferenceLine const line({spiral(0.0, 0.01, 100.0),
+                            {100.0, 90.0, 50.0, 1.2, 50.0, GeometryKind::arc, 0.01, 0.01},
+                            {150.0, 70.0, 90.0, 1.7, 70.0, GeometryKind::spiral, 0.01, -0.02}});
+  ReferenceLine::Walker walker = line.walker();
+  for (double const step : {0.1, 1.0, 7.3, 61.0}) {
+    for (double s = -2.0; s < 225.0; s += step) {  // each round starts by going back
+      CurvePoint const p = walker.at(s);
+      CurvePoint const q = line.at(s);
+      CAPTURE(s);
+      CHECK(std::hypot(p.x - q.x, p.y - q.y) < 1e-11);
+      CHECK(p.heading == q.heading);
+      CHECK(p.curvature == q.curvature);
+    }
+  }
+}
+
+TEST_CASE("the header's offset translates first and then rotates about the map's origin") {
+  opendrive::Road road;
+  road.geometries = {{0.0, 1.0, 0.0, 0.0, 10.0, GeometryKind::line, 0.0, 0.0}};
+  ReferenceLine const line = make_reference_line(road, {2.0, 1.0, 0.0, std::numbers::pi / 2.0});
+  CHECK(line.at(0.0).x == doctest::Approx(-1.0));
+  CHECK(line.at(0.0).y == doctest::Approx(3.0));
+  CHECK(line.at(10.0).x == doctest::Approx(-1.0));
+  CHECK(line.at(10.0).y == doctest::Approx(13.0));
+  CHECK(line.at(10.0).heading == doctest::Approx(std::numbers::pi / 2.0));
+}

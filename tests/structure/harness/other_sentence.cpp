@@ -1,0 +1,2 @@
+// expect: blue
+static_assert(sizeof(char) == 2, "the sky is grey");

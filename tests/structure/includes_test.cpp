@@ -1,0 +1,168 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace {
+
+/// Headers by path below include/ ("cambium/core/ids.hpp"), each with what it includes.
+using Includes = std::map<std::string, std::vector<std::string>>;
+
+/// The rooms from top to bottom: a header includes its own room and those above.
+constexpr std::array rooms = {"core",      "geometry", "map",    "dynamics",   "execution", "behavior",
+                              "observer",  "goal",     "world",  "evaluation", "planner",   "scenario",
+                              "benchmark", "snapshot", "viewer", "learning",   "testing"};
+constexpr std::size_t no_room = rooms.size();
+/// Rooms that do without the Boost libraries that are slow to compile, over whatever they include.
+constexpr std::array light_rooms = {"dynamics", "execution", "behavior",   "observer",
+                                    "goal",     "world",     "evaluation", "planner"};
+/// Headers (beginnings of paths) that may include Boost.Geometry and Boost.Graph.
+constexpr std::array heavy_headers = {"cambium/map/routing", "cambium/map/build", "cambium/map/opendrive",
+                                      "cambium/geometry/polygon"};
+/// Headers (beginnings of paths) of cambium::opendrive; all others do without pugixml.
+constexpr std::array opendrive_headers = {"cambium/map/opendrive", "cambium/map/detail/"};
+
+/// The word after cambium/: "map" of both cambium/map.hpp and cambium/map/lane.hpp.
+std::string room_name(std::string const& header) {
+  auto const begin = header.find('/') + 1;
+  return header.substr(begin, header.find_first_of("/.", begin) - begin);
+}
+
+/// Position in `rooms`, or `no_room`.
+std::size_t room_of(std::string const& header) {
+  return static_cast<std::size_t>(std::find(rooms.begin(), rooms.end(), room_name(header)) - rooms.begin());
+}
+
+bool is_heavy_library(std::string_view include) {
+  return include.starts_with("boost/geometry") || include.starts_with("boost/graph");
+}
+
+template <class Range>
+bool begins_with_any(std::string const& text, Range const& beginnings) {
+  return std::any_of(beginnings.begin(), beginnings.end(), [&](auto const* b) { return text.starts_with(b); });
+}
+
+/// All that `header` includes, directly or not.
+std::set<std::string> reach(Includes const& includes, std::string const& header) {
+  std::set<std::string> seen;
+  std::vector<std::string> open{header};
+  while (!open.empty()) {
+    auto const found = includes.find(open.back());
+    open.pop_back();
+    if (found == includes.end()) continue;
+    for (auto const& next : found->second) {
+      if (seen.insert(next).second) open.push_back(next);
+    }
+  }
+  return seen;
+}
+
+void check_rooms(Includes const& includes, std::string const& header, std::vector<std::string>& breaches) {
+  if (header == "cambium/cambium.hpp") return;
+  if (room_of(header) == no_room) breaches.push_back(header + " is in no room of the list");
+  for (auto const& include : includes.at(header)) {
+    if (!include.starts_with("cambium/")) continue;
+    if (!includes.contains(include)) breaches.push_back(header + " includes " + include + ", which does not exist");
+    if (room_of(include) > room_of(header)) breaches.push_back(header + " looks down: " + include);
+  }
+}
+
+void check_weight(Includes const& includes, std::string const& header, std::vector<std::string>& breaches) {
+  auto const& direct = includes.at(header);
+  if (std::any_of(direct.begin(), direct.end(), is_heavy_library) && !begins_with_any(header, heavy_headers)) {
+    breaches.push_back(header + " includes Boost.Geometry or Boost.Graph itself");
+  }
+  auto const all = reach(includes, header);
+  if (all.contains(header)) breaches.push_back(header + " includes itself in the end");
+  auto const name = room_name(header);
+  bool const light = std::find(light_rooms.begin(), light_rooms.end(), name) != light_rooms.end();
+  auto const heavy = std::find_if(all.begin(), all.end(), is_heavy_library);
+  if (light && heavy != all.end()) breaches.push_back(header + " drags in " + *heavy);
+  if (all.contains("pugixml.hpp") && !begins_with_any(header, opendrive_headers)) {
+    breaches.push_back(header + " drags in pugixml.hpp");
+  }
+}
+
+std::vector<std::string> find_breaches(Includes const& includes) {
+  std::vector<std::string> breaches;
+  for (auto const& entry : includes) {
+    check_rooms(includes, entry.first, breaches);
+    check_weight(includes, entry.first, breaches);
+  }
+  return breaches;
+}
+
+/// The path in `#include <path>` or `#include "path"`, else empty.
+std::string include_of(std::string_view line) {
+  auto const skip_blanks = [&] { line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size())); };
+  for (std::string_view const token : {"#", "include"}) {
+    skip_blanks();
+    if (!line.starts_with(token)) return {};
+    line.remove_prefix(token.size());
+  }
+  skip_blanks();
+  if (!line.starts_with('<') && !line.starts_with('"')) return {};
+  line.remove_prefix(1);
+  return std::string(line.substr(0, line.find_first_of(">\"")));
+}
+
+Includes read_includes(std::filesystem::path const& folder) {
+  Includes includes;
+  for (auto const& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    if (entry.path().extension() != ".hpp") continue;
+    auto& found = includes[std::filesystem::relative(entry.path(), folder).generic_string()];
+    std::ifstream file(entry.path());
+    for (std::string line; std::getline(file, line);) {
+      if (auto include = include_of(line); !include.empty()) found.push_back(std::move(include));
+    }
+  }
+  return includes;
+}
+
+}  // namespace
+
+TEST_CASE("rooms include only upward, and the rooms of a step stay free of heavy libraries") {
+  auto const includes = read_includes(std::filesystem::path(CAMBIUM_SOURCE_DIR) / "include");
+  CHECK(includes.contains("cambium/core/ids.hpp"));
+  for (auto const& breach : find_breaches(includes)) FAIL_CHECK(breach);
+}
+
+TEST_CASE("an include is read in every way to write it") {
+  CHECK(include_of("#include <cambium/map/lane.hpp>") == "cambium/map/lane.hpp");
+  CHECK(include_of("  #  include \"a.hpp\"  // why") == "a.hpp");
+  CHECK(include_of("// #include <vector>").empty());
+  CHECK(include_of("#define x").empty());
+  CHECK(include_of("").empty());
+}
+
+TEST_CASE("the walk finds each kind of breach") {
+  auto const only_breach = [](Includes const& includes) {
+    auto const breaches = find_breaches(includes);
+    REQUIRE(breaches.size() == 1);
+    return breaches.front();
+  };
+  Includes const good{{"cambium/core/ids.hpp", {"vector"}}, {"cambium/map.hpp", {"cambium/core/ids.hpp"}}};
+  CHECK(find_breaches(good).empty());
+  CHECK(only_breach({{"cambium/core/a.hpp", {"cambium/map.hpp"}}, {"cambium/map.hpp", {}}}) ==
+        "cambium/core/a.hpp looks down: cambium/map.hpp");
+  CHECK(only_breach({{"cambium/core/a.hpp", {"cambium/core/b.hpp"}}}) ==
+        "cambium/core/a.hpp includes cambium/core/b.hpp, which does not exist");
+  CHECK(only_breach({{"cambium/cellar/a.hpp", {}}}) == "cambium/cellar/a.hpp is in no room of the list");
+  CHECK(only_breach({{"cambium/map/map.hpp", {"boost/graph/astar_search.hpp"}}}) ==
+        "cambium/map/map.hpp includes Boost.Geometry or Boost.Graph itself");
+  CHECK(only_breach({{"cambium/map/routing.hpp", {"boost/graph/astar_search.hpp"}},
+                     {"cambium/map/map.hpp", {"cambium/map/routing.hpp"}},
+                     {"cambium/world/world.hpp", {"cambium/map/map.hpp"}}}) ==
+        "cambium/world/world.hpp drags in boost/graph/astar_search.hpp");
+  CHECK(only_breach({{"cambium/core/a.hpp", {"cambium/core/a.hpp"}}}) ==
+        "cambium/core/a.hpp includes itself in the end");
+  CHECK(only_breach({{"cambium/cambium.hpp", {"cambium/map/opendrive.hpp"}},
+                     {"cambium/map/opendrive.hpp", {"pugixml.hpp"}}}) == "cambium/cambium.hpp drags in pugixml.hpp");
+}

@@ -1,0 +1,155 @@
+# Tests of the house itself: headers alone and together, warnings per compiler, wrong programs, consumers, README.
+# What only has to be compiled is compiled by targets outside `all`, with a stamp per check, so that a second run is quick;
+# the ctest of a check builds its target.
+set(structure_source ${CMAKE_CURRENT_LIST_DIR})
+set(structure_binary ${CMAKE_CURRENT_BINARY_DIR}/structure)
+set(compile_flags ${PROJECT_BINARY_DIR}/compile_flags.txt)
+
+file(GLOB_RECURSE headers CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/include/*.hpp)
+list(SORT headers)
+
+# write_if_new(FILE TEXT): leaves the file alone when it reads so already.
+function(write_if_new file text)
+  if(EXISTS ${file})
+    file(READ ${file} before)
+  endif()
+  if(NOT EXISTS ${file} OR NOT before STREQUAL text)
+    file(WRITE ${file} "${text}")
+  endif()
+endfunction()
+
+if(CMAKE_GENERATOR MATCHES "Ninja")
+  set(keep_going -- -k 0)
+elseif(CMAKE_GENERATOR MATCHES "Makefiles")
+  set(keep_going -- --keep-going)
+endif()
+
+# add_build_test(NAME TARGET): a ctest that builds a target of this build tree.
+function(add_build_test name target)
+  add_test(NAME ${name}
+    COMMAND ${CMAKE_COMMAND} --build ${PROJECT_BINARY_DIR} --target ${target} --parallel 2 ${keep_going})
+  set_tests_properties(${name} PROPERTIES RESOURCE_LOCK cambium_build_tree)
+endfunction()
+
+# add_syntax_check(STAMP_VARIABLE COMPILER SOURCE): warning-free under COMPILER; STAMP_VARIABLE is what to depend on.
+function(add_syntax_check stamp_variable compiler source)
+  get_filename_component(compiler_name ${compiler} NAME)
+  get_filename_component(source_name ${source} NAME_WE)
+  set(stamp ${structure_binary}/stamps/${compiler_name}/${source_name})
+  file(MAKE_DIRECTORY ${structure_binary}/stamps/${compiler_name})
+  add_custom_command(OUTPUT ${stamp}
+    COMMAND ${compiler} @${compile_flags} ${CAMBIUM_WARNINGS} -Werror -fsyntax-only -MMD -MT ${stamp} -MF ${stamp}.d
+      ${source}
+    COMMAND ${CMAKE_COMMAND} -E touch ${stamp}
+    DEPENDS ${source} ${compile_flags} ${compiler} DEPFILE ${stamp}.d
+    COMMENT "${compiler_name}: ${source_name}" VERBATIM)
+  set(${stamp_variable} ${stamp} PARENT_SCOPE)
+endfunction()
+
+# Every header alone.
+set(all_headers "")
+set(alone_stamps "")
+foreach(header IN LISTS headers)
+  string(REGEX REPLACE "[/.]" "_" name ${header})
+  write_if_new(${structure_binary}/alone/${name}.cpp "#include <${header}>\n")
+  add_syntax_check(stamp ${CMAKE_CXX_COMPILER} ${structure_binary}/alone/${name}.cpp)
+  list(APPEND alone_stamps ${stamp})
+  string(APPEND all_headers "#include <${header}>\n")
+endforeach()
+add_custom_target(structure_headers_alone DEPENDS ${alone_stamps})
+add_build_test(structure.headers_alone structure_headers_alone)
+
+# All headers twice in one program.
+write_if_new(${structure_binary}/all_headers.cpp "${all_headers}")
+write_if_new(${structure_binary}/twice_a.cpp "${all_headers}int other();\nint main() { return other(); }\n")
+write_if_new(${structure_binary}/twice_b.cpp "${all_headers}int other();\nint other() { return 0; }\n")
+add_executable(structure_headers_twice EXCLUDE_FROM_ALL ${structure_binary}/twice_a.cpp ${structure_binary}/twice_b.cpp)
+target_link_libraries(structure_headers_twice PRIVATE cambium_test_options)
+target_compile_options(structure_headers_twice PRIVATE -O0)
+add_build_test(structure.headers_twice structure_headers_twice)
+
+# All headers, free of warnings under each compiler there is.
+foreach(name g++ clang++-14 clang++-19)
+  find_program(CAMBIUM_CHECK_${name} ${name})
+  mark_as_advanced(CAMBIUM_CHECK_${name})
+  if(CAMBIUM_CHECK_${name})
+    add_syntax_check(stamp ${CAMBIUM_CHECK_${name}} ${structure_binary}/all_headers.cpp)
+    add_custom_target(structure_warnings_${name} DEPENDS ${stamp})
+    add_build_test(structure.warnings.${name} structure_warnings_${name})
+  else()
+    add_test(NAME structure.warnings.${name} COMMAND ${CMAKE_COMMAND} -E echo "skipped: no ${name} here")
+    set_tests_properties(structure.warnings.${name} PROPERTIES SKIP_REGULAR_EXPRESSION "skipped:")
+  endif()
+endforeach()
+
+# Programs that must not compile, and the sentence that each must get.
+set(wrong_compilers ${CMAKE_CXX_COMPILER})
+if(CAMBIUM_CHECK_g++)
+  set(wrong_compilers ${CAMBIUM_CHECK_g++})
+endif()
+if(CAMBIUM_CHECK_clang++-14)
+  list(APPEND wrong_compilers ${CAMBIUM_CHECK_clang++-14})
+endif()
+function(add_wrong_program name source)
+  add_test(NAME structure.wrong.${name}
+    COMMAND bash ${structure_source}/wrong.sh ${compile_flags} ${source} ${wrong_compilers})
+endfunction()
+file(GLOB programs CONFIGURE_DEPENDS ${structure_source}/wrong/*.cpp)
+foreach(program IN LISTS programs)
+  get_filename_component(name ${program} NAME_WE)
+  add_wrong_program(${name} ${program})
+endforeach()
+add_wrong_program(harness_compiles ${structure_source}/harness/compiles.cpp)
+set_tests_properties(structure.wrong.harness_compiles PROPERTIES PASS_REGULAR_EXPRESSION "it compiles, but must not")
+add_wrong_program(harness_other_sentence ${structure_source}/harness/other_sentence.cpp)
+set_tests_properties(structure.wrong.harness_other_sentence PROPERTIES PASS_REGULAR_EXPRESSION "does not say 'blue'")
+add_wrong_program(harness_no_sentence ${structure_source}/harness/no_sentence.cpp)
+set_tests_properties(structure.wrong.harness_no_sentence PROPERTIES PASS_REGULAR_EXPRESSION "first line must be")
+
+# A project that uses cambium, by add_subdirectory and by find_package.
+function(add_consumer name)
+  add_test(NAME structure.consumer.${name}
+    COMMAND ${CMAKE_CTEST_COMMAND} --build-and-test ${structure_source}/consumer ${structure_binary}/consumer_${name}
+      --build-generator ${CMAKE_GENERATOR} --build-noclean
+      --build-options -DCMAKE_CXX_COMPILER=${CMAKE_CXX_COMPILER} -DCMAKE_CXX_COMPILER_LAUNCHER=${CMAKE_CXX_COMPILER_LAUNCHER}
+        -DCONSUMER_VERSION=${PROJECT_VERSION} ${ARGN}
+      --test-command ${CMAKE_CTEST_COMMAND} --output-on-failure)
+endfunction()
+add_consumer(subdirectory -DCONSUMER_SUBDIRECTORY=${PROJECT_SOURCE_DIR})
+if(CAMBIUM_INSTALL)
+  set(install_tree ${structure_binary}/install)
+  add_test(NAME structure.install
+    COMMAND ${CMAKE_COMMAND} --install ${PROJECT_BINARY_DIR} --config $<CONFIG> --prefix ${install_tree})
+  set_tests_properties(structure.install PROPERTIES FIXTURES_SETUP cambium_install)
+  add_consumer(package -DCMAKE_PREFIX_PATH=${install_tree} -DCONSUMER_COMPONENTS=opendrive)
+  add_consumer(package_without_pugixml -DCMAKE_PREFIX_PATH=${install_tree} -DCMAKE_DISABLE_FIND_PACKAGE_pugixml=ON)
+  add_consumer(package_lacks_opendrive -DCMAKE_PREFIX_PATH=${install_tree} -DCMAKE_DISABLE_FIND_PACKAGE_pugixml=ON
+    -DCONSUMER_COMPONENTS=opendrive)
+  set_tests_properties(structure.consumer.package structure.consumer.package_without_pugixml
+    structure.consumer.package_lacks_opendrive PROPERTIES FIXTURES_REQUIRED cambium_install)
+  set_tests_properties(structure.consumer.package_lacks_opendrive PROPERTIES PASS_REGULAR_EXPRESSION "pugixml")
+endif()
+
+# The program in the README (the ```cpp block after the line `<!-- runs -->`) compiles and runs as it stands.
+set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/README.md)
+set(readme "")
+if(EXISTS ${PROJECT_SOURCE_DIR}/README.md)
+  file(READ ${PROJECT_SOURCE_DIR}/README.md readme)
+endif()
+string(FIND "${readme}" "<!-- runs -->" marker)
+if(marker GREATER -1)
+  string(SUBSTRING "${readme}" ${marker} -1 readme)
+  string(FIND "${readme}" "```cpp\n" begin)
+  math(EXPR begin "${begin} + 7")
+  string(SUBSTRING "${readme}" ${begin} -1 readme)
+  string(FIND "${readme}" "```" end)
+  string(SUBSTRING "${readme}" 0 ${end} readme)
+  write_if_new(${structure_binary}/readme.cpp "${readme}")
+  add_executable(structure_readme ${structure_binary}/readme.cpp)
+  target_link_libraries(structure_readme PRIVATE cambium_test_options)
+  add_test(NAME structure.readme COMMAND structure_readme WORKING_DIRECTORY ${PROJECT_SOURCE_DIR})
+  add_dependencies(cambium_tests structure_readme)
+else()
+  add_test(NAME structure.readme COMMAND ${CMAKE_COMMAND} -E echo "skipped: README.md has no line <!-- runs -->")
+  set_tests_properties(structure.readme PROPERTIES SKIP_REGULAR_EXPRESSION "skipped:")
+endif()

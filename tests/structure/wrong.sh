@@ -1,0 +1,26 @@
+#!/usr/bin/env bash
+# wrong.sh FLAGS SOURCE COMPILER...: passes when every compiler rejects SOURCE with the phrase of its first line,
+# `// expect: <phrase>`.
+set -euo pipefail
+flags=$1
+source=$2
+shift 2
+
+first=$(head -n 1 "$source")
+phrase=${first#// expect: }
+if [[ $phrase == "$first" || -z $phrase ]]; then
+  echo "$source: the first line must be '// expect: <phrase>'"
+  exit 1
+fi
+
+for compiler in "$@"; do
+  # Not -fsyntax-only: g++ would leave function templates uninstantiated.
+  if output=$("$compiler" "@$flags" -O0 -S -o /dev/null "$source" 2>&1); then
+    echo "$source: $compiler: it compiles, but must not"
+    exit 1
+  fi
+  if [[ $output != *"$phrase"* ]]; then
+    printf '%s\n' "$output" "$source: $compiler: it is rejected, but the compiler does not say '$phrase'"
+    exit 1
+  fi
+done

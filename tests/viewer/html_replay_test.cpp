@@ -1,0 +1,205 @@
+#include "cambium/viewer/html_replay.hpp"
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include "browser.hpp"
+#include "sample_recording.hpp"
+
+using namespace cambium;
+
+namespace {
+
+std::size_t occurrences(std::string const& text, std::string const& part) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++count;
+  return count;
+}
+
+std::string data_of(std::string const& page) {
+  std::string const start = "id=\"recording\">\n";
+  std::size_t const at = page.find(start) + start.size();
+  return page.substr(at, page.find("\n</script>", at) - at);
+}
+
+// Brackets outside strings close in order, and every string ends.
+bool is_balanced(std::string const& json) {
+  std::string open;
+  bool in_string = false;
+  for (std::size_t i = 0; i < json.size(); ++i) {
+    char const c = json[i];
+    if (in_string && c == '\\')
+      ++i;
+    else if (c == '"')
+      in_string = !in_string;
+    else if (in_string)
+      continue;
+    else if (c == '{' || c == '[')
+      open += c == '{' ? '}' : ']';
+    else if (c == '}' || c == ']') {
+      if (open.empty() || open.back() != c) return false;
+      open.pop_back();
+    }
+  }
+  return open.empty() && !in_string;
+}
+
+std::string content_of(std::filesystem::path const& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+}  // namespace
+
+TEST_CASE("the same recording gives the same page, and it needs nothing from outside") {
+  std::string const page = html_replay(sample_recording());
+  CHECK(page == html_replay(sample_recording()));
+  for (char const* outside : {"http://", "https://", "src=", "<link", "@import", "url("}) {
+    CAPTURE(outside);
+    CHECK(page.find(outside) == std::string::npos);
+  }
+}
+
+TEST_CASE("the page's data is balanced JSON with rounded numbers and one entry for each frame") {
+  Recording recording = sample_recording();
+  recording.frames[1].poses[0].x = 12.0 + 1.0 / 3.0;
+  recording.frames[1].poses[1].present = false;
+  recording.frames[2].poses[1].x = std::nan("");
+  std::string const data = data_of(html_replay(recording));
+  CHECK(is_balanced(data));
+  CHECK(data.find("[[12.33,0,0,10,0],0],\n[[14,0,0,10,0],0],\n[[16,0,0,10,0],[30,3.5,0,0,0]]") != std::string::npos);
+  CHECK(occurrences(data, "[30,3.5,0,0,0]]") == 19);
+  CHECK(data.find("nan") == std::string::npos);
+}
+
+TEST_CASE("text of a recording cannot become markup or script") {
+  std::string const attack = "</script><script>alert(1)</script><!-- & \" ' \\ \x01 \xFF";
+  Recording recording = sample_recording();
+  recording.title = attack;
+  recording.notes = {attack};
+  recording.lanes[0].label = attack;
+  recording.agents[0].label = attack;
+  std::string const page = html_replay(recording), data = data_of(page);
+  CHECK(page.find("<script>alert") == std::string::npos);
+  CHECK(page.find("<!--") == std::string::npos);
+  CHECK(occurrences(page, "</script") == occurrences(html_replay(sample_recording()), "</script"));
+  CHECK(page.find('\xFF') == std::string::npos);
+  CHECK(page.find("&lt;/script&gt;") != std::string::npos);
+  CHECK(is_balanced(data));
+  CHECK(data.find("\\u003c/script\\u003e") != std::string::npos);
+}
+
+TEST_CASE("a map in national coordinates is written near its own origin") {
+  Recording recording = sample_recording();
+  for (RecordedFrame& frame : recording.frames)
+    for (RecordedPose& pose : frame.poses) pose.x += 691000.0, pose.y += 5335000.0;
+  for (RecordedLane& lane : recording.lanes)
+    for (auto* border : {&lane.left, &lane.right})
+      for (geometry::Point& p : *border) p += geometry::Point(691000.0, 5335000.0);
+  std::string const page = html_replay(recording);
+  CHECK(page.find("\"origin\":[691000,5335000]") != std::string::npos);
+  std::string const data = data_of(page), near = data_of(html_replay(sample_recording()));
+  CHECK(data.substr(data.find("\"lanes\"")) == near.substr(near.find("\"lanes\"")));
+}
+
+TEST_CASE("a recording that contradicts itself is refused with its frame") {
+  Recording recording = sample_recording();
+  recording.frames[3].poses.pop_back();
+  CHECK_THROWS_WITH_AS((void)html_replay(recording), doctest::Contains("frame 3: has 1 poses for 2 agents"), Error);
+  recording = sample_recording();
+  recording.frames[4].time = recording.frames[3].time;
+  CHECK_THROWS_WITH_AS((void)html_replay(recording), doctest::Contains("frame 4: its time"), Error);
+}
+
+TEST_CASE("a page that cannot be written is an error that names the file, and leaves nothing behind") {
+  browser::TemporaryFolder const folder;
+  std::filesystem::path const missing = folder.path() / "missing" / "replay.html", taken = folder.path() / "taken";
+  std::filesystem::create_directory(taken);
+  CHECK_THROWS_WITH_AS(write_html_replay(missing, sample_recording()), doctest::Contains(missing.c_str()), Error);
+  CHECK_THROWS_WITH_AS(write_html_replay(taken, sample_recording()), doctest::Contains(taken.c_str()), Error);
+  CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 1);
+}
+
+TEST_CASE("writing replaces an older page as a whole") {
+  browser::TemporaryFolder const folder;
+  std::filesystem::path const file = folder.path() / "replay.html";
+  std::ofstream(file) << "old";
+  write_html_replay(file, sample_recording());
+  CHECK(content_of(file) == html_replay(sample_recording()));
+  CHECK(std::distance(std::filesystem::directory_iterator(folder.path()), {}) == 1);
+}
+
+TEST_CASE("a browser draws the page, plays it, and shows each vehicle where it is") {
+  auto const chromium = browser::find();
+  if (!chromium) {
+    MESSAGE("skipped: no chromium, chromium-browser or google-chrome in PATH");
+    return;
+  }
+  browser::TemporaryFolder const folder;
+  std::filesystem::path const file = folder.path() / "a replay #1.html";
+  write_html_replay(file, sample_recording());
+  std::string const first = browser::document(*chromium, file, "probe=12,0;30,3.5;100,0;52,0");
+  std::string const last = browser::document(*chromium, file, "frame=20&probe=12,0;30,3.5;100,0;52,0");
+
+  REQUIRE(browser::attribute(first, "<body", "data-ready") == "21");
+  CHECK(first.find("<title>a short drive</title>") != std::string::npos);
+  CHECK(first.find("<li>mean speed 10 m/s</li>") != std::string::npos);
+  CHECK(browser::attribute(first, "<input id=\"slider\"", "max") == "20");
+  CHECK(browser::attribute(first, "<body", "data-frame") == "0");
+  CHECK(browser::attribute(last, "<body", "data-frame") == "20");
+
+  auto const colours = [](std::string const& page) {
+    std::istringstream text(browser::attribute(page, "<body", "data-pixel"));
+    std::vector<std::string> list;
+    for (std::string colour; std::getline(text, colour, ';');) list.push_back(colour);
+    return list;
+  };
+  std::vector<std::string> const at_first = colours(first), at_last = colours(last);
+  REQUIRE(at_first.size() == 4);
+  REQUIRE(at_last.size() == 4);
+  std::string const ego = at_first[0], obstacle = at_first[1], asphalt = at_first[2];
+  CHECK(ego != asphalt);
+  CHECK(obstacle != asphalt);
+  CHECK(obstacle != ego);
+  CHECK(at_first[3] == asphalt);
+  CHECK(at_last == std::vector<std::string>{at_last[0], obstacle, asphalt, ego});
+  CHECK(at_last[0] != ego);  // only its trail is left there
+}
+
+TEST_CASE("the replay runs by itself and stops at its end") {
+  auto const chromium = browser::find();
+  if (!chromium) {
+    MESSAGE("skipped: no chromium, chromium-browser or google-chrome in PATH");
+    return;
+  }
+  browser::TemporaryFolder const folder;
+  write_html_replay(folder.path() / "replay.html", sample_recording());
+  std::string const page = browser::document(*chromium, folder.path() / "replay.html", "play", 2000);
+  int const frame = std::stoi("0" + browser::attribute(page, "<body", "data-frame"));
+  CHECK(frame > 2);
+  CHECK(frame < 20);
+  CHECK(browser::attribute(page, "<button id=\"play\"", "aria-label") == "Pause");
+  std::string const end = browser::document(*chromium, folder.path() / "replay.html", "play", 20000);
+  CHECK(browser::attribute(end, "<body", "data-frame") == "20");
+  CHECK(browser::attribute(end, "<button id=\"play\"", "aria-label") == "Play");
+}
+
+TEST_CASE("an empty recording is a page that says so") {
+  std::string const text = html_replay(Recording{});
+  CHECK(is_balanced(data_of(text)));
+  auto const chromium = browser::find();
+  if (!chromium) {
+    MESSAGE("skipped: no chromium, chromium-browser or google-chrome in PATH");
+    return;
+  }
+  browser::TemporaryFolder const folder;
+  write_html_replay(folder.path() / "empty.html", Recording{});
+  std::string const page = browser::document(*chromium, folder.path() / "empty.html");
+  CHECK(browser::attribute(page, "<body", "data-ready") == "0");
+  CHECK(page.find(">This recording has no frames.</p>") != std::string::npos);
+}

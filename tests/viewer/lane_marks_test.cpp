@@ -1,0 +1,94 @@
+#include "cambium/viewer/detail/lane_marks.hpp"
+
+#include <vector>
+
+#include <doctest/doctest.h>
+
+using namespace cambium;
+using detail::MarkStyle;
+
+namespace {
+
+struct Lengths {
+  double edge = 0.0, divider = 0.0, centre = 0.0;
+};
+
+// Painted metres by style.
+Lengths lengths(std::vector<RecordedLane> const& lanes) {
+  std::vector<detail::LaneArea> const areas(lanes.begin(), lanes.end());
+  Lengths sum;
+  for (detail::LaneMark const& mark : detail::LaneMarker(lanes, areas).marks()) {
+    double length = 0.0;
+    for (std::size_t i = 1; i < mark.points.size(); ++i) length += (mark.points[i] - mark.points[i - 1]).norm();
+    (mark.style == MarkStyle::edge ? sum.edge : mark.style == MarkStyle::divider ? sum.divider : sum.centre) += length;
+  }
+  return sum;
+}
+
+RecordedLane straight(double from, double to, double left, double right) {
+  return {.left = {{from, left}, {to, left}}, .right = {{from, right}, {(from + to) / 3.0, right}, {to, right}}};
+}
+
+}  // namespace
+
+TEST_CASE("neighbours share one dashed line, and the road ends at solid ones") {
+  Lengths const sum = lengths({straight(0, 90, 3, 0), straight(0, 90, 0, -3)});
+  CHECK(sum.edge == doctest::Approx(180.0));
+  CHECK(sum.divider == doctest::Approx(90.0));
+  CHECK(sum.centre == 0.0);
+}
+
+TEST_CASE("lanes of opposite directions share a centre line, however their points run") {
+  std::vector<RecordedLane> lanes{straight(0, 90, 3, 0), straight(0, 90, 0, -3)};
+  lanes[0].forward = false;
+  CHECK(lengths(lanes).centre == doctest::Approx(90.0));
+  lanes[0] = straight(90, 0, 0, 3);
+  CHECK(lengths(lanes).centre == doctest::Approx(90.0));
+}
+
+TEST_CASE("a shoulder is behind a solid line") {
+  std::vector<RecordedLane> lanes{straight(0, 90, 3, 0), straight(0, 90, 0, -3)};
+  lanes[1].kind = RecordedLaneKind::other;
+  CHECK(lengths(lanes).edge == doctest::Approx(270.0));
+}
+
+TEST_CASE("a lane beside part of another gives a line that is dashed there only") {
+  Lengths const sum = lengths({straight(0, 90, 3, 0), straight(30, 60, 0, -3)});
+  CHECK(sum.divider == doctest::Approx(30.0));
+  CHECK(sum.edge == doctest::Approx(180.0));
+}
+
+TEST_CASE("borders within another lane, and second copies of a border, are not painted") {
+  CHECK(lengths({straight(0, 90, 3, 0), straight(0, 90, 2, 1)}).edge == doctest::Approx(180.0));
+  CHECK(lengths({straight(0, 90, 3, 0), straight(0, 90, 3, 0)}).edge == doctest::Approx(180.0));
+}
+
+TEST_CASE("a lane that has shrunk to nothing leaves the solid line to its neighbour") {
+  Lengths const sum = lengths({straight(0, 90, 0, 0), straight(0, 90, 0, -3)});
+  CHECK(sum.edge == doctest::Approx(180.0));
+  CHECK(sum.divider == 0.0);
+}
+
+TEST_CASE("lanes without two points on a side are skipped") {
+  std::vector<RecordedLane> lanes(2);
+  lanes[0].left = {{0, 0}};
+  CHECK(lengths(lanes).edge == 0.0);
+}
+
+TEST_CASE("a simplified line stays within its tolerance") {
+  detail::PointList circle;
+  for (int i = 0; i <= 1000; ++i) circle.emplace_back(100.0 * std::cos(0.003 * i), 100.0 * std::sin(0.003 * i));
+  detail::PointList const line = detail::simplified(circle, 0.05);
+  CHECK(line.size() < 120);
+  for (geometry::Point const& p : circle) CHECK(detail::distance_to_line(p, line) <= 0.05);
+}
+
+TEST_CASE("arrows run with the traffic") {
+  std::vector<RecordedLane> lanes{straight(0, 90, 3, 0)};
+  lanes[0].forward = false;
+  std::vector<detail::LaneArea> const areas(lanes.begin(), lanes.end());
+  auto const arrows = detail::lane_arrows(lanes, areas, 30.0);
+  REQUIRE(arrows.size() == 3);
+  CHECK(arrows[1].at.x() == doctest::Approx(45.0));
+  CHECK(std::abs(arrows[1].heading) == doctest::Approx(3.14159265));
+}
