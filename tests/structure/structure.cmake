@@ -115,19 +115,21 @@ function(add_consumer name)
         -DCONSUMER_VERSION=${PROJECT_VERSION} ${ARGN}
       --test-command ${CMAKE_CTEST_COMMAND} --output-on-failure)
 endfunction()
-add_consumer(subdirectory -DCONSUMER_SUBDIRECTORY=${PROJECT_SOURCE_DIR})
+add_consumer(subdirectory -DCONSUMER_SUBDIRECTORY=${PROJECT_SOURCE_DIR} "-DCONSUMER_TARGETS=geometry$<SEMICOLON>cambium")
 if(CAMBIUM_INSTALL)
   set(install_tree ${structure_binary}/install)
   add_test(NAME structure.install
     COMMAND ${CMAKE_COMMAND} --install ${PROJECT_BINARY_DIR} --config $<CONFIG> --prefix ${install_tree})
   set_tests_properties(structure.install PROPERTIES FIXTURES_SETUP cambium_install)
-  add_consumer(package -DCMAKE_PREFIX_PATH=${install_tree} -DCONSUMER_COMPONENTS=opendrive)
-  add_consumer(package_without_pugixml -DCMAKE_PREFIX_PATH=${install_tree} -DCMAKE_DISABLE_FIND_PACKAGE_pugixml=ON)
-  add_consumer(package_lacks_opendrive -DCMAKE_PREFIX_PATH=${install_tree} -DCMAKE_DISABLE_FIND_PACKAGE_pugixml=ON
-    -DCONSUMER_COMPONENTS=opendrive)
+  set(package -DCMAKE_PREFIX_PATH=${install_tree})
+  set(no_pugixml -DCMAKE_DISABLE_FIND_PACKAGE_pugixml=ON)
+  add_consumer(package ${package} -DCONSUMER_COMPONENTS=opendrive "-DCONSUMER_TARGETS=geometry$<SEMICOLON>opendrive")
+  add_consumer(package_without_pugixml ${package} ${no_pugixml} -DCONSUMER_TARGETS=cambium)
+  add_consumer(package_lacks_opendrive ${package} ${no_pugixml} -DCONSUMER_COMPONENTS=opendrive)
   set_tests_properties(structure.consumer.package structure.consumer.package_without_pugixml
     structure.consumer.package_lacks_opendrive PROPERTIES FIXTURES_REQUIRED cambium_install)
-  set_tests_properties(structure.consumer.package_lacks_opendrive PROPERTIES PASS_REGULAR_EXPRESSION "pugixml")
+  set_tests_properties(structure.consumer.package_lacks_opendrive PROPERTIES
+    PASS_REGULAR_EXPRESSION "opendrive[ \n]+\\(needs[ \n]+pugixml\\)")
 endif()
 
 # The program in the README (the ```cpp block after the line `<!-- runs -->`) compiles and runs as it stands.

@@ -143,8 +143,8 @@ TEST_CASE("a browser draws the page, plays it, and shows each vehicle where it i
   browser::TemporaryFolder const folder;
   std::filesystem::path const file = folder.path() / "a replay #1.html";
   write_html_replay(file, sample_recording());
-  std::string const first = browser::document(*chromium, file, "probe=12,0;30,3.5;100,0;52,0");
-  std::string const last = browser::document(*chromium, file, "frame=20&probe=12,0;30,3.5;100,0;52,0");
+  std::string const first = browser::document(*chromium, file, "probe=12,0;30,3.5;100,0;62,0");
+  std::string const last = browser::document(*chromium, file, "frame=20&probe=12,0;30,3.5;100,0;62,0");
 
   REQUIRE(browser::attribute(first, "<body", "data-ready") == "21");
   CHECK(first.find("<title>a short drive</title>") != std::string::npos);

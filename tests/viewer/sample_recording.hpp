@@ -2,8 +2,8 @@
 
 #include "cambium/viewer/recording.hpp"
 
-/// A straight road of 300 m along x with two lanes, which an ego drives down from x = 10 m at 10 m/s for 4 s, in frames
-/// of 0.2 s, past a standing obstacle.
+/// A straight road of 300 m along x with two lanes, which an ego drives down from x = 10 m, 2 s at 10 m/s and 2 s at
+/// 15 m/s, in frames of 0.2 s, past a standing obstacle.
 inline cambium::Recording sample_recording() {
   using cambium::RecordedAgentKind;
   cambium::Recording recording{.title = "a short drive", .notes = {"mean speed 10 m/s"}};
@@ -14,9 +14,8 @@ inline cambium::Recording sample_recording() {
   recording.agents.push_back({cambium::AgentId{7}, {3.6, 1.0, 0.9, 0.9}, "ego", RecordedAgentKind::ego});
   recording.agents.push_back({cambium::AgentId{9}, {1.0, 1.0, 1.0, 1.0}, "box", RecordedAgentKind::static_object});
   for (int k = 0; k <= 20; ++k) {
-    double const time = 0.2 * k;
-    recording.frames.push_back(
-        {time, {{10.0 + 10.0 * time, 0.0, 0.0, 10.0, 0.0, true}, {30.0, 3.5, 0.0, 0.0, 0.0, true}}});
+    double const time = 0.2 * k, speed = k < 10 ? 10.0 : 15.0, x = k < 10 ? 10.0 + 10.0 * time : 15.0 * time;
+    recording.frames.push_back({time, {{x, 0.0, 0.0, speed, 0.0, true}, {30.0, 3.5, 0.0, 0.0, 0.0, true}}});
   }
   return recording;
 }

@@ -40,12 +40,20 @@ class MapBuild {
     for (auto& lane : parts_.lanes)
       if (is_valid(lane.merges_into)) swing(lane);
     number_lane_coordinate();
-    find_overlaps(parts_.lanes, elevations(), parts_.options.overlap_clearance);
+    find_overlaps(parts_.lanes, [this](Lane const& lane, double s) { return elevation(lane, s); }, parts_.options.overlap_clearance);
     parts_.route_finder = make_route_finder(parts_.lanes);
     return std::make_shared<Map const>(std::move(parts_));
   }
 
  private:
+  /// Height of a lane's path [m], to tell a bridge from a crossing.
+  [[nodiscard]] double elevation(Lane const& lane, double s) const {
+    double const u = s / lane.length();
+    double const road_s = lane.along_road ? lane.road_begin + u * (lane.road_end - lane.road_begin)
+                                          : lane.road_end - u * (lane.road_end - lane.road_begin);
+    return parts_.roads[index_of(lane.road)].elevation.value(road_s);
+  }
+
   [[nodiscard]] static Road make_road(opendrive::Road const& source, RoadId id, opendrive::HeaderOffset const& offset) {
     Road road;
     road.id = id;
@@ -179,16 +187,6 @@ class MapBuild {
       lane.index_begin = begin;
       begin += std::ceil(lane.length() + apart);
     }
-  }
-
-  /// Height of a lane's path [m], to tell a bridge from a crossing.
-  [[nodiscard]] auto elevations() const {
-    return [this](Lane const& lane, double s) {
-      double const u = lane.length() > 0 ? s / lane.length() : 0.0;
-      double const road_s = lane.along_road ? lane.road_begin + u * (lane.road_end - lane.road_begin)
-                                            : lane.road_end - u * (lane.road_end - lane.road_begin);
-      return parts_.roads[index_of(lane.road)].elevation.value(road_s);
-    };
   }
 
   OpenDriveDocument const& document_;

@@ -56,30 +56,35 @@ function draw() {
   drawClock();
   element('follow').checked = state.follow;
 }
+// At the next painted frame, or soon after it should have come: a browser without a screen paints none.
+function soon(action) {
+  let done = false;
+  const once = () => {
+    if (done) return;
+    done = true;
+    action(performance.now());
+  };
+  requestAnimationFrame(once);
+  setTimeout(once, 100);
+}
 let waiting = false;
 function redraw() {
   if (waiting) return;
   waiting = true;
-  requestAnimationFrame(() => { waiting = false; draw(); });
+  soon(() => { waiting = false; draw(); });
 }
 
 const icons = {play: 'M3 1.5v13L14 8z', pause: 'M3 2h3.6v12H3zM9.4 2H13v12H9.4z'};
-let before = null, turn = 0;
-// At the next painted frame, or soon after it should have come: a browser without a screen paints none.
-function schedule() {
-  const mine = ++turn, once = () => { if (mine === turn) tick(performance.now()); };
-  requestAnimationFrame(once);
-  setTimeout(once, 100);
-}
-function tick(now) {
-  if (!state.playing) return;
+let before = null, run = 0;   // time of the last tick [ms], number of the current run
+function tick(now, its) {
+  if (!state.playing || its !== run) return;
   const step = before === null ? 0 : Math.min(.25, (now - before) / 1000) * Number(element('speed').value);
   before = now;
   const time = timeAt(state.at) + step;
   let k = Math.floor(state.at);
   while (k + 1 < count && data.times[k + 1] <= time) ++k;
   state.at = k + 1 < count ? k + (time - data.times[k]) / (data.times[k + 1] - data.times[k]) : count - 1;
-  if (state.at >= count - 1) pause(); else schedule();
+  if (state.at >= count - 1) pause(); else soon(later => tick(later, its));
   draw();
 }
 function setPlaying(on) {
@@ -92,7 +97,8 @@ function play() {
   if (count < 2 || state.playing) return;
   if (state.at >= count - 1) state.at = 0;
   setPlaying(true);
-  schedule();
+  const its = ++run;
+  soon(now => tick(now, its));
 }
 function pause() { setPlaying(false); }
 function seek(at) {

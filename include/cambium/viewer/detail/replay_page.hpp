@@ -68,7 +68,7 @@ canvas.over { cursor: pointer; }
 }
 #tip b { display: block; }
 #nothing {
-  inset: 14px 0 auto; margin: 0 auto; width: max-content; max-width: 90%; height: max-content; padding: 14px 20px;
+  inset: auto 0 14px; margin: 0 auto; width: max-content; max-width: 90%; height: max-content; padding: 14px 20px;
   font-size: 15px;
 }
 [hidden] { display: none !important; }

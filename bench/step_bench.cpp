@@ -1,0 +1,191 @@
+// What a step of the world, a copy and a roll-out cost, beside kernels that do the same work with nothing around it.
+
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "cambium/behavior/behavior_set.hpp"
+#include "cambium/behavior/constant_acceleration.hpp"
+#include "cambium/behavior/idm_classic.hpp"
+#include "cambium/dynamics/single_track.hpp"
+#include "cambium/evaluation/collision.hpp"
+#include "cambium/evaluation/evaluators.hpp"
+#include "cambium/execution/interpolate.hpp"
+#include "cambium/map/opendrive.hpp"
+#include "cambium/scenario/lane_traffic.hpp"
+#include "cambium/world/world.hpp"
+
+#include "yardstick/main.hpp"
+#include "yardstick/register.hpp"
+
+namespace cb = cambium;
+
+namespace {
+
+using Sim = cb::World<cb::BehaviorSet<cb::IdmClassic, cb::ConstantAcceleration>, cb::InterpolateExecution, cb::SingleTrack>;
+
+constexpr double dt = 0.2;          // [s]
+constexpr int steps_per_run = 50;   // then the world is set back, so that traffic stays what it was
+
+/// A winding three-lane carriageway of at least `length` metres.
+std::shared_ptr<cb::Map const> winding_road(double length) {
+  constexpr double piece = 400.0, curvature = 1.0 / 700.0;
+  int const pieces = static_cast<int>(std::ceil(length / piece));
+  std::ostringstream xml;
+  xml.precision(17);
+  xml << "<OpenDRIVE><header revMajor=\"1\" revMinor=\"6\"/><road id=\"1\" junction=\"-1\" length=\"" << pieces * piece << "\"><planView>";
+  double x = 0, y = 0, heading = -piece * curvature / 2;
+  for (int i = 0; i < pieces; ++i) {
+    double const k = i % 2 == 0 ? curvature : -curvature;
+    xml << "<geometry s=\"" << i * piece << "\" x=\"" << x << "\" y=\"" << y << "\" hdg=\"" << heading << "\" length=\"" << piece
+        << "\"><arc curvature=\"" << k << "\"/></geometry>";
+    double const next = heading + k * piece;
+    x += (std::sin(next) - std::sin(heading)) / k;
+    y -= (std::cos(next) - std::cos(heading)) / k;
+    heading = next;
+  }
+  xml << "</planView><lanes><laneSection s=\"0\"><center><lane id=\"0\" type=\"none\"/></center><right>";
+  for (int lane = 1; lane <= 3; ++lane) xml << "<lane id=\"-" << lane << "\" type=\"driving\"><width sOffset=\"0\" a=\"3.5\" b=\"0\" c=\"0\" d=\"0\"/></lane>";
+  xml << "</right></laneSection></lanes></road></OpenDRIVE>";
+  return cb::parse_opendrive(xml.str()).map;
+}
+
+/// Puts `agents` vehicles on the lane corridors of the map's entrances, densely, the first ones first.
+void fill(Sim& world, std::size_t agents, double end) {
+  cb::RandomStream random(7, 0, 0);
+  auto const& map = world.map();
+  std::vector<std::pair<cb::map::Route, std::vector<cb::LaneVehicle>>> lanes;
+  for (auto const& lane : map.lanes()) {
+    if (!lane.drivable() || !lane.predecessors.empty()) continue;
+    cb::LaneTraffic traffic;
+    auto route = cb::map::straight_route(map, lane.id, 1e9);
+    double length = 0;
+    for (auto const id : route.lanes) length += map.lane(id).length();
+    traffic.end = std::min(end, length - 20.0);
+    traffic.begin = 0.0;
+    lanes.emplace_back(std::move(route), traffic.sample(random));
+  }
+  for (std::size_t i = 0; world.size() < agents; ++i) {
+    auto const& [route, vehicles] = lanes[i % lanes.size()];
+    if (i / lanes.size() >= vehicles.size()) {
+      if (i > 100 * agents) throw cb::WorldError("bench", "the road is too short for " + std::to_string(agents) + " agents");
+      continue;
+    }
+    auto const& v = vehicles[i / lanes.size()];
+    auto const pose = map.lane(route.lanes.front()).path.pose(v.s);
+    world.add({.position = pose.position(), .heading = pose.heading, .speed = v.speed, .shape = v.shape, .behavior = v.driver, .route = route});
+  }
+}
+
+std::shared_ptr<cb::Map const> merging_map() {
+  static auto const map = cb::load_opendrive(CAMBIUM_SOURCE_DIR "/maps/merging.xodr").map;
+  return map;
+}
+
+Sim highway_world(std::size_t agents) {
+  double const length = 60.0 * static_cast<double>(agents) / 3.0 + 300.0;
+  Sim world(winding_road(length + 800.0), {.seed = 1});
+  fill(world, agents, length);
+  return world;
+}
+
+/// Vehicles before the merge of maps/merging.xodr.
+Sim merging_world(std::size_t agents) {
+  Sim world(merging_map(), {.seed = 1});
+  fill(world, agents, 280.0);
+  return world;
+}
+
+void measure_steps(benchmark::State& state, Sim const& start) {
+  Sim world = start;
+  int k = 0;
+  for (int i = 0; i < 2 * steps_per_run; ++i) world.step(dt);  // everything has its memory now
+  world = start;
+  yardstick::measure_step(state, start.size(), [&] {
+    if (++k % steps_per_run == 0) world = start;
+    benchmark::DoNotOptimize(world.step(dt));
+  });
+}
+
+template <class Make>
+void register_steps(std::string const& name, std::size_t agents, Make make) {
+  auto start = std::make_shared<std::unique_ptr<Sim>>();  // made when first measured
+  yardstick::add(name + "/" + std::to_string(agents), [=](benchmark::State& state) {
+    if (!*start) *start = std::make_unique<Sim>(make(agents));
+    measure_steps(state, **start);
+  });
+}
+
+void register_copies(std::size_t agents) {
+  auto const name = std::to_string(agents);
+  yardstick::add("copy/fresh/" + name, [=](benchmark::State& state) {
+    Sim const start = highway_world(agents);
+    yardstick::measure_copy(state, [&] {
+      Sim copy = start;
+      benchmark::DoNotOptimize(copy.frame().agents.data());
+    });
+  });
+  yardstick::add("copy/warm/" + name, [=](benchmark::State& state) {
+    Sim const start = highway_world(agents);
+    Sim copy = start;
+    yardstick::measure_copy(state, [&] {
+      copy = start;
+      benchmark::DoNotOptimize(copy.frame().agents.data());
+    });
+  });
+}
+
+void register_rollout() {
+  yardstick::add("rollout/5x10", [](benchmark::State& state) {
+    Sim const start = merging_world(5);
+    Sim world = start;
+    cb::Evaluators const judge(cb::CollisionAny{});
+    yardstick::measure_rate(state, [&] {
+      world = start;
+      bool collision = false;
+      for (int i = 0; i < 10; ++i) {
+        world.step(dt);
+        collision = collision || judge.evaluate(world).any_collision;
+      }
+      benchmark::DoNotOptimize(collision);
+    });
+  });
+}
+
+void register_load() {
+  yardstick::add("load/merging", [](benchmark::State& state) {
+    std::size_t lanes = 0;
+    for (auto _ : state) lanes += cb::load_opendrive(CAMBIUM_SOURCE_DIR "/maps/merging.xodr").map->lanes().size();
+    benchmark::DoNotOptimize(lanes);
+    state.counters["ms"] = {static_cast<double>(state.iterations()) * 1e3, benchmark::Counter::kIsRate | benchmark::Counter::kInvert};
+    state.counters["ms"].value = static_cast<double>(state.iterations()) / 1e3;
+  });
+}
+
+void print_ratios(yardstick::Results const& results) {
+  std::printf("\nratios of the best\n");
+  auto const row = [&](char const* a, char const* b, char const* target) {
+    if (auto const r = yardstick::ratio(results, a, b)) std::printf("  %-26s / %-22s %6.2f   %s\n", a, b, *r, target);
+  };
+  row("step/idm_classic/20", "yardstick/full/20", "(at most 1.0)");
+  row("step/merging/20", "yardstick/full/20", "(at most 1.0)");
+  row("step/idm_classic/10000", "step/idm_classic/100", "(at most 1.3)");
+  for (char const* n : {"5", "10", "20", "50", "100", "1000", "10000"})
+    row((std::string("copy/warm/") + n).c_str(), (std::string("yardstick/memcpy/") + n).c_str(), "(at most 2)");
+  row("rollout/5x10", "yardstick/rollout/5x10", "(rates: larger is better)");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  for (std::size_t const n : yardstick::world_sizes) register_steps("step/idm_classic", n, highway_world);
+  for (std::size_t const n : {std::size_t{5}, std::size_t{10}, std::size_t{20}}) register_steps("step/merging", n, merging_world);
+  for (std::size_t const n : yardstick::world_sizes) register_copies(n);
+  register_rollout();
+  register_load();
+  yardstick::register_yardsticks();
+  return yardstick::run_benchmarks(argc, argv, print_ratios);
+}

@@ -1,0 +1,169 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+namespace cambium::map::detail {
+
+/// An axis-parallel box [m]; empty as made by default.
+struct Box {
+  double min_x = std::numeric_limits<double>::infinity(), min_y = std::numeric_limits<double>::infinity();
+  double max_x = -std::numeric_limits<double>::infinity(), max_y = -std::numeric_limits<double>::infinity();
+
+  void add(double x, double y) {
+    min_x = std::min(min_x, x);
+    min_y = std::min(min_y, y);
+    max_x = std::max(max_x, x);
+    max_y = std::max(max_y, y);
+  }
+  [[nodiscard]] Box grown(double by) const { return {min_x - by, min_y - by, max_x + by, max_y + by}; }
+};
+
+/// Place of the cell (x, y), each below 2^16, on Hilbert's curve: cells near to each other are mostly near on the curve.
+[[nodiscard]] inline std::uint32_t hilbert_index(std::uint32_t x, std::uint32_t y) {
+  std::uint32_t index = 0;
+  for (std::uint32_t side = 1u << 15; side > 0; side >>= 1) {
+    bool const right = (x & side) != 0, upper = (y & side) != 0;
+    index = 4 * index + (right ? (upper ? 2u : 3u) : (upper ? 1u : 0u));
+    if (upper) continue;
+    if (right) {
+      x = ~x;
+      y = ~y;
+    }
+    std::swap(x, y);
+  }
+  return index;
+}
+
+/// A static R-tree in flat arrays: boxes in the order of Hilbert's curve, eight to a node, nodes of 128 B level by level
+/// (Kamel, Faloutsos 1993). Corners are kept in float, rounded outwards: a query may visit a box that it misses by that.
+class BoxTree {
+ public:
+  BoxTree() = default;
+
+  /// O(n log n). Boxes must not be empty.
+  explicit BoxTree(std::span<Box const> boxes) {
+    if (boxes.empty()) return;
+    Box all;
+    for (auto const& b : boxes) {
+      all.add(b.min_x, b.min_y);
+      all.add(b.max_x, b.max_y);
+    }
+    origin_x_ = 0.5 * (all.min_x + all.max_x);
+    origin_y_ = 0.5 * (all.min_y + all.max_y);
+    sort(boxes, all);
+    std::size_t children = boxes.size();
+    do {
+      auto const begin = nodes_.size();
+      add_level(boxes, children);
+      level_begin_.push_back(begin);
+      children = nodes_.size() - begin;
+    } while (children > 1);
+  }
+
+  /// Calls `visit(index of the box)` for every box that meets `query`, borders included, until that returns true; says whether
+  /// it did. O(log n) and those found; no allocation.
+  template <class Visit>
+  bool visit(Box const& query, Visit const& visit) const {
+    if (nodes_.empty()) return false;
+    float const min_x = below(query.min_x - origin_x_), max_x = above(query.max_x - origin_x_);
+    float const min_y = below(query.min_y - origin_y_), max_y = above(query.max_y - origin_y_);
+    std::array<Place, 7 * max_levels + 1> stack;
+    std::size_t depth = 0;
+    stack[depth++] = {static_cast<std::uint32_t>(level_begin_.size() - 1), 0};
+    while (depth > 0) {
+      Place const at = stack[--depth];
+      auto const& node = nodes_[level_begin_[at.level] + at.index];
+      std::array<bool, width> meets;
+      for (std::size_t j = 0; j < width; ++j)
+        meets[j] = (node.min_x[j] <= max_x) & (node.max_x[j] >= min_x) & (node.min_y[j] <= max_y) & (node.max_y[j] >= min_y);
+      for (std::size_t j = 0; j < width; ++j) {
+        if (!meets[j]) continue;
+        auto const child = static_cast<std::uint32_t>(at.index * width + j);
+        if (at.level > 0)
+          stack[depth++] = {at.level - 1, child};
+        else if (visit(order_[child]))
+          return true;
+      }
+    }
+    return false;
+  }
+
+ private:
+  static constexpr std::size_t width = 8;
+  static constexpr std::size_t max_levels = 11;  // 8^11 boxes are more than an index can name
+
+  struct alignas(64) Node {
+    std::array<float, width> min_x, min_y, max_x, max_y;
+  };
+  struct Place {
+    std::uint32_t level, index;
+  };
+
+  [[nodiscard]] static float below(double v) {
+    auto const f = static_cast<float>(v);
+    return static_cast<double>(f) <= v ? f : std::nextafter(f, -std::numeric_limits<float>::infinity());
+  }
+  [[nodiscard]] static float above(double v) {
+    auto const f = static_cast<float>(v);
+    return static_cast<double>(f) >= v ? f : std::nextafter(f, std::numeric_limits<float>::infinity());
+  }
+
+  void sort(std::span<Box const> boxes, Box const& all) {
+    double const extent = std::max({all.max_x - all.min_x, all.max_y - all.min_y, 1e-9});
+    auto const cell = [extent](double low, double high, double origin) {
+      return static_cast<std::uint32_t>(std::clamp((0.5 * (low + high) - origin) / extent, 0.0, 1.0) * 65535.0);
+    };
+    std::vector<std::uint64_t> keys(boxes.size());
+    for (std::size_t i = 0; i < boxes.size(); ++i) {
+      auto const& b = boxes[i];
+      auto const place = hilbert_index(cell(b.min_x, b.max_x, all.min_x), cell(b.min_y, b.max_y, all.min_y));
+      keys[i] = std::uint64_t{place} << 32 | i;
+    }
+    std::sort(keys.begin(), keys.end());
+    order_.resize(boxes.size());
+    for (std::size_t i = 0; i < keys.size(); ++i) order_[i] = static_cast<std::uint32_t>(keys[i]);
+  }
+
+  /// Adds the nodes over `children` boxes (on the first level) or nodes of the level before.
+  void add_level(std::span<Box const> boxes, std::size_t children) {
+    constexpr float infinity = std::numeric_limits<float>::infinity();
+    auto const first_child = level_begin_.empty() ? 0 : level_begin_.back();
+    for (std::size_t begin = 0; begin < children; begin += width) {
+      Node node;
+      for (std::size_t j = 0; j < width; ++j) {
+        node.min_x[j] = node.min_y[j] = infinity;
+        node.max_x[j] = node.max_y[j] = -infinity;
+        if (begin + j >= children) continue;
+        if (level_begin_.empty()) {
+          auto const& b = boxes[order_[begin + j]];
+          node.min_x[j] = below(b.min_x - origin_x_);
+          node.min_y[j] = below(b.min_y - origin_y_);
+          node.max_x[j] = above(b.max_x - origin_x_);
+          node.max_y[j] = above(b.max_y - origin_y_);
+        } else {
+          auto const& child = nodes_[first_child + begin + j];
+          node.min_x[j] = *std::min_element(child.min_x.begin(), child.min_x.end());
+          node.min_y[j] = *std::min_element(child.min_y.begin(), child.min_y.end());
+          node.max_x[j] = *std::max_element(child.max_x.begin(), child.max_x.end());
+          node.max_y[j] = *std::max_element(child.max_y.begin(), child.max_y.end());
+        }
+      }
+      nodes_.push_back(node);
+    }
+  }
+
+  std::vector<Node> nodes_;
+  std::vector<std::size_t> level_begin_;  ///< first node of each level, leaves first
+  std::vector<std::uint32_t> order_;      ///< index of the box at each leaf place
+  double origin_x_ = 0.0, origin_y_ = 0.0;
+};
+
+}  // namespace cambium::map::detail

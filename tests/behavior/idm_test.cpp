@@ -1,0 +1,118 @@
+#include "cambium/behavior/idm.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "cambium/behavior/idm_classic.hpp"
+#include "cambium/core/distributions.hpp"
+
+namespace cb = cambium;
+
+TEST_CASE("a follower at the equilibrium gap keeps its speed") {
+  cb::IdmClassic const p;
+  for (double v : {0.0, 1.0, 5.0, 10.0, 14.0}) {
+    double const gap = cb::idm_equilibrium_gap(p, v);
+    CHECK(cb::idm_acceleration(p, v, gap, v) == doctest::Approx(0.0).epsilon(1e-12));
+    CHECK(gap == doctest::Approx((2.0 + 1.5 * v) / std::sqrt(1 - std::pow(v / 15.0, 4))));
+  }
+  CHECK(std::isinf(cb::idm_equilibrium_gap(p, 15.0)));
+}
+
+TEST_CASE("a gap that has closed brakes as hard as the driver can") {
+  cb::IdmClassic const p;
+  for (double gap : {0.0, -1.0, -1e9}) CHECK(cb::idm_acceleration(p, 10.0, gap, 10.0) == p.lowest_acceleration);
+}
+
+TEST_CASE("a faster leader is not mistaken for a close one") {
+  cb::IdmClassic const p;
+  // Without the bound at the minimum gap the desired gap would be -26 m here, and its square would brake.
+  CHECK(cb::idm_desired_gap(p, 10.0, 25.0) == p.minimum_gap);
+  CHECK(cb::idm_acceleration(p, 10.0, 10.0, 25.0) > 0.0);
+}
+
+TEST_CASE("acceleration falls with speed, with a slower leader and with a smaller gap") {
+  cb::IdmClassic const p;
+  cb::RandomStream random(3, 0, 0);
+  for (int i = 0; i < 10000; ++i) {
+    double const v = 30 * cb::uniform01(random), gap = 0.1 + 100 * cb::uniform01(random), leader = 30 * cb::uniform01(random);
+    double const a = cb::idm_acceleration(p, v, gap, leader);
+    CHECK(a >= cb::idm_acceleration(p, v + 0.5, gap, leader));
+    CHECK(a >= cb::idm_acceleration(p, v, gap * 0.9, leader));
+    CHECK(a >= cb::idm_acceleration(p, v, gap, leader * 0.9));
+  }
+}
+
+namespace {
+
+/// The same motion by 20000 explicit steps with linear extrapolation of their error (Richardson): a twin of `idm_motion`.
+cb::LongitudinalMotion<double> fine_motion(cb::IdmClassic const& p, double v, double gap, double leader, double dt) {
+  auto const run = [&](int n) {
+    double x = 0, speed = v;
+    double const h = dt / n;
+    for (int i = 0; i < n; ++i) {
+      double const a1 = cb::idm_acceleration(p, speed, gap + leader * (h * i) - x, leader);
+      double const middle = std::max(0.0, speed + a1 * h / 2);
+      double const a2 = cb::idm_acceleration(p, middle, gap + leader * (h * (i + 0.5)) - (x + speed * h / 2), leader);
+      x += middle * h;
+      speed = std::max(0.0, speed + a2 * h);
+    }
+    return cb::LongitudinalMotion<double>{x, speed};
+  };
+  return run(20000);
+}
+
+}  // namespace
+
+TEST_CASE("motion within a step solves the model's differential equation, for any step length") {
+  cb::RandomStream random(11, 0, 0);
+  double worst_speed = 0, worst_distance = 0;
+  for (int i = 0; i < 300; ++i) {
+    cb::IdmClassic p;
+    p.desired_speed = 5 + 30 * cb::uniform01(random);
+    double const v = 25 * cb::uniform01(random), leader = 25 * cb::uniform01(random);
+    double const gap = i % 5 == 0 ? std::numeric_limits<double>::infinity() : 1 + 80 * cb::uniform01(random);
+    for (double dt : {0.05, 0.2, 1.0, 3.0}) {
+      auto const motion = cb::idm_motion(p, v, gap, leader, dt, 1e-4);
+      auto const twin = fine_motion(p, v, gap, leader, dt);
+      worst_speed = std::max(worst_speed, std::abs(motion.speed - twin.speed));
+      worst_distance = std::max(worst_distance, std::abs(motion.distance - twin.distance));
+      CHECK(motion.speed >= 0.0);
+      CHECK(motion.distance >= 0.0);
+    }
+  }
+  MESSAGE("largest error at the default tolerance: " << worst_speed << " m/s, " << worst_distance << " m");
+  CHECK(worst_speed < 3e-3);
+  CHECK(worst_distance < 5e-3);
+}
+
+TEST_CASE("a smaller tolerance makes the motion more accurate") {
+  cb::IdmClassic const p;
+  auto const twin = fine_motion(p, 14.0, 12.0, 6.0, 2.0);
+  double previous = 1.0;
+  for (double tolerance : {1e-2, 1e-4, 1e-6}) {
+    double const error = std::abs(cb::idm_motion(p, 14.0, 12.0, 6.0, 2.0, tolerance).distance - twin.distance);
+    CHECK(error <= previous);
+    previous = error + 1e-7;
+  }
+  CHECK(previous < 1e-5);
+}
+
+TEST_CASE("a follower stops behind a standing leader, stands, and starts again when it leaves") {
+  cb::IdmClassic const p;
+  double gap = 30, v = 10;
+  for (int i = 0; i < 400; ++i) {
+    auto const m = cb::idm_motion(p, v, gap, 0.0, 0.2, 1e-4);
+    gap -= m.distance;
+    v = m.speed;
+    CHECK(gap > 0.0);
+  }
+  CHECK(v < 0.02);
+  CHECK(gap == doctest::Approx(p.minimum_gap).epsilon(0.05));
+  for (int i = 0; i < 10; ++i) {
+    auto const m = cb::idm_motion(p, v, gap += 5.0, 5.0, 0.2, 1e-4);
+    v = m.speed;
+  }
+  CHECK(v > 1.0);
+}

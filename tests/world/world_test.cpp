@@ -1,0 +1,272 @@
+#include "cambium/world/world.hpp"
+
+#include <doctest/doctest.h>
+
+#include <limits>
+#include <string>
+
+#include "fixtures.hpp"
+
+using namespace fixtures;
+
+namespace {
+
+/// The text of the error that `action` throws; empty where it throws none.
+template <class Action>
+std::string error_of(Action const& action) {
+  try {
+    action();
+  } catch (cb::Error const& e) {
+    return e.what();
+  }
+  return "";
+}
+
+bool says(std::string const& text, std::string const& part) { return text.find(part) != std::string::npos; }
+
+}  // namespace
+
+TEST_CASE("an agent enters its lane, heads along it, and moves") {
+  Sim world(straight_road(), {.seed = 1});
+  auto const id = world.add({.position = {10, -1.75}, .speed = 12.0, .behavior = cb::ConstantAcceleration{}});
+  CHECK(world.state(id).heading == doctest::Approx(0.0));
+  CHECK(world.step(0.2));
+  CHECK(world.state(id).x == doctest::Approx(12.4));
+  CHECK(world.state(id).time == doctest::Approx(0.2));
+  CHECK(world.time() == doctest::Approx(0.2));
+  CHECK(world.frame().step == 1);
+}
+
+TEST_CASE("agents keep their lateral offset and follow curves") {
+  Sim world(straight_road(1, 300, 0.01));
+  auto const id = world.add({.position = {0, -1.5}, .speed = 10.0, .behavior = cb::ConstantAcceleration{}});
+  for (int i = 0; i < 100; ++i) world.step(0.1);
+  auto const& s = world.state(id);
+  CHECK(std::hypot(s.x, s.y - 100) == doctest::Approx(101.5).epsilon(1e-4));
+  CHECK(s.heading == doctest::Approx(100.0 / 101.75).epsilon(1e-3));
+}
+
+TEST_CASE("what cannot enter is named, and leaves the world as it was") {
+  Sim world(straight_road());
+  auto const before = world.frame();
+  double const nan = std::numeric_limits<double>::quiet_NaN();
+  CHECK(says(error_of([&] { world.add({.position = {10, 50}}); }), "no drivable lane within 5 m"));
+  CHECK(says(error_of([&] { world.add({}); }), "position"));
+  CHECK(says(error_of([&] { world.add({.position = {10, -1.75}, .heading = nan}); }), "heading"));
+  CHECK(says(error_of([&] { world.add({.position = {10, -1.75}, .speed = -1.0}); }), "speed"));
+  CHECK(says(error_of([&] { world.add({.position = {10, -1.75}, .speed = nan}); }), "speed"));
+  CHECK(says(error_of([&] { world.add({.position = {10, -1.75}, .behavior = cb::IdmClassic{.desired_speed = nan}}); }), "desired_speed"));
+  CHECK(says(error_of([&] { world.add({.position = {10, -1.75}, .behavior = cb::IdmClassic{.time_headway = -1}}); }), "time_headway"));
+  CHECK(says(error_of([&] { world.add({.position = {10, -1.75}, .goal = cb::ReachLane{static_cast<cb::LaneId>(99)}}); }), "lane 99"));
+  CHECK(says(error_of([&] { world.add({.position = {10, -1.75}, .route = cb::map::Route{{static_cast<cb::LaneId>(1)}}}); }), "route"));
+  CHECK(says(error_of([&] { Sim without_map(nullptr); }), "no map"));
+  CHECK(world.frame() == before);
+  CHECK(world.roster().agents.empty());
+}
+
+TEST_CASE("ids are unique, kept, and never used again") {
+  Sim world(straight_road());
+  auto const a = world.add({.position = {10, -1.75}});
+  auto const b = world.add({.position = {40, -1.75}, .id = static_cast<cb::AgentId>(17)});
+  auto const c = world.add({.position = {70, -1.75}});
+  CHECK(b == static_cast<cb::AgentId>(17));
+  CHECK(static_cast<std::uint32_t>(c) == 18);
+  CHECK(says(error_of([&] { world.add({.position = {100, -1.75}, .id = b}); }), "already"));
+  world.remove(c);
+  CHECK(static_cast<std::uint32_t>(world.add({.position = {70, -1.75}})) == 19);
+  CHECK(says(error_of([&] { (void)world.state(c); }), "agent 18: the world has no such agent"));
+  CHECK(says(error_of([&] { world.remove(c); }), "no such agent"));
+  CHECK(world.state(a).x == 10);
+}
+
+TEST_CASE("agents that pass the end of the road leave traffic, and are taken out on request") {
+  Sim world(straight_road(1, 100));
+  auto const id = world.add({.position = {90, -1.75}, .speed = 20, .behavior = cb::ConstantAcceleration{}});
+  auto const follower = world.add({.position = {60, -1.75}, .speed = 10});
+  CHECK(world.step(0.2).left == 0);
+  CHECK(world.step(0.5).left == 1);
+  CHECK(world.status(id) == cb::AgentStatus::left_map);
+  CHECK_FALSE(world.observe(follower).front().has_value());
+  auto const at = world.state(id);
+  world.step(0.2);
+  CHECK(world.state(id) == at);
+  CHECK(world.remove_departed() == 1);
+  CHECK(world.size() == 1);
+}
+
+TEST_CASE("an agent whose route ends where the road goes on has arrived") {
+  auto const map = own_map("merging.xodr");
+  cb::map::Lane const* first = nullptr;
+  for (auto const& lane : map->lanes())
+    if (lane.drivable() && lane.predecessors.empty() && !lane.successors.empty() && first == nullptr) first = &lane;
+  REQUIRE(first != nullptr);
+  Sim world(map);
+  auto const pose = first->path.pose(first->length() - 5);
+  auto const id = world.add({.position = pose.position(), .speed = 20, .behavior = cb::ConstantAcceleration{}, .route = cb::map::Route{{first->id}}});
+  world.step(0.5);
+  CHECK(world.status(id) == cb::AgentStatus::arrived);
+}
+
+TEST_CASE("a step of no length, of no number or backwards changes nothing and says so") {
+  Sim world(straight_road());
+  world.add({.position = {10, -1.75}, .speed = 5});
+  auto const before = world.frame();
+  for (double dt : {0.0, -0.1, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    auto const result = world.step(dt);
+    CHECK_FALSE(result.valid());
+    CHECK(result.problem == cb::StepProblem::bad_duration);
+    CHECK(world.frame() == before);
+  }
+}
+
+namespace {
+
+/// Plans badly, in the way asked for.
+struct Broken {
+  enum class How { no_plan, too_short, not_a_number, fine } how = How::fine;
+
+  template <class View>
+  [[nodiscard]] cb::Plan<View> plan(View const& view, cb::NoMemory&, double dt) const {
+    cb::Plan<View> plan;
+    auto next = view.state();
+    next.time += how == How::too_short ? dt / 2 : dt;
+    if (how == How::not_a_number) next.x = std::numeric_limits<double>::quiet_NaN();
+    plan.trajectory.push_back(view.state());
+    plan.trajectory.push_back(next);
+    if (how == How::no_plan) plan.status = cb::PlanStatus::failed;
+    return plan;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("an agent that plans badly is named and keeps its last state; the others move on") {
+  using Fragile = cb::World<cb::BehaviorSet<cb::IdmClassic, Broken>, cb::InterpolateExecution, cb::SingleTrack>;
+  std::pair<Broken::How, cb::StepProblem> const cases[] = {{Broken::How::no_plan, cb::StepProblem::no_plan},
+                                                           {Broken::How::too_short, cb::StepProblem::no_execution},
+                                                           {Broken::How::not_a_number, cb::StepProblem::not_finite}};
+  for (auto const& [how, problem] : cases) {
+    Fragile world(straight_road());
+    auto const good = world.add({.position = {10, -1.75}, .speed = 10});
+    auto const bad = world.add({.position = {50, -1.75}, .speed = 10, .behavior = Broken{how}});
+    auto const state = world.state(bad);
+    auto const result = world.step(0.2);
+    CHECK(result.problem == problem);
+    CHECK(result.agent == bad);
+    CHECK(result.failed == 1);
+    CHECK(world.status(bad) == cb::AgentStatus::failed);
+    CHECK(world.state(bad) == state);
+    CHECK(world.state(good).x > 10.0);
+    CHECK(world.step(0.2).valid());
+  }
+}
+
+TEST_CASE("history keeps the last frames with their actions, and copies do not take it along") {
+  Sim world(straight_road());
+  auto const id = world.add({.position = {10, -1.75}, .speed = 5});
+  world.step(0.2);
+  CHECK(world.history_size() == 0);
+  world.keep_history(3);
+  std::vector<Sim::FrameType> frames;
+  for (int i = 0; i < 5; ++i) {
+    frames.push_back(world.frame());
+    world.step(0.2);
+  }
+  CHECK(world.history_size() == 3);
+  for (std::size_t back = 1; back <= 3; ++back) CHECK(world.history(back) == frames[frames.size() - back]);
+  CHECK(world.history(1).agents[0].action.acceleration > 0.0);
+  CHECK(says(error_of([&] { (void)world.history(4); }), "no frame 4 steps back"));
+  Sim const copy = world;
+  CHECK(copy.history_size() == 0);
+  CHECK(world.observe(id).predict(cb::predict_all_as<Sim::Behaviors>(cb::IdmClassic{})).history_size() == 0);
+}
+
+TEST_CASE("static objects stop traffic in the lanes they reach into, and only there") {
+  Sim world(straight_road(2));
+  auto const right = world.add({.position = {10, -5.25}, .speed = 12});
+  auto const left = world.add({.position = {10, -1.75}, .speed = 12});
+  std::vector<cb::geometry::Point> const outline{{60, -6}, {62, -6}, {62, -4.5}, {60, -4.5}};
+  auto const object = world.add_object(cb::geometry::Polygon(outline));
+  auto const seen = world.observe(right).front();
+  REQUIRE(seen.has_value());
+  CHECK(seen->object == object);
+  CHECK(seen->gap == doctest::Approx(50 - cb::geometry::Shape{}.front).epsilon(0.01));
+  CHECK_FALSE(world.observe(left).front().has_value());
+  for (int i = 0; i < 150; ++i) world.step(0.2);
+  CHECK(world.state(right).speed < 0.1);
+  CHECK(world.state(right).x + cb::geometry::Shape{}.front < 60.0);
+  CHECK(world.state(left).x > 200.0);
+  world.remove_object(object);
+  CHECK_FALSE(world.observe(right).front().has_value());
+  CHECK(says(error_of([&] { world.remove_object(object); }), "no such object"));
+}
+
+TEST_CASE("an agent driven from outside follows its input and changes lane corridors") {
+  Sim world(straight_road(2));
+  auto const ego = world.add({.position = {10, -5.25}, .speed = 10, .behavior = cb::ExternalInput{}});
+  CHECK(world.record(ego).lane.corridor == 1);
+  world.memory<cb::ExternalInput>(ego) = {0.0, 0.05};
+  for (int i = 0; i < 12; ++i) world.step(0.2);
+  CHECK(world.record(ego).action.steering == doctest::Approx(0.05));
+  CHECK(world.state(ego).y > -3.5);
+  CHECK(world.record(ego).lane.corridor == 0);
+  CHECK(world.lane_of(ego) == world.map().find_lane("1", 50, -1));
+  world.memory<cb::ExternalInput>(ego) = {-4.0, 0.0};
+  for (int i = 0; i < 20; ++i) world.step(0.2);
+  CHECK(world.state(ego).speed == 0.0);
+  CHECK(says(error_of([&] { world.memory<cb::IdmClassic>(ego); }), "behaviour"));
+}
+
+TEST_CASE("an agent that reaches over its lane's border is seen in both lanes") {
+  Sim world(straight_road(2));
+  auto const drifting = world.add({.position = {60, -3.0}, .speed = 5, .behavior = cb::ConstantAcceleration{}});
+  auto const left = world.add({.position = {10, -1.75}, .speed = 10});
+  auto const right = world.add({.position = {10, -5.25}, .speed = 10});
+  for (auto const id : {left, right}) {
+    auto const front = world.observe(id).front();
+    REQUIRE(front.has_value());
+    CHECK(front->agent == drifting);
+    CHECK(front->gap == doctest::Approx(50 - 3.6 - 0.9));
+  }
+}
+
+TEST_CASE("states set from outside place the agent anew") {
+  Sim world(straight_road(2));
+  auto const id = world.add({.position = {10, -5.25}, .speed = 10});
+  world.set_state(id, {.x = 300, .y = -1.5, .heading = 0.01, .speed = 7});
+  CHECK(world.record(id).lane.s == doctest::Approx(300));
+  CHECK(world.record(id).lane.corridor == 0);
+  CHECK(says(error_of([&] { world.set_state(id, {.x = std::numeric_limits<double>::infinity()}); }), "not a finite"));
+  CHECK(world.state(id).x == 300);
+}
+
+TEST_CASE("goals are reached by lane and by polygon") {
+  Sim world(straight_road(2));
+  std::vector<cb::geometry::Point> const area{{100, -3.5}, {130, -3.5}, {130, 0}, {100, 0}};
+  auto const by_area = world.add({.position = {80, -1.75}, .speed = 10, .behavior = cb::ConstantAcceleration{}, .goal = cb::ReachPolygon{cb::geometry::Polygon(area)}});
+  auto const by_lane = world.add({.position = {80, -5.25}, .speed = 10, .behavior = cb::ConstantAcceleration{},
+                                  .goal = cb::ReachLane{world.map().find_lane("1", 0, -2), 100.0, 120.0}});
+  CHECK_FALSE(world.reached_goal(by_area));
+  CHECK_FALSE(world.reached_goal(by_lane));
+  for (int i = 0; i < 15; ++i) world.step(0.2);  // at 110 m
+  CHECK(world.reached_goal(by_area));
+  CHECK(world.reached_goal(by_lane));
+  for (int i = 0; i < 10; ++i) world.step(0.2);  // at 130 m
+  CHECK_FALSE(world.reached_goal(by_area));
+  CHECK_FALSE(world.reached_goal(by_lane));
+}
+
+TEST_CASE("a prediction shows what the observer expects, whatever the others really do") {
+  Sim world(straight_road());
+  auto const ego = world.add({.position = {10, -1.75}, .speed = 10});
+  auto const other = world.add({.position = {60, -1.75}, .speed = 10, .behavior = cb::ConstantAcceleration{.acceleration = -2}});
+  using Guess = cb::BehaviorSet<cb::ConstantAcceleration>;
+  auto future = world.observe(ego).predict(cb::predict_as<Guess>(cb::ConstantAcceleration{.acceleration = 1}, cb::ConstantAcceleration{}));
+  for (int i = 0; i < 5; ++i) {
+    future.step(0.2);
+    world.step(0.2);
+  }
+  CHECK(future.state(other).speed == doctest::Approx(10.0));
+  CHECK(future.state(ego).speed == doctest::Approx(11.0));
+  CHECK(world.state(other).speed == doctest::Approx(8.0));
+}
