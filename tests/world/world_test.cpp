@@ -214,7 +214,7 @@ TEST_CASE("an agent driven from outside follows its input and changes lane corri
   world.memory<cb::ExternalInput>(ego) = {-4.0, 0.0};
   for (int i = 0; i < 20; ++i) world.step(0.2);
   CHECK(world.state(ego).speed == 0.0);
-  CHECK(says(error_of([&] { world.memory<cb::IdmClassic>(ego); }), "behaviour"));
+  CHECK(says(error_of([&] { (void)world.memory<cb::IdmClassic>(ego); }), "behaviour"));
 }
 
 TEST_CASE("an agent that reaches over its lane's border is seen in both lanes") {

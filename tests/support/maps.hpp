@@ -1,0 +1,23 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "cambium/map/map.hpp"
+
+/// Maps for tests, read in one translation unit so that the others need not compile a reader.
+namespace support {
+
+/// A road "1" from the origin along +x with `lanes` lanes of 3.5 m to the right of the reference line.
+std::shared_ptr<cambium::Map const> straight_road(int lanes = 2, double length = 1000.0, double curvature = 0.0);
+
+/// The project's own map of that file name.
+std::shared_ptr<cambium::Map const> own_map(std::string const& name);
+
+/// The map of an OpenDRIVE text.
+std::shared_ptr<cambium::Map const> map_of(std::string const& text);
+
+/// The map of an OpenDRIVE file of the corpus; null where there is none.
+std::shared_ptr<cambium::Map const> corpus_map(std::string const& name);
+
+}  // namespace support
