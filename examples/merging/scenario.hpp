@@ -89,6 +89,18 @@ struct Scenario {
   std::vector<cambium::AgentId> merging;  ///< all that come from the ramp
 };
 
+/// Whether a vehicle that has just entered and the one behind it could drive on without braking hard, merging traffic included.
+[[nodiscard]] inline bool enters_safely(Simulation& world, cambium::AgentId id) {
+  constexpr double headway = 0.6;  // [s]
+  auto const view = world.observe(id);
+  auto const driver = [&](cambium::AgentId agent) { return std::get<cambium::IdmClassic>(world.roster().agents[world.slot_of(agent)].behavior); };
+  if (auto const front = view.front())
+    if (front->gap < cambium::LaneTraffic::safe_gap(driver(id), view.state().speed, front->speed, headway)) return false;
+  if (auto const rear = view.rear())
+    if (rear->gap < cambium::LaneTraffic::safe_gap(driver(rear->agent), rear->speed, view.state().speed, headway)) return false;
+  return true;
+}
+
 /// Dense traffic from every entrance up to its merge. The ego is the foremost vehicle of the ramp with traffic around it: the one in
 /// the middle. Its goal is the lane behind the merge.
 [[nodiscard]] inline Scenario sample_scenario(Site const& site, std::uint64_t seed, std::uint32_t number) {
@@ -112,6 +124,10 @@ struct Scenario {
       Simulation::AgentSpec spec{.position = pose.position(), .heading = pose.heading, .speed = vehicle.speed, .shape = vehicle.shape, .behavior = vehicle.driver, .route = entrance.route};
       if (i == site.ramp) spec.goal = cambium::ReachLane{entrance.route.lanes.back()};
       auto const id = scenario.world.add(spec);
+      if (!enters_safely(scenario.world, id)) {
+        scenario.world.remove(id);
+        continue;
+      }
       if (i == site.ramp) scenario.merging.push_back(id);
     }
   }

@@ -71,7 +71,8 @@ TEST_CASE("a lane that has shrunk to nothing leaves the solid line to its neighb
 
 TEST_CASE("lanes without two points on a side are skipped") {
   std::vector<RecordedLane> lanes(2);
-  lanes[0].left = {{0, 0}};
+  lanes[0].left = {{0, 3}, {90, 3}};
+  lanes[0].right = {{0, 0}};
   CHECK(lengths(lanes).edge == 0.0);
 }
 

@@ -85,8 +85,8 @@ std::optional<double> brute_gap(cb::Map const& map, cb::map::LaneCorridor const&
     for (auto const& image : images(map, corridor, other)) {
       double const ahead = sign * (image.s - s);
       if (ahead < 0 || (ahead == 0 && (other.slot > asker.slot) != (sign > 0)) || ahead > cb::TrafficIndex::horizon) continue;
-      double const gap = sign > 0 ? std::max(image.s - other.rear, image.free_until) - (s + asker.front)
-                                  : std::max(s - asker.rear, image.free_until) - (image.s + other.front);
+      double const gap = sign > 0 ? cb::TrafficIndex::gap_between(s + asker.front, image.s - other.rear, image.free_until)
+                                  : cb::TrafficIndex::gap_between(image.s + other.front, s - asker.rear, image.free_until);
       if (!best || gap < *best) best = gap;
     }
   }

@@ -18,7 +18,7 @@ struct Neighbor {
   AgentId agent = none<AgentId>;     ///< who it is; none where it is a static object
   ObjectId object = none<ObjectId>;  ///< what it is; none where it is an agent
   double gap{};    ///< free road between the two, bumper to bumper [m]; negative where they overlap lengthwise. Where the
-                   ///< other comes from a merging lane, the road up to the overlap of the lanes is free in any case.
+                   ///< other is in a merging lane and the merge is still ahead: see `TrafficIndex::gap_between`.
   double speed{};  ///< of the other along its lane [m/s]
 };
 

@@ -11,6 +11,7 @@
 
 #include "cambium/core/error.hpp"
 #include "cambium/core/ids.hpp"
+#include "cambium/geometry/angle.hpp"
 #include "cambium/map/corridor.hpp"
 #include "cambium/map/detail/feeders.hpp"
 #include "cambium/map/detail/lane_chains.hpp"
@@ -20,7 +21,7 @@ namespace cambium::map {
 
 namespace detail {
 
-/// Joins lanes to a lane corridor's lines, widths and pieces.
+/// Joins the lanes of a chain to a lane corridor's lines, widths and pieces.
 class LaneJoiner {
  public:
   explicit LaneJoiner(Map const& map) : map_(map) {}
@@ -32,8 +33,7 @@ class LaneJoiner {
     corridor.widths = std::move(widths_);
     if (left_.size() > 1) corridor.left = geometry::Line::from_samples(left_);
     if (right_.size() > 1) corridor.right = geometry::Line::from_samples(right_);
-    corridor.pieces = std::move(pieces_);
-    set_positions(corridor);
+    corridor.pieces = make_pieces(corridor.center);
     auto const& last = map_.lane(lanes.back());
     corridor.continues = std::any_of(last.successors.begin(), last.successors.end(),
                                      [&](LaneId next) { return may_enter(last, map_.lane(next)); });
@@ -41,29 +41,162 @@ class LaneJoiner {
   }
 
  private:
+  /// Where a lane begins: at vertex `begin`; vertex `anchor` is at path position `s` of the lane.
+  struct Start {
+    LaneId lane = none<LaneId>;
+    std::size_t begin{}, anchor{};
+    double s{};
+  };
+
   void add(Lane const& lane) {
+    auto const segments = lane.path.segments();
     auto const samples = lane.path.samples();
-    std::size_t first = 0;
-    double first_s = 0.0;
-    joints_.push_back({center_.empty() ? 0 : center_.size() - 1, 0, 0.0});
-    if (!center_.empty()) {
-      // The lane before has the joint's vertex. Where the two do not quite meet there, the rest of the way is bridged.
-      first_s = bridge(lane, samples.front());
-      if (first_s > 0.0) append(lane.path.pose(first_s), lane.widths_at(first_s));
-      auto const segments = lane.path.segments();
-      first = 1;
-      while (first < segments.size() && segments[first].s < first_s + 1e-3) ++first;
-      if (first_s == 0.0) first_s = first < segments.size() ? segments[first].s : lane.length();
-    }
-    joints_.back().vertex = center_.empty() ? 0 : (first_s > 0.0 && bridged_ ? center_.size() - 1 : center_.size());
-    joints_.back().s = first_s;
-    for (std::size_t i = first; i < samples.size(); ++i) append(samples[i], lane.widths[i]);
     append_border(left_, lane.left);
     append_border(right_, lane.right);
-    pieces_.push_back({lane.id, 0.0, 0.0, 0.0, no_corridor, no_corridor});
+    if (center_.empty()) {
+      starts_.push_back({lane.id, 0, 0, 0.0});
+      center_ = samples;
+      widths_ = lane.widths;
+      return;
+    }
+    // The lane before has made the joint's vertex.
+    double const bridge = bridge_length(lane, samples.front());
+    starts_.push_back({lane.id, center_.size() - 1, center_.size(), bridge});
+    if (bridge > 0.0) append(lane.path.pose(bridge), lane.widths_at(bridge));
+    for (std::size_t i = 1; i < samples.size(); ++i) {
+      double const s = i < segments.size() ? segments[i].s : lane.length();
+      if (s < bridge + 1e-3 && i < segments.size()) continue;
+      if (append(samples[i], lane.widths[i]) && starts_.back().s == 0.0) starts_.back().s = s;
+    }
+    if (starts_.back().anchor == center_.size()) starts_.back() = {lane.id, center_.size() - 1, center_.size() - 1, 0.0};
   }
+
+  /// Adds a vertex unless it repeats the last one.
+  bool append(geometry::LineSample const& p, SideWidths const& widths) {
+    if (std::hypot(p.x - center_.back().x, p.y - center_.back().y) < 1e-6) return false;
+    center_.push_back(p);
+    widths_.push_back(widths);
+    return true;
+  }
+
+  /// Where the next lane does not begin just as the last one ends: how far in the corridor becomes the lane [m]. 0 where it does.
+  [[nodiscard]] double bridge_length(Lane const& lane, geometry::LineSample const& begin) const {
+    constexpr double tolerance = 1e-3;  // [m], [rad]
+    auto const& end = center_.back();
+    double const gap = std::hypot(begin.x - end.x, begin.y - end.y);
+    double const turn = std::abs(geometry::angle_difference(begin.heading, end.heading));
+    double const left = lane.widths.front().left - widths_.back().left, right = lane.widths.front().right - widths_.back().right;
+    double length = 0.0;
+    if (std::max(std::abs(left), std::abs(right)) > tolerance) length = 0.1;
+    if (gap > tolerance || turn > tolerance) length = std::max(1.0, 2.0 * gap);
+    return std::min(length, 0.5 * lane.length());
+  }
+
+  static void append_border(std::vector<geometry::LineSample>& border, geometry::Line const& line) {
+    for (auto const& p : line.samples())
+      if (border.empty() || std::hypot(p.x - border.back().x, p.y - border.back().y) > 0.01) border.push_back(p);
+  }
+
+  [[nodiscard]] std::vector<CorridorPiece> make_pieces(geometry::Line const& center) const {
+    auto const position = [&center](std::size_t vertex) {
+      return vertex < center.segments().size() ? center.segments()[vertex].s : center.length();
+    };
+    std::vector<CorridorPiece> pieces;
+    for (auto const& start : starts_) {
+      double const begin = position(start.begin);
+      if (!pieces.empty()) pieces.back().end = begin;
+      double const offset = map_.lane(start.lane).index_begin + start.s - position(start.anchor);
+      pieces.push_back({start.lane, begin, center.length(), offset, no_corridor, no_corridor});
+    }
+    return pieces;
+  }
+
   Map const& map_;
+  std::vector<geometry::LineSample> center_, left_, right_;
+  std::vector<SideWidths> widths_;
+  std::vector<Start> starts_;
 };
 
+/// The number of the chain that holds `lane` in `stage`; of several, one that has not come there by a merge, else the first.
+[[nodiscard]] inline std::uint16_t chain_of(Map const& map, std::span<LaneChain const> chains, std::size_t stage, LaneId lane) {
+  std::uint16_t found = no_corridor;
+  if (!is_valid(lane)) return found;
+  for (std::size_t i = 0; i < chains.size(); ++i) {
+    if (chains[i].at(stage) != lane) continue;
+    auto const before = static_cast<std::ptrdiff_t>(stage - chains[i].begin);
+    bool const has_merged = std::any_of(chains[i].lanes.begin(), chains[i].lanes.begin() + before,
+                                        [&map](LaneId l) { return is_valid(map.lane(l).merges_into); });
+    if (!has_merged) return static_cast<std::uint16_t>(i);
+    if (found == no_corridor) found = static_cast<std::uint16_t>(i);
+  }
+  return found;
+}
+
+/// The number of the chain with the route's last lane; of several, the first with the most lanes of the route.
+[[nodiscard]] inline std::uint16_t main_chain(std::span<LaneChain const> chains, std::span<LaneId const> route) {
+  std::size_t best = 0;
+  std::ptrdiff_t most = -1;
+  for (std::size_t i = 0; i < chains.size(); ++i) {
+    if (!chains[i].has(route.back())) continue;
+    auto const count = std::count_if(route.begin(), route.end(), [&](LaneId lane) { return chains[i].has(lane); });
+    if (count <= most) continue;
+    most = count;
+    best = i;
+  }
+  return static_cast<std::uint16_t>(best);
+}
+
 }  // namespace detail
+
+/// The way straight on from `from`: at forks the successor that turns least (within 50 m), of equal ones the smallest id. Ends at
+/// a dead end, where a lane would come again, or with the lane that makes it `max_length` [m] long. Throws `MapError` for a
+/// lane that the map does not have.
+[[nodiscard]] inline Route straight_route(Map const& map, LaneId from, double max_length = 2000.0) {
+  if (index_of(from) >= map.lanes().size())
+    throw MapError("route", "its start, lane " + to_string(from) + ", is not in the map", "see Map::lanes for those it has");
+  Route route{{from}, map.lane(from).length()};
+  std::vector<bool> has_come(map.lanes().size());
+  has_come[index_of(from)] = true;
+  while (route.length < max_length) {
+    auto const next = detail::straightest_successor(map, map.lane(route.lanes.back()), [](LaneId) { return true; });
+    if (!is_valid(next) || has_come[index_of(next)]) break;
+    has_come[index_of(next)] = true;
+    route.lanes.push_back(next);
+    route.length += map.lane(next).length();
+  }
+  return route;
+}
+
+/// The road corridor along `route`: its lanes and all beside them, as lane corridors. Throws `MapError` where the route has no
+/// lane, names one that the map does not have, or jumps.
+///
+/// A lane corridor follows successors while these are beside the route, at forks the route, else straight on; a lane that merges
+/// into its neighbour goes on there, so that two lane corridors may share their further lanes. A lane that opens beside the
+/// route begins a lane corridor of its own. Where consecutive lanes do not quite meet, the corridor bridges the gap within 1 m
+/// (or twice the gap). Feeders of a lane corridor, all of them lanes that are not in it:
+/// - lanes that merge into it: on the overlap, and from `MapOptions::merge_view` before it on, free until the overlap begins;
+/// - lanes that lead into one of its lanes without an overlap: likewise, free until that lane begins;
+/// - lanes that have just split off: on the overlap;
+/// - lanes that lead to its begin: 100 m back, with negative images (of a ring, the corridor's own last lanes too).
+/// Lanes that cross it are none. No stretch of a lane has two images, except by different corridors.
+[[nodiscard]] inline std::shared_ptr<RoadCorridor const> build_road_corridor(Map const& map, Route const& route) {
+  auto const stages = detail::route_stages(map, route.lanes);
+  auto const chains = detail::lane_chains(map, stages);
+  if (chains.size() >= no_corridor) throw MapError("route", "it has more lane corridors than can be numbered", "give a shorter one");
+  auto road = std::make_shared<RoadCorridor>();
+  road->route = route.lanes;
+  road->main = detail::main_chain(chains, route.lanes);
+  for (auto const& chain : chains) {
+    auto corridor = detail::LaneJoiner(map).join(chain.lanes);
+    for (std::size_t i = 0; i < corridor.pieces.size(); ++i) {
+      auto& piece = corridor.pieces[i];
+      piece.left = detail::chain_of(map, chains, chain.begin + i, map.lane(piece.lane).left_neighbor);
+      piece.right = detail::chain_of(map, chains, chain.begin + i, map.lane(piece.lane).right_neighbor);
+    }
+    detail::FeederFinder(map, corridor).find();
+    road->corridors.push_back(std::move(corridor));
+  }
+  return road;
+}
+
 }  // namespace cambium::map

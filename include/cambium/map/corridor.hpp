@@ -30,7 +30,7 @@ struct Feeder {
   LaneId lane = none<LaneId>;
   double index_begin{}, index_end{};
   double begin{}, end{};
-  double free_until = -std::numeric_limits<double>::infinity();  ///< corridor position up to which it does not block [m]
+  double free_until = -std::numeric_limits<double>::infinity();  ///< corridor position from which on the two lanes are one [m]
 
   [[nodiscard]] double image(double index) const {
     return begin + (index - index_begin) * (end - begin) / (index_end - index_begin);

@@ -69,16 +69,19 @@ class LaneTree {
     double const c = std::cos(pose.heading), s = std::sin(pose.heading);
     Best holding, nearest;
     drivable_.visit(pose.position(), 0.0, [&](LaneHit const& hit, Direction const& d) {
+      if (hit.distance > 0.0) return false;
       double const error = std::abs(std::atan2(d.x * s - d.y * c, d.x * c + d.y * s));
-      if (hit.distance == 0.0) holding.offer(std::floor(error / 0.05), hit);
+      holding.offer(std::floor(error / 0.05), hit);
       return false;
     });
     if (is_valid(holding.hit.lane)) return holding.hit;
-    drivable_.visit(pose.position(), radius, [&](LaneHit const& hit, Direction const& d) {
-      if (hit.distance <= radius && d.x * c + d.y * s > 0.0) nearest.offer(hit.distance, hit);
-      return false;
-    });
-    if (is_valid(nearest.hit.lane)) return nearest.hit;
+    for (double const reach : {0.2 * radius, radius}) {  // mostly it is near, and then there is less to look at
+      drivable_.visit(pose.position(), reach, [&](LaneHit const& hit, Direction const& d) {
+        if (hit.distance <= reach && d.x * c + d.y * s > 0.0) nearest.offer(hit.distance, hit);
+        return false;
+      });
+      if (is_valid(nearest.hit.lane)) return nearest.hit;
+    }
     return std::nullopt;
   }
 
@@ -126,7 +129,7 @@ class LaneTree {
         auto const& g = segments[i];
         stretches_.push_back({g.x, g.y, g.ux, g.uy, g.length, g.s, lane.widths[i], lane.widths[i + 1], lane.id, static_cast<std::uint32_t>(i)});
       }
-      for (std::size_t i = stretches_.size() - segments.size(); i < stretches_.size(); ++i) add_boxes(i);
+      add_boxes(stretches_.size() - segments.size());
     }
 
     void finish() {
@@ -142,8 +145,10 @@ class LaneTree {
       detail::Box const query{p.x() - radius, p.y() - radius, p.x() + radius, p.y() + radius};
       return tree_.visit(query, [&](std::uint32_t box) {
         LaneHit hit;
-        auto const i = stretch_of_box_[box];
-        return foot(i, p, hit) && visit(hit, Direction{stretches_[i].ux, stretches_[i].uy});
+        auto const [first, end] = runs_[box];
+        for (auto i = first; i < end; ++i)
+          if (foot(i, p, hit) && visit(hit, Direction{stretches_[i].ux, stretches_[i].uy})) return true;
+        return false;
       });
     }
 
@@ -171,43 +176,75 @@ class LaneTree {
       return true;
     }
 
-    /// Boxes of the stretch's quad, cut so that none is much longer than a lane is wide, the last with the wedge behind its end.
-    void add_boxes(std::size_t i) {
-      constexpr double longest = 25.0;
-      auto const& g = stretches_[i];
-      bool const is_diagonal = std::min(std::abs(g.ux), std::abs(g.uy)) > 0.02;
-      int const pieces = is_diagonal ? static_cast<int>(std::ceil(g.length / longest)) : 1;
-      for (int k = 0; k < pieces; ++k) {
+    /// Boxes of a lane's stretches from the one at `first` on: of several while these are short, of parts where one is long and
+    /// runs askew.
+    void add_boxes(std::size_t first) {
+      constexpr double longest_run = 6.0, longest_part = 25.0;  // [m]
+      constexpr std::size_t most = 8;
+      for (std::size_t i = first; i < stretches_.size();) {
         detail::Box box;
-        for (double const u : {static_cast<double>(k) / pieces, static_cast<double>(k + 1) / pieces}) {
-          double const left = g.begin.left + u * (g.end.left - g.begin.left);
-          double const right = g.begin.right + u * (g.end.right - g.begin.right);
-          double const x = g.x + g.ux * g.length * u, y = g.y + g.uy * g.length * u;
-          box.add(x - g.uy * left, y + g.ux * left);
-          box.add(x + g.uy * right, y - g.ux * right);
-        }
-        if (k + 1 == pieces && i + 1 < stretches_.size()) add_wedge(g, stretches_[i + 1], box);
-        boxes_.push_back(box.grown(1e-6));
-        stretch_of_box_.push_back(static_cast<std::uint32_t>(i));
+        double length = 0.0;
+        std::size_t end = i;
+        do {
+          length += stretches_[end].length;
+          add_quad(stretches_[end], 0.0, 1.0, box);
+          if (end + 1 < stretches_.size()) add_wedge(stretches_[end], stretches_[end + 1], box);
+          ++end;
+        } while (end < stretches_.size() && end - i < most && length + stretches_[end].length < longest_run);
+        bool const is_askew = std::min(std::abs(stretches_[i].ux), std::abs(stretches_[i].uy)) > 0.02;
+        if (end - i == 1 && length > longest_part && is_askew)
+          add_parts(i, static_cast<int>(std::ceil(length / longest_part)));
+        else
+          add_run(box, i, end);
+        i = end;
+      }
+    }
+
+    void add_parts(std::size_t i, int parts) {
+      for (int k = 0; k < parts; ++k) {
+        detail::Box box;
+        add_quad(stretches_[i], static_cast<double>(k) / parts, static_cast<double>(k + 1) / parts, box);
+        if (k + 1 == parts && i + 1 < stretches_.size()) add_wedge(stretches_[i], stretches_[i + 1], box);
+        add_run(box, i, i + 1);
+      }
+    }
+
+    void add_run(detail::Box const& box, std::size_t first, std::size_t end) {
+      boxes_.push_back(box.grown(1e-6));
+      runs_.push_back({static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(end)});
+    }
+
+    /// Adds the corners of the part of `g` between the fractions `from` and `to` of its length.
+    static void add_quad(Stretch const& g, double from, double to, detail::Box& box) {
+      for (double const u : {from, to}) {
+        double const left = g.begin.left + u * (g.end.left - g.begin.left);
+        double const right = g.begin.right + u * (g.end.right - g.begin.right);
+        double const x = g.x + g.ux * g.length * u, y = g.y + g.uy * g.length * u;
+        box.add(x - g.uy * left, y + g.ux * left);
+        box.add(x + g.uy * right, y - g.ux * right);
       }
     }
 
     /// Adds the points whose foot point is the vertex between `a` and `b`: an arc of the width's radius.
     static void add_wedge(Stretch const& a, Stretch const& b, detail::Box& box) {
-      double const turn = std::abs(std::atan2(a.ux * b.uy - a.uy * b.ux, a.ux * b.ux + a.uy * b.uy));
-      double const reach = std::max(std::abs(a.end.left), std::abs(a.end.right));
-      if (turn > 1.0) {
+      double const cos_of_turn = a.ux * b.ux + a.uy * b.uy;
+      if (cos_of_turn < 0.5) {
+        double const reach = std::max(std::abs(a.end.left), std::abs(a.end.right));
         box.add(b.x - reach, b.y - reach);
         box.add(b.x + reach, b.y + reach);
         return;
       }
-      double const bulge = 1.0 / std::cos(0.5 * turn);  // the chord between the points so far out touches the arc
+      double const bulge = std::sqrt(2.0 / (1.0 + cos_of_turn));  // the chord between the points so far out touches the arc
       for (double const across : {a.end.left * bulge, -a.end.right * bulge})
         for (auto const* g : {&a, &b}) box.add(b.x - g->uy * across, b.y + g->ux * across);
     }
 
+    struct Run {
+      std::uint32_t first, end;
+    };
+
     std::vector<Stretch> stretches_;  ///< in the lanes' order, and one more that is in none
-    std::vector<std::uint32_t> stretch_of_box_;
+    std::vector<Run> runs_;           ///< of stretches, by box
     std::vector<detail::Box> boxes_;  ///< until the tree is made
     detail::BoxTree tree_;
   };

@@ -23,7 +23,7 @@ struct MapOptions {
   double position_tolerance = 0.01;  ///< largest distance of a sampled lane from the exact one [m]
   double heading_tolerance = 0.5 * 3.14159265358979323846 / 180;  ///< largest turn between two samples [rad]
   double overlap_clearance = 2.5;    ///< paths closer than this cannot carry vehicles side by side [m]
-  double merge_view = 60.0;          ///< how far before an overlap merging lanes take each other's traffic into account [m]
+  double merge_view = 120.0;         ///< how far before an overlap merging lanes take each other's traffic into account [m]
   double merge_length = 60.0;        ///< longest stretch over which an ending lane swings onto its neighbour [m]
 };
 

@@ -49,6 +49,15 @@ class TrafficIndex {
   /// Farthest reference point that is a neighbour, along the corridor [m].
   static constexpr double horizon = 400.0;
 
+  /// Gap [m] between a follower's front end and its leader's rear end (corridor positions) where the two lanes are one from `merge`
+  /// on. Before that the two may be side by side: the follower is given half of its way to the merge on top, so that a gap opens
+  /// bit by bit, but never more than the way to whichever is farther, leader or merge.
+  [[nodiscard]] static double gap_between(double follower_front, double leader_rear, double merge) {
+    double const gap = leader_rear - follower_front, to_merge = merge - follower_front;
+    if (to_merge <= 0.0) return gap;
+    return std::min(gap + 0.5 * to_merge, std::max(gap, to_merge));
+  }
+
   /// Takes in `count` agents. `entry_of(slot)` gives each one's `TrafficEntry` (position +infinity: not in traffic);
   /// `add_straddling(slot, list)` appends entries in the lanes that it reaches into. No allocation once warm. O(count) when little has changed.
   template <class EntryOf, class AddStraddling>
@@ -169,7 +178,7 @@ class TrafficIndex {
       bool const ahead = s > query.s || (s == query.s && entry.slot > query.slot);
       if (!ahead) continue;
       if (s - query.s <= horizon)
-        offer(best, entry.slot, is_object, std::max(s - entry.rear, feeder.free_until) - (query.s + query.front));
+        offer(best, entry.slot, is_object, gap_between(query.s + query.front, s - entry.rear, feeder.free_until));
       return;
     }
   }
@@ -183,7 +192,7 @@ class TrafficIndex {
       bool const behind = s < query.s || (s == query.s && entry.slot < query.slot);
       if (!behind) continue;
       if (query.s - s <= horizon)
-        offer(best, entry.slot, is_object, std::max(query.s - query.rear, feeder.free_until) - (s + entry.front));
+        offer(best, entry.slot, is_object, gap_between(s + entry.front, query.s - query.rear, feeder.free_until));
       return;
     }
   }

@@ -1,0 +1,137 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "cambium/map/lane.hpp"
+
+namespace cambium::map::detail {
+
+/// A stretch of something [m].
+struct Stretch {
+  double begin{}, end{};
+
+  [[nodiscard]] double middle() const { return 0.5 * (begin + end); }
+  /// Whether the two have a point in common, up to a millimetre.
+  [[nodiscard]] bool touches(Stretch const& o) const { return begin <= o.end + 1e-3 && o.begin <= end + 1e-3; }
+  /// How far the two are apart; negative where they overlap.
+  [[nodiscard]] double gap(Stretch const& o) const { return std::max(begin, o.begin) - std::min(end, o.end); }
+  void add(Stretch const& o) {
+    begin = std::min(begin, o.begin);
+    end = std::max(end, o.end);
+  }
+};
+
+/// A straight piece that stands for a stretch of a lane's path.
+struct LaneChord {
+  std::uint32_t lane{};
+  double x{}, y{}, ux{}, uy{}, length{};  ///< as in `geometry::Line::Segment`
+  Stretch on_path;                        ///< path positions [m]
+  Stretch on_road;                        ///< road stations [m]
+  double elevation{};                     ///< in its middle [m]
+};
+
+/// Appends chords that keep within `tolerance` of the lane's path and are not longer than `longest` [m] (unless a segment is).
+inline void add_chords(Lane const& lane, double tolerance, double longest, std::vector<LaneChord>& chords) {
+  auto const segments = lane.path.segments();
+  auto const scale = (lane.road_end - lane.road_begin) / lane.length();
+  for (std::size_t i = 0; i < segments.size();) {
+    auto const& first = segments[i];
+    // Directions, as slopes from the first segment's, in which the chord passes all vertices so far within the tolerance.
+    double low = -1.0, high = 1.0, x = first.length, y = 0.0;
+    std::size_t j = i;
+    for (; j + 1 < segments.size(); ++j) {
+      auto const& g = segments[j + 1];
+      double const dx = g.x + g.ux * g.length - first.x, dy = g.y + g.uy * g.length - first.y;
+      double const next_x = dx * first.ux + dy * first.uy, next_y = first.ux * dy - first.uy * dx;
+      low = std::max(low, (y - tolerance) / x);
+      high = std::min(high, (y + tolerance) / x);
+      bool const fits = next_x > x && next_y >= low * next_x && next_y <= high * next_x;
+      if (!fits || g.s + g.length - first.s > longest) break;
+      x = next_x;
+      y = next_y;
+    }
+    double const length = std::hypot(x, y), ux = (first.ux * x - first.uy * y) / length, uy = (first.uy * x + first.ux * y) / length;
+    Stretch const on_path{first.s, segments[j].s + segments[j].length};
+    Stretch const on_road = lane.along_road ? Stretch{lane.road_begin + scale * on_path.begin, lane.road_begin + scale * on_path.end}
+                                            : Stretch{lane.road_end - scale * on_path.end, lane.road_end - scale * on_path.begin};
+    chords.push_back({static_cast<std::uint32_t>(lane.id), first.x, first.y, ux, uy, length, on_path, on_road, 0.0});
+    i = j + 1;
+  }
+}
+
+/// The path positions of `a` that are closer than `clearance` to `b`: what is that close to `b` is convex, a rectangle with two
+/// half discs. Nothing where that is shorter than a micrometre.
+[[nodiscard]] inline std::optional<Stretch> stretch_near(LaneChord const& a, LaneChord const& b, double clearance) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  double const dx = a.x - b.x, dy = a.y - b.y;
+  Stretch result{infinity, -infinity};
+  auto const add_disc = [&](double cx, double cy) {  // where |c + s u| < clearance
+    double const half = cx * a.ux + cy * a.uy;
+    double const root = half * half - (cx * cx + cy * cy - clearance * clearance);
+    if (root > 0.0) result.add({-half - std::sqrt(root), -half + std::sqrt(root)});
+  };
+  add_disc(dx, dy);
+  add_disc(dx - b.ux * b.length, dy - b.uy * b.length);
+  Stretch inside{-infinity, infinity};
+  auto const cut = [&inside](double value, double slope, double low, double high) {
+    if (std::abs(slope) < 1e-12) {
+      if (value <= low || value >= high) inside = {infinity, -infinity};
+      return;
+    }
+    double const p = (low - value) / slope, q = (high - value) / slope;
+    inside = {std::max(inside.begin, std::min(p, q)), std::min(inside.end, std::max(p, q))};
+  };
+  cut(dx * b.ux + dy * b.uy, a.ux * b.ux + a.uy * b.uy, 0.0, b.length);
+  cut(b.ux * dy - b.uy * dx, b.ux * a.uy - b.uy * a.ux, -clearance, clearance);
+  if (inside.begin < inside.end) result.add(inside);
+  result = {std::max(result.begin, 0.0), std::min(result.end, a.length)};
+  if (!(result.end - result.begin > 1e-6)) return std::nullopt;
+  double const scale = (a.on_path.end - a.on_path.begin) / a.length;
+  return Stretch{a.on_path.begin + scale * result.begin, a.on_path.begin + scale * result.end};
+}
+
+/// Distance from the place at `s` on `path` to the path of `other`, of which segment `hint` is near [m].
+[[nodiscard]] inline double distance_at(geometry::Line const& path, double s, std::uint32_t& cursor, geometry::Line const& other,
+                                        std::uint32_t& hint) {
+  auto const foot = other.project(path.pose(s, cursor).position(), hint);
+  hint = foot.segment;
+  double const past = std::max({-foot.s, foot.s - other.length(), 0.0});
+  return past == 0.0 ? std::abs(foot.lateral) : std::hypot(foot.lateral, past);
+}
+
+/// Moves `end`, where `path` comes as near to `other` as `clearance` but for the chords' tolerance, to where it exactly does, within 2 mm;
+/// `inner` is a place on the side where it is nearer. Stays where no such place is found within 2 m, and at the path's ends.
+[[nodiscard]] inline double refined_end(geometry::Line const& path, double end, double inner, geometry::Line const& other, double near,
+                                        double clearance) {
+  constexpr double at_end = 1e-3;
+  if (end < at_end) return 0.0;
+  if (end > path.length() - at_end) return path.length();
+  auto cursor = path.find(end), hint = other.find(near);
+  auto const excess = [&](double s) { return distance_at(path, s, cursor, other, hint) - clearance; };
+  double const outward = end > inner ? 1.0 : -1.0;
+  double const here = excess(end);
+  // One step outwards where it is still near, inwards where it is not.
+  double const direction = here < 0.0 ? outward : -outward;
+  double in = end, out = end;
+  for (double step = 0.05;; step *= 3.0) {
+    if (step > 2.0) return end;
+    double const s = std::clamp(end + direction * step, 0.0, path.length());
+    bool const is_near = excess(s) < 0.0;
+    (is_near ? in : out) = s;
+    if (is_near != (here < 0.0)) break;
+    if (s == 0.0 || s == path.length()) return s;
+  }
+  while (std::abs(out - in) > 2e-3) {
+    double const middle = 0.5 * (in + out);
+    (excess(middle) < 0.0 ? in : out) = middle;
+  }
+  return 0.5 * (in + out);
+}
+
+}  // namespace cambium::map::detail
