@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -10,7 +11,6 @@
 
 #include "cambium/map/map.hpp"
 #include "cambium/map/overlaps.hpp"
-#include "cambium/map/routing.hpp"
 
 /// Lanes made in code for the tests: one road a lane, so that nothing is beside each other unless it is said.
 namespace by_hand {
@@ -87,7 +87,7 @@ inline void put_beside(std::vector<Lane>& lanes, LaneId left, LaneId right) {
 /// The end of a lane's path.
 inline Pose end_of(Lane const& lane) { return lane.path.pose(lane.length()); }
 
-/// A map of the lanes, with overlaps and routes.
+/// A map of the lanes, with their overlaps.
 inline std::shared_ptr<Map const> make_map(std::vector<Lane> lanes) {
   Map::Parts parts;
   find_overlaps(lanes, {}, parts.options.overlap_clearance);
@@ -97,7 +97,6 @@ inline std::shared_ptr<Map const> make_map(std::vector<Lane> lanes) {
     road.name = std::to_string(i);
     parts.roads.push_back(std::move(road));
   }
-  parts.route_finder = make_route_finder(lanes);
   parts.lanes = std::move(lanes);
   return std::make_shared<Map const>(std::move(parts));
 }

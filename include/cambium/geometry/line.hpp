@@ -142,22 +142,28 @@ class Line {
     return foot(best, p);
   }
 
-  /// The foot point next to segment `hint`: descends along the line to the nearest local minimum of the distance. Equals
-  /// the exact one while the point moves less than the line's radius of curvature between queries. O(segments passed).
+  /// The foot point near segment `hint`: descends along the line to the nearest local minimum of the distance. Equals the
+  /// exact one, whatever the hint, while the point is closer to the line than the line's radius of curvature and the line
+  /// does not come near it twice. O(segments passed).
   [[nodiscard]] Projection project(Point const& p, std::uint32_t hint) const {
     CAMBIUM_ASSERT(!empty(), "a query on an empty line");
     auto i = std::min(hint, last());
     double along = along_of(segments_[i], p);
-    while (along > segments_[i].length && i < last()) {
-      double const next = along_of(segments_[i + 1], p);
-      if (next < 0.0) break;  // in the wedge outside a vertex: the vertex is the foot point
-      along = next;
-      ++i;
-    }
-    while (along < 0.0 && i > 0) {
-      along = along_of(segments_[i - 1], p);
-      --i;
-      if (along > segments_[i].length) break;
+    // The bisector at a vertex parts the points nearer to the segment before it from those nearer to the one behind.
+    if (along > 0.5 * segments_[i].length) {
+      while (i < last()) {
+        double const next = along_of(segments_[i + 1], p);
+        if (along - segments_[i].length + next <= 0.0) break;
+        along = next;
+        ++i;
+      }
+    } else {
+      while (i > 0) {
+        double const previous = along_of(segments_[i - 1], p);
+        if (previous - segments_[i - 1].length + along > 0.0) break;
+        along = previous;
+        --i;
+      }
     }
     return foot(i, p);
   }

@@ -1,0 +1,11 @@
+/// The room `behavior`: behaviour models that need no search, and sets of them.
+#pragma once
+
+#include "cambium/behavior/behavior_model.hpp"
+#include "cambium/behavior/behavior_set.hpp"
+#include "cambium/behavior/constant_acceleration.hpp"
+#include "cambium/behavior/external_input.hpp"
+#include "cambium/behavior/follow_lane.hpp"
+#include "cambium/behavior/idm.hpp"
+#include "cambium/behavior/idm_classic.hpp"
+#include "cambium/behavior/view.hpp"

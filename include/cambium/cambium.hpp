@@ -1,0 +1,15 @@
+/// All rooms of cambium, with Eigen and Boost headers only. Reading OpenDRIVE files needs pugixml too: cambium/map/opendrive.hpp.
+#pragma once
+
+#include "cambium/behavior.hpp"
+#include "cambium/core.hpp"
+#include "cambium/dynamics.hpp"
+#include "cambium/evaluation.hpp"
+#include "cambium/execution.hpp"
+#include "cambium/geometry.hpp"
+#include "cambium/goal.hpp"
+#include "cambium/map.hpp"
+#include "cambium/observer.hpp"
+#include "cambium/scenario.hpp"
+#include "cambium/viewer.hpp"
+#include "cambium/world.hpp"

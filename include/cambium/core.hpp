@@ -1,0 +1,13 @@
+/// The room `core`: ids, states, plans, random streams and distributions, parameter structs, errors, version.
+#pragma once
+
+#include "cambium/core/assert.hpp"
+#include "cambium/core/diagnostic.hpp"
+#include "cambium/core/distributions.hpp"
+#include "cambium/core/error.hpp"
+#include "cambium/core/ids.hpp"
+#include "cambium/core/parameters.hpp"
+#include "cambium/core/plan.hpp"
+#include "cambium/core/random.hpp"
+#include "cambium/core/state.hpp"
+#include "cambium/core/version.hpp"

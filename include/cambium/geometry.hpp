@@ -1,0 +1,11 @@
+/// The room `geometry`: angles, poses, arc-length lines, polygons, boxes, vehicle shapes, collision, Frenet frame.
+#pragma once
+
+#include "cambium/geometry/angle.hpp"
+#include "cambium/geometry/collision.hpp"
+#include "cambium/geometry/frenet.hpp"
+#include "cambium/geometry/line.hpp"
+#include "cambium/geometry/oriented_box.hpp"
+#include "cambium/geometry/polygon.hpp"
+#include "cambium/geometry/pose.hpp"
+#include "cambium/geometry/shape.hpp"

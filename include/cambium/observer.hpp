@@ -1,0 +1,4 @@
+/// The room `observer`: how an agent perceives.
+#pragma once
+
+#include "cambium/observer/perfect.hpp"

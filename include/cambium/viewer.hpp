@@ -1,0 +1,7 @@
+/// The room `viewer`: recordings of worlds, replays in a browser and pictures.
+#pragma once
+
+#include "cambium/viewer/html_replay.hpp"
+#include "cambium/viewer/record_world.hpp"
+#include "cambium/viewer/recording.hpp"
+#include "cambium/viewer/svg_picture.hpp"

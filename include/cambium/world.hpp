@@ -1,0 +1,12 @@
+/// The room `world`: the world and its frames, what an agent sees of it, neighbours, predictions, static objects.
+#pragma once
+
+#include "cambium/world/entering.hpp"
+#include "cambium/world/frame.hpp"
+#include "cambium/world/observed_world.hpp"
+#include "cambium/world/prediction.hpp"
+#include "cambium/world/roster.hpp"
+#include "cambium/world/static_object.hpp"
+#include "cambium/world/step_result.hpp"
+#include "cambium/world/traffic_index.hpp"
+#include "cambium/world/world.hpp"

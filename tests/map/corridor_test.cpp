@@ -1,0 +1,368 @@
+#include "cambium/map/build_corridor.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "cambium/map/opendrive.hpp"
+#include "corpus.hpp"
+#include "lanes_by_hand.hpp"
+
+using namespace by_hand;
+
+namespace {
+
+constexpr double never = -std::numeric_limits<double>::infinity();
+
+std::vector<LaneId> lanes_of(LaneCorridor const& corridor) {
+  std::vector<LaneId> lanes;
+  for (auto const& piece : corridor.pieces) lanes.push_back(piece.lane);
+  return lanes;
+}
+
+Route route_of(Map const& map, std::vector<LaneId> lanes) {
+  Route route{std::move(lanes), 0.0};
+  for (auto const lane : route.lanes) route.length += map.lane(lane).length();
+  return route;
+}
+
+/// Laws of every road corridor: what a world relies on.
+void check_laws(Map const& map, RoadCorridor const& road) {
+  REQUIRE(road.main < road.corridors.size());
+  CHECK(road.corridor_of(road.route.back()) != no_corridor);
+  std::size_t wrong_places = 0;
+  for (auto const& corridor : road.corridors) {
+    REQUIRE(corridor.widths.size() == corridor.center.segments().size() + 1);
+    REQUIRE_FALSE(corridor.pieces.empty());
+    CHECK(corridor.pieces.front().begin == 0.0);
+    CHECK(corridor.pieces.back().end == corridor.length());
+    for (std::size_t i = 0; i < corridor.pieces.size(); ++i) {
+      auto const& piece = corridor.pieces[i];
+      auto const& lane = map.lane(piece.lane);
+      if (i > 0) CHECK(piece.begin == corridor.pieces[i - 1].end);
+      CHECK(piece.end - piece.begin == doctest::Approx(lane.length()).epsilon(0.01).scale(0.1));
+      // The lane coordinate leads to the same place on the lane and on the corridor.
+      for (double const u : {0.2, 0.5, 0.9}) {
+        double const s = piece.begin + u * (piece.end - piece.begin), on_lane = s + piece.index_offset - lane.index_begin;
+        if (s - piece.begin < 2.5) continue;
+        auto const a = corridor.center.pose(s), b = lane.path.pose(on_lane);
+        bool const same_place = (a.position() - b.position()).norm() < 0.02 && std::abs(geometry::angle_difference(a.heading, b.heading)) < 0.01;
+        wrong_places += !same_place;
+        auto const w = corridor.widths_at(s, corridor.center.find(s)), v = lane.widths_at(on_lane);
+        wrong_places += !(std::abs(w.left - v.left) < 0.02 && std::abs(w.right - v.right) < 0.02);
+      }
+      for (auto const& [side, number] : {std::pair(lane.left_neighbor, piece.left), std::pair(lane.right_neighbor, piece.right)}) {
+        CHECK(is_valid(side) == (number != no_corridor));
+        if (!is_valid(side)) continue;
+        auto const beside = lanes_of(road.corridors[number]);
+        CHECK(std::count(beside.begin(), beside.end(), side) == 1);
+      }
+    }
+  }
+  CHECK(wrong_places == 0);
+}
+
+void check_feeder_laws(Map const& map, LaneCorridor const& corridor) {
+  auto const own = lanes_of(corridor);
+  CHECK(std::is_sorted(corridor.feeders.begin(), corridor.feeders.end(), [](Feeder const& a, Feeder const& b) { return a.begin < b.begin; }));
+  std::map<LaneId, std::vector<std::pair<double, double>>> stretches;
+  for (auto const& f : corridor.feeders) {
+    auto const& lane = map.lane(f.lane);
+    CHECK(f.index_begin < f.index_end);
+    CHECK(f.begin < f.end);
+    CHECK(f.index_begin >= lane.index_begin - 1e-9);
+    CHECK(f.index_end <= lane.index_begin + lane.length() + 1e-9);
+    if (f.end > 1e-6) CHECK(std::count(own.begin(), own.end(), f.lane) == 0);
+    stretches[f.lane].emplace_back(f.index_begin, f.index_end);
+  }
+  for (auto& [lane, list] : stretches) {
+    std::sort(list.begin(), list.end());
+    for (std::size_t i = 0; i + 1 < list.size(); ++i) CHECK(list[i].second <= list[i + 1].first + 1e-5);
+  }
+}
+
+/// An on-ramp: `before` and `ramp` (with `approach` behind it) merge into `after`.
+struct Merge {
+  std::vector<Lane> lanes;
+  LaneId before, after, ramp, approach;
+
+  Merge() {
+    before = add_straight(lanes, {-100, 0, 0}, 100);
+    after = add_straight(lanes, {0, 0, 0}, 100);
+    auto samples = arc({0, 0, geometry::pi}, 1.0 / 100, 40, 0.5);  // backwards from the merge
+    std::reverse(samples.begin(), samples.end());
+    for (auto& p : samples) p.heading -= geometry::pi;
+    ramp = add_lane(lanes, samples);
+    auto const begin = samples.front();
+    approach = add_straight(lanes, {begin.x - 500 * std::cos(begin.heading), begin.y - 500 * std::sin(begin.heading), begin.heading}, 500);
+    link(lanes, before, after);
+    link(lanes, ramp, after);
+    link(lanes, approach, ramp);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("lanes one behind the other become one corridor, with the step between their widths kept short") {
+  std::vector<Lane> lanes;
+  auto const a = add_straight(lanes, {0, 0, 0}, 100, 1.5), b = add_straight(lanes, {100, 0, 0}, 200, 2.0);
+  link(lanes, a, b);
+  auto const map = make_map(lanes);
+  auto const road = build_road_corridor(*map, straight_route(*map, a));
+  REQUIRE(road->corridors.size() == 1);
+  auto const& corridor = road->corridors[0];
+  CHECK(lanes_of(corridor) == std::vector<LaneId>{a, b});
+  CHECK(corridor.length() == doctest::Approx(300));
+  CHECK(corridor.pieces[1].begin == doctest::Approx(100));
+  CHECK(corridor.pieces[1].index_offset == doctest::Approx(map->lane(b).index_begin - 100));
+  CHECK(corridor.left.length() == doctest::Approx(300.5).epsilon(0.01));
+  CHECK_FALSE(corridor.continues);
+  for (auto const& [s, width] : {std::pair(50.0, 1.5), std::pair(99.9, 1.5), std::pair(100.2, 2.0), std::pair(250.0, 2.0)})
+    CHECK(corridor.widths_at(s, corridor.center.find(s)).left == doctest::Approx(width));
+  check_laws(*map, *road);
+}
+
+TEST_CASE("a gap between two lanes is bridged within a metre or two, and the lane coordinate stays true behind it") {
+  std::vector<Lane> lanes;
+  auto const a = add_straight(lanes, {0, 0, 0}, 100), b = add_straight(lanes, {100.04, 0.03, 0}, 100), c = add_straight(lanes, {200.0, 0.03, 0.01}, 50);
+  link(lanes, a, b);
+  link(lanes, b, c);
+  auto const map = make_map(lanes);
+  auto const road = build_road_corridor(*map, straight_route(*map, a));
+  check_laws(*map, *road);
+  auto const& corridor = road->corridors[0];
+  CHECK(corridor.pieces[1].begin == doctest::Approx(100));
+  double const on_b = corridor.pieces[1].index_offset + 150.0 - map->lane(b).index_begin;
+  CHECK(on_b == doctest::Approx(49.96).epsilon(1e-4));
+  CHECK(corridor.center.pose(102.0).y == doctest::Approx(0.03));
+  for (auto const& segment : corridor.center.segments()) CHECK(std::abs(segment.uy) < 0.05);
+}
+
+TEST_CASE("at a fork the corridor keeps to the route, else it goes the straighter way") {
+  std::vector<Lane> lanes;
+  auto const a = add_straight(lanes, {0, 0, 0}, 100);
+  auto const turns = add_lane(lanes, arc({100, 0, 0}, 0.02, 50)), goes_on = add_straight(lanes, {100, 0, 0}, 100);
+  link(lanes, a, turns);
+  link(lanes, a, goes_on);
+  auto const map = make_map(lanes);
+  CHECK(straight_route(*map, a).lanes == std::vector<LaneId>{a, goes_on});
+  auto const road = build_road_corridor(*map, route_of(*map, {a, turns}));
+  REQUIRE(road->corridors.size() == 1);
+  CHECK(lanes_of(road->corridors[0]) == std::vector<LaneId>{a, turns});
+  // The lane that parts is seen while it overlaps, at its true place.
+  REQUIRE(road->corridors[0].feeders.size() == 1);
+  auto const& split = road->corridors[0].feeders[0];
+  CHECK(split.lane == goes_on);
+  CHECK(split.free_until == never);
+  CHECK(split.begin == doctest::Approx(100));
+  CHECK(split.index_begin == doctest::Approx(map->lane(goes_on).index_begin));
+  CHECK(road->corridors[0].continues == false);
+  auto const one = build_road_corridor(*map, route_of(*map, {a}));
+  CHECK(one->corridors[0].continues);
+}
+
+TEST_CASE("straight routes end at their length, at a dead end, and before they repeat") {
+  std::vector<Lane> lanes;
+  std::vector<LaneId> ring;
+  for (int i = 0; i < 4; ++i) {
+    double const turn = 0.5 * geometry::pi;
+    Pose const start = i == 0 ? Pose{0, 0, 0} : end_of(lanes.back());
+    ring.push_back(add_lane(lanes, arc(start, turn / 120, 120)));
+  }
+  for (int i = 0; i < 4; ++i) link(lanes, ring[static_cast<std::size_t>(i)], ring[static_cast<std::size_t>((i + 1) % 4)]);
+  auto const map = make_map(lanes);
+  CHECK(straight_route(*map, ring[1]).lanes == std::vector<LaneId>{ring[1], ring[2], ring[3], ring[0]});
+  CHECK(straight_route(*map, ring[0], 150).lanes.size() == 2);
+  CHECK(straight_route(*map, ring[0], 150).length == doctest::Approx(240).epsilon(1e-3));
+  CHECK(straight_route(*map, ring[0], 0).lanes.size() == 1);
+  CHECK_THROWS_AS((void)straight_route(*map, static_cast<LaneId>(4)), MapError);
+  // On a ring the traffic behind the begin is on the corridor's own last lane.
+  auto const road = build_road_corridor(*map, straight_route(*map, ring[0]));
+  REQUIRE(road->corridors[0].feeders.size() == 1);
+  auto const& behind = road->corridors[0].feeders[0];
+  CHECK(behind.lane == ring[3]);
+  CHECK(behind.begin == doctest::Approx(-100));
+  CHECK(behind.end == 0.0);
+}
+
+TEST_CASE("lanes beside the route have corridors that know each other, and one that opens later begins its own") {
+  std::vector<Lane> lanes;
+  std::vector<std::vector<LaneId>> sections;
+  for (int k = 0; k < 3; ++k) {  // 2, 3, 2 lanes
+    sections.emplace_back();
+    for (int i = 0; i < (k == 1 ? 3 : 2); ++i) sections.back().push_back(add_straight(lanes, {100.0 * k, -3.5 * i, 0}, 100));
+    for (std::size_t i = 0; i + 1 < sections.back().size(); ++i) put_beside(lanes, sections.back()[i], sections.back()[i + 1]);
+    if (k > 0)
+      for (std::size_t i = 0; i < 2; ++i) link(lanes, sections[static_cast<std::size_t>(k - 1)][i], sections.back()[i]);
+  }
+  auto const map = make_map(lanes);
+  auto const road = build_road_corridor(*map, straight_route(*map, sections[0][0]));
+  check_laws(*map, *road);
+  REQUIRE(road->corridors.size() == 3);
+  CHECK(road->main == 0);
+  for (std::size_t i = 0; i < 2; ++i) CHECK(lanes_of(road->corridors[i]) == std::vector<LaneId>{sections[0][i], sections[1][i], sections[2][i]});
+  CHECK(lanes_of(road->corridors[2]) == std::vector<LaneId>{sections[1][2]});
+  CHECK(road->corridors[0].pieces[1].right == 1);
+  CHECK(road->corridors[1].pieces[0].right == no_corridor);
+  CHECK(road->corridors[1].pieces[1].right == 2);
+  CHECK(road->corridors[2].pieces[0].left == 1);
+  CHECK(road->corridor_of(sections[1][2]) == 2);
+  // A lane change is a part of the route: the corridor of its last lane is the main one.
+  auto const changes = build_road_corridor(*map, route_of(*map, {sections[0][0], sections[0][1], sections[1][1]}));
+  CHECK(changes->main == 1);
+  CHECK(changes->corridors.size() == 3);
+}
+
+TEST_CASE("a lane that merges into its neighbour goes on as that one") {
+  std::vector<Lane> lanes;
+  auto const stays = add_straight(lanes, {0, 0, 0}, 100);
+  std::vector<LineSample> samples;
+  for (int i = 0; i <= 200; ++i) {
+    double const x = 0.5 * i, u = std::clamp((x - 40) / 60, 0.0, 1.0);
+    samples.push_back({x, -3.5 + 3.5 * u * u * (3 - 2 * u), std::atan(3.5 / 60 * 6 * u * (1 - u))});
+  }
+  auto const ends = add_lane(lanes, samples);
+  auto const after = add_straight(lanes, {100, 0, 0}, 100), after_right = add_straight(lanes, {100, -3.5, 0}, 100);
+  put_beside(lanes, stays, ends);
+  put_beside(lanes, after, after_right);
+  lanes[index_of(ends)].merges_into = stays;
+  link(lanes, stays, after);
+  link(lanes, ends, after);
+  auto const map = make_map(lanes);
+  auto const road = build_road_corridor(*map, straight_route(*map, ends));
+  check_laws(*map, *road);
+  REQUIRE(road->corridors.size() == 3);
+  CHECK(lanes_of(road->corridors[0]) == std::vector<LaneId>{stays, after});
+  CHECK(lanes_of(road->corridors[1]) == std::vector<LaneId>{ends, after});
+  CHECK(road->main == 1);                        // it has more of the route
+  CHECK(road->corridors[2].pieces[0].left == 0);  // the one that was there before
+  for (int i = 0; i < 2; ++i) {
+    auto const& corridor = road->corridors[static_cast<std::size_t>(i)];
+    check_feeder_laws(*map, corridor);
+    auto const other = i == 0 ? ends : stays;
+    auto const overlap = std::find_if(corridor.feeders.begin(), corridor.feeders.end(), [](Feeder const& f) { return f.begin == f.free_until; });
+    REQUIRE(overlap != corridor.feeders.end());
+    CHECK(overlap->lane == other);
+    CHECK(overlap->end == doctest::Approx(100).epsilon(0.01));
+    for (auto const& f : corridor.feeders) CHECK(f.lane == other);
+  }
+}
+
+TEST_CASE("a merging lane feeds the corridor on the overlap and from the merge view before it on, through its predecessors") {
+  Merge const merge;
+  auto const map = make_map(merge.lanes);
+  auto const road = build_road_corridor(*map, straight_route(*map, merge.before));
+  auto const& corridor = road->corridors[0];
+  check_laws(*map, *road);
+  check_feeder_laws(*map, corridor);
+  auto const& o = map->lane(merge.before).overlaps[0];
+  REQUIRE(corridor.feeders.size() == 3);
+  auto const &far = corridor.feeders[0], &near = corridor.feeders[1], &overlap = corridor.feeders[2];
+  for (auto const& f : corridor.feeders) CHECK(f.free_until == doctest::Approx(o.begin));
+  CHECK(overlap.lane == merge.ramp);
+  CHECK(overlap.begin == doctest::Approx(o.begin));
+  CHECK(overlap.end == doctest::Approx(100.0));
+  CHECK(overlap.index_begin == doctest::Approx(map->lane(merge.ramp).index_begin + o.other_begin));
+  CHECK(near.lane == merge.ramp);
+  CHECK(near.end == doctest::Approx(o.begin));
+  CHECK(near.begin == doctest::Approx(o.begin - o.other_begin));
+  CHECK(far.lane == merge.approach);
+  CHECK(far.end == doctest::Approx(near.begin));
+  CHECK(far.begin == doctest::Approx(o.begin - map->options().merge_view));
+  CHECK(far.index_end == doctest::Approx(map->lane(merge.approach).index_begin + 500));
+  // There and back again.
+  CHECK(overlap.image(overlap.index_at(overlap.begin + 1.0)) == doctest::Approx(overlap.begin + 1.0));
+}
+
+TEST_CASE("behind the corridor's begin there is traffic too, for a hundred metres and on every lane that leads there") {
+  Merge const merge;
+  auto const map = make_map(merge.lanes);
+  auto const road = build_road_corridor(*map, route_of(*map, {merge.after}));
+  auto const& feeders = road->corridors[0].feeders;
+  check_feeder_laws(*map, road->corridors[0]);
+  REQUIRE(feeders.size() == 3);
+  for (auto const& f : feeders) {
+    CHECK(f.free_until == never);
+    CHECK(f.begin >= -100.0 - 1e-9);
+    CHECK(f.end <= 1e-9);
+    CHECK(f.end - f.begin == doctest::Approx(f.index_end - f.index_begin));
+  }
+  CHECK(feeders[0].lane == merge.before);
+  CHECK(feeders[1].lane == merge.approach);
+  CHECK(feeders[1].end == doctest::Approx(-40).epsilon(0.001));
+  CHECK(feeders[2].lane == merge.ramp);
+}
+
+TEST_CASE("a lane that leads in at a right angle feeds the corridor from its joint on") {
+  std::vector<Lane> lanes;
+  auto const before = add_straight(lanes, {-100, 0, 0}, 100), after = add_straight(lanes, {0, 0, 0}, 100);
+  auto const side = add_straight(lanes, {0, -200, 0.5 * geometry::pi}, 200);
+  link(lanes, before, after);
+  link(lanes, side, after);
+  auto const map = make_map(lanes);
+  auto const road = build_road_corridor(*map, straight_route(*map, before));
+  REQUIRE(road->corridors[0].feeders.size() == 1);
+  auto const& f = road->corridors[0].feeders[0];
+  CHECK(f.lane == side);
+  CHECK(f.free_until == doctest::Approx(100));
+  CHECK(f.end == doctest::Approx(100));
+  CHECK(f.begin == doctest::Approx(100 - map->options().merge_view));
+}
+
+TEST_CASE("a route without lanes, with a lane that is not there, or with a jump is refused in a sentence") {
+  Merge const merge;
+  auto const map = make_map(merge.lanes);
+  CHECK_THROWS_AS((void)build_road_corridor(*map, Route{}), MapError);
+  CHECK_THROWS_AS((void)build_road_corridor(*map, Route{{static_cast<LaneId>(99)}, 0.0}), MapError);
+  try {
+    (void)build_road_corridor(*map, Route{{merge.approach, merge.after}, 0.0});
+    FAIL("no error");
+  } catch (MapError const& e) {
+    CHECK(std::string(e.what()).find("neither follows nor is beside") != std::string::npos);
+  }
+}
+
+TEST_CASE("straight on from every drivable lane of the project's and the corpus' maps the corridors keep their laws") {
+  auto files = corpus::maps(std::filesystem::path(CAMBIUM_SOURCE_DIR) / "maps");
+  CHECK(files.size() >= 3);
+  for (auto const* name : {"DR_CHN_Merging_ZS_partial_v02.xodr", "DR_DEU_Merging_MT_v01_centered.xodr", "threeway_intersection.xodr"})
+    if (auto const file = corpus::opendrive_folder() / name; std::filesystem::exists(file)) files.push_back(file);
+  if (files.size() < 6) MESSAGE("skipped: the maps of the corpus are not there");
+  for (auto const& file : files) {
+    CAPTURE(file.string());
+    auto const map = load_opendrive(file.string()).map;
+    for (auto const& lane : map->lanes()) {
+      if (!lane.drivable()) continue;
+      auto const road = build_road_corridor(*map, straight_route(*map, lane.id));
+      check_laws(*map, *road);
+      for (auto const& corridor : road->corridors) check_feeder_laws(*map, corridor);
+    }
+  }
+}
+
+TEST_CASE("on the merging map the on-ramp's traffic is seen from the main road, and the other way round") {
+  auto const map = load_opendrive((std::filesystem::path(CAMBIUM_SOURCE_DIR) / "maps" / "merging.xodr").string()).map;
+  auto const main = map->find_lane("1", 10, -2), ramp = map->find_lane("2", 10, -1);
+  auto const from_main = build_road_corridor(*map, straight_route(*map, main));
+  auto const from_ramp = build_road_corridor(*map, straight_route(*map, ramp));
+  auto const& main_corridor = from_main->corridors[from_main->main];
+  auto const merges = [](LaneCorridor const& c) {
+    return std::find_if(c.feeders.begin(), c.feeders.end(), [](Feeder const& f) { return f.free_until == f.begin; });
+  };
+  auto const& ramp_corridor = from_ramp->corridors[from_ramp->main];
+  auto const on_main = merges(main_corridor), on_ramp = merges(ramp_corridor);
+  REQUIRE(on_main != main_corridor.feeders.end());
+  REQUIRE(on_ramp != ramp_corridor.feeders.end());
+  CHECK(from_ramp->corridor_of(on_ramp->lane) != no_corridor);
+  CHECK(map->lane(on_main->lane).merges_into == on_ramp->lane);
+  // The same place seen from both: where each one's overlap begins, the paths are the clearance apart.
+  auto const a = main_corridor.center.pose(on_main->begin), b = ramp_corridor.center.pose(on_ramp->begin);
+  CHECK((a.position() - b.position()).norm() == doctest::Approx(map->options().overlap_clearance).epsilon(0.02));
+}

@@ -1,0 +1,181 @@
+#include "cambium/map/lane_tree.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <tuple>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "lanes_by_hand.hpp"
+
+using namespace by_hand;
+
+namespace {
+
+/// Curved and straight lanes of all directions over each other; every third one widens, some are sidewalks.
+std::vector<Lane> heap_of_lanes(std::uint64_t seed, int count) {
+  Numbers random{seed};
+  std::vector<Lane> lanes;
+  for (int i = 0; i < count; ++i) {
+    Pose const start{random(-150, 150), random(-150, 150), random(-3.1, 3.1)};
+    bool const widens = i % 3 == 0;
+    double const curvature = widens ? 0.0 : random(-0.05, 0.05);
+    auto const id = add_lane(lanes, arc(start, curvature, random(5, 60), widens ? 100.0 : random(0.2, 3.0)), random(0.5, 2.5));
+    auto& lane = lanes[index_of(id)];
+    if (widens) lane.widths.back() = {random(0.0, 6.0), random(-1.0, 3.0)};
+    if (i % 5 == 1) lane.type = LaneType::sidewalk;
+  }
+  return lanes;
+}
+
+LaneHit hit_by_projection(Lane const& lane, Point const& p) {
+  auto const foot = lane.path.project(p);
+  auto const widths = lane.widths_at(foot.s);
+  double const aside = std::max({foot.lateral - widths.left, -widths.right - foot.lateral, 0.0});
+  double const past = std::max({-foot.s, foot.s - lane.length(), 0.0});
+  return {lane.id, foot.s, foot.lateral, std::hypot(aside, past), foot.segment};
+}
+
+std::vector<LaneHit> near_by_brute_force(std::vector<Lane> const& lanes, Point const& p, double radius) {
+  std::vector<LaneHit> hits;
+  for (auto const& lane : lanes)
+    if (auto const hit = hit_by_projection(lane, p); hit.distance <= radius) hits.push_back(hit);
+  std::sort(hits.begin(), hits.end(),
+            [](LaneHit const& a, LaneHit const& b) { return std::tie(a.distance, a.lane) < std::tie(b.distance, b.lane); });
+  return hits;
+}
+
+}  // namespace
+
+TEST_CASE("a box tree finds exactly the boxes that meet the query, up to the rounding of float") {
+  Numbers random{3};
+  for (int count : {0, 1, 7, 8, 9, 64, 65, 1000}) {
+    std::vector<detail::Box> boxes;
+    for (int i = 0; i < count; ++i) {
+      double const x = random(1e6, 1e6 + 500), y = random(-500, 0), size = random(0, 20);
+      boxes.push_back({x, y, x + size, y + random(0, 20)});
+    }
+    detail::BoxTree const tree(boxes);
+    for (int k = 0; k < 200; ++k) {
+      double const x = random(1e6, 1e6 + 500), y = random(-500, 0), size = random(0, 30);
+      detail::Box const query{x, y, x + size, y + size};
+      std::vector<bool> found(boxes.size());
+      CHECK_FALSE(tree.visit(query, [&](std::uint32_t i) {
+        CHECK_FALSE(found[i]);  // once each
+        found[i] = true;
+        return false;
+      }));
+      auto const meets = [&query](detail::Box const& b) {
+        return b.min_x <= query.max_x && b.max_x >= query.min_x && b.min_y <= query.max_y && b.max_y >= query.min_y;
+      };
+      for (std::size_t i = 0; i < boxes.size(); ++i) {
+        if (meets(boxes[i])) CHECK(found[i]);
+        if (found[i]) CHECK(meets(boxes[i].grown(1e-3)));
+      }
+    }
+  }
+}
+
+TEST_CASE("the tree finds the lanes near a point that a look at every lane finds, nearest first") {
+  std::size_t found = 0;
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    auto const lanes = heap_of_lanes(seed, 40);
+    LaneTree const tree(lanes);
+    Numbers random{100 + seed};
+    for (int k = 0; k < 300; ++k) {
+      Point const p{random(-180, 180), random(-180, 180)};
+      double const radius = k % 3 == 0 ? 0.0 : random(0, 8);
+      auto const expected = near_by_brute_force(lanes, p, radius);
+      auto const hits = tree.near(p, radius);
+      REQUIRE(hits.size() == expected.size());
+      for (std::size_t i = 0; i < hits.size(); ++i) {
+        CHECK(hits[i].lane == expected[i].lane);
+        CHECK(hits[i].s == doctest::Approx(expected[i].s));
+        CHECK(hits[i].lateral == doctest::Approx(expected[i].lateral));
+        CHECK(hits[i].distance == doctest::Approx(expected[i].distance));
+        CHECK(hits[i].segment == expected[i].segment);
+      }
+      found += hits.size();
+    }
+  }
+  CHECK(found > 400);
+}
+
+TEST_CASE("a point is on a drivable lane when one holds it, slits between lanes apart") {
+  auto const lanes = heap_of_lanes(7, 60);
+  LaneTree const tree(lanes);
+  Numbers random{8};
+  int on = 0;
+  for (int k = 0; k < 5000; ++k) {
+    Point const p{random(-180, 180), random(-180, 180)};
+    auto const hits = near_by_brute_force(lanes, p, LaneTree::slack);
+    bool const expected = std::any_of(hits.begin(), hits.end(), [&](LaneHit const& h) { return lanes[index_of(h.lane)].drivable(); });
+    CHECK(tree.any_drivable_at(p) == expected);
+    on += expected;
+  }
+  CHECK(on > 100);
+}
+
+TEST_CASE("outside of a sharp bend the corner is the foot point") {
+  std::vector<Lane> lanes;
+  std::vector<Point> const points{{0, 0}, {10, 0}, {10, 10}};
+  add_straight(lanes, {0, 0, 0}, 1.0);
+  lanes[0].path = geometry::Line::from_points(points);
+  lanes[0].widths.assign(3, {2.0, 2.0});
+  LaneTree const tree(lanes);
+  auto const hits = tree.near({11.2, -1.2}, 0.0);  // 1.7 m from the corner
+  REQUIRE(hits.size() == 1);
+  CHECK(hits[0].s == doctest::Approx(10.0));
+  CHECK(hits[0].lateral == doctest::Approx(-1.2 * std::sqrt(2.0)));
+  CHECK(tree.near({11.5, -1.5}, 0.0).empty());  // 2.12 m
+}
+
+TEST_CASE("of the lanes that hold a vehicle the one with its direction is taken") {
+  std::vector<Lane> lanes;
+  auto const east = add_straight(lanes, {0, 0, 0}, 100);
+  auto const north = add_straight(lanes, {50, -50, 1.5708}, 100);
+  auto const west = add_straight(lanes, {100, 0.5, 3.14159}, 100);
+  LaneTree const tree(lanes);
+  CHECK(tree.nearest_drivable({50, 0.1, 0.2}, 5)->lane == east);
+  CHECK(tree.nearest_drivable({50, 0.1, 1.4}, 5)->lane == north);
+  CHECK(tree.nearest_drivable({50, 0.1, -3.0}, 5)->lane == west);
+  CHECK(tree.nearest_drivable({20, 0.1, 1.0}, 5)->lane == east);
+}
+
+TEST_CASE("of lanes with the same direction that hold a vehicle the one whose path is nearest is taken, then the first") {
+  std::vector<Lane> lanes;
+  auto const a = add_straight(lanes, {0, 0, 0.001}, 100);
+  auto const b = add_straight(lanes, {0, 1.0, 0}, 100);
+  add_straight(lanes, {0, 1.0, 0}, 100);
+  LaneTree const tree(lanes);
+  CHECK(tree.nearest_drivable({30, 0.3, 0}, 5)->lane == a);
+  CHECK(tree.nearest_drivable({30, 0.7, 0}, 5)->lane == b);
+}
+
+TEST_CASE("a vehicle beside all lanes gets the nearest that does not run against it, within the radius") {
+  std::vector<Lane> lanes;
+  auto const there = add_straight(lanes, {0, 0, 0}, 100);
+  auto const back = add_straight(lanes, {100, 8, 3.14159}, 100);
+  auto const walk = add_straight(lanes, {0, -3.0, 0}, 100, 1.0);
+  lanes[index_of(walk)].type = LaneType::sidewalk;
+  LaneTree const tree(lanes);
+  CHECK(tree.nearest_drivable({50, 5, 0.1}, 5)->lane == there);
+  CHECK(tree.nearest_drivable({50, 3, 3.0}, 5)->lane == back);
+  CHECK(tree.nearest_drivable({50, -3, 0}, 5)->lane == there);
+  CHECK_FALSE(tree.nearest_drivable({50, 5, 0.1}, 3).has_value());
+  CHECK_FALSE(tree.nearest_drivable({50, 50, 0.1}, 5).has_value());
+  auto const past_the_end = tree.nearest_drivable({103, 0, 0}, 5);
+  REQUIRE(past_the_end.has_value());
+  CHECK(past_the_end->s == doctest::Approx(103.0));
+  CHECK(past_the_end->distance == doctest::Approx(3.0));
+}
+
+TEST_CASE("a tree of no lanes finds nothing") {
+  for (LaneTree const& tree : {LaneTree(), LaneTree(std::vector<Lane>())}) {
+    CHECK(tree.near({0, 0}, 1e9).empty());
+    CHECK_FALSE(tree.nearest_drivable({0, 0, 0}, 1e9).has_value());
+    CHECK_FALSE(tree.any_drivable_at({0, 0}));
+  }
+}

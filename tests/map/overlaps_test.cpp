@@ -1,0 +1,218 @@
+#include "cambium/map/overlaps.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "lanes_by_hand.hpp"
+
+using namespace by_hand;
+
+namespace {
+
+constexpr double clearance = 2.5;
+constexpr double pi = 3.14159265358979;
+
+void find(std::vector<Lane>& lanes, LaneElevation const& elevation = {}) { find_overlaps(lanes, elevation, clearance); }
+
+/// Every overlap is entered on both lanes, lies on them and has a length.
+void check_consistent(std::vector<Lane> const& lanes) {
+  for (auto const& lane : lanes) {
+    CHECK(std::is_sorted(lane.overlaps.begin(), lane.overlaps.end(), [](auto const& a, auto const& b) { return a.begin < b.begin; }));
+    for (auto const& o : lane.overlaps) {
+      auto const& other = lanes[index_of(o.other)];
+      CHECK(0.0 <= o.begin);
+      CHECK(o.begin < o.end);
+      CHECK(o.end <= lane.length());
+      CHECK(std::count_if(other.overlaps.begin(), other.overlaps.end(), [&](Overlap const& b) {
+              return b.other == lane.id && b.kind == o.kind && b.begin == o.other_begin && b.end == o.other_end && b.other_begin == o.begin;
+            }) == 1);
+    }
+  }
+}
+
+double distance_to(Lane const& lane, Point const& p) {
+  auto const foot = lane.path.project(p);
+  double const past = std::max({-foot.s, foot.s - lane.length(), 0.0});
+  return std::hypot(foot.lateral, past);
+}
+
+}  // namespace
+
+TEST_CASE("lanes that cross at an angle overlap by the clearance over its sine on either side") {
+  for (double const angle : {0.5, 1.0, 1.2, 1.57, 2.0, 2.6}) {
+    std::vector<Lane> lanes;
+    auto const a = add_straight(lanes, {-50, 0, 0}, 100);
+    auto const b = add_straight(lanes, {-40 * std::cos(angle), -40 * std::sin(angle), angle}, 100);
+    find(lanes);
+    check_consistent(lanes);
+    REQUIRE(lanes[index_of(a)].overlaps.size() == 1);
+    auto const& o = lanes[index_of(a)].overlaps[0];
+    CHECK(o.other == b);
+    CHECK(o.kind == (angle < pi / 3 ? OverlapKind::merge : OverlapKind::crossing));
+    double const half = clearance / std::sin(angle);
+    CHECK(std::abs(o.begin - (50 - half)) < 0.01);
+    CHECK(std::abs(o.end - (50 + half)) < 0.01);
+    CHECK(std::abs(o.other_begin - (40 - half)) < 0.01);
+    CHECK(std::abs(o.other_end - (40 + half)) < 0.01);
+  }
+}
+
+TEST_CASE("a ramp that joins a lane tangentially merges from where it comes closer than the clearance, and splits likewise") {
+  constexpr double radius = 80.0;
+  for (bool const merges : {true, false}) {
+    std::vector<Lane> lanes;
+    auto const flip = [merges](std::vector<LineSample> samples) {
+      if (merges) return samples;
+      std::reverse(samples.begin(), samples.end());
+      for (auto& p : samples) p.heading += pi;
+      return samples;
+    };
+    // The straight lane ends at the origin; the ramp comes along a circle around (0, radius) and ends there too.
+    auto const main = add_lane(lanes, flip(arc({-100, 0, 0}, 0.0, 100, 100)));
+    double const turn = -1.0;
+    auto const ramp = add_lane(lanes, flip(arc({radius * std::sin(turn), radius * (1 - std::cos(turn)), turn}, 1 / radius, radius, 0.05)));
+    auto const common = merges ? add_straight(lanes, {0, 0, 0}, 100) : add_straight(lanes, {100, 0, pi}, 100);
+    for (auto const lane : {main, ramp}) merges ? link(lanes, lane, common) : link(lanes, common, lane);
+    find(lanes);
+    check_consistent(lanes);
+    REQUIRE(lanes[index_of(main)].overlaps.size() == 1);
+    CHECK(lanes[index_of(common)].overlaps.empty());
+    auto const& o = lanes[index_of(main)].overlaps[0];
+    CHECK(o.kind == (merges ? OverlapKind::merge : OverlapKind::split));
+    double const on_main = std::sqrt((radius + clearance) * (radius + clearance) - radius * radius);
+    double const on_ramp = radius * std::acos(1 - clearance / radius);
+    double const other_length = lanes[index_of(ramp)].length();
+    CHECK(std::abs((merges ? 100 - o.begin : o.end) - on_main) < 0.02);
+    CHECK(std::abs((merges ? o.end - 100 : o.begin)) < 1e-9);
+    CHECK(std::abs((merges ? other_length - o.other_begin : o.other_end) - on_ramp) < 0.02);
+    CHECK(std::abs((merges ? o.other_end - other_length : o.other_begin)) < 1e-9);
+  }
+}
+
+TEST_CASE("lanes over the same place that begin together split, and merge where they end together") {
+  std::vector<Lane> lanes;
+  auto const before = add_straight(lanes, {-50, 0, 0}, 50);
+  auto const a = add_straight(lanes, {0, 0, 0}, 30);
+  auto const b = add_lane(lanes, arc({0, 0, 0}, 1e-5, 30));
+  link(lanes, before, a);
+  link(lanes, before, b);
+  find(lanes);
+  REQUIRE(lanes[index_of(a)].overlaps.size() == 1);
+  CHECK(lanes[index_of(a)].overlaps[0].kind == OverlapKind::split);
+  auto const after = add_straight(lanes, {30, 0, 0}, 50);
+  link(lanes, a, after);
+  link(lanes, b, after);
+  find(lanes);
+  REQUIRE(lanes[index_of(a)].overlaps.size() == 1);
+  CHECK(lanes[index_of(a)].overlaps[0].kind == OverlapKind::merge);
+  CHECK(lanes[index_of(a)].overlaps[0].begin == 0.0);
+  CHECK(lanes[index_of(a)].overlaps[0].end == lanes[index_of(a)].length());
+  CHECK(lanes[index_of(before)].overlaps.empty());
+}
+
+TEST_CASE("lanes that belong together do not overlap: successors, also behind a short lane, and neighbours") {
+  std::vector<Lane> lanes;
+  auto const a = add_straight(lanes, {0, 0, 0}, 50);
+  auto const short_one = add_straight(lanes, {50, 0, 0}, 1.0);
+  auto const c = add_straight(lanes, {51, 0, 0}, 50);
+  auto const beside_c = add_straight(lanes, {51, -2.0, 0}, 50);
+  link(lanes, a, short_one);
+  link(lanes, short_one, c);
+  put_beside(lanes, c, beside_c);
+  find(lanes);
+  for (auto const& lane : lanes)
+    if (lane.id != beside_c) CHECK(lane.overlaps.size() == (lane.id == a ? 1 : 0));
+  // The lane that opens beside `c` is near to the end of `a`, which it does not hang together with.
+  CHECK(lanes[index_of(a)].overlaps[0].other == beside_c);
+  lanes[index_of(a)].successors.push_back(c);
+  find(lanes);
+  CHECK(lanes[index_of(a)].overlaps.empty());
+}
+
+TEST_CASE("neighbours overlap only where one swings onto the other") {
+  std::vector<Lane> lanes;
+  auto const stays = add_straight(lanes, {0, 0, 0}, 100);
+  std::vector<LineSample> samples;
+  for (int i = 0; i <= 200; ++i) {
+    double const x = 0.5 * i, u = std::clamp((x - 40) / 60, 0.0, 1.0);
+    samples.push_back({x, -3.5 + 3.5 * u * u * (3 - 2 * u), std::atan(3.5 / 60 * 6 * u * (1 - u))});
+  }
+  auto const swings = add_lane(lanes, samples);
+  put_beside(lanes, stays, swings);
+  find(lanes);
+  CHECK(lanes[index_of(stays)].overlaps.empty());
+  lanes[index_of(swings)].merges_into = stays;
+  find(lanes);
+  REQUIRE(lanes[index_of(stays)].overlaps.size() == 1);
+  auto const& o = lanes[index_of(swings)].overlaps[0];
+  CHECK(o.kind == OverlapKind::merge);
+  CHECK(o.end == lanes[index_of(swings)].length());
+  CHECK(std::abs(lanes[index_of(swings)].path.pose(o.begin).y + clearance) < 0.01);
+  check_consistent(lanes);
+}
+
+TEST_CASE("a bridge does not overlap with the lane below, a ramp on the ground does") {
+  std::vector<Lane> lanes;
+  add_straight(lanes, {-50, 0, 0}, 100);
+  auto const bridge = add_straight(lanes, {0, -50, 1.5708}, 100);
+  find(lanes, [bridge](Lane const& lane, double) { return lane.id == bridge ? 5.0 : 0.0; });
+  CHECK(lanes[0].overlaps.empty());
+  find(lanes, [bridge](Lane const& lane, double) { return lane.id == bridge ? 2.0 : 0.0; });
+  CHECK(lanes[0].overlaps.size() == 1);
+}
+
+TEST_CASE("a road that comes back over itself overlaps there, but not along its lanes") {
+  std::vector<Lane> lanes;
+  // Two lanes of one road, 2.2 m apart, around a circle and a bit on: they cross each other's beginning.
+  for (double const radius : {30.0, 32.2}) {
+    auto samples = arc({0, -radius, 0}, 1 / radius, 0.9 * 2 * pi * radius, 0.5);
+    auto const tail = arc({samples.back().x, samples.back().y, samples.back().heading}, -0.02, 60, 0.5);
+    samples.insert(samples.end(), tail.begin() + 1, tail.end());
+    auto& lane = lanes[index_of(add_lane(lanes, samples))];
+    lane.road = static_cast<RoadId>(0);
+    lane.road_end = 240.0;
+  }
+  find(lanes);
+  check_consistent(lanes);
+  for (auto const& o : lanes[0].overlaps) CHECK(std::abs(o.begin - o.other_begin) > 20.0);
+}
+
+TEST_CASE("overlaps are where a look along every pair of lanes finds them") {
+  std::size_t total = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    Numbers random{seed};
+    std::vector<Lane> lanes;
+    for (int i = 0; i < 12; ++i)
+      add_lane(lanes, arc({random(-60, 60), random(-60, 60), random(-3, 3)}, random(-0.04, 0.04), random(20, 70), random(0.3, 2)));
+    lanes[3].type = LaneType::sidewalk;
+    find(lanes);
+    check_consistent(lanes);
+    CHECK(lanes[3].overlaps.empty());
+    for (auto const& a : lanes) {
+      for (auto const& b : lanes) {
+        if (a.id == b.id || !a.drivable() || !b.drivable()) continue;
+        auto const inside = [&](double s, double margin) {
+          return std::any_of(a.overlaps.begin(), a.overlaps.end(), [&](Overlap const& o) {
+            return o.other == b.id && s > o.begin - margin && s < o.end + margin;
+          });
+        };
+        for (double s = 0; s < a.length(); s += 0.05) {
+          double const distance = distance_to(b, a.path.pose(s).position());
+          if (distance < clearance - 0.02) CHECK(inside(s, 1e-9));
+          if (distance > clearance + 0.02) CHECK_FALSE(inside(s, 0.0));
+        }
+      }
+      for (auto const& o : a.overlaps) {
+        // Ends are on the clearance to a centimetre, or at the lane's end.
+        for (double const s : {o.begin, o.end})
+          if (s > 0.0 && s < a.length()) CHECK(std::abs(distance_to(lanes[index_of(o.other)], a.path.pose(s).position()) - clearance) < 0.01);
+      }
+      total += a.overlaps.size();
+    }
+  }
+  CHECK(total > 100);
+}
