@@ -1,4 +1,4 @@
-/// All rooms of cambium, with Eigen and Boost headers only. Reading OpenDRIVE files needs pugixml too: cambium/map/opendrive.hpp.
+/// All rooms of cambium; needs Eigen and Boost headers only. OpenDRIVE files are read by cambium/map/opendrive.hpp.
 #pragma once
 
 #include "cambium/behavior.hpp"

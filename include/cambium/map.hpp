@@ -1,5 +1,4 @@
-/// The room `map`: lanes, corridors, routes, overlaps, and building a map in code. Reading OpenDRIVE files needs pugixml
-/// and is in cambium/map/opendrive.hpp.
+/// The room `map`: lanes, corridors, routes, building a map in code. Files are read by cambium/map/opendrive.hpp.
 #pragma once
 
 #include "cambium/map/build_corridor.hpp"

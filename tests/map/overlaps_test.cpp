@@ -114,23 +114,38 @@ TEST_CASE("lanes over the same place that begin together split, and merge where 
   CHECK(lanes[index_of(before)].overlaps.empty());
 }
 
-TEST_CASE("lanes that belong together do not overlap: successors, also behind a short lane, and neighbours") {
+TEST_CASE("lanes that belong together do not overlap: successors, also behind a short lane, and the lanes beside them") {
   std::vector<Lane> lanes;
   auto const a = add_straight(lanes, {0, 0, 0}, 50);
-  auto const short_one = add_straight(lanes, {50, 0, 0}, 1.0);
-  auto const c = add_straight(lanes, {51, 0, 0}, 50);
-  auto const beside_c = add_straight(lanes, {51, -2.0, 0}, 50);
+  auto const short_one = add_straight(lanes, {48, 0, 0}, 2.0);
+  auto const c = add_straight(lanes, {40, 0, 0}, 60);  // a file may be that rough
+  auto const beside = add_straight(lanes, {40, -2.0, 0}, 60);
+  find(lanes);
+  CHECK(lanes[index_of(a)].overlaps.size() == 3);
   link(lanes, a, short_one);
   link(lanes, short_one, c);
-  put_beside(lanes, c, beside_c);
+  find(lanes);
+  REQUIRE(lanes[index_of(a)].overlaps.size() == 1);
+  CHECK(lanes[index_of(a)].overlaps[0].other == beside);
+  link(lanes, a, c);
+  put_beside(lanes, c, beside);
   find(lanes);
   for (auto const& lane : lanes)
-    if (lane.id != beside_c) CHECK(lane.overlaps.size() == (lane.id == a ? 1 : 0));
-  // The lane that opens beside `c` is near to the end of `a`, which it does not hang together with.
-  CHECK(lanes[index_of(a)].overlaps[0].other == beside_c);
-  lanes[index_of(a)].successors.push_back(c);
+    if (lane.id != short_one && lane.id != beside) CHECK(lane.overlaps.empty());
+}
+
+TEST_CASE("lanes that only touch end to begin do not overlap, and a stretch beyond a lane's end is not counted to it") {
+  std::vector<Lane> lanes;
+  auto const first = add_straight(lanes, {0, 0, 0}, 50), second = add_straight(lanes, {50, 0, 0}, 50);
+  auto const along = add_straight(lanes, {0, 1.0, 0}, 100);
   find(lanes);
-  CHECK(lanes[index_of(a)].overlaps.empty());
+  check_consistent(lanes);
+  REQUIRE(lanes[index_of(first)].overlaps.size() == 1);
+  REQUIRE(lanes[index_of(along)].overlaps.size() == 2);
+  CHECK(lanes[index_of(along)].overlaps[0].other == first);
+  CHECK(lanes[index_of(along)].overlaps[0].end == doctest::Approx(50));
+  CHECK(lanes[index_of(along)].overlaps[1].other == second);
+  CHECK(lanes[index_of(along)].overlaps[1].begin == doctest::Approx(50));
 }
 
 TEST_CASE("neighbours overlap only where one swings onto the other") {
@@ -201,15 +216,22 @@ TEST_CASE("overlaps are where a look along every pair of lanes finds them") {
           });
         };
         for (double s = 0; s < a.length(); s += 0.05) {
-          double const distance = distance_to(b, a.path.pose(s).position());
-          if (distance < clearance - 0.02) CHECK(inside(s, 1e-9));
+          auto const p = a.path.pose(s).position();
+          double const distance = distance_to(b, p), foot = b.path.project(p).s;
+          bool const is_beside = foot > 0.02 && foot < b.length() - 0.02;  // past the end only crossings count
+          if (distance < clearance - 0.02 && is_beside) CHECK(inside(s, 1e-9));
           if (distance > clearance + 0.02) CHECK_FALSE(inside(s, 0.0));
         }
       }
       for (auto const& o : a.overlaps) {
-        // Ends are on the clearance to a centimetre, or at the lane's end.
-        for (double const s : {o.begin, o.end})
-          if (s > 0.0 && s < a.length()) CHECK(std::abs(distance_to(lanes[index_of(o.other)], a.path.pose(s).position()) - clearance) < 0.01);
+        // Ends are on the clearance to a centimetre, or where one of the lanes ends.
+        auto const& b = lanes[index_of(o.other)];
+        for (double const s : {o.begin, o.end}) {
+          auto const p = a.path.pose(s).position();
+          double const foot = b.path.project(p).s;
+          bool const ends_here = s == 0.0 || s == a.length() || foot < 0.01 || foot > b.length() - 0.01;
+          if (!ends_here) CHECK(std::abs(distance_to(b, p) - clearance) < 0.01);
+        }
       }
       total += a.overlaps.size();
     }

@@ -1,7 +1,8 @@
 #pragma once
 
+#include <algorithm>
+
 #include "cambium/behavior/view.hpp"
-#include "cambium/geometry/angle.hpp"
 
 namespace cambium {
 
@@ -17,18 +18,15 @@ template <class View>
 [[nodiscard]] typename View::State follow_lane(View const& view, LongitudinalMotion<double> const& motion, double dt) {
   auto const& position = view.lane_position();
   auto cursor = position.segment;
-  auto const on_line = view.corridor().center.pose(position.s + motion.distance, cursor);
+  double const s = position.s + motion.distance;
+  auto const& segment = view.corridor().center.segment_at(s, cursor);
+  double const along = s - segment.s;
   typename View::State next = view.state();
   next.time = view.time() + dt;
-  next.x = on_line.x;
-  next.y = on_line.y;
-  next.heading = on_line.heading;
+  next.x = segment.x + segment.ux * along - segment.uy * position.lateral;
+  next.y = segment.y + segment.uy * along + segment.ux * position.lateral;
+  next.heading = segment.heading + segment.curvature * std::clamp(along, 0.0, segment.length);
   next.speed = motion.speed;
-  if (position.lateral != 0.0) {
-    auto const [sin, cos] = geometry::sin_cos(on_line.heading);
-    next.x -= sin * position.lateral;
-    next.y += cos * position.lateral;
-  }
   return next;
 }
 

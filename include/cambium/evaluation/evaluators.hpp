@@ -15,6 +15,11 @@ concept EvaluatorFor = std::copyable<E> && requires(E const evaluator, World con
   { evaluator.evaluate(world) } -> std::same_as<typename E::Result>;
 };
 
+namespace detail {
+template <class E>
+concept HasResult = requires { typename E::Result; };
+}  // namespace detail
+
 /// The results of several evaluators in one struct: `result.ego_collision`, `result.goal_reached`, ... Each evaluator may appear once.
 template <class... Es>
 struct EvaluationResult : Es::Result... {};
@@ -22,6 +27,9 @@ struct EvaluationResult : Es::Result... {};
 /// Several evaluators as one, put together at compile time.
 template <class... Es>
 class Evaluators {
+  static_assert((detail::HasResult<Es> && ...),
+                "cambium::Evaluators<...>: each must have a Result and `template <class World> Result evaluate(World const&) const` (see EvaluatorFor)");
+
  public:
   using Result = EvaluationResult<Es...>;
 

@@ -55,37 +55,37 @@ class OverlapFinder {
 
   /// For each lane those that it hangs together with: being close to them is no conflict.
   void find_related() {
-    related_.assign(lanes_.size(), {});
+    ahead_.assign(lanes_.size(), {});
+    behind_ = beside_ = ahead_;
     for (std::size_t i = 0; i < lanes_.size(); ++i) {
-      auto& related = related_[i];
-      add_successors(lanes_[i], 0.0, related);
-      for (auto const next : lanes_[i].successors) {
-        add_if_valid(lanes_[index_of(next)].left_neighbor, related);
-        add_if_valid(lanes_[index_of(next)].right_neighbor, related);
-      }
-      for (auto const before : lanes_[i].predecessors) {
-        add_if_valid(lanes_[index_of(before)].left_neighbor, related);
-        add_if_valid(lanes_[index_of(before)].right_neighbor, related);
-      }
+      auto const& lane = lanes_[i];
+      add_linked(lane, &Lane::successors, 0.0, ahead_[i]);
+      add_linked(lane, &Lane::predecessors, 0.0, behind_[i]);
+      for (auto const* linked : {&lane.successors, &lane.predecessors})
+        for (auto const id : *linked)
+          for (auto const side : {lanes_[index_of(id)].left_neighbor, lanes_[index_of(id)].right_neighbor})
+            if (is_valid(side)) beside_[i].push_back(side);
     }
   }
 
-  static void add_if_valid(LaneId id, std::vector<std::uint32_t>& related) {
-    if (is_valid(id)) related.push_back(static_cast<std::uint32_t>(id));
-  }
-
-  /// The lanes behind this one's end, and those behind them while they are too short to come between.
-  void add_successors(Lane const& lane, double between, std::vector<std::uint32_t>& related) const {
-    for (auto const next : lane.successors) {
-      related.push_back(static_cast<std::uint32_t>(next));
-      double const length = between + lanes_[index_of(next)].length();
-      if (length < 2.0 * clearance_ && related.size() < 64) add_successors(lanes_[index_of(next)], length, related);
+  /// The lanes behind a lane's end (or before its begin), and those behind them while they are too short to come between.
+  void add_linked(Lane const& lane, std::vector<LaneId> Lane::*links, double between, std::vector<LaneId>& linked) const {
+    for (auto const id : lane.*links) {
+      linked.push_back(id);
+      double const length = between + lanes_[index_of(id)].length();
+      if (length < 2.0 * clearance_ && linked.size() < 64) add_linked(lanes_[index_of(id)], links, length, linked);
     }
   }
+
+  [[nodiscard]] static bool has(std::vector<LaneId> const& list, LaneId id) { return std::find(list.begin(), list.end(), id) != list.end(); }
 
   [[nodiscard]] bool are_related(std::uint32_t a, std::uint32_t b) const {
-    auto const has = [](std::vector<std::uint32_t> const& list, std::uint32_t id) { return std::find(list.begin(), list.end(), id) != list.end(); };
-    return has(related_[a], b) || has(related_[b], a);
+    auto const ia = static_cast<LaneId>(a), ib = static_cast<LaneId>(b);
+    return has(ahead_[a], ib) || has(behind_[a], ib) || has(beside_[a], ib) || has(beside_[b], ia);
+  }
+
+  [[nodiscard]] static bool have_common(std::vector<LaneId> const& l, std::vector<LaneId> const& r) {
+    return std::any_of(l.begin(), l.end(), [&r](LaneId id) { return has(r, id); });
   }
 
   /// Lanes of one road are side by side, or one after the other, where their stations are about the same.
@@ -142,58 +142,78 @@ class OverlapFinder {
     for (auto& g : groups) {
       auto &a = lanes_[g.a], &b = lanes_[g.b];
       refine(a.path, g.on_a, b.path, g.on_b);
-      auto const kind = kind_of(a, g.on_a, b, g.on_b);
+      bool const is_crossing = turn_between(a, g.on_a, b, g.on_b) > geometry::pi / 3;
+      if (!is_crossing) {
+        trim(a.path, g.on_a, b.path, g.on_b);
+        trim(b.path, g.on_b, a.path, g.on_a);
+        constexpr double shortest = 0.01;  // [m]
+        if (g.on_a.end - g.on_a.begin < shortest || g.on_b.end - g.on_b.begin < shortest) continue;
+      }
+      auto const kind = is_crossing ? OverlapKind::crossing : kind_of(g);
       a.overlaps.push_back({b.id, kind, g.on_a.begin, g.on_a.end, g.on_b.begin, g.on_b.end});
       b.overlaps.push_back({a.id, kind, g.on_b.begin, g.on_b.end, g.on_a.begin, g.on_a.end});
     }
   }
 
-  void refine(geometry::Line const& a, Stretch& on_a, geometry::Line const& b, Stretch& on_b) const {
-    bool const same_way = std::cos(a.pose(on_a.middle()).heading - b.pose(on_b.middle()).heading) > 0.0;
-    auto const begin_on_b = same_way ? on_b.begin : on_b.end, end_on_b = same_way ? on_b.end : on_b.begin;
-    auto const begin_on_a = same_way ? on_a.begin : on_a.end, end_on_a = same_way ? on_a.end : on_a.begin;
-    Stretch const a_before = on_a, b_before = on_b;
-    on_a.begin = refined_end(a, a_before.begin, a_before.end, b, begin_on_b, clearance_);
-    on_a.end = refined_end(a, a_before.end, a_before.begin, b, end_on_b, clearance_);
-    on_b.begin = refined_end(b, b_before.begin, b_before.end, a, begin_on_a, clearance_);
-    on_b.end = refined_end(b, b_before.end, b_before.begin, a, end_on_a, clearance_);
+  /// Angle between the lanes' directions in the middle of the stretches [rad].
+  [[nodiscard]] static double turn_between(Lane const& a, Stretch const& on_a, Lane const& b, Stretch const& on_b) {
+    return std::abs(geometry::angle_difference(a.path.pose(on_a.middle()).heading, b.path.pose(on_b.middle()).heading));
   }
 
-  [[nodiscard]] static OverlapKind kind_of(Lane const& a, Stretch const& on_a, Lane const& b, Stretch const& on_b) {
-    auto const heading = [](Lane const& lane, Stretch const& on) { return lane.path.pose(on.middle()).heading; };
-    double const turn = std::abs(geometry::angle_difference(heading(a, on_a), heading(b, on_b)));
-    if (turn > geometry::pi / 3) return OverlapKind::crossing;
-    auto const share = [](std::vector<LaneId> const& l, std::vector<LaneId> const& r) {
-      return std::any_of(l.begin(), l.end(), [&r](LaneId id) { return std::find(r.begin(), r.end(), id) != r.end(); });
-    };
+  void refine(geometry::Line const& a, Stretch& on_a, geometry::Line const& b, Stretch& on_b) const {
+    bool const same_way = std::cos(a.pose(on_a.middle()).heading - b.pose(on_b.middle()).heading) > 0.0;
+    Stretch const near_b = same_way ? on_b : Stretch{on_b.end, on_b.begin}, near_a = same_way ? on_a : Stretch{on_a.end, on_a.begin};
+    on_a = {refined_end(a, on_a.begin, false, b, near_b.begin, clearance_), refined_end(a, on_a.end, true, b, near_b.end, clearance_)};
+    on_b = {refined_end(b, on_b.begin, false, a, near_a.begin, clearance_), refined_end(b, on_b.end, true, a, near_a.end, clearance_)};
+  }
+
+  /// Where `a` begins or ends within the overlap, lets the stretch on `b` do so beside it: what is near to `a` beyond its end is
+  /// so to the lane behind it.
+  static void trim(geometry::Line const& a, Stretch const& on_a, geometry::Line const& b, Stretch& on_b) {
+    constexpr double tolerance = 1e-3;
+    auto const beside = [&](double s, double near) { return b.project(a.pose(s).position(), b.find(near)).s; };
+    if (on_a.begin == 0.0) {
+      double const s = std::min(beside(0.0, on_b.begin), b.length());
+      if (s > on_b.begin + tolerance) on_b.begin = s;
+    }
+    if (on_a.end == a.length()) {
+      double const s = std::max(beside(a.length(), on_b.end), 0.0);
+      if (s < on_b.end - tolerance) on_b.end = s;
+    }
+  }
+
+  /// Kind of an overlap of lanes with about the same direction.
+  [[nodiscard]] OverlapKind kind_of(Contact const& g) const {
+    auto const &a = lanes_[g.a], &b = lanes_[g.b];
     constexpr double close = 0.1;  // [m] to a lane's end
-    bool const to_the_end = on_a.end > a.length() - close && on_b.end > b.length() - close;
-    bool const from_the_begin = on_a.begin < close && on_b.begin < close;
-    if (to_the_end && share(a.successors, b.successors)) return OverlapKind::merge;
-    if (from_the_begin && share(a.predecessors, b.predecessors)) return OverlapKind::split;
+    bool const to_the_end = g.on_a.end > a.length() - close && g.on_b.end > b.length() - close;
+    bool const from_the_begin = g.on_a.begin < close && g.on_b.begin < close;
+    if (to_the_end && have_common(ahead_[g.a], ahead_[g.b])) return OverlapKind::merge;
+    if (from_the_begin && have_common(behind_[g.a], behind_[g.b])) return OverlapKind::split;
     auto const distance = [&](double s, double t) { return (a.path.pose(s).position() - b.path.pose(t).position()).norm(); };
-    double const at_begin = distance(on_a.begin, on_b.begin), at_end = distance(on_a.end, on_b.end);
+    double const at_begin = distance(g.on_a.begin, g.on_b.begin), at_end = distance(g.on_a.end, g.on_b.end);
     return at_begin < at_end - 0.01 ? OverlapKind::split : OverlapKind::merge;
   }
 
   std::vector<Lane>& lanes_;
   LaneElevation const& elevation_;
   double clearance_;
-  std::vector<std::vector<std::uint32_t>> related_;
+  std::vector<std::vector<LaneId>> ahead_, behind_, beside_;  ///< by lane
   std::vector<Contact> contacts_;
 };
 
 }  // namespace detail
 
 /// Fills `Lane::overlaps` of the drivable lanes: the stretches on which two lanes' paths are closer than `clearance` [m], on both
-/// lanes, to 2 mm on the sampled paths (5 cm is the least depth that is found surely). `elevation` may be empty; where it is given, paths more than 3 m above each other do
-/// not overlap. A lane's number must be its place in `lanes`. O((n + k) log n) for n path segments, k pairs of them that are close.
+/// lanes, to 2 mm on the sampled paths. `elevation` may be empty; where it is given, paths more than 3 m above each other do not
+/// overlap. A lane's number must be its place in `lanes`. O((n + k) log n) for n path segments, k pairs of them that are close.
 ///
 /// Left out are lanes that belong together anyway: one behind the other (also with lanes in between that are shorter than twice
 /// the clearance), neighbours of those, and lanes of the same road at the same station, unless one merges into the other.
 /// Kinds: crossing where the directions differ by more than 60 degrees in the middle of the stretch; else merge where both end in
 /// a common successor; else split where both begin behind a common predecessor; else split where they are closer at the stretch's
-/// begin than at its end; else merge.
+/// begin than at its end; else merge. For merge and split, begin and end are beside each other on the two lanes: where one lane
+/// begins or ends, so does the overlap.
 inline void find_overlaps(std::vector<Lane>& lanes, LaneElevation const& elevation, double clearance) {
   detail::OverlapFinder(lanes, elevation, clearance).find();
 }

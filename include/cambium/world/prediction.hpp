@@ -1,8 +1,8 @@
 #pragma once
 
+#include <concepts>
 #include <cstdint>
 #include <memory>
-#include <utility>
 
 #include "cambium/behavior/behavior_set.hpp"
 #include "cambium/map/lane_position.hpp"
@@ -19,16 +19,19 @@ struct Prediction {
   typename Set::Any others;
 };
 
-/// Everybody behaves as `behavior`.
-template <class Set>
-[[nodiscard]] Prediction<Set> predict_all_as(typename Set::Any behavior) {
-  return {behavior, behavior};
+/// The agent behaves as `ego`, the others as `others`: behaviours of `Set`.
+template <class Set, class Ego, class Others>
+[[nodiscard]] Prediction<Set> predict_as(Ego const& ego, Others const& others) {
+  if constexpr (is_behavior_set<Set>)
+    static_assert(std::convertible_to<Ego, typename Set::Any> && std::convertible_to<Others, typename Set::Any>,
+                  "cambium::Prediction<Set>: the behaviour that is to be assumed must be one of the Models of Set");
+  return {ego, others};
 }
 
-/// The agent behaves as `ego`, the others as `others`.
-template <class Set>
-[[nodiscard]] Prediction<Set> predict_as(typename Set::Any ego, typename Set::Any others) {
-  return {std::move(ego), std::move(others)};
+/// Everybody behaves as `behavior`, one of the behaviours of `Set`.
+template <class Set, class Behavior>
+[[nodiscard]] Prediction<Set> predict_all_as(Behavior const& behavior) {
+  return predict_as<Set>(behavior, behavior);
 }
 
 /// The world that agent number `slot` of `world` expects: states as it observes them, behaviours as `prediction` says. Agents

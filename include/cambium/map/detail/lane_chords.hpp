@@ -105,19 +105,17 @@ inline void add_chords(Lane const& lane, double tolerance, double longest, std::
   return past == 0.0 ? std::abs(foot.lateral) : std::hypot(foot.lateral, past);
 }
 
-/// Moves `end`, where `path` comes as near to `other` as `clearance` but for the chords' tolerance, to where it exactly does, within 2 mm;
-/// `inner` is a place on the side where it is nearer. Stays where no such place is found within 2 m, and at the path's ends.
-[[nodiscard]] inline double refined_end(geometry::Line const& path, double end, double inner, geometry::Line const& other, double near,
+/// Moves `end`, where `path` comes as near to `other` as `clearance` but for the chords' tolerance, to where it exactly does, within
+/// 2 mm; before it (`forward`) or behind it the path is nearer. Stays where no such place is found within 2 m, and at the path's end.
+[[nodiscard]] inline double refined_end(geometry::Line const& path, double end, bool forward, geometry::Line const& other, double near,
                                         double clearance) {
   constexpr double at_end = 1e-3;
-  if (end < at_end) return 0.0;
-  if (end > path.length() - at_end) return path.length();
+  if (!forward && end < at_end) return 0.0;
+  if (forward && end > path.length() - at_end) return path.length();
   auto cursor = path.find(end), hint = other.find(near);
   auto const excess = [&](double s) { return distance_at(path, s, cursor, other, hint) - clearance; };
-  double const outward = end > inner ? 1.0 : -1.0;
   double const here = excess(end);
-  // One step outwards where it is still near, inwards where it is not.
-  double const direction = here < 0.0 ? outward : -outward;
+  double const direction = (here < 0.0) == forward ? 1.0 : -1.0;  // outwards where it is still near
   double in = end, out = end;
   for (double step = 0.05;; step *= 3.0) {
     if (step > 2.0) return end;

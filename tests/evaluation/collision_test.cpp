@@ -1,0 +1,185 @@
+// Collision evaluators against a twin that compares every pair of boxes.
+#include "cambium/evaluation/collision.hpp"
+
+#include <doctest/doctest.h>
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "../world/fixtures.hpp"
+#include "cambium/core/distributions.hpp"
+
+using namespace fixtures;
+using cb::AgentId;
+using cb::AgentStatus;
+
+namespace {
+
+cb::geometry::Polygon rectangle(double x, double y, double length, double width) {
+  std::vector<cb::geometry::Point> const points{{x, y}, {x + length, y}, {x + length, y + width}, {x, y + width}};
+  return cb::geometry::Polygon(points);
+}
+
+/// Where agents of a random frame are: in an area of `length` by `width` m, turned by `heading`.
+struct Scene {
+  std::size_t agents;
+  double length, width, heading;
+  std::size_t objects = 0;
+};
+
+double between(double low, double high, cb::RandomStream& random) { return low + (high - low) * cb::uniform01(random); }
+
+/// A world put together from its parts: agents anywhere, some of them departed. Ids are not slots.
+Sim random_world(std::shared_ptr<cb::Map const> const& map, Scene const& scene, std::uint32_t number) {
+  cb::RandomStream random(11, number, 0);
+  auto roster = std::make_shared<Sim::RosterType>();
+  Sim::FrameType frame;
+  cb::geometry::Pose const area{between(-1e4, 1e4, random), between(-1e4, 1e4, random), scene.heading};
+  cb::geometry::Shape const shapes[] = {cb::geometry::car(), cb::geometry::truck(), cb::geometry::pedestrian(), {2.0, 0.2, 1.5, 0.1}};
+  for (std::uint32_t i = 0; i < scene.agents; ++i) {
+    Sim::RosterType::Agent agent{};
+    agent.id = static_cast<AgentId>(3 * i + 1);
+    agent.shape = shapes[cb::uniform_index(random, 4)];
+    roster->agents.push_back(agent);
+    roster->goals.emplace_back();
+    auto const at = cb::geometry::to_map(area, {between(0, scene.length, random), between(0, scene.width, random)});
+    Sim::Record record{};
+    record.state = {0, at.x(), at.y(), scene.heading + between(-4, 4, random), 0};
+    if (cb::uniform_index(random, 5) == 0) record.status = static_cast<AgentStatus>(1 + cb::uniform_index(random, 5));
+    frame.agents.push_back(record);
+  }
+  for (std::uint32_t i = 0; i < scene.objects; ++i) {
+    auto const at = cb::geometry::to_map(area, {between(0, scene.length, random), between(0, scene.width, random)});
+    roster->objects.push_back({static_cast<cb::ObjectId>(i), rectangle(at.x(), at.y(), 1.5, 0.8)});
+  }
+  return Sim(map, std::move(roster), std::move(frame));
+}
+
+cb::geometry::OrientedBox box_of(Sim const& world, std::size_t slot) {
+  return cb::geometry::box_of(world.roster().agents[slot].shape, world.frame().agents[slot].state);
+}
+
+bool drives(Sim const& world, std::size_t slot) { return world.frame().agents[slot].status == AgentStatus::driving; }
+
+bool touch(Sim const& world, std::size_t i, std::size_t k) {
+  return drives(world, i) && drives(world, k) && cb::geometry::intersects(box_of(world, i), box_of(world, k));
+}
+
+bool touches_object(Sim const& world, std::size_t slot) {
+  if (!drives(world, slot)) return false;
+  for (auto const& object : world.roster().objects)
+    if (cb::geometry::intersects(box_of(world, slot), object.outline)) return true;
+  return false;
+}
+
+/// First other agent, by id, that this one touches.
+std::optional<AgentId> first_touched(Sim const& world, std::size_t slot) {
+  for (std::size_t k = 0; k < world.size(); ++k)
+    if (k != slot && touch(world, slot, k)) return world.roster().agents[k].id;
+  return std::nullopt;
+}
+
+bool brute_any(Sim const& world) {
+  for (std::size_t i = 0; i < world.size(); ++i)
+    if (touches_object(world, i) || first_touched(world, i)) return true;
+  return false;
+}
+
+/// True when the pair that is named does touch.
+bool is_true_pair(Sim const& world, cb::CollisionAny::Result const& found) {
+  auto const first = world.slot_of(found.collision_first);
+  return cb::is_valid(found.collision_second) ? touch(world, first, world.slot_of(found.collision_second)) : touches_object(world, first);
+}
+
+/// Compares both evaluators with the twin on `frames` frames; returns in how many something touches.
+int compare(Scene const& scene, std::uint32_t frames) {
+  auto const map = straight_road(1, 10);
+  int collisions = 0;
+  for (std::uint32_t number = 0; number < frames; ++number) {
+    auto const world = random_world(map, scene, number);
+    auto const any = cb::CollisionAny{}.evaluate(world);
+    bool const expected = brute_any(world);
+    REQUIRE(any.any_collision == expected);
+    if (any.any_collision) CHECK(is_true_pair(world, any));
+    collisions += expected;
+    for (std::size_t slot = 0; slot < world.size(); slot += 1 + world.size() / 8) {
+      auto const ego = cb::CollisionEgo{world.roster().agents[slot].id}.evaluate(world);
+      auto const other = first_touched(world, slot);
+      CHECK(ego.ego_collision == (other.has_value() || touches_object(world, slot)));
+      CHECK(ego.ego_collision_with == other.value_or(cb::none<AgentId>));
+    }
+  }
+  return collisions;
+}
+
+}  // namespace
+
+TEST_CASE("collisions are those of a brute-force twin, few agents or many, on roads of any direction") {
+  // Sparse enough that both answers are frequent.
+  struct Case {
+    char const* what;
+    Scene scene;
+    std::uint32_t frames;
+  };
+  double const up = cb::geometry::pi / 2;
+  Case const cases[] = {{"nobody", {0, 10, 10, 0}, 2},
+                        {"two", {2, 15, 6, 0.3}, 2000},
+                        {"a few in a square", {8, 100, 100, 1.0}, 1500},
+                        {"a few on a vertical road", {14, 600, 8, up}, 1000},
+                        {"many on a horizontal road", {40, 4000, 8, 0.0}, 500},
+                        {"many on a vertical road", {40, 4000, 8, up}, 500},
+                        {"many on a slanting road", {40, 4000, 8, 0.8}, 500},
+                        {"more than fit without allocating", {100, 1200, 500, up}, 200},
+                        {"a crowd", {300, 20000, 100, 0.0}, 50}};
+  for (auto const& [what, scene, frames] : cases) {
+    int const collisions = compare(scene, frames);
+    MESSAGE(what << ": " << collisions << " of " << frames << " frames with a collision");
+    if (scene.agents == 0) continue;
+    CHECK(collisions > static_cast<int>(frames / 10));
+    CHECK(collisions < static_cast<int>(frames - frames / 10));
+  }
+}
+
+TEST_CASE("static objects count like the twin says") {
+  int const collisions = compare({4, 60, 60, 0.5, 6}, 1000);
+  CHECK(collisions > 100);
+  CHECK(collisions < 900);
+}
+
+TEST_CASE("who touches an object only is told so, and which agent it is otherwise") {
+  Sim world(straight_road(2));
+  auto const a = world.add({.position = {20, -1.75}});
+  auto const b = world.add({.position = {60, -1.75}});
+  CHECK_FALSE(cb::CollisionAny{}.evaluate(world).any_collision);
+  auto const object = world.add_object(rectangle(23.5, -2, 1, 1));
+  CHECK(cb::CollisionEgo{a}.evaluate(world).ego_collision);
+  CHECK(cb::CollisionEgo{a}.evaluate(world).ego_collision_with == cb::none<AgentId>);
+  CHECK_FALSE(cb::CollisionEgo{b}.evaluate(world).ego_collision);
+  CHECK(cb::CollisionAny{}.evaluate(world).collision_first == a);
+  CHECK(cb::CollisionAny{}.evaluate(world).collision_second == cb::none<AgentId>);
+  world.remove_object(object);
+  CHECK_FALSE(cb::CollisionAny{}.evaluate(world).any_collision);
+  world.set_state(b, {.x = 22, .y = -3.4});
+  CHECK(cb::CollisionEgo{a}.evaluate(world).ego_collision_with == b);
+  CHECK(cb::CollisionEgo{b}.evaluate(world).ego_collision_with == a);
+  CHECK(cb::CollisionAny{}.evaluate(world).collision_first == a);
+  CHECK(cb::CollisionAny{}.evaluate(world).collision_second == b);
+}
+
+TEST_CASE("who has left traffic is not hit any more") {
+  Sim world(straight_road(1, 100));
+  auto const gone = world.add({.position = {95, -1.75}, .speed = 20, .behavior = cb::ConstantAcceleration{}});
+  auto const next = world.add({.position = {60, -1.75}, .speed = 0, .behavior = cb::ConstantAcceleration{}});
+  world.step(0.5);
+  REQUIRE(world.status(gone) == AgentStatus::left_map);
+  world.set_state(next, {.x = world.state(gone).x, .y = -1.75});
+  CHECK_FALSE(cb::CollisionAny{}.evaluate(world).any_collision);
+  CHECK_FALSE(cb::CollisionEgo{next}.evaluate(world).ego_collision);
+  CHECK_FALSE(cb::CollisionEgo{gone}.evaluate(world).ego_collision);
+}
+
+TEST_CASE("the collision of an agent that is not there is an error") {
+  Sim const world(straight_road(1, 100));
+  CHECK_THROWS_AS((void)cb::CollisionEgo{static_cast<AgentId>(5)}.evaluate(world), cb::WorldError);
+}

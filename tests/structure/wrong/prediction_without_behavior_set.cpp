@@ -1,0 +1,6 @@
+// expect: cambium::Prediction<Set>: Set must be cambium::BehaviorSet<Models...>
+#include <cambium/behavior/constant_acceleration.hpp>
+#include <cambium/world/prediction.hpp>
+
+// One behaviour alone is no set.
+auto const prediction = cambium::predict_all_as<cambium::ConstantAcceleration>(cambium::ConstantAcceleration{});

@@ -1,0 +1,8 @@
+// expect: cambium::World<Set, Execution, Dynamics>: Dynamics must be a vehicle model such as cambium::SingleTrack
+#include <cambium/world/world.hpp>
+#include <cambium/behavior/constant_acceleration.hpp>
+#include <cambium/execution/interpolate.hpp>
+
+struct Rocket {};
+using Sim = cambium::World<cambium::BehaviorSet<cambium::ConstantAcceleration>, cambium::InterpolateExecution, Rocket>;
+Sim world(nullptr);
