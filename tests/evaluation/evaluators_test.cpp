@@ -73,12 +73,12 @@ TEST_CASE("several evaluators give one struct whose fields are named as in each"
 
 TEST_CASE("evaluators are a value, one of them alone is enough, and they nest") {
   Sim world(straight_road(1, 100));
-  world.add({.position = {20, -1.75}});
+  auto const ego = world.add({.position = {20, -1.75}});
   world.add({.position = {22, -1.75}});
-  cb::Evaluators const alone{cb::CollisionAny{}};
+  cb::Evaluators const alone{cb::CollisionEgo{ego}};
   auto const copy = alone;
-  CHECK(copy.evaluate(world).any_collision);
-  cb::Evaluators<cb::Evaluators<cb::CollisionAny>, cb::StepCount> const nested(alone, cb::StepCount{1});
-  CHECK(nested.evaluate(world).any_collision);
+  CHECK(copy.evaluate(world).ego_collision);
+  cb::Evaluators<cb::Evaluators<cb::CollisionEgo>, cb::StepCount> const nested(alone, cb::StepCount{1});
+  CHECK(nested.evaluate(world).ego_collision);
   CHECK_FALSE(nested.evaluate(world).timed_out);
 }

@@ -13,7 +13,9 @@ namespace {
 
 using Plan = cb::BasicPlan<cb::State>;
 
-cb::Executed<cb::State> execute(Plan const& plan, double time) { return cb::InterpolateExecution{}.execute(plan, {}, cb::SingleTrack{}, time); }
+cb::Executed<cb::State> execute(Plan const& plan, double time, cb::State const& now = {}) {
+  return cb::InterpolateExecution{}.execute(plan, now, cb::SingleTrack{}, time);
+}
 
 /// x = 0, 1, 4, 9, 16 at 0.2 s.
 Plan squares() {
@@ -56,8 +58,20 @@ TEST_CASE("nothing is extrapolated: before and after the plan, and of an empty o
   Plan single;
   single.trajectory.push_back({.time = 1.0, .x = 5.0});
   CHECK(execute(single, 1.0).state.x == 5.0);
-  CHECK_FALSE(execute(single, 0.9).valid);
   CHECK_FALSE(execute(single, 1.1).valid);
+  CHECK_FALSE(execute(single, 0.9, {.time = 0.95}).valid);
+  CHECK_FALSE(execute(single, 0.9, {.time = 1.0}).valid);
+}
+
+TEST_CASE("between now and a plan that begins later every field runs linearly too") {
+  Plan plan;
+  plan.trajectory.push_back({.time = 1.0, .x = 5.0, .y = -1.0, .heading = 0.4, .speed = 8.0});
+  auto const executed = execute(plan, 0.75, {.time = 0.5, .x = 1.0, .heading = 0.2, .speed = 6.0});
+  REQUIRE(executed.valid);
+  CHECK(executed.state.x == doctest::Approx(3.0));
+  CHECK(executed.state.y == doctest::Approx(-0.5));
+  CHECK(executed.state.heading == doctest::Approx(0.3));
+  CHECK(executed.state.speed == doctest::Approx(7.0));
 }
 
 TEST_CASE("times that differ by rounding only are the same") {

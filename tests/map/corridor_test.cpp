@@ -50,15 +50,18 @@ void check_laws(Map const& map, RoadCorridor const& road) {
       CHECK(piece.end - piece.begin == doctest::Approx(lane.length()).epsilon(0.01).scale(0.1));
       // The lane coordinate leads to the same place on the lane and on the corridor.
       for (double const u : {0.2, 0.5, 0.9}) {
-        double const s = piece.begin + u * (piece.end - piece.begin), on_lane = s + piece.index_offset - lane.index_begin;
+        double const s = piece.begin + u * (piece.end - piece.begin),
+                     on_lane = s + piece.index_offset - lane.index_begin;
         if (s - piece.begin < 2.5) continue;
         auto const a = corridor.center.pose(s), b = lane.path.pose(on_lane);
-        bool const same_place = (a.position() - b.position()).norm() < 0.02 && std::abs(geometry::angle_difference(a.heading, b.heading)) < 0.01;
+        bool const same_place = (a.position() - b.position()).norm() < 0.02 &&
+                                std::abs(geometry::angle_difference(a.heading, b.heading)) < 0.01;
         wrong_places += !same_place;
         auto const w = corridor.widths_at(s, corridor.center.find(s)), v = lane.widths_at(on_lane);
         wrong_places += !(std::abs(w.left - v.left) < 0.02 && std::abs(w.right - v.right) < 0.02);
       }
-      for (auto const& [side, number] : {std::pair(lane.left_neighbor, piece.left), std::pair(lane.right_neighbor, piece.right)}) {
+      for (auto const& [side, number] :
+           {std::pair(lane.left_neighbor, piece.left), std::pair(lane.right_neighbor, piece.right)}) {
         CHECK(is_valid(side) == (number != no_corridor));
         if (!is_valid(side)) continue;
         auto const beside = lanes_of(road.corridors[number]);
@@ -71,7 +74,8 @@ void check_laws(Map const& map, RoadCorridor const& road) {
 
 void check_feeder_laws(Map const& map, LaneCorridor const& corridor) {
   auto const own = lanes_of(corridor);
-  CHECK(std::is_sorted(corridor.feeders.begin(), corridor.feeders.end(), [](Feeder const& a, Feeder const& b) { return a.begin < b.begin; }));
+  CHECK(std::is_sorted(corridor.feeders.begin(), corridor.feeders.end(),
+                       [](Feeder const& a, Feeder const& b) { return a.begin < b.begin; }));
   std::map<LaneId, std::vector<std::pair<double, double>>> stretches;
   for (auto const& f : corridor.feeders) {
     auto const& lane = map.lane(f.lane);
@@ -101,7 +105,8 @@ struct Merge {
     for (auto& p : samples) p.heading -= geometry::pi;
     ramp = add_lane(lanes, samples);
     auto const begin = samples.front();
-    approach = add_straight(lanes, {begin.x - 500 * std::cos(begin.heading), begin.y - 500 * std::sin(begin.heading), begin.heading}, 500);
+    approach = add_straight(
+        lanes, {begin.x - 500 * std::cos(begin.heading), begin.y - 500 * std::sin(begin.heading), begin.heading}, 500);
     link(lanes, before, after);
     link(lanes, ramp, after);
     link(lanes, approach, ramp);
@@ -124,14 +129,16 @@ TEST_CASE("lanes one behind the other become one corridor, with the step between
   CHECK(corridor.pieces[1].index_offset == doctest::Approx(map->lane(b).index_begin - 100));
   CHECK(corridor.left.length() == doctest::Approx(300.5).epsilon(0.01));
   CHECK_FALSE(corridor.continues);
-  for (auto const& [s, width] : {std::pair(50.0, 1.5), std::pair(99.9, 1.5), std::pair(100.2, 2.0), std::pair(250.0, 2.0)})
+  for (auto const& [s, width] :
+       {std::pair(50.0, 1.5), std::pair(99.9, 1.5), std::pair(100.2, 2.0), std::pair(250.0, 2.0)})
     CHECK(corridor.widths_at(s, corridor.center.find(s)).left == doctest::Approx(width));
   check_laws(*map, *road);
 }
 
 TEST_CASE("a gap between two lanes is bridged within a metre or two, and the lane coordinate stays true behind it") {
   std::vector<Lane> lanes;
-  auto const a = add_straight(lanes, {0, 0, 0}, 100), b = add_straight(lanes, {100.04, 0.03, 0}, 100), c = add_straight(lanes, {200.0, 0.03, 0.01}, 50);
+  auto const a = add_straight(lanes, {0, 0, 0}, 100), b = add_straight(lanes, {100.04, 0.03, 0}, 100),
+             c = add_straight(lanes, {200.0, 0.03, 0.01}, 50);
   link(lanes, a, b);
   link(lanes, b, c);
   auto const map = make_map(lanes);
@@ -168,6 +175,23 @@ TEST_CASE("at a fork the corridor keeps to the route, else it goes the straighte
   CHECK(one->corridors[0].continues);
 }
 
+TEST_CASE("where a lane has two successors side by side the corridor takes that of the route") {
+  std::vector<Lane> lanes;
+  auto const a = add_straight(lanes, {0, 0, 0}, 100);
+  auto const left = add_straight(lanes, {100, 0, 0}, 100), right = add_straight(lanes, {100, 0, -0.02}, 100);
+  put_beside(lanes, left, right);
+  link(lanes, a, left);
+  link(lanes, a, right);
+  auto const map = make_map(lanes);
+  for (auto const& [first, second] : {std::pair(left, right), std::pair(right, left)}) {
+    auto const road = build_road_corridor(*map, route_of(*map, {a, first}));
+    REQUIRE(road->corridors.size() == 2);
+    CHECK(lanes_of(road->corridors[0]) == std::vector<LaneId>{a, first});
+    CHECK(lanes_of(road->corridors[1]) == std::vector<LaneId>{second});
+    CHECK(road->main == 0);
+  }
+}
+
 TEST_CASE("straight routes end at their length, at a dead end, and before they repeat") {
   std::vector<Lane> lanes;
   std::vector<LaneId> ring;
@@ -176,7 +200,8 @@ TEST_CASE("straight routes end at their length, at a dead end, and before they r
     Pose const start = i == 0 ? Pose{0, 0, 0} : end_of(lanes.back());
     ring.push_back(add_lane(lanes, arc(start, turn / 120, 120)));
   }
-  for (int i = 0; i < 4; ++i) link(lanes, ring[static_cast<std::size_t>(i)], ring[static_cast<std::size_t>((i + 1) % 4)]);
+  for (int i = 0; i < 4; ++i)
+    link(lanes, ring[static_cast<std::size_t>(i)], ring[static_cast<std::size_t>((i + 1) % 4)]);
   auto const map = make_map(lanes);
   CHECK(straight_route(*map, ring[1]).lanes == std::vector<LaneId>{ring[1], ring[2], ring[3], ring[0]});
   CHECK(straight_route(*map, ring[0], 150).lanes.size() == 2);
@@ -197,8 +222,10 @@ TEST_CASE("lanes beside the route have corridors that know each other, and one t
   std::vector<std::vector<LaneId>> sections;
   for (int k = 0; k < 3; ++k) {  // 2, 3, 2 lanes
     sections.emplace_back();
-    for (int i = 0; i < (k == 1 ? 3 : 2); ++i) sections.back().push_back(add_straight(lanes, {100.0 * k, -3.5 * i, 0}, 100));
-    for (std::size_t i = 0; i + 1 < sections.back().size(); ++i) put_beside(lanes, sections.back()[i], sections.back()[i + 1]);
+    for (int i = 0; i < (k == 1 ? 3 : 2); ++i)
+      sections.back().push_back(add_straight(lanes, {100.0 * k, -3.5 * i, 0}, 100));
+    for (std::size_t i = 0; i + 1 < sections.back().size(); ++i)
+      put_beside(lanes, sections.back()[i], sections.back()[i + 1]);
     if (k > 0)
       for (std::size_t i = 0; i < 2; ++i) link(lanes, sections[static_cast<std::size_t>(k - 1)][i], sections.back()[i]);
   }
@@ -207,7 +234,8 @@ TEST_CASE("lanes beside the route have corridors that know each other, and one t
   check_laws(*map, *road);
   REQUIRE(road->corridors.size() == 3);
   CHECK(road->main == 0);
-  for (std::size_t i = 0; i < 2; ++i) CHECK(lanes_of(road->corridors[i]) == std::vector<LaneId>{sections[0][i], sections[1][i], sections[2][i]});
+  for (std::size_t i = 0; i < 2; ++i)
+    CHECK(lanes_of(road->corridors[i]) == std::vector<LaneId>{sections[0][i], sections[1][i], sections[2][i]});
   CHECK(lanes_of(road->corridors[2]) == std::vector<LaneId>{sections[1][2]});
   CHECK(road->corridors[0].pieces[1].right == 1);
   CHECK(road->corridors[1].pieces[0].right == no_corridor);
@@ -241,13 +269,14 @@ TEST_CASE("a lane that merges into its neighbour goes on as that one") {
   REQUIRE(road->corridors.size() == 3);
   CHECK(lanes_of(road->corridors[0]) == std::vector<LaneId>{stays, after});
   CHECK(lanes_of(road->corridors[1]) == std::vector<LaneId>{ends, after});
-  CHECK(road->main == 1);                        // it has more of the route
+  CHECK(road->main == 1);                         // it has more of the route
   CHECK(road->corridors[2].pieces[0].left == 0);  // the one that was there before
   for (int i = 0; i < 2; ++i) {
     auto const& corridor = road->corridors[static_cast<std::size_t>(i)];
     check_feeder_laws(*map, corridor);
     auto const other = i == 0 ? ends : stays;
-    auto const overlap = std::find_if(corridor.feeders.begin(), corridor.feeders.end(), [](Feeder const& f) { return f.begin == f.free_until; });
+    auto const overlap = std::find_if(corridor.feeders.begin(), corridor.feeders.end(),
+                                      [](Feeder const& f) { return f.begin == f.free_until; });
     REQUIRE(overlap != corridor.feeders.end());
     CHECK(overlap->lane == other);
     CHECK(overlap->end == doctest::Approx(100).epsilon(0.01));
@@ -255,7 +284,8 @@ TEST_CASE("a lane that merges into its neighbour goes on as that one") {
   }
 }
 
-TEST_CASE("a merging lane feeds the corridor on the overlap and from the merge view before it on, through its predecessors") {
+TEST_CASE(
+    "a merging lane feeds the corridor on the overlap and from the merge view before it on, through its predecessors") {
   Merge const merge;
   auto const map = make_map(merge.lanes);
   auto const road = build_road_corridor(*map, straight_route(*map, merge.before));
@@ -332,7 +362,8 @@ TEST_CASE("a route without lanes, with a lane that is not there, or with a jump 
 TEST_CASE("straight on from every drivable lane of the project's and the corpus' maps the corridors keep their laws") {
   auto files = corpus::maps(std::filesystem::path(CAMBIUM_SOURCE_DIR) / "maps");
   CHECK(files.size() >= 3);
-  for (auto const* name : {"DR_CHN_Merging_ZS_partial_v02.xodr", "DR_DEU_Merging_MT_v01_centered.xodr", "threeway_intersection.xodr"})
+  for (auto const* name :
+       {"DR_CHN_Merging_ZS_partial_v02.xodr", "DR_DEU_Merging_MT_v01_centered.xodr", "threeway_intersection.xodr"})
     if (auto const file = corpus::opendrive_folder() / name; std::filesystem::exists(file)) files.push_back(file);
   if (files.size() < 6) MESSAGE("skipped: the maps of the corpus are not there");
   for (auto const& file : files) {

@@ -22,7 +22,8 @@ std::vector<Lane> heap_of_lanes(std::uint64_t seed, int count) {
     Pose const start{random(-150, 150), random(-150, 150), random(-3.1, 3.1)};
     bool const widens = i % 3 == 0;
     double const curvature = widens ? 0.0 : random(-0.05, 0.05);
-    auto const id = add_lane(lanes, arc(start, curvature, random(5, 60), widens ? 100.0 : random(0.2, 3.0)), random(0.5, 2.5));
+    auto const id =
+        add_lane(lanes, arc(start, curvature, random(5, 60), widens ? 100.0 : random(0.2, 3.0)), random(0.5, 2.5));
     auto& lane = lanes[index_of(id)];
     if (widens) lane.widths.back() = {random(0.0, 6.0), random(-1.0, 3.0)};
     if (i % 5 == 1) lane.type = LaneType::sidewalk;
@@ -42,8 +43,9 @@ std::vector<LaneHit> near_by_brute_force(std::vector<Lane> const& lanes, Point c
   std::vector<LaneHit> hits;
   for (auto const& lane : lanes)
     if (auto const hit = hit_by_projection(lane, p); hit.distance <= radius) hits.push_back(hit);
-  std::sort(hits.begin(), hits.end(),
-            [](LaneHit const& a, LaneHit const& b) { return std::tie(a.distance, a.lane) < std::tie(b.distance, b.lane); });
+  std::sort(hits.begin(), hits.end(), [](LaneHit const& a, LaneHit const& b) {
+    return std::tie(a.distance, a.lane) < std::tie(b.distance, b.lane);
+  });
   return hits;
 }
 
@@ -111,7 +113,8 @@ TEST_CASE("a point is on a drivable lane when one holds it, slits between lanes 
   for (int k = 0; k < 5000; ++k) {
     Point const p{random(-180, 180), random(-180, 180)};
     auto const hits = near_by_brute_force(lanes, p, LaneTree::slack);
-    bool const expected = std::any_of(hits.begin(), hits.end(), [&](LaneHit const& h) { return lanes[index_of(h.lane)].drivable(); });
+    bool const expected =
+        std::any_of(hits.begin(), hits.end(), [&](LaneHit const& h) { return lanes[index_of(h.lane)].drivable(); });
     CHECK(tree.any_drivable_at(p) == expected);
     on += expected;
   }
@@ -144,7 +147,8 @@ TEST_CASE("of the lanes that hold a vehicle the one with its direction is taken"
   CHECK(tree.nearest_drivable({20, 0.1, 1.0}, 5)->lane == east);
 }
 
-TEST_CASE("of lanes with the same direction that hold a vehicle the one whose path is nearest is taken, then the first") {
+TEST_CASE(
+    "of lanes with the same direction that hold a vehicle the one whose path is nearest is taken, then the first") {
   std::vector<Lane> lanes;
   auto const a = add_straight(lanes, {0, 0, 0.001}, 100);
   auto const b = add_straight(lanes, {0, 1.0, 0}, 100);

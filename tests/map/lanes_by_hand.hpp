@@ -38,8 +38,8 @@ inline std::vector<LineSample> arc(Pose const& start, double curvature, double l
   for (int i = 0; i <= pieces; ++i) {
     double const s = length * i / pieces, half = 0.5 * curvature * s;
     double const chord = half == 0.0 ? s : s * std::sin(half) / half;
-    samples.push_back({start.x + chord * std::cos(start.heading + half), start.y + chord * std::sin(start.heading + half),
-                       start.heading + curvature * s});
+    samples.push_back({start.x + chord * std::cos(start.heading + half),
+                       start.y + chord * std::sin(start.heading + half), start.heading + curvature * s});
   }
   return samples;
 }

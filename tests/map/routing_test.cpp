@@ -29,8 +29,7 @@ Lanes random_lanes(std::uint64_t seed, int count) {
   for (int i = 0; i < count; ++i) lanes.add(std::floor(random(1, 60)));
   auto const any = [&] { return static_cast<LaneId>(random(0, count - 1e-9)); };
   for (int i = 0; i < 2 * count; ++i) link(lanes.all, any(), any());
-  for (int i = 0; i + 1 < count; i += 3)
-    put_beside(lanes.all, static_cast<LaneId>(i), static_cast<LaneId>(i + 1));
+  for (int i = 0; i + 1 < count; i += 3) put_beside(lanes.all, static_cast<LaneId>(i), static_cast<LaneId>(i + 1));
   return lanes;
 }
 

@@ -37,12 +37,11 @@ struct ExternalInput {
     auto const start = view.state();
     auto const input = model.limited({memory.acceleration, memory.steering}, start);
     Plan<View> plan;
-    plan.trajectory.push_back(start);
     // A braking vehicle drives until it stands, and stands from then on.
     double const moving = input.acceleration < 0 ? std::min(dt, -start.speed / input.acceleration) : dt;
     if (moving > 0) plan.trajectory.push_back(integrate(model, start, input, moving));
     if (moving < dt) {
-      auto standing = plan.trajectory.back();
+      auto standing = plan.trajectory.empty() ? start : plan.trajectory.back();
       standing.time = start.time + dt;
       standing.speed = 0;
       plan.trajectory.push_back(standing);

@@ -30,11 +30,10 @@ template <class View>
   return next;
 }
 
-/// The plan that leads there in one straight piece.
+/// The plan that leads there.
 template <class View>
 [[nodiscard]] Plan<View> plan_along_lane(View const& view, LongitudinalMotion<double> const& motion, double dt) {
   Plan<View> plan;
-  plan.trajectory.push_back(view.state());
   plan.trajectory.push_back(follow_lane(view, motion, dt));
   plan.action.acceleration = (motion.speed - view.state().speed) / dt;
   return plan;

@@ -144,7 +144,8 @@ template <HasIdmParameters P, class Scalar>
                                                     double tolerance) {
   using std::abs;
   constexpr double shortest = 1e-3, longest = 0.25;  // [s] of a step: shorter is never needed, longer might step over something
-  double const largest_term = 2.0 * std::sqrt(tolerance);
+  double const largest_square = 4.0 * tolerance;  // of the third-order term
+  auto const square = [](Scalar x) { return x * x; };
   detail::IdmStep<Scalar> const response(p, leader_speed);
   LongitudinalMotion<Scalar> motion{Scalar(0), speed};
   double left = dt, h = dt < longest ? dt : longest;
@@ -164,10 +165,10 @@ template <HasIdmParameters P, class Scalar>
         distance = stands ? Scalar(0) : v * v / (2.0 * abs(a1));
         next_speed = Scalar(0);
       }
-      bool accurate = stops ? v <= Scalar(tolerance) && a2 <= Scalar(0) : abs(third) <= Scalar(largest_term);
+      bool accurate = stops ? v <= Scalar(tolerance) && a2 <= Scalar(0) : square(third) <= Scalar(largest_square);
       Scalar const expected = a1 + h * j2;  // at the end, with a jerk that changes evenly
       if (accurate && (bounded1 || bounded2 || expected < Scalar(p.lowest_acceleration)))
-        accurate = abs(response(next_speed, gap + h * leader_speed - distance).acceleration - expected) <= Scalar(largest_term);
+        accurate = square(response(next_speed, gap + h * leader_speed - distance).acceleration - expected) <= Scalar(largest_square);
       if (!accurate && h > shortest) {
         h /= 2;
         continue;

@@ -63,7 +63,6 @@ struct IdmClassic {
     constexpr int substeps = 10;
     double const h = dt / substeps;
     Plan<View> plan;
-    plan.trajectory.push_back(view.state());
     LongitudinalMotion<double> motion{0.0, start_speed};
     for (int i = 0; i < substeps; ++i) {
       double const a = bark_acceleration(start_speed, gap, leader_speed);

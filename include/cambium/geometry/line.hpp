@@ -148,6 +148,16 @@ class Line {
   [[nodiscard]] Projection project(Point const& p, std::uint32_t hint) const {
     CAMBIUM_ASSERT(!empty(), "a query on an empty line");
     auto i = std::min(hint, last());
+    // Well inside a segment there is nothing to decide: the usual case for something that follows the line.
+    for (auto const next : {i, i + 1}) {
+      if (next > last()) break;
+      auto const& g = segments_[next];
+      double const dx = p.x() - g.x, dy = p.y() - g.y;
+      double const along = dx * g.ux + dy * g.uy, across = g.ux * dy - g.uy * dx;
+      double const margin = 0.5 * std::abs(across);  // enough for turns of up to 50 degrees at its ends
+      if (along < margin) break;
+      if (along <= g.length - margin) return {g.s + along, across, next};
+    }
     double along = along_of(segments_[i], p);
     // The bisector at a vertex parts the points nearer to the segment before it from those nearer to the one behind.
     if (along > 0.5 * segments_[i].length) {

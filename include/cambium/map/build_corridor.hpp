@@ -68,7 +68,8 @@ class LaneJoiner {
       if (s < bridge + 1e-3 && i < segments.size()) continue;
       if (append(samples[i], lane.widths[i]) && starts_.back().s == 0.0) starts_.back().s = s;
     }
-    if (starts_.back().anchor == center_.size()) starts_.back() = {lane.id, center_.size() - 1, center_.size() - 1, 0.0};
+    if (starts_.back().anchor == center_.size())
+      starts_.back() = {lane.id, center_.size() - 1, center_.size() - 1, 0.0};
   }
 
   /// Adds a vertex unless it repeats the last one.
@@ -79,13 +80,15 @@ class LaneJoiner {
     return true;
   }
 
-  /// Where the next lane does not begin just as the last one ends: how far in the corridor becomes the lane [m]. 0 where it does.
+  /// Where the next lane does not begin just as the last one ends: how far in the corridor becomes the lane [m]. 0
+  /// where it does.
   [[nodiscard]] double bridge_length(Lane const& lane, geometry::LineSample const& begin) const {
     constexpr double tolerance = 1e-3;  // [m], [rad]
     auto const& end = center_.back();
     double const gap = std::hypot(begin.x - end.x, begin.y - end.y);
     double const turn = std::abs(geometry::angle_difference(begin.heading, end.heading));
-    double const left = lane.widths.front().left - widths_.back().left, right = lane.widths.front().right - widths_.back().right;
+    double const left = lane.widths.front().left - widths_.back().left,
+                 right = lane.widths.front().right - widths_.back().right;
     double length = 0.0;
     if (std::max(std::abs(left), std::abs(right)) > tolerance) length = 0.1;
     if (gap > tolerance || turn > tolerance) length = std::max(1.0, 2.0 * gap);
@@ -117,8 +120,10 @@ class LaneJoiner {
   std::vector<Start> starts_;
 };
 
-/// The number of the chain that holds `lane` in `stage`; of several, one that has not come there by a merge, else the first.
-[[nodiscard]] inline std::uint16_t chain_of(Map const& map, std::span<LaneChain const> chains, std::size_t stage, LaneId lane) {
+/// The number of the chain that holds `lane` in `stage`; of several, one that has not come there by a merge, else the
+/// first.
+[[nodiscard]] inline std::uint16_t chain_of(Map const& map, std::span<LaneChain const> chains, std::size_t stage,
+                                            LaneId lane) {
   std::uint16_t found = no_corridor;
   if (!is_valid(lane)) return found;
   for (std::size_t i = 0; i < chains.size(); ++i) {
@@ -148,12 +153,13 @@ class LaneJoiner {
 
 }  // namespace detail
 
-/// The way straight on from `from`: at forks the successor that turns least (within 50 m), of equal ones the smallest id. Ends at
-/// a dead end, where a lane would come again, or with the lane that makes it `max_length` [m] long. Throws `MapError` for a
-/// lane that the map does not have.
+/// The way straight on from `from`: at forks the successor that turns least (within 50 m), of equal ones the smallest
+/// id. Ends at a dead end, where a lane would come again, or with the lane that makes it `max_length` [m] long. Throws
+/// `MapError` for a lane that the map does not have.
 [[nodiscard]] inline Route straight_route(Map const& map, LaneId from, double max_length = 2000.0) {
   if (index_of(from) >= map.lanes().size())
-    throw MapError("route", "its start, lane " + to_string(from) + ", is not in the map", "see Map::lanes for those it has");
+    throw MapError("route", "its start, lane " + to_string(from) + ", is not in the map",
+                   "see Map::lanes for those it has");
   Route route{{from}, map.lane(from).length()};
   std::vector<bool> has_come(map.lanes().size());
   has_come[index_of(from)] = true;
@@ -167,14 +173,15 @@ class LaneJoiner {
   return route;
 }
 
-/// The road corridor along `route`: its lanes and all beside them, as lane corridors. Throws `MapError` where the route has no
-/// lane, names one that the map does not have, or jumps.
+/// The road corridor along `route`: its lanes and all beside them, as lane corridors. Throws `MapError` where the route
+/// has no lane, names one that the map does not have, or jumps.
 ///
-/// A lane corridor follows successors while these are beside the route, at forks the route, else straight on; a lane that merges
-/// into its neighbour goes on there, so that two lane corridors may share their further lanes. A lane that opens beside the
-/// route begins a lane corridor of its own. Where consecutive lanes do not quite meet, the corridor bridges the gap within 1 m
-/// (or twice the gap). Feeders of a lane corridor, all of them lanes that are not in it:
-/// - lanes that merge into it: on the overlap, and from `MapOptions::merge_view` before it on, free until the overlap begins;
+/// A lane corridor follows successors while these are beside the route, at forks the route, else straight on; a lane
+/// that merges into its neighbour goes on there, so that two lane corridors may share their further lanes. A lane that
+/// opens beside the route begins a lane corridor of its own. Where consecutive lanes do not quite meet, the corridor
+/// bridges the gap within 1 m (or twice the gap). Feeders of a lane corridor, all of them lanes that are not in it:
+/// - lanes that merge into it: on the overlap, and from `MapOptions::merge_view` before it on, free until the overlap
+/// begins;
 /// - lanes that lead into one of its lanes without an overlap: likewise, free until that lane begins;
 /// - lanes that have just split off: on the overlap;
 /// - lanes that lead to its begin: 100 m back, with negative images (of a ring, the corridor's own last lanes too).
@@ -182,7 +189,8 @@ class LaneJoiner {
 [[nodiscard]] inline std::shared_ptr<RoadCorridor const> build_road_corridor(Map const& map, Route const& route) {
   auto const stages = detail::route_stages(map, route.lanes);
   auto const chains = detail::lane_chains(map, stages);
-  if (chains.size() >= no_corridor) throw MapError("route", "it has more lane corridors than can be numbered", "give a shorter one");
+  if (chains.size() >= no_corridor)
+    throw MapError("route", "it has more lane corridors than can be numbered", "give a shorter one");
   auto road = std::make_shared<RoadCorridor>();
   road->route = route.lanes;
   road->main = detail::main_chain(chains, route.lanes);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "cambium/geometry/angle.hpp"
@@ -13,6 +15,7 @@ struct LanePosition {
   double s{};               ///< along the lane corridor's centre line [m]
   double lateral{};         ///< from the centre line, left positive [m]
   double heading_error{};   ///< vehicle's heading minus the lane's [rad], in (-pi, pi]
+  double index{};           ///< the map-wide lane coordinate (see `Lane::index_begin`)
   std::uint32_t segment{};  ///< of the centre line: the hint for the next projection
   std::uint16_t corridor = no_corridor;
   std::uint16_t piece{};
@@ -29,7 +32,11 @@ struct LanePosition {
   double const inside = std::min(std::max(foot.s - segment.s, 0.0), segment.length);
   double error = pose.heading - (segment.heading + segment.curvature * inside);
   if (std::abs(error) > geometry::pi) error = geometry::normalize_angle(error);
-  return {foot.s, foot.lateral, error, foot.segment, number, corridor.piece_at(foot.s, hint.piece)};
+  auto const piece = corridor.piece_at(foot.s, hint.piece);
+  auto const& on = corridor.pieces[piece];
+  // A vehicle beyond an end of its corridor stays in its lane's own range of the lane coordinate.
+  double const index = std::min(std::max(foot.s, on.begin - 1.0), on.end + 1.0) + on.index_offset;
+  return {foot.s, foot.lateral, error, index, foot.segment, number, piece};
 }
 
 /// As above without a hint: exact. O(segments).

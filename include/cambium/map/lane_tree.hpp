@@ -27,13 +27,16 @@ struct LaneHit {
   std::uint32_t segment{};  ///< of the path: the hint for the next projection
 };
 
-/// Finds the lanes at a point: a packed R-tree over short stretches of the lanes. Immutable; copies what it needs of the lanes.
+/// Finds the lanes at a point: a packed R-tree over short stretches of the lanes. Immutable; copies what it needs of
+/// the lanes.
 ///
-/// A point belongs to a lane at each of its foot points: where its distance to the path has a local minimum (a path that curls up
-/// may have several). Of these the one with the smallest `LaneHit::distance` counts, then that nearest to the path.
+/// A point belongs to a lane at each of its foot points: where its distance to the path has a local minimum (a path
+/// that curls up may have several). Of these the one with the smallest `LaneHit::distance` counts, then that nearest to
+/// the path.
 class LaneTree {
  public:
-  /// A drivable lane counts as holding a point up to this far outside [m]: neighbouring lanes sampled to a tolerance leave slits.
+  /// A drivable lane counts as holding a point up to this far outside [m]: neighbouring lanes sampled to a tolerance
+  /// leave slits.
   static constexpr double slack = 0.05;
 
   LaneTree() = default;
@@ -44,7 +47,8 @@ class LaneTree {
     others_.finish();
   }
 
-  /// Lanes of any type that hold `p` or come within `radius` [m] of it: one hit a lane, sorted by distance, then by id. O(log n).
+  /// Lanes of any type that hold `p` or come within `radius` [m] of it: one hit a lane, sorted by distance, then by id.
+  /// O(log n).
   [[nodiscard]] std::vector<LaneHit> near(geometry::Point const& p, double radius) const {
     std::vector<LaneHit> hits;
     auto const collect = [&](LaneHit const& hit, Direction const&) {
@@ -56,15 +60,19 @@ class LaneTree {
     std::sort(hits.begin(), hits.end(), [](LaneHit const& a, LaneHit const& b) {
       return a.lane != b.lane ? a.lane < b.lane : in_lane_order(a) < in_lane_order(b);
     });
-    hits.erase(std::unique(hits.begin(), hits.end(), [](LaneHit const& a, LaneHit const& b) { return a.lane == b.lane; }), hits.end());
-    std::sort(hits.begin(), hits.end(),
-              [](LaneHit const& a, LaneHit const& b) { return std::tie(a.distance, a.lane) < std::tie(b.distance, b.lane); });
+    hits.erase(
+        std::unique(hits.begin(), hits.end(), [](LaneHit const& a, LaneHit const& b) { return a.lane == b.lane; }),
+        hits.end());
+    std::sort(hits.begin(), hits.end(), [](LaneHit const& a, LaneHit const& b) {
+      return std::tie(a.distance, a.lane) < std::tie(b.distance, b.lane);
+    });
     return hits;
   }
 
-  /// The drivable lane of a vehicle at `pose`: of the lanes that hold the position the one whose direction fits best (to steps
-  /// of 0.05 rad; then the one whose path is nearest, then the smallest id); where none holds it, the nearest within `radius` [m]
-  /// whose direction is less than a quarter turn off. Nothing if there is none. O(log n), no allocation.
+  /// The drivable lane of a vehicle at `pose`: of the lanes that hold the position the one whose direction fits best
+  /// (to steps of 0.05 rad; then the one whose path is nearest, then the smallest id); where none holds it, the nearest
+  /// within `radius` [m] whose direction is less than a quarter turn off. Nothing if there is none. O(log n), no
+  /// allocation.
   [[nodiscard]] std::optional<LaneHit> nearest_drivable(geometry::Pose const& pose, double radius) const {
     double const c = std::cos(pose.heading), s = std::sin(pose.heading);
     Best holding, nearest;
@@ -105,7 +113,9 @@ class LaneTree {
     LaneHit hit;
 
     void offer(double candidate_measure, LaneHit const& candidate) {
-      auto const key = [](double m, LaneHit const& h) { return std::make_tuple(m, std::abs(h.lateral), h.lane, h.segment); };
+      auto const key = [](double m, LaneHit const& h) {
+        return std::make_tuple(m, std::abs(h.lateral), h.lane, h.segment);
+      };
       if (is_valid(hit.lane) && !(key(candidate_measure, candidate) < key(measure, hit))) return;
       measure = candidate_measure;
       hit = candidate;
@@ -127,7 +137,8 @@ class LaneTree {
       CAMBIUM_ASSERT(lane.widths.size() == segments.size() + 1, "a lane has widths at each vertex of its path");
       for (std::size_t i = 0; i < segments.size(); ++i) {
         auto const& g = segments[i];
-        stretches_.push_back({g.x, g.y, g.ux, g.uy, g.length, g.s, lane.widths[i], lane.widths[i + 1], lane.id, static_cast<std::uint32_t>(i)});
+        stretches_.push_back({g.x, g.y, g.ux, g.uy, g.length, g.s, lane.widths[i], lane.widths[i + 1], lane.id,
+                              static_cast<std::uint32_t>(i)});
       }
       add_boxes(stretches_.size() - segments.size());
     }
@@ -138,8 +149,8 @@ class LaneTree {
       boxes_ = {};
     }
 
-    /// Calls `visit(hit, direction of the lane)` for each foot point of `p` in a lane that is within `radius`, perhaps for others
-    /// and for some twice, until that returns true.
+    /// Calls `visit(hit, direction of the lane)` for each foot point of `p` in a lane that is within `radius`, perhaps
+    /// for others and for some twice, until that returns true.
     template <class Visit>
     bool visit(geometry::Point const& p, double radius, Visit const& visit) const {
       detail::Box const query{p.x() - radius, p.y() - radius, p.x() + radius, p.y() + radius};
@@ -176,8 +187,8 @@ class LaneTree {
       return true;
     }
 
-    /// Boxes of a lane's stretches from the one at `first` on: of several while these are short, of parts where one is long and
-    /// runs askew.
+    /// Boxes of a lane's stretches from the one at `first` on: of several while these are short, of parts where one is
+    /// long and runs askew.
     void add_boxes(std::size_t first) {
       constexpr double longest_run = 6.0, longest_part = 25.0;  // [m]
       constexpr std::size_t most = 8;
@@ -234,7 +245,8 @@ class LaneTree {
         box.add(b.x + reach, b.y + reach);
         return;
       }
-      double const bulge = std::sqrt(2.0 / (1.0 + cos_of_turn));  // the chord between the points so far out touches the arc
+      double const bulge =
+          std::sqrt(2.0 / (1.0 + cos_of_turn));  // the chord between the points so far out touches the arc
       for (double const across : {a.end.left * bulge, -a.end.right * bulge})
         for (auto const* g : {&a, &b}) box.add(b.x - g->uy * across, b.y + g->ux * across);
     }

@@ -36,7 +36,8 @@ class OverlapFinder {
       return std::tie(l.a, l.b, l.on_a.begin, l.on_b.begin) < std::tie(r.a, r.b, r.on_a.begin, r.on_b.begin);
     });
     for (auto begin = contacts_.begin(); begin != contacts_.end();) {
-      auto const end = std::find_if(begin, contacts_.end(), [&](Contact const& c) { return c.a != begin->a || c.b != begin->b; });
+      auto const end =
+          std::find_if(begin, contacts_.end(), [&](Contact const& c) { return c.a != begin->a || c.b != begin->b; });
       join(std::span<Contact const>(begin, end));
       begin = end;
     }
@@ -68,8 +69,10 @@ class OverlapFinder {
     }
   }
 
-  /// The lanes behind a lane's end (or before its begin), and those behind them while they are too short to come between.
-  void add_linked(Lane const& lane, std::vector<LaneId> Lane::*links, double between, std::vector<LaneId>& linked) const {
+  /// The lanes behind a lane's end (or before its begin), and those behind them while they are too short to come
+  /// between.
+  void add_linked(Lane const& lane, std::vector<LaneId> Lane::*links, double between,
+                  std::vector<LaneId>& linked) const {
     for (auto const id : lane.*links) {
       linked.push_back(id);
       double const length = between + lanes_[index_of(id)].length();
@@ -77,7 +80,9 @@ class OverlapFinder {
     }
   }
 
-  [[nodiscard]] static bool has(std::vector<LaneId> const& list, LaneId id) { return std::find(list.begin(), list.end(), id) != list.end(); }
+  [[nodiscard]] static bool has(std::vector<LaneId> const& list, LaneId id) {
+    return std::find(list.begin(), list.end(), id) != list.end();
+  }
 
   [[nodiscard]] bool are_related(std::uint32_t a, std::uint32_t b) const {
     auto const ia = static_cast<LaneId>(a), ib = static_cast<LaneId>(b);
@@ -162,24 +167,37 @@ class OverlapFinder {
 
   void refine(geometry::Line const& a, Stretch& on_a, geometry::Line const& b, Stretch& on_b) const {
     bool const same_way = std::cos(a.pose(on_a.middle()).heading - b.pose(on_b.middle()).heading) > 0.0;
-    Stretch const near_b = same_way ? on_b : Stretch{on_b.end, on_b.begin}, near_a = same_way ? on_a : Stretch{on_a.end, on_a.begin};
-    on_a = {refined_end(a, on_a.begin, false, b, near_b.begin, clearance_), refined_end(a, on_a.end, true, b, near_b.end, clearance_)};
-    on_b = {refined_end(b, on_b.begin, false, a, near_a.begin, clearance_), refined_end(b, on_b.end, true, a, near_a.end, clearance_)};
+    Stretch const near_b = same_way ? on_b : Stretch{on_b.end, on_b.begin},
+                  near_a = same_way ? on_a : Stretch{on_a.end, on_a.begin};
+    on_a = {refined_end(a, on_a.begin, false, b, near_b.begin, clearance_),
+            refined_end(a, on_a.end, true, b, near_b.end, clearance_)};
+    on_b = {refined_end(b, on_b.begin, false, a, near_a.begin, clearance_),
+            refined_end(b, on_b.end, true, a, near_a.end, clearance_)};
   }
 
-  /// Where `a` begins or ends within the overlap, lets the stretch on `b` do so beside it: what is near to `a` beyond its end is
-  /// so to the lane behind it.
+  /// Where `a` begins or ends within the overlap, lets the stretch on `b` do so beside it: what is near to `a` beyond
+  /// its end is so to the lane behind it.
   static void trim(geometry::Line const& a, Stretch const& on_a, geometry::Line const& b, Stretch& on_b) {
     constexpr double tolerance = 1e-3;
-    auto const beside = [&](double s, double near) { return b.project(a.pose(s).position(), b.find(near)).s; };
     if (on_a.begin == 0.0) {
-      double const s = std::min(beside(0.0, on_b.begin), b.length());
+      double const s = std::min(beside(a.pose(0.0), b, on_b.begin).begin, b.length());
       if (s > on_b.begin + tolerance) on_b.begin = s;
     }
     if (on_a.end == a.length()) {
-      double const s = std::max(beside(a.length(), on_b.end), 0.0);
+      double const s = std::max(beside(a.pose(a.length()), b, on_b.end).end, 0.0);
       if (s < on_b.end - tolerance) on_b.end = s;
     }
+  }
+
+  /// The foot point of the lane end `end` on `b`, and the place on `b` from which `end` is the foot point, in the order
+  /// of `b`; the same for lanes side by side.
+  [[nodiscard]] static Stretch beside(geometry::Pose const& end, geometry::Line const& b, double near) {
+    double const foot = b.project(end.position(), b.find(near)).s;
+    auto const pose = b.pose(foot);
+    double const ux = std::cos(end.heading), uy = std::sin(end.heading);
+    double const ahead = (pose.x - end.x) * ux + (pose.y - end.y) * uy;
+    double const other = foot - ahead / std::max(0.5, std::cos(end.heading - pose.heading));
+    return {std::min(foot, other), std::max(foot, other)};
   }
 
   /// Kind of an overlap of lanes with about the same direction.
@@ -190,7 +208,9 @@ class OverlapFinder {
     bool const from_the_begin = g.on_a.begin < close && g.on_b.begin < close;
     if (to_the_end && have_common(ahead_[g.a], ahead_[g.b])) return OverlapKind::merge;
     if (from_the_begin && have_common(behind_[g.a], behind_[g.b])) return OverlapKind::split;
-    auto const distance = [&](double s, double t) { return (a.path.pose(s).position() - b.path.pose(t).position()).norm(); };
+    auto const distance = [&](double s, double t) {
+      return (a.path.pose(s).position() - b.path.pose(t).position()).norm();
+    };
     double const at_begin = distance(g.on_a.begin, g.on_b.begin), at_end = distance(g.on_a.end, g.on_b.end);
     return at_begin < at_end - 0.01 ? OverlapKind::split : OverlapKind::merge;
   }
@@ -204,16 +224,17 @@ class OverlapFinder {
 
 }  // namespace detail
 
-/// Fills `Lane::overlaps` of the drivable lanes: the stretches on which two lanes' paths are closer than `clearance` [m], on both
-/// lanes, to 2 mm on the sampled paths. `elevation` may be empty; where it is given, paths more than 3 m above each other do not
-/// overlap. A lane's number must be its place in `lanes`. O((n + k) log n) for n path segments, k pairs of them that are close.
+/// Fills `Lane::overlaps` of the drivable lanes: the stretches on which two lanes' paths are closer than `clearance`
+/// [m], on both lanes, to 2 mm on the sampled paths. `elevation` may be empty; where it is given, paths more than 3 m
+/// above each other do not overlap. A lane's number must be its place in `lanes`. O((n + k) log n) for n path segments,
+/// k pairs of them that are close.
 ///
-/// Left out are lanes that belong together anyway: one behind the other (also with lanes in between that are shorter than twice
-/// the clearance), neighbours of those, and lanes of the same road at the same station, unless one merges into the other.
-/// Kinds: crossing where the directions differ by more than 60 degrees in the middle of the stretch; else merge where both end in
-/// a common successor; else split where both begin behind a common predecessor; else split where they are closer at the stretch's
-/// begin than at its end; else merge. For merge and split, begin and end are beside each other on the two lanes: where one lane
-/// begins or ends, so does the overlap.
+/// Left out are lanes that belong together anyway: one behind the other (also with lanes in between that are shorter
+/// than twice the clearance), neighbours of those, and lanes of the same road at the same station, unless one merges
+/// into the other. Kinds: crossing where the directions differ by more than 60 degrees in the middle of the stretch;
+/// else merge where both end in a common successor; else split where both begin behind a common predecessor; else split
+/// where they are closer at the stretch's begin than at its end; else merge. For merge and split, begin and end are
+/// beside each other on the two lanes: where one lane begins or ends, so does the overlap.
 inline void find_overlaps(std::vector<Lane>& lanes, LaneElevation const& elevation, double clearance) {
   detail::OverlapFinder(lanes, elevation, clearance).find();
 }

@@ -32,8 +32,8 @@ struct LaneStep {
   friend bool operator==(LaneStep const&, LaneStep const&) = default;
 };
 
-/// Steps sorted by `from`, as a graph in the sense of Boost.Graph: an edge is a `LaneStep`. (Boost's own compressed graph would
-/// do too, but takes longer to compile.)
+/// Steps sorted by `from`, as a graph in the sense of Boost.Graph: an edge is a `LaneStep`. (Boost's own compressed
+/// graph would do too, but takes longer to compile.)
 struct LaneGraph {
   std::vector<LaneStep> steps;
   std::vector<std::uint32_t> first;  ///< of each lane's steps, and one more
@@ -74,7 +74,9 @@ namespace detail {
   auto const at = [&g](std::uint32_t i) { return g.steps.begin() + static_cast<std::ptrdiff_t>(i); };
   return std::pair(at(g.first[lane]), at(g.first[lane + 1]));
 }
-[[nodiscard]] inline std::size_t out_degree(std::uint32_t lane, LaneGraph const& g) { return g.first[lane + 1] - g.first[lane]; }
+[[nodiscard]] inline std::size_t out_degree(std::uint32_t lane, LaneGraph const& g) {
+  return g.first[lane + 1] - g.first[lane];
+}
 [[nodiscard]] inline std::uint32_t source(LaneStep const& step, LaneGraph const&) { return step.from; }
 [[nodiscard]] inline std::uint32_t target(LaneStep const& step, LaneGraph const&) { return step.to; }
 [[nodiscard]] inline auto vertices(LaneGraph const& g) { return std::pair(g.lanes.begin(), g.lanes.end()); }
@@ -112,9 +114,9 @@ class GraphRouteFinder final : public RouteFinder {
     auto const place = boost::identity_property_map();
     try {
       boost::dijkstra_shortest_paths_no_init(
-          graph_, start, boost::dummy_property_map(), boost::make_iterator_property_map(distance.begin(), place), StepCost(), place,
-          std::less<double>(), boost::closed_plus<double>(infinity), 0.0, Recorder(static_cast<std::uint32_t>(to), last_step),
-          boost::make_iterator_property_map(color.begin(), place));
+          graph_, start, boost::dummy_property_map(), boost::make_iterator_property_map(distance.begin(), place),
+          StepCost(), place, std::less<double>(), boost::closed_plus<double>(infinity), 0.0,
+          Recorder(static_cast<std::uint32_t>(to), last_step), boost::make_iterator_property_map(color.begin(), place));
     } catch (Arrived const&) {
       return route(from, to, last_step);
     }
@@ -127,7 +129,8 @@ class GraphRouteFinder final : public RouteFinder {
   /// Notes by which step each lane is reached best, and stops at the destination.
   class Recorder : public boost::default_dijkstra_visitor {
    public:
-    Recorder(std::uint32_t destination, std::vector<LaneStep>& last_step) : destination_(destination), last_step_(&last_step) {}
+    Recorder(std::uint32_t destination, std::vector<LaneStep>& last_step)
+        : destination_(destination), last_step_(&last_step) {}
     void examine_vertex(std::uint32_t lane, LaneGraph const&) const {
       if (lane == destination_) throw Arrived{};
     }
@@ -140,7 +143,8 @@ class GraphRouteFinder final : public RouteFinder {
 
   void check(LaneId lane, char const* what) const {
     if (index_of(lane) >= lengths_.size())
-      throw MapError("route", std::string("its ") + what + ", lane " + to_string(lane) + ", is not in the map", "see Map::lanes for those it has");
+      throw MapError("route", std::string("its ") + what + ", lane " + to_string(lane) + ", is not in the map",
+                     "see Map::lanes for those it has");
   }
 
   [[nodiscard]] Route route(LaneId from, LaneId to, std::vector<LaneStep> const& last_step) const {
@@ -165,12 +169,12 @@ class GraphRouteFinder final : public RouteFinder {
 
 }  // namespace detail
 
-/// A finder of shortest routes over `lanes` (Dijkstra 1959, by Boost.Graph; O((V + E) log V) a query). Keeps no reference to them.
-/// The number of a lane must be its place in `lanes`.
+/// A finder of shortest routes over `lanes` (Dijkstra 1959, by Boost.Graph; O((V + E) log V) a query). Keeps no
+/// reference to them. The number of a lane must be its place in `lanes`.
 ///
-/// A route costs its length, and 10 m for each change to a neighbouring lane; the first and the last lane count whole. Of routes
-/// with equal costs always the same one is found. No route leads from a drivable lane onto one that is not. `shortest_route`
-/// throws `MapError` for a lane that the map does not have.
+/// A route costs its length, and 10 m for each change to a neighbouring lane; the first and the last lane count whole.
+/// Of routes with equal costs always the same one is found. No route leads from a drivable lane onto one that is not.
+/// `shortest_route` throws `MapError` for a lane that the map does not have.
 [[nodiscard]] inline std::unique_ptr<RouteFinder const> make_route_finder(std::vector<Lane> const& lanes) {
   return std::make_unique<detail::GraphRouteFinder const>(lanes);
 }

@@ -20,7 +20,7 @@ struct ObservedAgent {
   geometry::Shape shape;
 };
 
-/// What one agent sees of its world: a view, as small as a pointer and a number, valid until the world changes. States pass
+/// What one agent sees of its world: a view of a few pointers, valid until the world changes. States pass
 /// through the agent's observer model. It shows states, shapes, the map, neighbours and the agent's own route; never what
 /// the others intend: `predict` asks for a model of that.
 template <class World>
@@ -29,18 +29,19 @@ class ObservedWorld {
   using State = typename World::State;
   using Dynamics = typename World::Dynamics;
 
-  ObservedWorld(World const& world, std::uint32_t slot) : world_(&world), slot_(slot) {}
+  ObservedWorld(World const& world, std::uint32_t slot)
+      : world_(&world), own_(&world.roster().agents[slot]), record_(&world.frame().agents[slot]), slot_(slot) {}
 
   [[nodiscard]] double time() const { return world_->frame().time; }
-  [[nodiscard]] AgentId id() const { return own().id; }
+  [[nodiscard]] AgentId id() const { return own_->id; }
   [[nodiscard]] decltype(auto) state() const { return observed(slot_); }
-  [[nodiscard]] geometry::Shape const& shape() const { return own().shape; }
-  [[nodiscard]] Dynamics const& dynamics() const { return own().dynamics; }
-  [[nodiscard]] Action const& last_action() const { return record(slot_).action; }
+  [[nodiscard]] geometry::Shape const& shape() const { return own_->shape; }
+  [[nodiscard]] Dynamics const& dynamics() const { return own_->dynamics; }
+  [[nodiscard]] Action const& last_action() const { return record_->action; }
   [[nodiscard]] Goal const& goal() const { return world_->roster().goals[slot_]; }
   [[nodiscard]] Map const& map() const { return world_->map(); }
-  [[nodiscard]] map::RoadCorridor const& road() const { return *own().road; }
-  [[nodiscard]] map::LanePosition const& lane_position() const { return record(slot_).lane; }
+  [[nodiscard]] map::RoadCorridor const& road() const { return *own_->road; }
+  [[nodiscard]] map::LanePosition const& lane_position() const { return record_->lane; }
   [[nodiscard]] map::LaneCorridor const& corridor() const { return road().corridors[lane_position().corridor]; }
   [[nodiscard]] std::span<StaticObject const> objects() const { return world_->roster().objects; }
 
@@ -84,19 +85,18 @@ class ObservedWorld {
   }
 
  private:
-  [[nodiscard]] auto const& own() const { return world_->roster().agents[slot_]; }
   [[nodiscard]] auto const& record(std::uint32_t slot) const { return world_->frame().agents[slot]; }
   [[nodiscard]] std::span<TrafficEntry const> objects_on_lanes() const { return world_->roster().object_entries; }
 
   [[nodiscard]] decltype(auto) observed(std::uint32_t slot) const {
     auto const& agent = world_->roster().agents[slot];
-    return own().observer.observe(record(slot).state, slot == slot_, random(static_cast<std::uint32_t>(agent.id)));
+    return own_->observer.observe(record(slot).state, slot == slot_, random(static_cast<std::uint32_t>(agent.id)));
   }
 
   [[nodiscard]] TrafficQuery query(map::LanePosition const& at) const { return {slot_, at.s, shape().front, shape().rear, at.piece}; }
 
   [[nodiscard]] map::LanePosition beside(std::uint16_t number) const {
-    auto const& s = record(slot_).state;
+    auto const& s = record_->state;
     return map::locate(road(), number, {s.x, s.y, s.heading});
   }
 
@@ -115,6 +115,8 @@ class ObservedWorld {
   }
 
   World const* world_;
+  typename World::RosterType::Agent const* own_;
+  typename World::Record const* record_;
   std::uint32_t slot_;
 };
 

@@ -68,8 +68,11 @@ class TrafficIndex {
       for (std::uint32_t i = 0; i < count; ++i) agents_[i].slot = i;
     }
     straddling_.clear();
+    longest_front_ = longest_rear_ = 0.0;
     for (auto& entry : agents_) {
       entry = entry_of(entry.slot);
+      longest_front_ = std::max(longest_front_, entry.front);
+      longest_rear_ = std::max(longest_rear_, entry.rear);
       add_straddling(entry.slot, straddling_);
     }
     sort_nearly_sorted(agents_);
@@ -86,6 +89,7 @@ class TrafficIndex {
     if (!straddling_.empty()) front_on_corridor(straddling_, false, corridor, query, upper(straddling_, key(corridor, query), query.slot), best);
     if (!objects.empty()) front_on_corridor(objects, true, corridor, query, upper(objects, key(corridor, query), 0), best);
     for (auto const& feeder : corridor.feeders) {
+      if (feeder.begin > query.s + std::min(horizon, best.gap + query.front + longest_rear_) && objects.empty()) break;  // nobody there is closer
       if (feeder.begin > query.s + horizon) break;
       if (feeder.end < query.s) continue;
       front_on_feeder(agents_, false, feeder, query, best);
@@ -105,6 +109,7 @@ class TrafficIndex {
     if (!objects.empty()) rear_on_corridor(objects, true, corridor, query, lower(objects, key(corridor, query), 0), best);
     for (auto const& feeder : corridor.feeders) {
       if (feeder.begin > query.s) break;
+      if (feeder.end < query.s - std::min(horizon, best.gap + query.rear + longest_front_) && objects.empty()) continue;  // nobody there is closer
       if (feeder.end < query.s - horizon) continue;
       rear_on_feeder(agents_, false, feeder, query, best);
       if (!straddling_.empty()) rear_on_feeder(straddling_, false, feeder, query, best);
@@ -133,6 +138,19 @@ class TrafficIndex {
     return static_cast<std::size_t>(std::lower_bound(list.begin(), list.end(), TrafficEntry{position, 0, 0, slot}) - list.begin());
   }
 
+  /// First entry at `position` or beyond: a binary search without branches to mispredict.
+  [[nodiscard]] static std::size_t first_at(List list, double position) {
+    TrafficEntry const* base = list.data();
+    std::size_t left = list.size();
+    if (left == 0) return 0;
+    while (left > 1) {
+      std::size_t const half = left / 2;
+      base += base[half - 1].position < position ? half : 0;
+      left -= half;
+    }
+    return static_cast<std::size_t>(base - list.data()) + (base->position < position ? 1 : 0);
+  }
+
   static void offer(TrafficHit& best, std::uint32_t slot, bool is_object, double gap) {
     if (gap < best.gap) best = {slot, is_object, gap};
   }
@@ -148,7 +166,7 @@ class TrafficIndex {
         return;
       }
       if (++p == pieces.size() || pieces[p].begin - query.s > horizon) return;
-      i = lower(list, pieces[p].begin + pieces[p].index_offset, 0);
+      i = first_at(list, pieces[p].begin + pieces[p].index_offset);
     }
   }
 
@@ -171,7 +189,7 @@ class TrafficIndex {
   static void front_on_feeder(List list, bool is_object, map::Feeder const& feeder, TrafficQuery const& query, TrafficHit& best) {
     double const from = query.s <= feeder.begin ? feeder.index_begin : feeder.index_at(query.s);
     // Rounding of the mapping must not lose an entry: start early, then go on to the first that is ahead.
-    for (auto i = lower(list, from - 1e-6, 0); i < list.size() && list[i].position <= feeder.index_end; ++i) {
+    for (auto i = first_at(list, from - 1e-6); i < list.size() && list[i].position <= feeder.index_end; ++i) {
       auto const& entry = list[i];
       if (entry.position < feeder.index_begin || (entry.slot == query.slot && !is_object)) continue;
       double const s = feeder.image(entry.position);
@@ -216,6 +234,7 @@ class TrafficIndex {
   std::vector<TrafficEntry> agents_;
   std::vector<TrafficEntry> straddling_;
   std::vector<std::uint32_t> rank_;
+  double longest_front_ = 0.0, longest_rear_ = 0.0;
 };
 
 }  // namespace cambium

@@ -374,8 +374,7 @@ class World {
     auto const entry_of = [this](std::uint32_t slot) {
       auto const& record = frame_.agents[slot];
       auto const& shape = roster_->agents[slot].shape;
-      double const position = record.status == AgentStatus::driving ? record.lane.s + piece_of(slot).index_offset
-                                                                    : std::numeric_limits<double>::infinity();
+      double const position = record.status == AgentStatus::driving ? record.lane.index : std::numeric_limits<double>::infinity();
       return TrafficEntry{position, shape.front, shape.rear, slot};
     };
     auto const add_straddling = [this](std::uint32_t slot, std::vector<TrafficEntry>& list) {

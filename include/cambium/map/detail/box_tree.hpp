@@ -26,7 +26,8 @@ struct Box {
   [[nodiscard]] Box grown(double by) const { return {min_x - by, min_y - by, max_x + by, max_y + by}; }
 };
 
-/// Place of the cell (x, y), each below 2^16, on Hilbert's curve: cells near to each other are mostly near on the curve.
+/// Place of the cell (x, y), each below 2^16, on Hilbert's curve: cells near to each other are mostly near on the
+/// curve.
 [[nodiscard]] inline std::uint32_t hilbert_index(std::uint32_t x, std::uint32_t y) {
   std::uint32_t index = 0;
   for (std::uint32_t side = 1u << 15; side > 0; side >>= 1) {
@@ -42,8 +43,9 @@ struct Box {
   return index;
 }
 
-/// A static R-tree in flat arrays: boxes in the order of Hilbert's curve, eight to a node, nodes of 128 B level by level
-/// (Kamel, Faloutsos 1993). Corners are kept in float, rounded outwards: a query may visit a box that it misses by that.
+/// A static R-tree in flat arrays: boxes in the order of Hilbert's curve, eight to a node, nodes of 128 B level by
+/// level (Kamel, Faloutsos 1993). Corners are kept in float, rounded outwards: a query may visit a box that it misses
+/// by that.
 class BoxTree {
  public:
   BoxTree() = default;
@@ -68,8 +70,8 @@ class BoxTree {
     } while (children > 1);
   }
 
-  /// Calls `visit(index of the box)` for every box that meets `query`, borders included, until that returns true; says whether
-  /// it did. O(log n) and those found; no allocation.
+  /// Calls `visit(index of the box)` for every box that meets `query`, borders included, until that returns true; says
+  /// whether it did. O(log n) and those found; no allocation.
   template <class Visit>
   bool visit(Box const& query, Visit const& visit) const {
     if (nodes_.empty()) return false;
@@ -83,7 +85,8 @@ class BoxTree {
       auto const& node = nodes_[level_begin_[at.level] + at.index];
       std::array<bool, width> meets;
       for (std::size_t j = 0; j < width; ++j)
-        meets[j] = (node.min_x[j] <= max_x) & (node.max_x[j] >= min_x) & (node.min_y[j] <= max_y) & (node.max_y[j] >= min_y);
+        meets[j] = (int{node.min_x[j] <= max_x} & int{node.max_x[j] >= min_x} & int{node.min_y[j] <= max_y} &
+                    int{node.max_y[j] >= min_y}) != 0;
       for (std::size_t j = 0; j < width; ++j) {
         if (!meets[j]) continue;
         auto const child = static_cast<std::uint32_t>(at.index * width + j);

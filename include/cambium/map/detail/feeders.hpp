@@ -12,8 +12,8 @@
 
 namespace cambium::map::detail {
 
-/// Finds the feeders of a lane corridor whose `pieces` are there already, see `build_road_corridor`. No stretch of a lane gets
-/// two images: what was found first stays, overlaps before lanes behind the begin before lanes that merge in.
+/// Finds the feeders of a lane corridor whose `pieces` are there already, see `build_road_corridor`. No stretch of a
+/// lane gets two images: what was found first stays, overlaps before lanes behind the begin before lanes that merge in.
 class FeederFinder {
  public:
   FeederFinder(Map const& map, LaneCorridor& corridor) : map_(map), corridor_(corridor) {}
@@ -29,9 +29,12 @@ class FeederFinder {
     for (std::size_t i = 0; i < corridor_.pieces.size(); ++i) {
       auto const& piece = corridor_.pieces[i];
       auto const& lane = map_.lane(piece.lane);
-      if (i > 0) add_predecessors(piece.lane, corridor_.pieces[i - 1].lane, map_.options().merge_view, piece.begin, piece.begin, false);
+      if (i > 0)
+        add_predecessors(piece.lane, corridor_.pieces[i - 1].lane, map_.options().merge_view, piece.begin, piece.begin,
+                         false);
       for (auto const& overlap : lane.overlaps)
-        if (overlap.kind == OverlapKind::merge && !holds(overlap.other)) add_upstream_of(overlap, position(piece, overlap.begin));
+        if (overlap.kind == OverlapKind::merge && !holds(overlap.other))
+          add_upstream_of(overlap, position(piece, overlap.begin));
     }
     std::sort(corridor_.feeders.begin(), corridor_.feeders.end(), [](Feeder const& a, Feeder const& b) {
       return std::tie(a.begin, a.lane, a.index_begin) < std::tie(b.begin, b.lane, b.index_begin);
@@ -40,7 +43,8 @@ class FeederFinder {
 
  private:
   [[nodiscard]] bool holds(LaneId lane) const {
-    return std::any_of(corridor_.pieces.begin(), corridor_.pieces.end(), [lane](CorridorPiece const& p) { return p.lane == lane; });
+    return std::any_of(corridor_.pieces.begin(), corridor_.pieces.end(),
+                       [lane](CorridorPiece const& p) { return p.lane == lane; });
   }
 
   /// Corridor position of path position `s` of the piece's lane.
@@ -62,11 +66,13 @@ class FeederFinder {
     auto const& other = map_.lane(overlap.other);
     double const length = std::min(view, overlap.other_begin);
     bool const is_whole = length <= 0.0 || add({other.id, other.index_begin + overlap.other_begin - length,
-                                               other.index_begin + overlap.other_begin, begin - length, begin, begin});
-    if (is_whole && length < view) add_predecessors(other.id, none<LaneId>, view - length, begin - length, begin, false);
+                                                other.index_begin + overlap.other_begin, begin - length, begin, begin});
+    if (is_whole && length < view)
+      add_predecessors(other.id, none<LaneId>, view - length, begin - length, begin, false);
   }
 
-  /// Adds the predecessors of `lane` but `known`, and those behind them, up to `view` [m] back; `end` is the image of the lane's begin.
+  /// Adds the predecessors of `lane` but `known`, and those behind them, up to `view` [m] back; `end` is the image of
+  /// the lane's begin.
   void add_predecessors(LaneId lane, LaneId known, double view, double end, double free_until, bool with_own) {
     for (auto const before : map_.lane(lane).predecessors) {
       auto const& previous = map_.lane(before);
@@ -74,21 +80,27 @@ class FeederFinder {
       double const length = std::min(view, previous.length());
       double const index_end = previous.index_begin + previous.length();
       bool const is_whole = add({before, index_end - length, index_end, end - length, end, free_until});
-      if (is_whole && length < view) add_predecessors(before, none<LaneId>, view - length, end - length, free_until, with_own);
+      if (is_whole && length < view)
+        add_predecessors(before, none<LaneId>, view - length, end - length, free_until, with_own);
     }
   }
 
-  /// Adds the parts of `f` that have no image yet; false where its first part has one: whatever lies behind has been seen to.
+  /// Adds the parts of `f` that have no image yet; false where its first part has one: whatever lies behind has been
+  /// seen to.
   bool add(Feeder const& f) {
     constexpr double shortest = 1e-6;  // [m]
     if (f.index_end - f.index_begin < shortest) return true;
     std::vector<Feeder> taken;
     for (auto const& other : corridor_.feeders)
-      if (other.lane == f.lane && other.index_begin < f.index_end - shortest && other.index_end > f.index_begin + shortest) taken.push_back(other);
-    std::sort(taken.begin(), taken.end(), [](Feeder const& a, Feeder const& b) { return a.index_begin < b.index_begin; });
+      if (other.lane == f.lane && other.index_begin < f.index_end - shortest &&
+          other.index_end > f.index_begin + shortest)
+        taken.push_back(other);
+    std::sort(taken.begin(), taken.end(),
+              [](Feeder const& a, Feeder const& b) { return a.index_begin < b.index_begin; });
     double from = f.index_begin;
     auto const add_part = [&](double to) {
-      if (to - from > shortest) corridor_.feeders.push_back({f.lane, from, to, f.image(from), f.image(to), f.free_until});
+      if (to - from > shortest)
+        corridor_.feeders.push_back({f.lane, from, to, f.image(from), f.image(to), f.free_until});
     };
     for (auto const& other : taken) {
       add_part(other.index_begin);

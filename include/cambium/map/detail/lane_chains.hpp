@@ -25,7 +25,8 @@ namespace cambium::map::detail {
   return std::abs(geometry::angle_difference(there, from.path.pose(from.length()).heading));
 }
 
-/// The one of `lane`'s successors that `allowed` holds for and that turns least; of equal ones that with the smallest id.
+/// The one of `lane`'s successors that `allowed` holds for and that turns least; of equal ones that with the smallest
+/// id.
 template <class Allowed>
 [[nodiscard]] LaneId straightest_successor(Map const& map, Lane const& lane, Allowed const& allowed) {
   LaneId best = none<LaneId>;
@@ -47,14 +48,19 @@ struct RouteStage {
   std::vector<LaneId> route;  ///< those of the route, in its order
 
   [[nodiscard]] bool has(LaneId lane) const { return std::find(lanes.begin(), lanes.end(), lane) != lanes.end(); }
-  [[nodiscard]] bool is_on_route(LaneId lane) const { return std::find(route.begin(), route.end(), lane) != route.end(); }
+  [[nodiscard]] bool is_on_route(LaneId lane) const {
+    return std::find(route.begin(), route.end(), lane) != route.end();
+  }
 };
 
 /// The lanes beside `lane` and itself, from left to right.
 [[nodiscard]] inline std::vector<LaneId> lanes_beside(Map const& map, LaneId lane) {
   std::vector<LaneId> result{lane};
-  auto const is_new = [&](LaneId id) { return is_valid(id) && std::find(result.begin(), result.end(), id) == result.end(); };
-  while (is_new(map.lane(result.front()).left_neighbor)) result.insert(result.begin(), map.lane(result.front()).left_neighbor);
+  auto const is_new = [&](LaneId id) {
+    return is_valid(id) && std::find(result.begin(), result.end(), id) == result.end();
+  };
+  while (is_new(map.lane(result.front()).left_neighbor))
+    result.insert(result.begin(), map.lane(result.front()).left_neighbor);
   while (is_new(map.lane(result.back()).right_neighbor)) result.push_back(map.lane(result.back()).right_neighbor);
   return result;
 }
@@ -100,7 +106,8 @@ struct LaneChain {
   return straightest_successor(map, lane, [&stage](LaneId next) { return stage.has(next); });
 }
 
-/// The chains of a route: each goes on while a successor is in the next stage; a lane that none has come to begins a new one.
+/// The chains of a route: each goes on while a successor is in the next stage; a lane that none has come to begins a
+/// new one.
 [[nodiscard]] inline std::vector<LaneChain> lane_chains(Map const& map, std::span<RouteStage const> stages) {
   std::vector<LaneChain> chains;
   for (std::size_t k = 0; k < stages.size(); ++k) {
@@ -110,7 +117,8 @@ struct LaneChain {
       if (is_valid(next)) chain.lanes.push_back(next);
     }
     for (auto const lane : stages[k].lanes) {
-      bool const is_reached = std::any_of(chains.begin(), chains.end(), [&](LaneChain const& c) { return c.at(k) == lane; });
+      bool const is_reached =
+          std::any_of(chains.begin(), chains.end(), [&](LaneChain const& c) { return c.at(k) == lane; });
       if (!is_reached) chains.push_back({k, {lane}});
     }
   }

@@ -36,13 +36,15 @@ struct LaneChord {
   double elevation{};                     ///< in its middle [m]
 };
 
-/// Appends chords that keep within `tolerance` of the lane's path and are not longer than `longest` [m] (unless a segment is).
+/// Appends chords that keep within `tolerance` of the lane's path and are not longer than `longest` [m] (unless a
+/// segment is).
 inline void add_chords(Lane const& lane, double tolerance, double longest, std::vector<LaneChord>& chords) {
   auto const segments = lane.path.segments();
   auto const scale = (lane.road_end - lane.road_begin) / lane.length();
   for (std::size_t i = 0; i < segments.size();) {
     auto const& first = segments[i];
-    // Directions, as slopes from the first segment's, in which the chord passes all vertices so far within the tolerance.
+    // Directions, as slopes from the first segment's, in which the chord passes all vertices so far within the
+    // tolerance.
     double low = -1.0, high = 1.0, x = first.length, y = 0.0;
     std::size_t j = i;
     for (; j + 1 < segments.size(); ++j) {
@@ -56,17 +58,19 @@ inline void add_chords(Lane const& lane, double tolerance, double longest, std::
       x = next_x;
       y = next_y;
     }
-    double const length = std::hypot(x, y), ux = (first.ux * x - first.uy * y) / length, uy = (first.uy * x + first.ux * y) / length;
+    double const length = std::hypot(x, y), ux = (first.ux * x - first.uy * y) / length,
+                 uy = (first.uy * x + first.ux * y) / length;
     Stretch const on_path{first.s, segments[j].s + segments[j].length};
-    Stretch const on_road = lane.along_road ? Stretch{lane.road_begin + scale * on_path.begin, lane.road_begin + scale * on_path.end}
-                                            : Stretch{lane.road_end - scale * on_path.end, lane.road_end - scale * on_path.begin};
+    Stretch const on_road =
+        lane.along_road ? Stretch{lane.road_begin + scale * on_path.begin, lane.road_begin + scale * on_path.end}
+                        : Stretch{lane.road_end - scale * on_path.end, lane.road_end - scale * on_path.begin};
     chords.push_back({static_cast<std::uint32_t>(lane.id), first.x, first.y, ux, uy, length, on_path, on_road, 0.0});
     i = j + 1;
   }
 }
 
-/// The path positions of `a` that are closer than `clearance` to `b`: what is that close to `b` is convex, a rectangle with two
-/// half discs. Nothing where that is shorter than a micrometre.
+/// The path positions of `a` that are closer than `clearance` to `b`: what is that close to `b` is convex, a rectangle
+/// with two half discs. Nothing where that is shorter than a micrometre.
 [[nodiscard]] inline std::optional<Stretch> stretch_near(LaneChord const& a, LaneChord const& b, double clearance) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   double const dx = a.x - b.x, dy = a.y - b.y;
@@ -97,18 +101,19 @@ inline void add_chords(Lane const& lane, double tolerance, double longest, std::
 }
 
 /// Distance from the place at `s` on `path` to the path of `other`, of which segment `hint` is near [m].
-[[nodiscard]] inline double distance_at(geometry::Line const& path, double s, std::uint32_t& cursor, geometry::Line const& other,
-                                        std::uint32_t& hint) {
+[[nodiscard]] inline double distance_at(geometry::Line const& path, double s, std::uint32_t& cursor,
+                                        geometry::Line const& other, std::uint32_t& hint) {
   auto const foot = other.project(path.pose(s, cursor).position(), hint);
   hint = foot.segment;
   double const past = std::max({-foot.s, foot.s - other.length(), 0.0});
   return past == 0.0 ? std::abs(foot.lateral) : std::hypot(foot.lateral, past);
 }
 
-/// Moves `end`, where `path` comes as near to `other` as `clearance` but for the chords' tolerance, to where it exactly does, within
-/// 2 mm; before it (`forward`) or behind it the path is nearer. Stays where no such place is found within 2 m, and at the path's end.
-[[nodiscard]] inline double refined_end(geometry::Line const& path, double end, bool forward, geometry::Line const& other, double near,
-                                        double clearance) {
+/// Moves `end`, where `path` comes as near to `other` as `clearance` but for the chords' tolerance, to where it exactly
+/// does, within 2 mm; before it (`forward`) or behind it the path is nearer. Stays where no such place is found within
+/// 2 m, and at the path's end.
+[[nodiscard]] inline double refined_end(geometry::Line const& path, double end, bool forward,
+                                        geometry::Line const& other, double near, double clearance) {
   constexpr double at_end = 1e-3;
   if (!forward && end < at_end) return 0.0;
   if (forward && end > path.length() - at_end) return path.length();

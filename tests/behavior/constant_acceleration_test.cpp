@@ -1,0 +1,71 @@
+#include "cambium/behavior/constant_acceleration.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "../world/fixtures.hpp"
+
+using namespace fixtures;
+
+TEST_CASE("a constant acceleration moves as in the closed form") {
+  for (double const a : {-2.0, 0.0, 1.5})
+    for (double const dt : {0.1, 0.2, 2.0}) {
+      auto const motion = cb::ConstantAcceleration{.acceleration = a}.motion(10.0, dt);
+      CHECK(motion.distance == doctest::Approx(10 * dt + a * dt * dt / 2));
+      CHECK(motion.speed == doctest::Approx(10 + a * dt));
+    }
+}
+
+TEST_CASE("a braking vehicle stops after v^2 / 2a and stands from then on") {
+  cb::ConstantAcceleration const braking{.acceleration = -4.0};
+  auto const motion = braking.motion(10.0, 60.0);
+  CHECK(motion.distance == doctest::Approx(12.5));
+  CHECK(motion.speed == 0.0);
+  CHECK(braking.motion(0.0, 5.0).distance == 0.0);
+  CHECK(braking.motion(0.0, 5.0).speed == 0.0);
+}
+
+TEST_CASE("accelerating ends at the highest speed; who is faster keeps his speed") {
+  cb::ConstantAcceleration const model{.acceleration = 2.0, .highest_speed = 20.0};
+  auto const motion = model.motion(16.0, 5.0);  // 2 s to 20 m/s
+  CHECK(motion.speed == 20.0);
+  CHECK(motion.distance == doctest::Approx(36.0 + 60.0));
+  CHECK(model.motion(30.0, 5.0).speed == 30.0);
+  CHECK(model.motion(30.0, 5.0).distance == doctest::Approx(150.0));
+}
+
+TEST_CASE("two halves of a step make the whole, over the kinks too") {
+  for (double const a : {-3.0, -0.4, 0.0, 0.9, 4.0})
+    for (double const speed : {0.0, 0.5, 9.0, 19.5, 25.0}) {
+      cb::ConstantAcceleration const model{.acceleration = a, .highest_speed = 20.0};
+      auto const whole = model.motion(speed, 4.0), first = model.motion(speed, 2.0), second = model.motion(first.speed, 2.0);
+      CHECK(first.distance + second.distance == doctest::Approx(whole.distance));
+      CHECK(second.speed == doctest::Approx(whole.speed));
+      CHECK(whole.distance >= 0.0);
+    }
+}
+
+TEST_CASE("in a world it drives the length it says along its lane, whoever is in the way, and reports its acceleration") {
+  Sim world(straight_road(1, 400, 0.005));
+  auto const id = world.add({.position = {5, -1.75}, .speed = 10, .behavior = cb::ConstantAcceleration{.acceleration = 1.0}});
+  auto const other = world.add({.position = {30, -1.3}, .behavior = cb::ConstantAcceleration{}});
+  double const start = world.record(id).lane.s, lateral = world.record(id).lane.lateral;
+  for (int i = 0; i < 30; ++i) {
+    world.step(0.2);
+    CHECK(world.record(id).action.acceleration == doctest::Approx(1.0));
+  }
+  CHECK(world.record(id).lane.s - start == doctest::Approx(60 + 18).epsilon(1e-6));
+  CHECK(world.record(id).lane.lateral == doctest::Approx(lateral));
+  CHECK(world.state(id).speed == doctest::Approx(16.0));
+  CHECK(world.state(other).x == 30.0);
+}
+
+TEST_CASE("a deceleration that stops within the step is reported as what the step really had") {
+  Sim world(straight_road(1, 400));
+  auto const id = world.add({.position = {5, -1.75}, .speed = 1.0, .behavior = cb::ConstantAcceleration{.acceleration = -4.0}});
+  world.step(0.5);
+  CHECK(world.state(id).speed == 0.0);
+  CHECK(world.state(id).x == doctest::Approx(5.125));
+  CHECK(world.record(id).action.acceleration == doctest::Approx(-2.0));
+}

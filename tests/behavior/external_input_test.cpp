@@ -1,0 +1,121 @@
+#include "cambium/behavior/external_input.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "../world/fixtures.hpp"
+#include "cambium/core/distributions.hpp"
+
+using namespace fixtures;
+using cb::ExternalInput;
+
+namespace {
+
+/// A plane that is all road: steering has room.
+std::shared_ptr<cb::Map const> field() { return straight_road(60, 400); }
+
+cb::AgentId add(Sim& world, double speed, ExternalInput const& behavior = {}) {
+  return world.add({.position = {150, -100}, .heading = 0.0, .speed = speed, .behavior = behavior});
+}
+
+}  // namespace
+
+TEST_CASE("the input stays until another one is set, and steers a circle") {
+  Sim world(field());
+  auto const id = add(world, 8.0);
+  world.memory<ExternalInput>(id) = {0.0, 0.3};
+  for (int i = 0; i < 20; ++i) REQUIRE(world.step(0.2));
+  double const radius = 2.7 / std::tan(0.3), angle = 32.0 / radius;
+  CHECK(world.state(id).x == doctest::Approx(150 + radius * std::sin(angle)).epsilon(1e-6));
+  CHECK(world.state(id).y == doctest::Approx(-100 + radius * (1 - std::cos(angle))).epsilon(1e-6));
+  CHECK(world.state(id).speed == 8.0);
+  CHECK(world.record(id).action == cb::Action{0.0, 0.3});
+  world.memory<ExternalInput>(id) = {};
+  auto const heading = world.state(id).heading;
+  world.step(0.2);
+  CHECK(world.state(id).heading == heading);
+}
+
+TEST_CASE("a copy takes the input along, and another input there is no business of the original") {
+  Sim world(field());
+  auto const id = add(world, 8.0);
+  world.memory<ExternalInput>(id) = {1.0, 0.0};
+  Sim copy = world;
+  copy.memory<ExternalInput>(id).acceleration = -1.0;
+  world.step(1.0);
+  copy.step(1.0);
+  CHECK(world.state(id).speed == doctest::Approx(9.0));
+  CHECK(copy.state(id).speed == doctest::Approx(7.0));
+}
+
+TEST_CASE("more than the vehicle can do is not done, and the action says what was") {
+  Sim world(field());
+  auto const id = add(world, 10.0);
+  cb::SingleTrack const model;
+  world.memory<ExternalInput>(id) = {100.0, -3.0};
+  world.step(0.1);
+  CHECK(world.record(id).action == cb::Action{model.highest_acceleration, -model.steering_limit});
+  CHECK(world.state(id).speed == doctest::Approx(10 + 0.1 * model.highest_acceleration));
+  world.memory<ExternalInput>(id) = {-100.0, 3.0};
+  world.step(0.1);
+  CHECK(world.record(id).action == cb::Action{model.lowest_acceleration, model.steering_limit});
+}
+
+TEST_CASE("a braking vehicle stops where the closed form says, within a step too, and never reverses") {
+  for (double const dt : {0.1, 0.2, 0.3, 3.0}) {
+    Sim world(field());
+    auto const id = add(world, 6.0);
+    world.memory<ExternalInput>(id) = {-4.0, 0.0};
+    for (double t = 0; t < 4.0; t += dt) REQUIRE(world.step(dt));
+    CHECK(world.state(id).speed == 0.0);
+    CHECK(world.state(id).x == doctest::Approx(154.5));
+    auto const state = world.state(id);
+    world.step(dt);
+    CHECK(world.state(id).x == state.x);
+    CHECK(world.state(id).speed == 0.0);
+  }
+}
+
+TEST_CASE("no sequence of inputs makes a vehicle reverse") {
+  cb::RandomStream random(4, 0, 0);
+  Sim world(field());
+  auto const id = add(world, 3.0);
+  for (int i = 0; i < 5000; ++i) {
+    // Numbers with few digits: they often stop exactly at the end of a step.
+    world.memory<ExternalInput>(id).acceleration = 0.5 * (static_cast<double>(cb::uniform_index(random, 17)) - 8.0);
+    REQUIRE(world.step(0.1));
+    CHECK(world.state(id).speed >= 0.0);
+    if (world.state(id).x > 300) world.set_state(id, {.x = 150, .y = -100, .speed = world.state(id).speed});
+  }
+}
+
+TEST_CASE("Euler's scheme and Runge-Kutta's agree for short sub-steps, and differ for long ones") {
+  auto const end = [](ExternalInput const& behavior) {
+    Sim world(field());
+    auto const id = add(world, 8.0, behavior);
+    world.memory<ExternalInput>(id) = {0.5, 0.2};
+    for (int i = 0; i < 8; ++i) world.step(0.5);
+    return world.state(id);
+  };
+  auto const exact = end({.longest_substep = 0.01});
+  auto const distance = [&](ExternalInput const& behavior) {
+    auto const s = end(behavior);
+    return std::hypot(s.x - exact.x, s.y - exact.y);
+  };
+  CHECK(distance({}) < 1e-4);
+  CHECK(distance({.scheme = ExternalInput::Scheme::euler, .longest_substep = 0.5}) > 1.0);
+  CHECK(distance({.scheme = ExternalInput::Scheme::euler, .longest_substep = 0.001}) < 0.02);
+}
+
+TEST_CASE("an input that is no number fails the agent, with its name, and nobody else") {
+  Sim world(field());
+  auto const id = add(world, 8.0);
+  auto const other = world.add({.position = {50, -1.75}, .speed = 5});
+  world.memory<ExternalInput>(id).acceleration = std::numeric_limits<double>::quiet_NaN();
+  auto const result = world.step(0.2);
+  CHECK(result.problem == cb::StepProblem::not_finite);
+  CHECK(result.agent == id);
+  CHECK(world.status(other) == cb::AgentStatus::driving);
+}

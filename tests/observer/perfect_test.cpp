@@ -1,0 +1,137 @@
+#include "cambium/observer/perfect.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <map>
+
+#include "../world/fixtures.hpp"
+#include "cambium/core/distributions.hpp"
+
+using namespace fixtures;
+using cb::AgentId;
+
+namespace {
+
+/// Misjudges the others' places and speeds; knows its own.
+struct Blurred {
+  static constexpr bool perfect = false;
+  double deviation = 0.3;
+
+  template <cb::MotionState S>
+  [[nodiscard]] S observe(S const& truth, bool own, cb::RandomStream random) const {
+    if (own) return truth;
+    cb::Normal const error{0.0, deviation};
+    S seen = truth;
+    seen.x += error(random);
+    seen.y += error(random);
+    seen.speed = std::max(0.0, seen.speed + error(random));
+    return seen;
+  }
+};
+static_assert(cb::ObserverModel<Blurred>);
+
+using Behaviors = cb::BehaviorSet<cb::IdmClassic, cb::ConstantAcceleration>;
+using Noisy = cb::World<Behaviors, cb::InterpolateExecution, cb::SingleTrack, Blurred>;
+using Clear = cb::World<Behaviors, cb::InterpolateExecution, cb::SingleTrack>;
+
+/// One agent in the middle of traffic on two lanes.
+template <class World>
+struct Traffic {
+  World world;
+  AgentId ego;
+
+  explicit Traffic(std::uint64_t seed = 1) : world(straight_road(2, 1000.0), {.seed = seed}) {
+    for (int i = 0; i < 8; ++i) world.add({.position = {100 + 25.0 * i, i % 2 == 0 ? -1.75 : -5.25}, .speed = 8 + 0.5 * i});
+    ego = static_cast<AgentId>(2);
+  }
+};
+
+/// What an agent sees of the others.
+template <class World>
+std::map<AgentId, cb::State> seen_by(World& world, AgentId id) {
+  std::map<AgentId, cb::State> seen;
+  world.observe(id).for_each_other([&](auto const& other) { seen[other.id] = other.state; });
+  return seen;
+}
+
+template <class World>
+double largest_error(World& world, AgentId id) {
+  double largest = 0;
+  for (auto const& [other, state] : seen_by(world, id)) largest = std::max(largest, std::hypot(state.x - world.state(other).x, state.y - world.state(other).y));
+  return largest;
+}
+
+}  // namespace
+
+TEST_CASE("a perfect observer sees the truth itself, not a copy of it") {
+  Traffic<Clear> traffic;
+  auto& world = traffic.world;
+  CHECK(&world.observe(traffic.ego).state() == &world.state(traffic.ego));
+  auto const seen = seen_by(world, traffic.ego);
+  CHECK(seen.size() == 7);
+  for (auto const& [id, state] : seen) CHECK(state == world.state(id));
+}
+
+TEST_CASE("a view shows the others as the agent's observer has them, the agent itself as it is, and leaves the truth alone") {
+  Traffic<Noisy> traffic;
+  auto& world = traffic.world;
+  auto const truth = world.frame();
+  auto const seen = seen_by(world, traffic.ego);
+  CHECK(seen.size() == 7);
+  for (auto const& [id, state] : seen) {
+    CHECK(state != world.state(id));
+    CHECK(std::hypot(state.x - world.state(id).x, state.y - world.state(id).y) < 2.0);
+  }
+  CHECK(world.observe(traffic.ego).state() == world.state(traffic.ego));
+  CHECK(world.frame() == truth);
+  auto const front = world.observe(traffic.ego).front();
+  REQUIRE(front.has_value());
+  CHECK(front->speed == seen.at(front->agent).speed);
+}
+
+TEST_CASE("errors are an agent's own: the same when it looks again, others for another agent, another step and another seed") {
+  Traffic<Noisy> traffic, other_seed(2);
+  auto& world = traffic.world;
+  auto const first = seen_by(world, traffic.ego);
+  CHECK(seen_by(world, traffic.ego) == first);
+  Noisy copy = world;
+  CHECK(seen_by(copy, traffic.ego) == first);
+  CHECK(seen_by(other_seed.world, traffic.ego) != first);
+  AgentId const another = static_cast<AgentId>(5), both_see = static_cast<AgentId>(0);
+  CHECK(seen_by(world, another).at(both_see) != first.at(both_see));
+  world.step(0.2);
+  auto const before = first.at(both_see).x - 100.0, after = seen_by(world, traffic.ego).at(both_see).x - world.state(both_see).x;
+  CHECK(before != doctest::Approx(after));
+}
+
+TEST_CASE("a prediction begins with what the agent sees, and goes on without errors") {
+  Traffic<Noisy> traffic;
+  auto& world = traffic.world;
+  auto const seen = seen_by(world, traffic.ego);
+  auto future = world.observe(traffic.ego).predict(cb::predict_all_as<Behaviors>(cb::ConstantAcceleration{}));
+  CHECK(future.state(traffic.ego) == world.state(traffic.ego));
+  for (auto const& [id, state] : seen) {
+    CHECK(future.state(id) == state);
+    auto const& at = future.record(id).lane;
+    CHECK(at.s == doctest::Approx(state.x));
+    CHECK(at.lateral == doctest::Approx(state.y - (at.corridor == 0 ? -1.75 : -5.25)));
+  }
+  CHECK(largest_error(future, traffic.ego) == 0.0);
+  future.step(0.5);
+  for (auto const& [id, state] : seen) CHECK(future.state(id).x == doctest::Approx(state.x + 0.5 * state.speed));
+}
+
+TEST_CASE("each agent of a world has an observer of its own") {
+  Noisy world(straight_road(2, 1000.0), {.seed = 3});
+  auto const sharp = world.add({.position = {100, -1.75}, .observer = {.deviation = 0.0}});
+  auto const blurred = world.add({.position = {150, -1.75}, .observer = {.deviation = 1.0}});
+  CHECK(seen_by(world, sharp).at(blurred) == world.state(blurred));
+  CHECK(seen_by(world, blurred).at(sharp) != world.state(sharp));
+}
+
+TEST_CASE("traffic of blurred eyes drives on") {
+  Traffic<Noisy> traffic;
+  for (int i = 0; i < 50; ++i) CHECK(traffic.world.step(0.2));
+  for (auto const& record : traffic.world.frame().agents) CHECK(record.status == cb::AgentStatus::driving);
+}

@@ -1,0 +1,124 @@
+// IDM on a single lane from safe gaps does not collide: a property, over thousands of sampled scenarios.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "../world/fixtures.hpp"
+#include "cambium/core/distributions.hpp"
+#include "cambium/evaluation/collision.hpp"
+#include "cambium/scenario/lane_traffic.hpp"
+
+using namespace fixtures;
+
+namespace {
+
+/// What the first vehicle meets.
+enum class Ahead {
+  free_road,
+  brakes,    ///< it brakes to standstill itself, as hard as IDM would at most
+  obstacle,  ///< something stands in its lane, far enough to stop comfortably
+};
+
+struct Course {
+  int vehicles = 0;
+  bool collided = false, reversed = false, invalid = false;
+  double standing = 0.0;  ///< part of the vehicles at the end
+  double hardest = 0.0;   ///< braking [m/s^2]
+};
+
+double between(double low, double high, cb::RandomStream& random) { return low + (high - low) * cb::uniform01(random); }
+
+/// Sampled traffic of about 8 vehicles on the only lane of `empty`.
+std::vector<cb::LaneVehicle> sample_traffic(cb::RandomStream& random) {
+  cb::LaneTraffic traffic;
+  traffic.begin = 20.0;
+  traffic.end = 270.0;
+  // From town to country road, from dense to loose.
+  double const free_speed = between(8.0, 30.0, random);
+  traffic.lowest_speed = between(0.0, 0.8, random) * free_speed;
+  traffic.highest_speed = free_speed;
+  traffic.lowest_desired_speed = 0.85 * free_speed;
+  traffic.highest_desired_speed = 1.15 * free_speed;
+  traffic.shortest_headway = 0.8;
+  traffic.longest_headway = between(0.8, 2.5, random);
+  return traffic.sample(random);
+}
+
+/// Puts an obstacle across the lane at `s`.
+void block(Sim& world, cb::map::LaneCorridor const& corridor, double s) {
+  auto const pose = corridor.center.pose(s);
+  world.add_object(cb::geometry::polygon_of(cb::geometry::box_of(cb::geometry::Shape{1.0, 0.0, 1.0, 1.0}, pose)));
+}
+
+Sim sample(Sim const& empty, cb::map::LaneCorridor const& corridor, Ahead ahead, cb::RandomStream& random) {
+  Sim world = empty;
+  auto const vehicles = sample_traffic(random);
+  for (std::size_t i = 0; i < vehicles.size(); ++i) {
+    auto const& v = vehicles[i];
+    auto const pose = corridor.center.pose(v.s);
+    Sim::AgentSpec spec{.position = pose.position(), .heading = pose.heading, .speed = v.speed, .shape = v.shape, .behavior = v.driver};
+    if (i == 0 && ahead == Ahead::brakes) spec.behavior = cb::ConstantAcceleration{.acceleration = between(v.driver.lowest_acceleration, -0.5, random)};
+    if (i == 0 && ahead == Ahead::obstacle)
+      block(world, corridor, v.s + v.shape.front + cb::LaneTraffic::safe_gap(v.driver, v.speed, 0.0, between(0.8, 3.0, random)));
+    world.add(spec);
+  }
+  return world;
+}
+
+Course drive(Sim world, double dt) {
+  constexpr double horizon = 15.0;  // [s]
+  Course course;
+  course.vehicles = static_cast<int>(world.size());
+  for (int i = 0; i * dt < horizon; ++i) {
+    course.invalid = course.invalid || !world.step(dt);
+    course.collided = course.collided || cb::CollisionAny{}.evaluate(world).any_collision;
+    for (auto const& record : world.frame().agents) {
+      course.reversed = course.reversed || record.state.speed < 0.0;
+      course.hardest = std::min(course.hardest, record.action.acceleration);
+    }
+  }
+  for (auto const& record : world.frame().agents) course.standing += (record.state.speed < 0.1) / static_cast<double>(world.size());
+  return course;
+}
+
+/// Drives `scenarios` of them on one road, and reports.
+void check_safe(double curvature, Ahead ahead, std::uint32_t scenarios, std::uint64_t seed) {
+  Sim empty(straight_road(1, 1000.0, curvature));
+  empty.remove(empty.add({.position = {0.5, -1.75}}));  // its road is known from now on, and need not be built for each scenario
+  auto const& road = *empty.roster().corridors.begin()->second;
+  int vehicles = 0;
+  double standing = 0.0, hardest = 0.0;
+  for (std::uint32_t number = 0; number < scenarios; ++number) {
+    cb::RandomStream random(seed, number, 0);
+    double const dt = 0.1 * (1 + cb::uniform_index(random, 5));
+    auto const course = drive(sample(empty, road.corridors[road.main], ahead, random), dt);
+    CAPTURE(number);
+    CAPTURE(dt);
+    CHECK_FALSE(course.collided);
+    CHECK_FALSE(course.reversed);
+    CHECK_FALSE(course.invalid);
+    vehicles += course.vehicles;
+    standing += course.standing;
+    hardest = std::min(hardest, course.hardest);
+  }
+  MESSAGE(scenarios << " scenarios of " << vehicles / static_cast<double>(scenarios) << " vehicles, at the end " << 100 * standing / scenarios
+                    << " % stand; hardest braking " << -hardest << " m/s^2");
+  CHECK(vehicles > 5 * static_cast<int>(scenarios));
+}
+
+}  // namespace
+
+TEST_CASE("IDM from safe gaps does not collide on a free lane") { check_safe(0.0, Ahead::free_road, 2500, 1); }
+
+TEST_CASE("IDM from safe gaps does not collide behind a leader that brakes to standstill") { check_safe(0.0, Ahead::brakes, 3000, 2); }
+
+TEST_CASE("IDM from safe gaps does not collide where something stands ahead") { check_safe(0.0, Ahead::obstacle, 2500, 3); }
+
+TEST_CASE("IDM from safe gaps does not collide in bends") {
+  check_safe(0.003, Ahead::free_road, 600, 4);
+  check_safe(-0.003, Ahead::brakes, 800, 5);
+  check_safe(0.003, Ahead::obstacle, 600, 6);
+}
