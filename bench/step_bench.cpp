@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -14,10 +13,10 @@
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/evaluation/evaluators.hpp"
 #include "cambium/execution/interpolate.hpp"
-#include "cambium/map/opendrive.hpp"
 #include "cambium/scenario/lane_traffic.hpp"
 #include "cambium/world/world.hpp"
 
+#include "support/maps.hpp"
 #include "yardstick/main.hpp"
 #include "yardstick/register.hpp"
 
@@ -29,29 +28,6 @@ using Sim = cb::World<cb::BehaviorSet<cb::IdmClassic, cb::ConstantAcceleration>,
 
 constexpr double dt = 0.2;          // [s]
 constexpr int steps_per_run = 50;   // then the world is set back, so that traffic stays what it was
-
-/// A winding three-lane carriageway of at least `length` metres.
-std::shared_ptr<cb::Map const> winding_road(double length) {
-  constexpr double piece = 400.0, curvature = 1.0 / 700.0;
-  int const pieces = static_cast<int>(std::ceil(length / piece));
-  std::ostringstream xml;
-  xml.precision(17);
-  xml << "<OpenDRIVE><header revMajor=\"1\" revMinor=\"6\"/><road id=\"1\" junction=\"-1\" length=\"" << pieces * piece << "\"><planView>";
-  double x = 0, y = 0, heading = -piece * curvature / 2;
-  for (int i = 0; i < pieces; ++i) {
-    double const k = i % 2 == 0 ? curvature : -curvature;
-    xml << "<geometry s=\"" << i * piece << "\" x=\"" << x << "\" y=\"" << y << "\" hdg=\"" << heading << "\" length=\"" << piece
-        << "\"><arc curvature=\"" << k << "\"/></geometry>";
-    double const next = heading + k * piece;
-    x += (std::sin(next) - std::sin(heading)) / k;
-    y -= (std::cos(next) - std::cos(heading)) / k;
-    heading = next;
-  }
-  xml << "</planView><lanes><laneSection s=\"0\"><center><lane id=\"0\" type=\"none\"/></center><right>";
-  for (int lane = 1; lane <= 3; ++lane) xml << "<lane id=\"-" << lane << "\" type=\"driving\"><width sOffset=\"0\" a=\"3.5\" b=\"0\" c=\"0\" d=\"0\"/></lane>";
-  xml << "</right></laneSection></lanes></road></OpenDRIVE>";
-  return cb::parse_opendrive(xml.str()).map;
-}
 
 /// Puts `agents` vehicles on the lane corridors of the map's entrances, densely, the first ones first.
 void fill(Sim& world, std::size_t agents, double end) {
@@ -84,13 +60,13 @@ void fill(Sim& world, std::size_t agents, double end) {
 }
 
 std::shared_ptr<cb::Map const> merging_map() {
-  static auto const map = cb::load_opendrive(CAMBIUM_SOURCE_DIR "/maps/merging.xodr").map;
+  static auto const map = support::load_map(CAMBIUM_SOURCE_DIR "/maps/merging.xodr");
   return map;
 }
 
 Sim highway_world(std::size_t agents) {
   double const length = 60.0 * static_cast<double>(agents) / 3.0 + 300.0;
-  Sim world(winding_road(length + 800.0), {.seed = 1});
+  Sim world(support::winding_road(length + 800.0), {.seed = 1});
   fill(world, agents, length);
   return world;
 }
@@ -160,10 +136,7 @@ void register_rollout() {
 
 void register_load() {
   yardstick::add("load/merging", [](benchmark::State& state) {
-    std::size_t lanes = 0;
-    for (auto _ : state) lanes += cb::load_opendrive(CAMBIUM_SOURCE_DIR "/maps/merging.xodr").map->lanes().size();
-    benchmark::DoNotOptimize(lanes);
-    state.counters["ms"] = {static_cast<double>(state.iterations()) / 1e3, benchmark::Counter::kIsRate | benchmark::Counter::kInvert};
+    yardstick::measure_duration(state, [] { benchmark::DoNotOptimize(support::load_map(CAMBIUM_SOURCE_DIR "/maps/merging.xodr").get()); });
   });
 }
 

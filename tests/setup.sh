@@ -38,6 +38,7 @@ have_package() {
     libeigen3-dev) have_header eigen3/Eigen/Core Eigen/Core ;;
     libboost-dev) have_header boost/version.hpp ;;
     libpugixml-dev) have_header pugixml.hpp ;;
+    nlohmann-json3-dev) have_header nlohmann/json.hpp ;;
     doctest-dev) have_header doctest/doctest.h ;;
     libbenchmark-dev) have_header benchmark/benchmark.h ;;
     *) have "$1" ;;

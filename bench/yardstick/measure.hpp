@@ -18,6 +18,7 @@ namespace yardstick {
 inline constexpr char const* per_agent_step = "ns_per_agent_step";
 inline constexpr char const* per_copy = "ns_per_copy";
 inline constexpr char const* rate = "per_second";
+inline constexpr char const* milliseconds = "ms";
 inline constexpr char const* allocation_counter = "allocations";
 
 /// Registers `function` (void(benchmark::State&)) as `name`, which stays plain in the output; adds the minimum and
@@ -62,6 +63,13 @@ template <class Copy>
 void measure_copy(benchmark::State& state, Copy&& copy) {
   detail::run_counted(state, std::forward<Copy>(copy));
   state.counters[per_copy] = detail::nanoseconds(state, 1.0);
+}
+
+/// Measures `action`, say reading a file: counters ms and allocations (per action).
+template <class Action>
+void measure_duration(benchmark::State& state, Action&& action) {
+  detail::run_counted(state, std::forward<Action>(action));
+  state.counters[milliseconds] = {static_cast<double>(state.iterations()) * 1e-3, benchmark::Counter::kIsRate | benchmark::Counter::kInvert};
 }
 
 /// Measures `action`, say one roll-out: counters per_second and allocations (per action).

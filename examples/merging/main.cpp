@@ -23,10 +23,10 @@
 #include "cambium/evaluation/drivable_area.hpp"
 #include "cambium/evaluation/evaluators.hpp"
 #include "cambium/evaluation/goal_reached.hpp"
-#include "cambium/map/opendrive.hpp"
 #include "cambium/viewer/html_replay.hpp"
 #include "cambium/viewer/record_world.hpp"
 
+#include "../common/map_file.hpp"
 #include "../common/options.hpp"
 #include "scenario.hpp"
 
@@ -240,10 +240,7 @@ int run(int argc, char** argv) {
   options.number("--trajectories", "N", settings.trajectories, 0, 10'000'000, "scenarios whose trajectories are written, besides the replayed one");
   if (!options.parse(argc, argv)) return 0;
 
-  auto const loaded = cb::load_opendrive(settings.map_file);
-  for (auto const& d : loaded.diagnostics)
-    if (d.severity != cb::Severity::info) std::cerr << to_string(d) << "\n";
-  auto const site = merging::find_site(loaded.map, settings.map_file);
+  auto const site = merging::find_site(examples::load_map(settings.map_file), settings.map_file);
   std::filesystem::path const out(settings.out);
   std::error_code error;
   std::filesystem::create_directories(out, error);

@@ -101,12 +101,13 @@ struct Scenario {
   return true;
 }
 
-/// Dense traffic from every entrance up to its merge. The ego is the foremost vehicle of the ramp with traffic around it: the one in
-/// the middle. Its goal is the lane behind the merge.
-[[nodiscard]] inline Scenario sample_scenario(Site const& site, std::uint64_t seed, std::uint32_t number) {
-  Scenario scenario{Simulation(site.map, {.seed = seed}), {}, {}};
-  cambium::RandomStream random(seed, number, 0);
-  for (std::size_t i = 0; i < site.entrances.size(); ++i) {
+/// Dense traffic from every entrance up to its merge. The ego is the vehicle in the middle of those on the ramp; its goal is the lane
+/// behind the merge. `attempt` numbers the draws of one scenario.
+[[nodiscard]] inline Scenario draw_scenario(Site const& site, std::uint64_t seed, std::uint32_t number, std::uint32_t attempt) {
+  Scenario scenario{Simulation(site.map, {.seed = seed}), cambium::none<cambium::AgentId>, {}};
+  cambium::RandomStream random(seed, number, attempt);
+  for (std::size_t k = 0; k < site.entrances.size(); ++k) {
+    auto const i = (site.ramp + k) % site.entrances.size();  // the ramp first: somebody has to merge
     auto const& entrance = site.entrances[i];
     double const end = std::min(entrance.merge_at, entrance.length - 20.0);
     cambium::LaneTraffic traffic;
@@ -133,6 +134,15 @@ struct Scenario {
   }
   if (!scenario.merging.empty()) scenario.ego = scenario.merging[scenario.merging.size() / 2];
   return scenario;
+}
+
+/// The first draw in which somebody merges among others. Throws `WorldError` where there is none: the map has no room before its merge.
+[[nodiscard]] inline Scenario sample_scenario(Site const& site, std::uint64_t seed, std::uint32_t number) {
+  for (std::uint32_t attempt = 0; attempt < 100; ++attempt) {
+    auto scenario = draw_scenario(site, seed, number, attempt);
+    if (is_valid(scenario.ego) && scenario.world.size() > scenario.merging.size()) return scenario;
+  }
+  throw cambium::WorldError("scenario " + std::to_string(number), "no traffic fits on the map before its merge", "give a map with longer lanes there");
 }
 
 }  // namespace merging

@@ -87,7 +87,7 @@ struct Smoothstep {
     }
   }
   constexpr double shortest = 30.0;  // [m] a swing shorter than this is no longer comfortable
-  double const length = std::abs(end.s - begin);
+  double const length = 1.3 * std::abs(end.s - begin);  // begins a little before the lane narrows: long vehicles need the room
   double const swing = length == 0.0 ? longest : std::clamp(length, shortest, std::max(shortest, longest));
   double const available = std::abs(end.s - begin_of_lane);
   return along_road ? end.s - std::min(swing, available) : end.s + std::min(swing, available);
