@@ -53,7 +53,8 @@ TEST_CASE("a set knows its members") {
   static_assert(Set::contains<Plain> && Set::contains<Counter<3>> && !Set::contains<Counter<4>>);
   static_assert(cb::is_behavior_set<Set> && !cb::is_behavior_set<Plain> && !cb::is_behavior_set<std::variant<Plain>>);
   static_assert(std::is_same_v<Set::Any, std::variant<Counter<1>, Plain, Counter<2>, Counter<3>>>);
-  static_assert(std::is_same_v<cb::MemoryOf<Plain>, cb::NoMemory> && std::is_same_v<cb::MemoryOf<Counter<1>>, Counter<1>::Memory>);
+  static_assert(std::is_same_v<cb::MemoryOf<Plain>, cb::NoMemory> &&
+                std::is_same_v<cb::MemoryOf<Counter<1>>, Counter<1>::Memory>);
   CHECK(true);
 }
 
@@ -62,7 +63,7 @@ TEST_CASE("each member plans with its own parameters and its own memory") {
   double const actions[] = {1.1, 0.0, 2.2, 3.3};
   for (std::size_t i = 0; i < 4; ++i) {
     auto memory = Set::initial_memory(members[i]);
-    CHECK(memory.index() == i);
+    REQUIRE(memory.index() == i);
     auto const plan = Set::plan(members[i], View{}, memory, 0.5);
     CHECK(plan.action.acceleration == doctest::Approx(actions[i]));
     CHECK(memory.index() == i);

@@ -39,16 +39,19 @@ TEST_CASE("two halves of a step make the whole, over the kinks too") {
   for (double const a : {-3.0, -0.4, 0.0, 0.9, 4.0})
     for (double const speed : {0.0, 0.5, 9.0, 19.5, 25.0}) {
       cb::ConstantAcceleration const model{.acceleration = a, .highest_speed = 20.0};
-      auto const whole = model.motion(speed, 4.0), first = model.motion(speed, 2.0), second = model.motion(first.speed, 2.0);
+      auto const whole = model.motion(speed, 4.0), first = model.motion(speed, 2.0),
+                 second = model.motion(first.speed, 2.0);
       CHECK(first.distance + second.distance == doctest::Approx(whole.distance));
       CHECK(second.speed == doctest::Approx(whole.speed));
       CHECK(whole.distance >= 0.0);
     }
 }
 
-TEST_CASE("in a world it drives the length it says along its lane, whoever is in the way, and reports its acceleration") {
+TEST_CASE(
+    "in a world it drives the length it says along its lane, whoever is in the way, and reports its acceleration") {
   Sim world(straight_road(1, 400, 0.005));
-  auto const id = world.add({.position = {5, -1.75}, .speed = 10, .behavior = cb::ConstantAcceleration{.acceleration = 1.0}});
+  auto const id =
+      world.add({.position = {5, -1.75}, .speed = 10, .behavior = cb::ConstantAcceleration{.acceleration = 1.0}});
   auto const other = world.add({.position = {30, -1.3}, .behavior = cb::ConstantAcceleration{}});
   double const start = world.record(id).lane.s, lateral = world.record(id).lane.lateral;
   for (int i = 0; i < 30; ++i) {
@@ -63,7 +66,8 @@ TEST_CASE("in a world it drives the length it says along its lane, whoever is in
 
 TEST_CASE("a deceleration that stops within the step is reported as what the step really had") {
   Sim world(straight_road(1, 400));
-  auto const id = world.add({.position = {5, -1.75}, .speed = 1.0, .behavior = cb::ConstantAcceleration{.acceleration = -4.0}});
+  auto const id =
+      world.add({.position = {5, -1.75}, .speed = 1.0, .behavior = cb::ConstantAcceleration{.acceleration = -4.0}});
   world.step(0.5);
   CHECK(world.state(id).speed == 0.0);
   CHECK(world.state(id).x == doctest::Approx(5.125));

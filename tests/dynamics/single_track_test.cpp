@@ -12,8 +12,8 @@ namespace cb = cambium;
 
 namespace {
 
-/// Where a vehicle is after `t` s that starts at the origin along +x and holds its steering and its acceleration: on a circle,
-/// as far along it as it has driven.
+/// Where a vehicle is after `t` s that starts at the origin along +x and holds its steering and its acceleration: on a
+/// circle, as far along it as it has driven.
 cb::State on_circle(cb::SingleTrack const& model, cb::SingleTrack::Input const& u, double speed, double t) {
   double const radius = model.wheel_base / std::tan(u.steering);
   double const driven = speed * t + u.acceleration * t * t / 2, angle = driven / radius;
@@ -28,7 +28,8 @@ double error(Scheme scheme, int steps) {
   cb::SingleTrack::Input const u{1.5, 0.2};
   double const duration = 4.0, dt = duration / steps;
   cb::State x{.speed = 6.0};
-  for (int i = 0; i < steps; ++i) x = scheme == Scheme::euler ? cb::euler_step(model, x, u, dt) : cb::rk4_step(model, x, u, dt);
+  for (int i = 0; i < steps; ++i)
+    x = scheme == Scheme::euler ? cb::euler_step(model, x, u, dt) : cb::rk4_step(model, x, u, dt);
   auto const exact = on_circle(model, u, 6.0, duration);
   return std::hypot(x.x - exact.x, x.y - exact.y);
 }
@@ -67,7 +68,8 @@ TEST_CASE("Euler's scheme is of order 1, Runge-Kutta's of order 4") {
     CHECK(measured_order(Scheme::euler, steps) == doctest::Approx(1.0).epsilon(0.05));
     CHECK(measured_order(Scheme::rk4, steps) == doctest::Approx(4.0).epsilon(0.05));
   }
-  MESSAGE("after 4 s in steps of 0.1 s: Euler is " << error(Scheme::euler, 40) << " m off, Runge-Kutta " << error(Scheme::rk4, 40) << " m");
+  MESSAGE("after 4 s in steps of 0.1 s: Euler is " << error(Scheme::euler, 40) << " m off, Runge-Kutta "
+                                                   << error(Scheme::rk4, 40) << " m");
   CHECK(error(Scheme::rk4, 40) < 1e-3);
 }
 
@@ -87,5 +89,6 @@ TEST_CASE("inputs are brought within what the vehicle can do") {
 }
 
 TEST_CASE("a vehicle without wheel base is refused by name") {
-  CHECK_THROWS_WITH_AS(cb::check_parameters(cb::SingleTrack{.wheel_base = 0.0}), doctest::Contains("wheel_base"), cb::ParameterError);
+  CHECK_THROWS_WITH_AS(cb::check_parameters(cb::SingleTrack{.wheel_base = 0.0}), doctest::Contains("wheel_base"),
+                       cb::ParameterError);
 }

@@ -37,7 +37,8 @@ Sim random_world(std::shared_ptr<cb::Map const> const& map, Scene const& scene, 
   auto roster = std::make_shared<Sim::RosterType>();
   Sim::FrameType frame;
   cb::geometry::Pose const area{between(-1e4, 1e4, random), between(-1e4, 1e4, random), scene.heading};
-  cb::geometry::Shape const shapes[] = {cb::geometry::car(), cb::geometry::truck(), cb::geometry::pedestrian(), {2.0, 0.2, 1.5, 0.1}};
+  cb::geometry::Shape const shapes[] = {
+      cb::geometry::car(), cb::geometry::truck(), cb::geometry::pedestrian(), {2.0, 0.2, 1.5, 0.1}};
   for (std::uint32_t i = 0; i < scene.agents; ++i) {
     Sim::RosterType::Agent agent{};
     agent.id = static_cast<AgentId>(3 * i + 1);
@@ -90,7 +91,8 @@ bool brute_any(Sim const& world) {
 /// True when the pair that is named does touch.
 bool is_true_pair(Sim const& world, cb::CollisionAny::Result const& found) {
   auto const first = world.slot_of(found.collision_first);
-  return cb::is_valid(found.collision_second) ? touch(world, first, world.slot_of(found.collision_second)) : touches_object(world, first);
+  return cb::is_valid(found.collision_second) ? touch(world, first, world.slot_of(found.collision_second))
+                                              : touches_object(world, first);
 }
 
 /// Compares both evaluators with the twin on `frames` frames; returns in how many something touches.

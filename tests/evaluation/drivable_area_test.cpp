@@ -29,8 +29,8 @@ double beyond(cb::Map const& map, Point const& p) {
 
 /// What the twin says of an agent.
 struct Twin {
-  bool off = false;         ///< a corner or the middle of a side is beyond the road
-  double farthest = 0.0;    ///< any point of the border [m]
+  bool off = false;       ///< a corner or the middle of a side is beyond the road
+  double farthest = 0.0;  ///< any point of the border [m]
 };
 
 Twin look(Sim const& world, cb::AgentId id) {
@@ -51,8 +51,9 @@ struct Count {
   int off = 0, on = 0;
 };
 
-/// Puts an agent on the lanes of a map at random, straight or slanting, near the middle or over the border, but away from the ends
-/// of the road, and compares. Who drives along the road and is not off it reaches `overlooked` m beyond it at most.
+/// Puts an agent on the lanes of a map at random, straight or slanting, near the middle or over the border, but away
+/// from the ends of the road, and compares. Who drives along the road and is not off it reaches `overlooked` m beyond
+/// it at most.
 Count compare(std::shared_ptr<cb::Map const> const& map, std::uint32_t places, double overlooked) {
   Count count;
   cb::RandomStream random(5, 0, 0);
@@ -64,7 +65,8 @@ Count compare(std::shared_ptr<cb::Map const> const& map, std::uint32_t places, d
     for (std::uint32_t k = 0; k < places; ++k) {
       auto const pose = lane.path.pose(between(12, lane.length() - 12, random));
       bool const along = k % 2 == 0;
-      double const aside = between(-3.0, 3.0, random), turn = along ? between(-0.05, 0.05, random) : between(-1.6, 1.6, random);
+      double const aside = between(-3.0, 3.0, random),
+                   turn = along ? between(-0.05, 0.05, random) : between(-1.6, 1.6, random);
       auto const at = cb::geometry::to_map(pose, {0.0, aside});
       world.set_state(id, {.x = at.x(), .y = at.y(), .heading = pose.heading + turn, .speed = 5});
       bool const off = cb::DrivableArea{id}.evaluate(world).off_road;
@@ -84,8 +86,10 @@ Count compare(std::shared_ptr<cb::Map const> const& map, std::uint32_t places, d
 }  // namespace
 
 TEST_CASE("off the road is who reaches beyond the drivable lanes, as a brute-force twin finds") {
-  // Where a ramp parts from the road, the tip of what is between them fits between two of the points that are looked at.
-  for (auto const& [name, overlooked] : {std::pair<std::string, double>{"highway.xodr", 0.1}, {"lane_drop.xodr", 0.1}, {"merging.xodr", 0.5}}) {
+  // Where a ramp parts from the road, the tip of what is between them fits between two of the points that are looked
+  // at.
+  for (auto const& [name, overlooked] :
+       {std::pair<std::string, double>{"highway.xodr", 0.1}, {"lane_drop.xodr", 0.1}, {"merging.xodr", 0.5}}) {
     auto const count = compare(own_map(name), 200, overlooked);
     MESSAGE(name << ": " << count.off << " off the road, " << count.on << " on it");
     CHECK(count.off > 100);

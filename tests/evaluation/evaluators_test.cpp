@@ -42,9 +42,13 @@ struct SlowestSpeed {
 TEST_CASE("several evaluators give one struct whose fields are named as in each") {
   Sim world(straight_road(2, 300));
   auto const lane = world.map().find_lane("1", 0, -1);
-  auto const ego = world.add({.position = {40, -1.75}, .speed = 10, .behavior = cb::ConstantAcceleration{}, .goal = cb::ReachLane{lane, 55.0}});
+  auto const ego = world.add({.position = {40, -1.75},
+                              .speed = 10,
+                              .behavior = cb::ConstantAcceleration{},
+                              .goal = cb::ReachLane{lane, 55.0}});
   auto const other = world.add({.position = {70, -1.75}, .speed = 2, .behavior = cb::ConstantAcceleration{}});
-  cb::Evaluators const judge(cb::CollisionAny{}, cb::CollisionEgo{ego}, cb::GoalReached{ego}, cb::DrivableArea{ego}, cb::StepCount{20}, SlowestSpeed{});
+  cb::Evaluators const judge(cb::CollisionAny{}, cb::CollisionEgo{ego}, cb::GoalReached{ego}, cb::DrivableArea{ego},
+                             cb::StepCount{20}, SlowestSpeed{});
   int collisions = 0, goals = 0, time_outs = 0;
   for (int i = 0; i < 30; ++i) {
     world.step(0.2);

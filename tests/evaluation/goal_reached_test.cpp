@@ -9,7 +9,10 @@ using namespace fixtures;
 TEST_CASE("a goal is reached by the agent that has it, while it is there") {
   Sim world(straight_road(1, 300));
   auto const lane = world.map().find_lane("1", 0, -1);
-  auto const ego = world.add({.position = {40, -1.75}, .speed = 10, .behavior = cb::ConstantAcceleration{}, .goal = cb::ReachLane{lane, 50.0, 70.0}});
+  auto const ego = world.add({.position = {40, -1.75},
+                              .speed = 10,
+                              .behavior = cb::ConstantAcceleration{},
+                              .goal = cb::ReachLane{lane, 50.0, 70.0}});
   auto const other = world.add({.position = {60, -1.75}, .speed = 10, .behavior = cb::ConstantAcceleration{}});
   cb::GoalReached const reached{ego};
   CHECK_FALSE(reached.evaluate(world).goal_reached);

@@ -47,7 +47,8 @@ class Program {
     auto const out = folder.path() / "out", err = folder.path() / "err";
     std::string command = browser::quoted(path_.string());
     for (auto const& word : words) command += ' ' + browser::quoted(word);
-    int const status = std::system((command + " >" + browser::quoted(out.string()) + " 2>" + browser::quoted(err.string())).c_str());
+    int const status =
+        std::system((command + " >" + browser::quoted(out.string()) + " 2>" + browser::quoted(err.string())).c_str());
     return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content_of(out), content_of(err)};
   }
 
@@ -114,7 +115,8 @@ TEST_CASE("--help lists the options and is no error") {
   }
 }
 
-TEST_CASE("what is wrong with the command line, the map or the folder is said in one line that names it, with exit code 2") {
+TEST_CASE(
+    "what is wrong with the command line, the map or the folder is said in one line that names it, with exit code 2") {
   Program const program;
   if (!program.is_there()) return;
   browser::TemporaryFolder const folder;
@@ -125,7 +127,8 @@ TEST_CASE("what is wrong with the command line, the map or the folder is said in
   };
   // Below a file nobody can make a folder, the superuser neither.
   auto const below = file("file", "") + "/below";
-  auto const broken = file("broken.xodr", "<OpenDRIVE><road id=\"1\""), other = file("other.xodr", "<OpenSCENARIO/>"), empty = file("empty.xodr", "");
+  auto const broken = file("broken.xodr", "<OpenDRIVE><road id=\"1\""), other = file("other.xodr", "<OpenSCENARIO/>"),
+             empty = file("empty.xodr", "");
   auto const cut = file("cut.xodr", content_of(CAMBIUM_SOURCE_DIR "/maps/merging.xodr").substr(0, 4000));
   struct Case {
     std::vector<std::string> words;
@@ -149,15 +152,15 @@ TEST_CASE("what is wrong with the command line, the map or the folder is said in
                         {{"--map", folder.path().string()}, folder.path().string()},
                         {{"--map", CAMBIUM_SOURCE_DIR "/maps/highway.xodr"}, "highway.xodr"},
                         {{"--scenarios", "1", "--out", below}, below}};
-  for (auto const& [words, named] : cases) {
-    CAPTURE(named);
-    auto const run = program.run(words);
+  for (auto const& wrong : cases) {
+    CAPTURE(wrong.named);
+    auto const run = program.run(wrong.words);
     CAPTURE(run.err);
     CHECK(run.code == 2);
     CHECK(run.out.empty());
     CHECK(occurrences(run.err, "\n") == 1);
     CHECK(run.err.ends_with("\n"));
-    CHECK(run.err.find(named) != std::string::npos);
+    CHECK(run.err.find(wrong.named) != std::string::npos);
   }
 }
 
@@ -170,7 +173,8 @@ TEST_CASE("the same seed gives the same files on any number of threads, another 
 TEST_CASE("so it does on the corpus' maps of real merges") {
   Program const program;
   if (!program.is_there()) return;
-  for (std::string const name : {"DR_DEU_Merging_MT_v01_shifted.xodr", "DR_DEU_Merging_MT_v01_centered.xodr", "DR_CHN_Merging_ZS_partial_v02.xodr"}) {
+  for (std::string const name : {"DR_DEU_Merging_MT_v01_shifted.xodr", "DR_DEU_Merging_MT_v01_centered.xodr",
+                                 "DR_CHN_Merging_ZS_partial_v02.xodr"}) {
     CAPTURE(name);
     if (auto const map = corpus::opendrive_folder() / name; fs::exists(map))
       check_same_on_any_threads(program, {"--map", map.string()});
@@ -217,7 +221,8 @@ bool is_free(std::map<std::string, Place> const& frame, Place const& at) {
 }
 
 /// The page's colours at these places in one frame.
-std::vector<std::string> colours(fs::path const& chromium, fs::path const& page, std::size_t frame, std::vector<Place> const& places) {
+std::vector<std::string> colours(fs::path const& chromium, fs::path const& page, std::size_t frame,
+                                 std::vector<Place> const& places) {
   std::string hash = "frame=" + std::to_string(frame) + "&probe=";
   for (auto const& place : places) hash += place.text() + ';';
   std::istringstream text(browser::attribute(browser::document(chromium, page, hash), "<body", "data-pixel"));

@@ -20,7 +20,8 @@ cb::Executed<cb::State> execute(Plan const& plan, double time, cb::State const& 
 /// x = 0, 1, 4, 9, 16 at 0.2 s.
 Plan squares() {
   Plan plan;
-  for (int i = 0; i < 5; ++i) plan.trajectory.push_back({.time = 0.2 * i, .x = 1.0 * i * i, .y = -1.0 * i, .heading = 0.1 * i, .speed = 2.0 * i});
+  for (int i = 0; i < 5; ++i)
+    plan.trajectory.push_back({.time = 0.2 * i, .x = 1.0 * i * i, .y = -1.0 * i, .heading = 0.1 * i, .speed = 2.0 * i});
   return plan;
 }
 
@@ -52,7 +53,8 @@ TEST_CASE("between two samples every field runs linearly") {
 
 TEST_CASE("nothing is extrapolated: before and after the plan, and of an empty one, there is no state") {
   auto const plan = squares();
-  for (double const time : {-1.0, -1e-6, 0.8 + 1e-6, 2.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
+  for (double const time : {-1.0, -1e-6, 0.8 + 1e-6, 2.0, std::numeric_limits<double>::quiet_NaN(),
+                            std::numeric_limits<double>::infinity()})
     CHECK_FALSE(execute(plan, time).valid);
   CHECK_FALSE(execute({}, 0.0).valid);
   Plan single;

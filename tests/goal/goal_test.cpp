@@ -8,9 +8,13 @@ namespace cb = cambium;
 
 namespace {
 
-cb::GoalSituation at(double x, double y, double heading = 0.0) { return {{x, y, heading}, cb::geometry::car(), static_cast<cb::LaneId>(3), x}; }
+cb::GoalSituation at(double x, double y, double heading = 0.0) {
+  return {{x, y, heading}, cb::geometry::car(), static_cast<cb::LaneId>(3), x};
+}
 
-cb::Goal area(std::vector<cb::geometry::Point> const& points) { return cb::ReachPolygon{cb::geometry::Polygon(points)}; }
+cb::Goal area(std::vector<cb::geometry::Point> const& points) {
+  return cb::ReachPolygon{cb::geometry::Polygon(points)};
+}
 
 }  // namespace
 

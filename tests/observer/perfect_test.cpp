@@ -42,7 +42,8 @@ struct Traffic {
   AgentId ego;
 
   explicit Traffic(std::uint64_t seed = 1) : world(straight_road(2, 1000.0), {.seed = seed}) {
-    for (int i = 0; i < 8; ++i) world.add({.position = {100 + 25.0 * i, i % 2 == 0 ? -1.75 : -5.25}, .speed = 8 + 0.5 * i});
+    for (int i = 0; i < 8; ++i)
+      world.add({.position = {100 + 25.0 * i, i % 2 == 0 ? -1.75 : -5.25}, .speed = 8 + 0.5 * i});
     ego = static_cast<AgentId>(2);
   }
 };
@@ -58,7 +59,8 @@ std::map<AgentId, cb::State> seen_by(World& world, AgentId id) {
 template <class World>
 double largest_error(World& world, AgentId id) {
   double largest = 0;
-  for (auto const& [other, state] : seen_by(world, id)) largest = std::max(largest, std::hypot(state.x - world.state(other).x, state.y - world.state(other).y));
+  for (auto const& [other, state] : seen_by(world, id))
+    largest = std::max(largest, std::hypot(state.x - world.state(other).x, state.y - world.state(other).y));
   return largest;
 }
 
@@ -73,7 +75,8 @@ TEST_CASE("a perfect observer sees the truth itself, not a copy of it") {
   for (auto const& [id, state] : seen) CHECK(state == world.state(id));
 }
 
-TEST_CASE("a view shows the others as the agent's observer has them, the agent itself as it is, and leaves the truth alone") {
+TEST_CASE(
+    "a view shows the others as the agent's observer has them, the agent itself as it is, and leaves the truth alone") {
   Traffic<Noisy> traffic;
   auto& world = traffic.world;
   auto const truth = world.frame();
@@ -90,7 +93,9 @@ TEST_CASE("a view shows the others as the agent's observer has them, the agent i
   CHECK(front->speed == seen.at(front->agent).speed);
 }
 
-TEST_CASE("errors are an agent's own: the same when it looks again, others for another agent, another step and another seed") {
+TEST_CASE(
+    "errors are an agent's own: the same when it looks again, others for another agent, another step and another "
+    "seed") {
   Traffic<Noisy> traffic, other_seed(2);
   auto& world = traffic.world;
   auto const first = seen_by(world, traffic.ego);
@@ -98,10 +103,14 @@ TEST_CASE("errors are an agent's own: the same when it looks again, others for a
   Noisy copy = world;
   CHECK(seen_by(copy, traffic.ego) == first);
   CHECK(seen_by(other_seed.world, traffic.ego) != first);
-  AgentId const another = static_cast<AgentId>(5), both_see = static_cast<AgentId>(0);
+  AgentId const another = static_cast<AgentId>(5), both_see = static_cast<AgentId>(0),
+                neighbor = static_cast<AgentId>(1);
+  CHECK(first.at(both_see).x - world.state(both_see).x !=
+        doctest::Approx(first.at(neighbor).x - world.state(neighbor).x));
   CHECK(seen_by(world, another).at(both_see) != first.at(both_see));
   world.step(0.2);
-  auto const before = first.at(both_see).x - 100.0, after = seen_by(world, traffic.ego).at(both_see).x - world.state(both_see).x;
+  auto const before = first.at(both_see).x - 100.0,
+             after = seen_by(world, traffic.ego).at(both_see).x - world.state(both_see).x;
   CHECK(before != doctest::Approx(after));
 }
 

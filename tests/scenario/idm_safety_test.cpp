@@ -59,10 +59,13 @@ Sim sample(Sim const& empty, cb::map::LaneCorridor const& corridor, Ahead ahead,
   for (std::size_t i = 0; i < vehicles.size(); ++i) {
     auto const& v = vehicles[i];
     auto const pose = corridor.center.pose(v.s);
-    Sim::AgentSpec spec{.position = pose.position(), .heading = pose.heading, .speed = v.speed, .shape = v.shape, .behavior = v.driver};
-    if (i == 0 && ahead == Ahead::brakes) spec.behavior = cb::ConstantAcceleration{.acceleration = between(v.driver.lowest_acceleration, -0.5, random)};
+    Sim::AgentSpec spec{
+        .position = pose.position(), .heading = pose.heading, .speed = v.speed, .shape = v.shape, .behavior = v.driver};
+    if (i == 0 && ahead == Ahead::brakes)
+      spec.behavior = cb::ConstantAcceleration{.acceleration = between(v.driver.lowest_acceleration, -0.5, random)};
     if (i == 0 && ahead == Ahead::obstacle)
-      block(world, corridor, v.s + v.shape.front + cb::LaneTraffic::safe_gap(v.driver, v.speed, 0.0, between(0.8, 3.0, random)));
+      block(world, corridor,
+            v.s + v.shape.front + cb::LaneTraffic::safe_gap(v.driver, v.speed, 0.0, between(0.8, 3.0, random)));
     world.add(spec);
   }
   return world;
@@ -80,14 +83,16 @@ Course drive(Sim world, double dt) {
       course.hardest = std::min(course.hardest, record.action.acceleration);
     }
   }
-  for (auto const& record : world.frame().agents) course.standing += (record.state.speed < 0.1) / static_cast<double>(world.size());
+  for (auto const& record : world.frame().agents)
+    course.standing += (record.state.speed < 0.1) / static_cast<double>(world.size());
   return course;
 }
 
 /// Drives `scenarios` of them on one road, and reports.
 void check_safe(double curvature, Ahead ahead, std::uint32_t scenarios, std::uint64_t seed) {
   Sim empty(straight_road(1, 1000.0, curvature));
-  empty.remove(empty.add({.position = {0.5, -1.75}}));  // its road is known from now on, and need not be built for each scenario
+  empty.remove(
+      empty.add({.position = {0.5, -1.75}}));  // its road is known from now on, and need not be built for each scenario
   auto const& road = *empty.roster().corridors.begin()->second;
   int vehicles = 0;
   double standing = 0.0, hardest = 0.0;
@@ -104,8 +109,8 @@ void check_safe(double curvature, Ahead ahead, std::uint32_t scenarios, std::uin
     standing += course.standing;
     hardest = std::min(hardest, course.hardest);
   }
-  MESSAGE(scenarios << " scenarios of " << vehicles / static_cast<double>(scenarios) << " vehicles, at the end " << 100 * standing / scenarios
-                    << " % stand; hardest braking " << -hardest << " m/s^2");
+  MESSAGE(scenarios << " scenarios of " << vehicles / static_cast<double>(scenarios) << " vehicles, at the end "
+                    << 100 * standing / scenarios << " % stand; hardest braking " << -hardest << " m/s^2");
   CHECK(vehicles > 5 * static_cast<int>(scenarios));
 }
 
@@ -113,9 +118,13 @@ void check_safe(double curvature, Ahead ahead, std::uint32_t scenarios, std::uin
 
 TEST_CASE("IDM from safe gaps does not collide on a free lane") { check_safe(0.0, Ahead::free_road, 2500, 1); }
 
-TEST_CASE("IDM from safe gaps does not collide behind a leader that brakes to standstill") { check_safe(0.0, Ahead::brakes, 3000, 2); }
+TEST_CASE("IDM from safe gaps does not collide behind a leader that brakes to standstill") {
+  check_safe(0.0, Ahead::brakes, 3000, 2);
+}
 
-TEST_CASE("IDM from safe gaps does not collide where something stands ahead") { check_safe(0.0, Ahead::obstacle, 2500, 3); }
+TEST_CASE("IDM from safe gaps does not collide where something stands ahead") {
+  check_safe(0.0, Ahead::obstacle, 2500, 3);
+}
 
 TEST_CASE("IDM from safe gaps does not collide in bends") {
   check_safe(0.003, Ahead::free_road, 600, 4);

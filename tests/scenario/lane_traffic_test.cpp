@@ -18,7 +18,8 @@ std::vector<LaneVehicle> sample(LaneTraffic const& traffic, std::uint32_t number
 }
 
 bool same(LaneVehicle const& a, LaneVehicle const& b) {
-  return a.s == b.s && a.speed == b.speed && a.shape == b.shape && cb::hash_parameters(a.driver) == cb::hash_parameters(b.driver);
+  return a.s == b.s && a.speed == b.speed && a.shape == b.shape &&
+         cb::hash_parameters(a.driver) == cb::hash_parameters(b.driver);
 }
 
 /// Distance between two vehicles, bumper to bumper [m].
@@ -51,7 +52,12 @@ TEST_CASE("vehicles stand on the stretch from its front to its rear, and what is
 }
 
 TEST_CASE("every gap lets the follower keep its headway and brake comfortably to its leader's speed") {
-  LaneTraffic const traffic{.begin = 0.0, .end = 500.0, .lowest_speed = 2.0, .highest_speed = 25.0, .lowest_desired_speed = 20.0, .highest_desired_speed = 30.0};
+  LaneTraffic const traffic{.begin = 0.0,
+                            .end = 500.0,
+                            .lowest_speed = 2.0,
+                            .highest_speed = 25.0,
+                            .lowest_desired_speed = 20.0,
+                            .highest_desired_speed = 30.0};
   for (std::uint32_t number = 0; number < 200; ++number) {
     auto const vehicles = sample(traffic, number);
     for (std::size_t i = 1; i < vehicles.size(); ++i) {
@@ -99,7 +105,10 @@ TEST_CASE("a stretch too short for a vehicle stays empty") {
 
 TEST_CASE("bounds that contradict each other, and values out of range, are refused by name") {
   cb::RandomStream random(1, 0, 0);
-  CHECK_THROWS_WITH_AS((void)(LaneTraffic{.lowest_speed = 9, .highest_speed = 8}.sample(random)), doctest::Contains("lane_traffic"), cb::ParameterError);
-  CHECK_THROWS_WITH_AS((void)(LaneTraffic{.truck_share = 1.5}.sample(random)), doctest::Contains("truck_share"), cb::ParameterError);
-  CHECK_THROWS_WITH_AS((void)(LaneTraffic{.lowest_speed = -1}.sample(random)), doctest::Contains("lowest_speed"), cb::ParameterError);
+  CHECK_THROWS_WITH_AS((void)(LaneTraffic{.lowest_speed = 9, .highest_speed = 8}.sample(random)),
+                       doctest::Contains("lane_traffic"), cb::ParameterError);
+  CHECK_THROWS_WITH_AS((void)(LaneTraffic{.truck_share = 1.5}.sample(random)), doctest::Contains("truck_share"),
+                       cb::ParameterError);
+  CHECK_THROWS_WITH_AS((void)(LaneTraffic{.lowest_speed = -1}.sample(random)), doctest::Contains("lowest_speed"),
+                       cb::ParameterError);
 }

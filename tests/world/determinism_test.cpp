@@ -2,30 +2,17 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cstdlib>
-#include <new>
 #include <thread>
 #include <vector>
 
 #include "cambium/core/distributions.hpp"
 #include "cambium/evaluation/collision.hpp"
+#include "cambium/evaluation/evaluators.hpp"
 #include "cambium/scenario/lane_traffic.hpp"
+#include "../support/allocations.hpp"
 #include "fixtures.hpp"
 
 using namespace fixtures;
-
-namespace {
-thread_local std::uint64_t allocation_count = 0;
-}
-
-// Counts this program's allocations; the replacement is the standard's own way to see them.
-void* operator new(std::size_t size) {
-  ++allocation_count;
-  if (void* p = std::malloc(size == 0 ? 1 : size)) return p;
-  throw std::bad_alloc();
-}
-void operator delete(void* p) noexcept { std::free(p); }
-void operator delete(void* p, std::size_t) noexcept { std::free(p); }
 
 namespace {
 
@@ -156,9 +143,9 @@ TEST_CASE("a warm world steps, copies and is judged without allocating") {
     }
   };
   run();
-  auto const before = allocation_count;
+  auto const before = support::allocations();
   run();
-  CHECK(allocation_count == before);
+  CHECK(support::allocations() == before);
 }
 
 TEST_CASE("frames of prediction worlds are copied as memory") {

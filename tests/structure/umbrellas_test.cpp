@@ -1,0 +1,60 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <string>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path const headers = fs::path(CAMBIUM_SOURCE_DIR) / "include" / "cambium";
+
+/// The lines of a header.
+std::set<std::string> lines_of(fs::path const& file) {
+  std::set<std::string> lines;
+  std::ifstream stream(file);
+  for (std::string line; std::getline(stream, line);) lines.insert(line);
+  return lines;
+}
+
+std::vector<std::string> rooms() {
+  std::vector<std::string> names;
+  for (auto const& entry : fs::directory_iterator(headers))
+    if (entry.is_directory()) names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// Headers that need more than Eigen and Boost, and stay out of the umbrellas.
+bool needs_more(std::string const& header) {
+  return header == "map/opendrive.hpp" || header == "map/opendrive_reader.hpp";
+}
+
+}  // namespace
+
+TEST_CASE("every room has an umbrella header that gathers all of its headers but those that need pugixml") {
+  CHECK(rooms().size() >= 12);
+  for (auto const& room : rooms()) {
+    CAPTURE(room);
+    REQUIRE(fs::exists(headers / (room + ".hpp")));
+    auto const lines = lines_of(headers / (room + ".hpp"));
+    for (auto const& entry : fs::directory_iterator(headers / room)) {
+      if (entry.path().extension() != ".hpp") continue;
+      auto const header = room + "/" + entry.path().filename().string();
+      CAPTURE(header);
+      CHECK(lines.contains("#include \"cambium/" + header + "\"") == !needs_more(header));
+    }
+  }
+}
+
+TEST_CASE("cambium.hpp gathers all rooms") {
+  auto const lines = lines_of(headers / "cambium.hpp");
+  for (auto const& room : rooms()) {
+    CAPTURE(room);
+    CHECK(lines.contains("#include \"cambium/" + room + ".hpp\""));
+  }
+}
