@@ -115,8 +115,8 @@ class Progress {
   explicit Progress(std::uint64_t total) : total_(total), shown_(isatty(STDERR_FILENO) == 1) {}
   void advance() {
     auto const done = ++done_;
-    std::unique_lock const lock(mutex_, std::try_to_lock);
-    if (!shown_ || (!lock && done < total_)) return;
+    std::unique_lock lock(mutex_, std::defer_lock);
+    if (!shown_ || (done == total_ ? (lock.lock(), false) : !lock.try_lock())) return;
     constexpr std::uint64_t width = 40;
     auto const filled = done * width / total_;
     std::fprintf(stderr, "\r[%s%s] %llu/%llu%s", std::string(filled, '#').c_str(), std::string(width - filled, ' ').c_str(),
@@ -150,7 +150,7 @@ std::vector<Outcome> run_all(merging::Site const& site, Settings const& settings
       next = settings.scenarios;
     }
   };
-  std::vector<std::thread> threads;
+  std::vector<std::jthread> threads;
   for (std::uint64_t t = 1; t < settings.threads; ++t) threads.emplace_back(work);
   work();
   for (auto& thread : threads) thread.join();
@@ -266,7 +266,7 @@ int run(int argc, char** argv) {
   print_table(settings, totals, seconds);
   std::cout << "  " << (out / "replay.html").string() << "       plays scenario " << totals.most_interesting << " in a browser\n  "
             << (out / "summary.json").string() << "      these figures and each scenario's outcome\n  " << (out / "trajectories.csv").string()
-            << "  every vehicle's path\n";
+            << "  paths of the first scenarios' vehicles and of the replayed one's\n";
   return 0;
 }
 

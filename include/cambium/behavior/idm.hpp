@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <tuple>
 
 #include "cambium/behavior/follow_lane.hpp"
@@ -50,7 +51,7 @@ template <HasIdmParameters P, class Scalar>
 [[nodiscard]] Scalar idm_desired_gap(P const& p, Scalar speed, Scalar leader_speed) {
   using std::max;
   double const inverse = 0.5 / std::sqrt(p.maximum_acceleration * p.comfortable_deceleration);
-  return p.minimum_gap + max(Scalar(0), speed * (p.time_headway + (speed - leader_speed) * inverse));
+  return Scalar(p.minimum_gap) + max(Scalar(0), Scalar(speed * (p.time_headway + (speed - leader_speed) * inverse)));
 }
 
 /// Acceleration [m/s^2] of a follower (Treiber, Hennecke, Helbing 2000, eq. 3), within the parameters' bounds. `gap` [m] bumper
@@ -143,6 +144,7 @@ template <HasIdmParameters P, class Scalar>
 [[nodiscard]] LongitudinalMotion<Scalar> idm_motion(P const& p, Scalar speed, Scalar gap, Scalar leader_speed, double dt,
                                                     double tolerance) {
   using std::abs;
+  using std::min;
   constexpr double shortest = 1e-3, longest = 0.25;  // [s] of a step: shorter is never needed, longer might step over something
   double const largest_square = 4.0 * tolerance;  // of the third-order term
   auto const square = [](Scalar x) { return x * x; };
@@ -162,7 +164,7 @@ template <HasIdmParameters P, class Scalar>
       Scalar distance = h * (v + h / 6 * (a1 + 2.0 * a2));
       bool const stops = stands || next_speed < Scalar(0) || middle_speed < Scalar(0);
       if (stops) {  // constant deceleration until it stands
-        distance = stands ? Scalar(0) : v * v / (2.0 * abs(a1));
+        distance = stands ? Scalar(0) : min(Scalar(h * v), Scalar(v * v / (2.0 * abs(a1))));
         next_speed = Scalar(0);
       }
       bool accurate = stops ? v <= Scalar(tolerance) && a2 <= Scalar(0) : square(third) <= Scalar(largest_square);

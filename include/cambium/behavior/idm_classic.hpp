@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
 #include <tuple>
 
@@ -43,7 +45,7 @@ struct IdmClassic {
     auto const leader = view.front();
     double const gap = leader ? leader->gap : infinite;
     double const leader_speed = leader ? leader->speed : 0.0;
-    double const speed = view.state().speed;
+    double const speed = std::max(0.0, view.state().speed);
     if (integration == Integration::bark_substeps) return bark_plan(view, speed, gap, leader_speed, dt);
     return plan_along_lane(view, idm_motion(*this, speed, gap, leader_speed, dt, tolerance), dt);
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include <boost/container/small_vector.hpp>
@@ -16,8 +17,10 @@ struct Action {
   friend bool operator==(Action const&, Action const&) = default;
 };
 
-/// States in order of time. The first `InlineStates` need no heap: the models that need no search never ask for more.
+/// States that a trajectory holds without heap.
 inline constexpr std::size_t inline_states = 12;
+
+/// States in order of time. The first `inline_states` need no heap: the models that need no search never ask for more.
 template <MotionState S>
 using Trajectory = boost::container::small_vector<S, inline_states>;
 

@@ -50,8 +50,8 @@ struct DrivableArea {
     double const rear = at.s - shape.rear, front = at.s + shape.front;
     if (rear < 0 || front > corridor.length()) return false;
     double const reach = std::max(shape.front, shape.rear);
-    double const bend = std::abs(corridor.center.segments()[at.segment].curvature) * reach * reach;
-    double const margin = std::abs(at.heading_error) * reach + bend + 0.1;
+    double const bend = std::abs(corridor.center.pose(front).heading - corridor.center.pose(rear).heading);
+    double const margin = (std::abs(at.heading_error) + bend) * reach + 0.1;
     auto const fits = [&](double s) {
       auto const widths = corridor.widths_at(s, corridor.center.find(s));
       return at.lateral + shape.left + margin < widths.left && at.lateral - shape.right - margin > -widths.right;

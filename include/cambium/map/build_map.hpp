@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,6 +30,7 @@ class MapBuild {
   }
 
   [[nodiscard]] std::shared_ptr<Map const> build() {
+    check_parameters(parts_.options, "MapOptions");
     for (auto const& junction : document_.junctions) parts_.junctions.push_back(junction.id);
     parts_.roads.reserve(document_.roads.size());
     for (auto const& road : document_.roads) add_road(road);
@@ -93,15 +94,23 @@ class MapBuild {
       auto const& written = *source.lane_sections[k].find(section.lanes[column].number);
       Lane lane = make_lane(source, written, road, k);
       lane.id = static_cast<LaneId>(parts_.lanes.size());
-      if (!set_geometry(lane, cross_sections, column, [column](CrossSection const& c) { return c.center(column); })) {
+      if (!has_geometry(lane, cross_sections, column)) {
         diagnostics_.push_back({Severity::warning, file_, written.line, "lane", "road " + road.name + ", section " + std::to_string(k) + ", lane " + std::to_string(written.id),
-                                "it has no length; it was left out"});
+                                "it has no length, or its numbers are out of all range; it was left out"});
         continue;
       }
       section.lanes[column].id = lane.id;
       parts_.lanes.push_back(std::move(lane));
     }
     for (std::size_t i = first; i + 1 < parts_.lanes.size(); ++i) make_neighbors(parts_.lanes[i], parts_.lanes[i + 1]);
+  }
+
+  [[nodiscard]] static bool has_geometry(Lane& lane, std::span<CrossSection const> cross_sections, std::size_t column) {
+    try {
+      return set_geometry(lane, cross_sections, column, [column](CrossSection const& c) { return c.center(column); });
+    } catch (MapError const&) {  // a point that is not a finite number
+      return false;
+    }
   }
 
   [[nodiscard]] static Lane make_lane(opendrive::Road const& source, opendrive::Lane const& written, Road const& road, std::size_t k) {
@@ -171,7 +180,10 @@ class MapBuild {
     double const from = taper_begin(cross_sections, column, lane.along_road, parts_.options.merge_length);
     double const to = lane.along_road ? section.end : section.begin;
     auto const path = [&](CrossSection const& c) { return merging_path(c, column, target, from, to); };
-    if (!set_geometry(lane, cross_sections, column, path)) return;
+    if (!set_geometry(lane, cross_sections, column, path)) {
+      lane.merges_into = none<LaneId>;
+      return;
+    }
     auto const start = road.reference_line.at(from);
     lane.merge_begin = lane.path.project({start.x, start.y}).s;
     auto const& neighbor = parts_.lanes[index_of(lane.merges_into)];

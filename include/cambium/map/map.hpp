@@ -5,10 +5,14 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include "cambium/core/error.hpp"
 #include "cambium/core/ids.hpp"
+#include "cambium/core/parameters.hpp"
+#include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/corridor.hpp"
 #include "cambium/map/cubic.hpp"
@@ -21,10 +25,21 @@ namespace cambium::map {
 /// What the map is built with.
 struct MapOptions {
   double position_tolerance = 0.01;  ///< largest distance of a sampled lane from the exact one [m]
-  double heading_tolerance = 0.5 * 3.14159265358979323846 / 180;  ///< largest turn between two samples [rad]
+  double heading_tolerance = 0.5 * geometry::pi / 180;  ///< largest turn between two samples [rad]
   double overlap_clearance = 2.5;    ///< paths closer than this cannot carry vehicles side by side [m]
   double merge_view = 120.0;         ///< how far before an overlap merging lanes take each other's traffic into account [m]
   double merge_length = 60.0;        ///< longest stretch over which an ending lane swings onto its neighbour [m]
+
+  static constexpr char const* name = "map_options";
+  static constexpr auto parameters() {
+    using P = MapOptions;
+    return std::make_tuple(
+        parameter("position_tolerance", &P::position_tolerance, "m", Range{1e-5, 10}, "largest distance of a sampled lane from the exact one"),
+        parameter("heading_tolerance", &P::heading_tolerance, "rad", Range{1e-4, 1}, "largest turn between two samples"),
+        parameter("overlap_clearance", &P::overlap_clearance, "m", Range{0.1, 20}, "paths closer than this cannot carry vehicles side by side"),
+        parameter("merge_view", &P::merge_view, "m", Range{0, 1000}, "how far before an overlap merging traffic is taken into account"),
+        parameter("merge_length", &P::merge_length, "m", Range{30, 1000}, "longest stretch over which an ending lane swings onto its neighbour"));
+  }
 };
 
 /// A lane of the road cross-section: exact width as a function of the distance from the section's start.
@@ -100,7 +115,7 @@ class Map {
     for (auto const& section : road.sections)
       if (s >= section.begin && (s < section.end || &section == &road.sections.back()))
         for (auto const& lane : section.lanes)
-          if (lane.number == number) return lane.id;
+          if (lane.number == number && is_valid(lane.id)) return lane.id;
     throw MapError("road " + std::string(name) + ", s " + std::to_string(s), "there is no lane " + std::to_string(number),
                    "see Map::roads for the lanes of its sections");
   }

@@ -108,6 +108,11 @@ namespace detail {
     context.report(Severity::info, node, "a geometry of length 0 was left out");
     return true;
   }
+  constexpr double farthest = 1e8, longest = 1e6;  // [m]: beyond any map
+  if (!(std::abs(g.x) <= farthest && std::abs(g.y) <= farthest && std::abs(g.s) <= longest && g.length <= longest)) {
+    context.report(Severity::warning, node, "a coordinate lies beyond 100 000 km, or a length beyond 1000 km");
+    return false;
+  }
   constexpr double max_turn = 1000.0;  // rad: more than any road, little enough to be integrated
   if (!(std::max(std::abs(g.curvature_start), std::abs(g.curvature_end)) * g.length < max_turn)) {
     context.report(Severity::warning, node, "the curve turns by more than 1000 rad");

@@ -12,7 +12,7 @@ namespace cambium {
 /// drawn from `random`, a stream keyed by (seed, observer, step) with the observed agent as its purpose. `perfect` says that
 /// nothing is changed, so that what is seen can be a view of the truth.
 template <class O>
-concept ObserverModel = std::copyable<O> && requires(O const observer, State const truth, RandomStream random, bool own) {
+concept ObserverModel = std::copyable<O> && requires(O const observer, State const truth, RandomStream const random, bool own) {
   { O::perfect } -> std::convertible_to<bool>;
   { observer.observe(truth, own, random) } -> std::convertible_to<State>;
 };

@@ -87,7 +87,7 @@ struct LaneTraffic {
   }
 
  private:
-  [[nodiscard]] static double between(double low, double high, RandomStream& random) { return low + (high - low) * uniform01(random); }
+  [[nodiscard]] static double between(double low, double high, RandomStream& random) { return Uniform{low, high}(random); }
 };
 
 }  // namespace cambium

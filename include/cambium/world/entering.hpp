@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -19,6 +20,23 @@ namespace cambium::detail {
 
 /// Farthest that an agent may enter from the nearest lane [m].
 inline constexpr double entering_radius = 5.0;
+
+/// The nearest lane of `route` at `position`: a path that swings over to its neighbour counts as its own lane there.
+[[nodiscard]] inline LaneId entering_lane(Map const& map, geometry::Point const& position, map::Route const& route, std::string const& where) {
+  LaneId nearest = none<LaneId>;
+  double smallest = entering_radius;
+  for (auto const id : route.lanes) {
+    if (index_of(id) >= map.lanes().size()) throw WorldError(where, "its route names a lane that the map does not have", "use Map::find_lane");
+    auto const& lane = map.lane(id);
+    auto const foot = lane.path.project(position);
+    double const distance = std::hypot(foot.lateral, std::max({-foot.s, foot.s - lane.length(), 0.0}));
+    if (distance >= smallest) continue;
+    smallest = distance;
+    nearest = id;
+  }
+  if (!is_valid(nearest)) throw WorldError(where, "its route does not come within 5 m of its position", "begin the route there");
+  return nearest;
+}
 
 /// The drivable lane at `position`; without a heading the nearest one. Throws `WorldError` where there is none.
 [[nodiscard]] inline LaneId entering_lane(Map const& map, geometry::Point const& position, std::optional<double> heading,
@@ -51,13 +69,7 @@ inline constexpr double entering_radius = 5.0;
 /// The route from `start`: as given, else to the goal, else straight on. Throws `WorldError` where there is none.
 [[nodiscard]] inline map::Route entering_route(Map const& map, LaneId start, std::optional<map::Route> const& given, Goal const& goal,
                                                std::string const& where) {
-  if (given) {
-    for (auto const lane : given->lanes)
-      if (index_of(lane) >= map.lanes().size()) throw WorldError(where, "its route names a lane that the map does not have");
-    for (auto const lane : given->lanes)
-      if (lane == start) return *given;
-    throw WorldError(where, "its route does not contain the lane it enters in (" + map.describe(start) + ")", "begin the route there");
-  }
+  if (given) return *given;
   if (auto const end = destination(map, goal, where)) {
     if (auto route = map.shortest_route(start, *end)) return *route;
     throw WorldError(where, "there is no route from " + map.describe(start) + " to " + map.describe(*end), "choose a goal that the lane leads to");

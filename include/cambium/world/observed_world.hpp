@@ -7,7 +7,10 @@
 
 #include "cambium/behavior/view.hpp"
 #include "cambium/goal/goal.hpp"
+#include "cambium/map/map.hpp"
+#include "cambium/world/frame.hpp"
 #include "cambium/world/prediction.hpp"
+#include "cambium/world/static_object.hpp"
 #include "cambium/world/traffic_index.hpp"
 
 namespace cambium {
@@ -45,7 +48,7 @@ class ObservedWorld {
   [[nodiscard]] map::LaneCorridor const& corridor() const { return road().corridors[lane_position().corridor]; }
   [[nodiscard]] std::span<StaticObject const> objects() const { return world_->roster().objects; }
 
-  /// Numbers of the agent's own for this step: the same whatever the order of agents, threads or copies.
+  /// Numbers of the agent's own for this step: the same whatever the order of agents, threads or copies. `purpose` below 2^31.
   [[nodiscard]] RandomStream random(std::uint32_t purpose) const {
     return {world_->roster().seed, static_cast<std::uint32_t>(id()), static_cast<std::uint32_t>(world_->frame().step), purpose};
   }
@@ -53,10 +56,10 @@ class ObservedWorld {
   /// Next road user ahead along the own lane corridor; nothing if there is none within `TrafficIndex::horizon`. O(1) while the
   /// next one is in the same lane.
   [[nodiscard]] std::optional<Neighbor> front() const {
-    return neighbor(world_->traffic().front(corridor(), query(lane_position()), objects_on_lanes(), true));
+    return neighbor(world_->traffic().front(corridor(), query(lane_position()), objects_on_lanes(), in_traffic()));
   }
   [[nodiscard]] std::optional<Neighbor> rear() const {
-    return neighbor(world_->traffic().rear(corridor(), query(lane_position()), objects_on_lanes(), true));
+    return neighbor(world_->traffic().rear(corridor(), query(lane_position()), objects_on_lanes(), in_traffic()));
   }
 
   /// Next road user ahead along lane corridor `number` of the own road, from the place beside the agent. O(log n).
@@ -85,12 +88,14 @@ class ObservedWorld {
   }
 
  private:
+  /// An agent that is not in traffic has no place in the index: it is searched for.
+  [[nodiscard]] bool in_traffic() const { return record_->status == AgentStatus::driving; }
   [[nodiscard]] auto const& record(std::uint32_t slot) const { return world_->frame().agents[slot]; }
   [[nodiscard]] std::span<TrafficEntry const> objects_on_lanes() const { return world_->roster().object_entries; }
 
   [[nodiscard]] decltype(auto) observed(std::uint32_t slot) const {
     auto const& agent = world_->roster().agents[slot];
-    return own_->observer.observe(record(slot).state, slot == slot_, random(static_cast<std::uint32_t>(agent.id)));
+    return own_->observer.observe(record(slot).state, slot == slot_, random(observation_purpose(agent.id)));
   }
 
   [[nodiscard]] TrafficQuery query(map::LanePosition const& at) const { return {slot_, at.s, shape().front, shape().rear, at.piece}; }

@@ -3,8 +3,10 @@
 #include <concepts>
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 #include "cambium/behavior/behavior_set.hpp"
+#include "cambium/core/random.hpp"
 #include "cambium/map/lane_position.hpp"
 #include "cambium/observer/perfect.hpp"
 #include "cambium/world/frame.hpp"
@@ -17,7 +19,11 @@ struct Prediction {
   static_assert(is_behavior_set<Set>, "cambium::Prediction<Set>: Set must be cambium::BehaviorSet<Models...>");
   typename Set::Any ego;
   typename Set::Any others;
+  std::optional<std::uint64_t> seed{};  ///< of the predicted world; by default drawn for (world, observer, step): not the true one
 };
+
+/// The stream purpose for observing `agent`: apart from those that behaviours use.
+[[nodiscard]] constexpr std::uint32_t observation_purpose(AgentId agent) { return 0x80000000u | static_cast<std::uint32_t>(agent); }
 
 /// The agent behaves as `ego`, the others as `others`: behaviours of `Set`.
 template <class Set, class Ego, class Others>
@@ -25,7 +31,7 @@ template <class Set, class Ego, class Others>
   if constexpr (is_behavior_set<Set>)
     static_assert(std::convertible_to<Ego, typename Set::Any> && std::convertible_to<Others, typename Set::Any>,
                   "cambium::Prediction<Set>: the behaviour that is to be assumed must be one of the Models of Set");
-  return {ego, others};
+  return {ego, others, {}};
 }
 
 /// Everybody behaves as `behavior`, one of the behaviours of `Set`.
@@ -44,7 +50,11 @@ template <class Set, class World>
   auto const& frame = world.frame();
   auto const& observer = roster.agents[slot];
   auto assumed = std::make_shared<typename Predicted::RosterType>();
-  assumed->seed = roster.seed;
+  constexpr std::uint32_t seed_purpose = 0x7fffffffu;
+  auto const stream = [&](std::uint32_t purpose) {
+    return RandomStream(roster.seed, static_cast<std::uint32_t>(observer.id), static_cast<std::uint32_t>(frame.step), purpose);
+  };
+  assumed->seed = prediction.seed ? *prediction.seed : stream(seed_purpose)();
   assumed->next_agent_id = roster.next_agent_id;
   assumed->next_object_id = roster.next_object_id;
   assumed->objects = roster.objects;
@@ -58,8 +68,7 @@ template <class Set, class World>
     auto const& behavior = i == slot ? prediction.ego : prediction.others;
     assumed->agents.push_back({agent.id, agent.shape, agent.road, behavior, agent.execution, agent.dynamics, PerfectObserver{}});
     assumed->goals.push_back(roster.goals[i]);
-    RandomStream const random(roster.seed, static_cast<std::uint32_t>(observer.id), static_cast<std::uint32_t>(frame.step),
-                              static_cast<std::uint32_t>(agent.id));
+    auto const random = stream(observation_purpose(agent.id));
     auto const& state = observer.observer.observe(record.state, i == slot, random);
     auto lane = record.lane;
     if constexpr (!World::Observer::perfect)

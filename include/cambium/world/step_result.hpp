@@ -9,7 +9,7 @@ namespace cambium {
 /// Why a step, or an agent's part in it, was not valid.
 enum class StepProblem : std::uint8_t {
   none,
-  bad_duration,   ///< dt is not a finite number above 0: nothing happened
+  bad_duration,   ///< dt is not a number above 0 and up to `World::longest_step`: nothing happened
   no_plan,        ///< a behaviour failed
   no_execution,   ///< a plan does not reach the end of the step, or its execution failed
   not_finite,     ///< the next state would not have been a finite number
@@ -30,7 +30,7 @@ struct StepResult {
 [[nodiscard]] constexpr char const* to_string(StepProblem problem) {
   switch (problem) {
     case StepProblem::none: return "no problem";
-    case StepProblem::bad_duration: return "the step length is not a finite number above 0";
+    case StepProblem::bad_duration: return "the step length is not above 0 and up to an hour";
     case StepProblem::no_plan: return "the behaviour found no plan";
     case StepProblem::no_execution: return "the plan does not reach the end of the step";
     case StepProblem::not_finite: return "the next state is not a finite number";

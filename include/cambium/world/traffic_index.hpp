@@ -65,6 +65,7 @@ class TrafficIndex {
     if (agents_.size() != count) {
       agents_.resize(count);
       rank_.resize(count);
+      straddling_.reserve(2 * count);
       for (std::uint32_t i = 0; i < count; ++i) agents_[i].slot = i;
     }
     straddling_.clear();
@@ -127,7 +128,8 @@ class TrafficIndex {
   }
 
   [[nodiscard]] static double key(map::LaneCorridor const& corridor, TrafficQuery const& query) {
-    return query.s + corridor.pieces[query.piece].index_offset;
+    auto const& piece = corridor.pieces[query.piece];  // beyond the corridor's ends other lanes' coordinates begin
+    return std::min(std::max(query.s, piece.begin - 1.0), piece.end + 1.0) + piece.index_offset;
   }
 
   /// First entry behind which (position, slot) sorts.
@@ -160,13 +162,13 @@ class TrafficIndex {
     auto const& pieces = corridor.pieces;
     for (std::size_t p = query.piece, i = start;;) {
       while (i < list.size() && list[i].slot == query.slot && !is_object) ++i;  // the asker's own, reached over from another lane
-      if (i < list.size() && list[i].position <= pieces[p].end + pieces[p].index_offset) {
+      if (i < list.size() && list[i].position <= pieces[p].end + 1.0 + pieces[p].index_offset) {
         double const s = list[i].position - pieces[p].index_offset;
         if (s - query.s <= horizon) offer(best, list[i].slot, is_object, s - list[i].rear - (query.s + query.front));
         return;
       }
       if (++p == pieces.size() || pieces[p].begin - query.s > horizon) return;
-      i = first_at(list, pieces[p].begin + pieces[p].index_offset);
+      i = first_at(list, pieces[p].begin - 1.0 + pieces[p].index_offset);
     }
   }
 
@@ -175,14 +177,14 @@ class TrafficIndex {
     auto const& pieces = corridor.pieces;
     for (std::size_t p = query.piece, i = start;;) {  // candidates lie before i
       while (i > 0 && list[i - 1].slot == query.slot && !is_object) --i;
-      if (i > 0 && list[i - 1].position >= pieces[p].begin + pieces[p].index_offset) {
+      if (i > 0 && list[i - 1].position >= pieces[p].begin - 1.0 + pieces[p].index_offset) {
         auto const& entry = list[i - 1];
         double const s = entry.position - pieces[p].index_offset;
         if (query.s - s <= horizon) offer(best, entry.slot, is_object, query.s - query.rear - (s + entry.front));
         return;
       }
       if (p-- == 0 || query.s - pieces[p].end > horizon) return;
-      i = upper(list, pieces[p].end + pieces[p].index_offset, std::numeric_limits<std::uint32_t>::max());
+      i = upper(list, pieces[p].end + 1.0 + pieces[p].index_offset, std::numeric_limits<std::uint32_t>::max());
     }
   }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -11,6 +12,7 @@
 #include <vector>
 
 #include "cambium/behavior/behavior_set.hpp"
+#include "cambium/core/assert.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/dynamics/dynamic_model.hpp"
@@ -84,7 +86,7 @@ class World {
   }
 
   /// A world from its parts, as predictions and snapshots make it; `frame` has one record for each agent of `roster`.
-  World(std::shared_ptr<Map const> map, std::shared_ptr<RosterType const> roster, FrameType frame)
+  World(std::shared_ptr<Map const> map, std::shared_ptr<RosterType> roster, FrameType frame)
       : map_(std::move(map)), roster_(std::move(roster)), frame_(std::move(frame)) {}
 
   World(World const&) = default;
@@ -114,7 +116,8 @@ class World {
     AgentId const id = spec.id.value_or(static_cast<AgentId>(roster_->next_agent_id));
     std::string const where = "agent " + to_string(id);
     check(spec, id, where);
-    LaneId const lane = detail::entering_lane(*map_, spec.position, spec.heading, where);
+    LaneId const lane = spec.route ? detail::entering_lane(*map_, spec.position, *spec.route, where)
+                                   : detail::entering_lane(*map_, spec.position, spec.heading, where);
     auto const route = detail::entering_route(*map_, lane, spec.route, spec.goal, where);
     auto const known = roster_->corridors.find(route.lanes);
     auto const road = known != roster_->corridors.end() ? known->second : map::build_road_corridor(*map_, route);
@@ -221,18 +224,22 @@ class World {
     if (!is_finite(state)) throw WorldError("agent " + to_string(id), "its state is not a finite number");
     auto const& road = *roster_->agents[slot_of(id)].road;
     geometry::Pose const pose{state.x, state.y, state.heading};
+    auto const distance = [&road](map::LanePosition const& at) {
+      double const beyond = std::max({-at.s, at.s - road.corridors[at.corridor].length(), 0.0});
+      return std::hypot(at.lateral, beyond);
+    };
     auto best = map::locate(road, record.lane.corridor, pose);
     for (std::uint16_t i = 0; i < road.corridors.size(); ++i) {
       auto const candidate = map::locate(road, i, pose);
-      if (std::abs(candidate.lateral) < std::abs(best.lateral) - 1e-9) best = candidate;
+      if (distance(candidate) < distance(best) - 1e-9) best = candidate;
     }
     record.state = state;
     record.lane = best;
-    scratch_.forget();
+    scratch_.fresh = false;
   }
 
   /// What the agent sees now: a view, valid until the world changes. Throws as `slot_of`. Brings the traffic index up to date.
-  [[nodiscard]] View observe(AgentId id) {
+  [[nodiscard]] View observe(AgentId id) & {
     auto const slot = slot_of(id);
     refresh_traffic();
     return View(*this, static_cast<std::uint32_t>(slot));
@@ -241,11 +248,14 @@ class World {
   /// The traffic index; views use it. Up to date after `observe` and within a step.
   [[nodiscard]] TrafficIndex const& traffic() const { return scratch_.traffic; }
 
+  /// The longest step that a world takes [s].
+  static constexpr double longest_step = 3600.0;
+
   /// Moves the world by `dt` [s]: every agent plans on this frame, then the next frame appears. No allocation once warm, no
   /// exception of its own; what goes wrong is in the result. O(agents).
   StepResult step(double dt) {
     StepResult result;
-    if (!(dt > 0) || !std::isfinite(frame_.time + dt)) {
+    if (!(dt > 0 && dt <= longest_step)) {
       result.problem = StepProblem::bad_duration;
       return result;
     }
@@ -262,7 +272,8 @@ class World {
     return result;
   }
 
-  /// Keeps the last `frames` frames from now on (0: none, as at the beginning). Copies and predictions do not take them along.
+  /// Keeps the last `frames` frames from now on (0: none, as at the beginning). Copies and predictions do not take them along; they
+  /// end where an agent enters or leaves.
   void keep_history(std::size_t frames) { scratch_.keep(frames); }
 
   /// Frames kept so far, before the current one.
@@ -322,6 +333,7 @@ class World {
   [[nodiscard]] RosterType& writable_roster() {
     // A roster that only this world holds may change in place; the cast is sound because every roster is created non-const.
     if (roster_.use_count() != 1) roster_ = std::make_shared<RosterType>(*roster_);
+    std::atomic_thread_fence(std::memory_order_acquire);  // what other holders read before they let go
     return const_cast<RosterType&>(*roster_);
   }
 
@@ -394,16 +406,17 @@ class World {
     auto const& agent = roster_->agents[slot];
     auto const widths = agent.road->corridors[at.corridor].widths_at(at.s, at.segment);
     auto const& lane = map_->lane(piece_of(slot).lane);
-    LaneId beside = none<LaneId>;
-    if (at.lateral + agent.shape.left > widths.left) beside = lane.left_neighbor;
-    if (at.lateral - agent.shape.right < -widths.right) beside = lane.right_neighbor;
-    if (!is_valid(beside)) return;
-    auto const& other = map_->lane(beside);
-    double const s = std::clamp(other.path.project({state.x, state.y}).s, 0.0, other.length());
-    list.push_back({other.index_begin + s, agent.shape.front, agent.shape.rear, slot});
+    auto const enter = [&, x = state.x, y = state.y](LaneId beside) {
+      if (!is_valid(beside)) return;
+      auto const& other = map_->lane(beside);
+      double const s = std::clamp(other.path.project({x, y}).s, 0.0, other.length());
+      list.push_back({other.index_begin + s, agent.shape.front, agent.shape.rear, slot});
+    };
+    if (at.lateral + agent.shape.left > widths.left) enter(lane.left_neighbor);
+    if (at.lateral - agent.shape.right < -widths.right) enter(lane.right_neighbor);
   }
 
-  void advance(std::uint32_t slot, double dt, double end, Record& next, StepResult& result) const {
+  CAMBIUM_FLATTEN void advance(std::uint32_t slot, double dt, double end, Record& next, StepResult& result) const {
     Record const& now = frame_.agents[slot];
     next = now;
     if (now.status != AgentStatus::driving && now.status != AgentStatus::not_started) return;

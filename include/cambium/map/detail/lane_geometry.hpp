@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "cambium/geometry/line.hpp"
@@ -17,7 +18,7 @@ namespace cambium::map::detail {
 template <class PathOf>
 [[nodiscard]] bool set_geometry(Lane& lane, std::span<CrossSection const> sections, std::size_t column, PathOf const& path_of) {
   std::vector<geometry::LineSample> path, left, right;
-  lane.widths.clear();
+  std::vector<SideWidths> widths;
   auto const add_if_apart = [](std::vector<geometry::LineSample>& samples, geometry::LineSample const& p) {
     if (!samples.empty() && std::hypot(p.x - samples.back().x, p.y - samples.back().y) < 1e-6) return false;
     samples.push_back(p);
@@ -33,7 +34,7 @@ template <class PathOf>
     auto const &high = cross.borders[column], &low = cross.borders[column + 1];
     if (add_if_apart(path, at(on_path))) {
       double const above = high.t - on_path.t, below = on_path.t - low.t;
-      lane.widths.push_back(lane.along_road ? SideWidths{above, below} : SideWidths{below, above});
+      widths.push_back(lane.along_road ? SideWidths{above, below} : SideWidths{below, above});
     }
     add_if_apart(left, at(lane.along_road ? high : low));
     add_if_apart(right, at(lane.along_road ? low : high));
@@ -44,6 +45,7 @@ template <class PathOf>
     std::for_each(sections.rbegin(), sections.rend(), add);
   if (path.size() < 2) return false;
   lane.path = geometry::Line::from_samples(path);
+  lane.widths = std::move(widths);
   lane.left = left.size() > 1 ? geometry::Line::from_samples(left) : geometry::Line{};
   lane.right = right.size() > 1 ? geometry::Line::from_samples(right) : geometry::Line{};
   return true;
@@ -76,7 +78,7 @@ struct Smoothstep {
   auto const& end = along_road ? sections.back() : sections.front();
   double const begin_of_lane = along_road ? sections.front().s : sections.back().s;
   double begin = end.s;
-  if (width(end) < 0.5 * widest) {
+  if (widest > 0.0 && width(end) < 0.5 * widest) {
     auto const wide = [&](CrossSection const& c) { return width(c) > 0.95 * widest; };
     if (along_road) {
       auto const at = std::find_if(sections.rbegin(), sections.rend(), wide);
