@@ -36,7 +36,12 @@ struct LoadedMap {
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   if (!file) throw MapError(path, std::string("the file cannot be opened (") + std::strerror(errno) + ")", "check the path");
-  std::string const text{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+  std::string text;
+  try {
+    text.assign(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
+  } catch (std::ios_base::failure const&) {  // a folder opens, but cannot be read
+    throw MapError(path, "it cannot be read as a file", "give an OpenDRIVE file (.xodr)");
+  }
   if (file.bad() || text.empty()) throw MapError(path, "the file is empty or cannot be read", "give an OpenDRIVE file (.xodr)");
   return parse_opendrive(text, options, path);
 }

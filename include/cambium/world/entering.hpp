@@ -20,11 +20,13 @@ namespace cambium::detail {
 
 /// Farthest that an agent may enter from the nearest lane [m].
 inline constexpr double entering_radius = 5.0;
+/// Farthest that an agent with a route may enter from the path of one of its lanes [m].
+inline constexpr double path_radius = 2.5;
 
 /// The nearest lane of `route` at `position`: a path that swings over to its neighbour counts as its own lane there.
 [[nodiscard]] inline LaneId entering_lane(Map const& map, geometry::Point const& position, map::Route const& route, std::string const& where) {
   LaneId nearest = none<LaneId>;
-  double smallest = entering_radius;
+  double smallest = path_radius;
   for (auto const id : route.lanes) {
     if (index_of(id) >= map.lanes().size()) throw WorldError(where, "its route names a lane that the map does not have", "use Map::find_lane");
     auto const& lane = map.lane(id);
@@ -34,7 +36,7 @@ inline constexpr double entering_radius = 5.0;
     smallest = distance;
     nearest = id;
   }
-  if (!is_valid(nearest)) throw WorldError(where, "its route does not come within 5 m of its position", "begin the route there");
+  if (!is_valid(nearest)) throw WorldError(where, "no lane of its route comes within 2.5 m of its position", "begin the route there");
   return nearest;
 }
 
