@@ -1,8 +1,7 @@
-/// The room `map`: lanes, corridors, routes, building a map in code. Files are read by cambium/map/opendrive.hpp.
+/// The map room but for what builds maps: `cambium/map/build_map.hpp` and `routing.hpp` (Boost.Graph) come with `cambium/map/opendrive.hpp`.
 #pragma once
 
 #include "cambium/map/build_corridor.hpp"
-#include "cambium/map/build_map.hpp"
 #include "cambium/map/corridor.hpp"
 #include "cambium/map/cubic.hpp"
 #include "cambium/map/lane.hpp"
@@ -12,6 +11,4 @@
 #include "cambium/map/map.hpp"
 #include "cambium/map/opendrive_check.hpp"
 #include "cambium/map/opendrive_document.hpp"
-#include "cambium/map/overlaps.hpp"
 #include "cambium/map/reference_line.hpp"
-#include "cambium/map/routing.hpp"
