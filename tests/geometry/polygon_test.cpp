@@ -31,6 +31,11 @@ TEST_CASE("a polygon has the same area and corners whichever way round it was gi
   CHECK(Polygon(clockwise).bounding_box() == Box{0, 0, 2, 2});
 }
 
+TEST_CASE("a polygon can be written out corner by corner") {
+  CHECK(Polygon({{0, 0}, {4, 0}, {4, 2}}).area() == doctest::Approx(4.0));
+  CHECK_THROWS_AS(Polygon({{0, 0}, {4, 0}}), Error);
+}
+
 TEST_CASE("repeated corners and the closing one are dropped") {
   Points points{{0, 0}, {0, 0}, {1, 0}, {1, 1}, {1, 1}, {0, 0}};
   CHECK(Polygon(points).size() == 3);

@@ -31,6 +31,19 @@ struct Blurred {
 };
 static_assert(cb::ObserverModel<Blurred>);
 
+/// Believes to be 1 m further east and 0.25 m further north than it is; sees the others as they are.
+struct Misplaced {
+  static constexpr bool perfect = false;
+
+  template <cb::MotionState S>
+  [[nodiscard]] S observe(S truth, bool own, cb::RandomStream const&) const {
+    if (!own) return truth;
+    truth.x += 1.0;
+    truth.y += 0.25;
+    return truth;
+  }
+};
+
 using Behaviors = cb::BehaviorSet<cb::IdmClassic, cb::ConstantAcceleration>;
 using Noisy = cb::World<Behaviors, cb::InterpolateExecution, cb::SingleTrack, Blurred>;
 using Clear = cb::World<Behaviors, cb::InterpolateExecution, cb::SingleTrack>;
@@ -91,6 +104,26 @@ TEST_CASE(
   auto const front = world.observe(traffic.ego).front();
   REQUIRE(front.has_value());
   CHECK(front->speed == seen.at(front->agent).speed);
+  auto const& own = world.state(traffic.ego);
+  CHECK(front->gap == doctest::Approx(seen.at(front->agent).x - own.x - 3.6 - 0.9));
+  auto const rear = world.observe(traffic.ego).rear();
+  REQUIRE(rear.has_value());
+  CHECK(rear->gap == doctest::Approx(own.x - seen.at(rear->agent).x - 3.6 - 0.9));
+}
+
+TEST_CASE("an agent that errs about itself errs about its lane position and its gaps alike") {
+  cb::World<Behaviors, cb::InterpolateExecution, cb::SingleTrack, Misplaced> world(straight_road(2, 1000.0));
+  auto const ego = world.add({.position = {100, -1.75}, .speed = 10});
+  world.add({.position = {130, -1.75}, .speed = 10});
+  world.add({.position = {80, -1.75}, .speed = 10});
+  world.add_object(cb::geometry::Polygon({{150, -6}, {151, -6}, {151, -4.5}, {150, -4.5}}));
+  auto const view = world.observe(ego);
+  CHECK(view.lane_position().s == doctest::Approx(101.0));
+  CHECK(view.lane_position().lateral == doctest::Approx(0.25));
+  CHECK(view.front()->gap == doctest::Approx(30 - 4.5 - 1.0));
+  CHECK(view.rear()->gap == doctest::Approx(20 - 4.5 + 1.0));
+  auto const beside = static_cast<std::uint16_t>(1 - view.lane_position().corridor);
+  CHECK(view.front(beside)->gap == doctest::Approx(50 - 3.6 - 1.0));
 }
 
 TEST_CASE(

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <initializer_list>
 #include <span>
 #include <string>
 #include <utility>
@@ -54,6 +55,10 @@ class Polygon {
     set_bounding_box();
     set_convex();
   }
+
+  /// As above, from corners written out: `Polygon({{0, 0}, {4, 0}, {4, 2}})`.
+  explicit Polygon(std::initializer_list<Point> points, std::string const& where = "polygon")
+      : Polygon(std::span<Point const>(points.begin(), points.size()), where) {}
 
   /// The corners, counter-clockwise; the last one is joined to the first.
   [[nodiscard]] std::span<Point const> points() const { return points_; }

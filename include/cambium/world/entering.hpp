@@ -87,10 +87,10 @@ inline constexpr double path_radius = 2.5;
 }
 
 /// Index entries of a static object: one in each drivable lane whose borders it reaches across.
-[[nodiscard]] inline std::vector<TrafficEntry> object_entries(Map const& map, geometry::Polygon const& outline, std::uint32_t slot) {
+[[nodiscard]] inline std::vector<TrafficEntry> object_entries(Map const& map, StaticObject const& object, std::uint32_t slot) {
   constexpr double spacing = 0.5;  // [m] between the points of the outline that are looked at
   std::vector<geometry::Point> points;
-  auto const& corners = outline.points();
+  auto const& corners = object.outline.points();
   for (std::size_t i = 0; i < corners.size(); ++i) {
     geometry::Point const a = corners[i], b = corners[(i + 1) % corners.size()];
     int const parts = std::max(1, static_cast<int>(std::ceil((b - a).norm() / spacing)));
@@ -110,7 +110,7 @@ inline constexpr double path_radius = 2.5;
   std::vector<TrafficEntry> entries;
   for (auto const& [lane, stretch] : stretches) {
     double const half = (stretch.end - stretch.begin) / 2;
-    entries.push_back({map.lane(lane).index_begin + stretch.begin + half, half, half, slot});
+    entries.push_back({map.lane(lane).index_begin + stretch.begin + half, half, half, 0.0, slot, static_cast<std::uint32_t>(object.id)});
   }
   return entries;
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <type_traits>
 
 #include "cambium/behavior/view.hpp"
 #include "cambium/goal/goal.hpp"
@@ -23,9 +24,9 @@ struct ObservedAgent {
   geometry::Shape shape;
 };
 
-/// What one agent sees of its world: a view of a few pointers, valid until the world changes. States pass
-/// through the agent's observer model. It shows states, shapes, the map, neighbours and the agent's own route; never what
-/// the others intend: `predict` asks for a model of that.
+/// What one agent sees of its world: a view of a few pointers, valid until the world changes. States, and with them gaps,
+/// neighbours' speeds and the own lane position, pass through the agent's observer model; who is next to whom is the truth. It shows
+/// states, shapes, the map, neighbours and the agent's own route; never what the others intend: `predict` asks for a model of that.
 template <class World>
 class ObservedWorld {
  public:
@@ -33,7 +34,9 @@ class ObservedWorld {
   using Dynamics = typename World::Dynamics;
 
   ObservedWorld(World const& world, std::uint32_t slot)
-      : world_(&world), own_(&world.roster().agents[slot]), record_(&world.frame().agents[slot]), slot_(slot) {}
+      : world_(&world), own_(&world.roster().agents[slot]), record_(&world.frame().agents[slot]), slot_(slot) {
+    if constexpr (!perfect) seen_lane_ = map::locate(*own_->road, record_->lane.corridor, pose_of(state()), record_->lane);
+  }
 
   [[nodiscard]] double time() const { return world_->frame().time; }
   [[nodiscard]] AgentId id() const { return own_->id; }
@@ -44,7 +47,12 @@ class ObservedWorld {
   [[nodiscard]] Goal const& goal() const { return world_->roster().goals[slot_]; }
   [[nodiscard]] Map const& map() const { return world_->map(); }
   [[nodiscard]] map::RoadCorridor const& road() const { return *own_->road; }
-  [[nodiscard]] map::LanePosition const& lane_position() const { return record_->lane; }
+  [[nodiscard]] map::LanePosition const& lane_position() const {
+    if constexpr (perfect)
+      return record_->lane;
+    else
+      return seen_lane_;
+  }
   [[nodiscard]] map::LaneCorridor const& corridor() const { return road().corridors[lane_position().corridor]; }
   [[nodiscard]] std::span<StaticObject const> objects() const { return world_->roster().objects; }
 
@@ -56,20 +64,20 @@ class ObservedWorld {
   /// Next road user ahead along the own lane corridor; nothing if there is none within `TrafficIndex::horizon`. O(1) while the
   /// next one is in the same lane.
   [[nodiscard]] std::optional<Neighbor> front() const {
-    return neighbor(world_->traffic().front(corridor(), query(lane_position()), objects_on_lanes(), in_traffic()));
+    return neighbor(world_->traffic().front(corridor(), query(record_->lane), objects_on_lanes(), in_traffic()), 1);
   }
   [[nodiscard]] std::optional<Neighbor> rear() const {
-    return neighbor(world_->traffic().rear(corridor(), query(lane_position()), objects_on_lanes(), in_traffic()));
+    return neighbor(world_->traffic().rear(corridor(), query(record_->lane), objects_on_lanes(), in_traffic()), -1);
   }
 
   /// Next road user ahead along lane corridor `number` of the own road, from the place beside the agent. O(log n).
   [[nodiscard]] std::optional<Neighbor> front(std::uint16_t number) const {
-    if (number == lane_position().corridor) return front();
-    return neighbor(world_->traffic().front(road().corridors[number], query(beside(number)), objects_on_lanes(), false));
+    if (number == record_->lane.corridor) return front();
+    return neighbor(world_->traffic().front(road().corridors[number], query(beside(number)), objects_on_lanes(), false), 1);
   }
   [[nodiscard]] std::optional<Neighbor> rear(std::uint16_t number) const {
-    if (number == lane_position().corridor) return rear();
-    return neighbor(world_->traffic().rear(road().corridors[number], query(beside(number)), objects_on_lanes(), false));
+    if (number == record_->lane.corridor) return rear();
+    return neighbor(world_->traffic().rear(road().corridors[number], query(beside(number)), objects_on_lanes(), false), -1);
   }
 
   /// Calls `f(ObservedAgent)` for every other agent in traffic, in the order of their ids.
@@ -100,29 +108,37 @@ class ObservedWorld {
 
   [[nodiscard]] TrafficQuery query(map::LanePosition const& at) const { return {slot_, at.s, shape().front, shape().rear, at.piece}; }
 
-  [[nodiscard]] map::LanePosition beside(std::uint16_t number) const {
-    auto const& s = record_->state;
-    return map::locate(road(), number, {s.x, s.y, s.heading});
-  }
+  [[nodiscard]] map::LanePosition beside(std::uint16_t number) const { return map::locate(road(), number, pose_of(record_->state)); }
 
-  [[nodiscard]] std::optional<Neighbor> neighbor(std::optional<TrafficHit> const& hit) const {
+  /// The neighbour ahead (`sign` 1) or behind (-1), as observed.
+  [[nodiscard]] std::optional<Neighbor> neighbor(std::optional<TrafficHit> const& hit, int sign) const {
     if (!hit) return std::nullopt;
-    if (hit->is_object) return Neighbor{none<AgentId>, world_->roster().objects[hit->slot].id, hit->gap, 0.0};
-    double const along = cosine(record(hit->slot).lane.heading_error);
-    return Neighbor{world_->roster().agents[hit->slot].id, none<ObjectId>, hit->gap, observed(hit->slot).speed * along};
+    auto const agent = hit->is_object ? none<AgentId> : static_cast<AgentId>(hit->id);
+    auto const object = hit->is_object ? static_cast<ObjectId>(hit->id) : none<ObjectId>;
+    if constexpr (perfect) return Neighbor{agent, object, hit->gap, hit->speed};
+    double gap = hit->gap - sign * shift(slot_);
+    if (hit->is_object) return Neighbor{agent, object, gap, 0.0};
+    gap += sign * shift(hit->slot);
+    return Neighbor{agent, object, gap, observed(hit->slot).speed * std::cos(record(hit->slot).lane.heading_error)};
   }
 
-  /// Most vehicles head along their lane: there four terms are as good as the function.
-  [[nodiscard]] static double cosine(double angle) {
-    double const square = angle * angle;
-    if (square > 1e-3) return std::cos(angle);
-    return 1.0 - square / 2 * (1.0 - square / 12 * (1.0 - square / 30));
+  /// How far the observer moves an agent along its lane [m].
+  [[nodiscard]] double shift(std::uint32_t slot) const {
+    auto const& truth = record(slot).state;
+    auto const& seen = observed(slot);
+    double const along = truth.heading - record(slot).lane.heading_error;
+    return (seen.x - truth.x) * std::cos(along) + (seen.y - truth.y) * std::sin(along);
   }
+
+  [[nodiscard]] static geometry::Pose pose_of(State const& s) { return {s.x, s.y, s.heading}; }
+
+  static constexpr bool perfect = World::Observer::perfect;
 
   World const* world_;
   typename World::RosterType::Agent const* own_;
   typename World::Record const* record_;
   std::uint32_t slot_;
+  [[no_unique_address]] std::conditional_t<perfect, NoMemory, map::LanePosition> seen_lane_{};
 };
 
 }  // namespace cambium

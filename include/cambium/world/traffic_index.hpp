@@ -11,12 +11,15 @@
 
 namespace cambium {
 
-/// A road user on the lanes: `position` in the map-wide lane coordinate (see `Lane::index_begin`), and how far it reaches from
-/// there forward and back [m]. Sorted by position, then slot.
+/// A road user on the lanes: `position` in the map-wide lane coordinate (see `Lane::index_begin`), how far it reaches from
+/// there forward and back [m], its speed along the lane [m/s]. `slot` is its place among the agents or the objects, `id` the
+/// value of its AgentId or ObjectId. Sorted by position, then slot.
 struct TrafficEntry {
   double position{};
   double front{}, rear{};
+  double speed{};
   std::uint32_t slot{};
+  std::uint32_t id{};
 
   friend bool operator<(TrafficEntry const& a, TrafficEntry const& b) {
     return a.position < b.position || (a.position == b.position && a.slot < b.slot);
@@ -31,11 +34,13 @@ struct TrafficQuery {
   std::uint16_t piece{};
 };
 
-/// What was found: a slot of the agents, or of the objects.
+/// What was found: an agent, or an object.
 struct TrafficHit {
   std::uint32_t slot{};
+  std::uint32_t id{};
   bool is_object = false;
   double gap = std::numeric_limits<double>::infinity();  ///< [m]
+  double speed{};                                        ///< along its lane [m/s]
 };
 
 /// Who is where on the lanes, sorted, so that the next road user along a corridor is the next in the list.
@@ -59,7 +64,7 @@ class TrafficIndex {
   }
 
   /// Takes in `count` agents. `entry_of(slot)` gives each one's `TrafficEntry` (position +infinity: not in traffic);
-  /// `add_straddling(slot, list)` appends entries in the lanes that it reaches into. No allocation once warm. O(count) when little has changed.
+  /// `add_straddling(entry, list)` appends entries in the lanes that it reaches into. No allocation once warm. O(count) when little has changed.
   template <class EntryOf, class AddStraddling>
   void refresh(std::size_t count, EntryOf const& entry_of, AddStraddling const& add_straddling) {
     if (agents_.size() != count) {
@@ -74,7 +79,7 @@ class TrafficIndex {
       entry = entry_of(entry.slot);
       longest_front_ = std::max(longest_front_, entry.front);
       longest_rear_ = std::max(longest_rear_, entry.rear);
-      add_straddling(entry.slot, straddling_);
+      add_straddling(entry, straddling_);
     }
     sort_nearly_sorted(agents_);
     std::sort(straddling_.begin(), straddling_.end());
@@ -134,10 +139,10 @@ class TrafficIndex {
 
   /// First entry behind which (position, slot) sorts.
   [[nodiscard]] static std::size_t upper(List list, double position, std::uint32_t slot) {
-    return static_cast<std::size_t>(std::upper_bound(list.begin(), list.end(), TrafficEntry{position, 0, 0, slot}) - list.begin());
+    return static_cast<std::size_t>(std::upper_bound(list.begin(), list.end(), TrafficEntry{position, 0, 0, 0, slot, 0}) - list.begin());
   }
   [[nodiscard]] static std::size_t lower(List list, double position, std::uint32_t slot) {
-    return static_cast<std::size_t>(std::lower_bound(list.begin(), list.end(), TrafficEntry{position, 0, 0, slot}) - list.begin());
+    return static_cast<std::size_t>(std::lower_bound(list.begin(), list.end(), TrafficEntry{position, 0, 0, 0, slot, 0}) - list.begin());
   }
 
   /// First entry at `position` or beyond: a binary search without branches to mispredict.
@@ -153,8 +158,8 @@ class TrafficIndex {
     return static_cast<std::size_t>(base - list.data()) + (base->position < position ? 1 : 0);
   }
 
-  static void offer(TrafficHit& best, std::uint32_t slot, bool is_object, double gap) {
-    if (gap < best.gap) best = {slot, is_object, gap};
+  static void offer(TrafficHit& best, TrafficEntry const& entry, bool is_object, double gap) {
+    if (gap < best.gap) best = {entry.slot, entry.id, is_object, gap, entry.speed};
   }
 
   static void front_on_corridor(List list, bool is_object, map::LaneCorridor const& corridor, TrafficQuery const& query,
@@ -164,7 +169,7 @@ class TrafficIndex {
       while (i < list.size() && list[i].slot == query.slot && !is_object) ++i;  // the asker's own, reached over from another lane
       if (i < list.size() && list[i].position <= pieces[p].end + 1.0 + pieces[p].index_offset) {
         double const s = list[i].position - pieces[p].index_offset;
-        if (s - query.s <= horizon) offer(best, list[i].slot, is_object, s - list[i].rear - (query.s + query.front));
+        if (s - query.s <= horizon) offer(best, list[i], is_object, s - list[i].rear - (query.s + query.front));
         return;
       }
       if (++p == pieces.size() || pieces[p].begin - query.s > horizon) return;
@@ -180,7 +185,7 @@ class TrafficIndex {
       if (i > 0 && list[i - 1].position >= pieces[p].begin - 1.0 + pieces[p].index_offset) {
         auto const& entry = list[i - 1];
         double const s = entry.position - pieces[p].index_offset;
-        if (query.s - s <= horizon) offer(best, entry.slot, is_object, query.s - query.rear - (s + entry.front));
+        if (query.s - s <= horizon) offer(best, entry, is_object, query.s - query.rear - (s + entry.front));
         return;
       }
       if (p-- == 0 || query.s - pieces[p].end > horizon) return;
@@ -198,7 +203,7 @@ class TrafficIndex {
       bool const ahead = s > query.s || (s == query.s && entry.slot > query.slot);
       if (!ahead) continue;
       if (s - query.s <= horizon)
-        offer(best, entry.slot, is_object, gap_between(query.s + query.front, s - entry.rear, feeder.free_until));
+        offer(best, entry, is_object, gap_between(query.s + query.front, s - entry.rear, feeder.free_until));
       return;
     }
   }
@@ -212,7 +217,7 @@ class TrafficIndex {
       bool const behind = s < query.s || (s == query.s && entry.slot < query.slot);
       if (!behind) continue;
       if (query.s - s <= horizon)
-        offer(best, entry.slot, is_object, gap_between(s + entry.front, query.s - query.rear, feeder.free_until));
+        offer(best, entry, is_object, gap_between(s + entry.front, query.s - query.rear, feeder.free_until));
       return;
     }
   }

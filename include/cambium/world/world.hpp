@@ -372,7 +372,7 @@ class World {
   void index_objects(RosterType& roster) {
     roster.object_entries.clear();
     for (std::uint32_t i = 0; i < roster.objects.size(); ++i)
-      for (auto const& entry : detail::object_entries(*map_, roster.objects[i].outline, i)) roster.object_entries.push_back(entry);
+      for (auto const& entry : detail::object_entries(*map_, roster.objects[i], i)) roster.object_entries.push_back(entry);
     std::sort(roster.object_entries.begin(), roster.object_entries.end());
   }
 
@@ -385,32 +385,40 @@ class World {
     if (scratch_.fresh) return;
     auto const entry_of = [this](std::uint32_t slot) {
       auto const& record = frame_.agents[slot];
-      auto const& shape = roster_->agents[slot].shape;
+      auto const& agent = roster_->agents[slot];
       double const position = record.status == AgentStatus::driving ? record.lane.index : std::numeric_limits<double>::infinity();
-      return TrafficEntry{position, shape.front, shape.rear, slot};
+      double const speed = record.state.speed * cosine_of_small(record.lane.heading_error);
+      return TrafficEntry{position, agent.shape.front, agent.shape.rear, speed, slot, static_cast<std::uint32_t>(agent.id)};
     };
-    auto const add_straddling = [this](std::uint32_t slot, std::vector<TrafficEntry>& list) {
-      if (std::abs(frame_.agents[slot].lane.lateral) > on_path) straddle(slot, list);
+    auto const add_straddling = [this](TrafficEntry const& entry, std::vector<TrafficEntry>& list) {
+      if (std::abs(frame_.agents[entry.slot].lane.lateral) > on_path) straddle(entry, list);
     };
     scratch_.traffic.refresh(frame_.agents.size(), entry_of, add_straddling);
     scratch_.fresh = true;
+  }
+
+  /// Most vehicles head along their lane: there four terms are as good as the function.
+  [[nodiscard]] static double cosine_of_small(double angle) {
+    double const square = angle * angle;
+    if (square > 1e-3) return std::cos(angle);
+    return 1.0 - square / 2 * (1.0 - square / 12 * (1.0 - square / 30));
   }
 
   /// An agent this close to its path is inside its lane [m].
   static constexpr double on_path = 0.3;
 
   /// Adds the agent to the neighbouring lane that it reaches into.
-  void straddle(std::uint32_t slot, std::vector<TrafficEntry>& list) const {
-    auto const& [state, at, action, memory, status] = frame_.agents[slot];
+  void straddle(TrafficEntry entry, std::vector<TrafficEntry>& list) const {
+    auto const& [state, at, action, memory, status] = frame_.agents[entry.slot];
     if (status != AgentStatus::driving) return;
-    auto const& agent = roster_->agents[slot];
+    auto const& agent = roster_->agents[entry.slot];
     auto const widths = agent.road->corridors[at.corridor].widths_at(at.s, at.segment);
-    auto const& lane = map_->lane(piece_of(slot).lane);
+    auto const& lane = map_->lane(piece_of(entry.slot).lane);
     auto const enter = [&, x = state.x, y = state.y](LaneId beside) {
       if (!is_valid(beside)) return;
       auto const& other = map_->lane(beside);
-      double const s = std::clamp(other.path.project({x, y}).s, 0.0, other.length());
-      list.push_back({other.index_begin + s, agent.shape.front, agent.shape.rear, slot});
+      entry.position = other.index_begin + std::clamp(other.path.project({x, y}).s, 0.0, other.length());
+      list.push_back(entry);
     };
     if (at.lateral + agent.shape.left > widths.left) enter(lane.left_neighbor);
     if (at.lateral - agent.shape.right < -widths.right) enter(lane.right_neighbor);
