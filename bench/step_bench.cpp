@@ -24,10 +24,11 @@ namespace cb = cambium;
 
 namespace {
 
-using Sim = cb::World<cb::BehaviorSet<cb::IdmClassic, cb::ConstantAcceleration>, cb::InterpolateExecution, cb::SingleTrack>;
+using Sim =
+    cb::World<cb::BehaviorSet<cb::IdmClassic, cb::ConstantAcceleration>, cb::InterpolateExecution, cb::SingleTrack>;
 
-constexpr double dt = 0.2;          // [s]
-constexpr int steps_per_run = 50;   // then the world is set back, so that traffic stays what it was
+constexpr double dt = 0.2;         // [s]
+constexpr int steps_per_run = 50;  // then the world is set back, so that traffic stays what it was
 
 /// Puts `agents` vehicles on the lane corridors of the map's entrances, densely, the first ones first.
 void fill(Sim& world, std::size_t agents, double end) {
@@ -50,12 +51,18 @@ void fill(Sim& world, std::size_t agents, double end) {
   for (std::size_t i = 0; world.size() < agents; ++i) {
     auto const& [route, road, vehicles] = entrances[i % entrances.size()];
     if (i / entrances.size() >= vehicles.size()) {
-      if (i > 100 * agents) throw cb::WorldError("bench", "the road is too short for " + std::to_string(agents) + " agents");
+      if (i > 100 * agents)
+        throw cb::WorldError("bench", "the road is too short for " + std::to_string(agents) + " agents");
       continue;
     }
     auto const& v = vehicles[i / entrances.size()];
     auto const pose = road->corridors[road->main].center.pose(v.s);
-    world.add({.position = pose.position(), .heading = pose.heading, .speed = v.speed, .shape = v.shape, .behavior = v.driver, .route = route});
+    world.add({.position = pose.position(),
+               .heading = pose.heading,
+               .speed = v.speed,
+               .shape = v.shape,
+               .behavior = v.driver,
+               .route = route});
   }
 }
 
@@ -136,7 +143,8 @@ void register_rollout() {
 
 void register_load() {
   yardstick::add("load/merging", [](benchmark::State& state) {
-    yardstick::measure_duration(state, [] { benchmark::DoNotOptimize(support::load_map(CAMBIUM_SOURCE_DIR "/maps/merging.xodr").get()); });
+    yardstick::measure_duration(
+        state, [] { benchmark::DoNotOptimize(support::load_map(CAMBIUM_SOURCE_DIR "/maps/merging.xodr").get()); });
   });
 }
 
@@ -157,7 +165,8 @@ void print_ratios(yardstick::Results const& results) {
 
 int main(int argc, char** argv) {
   for (std::size_t const n : yardstick::world_sizes) register_steps("step/idm_classic", n, highway_world);
-  for (std::size_t const n : {std::size_t{5}, std::size_t{10}, std::size_t{20}}) register_steps("step/merging", n, merging_world);
+  for (std::size_t const n : {std::size_t{5}, std::size_t{10}, std::size_t{20}})
+    register_steps("step/merging", n, merging_world);
   for (std::size_t const n : yardstick::world_sizes) register_copies(n);
   register_rollout();
   register_load();

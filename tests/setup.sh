@@ -39,6 +39,7 @@ have_package() {
     libboost-dev) have_header boost/version.hpp ;;
     libpugixml-dev) have_header pugixml.hpp ;;
     nlohmann-json3-dev) have_header nlohmann/json.hpp ;;
+    libcli11-dev) have_header CLI/CLI.hpp ;;
     doctest-dev) have_header doctest/doctest.h ;;
     libbenchmark-dev) have_header benchmark/benchmark.h ;;
     *) have "$1" ;;

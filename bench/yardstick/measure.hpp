@@ -69,7 +69,8 @@ void measure_copy(benchmark::State& state, Copy&& copy) {
 template <class Action>
 void measure_duration(benchmark::State& state, Action&& action) {
   detail::run_counted(state, std::forward<Action>(action));
-  state.counters[milliseconds] = {static_cast<double>(state.iterations()) * 1e-3, benchmark::Counter::kIsRate | benchmark::Counter::kInvert};
+  state.counters[milliseconds] = {static_cast<double>(state.iterations()) * 1e-3,
+                                  benchmark::Counter::kIsRate | benchmark::Counter::kInvert};
 }
 
 /// Measures `action`, say one roll-out: counters per_second and allocations (per action).

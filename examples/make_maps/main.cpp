@@ -8,12 +8,14 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <string>
 #include <system_error>
 #include <vector>
 
+#include "cambium/core/write_file.hpp"
+
+#include "../common/command_line.hpp"
 #include "road_writer.hpp"
 
 namespace make_maps {
@@ -183,46 +185,28 @@ std::string merging() {
   return xml.text();
 }
 
-int write_all(std::filesystem::path const& folder) {
+void write_all(std::filesystem::path const& folder) {
   struct File {
     char const* name;
     std::string text;
   };
+  std::error_code ignored;  // a folder that cannot be made shows as files that cannot be written
+  std::filesystem::create_directories(folder, ignored);
   for (File const& file :
        {File{"highway.xodr", highway()}, File{"merging.xodr", merging()}, File{"lane_drop.xodr", lane_drop()}}) {
-    std::filesystem::path const path = folder / file.name;
-    std::ofstream out(path, std::ios::binary);
-    out << file.text;
-    if (!out.flush()) {
-      std::cerr << "make_maps: cannot write " << path.string() << "; give an existing, writable folder with --out\n";
-      return 2;
-    }
-    std::cout << path.string() << ": " << file.text.size() << " bytes\n";
+    cambium::write_file(folder / file.name, file.text);
+    std::cout << (folder / file.name).string() << ": " << file.text.size() << " bytes\n";
   }
-  return 0;
 }
 
 }  // namespace
 }  // namespace make_maps
 
 int main(int argc, char** argv) {
-  std::filesystem::path folder = "maps";
-  for (int i = 1; i < argc; ++i) {
-    std::string const option = argv[i];
-    if (option == "--help") {
-      std::cout << "Writes highway.xodr, merging.xodr and lane_drop.xodr.\n"
-                   "  --out DIR   folder to write into, made if it is not there (default: maps)\n"
-                   "  --help      this text\n";
-      return 0;
-    }
-    if (option != "--out" || i + 1 == argc) {
-      std::cerr << "make_maps: " << (option == "--out" ? "--out needs a folder" : "unknown option " + option)
-                << "; see --help\n";
-      return 2;
-    }
-    folder = argv[++i];
-  }
-  std::error_code ignored;  // a folder that cannot be made shows as files that cannot be written
-  std::filesystem::create_directories(folder, ignored);
-  return make_maps::write_all(folder);
+  std::string folder = "maps";
+  CLI::App program("Writes highway.xodr, merging.xodr and lane_drop.xodr.", "make_maps");
+  program.add_option("--out", folder, "folder to write into, made if it is not there")
+      ->type_name("DIR")
+      ->capture_default_str();
+  return examples::run_program(program, argc, argv, [&] { make_maps::write_all(folder); });
 }

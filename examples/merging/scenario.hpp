@@ -18,13 +18,14 @@
 
 namespace merging {
 
-using Simulation = cambium::World<cambium::BehaviorSet<cambium::IdmClassic>, cambium::InterpolateExecution, cambium::SingleTrack>;
+using Simulation =
+    cambium::World<cambium::BehaviorSet<cambium::IdmClassic>, cambium::InterpolateExecution, cambium::SingleTrack>;
 
 /// A way into the map: a lane where traffic enters, and the route straight on from there.
 struct Entrance {
   cambium::map::Route route;
-  double length{};          ///< of the lane corridor from the entrance to its end [m]
-  double merge_at{};        ///< where its own path begins to swing onto a neighbour's, or to overlap with another's [m]
+  double length{};    ///< of the lane corridor from the entrance to its end [m]
+  double merge_at{};  ///< where its own path begins to swing onto a neighbour's, or to overlap with another's [m]
   bool gives_up_lane = false;  ///< its lane ends in the merge: this is who merges
 };
 
@@ -32,8 +33,8 @@ struct Entrance {
 struct Site {
   std::shared_ptr<cambium::Map const> map;
   std::vector<Entrance> entrances;
-  std::size_t ramp{};             ///< the entrance whose vehicles merge
-  double free_speed = 13.9;       ///< [m/s]: the speed limit there, else 50 km/h
+  std::size_t ramp{};        ///< the entrance whose vehicles merge
+  double free_speed = 13.9;  ///< [m/s]: the speed limit there, else 50 km/h
 };
 
 /// Where, along the route's lane corridor, other lanes' traffic begins to merge with it; its length if nowhere.
@@ -66,7 +67,8 @@ inline void find_merge(cambium::Map const& map, Entrance& entrance) {
     if (entrance.length > 30.0) site.entrances.push_back(std::move(entrance));
   }
   auto const merges = [](Entrance const& e) { return e.merge_at < e.length; };
-  auto const better = [&](Entrance const& a, Entrance const& b) {  // who gives up a lane; of those, who has the longest way to the merge
+  auto const better = [&](Entrance const& a,
+                          Entrance const& b) {  // who gives up a lane; of those, who has the longest way to the merge
     if (a.gives_up_lane != b.gives_up_lane) return b.gives_up_lane;
     return a.merge_at < b.merge_at;
   };
@@ -76,7 +78,9 @@ inline void find_merge(cambium::Map const& map, Entrance& entrance) {
     if (!found || better(site.entrances[site.ramp], site.entrances[i])) site.ramp = i;
     found = true;
   }
-  if (!found) throw cambium::MapError(file, "no lane of this map merges into another", "give a map with an on-ramp or a lane drop, such as maps/merging.xodr");
+  if (!found)
+    throw cambium::MapError(file, "no lane of this map merges into another",
+                            "give a map with an on-ramp or a lane drop, such as maps/merging.xodr");
   auto const limit = site.map->lane(site.entrances[site.ramp].route.lanes.front()).speed_limit;
   if (limit > 0) site.free_speed = limit;
   return site;
@@ -89,21 +93,27 @@ struct Scenario {
   std::vector<cambium::AgentId> merging;  ///< all that come from the ramp
 };
 
-/// Whether a vehicle that has just entered and the one behind it could drive on without braking hard, merging traffic included.
+/// Whether a vehicle that has just entered and the one behind it could drive on without braking hard, merging traffic
+/// included.
 [[nodiscard]] inline bool enters_safely(Simulation& world, cambium::AgentId id) {
   constexpr double headway = 0.6;  // [s]
   auto const view = world.observe(id);
-  auto const driver = [&](cambium::AgentId agent) { return std::get<cambium::IdmClassic>(world.roster().agents[world.slot_of(agent)].behavior); };
+  auto const driver = [&](cambium::AgentId agent) {
+    return std::get<cambium::IdmClassic>(world.roster().agents[world.slot_of(agent)].behavior);
+  };
   if (auto const front = view.front())
-    if (front->gap < cambium::LaneTraffic::safe_gap(driver(id), view.state().speed, front->speed, headway)) return false;
+    if (front->gap < cambium::LaneTraffic::safe_gap(driver(id), view.state().speed, front->speed, headway))
+      return false;
   if (auto const rear = view.rear())
-    if (rear->gap < cambium::LaneTraffic::safe_gap(driver(rear->agent), rear->speed, view.state().speed, headway)) return false;
+    if (rear->gap < cambium::LaneTraffic::safe_gap(driver(rear->agent), rear->speed, view.state().speed, headway))
+      return false;
   return true;
 }
 
-/// Dense traffic from every entrance up to its merge. The ego is the vehicle in the middle of those on the ramp; its goal is the lane
-/// behind the merge. `attempt` numbers the draws of one scenario.
-[[nodiscard]] inline Scenario draw_scenario(Site const& site, std::uint64_t seed, std::uint32_t number, std::uint32_t attempt) {
+/// Dense traffic from every entrance up to its merge. The ego is the vehicle in the middle of those on the ramp; its
+/// goal is the lane behind the merge. `attempt` numbers the draws of one scenario.
+[[nodiscard]] inline Scenario draw_scenario(Site const& site, std::uint64_t seed, std::uint32_t number,
+                                            std::uint32_t attempt) {
   Scenario scenario{Simulation(site.map, {.seed = seed}), cambium::none<cambium::AgentId>, {}};
   cambium::RandomStream random(seed, number, attempt);
   for (std::size_t k = 0; k < site.entrances.size(); ++k) {
@@ -122,7 +132,12 @@ struct Scenario {
     auto const& corridor = road->corridors[road->main];
     for (auto const& vehicle : traffic.sample(random)) {
       auto const pose = corridor.center.pose(vehicle.s);
-      Simulation::AgentSpec spec{.position = pose.position(), .heading = pose.heading, .speed = vehicle.speed, .shape = vehicle.shape, .behavior = vehicle.driver, .route = entrance.route};
+      Simulation::AgentSpec spec{.position = pose.position(),
+                                 .heading = pose.heading,
+                                 .speed = vehicle.speed,
+                                 .shape = vehicle.shape,
+                                 .behavior = vehicle.driver,
+                                 .route = entrance.route};
       if (i == site.ramp) spec.goal = cambium::ReachLane{entrance.route.lanes.back()};
       auto const id = scenario.world.add(spec);
       if (!enters_safely(scenario.world, id)) {
@@ -136,13 +151,15 @@ struct Scenario {
   return scenario;
 }
 
-/// The first draw in which somebody merges among others. Throws `WorldError` where there is none: the map has no room before its merge.
+/// The first draw in which somebody merges among others. Throws `WorldError` where there is none: the map has no room
+/// before its merge.
 [[nodiscard]] inline Scenario sample_scenario(Site const& site, std::uint64_t seed, std::uint32_t number) {
   for (std::uint32_t attempt = 0; attempt < 100; ++attempt) {
     auto scenario = draw_scenario(site, seed, number, attempt);
     if (is_valid(scenario.ego) && scenario.world.size() > scenario.merging.size()) return scenario;
   }
-  throw cambium::WorldError("scenario " + std::to_string(number), "no traffic fits on the map before its merge", "give a map with longer lanes there");
+  throw cambium::WorldError("scenario " + std::to_string(number), "no traffic fits on the map before its merge",
+                            "give a map with longer lanes there");
 }
 
 }  // namespace merging

@@ -1,4 +1,5 @@
-/// The room `core`: ids, states, plans, random streams and distributions, parameter structs, errors, version.
+/// The room `core`: ids, states, plans, random streams and distributions, parameter structs, errors, writing of files,
+/// version.
 #pragma once
 
 #include "cambium/core/assert.hpp"
@@ -11,3 +12,4 @@
 #include "cambium/core/random.hpp"
 #include "cambium/core/state.hpp"
 #include "cambium/core/version.hpp"
+#include "cambium/core/write_file.hpp"

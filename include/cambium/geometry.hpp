@@ -2,6 +2,7 @@
 #pragma once
 
 #include "cambium/geometry/angle.hpp"
+#include "cambium/geometry/box.hpp"
 #include "cambium/geometry/collision.hpp"
 #include "cambium/geometry/frenet.hpp"
 #include "cambium/geometry/line.hpp"

@@ -1,4 +1,5 @@
-/// The map room but for what builds maps: `cambium/map/build_map.hpp` and `routing.hpp` (Boost.Graph) come with `cambium/map/opendrive.hpp`.
+/// The map room but for what builds maps: `cambium/map/build_map.hpp` and `routing.hpp` (Boost.Graph) come with
+/// `cambium/map/opendrive.hpp`.
 #pragma once
 
 #include "cambium/map/build_corridor.hpp"

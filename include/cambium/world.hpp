@@ -1,7 +1,6 @@
 /// The room `world`: the world and its frames, what an agent sees of it, neighbours, predictions, static objects.
 #pragma once
 
-#include "cambium/world/entering.hpp"
 #include "cambium/world/frame.hpp"
 #include "cambium/world/observed_world.hpp"
 #include "cambium/world/prediction.hpp"

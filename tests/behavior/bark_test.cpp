@@ -26,7 +26,12 @@ std::vector<Row> read_rows(std::filesystem::path const& file) {
   std::vector<Row> rows;
   auto const number = [](std::string const& text) { return text.empty() ? 0.0 : std::stod(text); };
   for (auto const& c : corpus::table(file))
-    rows.push_back({std::stoi(c[0]), std::stoi(c[2]), {number(c[1]), number(c[4]), number(c[5]), number(c[6]), number(c[7])}, number(c[8]), std::stoi(c[11]), number(c[12])});
+    rows.push_back({std::stoi(c[0]),
+                    std::stoi(c[2]),
+                    {number(c[1]), number(c[4]), number(c[5]), number(c[6]), number(c[7])},
+                    number(c[8]),
+                    std::stoi(c[11]),
+                    number(c[12])});
   return rows;
 }
 
@@ -38,7 +43,10 @@ Sim world_at(std::shared_ptr<cb::Map const> const& map, std::vector<Row> const& 
   Sim world(map);
   for (auto const& row : rows) {
     if (row.step != step || (only != 0 && row.agent != only)) continue;
-    Sim::AgentSpec spec{.position = {row.state.x, row.state.y}, .heading = row.state.heading, .speed = row.state.speed, .shape = box(1.75, 2.25)};
+    Sim::AgentSpec spec{.position = {row.state.x, row.state.y},
+                        .heading = row.state.heading,
+                        .speed = row.state.speed,
+                        .shape = box(1.75, 2.25)};
     spec.id = id_of(row.agent);
     cb::IdmClassic driver;
     driver.comfortable_deceleration = 1.67f;  // BARK keeps it as a float
@@ -81,7 +89,8 @@ TEST_CASE("IDM with BARK's sub-steps reproduces BARK's highway traffic to 1e-9")
     for (auto const& next : rows) {
       if (next.agent != row.agent || next.step != row.step + 1) continue;
       auto const& record = world.record(id_of(row.agent));
-      for (double const difference : {record.state.x - next.state.x, record.state.y - next.state.y, record.state.speed - next.state.speed})
+      for (double const difference :
+           {record.state.x - next.state.x, record.state.y - next.state.y, record.state.speed - next.state.speed})
         worst = std::max(worst, std::abs(difference));
       if (row.agent != 6) worst = std::max(worst, std::abs(record.action.acceleration - next.acceleration));
       ++compared;

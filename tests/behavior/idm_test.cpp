@@ -36,7 +36,8 @@ TEST_CASE("acceleration falls with speed, with a slower leader and with a smalle
   cb::IdmClassic const p;
   cb::RandomStream random(3, 0, 0);
   for (int i = 0; i < 10000; ++i) {
-    double const v = 30 * cb::uniform01(random), gap = 0.1 + 100 * cb::uniform01(random), leader = 30 * cb::uniform01(random);
+    double const v = 30 * cb::uniform01(random), gap = 0.1 + 100 * cb::uniform01(random),
+                 leader = 30 * cb::uniform01(random);
     double const a = cb::idm_acceleration(p, v, gap, leader);
     CHECK(a >= cb::idm_acceleration(p, v + 0.5, gap, leader));
     CHECK(a >= cb::idm_acceleration(p, v, gap * 0.9, leader));
@@ -46,7 +47,8 @@ TEST_CASE("acceleration falls with speed, with a slower leader and with a smalle
 
 namespace {
 
-/// The same motion by 20000 explicit steps with linear extrapolation of their error (Richardson): a twin of `idm_motion`.
+/// The same motion by 20000 explicit steps with linear extrapolation of their error (Richardson): a twin of
+/// `idm_motion`.
 cb::LongitudinalMotion<double> fine_motion(cb::IdmClassic const& p, double v, double gap, double leader, double dt) {
   auto const run = [&](int n) {
     double x = 0, speed = v;

@@ -29,9 +29,11 @@ std::vector<std::string> rooms() {
   return names;
 }
 
-/// Headers that stay out of the umbrellas: they need pugixml, or compile Boost.Graph, which only the building of maps needs.
+/// Headers that stay out of the umbrellas: they need pugixml, or compile Boost.Graph, which only the building of maps
+/// needs.
 bool needs_more(std::string const& header) {
-  std::set<std::string> const apart{"map/opendrive.hpp", "map/opendrive_reader.hpp", "map/build_map.hpp", "map/overlaps.hpp", "map/routing.hpp"};
+  std::set<std::string> const apart{"map/opendrive.hpp", "map/opendrive_reader.hpp", "map/build_map.hpp",
+                                    "map/overlaps.hpp", "map/routing.hpp"};
   return apart.contains(header);
 }
 

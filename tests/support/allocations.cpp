@@ -1,5 +1,5 @@
-// Replaces the global operators by ones that count: the standard's own way to see allocations. In a translation unit of its own, so
-// that the compiler does not inline them into pairs that look mismatched.
+// Replaces the global operators by ones that count: the standard's own way to see allocations. In a translation unit of
+// its own, so that the compiler does not inline them into pairs that look mismatched.
 #include "allocations.hpp"
 
 #include <cstdlib>

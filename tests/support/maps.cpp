@@ -32,7 +32,8 @@ std::shared_ptr<cambium::Map const> own_map(std::string const& name) {
 
 std::shared_ptr<cambium::Map const> corpus_map(std::string const& name) {
   char const* const set = std::getenv("CAMBIUM_CORPUS");
-  std::filesystem::path const root = set != nullptr ? std::filesystem::path(set) : std::filesystem::path(CAMBIUM_SOURCE_DIR) / ".." / "shared";
+  std::filesystem::path const root =
+      set != nullptr ? std::filesystem::path(set) : std::filesystem::path(CAMBIUM_SOURCE_DIR) / ".." / "shared";
   auto const file = root / "opendrive" / name;
   return std::filesystem::exists(file) ? cambium::load_opendrive(file.string()).map : nullptr;
 }

@@ -35,7 +35,8 @@ struct Wanderer {
   }
 };
 
-using Mixed = cb::World<cb::BehaviorSet<cb::IdmClassic, Wanderer, cb::ConstantAcceleration>, cb::InterpolateExecution, cb::SingleTrack>;
+using Mixed = cb::World<cb::BehaviorSet<cb::IdmClassic, Wanderer, cb::ConstantAcceleration>, cb::InterpolateExecution,
+                        cb::SingleTrack>;
 
 /// Traffic on all lanes of maps/merging.xodr, entered in the order of `order`.
 Mixed busy_world(std::shared_ptr<cb::Map const> const& map, std::uint64_t seed, bool reversed = false) {

@@ -14,7 +14,8 @@ namespace fixtures {
 
 namespace cb = cambium;
 
-using Sim = cb::World<cb::BehaviorSet<cb::IdmClassic, cb::ConstantAcceleration, cb::ExternalInput>, cb::InterpolateExecution, cb::SingleTrack>;
+using Sim = cb::World<cb::BehaviorSet<cb::IdmClassic, cb::ConstantAcceleration, cb::ExternalInput>,
+                      cb::InterpolateExecution, cb::SingleTrack>;
 
 using support::own_map;
 using support::straight_road;

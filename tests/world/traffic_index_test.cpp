@@ -28,8 +28,10 @@ struct Image {
   double s, free_until;
 };
 
-/// The lanes upstream of `lane` within `distance`, as (lane, distance from the end of that lane to the start of `lane`).
-void upstream(cb::Map const& map, LaneId lane, double distance, double so_far, std::vector<std::pair<LaneId, double>>& out) {
+/// The lanes upstream of `lane` within `distance`, as (lane, distance from the end of that lane to the start of
+/// `lane`).
+void upstream(cb::Map const& map, LaneId lane, double distance, double so_far,
+              std::vector<std::pair<LaneId, double>>& out) {
   if (so_far >= distance) return;
   for (auto const p : map.lane(lane).predecessors) {
     out.emplace_back(p, so_far);
@@ -77,24 +79,28 @@ std::vector<Image> images(cb::Map const& map, cb::map::LaneCorridor const& corri
 }
 
 /// Smallest gap over everybody (or `only` one) that is ahead (`sign` 1) or behind (-1) of the asker.
-std::optional<double> brute_gap(cb::Map const& map, cb::map::LaneCorridor const& corridor, Somebody const& asker, double s,
-                                std::vector<Somebody> const& all, int sign, std::optional<std::uint32_t> only) {
+std::optional<double> brute_gap(cb::Map const& map, cb::map::LaneCorridor const& corridor, Somebody const& asker,
+                                double s, std::vector<Somebody> const& all, int sign,
+                                std::optional<std::uint32_t> only) {
   std::optional<double> best;
   for (auto const& other : all) {
     if (other.slot == asker.slot || (only && other.slot != *only)) continue;
     for (auto const& image : images(map, corridor, other)) {
       double const ahead = sign * (image.s - s);
-      if (ahead < 0 || (ahead == 0 && (other.slot > asker.slot) != (sign > 0)) || ahead > cb::TrafficIndex::horizon) continue;
-      double const gap = sign > 0 ? cb::TrafficIndex::gap_between(s + asker.front, image.s - other.rear, image.free_until)
-                                  : cb::TrafficIndex::gap_between(image.s + other.front, s - asker.rear, image.free_until);
+      if (ahead < 0 || (ahead == 0 && (other.slot > asker.slot) != (sign > 0)) || ahead > cb::TrafficIndex::horizon)
+        continue;
+      double const gap = sign > 0
+                             ? cb::TrafficIndex::gap_between(s + asker.front, image.s - other.rear, image.free_until)
+                             : cb::TrafficIndex::gap_between(image.s + other.front, s - asker.rear, image.free_until);
       if (!best || gap < *best) best = gap;
     }
   }
   return best;
 }
 
-/// A world with agents thrown at random onto drivable lanes, without regard to each other. Their fronts (`mixed_fronts`) or rears are
-/// of any length, the other end is the same for all: then the nearest ahead (behind) by reference point also has the smallest gap.
+/// A world with agents thrown at random onto drivable lanes, without regard to each other. Their fronts
+/// (`mixed_fronts`) or rears are of any length, the other end is the same for all: then the nearest ahead (behind) by
+/// reference point also has the smallest gap.
 Sim random_world(std::shared_ptr<cb::Map const> const& map, std::uint64_t seed, std::size_t agents, bool mixed_fronts) {
   Sim world(map, {.seed = seed});
   cb::RandomStream random(seed, 99, 0);
@@ -102,10 +108,14 @@ Sim random_world(std::shared_ptr<cb::Map const> const& map, std::uint64_t seed, 
   for (auto const& lane : map->lanes())
     if (lane.drivable() && lane.length() > 2.0) lanes.push_back(lane.id);
   while (world.size() < agents) {
-    auto const& lane = map->lane(lanes[static_cast<std::size_t>(cb::uniform01(random) * static_cast<double>(lanes.size()))]);
+    auto const& lane =
+        map->lane(lanes[static_cast<std::size_t>(cb::uniform01(random) * static_cast<double>(lanes.size()))]);
     auto const pose = lane.path.pose(cb::uniform01(random) * lane.length());
     double const length = 0.5 + 12.0 * cb::uniform01(random);
-    world.add({.position = pose.position(), .heading = pose.heading, .speed = 20 * cb::uniform01(random), .shape = {mixed_fronts ? length : 3.0, mixed_fronts ? 1.0 : length, 0.9, 0.9},
+    world.add({.position = pose.position(),
+               .heading = pose.heading,
+               .speed = 20 * cb::uniform01(random),
+               .shape = {mixed_fronts ? length : 3.0, mixed_fronts ? 1.0 : length, 0.9, 0.9},
                .route = cb::map::straight_route(*map, lane.id)});
   }
   return world;
@@ -122,7 +132,8 @@ std::vector<Somebody> everybody(Sim const& world) {
   return all;
 }
 
-/// Compares all agents' neighbours on their own corridors and on those beside; returns the number of neighbours compared.
+/// Compares all agents' neighbours on their own corridors and on those beside; returns the number of neighbours
+/// compared.
 std::size_t compare(Sim& world, bool mixed_fronts) {
   auto const& map = world.map();
   auto const all = everybody(world);
@@ -133,14 +144,17 @@ std::size_t compare(Sim& world, bool mixed_fronts) {
     for (std::uint16_t k = 0; k < agent.road->corridors.size(); ++k) {
       auto const& corridor = agent.road->corridors[k];
       auto const& state = world.frame().agents[asker.slot].state;
-      double const s = k == view.lane_position().corridor ? view.lane_position().s : cb::map::locate(*agent.road, k, {state.x, state.y, state.heading}).s;
+      double const s = k == view.lane_position().corridor
+                           ? view.lane_position().s
+                           : cb::map::locate(*agent.road, k, {state.x, state.y, state.heading}).s;
       for (int const sign : {1, -1}) {
         auto const found = sign > 0 ? view.front(k) : view.rear(k);
         auto const any = brute_gap(map, corridor, asker, s, all, sign, std::nullopt);
         CHECK(found.has_value() == any.has_value());
         if (!found || !any) continue;
         if (mixed_fronts == (sign > 0)) CHECK(found->gap == doctest::Approx(*any).epsilon(1e-9));
-        auto const same = brute_gap(map, corridor, asker, s, all, sign, static_cast<std::uint32_t>(*world.roster().slot_of(found->agent)));
+        auto const same = brute_gap(map, corridor, asker, s, all, sign,
+                                    static_cast<std::uint32_t>(*world.roster().slot_of(found->agent)));
         REQUIRE(same.has_value());
         CHECK(found->gap == doctest::Approx(*same).epsilon(1e-9));
         ++compared;
@@ -170,7 +184,8 @@ TEST_CASE("front and rear neighbours equal those of a brute-force twin on thousa
 }
 
 TEST_CASE("the nearest neighbour is the one with the smallest gap when nobody stands inside another") {
-  // A follower 30 m behind a truck, which is 20 m behind a car: the truck is the leader, and the car's follower is the truck.
+  // A follower 30 m behind a truck, which is 20 m behind a car: the truck is the leader, and the car's follower is the
+  // truck.
   Sim world(straight_road(1, 500));
   auto const follower = world.add({.position = {50, -1.75}, .speed = 10});
   auto const truck = world.add({.position = {100, -1.75}, .speed = 10, .shape = cb::geometry::truck()});

@@ -55,10 +55,22 @@ TEST_CASE("what cannot enter is named, and leaves the world as it was") {
   CHECK(says(error_of([&] { world.add({.position = {10, -1.75}, .heading = nan}); }), "heading"));
   CHECK(says(error_of([&] { world.add({.position = {10, -1.75}, .speed = -1.0}); }), "speed"));
   CHECK(says(error_of([&] { world.add({.position = {10, -1.75}, .speed = nan}); }), "speed"));
-  CHECK(says(error_of([&] { world.add({.position = {10, -1.75}, .behavior = cb::IdmClassic{.desired_speed = nan}}); }), "desired_speed"));
-  CHECK(says(error_of([&] { world.add({.position = {10, -1.75}, .behavior = cb::IdmClassic{.time_headway = -1}}); }), "time_headway"));
-  CHECK(says(error_of([&] { world.add({.position = {10, -1.75}, .goal = cb::ReachLane{static_cast<cb::LaneId>(99)}}); }), "lane 99"));
-  CHECK(says(error_of([&] { world.add({.position = {10, -1.75}, .route = cb::map::Route{{static_cast<cb::LaneId>(1)}}}); }), "route"));
+  CHECK(says(error_of([&] {
+               world.add({.position = {10, -1.75}, .behavior = cb::IdmClassic{.desired_speed = nan}});
+             }),
+             "desired_speed"));
+  CHECK(says(error_of([&] {
+               world.add({.position = {10, -1.75}, .behavior = cb::IdmClassic{.time_headway = -1}});
+             }),
+             "time_headway"));
+  CHECK(says(error_of([&] {
+               world.add({.position = {10, -1.75}, .goal = cb::ReachLane{static_cast<cb::LaneId>(99)}});
+             }),
+             "lane 99"));
+  CHECK(says(error_of([&] {
+               world.add({.position = {10, -1.75}, .route = cb::map::Route{{static_cast<cb::LaneId>(1)}}});
+             }),
+             "route"));
   CHECK(says(error_of([&] { Sim without_map(nullptr); }), "no map"));
   CHECK(world.frame() == before);
   CHECK(world.roster().agents.empty());
@@ -102,7 +114,10 @@ TEST_CASE("an agent whose route ends where the road goes on has arrived") {
   REQUIRE(first != nullptr);
   Sim world(map);
   auto const pose = first->path.pose(first->length() - 5);
-  auto const id = world.add({.position = pose.position(), .speed = 20, .behavior = cb::ConstantAcceleration{}, .route = cb::map::Route{{first->id}}});
+  auto const id = world.add({.position = pose.position(),
+                             .speed = 20,
+                             .behavior = cb::ConstantAcceleration{},
+                             .route = cb::map::Route{{first->id}}});
   world.step(0.5);
   CHECK(world.status(id) == cb::AgentStatus::arrived);
 }
@@ -243,8 +258,13 @@ TEST_CASE("states set from outside place the agent anew") {
 TEST_CASE("goals are reached by lane and by polygon") {
   Sim world(straight_road(2));
   std::vector<cb::geometry::Point> const area{{100, -3.5}, {130, -3.5}, {130, 0}, {100, 0}};
-  auto const by_area = world.add({.position = {80, -1.75}, .speed = 10, .behavior = cb::ConstantAcceleration{}, .goal = cb::ReachPolygon{cb::geometry::Polygon(area)}});
-  auto const by_lane = world.add({.position = {80, -5.25}, .speed = 10, .behavior = cb::ConstantAcceleration{},
+  auto const by_area = world.add({.position = {80, -1.75},
+                                  .speed = 10,
+                                  .behavior = cb::ConstantAcceleration{},
+                                  .goal = cb::ReachPolygon{cb::geometry::Polygon(area)}});
+  auto const by_lane = world.add({.position = {80, -5.25},
+                                  .speed = 10,
+                                  .behavior = cb::ConstantAcceleration{},
                                   .goal = cb::ReachLane{world.map().find_lane("1", 0, -2), 100.0, 120.0}});
   CHECK_FALSE(world.reached_goal(by_area));
   CHECK_FALSE(world.reached_goal(by_lane));
@@ -259,9 +279,11 @@ TEST_CASE("goals are reached by lane and by polygon") {
 TEST_CASE("a prediction shows what the observer expects, whatever the others really do") {
   Sim world(straight_road());
   auto const ego = world.add({.position = {10, -1.75}, .speed = 10});
-  auto const other = world.add({.position = {60, -1.75}, .speed = 10, .behavior = cb::ConstantAcceleration{.acceleration = -2}});
+  auto const other =
+      world.add({.position = {60, -1.75}, .speed = 10, .behavior = cb::ConstantAcceleration{.acceleration = -2}});
   using Guess = cb::BehaviorSet<cb::ConstantAcceleration>;
-  auto future = world.observe(ego).predict(cb::predict_as<Guess>(cb::ConstantAcceleration{.acceleration = 1}, cb::ConstantAcceleration{}));
+  auto future = world.observe(ego).predict(
+      cb::predict_as<Guess>(cb::ConstantAcceleration{.acceleration = 1}, cb::ConstantAcceleration{}));
   for (int i = 0; i < 5; ++i) {
     future.step(0.2);
     world.step(0.2);

@@ -18,7 +18,7 @@ struct MemoryOf {
   using type = NoMemory;
 };
 template <class B>
-  requires requires { typename B::Memory; }
+requires requires { typename B::Memory; }
 struct MemoryOf<B> {
   using type = typename B::Memory;
 };
@@ -30,12 +30,12 @@ using MemoryOf = typename detail::MemoryOf<B>::type;
 
 /// A behaviour: a copyable struct of parameters with one function template
 ///   `template <class View> Plan<View> plan(View const& view, Memory& memory, double dt) const`
-/// that says what the agent does over the next `dt` [s]: pure but for `memory`, no allocation, no exception. A world calls
-/// it once a step, on a view of frame k; `memory` is the agent's own, lives in the frame and is copied with it.
+/// that says what the agent does over the next `dt` [s]: pure but for `memory`, no allocation, no exception. A world
+/// calls it once a step, on a view of frame k; `memory` is the agent's own, lives in the frame and is copied with it.
 template <class B>
 concept BehaviorModel = std::copyable<B> && std::copyable<MemoryOf<B>> && std::default_initializable<MemoryOf<B>> &&
     requires(B const behavior, ViewArchetype const view, MemoryOf<B> memory, double dt) {
-      { behavior.plan(view, memory, dt) } -> std::same_as<Plan<ViewArchetype>>;
-    };
+  { behavior.plan(view, memory, dt) } -> std::same_as<Plan<ViewArchetype>>;
+};
 
 }  // namespace cambium

@@ -9,10 +9,12 @@
 
 namespace cambium {
 
-/// The closed set of behaviours that the agents of a world may have. An agent has one of them with parameters of its own.
+/// The closed set of behaviours that the agents of a world may have. An agent has one of them with parameters of its
+/// own.
 template <class... Behaviors>
 struct BehaviorSet {
-  static_assert(sizeof...(Behaviors) > 0, "cambium::BehaviorSet<...>: name at least one behaviour, as in BehaviorSet<cambium::IdmClassic>");
+  static_assert(sizeof...(Behaviors) > 0,
+                "cambium::BehaviorSet<...>: name at least one behaviour, as in BehaviorSet<cambium::IdmClassic>");
   static_assert((BehaviorModel<Behaviors> && ...),
                 "cambium::BehaviorSet<...>: each alternative must be a behaviour: a copyable struct with "
                 "`template <class View> Plan<View> plan(View const&, Memory&, double dt) const` (see BehaviorModel)");

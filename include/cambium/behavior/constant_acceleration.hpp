@@ -15,9 +15,10 @@ struct ConstantAcceleration {
 
   static constexpr char const* name = "constant_acceleration";
   static constexpr auto parameters() {
-    return std::make_tuple(
-        parameter("acceleration", &ConstantAcceleration::acceleration, "m/s^2", Range{-50, 50}, "held until the vehicle stands or is at its highest speed"),
-        parameter("highest_speed", &ConstantAcceleration::highest_speed, "m/s", Range{0, 200}, "not exceeded by accelerating"));
+    return std::make_tuple(parameter("acceleration", &ConstantAcceleration::acceleration, "m/s^2", Range{-50, 50},
+                                     "held until the vehicle stands or is at its highest speed"),
+                           parameter("highest_speed", &ConstantAcceleration::highest_speed, "m/s", Range{0, 200},
+                                     "not exceeded by accelerating"));
   }
 
   template <class View>

@@ -10,7 +10,8 @@
 namespace cambium {
 
 /// Drives as told from outside: a planner, a search or a learner sets the input (acceleration, steering) in the agent's
-/// memory by `World::memory`, and the vehicle model carries it out over the step. Heeds neither lanes nor others. Never reverses.
+/// memory by `World::memory`, and the vehicle model carries it out over the step. Heeds neither lanes nor others. Never
+/// reverses.
 struct ExternalInput {
   /// The input until the next one is set.
   struct Memory {
@@ -27,9 +28,10 @@ struct ExternalInput {
 
   static constexpr char const* name = "external_input";
   static constexpr auto parameters() {
-    return std::make_tuple(
-        parameter("scheme", &ExternalInput::scheme, "-", Range{0, 1}, "integration of the vehicle model: 0 RK4, 1 Euler"),
-        parameter("longest_substep", &ExternalInput::longest_substep, "s", Range{1e-4, 10}, "a step is integrated in equal parts no longer than this"));
+    return std::make_tuple(parameter("scheme", &ExternalInput::scheme, "-", Range{0, 1},
+                                     "integration of the vehicle model: 0 RK4, 1 Euler"),
+                           parameter("longest_substep", &ExternalInput::longest_substep, "s", Range{1e-4, 10},
+                                     "a step is integrated in equal parts no longer than this"));
   }
 
   template <class View>
@@ -54,8 +56,8 @@ struct ExternalInput {
 
  private:
   template <class Model>
-  [[nodiscard]] typename Model::State integrate(Model const& model, typename Model::State x, typename Model::Input const& u,
-                                                double duration) const {
+  [[nodiscard]] typename Model::State integrate(Model const& model, typename Model::State x,
+                                                typename Model::Input const& u, double duration) const {
     auto const steps = static_cast<int>(std::ceil(duration / longest_substep));
     for (int i = 0; i < steps; ++i)
       x = scheme == Scheme::rk4 ? rk4_step(model, x, u, duration / steps) : euler_step(model, x, u, duration / steps);

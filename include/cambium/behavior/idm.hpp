@@ -30,11 +30,15 @@ template <class P>
       parameter("desired_speed", &P::desired_speed, "m/s", Range{0.1, 100}, "speed on a free road"),
       parameter("time_headway", &P::time_headway, "s", Range{0, 20}, "time gap kept to the leader"),
       parameter("minimum_gap", &P::minimum_gap, "m", Range{0, 100}, "gap kept in standing traffic"),
-      parameter("maximum_acceleration", &P::maximum_acceleration, "m/s^2", Range{0.01, 20}, "acceleration from rest on a free road"),
-      parameter("comfortable_deceleration", &P::comfortable_deceleration, "m/s^2", Range{0.01, 20}, "braking that the driver finds normal"),
-      parameter("exponent", &P::exponent, "-", Range{0.1, 100}, "how late the acceleration falls off towards the desired speed"),
+      parameter("maximum_acceleration", &P::maximum_acceleration, "m/s^2", Range{0.01, 20},
+                "acceleration from rest on a free road"),
+      parameter("comfortable_deceleration", &P::comfortable_deceleration, "m/s^2", Range{0.01, 20},
+                "braking that the driver finds normal"),
+      parameter("exponent", &P::exponent, "-", Range{0.1, 100},
+                "how late the acceleration falls off towards the desired speed"),
       parameter("lowest_acceleration", &P::lowest_acceleration, "m/s^2", Range{-50, 0}, "hardest braking"),
-      parameter("highest_acceleration", &P::highest_acceleration, "m/s^2", Range{0, 50}, "upper bound of the acceleration"));
+      parameter("highest_acceleration", &P::highest_acceleration, "m/s^2", Range{0, 50},
+                "upper bound of the acceleration"));
 }
 
 /// x to the power of `exponent`; IDM's usual 4 without `pow`.
@@ -45,8 +49,8 @@ template <class Scalar>
   return pow(x, Scalar(exponent));
 }
 
-/// Desired gap s* [m] (Treiber, Hennecke, Helbing 2000, eq. 4), its dynamic part not below 0, so that a faster leader is not
-/// mistaken for a close one.
+/// Desired gap s* [m] (Treiber, Hennecke, Helbing 2000, eq. 4), its dynamic part not below 0, so that a faster leader
+/// is not mistaken for a close one.
 template <HasIdmParameters P, class Scalar>
 [[nodiscard]] Scalar idm_desired_gap(P const& p, Scalar speed, Scalar leader_speed) {
   using std::max;
@@ -54,23 +58,26 @@ template <HasIdmParameters P, class Scalar>
   return Scalar(p.minimum_gap) + max(Scalar(0), Scalar(speed * (p.time_headway + (speed - leader_speed) * inverse)));
 }
 
-/// Acceleration [m/s^2] of a follower (Treiber, Hennecke, Helbing 2000, eq. 3), within the parameters' bounds. `gap` [m] bumper
-/// to bumper, infinite on a free road; `leader_speed` [m/s]. A gap ≤ 0 yields the lower bound.
+/// Acceleration [m/s^2] of a follower (Treiber, Hennecke, Helbing 2000, eq. 3), within the parameters' bounds. `gap`
+/// [m] bumper to bumper, infinite on a free road; `leader_speed` [m/s]. A gap ≤ 0 yields the lower bound.
 template <HasIdmParameters P, class Scalar>
 [[nodiscard]] Scalar idm_acceleration(P const& p, Scalar speed, Scalar gap, Scalar leader_speed) {
   if (!(gap > Scalar(0))) return Scalar(p.lowest_acceleration);
   Scalar const closeness = idm_desired_gap(p, speed, leader_speed) / gap;
-  Scalar const a = p.maximum_acceleration * (1.0 - idm_power(Scalar(speed / p.desired_speed), p.exponent) - closeness * closeness);
+  Scalar const a =
+      p.maximum_acceleration * (1.0 - idm_power(Scalar(speed / p.desired_speed), p.exponent) - closeness * closeness);
   using std::max;
   using std::min;
   return min(max(a, Scalar(p.lowest_acceleration)), Scalar(p.highest_acceleration));
 }
 
-/// The gap [m] at which followers at one speed keep it (Treiber, Hennecke, Helbing 2000, eq. 5); infinite at the desired speed.
+/// The gap [m] at which followers at one speed keep it (Treiber, Hennecke, Helbing 2000, eq. 5); infinite at the
+/// desired speed.
 template <HasIdmParameters P>
 [[nodiscard]] double idm_equilibrium_gap(P const& p, double speed) {
   double const free = 1.0 - idm_power(speed / p.desired_speed, p.exponent);
-  return free <= 0 ? std::numeric_limits<double>::infinity() : (p.minimum_gap + speed * p.time_headway) / std::sqrt(free);
+  return free <= 0 ? std::numeric_limits<double>::infinity()
+                   : (p.minimum_gap + speed * p.time_headway) / std::sqrt(free);
 }
 
 namespace detail {
@@ -135,17 +142,19 @@ class IdmStep {
 
 }  // namespace detail
 
-/// Motion over `dt` [s] of an IDM follower behind a leader that keeps its speed: the model's differential equation, solved by the
-/// two-derivative Runge-Kutta scheme of order 4 with two stages (Chan and Tsai 2010), which needs the jerk but only two evaluations.
-/// Its step is halved while the term of third order is larger than 2 sqrt(tolerance) m/s per second, which keeps the error in speed near
-/// `tolerance` [m/s per s]; and, where a bound of the acceleration is met, until that is met to within as much. Where the speed reaches 0 the vehicle stops, and stands until the model lets
-/// it start. `dt` > 0.
+/// Motion over `dt` [s] of an IDM follower behind a leader that keeps its speed: the model's differential equation,
+/// solved by the two-derivative Runge-Kutta scheme of order 4 with two stages (Chan and Tsai 2010), which needs the
+/// jerk but only two evaluations. Its step is halved while the term of third order is larger than 2 sqrt(tolerance) m/s
+/// per second, which keeps the error in speed near `tolerance` [m/s per s]; and, where a bound of the acceleration is
+/// met, until that is met to within as much. Where the speed reaches 0 the vehicle stops, and stands until the model
+/// lets it start. `dt` > 0.
 template <HasIdmParameters P, class Scalar>
-[[nodiscard]] LongitudinalMotion<Scalar> idm_motion(P const& p, Scalar speed, Scalar gap, Scalar leader_speed, double dt,
-                                                    double tolerance) {
+[[nodiscard]] LongitudinalMotion<Scalar> idm_motion(P const& p, Scalar speed, Scalar gap, Scalar leader_speed,
+                                                    double dt, double tolerance) {
   using std::abs;
   using std::min;
-  constexpr double shortest = 1e-3, longest = 0.25;  // [s] of a step: shorter is never needed, longer might step over something
+  constexpr double shortest = 1e-3,
+                   longest = 0.25;  // [s] of a step: shorter is never needed, longer might step over something
   double const largest_square = 4.0 * tolerance;  // of the third-order term
   auto const square = [](Scalar x) { return x * x; };
   detail::IdmStep<Scalar> const response(p, leader_speed);
@@ -158,7 +167,8 @@ template <HasIdmParameters P, class Scalar>
     while (true) {
       Scalar const middle_speed = v + h / 2 * a1 + h * h / 8 * j1;
       Scalar const middle_gap = gap + h / 2 * (leader_speed - v) - h * h / 8 * a1;
-      auto const [a2, j2, bounded2] = response(stands ? Scalar(0) : middle_speed, stands ? gap + h / 2 * leader_speed : middle_gap);
+      auto const [a2, j2, bounded2] =
+          response(stands ? Scalar(0) : middle_speed, stands ? gap + h / 2 * leader_speed : middle_gap);
       Scalar const third = h / 3 * (j2 - j1);
       Scalar next_speed = v + h * (a1 + h / 2 * j1 + third);
       Scalar distance = h * (v + h / 6 * (a1 + 2.0 * a2));
@@ -170,7 +180,8 @@ template <HasIdmParameters P, class Scalar>
       bool accurate = stops ? v <= Scalar(tolerance) && a2 <= Scalar(0) : square(third) <= Scalar(largest_square);
       Scalar const expected = a1 + h * j2;  // at the end, with a jerk that changes evenly
       if (accurate && (bounded1 || bounded2 || expected < Scalar(p.lowest_acceleration)))
-        accurate = square(response(next_speed, gap + h * leader_speed - distance).acceleration - expected) <= Scalar(largest_square);
+        accurate = square(response(next_speed, gap + h * leader_speed - distance).acceleration - expected) <=
+                   Scalar(largest_square);
       if (!accurate && h > shortest) {
         h /= 2;
         continue;

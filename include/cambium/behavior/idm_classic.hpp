@@ -10,14 +10,14 @@
 
 namespace cambium {
 
-/// Follows its lane corridor and the next vehicle in it by the Intelligent Driver Model (Treiber, Hennecke, Helbing 2000);
-/// defaults are BARK's. Keeps its lateral offset; heads along the lane.
+/// Follows its lane corridor and the next vehicle in it by the Intelligent Driver Model (Treiber, Hennecke, Helbing
+/// 2000); defaults are BARK's. Keeps its lateral offset; heads along the lane.
 struct IdmClassic {
   /// How the model is integrated over a step; the leader keeps its speed meanwhile.
   enum class Integration {
     exact,          ///< to `tolerance`, for any step length: the default
-    bark_substeps,  ///< 10 equal sub-steps as in BARK, for comparison with its results: each one's acceleration is taken
-                    ///< at the speed of the step's start, and the desired gap may become negative
+    bark_substeps,  ///< 10 equal sub-steps as in BARK, for comparison with its results: each one's acceleration is
+                    ///< taken at the speed of the step's start, and the desired gap may become negative
   };
 
   double desired_speed = 15.0;
@@ -33,10 +33,11 @@ struct IdmClassic {
 
   static constexpr char const* name = "idm_classic";
   static constexpr auto parameters() {
-    return std::tuple_cat(
-        idm_parameters<IdmClassic>(),
-        std::make_tuple(parameter("integration", &IdmClassic::integration, "-", Range{0, 1}, "0 exact within the step, 1 BARK's sub-steps"),
-                        parameter("tolerance", &IdmClassic::tolerance, "m/s^2", Range{1e-12, 1}, "error of the exact integration, as speed per second")));
+    return std::tuple_cat(idm_parameters<IdmClassic>(),
+                          std::make_tuple(parameter("integration", &IdmClassic::integration, "-", Range{0, 1},
+                                                    "0 exact within the step, 1 BARK's sub-steps"),
+                                          parameter("tolerance", &IdmClassic::tolerance, "m/s^2", Range{1e-12, 1},
+                                                    "error of the exact integration, as speed per second")));
   }
 
   template <class View>
@@ -53,15 +54,17 @@ struct IdmClassic {
  private:
   /// BARK's acceleration: s* is not kept above the minimum gap.
   [[nodiscard]] double bark_acceleration(double speed, double gap, double leader_speed) const {
-    double const desired_gap = minimum_gap + speed * time_headway +
-                               speed * (speed - leader_speed) / (2 * std::sqrt(maximum_acceleration * comfortable_deceleration));
+    double const desired_gap =
+        minimum_gap + speed * time_headway +
+        speed * (speed - leader_speed) / (2 * std::sqrt(maximum_acceleration * comfortable_deceleration));
     double const closeness = desired_gap / std::max(gap, 0.0);
     double const a = maximum_acceleration * (1 - std::pow(speed / desired_speed, exponent) - closeness * closeness);
     return std::clamp(a, lowest_acceleration, highest_acceleration);
   }
 
   template <class View>
-  [[nodiscard]] Plan<View> bark_plan(View const& view, double start_speed, double gap, double leader_speed, double dt) const {
+  [[nodiscard]] Plan<View> bark_plan(View const& view, double start_speed, double gap, double leader_speed,
+                                     double dt) const {
     constexpr int substeps = 10;
     double const h = dt / substeps;
     Plan<View> plan;

@@ -17,29 +17,31 @@ namespace cambium {
 struct Neighbor {
   AgentId agent = none<AgentId>;     ///< who it is; none where it is a static object
   ObjectId object = none<ObjectId>;  ///< what it is; none where it is an agent
-  double gap{};    ///< free road between the two, bumper to bumper [m]; negative where they overlap lengthwise. Where the
-                   ///< other is in a merging lane and the merge is still ahead: see `TrafficIndex::gap_between`.
+  double gap{};  ///< free road between the two, bumper to bumper [m]; negative where they overlap lengthwise. Where the
+                 ///< other is in a merging lane and the merge is still ahead: see `TrafficIndex::gap_between`.
   double speed{};  ///< of the other along its lane [m/s]
 };
 
-/// The least a behaviour may ask of what it sees; `ObservedWorld` offers it. Concepts are checked against this type, whose
-/// functions are declared only. Angles, frames and units as everywhere: SI, map frame, radians.
+/// The least a behaviour may ask of what it sees; `ObservedWorld` offers it. Concepts are checked against this type,
+/// whose functions are declared only. Angles, frames and units as everywhere: SI, map frame, radians.
 struct ViewArchetype {
   using State = cambium::State;
   using Dynamics = SingleTrack;
 
-  [[nodiscard]] double time() const;                              ///< of the frame that is seen [s]
-  [[nodiscard]] State const& state() const;                       ///< own state, as observed
-  [[nodiscard]] geometry::Shape const& shape() const;             ///< own shape
-  [[nodiscard]] Dynamics const& dynamics() const;                 ///< own vehicle model
-  [[nodiscard]] map::RoadCorridor const& road() const;            ///< the lanes of the own route
-  [[nodiscard]] map::LaneCorridor const& corridor() const;        ///< the lane corridor the agent is in
-  [[nodiscard]] map::LanePosition const& lane_position() const;   ///< where it is in there
-  [[nodiscard]] std::optional<Neighbor> front() const;            ///< next ahead along the own lane corridor
-  [[nodiscard]] std::optional<Neighbor> rear() const;             ///< next behind
-  [[nodiscard]] std::optional<Neighbor> front(std::uint16_t corridor) const;  ///< next ahead along another lane corridor of the road
-  [[nodiscard]] std::optional<Neighbor> rear(std::uint16_t corridor) const;   ///< next behind
-  [[nodiscard]] RandomStream random(std::uint32_t purpose) const;  ///< numbers of their own for (seed, agent, step, purpose)
+  [[nodiscard]] double time() const;                             ///< of the frame that is seen [s]
+  [[nodiscard]] State const& state() const;                      ///< own state, as observed
+  [[nodiscard]] geometry::Shape const& shape() const;            ///< own shape
+  [[nodiscard]] Dynamics const& dynamics() const;                ///< own vehicle model
+  [[nodiscard]] map::RoadCorridor const& road() const;           ///< the lanes of the own route
+  [[nodiscard]] map::LaneCorridor const& corridor() const;       ///< the lane corridor the agent is in
+  [[nodiscard]] map::LanePosition const& lane_position() const;  ///< where it is in there
+  [[nodiscard]] std::optional<Neighbor> front() const;           ///< next ahead along the own lane corridor
+  [[nodiscard]] std::optional<Neighbor> rear() const;            ///< next behind
+  [[nodiscard]] std::optional<Neighbor> front(
+      std::uint16_t corridor) const;  ///< next ahead along another lane corridor of the road
+  [[nodiscard]] std::optional<Neighbor> rear(std::uint16_t corridor) const;  ///< next behind
+  [[nodiscard]] RandomStream random(
+      std::uint32_t purpose) const;  ///< numbers of their own for (seed, agent, step, purpose)
 };
 
 }  // namespace cambium

@@ -1,7 +1,7 @@
 #pragma once
 
-/// Checks an invariant of the library (never user input: that is checked with errors). Define `CAMBIUM_ASSERT` before the
-/// first cambium header to install a handler of your own; by default it is `assert`, and off with NDEBUG.
+/// Checks an invariant of the library (never user input: that is checked with errors). Define `CAMBIUM_ASSERT` before
+/// the first cambium header to install a handler of your own; by default it is `assert`, and off with NDEBUG.
 #ifndef CAMBIUM_ASSERT
 #include <cassert>
 #define CAMBIUM_ASSERT(condition, sentence) assert((condition) && (sentence))

@@ -29,7 +29,8 @@ struct MapError : Error {
   using Error::Error;
 };
 
-/// A world was asked for something that it cannot do: an unknown agent, a position off the map, a route that does not exist.
+/// A world was asked for something that it cannot do: an unknown agent, a position off the map, a route that does not
+/// exist.
 struct WorldError : Error {
   using Error::Error;
 };

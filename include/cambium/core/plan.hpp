@@ -32,8 +32,8 @@ enum class PlanStatus : std::uint8_t {
   failed,       ///< the behaviour found no plan
 };
 
-/// What a behaviour wants: states over at least the next `dt`, in order of time (the current state need not be among them), and the
-/// action that begins them.
+/// What a behaviour wants: states over at least the next `dt`, in order of time (the current state need not be among
+/// them), and the action that begins them.
 template <MotionState S>
 struct BasicPlan {
   Trajectory<S> trajectory;

@@ -22,7 +22,8 @@ struct BasicState {
 
 using State = BasicState<double>;
 
-/// A state that a world can move: trivially copyable, with the named fields of `BasicState` and whatever the dynamics add.
+/// A state that a world can move: trivially copyable, with the named fields of `BasicState` and whatever the dynamics
+/// add.
 template <class S>
 concept MotionState = std::copyable<S> && std::is_trivially_copyable_v<S> && requires(S s) {
   s.time;

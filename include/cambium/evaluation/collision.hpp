@@ -58,8 +58,8 @@ template <class World>
 
 }  // namespace detail
 
-/// Whether one agent, while it takes part in traffic, touches another agent or a static object. Throws `WorldError` if the world does
-/// not have the agent. O(agents).
+/// Whether one agent, while it takes part in traffic, touches another agent or a static object. Throws `WorldError` if
+/// the world does not have the agent. O(agents).
 struct CollisionEgo {
   struct Result {
     bool ego_collision = false;
@@ -75,17 +75,20 @@ struct CollisionEgo {
     auto const circle = detail::circle_of(world, ego);
     for (std::uint32_t i = 0; i < world.size(); ++i) {
       if (i == ego || !detail::in_traffic(world, i) || !circle.meets(detail::circle_of(world, i))) continue;
-      if (geometry::intersects(detail::box_at(world, ego), detail::box_at(world, i))) return {true, world.roster().agents[i].id};
+      if (geometry::intersects(detail::box_at(world, ego), detail::box_at(world, i)))
+        return {true, world.roster().agents[i].id};
     }
     return {detail::touched_object(world, ego).has_value(), none<AgentId>};
   }
 };
 
-/// Whether any two agents that take part in traffic, or one and a static object, touch. O(n log n); no allocation up to 64 agents.
+/// Whether any two agents that take part in traffic, or one and a static object, touch. O(n log n); no allocation up to
+/// 64 agents.
 struct CollisionAny {
   struct Result {
     bool any_collision = false;
-    AgentId collision_first = none<AgentId>, collision_second = none<AgentId>;  ///< a pair that touches; the second is none for an object
+    AgentId collision_first = none<AgentId>,
+            collision_second = none<AgentId>;  ///< a pair that touches; the second is none for an object
   };
 
   template <class World>

@@ -9,8 +9,9 @@
 
 namespace cambium {
 
-/// Whether an agent, while it takes part in traffic, has left the drivable lanes of the map: a corner of its box or the middle of
-/// a side lies in none. Throws `WorldError` if the world does not have the agent. O(log lanes); O(1) well inside the own lane.
+/// Whether an agent, while it takes part in traffic, has left the drivable lanes of the map: a corner of its box or the
+/// middle of a side lies in none. Throws `WorldError` if the world does not have the agent. O(log lanes); O(1) well
+/// inside the own lane.
 struct DrivableArea {
   struct Result {
     bool off_road = false;

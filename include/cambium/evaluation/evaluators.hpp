@@ -17,10 +17,13 @@ concept EvaluatorFor = std::copyable<E> && requires(E const evaluator, World con
 
 namespace detail {
 template <class E>
-concept HasResult = requires { typename E::Result; };
+concept HasResult = requires {
+  typename E::Result;
+};
 }  // namespace detail
 
-/// The results of several evaluators in one struct: `result.ego_collision`, `result.goal_reached`, ... Each evaluator may appear once.
+/// The results of several evaluators in one struct: `result.ego_collision`, `result.goal_reached`, ... Each evaluator
+/// may appear once.
 template <class... Es>
 struct EvaluationResult : Es::Result... {};
 
@@ -28,7 +31,8 @@ struct EvaluationResult : Es::Result... {};
 template <class... Es>
 class Evaluators {
   static_assert((detail::HasResult<Es> && ...),
-                "cambium::Evaluators<...>: each must have a Result and `template <class World> Result evaluate(World const&) const` (see EvaluatorFor)");
+                "cambium::Evaluators<...>: each must have a Result and `template <class World> Result evaluate(World "
+                "const&) const` (see EvaluatorFor)");
 
  public:
   using Result = EvaluationResult<Es...>;
@@ -39,7 +43,8 @@ class Evaluators {
   template <class World>
   [[nodiscard]] Result evaluate(World const& world) const {
     static_assert((EvaluatorFor<Es, World> && ...),
-                  "cambium::Evaluators<...>: each must have a Result and `template <class World> Result evaluate(World const&) const` (see EvaluatorFor)");
+                  "cambium::Evaluators<...>: each must have a Result and `template <class World> Result evaluate(World "
+                  "const&) const` (see EvaluatorFor)");
     return std::apply([&world](Es const&... e) { return Result{e.evaluate(world)...}; }, evaluators_);
   }
 

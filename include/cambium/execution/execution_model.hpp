@@ -13,12 +13,13 @@ struct Executed {
   bool valid = false;  ///< false: the plan does not say what happens at the time asked for
 };
 
-/// Turns a plan into the state at `time` [s]: exactly, or with the errors of a controller and its vehicle. Pure, no allocation.
+/// Turns a plan into the state at `time` [s]: exactly, or with the errors of a controller and its vehicle. Pure, no
+/// allocation.
 template <class E, class Dynamics>
 concept ExecutionModelFor = std::copyable<E> &&
-    requires(E const model, BasicPlan<typename Dynamics::State> const plan, typename Dynamics::State const x, Dynamics const dynamics,
-             double time) {
-      { model.execute(plan, x, dynamics, time) } -> std::same_as<Executed<typename Dynamics::State>>;
-    };
+    requires(E const model, BasicPlan<typename Dynamics::State> const plan, typename Dynamics::State const x,
+             Dynamics const dynamics, double time) {
+  { model.execute(plan, x, dynamics, time) } -> std::same_as<Executed<typename Dynamics::State>>;
+};
 
 }  // namespace cambium

@@ -6,11 +6,12 @@
 #include "cambium/core/parameters.hpp"
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/execution/execution_model.hpp"
+#include "cambium/geometry/angle.hpp"
 
 namespace cambium {
 
-/// Perfect execution: the plan's own state at the time asked for; between its samples, or between now and the first of them, linearly.
-/// Never extrapolates: a plan that does not reach that time is invalid.
+/// Perfect execution: the plan's own state at the time asked for; between its samples, or between now and the first of
+/// them, linearly. Never extrapolates: a plan that does not reach that time is invalid.
 struct InterpolateExecution {
   static constexpr char const* name = "interpolate";
   static constexpr auto parameters() { return std::make_tuple(); }
@@ -22,7 +23,8 @@ struct InterpolateExecution {
     if (std::abs(states.back().time - time) <= exact) return at_time(states.back(), time);
     S const* before = &now;
     for (auto const& after : states) {
-      if (time >= before->time - exact && time <= after.time && before->time < after.time) return between(*before, after, time);
+      if (time >= before->time - exact && time <= after.time && before->time < after.time)
+        return between(*before, after, time);
       before = &after;
     }
     return {};
@@ -37,7 +39,7 @@ struct InterpolateExecution {
     S state = a;
     state.x += u * (b.x - a.x);
     state.y += u * (b.y - a.y);
-    state.heading += u * std::remainder(b.heading - a.heading, 6.283185307179586);
+    state.heading += u * std::remainder(b.heading - a.heading, 2 * geometry::pi);
     state.speed += u * (b.speed - a.speed);
     return at_time(state, time);
   }

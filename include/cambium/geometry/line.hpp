@@ -9,6 +9,7 @@
 
 #include "cambium/core/assert.hpp"
 #include "cambium/core/error.hpp"
+#include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/pose.hpp"
 
 namespace cambium::geometry {
@@ -18,31 +19,32 @@ using LineSample = Pose;
 
 /// Where a point lies relative to a `Line`.
 struct Projection {
-  double s{};               ///< arc length of the foot point [m]; below 0 or beyond the length on the extended end segments
-  double lateral{};         ///< signed offset from the line, left positive [m]
+  double s{};        ///< arc length of the foot point [m]; below 0 or beyond the length on the extended end segments
+  double lateral{};  ///< signed offset from the line, left positive [m]
   std::uint32_t segment{};  ///< segment of the foot point: the hint for the next query nearby
 };
 
 /// An arc-length parametrised polyline with a heading along it. Immutable.
 ///
-/// Positions are interpolated linearly. The heading is that of the chords (`from_points`: constant on each segment) or is
-/// interpolated between the headings of the samples (`from_samples`). The first and the last segment extend to infinity,
-/// so a vehicle that has passed the end still has a position. Queries take a `cursor`: the segment of the last query; with
-/// a query nearby they cost O(1), else O(number of segments between). One segment is one cache line (64 B).
+/// Positions are interpolated linearly. The heading is that of the chords (`from_points`: constant on each segment) or
+/// is interpolated between the headings of the samples (`from_samples`). The first and the last segment extend to
+/// infinity, so a vehicle that has passed the end still has a position. Queries take a `cursor`: the segment of the
+/// last query; with a query nearby they cost O(1), else O(number of segments between). One segment is one cache line
+/// (64 B).
 class Line {
  public:
   struct Segment {
-    double s, x, y;           ///< start: arc length, position
-    double ux, uy;            ///< unit direction
-    double length;            ///< [m]
-    double heading;           ///< at the start [rad]; continuous along the line, not wrapped
-    double curvature;         ///< change of heading per metre [1/m]
+    double s, x, y;    ///< start: arc length, position
+    double ux, uy;     ///< unit direction
+    double length;     ///< [m]
+    double heading;    ///< at the start [rad]; continuous along the line, not wrapped
+    double curvature;  ///< change of heading per metre [1/m]
   };
 
   Line() = default;
 
-  /// Through `points`; repeated points are dropped. Throws `MapError` with fewer than two distinct points or a number that
-  /// is not finite. O(n).
+  /// Through `points`; repeated points are dropped. Throws `MapError` with fewer than two distinct points or a number
+  /// that is not finite. O(n).
   [[nodiscard]] static Line from_points(std::span<Point const> points) {
     Line line;
     line.reserve(points.size());
@@ -51,7 +53,8 @@ class Line {
     return line;
   }
 
-  /// Through `samples`, with their headings interpolated; samples less than 1e-9 m apart are dropped. Throws as `from_points`. O(n).
+  /// Through `samples`, with their headings interpolated; samples less than 1e-9 m apart are dropped. Throws as
+  /// `from_points`. O(n).
   [[nodiscard]] static Line from_samples(std::span<LineSample const> samples) {
     Line line;
     line.reserve(samples.size());
@@ -142,9 +145,9 @@ class Line {
     return foot(best, p);
   }
 
-  /// The foot point near segment `hint`: descends along the line to the nearest local minimum of the distance. Equals the
-  /// exact one, whatever the hint, while the point is closer to the line than the line's radius of curvature and the line
-  /// does not come near it twice. O(segments passed).
+  /// The foot point near segment `hint`: descends along the line to the nearest local minimum of the distance. Equals
+  /// the exact one, whatever the hint, while the point is closer to the line than the line's radius of curvature and
+  /// the line does not come near it twice. O(segments passed).
   [[nodiscard]] Projection project(Point const& p, std::uint32_t hint) const {
     CAMBIUM_ASSERT(!empty(), "a query on an empty line");
     auto i = std::min(hint, last());
@@ -222,7 +225,8 @@ class Line {
     double const distance = std::hypot(dx, dy);
     if (distance < 1e-9) return false;
     double heading = std::atan2(dy, dx);
-    if (!segments_.empty()) heading = segments_.back().heading + std::remainder(heading - segments_.back().heading, 2 * pi);
+    if (!segments_.empty())
+      heading = segments_.back().heading + std::remainder(heading - segments_.back().heading, 2 * pi);
     segments_.push_back({length_, end_x_, end_y_, dx / distance, dy / distance, distance, heading, 0.0});
     length_ += distance;
     end_x_ = x;
@@ -231,7 +235,8 @@ class Line {
   }
 
   void finish() const {
-    if (segments_.empty()) throw MapError("line", "fewer than two distinct points", "give at least two points apart from each other");
+    if (segments_.empty())
+      throw MapError("line", "fewer than two distinct points", "give at least two points apart from each other");
   }
 
   void set_headings(std::span<double const> headings) {
@@ -243,8 +248,6 @@ class Line {
       heading += turn;
     }
   }
-
-  static constexpr double pi = 3.14159265358979323846;
 
   std::vector<Segment> segments_;
   double length_ = 0.0;

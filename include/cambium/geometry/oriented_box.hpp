@@ -5,27 +5,11 @@
 
 #include "cambium/core/state.hpp"
 #include "cambium/geometry/angle.hpp"
+#include "cambium/geometry/box.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/geometry/shape.hpp"
 
 namespace cambium::geometry {
-
-/// An axis-parallel rectangle in the map frame [m], borders included.
-struct Box {
-  double min_x, min_y, max_x, max_y;
-
-  [[nodiscard]] bool contains(Point const& p) const {
-    return p.x() >= min_x && p.x() <= max_x && p.y() >= min_y && p.y() <= max_y;
-  }
-  [[nodiscard]] bool contains(Box const& other) const {
-    return other.min_x >= min_x && other.max_x <= max_x && other.min_y >= min_y && other.max_y <= max_y;
-  }
-  [[nodiscard]] bool intersects(Box const& other) const {
-    return min_x <= other.max_x && other.min_x <= max_x && min_y <= other.max_y && other.min_y <= max_y;
-  }
-
-  friend bool operator==(Box const&, Box const&) = default;
-};
 
 /// A turned rectangle in the map frame: centre, half side lengths [m], and the direction of its length. 48 bytes.
 struct OrientedBox {

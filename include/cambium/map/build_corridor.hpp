@@ -101,15 +101,16 @@ class LaneJoiner {
   }
 
   [[nodiscard]] std::vector<CorridorPiece> make_pieces(geometry::Line const& center) const {
-    auto const position = [&center](std::size_t vertex) {
-      return vertex < center.segments().size() ? center.segments()[vertex].s : center.length();
+    auto const segments = center.segments();
+    auto const position = [&](std::size_t vertex) {
+      return vertex < segments.size() ? segments[vertex].s : center.length();
     };
     std::vector<CorridorPiece> pieces;
-    for (auto const& start : starts_) {
-      double const begin = position(start.begin);
-      if (!pieces.empty()) pieces.back().end = begin;
+    for (std::size_t i = 0; i < starts_.size(); ++i) {
+      auto const& start = starts_[i];
+      std::size_t const last = i + 1 < starts_.size() ? starts_[i + 1].begin : segments.size();
       double const offset = map_.lane(start.lane).index_begin + start.s - position(start.anchor);
-      pieces.push_back({start.lane, begin, center.length(), offset, no_corridor, no_corridor});
+      pieces.push_back({start.lane, position(start.begin), position(last), offset, no_corridor, no_corridor});
     }
     return pieces;
   }

@@ -24,7 +24,8 @@ namespace detail {
 /// Turns a document into a map: roads, lanes with their geometry, links, merges, overlaps.
 class MapBuild {
  public:
-  MapBuild(OpenDriveDocument const& document, MapOptions const& options, std::string file, std::vector<Diagnostic>& diagnostics)
+  MapBuild(OpenDriveDocument const& document, MapOptions const& options, std::string file,
+           std::vector<Diagnostic>& diagnostics)
       : document_(document), file_(std::move(file)), diagnostics_(diagnostics) {
     parts_.options = options;
   }
@@ -34,14 +35,17 @@ class MapBuild {
     for (auto const& junction : document_.junctions) parts_.junctions.push_back(junction.id);
     parts_.roads.reserve(document_.roads.size());
     for (auto const& road : document_.roads) add_road(road);
-    if (parts_.lanes.empty()) throw MapError(file_, "the file has no lane with a length", "give a file with lanes beside lane 0");
+    if (parts_.lanes.empty())
+      throw MapError(file_, "the file has no lane with a length", "give a file with lanes beside lane 0");
     LaneLinker(document_, parts_.roads, parts_.lanes, file_, diagnostics_).link();
     for (auto& lane : parts_.lanes)
       if (lane.drivable() && lane.successors.empty()) find_merge(lane);
     for (auto& lane : parts_.lanes)
       if (is_valid(lane.merges_into)) swing(lane);
     number_lane_coordinate();
-    find_overlaps(parts_.lanes, [this](Lane const& lane, double s) { return elevation(lane, s); }, parts_.options.overlap_clearance);
+    find_overlaps(
+        parts_.lanes, [this](Lane const& lane, double s) { return elevation(lane, s); },
+        parts_.options.overlap_clearance);
     parts_.route_finder = make_route_finder(parts_.lanes);
     return std::make_shared<Map const>(std::move(parts_));
   }
@@ -81,7 +85,8 @@ class MapBuild {
     parts_.roads.push_back(make_road(source, id, document_.header.offset));
     auto& road = parts_.roads.back();
     for (std::size_t j = 0; j < parts_.junctions.size(); ++j)
-      if (!source.junction.empty() && parts_.junctions[j] == source.junction) road.junction = static_cast<JunctionId>(j);
+      if (!source.junction.empty() && parts_.junctions[j] == source.junction)
+        road.junction = static_cast<JunctionId>(j);
     for (std::size_t k = 0; k < road.sections.size(); ++k) add_section(source, road, k);
   }
 
@@ -95,8 +100,10 @@ class MapBuild {
       Lane lane = make_lane(source, written, road, k);
       lane.id = static_cast<LaneId>(parts_.lanes.size());
       if (!has_geometry(lane, cross_sections, column)) {
-        diagnostics_.push_back({Severity::warning, file_, written.line, "lane", "road " + road.name + ", section " + std::to_string(k) + ", lane " + std::to_string(written.id),
-                                "it has no length, or its numbers are out of all range; it was left out"});
+        diagnostics_.push_back(
+            {Severity::warning, file_, written.line, "lane",
+             "road " + road.name + ", section " + std::to_string(k) + ", lane " + std::to_string(written.id),
+             "it has no length, or its numbers are out of all range; it was left out"});
         continue;
       }
       section.lanes[column].id = lane.id;
@@ -113,7 +120,8 @@ class MapBuild {
     }
   }
 
-  [[nodiscard]] static Lane make_lane(opendrive::Road const& source, opendrive::Lane const& written, Road const& road, std::size_t k) {
+  [[nodiscard]] static Lane make_lane(opendrive::Road const& source, opendrive::Lane const& written, Road const& road,
+                                      std::size_t k) {
     Lane lane;
     lane.road = road.id;
     lane.section = static_cast<std::uint32_t>(k);
@@ -140,7 +148,8 @@ class MapBuild {
   /// A lane that ends while its neighbour goes on merges into that one.
   void find_merge(Lane& lane) {
     bool const keeps_left = parts_.roads[index_of(lane.road)].left_hand_traffic;
-    for (auto const side : {keeps_left ? lane.right_neighbor : lane.left_neighbor, keeps_left ? lane.left_neighbor : lane.right_neighbor}) {
+    for (auto const side : {keeps_left ? lane.right_neighbor : lane.left_neighbor,
+                            keeps_left ? lane.left_neighbor : lane.right_neighbor}) {
       if (!is_valid(side) || parts_.lanes[index_of(side)].successors.empty()) continue;
       if (is_valid(parts_.lanes[index_of(side)].merges_into)) continue;
       if (goes_on_unlinked(lane, parts_.lanes[index_of(side)])) return;
@@ -153,21 +162,26 @@ class MapBuild {
   [[nodiscard]] bool goes_on_unlinked(Lane const& lane, Lane const& neighbor) {
     auto const end = lane.path.pose(lane.length()).position();
     for (auto const next : neighbor.successors)
-      for (auto const beside : {parts_.lanes[index_of(next)].left_neighbor, parts_.lanes[index_of(next)].right_neighbor}) {
+      for (auto const beside :
+           {parts_.lanes[index_of(next)].left_neighbor, parts_.lanes[index_of(next)].right_neighbor}) {
         if (!is_valid(beside)) continue;
         auto const& candidate = parts_.lanes[index_of(beside)];
         if (!candidate.predecessors.empty() || (candidate.path.pose(0.0).position() - end).norm() > 0.5) continue;
-        diagnostics_.push_back({Severity::warning, file_, 0, "link", "road " + parts_.roads[index_of(lane.road)].name + ", lane " + std::to_string(lane.number),
-                                "it has no successor, but lane " + std::to_string(candidate.number) + " of road " +
-                                    parts_.roads[index_of(candidate.road)].name + " begins where it ends; is the link missing? It was left as a dead end"});
+        diagnostics_.push_back(
+            {Severity::warning, file_, 0, "link",
+             "road " + parts_.roads[index_of(lane.road)].name + ", lane " + std::to_string(lane.number),
+             "it has no successor, but lane " + std::to_string(candidate.number) + " of road " +
+                 parts_.roads[index_of(candidate.road)].name +
+                 " begins where it ends; is the link missing? It was left as a dead end"});
         return true;
       }
     return false;
   }
 
   [[nodiscard]] static std::size_t column_of(RoadSection const& section, LaneId id) {
-    return static_cast<std::size_t>(std::find_if(section.lanes.begin(), section.lanes.end(), [id](RoadLane const& l) { return l.id == id; }) -
-                                    section.lanes.begin());
+    return static_cast<std::size_t>(
+        std::find_if(section.lanes.begin(), section.lanes.end(), [id](RoadLane const& l) { return l.id == id; }) -
+        section.lanes.begin());
   }
 
   /// Lets the lane's path swing onto the neighbour's and go on as that one does.
@@ -209,9 +223,10 @@ class MapBuild {
 
 }  // namespace detail
 
-/// The map that a document describes; what was odd is added to `diagnostics`, with `file` as the place. Throws `MapError` where no lane is left.
-[[nodiscard]] inline std::shared_ptr<Map const> build_map(OpenDriveDocument const& document, MapOptions const& options, std::string file,
-                                                          std::vector<Diagnostic>& diagnostics) {
+/// The map that a document describes; what was odd is added to `diagnostics`, with `file` as the place. Throws
+/// `MapError` where no lane is left.
+[[nodiscard]] inline std::shared_ptr<Map const> build_map(OpenDriveDocument const& document, MapOptions const& options,
+                                                          std::string file, std::vector<Diagnostic>& diagnostics) {
   return detail::MapBuild(document, options, std::move(file), diagnostics).build();
 }
 

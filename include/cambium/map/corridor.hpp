@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -17,20 +18,21 @@ inline constexpr std::uint16_t no_corridor = std::numeric_limits<std::uint16_t>:
 /// A lane's stretch of a lane corridor.
 struct CorridorPiece {
   LaneId lane = none<LaneId>;
-  double begin{}, end{};             ///< corridor position [m]
-  double index_offset{};             ///< lane coordinate = corridor position + index_offset
-  std::uint16_t left = no_corridor;  ///< number of the corridor that holds the lane's left neighbour, in the road corridor
+  double begin{}, end{};  ///< corridor position [m]
+  double index_offset{};  ///< lane coordinate = corridor position + index_offset
+  std::uint16_t left = no_corridor;  ///< number of the corridor that holds the lane's left neighbour
   std::uint16_t right = no_corridor;
 };
 
-/// A stretch of a lane outside of the corridor whose traffic counts in it: a lane that merges in (from `merge_view` before
-/// the overlap on), one that has just split off and still overlaps, or one that leads onto the corridor's first lane.
-/// Lane coordinates [index_begin, index_end] map linearly onto corridor positions [begin, end].
+/// A stretch of a lane outside of the corridor whose traffic counts in it: a lane that merges in (from `merge_view`
+/// before the overlap on), one that has just split off and still overlaps, or one that leads onto the corridor's first
+/// lane. Lane coordinates [index_begin, index_end] map linearly onto corridor positions [begin, end].
 struct Feeder {
   LaneId lane = none<LaneId>;
   double index_begin{}, index_end{};
   double begin{}, end{};
-  double free_until = -std::numeric_limits<double>::infinity();  ///< corridor position from which on the two lanes are one [m]
+  /// Corridor position from which on the two lanes are one [m].
+  double free_until = -std::numeric_limits<double>::infinity();
 
   [[nodiscard]] double image(double index) const {
     return begin + (index - index_begin) * (end - begin) / (index_end - index_begin);
@@ -70,9 +72,9 @@ struct LaneCorridor {
 
 /// The lanes of a route and those beside them, as lane corridors. Immutable, built once per route and shared.
 struct RoadCorridor {
-  std::vector<LaneId> route;             ///< the lanes from start to destination, lane changes included
+  std::vector<LaneId> route;  ///< the lanes from start to destination, lane changes included
   std::vector<LaneCorridor> corridors;
-  std::uint16_t main = 0;                ///< the corridor that holds the route's last lane
+  std::uint16_t main = 0;  ///< the corridor that holds the route's last lane
 
   /// Number of the first corridor that holds `lane`, `no_corridor` if none does. O(lanes).
   [[nodiscard]] std::uint16_t corridor_of(LaneId lane) const {

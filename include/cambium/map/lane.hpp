@@ -21,8 +21,9 @@ enum class OverlapKind : std::uint8_t {
   crossing,  ///< one passes over the other
 };
 
-/// A stretch on which a vehicle in this lane and one in another lane cannot be side by side: the lanes' paths are closer
-/// than the map's overlap clearance. `begin`, `end` [m] on this lane's path, `other_begin`, `other_end` on the other's.
+/// A stretch on which a vehicle in this lane and one in another lane cannot be side by side: the lanes' paths are
+/// closer than the map's overlap clearance. `begin`, `end` [m] on this lane's path, `other_begin`, `other_end` on the
+/// other's.
 struct Overlap {
   LaneId other = none<LaneId>;
   OverlapKind kind = OverlapKind::crossing;
@@ -32,29 +33,30 @@ struct Overlap {
 
 /// One lane of one lane section, as it is driven: everything runs in the direction of travel.
 ///
-/// The `path` is what a vehicle follows: the lane's centre line; but where the lane ends beside a neighbour that goes on
-/// (`merges_into`: a lane drop, the end of an acceleration lane), it swings over onto the neighbour's centre line before the
-/// end, and the neighbour's successors are this lane's successors too.
+/// The `path` is what a vehicle follows: the lane's centre line; but where the lane ends beside a neighbour that goes
+/// on
+/// (`merges_into`: a lane drop, the end of an acceleration lane), it swings over onto the neighbour's centre line
+/// before the end, and the neighbour's successors are this lane's successors too.
 struct Lane {
   LaneId id = none<LaneId>;
   RoadId road = none<RoadId>;
-  std::uint32_t section{};           ///< index of the lane section within the road
-  int number{};                      ///< the file's lane id: negative right of the reference line
+  std::uint32_t section{};  ///< index of the lane section within the road
+  int number{};             ///< the file's lane id: negative right of the reference line
   LaneType type = LaneType::none;
-  bool along_road = true;            ///< travel direction is that of increasing road s
-  double road_begin{}, road_end{};   ///< the section's range of road s [m], road_begin < road_end
-  double speed_limit{};              ///< [m/s], 0 where the file gives none
+  bool along_road = true;           ///< travel direction is that of increasing road s
+  double road_begin{}, road_end{};  ///< the section's range of road s [m], road_begin < road_end
+  double speed_limit{};             ///< [m/s], 0 where the file gives none
 
-  geometry::Line path;               ///< what a vehicle follows (see above)
-  std::vector<SideWidths> widths;    ///< at the path's vertices
-  geometry::Line left, right;        ///< borders in travel direction; empty where they have no length
+  geometry::Line path;             ///< what a vehicle follows (see above)
+  std::vector<SideWidths> widths;  ///< at the path's vertices
+  geometry::Line left, right;      ///< borders in travel direction; empty where they have no length
 
   LaneId left_neighbor = none<LaneId>;   ///< next lane to the left with the same travel direction, drivable
   LaneId right_neighbor = none<LaneId>;  ///< next lane to the right with the same travel direction, drivable
   LaneId merges_into = none<LaneId>;     ///< the neighbour that this lane's path joins at its end
   double merge_begin{};                  ///< where the path leaves the centre line [m]; only with `merges_into`
   std::vector<LaneId> successors, predecessors;
-  std::vector<Overlap> overlaps;         ///< sorted by `begin`
+  std::vector<Overlap> overlaps;  ///< sorted by `begin`
 
   /// First of this lane's values of the map-wide lane coordinate: the lane owns [index_begin, index_begin + length].
   double index_begin{};

@@ -24,21 +24,25 @@ namespace cambium::map {
 
 /// What the map is built with.
 struct MapOptions {
-  double position_tolerance = 0.01;  ///< largest distance of a sampled lane from the exact one [m]
+  double position_tolerance = 0.01;                     ///< largest distance of a sampled lane from the exact one [m]
   double heading_tolerance = 0.5 * geometry::pi / 180;  ///< largest turn between two samples [rad]
-  double overlap_clearance = 2.5;    ///< paths closer than this cannot carry vehicles side by side [m]
-  double merge_view = 120.0;         ///< how far before an overlap merging lanes take each other's traffic into account [m]
-  double merge_length = 60.0;        ///< longest stretch over which an ending lane swings onto its neighbour [m]
+  double overlap_clearance = 2.5;  ///< paths closer than this cannot carry vehicles side by side [m]
+  double merge_view = 120.0;   ///< how far before an overlap merging lanes take each other's traffic into account [m]
+  double merge_length = 60.0;  ///< longest stretch over which an ending lane swings onto its neighbour [m]
 
   static constexpr char const* name = "map_options";
   static constexpr auto parameters() {
     using P = MapOptions;
-    return std::make_tuple(
-        parameter("position_tolerance", &P::position_tolerance, "m", Range{1e-5, 10}, "largest distance of a sampled lane from the exact one"),
-        parameter("heading_tolerance", &P::heading_tolerance, "rad", Range{1e-4, 1}, "largest turn between two samples"),
-        parameter("overlap_clearance", &P::overlap_clearance, "m", Range{0.1, 20}, "paths closer than this cannot carry vehicles side by side"),
-        parameter("merge_view", &P::merge_view, "m", Range{0, 1000}, "how far before an overlap merging traffic is taken into account"),
-        parameter("merge_length", &P::merge_length, "m", Range{30, 1000}, "longest stretch over which an ending lane swings onto its neighbour"));
+    return std::make_tuple(parameter("position_tolerance", &P::position_tolerance, "m", Range{1e-5, 10},
+                                     "largest distance of a sampled lane from the exact one"),
+                           parameter("heading_tolerance", &P::heading_tolerance, "rad", Range{1e-4, 1},
+                                     "largest turn between two samples"),
+                           parameter("overlap_clearance", &P::overlap_clearance, "m", Range{0.1, 20},
+                                     "paths closer than this cannot carry vehicles side by side"),
+                           parameter("merge_view", &P::merge_view, "m", Range{0, 1000},
+                                     "how far before an overlap merging traffic is taken into account"),
+                           parameter("merge_length", &P::merge_length, "m", Range{30, 1000},
+                                     "longest stretch over which an ending lane swings onto its neighbour"));
   }
 };
 
@@ -57,7 +61,7 @@ struct RoadSection {
 /// A road as in the file: exact geometry. Sampled lanes are in `Map::lanes`.
 struct Road {
   RoadId id = none<RoadId>;
-  std::string name;             ///< the file's id
+  std::string name;  ///< the file's id
   JunctionId junction = none<JunctionId>;
   bool left_hand_traffic = false;
   ReferenceLine reference_line;
@@ -66,7 +70,8 @@ struct Road {
   double length{};
 };
 
-/// The way from a start to a destination: lanes in order; neighbours in the list are successors, or beside each other (a lane change).
+/// The way from a start to a destination: lanes in order; neighbours in the list are successors, or beside each other
+/// (a lane change).
 struct Route {
   std::vector<LaneId> lanes;
   double length{};  ///< [m]
@@ -116,21 +121,25 @@ class Map {
       if (s >= section.begin && (s < section.end || &section == &road.sections.back()))
         for (auto const& lane : section.lanes)
           if (lane.number == number && is_valid(lane.id)) return lane.id;
-    throw MapError("road " + std::string(name) + ", s " + std::to_string(s), "there is no lane " + std::to_string(number),
-                   "see Map::roads for the lanes of its sections");
+    throw MapError("road " + std::string(name) + ", s " + std::to_string(s),
+                   "there is no lane " + std::to_string(number), "see Map::roads for the lanes of its sections");
   }
 
   /// Name of a lane for messages: "road 12, section 0, lane -1".
   [[nodiscard]] std::string describe(LaneId id) const {
     auto const& l = lane(id);
-    return "road " + road(l.road).name + ", section " + std::to_string(l.section) + ", lane " + std::to_string(l.number);
+    return "road " + road(l.road).name + ", section " + std::to_string(l.section) + ", lane " +
+           std::to_string(l.number);
   }
 
   /// Lanes of any type that hold `p`, or come within `radius` [m] of it, nearest first. O(log n).
-  [[nodiscard]] std::vector<LaneHit> lanes_near(geometry::Point const& p, double radius) const { return tree_.near(p, radius); }
+  [[nodiscard]] std::vector<LaneHit> lanes_near(geometry::Point const& p, double radius) const {
+    return tree_.near(p, radius);
+  }
 
-  /// The drivable lane that a vehicle at `pose` is in: of the lanes that hold the position the one whose direction fits best;
-  /// where none does, the nearest within `radius` [m] that does not run the other way. Nothing if there is none. O(log n).
+  /// The drivable lane that a vehicle at `pose` is in: of the lanes that hold the position the one whose direction fits
+  /// best; where none does, the nearest within `radius` [m] that does not run the other way. Nothing if there is none.
+  /// O(log n).
   [[nodiscard]] std::optional<LaneHit> nearest_lane(geometry::Pose const& pose, double radius = 5.0) const {
     return tree_.nearest_drivable(pose, radius);
   }

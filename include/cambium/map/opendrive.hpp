@@ -22,9 +22,10 @@ struct LoadedMap {
   std::vector<Diagnostic> diagnostics;
 };
 
-/// The map of an OpenDRIVE text; `file` names it in messages. Throws `MapError` (file, line, what, remedy) where it is not XML
-/// or has no usable road; everything else that is odd becomes a diagnostic.
-[[nodiscard]] inline LoadedMap parse_opendrive(std::string_view text, MapOptions const& options = {}, std::string const& file = "text") {
+/// The map of an OpenDRIVE text; `file` names it in messages. Throws `MapError` (file, line, what, remedy) where it is
+/// not XML or has no usable road; everything else that is odd becomes a diagnostic.
+[[nodiscard]] inline LoadedMap parse_opendrive(std::string_view text, MapOptions const& options = {},
+                                               std::string const& file = "text") {
   LoadedMap result;
   auto const document = read_opendrive_document(text, file, result.diagnostics);
   result.map = build_map(document, options, file, result.diagnostics);
@@ -35,14 +36,16 @@ struct LoadedMap {
 [[nodiscard]] inline LoadedMap load_opendrive(std::string const& path, MapOptions const& options = {}) {
   errno = 0;
   std::ifstream file(path, std::ios::binary);
-  if (!file) throw MapError(path, std::string("the file cannot be opened (") + std::strerror(errno) + ")", "check the path");
+  if (!file)
+    throw MapError(path, std::string("the file cannot be opened (") + std::strerror(errno) + ")", "check the path");
   std::string text;
   try {
     text.assign(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
   } catch (std::ios_base::failure const&) {  // a folder opens, but cannot be read
     throw MapError(path, "it cannot be read as a file", "give an OpenDRIVE file (.xodr)");
   }
-  if (file.bad() || text.empty()) throw MapError(path, "the file is empty or cannot be read", "give an OpenDRIVE file (.xodr)");
+  if (file.bad() || text.empty())
+    throw MapError(path, "the file is empty or cannot be read", "give an OpenDRIVE file (.xodr)");
   return parse_opendrive(text, options, path);
 }
 

@@ -22,8 +22,8 @@ struct LaneVehicle {
   IdmClassic driver;
 };
 
-/// Random traffic on a stretch of a lane: speeds, headways, drivers and sizes are drawn for each vehicle, gaps so that every
-/// follower can stay behind its leader by comfortable braking.
+/// Random traffic on a stretch of a lane: speeds, headways, drivers and sizes are drawn for each vehicle, gaps so that
+/// every follower can stay behind its leader by comfortable braking.
 struct LaneTraffic {
   double begin = 0.0;
   double end = 200.0;
@@ -45,17 +45,20 @@ struct LaneTraffic {
         parameter("highest_speed", &P::highest_speed, "m/s", Range{0, 100}, "of the initial speeds"),
         parameter("lowest_desired_speed", &P::lowest_desired_speed, "m/s", Range{0.1, 100}, "of the drivers"),
         parameter("highest_desired_speed", &P::highest_desired_speed, "m/s", Range{0.1, 100}, "of the drivers"),
-        parameter("shortest_headway", &P::shortest_headway, "s", Range{0, 60}, "time gap to the leader at the beginning"),
+        parameter("shortest_headway", &P::shortest_headway, "s", Range{0, 60},
+                  "time gap to the leader at the beginning"),
         parameter("longest_headway", &P::longest_headway, "s", Range{0, 60}, "time gap to the leader at the beginning"),
         parameter("truck_share", &P::truck_share, "-", Range{0, 1}, "part of the vehicles that are trucks"));
   }
 
   void check(std::string const& where) const {
-    if (!(lowest_speed <= highest_speed && lowest_desired_speed <= highest_desired_speed && shortest_headway <= longest_headway))
+    if (!(lowest_speed <= highest_speed && lowest_desired_speed <= highest_desired_speed &&
+          shortest_headway <= longest_headway))
       throw ParameterError(where, "a lowest or shortest value is above its highest or longest", "swap them");
   }
 
-  /// Vehicles from the front of the stretch to its rear. Throws `ParameterError` where a parameter is no good. O(vehicles).
+  /// Vehicles from the front of the stretch to its rear. Throws `ParameterError` where a parameter is no good.
+  /// O(vehicles).
   [[nodiscard]] std::vector<LaneVehicle> sample(RandomStream& random) const {
     check_parameters(*this);
     std::vector<LaneVehicle> vehicles;
@@ -80,14 +83,17 @@ struct LaneTraffic {
     }
   }
 
-  /// Gap [m] from which a follower stays behind a leader that keeps its speed with no more than its comfortable deceleration.
+  /// Gap [m] from which a follower stays behind a leader that keeps its speed with no more than its comfortable
+  /// deceleration.
   [[nodiscard]] static double safe_gap(IdmClassic const& driver, double speed, double leader_speed, double headway) {
     double const closing = std::max(0.0, speed - leader_speed);
     return driver.minimum_gap + speed * headway + closing * closing / (2 * driver.comfortable_deceleration);
   }
 
  private:
-  [[nodiscard]] static double between(double low, double high, RandomStream& random) { return Uniform{low, high}(random); }
+  [[nodiscard]] static double between(double low, double high, RandomStream& random) {
+    return Uniform{low, high}(random);
+  }
 };
 
 }  // namespace cambium

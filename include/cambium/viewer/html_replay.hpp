@@ -8,12 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "cambium/core/write_file.hpp"
 #include "cambium/viewer/detail/lane_marks.hpp"
 #include "cambium/viewer/detail/replay_controls.hpp"
 #include "cambium/viewer/detail/replay_page.hpp"
 #include "cambium/viewer/detail/replay_script.hpp"
 #include "cambium/viewer/detail/text.hpp"
-#include "cambium/viewer/detail/write_file.hpp"
 #include "cambium/viewer/recording.hpp"
 
 namespace cambium {
@@ -190,7 +190,7 @@ inline std::string replay_header(Recording const& recording) {
 /// Writes `html_replay(recording)` to `path`; the file appears only when it is complete. Throws `Error` naming the path
 /// and the reason when it cannot be written.
 inline void write_html_replay(std::filesystem::path const& path, Recording const& recording) {
-  detail::write_file(path, html_replay(recording));
+  write_file(path, html_replay(recording));
 }
 
 }  // namespace cambium

@@ -16,10 +16,11 @@ namespace cambium {
   for (auto const& lane : map.lanes()) {
     if (lane.left.empty() || lane.right.empty()) continue;
     auto const& road = map.road(lane.road);
-    auto const kind = !lane.drivable()           ? RecordedLaneKind::other
+    auto const kind = !lane.drivable()          ? RecordedLaneKind::other
                       : is_valid(road.junction) ? RecordedLaneKind::junction
                                                 : RecordedLaneKind::driving;
-    lanes.push_back({lane.left.points(), lane.right.points(), road.name + ":" + std::to_string(lane.number), kind, true});
+    lanes.push_back(
+        {lane.left.points(), lane.right.points(), road.name + ":" + std::to_string(lane.number), kind, true});
   }
   // Shoulders first, lanes over them: what is drawn last is seen.
   std::stable_sort(lanes.begin(), lanes.end(), [](RecordedLane const& a, RecordedLane const& b) {
@@ -28,8 +29,8 @@ namespace cambium {
   return lanes;
 }
 
-/// Writes a world's course into a recording: lanes, agents and objects as they are now; then a frame for each call of `record`.
-/// Agents that enter later are not shown.
+/// Writes a world's course into a recording: lanes, agents and objects as they are now; then a frame for each call of
+/// `record`. Agents that enter later are not shown.
 class WorldRecorder {
  public:
   template <class World>
@@ -61,7 +62,12 @@ class WorldRecorder {
       if (slot == agents.size()) break;
       if (agents[slot].id != recording_.agents[i].id) continue;
       auto const& r = world.frame().agents[slot];
-      frame.poses[i] = {r.state.x, r.state.y, r.state.heading, r.state.speed, r.action.acceleration, r.status == AgentStatus::driving};
+      frame.poses[i] = {r.state.x,
+                        r.state.y,
+                        r.state.heading,
+                        r.state.speed,
+                        r.action.acceleration,
+                        r.status == AgentStatus::driving};
     }
     recording_.frames.push_back(std::move(frame));
   }

@@ -12,10 +12,10 @@
 #include <utility>
 #include <vector>
 
+#include "cambium/core/write_file.hpp"
 #include "cambium/viewer/detail/lane_marks.hpp"
 #include "cambium/viewer/detail/svg_panel.hpp"
 #include "cambium/viewer/detail/text.hpp"
-#include "cambium/viewer/detail/write_file.hpp"
 #include "cambium/viewer/recording.hpp"
 
 namespace cambium {
@@ -293,7 +293,7 @@ class SvgPicture {
 /// the path and the reason when it cannot be written.
 inline void write_svg_picture(std::filesystem::path const& path, Recording const& recording,
                               SvgOptions const& options = {}) {
-  detail::write_file(path, svg_picture(recording, options));
+  write_file(path, svg_picture(recording, options));
 }
 
 }  // namespace cambium

@@ -24,9 +24,10 @@ struct ObservedAgent {
   geometry::Shape shape;
 };
 
-/// What one agent sees of its world: a view of a few pointers, valid until the world changes. States, and with them gaps,
-/// neighbours' speeds and the own lane position, pass through the agent's observer model; who is next to whom is the truth. It shows
-/// states, shapes, the map, neighbours and the agent's own route; never what the others intend: `predict` asks for a model of that.
+/// What one agent sees of its world: a view of a few pointers, valid until the world changes. States, and with them
+/// gaps, neighbours' speeds and the own lane position, pass through the agent's observer model; who is next to whom is
+/// the truth. It shows states, shapes, the map, neighbours and the agent's own route; never what the others intend:
+/// `predict` asks for a model of that.
 template <class World>
 class ObservedWorld {
  public:
@@ -35,7 +36,8 @@ class ObservedWorld {
 
   ObservedWorld(World const& world, std::uint32_t slot)
       : world_(&world), own_(&world.roster().agents[slot]), record_(&world.frame().agents[slot]), slot_(slot) {
-    if constexpr (!perfect) seen_lane_ = map::locate(*own_->road, record_->lane.corridor, pose_of(state()), record_->lane);
+    if constexpr (!perfect)
+      seen_lane_ = map::locate(*own_->road, record_->lane.corridor, pose_of(state()), record_->lane);
   }
 
   [[nodiscard]] double time() const { return world_->frame().time; }
@@ -56,13 +58,15 @@ class ObservedWorld {
   [[nodiscard]] map::LaneCorridor const& corridor() const { return road().corridors[lane_position().corridor]; }
   [[nodiscard]] std::span<StaticObject const> objects() const { return world_->roster().objects; }
 
-  /// Numbers of the agent's own for this step: the same whatever the order of agents, threads or copies. `purpose` below 2^31.
+  /// Numbers of the agent's own for this step: the same whatever the order of agents, threads or copies. `purpose`
+  /// below 2^31.
   [[nodiscard]] RandomStream random(std::uint32_t purpose) const {
-    return {world_->roster().seed, static_cast<std::uint32_t>(id()), static_cast<std::uint32_t>(world_->frame().step), purpose};
+    return {world_->roster().seed, static_cast<std::uint32_t>(id()), static_cast<std::uint32_t>(world_->frame().step),
+            purpose};
   }
 
-  /// Next road user ahead along the own lane corridor; nothing if there is none within `TrafficIndex::horizon`. O(1) while the
-  /// next one is in the same lane.
+  /// Next road user ahead along the own lane corridor; nothing if there is none within `TrafficIndex::horizon`. O(1)
+  /// while the next one is in the same lane.
   [[nodiscard]] std::optional<Neighbor> front() const {
     return neighbor(world_->traffic().front(corridor(), query(record_->lane), objects_on_lanes(), in_traffic()), 1);
   }
@@ -73,11 +77,13 @@ class ObservedWorld {
   /// Next road user ahead along lane corridor `number` of the own road, from the place beside the agent. O(log n).
   [[nodiscard]] std::optional<Neighbor> front(std::uint16_t number) const {
     if (number == record_->lane.corridor) return front();
-    return neighbor(world_->traffic().front(road().corridors[number], query(beside(number)), objects_on_lanes(), false), 1);
+    return neighbor(world_->traffic().front(road().corridors[number], query(beside(number)), objects_on_lanes(), false),
+                    1);
   }
   [[nodiscard]] std::optional<Neighbor> rear(std::uint16_t number) const {
     if (number == record_->lane.corridor) return rear();
-    return neighbor(world_->traffic().rear(road().corridors[number], query(beside(number)), objects_on_lanes(), false), -1);
+    return neighbor(world_->traffic().rear(road().corridors[number], query(beside(number)), objects_on_lanes(), false),
+                    -1);
   }
 
   /// Calls `f(ObservedAgent)` for every other agent in traffic, in the order of their ids.
@@ -85,11 +91,12 @@ class ObservedWorld {
   void for_each_other(F&& f) const {
     auto const& agents = world_->roster().agents;
     for (std::uint32_t i = 0; i < agents.size(); ++i)
-      if (i != slot_ && record(i).status == AgentStatus::driving) f(ObservedAgent<State>{agents[i].id, observed(i), agents[i].shape});
+      if (i != slot_ && record(i).status == AgentStatus::driving)
+        f(ObservedAgent<State>{agents[i].id, observed(i), agents[i].shape});
   }
 
-  /// A world of its own, as this agent sees it, in which everybody behaves as `prediction` says: to be stepped, copied and
-  /// judged. History, observers and true behaviours stay behind. O(agents), allocates: do it once, then copy.
+  /// A world of its own, as this agent sees it, in which everybody behaves as `prediction` says: to be stepped, copied
+  /// and judged. History, observers and true behaviours stay behind. O(agents), allocates: do it once, then copy.
   template <class Set>
   [[nodiscard]] typename World::template WithBehaviors<Set> predict(Prediction<Set> const& prediction) const {
     return predicted_world<Set>(*world_, slot_, prediction);
@@ -106,9 +113,13 @@ class ObservedWorld {
     return own_->observer.observe(record(slot).state, slot == slot_, random(observation_purpose(agent.id)));
   }
 
-  [[nodiscard]] TrafficQuery query(map::LanePosition const& at) const { return {slot_, at.s, shape().front, shape().rear, at.piece}; }
+  [[nodiscard]] TrafficQuery query(map::LanePosition const& at) const {
+    return {slot_, at.s, shape().front, shape().rear, at.piece};
+  }
 
-  [[nodiscard]] map::LanePosition beside(std::uint16_t number) const { return map::locate(road(), number, pose_of(record_->state)); }
+  [[nodiscard]] map::LanePosition beside(std::uint16_t number) const {
+    return map::locate(road(), number, pose_of(record_->state));
+  }
 
   /// The neighbour ahead (`sign` 1) or behind (-1), as observed.
   [[nodiscard]] std::optional<Neighbor> neighbor(std::optional<TrafficHit> const& hit, int sign) const {

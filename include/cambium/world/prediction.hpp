@@ -19,11 +19,14 @@ struct Prediction {
   static_assert(is_behavior_set<Set>, "cambium::Prediction<Set>: Set must be cambium::BehaviorSet<Models...>");
   typename Set::Any ego;
   typename Set::Any others;
-  std::optional<std::uint64_t> seed{};  ///< of the predicted world; by default drawn for (world, observer, step): not the true one
+  /// Of the predicted world; by default drawn for (world, observer, step): not the true one.
+  std::optional<std::uint64_t> seed{};
 };
 
 /// The stream purpose for observing `agent`: apart from those that behaviours use.
-[[nodiscard]] constexpr std::uint32_t observation_purpose(AgentId agent) { return 0x80000000u | static_cast<std::uint32_t>(agent); }
+[[nodiscard]] constexpr std::uint32_t observation_purpose(AgentId agent) {
+  return 0x80000000u | static_cast<std::uint32_t>(agent);
+}
 
 /// The agent behaves as `ego`, the others as `others`: behaviours of `Set`.
 template <class Set, class Ego, class Others>
@@ -40,8 +43,8 @@ template <class Set, class Behavior>
   return predict_as<Set>(behavior, behavior);
 }
 
-/// The world that agent number `slot` of `world` expects: states as it observes them, behaviours as `prediction` says. Agents
-/// that it does not see in traffic are left out.
+/// The world that agent number `slot` of `world` expects: states as it observes them, behaviours as `prediction` says.
+/// Agents that it does not see in traffic are left out.
 template <class Set, class World>
 [[nodiscard]] typename World::template WithBehaviors<Set> predicted_world(World const& world, std::uint32_t slot,
                                                                           Prediction<Set> const& prediction) {
@@ -52,7 +55,8 @@ template <class Set, class World>
   auto assumed = std::make_shared<typename Predicted::RosterType>();
   constexpr std::uint32_t seed_purpose = 0x7fffffffu;
   auto const stream = [&](std::uint32_t purpose) {
-    return RandomStream(roster.seed, static_cast<std::uint32_t>(observer.id), static_cast<std::uint32_t>(frame.step), purpose);
+    return RandomStream(roster.seed, static_cast<std::uint32_t>(observer.id), static_cast<std::uint32_t>(frame.step),
+                        purpose);
   };
   assumed->seed = prediction.seed ? *prediction.seed : stream(seed_purpose)();
   assumed->next_agent_id = roster.next_agent_id;
@@ -66,7 +70,8 @@ template <class Set, class World>
     auto const& record = frame.agents[i];
     if (record.status != AgentStatus::driving) continue;
     auto const& behavior = i == slot ? prediction.ego : prediction.others;
-    assumed->agents.push_back({agent.id, agent.shape, agent.road, behavior, agent.execution, agent.dynamics, PerfectObserver{}});
+    assumed->agents.push_back(
+        {agent.id, agent.shape, agent.road, behavior, agent.execution, agent.dynamics, PerfectObserver{}});
     assumed->goals.push_back(roster.goals[i]);
     auto const random = stream(observation_purpose(agent.id));
     auto const& state = observer.observer.observe(record.state, i == slot, random);

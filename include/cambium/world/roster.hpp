@@ -16,8 +16,8 @@
 
 namespace cambium {
 
-/// Who the agents of a world are: what does not change while nobody enters or leaves. Shared by copies of the world, copied on
-/// write. Agents are in order of their ids; an agent's place there is its slot, the same as in the frame.
+/// Who the agents of a world are: what does not change while nobody enters or leaves. Shared by copies of the world,
+/// copied on write. Agents are in order of their ids; an agent's place there is its slot, the same as in the frame.
 template <class Behavior, class Execution, class Dynamics, class Observer>
 struct Roster {
   struct Agent {
@@ -41,7 +41,8 @@ struct Roster {
 
   /// The agent's slot; nothing if there is no such agent. O(log n).
   [[nodiscard]] std::optional<std::size_t> slot_of(AgentId id) const {
-    auto const at = std::lower_bound(agents.begin(), agents.end(), id, [](Agent const& a, AgentId b) { return a.id < b; });
+    auto const at =
+        std::lower_bound(agents.begin(), agents.end(), id, [](Agent const& a, AgentId b) { return a.id < b; });
     if (at == agents.end() || at->id != id) return std::nullopt;
     return static_cast<std::size_t>(at - agents.begin());
   }

@@ -7,7 +7,8 @@
 
 namespace cambium {
 
-/// Something that stands in the way and never moves. Behaviours meet it as a neighbour of speed 0, evaluators as an obstacle.
+/// Something that stands in the way and never moves. Behaviours meet it as a neighbour of speed 0, evaluators as an
+/// obstacle.
 struct StaticObject {
   ObjectId id = none<ObjectId>;  ///< given by the world
   geometry::Polygon outline;     ///< map frame

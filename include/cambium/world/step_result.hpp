@@ -9,10 +9,10 @@ namespace cambium {
 /// Why a step, or an agent's part in it, was not valid.
 enum class StepProblem : std::uint8_t {
   none,
-  bad_duration,   ///< dt is not a number above 0 and up to `World::longest_step`: nothing happened
-  no_plan,        ///< a behaviour failed
-  no_execution,   ///< a plan does not reach the end of the step, or its execution failed
-  not_finite,     ///< the next state would not have been a finite number
+  bad_duration,  ///< dt is not a number above 0 and up to `World::longest_step`: nothing happened
+  no_plan,       ///< a behaviour failed
+  no_execution,  ///< a plan does not reach the end of the step, or its execution failed
+  not_finite,    ///< the next state would not have been a finite number
 };
 
 /// What became of a step. Agents with a problem keep their last valid state and leave traffic; all others have moved.
@@ -29,11 +29,16 @@ struct StepResult {
 /// The problem as a clause for messages.
 [[nodiscard]] constexpr char const* to_string(StepProblem problem) {
   switch (problem) {
-    case StepProblem::none: return "no problem";
-    case StepProblem::bad_duration: return "the step length is not above 0 and up to an hour";
-    case StepProblem::no_plan: return "the behaviour found no plan";
-    case StepProblem::no_execution: return "the plan does not reach the end of the step";
-    case StepProblem::not_finite: return "the next state is not a finite number";
+    case StepProblem::none:
+      return "no problem";
+    case StepProblem::bad_duration:
+      return "the step length is not above 0 and up to an hour";
+    case StepProblem::no_plan:
+      return "the behaviour found no plan";
+    case StepProblem::no_execution:
+      return "the plan does not reach the end of the step";
+    case StepProblem::not_finite:
+      return "the next state is not a finite number";
   }
   return "unknown problem";
 }

@@ -11,9 +11,9 @@
 
 namespace cambium {
 
-/// A road user on the lanes: `position` in the map-wide lane coordinate (see `Lane::index_begin`), how far it reaches from
-/// there forward and back [m], its speed along the lane [m/s]. `slot` is its place among the agents or the objects, `id` the
-/// value of its AgentId or ObjectId. Sorted by position, then slot.
+/// A road user on the lanes: `position` in the map-wide lane coordinate (see `Lane::index_begin`), how far it reaches
+/// from there forward and back [m], its speed along the lane [m/s]. `slot` is its place among the agents or the
+/// objects, `id` the value of its AgentId or ObjectId. Sorted by position, then slot.
 struct TrafficEntry {
   double position{};
   double front{}, rear{};
@@ -26,7 +26,8 @@ struct TrafficEntry {
   }
 };
 
-/// Who asks for neighbours: a position `s` on a lane corridor and the asker's extent. `slot` breaks ties and is never found.
+/// Who asks for neighbours: a position `s` on a lane corridor and the asker's extent. `slot` breaks ties and is never
+/// found.
 struct TrafficQuery {
   std::uint32_t slot{};
   double s{};
@@ -45,18 +46,19 @@ struct TrafficHit {
 
 /// Who is where on the lanes, sorted, so that the next road user along a corridor is the next in the list.
 ///
-/// Agents are kept in one list by lane coordinate; the order of the last step is repaired, not rebuilt (insertion sort; where it
-/// is far off, a full sort). Agents that reach over their lane's border appear in the neighbour's lane too; static objects are in a list of their own.
-/// On the corridor itself the nearest by reference point counts; from each feeder (a lane that merges in, or has just split off)
-/// likewise; of these the one with the smallest gap is the neighbour.
+/// Agents are kept in one list by lane coordinate; the order of the last step is repaired, not rebuilt (insertion sort;
+/// where it is far off, a full sort). Agents that reach over their lane's border appear in the neighbour's lane too;
+/// static objects are in a list of their own. On the corridor itself the nearest by reference point counts; from each
+/// feeder (a lane that merges in, or has just split off) likewise; of these the one with the smallest gap is the
+/// neighbour.
 class TrafficIndex {
  public:
   /// Farthest reference point that is a neighbour, along the corridor [m].
   static constexpr double horizon = 400.0;
 
-  /// Gap [m] between a follower's front end and its leader's rear end (corridor positions) where the two lanes are one from `merge`
-  /// on. Before that the two may be side by side: the follower is given half of its way to the merge on top, so that a gap opens
-  /// bit by bit, but never more than the way to whichever is farther, leader or merge.
+  /// Gap [m] between a follower's front end and its leader's rear end (corridor positions) where the two lanes are one
+  /// from `merge` on. Before that the two may be side by side: the follower is given half of its way to the merge on
+  /// top, so that a gap opens bit by bit, but never more than the way to whichever is farther, leader or merge.
   [[nodiscard]] static double gap_between(double follower_front, double leader_rear, double merge) {
     double const gap = leader_rear - follower_front, to_merge = merge - follower_front;
     if (to_merge <= 0.0) return gap;
@@ -64,7 +66,8 @@ class TrafficIndex {
   }
 
   /// Takes in `count` agents. `entry_of(slot)` gives each one's `TrafficEntry` (position +infinity: not in traffic);
-  /// `add_straddling(entry, list)` appends entries in the lanes that it reaches into. No allocation once warm. O(count) when little has changed.
+  /// `add_straddling(entry, list)` appends entries in the lanes that it reaches into. No allocation once warm. O(count)
+  /// when little has changed.
   template <class EntryOf, class AddStraddling>
   void refresh(std::size_t count, EntryOf const& entry_of, AddStraddling const& add_straddling) {
     if (agents_.size() != count) {
@@ -86,16 +89,21 @@ class TrafficIndex {
     for (std::uint32_t i = 0; i < count; ++i) rank_[agents_[i].slot] = i;
   }
 
-  /// Next ahead of the asker on `corridor`. `own`: the asker's own entry lies on this corridor's piece (saves a search).
+  /// Next ahead of the asker on `corridor`. `own`: the asker's own entry lies on this corridor's piece (saves a
+  /// search).
   [[nodiscard]] std::optional<TrafficHit> front(map::LaneCorridor const& corridor, TrafficQuery const& query,
                                                 std::span<TrafficEntry const> objects, bool own) const {
     TrafficHit best;
     std::size_t const start = own ? rank_[query.slot] + 1 : upper(agents_, key(corridor, query), query.slot);
     front_on_corridor(agents_, false, corridor, query, start, best);
-    if (!straddling_.empty()) front_on_corridor(straddling_, false, corridor, query, upper(straddling_, key(corridor, query), query.slot), best);
-    if (!objects.empty()) front_on_corridor(objects, true, corridor, query, upper(objects, key(corridor, query), 0), best);
+    if (!straddling_.empty())
+      front_on_corridor(straddling_, false, corridor, query, upper(straddling_, key(corridor, query), query.slot),
+                        best);
+    if (!objects.empty())
+      front_on_corridor(objects, true, corridor, query, upper(objects, key(corridor, query), 0), best);
     for (auto const& feeder : corridor.feeders) {
-      if (feeder.begin > query.s + std::min(horizon, best.gap + query.front + longest_rear_) && objects.empty()) break;  // nobody there is closer
+      if (feeder.begin > query.s + std::min(horizon, best.gap + query.front + longest_rear_) && objects.empty())
+        break;  // nobody there is closer
       if (feeder.begin > query.s + horizon) break;
       if (feeder.end < query.s) continue;
       front_on_feeder(agents_, false, feeder, query, best);
@@ -111,11 +119,14 @@ class TrafficIndex {
     TrafficHit best;
     std::size_t const start = own ? rank_[query.slot] : lower(agents_, key(corridor, query), query.slot);
     rear_on_corridor(agents_, false, corridor, query, start, best);
-    if (!straddling_.empty()) rear_on_corridor(straddling_, false, corridor, query, lower(straddling_, key(corridor, query), query.slot), best);
-    if (!objects.empty()) rear_on_corridor(objects, true, corridor, query, lower(objects, key(corridor, query), 0), best);
+    if (!straddling_.empty())
+      rear_on_corridor(straddling_, false, corridor, query, lower(straddling_, key(corridor, query), query.slot), best);
+    if (!objects.empty())
+      rear_on_corridor(objects, true, corridor, query, lower(objects, key(corridor, query), 0), best);
     for (auto const& feeder : corridor.feeders) {
       if (feeder.begin > query.s) break;
-      if (feeder.end < query.s - std::min(horizon, best.gap + query.rear + longest_front_) && objects.empty()) continue;  // nobody there is closer
+      if (feeder.end < query.s - std::min(horizon, best.gap + query.rear + longest_front_) && objects.empty())
+        continue;  // nobody there is closer
       if (feeder.end < query.s - horizon) continue;
       rear_on_feeder(agents_, false, feeder, query, best);
       if (!straddling_.empty()) rear_on_feeder(straddling_, false, feeder, query, best);
@@ -139,10 +150,12 @@ class TrafficIndex {
 
   /// First entry behind which (position, slot) sorts.
   [[nodiscard]] static std::size_t upper(List list, double position, std::uint32_t slot) {
-    return static_cast<std::size_t>(std::upper_bound(list.begin(), list.end(), TrafficEntry{position, 0, 0, 0, slot, 0}) - list.begin());
+    return static_cast<std::size_t>(
+        std::upper_bound(list.begin(), list.end(), TrafficEntry{position, 0, 0, 0, slot, 0}) - list.begin());
   }
   [[nodiscard]] static std::size_t lower(List list, double position, std::uint32_t slot) {
-    return static_cast<std::size_t>(std::lower_bound(list.begin(), list.end(), TrafficEntry{position, 0, 0, 0, slot, 0}) - list.begin());
+    return static_cast<std::size_t>(
+        std::lower_bound(list.begin(), list.end(), TrafficEntry{position, 0, 0, 0, slot, 0}) - list.begin());
   }
 
   /// First entry at `position` or beyond: a binary search without branches to mispredict.
@@ -166,7 +179,8 @@ class TrafficIndex {
                                 std::size_t start, TrafficHit& best) {
     auto const& pieces = corridor.pieces;
     for (std::size_t p = query.piece, i = start;;) {
-      while (i < list.size() && list[i].slot == query.slot && !is_object) ++i;  // the asker's own, reached over from another lane
+      while (i < list.size() && list[i].slot == query.slot && !is_object)
+        ++i;  // the asker's own, reached over from another lane
       if (i < list.size() && list[i].position <= pieces[p].end + 1.0 + pieces[p].index_offset) {
         double const s = list[i].position - pieces[p].index_offset;
         if (s - query.s <= horizon) offer(best, list[i], is_object, s - list[i].rear - (query.s + query.front));
@@ -193,7 +207,8 @@ class TrafficIndex {
     }
   }
 
-  static void front_on_feeder(List list, bool is_object, map::Feeder const& feeder, TrafficQuery const& query, TrafficHit& best) {
+  static void front_on_feeder(List list, bool is_object, map::Feeder const& feeder, TrafficQuery const& query,
+                              TrafficHit& best) {
     double const from = query.s <= feeder.begin ? feeder.index_begin : feeder.index_at(query.s);
     // Rounding of the mapping must not lose an entry: start early, then go on to the first that is ahead.
     for (auto i = first_at(list, from - 1e-6); i < list.size() && list[i].position <= feeder.index_end; ++i) {
@@ -208,9 +223,11 @@ class TrafficIndex {
     }
   }
 
-  static void rear_on_feeder(List list, bool is_object, map::Feeder const& feeder, TrafficQuery const& query, TrafficHit& best) {
+  static void rear_on_feeder(List list, bool is_object, map::Feeder const& feeder, TrafficQuery const& query,
+                             TrafficHit& best) {
     double const to = query.s >= feeder.end ? feeder.index_end : feeder.index_at(query.s);
-    for (auto i = upper(list, to + 1e-6, std::numeric_limits<std::uint32_t>::max()); i > 0 && list[i - 1].position >= feeder.index_begin; --i) {
+    for (auto i = upper(list, to + 1e-6, std::numeric_limits<std::uint32_t>::max());
+         i > 0 && list[i - 1].position >= feeder.index_begin; --i) {
       auto const& entry = list[i - 1];
       if (entry.position > feeder.index_end || (entry.slot == query.slot && !is_object)) continue;
       double const s = feeder.image(entry.position);

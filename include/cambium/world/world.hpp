@@ -19,7 +19,9 @@
 #include "cambium/execution/execution_model.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/observer/perfect.hpp"
-#include "cambium/world/entering.hpp"
+#include "cambium/world/detail/entering.hpp"
+#include "cambium/world/detail/on_lanes.hpp"
+#include "cambium/world/detail/scratch.hpp"
 #include "cambium/world/frame.hpp"
 #include "cambium/world/observed_world.hpp"
 #include "cambium/world/prediction.hpp"
@@ -30,22 +32,25 @@
 namespace cambium {
 
 struct WorldOptions {
-  std::uint64_t seed = 0;     ///< of all randomness in the world
-  double time = 0.0;          ///< the world begins at [s]
+  std::uint64_t seed = 0;  ///< of all randomness in the world
+  double time = 0.0;       ///< the world begins at [s]
 };
 
-/// Interacting road traffic on a map: a value. Copies are independent, share the map and the roster, and cost one copy of the
-/// frame; copying into a world that has been used before allocates nothing. Reading from several threads is safe; `step`, `observe`
-/// and all that changes the world need it for themselves.
+/// Interacting road traffic on a map: a value. Copies are independent, share the map and the roster, and cost one copy
+/// of the frame; copying into a world that has been used before allocates nothing. Reading from several threads is
+/// safe; `step`, `observe` and all that changes the world need it for themselves.
 template <class Set, class Execution, class DynamicModelType, class ObserverType = PerfectObserver>
 class World {
   static_assert(is_behavior_set<Set>, "cambium::World<Set, ...>: Set must be cambium::BehaviorSet<Models...>");
   static_assert(DynamicModel<DynamicModelType>,
-                "cambium::World<Set, Execution, Dynamics>: Dynamics must be a vehicle model such as cambium::SingleTrack (see DynamicModel)");
+                "cambium::World<Set, Execution, Dynamics>: Dynamics must be a vehicle model such as "
+                "cambium::SingleTrack (see DynamicModel)");
   static_assert(ExecutionModelFor<Execution, DynamicModelType>,
-                "cambium::World<Set, Execution, ...>: Execution must be an execution model such as cambium::InterpolateExecution (see ExecutionModelFor)");
+                "cambium::World<Set, Execution, ...>: Execution must be an execution model such as "
+                "cambium::InterpolateExecution (see ExecutionModelFor)");
   static_assert(ObserverModel<ObserverType>,
-                "cambium::World<Set, Execution, Dynamics, Observer>: Observer must be an observer model such as cambium::PerfectObserver (see ObserverModel)");
+                "cambium::World<Set, Execution, Dynamics, Observer>: Observer must be an observer model such as "
+                "cambium::PerfectObserver (see ObserverModel)");
 
  public:
   using Behaviors = Set;
@@ -63,17 +68,18 @@ class World {
 
   /// An agent that is to enter.
   struct AgentSpec {
-    geometry::Point position{std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::quiet_NaN()};  ///< of the reference point [m]
-    std::optional<double> heading{};       ///< [rad]; along the lane where not given
-    double speed = 0.0;                    ///< [m/s]
-    geometry::Shape shape{};               ///< a car where not given
+    geometry::Point position{std::numeric_limits<double>::quiet_NaN(),
+                             std::numeric_limits<double>::quiet_NaN()};  ///< of the reference point [m]
+    std::optional<double> heading{};                                     ///< [rad]; along the lane where not given
+    double speed = 0.0;                                                  ///< [m/s]
+    geometry::Shape shape{};                                             ///< a car where not given
     Behavior behavior{};
     Goal goal{};
-    std::optional<map::Route> route{};     ///< else the shortest to the goal; without a goal straight on
+    std::optional<map::Route> route{};  ///< else the shortest to the goal; without a goal straight on
     Execution execution{};
     Dynamics dynamics{};
     Observer observer{};
-    std::optional<AgentId> id{};           ///< else the next free one
+    std::optional<AgentId> id{};  ///< else the next free one
   };
 
   /// An empty world on `map`. Throws `WorldError` without a map.
@@ -96,7 +102,8 @@ class World {
 
   World& operator=(World const& other) {
     if (this == &other) return *this;
-    if (map_ != other.map_) map_ = other.map_;  // the usual copy is between worlds that share both: no reference count moves
+    if (map_ != other.map_)
+      map_ = other.map_;  // the usual copy is between worlds that share both: no reference count moves
     if (roster_ != other.roster_) roster_ = other.roster_;
     frame_ = other.frame_;
     scratch_ = other.scratch_;
@@ -110,25 +117,38 @@ class World {
   [[nodiscard]] double time() const { return frame_.time; }
   [[nodiscard]] std::size_t size() const { return frame_.agents.size(); }
 
-  /// Adds an agent; returns its id. Throws `WorldError` or `ParameterError` (the world is unchanged) where its numbers, its lane, its
-  /// route or its parameters are no good. O(agents), plus routing.
+  /// Adds an agent; returns its id. Throws `WorldError` or `ParameterError` (the world is unchanged) where its numbers,
+  /// its lane, its route or its parameters are no good. O(agents), plus routing.
   AgentId add(AgentSpec const& spec) {
     AgentId const id = spec.id.value_or(static_cast<AgentId>(roster_->next_agent_id));
     std::string const where = "agent " + to_string(id);
-    check(spec, id, where);
+    if (!is_valid(id)) throw WorldError(where, "that id names nobody");
+    if (roster_->slot_of(id))
+      throw WorldError(where, "the world has an agent of that id already", "leave the id out to get a free one");
+    detail::check_entering(spec, where);
     LaneId const lane = spec.route ? detail::entering_lane(*map_, spec.position, *spec.route, where)
                                    : detail::entering_lane(*map_, spec.position, spec.heading, where);
     auto const route = detail::entering_route(*map_, lane, spec.route, spec.goal, where);
     auto const known = roster_->corridors.find(route.lanes);
     auto const road = known != roster_->corridors.end() ? known->second : map::build_road_corridor(*map_, route);
-    Record const record = entering_record(spec, *road, lane, where);
+    Record record;
+    record.lane = detail::entering_position(*map_, spec, *road, lane, where);
+    auto const& center = road->corridors[record.lane.corridor].center;
+    record.state.time = frame_.time;
+    record.state.x = spec.position.x();
+    record.state.y = spec.position.y();
+    record.state.heading = spec.heading.value_or(center.pose(record.lane.s).heading);
+    record.state.speed = spec.speed;
+    record.memory = Set::initial_memory(spec.behavior);
 
     auto& roster = writable_roster();
-    auto const slot = static_cast<std::ptrdiff_t>(
-        std::lower_bound(roster.agents.begin(), roster.agents.end(), id, [](auto const& a, AgentId b) { return a.id < b; }) - roster.agents.begin());
+    auto const slot = static_cast<std::ptrdiff_t>(std::lower_bound(roster.agents.begin(), roster.agents.end(), id,
+                                                                   [](auto const& a, AgentId b) { return a.id < b; }) -
+                                                  roster.agents.begin());
     roster.corridors.emplace(route.lanes, road);
     roster.next_agent_id = std::max(roster.next_agent_id, static_cast<std::uint32_t>(id) + 1);
-    roster.agents.insert(roster.agents.begin() + slot, {id, spec.shape, road, spec.behavior, spec.execution, spec.dynamics, spec.observer});
+    roster.agents.insert(roster.agents.begin() + slot,
+                         {id, spec.shape, road, spec.behavior, spec.execution, spec.dynamics, spec.observer});
     roster.goals.insert(roster.goals.begin() + slot, spec.goal);
     frame_.agents.insert(frame_.agents.begin() + slot, record);
     scratch_.forget();
@@ -145,14 +165,30 @@ class World {
     scratch_.forget();
   }
 
-  /// Removes the agents that no longer take part in traffic; returns how many. They stay until then, with their last state. O(agents).
+  /// Removes the agents that no longer take part in traffic; returns how many. They stay until then, with their last
+  /// state. O(agents).
   std::size_t remove_departed() {
-    std::vector<AgentId> departed;
-    for (std::size_t i = 0; i < size(); ++i)
-      if (frame_.agents[i].status != AgentStatus::driving && frame_.agents[i].status != AgentStatus::not_started)
-        departed.push_back(roster_->agents[i].id);
-    for (auto const id : departed) remove(id);
-    return departed.size();
+    auto const departed = [this](std::size_t slot) {
+      auto const status = frame_.agents[slot].status;
+      return status != AgentStatus::driving && status != AgentStatus::not_started;
+    };
+    std::vector<std::size_t> staying;
+    for (std::size_t slot = 0; slot < size(); ++slot)
+      if (!departed(slot)) staying.push_back(slot);
+    auto const count = size() - staying.size();
+    if (count == 0) return 0;
+    auto& roster = writable_roster();
+    for (std::size_t to = 0; to < staying.size(); ++to) {
+      if (to == staying[to]) continue;
+      roster.agents[to] = std::move(roster.agents[staying[to]]);
+      roster.goals[to] = std::move(roster.goals[staying[to]]);
+      frame_.agents[to] = frame_.agents[staying[to]];
+    }
+    roster.agents.resize(staying.size());
+    roster.goals.resize(staying.size());
+    frame_.agents.resize(staying.size());
+    scratch_.forget();
+    return count;
   }
 
   /// Puts a static object in the way; returns its id. O(size of the outline).
@@ -191,7 +227,10 @@ class World {
     auto const& [state, lane, action, memory, status] = frame_.agents[slot];
     auto const& agent = roster_->agents[slot];
     auto const& piece = agent.road->corridors[lane.corridor].pieces[lane.piece];
-    return {{state.x, state.y, state.heading}, agent.shape, piece.lane, lane.s + piece.index_offset - map_->lane(piece.lane).index_begin};
+    return {{state.x, state.y, state.heading},
+            agent.shape,
+            piece.lane,
+            lane.s + piece.index_offset - map_->lane(piece.lane).index_begin};
   }
 
   /// The lane that the agent is in, by its lane corridor. Throws as `slot_of`.
@@ -200,7 +239,8 @@ class World {
   /// True when the agent is at its goal. Throws as `slot_of`.
   [[nodiscard]] bool reached_goal(AgentId id) const { return at_goal(roster_->goals[slot_of(id)], situation(id)); }
 
-  /// What the agent's behaviour `B` remembers, to set it from outside. Throws `WorldError` where its behaviour is another.
+  /// What the agent's behaviour `B` remembers, to set it from outside. Throws `WorldError` where its behaviour is
+  /// another.
   template <class B>
   [[nodiscard]] MemoryOf<B>& memory(AgentId id) {
     auto const slot = slot_of(id);
@@ -211,13 +251,16 @@ class World {
             ? void(found = memory_at<B, I>(frame_.agents[slot].memory))
             : void()),
        ...);
-    }(std::make_index_sequence<std::variant_size_v<Behavior>>{});
-    if (found == nullptr) throw WorldError("agent " + to_string(id), "its behaviour is not the one whose memory was asked for");
+    }
+    (std::make_index_sequence<std::variant_size_v<Behavior>>{});
+    if (found == nullptr)
+      throw WorldError("agent " + to_string(id), "its behaviour is not the one whose memory was asked for");
     return *found;
   }
 
-  /// Sets the agent's state, as a planner does with what it perceives. Throws `WorldError` (the world is unchanged) where the
-  /// agent is unknown or a number is not finite. The agent stays on its route, in the nearest of its lane corridors.
+  /// Sets the agent's state, as a planner does with what it perceives. Throws `WorldError` (the world is unchanged)
+  /// where the agent is unknown or a number is not finite. The agent stays on its route, in the nearest of its lane
+  /// corridors.
   void set_state(AgentId id, State state) {
     auto& record = frame_.agents[slot_of(id)];
     state.time = frame_.time;
@@ -238,7 +281,8 @@ class World {
     scratch_.fresh = false;
   }
 
-  /// What the agent sees now: a view, valid until the world changes. Throws as `slot_of`. Brings the traffic index up to date.
+  /// What the agent sees now: a view, valid until the world changes. Throws as `slot_of`. Brings the traffic index up
+  /// to date.
   [[nodiscard]] View observe(AgentId id) & {
     auto const slot = slot_of(id);
     refresh_traffic();
@@ -251,8 +295,8 @@ class World {
   /// The longest step that a world takes [s].
   static constexpr double longest_step = 3600.0;
 
-  /// Moves the world by `dt` [s]: every agent plans on this frame, then the next frame appears. No allocation once warm, no
-  /// exception of its own; what goes wrong is in the result. O(agents).
+  /// Moves the world by `dt` [s]: every agent plans on this frame, then the next frame appears. No allocation once
+  /// warm, no exception of its own; what goes wrong is in the result. O(agents).
   StepResult step(double dt) {
     StepResult result;
     if (!(dt > 0 && dt <= longest_step)) {
@@ -272,56 +316,23 @@ class World {
     return result;
   }
 
-  /// Keeps the last `frames` frames from now on (0: none, as at the beginning). Copies and predictions do not take them along; they
-  /// end where an agent enters or leaves.
+  /// Keeps the last `frames` frames from now on (0: none, as at the beginning). Copies and predictions do not take them
+  /// along; they end where an agent enters or leaves.
   void keep_history(std::size_t frames) { scratch_.keep(frames); }
 
   /// Frames kept so far, before the current one.
   [[nodiscard]] std::size_t history_size() const { return scratch_.kept; }
 
-  /// The frame `steps_back` steps ago, 1 being the last one; its records hold the actions too. At most `history_size()`.
+  /// The frame `steps_back` steps ago, 1 being the last one; its records hold the actions too. At most
+  /// `history_size()`.
   [[nodiscard]] FrameType const& history(std::size_t steps_back) const {
     if (steps_back == 0 || steps_back > scratch_.kept)
-      throw WorldError("history", "there is no frame " + std::to_string(steps_back) + " steps back", "call keep_history before stepping");
-    auto const capacity = scratch_.history.size();
-    return scratch_.history[(scratch_.newest + capacity - (steps_back - 1)) % capacity];
+      throw WorldError("history", "there is no frame " + std::to_string(steps_back) + " steps back",
+                       "call keep_history before stepping");
+    return scratch_.back(steps_back);
   }
 
  private:
-  /// Working memory: neither copied nor compared, and kept when the world is assigned to.
-  struct Scratch {
-    TrafficIndex traffic;
-    std::vector<Record> next;
-    bool fresh = false;  ///< the traffic index is that of the current frame
-    std::vector<FrameType> history;  ///< ring of frames
-    std::size_t kept = 0, newest = 0;
-
-    Scratch() = default;
-    Scratch(Scratch const&) {}
-    Scratch(Scratch&&) = default;
-    Scratch& operator=(Scratch&&) = default;
-    Scratch& operator=(Scratch const&) {
-      forget();
-      return *this;
-    }
-    ~Scratch() = default;
-
-    void forget() {
-      fresh = false;
-      kept = 0;
-    }
-    void keep(std::size_t frames) {
-      history.resize(frames);
-      kept = newest = 0;
-    }
-    void remember(FrameType const& frame) {
-      if (history.empty()) return;
-      newest = (newest + 1) % history.size();
-      history[newest] = frame;
-      kept = std::min(kept + 1, history.size());
-    }
-  };
-
   template <class B, std::size_t I>
   [[nodiscard]] static MemoryOf<B>* memory_at(typename Set::Memory& memory) {
     if constexpr (std::is_same_v<std::variant_alternative_t<I, Behavior>, B>)
@@ -331,97 +342,19 @@ class World {
   }
 
   [[nodiscard]] RosterType& writable_roster() {
-    // A roster that only this world holds may change in place; the cast is sound because every roster is created non-const.
+    // A roster that only this world holds may change in place; the cast is sound because every roster is created
+    // non-const.
     if (roster_.use_count() != 1) roster_ = std::make_shared<RosterType>(*roster_);
     std::atomic_thread_fence(std::memory_order_acquire);  // what other holders read before they let go
     return const_cast<RosterType&>(*roster_);
   }
 
-  void check(AgentSpec const& spec, AgentId id, std::string const& where) const {
-    if (!is_valid(id)) throw WorldError(where, "that id names nobody");
-    if (roster_->slot_of(id)) throw WorldError(where, "the world has an agent of that id already", "leave the id out to get a free one");
-    if (!std::isfinite(spec.position.x()) || !std::isfinite(spec.position.y()) || (spec.heading && !std::isfinite(*spec.heading)))
-      throw WorldError(where, "its position or heading is missing or not a finite number");
-    if (!(spec.speed >= 0) || !std::isfinite(spec.speed)) throw WorldError(where, "its speed is not a finite number of at least 0 m/s");
-    auto const described = [&where](auto const& parameters) {
-      if constexpr (Described<std::decay_t<decltype(parameters)>>) check_parameters(parameters, where);
-    };
-    std::visit(described, spec.behavior);
-    described(spec.shape);
-    described(spec.execution);
-    described(spec.dynamics);
-    described(spec.observer);
-  }
-
-  [[nodiscard]] Record entering_record(AgentSpec const& spec, map::RoadCorridor const& road, LaneId lane, std::string const& where) const {
-    auto const corridor = detail::entering_corridor(road, lane);
-    if (corridor == map::no_corridor) throw WorldError(where, "its route does not hold the lane it enters in (" + map_->describe(lane) + ")");
-    auto const at = map::locate(road, corridor, {spec.position.x(), spec.position.y(), 0.0});
-    double const heading = spec.heading.value_or(road.corridors[corridor].center.pose(at.s).heading);
-    Record record;
-    record.state.time = frame_.time;
-    record.state.x = spec.position.x();
-    record.state.y = spec.position.y();
-    record.state.heading = heading;
-    record.state.speed = spec.speed;
-    record.lane = map::locate(road, corridor, {record.state.x, record.state.y, heading}, at);
-    record.memory = Set::initial_memory(spec.behavior);
-    return record;
-  }
-
-  void index_objects(RosterType& roster) {
-    roster.object_entries.clear();
-    for (std::uint32_t i = 0; i < roster.objects.size(); ++i)
-      for (auto const& entry : detail::object_entries(*map_, roster.objects[i], i)) roster.object_entries.push_back(entry);
-    std::sort(roster.object_entries.begin(), roster.object_entries.end());
-  }
-
-  [[nodiscard]] map::CorridorPiece const& piece_of(std::uint32_t slot) const {
-    auto const& lane = frame_.agents[slot].lane;
-    return roster_->agents[slot].road->corridors[lane.corridor].pieces[lane.piece];
-  }
+  void index_objects(RosterType& roster) { roster.object_entries = detail::object_entries(*map_, roster.objects); }
 
   void refresh_traffic() {
     if (scratch_.fresh) return;
-    auto const entry_of = [this](std::uint32_t slot) {
-      auto const& record = frame_.agents[slot];
-      auto const& agent = roster_->agents[slot];
-      double const position = record.status == AgentStatus::driving ? record.lane.index : std::numeric_limits<double>::infinity();
-      double const speed = record.state.speed * cosine_of_small(record.lane.heading_error);
-      return TrafficEntry{position, agent.shape.front, agent.shape.rear, speed, slot, static_cast<std::uint32_t>(agent.id)};
-    };
-    auto const add_straddling = [this](TrafficEntry const& entry, std::vector<TrafficEntry>& list) {
-      if (std::abs(frame_.agents[entry.slot].lane.lateral) > on_path) straddle(entry, list);
-    };
-    scratch_.traffic.refresh(frame_.agents.size(), entry_of, add_straddling);
+    detail::refresh_traffic(scratch_.traffic, *map_, *roster_, frame_);
     scratch_.fresh = true;
-  }
-
-  /// Most vehicles head along their lane: there four terms are as good as the function.
-  [[nodiscard]] static double cosine_of_small(double angle) {
-    double const square = angle * angle;
-    if (square > 1e-3) return std::cos(angle);
-    return 1.0 - square / 2 * (1.0 - square / 12 * (1.0 - square / 30));
-  }
-
-  /// An agent this close to its path is inside its lane [m].
-  static constexpr double on_path = 0.3;
-
-  /// Adds the agent to the neighbouring lane that it reaches into.
-  void straddle(TrafficEntry entry, std::vector<TrafficEntry>& list) const {
-    auto const& [state, at, action, memory, status] = frame_.agents[entry.slot];
-    if (status != AgentStatus::driving) return;
-    auto const& agent = roster_->agents[entry.slot];
-    auto const widths = agent.road->corridors[at.corridor].widths_at(at.s, at.segment);
-    auto const& lane = map_->lane(piece_of(entry.slot).lane);
-    auto const enter = [&, x = state.x, y = state.y](LaneId beside) {
-      if (!is_valid(beside)) return;
-      auto const& other = map_->lane(beside);
-      entry.position = other.index_begin + std::clamp(other.path.project({x, y}).s, 0.0, other.length());
-      list.push_back(entry);
-    };
-    if (at.lateral + agent.shape.left > widths.left) enter(lane.left_neighbor);
-    if (at.lateral - agent.shape.right < -widths.right) enter(lane.right_neighbor);
   }
 
   CAMBIUM_FLATTEN void advance(std::uint32_t slot, double dt, double end, Record& next, StepResult& result) const {
@@ -437,7 +370,7 @@ class World {
     next.status = AgentStatus::driving;
     next.state = executed.state;
     next.action = plan.action;
-    move_on_lane(*agent.road, next);
+    detail::move_on_lane(*agent.road, next);
     if (next.status != AgentStatus::driving) ++result.left;
   }
 
@@ -456,27 +389,10 @@ class World {
     result.agent = id;
   }
 
-  /// Finds the agent's new place on its road: in its lane corridor, or in the next one once it has crossed the border.
-  static void move_on_lane(map::RoadCorridor const& road, Record& next) {
-    geometry::Pose const pose{next.state.x, next.state.y, next.state.heading};
-    next.lane = map::locate(road, next.lane.corridor, pose, next.lane);
-    auto const& corridor = road.corridors[next.lane.corridor];
-    if (std::abs(next.lane.lateral) > on_path) {
-      auto const widths = corridor.widths_at(next.lane.s, next.lane.segment);
-      auto const& piece = corridor.pieces[next.lane.piece];
-      auto const beside = next.lane.lateral > widths.left ? piece.left : next.lane.lateral < -widths.right ? piece.right : map::no_corridor;
-      if (beside != map::no_corridor) {
-        next.lane = map::locate(road, beside, pose);
-        return;
-      }
-    }
-    if (next.lane.s > corridor.length()) next.status = corridor.continues ? AgentStatus::arrived : AgentStatus::left_map;
-  }
-
   std::shared_ptr<Map const> map_;
   std::shared_ptr<RosterType const> roster_;
   FrameType frame_;
-  Scratch scratch_;
+  detail::Scratch<FrameType> scratch_;
 };
 
 }  // namespace cambium

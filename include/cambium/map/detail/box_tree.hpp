@@ -10,21 +10,11 @@
 #include <utility>
 #include <vector>
 
+#include "cambium/geometry/box.hpp"
+
 namespace cambium::map::detail {
 
-/// An axis-parallel box [m]; empty as made by default.
-struct Box {
-  double min_x = std::numeric_limits<double>::infinity(), min_y = std::numeric_limits<double>::infinity();
-  double max_x = -std::numeric_limits<double>::infinity(), max_y = -std::numeric_limits<double>::infinity();
-
-  void add(double x, double y) {
-    min_x = std::min(min_x, x);
-    min_y = std::min(min_y, y);
-    max_x = std::max(max_x, x);
-    max_y = std::max(max_y, y);
-  }
-  [[nodiscard]] Box grown(double by) const { return {min_x - by, min_y - by, max_x + by, max_y + by}; }
-};
+using geometry::Box;
 
 /// Place of the cell (x, y), each below 2^16, on Hilbert's curve: cells near to each other are mostly near on the
 /// curve.

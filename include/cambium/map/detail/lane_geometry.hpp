@@ -13,10 +13,12 @@
 
 namespace cambium::map::detail {
 
-/// Fills a lane's path, widths and borders from cross-sections: column `column` of the section. `path_of(cross)` gives the path's
-/// lateral coordinate. False where the lane has no length (its inner side degenerates, or the section is shorter than a micrometre).
+/// Fills a lane's path, widths and borders from cross-sections: column `column` of the section. `path_of(cross)` gives
+/// the path's lateral coordinate. False where the lane has no length (its inner side degenerates, or the section is
+/// shorter than a micrometre).
 template <class PathOf>
-[[nodiscard]] bool set_geometry(Lane& lane, std::span<CrossSection const> sections, std::size_t column, PathOf const& path_of) {
+[[nodiscard]] bool set_geometry(Lane& lane, std::span<CrossSection const> sections, std::size_t column,
+                                PathOf const& path_of) {
   std::vector<geometry::LineSample> path, left, right;
   std::vector<SideWidths> widths;
   auto const add_if_apart = [](std::vector<geometry::LineSample>& samples, geometry::LineSample const& p) {
@@ -61,17 +63,20 @@ struct Smoothstep {
   }
 };
 
-/// The path of a lane that swings onto the neighbour in column `target` between the road stations `from` and `to` (in the
-/// direction of travel: `from` > `to` on a lane driven against the road).
-[[nodiscard]] inline Lateral merging_path(CrossSection const& cross, std::size_t column, std::size_t target, double from, double to) {
+/// The path of a lane that swings onto the neighbour in column `target` between the road stations `from` and `to` (in
+/// the direction of travel: `from` > `to` on a lane driven against the road).
+[[nodiscard]] inline Lateral merging_path(CrossSection const& cross, std::size_t column, std::size_t target,
+                                          double from, double to) {
   auto const own = cross.center(column), other = cross.center(target);
   Smoothstep const w((cross.s - from) / (to - from));
   return {own.t + w.value * (other.t - own.t),
           own.slope + w.value * (other.slope - own.slope) + w.slope / (to - from) * (other.t - own.t)};
 }
 
-/// Where a lane begins to narrow towards its end, as a road station; `longest` [m] before the end where it does not narrow.
-[[nodiscard]] inline double taper_begin(std::span<CrossSection const> sections, std::size_t column, bool along_road, double longest) {
+/// Where a lane begins to narrow towards its end, as a road station; `longest` [m] before the end where it does not
+/// narrow.
+[[nodiscard]] inline double taper_begin(std::span<CrossSection const> sections, std::size_t column, bool along_road,
+                                        double longest) {
   auto const width = [&](CrossSection const& c) { return c.borders[column].t - c.borders[column + 1].t; };
   double widest = 0.0;
   for (auto const& cross : sections) widest = std::max(widest, width(cross));
@@ -89,7 +94,8 @@ struct Smoothstep {
     }
   }
   constexpr double shortest = 30.0;  // [m] a swing shorter than this is no longer comfortable
-  double const length = 1.3 * std::abs(end.s - begin);  // begins a little before the lane narrows: long vehicles need the room
+  double const length =
+      1.3 * std::abs(end.s - begin);  // begins a little before the lane narrows: long vehicles need the room
   double const swing = length == 0.0 ? longest : std::clamp(length, shortest, std::max(shortest, longest));
   double const available = std::abs(end.s - begin_of_lane);
   return along_road ? end.s - std::min(swing, available) : end.s + std::min(swing, available);

@@ -17,8 +17,8 @@ namespace cambium::map::detail {
 /// Joins lanes by what the file says, in the direction of travel. Links are read from both sides; each is entered once.
 class LaneLinker {
  public:
-  LaneLinker(OpenDriveDocument const& document, std::vector<Road> const& roads, std::vector<Lane>& lanes, std::string const& file,
-             std::vector<Diagnostic>& diagnostics)
+  LaneLinker(OpenDriveDocument const& document, std::vector<Road> const& roads, std::vector<Lane>& lanes,
+             std::string const& file, std::vector<Diagnostic>& diagnostics)
       : document_(document), roads_(roads), lanes_(lanes), file_(file), diagnostics_(diagnostics) {
     for (std::size_t i = 0; i < document.roads.size(); ++i) index_.emplace(document.roads[i].id, i);
   }
@@ -87,27 +87,33 @@ class LaneLinker {
       for (auto const& lane : road.lane_sections[k].lanes) {
         if (lane.id == 0) continue;
         bool const first = k == 0, last = k + 1 == road.lane_sections.size();
-        link_lane(r, k, lane, ContactPoint::end, lane.successors, last ? follow(road.successor) : SectionEnd{r, k + 1, ContactPoint::start});
-        link_lane(r, k, lane, ContactPoint::start, lane.predecessors, first ? follow(road.predecessor) : SectionEnd{r, k - 1, ContactPoint::end});
+        link_lane(r, k, lane, ContactPoint::end, lane.successors,
+                  last ? follow(road.successor) : SectionEnd{r, k + 1, ContactPoint::start});
+        link_lane(r, k, lane, ContactPoint::start, lane.predecessors,
+                  first ? follow(road.predecessor) : SectionEnd{r, k - 1, ContactPoint::end});
       }
   }
 
-  /// The section end behind a road link; nothing where the link names a junction (its connections say), no road, or none at all.
+  /// The section end behind a road link; nothing where the link names a junction (its connections say), no road, or
+  /// none at all.
   [[nodiscard]] std::optional<SectionEnd> follow(std::optional<opendrive::RoadLink> const& link) const {
-    if (!link || link->element_type != opendrive::ElementType::road || link->contact_point == ContactPoint::none) return std::nullopt;
+    if (!link || link->element_type != opendrive::ElementType::road || link->contact_point == ContactPoint::none)
+      return std::nullopt;
     auto const at = index_.find(link->id);
     if (at == index_.end()) return std::nullopt;
     return road_end(at->second, link->contact_point);
   }
 
-  void link_lane(std::size_t r, std::size_t k, opendrive::Lane const& lane, ContactPoint end, std::vector<int> const& numbers,
-                 std::optional<SectionEnd> const& other) {
+  void link_lane(std::size_t r, std::size_t k, opendrive::Lane const& lane, ContactPoint end,
+                 std::vector<int> const& numbers, std::optional<SectionEnd> const& other) {
     if (!other) return;
     for (int const number : numbers) {
       LaneId const target = find(*other, number);
       if (!is_valid(target) && number != 0)
-        warn(lane.line, "link", "road " + roads_[r].name + ", section " + std::to_string(k) + ", lane " + std::to_string(lane.id),
-             "it names lane " + std::to_string(number) + " of road " + roads_[other->road].name + ", which is not there; the link was left out");
+        warn(lane.line, "link",
+             "road " + roads_[r].name + ", section " + std::to_string(k) + ", lane " + std::to_string(lane.id),
+             "it names lane " + std::to_string(number) + " of road " + roads_[other->road].name +
+                 ", which is not there; the link was left out");
       join(find({r, k, end}, lane.id), end, target, other->end, lane.line);
     }
   }
@@ -115,7 +121,8 @@ class LaneLinker {
   void link_connection(opendrive::Junction const& junction, opendrive::Connection const& connection) {
     auto const incoming = index_.find(connection.incoming_road), connecting = index_.find(connection.connecting_road);
     if (incoming == index_.end() || connecting == index_.end()) return;  // the reader has said so
-    ContactPoint const contact = connection.contact_point == ContactPoint::none ? ContactPoint::start : connection.contact_point;
+    ContactPoint const contact =
+        connection.contact_point == ContactPoint::none ? ContactPoint::start : connection.contact_point;
     auto const entry = road_end(connecting->second, contact);
     auto const exit = incoming_end(incoming->second, junction.id, entry);
     if (!exit) {
@@ -127,14 +134,16 @@ class LaneLinker {
       LaneId const from = find(*exit, link.from), to = find(entry, link.to);
       if (!is_valid(from) || !is_valid(to))
         warn(connection.line, "laneLink", "junction " + junction.id + ", connection " + connection.id,
-             "lane " + std::to_string(link.from) + " of road " + connection.incoming_road + " or lane " + std::to_string(link.to) +
-                 " of road " + connection.connecting_road + " is not there; the link was left out");
+             "lane " + std::to_string(link.from) + " of road " + connection.incoming_road + " or lane " +
+                 std::to_string(link.to) + " of road " + connection.connecting_road +
+                 " is not there; the link was left out");
       join(from, exit->end, to, entry.end, connection.line);
     }
   }
 
   /// The end of the incoming road that touches the junction; where both do, the one nearer to the connecting road.
-  [[nodiscard]] std::optional<SectionEnd> incoming_end(std::size_t incoming, std::string const& junction, SectionEnd const& entry) const {
+  [[nodiscard]] std::optional<SectionEnd> incoming_end(std::size_t incoming, std::string const& junction,
+                                                       SectionEnd const& entry) const {
     auto const& road = document_.roads[incoming];
     auto const touches = [&](std::optional<opendrive::RoadLink> const& link) {
       return link && link->element_type == opendrive::ElementType::junction && link->id == junction;

@@ -44,12 +44,12 @@ class SectionSampler {
  public:
   SectionSampler(Road const& road, RoadSection const& section, MapOptions const& options)
       : road_(road), section_(section), options_(options), walker_(road.reference_line.walker()) {
-    left_lanes_ = static_cast<std::size_t>(
-        std::count_if(section.lanes.begin(), section.lanes.end(), [](RoadLane const& lane) { return lane.number > 0; }));
+    left_lanes_ = static_cast<std::size_t>(std::count_if(section.lanes.begin(), section.lanes.end(),
+                                                         [](RoadLane const& lane) { return lane.number > 0; }));
   }
 
-  /// Cross-sections from the section's begin to its end, ends included; every place where a record or a geometry begins is among
-  /// them. With `longest` > 0 no two are farther apart than that [m].
+  /// Cross-sections from the section's begin to its end, ends included; every place where a record or a geometry begins
+  /// is among them. With `longest` > 0 no two are farther apart than that [m].
   [[nodiscard]] std::vector<CrossSection> sample(double longest = 0.0) {
     auto const breaks = break_points();
     std::vector<CrossSection> result;
@@ -101,7 +101,8 @@ class SectionSampler {
   [[nodiscard]] CurvePoint reference(double s, double inside) {
     auto const& line = road_.reference_line;
     auto const& g = line.geometries()[line.locate(inside)];
-    return g.kind == GeometryKind::spiral && line.locate(s) == line.locate(inside) ? walker_.at(s) : evaluate(g, s - g.s);
+    return g.kind == GeometryKind::spiral && line.locate(s) == line.locate(inside) ? walker_.at(s)
+                                                                                   : evaluate(g, s - g.s);
   }
 
   [[nodiscard]] CrossSection cross_section(double s, double inside) {
@@ -123,10 +124,12 @@ class SectionSampler {
   }
 
   /// Whether a straight chord from `a` to `b` is good enough for a curve through `m`.
-  [[nodiscard]] bool fits(geometry::LineSample const& a, geometry::LineSample const& m, geometry::LineSample const& b) const {
+  [[nodiscard]] bool fits(geometry::LineSample const& a, geometry::LineSample const& m,
+                          geometry::LineSample const& b) const {
     double const dx = b.x - a.x, dy = b.y - a.y;
     double const chord = std::hypot(dx, dy);
-    double const off = chord > 1e-9 ? std::abs(dx * (m.y - a.y) - dy * (m.x - a.x)) / chord : std::hypot(m.x - a.x, m.y - a.y);
+    double const off =
+        chord > 1e-9 ? std::abs(dx * (m.y - a.y) - dy * (m.x - a.x)) / chord : std::hypot(m.x - a.x, m.y - a.y);
     // The middle is where an arc is farthest from its chord; the margin covers curves that are not arcs.
     return off <= 0.7 * options_.position_tolerance &&
            std::abs(geometry::angle_difference(b.heading, a.heading)) <= options_.heading_tolerance &&
@@ -142,7 +145,8 @@ class SectionSampler {
   }
 
   /// Appends the stations needed strictly between `a` and `b`.
-  void refine(CrossSection const& a, CrossSection const& b, double inside, int depth, std::vector<CrossSection>& result) {
+  void refine(CrossSection const& a, CrossSection const& b, double inside, int depth,
+              std::vector<CrossSection>& result) {
     if (depth > 16 || b.s - a.s < 1e-3 || straight(inside)) return;
     auto const middle = cross_section(0.5 * (a.s + b.s), inside);
     bool const has_room_to_wind = depth == 0 && b.s - a.s > 40.0;  // its middle alone says too little

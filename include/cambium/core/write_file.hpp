@@ -9,7 +9,7 @@
 
 #include "cambium/core/error.hpp"
 
-namespace cambium::detail {
+namespace cambium {
 
 /// Writes `text` to `path` by way of `path` + ".part" in the same folder, so that a reader never meets half a file and
 /// a failure leaves what was there. Throws `Error` naming the path and the system's reason.
@@ -36,4 +36,4 @@ inline void write_file(std::filesystem::path const& path, std::string_view text)
   fail(problem.message());
 }
 
-}  // namespace cambium::detail
+}  // namespace cambium

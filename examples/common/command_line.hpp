@@ -1,0 +1,41 @@
+#pragma once
+
+#include <charconv>
+#include <cstdint>
+#include <exception>
+#include <iostream>
+#include <string>
+#include <system_error>
+
+#include <CLI/CLI.hpp>
+
+namespace examples {
+
+/// Accepts whole numbers from `low` to `high`. (CLI11's own range lets numbers pass that no integer holds.)
+[[nodiscard]] inline CLI::Validator whole_number(std::uint64_t low, std::uint64_t high) {
+  auto const check = [low, high](std::string const& word) -> std::string {
+    std::uint64_t value = 0;
+    auto const [end, problem] = std::from_chars(word.data(), word.data() + word.size(), value);
+    if (problem == std::errc{} && end == word.data() + word.size() && value >= low && value <= high) return {};
+    return "needs a whole number from " + std::to_string(low) + " to " + std::to_string(high) + ", not '" + word + "'";
+  };
+  return CLI::Validator(check, "");
+}
+
+/// Reads the command line, then runs `body`; what is thrown becomes one line on the error stream and exit code 2.
+template <class Body>
+int run_program(CLI::App& program, int argc, char** argv, Body const& body) {
+  try {
+    program.parse(argc, argv);
+    body();
+    return 0;
+  } catch (CLI::CallForHelp const&) {
+    std::cout << program.help();
+    return 0;
+  } catch (std::exception const& problem) {
+    std::cerr << program.get_name() << ": " << problem.what() << "\n";
+    return 2;
+  }
+}
+
+}  // namespace examples

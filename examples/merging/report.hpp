@@ -1,0 +1,90 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "roll_out.hpp"
+
+namespace merging {
+
+struct Totals {
+  std::uint64_t success = 0, collision = 0, time_out = 0, off_road = 0, agents = 0, agent_steps = 0, hard_brakings = 0,
+                steps = 0;
+  double speed_sum = 0.0;
+  std::uint64_t most_interesting = 0;
+};
+
+[[nodiscard]] inline Totals total(std::vector<Outcome> const& outcomes) {
+  Totals t;
+  for (std::uint64_t i = 0; i < outcomes.size(); ++i) {
+    auto const& o = outcomes[i];
+    t.success += o.kind == Outcome::Kind::success;
+    t.collision += o.kind == Outcome::Kind::collision;
+    t.time_out += o.kind == Outcome::Kind::time_out;
+    t.off_road += o.off_road;
+    t.agents += o.agents;
+    t.agent_steps += o.agent_steps;
+    t.hard_brakings += o.hard_brakings;
+    t.steps += o.steps;
+    t.speed_sum += o.speed_sum;
+    if (o.interest() > outcomes[t.most_interesting].interest()) t.most_interesting = i;
+  }
+  return t;
+}
+
+[[nodiscard]] inline nlohmann::ordered_json summary(Settings const& settings, Site const& site,
+                                                    std::vector<Outcome> const& outcomes, Totals const& t) {
+  auto const n = static_cast<double>(settings.scenarios);
+  nlohmann::ordered_json json;
+  json["map"] = std::filesystem::path(settings.map_file).filename().string();
+  json["scenarios"] = settings.scenarios;
+  json["seed"] = settings.seed;
+  json["steps"] = settings.steps;
+  json["dt"] = dt;
+  json["entrances"] = site.entrances.size();
+  json["success"] = static_cast<double>(t.success) / n;
+  json["collision"] = static_cast<double>(t.collision) / n;
+  json["time_out"] = static_cast<double>(t.time_out) / n;
+  json["off_road"] = static_cast<double>(t.off_road) / n;
+  json["mean_speed"] = t.agent_steps > 0 ? t.speed_sum / static_cast<double>(t.agent_steps) : 0.0;
+  json["mean_steps"] = static_cast<double>(t.steps) / n;
+  json["hard_brakings"] = t.hard_brakings;
+  json["agents"] = t.agents;
+  json["agent_steps"] = t.agent_steps;
+  json["replayed_scenario"] = t.most_interesting;
+  char const* const names[] = {"success", "collision", "time_out"};
+  for (auto const& o : outcomes)
+    json["outcomes"].push_back({{"outcome", names[static_cast<int>(o.kind)]},
+                                {"off_road", o.off_road},
+                                {"agents", o.agents},
+                                {"steps", o.steps},
+                                {"hard_brakings", o.hard_brakings}});
+  return json;
+}
+
+inline void print_table(Settings const& settings, Totals const& t, double seconds) {
+  auto const n = static_cast<double>(settings.scenarios);
+  auto const percent = [n](std::uint64_t count) { return 100.0 * static_cast<double>(count) / n; };
+  auto const steps = static_cast<double>(t.agent_steps);
+  std::printf("\n  %llu scenarios on %s, %.1f agents each, seed %llu\n\n",
+              static_cast<unsigned long long>(settings.scenarios),
+              std::filesystem::path(settings.map_file).filename().c_str(), static_cast<double>(t.agents) / n,
+              static_cast<unsigned long long>(settings.seed));
+  std::printf(
+      "  success          %6.1f %%\n  collision        %6.1f %%\n  time-out         %6.1f %%\n  off-road         %6.1f "
+      "%%\n",
+      percent(t.success), percent(t.collision), percent(t.time_out), percent(t.off_road));
+  std::printf("  mean speed       %6.2f m/s\n  hard brakings    %6.2f per scenario (harder than %.0f m/s^2)\n",
+              t.speed_sum / std::max(1.0, steps), static_cast<double>(t.hard_brakings) / n, -hard_braking);
+  std::printf("  agent-steps      %.3g in %.2f s: %.3g per second on %llu thread%s, sampling and judging included\n\n",
+              steps, seconds, steps / seconds, static_cast<unsigned long long>(settings.threads),
+              settings.threads == 1 ? "" : "s");
+}
+
+}  // namespace merging

@@ -1,0 +1,168 @@
+#pragma once
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "cambium/evaluation/collision.hpp"
+#include "cambium/evaluation/drivable_area.hpp"
+#include "cambium/evaluation/evaluators.hpp"
+#include "cambium/evaluation/goal_reached.hpp"
+#include "cambium/viewer/record_world.hpp"
+
+#include "scenario.hpp"
+
+namespace merging {
+
+inline constexpr double dt = 0.2;             // [s]
+inline constexpr double hard_braking = -4.0;  // [m/s^2]; one hard braking lasts while an agent brakes harder than this
+
+struct Settings {
+  std::string map_file = CAMBIUM_SOURCE_DIR "/maps/merging.xodr";
+  std::string out = "out/merging";
+  std::uint64_t scenarios = 100, seed = 1, steps = 300, trajectories = 10;
+  std::uint64_t threads = std::max(1u, std::thread::hardware_concurrency());
+};
+
+/// What came of one scenario.
+struct Outcome {
+  enum class Kind { success, collision, time_out } kind = Kind::time_out;
+  bool off_road = false;
+  std::uint32_t agents = 0, collided_agents = 0;
+  std::uint64_t steps = 0, agent_steps = 0, hard_brakings = 0;
+  double speed_sum = 0.0;
+  std::string trajectory;  // CSV rows, where asked for
+
+  /// How much there is to see.
+  [[nodiscard]] double interest() const {
+    return (kind == Kind::collision ? 1e6 : 0.0) + (off_road ? 1e5 : 0.0) + static_cast<double>(hard_brakings) +
+           0.01 * agents;
+  }
+};
+
+inline void append_rows(std::string& rows, std::uint64_t scenario, Simulation const& world) {
+  char line[200];
+  for (std::size_t i = 0; i < world.size(); ++i) {
+    auto const& r = world.frame().agents[i];
+    if (r.status != cambium::AgentStatus::driving) continue;
+    auto const& shape = world.roster().agents[i].shape;
+    std::snprintf(line, sizeof line, "%llu,%.1f,%s,%.4f,%.4f,%.6f,%.4f,%.4f,%.2f,%.2f\n",
+                  static_cast<unsigned long long>(scenario), world.time(),
+                  cambium::to_string(world.roster().agents[i].id).c_str(), r.state.x, r.state.y,
+                  std::remainder(r.state.heading, 2 * cambium::geometry::pi), r.state.speed, r.action.acceleration,
+                  shape.length(), shape.width());
+    rows += line;
+  }
+}
+
+/// Adds the last step's agent-steps, speeds and hard brakings; `braking` remembers who brakes hard.
+inline void count_agents(Simulation const& world, std::vector<bool>& braking, Outcome& outcome) {
+  for (std::size_t i = 0; i < world.size(); ++i) {
+    auto const& r = world.frame().agents[i];
+    if (r.status != cambium::AgentStatus::driving) continue;
+    ++outcome.agent_steps;
+    outcome.speed_sum += r.state.speed;
+    bool const hard = r.action.acceleration < hard_braking;
+    outcome.hard_brakings += hard && !braking[i];
+    braking[i] = hard;
+  }
+}
+
+/// Rolls one scenario forward until its ego is at its goal, something collides, or time is up.
+[[nodiscard]] inline Outcome run_scenario(Site const& site, Settings const& settings, std::uint64_t number,
+                                          cambium::Recording* recording) {
+  auto [world, ego, merging_agents] = sample_scenario(site, settings.seed, static_cast<std::uint32_t>(number));
+  Outcome outcome;
+  outcome.agents = static_cast<std::uint32_t>(world.size());
+  bool const keep = number < settings.trajectories || recording != nullptr;
+  cambium::Evaluators const judge(cambium::CollisionAny{}, cambium::GoalReached{ego}, cambium::DrivableArea{ego},
+                                  cambium::StepCount{settings.steps});
+  cambium::WorldRecorder recorder(world, "Scenario " + std::to_string(number));
+  for (auto const id : merging_agents) recorder.show_as(id, cambium::RecordedAgentKind::merging);
+  recorder.show_as(ego, cambium::RecordedAgentKind::ego, "ego");
+  std::vector<bool> braking(world.size(), false);
+  if (keep) append_rows(outcome.trajectory, number, world);
+  while (true) {
+    auto const result = world.step(dt);
+    if (!result)
+      throw cambium::WorldError("scenario " + std::to_string(number) + ", agent " + to_string(result.agent),
+                                to_string(result.problem));
+    count_agents(world, braking, outcome);
+    if (keep) append_rows(outcome.trajectory, number, world);
+    if (recording != nullptr) recorder.record(world);
+    auto const verdict = judge.evaluate(world);
+    outcome.steps = verdict.steps;
+    outcome.off_road = outcome.off_road || verdict.off_road;
+    if (verdict.any_collision)
+      outcome.kind = Outcome::Kind::collision;
+    else if (verdict.goal_reached)
+      outcome.kind = Outcome::Kind::success;
+    else if (!verdict.timed_out)
+      continue;
+    break;
+  }
+  if (recording != nullptr) *recording = std::move(recorder.recording());
+  return outcome;
+}
+
+/// Draws a bar on a terminal; silent elsewhere.
+class Progress {
+ public:
+  explicit Progress(std::uint64_t total) : total_(total), shown_(isatty(STDERR_FILENO) == 1) {}
+  void advance() {
+    auto const done = ++done_;
+    std::unique_lock lock(mutex_, std::defer_lock);
+    if (!shown_ || (done == total_ ? (lock.lock(), false) : !lock.try_lock())) return;
+    constexpr std::uint64_t width = 40;
+    auto const filled = done * width / total_;
+    std::fprintf(stderr, "\r[%s%s] %llu/%llu%s", std::string(filled, '#').c_str(),
+                 std::string(width - filled, ' ').c_str(), static_cast<unsigned long long>(done),
+                 static_cast<unsigned long long>(total_), done == total_ ? "\r\033[K" : "");
+    std::fflush(stderr);
+  }
+
+ private:
+  std::uint64_t total_;
+  std::atomic<std::uint64_t> done_{0};
+  std::mutex mutex_;
+  bool shown_;
+};
+
+/// Runs all scenarios; each thread takes the next one that nobody has. The outcomes do not depend on the threads.
+[[nodiscard]] inline std::vector<Outcome> run_all(Site const& site, Settings const& settings) {
+  std::vector<Outcome> outcomes(settings.scenarios);
+  std::atomic<std::uint64_t> next{0};
+  std::exception_ptr problem;
+  std::mutex mutex;
+  Progress progress(settings.scenarios);
+  auto const work = [&] {
+    try {
+      for (auto i = next++; i < settings.scenarios; i = next++) {
+        outcomes[i] = run_scenario(site, settings, i, nullptr);
+        progress.advance();
+      }
+    } catch (...) {
+      std::lock_guard const lock(mutex);
+      if (!problem) problem = std::current_exception();
+      next = settings.scenarios;
+    }
+  };
+  std::vector<std::jthread> threads;
+  for (std::uint64_t t = 1; t < settings.threads; ++t) threads.emplace_back(work);
+  work();
+  for (auto& thread : threads) thread.join();
+  if (problem) std::rethrow_exception(problem);
+  return outcomes;
+}
+
+}  // namespace merging

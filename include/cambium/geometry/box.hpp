@@ -1,0 +1,39 @@
+#pragma once
+
+#include <algorithm>
+#include <limits>
+
+#include "cambium/geometry/pose.hpp"
+
+namespace cambium::geometry {
+
+/// An axis-parallel rectangle in the map frame [m], borders included; empty as made by default.
+struct Box {
+  double min_x = std::numeric_limits<double>::infinity(), min_y = std::numeric_limits<double>::infinity();
+  double max_x = -std::numeric_limits<double>::infinity(), max_y = -std::numeric_limits<double>::infinity();
+
+  /// Grows to hold the point.
+  void add(double x, double y) {
+    min_x = std::min(min_x, x);
+    min_y = std::min(min_y, y);
+    max_x = std::max(max_x, x);
+    max_y = std::max(max_y, y);
+  }
+
+  [[nodiscard]] Point center() const { return {0.5 * (min_x + max_x), 0.5 * (min_y + max_y)}; }
+  [[nodiscard]] Box grown(double by) const { return {min_x - by, min_y - by, max_x + by, max_y + by}; }
+
+  [[nodiscard]] bool contains(Point const& p) const {
+    return p.x() >= min_x && p.x() <= max_x && p.y() >= min_y && p.y() <= max_y;
+  }
+  [[nodiscard]] bool contains(Box const& other) const {
+    return other.min_x >= min_x && other.max_x <= max_x && other.min_y >= min_y && other.max_y <= max_y;
+  }
+  [[nodiscard]] bool intersects(Box const& other) const {
+    return min_x <= other.max_x && other.min_x <= max_x && min_y <= other.max_y && other.min_y <= max_y;
+  }
+
+  friend bool operator==(Box const&, Box const&) = default;
+};
+
+}  // namespace cambium::geometry

@@ -1,0 +1,124 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <variant>
+
+#include "cambium/core/error.hpp"
+#include "cambium/core/parameters.hpp"
+#include "cambium/geometry/angle.hpp"
+#include "cambium/goal/goal.hpp"
+#include "cambium/map/build_corridor.hpp"
+#include "cambium/map/lane_position.hpp"
+#include "cambium/map/map.hpp"
+#include "cambium/world/detail/on_lanes.hpp"
+
+namespace cambium::detail {
+
+/// Farthest that an agent may enter from the nearest lane [m].
+inline constexpr double entering_radius = 5.0;
+/// Farthest that an agent with a route may enter from the path of one of its lanes [m].
+inline constexpr double path_radius = 2.5;
+
+/// The nearest lane of `route` at `position`: a path that swings over to its neighbour counts as its own lane there.
+[[nodiscard]] inline LaneId entering_lane(Map const& map, geometry::Point const& position, map::Route const& route,
+                                          std::string const& where) {
+  LaneId nearest = none<LaneId>;
+  double smallest = path_radius;
+  for (auto const id : route.lanes) {
+    if (index_of(id) >= map.lanes().size())
+      throw WorldError(where, "its route names a lane that the map does not have", "use Map::find_lane");
+    auto const& lane = map.lane(id);
+    auto const foot = lane.path.project(position);
+    double const distance = std::hypot(foot.lateral, std::max({-foot.s, foot.s - lane.length(), 0.0}));
+    if (distance >= smallest) continue;
+    smallest = distance;
+    nearest = id;
+  }
+  if (!is_valid(nearest))
+    throw WorldError(where, "no lane of its route comes within 2.5 m of its position", "begin the route there");
+  return nearest;
+}
+
+/// The drivable lane at `position`; without a heading the nearest one. Throws `WorldError` where there is none.
+[[nodiscard]] inline LaneId entering_lane(Map const& map, geometry::Point const& position,
+                                          std::optional<double> heading, std::string const& where) {
+  if (heading) {
+    if (auto const hit = map.nearest_lane({position.x(), position.y(), *heading}, entering_radius)) return hit->lane;
+  } else {
+    for (auto const& hit : map.lanes_near(position, entering_radius))
+      if (map.lane(hit.lane).drivable()) return hit.lane;
+  }
+  throw WorldError(
+      where, "no drivable lane within " + std::to_string(static_cast<int>(entering_radius)) + " m of its position",
+      "enter on a lane and along its direction");
+}
+
+/// The lane where a goal's route ends; nothing for goals without a place.
+[[nodiscard]] inline std::optional<LaneId> destination(Map const& map, Goal const& goal, std::string const& where) {
+  if (auto const* lane = std::get_if<ReachLane>(&goal)) {
+    if (index_of(lane->lane) >= map.lanes().size())
+      throw WorldError(where, "its goal names lane " + to_string(lane->lane) + ", which the map does not have",
+                       "use Map::find_lane");
+    return lane->lane;
+  }
+  if (auto const* polygon = std::get_if<ReachPolygon>(&goal)) {
+    auto points = points_around(polygon->area, 1.0);
+    points.insert(points.begin(), polygon->area.bounding_box().center());
+    for (auto const& p : points)
+      for (auto const& hit : map.lanes_near(p, entering_radius))
+        if (map.lane(hit.lane).drivable()) return hit.lane;
+    throw WorldError(where, "its goal, a polygon, is not near a drivable lane",
+                     "give the route too, or a goal on a lane");
+  }
+  return std::nullopt;
+}
+
+/// The route from `start`: as given, else to the goal, else straight on. Throws `WorldError` where there is none.
+[[nodiscard]] inline map::Route entering_route(Map const& map, LaneId start, std::optional<map::Route> const& given,
+                                               Goal const& goal, std::string const& where) {
+  if (given) return *given;
+  if (auto const end = destination(map, goal, where)) {
+    if (auto route = map.shortest_route(start, *end)) return *route;
+    throw WorldError(where, "there is no route from " + map.describe(start) + " to " + map.describe(*end),
+                     "choose a goal that the lane leads to");
+  }
+  return map::straight_route(map, start);
+}
+
+/// Where on `road` an agent of `spec` enters, in lane `lane`: in the main corridor if that holds the lane.
+template <class Spec>
+[[nodiscard]] map::LanePosition entering_position(Map const& map, Spec const& spec, map::RoadCorridor const& road,
+                                                  LaneId lane, std::string const& where) {
+  auto const& main = road.corridors[road.main].pieces;
+  bool const on_main = std::any_of(main.begin(), main.end(), [lane](auto const& piece) { return piece.lane == lane; });
+  auto const corridor = on_main ? road.main : road.corridor_of(lane);
+  if (corridor == map::no_corridor)
+    throw WorldError(where, "its route does not hold the lane it enters in (" + map.describe(lane) + ")");
+  auto at = map::locate(road, corridor, {spec.position.x(), spec.position.y(), 0.0});
+  double const along = road.corridors[corridor].center.pose(at.s).heading;
+  at.heading_error = spec.heading ? geometry::angle_difference(*spec.heading, along) : 0.0;
+  return at;
+}
+
+/// Throws `WorldError` or `ParameterError` where a number of `spec` is no good.
+template <class Spec>
+void check_entering(Spec const& spec, std::string const& where) {
+  if (!spec.position.allFinite() || (spec.heading && !std::isfinite(*spec.heading)))
+    throw WorldError(where, "its position or heading is missing or not a finite number");
+  if (!(spec.speed >= 0) || !std::isfinite(spec.speed))
+    throw WorldError(where, "its speed is not a finite number of at least 0 m/s");
+  auto const described = [&where](auto const& parameters) {
+    if constexpr (Described<std::decay_t<decltype(parameters)>>) check_parameters(parameters, where);
+  };
+  std::visit(described, spec.behavior);
+  described(spec.shape);
+  described(spec.execution);
+  described(spec.dynamics);
+  described(spec.observer);
+}
+
+}  // namespace cambium::detail

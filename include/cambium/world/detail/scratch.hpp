@@ -1,0 +1,53 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+#include "cambium/world/traffic_index.hpp"
+
+namespace cambium::detail {
+
+/// A world's working memory: neither copied nor compared, and kept when the world is assigned to.
+template <class Frame>
+struct Scratch {
+  TrafficIndex traffic;
+  bool fresh = false;  ///< the traffic index is that of the current frame
+  std::vector<typename Frame::Record> next;
+  std::vector<Frame> history;  ///< ring of frames
+  std::size_t kept = 0, newest = 0;
+
+  Scratch() = default;
+  Scratch(Scratch const&) {}
+  Scratch(Scratch&&) = default;
+  Scratch& operator=(Scratch&&) = default;
+  Scratch& operator=(Scratch const&) {
+    forget();
+    return *this;
+  }
+  ~Scratch() = default;
+
+  void forget() {
+    fresh = false;
+    kept = 0;
+  }
+
+  void keep(std::size_t frames) {
+    history.resize(frames);
+    kept = newest = 0;
+  }
+
+  void remember(Frame const& frame) {
+    if (history.empty()) return;
+    newest = (newest + 1) % history.size();
+    history[newest] = frame;
+    kept = std::min(kept + 1, history.size());
+  }
+
+  /// The frame `steps_back` steps ago, 1 being the last one; 1 to `kept`.
+  [[nodiscard]] Frame const& back(std::size_t steps_back) const {
+    return history[(newest + history.size() - (steps_back - 1)) % history.size()];
+  }
+};
+
+}  // namespace cambium::detail
