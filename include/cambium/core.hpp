@@ -2,11 +2,11 @@
 /// version.
 #pragma once
 
-#include "cambium/core/assert.hpp"
 #include "cambium/core/diagnostic.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/ids.hpp"
+#include "cambium/core/macros.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/plan.hpp"
 #include "cambium/core/random.hpp"

@@ -11,7 +11,7 @@
 #include <string>
 #include <tuple>
 
-#include "cambium/core/assert.hpp"
+#include "cambium/core/macros.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/parameters.hpp"
 

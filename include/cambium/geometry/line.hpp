@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "cambium/core/assert.hpp"
+#include "cambium/core/macros.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/pose.hpp"

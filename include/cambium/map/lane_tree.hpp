@@ -10,7 +10,7 @@
 #include <tuple>
 #include <vector>
 
-#include "cambium/core/assert.hpp"
+#include "cambium/core/macros.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/detail/box_tree.hpp"

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "cambium/core/assert.hpp"
+#include "cambium/core/macros.hpp"
 #include "cambium/map/detail/stable_sort.hpp"
 
 namespace cambium::map {

@@ -56,16 +56,15 @@ template <class Agent, class Record>
 void straddle(Map const& map, Agent const& agent, Record const& record, TrafficEntry entry,
               std::vector<TrafficEntry>& list) {
   auto const& at = record.lane;
-  double const widest = std::max(agent.shape.left, agent.shape.right);
-  if ((std::abs(at.lateral) <= on_path && widest <= usual_half_width) || record.status != AgentStatus::driving) return;
   auto const& corridor = agent.road->corridors[at.corridor];
   double const left = at.lateral + agent.shape.left, right = agent.shape.right - at.lateral;
   auto const widths = corridor.widths_at(at.s, at.segment);
   auto const& lane = map.lane(corridor.pieces[at.piece].lane);
+  double const share = (at.index - lane.index_begin) / lane.length();
   auto const enter = [&](LaneId beside) {
     if (!is_valid(beside)) return;
     auto const& other = map.lane(beside);
-    double const s = other.path.project({record.state.x, record.state.y}).s;
+    double const s = other.path.project({record.state.x, record.state.y}, other.path.find(share * other.length())).s;
     entry.position = other.index_begin + std::clamp(s, 0.0, other.length());
     list.push_back(entry);
   };
@@ -86,7 +85,11 @@ void refresh_traffic(TrafficIndex& index, Map const& map, Roster const& roster, 
         position, agent.shape.front, agent.shape.rear, speed, slot, static_cast<std::uint32_t>(agent.id)};
   };
   auto const add_straddling = [&](TrafficEntry const& entry, std::vector<TrafficEntry>& list) {
-    straddle(map, roster.agents[entry.slot], frame.agents[entry.slot], entry, list);
+    auto const& agent = roster.agents[entry.slot];
+    auto const& record = frame.agents[entry.slot];
+    bool const is_usual = std::max(agent.shape.left, agent.shape.right) <= usual_half_width;
+    if ((is_usual && std::abs(record.lane.lateral) <= on_path) || record.status != AgentStatus::driving) return;
+    straddle(map, agent, record, entry, list);
   };
   index.refresh(frame.agents.size(), entry_of, add_straddling);
 }

@@ -13,3 +13,10 @@
 #else
 #define CAMBIUM_FLATTEN
 #endif
+
+/// Asks the processor to load what is at an address that will soon be read. The address need not be valid.
+#if defined(__GNUC__)
+#define CAMBIUM_PREFETCH(address) __builtin_prefetch(address)
+#else
+#define CAMBIUM_PREFETCH(address) static_cast<void>(address)
+#endif
