@@ -1,7 +1,11 @@
-#include <doctest/doctest.h>
+#include <algorithm>
 
 #include <vector>
 
+#include <doctest/doctest.h>
+
+#include "cambium/core/distributions.hpp"
+#include "cambium/core/random.hpp"
 #include "cambium/map/cubic.hpp"
 
 using cambium::map::BeforeFirst;
@@ -49,4 +53,26 @@ TEST_CASE("a profile without records is 0") {
   CHECK(profile.empty());
   CHECK(profile.value(1.0) == 0.0);
   CHECK(profile.derivative(1.0) == 0.0);
+}
+
+TEST_CASE("the extremes of a cubic are those of fine sampling") {
+  cambium::RandomStream random(1, 0, 0);
+  cambium::Uniform const coefficient{-1.0, 1.0};
+  for (int k = 0; k < 2000; ++k) {
+    bool const is_square = k % 3 == 0, is_linear = k % 7 == 0;
+    CubicRecord const record{coefficient(random), coefficient(random), coefficient(random),
+                             is_linear ? 0.0 : coefficient(random), is_linear || is_square ? 0.0 : coefficient(random)};
+    double const from = record.s, to = from + 3.0 * cambium::uniform01(random);
+    auto const [low, high] = extremes(record, from, to);
+    double lowest = record.value(from), highest = lowest;
+    for (int i = 0; i <= 1000; ++i) {
+      double const value = record.value(from + (to - from) * i / 1000);
+      lowest = std::min(lowest, value);
+      highest = std::max(highest, value);
+    }
+    REQUIRE(low <= lowest + 1e-12);
+    REQUIRE(high >= highest - 1e-12);
+    REQUIRE(low > lowest - 1e-4);
+    REQUIRE(high < highest + 1e-4);
+  }
 }

@@ -71,9 +71,38 @@ TEST_CASE("what cannot enter is named, and leaves the world as it was") {
                world.add({.position = {10, -1.75}, .route = cb::map::Route{{static_cast<cb::LaneId>(1)}}});
              }),
              "route"));
+  CHECK(says(error_of([&] { world.add({.position = {10, -1.75}, .heading = 3.1}); }), "against the direction"));
+  CHECK(says(error_of([&] { world.add({.position = {10, -1.75}, .speed = 1e300}); }), "speed"));
+  CHECK(says(error_of([&] { world.add({.position = {10, -1.75}, .shape = {0, 0, 0.9, 0.9}}); }), "no length"));
+  CHECK(says(error_of([&] { world.add({.position = {10, -1.75}, .shape = {1e9, 0, 0.9, 0.9}}); }), "shape.front"));
+  CHECK(says(error_of([&] {
+               world.add({.position = {10, -1.75}, .goal = cb::ReachLane{static_cast<cb::LaneId>(0), 50.0, 20.0}});
+             }),
+             "ends before it begins"));
+  CHECK(says(error_of([&] { world.add({.position = {10, -1.75}, .route = cb::map::Route{}}); }), "route is empty"));
+  CHECK(says(error_of([&] { world.add({.position = {10, -1.75}, .id = cb::none<cb::AgentId>}); }), "no such id"));
   CHECK(says(error_of([&] { Sim without_map(nullptr); }), "no map"));
+  CHECK(says(error_of([&] { Sim without_time(straight_road(), {.time = nan}); }), "time"));
   CHECK(world.frame() == before);
   CHECK(world.roster().agents.empty());
+}
+
+TEST_CASE("a polygon as goal may be large: any lane that it touches leads there") {
+  Sim world(straight_road(1, 500));
+  cb::geometry::Polygon const field({{300, -200}, {400, -200}, {400, 0}, {300, 0}});  // its middle is far from the road
+  auto const id = world.add({.position = {10, -1.75}, .goal = cb::ReachPolygon{field}});
+  CHECK(world.lane_of(id) == world.map().find_lane("1", 10, -1));
+  cb::geometry::Polygon const elsewhere({{300, -200}, {400, -200}, {400, -100}});
+  CHECK(says(error_of([&] { world.add({.position = {10, -1.75}, .goal = cb::ReachPolygon{elsewhere}}); }), "polygon"));
+}
+
+TEST_CASE("a place beyond the end of a road is no place on it") {
+  auto const map = straight_road(1, 300);
+  CHECK(map->find_lane("1", 300.0, -1) == map->find_lane("1", 0.0, -1));
+  CHECK(says(error_of([&] { (void)map->find_lane("1", 300.5, -1); }), "the road is 300 m long"));
+  CHECK(says(error_of([&] { (void)map->find_lane("1", -0.5, -1); }), "the road is 300 m long"));
+  CHECK(says(error_of([&] { (void)map->find_lane("1", 10.0, -7); }), "there is no lane -7"));
+  CHECK(says(error_of([&] { (void)map->find_lane("8", 10.0, -1); }), "no such road"));
 }
 
 TEST_CASE("ids are unique, kept, and never used again") {

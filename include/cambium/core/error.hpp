@@ -1,9 +1,21 @@
 #pragma once
 
+#include <cstdio>
 #include <stdexcept>
 #include <string>
 
 namespace cambium {
+
+namespace detail {
+
+/// A number for messages: six digits, no trailing zeros.
+[[nodiscard]] inline std::string number_text(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+}  // namespace detail
 
 /// Root of everything the library throws, and only outside the step path. `what()` reads "where: what; remedy".
 class Error : public std::runtime_error {

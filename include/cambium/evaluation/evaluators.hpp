@@ -3,6 +3,7 @@
 #include <concepts>
 #include <cstdint>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 
 namespace cambium {
@@ -20,12 +21,20 @@ template <class E>
 concept HasResult = requires {
   typename E::Result;
 };
+template <class... Es>
+inline constexpr bool all_different = true;
+template <class E, class... Es>
+inline constexpr bool all_different<E, Es...> = (!std::is_same_v<E, Es> && ...) && all_different<Es...>;
 }  // namespace detail
 
 /// The results of several evaluators in one struct: `result.ego_collision`, `result.goal_reached`, ... Each evaluator
 /// may appear once.
 template <class... Es>
-struct EvaluationResult : Es::Result... {};
+struct EvaluationResult : Es::Result... {
+  static_assert(detail::all_different<Es...>,
+                "cambium::Evaluators<...>: each evaluator may appear once, for its results go by name; judge a second "
+                "agent by Evaluators of its own");
+};
 
 /// Several evaluators as one, put together at compile time.
 template <class... Es>

@@ -3,6 +3,7 @@
 #include <concepts>
 
 #include "cambium/core/plan.hpp"
+#include "cambium/dynamics/single_track.hpp"
 
 namespace cambium {
 
@@ -13,10 +14,10 @@ struct Executed {
   bool valid = false;  ///< false: the plan does not say what happens at the time asked for
 };
 
-/// Turns a plan into the state at `time` [s]: exactly, or with the errors of a controller and its vehicle. Pure, no
-/// allocation.
-template <class E, class Dynamics>
-concept ExecutionModelFor = std::copyable<E> &&
+/// Turns a plan into the state at `time` [s], for vehicles of the model `Dynamics`: exactly, or with the errors of a
+/// controller. Pure, no allocation.
+template <class E, class Dynamics = SingleTrack>
+concept ExecutionModel = std::copyable<E> &&
     requires(E const model, BasicPlan<typename Dynamics::State> const plan, typename Dynamics::State const x,
              Dynamics const dynamics, double time) {
   { model.execute(plan, x, dynamics, time) } -> std::same_as<Executed<typename Dynamics::State>>;

@@ -50,6 +50,6 @@ struct InterpolateExecution {
     return {state, true};
   }
 };
-static_assert(ExecutionModelFor<InterpolateExecution, SingleTrack>);
+static_assert(ExecutionModel<InterpolateExecution>);
 
 }  // namespace cambium

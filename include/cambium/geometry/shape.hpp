@@ -16,12 +16,13 @@ struct Shape {
   double right = 0.9;
 
   static constexpr char const* name = "shape";
+  static constexpr Range extent{0.0, 100.0};
   static constexpr auto parameters() {
     return std::make_tuple(
-        parameter("front", &Shape::front, "m", non_negative, "From the reference point forward to the front end."),
-        parameter("rear", &Shape::rear, "m", non_negative, "From the reference point back to the rear end."),
-        parameter("left", &Shape::left, "m", non_negative, "From the reference point to the left side."),
-        parameter("right", &Shape::right, "m", non_negative, "From the reference point to the right side."));
+        parameter("front", &Shape::front, "m", extent, "From the reference point forward to the front end."),
+        parameter("rear", &Shape::rear, "m", extent, "From the reference point back to the rear end."),
+        parameter("left", &Shape::left, "m", extent, "From the reference point to the left side."),
+        parameter("right", &Shape::right, "m", extent, "From the reference point to the right side."));
   }
 
   [[nodiscard]] constexpr double length() const { return front + rear; }

@@ -18,8 +18,8 @@ inline constexpr std::uint16_t no_corridor = std::numeric_limits<std::uint16_t>:
 /// A lane's stretch of a lane corridor.
 struct CorridorPiece {
   LaneId lane = none<LaneId>;
-  double begin{}, end{};  ///< corridor position [m]
-  double index_offset{};  ///< lane coordinate = corridor position + index_offset
+  double begin{}, end{};             ///< corridor position [m]
+  double index_offset{};             ///< lane coordinate = corridor position + index_offset
   std::uint16_t left = no_corridor;  ///< number of the corridor that holds the lane's left neighbour
   std::uint16_t right = no_corridor;
 };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 #include <utility>
 #include <vector>
@@ -29,6 +30,20 @@ struct CubicRecord {
 
   friend bool operator==(CubicRecord const&, CubicRecord const&) = default;
 };
+
+/// The smallest and the largest value of `record` on the stations from `from` to `to`.
+[[nodiscard]] inline std::pair<double, double> extremes(CubicRecord const& record, double from, double to) {
+  double low = std::min(record.value(from), record.value(to)), high = std::max(record.value(from), record.value(to));
+  // Where b + 2 c u + 3 d u^2 = 0, by the form that does not cancel.
+  double const root = std::sqrt(std::max(0.0, record.c * record.c - 3.0 * record.d * record.b));
+  double const q = -(record.c + std::copysign(root, record.c));
+  for (double const u : {q / (3.0 * record.d), record.b / q}) {
+    if (!(u > from - record.s && u < to - record.s)) continue;
+    low = std::min(low, record.value(record.s + u));
+    high = std::max(high, record.value(record.s + u));
+  }
+  return {low, high};
+}
 
 /// What a profile is worth before its first record: 0 (lane offset, elevation), or the first record's starting value
 /// (widths).

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <span>
@@ -114,15 +115,20 @@ class Map {
     throw MapError("road " + std::string(name), "the map has no such road", "see Map::roads for those it has");
   }
 
-  /// Lane `number` of road `name` at road position `s` [m]. Throws `MapError` if there is none. O(roads).
+  /// Lane `number` of road `name` at road position `s` [m], the road's end included. Throws `MapError` if there is
+  /// none. O(roads).
   [[nodiscard]] LaneId find_lane(std::string_view name, double s, int number) const {
     auto const& road = find_road(name);
-    for (auto const& section : road.sections)
-      if (s >= section.begin && (s < section.end || &section == &road.sections.back()))
-        for (auto const& lane : section.lanes)
-          if (lane.number == number && is_valid(lane.id)) return lane.id;
-    throw MapError("road " + std::string(name) + ", s " + std::to_string(s),
-                   "there is no lane " + std::to_string(number), "see Map::roads for the lanes of its sections");
+    double const inside = s <= road.length + 1e-3 ? std::min(s, road.length) : s;  // lengths are often written rounded
+    std::string const where = "road " + std::string(name) + ", s " + cambium::detail::number_text(s);
+    for (auto const& section : road.sections) {
+      if (inside < section.begin || inside > section.end) continue;
+      if (inside == section.end && &section != &road.sections.back()) continue;
+      for (auto const& lane : section.lanes)
+        if (lane.number == number && is_valid(lane.id)) return lane.id;
+      throw MapError(where, "there is no lane " + std::to_string(number), "see Map::roads for those it has");
+    }
+    throw MapError(where, "the road is " + cambium::detail::number_text(road.length) + " m long", "give a place on it");
   }
 
   /// Name of a lane for messages: "road 12, section 0, lane -1".

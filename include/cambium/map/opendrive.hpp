@@ -1,9 +1,9 @@
 #pragma once
 
 #include <cerrno>
+#include <cstddef>
 #include <cstring>
 #include <fstream>
-#include <iterator>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -38,14 +38,17 @@ struct LoadedMap {
   std::ifstream file(path, std::ios::binary);
   if (!file)
     throw MapError(path, std::string("the file cannot be opened (") + std::strerror(errno) + ")", "check the path");
+  constexpr std::size_t largest = std::size_t{1} << 30, chunk = std::size_t{1} << 20;  // [B]: beyond any map
   std::string text;
-  try {
-    text.assign(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>());
-  } catch (std::ios_base::failure const&) {  // a folder opens, but cannot be read
-    throw MapError(path, "it cannot be read as a file", "give an OpenDRIVE file (.xodr)");
+  while (file) {
+    if (text.size() > largest) throw MapError(path, "it is larger than 1 GiB", "give an OpenDRIVE file (.xodr)");
+    std::size_t const before = text.size();
+    text.resize(before + chunk);
+    file.read(text.data() + before, static_cast<std::streamsize>(chunk));
+    text.resize(before + static_cast<std::size_t>(file.gcount()));
   }
-  if (file.bad() || text.empty())
-    throw MapError(path, "the file is empty or cannot be read", "give an OpenDRIVE file (.xodr)");
+  if (file.bad() || text.empty())  // a folder opens, but cannot be read
+    throw MapError(path, "it is empty or cannot be read as a file", "give an OpenDRIVE file (.xodr)");
   return parse_opendrive(text, options, path);
 }
 

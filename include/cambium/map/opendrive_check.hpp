@@ -1,8 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdio>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -11,10 +11,16 @@
 #include <vector>
 
 #include "cambium/core/diagnostic.hpp"
+#include "cambium/core/error.hpp"
+#include "cambium/geometry/angle.hpp"
+#include "cambium/map/cubic.hpp"
 #include "cambium/map/opendrive_document.hpp"
+#include "cambium/map/reference_line.hpp"
 
 namespace cambium::map {
 namespace detail {
+
+using cambium::detail::number_text;
 
 /// Looks at what single elements cannot show: double ids, links that lead nowhere, lengths that contradict each other.
 class DocumentCheck {
@@ -24,6 +30,7 @@ class DocumentCheck {
 
   void run() {
     if (document_->header.line == 0) report(Severity::warning, 0, "header", "", "the file has no header");
+    std::erase_if(document_->roads, [this](opendrive::Road const& road) { return !is_continuous(road); });
     index(document_->roads, roads_, "road", " is there twice; the second one was left out");
     index(document_->junctions, junctions_, "junction", " is there twice; the second one was left out");
     for (opendrive::Road& road : document_->roads) check(road);
@@ -61,6 +68,7 @@ class DocumentCheck {
       report(Severity::warning, road.line, "road", ids,
              "there is no junction " + road.junction + " that it could belong to");
     check_sections(road, ids);
+    check_records(road, ids);
   }
 
   void check_length(opendrive::Road const& road, std::string const& ids) {
@@ -69,14 +77,72 @@ class DocumentCheck {
       report(Severity::warning, road.line, "road", ids, "the length is missing or negative; the geometries' counts");
     else if (std::abs(road.length - length) > 1e-3)
       report(Severity::warning, road.line, "road", ids,
-             "the length is " + number(road.length) + " m, but the geometries end at " + number(length) +
+             "the length is " + number_text(road.length) + " m, but the geometries end at " + number_text(length) +
                  " m; theirs counts");
     for (std::size_t i = 1; i < road.geometries.size(); ++i) {
       double const gap = road.geometries[i].s - road.geometries[i - 1].s - road.geometries[i - 1].length;
       if (std::abs(gap) > 1e-3)
         report(Severity::warning, road.geometry_lines[i], "geometry", ids,
-               "s is " + number(gap) + " m behind the end of the geometry before; both are kept as written");
+               "s is " + number_text(gap) + " m behind the end of the geometry before; both are kept as written");
     }
+  }
+
+  /// Reports where a geometry does not go on where the one before ends. False where it is so far off that nobody could
+  /// drive there.
+  [[nodiscard]] bool is_continuous(opendrive::Road const& road) {
+    constexpr double noticeable = 0.1, bearable = 100.0;  // [m]; the first also [rad]
+    for (std::size_t i = 1; i < road.geometries.size(); ++i) {
+      Geometry const& before = road.geometries[i - 1];
+      Geometry const& next = road.geometries[i];
+      CurvePoint const end = evaluate(before, before.length);
+      double const gap = std::hypot(next.x - end.x, next.y - end.y);
+      double const turn = std::abs(geometry::angle_difference(next.heading, end.heading));
+      if (gap <= noticeable && turn <= noticeable) continue;
+      bool const is_lost = gap > bearable;
+      report(is_lost ? Severity::error : Severity::warning, road.geometry_lines[i], "geometry", "road " + road.id,
+             "it starts " + number_text(gap) + " m and " + number_text(turn) +
+                 " rad off the end of the geometry before" + (is_lost ? "; the road was left out" : ""));
+      if (is_lost) return false;
+    }
+    return true;
+  }
+
+  /// Leaves out records of widths and of the lane offset that are beyond any road, and reports negative widths.
+  void check_records(opendrive::Road& road, std::string const& ids) {
+    leave_out_wild(road.lane_offset, road.geometry_length(), road.line, "laneOffset", ids);
+    for (std::size_t i = 0; i < road.lane_sections.size(); ++i) {
+      opendrive::LaneSection& section = road.lane_sections[i];
+      double const end = i + 1 < road.lane_sections.size() ? road.lane_sections[i + 1].s : road.geometry_length();
+      for (opendrive::Lane& lane : section.lanes) {
+        std::string const of = ids + ", section " + std::to_string(i) + ", lane " + std::to_string(lane.id);
+        double const lowest = leave_out_wild(lane.widths, end - section.s, lane.line, "width", of);
+        if (lowest < -1e-3)
+          report(Severity::warning, lane.line, "lane", of,
+                 "its width falls to " + number_text(lowest) + " m; below 0 it counts as 0");
+      }
+    }
+  }
+
+  /// Removes records that leave +-1 km before `end`; returns the smallest value of the others.
+  double leave_out_wild(std::vector<CubicRecord>& records, double end, int line, char const* element,
+                        std::string const& ids) {
+    constexpr double largest = 1000.0;  // [m]
+    double lowest = 0.0;
+    std::vector<CubicRecord> kept;
+    for (std::size_t i = 0; i < records.size(); ++i) {
+      double const to = i + 1 < records.size() ? std::min(end, records[i + 1].s) : end;
+      auto const [low, high] = extremes(records[i], records[i].s, std::max(to, records[i].s));
+      if (low >= -largest && high <= largest) {
+        lowest = std::min(lowest, low);
+        kept.push_back(records[i]);
+      } else {
+        report(Severity::error, line, element, ids,
+               "the record at " + number_text(records[i].s) + " m reaches " + number_text(high > largest ? high : low) +
+                   " m; it was left out");
+      }
+    }
+    records = std::move(kept);
+    return lowest;
   }
 
   /// Leaves out sections behind the road's end (the first one always stays) and looks at the links between the others.
@@ -84,13 +150,19 @@ class DocumentCheck {
     while (road.lane_sections.size() > 1 && road.lane_sections.back().s > road.geometry_length() + 1e-9) {
       opendrive::LaneSection const& last = road.lane_sections.back();
       report(Severity::warning, last.line, "laneSection", ids,
-             "the section starts at " + number(last.s) + " m, behind the road's end; it was left out");
+             "the section starts at " + number_text(last.s) + " m, behind the road's end; it was left out");
       road.lane_sections.pop_back();
     }
+    for (opendrive::LaneSection& section : road.lane_sections) {
+      if (section.s >= 0.0) break;
+      report(Severity::warning, section.line, "laneSection", ids,
+             "the section starts at " + number_text(section.s) + " m; it counts from the road's start on");
+      section.s = 0.0;
+    }
     if (road.lane_sections.front().s > 0.0)
-      report(
-          Severity::warning, road.lane_sections.front().line, "laneSection", ids,
-          "the first section starts at " + number(road.lane_sections.front().s) + " m, the road has no lanes before");
+      report(Severity::warning, road.lane_sections.front().line, "laneSection", ids,
+             "the first section starts at " + number_text(road.lane_sections.front().s) +
+                 " m, the road has no lanes before");
     for (std::size_t i = 0; i + 1 < road.lane_sections.size(); ++i)
       check_lane_links(road.lane_sections[i], road.lane_sections[i + 1], ids, i);
   }
@@ -121,12 +193,6 @@ class DocumentCheck {
     diagnostics_->push_back({severity, file_, line, std::move(element), std::move(ids), std::move(sentence)});
   }
 
-  [[nodiscard]] static std::string number(double value) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.6g", value);
-    return text;
-  }
-
   opendrive::Document* document_;
   std::string file_;
   std::vector<Diagnostic>* diagnostics_;
@@ -137,8 +203,10 @@ class DocumentCheck {
 }  // namespace detail
 
 /// Checks a document as a whole and appends what it finds: double ids (the later element is removed), links and
-/// connections that lead nowhere (kept), lane sections behind the road's end (removed), lengths that contradict the
-/// geometries (kept; the geometries count). Linear in the size of the document but for the few lanes of a section.
+/// connections that lead nowhere (kept), lane sections behind the road's end (removed) or before its start (moved
+/// there), geometries that do not go on where the one before ends (kept; the road is removed where that is 100 m away),
+/// widths and lane offsets beyond 1 km (removed), lengths that contradict the geometries (kept; the geometries count).
+/// Linear in the size of the document but for the few lanes of a section.
 inline void check_opendrive_document(OpenDriveDocument& document, std::string file_name,
                                      std::vector<Diagnostic>& diagnostics) {
   detail::DocumentCheck(document, std::move(file_name), diagnostics).run();

@@ -113,6 +113,10 @@ namespace detail {
     context.report(Severity::warning, node, "a coordinate lies beyond 100 000 km, or a length beyond 1000 km");
     return false;
   }
+  if (!(std::abs(g.heading) <= 1e4)) {
+    context.report(Severity::warning, node, "hdg is beyond 10 000 rad");
+    return false;
+  }
   constexpr double max_turn = 1000.0;  // rad: more than any road, little enough to be integrated
   if (!(std::max(std::abs(g.curvature_start), std::abs(g.curvature_end)) * g.length < max_turn)) {
     context.report(Severity::warning, node, "the curve turns by more than 1000 rad");

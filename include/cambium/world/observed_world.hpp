@@ -102,6 +102,14 @@ class ObservedWorld {
     return predicted_world<Set>(*world_, slot_, prediction);
   }
 
+  /// Says what is missing where a bare behaviour is given.
+  template <class Behavior>
+  void predict(Behavior const&) const {
+    static_assert(std::is_void_v<Behavior>,
+                  "cambium::ObservedWorld::predict needs a Prediction: "
+                  "predict(cambium::predict_all_as<cambium::BehaviorSet<Models...>>(behavior))");
+  }
+
  private:
   /// An agent that is not in traffic has no place in the index: it is searched for.
   [[nodiscard]] bool in_traffic() const { return record_->status == AgentStatus::driving; }

@@ -44,7 +44,8 @@ template <class Set, class Behavior>
 }
 
 /// The world that agent number `slot` of `world` expects: states as it observes them, behaviours as `prediction` says.
-/// Agents that it does not see in traffic are left out.
+/// The others keep their routes, as if they signalled them, but not their goals. Agents that are not in traffic are
+/// left out.
 template <class Set, class World>
 [[nodiscard]] typename World::template WithBehaviors<Set> predicted_world(World const& world, std::uint32_t slot,
                                                                           Prediction<Set> const& prediction) {
@@ -63,7 +64,6 @@ template <class Set, class World>
   assumed->next_object_id = roster.next_object_id;
   assumed->objects = roster.objects;
   assumed->object_entries = roster.object_entries;
-  assumed->corridors = roster.corridors;
   typename Predicted::FrameType seen{frame.time, frame.step, {}};
   for (std::uint32_t i = 0; i < roster.agents.size(); ++i) {
     auto const& agent = roster.agents[i];
@@ -72,7 +72,7 @@ template <class Set, class World>
     auto const& behavior = i == slot ? prediction.ego : prediction.others;
     assumed->agents.push_back(
         {agent.id, agent.shape, agent.road, behavior, agent.execution, agent.dynamics, PerfectObserver{}});
-    assumed->goals.push_back(roster.goals[i]);
+    assumed->goals.push_back(i == slot ? roster.goals[i] : Goal{});
     auto const random = stream(observation_purpose(agent.id));
     auto const& state = observer.observer.observe(record.state, i == slot, random);
     auto lane = record.lane;

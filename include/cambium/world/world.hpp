@@ -45,9 +45,9 @@ class World {
   static_assert(DynamicModel<DynamicModelType>,
                 "cambium::World<Set, Execution, Dynamics>: Dynamics must be a vehicle model such as "
                 "cambium::SingleTrack (see DynamicModel)");
-  static_assert(ExecutionModelFor<Execution, DynamicModelType>,
+  static_assert(ExecutionModel<Execution, DynamicModelType>,
                 "cambium::World<Set, Execution, ...>: Execution must be an execution model such as "
-                "cambium::InterpolateExecution (see ExecutionModelFor)");
+                "cambium::InterpolateExecution (see ExecutionModel)");
   static_assert(ObserverModel<ObserverType>,
                 "cambium::World<Set, Execution, Dynamics, Observer>: Observer must be an observer model such as "
                 "cambium::PerfectObserver (see ObserverModel)");
@@ -85,6 +85,8 @@ class World {
   /// An empty world on `map`. Throws `WorldError` without a map.
   explicit World(std::shared_ptr<Map const> map, WorldOptions const& options = {}) : map_(std::move(map)) {
     if (!map_) throw WorldError("World", "there is no map", "pass what load_opendrive returned");
+    if (!(std::abs(options.time) <= latest_time))
+      throw WorldError("World", "its time is not a number of seconds up to 1e9", "set WorldOptions::time");
     auto roster = std::make_shared<RosterType>();
     roster->seed = options.seed;
     roster_ = std::move(roster);
@@ -122,7 +124,7 @@ class World {
   AgentId add(AgentSpec const& spec) {
     AgentId const id = spec.id.value_or(static_cast<AgentId>(roster_->next_agent_id));
     std::string const where = "agent " + to_string(id);
-    if (!is_valid(id)) throw WorldError(where, "that id names nobody");
+    if (!is_valid(id)) throw WorldError(where, "there is no such id, or no further one is free", "give an id below");
     if (roster_->slot_of(id))
       throw WorldError(where, "the world has an agent of that id already", "leave the id out to get a free one");
     detail::check_entering(spec, where);
@@ -289,8 +291,19 @@ class World {
     return View(*this, static_cast<std::uint32_t>(slot));
   }
 
+  /// Says so where the world may not change.
+  template <bool may_change = false>
+  View observe(AgentId) const& {
+    static_assert(may_change,
+                  "cambium::World::observe brings the traffic index up to date: call it on a world that is neither "
+                  "const nor a temporary, or on a copy");
+  }
+
   /// The traffic index; views use it. Up to date after `observe` and within a step.
   [[nodiscard]] TrafficIndex const& traffic() const { return scratch_.traffic; }
+
+  /// The largest time that a world may begin at [s]: steps are exact to well below a microsecond there.
+  static constexpr double latest_time = 1e9;
 
   /// The longest step that a world takes [s].
   static constexpr double longest_step = 3600.0;
@@ -379,7 +392,8 @@ class World {
     if (plan.status != PlanStatus::valid) return stop_planning(plan.status, agent.id, next, result, end);
     auto const executed = agent.execution.execute(plan, now.state, agent.dynamics, end);
     if (!executed.valid) return fail(StepProblem::no_execution, agent.id, next, result);
-    if (!is_finite(executed.state)) return fail(StepProblem::not_finite, agent.id, next, result);
+    if (!is_finite(executed.state) || !std::isfinite(plan.action.acceleration + plan.action.steering))
+      return fail(StepProblem::not_finite, agent.id, next, result);
     next.status = AgentStatus::driving;
     next.state = executed.state;
     next.action = plan.action;

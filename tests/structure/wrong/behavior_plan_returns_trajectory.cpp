@@ -1,5 +1,4 @@
-// expect: cambium::BehaviorSet<...>: each alternative must be a behaviour: a copyable struct with `template <class
-// View> Plan<View> plan
+// expect: cambium::BehaviorSet<...>: each alternative must be a behaviour: a copyable struct with `template <class View> Plan<View> plan
 #include <cambium/behavior/behavior_set.hpp>
 
 // A trajectory is not yet a plan.

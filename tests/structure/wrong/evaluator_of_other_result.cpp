@@ -1,5 +1,4 @@
-// expect: cambium::Evaluators<...>: each must have a Result and `template <class World> Result evaluate(World const&)
-// const`
+// expect: cambium::Evaluators<...>: each must have a Result and `template <class World> Result evaluate(World const&) const`
 #include <cambium/evaluation/evaluators.hpp>
 
 struct World {};

@@ -1,5 +1,4 @@
-// expect: cambium::World<Set, Execution, ...>: Execution must be an execution model such as
-// cambium::InterpolateExecution
+// expect: cambium::World<Set, Execution, ...>: Execution must be an execution model such as cambium::InterpolateExecution
 #include <cambium/world/world.hpp>
 #include <cambium/behavior/constant_acceleration.hpp>
 

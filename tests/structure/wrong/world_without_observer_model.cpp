@@ -1,5 +1,4 @@
-// expect: cambium::World<Set, Execution, Dynamics, Observer>: Observer must be an observer model such as
-// cambium::PerfectObserver
+// expect: cambium::World<Set, Execution, Dynamics, Observer>: Observer must be an observer model such as cambium::PerfectObserver
 #include <cambium/world/world.hpp>
 #include <cambium/behavior/constant_acceleration.hpp>
 #include <cambium/execution/interpolate.hpp>

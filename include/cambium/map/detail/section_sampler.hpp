@@ -110,7 +110,8 @@ class SectionSampler {
     auto const offset = profile(road_.lane_offset, s, inside);
     cross.borders[left_lanes_] = offset;
     auto const width = [&](std::size_t lane) {
-      return profile(section_.lanes[lane].width, s - section_.begin, inside - section_.begin);
+      auto const w = profile(section_.lanes[lane].width, s - section_.begin, inside - section_.begin);
+      return w.t > 0.0 ? w : Lateral{};  // a width below 0 counts as 0
     };
     for (std::size_t i = left_lanes_; i-- > 0;) {
       auto const w = width(i);
@@ -147,7 +148,7 @@ class SectionSampler {
   /// Appends the stations needed strictly between `a` and `b`.
   void refine(CrossSection const& a, CrossSection const& b, double inside, int depth,
               std::vector<CrossSection>& result) {
-    if (depth > 16 || b.s - a.s < 1e-3 || straight(inside)) return;
+    if (depth > 16 || b.s - a.s < 1e-3 || straight(a.s, b.s, inside)) return;
     auto const middle = cross_section(0.5 * (a.s + b.s), inside);
     bool const has_room_to_wind = depth == 0 && b.s - a.s > 40.0;  // its middle alone says too little
     if (!has_room_to_wind && fits(a, middle, b)) return;
@@ -156,18 +157,20 @@ class SectionSampler {
     refine(middle, b, inside, depth + 1, result);
   }
 
-  /// A straight road with constant widths needs no station in between.
-  [[nodiscard]] bool straight(double inside) const {
+  /// A straight road whose widths are linear from `begin` to `end` needs no station in between.
+  [[nodiscard]] bool straight(double begin, double end, double inside) const {
     auto const& line = road_.reference_line;
     if (line.geometries()[line.locate(inside)].kind != GeometryKind::line) return false;
-    auto const linear = [&](CubicProfile const& p, double offset) {
-      auto const* record = p.find(inside - offset);
+    auto const linear = [](CubicRecord const* record) {
       return record == nullptr || (record->c == 0.0 && record->d == 0.0);
     };
-    if (!linear(road_.lane_offset, 0.0)) return false;
-    for (auto const& lane : section_.lanes)
-      if (!linear(lane.width, section_.begin)) return false;
-    return true;
+    if (!linear(road_.lane_offset.find(inside))) return false;
+    double const first = begin - section_.begin, last = end - section_.begin;
+    return std::all_of(section_.lanes.begin(), section_.lanes.end(), [&](RoadLane const& lane) {
+      auto const* record = lane.width.find(inside - section_.begin);
+      bool const has_kink = record != nullptr && (record->value(first) < 0.0) != (record->value(last) < 0.0);
+      return linear(record) && !has_kink;
+    });
   }
 
   Road const& road_;

@@ -26,6 +26,7 @@ inline constexpr double path_radius = 2.5;
 /// The nearest lane of `route` at `position`: a path that swings over to its neighbour counts as its own lane there.
 [[nodiscard]] inline LaneId entering_lane(Map const& map, geometry::Point const& position, map::Route const& route,
                                           std::string const& where) {
+  if (route.lanes.empty()) throw WorldError(where, "its route is empty", "leave the route out to get the shortest");
   LaneId nearest = none<LaneId>;
   double smallest = path_radius;
   for (auto const id : route.lanes) {
@@ -63,6 +64,8 @@ inline constexpr double path_radius = 2.5;
     if (index_of(lane->lane) >= map.lanes().size())
       throw WorldError(where, "its goal names lane " + to_string(lane->lane) + ", which the map does not have",
                        "use Map::find_lane");
+    if (!(lane->from <= lane->to))
+      throw WorldError(where, "its goal's stretch of lane ends before it begins", "give from <= to");
     return lane->lane;
   }
   if (auto const* polygon = std::get_if<ReachPolygon>(&goal)) {
@@ -101,6 +104,9 @@ template <class Spec>
   auto at = map::locate(road, corridor, {spec.position.x(), spec.position.y(), 0.0});
   double const along = road.corridors[corridor].center.pose(at.s).heading;
   at.heading_error = spec.heading ? geometry::angle_difference(*spec.heading, along) : 0.0;
+  if (std::abs(at.heading_error) > geometry::pi / 2)
+    throw WorldError(where, "it heads against the direction of its lane (" + map.describe(lane) + ")",
+                     "leave the heading out, or enter along the lane");
   return at;
 }
 
@@ -109,8 +115,11 @@ template <class Spec>
 void check_entering(Spec const& spec, std::string const& where) {
   if (!spec.position.allFinite() || (spec.heading && !std::isfinite(*spec.heading)))
     throw WorldError(where, "its position or heading is missing or not a finite number");
-  if (!(spec.speed >= 0) || !std::isfinite(spec.speed))
-    throw WorldError(where, "its speed is not a finite number of at least 0 m/s");
+  constexpr double fastest = 1000.0;  // [m/s]
+  if (!(spec.speed >= 0 && spec.speed <= fastest))
+    throw WorldError(where, "its speed is not a number from 0 to 1000 m/s", "give metres per second");
+  if (!(spec.shape.length() > 0 && spec.shape.width() > 0))
+    throw WorldError(where, "its shape has no length or no width", "leave the shape out to get a car");
   auto const described = [&where](auto const& parameters) {
     if constexpr (Described<std::decay_t<decltype(parameters)>>) check_parameters(parameters, where);
   };
