@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <cstdint>
+#include <cstdio>
 #include <exception>
 #include <iostream>
 #include <string>
@@ -22,16 +23,23 @@ namespace examples {
   return CLI::Validator(check, "");
 }
 
+/// 0, or 2 with a line on the error stream where the standard output did not take all that was printed.
+[[nodiscard]] inline int finish_output(std::string const& program) {
+  if (std::fflush(stdout) == 0 && std::cout.flush()) return 0;
+  std::cerr << program << ": the standard output cannot be written\n";
+  return 2;
+}
+
 /// Reads the command line, then runs `body`; what is thrown becomes one line on the error stream and exit code 2.
 template <class Body>
 int run_program(CLI::App& program, int argc, char** argv, Body const& body) {
   try {
     program.parse(argc, argv);
     body();
-    return 0;
+    return finish_output(program.get_name());
   } catch (CLI::CallForHelp const&) {
     std::cout << program.help();
-    return 0;
+    return finish_output(program.get_name());
   } catch (std::exception const& problem) {
     std::cerr << program.get_name() << ": " << problem.what() << "\n";
     return 2;

@@ -22,13 +22,27 @@ namespace cb = cambium;
 namespace merging {
 namespace {
 
-/// Makes the folder and finds out now, not after the work, whether it takes files.
+/// Makes the folder and finds out now, not after the work, whether it takes files. Older results stay until there are
+/// new ones.
 void prepare(std::filesystem::path const& folder) {
   std::error_code problem;
   std::filesystem::create_directories(folder, problem);
   if (problem)
     throw cb::Error(folder.string(), "the folder cannot be made (" + problem.message() + ")", "choose another --out");
-  cb::write_file(folder / "summary.json", "");
+  auto const probe = folder / ".probe";
+  cb::write_file(probe, "");
+  std::filesystem::remove(probe, problem);
+}
+
+/// "1 vehicle", "2 vehicles".
+std::string counted(std::uint64_t count, std::string const& thing) {
+  return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
+}
+
+std::string in_words(Outcome const& outcome) {
+  if (outcome.kind == Outcome::Kind::success) return "the ego merged";
+  if (outcome.kind == Outcome::Kind::time_out) return "time ran out";
+  return "agents " + to_string(outcome.collided_first) + " and " + to_string(outcome.collided_second) + " collide";
 }
 
 void write_results(std::filesystem::path const& folder, Site const& site, Settings const& settings,
@@ -36,21 +50,24 @@ void write_results(std::filesystem::path const& folder, Site const& site, Settin
   auto const shown = totals.most_interesting;
   cb::Recording recording;
   auto const replayed = run_scenario(site, settings, shown, &recording);
-  char const* const words[] = {"the ego merged", "a collision", "time ran out"};
   recording.title = "Merging on " + std::filesystem::path(settings.map_file).filename().string() + ", scenario " +
                     std::to_string(shown);
-  recording.notes = {"Outcome: " + std::string(words[static_cast<int>(replayed.kind)]) + "; " +
-                     std::to_string(replayed.agents) + " vehicles, " + std::to_string(replayed.hard_brakings) +
-                     " hard brakings, seed " + std::to_string(settings.seed)};
-  std::string rows = "scenario,time,agent,x,y,heading,speed,acceleration,length,width\n";
+  recording.notes = {"Outcome: " + in_words(replayed) + "; " + counted(replayed.agents, "vehicle") + ", " +
+                     counted(replayed.hard_brakings, "hard braking") + ", seed " + std::to_string(settings.seed)};
+  std::string rows = trajectory_columns;
   for (std::uint64_t i = 0; i < outcomes.size(); ++i) rows += i == shown ? replayed.trajectory : outcomes[i].trajectory;
+  auto const figures = summary(settings, site, outcomes, totals);
   cb::write_file(folder / "trajectories.csv", rows);
-  cb::write_file(folder / "summary.json", summary(settings, site, outcomes, totals).dump(1) + "\n");
+  cb::write_file(folder / "summary.json",
+                 figures.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
   cb::write_html_replay(folder / "replay.html", recording);
 }
 
 void run(Settings const& settings) {
   auto const site = find_site(examples::load_map(settings.map_file), settings.map_file);
+  if (site.crossings > 0)
+    std::cerr << "merging: " << settings.map_file << ": " << counted(site.crossings, "place")
+              << " where the traffic's routes cross; nobody gives way there, so expect collisions\n";
   std::filesystem::path const folder(settings.out);
   prepare(folder);
 

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <exception>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <thread>
 #include <utility>
@@ -38,7 +39,8 @@ struct Settings {
 struct Outcome {
   enum class Kind { success, collision, time_out } kind = Kind::time_out;
   bool off_road = false;
-  std::uint32_t agents = 0, collided_agents = 0;
+  std::uint32_t agents = 0;
+  cambium::AgentId collided_first = cambium::none<cambium::AgentId>, collided_second = collided_first;
   std::uint64_t steps = 0, agent_steps = 0, hard_brakings = 0;
   double speed_sum = 0.0;
   std::string trajectory;  // CSV rows, where asked for
@@ -50,17 +52,22 @@ struct Outcome {
   }
 };
 
+/// Columns of the trajectories: x, y [m] are of the reference point (centre of the rear axle), front and rear [m] how
+/// far the vehicle reaches from there.
+inline constexpr char const* trajectory_columns =
+    "scenario,time,agent,x,y,heading,speed,acceleration,front,rear,width\n";
+
 inline void append_rows(std::string& rows, std::uint64_t scenario, Simulation const& world) {
   char line[200];
   for (std::size_t i = 0; i < world.size(); ++i) {
     auto const& r = world.frame().agents[i];
     if (r.status != cambium::AgentStatus::driving) continue;
     auto const& shape = world.roster().agents[i].shape;
-    std::snprintf(line, sizeof line, "%llu,%.1f,%s,%.4f,%.4f,%.6f,%.4f,%.4f,%.2f,%.2f\n",
+    std::snprintf(line, sizeof line, "%llu,%.1f,%s,%.4f,%.4f,%.6f,%.4f,%.4f,%.2f,%.2f,%.2f\n",
                   static_cast<unsigned long long>(scenario), world.time(),
                   cambium::to_string(world.roster().agents[i].id).c_str(), r.state.x, r.state.y,
                   std::remainder(r.state.heading, 2 * cambium::geometry::pi), r.state.speed, r.action.acceleration,
-                  shape.length(), shape.width());
+                  shape.front, shape.rear, shape.width());
     rows += line;
   }
 }
@@ -78,40 +85,61 @@ inline void count_agents(Simulation const& world, std::vector<bool>& braking, Ou
   }
 }
 
-/// Rolls one scenario forward until its ego is at its goal, something collides, or time is up.
+/// What there was to see of a scenario, as a recording for the viewers.
+class Film {
+ public:
+  explicit Film(Scenario const& scenario) : recorder_(scenario.world) {
+    for (auto const id : scenario.merging) recorder_.show_as(id, cambium::RecordedAgentKind::merging);
+    recorder_.show_as(scenario.ego, cambium::RecordedAgentKind::ego, "ego");
+  }
+
+  void record(Simulation const& world) { recorder_.record(world); }
+
+  [[nodiscard]] cambium::Recording develop(Outcome const& outcome) {
+    for (auto const id : {outcome.collided_first, outcome.collided_second})
+      if (is_valid(id)) recorder_.show_as(id, cambium::RecordedAgentKind::collided);
+    return std::move(recorder_.recording());
+  }
+
+ private:
+  cambium::WorldRecorder recorder_;
+};
+
+/// Rolls one scenario forward until its ego is at its goal, something collides, or time is up; fills `recording` if
+/// there is one.
 [[nodiscard]] inline Outcome run_scenario(Site const& site, Settings const& settings, std::uint64_t number,
                                           cambium::Recording* recording) {
-  auto [world, ego, merging_agents] = sample_scenario(site, settings.seed, static_cast<std::uint32_t>(number));
+  auto scenario = sample_scenario(site, settings.seed, static_cast<std::uint32_t>(number));
+  auto& world = scenario.world;
   Outcome outcome;
   outcome.agents = static_cast<std::uint32_t>(world.size());
   bool const keep = number < settings.trajectories || recording != nullptr;
-  cambium::Evaluators const judge(cambium::CollisionAny{}, cambium::GoalReached{ego}, cambium::DrivableArea{ego},
-                                  cambium::StepCount{settings.steps});
-  cambium::WorldRecorder recorder(world, "Scenario " + std::to_string(number));
-  for (auto const id : merging_agents) recorder.show_as(id, cambium::RecordedAgentKind::merging);
-  recorder.show_as(ego, cambium::RecordedAgentKind::ego, "ego");
+  cambium::Evaluators const judge(cambium::CollisionAny{}, cambium::GoalReached{scenario.ego},
+                                  cambium::DrivableArea{scenario.ego}, cambium::StepCount{settings.steps});
+  std::optional<Film> film;
+  if (recording != nullptr) film.emplace(scenario);
   std::vector<bool> braking(world.size(), false);
   if (keep) append_rows(outcome.trajectory, number, world);
-  while (true) {
+  for (bool is_over = false; !is_over;) {
     auto const result = world.step(dt);
     if (!result)
       throw cambium::WorldError("scenario " + std::to_string(number) + ", agent " + to_string(result.agent),
                                 to_string(result.problem));
     count_agents(world, braking, outcome);
     if (keep) append_rows(outcome.trajectory, number, world);
-    if (recording != nullptr) recorder.record(world);
+    if (film) film->record(world);
     auto const verdict = judge.evaluate(world);
     outcome.steps = verdict.steps;
     outcome.off_road = outcome.off_road || verdict.off_road;
+    outcome.collided_first = verdict.collision_first;
+    outcome.collided_second = verdict.collision_second;
     if (verdict.any_collision)
       outcome.kind = Outcome::Kind::collision;
     else if (verdict.goal_reached)
       outcome.kind = Outcome::Kind::success;
-    else if (!verdict.timed_out)
-      continue;
-    break;
+    is_over = verdict.any_collision || verdict.goal_reached || verdict.timed_out;
   }
-  if (recording != nullptr) *recording = std::move(recorder.recording());
+  if (film) *recording = film->develop(outcome);
   return outcome;
 }
 

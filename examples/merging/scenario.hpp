@@ -3,13 +3,17 @@
 #include <algorithm>
 #include <cstdint>
 #include <memory>
+#include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cambium/behavior/behavior_set.hpp"
 #include "cambium/behavior/idm_classic.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/dynamics/single_track.hpp"
+#include "cambium/evaluation/collision.hpp"
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/map/build_corridor.hpp"
 #include "cambium/map/map.hpp"
@@ -24,9 +28,12 @@ using Simulation =
 /// A way into the map: a lane where traffic enters, and the route straight on from there.
 struct Entrance {
   cambium::map::Route route;
-  double length{};    ///< of the lane corridor from the entrance to its end [m]
-  double merge_at{};  ///< where its own path begins to swing onto a neighbour's, or to overlap with another's [m]
+  double length{};             ///< of the lane corridor from the entrance to its end [m]
+  double merge_at{};           ///< where its path begins to swing onto a neighbour's, or to overlap with another's [m]
   bool gives_up_lane = false;  ///< its lane ends in the merge: this is who merges
+  double traffic_end{};        ///< traffic stands before this place: the merge, on the lanes beside it too [m]
+
+  [[nodiscard]] bool merges() const { return merge_at < length; }
 };
 
 /// What the scenarios on a map have in common.
@@ -34,6 +41,7 @@ struct Site {
   std::shared_ptr<cambium::Map const> map;
   std::vector<Entrance> entrances;
   std::size_t ramp{};        ///< the entrance whose vehicles merge
+  std::size_t crossings{};   ///< places where routes cross
   double free_speed = 13.9;  ///< [m/s]: the speed limit there, else 50 km/h
 };
 
@@ -55,35 +63,80 @@ inline void find_merge(cambium::Map const& map, Entrance& entrance) {
   }
 }
 
+/// The lanes where traffic may enter: they begin the map, are wide enough for a car and lead somewhere.
+[[nodiscard]] inline std::vector<Entrance> find_entrances(cambium::Map const& map) {
+  std::vector<Entrance> entrances;
+  for (auto const& lane : map.lanes()) {
+    auto const& width = lane.widths.front();
+    if (!lane.drivable() || !lane.predecessors.empty() || width.left + width.right < 2.0) continue;
+    Entrance entrance{cambium::map::straight_route(map, lane.id)};
+    for (auto const id : entrance.route.lanes) entrance.length += map.lane(id).length();
+    find_merge(map, entrance);
+    if (entrance.length > 30.0) entrances.push_back(std::move(entrance));
+  }
+  for (auto& e : entrances) {
+    e.traffic_end = std::min(e.merge_at, e.length - 20.0);
+    if (e.merges()) continue;
+    auto const road = map.lane(e.route.lanes.front()).road;
+    for (auto const& beside : entrances)
+      if (beside.merges() && map.lane(beside.route.lanes.front()).road == road)
+        e.traffic_end = std::min(e.traffic_end, beside.merge_at);
+  }
+  return entrances;
+}
+
+/// The entrance whose vehicles merge: one that gives up its lane; of those, the one with the longest way to the merge.
+[[nodiscard]] inline std::optional<std::size_t> find_ramp(std::vector<Entrance> const& entrances) {
+  auto const better = [](Entrance const& a, Entrance const& b) {
+    if (a.gives_up_lane != b.gives_up_lane) return b.gives_up_lane;
+    return a.merge_at < b.merge_at;
+  };
+  std::optional<std::size_t> ramp;
+  for (std::size_t i = 0; i < entrances.size(); ++i) {
+    if (!entrances[i].merges() || entrances[i].merge_at < 20.0) continue;
+    if (!ramp || better(entrances[*ramp], entrances[i])) ramp = i;
+  }
+  return ramp;
+}
+
+/// How often the entrances' routes cross each other.
+[[nodiscard]] inline std::size_t count_crossings(cambium::Map const& map, std::vector<Entrance> const& entrances) {
+  std::set<cambium::LaneId> used;
+  for (auto const& entrance : entrances) used.insert(entrance.route.lanes.begin(), entrance.route.lanes.end());
+  std::size_t count = 0;
+  for (auto const id : used)
+    for (auto const& overlap : map.lane(id).overlaps)
+      count +=
+          overlap.kind == cambium::map::OverlapKind::crossing && overlap.other > id && used.contains(overlap.other);
+  return count;
+}
+
 /// Finds the merge of a map: the entrances, and which of them is the ramp. Throws `MapError` where nothing merges.
 [[nodiscard]] inline Site find_site(std::shared_ptr<cambium::Map const> map, std::string const& file) {
   Site site;
   site.map = std::move(map);
-  for (auto const& lane : site.map->lanes()) {
-    if (!lane.drivable() || !lane.predecessors.empty()) continue;
-    Entrance entrance{cambium::map::straight_route(*site.map, lane.id)};
-    for (auto const id : entrance.route.lanes) entrance.length += site.map->lane(id).length();
-    find_merge(*site.map, entrance);
-    if (entrance.length > 30.0) site.entrances.push_back(std::move(entrance));
-  }
-  auto const merges = [](Entrance const& e) { return e.merge_at < e.length; };
-  auto const better = [&](Entrance const& a,
-                          Entrance const& b) {  // who gives up a lane; of those, who has the longest way to the merge
-    if (a.gives_up_lane != b.gives_up_lane) return b.gives_up_lane;
-    return a.merge_at < b.merge_at;
-  };
-  bool found = false;
-  for (std::size_t i = 0; i < site.entrances.size(); ++i) {
-    if (!merges(site.entrances[i]) || site.entrances[i].merge_at < 20.0) continue;
-    if (!found || better(site.entrances[site.ramp], site.entrances[i])) site.ramp = i;
-    found = true;
-  }
-  if (!found)
+  site.entrances = find_entrances(*site.map);
+  auto const ramp = find_ramp(site.entrances);
+  if (!ramp)
     throw cambium::MapError(file, "no lane of this map merges into another",
                             "give a map with an on-ramp or a lane drop, such as maps/merging.xodr");
+  site.ramp = *ramp;
+  site.crossings = count_crossings(*site.map, site.entrances);
   auto const limit = site.map->lane(site.entrances[site.ramp].route.lanes.front()).speed_limit;
   if (limit > 0) site.free_speed = limit;
   return site;
+}
+
+/// Where the merge is done: in the lane 60 m behind its begin, or the last one of the route.
+[[nodiscard]] inline cambium::ReachLane behind_merge(cambium::Map const& map, Entrance const& entrance) {
+  double const place = entrance.merge_at + 60.0;
+  double s = 0.0;
+  for (auto const id : entrance.route.lanes) {
+    double const end = s + map.lane(id).length();
+    if (end > place + 10.0) return {id, std::max(0.0, place - s)};  // 10 m: nobody passes them between two steps
+    s = end;
+  }
+  return {entrance.route.lanes.back()};
 }
 
 /// A sampled situation: the world as it begins, and who is the one that has to merge.
@@ -97,6 +150,7 @@ struct Scenario {
 /// included.
 [[nodiscard]] inline bool enters_safely(Simulation& world, cambium::AgentId id) {
   constexpr double headway = 0.6;  // [s]
+  if (cambium::CollisionEgo{id}.evaluate(world).ego_collision) return false;
   auto const view = world.observe(id);
   auto const driver = [&](cambium::AgentId agent) {
     return std::get<cambium::IdmClassic>(world.roster().agents[world.slot_of(agent)].behavior);
@@ -119,10 +173,9 @@ struct Scenario {
   for (std::size_t k = 0; k < site.entrances.size(); ++k) {
     auto const i = (site.ramp + k) % site.entrances.size();  // the ramp first: somebody has to merge
     auto const& entrance = site.entrances[i];
-    double const end = std::min(entrance.merge_at, entrance.length - 20.0);
     cambium::LaneTraffic traffic;
-    traffic.begin = std::max(0.0, end - 250.0);
-    traffic.end = end - 5.0 * cambium::uniform01(random);
+    traffic.begin = std::max(0.0, entrance.traffic_end - 250.0);
+    traffic.end = entrance.traffic_end - 5.0 * cambium::uniform01(random);
     double const share = 0.5 + 0.4 * cambium::uniform01(random);  // of the free speed: how dense it is today
     traffic.lowest_speed = 0.8 * share * site.free_speed;
     traffic.highest_speed = std::min(1.2 * share, 1.0) * site.free_speed;
@@ -138,7 +191,7 @@ struct Scenario {
                                  .shape = vehicle.shape,
                                  .behavior = vehicle.driver,
                                  .route = entrance.route};
-      if (i == site.ramp) spec.goal = cambium::ReachLane{entrance.route.lanes.back()};
+      if (i == site.ramp) spec.goal = behind_merge(*site.map, entrance);
       auto const id = scenario.world.add(spec);
       if (!enters_safely(scenario.world, id)) {
         scenario.world.remove(id);

@@ -19,6 +19,7 @@ enum class RecordedAgentKind : std::uint32_t {
   ego = 1,            ///< the agent under study; viewers follow it
   merging = 2,        ///< an agent that changes or joins a lane
   static_object = 3,  ///< an obstacle
+  collided = 4,       ///< an agent of a collision; viewers follow the first rather than the ego
 };
 
 /// Decides how a lane is filled and bordered in the viewers.

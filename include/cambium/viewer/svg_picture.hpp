@@ -183,8 +183,8 @@ class SvgPicture {
   }
 
   void define_vehicle(RecordedAgent const& agent, RecordedPose const& pose) {
-    static constexpr char const* colours[] = {"#eef1f4", "#1e90ff", "#ffab1f", "#b79bff"};
-    auto const kind = std::min<std::size_t>(static_cast<std::size_t>(agent.kind), 3);
+    static constexpr char const* colours[] = {"#eef1f4", "#1e90ff", "#ffab1f", "#b79bff", "#e0218a"};
+    auto const kind = std::min<std::size_t>(static_cast<std::size_t>(agent.kind), 4);
     double const length = agent.shape.front + agent.shape.rear, width = agent.shape.left + agent.shape.right;
     double const rear = -agent.shape.rear, right = -agent.shape.right;
     out_ += "<g transform=\"" + turned({pose.x, pose.y}, pose.heading) + "\">";

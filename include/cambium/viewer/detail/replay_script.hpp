@@ -13,8 +13,8 @@ const element = id => document.getElementById(id);
 const canvas = element('view'), context = canvas.getContext('2d');
 const count = data.times.length, agents = data.agents.map(([id, kind, label, front, rear, left, right]) =>
   ({id, kind, label, front, rear, left, right, length: front + rear, width: left + right}));
-const ego = agents.findIndex(agent => agent.kind === 1);
-const kinds = ['other', 'ego', 'merging', 'static'], surfaces = ['asphalt', 'verge', 'crossing'];
+const ego = [4, 1].map(kind => agents.findIndex(agent => agent.kind === kind)).find(i => i >= 0) ?? -1;
+const kinds = ['other', 'ego', 'merging', 'static', 'collided'], surfaces = ['asphalt', 'verge', 'crossing'];
 const state = {at: 0, playing: false, follow: false, selected: -1, hovered: -1, lane: null, ids: false};
 const camera = {x: 0, y: 0, scale: 1};   // middle of the view [m], pixels per metre
 let width = 1, height = 1, ratio = 1, colour = {};
@@ -168,7 +168,7 @@ function drawAgent(i) {
   context.scale(along, across);
   const body = new Path2D(), fixed = agent.kind === 3;
   body.roundRect(-rear, -right, length, breadth, fixed ? .05 : Math.min(.28 * breadth, .12 * length));
-  if (i === state.selected || i === state.hovered || agent.kind === 1) {
+  if (i === state.selected || i === state.hovered || [1, 4].includes(agent.kind)) {
     context.strokeStyle = colour.ring;
     context.lineWidth = (i === state.selected ? 6 : 4) * px / across;
     context.stroke(body);
