@@ -26,7 +26,7 @@ Lengths lengths(std::vector<RecordedLane> const& lanes) {
 }
 
 RecordedLane straight(double from, double to, double left, double right) {
-  return {.left = {{from, left}, {to, left}}, .right = {{from, right}, {(from + to) / 3.0, right}, {to, right}}};
+  return {.left = {{from, left}, {to, left}}, .right = {{from, right}, {from + (to - from) / 3.0, right}, {to, right}}};
 }
 
 }  // namespace
@@ -67,6 +67,35 @@ TEST_CASE("a lane that has shrunk to nothing leaves the solid line to its neighb
   Lengths const sum = lengths({straight(0, 90, 0, 0), straight(0, 90, 0, -3)});
   CHECK(sum.edge == doctest::Approx(180.0));
   CHECK(sum.divider == 0.0);
+}
+
+TEST_CASE("a line goes on from lane to lane as one, so that its dashes keep their rhythm") {
+  std::vector<RecordedLane> const lanes{straight(0, 30, 3, 0),   straight(0, 30, 0, -3), straight(60, 95, 3, 0),
+                                        straight(60, 95, 0, -3), straight(30, 60, 3, 0), straight(30, 60, 0, -3)};
+  std::vector<detail::LaneArea> const areas(lanes.begin(), lanes.end());
+  auto const marks = detail::LaneMarker(lanes, areas).marks();
+  CHECK(marks.size() == 3);
+  for (auto const& mark : marks) CHECK((mark.points.back() - mark.points.front()).norm() == doctest::Approx(95.0));
+}
+
+TEST_CASE("where a lane tapers out, the road has a solid line all along") {
+  RecordedLane taper;
+  taper.left = {{0, 0}, {90, 0}};
+  taper.right = {{0, -3}, {90, 0}};
+  RecordedLane shoulder;
+  shoulder.left = taper.right;
+  shoulder.right = {{0, -5}, {90, -2}};
+  shoulder.kind = RecordedLaneKind::other;
+  std::vector<RecordedLane> const lanes{straight(0, 90, 3, 0), taper, shoulder};
+  std::vector<detail::LaneArea> const areas(lanes.begin(), lanes.end());
+  auto const marks = detail::LaneMarker(lanes, areas).marks();
+  for (double x = 1.0; x < 90.0; x += 0.5) {  // below the lane that goes on: the taper's border, or its own
+    geometry::Point const border{x, -3.0 + x / 30.0};
+    double nearest = 1e9;
+    for (auto const& mark : marks)
+      if (mark.style == MarkStyle::edge) nearest = std::min(nearest, detail::distance_to_line(border, mark.points));
+    CHECK(nearest < 0.5);
+  }
 }
 
 TEST_CASE("lanes without two points on a side are skipped") {

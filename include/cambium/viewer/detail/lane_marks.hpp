@@ -151,14 +151,54 @@ class LaneMarker {
       before = &piece;
       last = style;
     }
+    result = joined(std::move(result));
     for (LaneMark& mark : result) mark.points = simplified(mark.points, 0.01);
     return result;
   }
 
  private:
+  /// Marks that begin where one of their style ends go on in that one: dashes keep their rhythm from lane to lane.
+  [[nodiscard]] static std::vector<LaneMark> joined(std::vector<LaneMark> marks) {
+    std::unordered_multimap<std::uint64_t, std::size_t> begins;
+    auto const key = [](geometry::Point const& p, int dx, int dy) {
+      return key_of(std::llround(p.x() / joint_) + dx, std::llround(p.y() / joint_) + dy);
+    };
+    for (std::size_t i = 0; i < marks.size(); ++i) begins.emplace(key(marks[i].points.front(), 0, 0), i);
+    std::vector<bool> is_taken(marks.size(), false), has_before(marks.size(), false);
+    std::vector<std::size_t> next(marks.size(), marks.size());
+    for (std::size_t i = 0; i < marks.size(); ++i) {
+      auto const& end = marks[i].points.back();
+      for (int dx = -1; dx <= 1; ++dx)
+        for (int dy = -1; dy <= 1; ++dy) {
+          auto const [first, last] = begins.equal_range(key(end, dx, dy));
+          for (auto at = first; at != last; ++at) {
+            auto const j = at->second;
+            bool const fits = j != i && !has_before[j] && next[i] == marks.size() && marks[j].style == marks[i].style &&
+                              (marks[j].points.front() - end).norm() < joint_;
+            if (fits) next[i] = j, has_before[j] = true;
+          }
+        }
+    }
+    std::vector<LaneMark> result;
+    auto const follow = [&](std::size_t i) {
+      if (is_taken[i]) return;
+      result.push_back({marks[i].style, {}});
+      for (; i < marks.size() && !is_taken[i]; i = next[i]) {
+        is_taken[i] = true;
+        auto& points = result.back().points;
+        points.insert(points.end(), marks[i].points.begin() + (points.empty() ? 0 : 1), marks[i].points.end());
+      }
+    };
+    for (std::size_t i = 0; i < marks.size(); ++i)
+      if (!has_before[i]) follow(i);
+    for (std::size_t i = 0; i < marks.size(); ++i) follow(i);  // rings have no begin
+    return result;
+  }
+
   static constexpr double cell_ = 4.0;   // [m] of the look-up grid
   static constexpr double near_ = 0.3;   // [m] within which two borders are one
   static constexpr double piece_ = 3.0;  // [m] longest piece
+  static constexpr double joint_ = 0.1;  // [m] within which a mark goes on in the next
 
   struct Piece {
     geometry::Point from, to;
@@ -186,7 +226,7 @@ class LaneMarker {
                     .border = border,
                     .thin = false};
         piece.thin = distance_to_line(0.5 * (piece.from + piece.to), opposite) < 1.5 * near_;
-        if (!piece.thin) insert(piece);
+        insert(piece);
         pieces_.push_back(piece);
       }
     }
@@ -208,6 +248,7 @@ class LaneMarker {
       Piece const& other = pieces_[index];
       if (other.lane == piece.lane || distance_to_segment(middle, other.from, other.to) > near_) continue;
       touching.push_back(other.lane);
+      if (other.thin) continue;  // a lane without width borders on nothing
       double const same_way = other.travel.dot(piece.travel);
       if (std::abs(same_way) < 0.95) continue;
       if (other.lane < piece.lane) return MarkStyle::hidden;
