@@ -18,8 +18,9 @@ void draw(std::string const& file, std::string const& out, double width) {
   for (auto const& road : map->roads()) length += road.length;
   cambium::Recording recording;
   recording.lanes = cambium::recorded_lanes(*map);
-  recording.title = std::filesystem::path(file).filename().string() + ": " + std::to_string(map->roads().size()) +
-                    " roads, " + std::to_string(map->lanes().size()) + " lanes, " +
+  auto const roads = map->roads().size();
+  recording.title = std::filesystem::path(file).filename().string() + ": " + std::to_string(roads) +
+                    (roads == 1 ? " road, " : " roads, ") + std::to_string(map->lanes().size()) + " lanes, " +
                     std::to_string(static_cast<int>(length)) + " m";
   cambium::write_svg_picture(out, recording, {.width = width});
   std::cout << out << "  " << recording.title << "\n";

@@ -4,20 +4,18 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
-#include <cstdlib>
 #include <fstream>
 #include <functional>
 #include <iterator>
 #include <map>
 #include <optional>
 #include <string>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include <regex.h>
 #include <unistd.h>
 
+#include <CLI/CLI.hpp>
 #include <benchmark/benchmark.h>
 
 #include "measure.hpp"
@@ -137,122 +135,80 @@ class JsonReporter : public benchmark::JSONReporter {
   bool failed_ = false;
 };
 
-inline constexpr char const* benchmark_help =
-    "usage: %s [options]\n"
-    "  --filter REGEX     only benchmarks whose name contains a match\n"
-    "  --list             print the names and stop\n"
-    "  --json FILE        write Google Benchmark's JSON\n"
-    "  --repetitions N    of each benchmark, shuffled among the others (default 7)\n"
-    "  --min-time S       least time of one repetition in seconds (default 0.05)\n"
-    "  --help             this text\n"
-    "Times are CPU time of one thread. best: minimum of the repetitions, of a rate the maximum.\n"
-    "Options that start with --benchmark_ go to Google Benchmark.\n";
-
 struct Options {
   std::string filter = ".";
   std::string json;
-  std::string repetitions = "7";
-  std::string min_time = "0.05";
+  int repetitions = 7;
+  double min_time = 0.05;
   bool list = false;
-  bool help = false;
-  std::vector<std::string> passed;
-  std::string mistake;  // what is wrong with the options, empty when nothing
 };
 
-// Is `text` a number from `low` to `high`, with nothing behind it?
-[[nodiscard]] inline bool is_number(std::string const& text, double low, double high, bool whole) {
-  char* end = nullptr;
-  double const value = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0' || !(value >= low && value <= high)) return false;
-  return !whole || text.find_first_not_of("0123456789") == std::string::npos;
-}
-
-[[nodiscard]] inline bool is_regex(std::string const& text) {
+[[nodiscard]] inline std::string regex_mistake(std::string const& text) {
   regex_t pattern;
-  if (regcomp(&pattern, text.c_str(), REG_EXTENDED | REG_NOSUB) != 0) return false;
+  if (regcomp(&pattern, text.c_str(), REG_EXTENDED | REG_NOSUB) != 0) return "'" + text + "' is no regular expression";
   regfree(&pattern);
-  return true;
-}
-
-[[nodiscard]] inline std::string mistake_in(Options const& options) {
-  if (!is_number(options.repetitions, 1, 1000, true)) return "--repetitions: give a whole number from 1 to 1000";
-  if (!is_number(options.min_time, 1e-4, 100, false)) return "--min-time: give seconds from 0.0001 to 100";
-  if (!is_regex(options.filter)) return "--filter: '" + options.filter + "' is not a regular expression";
-  if (options.json.empty() || options.list) return "";
-  // Opened without truncation: a run that stops before its end leaves an older file alone.
-  if (!std::ofstream(options.json, std::ios::app)) return "--json: cannot write '" + options.json + "'";
   return "";
 }
 
-[[nodiscard]] inline Options parse(int argc, char** argv) {
-  Options options;
-  std::map<std::string_view, std::string*> const values{{"--filter", &options.filter},
-                                                        {"--json", &options.json},
-                                                        {"--repetitions", &options.repetitions},
-                                                        {"--min-time", &options.min_time}};
-  for (int i = 1; i < argc; ++i) {
-    std::string_view const option = argv[i];
-    auto const equals = std::min(option.find('='), option.size());
-    auto const target = values.find(option.substr(0, equals));
-    if (option == "--help" || option == "-h") {
-      options.help = true;
-      return options;
-    }
-    if (option == "--list") {
-      options.list = true;
-    } else if (option.substr(0, 12) == "--benchmark_") {
-      options.passed.emplace_back(option);
-    } else if (target == values.end()) {
-      options.mistake = "unknown option '" + std::string(option) + "'; --help lists the options";
-      return options;
-    } else if (equals + 1 < option.size()) {
-      *target->second = option.substr(equals + 1);
-    } else if (equals == option.size() && i + 1 < argc) {
-      *target->second = argv[++i];
-    } else {
-      options.mistake = std::string(option) + ": needs a value; --help lists the options";
-      return options;
-    }
-  }
-  options.mistake = mistake_in(options);
-  return options;
+// Opened without truncation: a run that stops before its end leaves an older file alone.
+[[nodiscard]] inline std::string file_mistake(std::string const& path) {
+  return std::ofstream(path, std::ios::app) ? "" : "cannot write '" + path + "'";
 }
 
-// Hands the options to the library in its own words; true when it took them all.
-[[nodiscard]] inline bool initialize(char* program, Options const& options) {
-  std::vector<std::string> words{"--benchmark_repetitions=" + options.repetitions,
-                                 "--benchmark_min_time=" + options.min_time, "--benchmark_filter=" + options.filter,
-                                 "--benchmark_enable_random_interleaving=true"};
+inline void describe(CLI::App& program, Options& options) {
+  program.add_option("--filter", options.filter, "only benchmarks whose name contains a match")
+      ->type_name("REGEX")
+      ->check(CLI::Validator(regex_mistake, ""));
+  program.add_option("--json", options.json, "write Google Benchmark's JSON")
+      ->type_name("FILE")
+      ->check(CLI::Validator(file_mistake, ""));
+  program.add_option("--repetitions", options.repetitions, "of each benchmark, shuffled among the others")
+      ->check(CLI::Range(1, 1000))
+      ->capture_default_str();
+  program.add_option("--min-time", options.min_time, "least time of one repetition [s]")
+      ->check(CLI::Range(1e-4, 100.0))
+      ->capture_default_str();
+  program.add_flag("--list", options.list, "print the names and stop");
+  program.footer("Times are CPU time of one thread. best: minimum of the repetitions, of a rate the maximum.");
+}
+
+// Hands the options to the library in its own words.
+inline void initialize(char* program, Options const& options) {
+  std::vector<std::string> words{"--benchmark_repetitions=" + std::to_string(options.repetitions),
+                                 "--benchmark_min_time=" + std::to_string(options.min_time),
+                                 "--benchmark_filter=" + options.filter, "--benchmark_enable_random_interleaving=true"};
   if (options.list) words.emplace_back("--benchmark_list_tests=true");
   if (!options.json.empty() && !options.list) {
     words.push_back("--benchmark_out=" + options.json);
     words.emplace_back("--benchmark_out_format=json");
   }
-  words.insert(words.end(), options.passed.begin(), options.passed.end());
   std::vector<char*> arguments{program};
   for (auto& word : words) arguments.push_back(word.data());
   int count = static_cast<int>(arguments.size());
   arguments.push_back(nullptr);
   benchmark::Initialize(&count, arguments.data());
-  if (count > 1) std::fprintf(stderr, "%s: Google Benchmark does not know '%s'\n", program, arguments[1]);
-  return count == 1;
 }
 
 }  // namespace detail
 
 /// Runs the registered benchmarks, prints the table and calls `afterwards` with the results (for ratios, say).
 /// Returns the exit code: 0; 1 when a benchmark failed; 2 for wrong options, in one line on the standard error.
-inline int run_benchmarks(int argc, char** argv, std::function<void(Results const&)> const& afterwards = {}) {
-  detail::Options const options = detail::parse(argc, argv);
-  if (options.help) {
-    std::printf(detail::benchmark_help, argv[0]);
+inline int run_benchmarks(int argc, char** argv, std::string const& purpose,
+                          std::function<void(Results const&)> const& afterwards) {
+  detail::Options options;
+  CLI::App program(purpose, argv[0]);
+  detail::describe(program, options);
+  try {
+    program.parse(argc, argv);
+  } catch (CLI::CallForHelp const&) {
+    std::printf("%s", program.help().c_str());
     return 0;
-  }
-  if (!options.mistake.empty()) {
-    std::fprintf(stderr, "%s: %s\n", argv[0], options.mistake.c_str());
+  } catch (CLI::ParseError const& mistake) {
+    std::fprintf(stderr, "%s: %s\n", argv[0], mistake.what());
     return 2;
   }
-  if (!detail::initialize(argv[0], options)) return 2;
+  detail::initialize(argv[0], options);
+  if (!options.list && isatty(STDERR_FILENO) == 0) std::fprintf(stderr, "measuring, which takes a minute or two\n");
   TableReporter table;
   detail::JsonReporter json;
   bool const has_file = !options.json.empty() && !options.list;
@@ -264,7 +220,7 @@ inline int run_benchmarks(int argc, char** argv, std::function<void(Results cons
     std::fprintf(stderr, "%s: --json: cannot write all of '%s'\n", argv[0], options.json.c_str());
     return 2;
   }
-  if (!options.list && afterwards) afterwards(table.results());
+  if (!options.list) afterwards(table.results());
   return table.failed() ? 1 : 0;
 }
 
