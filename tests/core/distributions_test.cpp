@@ -188,6 +188,7 @@ TEST_CASE("bad parameters are refused before the first draw, with the key, the v
   CHECK_THROWS_AS(check_parameters(Normal{0.0, infinity}), ParameterError);
   CHECK_THROWS_AS(check_parameters(Exponential{0.0}), ParameterError);
   CHECK_THROWS_AS(check_parameters(Uniform{0.0, infinity}), ParameterError);
+  CHECK_THROWS_AS(check_parameters(Uniform{-1.5e308, 1.5e308}), ParameterError);
   CHECK_THROWS_WITH_AS(check_parameters(Uniform{3.0, 1.0}), "uniform: has high = 1 below low = 3; swap the two ends",
                        ParameterError);
   CHECK_THROWS_AS(Discrete(std::span<double const>{}), ParameterError);

@@ -128,9 +128,10 @@ struct Uniform {
     return std::make_tuple(parameter("low", &Uniform::low, "-", any_finite, "Lower end."),
                            parameter("high", &Uniform::high, "-", any_finite, "Upper end, not below the lower one."));
   }
-  /// Throws `ParameterError` unless `low` <= `high`; called by `check_parameters`.
+  /// Throws `ParameterError` unless `low` <= `high` with a finite difference; called by `check_parameters`.
   void check(std::string const& where) const {
-    if (low <= high) return;
+    if (low <= high && std::isfinite(high - low)) return;
+    if (low <= high) throw ParameterError(where, "is wider than a double can be", "bring the two ends closer");
     throw ParameterError(where, "has high = " + detail::number_text(high) + " below low = " + detail::number_text(low),
                          "swap the two ends");
   }

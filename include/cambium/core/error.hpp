@@ -3,13 +3,14 @@
 #include <cstdio>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace cambium {
 
 namespace detail {
 
 /// A number for messages: six digits, no trailing zeros.
-[[nodiscard]] inline std::string number_text(double value) {
+[[nodiscard]] inline std::string rounded_text(double value) {
   char text[32];
   std::snprintf(text, sizeof text, "%.6g", value);
   return text;

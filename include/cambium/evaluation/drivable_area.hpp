@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 
 #include "cambium/core/ids.hpp"
 #include "cambium/geometry/oriented_box.hpp"

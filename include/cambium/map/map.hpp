@@ -120,7 +120,7 @@ class Map {
   [[nodiscard]] LaneId find_lane(std::string_view name, double s, int number) const {
     auto const& road = find_road(name);
     double const inside = s <= road.length + 1e-3 ? std::min(s, road.length) : s;  // lengths are often written rounded
-    std::string const where = "road " + std::string(name) + ", s " + cambium::detail::number_text(s);
+    std::string const where = "road " + std::string(name) + ", s " + cambium::detail::rounded_text(s);
     for (auto const& section : road.sections) {
       if (inside < section.begin || inside > section.end) continue;
       if (inside == section.end && &section != &road.sections.back()) continue;
@@ -128,7 +128,8 @@ class Map {
         if (lane.number == number && is_valid(lane.id)) return lane.id;
       throw MapError(where, "there is no lane " + std::to_string(number), "see Map::roads for those it has");
     }
-    throw MapError(where, "the road is " + cambium::detail::number_text(road.length) + " m long", "give a place on it");
+    throw MapError(where, "the road is " + cambium::detail::rounded_text(road.length) + " m long",
+                   "give a place on it");
   }
 
   /// Name of a lane for messages: "road 12, section 0, lane -1".

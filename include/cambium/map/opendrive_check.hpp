@@ -20,7 +20,7 @@
 namespace cambium::map {
 namespace detail {
 
-using cambium::detail::number_text;
+using cambium::detail::rounded_text;
 
 /// Looks at what single elements cannot show: double ids, links that lead nowhere, lengths that contradict each other.
 class DocumentCheck {
@@ -77,13 +77,13 @@ class DocumentCheck {
       report(Severity::warning, road.line, "road", ids, "the length is missing or negative; the geometries' counts");
     else if (std::abs(road.length - length) > 1e-3)
       report(Severity::warning, road.line, "road", ids,
-             "the length is " + number_text(road.length) + " m, but the geometries end at " + number_text(length) +
+             "the length is " + rounded_text(road.length) + " m, but the geometries end at " + rounded_text(length) +
                  " m; theirs counts");
     for (std::size_t i = 1; i < road.geometries.size(); ++i) {
       double const gap = road.geometries[i].s - road.geometries[i - 1].s - road.geometries[i - 1].length;
       if (std::abs(gap) > 1e-3)
         report(Severity::warning, road.geometry_lines[i], "geometry", ids,
-               "s is " + number_text(gap) + " m behind the end of the geometry before; both are kept as written");
+               "s is " + rounded_text(gap) + " m behind the end of the geometry before; both are kept as written");
     }
   }
 
@@ -100,7 +100,7 @@ class DocumentCheck {
       if (gap <= noticeable && turn <= noticeable) continue;
       bool const is_lost = gap > bearable;
       report(is_lost ? Severity::error : Severity::warning, road.geometry_lines[i], "geometry", "road " + road.id,
-             "it starts " + number_text(gap) + " m and " + number_text(turn) +
+             "it starts " + rounded_text(gap) + " m and " + rounded_text(turn) +
                  " rad off the end of the geometry before" + (is_lost ? "; the road was left out" : ""));
       if (is_lost) return false;
     }
@@ -118,7 +118,7 @@ class DocumentCheck {
         double const lowest = leave_out_wild(lane.widths, end - section.s, lane.line, "width", of);
         if (lowest < -1e-3)
           report(Severity::warning, lane.line, "lane", of,
-                 "its width falls to " + number_text(lowest) + " m; below 0 it counts as 0");
+                 "its width falls to " + rounded_text(lowest) + " m; below 0 it counts as 0");
       }
     }
   }
@@ -137,8 +137,8 @@ class DocumentCheck {
         kept.push_back(records[i]);
       } else {
         report(Severity::error, line, element, ids,
-               "the record at " + number_text(records[i].s) + " m reaches " + number_text(high > largest ? high : low) +
-                   " m; it was left out");
+               "the record at " + rounded_text(records[i].s) + " m reaches " +
+                   rounded_text(high > largest ? high : low) + " m; it was left out");
       }
     }
     records = std::move(kept);
@@ -150,18 +150,18 @@ class DocumentCheck {
     while (road.lane_sections.size() > 1 && road.lane_sections.back().s > road.geometry_length() + 1e-9) {
       opendrive::LaneSection const& last = road.lane_sections.back();
       report(Severity::warning, last.line, "laneSection", ids,
-             "the section starts at " + number_text(last.s) + " m, behind the road's end; it was left out");
+             "the section starts at " + rounded_text(last.s) + " m, behind the road's end; it was left out");
       road.lane_sections.pop_back();
     }
     for (opendrive::LaneSection& section : road.lane_sections) {
       if (section.s >= 0.0) break;
       report(Severity::warning, section.line, "laneSection", ids,
-             "the section starts at " + number_text(section.s) + " m; it counts from the road's start on");
+             "the section starts at " + rounded_text(section.s) + " m; it counts from the road's start on");
       section.s = 0.0;
     }
     if (road.lane_sections.front().s > 0.0)
       report(Severity::warning, road.lane_sections.front().line, "laneSection", ids,
-             "the first section starts at " + number_text(road.lane_sections.front().s) +
+             "the first section starts at " + rounded_text(road.lane_sections.front().s) +
                  " m, the road has no lanes before");
     for (std::size_t i = 0; i + 1 < road.lane_sections.size(); ++i)
       check_lane_links(road.lane_sections[i], road.lane_sections[i + 1], ids, i);

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "cambium/map/map.hpp"
 #include "cambium/viewer/recording.hpp"

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "cambium/behavior/behavior_set.hpp"
 #include "cambium/core/random.hpp"
