@@ -9,19 +9,14 @@
 #include <utility>
 #include <vector>
 
+#include "cambium/geometry/polygon.hpp"
 #include "cambium/viewer/recording.hpp"
 
 namespace cambium::detail {
 
 using PointList = std::vector<geometry::Point>;
 
-/// Distance [m] of `p` from the segment `a`-`b`.
-inline double distance_to_segment(geometry::Point const& p, geometry::Point const& a, geometry::Point const& b) {
-  geometry::Point const d = b - a;
-  double const square = d.squaredNorm();
-  double const t = square > 0.0 ? std::clamp((p - a).dot(d) / square, 0.0, 1.0) : 0.0;
-  return (a + t * d - p).norm();
-}
+using geometry::distance_to_segment;
 
 /// Distance [m] of `p` from a polyline of at least one point. O(points).
 inline double distance_to_line(geometry::Point const& p, PointList const& line) {
