@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "../map/corpus.hpp"
+#include "../support/corpus.hpp"
 #include "../world/fixtures.hpp"
 
 using namespace fixtures;
@@ -65,11 +65,9 @@ Sim world_at(std::shared_ptr<cb::Map const> const& map, std::vector<Row> const& 
 }  // namespace
 
 TEST_CASE("IDM with BARK's sub-steps reproduces BARK's highway traffic to 1e-9") {
-  auto const rows = read_rows(corpus::opendrive_folder().parent_path() / "oracle" / "bark" / "bark_idm_highway.csv");
-  if (rows.empty()) {
-    MESSAGE("skipped: no corpus");
-    return;
-  }
+  auto const file = corpus::find("oracle/bark/bark_idm_highway.csv");
+  if (!file) return;
+  auto const rows = read_rows(*file);
   auto const map = straight_road(2, 1000.0);
   int compared = 0, lost_leaders = 0;
   double worst = 0;

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "../map/corpus.hpp"
+#include "../support/corpus.hpp"
 #include "../viewer/browser.hpp"
 
 namespace {
@@ -176,10 +176,7 @@ TEST_CASE("so it does on the corpus' maps of real merges") {
   for (std::string const name : {"DR_DEU_Merging_MT_v01_shifted.xodr", "DR_DEU_Merging_MT_v01_centered.xodr",
                                  "DR_CHN_Merging_ZS_partial_v02.xodr"}) {
     CAPTURE(name);
-    if (auto const map = corpus::opendrive_folder() / name; fs::exists(map))
-      check_same_on_any_threads(program, {"--map", map.string()});
-    else
-      MESSAGE("skipped: there is no corpus with " << name);
+    if (auto const map = corpus::find("opendrive/" + name)) check_same_on_any_threads(program, {"--map", map->string()});
   }
 }
 

@@ -2,9 +2,6 @@
 
 #include <cmath>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -13,27 +10,17 @@
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/geometry/oriented_box.hpp"
+#include "../support/corpus.hpp"
 
 using namespace cambium;
 using namespace cambium::geometry;
 
 namespace {
 
-/// A file of the corpus, as rows of cells without the header; empty where the corpus is absent.
+/// A table of BARK's results; empty where there is no corpus.
 std::vector<std::vector<std::string>> read_table(std::string const& name) {
-  char const* folder = std::getenv("CAMBIUM_CORPUS");
-  std::filesystem::path const corpus = folder != nullptr ? folder : CAMBIUM_SOURCE_DIR "/../shared";
-  std::ifstream file(corpus / "oracle" / "bark" / name);
-  std::vector<std::vector<std::string>> rows;
-  std::string line, cell;
-  std::getline(file, line);
-  while (std::getline(file, line)) {
-    std::istringstream cells(line);
-    rows.emplace_back();
-    while (std::getline(cells, cell, ',')) rows.back().push_back(cell);
-  }
-  if (rows.empty()) MESSAGE("skipped: no corpus with oracle/bark/", name);
-  return rows;
+  auto const file = corpus::find("oracle/bark/" + name);
+  return file ? corpus::table(*file) : std::vector<std::vector<std::string>>{};
 }
 
 double number(std::string const& cell) { return std::strtod(cell.c_str(), nullptr); }

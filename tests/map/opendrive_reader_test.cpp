@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cambium/map/opendrive_reader.hpp"
-#include "corpus.hpp"
+#include "../support/corpus.hpp"
 
 namespace {
 
@@ -358,11 +358,9 @@ TEST_CASE("a truncated or mutilated file never does worse than an error") {
 }
 
 TEST_CASE("every map of the corpus is read, or refused for a geometry that comes later") {
-  auto const maps = corpus::maps(corpus::opendrive_folder());
-  if (maps.empty()) {
-    MESSAGE("skipped: no corpus in " << corpus::opendrive_folder());
-    return;
-  }
+  auto const folder = corpus::find("opendrive");
+  if (!folder) return;
+  auto const maps = corpus::maps(*folder);
   CHECK(maps.size() == 28);
   std::size_t roads = 0;
   int refused = 0;

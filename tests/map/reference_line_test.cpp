@@ -9,7 +9,7 @@
 
 #include "cambium/map/opendrive_reader.hpp"
 #include "cambium/map/reference_line.hpp"
-#include "corpus.hpp"
+#include "../support/corpus.hpp"
 
 namespace {
 
@@ -70,11 +70,9 @@ Comparison compare_with_oracle(std::filesystem::path const& map) {
 }  // namespace
 
 TEST_CASE("reference lines agree with the oracle on every line, arc and spiral of the corpus") {
-  auto const maps = corpus::maps(corpus::opendrive_folder());
-  if (maps.empty()) {
-    MESSAGE("skipped: no corpus in " << corpus::opendrive_folder());
-    return;
-  }
+  auto const folder = corpus::find("opendrive");
+  if (!folder) return;
+  auto const maps = corpus::maps(*folder);
   int rows = 0;
   for (auto const& map : maps) {
     Comparison c;

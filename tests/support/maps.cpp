@@ -1,10 +1,9 @@
 #include "maps.hpp"
 
-#include <cstdlib>
-#include <filesystem>
 #include <sstream>
 
 #include "cambium/map/opendrive.hpp"
+#include "corpus.hpp"
 
 namespace support {
 
@@ -31,11 +30,8 @@ std::shared_ptr<cambium::Map const> own_map(std::string const& name) {
 }
 
 std::shared_ptr<cambium::Map const> corpus_map(std::string const& name) {
-  char const* const set = std::getenv("CAMBIUM_CORPUS");
-  std::filesystem::path const root =
-      set != nullptr ? std::filesystem::path(set) : std::filesystem::path(CAMBIUM_SOURCE_DIR) / ".." / "shared";
-  auto const file = root / "opendrive" / name;
-  return std::filesystem::exists(file) ? cambium::load_opendrive(file.string()).map : nullptr;
+  auto const file = corpus::find("opendrive/" + name);
+  return file ? cambium::load_opendrive(file->string()).map : nullptr;
 }
 
 }  // namespace support

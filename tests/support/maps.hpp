@@ -17,7 +17,7 @@ std::shared_ptr<cambium::Map const> own_map(std::string const& name);
 /// The map of an OpenDRIVE text.
 std::shared_ptr<cambium::Map const> map_of(std::string const& text);
 
-/// The map of an OpenDRIVE file of the corpus; null where there is none.
+/// The map of an OpenDRIVE file of the corpus; null where there is no corpus (see `corpus::find`).
 std::shared_ptr<cambium::Map const> corpus_map(std::string const& name);
 
 }  // namespace support

@@ -5,18 +5,35 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <vector>
 
+#include <doctest/doctest.h>
+
 /// Where the tests find maps: the project's own, and the public ones of the corpus (which may be absent).
 namespace corpus {
 
-inline std::filesystem::path opendrive_folder() {
-  char const* const set = std::getenv("CAMBIUM_CORPUS");
-  std::filesystem::path const root =
-      set ? std::filesystem::path(set) : std::filesystem::path(CAMBIUM_SOURCE_DIR) / ".." / "shared";
-  return root / "opendrive";
+/// The corpus' folder: CAMBIUM_CORPUS, else `shared` beside the checkout; nothing where neither is there.
+inline std::optional<std::filesystem::path> root() {
+  if (char const* const set = std::getenv("CAMBIUM_CORPUS"); set != nullptr && *set != '\0') return set;
+  auto const beside = std::filesystem::path(CAMBIUM_SOURCE_DIR) / ".." / "shared";
+  if (std::filesystem::exists(beside / "opendrive")) return beside;
+  return std::nullopt;
+}
+
+/// A file or folder of the corpus, such as "opendrive/Town04.xodr". Where there is no corpus, says that the test is
+/// skipped and returns nothing; where there is one, but without that file, ends the test as failed.
+inline std::optional<std::filesystem::path> find(std::string const& name) {
+  auto const folder = root();
+  if (!folder) {
+    MESSAGE("skipped: there is no corpus with " << name << "; CAMBIUM_CORPUS is not set");
+    return std::nullopt;
+  }
+  auto const file = *folder / name;
+  if (!std::filesystem::exists(file)) FAIL("the corpus in " << folder->string() << " has no " << name);
+  return file;
 }
 
 /// The .xodr files of a folder in the order of their names; empty when it is not there.
