@@ -17,6 +17,7 @@ namespace cb = cambium;
 using Sim = cb::World<cb::BehaviorSet<cb::IdmClassic, cb::ConstantAcceleration, cb::ExternalInput>,
                       cb::InterpolateExecution, cb::SingleTrack>;
 
+using support::corpus_map;
 using support::own_map;
 using support::straight_road;
 
