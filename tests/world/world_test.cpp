@@ -3,8 +3,11 @@
 #include <doctest/doctest.h>
 
 #include <limits>
+#include <memory>
+#include <optional>
 #include <string>
 
+#include "cambium/core/distributions.hpp"
 #include "fixtures.hpp"
 
 using namespace fixtures;
@@ -320,4 +323,84 @@ TEST_CASE("a prediction shows what the observer expects, whatever the others rea
   CHECK(future.state(other).speed == doctest::Approx(10.0));
   CHECK(future.state(ego).speed == doctest::Approx(11.0));
   CHECK(world.state(other).speed == doctest::Approx(8.0));
+}
+
+namespace {
+
+/// Has not begun; keeps the gaps that it sees meanwhile.
+struct Latecomer {
+  struct Memory {
+    double front = 0.0, rear = 0.0;
+    friend bool operator==(Memory const&, Memory const&) = default;
+  };
+
+  template <class View>
+  [[nodiscard]] cb::Plan<View> plan(View const& view, Memory& memory, double) const {
+    auto const front = view.front(), rear = view.rear();
+    memory = {front ? front->gap : -1e9, rear ? rear->gap : -1e9};
+    cb::Plan<View> plan;
+    plan.status = cb::PlanStatus::not_started;
+    return plan;
+  }
+};
+
+bool same(std::optional<cb::Neighbor> const& a, std::optional<cb::Neighbor> const& b) {
+  if (!a || !b) return !a && !b;
+  return a->agent == b->agent && a->gap == b->gap && a->speed == b->speed;
+}
+
+}  // namespace
+
+TEST_CASE("who has not started sees its neighbours as if it drove, and is seen by nobody") {
+  using Late = cb::World<cb::BehaviorSet<cb::IdmClassic, Latecomer>, cb::InterpolateExecution, cb::SingleTrack>;
+  auto const map = own_map("merging.xodr");
+  int seen_by_it = 0, would_see_it = 0;
+  for (std::uint32_t seed = 0; seed < 200; ++seed) {
+    Late world(map, {.seed = seed});
+    cb::RandomStream random(seed, 7, 0);
+    for (std::uint32_t i = 0; i < 12; ++i) {
+      auto const& lane = map->lanes()[static_cast<std::size_t>(cb::uniform01(random) * 0.999 *
+                                                               static_cast<double>(map->lanes().size()))];
+      if (!lane.drivable()) continue;
+      auto const pose = lane.path.pose(cb::uniform01(random) * lane.length());
+      Late::AgentSpec spec{.position = pose.position(), .heading = pose.heading, .speed = 15 * cb::uniform01(random)};
+      if (i % 4 == 0) spec.behavior = Latecomer{};
+      world.add(spec);
+    }
+    world.step(0.2);
+    auto const late = [&](cb::AgentId id) { return world.status(id) == cb::AgentStatus::not_started; };
+    for (auto const& agent : world.roster().agents) {
+      auto const view = world.observe(agent.id);
+      for (std::uint16_t k = 0; k < agent.road->corridors.size(); ++k)
+        for (auto const& neighbor : {view.front(k), view.rear(k)})
+          if (neighbor) CHECK_FALSE(late(neighbor->agent));
+      view.for_each_other([&](auto const& other) { CHECK_FALSE(late(other.id)); });
+      if (!late(agent.id)) continue;
+      // The same world but for this agent, which drives.
+      auto frame = world.frame();
+      frame.agents[world.slot_of(agent.id)].status = cb::AgentStatus::driving;
+      Late driven(map, std::make_shared<Late::RosterType>(world.roster()), frame);
+      auto const truth = driven.observe(agent.id);
+      for (std::uint16_t k = 0; k < agent.road->corridors.size(); ++k) {
+        CHECK(same(view.front(k), truth.front(k)));
+        CHECK(same(view.rear(k), truth.rear(k)));
+      }
+      seen_by_it += truth.front().has_value() + truth.rear().has_value();
+      for (auto const& other : world.roster().agents) {
+        auto const front = driven.observe(other.id).front();
+        would_see_it += front && front->agent == agent.id;
+      }
+      CHECK(view.predict(cb::predict_all_as<Sim::Behaviors>(cb::IdmClassic{})).roster().slot_of(agent.id) ==
+            std::nullopt);
+      // Its behaviour is shown in a step what the view shows.
+      auto const expected =
+          Latecomer::Memory{truth.front() ? truth.front()->gap : -1e9, truth.rear() ? truth.rear()->gap : -1e9};
+      Late next = world;
+      next.step(0.2);
+      CHECK(next.memory<Latecomer>(agent.id) == expected);
+      CHECK(late(agent.id));
+    }
+  }
+  CHECK(seen_by_it > 200);
+  CHECK(would_see_it > 100);
 }
