@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <tuple>
 
 #include "cambium/behavior/idm_classic.hpp"
 #include "cambium/core/distributions.hpp"
@@ -117,4 +118,59 @@ TEST_CASE("a follower stops behind a standing leader, stands, and starts again w
     v = m.speed;
   }
   CHECK(v > 1.0);
+}
+
+namespace {
+
+/// A value of the range: mostly anywhere in it by its logarithm, now and then an end of it.
+double any_in(cb::Range range, cb::RandomStream& random) {
+  double const u = cb::uniform01(random);
+  if (u < 0.08) return range.low;
+  if (u < 0.16) return range.high;
+  double const v = cb::uniform01(random);
+  if (range.low > 0) return range.low * std::pow(range.high / range.low, v);
+  return range.low + (range.high - range.low) * (u < 0.5 ? v : range.low < 0 ? 1 - v * v * v : v * v * v);
+}
+
+}  // namespace
+
+TEST_CASE("whatever the parameters, the speeds and the gap, the motion is finite, forward and within its bounds") {
+  cb::RandomStream random(31, 0, 0);
+  double const infinite = std::numeric_limits<double>::infinity();
+  int bounded = 0;
+  for (int i = 0; i < 20000; ++i) {
+    cb::IdmClassic p;
+    std::apply([&](auto const&... entry) { ((p.*entry.field = any_in(entry.range, random)), ...); },
+               cb::idm_parameters<cb::IdmClassic>());
+    p.tolerance = any_in({1e-8, 1}, random);
+    REQUIRE_NOTHROW(cb::check_parameters(p));
+    double const speed = any_in({0, 60}, random), leader = any_in({0, 60}, random);
+    double const gap = i % 6 == 0 ? infinite : any_in({-10, 500}, random), dt = any_in({1e-3, 10}, random);
+    CAPTURE(cb::to_string(p));
+    CAPTURE(speed);
+    CAPTURE(gap);
+    CAPTURE(leader);
+    CAPTURE(dt);
+    auto const motion = cb::idm_motion(p, speed, gap, leader, dt, p.tolerance);
+    REQUIRE(std::isfinite(motion.distance));
+    REQUIRE(std::isfinite(motion.speed));
+    CHECK(motion.speed >= 0.0);
+    CHECK(motion.distance >= 0.0);
+    double const a = cb::idm_acceleration(p, speed, gap, leader);
+    CHECK(a >= p.lowest_acceleration);
+    CHECK(a <= p.highest_acceleration);
+    if (p.exponent < 1) continue;  // free-road terms of infinite slope at rest
+    double const strongest = std::min(p.maximum_acceleration, p.highest_acceleration);
+    double const highest_speed = speed + strongest * dt;
+    CHECK(motion.speed <= highest_speed * (1 + 1e-12));
+    CHECK(motion.distance <= dt * highest_speed * (1 + 1e-12));
+    if (p.exponent <= 20 && p.lowest_acceleration <= -0.1) {
+      // Nobody accelerates beyond the desired speed, but for the error that the tolerance and the shortest step allow.
+      double const fastest = std::max(speed, p.desired_speed) + p.tolerance * dt + 1e-3 * strongest;
+      CHECK(motion.speed <= fastest);
+      CHECK(motion.distance <= dt * fastest);
+      ++bounded;
+    }
+  }
+  CHECK(bounded > 2000);
 }

@@ -1,0 +1,144 @@
+// IDM's mathematics with other numbers than double: float, and one that carries a derivative along.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <compare>
+#include <limits>
+#include <type_traits>
+
+// Where it mixes the parameters' doubles with float, idm.hpp narrows: that is what float asks for.
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wconversion"
+#pragma GCC diagnostic ignored "-Wfloat-conversion"
+#pragma GCC diagnostic ignored "-Wnarrowing"
+#include "cambium/behavior/idm.hpp"
+#include "cambium/behavior/idm_classic.hpp"
+#pragma GCC diagnostic pop
+#include "cambium/core/distributions.hpp"
+
+namespace cb = cambium;
+
+namespace dual_number {
+
+/// A number with its derivative: forward-mode automatic differentiation.
+struct Dual {
+  double v = 0.0, d = 0.0;
+
+  Dual() = default;
+  Dual(double value, double derivative = 0.0) : v(value), d(derivative) {}
+
+  Dual& operator+=(Dual const& o) { return *this = {v + o.v, d + o.d}; }
+  Dual& operator-=(Dual const& o) { return *this = {v - o.v, d - o.d}; }
+  friend Dual operator+(Dual const& a, Dual const& b) { return {a.v + b.v, a.d + b.d}; }
+  friend Dual operator-(Dual const& a, Dual const& b) { return {a.v - b.v, a.d - b.d}; }
+  friend Dual operator-(Dual const& a) { return {-a.v, -a.d}; }
+  friend Dual operator*(Dual const& a, Dual const& b) { return {a.v * b.v, a.d * b.v + a.v * b.d}; }
+  friend Dual operator/(Dual const& a, Dual const& b) {
+    return {a.v / b.v, std::isinf(b.v) ? 0.0 : (a.d - a.v / b.v * b.d) / b.v};
+  }
+  friend auto operator<=>(Dual const& a, Dual const& b) { return a.v <=> b.v; }
+  friend bool operator==(Dual const& a, Dual const& b) { return a.v == b.v; }
+  friend Dual pow(Dual const& x, Dual const& p) { return {std::pow(x.v, p.v), p.v * std::pow(x.v, p.v - 1) * x.d}; }
+  friend Dual abs(Dual const& x) { return x.v < 0 ? -x : x; }
+};
+
+}  // namespace dual_number
+
+namespace {
+
+using dual_number::Dual;
+
+double between(double low, double high, cb::RandomStream& random) { return low + (high - low) * cb::uniform01(random); }
+
+/// A follower at random: moderate numbers.
+struct Case {
+  cb::IdmClassic p;
+  double speed, gap, leader_speed;
+
+  explicit Case(cb::RandomStream& random)
+      : speed(between(0.5, 30, random)), gap(between(2, 150, random)), leader_speed(between(0, 30, random)) {
+    p.desired_speed = between(5, 40, random);
+    p.time_headway = between(0.5, 2.5, random);
+    p.maximum_acceleration = between(0.5, 3, random);
+    p.exponent = cb::uniform01(random) < 0.5 ? 4.0 : between(1, 8, random);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("with float IDM gives what it gives with double, to float's accuracy") {
+  cb::RandomStream random(21, 0, 0);
+  double worst_acceleration = 0, worst_speed = 0, worst_distance = 0;
+  for (int i = 0; i < 20000; ++i) {
+    Case const c(random);
+    auto const speed = static_cast<float>(c.speed), gap = static_cast<float>(c.gap),
+               leader = static_cast<float>(c.leader_speed);
+    auto const a = cb::idm_acceleration(c.p, speed, gap, leader);
+    static_assert(std::is_same_v<decltype(a), float const>);
+    double const exact = cb::idm_acceleration(c.p, double{speed}, double{gap}, double{leader});
+    // The terms that are subtracted may be far larger than what is left.
+    double const scale = 1.0 + std::pow(speed / c.p.desired_speed, c.p.exponent) +
+                         std::pow(cb::idm_desired_gap(c.p, c.speed, c.leader_speed) / c.gap, 2);
+    worst_acceleration = std::max(worst_acceleration, std::abs(a - exact) / scale);
+    auto const motion = cb::idm_motion(c.p, speed, gap, leader, 0.2, 1e-4);
+    auto const twin = cb::idm_motion(c.p, double{speed}, double{gap}, double{leader}, 0.2, 1e-4);
+    worst_speed = std::max(worst_speed, std::abs(motion.speed - twin.speed));
+    worst_distance = std::max(worst_distance, std::abs(motion.distance - twin.distance));
+  }
+  MESSAGE("largest differences: " << worst_acceleration << " of the largest term, " << worst_speed << " m/s, "
+                                  << worst_distance << " m");
+  CHECK(worst_acceleration < 5e-6);
+  CHECK(worst_speed < 1e-3);  // another step length now and then: the tolerance is 1e-4 m/s per s
+  CHECK(worst_distance < 2e-4);
+}
+
+TEST_CASE("with dual numbers IDM gives the acceleration's derivatives") {
+  cb::RandomStream random(22, 0, 0);
+  int compared = 0;
+  for (int i = 0; i < 20000; ++i) {
+    Case const c(random);
+    auto const acceleration = [&](double speed, double gap, double leader) {
+      return cb::idm_acceleration(c.p, speed, gap, leader);
+    };
+    double const h = 1e-5, a = acceleration(c.speed, c.gap, c.leader_speed);
+    double const dynamic = cb::idm_desired_gap(c.p, c.speed, c.leader_speed) - c.p.minimum_gap;
+    if (a < c.p.lowest_acceleration + 0.01 || a > c.p.highest_acceleration - 0.01 || dynamic < 0.01) continue;  // kinks
+    double const by_gap =
+        (acceleration(c.speed, c.gap + h, c.leader_speed) - acceleration(c.speed, c.gap - h, c.leader_speed)) / (2 * h);
+    double const by_speed =
+        (acceleration(c.speed + h, c.gap, c.leader_speed) - acceleration(c.speed - h, c.gap, c.leader_speed)) / (2 * h);
+    double const by_leader =
+        (acceleration(c.speed, c.gap, c.leader_speed + h) - acceleration(c.speed, c.gap, c.leader_speed - h)) / (2 * h);
+    auto const gap = cb::idm_acceleration(c.p, Dual(c.speed), Dual(c.gap, 1.0), Dual(c.leader_speed));
+    auto const speed = cb::idm_acceleration(c.p, Dual(c.speed, 1.0), Dual(c.gap), Dual(c.leader_speed));
+    auto const leader = cb::idm_acceleration(c.p, Dual(c.speed), Dual(c.gap), Dual(c.leader_speed, 1.0));
+    CHECK(gap.v == doctest::Approx(a).epsilon(1e-12));
+    CHECK(std::abs(gap.d - by_gap) < 1e-5);
+    CHECK(std::abs(speed.d - by_speed) < 1e-5);
+    CHECK(std::abs(leader.d - by_leader) < 1e-5);
+    ++compared;
+  }
+  CHECK(compared > 5000);
+  auto const free =
+      cb::idm_acceleration(cb::IdmClassic{}, Dual(10.0, 1.0), Dual(std::numeric_limits<double>::infinity()), Dual(0.0));
+  CHECK(free.d == doctest::Approx(-1.7 * 4 * std::pow(10.0 / 15, 3) / 15));
+}
+
+TEST_CASE("with dual numbers IDM's motion is that of double, and tells how it depends on its start") {
+  cb::RandomStream random(23, 0, 0);
+  int compared = 0;
+  for (int i = 0; i < 3000; ++i) {
+    Case const c(random);
+    auto const motion = [&](double gap) { return cb::idm_motion(c.p, c.speed, gap, c.leader_speed, 0.2, 1e-6); };
+    auto const dual = cb::idm_motion(c.p, Dual(c.speed), Dual(c.gap, 1.0), Dual(c.leader_speed), 0.2, 1e-6);
+    auto const twin = motion(c.gap);
+    CHECK(dual.distance.v == doctest::Approx(twin.distance).epsilon(1e-12));
+    CHECK(dual.speed.v == doctest::Approx(twin.speed).epsilon(1e-12));
+    double const a = cb::idm_acceleration(c.p, c.speed, c.gap, c.leader_speed), h = 1e-3;
+    if (a < -4 || c.speed < 2) continue;  // it may stop, or meet a bound
+    CHECK(dual.speed.d == doctest::Approx((motion(c.gap + h).speed - motion(c.gap - h).speed) / (2 * h)).epsilon(0.02));
+    ++compared;
+  }
+  CHECK(compared > 1000);
+}
