@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "../world/fixtures.hpp"
 #include "cambium/core/distributions.hpp"
@@ -102,6 +104,102 @@ TEST_CASE("on a narrow bend the border of the road is met where it is") {
   auto const count = compare(map, 2000, 0.15);
   CHECK(count.off > 100);
   CHECK(count.on > 100);
+}
+
+namespace {
+
+/// A road of one lane, 3.5 m wide: 40 m straight on, arcs of that length and those curvatures, 40 m straight on.
+std::shared_ptr<cb::Map const> bends(std::vector<double> const& curvatures, double length) {
+  std::ostringstream geometries;
+  geometries.precision(17);
+  double s = 0, x = 0, y = 0, heading = 0;
+  auto const add = [&](double curvature, double part) {
+    geometries << "<geometry s=\"" << s << "\" x=\"" << x << "\" y=\"" << y << "\" hdg=\"" << heading << "\" length=\""
+               << part << "\">";
+    if (curvature == 0.0)
+      geometries << "<line/></geometry>";
+    else
+      geometries << "<arc curvature=\"" << curvature << "\"/></geometry>";
+    double const middle = heading + curvature * part / 2;
+    double const chord = curvature == 0.0 ? part : 2 / curvature * std::sin(curvature * part / 2);
+    s += part;
+    x += chord * std::cos(middle);
+    y += chord * std::sin(middle);
+    heading += curvature * part;
+  };
+  add(0.0, 40.0);
+  for (double const curvature : curvatures) add(curvature, length);
+  add(0.0, 40.0);
+  return support::map_of(
+      "<OpenDRIVE><header revMajor=\"1\" revMinor=\"6\"/><road id=\"1\" junction=\"-1\" length=\"" + std::to_string(s) +
+      "\"><planView>" + geometries.str() +
+      "</planView><lanes><laneOffset s=\"0\" a=\"1.75\" b=\"0\" c=\"0\" d=\"0\"/><laneSection s=\"0\"><center><lane "
+      "id=\"0\" "
+      "type=\"none\"/></center><right><lane id=\"-1\" type=\"driving\"><width sOffset=\"0\" a=\"3.5\" b=\"0\" c=\"0\" "
+      "d=\"0\"/></lane></right></laneSection></lanes></road></OpenDRIVE>");
+}
+
+/// Vehicles of all sizes at random along such a road.
+Count compare_on_bends(std::vector<double> const& curvatures, double length, std::uint32_t seed) {
+  auto const map = bends(curvatures, length);
+  auto const& path = map->lanes()[0].path;
+  Count count;
+  cb::RandomStream random(seed, 1, 0);
+  for (auto const& shape : {cb::geometry::car(), cb::geometry::van(), cb::geometry::truck(), cb::geometry::bus(),
+                            cb::geometry::articulated_truck()}) {
+    Sim world(map);
+    auto const id = world.add({.position = path.pose(20).position(), .shape = shape});
+    for (int k = 0; k < 200; ++k) {
+      auto const pose = path.pose(between(18, path.length() - 18, random));
+      auto const at = cb::geometry::to_map(pose, {0.0, k % 2 == 0 ? 0.0 : between(-0.8, 0.8, random)});
+      double const turn = k % 3 == 0 ? 0.0 : between(-0.1, 0.1, random);
+      world.set_state(id, {.x = at.x(), .y = at.y(), .heading = pose.heading + turn, .speed = 5});
+      bool const off = cb::DrivableArea{id}.evaluate(world).off_road;
+      CAPTURE(curvatures[0]);
+      CAPTURE(curvatures.size());
+      CAPTURE(length);
+      CAPTURE(shape.front);
+      CAPTURE(world.record(id).lane.s);
+      CAPTURE(world.record(id).lane.lateral);
+      CAPTURE(world.record(id).lane.heading_error);
+      CHECK(off == look(world, id).off);
+      (off ? count.off : count.on) += 1;
+    }
+  }
+  return count;
+}
+
+}  // namespace
+
+TEST_CASE("a truck that enters a tight bend along its lane leaves the road with its front, a car does not") {
+  for (double const side : {1.0, -1.0}) {
+    auto const map = bends({side / 12.0}, 15.0);
+    for (bool const truck : {true, false}) {
+      Sim world(map);
+      auto const id =
+          world.add({.position = {38, 0}, .speed = 5, .shape = truck ? cb::geometry::truck() : cb::geometry::car()});
+      CHECK(world.record(id).lane.lateral == doctest::Approx(0.0));
+      CHECK(world.record(id).lane.heading_error == doctest::Approx(0.0));
+      CHECK(cb::DrivableArea{id}.evaluate(world).off_road == truck);
+      CHECK(look(world, id).off == truck);
+      world.set_state(id, {.x = 20, .y = 0, .speed = 5});  // well before
+      CHECK_FALSE(cb::DrivableArea{id}.evaluate(world).off_road);
+    }
+  }
+}
+
+TEST_CASE("on bends of any radius the road is where the map says, for vehicles of any size") {
+  Count count;
+  cb::RandomStream random(8, 0, 0);
+  for (std::uint32_t i = 0; i < 60; ++i) {
+    double const radius = 6.0 * std::pow(30.0, cb::uniform01(random)), side = i % 2 == 0 ? 1.0 : -1.0;
+    auto const some = compare_on_bends({side / radius}, std::min(40.0, 2.5 * radius), i);
+    count.off += some.off;
+    count.on += some.on;
+  }
+  MESSAGE(count.off << " off the road, " << count.on << " on it");
+  CHECK(count.off > 5000);
+  CHECK(count.on > 5000);
 }
 
 TEST_CASE("a vehicle that crosses from lane to lane stays on the road, one that crosses its border does not") {
