@@ -3,51 +3,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <compare>
 #include <limits>
 #include <type_traits>
 
-// Where it mixes the parameters' doubles with float, idm.hpp narrows: that is what float asks for.
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wconversion"
-#pragma GCC diagnostic ignored "-Wfloat-conversion"
-#pragma GCC diagnostic ignored "-Wnarrowing"
 #include "cambium/behavior/idm.hpp"
 #include "cambium/behavior/idm_classic.hpp"
-#pragma GCC diagnostic pop
 #include "cambium/core/distributions.hpp"
+
+#include "../support/dual.hpp"
 
 namespace cb = cambium;
 
-namespace dual_number {
-
-/// A number with its derivative: forward-mode automatic differentiation.
-struct Dual {
-  double v = 0.0, d = 0.0;
-
-  Dual() = default;
-  Dual(double value, double derivative = 0.0) : v(value), d(derivative) {}
-
-  Dual& operator+=(Dual const& o) { return *this = {v + o.v, d + o.d}; }
-  Dual& operator-=(Dual const& o) { return *this = {v - o.v, d - o.d}; }
-  friend Dual operator+(Dual const& a, Dual const& b) { return {a.v + b.v, a.d + b.d}; }
-  friend Dual operator-(Dual const& a, Dual const& b) { return {a.v - b.v, a.d - b.d}; }
-  friend Dual operator-(Dual const& a) { return {-a.v, -a.d}; }
-  friend Dual operator*(Dual const& a, Dual const& b) { return {a.v * b.v, a.d * b.v + a.v * b.d}; }
-  friend Dual operator/(Dual const& a, Dual const& b) {
-    return {a.v / b.v, std::isinf(b.v) ? 0.0 : (a.d - a.v / b.v * b.d) / b.v};
-  }
-  friend auto operator<=>(Dual const& a, Dual const& b) { return a.v <=> b.v; }
-  friend bool operator==(Dual const& a, Dual const& b) { return a.v == b.v; }
-  friend Dual pow(Dual const& x, Dual const& p) { return {std::pow(x.v, p.v), p.v * std::pow(x.v, p.v - 1) * x.d}; }
-  friend Dual abs(Dual const& x) { return x.v < 0 ? -x : x; }
-};
-
-}  // namespace dual_number
-
 namespace {
 
-using dual_number::Dual;
+using support::Dual;
 
 double between(double low, double high, cb::RandomStream& random) { return low + (high - low) * cb::uniform01(random); }
 

@@ -4,9 +4,12 @@
 
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "cambium/core/error.hpp"
 #include "cambium/dynamics/integration.hpp"
+
+#include "../support/dual.hpp"
 
 namespace cb = cambium;
 
@@ -91,4 +94,33 @@ TEST_CASE("inputs are brought within what the vehicle can do") {
 TEST_CASE("a vehicle without wheel base is refused by name") {
   CHECK_THROWS_WITH_AS(cb::check_parameters(cb::SingleTrack{.wheel_base = 0.0}), doctest::Contains("wheel_base"),
                        cb::ParameterError);
+}
+
+TEST_CASE("with float and with dual numbers a step is that of double, and tells how it depends on its input") {
+  cb::SingleTrack const model;
+  for (double const steering : {-0.4, -0.01, 0.0, 0.2, 0.5})
+    for (double const acceleration : {-3.0, 0.0, 2.0}) {
+      cb::State const x{.x = 3, .y = -2, .heading = 0.7, .speed = 8};
+      auto const after = [&](double turn) { return cb::rk4_step(model, x, {acceleration, turn}, 0.2); };
+      auto const exact = after(steering);
+
+      cb::BasicState<float> const small{0.0f, 3.0f, -2.0f, 0.7f, 8.0f};
+      cb::SingleTrackInput<float> const input{static_cast<float>(acceleration), static_cast<float>(steering)};
+      auto const rounded = cb::rk4_step(model, small, input, 0.2);
+      static_assert(std::is_same_v<decltype(rounded.x), float>);
+      CHECK(std::abs(rounded.x - exact.x) < 1e-5);
+      CHECK(std::abs(rounded.y - exact.y) < 1e-5);
+      CHECK(std::abs(rounded.heading - exact.heading) < 1e-6);
+      CHECK(std::abs(cb::euler_step(model, small, input, 0.2).speed - exact.speed) < 1e-5);
+
+      using support::Dual;
+      cb::BasicState<Dual> const start{Dual(0.0), Dual(3.0), Dual(-2.0), Dual(0.7), Dual(8.0)};
+      auto const dual =
+          cb::rk4_step(model, start, cb::SingleTrackInput<Dual>{Dual(acceleration), Dual(steering, 1.0)}, 0.2);
+      auto const high = after(steering + 1e-5), low = after(steering - 1e-5);
+      CHECK(dual.x.v == doctest::Approx(exact.x).epsilon(1e-14));
+      CHECK(dual.x.d == doctest::Approx((high.x - low.x) / 2e-5).epsilon(1e-6));
+      CHECK(dual.y.d == doctest::Approx((high.y - low.y) / 2e-5).epsilon(1e-6));
+      CHECK(dual.heading.d == doctest::Approx((high.heading - low.heading) / 2e-5).epsilon(1e-6));
+    }
 }

@@ -242,3 +242,17 @@ TEST_CASE("the road of an agent that is not there is an error") {
   Sim const world(straight_road(1, 100));
   CHECK_THROWS_AS((void)cb::DrivableArea{static_cast<cb::AgentId>(5)}.evaluate(world), cb::WorldError);
 }
+
+TEST_CASE("where a bend is followed by one to the other side, too") {
+  Count count;
+  cb::RandomStream random(9, 0, 0);
+  for (std::uint32_t i = 0; i < 60; ++i) {
+    double const radius = 8.0 * std::pow(12.0, cb::uniform01(random)), side = i % 2 == 0 ? 1.0 : -1.0;
+    auto const some = compare_on_bends({side / radius, -side / radius}, between(3, 10, random), i);
+    count.off += some.off;
+    count.on += some.on;
+  }
+  MESSAGE(count.off << " off the road, " << count.on << " on it");
+  CHECK(count.off > 5000);
+  CHECK(count.on > 5000);
+}

@@ -34,7 +34,7 @@ template <class P>
                 "acceleration from rest on a free road"),
       parameter("comfortable_deceleration", &P::comfortable_deceleration, "m/s^2", Range{0.01, 20},
                 "braking that the driver finds normal"),
-      parameter("exponent", &P::exponent, "-", Range{0.1, 100},
+      parameter("exponent", &P::exponent, "-", Range{1, 100},
                 "how late the acceleration falls off towards the desired speed"),
       parameter("lowest_acceleration", &P::lowest_acceleration, "m/s^2", Range{-50, 0}, "hardest braking"),
       parameter("highest_acceleration", &P::highest_acceleration, "m/s^2", Range{0, 50},
@@ -54,8 +54,9 @@ template <class Scalar>
 template <HasIdmParameters P, class Scalar>
 [[nodiscard]] Scalar idm_desired_gap(P const& p, Scalar speed, Scalar leader_speed) {
   using std::max;
-  double const inverse = 0.5 / std::sqrt(p.maximum_acceleration * p.comfortable_deceleration);
-  return Scalar(p.minimum_gap) + max(Scalar(0), Scalar(speed * (p.time_headway + (speed - leader_speed) * inverse)));
+  auto const inverse = Scalar(0.5 / std::sqrt(p.maximum_acceleration * p.comfortable_deceleration));
+  Scalar const dynamic = speed * (Scalar(p.time_headway) + (speed - leader_speed) * inverse);
+  return Scalar(p.minimum_gap) + max(Scalar(0), dynamic);
 }
 
 /// Acceleration [m/s^2] of a follower (Treiber, Hennecke, Helbing 2000, eq. 3), within the parameters' bounds. `gap`
@@ -64,8 +65,8 @@ template <HasIdmParameters P, class Scalar>
 [[nodiscard]] Scalar idm_acceleration(P const& p, Scalar speed, Scalar gap, Scalar leader_speed) {
   if (!(gap > Scalar(0))) return Scalar(p.lowest_acceleration);
   Scalar const closeness = idm_desired_gap(p, speed, leader_speed) / gap;
-  Scalar const a =
-      p.maximum_acceleration * (1.0 - idm_power(Scalar(speed / p.desired_speed), p.exponent) - closeness * closeness);
+  Scalar const free = idm_power(speed / Scalar(p.desired_speed), p.exponent);
+  Scalar const a = Scalar(p.maximum_acceleration) * (Scalar(1) - free - closeness * closeness);
   using std::max;
   using std::min;
   return min(max(a, Scalar(p.lowest_acceleration)), Scalar(p.highest_acceleration));
@@ -96,28 +97,28 @@ class IdmStep {
  public:
   template <HasIdmParameters P>
   IdmStep(P const& p, Scalar leader_speed)
-      : inverse_desired_speed_(1.0 / p.desired_speed),
-        headway_(p.time_headway),
-        closing_(0.5 / std::sqrt(p.maximum_acceleration * p.comfortable_deceleration)),
-        minimum_gap_(p.minimum_gap),
-        maximum_(p.maximum_acceleration),
-        low_(p.lowest_acceleration),
-        high_(p.highest_acceleration),
+      : inverse_desired_speed_(Scalar(1.0 / p.desired_speed)),
+        headway_(Scalar(p.time_headway)),
+        closing_(Scalar(0.5 / std::sqrt(p.maximum_acceleration * p.comfortable_deceleration))),
+        minimum_gap_(Scalar(p.minimum_gap)),
+        maximum_(Scalar(p.maximum_acceleration)),
+        low_(Scalar(p.lowest_acceleration)),
+        high_(Scalar(p.highest_acceleration)),
         leader_speed_(leader_speed),
         exponent_(p.exponent) {}
 
   [[nodiscard]] IdmResponse<Scalar> operator()(Scalar speed, Scalar gap) const {
-    Scalar const inverse_gap = 1.0 / gap;
+    Scalar const inverse_gap = Scalar(1) / gap;
     Scalar const dynamic = speed * (headway_ + (speed - leader_speed_) * closing_);
     bool const interacts = dynamic > Scalar(0);
     Scalar const closeness = (minimum_gap_ + (interacts ? dynamic : Scalar(0))) * inverse_gap;
     auto const [free, free_slope] = free_road(speed * inverse_desired_speed_);
-    Scalar const wanted = maximum_ * ((1.0 - free) - closeness * closeness);
+    Scalar const wanted = maximum_ * ((Scalar(1) - free) - closeness * closeness);
     if (!(gap > Scalar(0)) || !(wanted > low_)) return {low_, Scalar(0), true};
     if (wanted >= high_) return {high_, Scalar(0), true};
-    Scalar const dynamic_slope = interacts ? headway_ + (2.0 * speed - leader_speed_) * closing_ : Scalar(0);
-    Scalar const by_speed = free_slope * inverse_desired_speed_ + 2.0 * closeness * inverse_gap * dynamic_slope;
-    Scalar const by_gap = 2.0 * closeness * closeness * inverse_gap;
+    Scalar const dynamic_slope = interacts ? headway_ + (Scalar(2) * speed - leader_speed_) * closing_ : Scalar(0);
+    Scalar const by_speed = free_slope * inverse_desired_speed_ + Scalar(2) * closeness * inverse_gap * dynamic_slope;
+    Scalar const by_gap = Scalar(2) * closeness * closeness * inverse_gap;
     return {wanted, maximum_ * (by_gap * (leader_speed_ - speed) - by_speed * wanted), false};
   }
 
@@ -130,10 +131,10 @@ class IdmStep {
   [[nodiscard]] FreeRoad free_road(Scalar x) const {
     if (exponent_ == 4.0) {
       Scalar const square = x * x;
-      return {square * square, 4.0 * square * x};
+      return {square * square, Scalar(4) * square * x};
     }
     Scalar const power = idm_power(x, exponent_);
-    return {power, x > Scalar(0) ? Scalar(exponent_ * power / x) : Scalar(0)};
+    return {power, x > Scalar(0) ? Scalar(exponent_) * power / x : Scalar(0)};
   }
 
   Scalar inverse_desired_speed_, headway_, closing_, minimum_gap_, maximum_, low_, high_, leader_speed_;
@@ -153,47 +154,50 @@ template <HasIdmParameters P, class Scalar>
                                                     double dt, double tolerance) {
   using std::abs;
   using std::min;
-  constexpr double shortest = 1e-3,
-                   longest = 0.25;  // [s] of a step: shorter is never needed, longer might step over something
-  double const largest_square = 4.0 * tolerance;  // of the third-order term
+  // [s] of a step: shorter is never needed, longer might step over something.
+  constexpr double shortest = 1e-3, longest = 0.25;
+  auto const largest_square = Scalar(4.0 * tolerance);  // of the third-order term
+  auto const highest = min(Scalar(p.maximum_acceleration), Scalar(p.highest_acceleration));
   auto const square = [](Scalar x) { return x * x; };
   detail::IdmStep<Scalar> const response(p, leader_speed);
   LongitudinalMotion<Scalar> motion{Scalar(0), speed};
-  double left = dt, h = dt < longest ? dt : longest;
+  double left = dt, step = dt < longest ? dt : longest;
   while (true) {
     Scalar const v = motion.speed;
     auto const [a1, j1, bounded1] = response(v, gap);
     bool const stands = v <= Scalar(0) && a1 <= Scalar(0);
     while (true) {
-      Scalar const middle_speed = v + h / 2 * a1 + h * h / 8 * j1;
-      Scalar const middle_gap = gap + h / 2 * (leader_speed - v) - h * h / 8 * a1;
+      auto const h = Scalar(step), half = Scalar(step / 2), third_part = Scalar(step / 3), sixth = Scalar(step / 6),
+                 eighth = Scalar(step * step / 8);
+      Scalar const middle_speed = v + half * a1 + eighth * j1;
+      Scalar const middle_gap = gap + half * (leader_speed - v) - eighth * a1;
       auto const [a2, j2, bounded2] =
-          response(stands ? Scalar(0) : middle_speed, stands ? gap + h / 2 * leader_speed : middle_gap);
-      Scalar const third = h / 3 * (j2 - j1);
-      Scalar next_speed = v + h * (a1 + h / 2 * j1 + third);
-      Scalar distance = h * (v + h / 6 * (a1 + 2.0 * a2));
+          response(stands ? Scalar(0) : middle_speed, stands ? gap + half * leader_speed : middle_gap);
+      Scalar const third = third_part * (j2 - j1);
+      Scalar next_speed = min(Scalar(v + h * (a1 + half * j1 + third)), Scalar(v + h * highest));
+      Scalar distance = min(Scalar(h * (v + sixth * (a1 + Scalar(2) * a2))), Scalar(h * (v + half * highest)));
       bool const stops = stands || next_speed < Scalar(0) || middle_speed < Scalar(0);
       if (stops) {  // constant deceleration until it stands
-        distance = stands ? Scalar(0) : min(Scalar(h * v), Scalar(v * v / (2.0 * abs(a1))));
+        distance = stands ? Scalar(0) : min(Scalar(h * v), Scalar(v * v / (Scalar(2) * abs(a1))));
         next_speed = Scalar(0);
       }
-      bool accurate = stops ? v <= Scalar(tolerance) && a2 <= Scalar(0) : square(third) <= Scalar(largest_square);
+      bool accurate = stops ? v <= Scalar(tolerance) && a2 <= Scalar(0) : square(third) <= largest_square;
       Scalar const expected = a1 + h * j2;  // at the end, with a jerk that changes evenly
       if (accurate && (bounded1 || bounded2 || expected < Scalar(p.lowest_acceleration)))
-        accurate = square(response(next_speed, gap + h * leader_speed - distance).acceleration - expected) <=
-                   Scalar(largest_square);
-      if (!accurate && h > shortest) {
-        h /= 2;
+        accurate =
+            square(response(next_speed, gap + h * leader_speed - distance).acceleration - expected) <= largest_square;
+      if (!accurate && step > shortest) {
+        step /= 2;
         continue;
       }
       motion.distance += distance;
       motion.speed = next_speed;
       gap += h * leader_speed - distance;
-      left -= h;
+      left -= step;
       break;
     }
     if (left <= dt * 1e-12) return motion;
-    h = std::min({2 * h, longest, left});
+    step = std::min({2 * step, longest, left});
   }
 }
 

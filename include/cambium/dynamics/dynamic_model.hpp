@@ -17,12 +17,13 @@ concept DynamicModel = std::copyable<M> && MotionState<typename M::State> && std
   { add_scaled(x, x, h) } -> std::same_as<typename M::State>;
 };
 
-/// `state + h * derivative`, field by field.
+/// `state + h * derivative`, field by field; `h` in [s].
 template <class Scalar>
 [[nodiscard]] BasicState<Scalar> add_scaled(BasicState<Scalar> const& state, BasicState<Scalar> const& derivative,
-                                            Scalar h) {
-  return {state.time + h * derivative.time, state.x + h * derivative.x, state.y + h * derivative.y,
-          state.heading + h * derivative.heading, state.speed + h * derivative.speed};
+                                            double h) {
+  auto const s = Scalar(h);
+  return {state.time + s * derivative.time, state.x + s * derivative.x, state.y + s * derivative.y,
+          state.heading + s * derivative.heading, state.speed + s * derivative.speed};
 }
 
 }  // namespace cambium

@@ -4,17 +4,16 @@
 
 namespace cambium {
 
-/// One explicit Euler step over `dt` [s] under a constant input: order 1.
-template <class Model>
-[[nodiscard]] typename Model::State euler_step(Model const& model, typename Model::State const& x,
-                                               typename Model::Input const& u, double dt) {
+/// One explicit Euler step over `dt` [s] under a constant input: order 1. State and input may be of any scalar that the
+/// model takes.
+template <class Model, class State = typename Model::State, class Input = typename Model::Input>
+[[nodiscard]] State euler_step(Model const& model, State const& x, Input const& u, double dt) {
   return add_scaled(x, model.derivative(x, u), dt);
 }
 
 /// One classical Runge-Kutta step over `dt` [s] under a constant input: order 4.
-template <class Model>
-[[nodiscard]] typename Model::State rk4_step(Model const& model, typename Model::State const& x,
-                                             typename Model::Input const& u, double dt) {
+template <class Model, class State = typename Model::State, class Input = typename Model::Input>
+[[nodiscard]] State rk4_step(Model const& model, State const& x, Input const& u, double dt) {
   auto const k1 = model.derivative(x, u);
   auto const k2 = model.derivative(add_scaled(x, k1, dt / 2), u);
   auto const k3 = model.derivative(add_scaled(x, k2, dt / 2), u);

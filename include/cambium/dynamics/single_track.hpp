@@ -3,21 +3,26 @@
 #include <algorithm>
 #include <cmath>
 #include <tuple>
+#include <type_traits>
 
 #include "cambium/core/parameters.hpp"
 #include "cambium/dynamics/dynamic_model.hpp"
 
 namespace cambium {
 
+/// What a driver does over a step.
+template <class Scalar>
+struct SingleTrackInput {
+  Scalar acceleration{};  ///< [m/s^2]
+  Scalar steering{};      ///< steering angle of the front axle, left positive [rad]
+};
+
 /// Kinematic single-track ("bicycle") model about the centre of the rear axle (Rajamani 2012, Vehicle Dynamics and
 /// Control, section 2.2, with the reference point at the rear): x' = v cos(heading), y' = v sin(heading), heading' = v
 /// tan(steering) / wheel base.
 struct SingleTrack {
   using State = cambium::State;
-  struct Input {
-    double acceleration{};  ///< [m/s^2]
-    double steering{};      ///< steering angle of the front axle, left positive [rad]
-  };
+  using Input = SingleTrackInput<double>;
 
   double wheel_base = 2.7;
   double steering_limit = 0.6;
@@ -35,9 +40,15 @@ struct SingleTrack {
                   "fullest throttle"));
   }
 
-  [[nodiscard]] State derivative(State const& x, Input const& u) const {
-    return {1.0, x.speed * std::cos(x.heading), x.speed * std::sin(x.heading),
-            x.speed * std::tan(u.steering) / wheel_base, u.acceleration};
+  /// Change per second, in any scalar: `double`, `float`, one that differentiates.
+  template <class Scalar>
+  [[nodiscard]] BasicState<Scalar> derivative(BasicState<Scalar> const& x,
+                                              SingleTrackInput<std::type_identity_t<Scalar>> const& u) const {
+    using std::cos;
+    using std::sin;
+    using std::tan;
+    return {Scalar(1), x.speed * cos(x.heading), x.speed * sin(x.heading),
+            x.speed * tan(u.steering) / Scalar(wheel_base), u.acceleration};
   }
 
   [[nodiscard]] Input limited(Input const& u, State const&) const {

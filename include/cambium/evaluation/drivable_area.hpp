@@ -52,7 +52,10 @@ struct DrivableArea {
     double const rear = at.s - shape.rear, front = at.s + shape.front;
     if (rear < 0 || front > corridor.length()) return false;
     double const reach = std::max(shape.front, shape.rear);
-    double const bend = std::abs(corridor.center.pose(front).heading - corridor.center.pose(rear).heading);
+    double bend = 0.0;  // all turns between rear and front, to whichever side
+    auto const segments = corridor.center.segments();
+    for (auto i = corridor.center.find(rear); i < segments.size() && segments[i].s < front; ++i)
+      bend += std::abs(segments[i].curvature) * segments[i].length;
     double const margin = (std::abs(at.heading_error) + bend) * reach + 0.1;
     auto const fits = [&](double s) {
       auto const widths = corridor.widths_at(s, corridor.center.find(s));

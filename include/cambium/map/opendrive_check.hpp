@@ -87,24 +87,38 @@ class DocumentCheck {
     }
   }
 
-  /// Reports where a geometry does not go on where the one before ends. False where it is so far off that nobody could
-  /// drive there.
+  /// Reports where a geometry does not go on where the one before ends. False where nobody could drive there: it is far
+  /// off, or what the curve does in the gap is beyond telling.
   [[nodiscard]] bool is_continuous(opendrive::Road const& road) {
     constexpr double noticeable = 0.1, bearable = 100.0;  // [m]; the first also [rad]
+    auto const lost = [&](std::size_t i, std::string const& what) {
+      report(Severity::error, road.geometry_lines[i], "geometry", "road " + road.id, what + "; the road was left out");
+      return false;
+    };
+    if (turn_beyond(road.geometries.front(), 0.0, road.geometries.front().s) > 1.0)
+      return lost(0, "the road has no geometry before " + rounded_text(road.geometries.front().s) + " m");
     for (std::size_t i = 1; i < road.geometries.size(); ++i) {
       Geometry const& before = road.geometries[i - 1];
       Geometry const& next = road.geometries[i];
+      if (turn_beyond(before, before.length, next.s - before.s - before.length) > 1.0)
+        return lost(i, "there is no geometry for " + rounded_text(next.s - before.s - before.length) + " m before it");
       CurvePoint const end = evaluate(before, before.length);
       double const gap = std::hypot(next.x - end.x, next.y - end.y);
       double const turn = std::abs(geometry::angle_difference(next.heading, end.heading));
       if (gap <= noticeable && turn <= noticeable) continue;
-      bool const is_lost = gap > bearable;
-      report(is_lost ? Severity::error : Severity::warning, road.geometry_lines[i], "geometry", "road " + road.id,
-             "it starts " + rounded_text(gap) + " m and " + rounded_text(turn) +
-                 " rad off the end of the geometry before" + (is_lost ? "; the road was left out" : ""));
-      if (is_lost) return false;
+      std::string const sentence =
+          "it starts " + rounded_text(gap) + " m and " + rounded_text(turn) + " rad off the end of the geometry before";
+      if (gap > bearable) return lost(i, sentence);
+      report(Severity::warning, road.geometry_lines[i], "geometry", "road " + road.id, sentence);
     }
     return true;
+  }
+
+  /// How far a geometry turns where it is continued for `distance` [m] from `end` (its own begin or end) [rad].
+  [[nodiscard]] static double turn_beyond(Geometry const& g, double end, double distance) {
+    double const rate = std::abs(curvature_rate(g)),
+                 curvature = std::abs(end > 0.0 ? g.curvature_end : g.curvature_start);
+    return distance > 0.0 ? distance * (curvature + 0.5 * rate * distance) : 0.0;
   }
 
   /// Leaves out records of widths and of the lane offset that are beyond any road, and reports negative widths.

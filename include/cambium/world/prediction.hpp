@@ -8,6 +8,7 @@
 
 #include "cambium/behavior/behavior_set.hpp"
 #include "cambium/core/random.hpp"
+#include "cambium/goal/goal.hpp"
 #include "cambium/map/lane_position.hpp"
 #include "cambium/observer/perfect.hpp"
 #include "cambium/world/frame.hpp"

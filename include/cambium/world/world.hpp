@@ -131,7 +131,7 @@ class World {
     if (roster_->slot_of(id))
       throw WorldError(where, "the world has an agent of that id already", "leave the id out to get a free one");
     detail::check_entering(spec, where);
-    LaneId const lane = spec.route ? detail::entering_lane(*map_, spec.position, *spec.route, where)
+    LaneId const lane = spec.route ? detail::entering_lane(*map_, spec.position, spec.heading, *spec.route, where)
                                    : detail::entering_lane(*map_, spec.position, spec.heading, where);
     auto const route = detail::entering_route(*map_, lane, spec.route, spec.goal, where);
     auto const known = roster_->corridors.find(route.lanes);

@@ -65,9 +65,9 @@ class FeederFinder {
     double const view = map_.options().merge_view;
     auto const& other = map_.lane(overlap.other);
     double const length = std::min(view, overlap.other_begin);
-    bool const is_whole = length <= 0.0 || add({other.id, other.index_begin + overlap.other_begin - length,
-                                                other.index_begin + overlap.other_begin, begin - length, begin, begin});
-    if (is_whole && length < view)
+    add({other.id, other.index_begin + overlap.other_begin - length, other.index_begin + overlap.other_begin,
+         begin - length, begin, begin});
+    if (length < view)
       add_predecessors(other.id, none<LaneId>, view - length, begin - length, begin, false);
   }
 
@@ -79,17 +79,16 @@ class FeederFinder {
       if (before == known || !previous.drivable() || (!with_own && holds(before))) continue;
       double const length = std::min(view, previous.length());
       double const index_end = previous.index_begin + previous.length();
-      bool const is_whole = add({before, index_end - length, index_end, end - length, end, free_until});
-      if (is_whole && length < view)
+      add({before, index_end - length, index_end, end - length, end, free_until});
+      if (length < view)
         add_predecessors(before, none<LaneId>, view - length, end - length, free_until, with_own);
     }
   }
 
-  /// Adds the parts of `f` that have no image yet; false where its first part has one: whatever lies behind has been
-  /// seen to.
-  bool add(Feeder const& f) {
+  /// Adds the parts of `f` that have no image yet.
+  void add(Feeder const& f) {
     constexpr double shortest = 1e-6;  // [m]
-    if (f.index_end - f.index_begin < shortest) return true;
+    if (f.index_end - f.index_begin < shortest) return;
     std::vector<Feeder> taken;
     for (auto const& other : corridor_.feeders)
       if (other.lane == f.lane && other.index_begin < f.index_end - shortest &&
@@ -107,7 +106,6 @@ class FeederFinder {
       from = std::max(from, other.index_end);
     }
     add_part(f.index_end);
-    return taken.empty() || taken.front().index_begin > f.index_begin + shortest;
   }
 
   Map const& map_;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -23,25 +25,31 @@ inline constexpr double entering_radius = 5.0;
 /// Farthest that an agent with a route may enter from the path of one of its lanes [m].
 inline constexpr double path_radius = 2.5;
 
-/// The nearest lane of `route` at `position`: a path that swings over to its neighbour counts as its own lane there.
-[[nodiscard]] inline LaneId entering_lane(Map const& map, geometry::Point const& position, map::Route const& route,
+/// The lane of `route` whose path comes nearest to `position`, a radian off `heading` counting as 3 m: a path that
+/// swings over to its neighbour counts as its own lane there. Throws `WorldError` where none comes near, or only
+/// against it.
+[[nodiscard]] inline LaneId entering_lane(Map const& map, geometry::Point const& position,
+                                          std::optional<double> heading, map::Route const& route,
                                           std::string const& where) {
   if (route.lanes.empty()) throw WorldError(where, "its route is empty", "leave the route out to get the shortest");
-  LaneId nearest = none<LaneId>;
-  double smallest = path_radius;
+  LaneId best = none<LaneId>;
+  double smallest = std::numeric_limits<double>::infinity();
   for (auto const id : route.lanes) {
     if (index_of(id) >= map.lanes().size())
       throw WorldError(where, "its route names a lane that the map does not have", "use Map::find_lane");
     auto const& lane = map.lane(id);
     auto const foot = lane.path.project(position);
     double const distance = std::hypot(foot.lateral, std::max({-foot.s, foot.s - lane.length(), 0.0}));
-    if (distance >= smallest) continue;
-    smallest = distance;
-    nearest = id;
+    double const along = lane.path.pose(foot.s).heading;
+    double const turn = heading ? std::abs(geometry::angle_difference(*heading, along)) : 0.0;
+    if (distance > path_radius || turn > geometry::pi / 2 || distance + 3.0 * turn >= smallest) continue;
+    smallest = distance + 3.0 * turn;
+    best = id;
   }
-  if (!is_valid(nearest))
-    throw WorldError(where, "no lane of its route comes within 2.5 m of its position", "begin the route there");
-  return nearest;
+  if (!is_valid(best))
+    throw WorldError(where, "no lane of its route comes within 2.5 m of its position, in its direction",
+                     "begin the route there");
+  return best;
 }
 
 /// The drivable lane at `position`; without a heading the nearest one. Throws `WorldError` where there is none.
@@ -96,13 +104,20 @@ inline constexpr double path_radius = 2.5;
 template <class Spec>
 [[nodiscard]] map::LanePosition entering_position(Map const& map, Spec const& spec, map::RoadCorridor const& road,
                                                   LaneId lane, std::string const& where) {
+  auto const holds = [lane](map::CorridorPiece const& piece) { return piece.lane == lane; };
   auto const& main = road.corridors[road.main].pieces;
-  bool const on_main = std::any_of(main.begin(), main.end(), [lane](auto const& piece) { return piece.lane == lane; });
-  auto const corridor = on_main ? road.main : road.corridor_of(lane);
-  if (corridor == map::no_corridor)
+  auto const number = std::any_of(main.begin(), main.end(), holds) ? road.main : road.corridor_of(lane);
+  if (number == map::no_corridor)
     throw WorldError(where, "its route does not hold the lane it enters in (" + map.describe(lane) + ")");
-  auto at = map::locate(road, corridor, {spec.position.x(), spec.position.y(), 0.0});
-  double const along = road.corridors[corridor].center.pose(at.s).heading;
+  // A corridor may come by the same place twice: the search begins in the lane.
+  auto const& corridor = road.corridors[number];
+  auto const piece = std::find_if(corridor.pieces.begin(), corridor.pieces.end(), holds);
+  double const in_lane = map.lane(lane).index_begin + map.lane(lane).path.project(spec.position).s;
+  map::LanePosition hint;
+  hint.piece = static_cast<std::uint16_t>(piece - corridor.pieces.begin());
+  hint.segment = corridor.center.find(std::clamp(in_lane - piece->index_offset, piece->begin, piece->end));
+  auto at = map::locate(road, number, {spec.position.x(), spec.position.y(), 0.0}, hint);
+  double const along = corridor.center.pose(at.s).heading;
   at.heading_error = spec.heading ? geometry::angle_difference(*spec.heading, along) : 0.0;
   if (std::abs(at.heading_error) > geometry::pi / 2)
     throw WorldError(where, "it heads against the direction of its lane (" + map.describe(lane) + ")",

@@ -115,7 +115,7 @@ void refresh_traffic(TrafficIndex& index, Map const& map, Roster const& roster, 
   std::vector<TrafficEntry> entries;
   for (std::uint32_t slot = 0; slot < objects.size(); ++slot) {
     std::map<LaneId, Stretch> stretches;
-    for (auto const& p : points_around(objects[slot].outline, 0.5))
+    for (auto const& p : points_around(objects[slot].outline, 0.1))
       for (auto const& hit : map.lanes_near(p, 0.0)) {
         if (!map.lane(hit.lane).drivable()) continue;
         auto& stretch = stretches[hit.lane];
