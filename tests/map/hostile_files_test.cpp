@@ -74,36 +74,20 @@ class Damage {
   }
 
   void damage_attribute(pugi::xml_node element, std::vector<pugi::xml_node> const& elements) {
+    static char const* const values[] = {"0",      "-1",  "1",      "-3.5",  "0.5",  "1e-9", "1e300",
+                                         "-1e300", "1e7", "-1e7",   "100",   "-100", "1000", "nan",
+                                         "-nan",   "inf", "-inf",   "",      "many", "1,5",  "1e999",
+                                         "2",      "-2",  "1e-300", "3.7 m", "1e4",  "1e5",  "99999999999999999999"};
     auto const count = static_cast<std::size_t>(std::distance(element.attributes_begin(), element.attributes_end()));
     if (count == 0) return;
     auto attribute = *std::next(element.attributes_begin(), static_cast<std::ptrdiff_t>(any_of(count, random_)));
-    std::string value = any_value(attribute);
+    std::string value = values[any_of(std::size(values), random_)];
     if (any_of(4, random_) == 0) {  // another element's
       auto const other = elements[any_of(elements.size(), random_)].attribute(attribute.name());
       if (other) value = other.value();
     }
     what_ += name_of(element) + "@" + attribute.name() + " " + attribute.value() + " -> " + value + "; ";
     attribute.set_value(value.c_str());
-  }
-
-  [[nodiscard]] std::string any_value(pugi::xml_attribute attribute) {
-    static char const* const no_numbers[] = {"nan", "-nan", "inf", "-inf", "", "many", "1,5", "1e999", "3.7 m"};
-    static char const* const numbers[] = {"0",    "-1",    "1",      "2",      "-2",  "-3.5", "0.5",
-                                          "1e-9", "1e300", "-1e300", "1e-300", "1e7", "-1e7", "99999999999999999999"};
-    if (any_of(3, random_) == 0) return no_numbers[any_of(std::size(no_numbers), random_)];
-    if (!shapes_roads(attribute.name())) return numbers[any_of(std::size(numbers), random_)];
-    double const factors[] = {0.0, -1.0, 0.5, 2.0};
-    std::ostringstream text;
-    text.precision(17);
-    text << attribute.as_double() * factors[any_of(std::size(factors), random_)];
-    return text.str();
-  }
-
-  /// Numbers that roads get their shape from stay in proportion.
-  [[nodiscard]] static bool shapes_roads(std::string const& name) {
-    for (auto const* other : {"a", "b", "c", "d", "s", "sOffset", "length", "curvature", "curvStart", "curvEnd"})
-      if (name == other) return true;
-    return false;
   }
 
   static void collect(pugi::xml_node node, std::vector<pugi::xml_node>& out) {
