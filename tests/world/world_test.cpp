@@ -287,6 +287,48 @@ TEST_CASE("states set from outside place the agent anew") {
   CHECK(world.state(id).x == 300);
 }
 
+TEST_CASE("a state set where the route passes twice is taken for the pass that the agent is on") {
+  // A road that crosses its own beginning: out to the east, round to the left, and back over it.
+  auto const map = support::map_of(
+      R"(<OpenDRIVE><header revMajor="1" revMinor="6"/><road id="1" junction="-1" length="435.619449">
+      <planView><geometry s="0" x="0" y="0" hdg="0" length="100"><line/></geometry>
+      <geometry s="100" x="100" y="0" hdg="0" length="235.619449"><arc curvature="0.02"/></geometry>
+      <geometry s="335.619449" x="50" y="50" hdg="4.71238898" length="100"><line/></geometry></planView>
+      <lanes><laneSection s="0"><center><lane id="0" type="none"/></center>
+      <right><lane id="-1" type="driving"><width sOffset="0" a="3.5" b="0" c="0" d="0"/></lane></right>
+      </laneSection></lanes></road></OpenDRIVE>)");
+  Sim world(map);
+  auto const id = world.add({.position = {30, -1.75}, .speed = 20, .behavior = cb::ConstantAcceleration{}});
+  double last = world.record(id).lane.s;
+  for (int i = 0; i < 95; ++i) {
+    world.step(0.2);
+    world.set_state(id, world.state(id));
+    double const s = world.record(id).lane.s;
+    CHECK(s == doctest::Approx(last + 4.0).epsilon(1e-3));
+    last = s;
+  }
+  CHECK(last > 400.0);
+}
+
+TEST_CASE("a step may be long: what lies half a circle on is found") {
+  Sim world(straight_road(1, 150, 0.08));  // radius 12.5 m
+  auto const id = world.add({.position = {0, -1.75}, .speed = 10, .behavior = cb::ConstantAcceleration{}});
+  world.step(6.0);
+  CHECK(world.record(id).lane.s == doctest::Approx(60.0).epsilon(1e-3));
+  CHECK(std::abs(world.record(id).lane.lateral) < 0.05);
+}
+
+TEST_CASE("who has left comes back into traffic by its state") {
+  Sim world(straight_road(1, 100));
+  auto const id = world.add({.position = {95, -1.75}, .speed = 20});
+  world.step(1.0);
+  REQUIRE(world.status(id) == cb::AgentStatus::left_map);
+  world.set_state(id, {.x = 20, .y = -1.75, .speed = 5});
+  CHECK(world.status(id) == cb::AgentStatus::driving);
+  world.step(1.0);
+  CHECK(world.state(id).x > 24.0);
+}
+
 TEST_CASE("goals are reached by lane and by polygon") {
   Sim world(straight_road(2));
   std::vector<cb::geometry::Point> const area{{100, -3.5}, {130, -3.5}, {130, 0}, {100, 0}};

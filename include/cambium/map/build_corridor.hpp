@@ -202,6 +202,7 @@ class LaneJoiner {
       piece.left = detail::chain_of(map, chains, chain.begin + i, map.lane(piece.lane).left_neighbor);
       piece.right = detail::chain_of(map, chains, chain.begin + i, map.lane(piece.lane).right_neighbor);
     }
+    corridor.reaches_destination = chain.has(route.lanes.back());
     detail::FeederFinder(map, corridor).find();
     road->corridors.push_back(std::move(corridor));
   }

@@ -51,6 +51,7 @@ struct LaneCorridor {
   std::vector<CorridorPiece> pieces;  ///< sorted by `begin`, gapless
   std::vector<Feeder> feeders;        ///< sorted by `begin`
   bool continues = false;             ///< the road goes on beyond the end: the corridor ends because the route does
+  bool reaches_destination = false;   ///< it holds the route's last lane
 
   [[nodiscard]] double length() const { return center.length(); }
 

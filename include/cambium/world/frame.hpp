@@ -13,6 +13,7 @@ enum class AgentStatus : std::uint8_t {
   driving,
   not_started,  ///< its behaviour has not begun
   arrived,      ///< passed the end of its route
+  off_route,    ///< passed the last place where its lane was beside the route, as at a fork; the road goes on
   left_map,     ///< passed the end of the road
   expired,      ///< its behaviour has nothing more to do
   failed,       ///< its behaviour or execution gave no valid next state; it keeps the last valid one

@@ -9,6 +9,7 @@
 #include "cambium/behavior/view.hpp"
 #include "cambium/goal/goal.hpp"
 #include "cambium/map/map.hpp"
+#include "cambium/world/detail/on_lanes.hpp"
 #include "cambium/world/frame.hpp"
 #include "cambium/world/prediction.hpp"
 #include "cambium/world/static_object.hpp"
@@ -59,7 +60,8 @@ class ObservedWorld {
   [[nodiscard]] std::span<StaticObject const> objects() const { return world_->roster().objects; }
 
   /// Numbers of the agent's own for this step: the same whatever the order of agents, threads or copies. `purpose`
-  /// below 2^31.
+  /// below
+  /// 2^31 - 1.
   [[nodiscard]] RandomStream random(std::uint32_t purpose) const {
     return {world_->roster().seed, static_cast<std::uint32_t>(id()), static_cast<std::uint32_t>(world_->frame().step),
             purpose};
@@ -111,8 +113,8 @@ class ObservedWorld {
   }
 
  private:
-  /// An agent that is not in traffic has no place in the index: it is searched for.
-  [[nodiscard]] bool in_traffic() const { return record_->status == AgentStatus::driving; }
+  /// An agent that is not on its lane has no place in the index: it is searched for.
+  [[nodiscard]] bool in_traffic() const { return world_->traffic().has(slot_); }
   [[nodiscard]] auto const& record(std::uint32_t slot) const { return world_->frame().agents[slot]; }
   [[nodiscard]] std::span<TrafficEntry const> objects_on_lanes() const { return world_->roster().object_entries; }
 
@@ -126,7 +128,7 @@ class ObservedWorld {
   }
 
   [[nodiscard]] map::LanePosition beside(std::uint16_t number) const {
-    return map::locate(road(), number, pose_of(record_->state));
+    return detail::locate_beside(map(), road(), record_->lane, number, pose_of(record_->state));
   }
 
   /// The neighbour ahead (`sign` 1) or behind (-1), as observed.

@@ -66,28 +66,36 @@ class TrafficIndex {
     return std::min(gap + 0.5 * to_merge, std::max(gap, to_merge));
   }
 
-  /// Takes in `count` agents. `entry_of(slot)` gives each one's `TrafficEntry` (position +infinity: not in traffic);
-  /// `add_straddling(entry, list)` appends entries in the lanes that it reaches into. No allocation once warm. O(count)
-  /// when little has changed.
-  template <class EntryOf, class AddStraddling>
-  void refresh(std::size_t count, EntryOf const& entry_of, AddStraddling const& add_straddling) {
+  /// Takes in `count` agents. `entry_of(slot, list)` gives each one's `TrafficEntry` (position +infinity: on no lane of
+  /// its own) and appends entries in other lanes that it is in to the list. No allocation once warm. O(count) when
+  /// little has changed.
+  template <class EntryOf>
+  void refresh(std::size_t count, EntryOf const& entry_of) {
     if (agents_.size() != count) {
       agents_.resize(count);
       rank_.resize(count);
-      straddling_.reserve(2 * count);
+      straddling_.reserve(3 * count);
       for (std::uint32_t i = 0; i < count; ++i) agents_[i].slot = i;
     }
     straddling_.clear();
     longest_front_ = longest_rear_ = 0.0;
     for (auto& entry : agents_) {
-      entry = entry_of(entry.slot);
+      entry = entry_of(entry.slot, straddling_);
       longest_front_ = std::max(longest_front_, entry.front);
       longest_rear_ = std::max(longest_rear_, entry.rear);
-      add_straddling(entry, straddling_);
+    }
+    for (auto const& entry : straddling_) {
+      longest_front_ = std::max(longest_front_, entry.front);
+      longest_rear_ = std::max(longest_rear_, entry.rear);
     }
     sort_nearly_sorted(agents_);
     std::sort(straddling_.begin(), straddling_.end());
     for (std::uint32_t i = 0; i < count; ++i) rank_[agents_[i].slot] = i;
+  }
+
+  /// Whether an agent is on a lane of its own.
+  [[nodiscard]] bool has(std::uint32_t slot) const {
+    return agents_[rank_[slot]].position < std::numeric_limits<double>::infinity();
   }
 
   /// Next ahead of the asker on `corridor`. `own`: the asker's own entry lies on this corridor's piece (saves a

@@ -107,10 +107,10 @@ class World {
 
   World& operator=(World const& other) {
     if (this == &other) return *this;
-    if (map_ != other.map_)
-      map_ = other.map_;  // the usual copy is between worlds that share both: no reference count moves
+    frame_ = other.frame_;  // first: what follows cannot fail
+    // The usual copy is between worlds that share both: no reference count moves.
+    if (map_ != other.map_) map_ = other.map_;
     if (roster_ != other.roster_) roster_ = other.roster_;
-    frame_ = other.frame_;
     scratch_ = other.scratch_;
     return *this;
   }
@@ -263,26 +263,19 @@ class World {
     return *found;
   }
 
-  /// Sets the agent's state, as a planner does with what it perceives. Throws `WorldError` (the world is unchanged)
-  /// where the agent is unknown or a number is not finite. The agent stays on its route, in the nearest of its lane
-  /// corridors.
+  /// Sets the agent's state, as a planner does with what it perceives, and puts it (back) into traffic. A negative
+  /// speed is one of reversing. Throws `WorldError` (the world is unchanged) where the agent is unknown or a number is
+  /// not finite. The agent stays on its route: where it was, if that fits, else in the lane corridor that comes
+  /// nearest.
   void set_state(AgentId id, State state) {
-    auto& record = frame_.agents[slot_of(id)];
+    auto const slot = slot_of(id);
     state.time = frame_.time;
     if (!is_finite(state)) throw WorldError("agent " + to_string(id), "its state is not a finite number");
-    auto const& road = *roster_->agents[slot_of(id)].road;
-    geometry::Pose const pose{state.x, state.y, state.heading};
-    auto const distance = [&road](map::LanePosition const& at) {
-      double const beyond = std::max({-at.s, at.s - road.corridors[at.corridor].length(), 0.0});
-      return std::hypot(at.lateral, beyond);
-    };
-    auto best = map::locate(road, record.lane.corridor, pose);
-    for (std::uint16_t i = 0; i < road.corridors.size(); ++i) {
-      auto const candidate = map::locate(road, i, pose);
-      if (distance(candidate) < distance(best) - 1e-9) best = candidate;
-    }
+    auto& record = frame_.agents[slot];
     record.state = state;
-    record.lane = best;
+    record.action = {};
+    record.status = AgentStatus::driving;
+    record.lane = detail::relocate(*roster_->agents[slot].road, record.lane, {state.x, state.y, state.heading});
     scratch_.fresh = false;
   }
 
@@ -400,7 +393,7 @@ class World {
     next.status = AgentStatus::driving;
     next.state = executed.state;
     next.action = plan.action;
-    detail::move_on_lane(*agent.road, next);
+    detail::move_on_lane(*map_, *agent.road, 0.5 * (now.state.speed + next.state.speed) * dt, next);
     if (next.status != AgentStatus::driving) ++result.left;
   }
 

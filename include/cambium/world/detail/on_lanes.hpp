@@ -20,24 +20,71 @@ namespace cambium::detail {
 /// An agent this close to its path follows it, whatever the borders do: the path of an ending lane crosses one [m].
 inline constexpr double on_path = 0.3;
 
-/// Finds the agent's new place on its road: in its lane corridor, or in the next one once it has crossed the border.
+/// The place beside `at` on lane corridor `number` of the same road, for an agent at `pose`: found from the lanes
+/// beside, for a corridor may come by the same place twice. O(lanes of the corridor).
+[[nodiscard]] inline map::LanePosition locate_beside(Map const& map, map::RoadCorridor const& road,
+                                                     map::LanePosition const& at, std::uint16_t number,
+                                                     geometry::Pose const& pose) {
+  auto const& from = road.corridors[at.corridor].pieces[at.piece];
+  auto const& corridor = road.corridors[number];
+  double const share = (at.s - from.begin) / (from.end - from.begin);
+  map::LanePosition hint;
+  for (bool const leftwards : {true, false})
+    for (LaneId lane = from.lane; is_valid(lane);
+         lane = leftwards ? map.lane(lane).left_neighbor : map.lane(lane).right_neighbor)
+      for (std::size_t i = 0; i < corridor.pieces.size(); ++i) {
+        auto const& piece = corridor.pieces[i];
+        if (piece.lane != lane) continue;
+        hint.piece = static_cast<std::uint16_t>(i);
+        hint.segment = corridor.center.find(piece.begin + share * (piece.end - piece.begin));
+        return map::locate(road, number, pose, hint);
+      }
+  return map::locate(road, number, pose);
+}
+
+/// Finds the new place of an agent that has driven `distance` [m] on its road: in its lane corridor, or in the next one
+/// once it has crossed the border.
 template <class Record>
-void move_on_lane(map::RoadCorridor const& road, Record& next) {
+void move_on_lane(Map const& map, map::RoadCorridor const& road, double distance, Record& next) {
   geometry::Pose const pose{next.state.x, next.state.y, next.state.heading};
-  next.lane = map::locate(road, next.lane.corridor, pose, next.lane);
-  auto const& corridor = road.corridors[next.lane.corridor];
-  auto const& piece = corridor.pieces[next.lane.piece];
-  if (std::abs(next.lane.lateral) > on_path) {
-    auto const widths = corridor.widths_at(next.lane.s, next.lane.segment);
-    auto const beside = next.lane.lateral > widths.left     ? piece.left
-                        : next.lane.lateral < -widths.right ? piece.right
-                                                            : map::no_corridor;
+  auto& at = next.lane;
+  if (distance > 10.0)  // a long way may bend back on itself
+    road.corridors[at.corridor].center.segment_at(at.s + distance, at.segment);
+  at = map::locate(road, at.corridor, pose, at);
+  auto const& corridor = road.corridors[at.corridor];
+  auto const& piece = corridor.pieces[at.piece];
+  if (std::abs(at.lateral) > on_path) {
+    auto const widths = corridor.widths_at(at.s, at.segment);
+    auto const beside = at.lateral > widths.left     ? piece.left
+                        : at.lateral < -widths.right ? piece.right
+                                                     : map::no_corridor;
     if (beside != map::no_corridor) {
-      next.lane = map::locate(road, beside, pose);
+      at = locate_beside(map, road, at, beside, pose);
       return;
     }
   }
-  if (next.lane.s > corridor.length()) next.status = corridor.continues ? AgentStatus::arrived : AgentStatus::left_map;
+  if (at.s <= corridor.length()) return;
+  next.status = !corridor.continues            ? AgentStatus::left_map
+                : corridor.reaches_destination ? AgentStatus::arrived
+                                               : AgentStatus::off_route;
+}
+
+/// The place of `pose` on `road` for an agent that was last at `last`: there, if that fits, else where a lane corridor
+/// comes nearest, a radian off its direction counting as 3 m.
+[[nodiscard]] inline map::LanePosition relocate(map::RoadCorridor const& road, map::LanePosition const& last,
+                                                geometry::Pose const& pose) {
+  constexpr double near = 2.0;  // [m]
+  auto const measure = [&road](map::LanePosition const& at) {
+    double const beyond = std::max({-at.s, at.s - road.corridors[at.corridor].length(), 0.0});
+    return std::hypot(at.lateral, beyond) + 3.0 * std::abs(at.heading_error);
+  };
+  auto best = map::locate(road, last.corridor, pose, last);
+  if (measure(best) < near) return best;
+  for (std::uint16_t i = 0; i < road.corridors.size(); ++i) {
+    auto const candidate = map::locate(road, i, pose);
+    if (measure(candidate) < measure(best) - 1e-9) best = candidate;
+  }
+  return best;
 }
 
 /// Cosine of an angle that is mostly small, as between a vehicle and its lane: there four terms are as good as the
@@ -48,51 +95,84 @@ void move_on_lane(map::RoadCorridor const& road, Record& next) {
   return 1.0 - square / 2 * (1.0 - square / 12 * (1.0 - square / 30));
 }
 
-/// Half the width of the widest vehicle that is within its lane wherever it follows the path [m]; where two paths come
-/// too close for that, the lanes overlap and the index knows.
-inline constexpr double usual_half_width = 1.5;
+/// An agent that follows its path is within its lane when it is no wider than twice this and stands no more aslant than
+/// that [m, rad]: where two paths come too close for it, the lanes overlap and the index knows.
+inline constexpr double usual_half_width = 1.5, usual_heading_error = 0.05;
 
-/// Adds an entry to the list for each neighbouring lane that the agent of `entry` reaches into.
+/// The entry of an agent in lane `lane`, at its foot point there: with its speed along that lane, and its reach.
 template <class Agent, class Record>
-void straddle(Map const& map, Agent const& agent, Record const& record, TrafficEntry entry,
+[[nodiscard]] TrafficEntry entry_in(map::Lane const& lane, double s, Agent const& agent, Record const& record,
+                                    TrafficEntry entry) {
+  double const turn = record.state.heading - lane.path.pose(s).heading;
+  auto const reach = geometry::extent_along(agent.shape, std::cos(turn), std::sin(turn));
+  entry.position = lane.index_begin + std::clamp(s, 0.0, lane.length());
+  entry.front = reach.positive;
+  entry.rear = reach.negative;
+  entry.speed = record.state.speed * std::cos(turn);
+  return entry;
+}
+
+/// Adds an entry to the list for each lane that the agent reaches into: the lanes beside, or where there is none of its
+/// direction, a lane of oncoming traffic. Returns false where it has left its own lane: then for the drivable lane that
+/// it is in, if there is one.
+template <class Agent, class Record>
+bool straddle(Map const& map, Agent const& agent, Record const& record, TrafficEntry const& entry,
               std::vector<TrafficEntry>& list) {
   auto const& at = record.lane;
   auto const& corridor = agent.road->corridors[at.corridor];
-  double const left = at.lateral + agent.shape.left, right = agent.shape.right - at.lateral;
-  auto const widths = corridor.widths_at(at.s, at.segment);
   auto const& lane = map.lane(corridor.pieces[at.piece].lane);
+  double const sin = std::sin(at.heading_error), cos = std::cos(at.heading_error);
+  auto const reach = geometry::extent_along(agent.shape, sin, -cos);
+  double const left = at.lateral + reach.positive, right = reach.negative - at.lateral;
+  auto const widths = corridor.widths_at(at.s, at.segment);
+  geometry::Pose const pose{record.state.x, record.state.y, record.state.heading};
+  if (-left >= widths.right || -right >= widths.left) {
+    if (auto const hit = map.nearest_lane(pose, 0.0))
+      list.push_back(entry_in(map.lane(hit->lane), hit->s, agent, record, entry));
+    return false;
+  }
   double const share = (at.index - lane.index_begin) / lane.length();
-  auto const enter = [&](LaneId beside) {
-    if (!is_valid(beside)) return;
-    auto const& other = map.lane(beside);
-    double const s = other.path.project({record.state.x, record.state.y}, other.path.find(share * other.length())).s;
-    entry.position = other.index_begin + std::clamp(s, 0.0, other.length());
-    list.push_back(entry);
+  auto const enter = [&](LaneId beside, double to_the_side) {
+    if (is_valid(beside)) {
+      auto const& other = map.lane(beside);
+      auto const foot = other.path.project(pose.position(), other.path.find(share * other.length()));
+      list.push_back(entry_in(other, foot.s, agent, record, entry));
+      return;
+    }
+    double const along = pose.heading - at.heading_error;
+    geometry::Point const side{pose.x - std::sin(along) * to_the_side, pose.y + std::cos(along) * to_the_side};
+    auto const hit = map.nearest_lane({side.x(), side.y(), along + geometry::pi}, 0.0);
+    if (!hit || hit->distance > 0.0) return;
+    auto const& oncoming = map.lane(hit->lane);
+    if (std::cos(oncoming.path.pose(hit->s).heading - along) < 0.0)
+      list.push_back(entry_in(oncoming, hit->s, agent, record, entry));
   };
-  if (left > widths.left) enter(lane.left_neighbor);
-  if (right > widths.right) enter(lane.right_neighbor);
+  if (left > widths.left) enter(lane.left_neighbor, reach.positive);
+  if (right > widths.right) enter(lane.right_neighbor, -reach.negative);
+  return true;
 }
 
 /// Brings the index up to date with the agents of a frame.
 template <class Roster, class Frame>
 void refresh_traffic(TrafficIndex& index, Map const& map, Roster const& roster, Frame const& frame) {
-  auto const entry_of = [&](std::uint32_t slot) {
+  constexpr double nowhere = std::numeric_limits<double>::infinity();
+  auto const add = [&](std::uint32_t slot, std::vector<TrafficEntry>& straddling) {
     auto const& record = frame.agents[slot];
     auto const& agent = roster.agents[slot];
-    double const position =
-        record.status == AgentStatus::driving ? record.lane.index : std::numeric_limits<double>::infinity();
     double const speed = record.state.speed * cosine_of_small(record.lane.heading_error);
-    return TrafficEntry{
-        position, agent.shape.front, agent.shape.rear, speed, slot, static_cast<std::uint32_t>(agent.id)};
+    TrafficEntry entry{
+        record.lane.index, agent.shape.front, agent.shape.rear, speed, slot, static_cast<std::uint32_t>(agent.id)};
+    if (record.status != AgentStatus::driving) {
+      entry.position = nowhere;
+      return entry;
+    }
+    bool const is_usual = std::max(agent.shape.left, agent.shape.right) <= usual_half_width &&
+                          std::abs(record.lane.heading_error) <= usual_heading_error;
+    if (is_usual && std::abs(record.lane.lateral) <= on_path) return entry;
+    if (!straddle(map, agent, record, entry, straddling)) entry.position = nowhere;
+    return entry;
   };
-  auto const add_straddling = [&](TrafficEntry const& entry, std::vector<TrafficEntry>& list) {
-    auto const& agent = roster.agents[entry.slot];
-    auto const& record = frame.agents[entry.slot];
-    bool const is_usual = std::max(agent.shape.left, agent.shape.right) <= usual_half_width;
-    if ((is_usual && std::abs(record.lane.lateral) <= on_path) || record.status != AgentStatus::driving) return;
-    straddle(map, agent, record, entry, list);
-  };
-  index.refresh(frame.agents.size(), entry_of, add_straddling);
+  index.refresh(frame.agents.size(), add);
 }
 
 /// A polygon's corners and points between them, at most `spacing` [m] apart.
