@@ -63,6 +63,15 @@ void write_results(std::filesystem::path const& folder, Site const& site, Settin
   cb::write_html_replay(folder / "replay.html", recording);
 }
 
+/// Runs all scenarios; what goes wrong is a matter of the map.
+std::vector<Outcome> run_on(Site const& site, Settings const& settings) {
+  try {
+    return run_all(site, settings);
+  } catch (cb::WorldError const& problem) {
+    throw cb::MapError(settings.map_file, problem.what(), "look at it with examples/run map_picture");
+  }
+}
+
 void run(Settings const& settings) {
   auto const site = find_site(examples::load_map(settings.map_file), settings.map_file);
   if (site.crossings > 0)
@@ -72,7 +81,7 @@ void run(Settings const& settings) {
   prepare(folder);
 
   auto const begin = std::chrono::steady_clock::now();
-  auto const outcomes = run_all(site, settings);
+  auto const outcomes = run_on(site, settings);
   double const seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   auto const totals = total(outcomes);
 

@@ -234,8 +234,9 @@ TEST_CASE("who has left traffic is not off the road") {
   auto const id = world.add({.position = {98, -1.75}, .speed = 20, .behavior = cb::ConstantAcceleration{}});
   world.step(1.0);
   REQUIRE(world.status(id) == cb::AgentStatus::left_map);
-  world.set_state(id, {.x = 50, .y = 30});
   CHECK_FALSE(cb::DrivableArea{id}.evaluate(world).off_road);
+  world.set_state(id, {.x = 50, .y = 30});  // back in traffic
+  CHECK(cb::DrivableArea{id}.evaluate(world).off_road);
 }
 
 TEST_CASE("the road of an agent that is not there is an error") {

@@ -270,7 +270,8 @@ bool add_reached(cb::Map const& map, cb::State const& state, cb::geometry::Shape
   return true;
 }
 
-/// From where to where an outline's points, `spacing` m apart at most, lie in a lane; nothing where none does.
+/// From where to where an outline's points, `spacing` m apart at most, lie in a lane, or the lane's ends in it; nothing
+/// where none does.
 std::optional<std::pair<double, double>> reach(cb::map::Lane const& lane, cb::geometry::Polygon const& outline,
                                                double spacing) {
   std::pair<double, double> range{infinite, -infinite};
@@ -285,6 +286,8 @@ std::optional<std::pair<double, double>> reach(cb::map::Lane const& lane, cb::ge
       range = {std::min(range.first, foot.s), std::max(range.second, foot.s)};
     }
   }
+  for (double const s : {0.0, lane.length()})
+    if (outline.contains(lane.path.pose(s).position())) range = {std::min(range.first, s), std::max(range.second, s)};
   if (range.first > range.second) return std::nullopt;
   return range;
 }

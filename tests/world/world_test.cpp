@@ -103,7 +103,7 @@ TEST_CASE("a place beyond the end of a road is no place on it") {
   auto const map = straight_road(1, 300);
   CHECK(map->find_lane("1", 300.0, -1) == map->find_lane("1", 0.0, -1));
   CHECK(says(error_of([&] { (void)map->find_lane("1", 300.5, -1); }), "the road is 300 m long"));
-  CHECK(says(error_of([&] { (void)map->find_lane("1", -0.5, -1); }), "the road is 300 m long"));
+  CHECK(says(error_of([&] { (void)map->find_lane("1", -0.5, -1); }), "before the road"));
   CHECK(says(error_of([&] { (void)map->find_lane("1", 10.0, -7); }), "there is no lane -7"));
   CHECK(says(error_of([&] { (void)map->find_lane("8", 10.0, -1); }), "no such road"));
 }
@@ -308,6 +308,64 @@ TEST_CASE("a state set where the route passes twice is taken for the pass that t
     last = s;
   }
   CHECK(last > 400.0);
+}
+
+TEST_CASE("a frame is put back, as a search does, and only one that fits") {
+  Sim world(straight_road(1, 500));
+  auto const id = world.add({.position = {10, -1.75}, .speed = 10});
+  auto const root = world.frame();
+  world.step(1.0);
+  auto const later = world.frame();
+  world.restore(root);
+  CHECK(world.frame() == root);
+  world.step(1.0);
+  CHECK(world.frame() == later);
+  Sim node(world.shared_map(), world.shared_roster(), root);
+  node.step(1.0);
+  CHECK(node.frame() == later);
+  CHECK(&node.roster() == &world.roster());
+  world.add({.position = {60, -1.75}});
+  CHECK(says(error_of([&] { world.restore(root); }), "1 records, the roster 2 agents"));
+  CHECK(world.state(id).x == later.agents[0].state.x);
+  CHECK(says(error_of([&] { Sim bad(nullptr, world.shared_roster(), root); }), "no map"));
+}
+
+TEST_CASE("an agent on the wrong lane at a fork leaves its route; one that passes its end has arrived") {
+  auto const map = own_map("merging.xodr");
+  Sim world(map);
+  auto const ramp = map->find_lane("2", 10, -1), first = map->find_lane("3", 10, -3);
+  auto const id =
+      world.add({.position = map->lane(ramp).path.pose(150.0).position(), .speed = 15, .goal = cb::ReachLane{first}});
+  while (world.status(id) == cb::AgentStatus::driving) world.step(0.5);
+  CHECK(world.status(id) == cb::AgentStatus::arrived);
+}
+
+TEST_CASE("an object that covers whole lanes stands in them, and goes with its entries") {
+  Sim world(own_map("merging.xodr"));
+  auto const id = world.add({.position = {20, -1.75}, .speed = 10});
+  auto const small = world.add_object(cb::geometry::Polygon({{80, -3}, {81, -3}, {81, -1}, {80, -1}}));
+  auto const all = world.add_object(cb::geometry::Polygon({{-1e3, -1e3}, {1e3, -1e3}, {1e3, 1e3}, {-1e3, 1e3}}));
+  REQUIRE(world.observe(id).front().has_value());
+  world.step(1.0);
+  CHECK(world.state(id).speed < 8.0);
+  world.remove_object(all);
+  CHECK(world.observe(id).front()->object == small);
+  world.remove_object(small);
+  CHECK_FALSE(world.observe(id).front().has_value());
+  CHECK(world.roster().object_entries.empty());
+  cb::geometry::Polygon const vast({{0, 0}, {1e200, 0}, {0, 1e200}});
+  CHECK(says(error_of([&] { world.add_object(vast); }), "10 km"));
+}
+
+TEST_CASE("a prediction with parameters that make no sense is refused") {
+  Sim world(straight_road(1, 500));
+  auto const id = world.add({.position = {10, -1.75}});
+  auto const nan = std::numeric_limits<double>::quiet_NaN();
+  CHECK(says(error_of([&] {
+               (void)world.observe(id).predict(
+                   cb::predict_all_as<Sim::Behaviors>(cb::IdmClassic{.desired_speed = nan}));
+             }),
+             "desired_speed"));
 }
 
 TEST_CASE("a step may be long: what lies half a circle on is found") {

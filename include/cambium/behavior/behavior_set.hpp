@@ -9,6 +9,13 @@
 
 namespace cambium {
 
+namespace detail {
+template <class... Ts>
+inline constexpr bool all_different = true;
+template <class T, class... Ts>
+inline constexpr bool all_different<T, Ts...> = (!std::is_same_v<T, Ts> && ...) && all_different<Ts...>;
+}  // namespace detail
+
 /// The closed set of behaviours that the agents of a world may have. An agent has one of them with parameters of its
 /// own.
 template <class... Behaviors>
@@ -18,6 +25,10 @@ struct BehaviorSet {
   static_assert((BehaviorModel<Behaviors> && ...),
                 "cambium::BehaviorSet<...>: each alternative must be a behaviour: a copyable struct with "
                 "`template <class View> Plan<View> plan(View const&, Memory&, double dt) const` (see BehaviorModel)");
+
+  static_assert(
+      detail::all_different<Behaviors...>,
+      "cambium::BehaviorSet<...>: name each behaviour once; agents of one model have parameters of their own");
 
   using Any = std::variant<Behaviors...>;
   using Memory = std::variant<MemoryOf<Behaviors>...>;

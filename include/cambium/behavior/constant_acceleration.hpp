@@ -23,7 +23,7 @@ struct ConstantAcceleration {
 
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, NoMemory&, double dt) const {
-    return plan_along_lane(view, motion(view.state().speed, dt), dt);
+    return plan_along_lane(view, motion(std::max(0.0, view.state().speed), dt), dt);
   }
 
   /// Exact motion over `dt` [s] from `speed` [m/s].

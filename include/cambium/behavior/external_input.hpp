@@ -37,7 +37,8 @@ struct ExternalInput {
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory const& memory, double dt) const {
     auto const& model = view.dynamics();
-    auto const start = view.state();
+    auto start = view.state();
+    start.speed = std::max(0.0, start.speed);
     auto const input = model.limited({memory.acceleration, memory.steering}, start);
     Plan<View> plan;
     // A braking vehicle drives until it stands, and stands from then on.

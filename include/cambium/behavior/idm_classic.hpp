@@ -54,10 +54,11 @@ struct IdmClassic {
  private:
   /// BARK's acceleration: s* is not kept above the minimum gap.
   [[nodiscard]] double bark_acceleration(double speed, double gap, double leader_speed) const {
+    if (gap <= 0) return lowest_acceleration;
     double const desired_gap =
         minimum_gap + speed * time_headway +
         speed * (speed - leader_speed) / (2 * std::sqrt(maximum_acceleration * comfortable_deceleration));
-    double const closeness = desired_gap / std::max(gap, 0.0);
+    double const closeness = desired_gap / gap;
     double const a = maximum_acceleration * (1 - std::pow(speed / desired_speed, exponent) - closeness * closeness);
     return std::clamp(a, lowest_acceleration, highest_acceleration);
   }

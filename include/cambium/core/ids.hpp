@@ -8,7 +8,7 @@
 
 namespace cambium {
 
-/// Names an agent for its whole life; never used again after it left.
+/// Names an agent for its whole life. Ids that a world gives are never used again after the agent left.
 enum class AgentId : std::uint32_t {};
 /// Names a static object of a world.
 enum class ObjectId : std::uint32_t {};

@@ -1,5 +1,10 @@
 #pragma once
 
+#if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
+#error \
+    "cambium needs IEEE arithmetic: compile without -ffast-math and -ffinite-math-only (checks for NaN would be gone)"
+#endif
+
 /// Checks an invariant of the library (never user input: that is checked with errors). Define `CAMBIUM_ASSERT` before
 /// the first cambium header to install a handler of your own; by default it is `assert`, and off with NDEBUG.
 #ifndef CAMBIUM_ASSERT

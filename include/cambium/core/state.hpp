@@ -6,6 +6,8 @@
 
 #include <Eigen/Core>
 
+#include "cambium/core/macros.hpp"
+
 namespace cambium {
 
 /// Planar motion state of an agent's reference point (vehicles: centre of the rear axle), in the map frame.
@@ -46,7 +48,7 @@ template <class Scalar>
   return {v[0], v[1], v[2], v[3], v[4]};
 }
 
-/// True when every field is a finite number.
+/// True when each of the fields of `BasicState` is a finite number.
 template <MotionState S>
 [[nodiscard]] bool is_finite(S const& s) {
   // One sum instead of five tests: it is finite exactly when no term is infinite or NaN (no state is near overflow).

@@ -3,8 +3,9 @@
 #include <concepts>
 #include <cstdint>
 #include <tuple>
-#include <type_traits>
 #include <utility>
+
+#include "cambium/behavior/behavior_set.hpp"
 
 namespace cambium {
 
@@ -21,10 +22,6 @@ template <class E>
 concept HasResult = requires {
   typename E::Result;
 };
-template <class... Es>
-inline constexpr bool all_different = true;
-template <class E, class... Es>
-inline constexpr bool all_different<E, Es...> = (!std::is_same_v<E, Es> && ...) && all_different<Es...>;
 }  // namespace detail
 
 /// The results of several evaluators in one struct: `result.ego_collision`, `result.goal_reached`, ... Each evaluator
@@ -61,7 +58,8 @@ class Evaluators {
   std::tuple<Es...> evaluators_;
 };
 
-/// Counts steps; `timed_out` from `limit` steps on.
+/// Counts the world's steps since `from`, a prediction's with those of the world that it was made in; `timed_out` from
+/// `limit` steps on.
 struct StepCount {
   struct Result {
     std::uint64_t steps = 0;
@@ -69,10 +67,11 @@ struct StepCount {
   };
 
   std::uint64_t limit = 0;  ///< 0: none
+  std::uint64_t from = 0;   ///< `world.frame().step` where counting begins
 
   template <class World>
   [[nodiscard]] Result evaluate(World const& world) const {
-    auto const steps = world.frame().step;
+    auto const steps = world.frame().step - from;
     return {steps, limit > 0 && steps >= limit};
   }
 };

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "cambium/core/macros.hpp"
 #include "cambium/geometry/pose.hpp"
 
 namespace cambium::geometry {

@@ -19,7 +19,8 @@ struct GoalSituation {
   double lane_position{};      ///< along that lane's path [m]
 };
 
-/// Drives on without an end.
+/// Drives straight on: without a route of its own for 2 km (see `map::straight_route`), or until a lane would come
+/// again.
 struct NoGoal {
   [[nodiscard]] bool at_goal(GoalSituation const&) const { return false; }
 };

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -40,10 +41,12 @@ class MapBuild {
     if (parts_.lanes.empty())
       throw MapError(file_, "the file has no lane with a length", "give a file with lanes beside lane 0");
     LaneLinker(document_, parts_.roads, parts_.lanes, file_, diagnostics_).link();
-    for (auto& lane : parts_.lanes)
-      if (lane.drivable() && lane.successors.empty()) find_merge(lane);
-    for (auto& lane : parts_.lanes)
-      if (is_valid(lane.merges_into)) swing(lane);
+    // From the lanes that go on outwards: one may merge into another that merges itself.
+    for (bool found = true; found;) {
+      found = false;
+      for (auto& lane : parts_.lanes)
+        if (lane.drivable() && lane.successors.empty() && find_merge(lane)) found = swing(lane) || found;
+    }
     number_lane_coordinate();
     find_overlaps(
         parts_.lanes, [this](Lane const& lane, double s) { return elevation(lane, s); },
@@ -134,11 +137,14 @@ class MapBuild {
     lane.road_begin = road.sections[k].begin;
     lane.road_end = road.sections[k].end;
     for (auto const& type : source.types)
-      if (type.s <= lane.road_begin + 1e-9 && type.limit && std::isfinite(*type.limit)) lane.speed_limit = *type.limit;
+      if (type.s <= lane.road_begin + 1e-9 && type.limit) lane.speed_limit = finite_or_none(*type.limit);
     for (auto const& speed : written.speeds)
-      if (speed.s <= 1e-9 && speed.limit && std::isfinite(*speed.limit)) lane.speed_limit = *speed.limit;
+      if (speed.s <= 1e-9 && speed.limit) lane.speed_limit = finite_or_none(*speed.limit);
     return lane;
   }
+
+  /// A speed limit as lanes keep it: 0 for "no limit".
+  [[nodiscard]] static double finite_or_none(double limit) { return std::isfinite(limit) ? limit : 0.0; }
 
   /// `a` lies left of `b` as seen along the road.
   static void make_neighbors(Lane& a, Lane& b) {
@@ -148,16 +154,16 @@ class MapBuild {
   }
 
   /// A lane that ends while its neighbour goes on merges into that one.
-  void find_merge(Lane& lane) {
+  bool find_merge(Lane& lane) {
     bool const keeps_left = parts_.roads[index_of(lane.road)].left_hand_traffic;
     for (auto const side : {keeps_left ? lane.right_neighbor : lane.left_neighbor,
                             keeps_left ? lane.left_neighbor : lane.right_neighbor}) {
-      if (!is_valid(side) || parts_.lanes[index_of(side)].successors.empty()) continue;
-      if (is_valid(parts_.lanes[index_of(side)].merges_into)) continue;
-      if (goes_on_unlinked(lane, parts_.lanes[index_of(side)])) return;
+      if (!is_valid(side) || parts_.lanes[index_of(side)].successors.empty() || dead_ends_.contains(lane.id)) continue;
+      if (goes_on_unlinked(lane, parts_.lanes[index_of(side)])) break;
       lane.merges_into = side;
-      return;
+      return true;
     }
+    return false;
   }
 
   /// True where a lane beside the neighbour's successor begins at this lane's end: the file forgot the link.
@@ -175,6 +181,7 @@ class MapBuild {
              "it has no successor, but lane " + std::to_string(candidate.number) + " of road " +
                  parts_.roads[index_of(candidate.road)].name +
                  " begins where it ends; is the link missing? It was left as a dead end"});
+        dead_ends_.insert(lane.id);
         return true;
       }
     return false;
@@ -187,8 +194,9 @@ class MapBuild {
   }
 
   /// Lets the lane's path swing onto the neighbour's and go on as that one does.
-  void swing(Lane& lane) {
-    constexpr double spacing = 1.5;  // [m] between the stations of a swing
+  bool swing(Lane& lane) {
+    // [m] between the stations of a swing: it turns by some 0.03 rad a metre at most (3.5 m over 30 m).
+    double const spacing = std::clamp(parts_.options.heading_tolerance / 0.03, 0.05, 1.5);
     auto const& road = parts_.roads[index_of(lane.road)];
     auto const& section = road.sections[lane.section];
     auto const column = column_of(section, lane.id), target = column_of(section, lane.merges_into);
@@ -198,13 +206,15 @@ class MapBuild {
     auto const path = [&](CrossSection const& c) { return merging_path(c, column, target, from, to); };
     if (!set_geometry(lane, cross_sections, column, path)) {
       lane.merges_into = none<LaneId>;
-      return;
+      dead_ends_.insert(lane.id);
+      return false;
     }
     auto const start = road.reference_line.at(from);
     lane.merge_begin = lane.path.project({start.x, start.y}).s;
     auto const& neighbor = parts_.lanes[index_of(lane.merges_into)];
     lane.successors = neighbor.successors;
     for (auto const next : lane.successors) parts_.lanes[index_of(next)].predecessors.push_back(lane.id);
+    return !lane.successors.empty();
   }
 
   /// Every lane gets a range of its own, apart from the next by more than an agent can be past a lane's end.
@@ -220,6 +230,7 @@ class MapBuild {
   OpenDriveDocument const& document_;
   std::string file_;
   std::vector<Diagnostic>& diagnostics_;
+  std::set<LaneId> dead_ends_;  ///< lanes that could not be merged
   Map::Parts parts_;
 };
 

@@ -12,6 +12,7 @@
 
 #include "cambium/core/error.hpp"
 #include "cambium/core/ids.hpp"
+#include "cambium/core/macros.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/pose.hpp"
@@ -105,8 +106,15 @@ class Map {
   [[nodiscard]] std::span<Lane const> lanes() const { return parts_.lanes; }
   [[nodiscard]] MapOptions const& options() const { return parts_.options; }
 
-  [[nodiscard]] Road const& road(RoadId id) const { return parts_.roads[index_of(id)]; }
-  [[nodiscard]] Lane const& lane(LaneId id) const { return parts_.lanes[index_of(id)]; }
+  /// Precondition: the map has it.
+  [[nodiscard]] Road const& road(RoadId id) const {
+    CAMBIUM_ASSERT(index_of(id) < parts_.roads.size(), "Map::road: the map has no road of that id");
+    return parts_.roads[index_of(id)];
+  }
+  [[nodiscard]] Lane const& lane(LaneId id) const {
+    CAMBIUM_ASSERT(index_of(id) < parts_.lanes.size(), "Map::lane: the map has no lane of that id");
+    return parts_.lanes[index_of(id)];
+  }
 
   /// The road with the file's id `name`. Throws `MapError` if there is none. O(roads).
   [[nodiscard]] Road const& find_road(std::string_view name) const {
@@ -119,8 +127,9 @@ class Map {
   /// none. O(roads).
   [[nodiscard]] LaneId find_lane(std::string_view name, double s, int number) const {
     auto const& road = find_road(name);
+    if (!(s >= 0.0)) throw MapError(where_of(name, s), "it lies before the road", "give a place on it");
     double const inside = s <= road.length + 1e-3 ? std::min(s, road.length) : s;  // lengths are often written rounded
-    std::string const where = "road " + std::string(name) + ", s " + cambium::detail::rounded_text(s);
+    std::string const where = where_of(name, s);
     for (auto const& section : road.sections) {
       if (inside < section.begin || inside > section.end) continue;
       if (inside == section.end && &section != &road.sections.back()) continue;
@@ -160,6 +169,10 @@ class Map {
   }
 
  private:
+  [[nodiscard]] static std::string where_of(std::string_view road, double s) {
+    return "road " + std::string(road) + ", s " + cambium::detail::rounded_text(s);
+  }
+
   Parts parts_;
   LaneTree tree_;
 };

@@ -39,8 +39,8 @@ struct LaneTraffic {
   static constexpr auto parameters() {
     using P = LaneTraffic;
     return std::make_tuple(
-        parameter("begin", &P::begin, "m", any_finite, "first position on the corridor that a vehicle may cover"),
-        parameter("end", &P::end, "m", any_finite, "last position"),
+        parameter("begin", &P::begin, "m", Range{-1e6, 1e6}, "first position on the corridor that a vehicle may cover"),
+        parameter("end", &P::end, "m", Range{-1e6, 1e6}, "last position"),
         parameter("lowest_speed", &P::lowest_speed, "m/s", Range{0, 100}, "of the initial speeds"),
         parameter("highest_speed", &P::highest_speed, "m/s", Range{0, 100}, "of the initial speeds"),
         parameter("lowest_desired_speed", &P::lowest_desired_speed, "m/s", Range{0.1, 100}, "of the drivers"),

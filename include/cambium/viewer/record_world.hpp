@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <string>
 #include <utility>
@@ -9,26 +10,45 @@
 #include "cambium/map/map.hpp"
 #include "cambium/viewer/recording.hpp"
 #include "cambium/world/frame.hpp"
+#include "cambium/world/static_object.hpp"
 
 namespace cambium {
 
 /// The lanes of a map as a recording shows them.
 [[nodiscard]] inline std::vector<RecordedLane> recorded_lanes(Map const& map) {
   std::vector<RecordedLane> lanes;
-  for (auto const& lane : map.lanes()) {
-    if (lane.left.empty() || lane.right.empty()) continue;
-    auto const& road = map.road(lane.road);
-    auto const kind = !lane.drivable()          ? RecordedLaneKind::other
-                      : is_valid(road.junction) ? RecordedLaneKind::junction
-                                                : RecordedLaneKind::driving;
-    lanes.push_back(
-        {lane.left.points(), lane.right.points(), road.name + ":" + std::to_string(lane.number), kind, true});
-  }
-  // Shoulders first, lanes over them: what is drawn last is seen.
-  std::stable_sort(lanes.begin(), lanes.end(), [](RecordedLane const& a, RecordedLane const& b) {
-    return a.kind == RecordedLaneKind::other && b.kind != RecordedLaneKind::other;
-  });
+  for (bool const drivable : {false, true})  // shoulders first, lanes over them: what is drawn last is seen
+    for (auto const& lane : map.lanes()) {
+      if (lane.drivable() != drivable || lane.left.empty() || lane.right.empty()) continue;
+      auto const& road = map.road(lane.road);
+      auto const kind = !drivable                 ? RecordedLaneKind::other
+                        : is_valid(road.junction) ? RecordedLaneKind::junction
+                                                  : RecordedLaneKind::driving;
+      lanes.push_back(
+          {lane.left.points(), lane.right.points(), road.name + ":" + std::to_string(lane.number), kind, true});
+    }
   return lanes;
+}
+
+/// A static object as a recording shows it: the rectangle around its outline that has the direction of its longest
+/// side.
+[[nodiscard]] inline std::pair<RecordedAgent, RecordedPose> recorded_object(StaticObject const& object) {
+  geometry::Point longest(0.0, 0.0);
+  for (std::size_t i = 0; i < object.outline.size(); ++i) {
+    geometry::Point const side = object.outline.edge(i).second - object.outline.edge(i).first;
+    if (side.squaredNorm() > longest.squaredNorm()) longest = side;
+  }
+  geometry::Point const along = longest.normalized(), across(-along.y(), along.x());
+  geometry::Point const center = object.outline.bounding_box().center();
+  geometry::Shape shape{0, 0, 0, 0};
+  for (auto const& p : object.outline.points()) {
+    shape.front = std::max(shape.front, along.dot(p - center));
+    shape.rear = std::max(shape.rear, -along.dot(p - center));
+    shape.left = std::max(shape.left, across.dot(p - center));
+    shape.right = std::max(shape.right, -across.dot(p - center));
+  }
+  return {{none<AgentId>, shape, "object " + to_string(object.id), RecordedAgentKind::static_object},
+          {center.x(), center.y(), std::atan2(along.y(), along.x()), 0.0, 0.0, true}};
 }
 
 /// Writes a world's course into a recording: lanes, agents and objects as they are now; then a frame for each call of
@@ -41,6 +61,12 @@ class WorldRecorder {
     recording_.lanes = recorded_lanes(world.map());
     for (auto const& agent : world.roster().agents)
       recording_.agents.push_back({agent.id, agent.shape, "", RecordedAgentKind::other});
+    agents_ = recording_.agents.size();
+    for (auto const& object : world.roster().objects) {
+      auto [shown, pose] = recorded_object(object);
+      recording_.agents.push_back(std::move(shown));
+      objects_.push_back(pose);
+    }
     record(world);
   }
 
@@ -56,10 +82,10 @@ class WorldRecorder {
   /// Adds the world's current frame.
   template <class World>
   void record(World const& world) {
-    RecordedFrame frame{world.time(), std::vector<RecordedPose>(recording_.agents.size())};
+    RecordedFrame frame{world.time(), std::vector<RecordedPose>(agents_)};
     auto const& agents = world.roster().agents;
     std::size_t slot = 0;
-    for (std::size_t i = 0; i < recording_.agents.size(); ++i) {  // both are in order of the ids
+    for (std::size_t i = 0; i < agents_; ++i) {  // both are in order of the ids
       while (slot < agents.size() && agents[slot].id < recording_.agents[i].id) ++slot;
       if (slot == agents.size()) break;
       if (agents[slot].id != recording_.agents[i].id) continue;
@@ -71,6 +97,7 @@ class WorldRecorder {
                         r.action.acceleration,
                         r.status == AgentStatus::driving};
     }
+    frame.poses.insert(frame.poses.end(), objects_.begin(), objects_.end());
     recording_.frames.push_back(std::move(frame));
   }
 
@@ -79,6 +106,8 @@ class WorldRecorder {
 
  private:
   Recording recording_;
+  std::size_t agents_ = 0;             ///< of the world; its objects come after them
+  std::vector<RecordedPose> objects_;  ///< the same in every frame
 };
 
 }  // namespace cambium

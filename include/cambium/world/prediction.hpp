@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <type_traits>
 #include <utility>
 
 #include "cambium/behavior/behavior_set.hpp"
@@ -11,6 +12,7 @@
 #include "cambium/goal/goal.hpp"
 #include "cambium/map/lane_position.hpp"
 #include "cambium/observer/perfect.hpp"
+#include "cambium/world/detail/entering.hpp"
 #include "cambium/world/frame.hpp"
 
 namespace cambium {
@@ -47,11 +49,14 @@ template <class Set, class Behavior>
 
 /// The world that agent number `slot` of `world` expects: states as it observes them, behaviours as `prediction` says.
 /// The others keep their routes, as if they signalled them, but not their goals. Agents that are not in traffic are
-/// left out.
+/// left out. Throws `ParameterError` where a parameter of an assumed behaviour is out of its range.
 template <class Set, class World>
 [[nodiscard]] typename World::template WithBehaviors<Set> predicted_world(World const& world, std::uint32_t slot,
                                                                           Prediction<Set> const& prediction) {
   using Predicted = typename World::template WithBehaviors<Set>;
+  static_assert(
+      std::is_trivially_copyable_v<typename Predicted::Record> || !std::is_trivially_copyable_v<typename Set::Memory>,
+      "a prediction's records are copied as memory when what its behaviours remember is");
   auto const& roster = world.roster();
   auto const& frame = world.frame();
   auto const& observer = roster.agents[slot];
@@ -61,6 +66,8 @@ template <class Set, class World>
     return RandomStream(roster.seed, static_cast<std::uint32_t>(observer.id), static_cast<std::uint32_t>(frame.step),
                         purpose);
   };
+  detail::check_alternative(prediction.ego, "prediction: ego");
+  detail::check_alternative(prediction.others, "prediction: others");
   assumed->seed = prediction.seed ? *prediction.seed : stream(seed_purpose)();
   assumed->next_agent_id = roster.next_agent_id;
   assumed->next_object_id = roster.next_object_id;

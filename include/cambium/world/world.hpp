@@ -96,9 +96,13 @@ class World {
     frame_.time = options.time;
   }
 
-  /// A world from its parts, as predictions and snapshots make it; `frame` has one record for each agent of `roster`.
-  World(std::shared_ptr<Map const> map, std::shared_ptr<RosterType> roster, FrameType frame)
-      : map_(std::move(map)), roster_(std::move(roster)), frame_(std::move(frame)) {}
+  /// A world from its parts, as predictions, searches and snapshots make it. Throws `WorldError` without a map or a
+  /// roster, or where `frame` does not have one record for each agent of `roster`.
+  World(std::shared_ptr<Map const> map, std::shared_ptr<RosterType const> roster, FrameType frame)
+      : map_(std::move(map)), roster_(std::move(roster)) {
+    if (!map_ || !roster_) throw WorldError("World", "there is no map or no roster", "take them from another world");
+    restore(std::move(frame));
+  }
 
   World(World const&) = default;
   World(World&&) = default;
@@ -118,16 +122,30 @@ class World {
   [[nodiscard]] Map const& map() const { return *map_; }
   [[nodiscard]] std::shared_ptr<Map const> const& shared_map() const { return map_; }
   [[nodiscard]] RosterType const& roster() const { return *roster_; }
+  [[nodiscard]] std::shared_ptr<RosterType const> const& shared_roster() const { return roster_; }
   [[nodiscard]] FrameType const& frame() const { return frame_; }
   [[nodiscard]] double time() const { return frame_.time; }
   [[nodiscard]] std::size_t size() const { return frame_.agents.size(); }
+
+  /// Puts a frame of this world, or of a copy with the same roster, (back) into place: what a search does at its nodes.
+  /// Throws `WorldError` (the world is unchanged) where it is not one of this roster's size. No allocation once warm.
+  void restore(FrameType const& frame) {
+    if (frame.agents.size() != roster_->agents.size())
+      throw WorldError("World::restore",
+                       "the frame has " + std::to_string(frame.agents.size()) + " records, the roster " +
+                           std::to_string(roster_->agents.size()) + " agents",
+                       "restore frames of this world from since the last agent entered or left");
+    frame_ = frame;
+    scratch_.forget();
+  }
 
   /// Adds an agent; returns its id. Throws `WorldError` or `ParameterError` (the world is unchanged) where its numbers,
   /// its lane, its route or its parameters are no good. O(agents), plus routing.
   AgentId add(AgentSpec const& spec) {
     AgentId const id = spec.id.value_or(static_cast<AgentId>(roster_->next_agent_id));
     std::string const where = "agent " + to_string(id);
-    if (!is_valid(id)) throw WorldError(where, "there is no such id, or no further one is free", "give an id below");
+    if (!is_valid(id))
+      throw WorldError(where, "there is no such id, or no further one is free", "give an id that nobody has");
     if (roster_->slot_of(id))
       throw WorldError(where, "the world has an agent of that id already", "leave the id out to get a free one");
     detail::check_entering(spec, where);
@@ -189,23 +207,33 @@ class World {
       roster.goals[to] = std::move(roster.goals[staying[to]]);
       frame_.agents[to] = frame_.agents[staying[to]];
     }
-    roster.agents.resize(staying.size());
-    roster.goals.resize(staying.size());
-    frame_.agents.resize(staying.size());
+    auto const gone = static_cast<std::ptrdiff_t>(staying.size());
+    roster.agents.erase(roster.agents.begin() + gone, roster.agents.end());
+    roster.goals.erase(roster.goals.begin() + gone, roster.goals.end());
+    frame_.agents.erase(frame_.agents.begin() + gone, frame_.agents.end());
+    std::erase_if(roster.corridors, [](auto const& entry) { return entry.second.use_count() == 1; });
     scratch_.forget();
     return count;
   }
 
-  /// Puts a static object in the way; returns its id. O(size of the outline).
+  /// Puts a static object in the way; returns its id. Throws `WorldError` for one of more than 10 km around.
+  /// O(objects), and the length around the outline.
   ObjectId add_object(geometry::Polygon outline) {
+    double around = 0.0;
+    for (std::size_t i = 0; i < outline.size(); ++i) around += (outline.edge(i).second - outline.edge(i).first).norm();
+    if (around > 10'000.0) throw WorldError("object", "its outline is longer than 10 km", "give coordinates in metres");
     auto& roster = writable_roster();
-    auto const id = static_cast<ObjectId>(roster.next_object_id++);
-    roster.objects.push_back({id, std::move(outline)});
-    index_objects(roster);
-    return id;
+    StaticObject object{static_cast<ObjectId>(roster.next_object_id), std::move(outline)};
+    auto const entries = detail::object_entries(*map_, object, static_cast<std::uint32_t>(roster.objects.size()));
+    roster.object_entries.reserve(roster.object_entries.size() + entries.size());
+    roster.objects.push_back(std::move(object));
+    for (auto const& entry : entries)
+      roster.object_entries.insert(std::upper_bound(roster.object_entries.begin(), roster.object_entries.end(), entry),
+                                   entry);
+    return static_cast<ObjectId>(roster.next_object_id++);
   }
 
-  /// Takes it away. Throws `WorldError` if there is no such object.
+  /// Takes it away. Throws `WorldError` if there is no such object. O(objects).
   void remove_object(ObjectId id) {
     auto const& objects = roster_->objects;
     auto const at = std::find_if(objects.begin(), objects.end(), [id](StaticObject const& o) { return o.id == id; });
@@ -213,7 +241,9 @@ class World {
     auto const place = at - objects.begin();
     auto& roster = writable_roster();
     roster.objects.erase(roster.objects.begin() + place);
-    index_objects(roster);
+    auto const slot = static_cast<std::uint32_t>(place);
+    std::erase_if(roster.object_entries, [slot](TrafficEntry const& entry) { return entry.slot == slot; });
+    for (auto& entry : roster.object_entries) entry.slot -= entry.slot > slot;
   }
 
   /// The agent's place in roster and frame. Throws `WorldError` if there is no such agent. O(log agents).
@@ -248,6 +278,9 @@ class World {
   /// another.
   template <class B>
   [[nodiscard]] MemoryOf<B>& memory(AgentId id) {
+    static_assert(
+        Set::template contains<B>,
+        "cambium::World::memory<B>: B must be one of the Models of the world's cambium::BehaviorSet<Models...>");
     auto const slot = slot_of(id);
     auto const& behavior = roster_->agents[slot].behavior;
     MemoryOf<B>* found = nullptr;
@@ -270,7 +303,8 @@ class World {
   void set_state(AgentId id, State state) {
     auto const slot = slot_of(id);
     state.time = frame_.time;
-    if (!is_finite(state)) throw WorldError("agent " + to_string(id), "its state is not a finite number");
+    if (!is_finite(state) || std::abs(state.speed) > detail::fastest)
+      throw WorldError("agent " + to_string(id), "its state is not a finite number, or its speed beyond 1000 m/s");
     auto& record = frame_.agents[slot];
     record.state = state;
     record.action = {};
@@ -334,7 +368,11 @@ class World {
 
   /// Keeps the last `frames` frames from now on (0: none, as at the beginning). Copies and predictions do not take them
   /// along; they end where an agent enters or leaves.
-  void keep_history(std::size_t frames) { scratch_.keep(frames); }
+  /// Throws `WorldError` for more than a million.
+  void keep_history(std::size_t frames) {
+    if (frames > 1'000'000) throw WorldError("history", "a million frames are kept at most", "record what you need");
+    scratch_.keep(frames);
+  }
 
   /// Frames kept so far, before the current one.
   [[nodiscard]] std::size_t history_size() const { return scratch_.kept; }
@@ -364,8 +402,6 @@ class World {
     std::atomic_thread_fence(std::memory_order_acquire);  // what other holders read before they let go
     return const_cast<RosterType&>(*roster_);
   }
-
-  void index_objects(RosterType& roster) { roster.object_entries = detail::object_entries(*map_, roster.objects); }
 
   void refresh_traffic() {
     if (scratch_.fresh) return;

@@ -70,6 +70,10 @@ void sort_records(XmlContext& context, pugi::xml_node parent, std::vector<Record
   if (text == "undefined") return std::nullopt;
   std::optional<double> const value = context.number<double>(node, "max");
   if (!value) return std::nullopt;
+  if (*value < 0.0) {
+    context.report(Severity::warning, node, "the speed limit is negative; no limit was read");
+    return std::nullopt;
+  }
   if (unit.empty() || unit == "m/s") return value;
   if (unit == "km/h") return *value / 3.6;
   if (unit == "mph") return *value * 0.44704;
@@ -128,6 +132,11 @@ inline void check_lane_width(XmlContext& context, pugi::xml_node node, opendrive
   if (lane.id == 0) return;
   if (lane.widths.empty() && lane.borders.empty())
     context.report(Severity::warning, node, "the lane has neither width nor border; its width counts as 0");
+  if (lane.widths.empty() && !lane.borders.empty())
+    context.report(Severity::warning, node,
+                   "lanes given by their borders are not supported yet; its width counts as 0");
+  if (lane.direction == opendrive::LaneDirection::both)
+    context.report(Severity::info, node, "traffic in both directions is not supported yet; it runs in the usual one");
   if (!lane.widths.empty() && lane.widths.front().s > 0.0)
     context.report(Severity::warning, node,
                    "the first width record starts behind the section's start; its first value counts before it too");
@@ -202,6 +211,8 @@ inline void order_lanes(XmlContext& context, pugi::xml_node node, opendrive::Lan
   section.s = *s;
   section.line = context.line(node);
   section.single_side = node.attribute("singleSide").as_bool();
+  if (section.single_side)
+    context.report(Severity::warning, node, "singleSide is not supported yet; the other side's lanes end here");
   for_each_child(node, [&](pugi::xml_node side, std::string_view name) {
     if (name != "left" && name != "center" && name != "right") return;
     for_each_child(side, "lane", [&](pugi::xml_node lane_node) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <type_traits>
 #include <variant>
+#include <vector>
 
 #include "cambium/core/error.hpp"
 #include "cambium/core/parameters.hpp"
@@ -66,38 +67,41 @@ inline constexpr double path_radius = 2.5;
       "enter on a lane and along its direction");
 }
 
-/// The lane where a goal's route ends; nothing for goals without a place.
-[[nodiscard]] inline std::optional<LaneId> destination(Map const& map, Goal const& goal, std::string const& where) {
+/// The lanes where a goal's route may end; none for goals without a place.
+[[nodiscard]] inline std::vector<LaneId> destinations(Map const& map, Goal const& goal, std::string const& where) {
+  std::vector<LaneId> lanes;
   if (auto const* lane = std::get_if<ReachLane>(&goal)) {
     if (index_of(lane->lane) >= map.lanes().size())
       throw WorldError(where, "its goal names lane " + to_string(lane->lane) + ", which the map does not have",
                        "use Map::find_lane");
     if (!(lane->from <= lane->to))
       throw WorldError(where, "its goal's stretch of lane ends before it begins", "give from <= to");
-    return lane->lane;
+    lanes.push_back(lane->lane);
   }
   if (auto const* polygon = std::get_if<ReachPolygon>(&goal)) {
     auto points = points_around(polygon->area, 1.0);
     points.insert(points.begin(), polygon->area.bounding_box().center());
     for (auto const& p : points)
       for (auto const& hit : map.lanes_near(p, entering_radius))
-        if (map.lane(hit.lane).drivable()) return hit.lane;
-    throw WorldError(where, "its goal, a polygon, is not near a drivable lane",
-                     "give the route too, or a goal on a lane");
+        if (map.lane(hit.lane).drivable() && std::find(lanes.begin(), lanes.end(), hit.lane) == lanes.end())
+          lanes.push_back(hit.lane);
+    if (lanes.empty())
+      throw WorldError(where, "its goal, a polygon, is not near a drivable lane",
+                       "give the route too, or a goal on a lane");
   }
-  return std::nullopt;
+  return lanes;
 }
 
 /// The route from `start`: as given, else to the goal, else straight on. Throws `WorldError` where there is none.
 [[nodiscard]] inline map::Route entering_route(Map const& map, LaneId start, std::optional<map::Route> const& given,
                                                Goal const& goal, std::string const& where) {
   if (given) return *given;
-  if (auto const end = destination(map, goal, where)) {
-    if (auto route = map.shortest_route(start, *end)) return *route;
-    throw WorldError(where, "there is no route from " + map.describe(start) + " to " + map.describe(*end),
-                     "choose a goal that the lane leads to");
-  }
-  return map::straight_route(map, start);
+  auto const ends = destinations(map, goal, where);
+  if (ends.empty()) return map::straight_route(map, start);
+  for (auto const end : ends)
+    if (auto route = map.shortest_route(start, end)) return *route;
+  throw WorldError(where, "there is no route from " + map.describe(start) + " to " + map.describe(ends.front()),
+                   "choose a goal that the lane leads to");
 }
 
 /// Where on `road` an agent of `spec` enters, in lane `lane`: in the main corridor if that holds the lane.
@@ -125,24 +129,36 @@ template <class Spec>
   return at;
 }
 
+/// Speeds beyond this are no vehicle's [m/s].
+inline constexpr double fastest = 1000.0;
+
+/// Throws `ParameterError` where a parameter of one of the alternatives is out of its range.
+template <class Any>
+void check_alternative(Any const& any, std::string const& where) {
+  std::visit(
+      [&where](auto const& parameters) {
+        if constexpr (Described<std::decay_t<decltype(parameters)>>) check_parameters(parameters, where);
+      },
+      any);
+}
+
 /// Throws `WorldError` or `ParameterError` where a number of `spec` is no good.
 template <class Spec>
 void check_entering(Spec const& spec, std::string const& where) {
   if (!spec.position.allFinite() || (spec.heading && !std::isfinite(*spec.heading)))
     throw WorldError(where, "its position or heading is missing or not a finite number");
-  constexpr double fastest = 1000.0;  // [m/s]
   if (!(spec.speed >= 0 && spec.speed <= fastest))
     throw WorldError(where, "its speed is not a number from 0 to 1000 m/s", "give metres per second");
-  if (!(spec.shape.length() > 0 && spec.shape.width() > 0))
-    throw WorldError(where, "its shape has no length or no width", "leave the shape out to get a car");
   auto const described = [&where](auto const& parameters) {
     if constexpr (Described<std::decay_t<decltype(parameters)>>) check_parameters(parameters, where);
   };
-  std::visit(described, spec.behavior);
+  check_alternative(spec.behavior, where);
   described(spec.shape);
   described(spec.execution);
   described(spec.dynamics);
   described(spec.observer);
+  if (!(spec.shape.length() > 0 && spec.shape.width() > 0))
+    throw WorldError(where, "its shape has no length or no width", "leave the shape out to get a car");
 }
 
 }  // namespace cambium::detail

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <limits>
 #include <map>
-#include <span>
 #include <vector>
 
 #include "cambium/map/lane_position.hpp"
@@ -186,29 +185,40 @@ void refresh_traffic(TrafficIndex& index, Map const& map, Roster const& roster, 
   return points;
 }
 
-/// Index entries of static objects, sorted: one in each drivable lane whose borders an object reaches across. An
-/// entry's slot is the object's place in the list.
-[[nodiscard]] inline std::vector<TrafficEntry> object_entries(Map const& map, std::span<StaticObject const> objects) {
+/// Index entries of a static object in each drivable lane whose borders it reaches across. `slot`: its place in
+/// the list of objects.
+[[nodiscard]] inline std::vector<TrafficEntry> object_entries(Map const& map, StaticObject const& object,
+                                                              std::uint32_t slot) {
   struct Stretch {
     double begin = std::numeric_limits<double>::infinity(), end = -std::numeric_limits<double>::infinity();
   };
-  std::vector<TrafficEntry> entries;
-  for (std::uint32_t slot = 0; slot < objects.size(); ++slot) {
-    std::map<LaneId, Stretch> stretches;
-    for (auto const& p : points_around(objects[slot].outline, 0.1))
-      for (auto const& hit : map.lanes_near(p, 0.0)) {
-        if (!map.lane(hit.lane).drivable()) continue;
-        auto& stretch = stretches[hit.lane];
-        stretch.begin = std::min(stretch.begin, hit.s);
-        stretch.end = std::max(stretch.end, hit.s);
-      }
-    for (auto const& [lane, stretch] : stretches) {
-      double const half = (stretch.end - stretch.begin) / 2;
-      double const position = map.lane(lane).index_begin + stretch.begin + half;
-      entries.push_back({position, half, half, 0.0, slot, static_cast<std::uint32_t>(objects[slot].id)});
+  std::map<LaneId, Stretch> stretches;
+  for (auto const& p : points_around(object.outline, 0.1))
+    for (auto const& hit : map.lanes_near(p, 0.0)) {
+      if (!map.lane(hit.lane).drivable()) continue;
+      auto& stretch = stretches[hit.lane];
+      stretch.begin = std::min(stretch.begin, hit.s);
+      stretch.end = std::max(stretch.end, hit.s);
+    }
+  for (auto const& lane : map.lanes()) {  // ends of lanes within the outline
+    if (!lane.drivable()) continue;
+    for (double const s : {0.0, lane.length()}) {
+      if (!object.outline.contains(lane.path.pose(s).position())) continue;
+      auto& stretch = stretches[lane.id];
+      stretch.begin = std::min(stretch.begin, s);
+      stretch.end = std::max(stretch.end, s);
     }
   }
-  std::sort(entries.begin(), entries.end());
+  std::vector<TrafficEntry> entries;
+  for (auto const& [lane, stretch] : stretches) {
+    // In parts of at most 10 m: of road users the one counts whose middle is next.
+    int const parts = std::max(1, static_cast<int>(std::ceil((stretch.end - stretch.begin) / 10.0)));
+    double const half = (stretch.end - stretch.begin) / (2 * parts);
+    for (int k = 0; k < parts; ++k) {
+      double const position = map.lane(lane).index_begin + stretch.begin + (2 * k + 1) * half;
+      entries.push_back({position, half, half, 0.0, slot, static_cast<std::uint32_t>(object.id)});
+    }
+  }
   return entries;
 }
 
