@@ -68,13 +68,25 @@ target_link_libraries(structure_headers_twice PRIVATE cambium_test_options)
 target_compile_options(structure_headers_twice PRIVATE -O0)
 add_build_test(structure.headers_twice structure_headers_twice)
 
-# All headers, free of warnings under each compiler there is.
+# All headers at once, and each room's alone, free of warnings under each compiler there is.
+file(GLOB umbrellas CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/include/cambium
+  ${PROJECT_SOURCE_DIR}/include/cambium/*.hpp)
 foreach(name g++ clang++-14 clang++-19)
   find_program(CAMBIUM_CHECK_${name} ${name})
   mark_as_advanced(CAMBIUM_CHECK_${name})
   if(CAMBIUM_CHECK_${name})
     add_syntax_check(stamp ${CAMBIUM_CHECK_${name}} ${structure_binary}/all_headers.cpp)
-    add_custom_target(structure_warnings_${name} DEPENDS ${stamp})
+    set(stamps ${stamp})
+    get_filename_component(own_compiler ${CMAKE_CXX_COMPILER} NAME)
+    foreach(umbrella IN LISTS umbrellas)
+      if(name STREQUAL "g++" OR name STREQUAL own_compiler)
+        continue()  # the headers alone have been through that
+      endif()
+      string(REGEX REPLACE "[/.]" "_" source cambium/${umbrella})
+      add_syntax_check(stamp ${CAMBIUM_CHECK_${name}} ${structure_binary}/alone/${source}.cpp)
+      list(APPEND stamps ${stamp})
+    endforeach()
+    add_custom_target(structure_warnings_${name} DEPENDS ${stamps})
     add_build_test(structure.warnings.${name} structure_warnings_${name})
   else()
     add_test(NAME structure.warnings.${name} COMMAND ${CMAKE_COMMAND} -E echo "skipped: no ${name} here")
