@@ -12,4 +12,5 @@
 #include "cambium/map/map.hpp"
 #include "cambium/map/opendrive_check.hpp"
 #include "cambium/map/opendrive_document.hpp"
+#include "cambium/map/parametric_cubic.hpp"
 #include "cambium/map/reference_line.hpp"

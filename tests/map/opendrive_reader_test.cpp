@@ -176,9 +176,9 @@ TEST_CASE("what is no OpenDRIVE file at all is an error that says where, what an
   CHECK(contains(error_of("<OpenDRIVE><header/></OpenDRIVE>"), "no usable road"));
   std::string const nothing_left = error_of(R"(<OpenDRIVE>
     <road id="1" length="1"><planView><geometry s="0" x="0" y="0" hdg="0" length="1">
-    <paramPoly3/></geometry></planView></road></OpenDRIVE>)");
+    <bezier/></geometry></planView></road></OpenDRIVE>)");
   CHECK(contains(nothing_left, "no usable road"));
-  CHECK(contains(nothing_left, "test.xodr:3: warning: <paramPoly3> of road 1"));
+  CHECK(contains(nothing_left, "test.xodr:2: warning: <geometry> of road 1"));
 }
 
 namespace {
@@ -208,7 +208,18 @@ Fault const faults[]{
      "98.1842 m and 0.4 rad off the end", 9},
     {"negative length", R"(length="60")", R"(length="-60")", "the length is negative", 8, 1},
     {"unknown geometry", "<line/>", "<clothoidSpline/>", "none of line, arc, spiral", 8, 1},
-    {"unsupported geometry", "<line/>", "<poly3 a=\"0\" b=\"0\" c=\"0\" d=\"0\"/>", "not supported yet", 8, 1},
+    {"straight poly3", "<line/>", R"(<poly3 a="0" b="0" c="0" d="0"/>)", "", 0},
+    {"poly3 without a coefficient", "<line/>", R"(<poly3 a="0" b="0" c="0"/>)", "attribute d is missing", 8, 1},
+    {"straight paramPoly3", "<line/>",
+     R"(<paramPoly3 pRange="normalized" aU="0" bU="60" cU="0" dU="0" aV="0" bV="0" cV="0" dV="0"/>)", "", 0},
+    {"paramPoly3 of another length", "<line/>",
+     R"(<paramPoly3 pRange="arcLength" aU="0" bU="1.01" cU="0" dU="0" aV="0" bV="0" cV="0" dV="0"/>)",
+     "the curve is 60.6 m long, its length attribute says 60 m", 8},
+    {"paramPoly3 without a range", "<line/>",
+     R"(<paramPoly3 aU="0" bU="60" cU="0" dU="0" aV="0" bV="0" cV="0" dV="0"/>)", "normalized was taken", 8},
+    {"paramPoly3 of nothing", "<line/>",
+     R"(<paramPoly3 pRange="normalized" aU="0" bU="0" cU="0" dU="0" aV="0" bV="0" cV="0" dV="0"/>)", "has no length", 8,
+     1},
     {"geometry without a kind", "<line/>", "", "none of line, arc, spiral", 8, 1},
     {"empty plan view",
      R"(<geometry s="0" x="95" y="8" hdg="0.4" length="10"><spiral curvStart="0.01" curvEnd="0"/></geometry>)", "",
@@ -414,4 +425,26 @@ TEST_CASE("the merging map's ramp ends where the acceleration lane begins, and b
     double const lateral = std::cos(main.heading) * (p.y - main.y) - std::sin(main.heading) * (p.x - main.x);
     CHECK(lateral < -7.0);
   }
+}
+
+TEST_CASE("a section that speaks for one side leaves the other side's lanes as they go on") {
+  std::string const text = R"(<OpenDRIVE><header revMajor="1" revMinor="6"/><road id="1" length="100" junction="-1">
+    <planView><geometry s="0" x="0" y="0" hdg="0" length="100"><line/></geometry></planView><lanes>
+    <laneSection s="0"><left><lane id="1" type="driving"><width sOffset="0" a="3" b="0" c="0" d="0"/></lane></left>
+    <center><lane id="0" type="none"/></center><right>
+    <lane id="-1" type="driving"><width sOffset="0" a="2" b="0.01" c="0" d="0"/></lane></right></laneSection>
+    <laneSection s="40" singleSide="true"><left>
+    <lane id="2" type="driving"><link><successor id="1"/></link><width sOffset="0" a="1" b="0" c="0" d="0"/></lane>
+    <lane id="1" type="driving"><link><predecessor id="1"/></link><width sOffset="0" a="3" b="0" c="0" d="0"/></lane>
+    </left><center><lane id="0" type="none"/></center></laneSection></lanes></road></OpenDRIVE>)";
+  Reading const r = read(text);
+  auto const& sections = r.document.roads[0].lane_sections;
+  REQUIRE(sections.size() == 2);
+  auto const* lane = sections[1].find(-1);
+  REQUIRE(lane != nullptr);
+  CHECK(lane->predecessors == std::vector{-1});
+  CHECK(sections[0].find(-1)->successors == std::vector{-1});
+  CHECK(CubicProfile(lane->widths).value(30.0) == doctest::Approx(2.7));  // 70 m from the road's start
+  CHECK(sections[1].find(2) != nullptr);
+  CHECK(sections[1].find(-1)->widths.size() == 1);
 }

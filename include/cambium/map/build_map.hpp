@@ -79,7 +79,10 @@ class MapBuild {
       result.begin = section.s;
       result.end = k + 1 < source.lane_sections.size() ? source.lane_sections[k + 1].s : road.length;
       for (auto const& lane : section.lanes)
-        if (lane.id != 0) result.lanes.push_back({lane.id, none<LaneId>, CubicProfile(lane.widths, BeforeFirst::hold)});
+        if (lane.id != 0)
+          result.lanes.push_back(
+              {lane.id, none<LaneId>, CubicProfile(lane.widths, BeforeFirst::hold),
+               CubicProfile(lane.widths.empty() ? lane.borders : std::vector<CubicRecord>(), BeforeFirst::hold)});
       road.sections.push_back(std::move(result));
     }
     return road;

@@ -48,11 +48,13 @@ struct MapOptions {
   }
 };
 
-/// A lane of the road cross-section: exact width as a function of the distance from the section's start.
+/// A lane of the road cross-section: exact width as a function of the distance from the section's start, or where the
+/// file gives borders instead, the t of its outer border.
 struct RoadLane {
   int number{};
   LaneId id = none<LaneId>;
   CubicProfile width;
+  CubicProfile border;  ///< in force where it has records
 };
 
 struct RoadSection {

@@ -129,6 +129,7 @@ class DocumentCheck {
       double const end = i + 1 < road.lane_sections.size() ? road.lane_sections[i + 1].s : road.geometry_length();
       for (opendrive::Lane& lane : section.lanes) {
         std::string const of = ids + ", section " + std::to_string(i) + ", lane " + std::to_string(lane.id);
+        leave_out_wild(lane.borders, end - section.s, lane.line, "border", of);
         double const lowest = leave_out_wild(lane.widths, end - section.s, lane.line, "width", of);
         if (lowest < -1e-3)
           report(Severity::warning, lane.line, "lane", of,

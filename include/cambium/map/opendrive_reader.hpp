@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -70,6 +71,48 @@ namespace detail {
   return link;
 }
 
+[[nodiscard]] inline bool has_usable_cubic(XmlContext& context, pugi::xml_node node, Geometry const& g) {
+  if (!g.cubic->is_regular()) {
+    context.report(Severity::warning, node, "the curve has no length, or stops somewhere");
+    return false;
+  }
+  double const length = g.cubic->length();
+  if (std::abs(length - g.length) > 1e-3 * g.length)
+    context.report(Severity::warning, node,
+                   "the curve is " + rounded_text(length) + " m long, its length attribute says " +
+                       rounded_text(g.length) + " m; it is stretched along to that");
+  return true;
+}
+
+[[nodiscard]] inline bool read_poly3(XmlContext& context, pugi::xml_node node, Geometry& g) {
+  ParametricCubic::Coefficients v{};
+  if (!context.numbers(node, {{"a", &v[0]}, {"b", &v[1]}, {"c", &v[2]}, {"d", &v[3]}})) return false;
+  if (!(g.length > 0.0)) return true;  // left out later
+  g.kind = GeometryKind::cubic;
+  g.cubic = std::make_shared<ParametricCubic const>(ParametricCubic::along_u(v, g.length));
+  return has_usable_cubic(context, node, g);
+}
+
+[[nodiscard]] inline bool read_param_poly3(XmlContext& context, pugi::xml_node node, Geometry& g) {
+  ParametricCubic::Coefficients u{}, v{};
+  if (!context.numbers(node, {{"aU", &u[0]},
+                              {"bU", &u[1]},
+                              {"cU", &u[2]},
+                              {"dU", &u[3]},
+                              {"aV", &v[0]},
+                              {"bV", &v[1]},
+                              {"cV", &v[2]},
+                              {"dV", &v[3]}}))
+    return false;
+  if (!(g.length > 0.0)) return true;
+  std::string_view const range = node.attribute("pRange").value();
+  if (range != "arcLength" && range != "normalized")
+    context.report(Severity::warning, node, "pRange is neither arcLength nor normalized; normalized was taken");
+  g.kind = GeometryKind::cubic;
+  g.cubic = std::make_shared<ParametricCubic const>(u, v, range == "arcLength" ? g.length : 1.0);
+  return has_usable_cubic(context, node, g);
+}
+
 /// The curve of a geometry element: the child that says its kind may stand anywhere among other children.
 [[nodiscard]] inline bool read_curve(XmlContext& context, pugi::xml_node node, Geometry& g) {
   for (pugi::xml_node child = node.first_child(); child; child = child.next_sibling()) {
@@ -85,12 +128,10 @@ namespace detail {
       g.kind = GeometryKind::spiral;
       return context.numbers(child, {{"curvStart", &g.curvature_start}, {"curvEnd", &g.curvature_end}});
     }
-    if (kind == "poly3" || kind == "paramPoly3") {
-      context.report(Severity::warning, child, "this kind of geometry is not supported yet");
-      return false;
-    }
+    if (kind == "poly3") return read_poly3(context, child, g);
+    if (kind == "paramPoly3") return read_param_poly3(context, child, g);
   }
-  context.report(Severity::warning, node, "the geometry is none of line, arc, spiral");
+  context.report(Severity::warning, node, "the geometry is none of line, arc, spiral, poly3, paramPoly3");
   return false;
 }
 
@@ -173,6 +214,7 @@ inline void read_road_types(XmlContext& context, pugi::xml_node road_node, opend
   });
   context.section.reset();
   sort_records(context, node, road.lane_sections, &opendrive::LaneSection::s, "lane sections");
+  complete_single_sides(road.lane_sections);
   if (road.lane_sections.empty())
     context.report(Severity::warning, node ? node : road_node, "the road has no lane section");
   return !road.lane_sections.empty();
@@ -260,7 +302,7 @@ inline void read_road_types(XmlContext& context, pugi::xml_node road_node, opend
 
 /// Reads an OpenDRIVE file (revisions 1.1 to 1.8) from its text; `file_name` only names it in messages. Numbers are
 /// read in the C locale. What is odd goes to `diagnostics`, and is read as far as it makes sense: a bad record is left
-/// out, a road with an unusable or unsupported geometry (poly3, paramPoly3) too. Elements that are not listed in
+/// out, a road with an unusable geometry too. Elements that are not listed in
 /// `opendrive::Document` are passed over silently. An XML namespace prefix is ignored. Throws `MapError` when the text
 /// is no XML, its root is not OpenDRIVE, or no road is usable. Linear in the length of the text; lines are counted in
 /// bytes of UTF-8.
@@ -292,7 +334,7 @@ inline void read_road_types(XmlContext& context, pugi::xml_node road_node, opend
     for (Diagnostic const& d : diagnostics)
       if (why.empty() && d.severity != Severity::info && d.line > 0) why = " (first finding: " + to_string(d) + ")";
     throw MapError(context.file(), "the file has no usable road" + why,
-                   "give a file with a road of lines, arcs and spirals");
+                   "give a file with a road that has a plan view and lanes");
   }
   return document;
 }

@@ -4,19 +4,23 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "cambium/core/macros.hpp"
+#include "cambium/map/detail/quadrature.hpp"
 #include "cambium/map/detail/stable_sort.hpp"
+#include "cambium/map/parametric_cubic.hpp"
 
 namespace cambium::map {
 
-enum class GeometryKind { line, arc, spiral };
+enum class GeometryKind { line, arc, spiral, cubic };
 
-/// One piece of a plan view, in the map frame: it starts at (x, y, heading) and its curvature runs linearly with the
-/// arc length from `curvature_start` to `curvature_end` (line: both 0; arc: both equal).
+/// One piece of a plan view, in the map frame: it starts at (x, y, heading). Its curvature runs linearly with the arc
+/// length from `curvature_start` to `curvature_end` (line: both 0; arc: both equal), or it is a parametric cubic in the
+/// frame of its start, whose arc length is stretched to `length` where the two differ.
 struct Geometry {
   double s{};        ///< station of the start on the reference line [m]
   double x{};        ///< [m]
@@ -24,10 +28,15 @@ struct Geometry {
   double heading{};  ///< counter-clockwise from +x [rad]
   double length{};   ///< [m]
   GeometryKind kind = GeometryKind::line;
-  double curvature_start{};  ///< left positive [1/m]
-  double curvature_end{};    ///< left positive [1/m]
+  double curvature_start{};                        ///< left positive [1/m]
+  double curvature_end{};                          ///< left positive [1/m]
+  std::shared_ptr<ParametricCubic const> cubic{};  ///< of the kind of that name; shared by copies
 
-  friend bool operator==(Geometry const&, Geometry const&) = default;
+  friend bool operator==(Geometry const& a, Geometry const& b) {
+    bool const same_cubic = a.cubic == b.cubic || (a.cubic && b.cubic && *a.cubic == *b.cubic);
+    return same_cubic && a.s == b.s && a.x == b.x && a.y == b.y && a.heading == b.heading && a.length == b.length &&
+           a.kind == b.kind && a.curvature_start == b.curvature_start && a.curvature_end == b.curvature_end;
+  }
 };
 
 /// A point of a reference line with its tangent.
@@ -51,21 +60,6 @@ struct Displacement {
   double const u2 = u * u;
   return u2 < 1e-6 ? 1.0 - u2 / 6.0 * (1.0 - u2 / 20.0) : std::sin(u) / u;
 }
-
-/// A Gauss-Legendre rule on [-1, 1]: abscissas and weights of its positive half.
-template <std::size_t N>
-struct HalfRule {
-  std::array<double, N> node;
-  std::array<double, N> weight;
-};
-inline constexpr HalfRule<10> gauss_20{
-    {0.0765265211334973338, 0.2277858511416450781, 0.3737060887154195607, 0.5108670019508270980, 0.6360536807265150254,
-     0.7463319064601507926, 0.8391169718222188234, 0.9122344282513259059, 0.9639719272779137912, 0.9931285991850949248},
-    {0.1527533871307258507, 0.1491729864726037467, 0.1420961093183820513, 0.1316886384491766269, 0.1181945319615184174,
-     0.1019301198172404351, 0.0832767415767047487, 0.0626720483341090636, 0.0406014298003869413,
-     0.0176140071391521183}};
-inline constexpr HalfRule<3> gauss_6{{0.2386191860831969086, 0.6612093864662645137, 0.9324695142031520278},
-                                     {0.4679139345726910473, 0.3607615730481386076, 0.1713244923791703450}};
 
 /// Integral of (cos, sin)(heading + curvature u + curvature_rate u^2 / 2) for u over [begin, end], by one panel.
 template <std::size_t N>
@@ -112,9 +106,23 @@ template <std::size_t N>
   return g.length > 0.0 ? (g.curvature_end - g.curvature_start) / g.length : 0.0;
 }
 
-/// The point `ds` [m] behind the geometry's start; `ds` may lie outside [0, length], the curve then simply goes on.
-/// Line and arc are closed forms (the arc for any curvature, 0 included), the spiral is a quadrature; all to 1e-12 m.
+namespace detail {
+
+[[nodiscard]] inline CurvePoint evaluate_cubic(Geometry const& g, double ds) {
+  double const stretch = g.cubic->length() / g.length;
+  auto const local = g.cubic->at(ds * stretch);
+  double const cos = std::cos(g.heading), sin = std::sin(g.heading);
+  return {g.x + cos * local.u - sin * local.v, g.y + sin * local.u + cos * local.v,
+          g.heading + g.cubic->start_direction() + local.turn, local.curvature, local.curvature_derivative};
+}
+
+}  // namespace detail
+
+/// The point `ds` [m] behind the geometry's start; `ds` may lie outside [0, length]: the curve then simply goes on, a
+/// cubic along its tangent. Line and arc are closed forms (the arc for any curvature, 0 included), spiral and cubic
+/// quadratures; all to 1e-12 m.
 [[nodiscard]] inline CurvePoint evaluate(Geometry const& g, double ds) {
+  if (g.kind == GeometryKind::cubic) return detail::evaluate_cubic(g, ds);
   double const rate = g.kind == GeometryKind::spiral ? curvature_rate(g) : 0.0;
   CurvePoint p{g.x, g.y, g.heading, g.curvature_start + rate * ds, rate};
   p.heading += ds * (g.curvature_start + 0.5 * rate * ds);
@@ -131,9 +139,9 @@ template <std::size_t N>
   return p;
 }
 
-/// The plan view of a road: lines, arcs and spirals, evaluated exactly at every station. A geometry holds on the
-/// half-open interval from its start to the next one's (the last of equal starts wins); stations before the first and
-/// after the last geometry are extrapolated with those.
+/// The plan view of a road: lines, arcs, spirals and cubics, evaluated exactly at every station. A geometry holds on
+/// the half-open interval from its start to the next one's (the last of equal starts wins); stations before the first
+/// and after the last geometry are extrapolated with those.
 class ReferenceLine {
  public:
   ReferenceLine() = default;

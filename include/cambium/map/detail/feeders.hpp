@@ -67,8 +67,7 @@ class FeederFinder {
     double const length = std::min(view, overlap.other_begin);
     add({other.id, other.index_begin + overlap.other_begin - length, other.index_begin + overlap.other_begin,
          begin - length, begin, begin});
-    if (length < view)
-      add_predecessors(other.id, none<LaneId>, view - length, begin - length, begin, false);
+    if (length < view) add_predecessors(other.id, none<LaneId>, view - length, begin - length, begin, false);
   }
 
   /// Adds the predecessors of `lane` but `known`, and those behind them, up to `view` [m] back; `end` is the image of
@@ -80,8 +79,7 @@ class FeederFinder {
       double const length = std::min(view, previous.length());
       double const index_end = previous.index_begin + previous.length();
       add({before, index_end - length, index_end, end - length, end, free_until});
-      if (length < view)
-        add_predecessors(before, none<LaneId>, view - length, end - length, free_until, with_own);
+      if (length < view) add_predecessors(before, none<LaneId>, view - length, end - length, free_until, with_own);
     }
   }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <limits>
 #include <optional>
@@ -132,11 +133,10 @@ inline void check_lane_width(XmlContext& context, pugi::xml_node node, opendrive
   if (lane.id == 0) return;
   if (lane.widths.empty() && lane.borders.empty())
     context.report(Severity::warning, node, "the lane has neither width nor border; its width counts as 0");
-  if (lane.widths.empty() && !lane.borders.empty())
-    context.report(Severity::warning, node,
-                   "lanes given by their borders are not supported yet; its width counts as 0");
   if (lane.direction == opendrive::LaneDirection::both)
     context.report(Severity::info, node, "traffic in both directions is not supported yet; it runs in the usual one");
+  if (!lane.widths.empty() && !lane.borders.empty())
+    context.report(Severity::info, node, "the lane has widths and borders; the widths count");
   if (!lane.widths.empty() && lane.widths.front().s > 0.0)
     context.report(Severity::warning, node,
                    "the first width record starts behind the section's start; its first value counts before it too");
@@ -211,8 +211,6 @@ inline void order_lanes(XmlContext& context, pugi::xml_node node, opendrive::Lan
   section.s = *s;
   section.line = context.line(node);
   section.single_side = node.attribute("singleSide").as_bool();
-  if (section.single_side)
-    context.report(Severity::warning, node, "singleSide is not supported yet; the other side's lanes end here");
   for_each_child(node, [&](pugi::xml_node side, std::string_view name) {
     if (name != "left" && name != "center" && name != "right") return;
     for_each_child(side, "lane", [&](pugi::xml_node lane_node) {
@@ -228,6 +226,30 @@ inline void order_lanes(XmlContext& context, pugi::xml_node node, opendrive::Lan
   });
   order_lanes(context, node, section);
   return section;
+}
+
+/// Gives a section that speaks for one side only the other side's lanes, as they go on from the section before.
+inline void complete_single_sides(std::vector<opendrive::LaneSection>& sections) {
+  for (std::size_t k = 1; k < sections.size(); ++k) {
+    opendrive::LaneSection& section = sections[k];
+    if (!section.single_side) continue;
+    double const shift = section.s - sections[k - 1].s;
+    for (int const side : {1, -1}) {
+      auto const is_there = [side](opendrive::Lane const& lane) { return lane.id * side > 0; };
+      if (std::any_of(section.lanes.begin(), section.lanes.end(), is_there)) continue;
+      for (opendrive::Lane& before : sections[k - 1].lanes) {
+        if (!is_there(before)) continue;
+        opendrive::Lane lane = before;
+        for (CubicRecord& record : lane.widths) record.s -= shift;
+        for (CubicRecord& record : lane.borders) record.s -= shift;
+        for (opendrive::RoadMark& mark : lane.road_marks) mark.s_offset -= shift;
+        for (opendrive::SpeedRecord& speed : lane.speeds) speed.s -= shift;
+        before.successors = lane.predecessors = {lane.id};
+        section.lanes.push_back(std::move(lane));
+      }
+    }
+    stable_sort(section.lanes, [](opendrive::Lane const& lane) { return -static_cast<long long>(lane.id); });
+  }
 }
 
 }  // namespace cambium::map::detail

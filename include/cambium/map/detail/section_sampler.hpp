@@ -82,7 +82,8 @@ class SectionSampler {
     for (auto const& g : road_.reference_line.geometries()) add(g.s);
     for (auto const& record : road_.lane_offset.records()) add(record.s);
     for (auto const& lane : section_.lanes)
-      for (auto const& record : lane.width.records()) add(section_.begin + record.s);
+      for (auto const* profile : {&lane.width, &lane.border})
+        for (auto const& record : profile->records()) add(section_.begin + record.s);
     std::sort(points.begin(), points.end());
     // Breaks closer than a micrometre are one: there is nothing between them to sample.
     std::vector<double> result{points.front()};
@@ -113,14 +114,19 @@ class SectionSampler {
       auto const w = profile(section_.lanes[lane].width, s - section_.begin, inside - section_.begin);
       return w.t > 0.0 ? w : Lateral{};  // a width below 0 counts as 0
     };
-    for (std::size_t i = left_lanes_; i-- > 0;) {
-      auto const w = width(i);
-      cross.borders[i] = {cross.borders[i + 1].t + w.t, cross.borders[i + 1].slope + w.slope};
-    }
-    for (std::size_t i = left_lanes_; i < section_.lanes.size(); ++i) {
-      auto const w = width(i);
-      cross.borders[i + 1] = {cross.borders[i].t - w.t, cross.borders[i].slope - w.slope};
-    }
+    // The outer border of lane `i` on side `sign` (left 1), beyond its inner one.
+    auto const outer = [&](std::size_t i, Lateral const& inner, double sign) -> Lateral {
+      if (section_.lanes[i].border.empty()) {
+        auto const w = width(i);
+        return {inner.t + sign * w.t, inner.slope + sign * w.slope};
+      }
+      auto const b = profile(section_.lanes[i].border, s - section_.begin, inside - section_.begin);
+      double const t = sign * std::abs(b.t);  // some files write magnitudes
+      return sign * (t - inner.t) > 0.0 ? Lateral{t, b.t * sign < 0.0 ? -b.slope : b.slope} : inner;
+    };
+    for (std::size_t i = left_lanes_; i-- > 0;) cross.borders[i] = outer(i, cross.borders[i + 1], 1.0);
+    for (std::size_t i = left_lanes_; i < section_.lanes.size(); ++i)
+      cross.borders[i + 1] = outer(i, cross.borders[i], -1.0);
     return cross;
   }
 
@@ -167,6 +173,7 @@ class SectionSampler {
     if (!linear(road_.lane_offset.find(inside))) return false;
     double const first = begin - section_.begin, last = end - section_.begin;
     return std::all_of(section_.lanes.begin(), section_.lanes.end(), [&](RoadLane const& lane) {
+      if (!lane.border.empty()) return linear(lane.border.find(inside - section_.begin));
       auto const* record = lane.width.find(inside - section_.begin);
       bool const has_kink = record != nullptr && (record->value(first) < 0.0) != (record->value(last) < 0.0);
       return linear(record) && !has_kink;
