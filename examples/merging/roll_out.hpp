@@ -149,8 +149,12 @@ class Progress {
   explicit Progress(std::uint64_t total) : total_(total), shown_(isatty(STDERR_FILENO) == 1) {}
   void advance() {
     auto const done = ++done_;
+    if (!shown_) return;
     std::unique_lock lock(mutex_, std::defer_lock);
-    if (!shown_ || (done == total_ ? (lock.lock(), false) : !lock.try_lock())) return;
+    if (done == total_)
+      lock.lock();
+    else if (!lock.try_lock())
+      return;
     constexpr std::uint64_t width = 40;
     auto const filled = done * width / total_;
     std::fprintf(stderr, "\r[%s%s] %llu/%llu%s", std::string(filled, '#').c_str(),

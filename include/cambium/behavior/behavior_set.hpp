@@ -37,6 +37,15 @@ struct BehaviorSet {
   template <class B>
   static constexpr bool contains = (std::is_same_v<B, Behaviors> || ...);
 
+  /// Place of `B` in the set.
+  template <class B>
+  static constexpr std::size_t index = [] {
+    bool const same[] = {std::is_same_v<B, Behaviors>...};
+    std::size_t i = 0;
+    while (i < sizeof...(Behaviors) && !same[i]) ++i;
+    return i;
+  }();
+
   /// The memory an agent starts with.
   [[nodiscard]] static Memory initial_memory(Any const& behavior) {
     return initial_memory(behavior, std::index_sequence_for<Behaviors...>{});

@@ -66,8 +66,8 @@ template <class Set, class World>
     return RandomStream(roster.seed, static_cast<std::uint32_t>(observer.id), static_cast<std::uint32_t>(frame.step),
                         purpose);
   };
-  detail::check_alternative(prediction.ego, "prediction: ego");
-  detail::check_alternative(prediction.others, "prediction: others");
+  detail::check_if_described(prediction.ego, "prediction: ego");
+  detail::check_if_described(prediction.others, "prediction: others");
   assumed->seed = prediction.seed ? *prediction.seed : stream(seed_purpose)();
   assumed->next_agent_id = roster.next_agent_id;
   assumed->next_object_id = roster.next_object_id;

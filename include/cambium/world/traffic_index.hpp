@@ -74,7 +74,7 @@ class TrafficIndex {
     if (agents_.size() != count) {
       agents_.resize(count);
       rank_.resize(count);
-      straddling_.reserve(3 * count);
+      straddling_.reserve(2 * count);
       for (std::uint32_t i = 0; i < count; ++i) agents_[i].slot = i;
     }
     straddling_.clear();

@@ -101,7 +101,8 @@ class World {
   World(std::shared_ptr<Map const> map, std::shared_ptr<RosterType const> roster, FrameType frame)
       : map_(std::move(map)), roster_(std::move(roster)) {
     if (!map_ || !roster_) throw WorldError("World", "there is no map or no roster", "take them from another world");
-    restore(std::move(frame));
+    check_fits(frame);
+    frame_ = std::move(frame);
   }
 
   World(World const&) = default;
@@ -130,11 +131,7 @@ class World {
   /// Puts a frame of this world, or of a copy with the same roster, (back) into place: what a search does at its nodes.
   /// Throws `WorldError` (the world is unchanged) where it is not one of this roster's size. No allocation once warm.
   void restore(FrameType const& frame) {
-    if (frame.agents.size() != roster_->agents.size())
-      throw WorldError("World::restore",
-                       "the frame has " + std::to_string(frame.agents.size()) + " records, the roster " +
-                           std::to_string(roster_->agents.size()) + " agents",
-                       "restore frames of this world from since the last agent entered or left");
+    check_fits(frame);
     frame_ = frame;
     scratch_.forget();
   }
@@ -282,24 +279,16 @@ class World {
         Set::template contains<B>,
         "cambium::World::memory<B>: B must be one of the Models of the world's cambium::BehaviorSet<Models...>");
     auto const slot = slot_of(id);
-    auto const& behavior = roster_->agents[slot].behavior;
-    MemoryOf<B>* found = nullptr;
-    [&]<std::size_t... I>(std::index_sequence<I...>) {
-      ((std::is_same_v<std::variant_alternative_t<I, Behavior>, B> && behavior.index() == I
-            ? void(found = memory_at<B, I>(frame_.agents[slot].memory))
-            : void()),
-       ...);
-    }
-    (std::make_index_sequence<std::variant_size_v<Behavior>>{});
-    if (found == nullptr)
+    constexpr auto place = Set::template index<B>;
+    if (roster_->agents[slot].behavior.index() != place)
       throw WorldError("agent " + to_string(id), "its behaviour is not the one whose memory was asked for");
-    return *found;
+    return *std::get_if<place>(&frame_.agents[slot].memory);
   }
 
   /// Sets the agent's state, as a planner does with what it perceives, and puts it (back) into traffic. A negative
-  /// speed is one of reversing. Throws `WorldError` (the world is unchanged) where the agent is unknown or a number is
-  /// not finite. The agent stays on its route: where it was, if that fits, else in the lane corridor that comes
-  /// nearest.
+  /// speed is one of reversing. Throws `WorldError` (the world is unchanged) where the agent is unknown, a number is
+  /// not finite or the speed beyond 1000 m/s. The agent stays on its route: where it was, if that fits, else in the
+  /// lane corridor that comes nearest.
   void set_state(AgentId id, State state) {
     auto const slot = slot_of(id);
     state.time = frame_.time;
@@ -387,12 +376,12 @@ class World {
   }
 
  private:
-  template <class B, std::size_t I>
-  [[nodiscard]] static MemoryOf<B>* memory_at(typename Set::Memory& memory) {
-    if constexpr (std::is_same_v<std::variant_alternative_t<I, Behavior>, B>)
-      return std::get_if<I>(&memory);
-    else
-      return nullptr;
+  void check_fits(FrameType const& frame) const {
+    if (frame.agents.size() != roster_->agents.size())
+      throw WorldError("World",
+                       "the frame has " + std::to_string(frame.agents.size()) + " records, the roster " +
+                           std::to_string(roster_->agents.size()) + " agents",
+                       "restore frames of this world from since the last agent entered or left");
   }
 
   [[nodiscard]] RosterType& writable_roster() {

@@ -6,7 +6,6 @@
 #include <limits>
 #include <optional>
 #include <string>
-#include <type_traits>
 #include <variant>
 #include <vector>
 
@@ -132,14 +131,14 @@ template <class Spec>
 /// Speeds beyond this are no vehicle's [m/s].
 inline constexpr double fastest = 1000.0;
 
-/// Throws `ParameterError` where a parameter of one of the alternatives is out of its range.
-template <class Any>
-void check_alternative(Any const& any, std::string const& where) {
-  std::visit(
-      [&where](auto const& parameters) {
-        if constexpr (Described<std::decay_t<decltype(parameters)>>) check_parameters(parameters, where);
-      },
-      any);
+/// Throws `ParameterError` where a parameter of a described struct is out of its range.
+template <class Parameters>
+void check_if_described(Parameters const& parameters, std::string const& where) {
+  if constexpr (Described<Parameters>) check_parameters(parameters, where);
+}
+template <class... Alternatives>
+void check_if_described(std::variant<Alternatives...> const& any, std::string const& where) {
+  std::visit([&where](auto const& parameters) { check_if_described(parameters, where); }, any);
 }
 
 /// Throws `WorldError` or `ParameterError` where a number of `spec` is no good.
@@ -149,14 +148,11 @@ void check_entering(Spec const& spec, std::string const& where) {
     throw WorldError(where, "its position or heading is missing or not a finite number");
   if (!(spec.speed >= 0 && spec.speed <= fastest))
     throw WorldError(where, "its speed is not a number from 0 to 1000 m/s", "give metres per second");
-  auto const described = [&where](auto const& parameters) {
-    if constexpr (Described<std::decay_t<decltype(parameters)>>) check_parameters(parameters, where);
-  };
-  check_alternative(spec.behavior, where);
-  described(spec.shape);
-  described(spec.execution);
-  described(spec.dynamics);
-  described(spec.observer);
+  check_if_described(spec.behavior, where);
+  check_if_described(spec.shape, where);
+  check_if_described(spec.execution, where);
+  check_if_described(spec.dynamics, where);
+  check_if_described(spec.observer, where);
   if (!(spec.shape.length() > 0 && spec.shape.width() > 0))
     throw WorldError(where, "its shape has no length or no width", "leave the shape out to get a car");
 }
