@@ -198,8 +198,8 @@ class MapBuild {
 
   /// Lets the lane's path swing onto the neighbour's and go on as that one does.
   bool swing(Lane& lane) {
-    // [m] between the stations of a swing: it turns by some 0.03 rad a metre at most (3.5 m over 30 m).
-    double const spacing = std::clamp(parts_.options.heading_tolerance / 0.03, 0.05, 1.5);
+    // [m] between the stations of a swing: its curvature is some 0.03 1/m at most (3.5 m over 30 m).
+    double const spacing = std::clamp(std::sqrt(8.0 * 0.7 * parts_.options.position_tolerance / 0.03), 0.05, 1.5);
     auto const& road = parts_.roads[index_of(lane.road)];
     auto const& section = road.sections[lane.section];
     auto const column = column_of(section, lane.id), target = column_of(section, lane.merges_into);

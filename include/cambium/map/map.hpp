@@ -27,18 +27,21 @@ namespace cambium::map {
 /// What the map is built with.
 struct MapOptions {
   double position_tolerance = 0.01;                     ///< largest distance of a sampled lane from the exact one [m]
-  double heading_tolerance = 0.5 * geometry::pi / 180;  ///< largest turn between two samples [rad]
+  /// Largest deviation of a sampled lane's heading, which is interpolated between its samples, from the exact one [rad];
+  /// two samples are not more than `turn_per_tolerance` times that apart.
+  double heading_tolerance = 0.5 * geometry::pi / 180;
   double overlap_clearance = 2.5;  ///< paths closer than this cannot carry vehicles side by side [m]
   double merge_view = 120.0;   ///< how far before an overlap merging lanes take each other's traffic into account [m]
   double merge_length = 60.0;  ///< longest stretch over which an ending lane swings onto its neighbour [m]
 
+  static constexpr double turn_per_tolerance = 6.0;
   static constexpr char const* name = "map_options";
   static constexpr auto parameters() {
     using P = MapOptions;
     return std::make_tuple(parameter("position_tolerance", &P::position_tolerance, "m", Range{1e-5, 10},
                                      "largest distance of a sampled lane from the exact one"),
                            parameter("heading_tolerance", &P::heading_tolerance, "rad", Range{1e-4, 1},
-                                     "largest turn between two samples"),
+                                     "largest deviation of a sampled lane's heading from the exact one"),
                            parameter("overlap_clearance", &P::overlap_clearance, "m", Range{0.1, 20},
                                      "paths closer than this cannot carry vehicles side by side"),
                            parameter("merge_view", &P::merge_view, "m", Range{0, 1000},

@@ -137,10 +137,11 @@ class SectionSampler {
     double const chord = std::hypot(dx, dy);
     double const off =
         chord > 1e-9 ? std::abs(dx * (m.y - a.y) - dy * (m.x - a.x)) / chord : std::hypot(m.x - a.x, m.y - a.y);
+    double const turn = geometry::angle_difference(b.heading, a.heading);
     // The middle is where an arc is farthest from its chord; the margin covers curves that are not arcs.
     return off <= 0.7 * options_.position_tolerance &&
-           std::abs(geometry::angle_difference(b.heading, a.heading)) <= options_.heading_tolerance &&
-           std::abs(geometry::angle_difference(m.heading, a.heading)) <= options_.heading_tolerance;
+           std::abs(turn) <= MapOptions::turn_per_tolerance * options_.heading_tolerance &&
+           std::abs(geometry::angle_difference(m.heading, a.heading) - 0.5 * turn) <= 0.7 * options_.heading_tolerance;
   }
 
   [[nodiscard]] bool fits(CrossSection const& a, CrossSection const& m, CrossSection const& b) const {
