@@ -17,18 +17,17 @@
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/corridor.hpp"
-#include "cambium/map/cubic.hpp"
 #include "cambium/map/lane.hpp"
 #include "cambium/map/lane_tree.hpp"
-#include "cambium/map/reference_line.hpp"
+#include "cambium/map/road.hpp"
 
 namespace cambium::map {
 
 /// What the map is built with.
 struct MapOptions {
-  double position_tolerance = 0.01;                     ///< largest distance of a sampled lane from the exact one [m]
-  /// Largest deviation of a sampled lane's heading, which is interpolated between its samples, from the exact one [rad];
-  /// two samples are not more than `turn_per_tolerance` times that apart.
+  double position_tolerance = 0.01;  ///< largest distance of a sampled lane from the exact one [m]
+  /// Largest deviation of a sampled lane's heading, which is interpolated between its samples, from the exact one
+  /// [rad]; two samples are not more than `turn_per_tolerance` times that apart.
   double heading_tolerance = 0.5 * geometry::pi / 180;
   double overlap_clearance = 2.5;  ///< paths closer than this cannot carry vehicles side by side [m]
   double merge_view = 120.0;   ///< how far before an overlap merging lanes take each other's traffic into account [m]
@@ -49,32 +48,6 @@ struct MapOptions {
                            parameter("merge_length", &P::merge_length, "m", Range{30, 1000},
                                      "longest stretch over which an ending lane swings onto its neighbour"));
   }
-};
-
-/// A lane of the road cross-section: exact width as a function of the distance from the section's start, or where the
-/// file gives borders instead, the t of its outer border.
-struct RoadLane {
-  int number{};
-  LaneId id = none<LaneId>;
-  CubicProfile width;
-  CubicProfile border;  ///< in force where it has records
-};
-
-struct RoadSection {
-  double begin{}, end{};        ///< road s [m]
-  std::vector<RoadLane> lanes;  ///< from left (largest number) to right; without lane 0
-};
-
-/// A road as in the file: exact geometry. Sampled lanes are in `Map::lanes`.
-struct Road {
-  RoadId id = none<RoadId>;
-  std::string name;  ///< the file's id
-  JunctionId junction = none<JunctionId>;
-  bool left_hand_traffic = false;
-  ReferenceLine reference_line;
-  CubicProfile lane_offset, elevation;
-  std::vector<RoadSection> sections;
-  double length{};
 };
 
 /// The way from a start to a destination: lanes in order; neighbours in the list are successors, or beside each other

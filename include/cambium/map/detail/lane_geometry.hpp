@@ -70,7 +70,7 @@ struct Smoothstep {
   auto const own = cross.center(column), other = cross.center(target);
   Smoothstep const w((cross.s - from) / (to - from));
   return {own.t + w.value * (other.t - own.t),
-          own.slope + w.value * (other.slope - own.slope) + w.slope / (to - from) * (other.t - own.t)};
+          own.slope + w.value * (other.slope - own.slope) + w.slope / (to - from) * (other.t - own.t), 0.0};
 }
 
 /// Where a lane begins to narrow towards its end, as a road station; `longest` [m] before the end where it does not

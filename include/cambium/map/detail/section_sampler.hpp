@@ -15,28 +15,20 @@
 
 namespace cambium::map::detail {
 
-/// A lateral coordinate and its change along the road.
-struct Lateral {
-  double t{};      ///< [m], left positive
-  double slope{};  ///< dt/ds
-};
-
 /// The cross-section of a road at one station: the reference line and the t of every lane border, from left to right.
 struct CrossSection {
   double s{};
   CurvePoint reference;
+  geometry::SinCos direction;  ///< of the reference line
   std::vector<Lateral> borders;
 
   /// Point and direction of the curve at `lateral` (with the curve's slope and the factor 1 - curvature t).
   [[nodiscard]] geometry::LineSample at(Lateral const& lateral) const {
-    auto const [sin, cos] = geometry::sin_cos(reference.heading);
     double const turn = std::atan2(lateral.slope, 1.0 - reference.curvature * lateral.t);
-    return {reference.x - sin * lateral.t, reference.y + cos * lateral.t, reference.heading + turn};
+    return {reference.x - direction.sin * lateral.t, reference.y + direction.cos * lateral.t, reference.heading + turn};
   }
   /// Middle between border `i` and the next.
-  [[nodiscard]] Lateral center(std::size_t i) const {
-    return {0.5 * (borders[i].t + borders[i + 1].t), 0.5 * (borders[i].slope + borders[i + 1].slope)};
-  }
+  [[nodiscard]] Lateral center(std::size_t i) const { return 0.5 * (borders[i] + borders[i + 1]); }
 };
 
 /// Samples a lane section so that the lanes' centre lines and borders keep within the tolerances between two stations.
@@ -107,7 +99,8 @@ class SectionSampler {
   }
 
   [[nodiscard]] CrossSection cross_section(double s, double inside) {
-    CrossSection cross{s, reference(s, inside), std::vector<Lateral>(section_.lanes.size() + 1)};
+    CrossSection cross{s, reference(s, inside), {}, std::vector<Lateral>(section_.lanes.size() + 1)};
+    cross.direction = geometry::sin_cos(cross.reference.heading);
     auto const offset = profile(road_.lane_offset, s, inside);
     cross.borders[left_lanes_] = offset;
     auto const width = [&](std::size_t lane) {
