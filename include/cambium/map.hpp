@@ -14,3 +14,6 @@
 #include "cambium/map/opendrive_document.hpp"
 #include "cambium/map/parametric_cubic.hpp"
 #include "cambium/map/reference_line.hpp"
+#include "cambium/map/road.hpp"
+#include "cambium/map/road_lanes.hpp"
+#include "cambium/map/station_offset.hpp"

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <tuple>
 #include <vector>
@@ -90,7 +91,7 @@ TEST_CASE("the tree finds the lanes near a point that a look at every lane finds
       Point const p{random(-180, 180), random(-180, 180)};
       double const radius = k % 3 == 0 ? 0.0 : random(0, 8);
       auto const expected = near_by_brute_force(lanes, p, radius);
-      auto const hits = tree.near(p, radius);
+      auto const hits = tree.near(p, {.radius = radius});
       REQUIRE(hits.size() == expected.size());
       for (std::size_t i = 0; i < hits.size(); ++i) {
         CHECK(hits[i].lane == expected[i].lane);
@@ -103,6 +104,84 @@ TEST_CASE("the tree finds the lanes near a point that a look at every lane finds
     }
   }
   CHECK(found > 400);
+}
+
+TEST_CASE("the nearest lanes of a direction are those that a look at every lane finds") {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  auto const lanes = heap_of_lanes(5, 80);
+  LaneTree const tree(lanes);
+  Numbers random{11};
+  int compared = 0;
+  for (int k = 0; k < 1500; ++k) {
+    Point const p{random(-300, 300), random(-300, 300)};
+    cambium::map::LaneQuery query{.radius = k % 2 == 0 ? infinity : random(0, 60)};
+    query.count = static_cast<std::size_t>(random(1, 12));
+    query.only_drivable = k % 3 == 0;
+    if (k % 5 != 0) query.heading = random(-10, 10);
+    query.heading_tolerance = random(0.1, 3.3);
+    auto expected = near_by_brute_force(lanes, p, query.radius);
+    bool is_close_call = false;  // at a vertex there are two directions
+    std::erase_if(expected, [&](LaneHit const& hit) {
+      auto const& lane = lanes[index_of(hit.lane)];
+      auto const& segment = lane.path.segments()[hit.segment];
+      double const error = std::abs(
+          cambium::geometry::angle_difference(std::atan2(segment.uy, segment.ux), query.heading.value_or(0.0)));
+      is_close_call = is_close_call || (query.heading && std::abs(error - query.heading_tolerance) < 0.06);
+      return (query.only_drivable && !lane.drivable()) || (query.heading && error > query.heading_tolerance);
+    });
+    if (is_close_call) continue;
+    ++compared;
+    if (expected.size() > query.count) expected.resize(query.count);
+    auto const hits = tree.near(p, query);
+    // A lane may have a second foot point that runs the right way (the twin looks at its nearest only), and come
+    // before.
+    REQUIRE(hits.size() >= expected.size());
+    bool const is_full = hits.size() == query.count;
+    for (auto const& hit : expected) {
+      bool const found = std::any_of(hits.begin(), hits.end(), [&](LaneHit const& h) { return h.lane == hit.lane; });
+      CHECK((found || (is_full && hits.back().distance <= hit.distance)));
+    }
+    CHECK(hits.size() <= query.count);
+    CHECK(std::is_sorted(hits.begin(), hits.end(),
+                         [](LaneHit const& a, LaneHit const& b) { return a.distance < b.distance; }));
+    if (!query.heading && hits.size() == expected.size())
+      for (std::size_t i = 0; i < hits.size(); ++i) CHECK(hits[i].lane == expected[i].lane);
+  }
+  CHECK(compared > 200);
+  CHECK(tree.near({0, 0}, {.radius = std::nan("")}).empty());
+  CHECK(tree.near({0, 0}, {.radius = infinity, .count = 1000}).size() == lanes.size());
+}
+
+TEST_CASE("the lanes in a box are those whose area meets it") {
+  auto const lanes = heap_of_lanes(9, 120);
+  LaneTree const tree(lanes);
+  Numbers random{12};
+  std::size_t found = 0;
+  for (int k = 0; k < 400; ++k) {
+    double const x = random(-180, 180), y = random(-180, 180);
+    cambium::geometry::Box const box{x, y, x + random(0, 30), y + random(0, 30)};
+    auto const in = tree.in(box);
+    for (auto const& lane : lanes) {
+      bool const is_found = std::find(in.begin(), in.end(), lane.id) != in.end();
+      found += is_found;
+      // Points of the lane within the box: seen means it must be found; and found means that one is near the box.
+      bool seen = false, near = false;
+      for (auto const& g : lane.path.segments())
+        for (int i = 0; i <= 20; ++i) {
+          auto const w =
+              lane.widths_at(g.s + g.length * i / 20, static_cast<std::uint32_t>(&g - lane.path.segments().data()));
+          for (int j = 0; j <= 20; ++j) {
+            double const t = -w.right + (w.left + w.right) * j / 20;
+            Point const p(g.x + g.ux * g.length * i / 20 - g.uy * t, g.y + g.uy * g.length * i / 20 + g.ux * t);
+            seen = seen || box.contains(p);
+            near = near || box.grown(1.0 + 0.05 * (g.length + w.left + w.right)).contains(p);
+          }
+        }
+      CHECK((!seen || is_found));
+      CHECK((!is_found || near));
+    }
+  }
+  CHECK(found > 300);
 }
 
 TEST_CASE("a point is on a drivable lane when one holds it, slits between lanes apart") {
@@ -128,11 +207,11 @@ TEST_CASE("outside of a sharp bend the corner is the foot point") {
   lanes[0].path = geometry::Line::from_points(points);
   lanes[0].widths.assign(3, {2.0, 2.0});
   LaneTree const tree(lanes);
-  auto const hits = tree.near({11.2, -1.2}, 0.0);  // 1.7 m from the corner
+  auto const hits = tree.near({11.2, -1.2}, {});  // 1.7 m from the corner
   REQUIRE(hits.size() == 1);
   CHECK(hits[0].s == doctest::Approx(10.0));
   CHECK(hits[0].lateral == doctest::Approx(-1.2 * std::sqrt(2.0)));
-  CHECK(tree.near({11.5, -1.5}, 0.0).empty());  // 2.12 m
+  CHECK(tree.near({11.5, -1.5}, {}).empty());  // 2.12 m
 }
 
 TEST_CASE("of the lanes that hold a vehicle the one with its direction is taken") {
@@ -178,7 +257,7 @@ TEST_CASE("a vehicle beside all lanes gets the nearest that does not run against
 
 TEST_CASE("a tree of no lanes finds nothing") {
   for (LaneTree const& tree : {LaneTree(), LaneTree(std::vector<Lane>())}) {
-    CHECK(tree.near({0, 0}, 1e9).empty());
+    CHECK(tree.near({0, 0}, {.radius = 1e9}).empty());
     CHECK_FALSE(tree.nearest_drivable({0, 0, 0}, 1e9).has_value());
     CHECK_FALSE(tree.any_drivable_at({0, 0}));
   }

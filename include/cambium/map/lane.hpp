@@ -50,6 +50,7 @@ struct Lane {
 
   geometry::Line path;             ///< what a vehicle follows (see above)
   std::vector<SideWidths> widths;  ///< at the path's vertices
+  std::vector<double> stations;    ///< road s at the path's vertices [m]
   geometry::Line left, right;      ///< borders in travel direction; empty where they have no length
 
   LaneId left_neighbor = none<LaneId>;   ///< next lane to the left with the same travel direction, drivable
@@ -66,12 +67,26 @@ struct Lane {
   [[nodiscard]] bool drivable() const { return is_drivable(type); }
 
   /// Distances from the path to the borders at path position `s` [m], interpolated between the vertices. O(log n).
-  [[nodiscard]] SideWidths widths_at(double s) const {
-    auto const i = path.find(s);
-    auto const& segment = path.segments()[i];
-    double const u = std::clamp((s - segment.s) / segment.length, 0.0, 1.0);
-    auto const &a = widths[i], &b = widths[i + 1];
+  [[nodiscard]] SideWidths widths_at(double s) const { return widths_at(s, path.find(s)); }
+  /// As above, within `segment` of the path. O(1).
+  [[nodiscard]] SideWidths widths_at(double s, std::uint32_t segment) const {
+    double const u = fraction(s, segment);
+    auto const &a = widths[segment], &b = widths[segment + 1];
     return {a.left + u * (b.left - a.left), a.right + u * (b.right - a.right)};
+  }
+
+  /// Road station beside path position `s` [m], interpolated between the vertices (`project` onto the road's reference
+  /// line makes it exact). O(log n).
+  [[nodiscard]] double station_at(double s) const { return station_at(s, path.find(s)); }
+  /// As above, within `segment` of the path. O(1).
+  [[nodiscard]] double station_at(double s, std::uint32_t segment) const {
+    return stations[segment] + fraction(s, segment) * (stations[segment + 1] - stations[segment]);
+  }
+
+ private:
+  [[nodiscard]] double fraction(double s, std::uint32_t i) const {
+    auto const& segment = path.segments()[i];
+    return std::clamp((s - segment.s) / segment.length, 0.0, 1.0);
   }
 };
 

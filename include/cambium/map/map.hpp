@@ -18,6 +18,7 @@
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/corridor.hpp"
 #include "cambium/map/lane.hpp"
+#include "cambium/map/detail/follow_lane.hpp"
 #include "cambium/map/lane_tree.hpp"
 #include "cambium/map/road.hpp"
 
@@ -128,14 +129,31 @@ class Map {
 
   /// Lanes of any type that hold `p`, or come within `radius` [m] of it, nearest first. O(log n).
   [[nodiscard]] std::vector<LaneHit> lanes_near(geometry::Point const& p, double radius) const {
-    return tree_.near(p, radius);
+    return tree_.near(p, LaneQuery{radius});
   }
+  /// As above: those that `query` asks for.
+  [[nodiscard]] std::vector<LaneHit> lanes_near(geometry::Point const& p, LaneQuery const& query) const {
+    return tree_.near(p, query);
+  }
+
+  /// Lanes of any type of which a part lies in `box`, in the order of their ids. O(log n) and those found.
+  [[nodiscard]] std::vector<LaneId> lanes_in(geometry::Box const& box) const { return tree_.in(box); }
 
   /// The drivable lane that a vehicle at `pose` is in: of the lanes that hold the position the one whose direction fits
   /// best; where none does, the nearest within `radius` [m] that does not run the other way. Nothing if there is none.
   /// O(log n).
   [[nodiscard]] std::optional<LaneHit> nearest_lane(geometry::Pose const& pose, double radius = 5.0) const {
     return tree_.nearest_drivable(pose, radius);
+  }
+
+  /// As above for something that moves: the lane of `previous` while that holds `pose` and runs that way, else one
+  /// behind, before or beside it that does, else as above. Lanes that cross or branch off are not changed to before the
+  /// own one ends. O(segments moved since), no allocation.
+  [[nodiscard]] std::optional<LaneHit> nearest_lane(geometry::Pose const& pose, LaneHit const& previous,
+                                                    double radius = 5.0) const {
+    CAMBIUM_ASSERT(index_of(previous.lane) < parts_.lanes.size(), "Map::nearest_lane: the map has no lane of that id");
+    if (auto const hit = detail::follow_lane(parts_.lanes, pose, previous)) return hit;
+    return nearest_lane(pose, radius);
   }
 
   /// True when a drivable lane holds the point. O(log n), no allocation.

@@ -13,14 +13,15 @@
 
 namespace cambium::map::detail {
 
-/// Fills a lane's path, widths and borders from cross-sections: column `column` of the section. `path_of(cross)` gives
-/// the path's lateral coordinate. False where the lane has no length (its inner side degenerates, or the section is
-/// shorter than a micrometre).
+/// Fills a lane's path, widths, stations and borders from cross-sections: column `column` of the section.
+/// `path_of(cross)` gives the path's lateral coordinate. False where the lane has no length (its inner side
+/// degenerates, or the section is shorter than a micrometre).
 template <class PathOf>
 [[nodiscard]] bool set_geometry(Lane& lane, std::span<CrossSection const> sections, std::size_t column,
                                 PathOf const& path_of) {
   std::vector<geometry::LineSample> path, left, right;
   std::vector<SideWidths> widths;
+  std::vector<double> stations;
   auto const add_if_apart = [](std::vector<geometry::LineSample>& samples, geometry::LineSample const& p) {
     if (!samples.empty() && std::hypot(p.x - samples.back().x, p.y - samples.back().y) < 1e-6) return false;
     samples.push_back(p);
@@ -37,6 +38,7 @@ template <class PathOf>
     if (add_if_apart(path, at(on_path))) {
       double const above = high.t - on_path.t, below = on_path.t - low.t;
       widths.push_back(lane.along_road ? SideWidths{above, below} : SideWidths{below, above});
+      stations.push_back(cross.s);
     }
     add_if_apart(left, at(lane.along_road ? high : low));
     add_if_apart(right, at(lane.along_road ? low : high));
@@ -48,6 +50,7 @@ template <class PathOf>
   if (path.size() < 2) return false;
   lane.path = geometry::Line::from_samples(path);
   lane.widths = std::move(widths);
+  lane.stations = std::move(stations);
   lane.left = left.size() > 1 ? geometry::Line::from_samples(left) : geometry::Line{};
   lane.right = right.size() > 1 ? geometry::Line::from_samples(right) : geometry::Line{};
   return true;

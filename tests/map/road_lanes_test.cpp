@@ -1,0 +1,125 @@
+#include "cambium/map/road_lanes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <random>
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include "cambium/map/build_corridor.hpp"
+#include "cambium/map/opendrive.hpp"
+#include "support/corpus.hpp"
+
+namespace cb = cambium;
+using cb::geometry::Point;
+using cb::geometry::Pose;
+using cb::map::LaneHit;
+
+TEST_CASE("a point that only one road covers is found on that road, in that lane, on every map of the corpus") {
+  auto const folder = corpus::find("opendrive");
+  if (!folder) return;
+  int all = 0;
+  for (auto const& file : corpus::maps(*folder)) {
+    CAPTURE(file.stem().string());
+    auto const map = cb::load_opendrive(file.string()).map;
+    int rows = 0, narrow = 0;
+    double largest_s = 0.0, largest_t = 0.0;
+    for (auto const& row : corpus::table(file.parent_path() / "oracle" / file.stem().concat(".csv"))) {
+      auto const number = [&row](std::size_t column) { return std::stod(row[column]); };
+      if (row[23] != "1") continue;
+      auto const places = cb::map::road_places(*map, Point(number(5), number(6)));
+      CAPTURE(row[0]);
+      CAPTURE(row[1]);
+      CAPTURE(row[2]);
+      if (number(8) <= 0.5) {  // a neighbour's centre may be as near
+        ++narrow;
+        continue;
+      }
+      REQUIRE(!places.empty());
+      auto const& best = places.front();
+      CHECK(map->road(best.road).name == row[0]);
+      CHECK(best.number == std::stoi(row[2]));
+      CHECK(best.distance < 1e-6);
+      largest_s = std::max(largest_s, std::abs(best.s - number(1)));
+      largest_t = std::max(largest_t, std::abs(best.t - number(9)));
+      ++rows;
+    }
+    MESSAGE(file.stem().string() << ": " << rows << " rows (" << narrow
+                                 << " lanes of 0.5 m and less left out), largest "
+                                 << "difference in s " << largest_s << " m, in t " << largest_t << " m");
+    CHECK(largest_s < 2e-6);
+    CHECK(largest_t < 1e-6);
+    all += rows;
+  }
+  CHECK(all > 2000);
+}
+
+TEST_CASE("of two roads that cross, a point has a place on both, the nearer centre first") {
+  auto const folder = corpus::find("opendrive");
+  if (!folder) return;
+  auto const map = cb::load_opendrive((*folder / "Town04.xodr").string()).map;
+  std::size_t several = 0, all = 0, exact_ones = 0;
+  for (auto const& lane : map->lanes()) {
+    auto const p = lane.path.pose(0.5 * lane.length()).position();
+    auto const places = cb::map::road_places(*map, p);
+    for (auto const& place : places) {
+      auto const exact = lane_point(map->road(place.road), place.s, place.number);
+      REQUIRE(exact.has_value());
+      auto const again = point_at(map->road(place.road), place.s, place.t);
+      double const off = std::hypot(again.x - p.x(), again.y - p.y());
+      CHECK(off < 2e-3);  // at gaps of the reference line
+      exact_ones += off < 1e-5;
+      ++all;
+      CHECK(std::abs(std::abs(place.t - exact->t) - place.distance) < 1e-9);
+    }
+    CHECK(std::is_sorted(places.begin(), places.end(),
+                         [](auto const& a, auto const& b) { return a.distance < b.distance; }));
+    several += places.size() > 1;
+  }
+  CHECK(several > 100);
+  CHECK(all - exact_ones < all / 100);
+}
+
+TEST_CASE("something that is driven along its lanes is followed, and lost as little as it is found anew") {
+  auto const folder = corpus::find("opendrive");
+  if (!folder) return;
+  auto const map = cb::load_opendrive((*folder / "Town04.xodr").string()).map;
+  std::mt19937 random(3);
+  int steps = 0, same = 0;
+  for (int k = 0; k < 50; ++k) {
+    auto const& start = map->lanes()[random() % map->lanes().size()];
+    if (!start.drivable()) continue;
+    auto const road = cb::map::build_road_corridor(*map, cb::map::straight_route(*map, start.id, 300.0));
+    auto const& corridor = road->corridors[road->main];
+    std::optional<LaneHit> hit;
+    for (double s = 0.05; s < corridor.length(); s += 0.5, ++steps) {
+      Pose const pose = corridor.center.pose(s);
+      hit = hit ? map->nearest_lane(pose, *hit) : map->nearest_lane(pose);
+      REQUIRE(hit.has_value());
+      CHECK(hit->distance <= 0.05);
+      auto const& lane = map->lane(hit->lane);
+      CHECK((lane.path.pose(hit->s).position() - pose.position()).norm() ==
+            doctest::Approx(std::abs(hit->lateral)).epsilon(1e-6));
+      same += hit->lane == corridor.pieces[corridor.piece_at(s, 0)].lane;
+    }
+  }
+  CHECK(steps > 5000);
+  CHECK(same > 0.9 * steps);
+}
+
+TEST_CASE("a station beside a lane's path position is right to the sampling's tolerance") {
+  auto const folder = corpus::find("opendrive");
+  if (!folder) return;
+  for (auto const* name : {"Town04.xodr", "positive18.xodr", "velodrome.xodr"}) {
+    auto const map = cb::load_opendrive((*folder / name).string()).map;
+    for (auto const& lane : map->lanes())
+      for (double const u : {0.0, 0.13, 0.5, 0.77, 1.0}) {
+        double const s = u * lane.length();
+        auto const at = lane.path.pose(s);
+        auto const exact = project(map->road(lane.road).reference_line, at.position(), lane.station_at(s));
+        CHECK(std::abs(lane.station_at(s) - exact.s) < 0.1);
+      }
+  }
+}
