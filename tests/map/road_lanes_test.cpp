@@ -79,7 +79,7 @@ TEST_CASE("of two roads that cross, a point has a place on both, the nearer cent
     several += places.size() > 1;
   }
   CHECK(several > 100);
-  CHECK(all - exact_ones < all / 100);
+  CHECK(all - exact_ones < all / 50);
 }
 
 TEST_CASE("something that is driven along its lanes is followed, and lost as little as it is found anew") {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cambium/core/macros.hpp"
+#include "cambium/geometry/angle.hpp"
 #include "cambium/map/detail/quadrature.hpp"
 #include "cambium/map/detail/stable_sort.hpp"
 #include "cambium/map/parametric_cubic.hpp"
@@ -70,9 +71,9 @@ template <std::size_t N>
   Displacement sum;
   for (std::size_t i = 0; i < N; ++i) {
     for (double const u : {middle - half * rule.node[i], middle + half * rule.node[i]}) {
-      double const angle = heading + u * (curvature + 0.5 * curvature_rate * u);
-      sum.x += rule.weight[i] * std::cos(angle);
-      sum.y += rule.weight[i] * std::sin(angle);
+      auto const [sin, cos] = geometry::sin_cos(heading + u * (curvature + 0.5 * curvature_rate * u));
+      sum.x += rule.weight[i] * cos;
+      sum.y += rule.weight[i] * sin;
     }
   }
   return {half * sum.x, half * sum.y};
@@ -134,8 +135,9 @@ namespace detail {
   }
   double const half_turn = 0.5 * g.curvature_start * ds;
   double const chord = ds * detail::sinc(half_turn);
-  p.x += chord * std::cos(g.heading + half_turn);
-  p.y += chord * std::sin(g.heading + half_turn);
+  auto const [sin, cos] = geometry::sin_cos(g.heading + half_turn);
+  p.x += chord * cos;
+  p.y += chord * sin;
   return p;
 }
 

@@ -81,8 +81,8 @@ struct RoadPoint {
   double const ddn = reference.curvature * along + lateral.curvature;
   double const squared = along * along + lateral.slope * lateral.slope;
   double const curvature = squared > 0.0 ? (along * ddn - lateral.slope * ddt) / (squared * std::sqrt(squared)) : 0.0;
-  return {reference.x - sin * lateral.t, reference.y + cos * lateral.t,
-          reference.heading + std::atan2(lateral.slope, along), curvature};
+  double const turn = lateral.slope == 0.0 && along > 0.0 ? 0.0 : std::atan2(lateral.slope, along);  // mostly 0
+  return {reference.x - sin * lateral.t, reference.y + cos * lateral.t, reference.heading + turn, curvature};
 }
 
 /// A lane at a station of its road, exactly as the records say.
