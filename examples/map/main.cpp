@@ -1,0 +1,56 @@
+// Reads an OpenDRIVE map: says what it contains and what is odd about it, draws it, and answers queries from tables.
+
+#include <cstdio>
+#include <iostream>
+#include <string>
+
+#include "cambium/core/write_file.hpp"
+#include "cambium/map/routing.hpp"
+#include "cambium/viewer/map_picture.hpp"
+
+#include "common/command_line.hpp"
+#include "common/map_file.hpp"
+#include "summary.hpp"
+#include "tables.hpp"
+
+namespace {
+
+struct Settings {
+  std::string file, picture, poses, nearest, out, links;
+  std::vector<std::string> route;
+  bool infer_links = false;
+};
+
+void run(Settings const& settings) {
+  auto const opened = examples::open_map(settings.file);
+  std::cout << map_example::summary(opened, settings.file);
+  for (auto const& diagnostic : opened.diagnostics) std::cerr << to_string(diagnostic) << "\n";
+  if (!settings.picture.empty()) {
+    cambium::write_map_picture(settings.picture, *opened.map, {.title = settings.file});
+    std::cout << "picture: " << settings.picture << "\n";
+  }
+  if (!settings.poses.empty()) cambium::write_file(settings.out, map_example::poses(*opened.map, settings.poses));
+  if (!settings.nearest.empty()) cambium::write_file(settings.out, map_example::nearest(*opened.map, settings.nearest));
+  if (!settings.links.empty()) cambium::write_file(settings.links, map_example::links(opened.document));
+  if (!settings.route.empty()) std::cout << map_example::route(*opened.map, settings.route[0], settings.route[1]);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Settings settings;
+  CLI::App program("Reads an OpenDRIVE map: what it contains, what is odd about it, pictures, queries.", "map");
+  program.add_option("FILE", settings.file, "OpenDRIVE map (.xodr)")->type_name("")->required();
+  program.add_option("--picture", settings.picture, "draw the map (.svg, or .html that zooms)")->type_name("OUT");
+  auto* const poses = program.add_option("--poses", settings.poses, "columns road,s,lane: where these lanes are");
+  auto* const nearest = program.add_option("--nearest", settings.nearest, "columns x,y: the lanes that hold the points");
+  auto* const out = program.add_option("--out", settings.out, "what --poses or --nearest write")->type_name("OUT.csv");
+  poses->type_name("IN.csv")->needs(out)->excludes(nearest);
+  nearest->type_name("IN.csv")->needs(out);
+  program.add_option("--links", settings.links, "write which lanes meet at the ends of roads")->type_name("OUT.csv");
+  program.add_option("--route", settings.route, "print the shortest route between two places, as road:lane:s each")
+      ->type_name("FROM TO")
+      ->expected(2);
+  program.footer("Numbers are in m and rad. Exit code: 0 also with warnings, 2 with an error.");
+  return examples::run_program(program, argc, argv, [&] { run(settings); });
+}
