@@ -14,6 +14,13 @@
 
 namespace examples {
 
+/// Reads all of `text` as a finite number; false where it is none.
+template <class Number>
+[[nodiscard]] bool read_number(std::string_view text, Number& value) {
+  auto const [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+  return problem == std::errc{} && end == text.data() + text.size() && value - value == Number{};
+}
+
 /// A table of comma-separated values, whose first line may name its columns. No quotes: a cell ends at the comma.
 class CsvTable {
  public:
@@ -38,12 +45,10 @@ class CsvTable {
   /// The cell as a finite number. Throws `cambium::Error` where it is none.
   template <class Number>
   [[nodiscard]] Number number(std::size_t row, std::size_t column) const {
-    std::string const& text = word(row, column);
     Number value{};
-    auto const [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (problem != std::errc{} || end != text.data() + text.size() || !(value - value == Number{}))
-      fail(rows_[row].line, names_[column] + " is '" + text + "', which is no finite number", "write it like 12.5");
-    return value;
+    if (read_number(word(row, column), value)) return value;
+    fail(rows_[row].line, names_[column] + " is '" + word(row, column) + "', which is no finite number of its kind",
+         "write it like 12.5, the lane like -1");
   }
 
   /// Throws `cambium::Error` that names the row's line.

@@ -4,9 +4,16 @@
 
 #include "cambium/map/opendrive.hpp"
 
+examples::OpenedMap examples::open_map(std::string const& file, cambium::MapOptions const& options) {
+  OpenedMap opened;
+  opened.document = cambium::map::load_opendrive_document(file, opened.diagnostics);
+  opened.map = cambium::map::build_map(opened.document, options, file, opened.diagnostics);
+  return opened;
+}
+
 std::shared_ptr<cambium::Map const> examples::load_map(std::string const& file) {
-  auto const loaded = cambium::load_opendrive(file);
-  for (auto const& diagnostic : loaded.diagnostics)
+  auto opened = open_map(file);
+  for (auto const& diagnostic : opened.diagnostics)
     if (diagnostic.severity != cambium::Severity::info) std::cerr << to_string(diagnostic) << "\n";
-  return loaded.map;
+  return opened.map;
 }

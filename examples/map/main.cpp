@@ -8,8 +8,8 @@
 #include "cambium/map/routing.hpp"
 #include "cambium/viewer/map_picture.hpp"
 
-#include "common/command_line.hpp"
-#include "common/map_file.hpp"
+#include "../common/command_line.hpp"
+#include "../common/map_file.hpp"
 #include "summary.hpp"
 #include "tables.hpp"
 
@@ -24,7 +24,7 @@ struct Settings {
 void run(Settings const& settings) {
   auto const opened = examples::open_map(settings.file);
   std::cout << map_example::summary(opened, settings.file);
-  for (auto const& diagnostic : opened.diagnostics) std::cerr << to_string(diagnostic) << "\n";
+  for (auto const& diagnostic : opened.diagnostics) std::cout << "  " << to_string(diagnostic) << "\n";
   if (!settings.picture.empty()) {
     cambium::write_map_picture(settings.picture, *opened.map, {.title = settings.file});
     std::cout << "picture: " << settings.picture << "\n";
@@ -43,7 +43,8 @@ int main(int argc, char** argv) {
   program.add_option("FILE", settings.file, "OpenDRIVE map (.xodr)")->type_name("")->required();
   program.add_option("--picture", settings.picture, "draw the map (.svg, or .html that zooms)")->type_name("OUT");
   auto* const poses = program.add_option("--poses", settings.poses, "columns road,s,lane: where these lanes are");
-  auto* const nearest = program.add_option("--nearest", settings.nearest, "columns x,y: the lanes that hold the points");
+  auto* const nearest =
+      program.add_option("--nearest", settings.nearest, "columns x,y: the lanes that hold the points");
   auto* const out = program.add_option("--out", settings.out, "what --poses or --nearest write")->type_name("OUT.csv");
   poses->type_name("IN.csv")->needs(out)->excludes(nearest);
   nearest->type_name("IN.csv")->needs(out);

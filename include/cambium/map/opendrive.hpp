@@ -32,8 +32,10 @@ struct LoadedMap {
   return result;
 }
 
-/// The map of an OpenDRIVE file (.xodr). Throws `MapError` as `parse_opendrive`, and where the file cannot be read.
-[[nodiscard]] inline LoadedMap load_opendrive(std::string const& path, MapOptions const& options = {}) {
+namespace detail {
+
+/// The bytes of a file. Throws `MapError` where it cannot be read, is empty, or beyond any map.
+[[nodiscard]] inline std::string read_map_file(std::string const& path) {
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   if (!file)
@@ -49,7 +51,21 @@ struct LoadedMap {
   }
   if (file.bad() || text.empty())  // a folder opens, but cannot be read
     throw MapError(path, "it is empty or cannot be read as a file", "give an OpenDRIVE file (.xodr)");
-  return parse_opendrive(text, options, path);
+  return text;
+}
+
+}  // namespace detail
+
+/// The map of an OpenDRIVE file (.xodr). Throws `MapError` as `parse_opendrive`, and where the file cannot be read.
+[[nodiscard]] inline LoadedMap load_opendrive(std::string const& path, MapOptions const& options = {}) {
+  return parse_opendrive(detail::read_map_file(path), options, path);
+}
+
+/// All that an OpenDRIVE file says (signals, objects and user data too), to look at, change, write again, or make a map
+/// of with `build_map`. Throws `MapError` as `load_opendrive`.
+[[nodiscard]] inline OpenDriveDocument load_opendrive_document(std::string const& path,
+                                                               std::vector<Diagnostic>& diagnostics) {
+  return read_opendrive_document(detail::read_map_file(path), path, diagnostics);
 }
 
 }  // namespace cambium::map

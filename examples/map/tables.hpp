@@ -1,0 +1,89 @@
+#pragma once
+
+#include <string>
+
+#include "cambium/geometry/angle.hpp"
+#include "cambium/map/lane_adjacency.hpp"
+#include "cambium/map/map.hpp"
+#include "cambium/map/road_lanes.hpp"
+
+#include "../common/csv.hpp"
+
+namespace map_example {
+
+namespace cb = cambium;
+using examples::digits;
+
+/// Where lanes are: for each row road,s,lane of `file` the lane's centre, width and lateral offset, and the reference
+/// line.
+inline std::string poses(cb::Map const& map, std::string const& file) {
+  examples::CsvTable const rows(file, {"road", "s", "lane"});
+  std::string text = "road,s,lane,x,y,hdg,width,t,rx,ry,rhdg,rk\n";
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    auto const s = rows.number<double>(i, 1);
+    auto const lane = rows.number<int>(i, 2);
+    auto const& road = map.find_road(rows.word(i, 0));
+    auto const p = lane_point(road, s, lane);
+    if (!p)
+      rows.fail_at(i, "road " + road.name + " has no lane " + std::to_string(lane) + " at s " + rows.word(i, 1),
+                   "ask for lanes that it has there, but lane 0");
+    text += road.name + ',' + digits(s) + ',' + std::to_string(lane);
+    for (double const value :
+         {p->center.x, p->center.y, cb::geometry::normalize_angle(p->center.heading), p->width, p->t, p->reference.x,
+          p->reference.y, cb::geometry::normalize_angle(p->reference.heading), p->reference.curvature})
+      text += ',' + digits(value);
+    text += '\n';
+  }
+  return text;
+}
+
+/// The lanes that hold the points x,y of `file`: for each point those whose centre is nearest first. `query` is the
+/// number of the point, from 0.
+inline std::string nearest(cb::Map const& map, std::string const& file) {
+  examples::CsvTable const rows(file, {"x", "y"});
+  std::string text = "road,lane,s,t,distance,query\n";
+  for (std::size_t i = 0; i < rows.size(); ++i)
+    for (auto const& place : road_places(map, {rows.number<double>(i, 0), rows.number<double>(i, 1)}))
+      text += map.road(place.road).name + ',' + std::to_string(place.number) + ',' + digits(place.s) + ',' +
+              digits(place.t) + ',' + digits(place.distance) + ',' + std::to_string(i) + '\n';
+  return text;
+}
+
+/// Which lanes meet at the ends of roads.
+inline std::string links(cb::map::OpenDriveDocument const& document) {
+  auto const word = [](cb::map::opendrive::ContactPoint end) {
+    return end == cb::map::opendrive::ContactPoint::end ? "end" : "start";
+  };
+  std::string text = "road,end,lane,next_road,next_contact,next_lane,via\n";
+  for (auto const& link : lane_adjacency(document))
+    text += link.road + ',' + word(link.end) + ',' + std::to_string(link.lane) + ',' + link.next_road + ',' +
+            word(link.next_end) + ',' + std::to_string(link.next_lane) + ',' +
+            (link.junction.empty() ? "road" : "junction:" + link.junction) + '\n';
+  return text;
+}
+
+/// A place "road:lane:s" of the command line; the road's id may have colons itself.
+inline cb::LaneId find_place(cb::Map const& map, std::string const& word) {
+  auto const second = word.rfind(':'),
+             first = second == 0 || second == word.npos ? word.npos : word.rfind(':', second - 1);
+  int lane = 0;
+  double s = 0.0;
+  if (first == word.npos || !examples::read_number(word.substr(first + 1, second - first - 1), lane) ||
+      !examples::read_number(word.substr(second + 1), s))
+    throw cb::Error("--route", "'" + word + "' is no place", "write it as road:lane:s, say 12:-1:30.5");
+  return map.find_lane(word.substr(0, first), s, lane);
+}
+
+/// The shortest route between two places, a lane a line.
+inline std::string route(cb::Map const& map, std::string const& from, std::string const& to) {
+  auto const start = find_place(map, from), end = find_place(map, to);
+  auto const found = map.shortest_route(start, end);
+  if (!found) throw cb::MapError("--route", "there is no way from " + from + " to " + to, "look at the --picture");
+  std::string text =
+      "route of " + std::to_string(found->lanes.size()) + " lanes, " + cb::detail::rounded_text(found->length) + " m\n";
+  for (auto const id : found->lanes)
+    text += "  " + map.describe(id) + ", " + cb::detail::rounded_text(map.lane(id).length()) + " m\n";
+  return text;
+}
+
+}  // namespace map_example
