@@ -47,19 +47,18 @@ class SectionSampler {
     std::vector<CrossSection> result;
     for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
       double const inside = 0.5 * (breaks[i] + breaks[i + 1]);
-      auto const first = cross_section(breaks[i], inside);
+      auto from = cross_section(breaks[i], inside);
       auto const last = cross_section(breaks[i + 1], inside);
-      double const pieces = longest > 0 ? std::ceil((breaks[i + 1] - breaks[i]) / longest) : 1.0;
-      result.push_back(first);
-      CrossSection from = first;
-      for (int k = 1; k <= static_cast<int>(pieces); ++k) {
-        CrossSection const to = k == static_cast<int>(pieces)
-                                    ? last
-                                    : cross_section(breaks[i] + (breaks[i + 1] - breaks[i]) * k / pieces, inside);
+      if (i > 0) add_before_kink(breaks[i], breaks[i - 1], from, result);
+      result.push_back(from);
+      int const pieces = longest > 0 ? static_cast<int>(std::ceil((breaks[i + 1] - breaks[i]) / longest)) : 1;
+      for (int k = 1; k < pieces; ++k) {
+        auto const to = cross_section(breaks[i] + (breaks[i + 1] - breaks[i]) * k / pieces, inside);
         refine(from, to, inside, 0, result);
-        if (k < static_cast<int>(pieces)) result.push_back(to);
+        result.push_back(to);
         from = to;
       }
+      refine(from, last, inside, 0, result);
       if (i + 2 == breaks.size()) result.push_back(last);
     }
     return result;
@@ -104,8 +103,11 @@ class SectionSampler {
     auto const offset = profile(road_.lane_offset, s, inside);
     cross.borders[left_lanes_] = offset;
     auto const width = [&](std::size_t lane) {
-      auto const w = profile(section_.lanes[lane].width, s - section_.begin, inside - section_.begin);
-      return w.t > 0.0 ? w : Lateral{};  // a width below 0 counts as 0
+      auto const& p = section_.lanes[lane].width;
+      double const ds = s - section_.begin, at = inside - section_.begin;
+      auto const w = profile(p, ds, at);
+      if (w.t > 1e-9) return w;
+      return profile(p, at, at).t > 0.0 && w.t > -1e-9 ? w : Lateral{};  // a width below 0 counts as 0
     };
     // The outer border of lane `i` on side `sign` (left 1), beyond its inner one.
     auto const outer = [&](std::size_t i, Lateral const& inner, double sign) -> Lateral {
@@ -121,6 +123,24 @@ class SectionSampler {
     for (std::size_t i = left_lanes_; i < section_.lanes.size(); ++i)
       cross.borders[i + 1] = outer(i, cross.borders[i], -1.0);
     return cross;
+  }
+
+  /// Where a line has a kink at `s`, whose cross-section behind it is `behind`, adds a station a little before: only on
+  /// these last millimetres the interpolated heading is that of neither side.
+  void add_before_kink(double s, double last_break, CrossSection const& behind, std::vector<CrossSection>& result) {
+    constexpr double little = 1e-3;  // [m]
+    if (s - result.back().s < 2.0 * little) return;
+    auto const before = cross_section(s - little, 0.5 * (last_break + s));
+    for (std::size_t i = 0; i < before.borders.size(); ++i)
+      if (turns(before.at(before.borders[i]), behind.at(behind.borders[i])) ||
+          (i + 1 < before.borders.size() && turns(before.at(before.center(i)), behind.at(behind.center(i))))) {
+        result.push_back(before);
+        return;
+      }
+  }
+
+  [[nodiscard]] bool turns(geometry::LineSample const& a, geometry::LineSample const& b) const {
+    return std::abs(geometry::angle_difference(b.heading, a.heading)) > options_.heading_tolerance;
   }
 
   /// Whether a straight chord from `a` to `b` is good enough for a curve through `m`.
@@ -151,26 +171,52 @@ class SectionSampler {
     if (depth > 16 || b.s - a.s < 1e-3 || straight(a.s, b.s, inside)) return;
     auto const middle = cross_section(0.5 * (a.s + b.s), inside);
     bool const has_room_to_wind = depth == 0 && b.s - a.s > 40.0;  // its middle alone says too little
-    if (!has_room_to_wind && fits(a, middle, b)) return;
+    if (!has_room_to_wind && fits(a, middle, b) && (bends_evenly(inside) || quarters_fit(a, b, inside))) return;
     refine(a, middle, inside, depth + 1, result);
     result.push_back(middle);
     refine(middle, b, inside, depth + 1, result);
+  }
+
+  /// Whether the middle tells how far the heading is off: not where it winds about the straight line of its ends.
+  [[nodiscard]] bool bends_evenly(double inside) const {
+    auto const kind = road_.reference_line.geometries()[road_.reference_line.locate(inside)].kind;
+    return (kind == GeometryKind::line || kind == GeometryKind::arc) && has_linear_borders(inside);
+  }
+
+  /// Whether the heading between `a` and `b` is near to the interpolated one at the quarters, too.
+  [[nodiscard]] bool quarters_fit(CrossSection const& a, CrossSection const& b, double inside) {
+    for (double const u : {0.25, 0.75}) {
+      auto const at = cross_section(a.s + u * (b.s - a.s), inside);
+      for (std::size_t i = 0; i + 1 < a.borders.size(); ++i) {
+        double const from = a.at(a.center(i)).heading;
+        double const turn = geometry::angle_difference(b.at(b.center(i)).heading, from);
+        double const off = geometry::angle_difference(at.at(at.center(i)).heading, from) - u * turn;
+        if (std::abs(off) > 0.7 * options_.heading_tolerance) return false;
+      }
+    }
+    return true;
+  }
+
+  [[nodiscard]] bool has_linear_borders(double inside) const {
+    auto const linear = [](CubicRecord const* record) {
+      return record == nullptr || (record->c == 0.0 && record->d == 0.0);
+    };
+    double const ds = inside - section_.begin;
+    return linear(road_.lane_offset.find(inside)) &&
+           std::all_of(section_.lanes.begin(), section_.lanes.end(), [&](RoadLane const& lane) {
+             return linear((lane.border.empty() ? lane.width : lane.border).find(ds));
+           });
   }
 
   /// A straight road whose widths are linear from `begin` to `end` needs no station in between.
   [[nodiscard]] bool straight(double begin, double end, double inside) const {
     auto const& line = road_.reference_line;
     if (line.geometries()[line.locate(inside)].kind != GeometryKind::line) return false;
-    auto const linear = [](CubicRecord const* record) {
-      return record == nullptr || (record->c == 0.0 && record->d == 0.0);
-    };
-    if (!linear(road_.lane_offset.find(inside))) return false;
+    if (!has_linear_borders(inside)) return false;
     double const first = begin - section_.begin, last = end - section_.begin;
     return std::all_of(section_.lanes.begin(), section_.lanes.end(), [&](RoadLane const& lane) {
-      if (!lane.border.empty()) return linear(lane.border.find(inside - section_.begin));
-      auto const* record = lane.width.find(inside - section_.begin);
-      bool const has_kink = record != nullptr && (record->value(first) < 0.0) != (record->value(last) < 0.0);
-      return linear(record) && !has_kink;
+      auto const* record = lane.border.empty() ? lane.width.find(inside - section_.begin) : nullptr;
+      return record == nullptr || (record->value(first) < 0.0) == (record->value(last) < 0.0);
     });
   }
 

@@ -1,0 +1,78 @@
+#include "cambium/map/detail/section_sampler.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include <doctest/doctest.h>
+
+#include "cambium/map/opendrive.hpp"
+#include "support/corpus.hpp"
+
+namespace {
+
+namespace cb = cambium;
+using cb::geometry::Point;
+using cb::map::Lane;
+using cb::map::Map;
+
+/// The worst deviations of sampled lanes from exact ones.
+struct Deviation {
+  double path = 0.0, border = 0.0, heading = 0.0;
+  int places = 0;
+};
+
+double distance(cb::geometry::Line const& line, Point const& p, double near) {
+  auto const foot = line.project(p, line.find(near));
+  return std::abs(foot.lateral);
+}
+
+/// Looks at a lane's path and borders between its vertices.
+void add_deviation(Map const& map, Lane const& lane, Deviation& worst) {
+  auto const& road = map.road(lane.road);
+  for (std::uint32_t i = 0; i < lane.path.segments().size(); ++i)
+    for (double const u : {0.2, 0.5, 0.8}) {
+      auto const& g = lane.path.segments()[i];
+      double const s = g.s + u * g.length, station = lane.station_at(s, i);
+      auto const exact = lane_point(road, station, lane.number);
+      REQUIRE(exact.has_value());
+      if (exact->width < 0.0) continue;  // the sampled lane takes 0 there, and the ones outside of it follow
+      Point const center(exact->center.x, exact->center.y);
+      double const off = distance(lane.path, center, s);
+      if (off > 0.5) continue;  // an inner lane had a width below 0
+      worst.path = std::max(worst.path, off);
+      std::uint32_t cursor = i;
+      double const heading = lane.path.pose(s, cursor).heading + (lane.along_road ? 0.0 : cb::geometry::pi);
+      if (std::abs(lane.stations[i + 1] - lane.stations[i]) > 2e-3)  // a shorter one may stand for a kink or a jump
+        worst.heading =
+            std::max(worst.heading, std::abs(cb::geometry::angle_difference(heading, exact->center.heading)));
+      for (double const t : {exact->inner_t, exact->outer_t}) {
+        auto const p = offset_point(exact->reference, {t, 0.0, 0.0});
+        if (lane.left.empty() || lane.right.empty()) continue;
+        worst.border = std::max(worst.border, std::min(std::abs(lane.left.project(Point(p.x, p.y)).lateral),
+                                                       std::abs(lane.right.project(Point(p.x, p.y)).lateral)));
+      }
+      ++worst.places;
+    }
+}
+
+}  // namespace
+
+TEST_CASE("sampled lanes keep within the tolerances between their vertices on every map of the corpus") {
+  auto const folder = corpus::find("opendrive");
+  if (!folder) return;
+  for (auto const& file : corpus::maps(*folder)) {
+    if (file.stem() == "SingleRoadNegativeWidth") continue;  // widths below 0 count as 0
+    Deviation worst;
+    auto const map = cb::load_opendrive(file.string()).map;
+    for (auto const& lane : map->lanes())
+      if (!is_valid(lane.merges_into)) add_deviation(*map, lane, worst);
+    MESSAGE(file.stem().string() << ": " << worst.places << " places, path " << worst.path << " m, border "
+                                 << worst.border << " m, heading " << worst.heading << " rad");
+    CAPTURE(file.stem().string());
+    CHECK(worst.path <= 0.01);
+    CHECK(worst.border <= 0.01);
+    CHECK(worst.heading <= 0.5 * cb::geometry::pi / 180);
+    CHECK(worst.places > 0);
+  }
+}
