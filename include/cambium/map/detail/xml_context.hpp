@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -48,10 +49,10 @@ class LineTable {
 
 /// `text` without white space at its ends.
 [[nodiscard]] inline std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view blanks = " \t\r\n";
-  std::size_t const first = text.find_first_not_of(blanks);
-  if (first == text.npos) return {};
-  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+  auto const is_blank = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; };
+  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+  return text;
 }
 
 /// The finite number that the whole of `text` spells, in the C locale; a leading '+' is allowed.
@@ -157,6 +158,13 @@ class XmlContext {
   char const* junction = nullptr;
   std::optional<std::size_t> section;
   std::optional<int> lane;
+
+  struct NamedAttribute {
+    std::string_view name;
+    pugi::xml_attribute attribute;
+    bool is_read = false;
+  };
+  std::vector<NamedAttribute> attributes;  ///< working memory of `AttributeReader`
 
  private:
   [[nodiscard]] std::string ids() const {
