@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -88,8 +89,13 @@ class AttributeReader {
   [[nodiscard]] bool good() const { return good_; }
   /// Moves the attributes that no field has asked for to the rest.
   void keep_others() {
-    for (XmlContext::NamedAttribute const& a : context_->attributes)
-      if (!a.is_read) keep(a.attribute);
+    auto const& all = context_->attributes;
+    for (XmlContext::NamedAttribute const& a : all) {
+      if (a.is_read) continue;
+      bool const is_second =
+          std::any_of(all.begin(), all.end(), [&](auto const& b) { return b.is_read && b.name == a.name; });
+      if (!is_second) keep(a.attribute);
+    }
   }
 
  private:
