@@ -59,13 +59,13 @@ class AttributeReader {
   template <class T>
   void needed(std::string_view name, T& field) {
     pugi::xml_attribute const found = find(name);
-    if (!found) context_->report(Severity::warning, node_, "attribute " + std::string(name) + " is missing");
+    if (!found) context_->report_missing(node_, name);
     good_ = found && read(found, field) && good_;
   }
   void needed(std::string_view name, std::string& field) {
     id(name, field);
     if (!field.empty()) return;
-    context_->report(Severity::warning, node_, "attribute " + std::string(name) + " is missing or empty");
+    context_->report_missing(node_, name);
     good_ = false;
   }
   template <class T>
@@ -145,18 +145,22 @@ class AttributeReader {
   [[nodiscard]] bool read(pugi::xml_attribute attribute, Enum& field) {
     std::string_view const found = attribute.value();
     if (found.empty()) return true;
-    std::string all;
     for (auto const& [word, value] : words(Enum{})) {
       field = value;
       if (word == found) return true;
     }
     if (!word_of(field).empty()) field = Enum{};
-    for (auto const& [word, value] : words(Enum{}))
-      if (!word.empty()) all += (all.empty() ? "" : ", ") + std::string(word);
-    std::string const taken = word_of(field).empty() ? "" : "; " + std::string(word_of(field)) + " was taken";
-    context_->report(Severity::warning, node_,
-                     std::string(attribute.name()) + "=\"" + std::string(found) + "\" is none of " + all + taken);
+    report_unknown_word(attribute, field);
     return false;
+  }
+  template <class Enum>
+  [[gnu::cold]] void report_unknown_word(pugi::xml_attribute attribute, Enum taken) {
+    std::string all;
+    for (auto const& [word, value] : words(taken))
+      if (!word.empty()) all += (all.empty() ? "" : ", ") + std::string(word);
+    std::string const done = word_of(taken).empty() ? "" : "; " + std::string(word_of(taken)) + " was taken";
+    context_->report(Severity::warning, node_,
+                     std::string(attribute.name()) + "=\"" + attribute.value() + "\" is none of " + all + done);
   }
 
   XmlContext* context_;

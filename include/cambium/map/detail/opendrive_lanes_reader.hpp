@@ -20,7 +20,7 @@ namespace cambium::map::detail {
 /// Sorts by `key` (a member) and reports when the file's order was another one.
 template <class Record, class Key>
 void sort_records(XmlContext& context, pugi::xml_node parent, std::vector<Record>& records, Key key, char const* what) {
-  if (stable_sort(records, key))
+  if (records.size() > 1 && stable_sort(records, key))
     context.report(Severity::warning, parent, std::string(what) + " are not in the order of s; they were sorted");
 }
 
@@ -97,8 +97,10 @@ inline void read_lane_children(XmlContext& context, pugi::xml_node node, opendri
     if (name == "height") return append_leaf(context, child, lane.heights);
     if (name == "access") return append_leaf(context, child, lane.accesses);
     if (name == "rule") return append_leaf(context, child, lane.rules);
-    if (name == "speed")
-      return read_speed(context, child, lane.speeds.emplace_back(context.number_or(child, "sOffset", 0.0)));
+    if (name == "speed") {
+      lane.speeds.push_back({context.number_or(child, "sOffset", 0.0), std::nullopt});
+      return read_speed(context, child, lane.speeds.back());
+    }
     if (name != "link") keep_element(context, child, lane.rest);
   });
   sort_records(context, node, lane.widths, &CubicRecord::s, "width records");

@@ -111,11 +111,19 @@ class XmlContext {
   [[nodiscard]] int line(pugi::xml_node node) { return lines_.line(node.offset_debug()); }
   [[nodiscard]] std::string const& file() const { return file_; }
 
-  void report(Severity severity, pugi::xml_node node, std::string sentence) {
+  // What reports is rare: out of the way, the rest of the reader fits into the processor's instruction cache.
+  [[gnu::cold]] void report(Severity severity, pugi::xml_node node, std::string sentence) {
     report(severity, line(node), std::string(local_name(node)), std::move(sentence));
   }
-  void report(Severity severity, int line, std::string element, std::string sentence) {
+  [[gnu::cold]] void report(Severity severity, int line, std::string element, std::string sentence) {
     diagnostics_->push_back({severity, file_, line, std::move(element), ids(), std::move(sentence)});
+  }
+
+  [[gnu::cold]] void report_missing(pugi::xml_node node, std::string_view attribute) {
+    report(Severity::warning, node, "attribute " + std::string(attribute) + " is missing");
+  }
+  [[gnu::cold]] void report_no_number(pugi::xml_node node, pugi::xml_attribute found, char const* number) {
+    report(Severity::warning, node, std::string(found.name()) + "=\"" + found.value() + "\" is not a finite " + number);
   }
 
   /// The attribute as a finite number; reports a bad one, and a missing one if it is `needed`.
@@ -123,7 +131,7 @@ class XmlContext {
   [[nodiscard]] std::optional<Number> number(pugi::xml_node node, char const* attribute, bool needed = true) {
     pugi::xml_attribute const found = node.attribute(attribute);
     if (!found) {
-      if (needed) report(Severity::warning, node, "attribute " + std::string(attribute) + " is missing");
+      if (needed) report_missing(node, attribute);
       return std::nullopt;
     }
     return number<Number>(node, found);
@@ -133,9 +141,7 @@ class XmlContext {
   [[nodiscard]] std::optional<Number> number(pugi::xml_node node, pugi::xml_attribute found) {
     std::optional<Number> const value = parse_number<Number>(found.value());
     if (!value)
-      report(Severity::warning, node,
-             std::string(found.name()) + "=\"" + found.value() + "\" is not a finite " +
-                 (std::is_integral_v<Number> ? "whole number" : "number, written like 12.5"));
+      report_no_number(node, found, std::is_integral_v<Number> ? "whole number" : "number, written like 12.5");
     return value;
   }
   /// As `number`, for an attribute that may be missing (then `fallback`) or bad (reported, then `fallback`).
