@@ -125,40 +125,39 @@ class DocumentCheck {
 
   /// Leaves out records of widths and of the lane offset that are beyond any road, and reports negative widths.
   void check_records(opendrive::Road& road, std::string const& ids) {
-    leave_out_wild(road.lane_offset, road.geometry_length(), road.line, "laneOffset", ids);
+    leave_out_wild(road.lane_offset, road.geometry_length(), road.line, "laneOffset", [&] { return ids; });
     for (std::size_t i = 0; i < road.lane_sections.size(); ++i) {
       opendrive::LaneSection& section = road.lane_sections[i];
       double const end = i + 1 < road.lane_sections.size() ? road.lane_sections[i + 1].s : road.geometry_length();
       for (opendrive::Lane& lane : section.lanes) {
-        std::string const of = ids + ", section " + std::to_string(i) + ", lane " + std::to_string(lane.id);
+        auto const of = [&] { return ids + ", section " + std::to_string(i) + ", lane " + std::to_string(lane.id); };
         leave_out_wild(lane.borders, end - section.s, lane.line, "border", of);
         double const lowest = leave_out_wild(lane.widths, end - section.s, lane.line, "width", of);
         if (lowest < -1e-3)
-          report(Severity::warning, lane.line, "lane", of,
+          report(Severity::warning, lane.line, "lane", of(),
                  "its width falls to " + rounded_text(lowest) + " m; below 0 it counts as 0");
       }
     }
   }
 
   /// Removes records that leave +-1 km before `end`; returns the smallest value of the others.
-  double leave_out_wild(std::vector<CubicRecord>& records, double end, int line, char const* element,
-                        std::string const& ids) {
+  template <class Ids>
+  double leave_out_wild(std::vector<CubicRecord>& records, double end, int line, char const* element, Ids const& ids) {
     constexpr double largest = 1000.0;  // [m]
     double lowest = 0.0;
-    std::vector<CubicRecord> kept;
-    for (std::size_t i = 0; i < records.size(); ++i) {
+    for (std::size_t i = 0; i < records.size();) {
       double const to = i + 1 < records.size() ? std::min(end, records[i + 1].s) : end;
       auto const [low, high] = extremes(records[i], records[i].s, std::max(to, records[i].s));
       if (low >= -largest && high <= largest) {
         lowest = std::min(lowest, low);
-        kept.push_back(records[i]);
-      } else {
-        report(Severity::error, line, element, ids,
-               "the record at " + rounded_text(records[i].s) + " m reaches " +
-                   rounded_text(high > largest ? high : low) + " m; it was left out");
+        ++i;
+        continue;
       }
+      report(Severity::error, line, element, ids(),
+             "the record at " + rounded_text(records[i].s) + " m reaches " + rounded_text(high > largest ? high : low) +
+                 " m; it was left out");
+      records.erase(records.begin() + static_cast<std::ptrdiff_t>(i));
     }
-    records = std::move(kept);
     return lowest;
   }
 

@@ -92,8 +92,7 @@ inline void read_lateral_profile(XmlContext& context, pugi::xml_node road_node, 
     if (name == "laneOffset") append_cubic(context, child, "s", road.lane_offset);
     if (name == "laneSection") {
       context.section = index++;
-      if (std::optional<opendrive::LaneSection> section = read_lane_section(context, child))
-        road.lane_sections.push_back(std::move(*section));
+      if (!read_lane_section(context, child, road.lane_sections.emplace_back())) road.lane_sections.pop_back();
       context.section.reset();
     }
     return name == "laneOffset" || name == "laneSection";
@@ -106,18 +105,18 @@ inline void read_lateral_profile(XmlContext& context, pugi::xml_node road_node, 
   return !road.lane_sections.empty();
 }
 
-[[nodiscard]] inline std::optional<opendrive::Road> read_road(XmlContext& context, pugi::xml_node node) {
-  opendrive::Road road;
+/// False when the road is unusable.
+[[nodiscard]] inline bool read_road(XmlContext& context, pugi::xml_node node, opendrive::Road& road) {
   road.length = -1.0;  // missing
   if (!read_attributes(context, node, road)) {
     context.report(Severity::error, node, "the road was left out, for it has no id");
-    return std::nullopt;
+    return false;
   }
   read_road_links(context, node, road);
   read_road_types(context, node, road);
   if (!read_plan_view(context, node, road) || !read_lanes(context, node, road)) {
     context.report(Severity::warning, node, "the road was left out, see the finding before");
-    return std::nullopt;
+    return false;
   }
   read_elevation(context, node, road);
   read_lateral_profile(context, node, road);
@@ -128,7 +127,7 @@ inline void read_lateral_profile(XmlContext& context, pugi::xml_node road_node, 
   for_each_child(node, [&](pugi::xml_node child, std::string_view name) {
     if (std::find(std::begin(known), std::end(known), name) == std::end(known)) keep_element(context, child, road.rest);
   });
-  return road;
+  return true;
 }
 
 /// The root element; throws when the text is no XML or its root is another one.
@@ -157,7 +156,7 @@ inline void read_top_level(XmlContext& context, pugi::xml_node node, std::string
   } else if (name == "road") {
     pugi::xml_attribute const id = node.attribute("id");
     context.road = id ? id.value() : nullptr;
-    if (auto road = read_road(context, node)) document.roads.push_back(std::move(*road));
+    if (!read_road(context, node, document.roads.emplace_back())) document.roads.pop_back();
     context.section.reset();
     context.road = nullptr;
   } else if (name == "junction") {

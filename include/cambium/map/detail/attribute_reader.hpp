@@ -1,7 +1,7 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
-#include <iterator>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -46,54 +46,69 @@ inline void keep_element(XmlContext& context, pugi::xml_node node, opendrive::Re
 }
 
 /// A visitor of `fields` that fills them from an element's attributes. What it cannot read is reported; unless it is
-/// needed it is kept in the rest, and so is what no field asked for.
+/// needed it is kept in the rest. There may be one at a time for a context.
 class AttributeReader {
  public:
   AttributeReader(XmlContext& context, pugi::xml_node node, opendrive::Rest* rest)
-      : context_(&context), node_(node), rest_(rest), hint_(node.first_attribute()) {}
+      : context_(&context), node_(node), rest_(rest) {
+    context.attributes.clear();
+    for (pugi::xml_attribute a = node.first_attribute(); a; a = a.next_attribute())
+      context.attributes.push_back({a.name(), a, false});
+  }
 
   template <class T>
-  void needed(char const* name, T& field) {
+  void needed(std::string_view name, T& field) {
     pugi::xml_attribute const found = find(name);
-    if (!found) context_->report(Severity::warning, node_, "attribute " + std::string(name) + " is missing");
+    if (!found) context_->report_missing(node_, name);
     good_ = found && read(found, field) && good_;
   }
-  void needed(char const* name, std::string& field) {
+  void needed(std::string_view name, std::string& field) {
     id(name, field);
     if (!field.empty()) return;
-    context_->report(Severity::warning, node_, "attribute " + std::string(name) + " is missing or empty");
+    context_->report_missing(node_, name);
     good_ = false;
   }
   template <class T>
-  void optional(char const* name, T& field) {
+  void optional(std::string_view name, T& field) {
     if (pugi::xml_attribute const found = find(name); found && !read(found, field)) keep(found);
   }
   template <class T>
-  void always(char const* name, T& field) {
+  void always(std::string_view name, T& field) {
     optional(name, field);
   }
-  void id(char const* name, std::string& field) {
+  void id(std::string_view name, std::string& field) {
     if (pugi::xml_attribute const found = find(name)) field = trimmed(found.value());
   }
-  void id_or(char const* name, std::string& field, std::string_view nothing) {
+  void id_or(std::string_view name, std::string& field, std::string_view nothing) {
     id(name, field);
     if (field == nothing) field.clear();
   }
-  void yes_no(char const* name, bool& field) { optional(name, field); }
+  void yes_no(std::string_view name, bool& field) { optional(name, field); }
 
   /// True when all that is needed was there.
   [[nodiscard]] bool good() const { return good_; }
-  /// True when there are attributes that no field asked for.
-  [[nodiscard]] bool has_more() const {
-    return std::distance(node_.attributes_begin(), node_.attributes_end()) > found_;
+  /// Moves the attributes that no field has asked for to the rest.
+  void keep_others() {
+    auto const& all = context_->attributes;
+    for (XmlContext::NamedAttribute const& a : all) {
+      if (a.is_read) continue;
+      bool const is_second =
+          std::any_of(all.begin(), all.end(), [&](auto const& b) { return b.is_read && b.name == a.name; });
+      if (!is_second) keep(a.attribute);
+    }
   }
 
  private:
-  /// Attributes mostly come in the order of the fields, so that the search ends where it begins.
-  [[nodiscard]] pugi::xml_attribute find(char const* name) {
-    pugi::xml_attribute const found = node_.attribute(name, hint_);
-    if (found) ++found_;
-    return found;
+  [[nodiscard]] pugi::xml_attribute find(std::string_view name) {
+    // Attributes mostly come in the order of the fields.
+    for (std::size_t i = 0; i < context_->attributes.size(); ++i) {
+      XmlContext::NamedAttribute& a = context_->attributes[next_];
+      next_ = next_ + 1 < context_->attributes.size() ? next_ + 1 : 0;
+      if (a.name != name) continue;
+      a.is_read = true;
+      return a.attribute;
+    }
+    return {};
   }
   void keep(pugi::xml_attribute attribute) {
     if (rest_) keep_attribute(rest_->attributes, attribute);
@@ -130,39 +145,29 @@ class AttributeReader {
   [[nodiscard]] bool read(pugi::xml_attribute attribute, Enum& field) {
     std::string_view const found = attribute.value();
     if (found.empty()) return true;
-    std::string all;
     for (auto const& [word, value] : words(Enum{})) {
       field = value;
       if (word == found) return true;
     }
     if (!word_of(field).empty()) field = Enum{};
-    for (auto const& [word, value] : words(Enum{}))
-      if (!word.empty()) all += (all.empty() ? "" : ", ") + std::string(word);
-    std::string const taken = word_of(field).empty() ? "" : "; " + std::string(word_of(field)) + " was taken";
-    context_->report(Severity::warning, node_,
-                     std::string(attribute.name()) + "=\"" + std::string(found) + "\" is none of " + all + taken);
+    report_unknown_word(attribute, field);
     return false;
+  }
+  template <class Enum>
+  [[gnu::cold]] void report_unknown_word(pugi::xml_attribute attribute, Enum taken) {
+    std::string all;
+    for (auto const& [word, value] : words(taken))
+      if (!word.empty()) all += (all.empty() ? "" : ", ") + std::string(word);
+    std::string const done = word_of(taken).empty() ? "" : "; " + std::string(word_of(taken)) + " was taken";
+    context_->report(Severity::warning, node_,
+                     std::string(attribute.name()) + "=\"" + attribute.value() + "\" is none of " + all + done);
   }
 
   XmlContext* context_;
   pugi::xml_node node_;
   opendrive::Rest* rest_;
-  pugi::xml_attribute hint_;
-  std::ptrdiff_t found_ = 0;
+  std::size_t next_ = 0;
   bool good_ = true;
-};
-
-/// A visitor that finds out whether one of the fields has an attribute's name.
-struct FieldSearch {
-  std::string_view name;
-  bool found = false;
-
-  void needed(std::string_view field, auto const&) { found = found || field == name; }
-  void optional(std::string_view field, auto const&) { found = found || field == name; }
-  void always(std::string_view field, auto const&) { found = found || field == name; }
-  void id(std::string_view field, auto const&) { found = found || field == name; }
-  void id_or(std::string_view field, auto const&, std::string_view) { found = found || field == name; }
-  void yes_no(std::string_view field, auto const&) { found = found || field == name; }
 };
 
 /// Fills the fields of `x` from the attributes of `node`, and `rest` (unless null) with the other attributes. False
@@ -171,12 +176,7 @@ template <class T>
 [[nodiscard]] bool read_attributes(XmlContext& context, pugi::xml_node node, T& x, opendrive::Rest* rest) {
   AttributeReader reader(context, node, rest);
   fields(reader, x);
-  if (!rest || !reader.has_more()) return reader.good();
-  for (pugi::xml_attribute a = node.first_attribute(); a; a = a.next_attribute()) {
-    FieldSearch search{a.name()};
-    fields(search, x);
-    if (!search.found) keep_attribute(rest->attributes, a);
-  }
+  reader.keep_others();
   return reader.good();
 }
 
@@ -186,22 +186,21 @@ template <class T>
   return read_attributes(context, node, x, &x.rest);
 }
 
-/// The element as a `T`, with all its children in the rest; nothing when something that it needs is missing or bad.
+/// Fills `x` from the element, with all its children in the rest. False when something that it needs is missing or bad.
 template <class T>
-[[nodiscard]] std::optional<T> read_leaf(XmlContext& context, pugi::xml_node node) {
-  T x;
+[[nodiscard]] bool read_leaf(XmlContext& context, pugi::xml_node node, T& x) {
   if (!read_attributes(context, node, x)) {
     context.report(Severity::error, node, "it was left out for that, see the finding before");
-    return std::nullopt;
+    return false;
   }
   for_each_child(node, [&](pugi::xml_node child, std::string_view) { keep_element(context, child, x.rest); });
-  return x;
+  return true;
 }
 
 /// Appends the element as `read_leaf` gives it.
 template <class T>
 void append_leaf(XmlContext& context, pugi::xml_node node, std::vector<T>& list) {
-  if (std::optional<T> x = read_leaf<T>(context, node)) list.push_back(std::move(*x));
+  if (!read_leaf(context, node, list.emplace_back())) list.pop_back();
 }
 
 /// Calls `take(child, name)` for every child of a container, a null node included; what it does not take (false), and

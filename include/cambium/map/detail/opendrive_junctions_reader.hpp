@@ -15,11 +15,11 @@ inline void report_missing_contact_point(XmlContext& context, pugi::xml_node nod
 }
 
 [[nodiscard]] inline std::optional<opendrive::RoadLink> read_road_link(XmlContext& context, pugi::xml_node node) {
-  std::optional<opendrive::RoadLink> link = read_leaf<opendrive::RoadLink>(context, node);
-  if (!link) return std::nullopt;
-  if (link->element_type == opendrive::ElementType::junction)
-    link->contact_point = opendrive::ContactPoint::none;
-  else if (!link->element_s)
+  opendrive::RoadLink link;
+  if (!read_leaf(context, node, link)) return std::nullopt;
+  if (link.element_type == opendrive::ElementType::junction)
+    link.contact_point = opendrive::ContactPoint::none;
+  else if (!link.element_s)
     report_missing_contact_point(context, node);
   return link;
 }

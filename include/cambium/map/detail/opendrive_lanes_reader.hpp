@@ -20,7 +20,7 @@ namespace cambium::map::detail {
 /// Sorts by `key` (a member) and reports when the file's order was another one.
 template <class Record, class Key>
 void sort_records(XmlContext& context, pugi::xml_node parent, std::vector<Record>& records, Key key, char const* what) {
-  if (stable_sort(records, key))
+  if (records.size() > 1 && stable_sort(records, key))
     context.report(Severity::warning, parent, std::string(what) + " are not in the order of s; they were sorted");
 }
 
@@ -97,8 +97,10 @@ inline void read_lane_children(XmlContext& context, pugi::xml_node node, opendri
     if (name == "height") return append_leaf(context, child, lane.heights);
     if (name == "access") return append_leaf(context, child, lane.accesses);
     if (name == "rule") return append_leaf(context, child, lane.rules);
-    if (name == "speed")
-      return read_speed(context, child, lane.speeds.emplace_back(context.number_or(child, "sOffset", 0.0)));
+    if (name == "speed") {
+      lane.speeds.push_back({context.number_or(child, "sOffset", 0.0), std::nullopt});
+      return read_speed(context, child, lane.speeds.back());
+    }
     if (name != "link") keep_element(context, child, lane.rest);
   });
   sort_records(context, node, lane.widths, &CubicRecord::s, "width records");
@@ -121,12 +123,11 @@ inline void check_lane_width(XmlContext& context, pugi::xml_node node, opendrive
                    "the first width record starts behind the section's start; its first value counts before it too");
 }
 
-/// One lane, or nothing when its id is unusable.
-[[nodiscard]] inline std::optional<opendrive::Lane> read_lane(XmlContext& context, pugi::xml_node node) {
-  opendrive::Lane lane;
+/// False when the lane's id is unusable.
+[[nodiscard]] inline bool read_lane(XmlContext& context, pugi::xml_node node, opendrive::Lane& lane) {
   if (!read_attributes(context, node, lane)) {
     context.report(Severity::error, node, "the lane was left out, for it has no usable id");
-    return std::nullopt;
+    return false;
   }
   context.lane = lane.id;
   pugi::xml_attribute const type = node.attribute("type");
@@ -139,7 +140,7 @@ inline void check_lane_width(XmlContext& context, pugi::xml_node node, opendrive
   read_lane_children(context, node, lane);
   check_lane_width(context, node, lane);
   context.lane.reset();
-  return lane;
+  return true;
 }
 
 /// Puts the lanes in order from left to right, adds a missing lane 0, and reports double ids (the first counts) and
@@ -176,31 +177,35 @@ inline void read_side(XmlContext& context, pugi::xml_node node, std::string_view
   int const sign = side == "left" ? 1 : side == "right" ? -1 : 0;
   read_container(context, node, section.rest, [&](pugi::xml_node child, std::string_view name) {
     if (name != "lane") return false;
-    std::optional<opendrive::Lane> lane = read_lane(context, child);
-    if (!lane) return true;
-    if ((lane->id > 0) - (lane->id < 0) != sign)
+    opendrive::Lane& lane = section.lanes.emplace_back();
+    if (!read_lane(context, child, lane))
+      section.lanes.pop_back();
+    else if ((lane.id > 0) - (lane.id < 0) != sign)
       context.report(
           Severity::warning, child,
-          "lane " + std::to_string(lane->id) + " is written as " + std::string(side) + "; its id's sign counts");
-    section.lanes.push_back(std::move(*lane));
+          "lane " + std::to_string(lane.id) + " is written as " + std::string(side) + "; its id's sign counts");
     return true;
   });
 }
 
-/// One lane section, or nothing when its start is unusable.
-[[nodiscard]] inline std::optional<opendrive::LaneSection> read_lane_section(XmlContext& context, pugi::xml_node node) {
-  opendrive::LaneSection section;
+/// False when the section's start is unusable.
+[[nodiscard]] inline bool read_lane_section(XmlContext& context, pugi::xml_node node, opendrive::LaneSection& section) {
   if (!read_attributes(context, node, section)) {
     context.report(Severity::error, node, "the lane section was left out, for its s is unusable");
-    return std::nullopt;
+    return false;
   }
+  std::size_t count = 0;
+  for_each_child(node, [&](pugi::xml_node side, std::string_view) {
+    for (pugi::xml_node lane = side.first_child(); lane; lane = lane.next_sibling()) ++count;
+  });
+  section.lanes.reserve(count);
   for (std::string_view const side : {"left", "center", "right"})
     for_each_child(node, side, [&](pugi::xml_node child) { read_side(context, child, side, section); });
   for_each_child(node, [&](pugi::xml_node child, std::string_view name) {
     if (name != "left" && name != "center" && name != "right") keep_element(context, child, section.rest);
   });
   order_lanes(context, node, section);
-  return section;
+  return true;
 }
 
 /// Moves a lane's records to a section that starts `shift` [m] later; what has ended before is dropped.

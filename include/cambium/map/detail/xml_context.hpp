@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -48,10 +49,10 @@ class LineTable {
 
 /// `text` without white space at its ends.
 [[nodiscard]] inline std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view blanks = " \t\r\n";
-  std::size_t const first = text.find_first_not_of(blanks);
-  if (first == text.npos) return {};
-  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+  auto const is_blank = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; };
+  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
+  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
+  return text;
 }
 
 /// The finite number that the whole of `text` spells, in the C locale; a leading '+' is allowed.
@@ -110,11 +111,19 @@ class XmlContext {
   [[nodiscard]] int line(pugi::xml_node node) { return lines_.line(node.offset_debug()); }
   [[nodiscard]] std::string const& file() const { return file_; }
 
-  void report(Severity severity, pugi::xml_node node, std::string sentence) {
+  // What reports is rare: out of the way, the rest of the reader fits into the processor's instruction cache.
+  [[gnu::cold]] void report(Severity severity, pugi::xml_node node, std::string sentence) {
     report(severity, line(node), std::string(local_name(node)), std::move(sentence));
   }
-  void report(Severity severity, int line, std::string element, std::string sentence) {
+  [[gnu::cold]] void report(Severity severity, int line, std::string element, std::string sentence) {
     diagnostics_->push_back({severity, file_, line, std::move(element), ids(), std::move(sentence)});
+  }
+
+  [[gnu::cold]] void report_missing(pugi::xml_node node, std::string_view attribute) {
+    report(Severity::warning, node, "attribute " + std::string(attribute) + " is missing");
+  }
+  [[gnu::cold]] void report_no_number(pugi::xml_node node, pugi::xml_attribute found, char const* number) {
+    report(Severity::warning, node, std::string(found.name()) + "=\"" + found.value() + "\" is not a finite " + number);
   }
 
   /// The attribute as a finite number; reports a bad one, and a missing one if it is `needed`.
@@ -122,7 +131,7 @@ class XmlContext {
   [[nodiscard]] std::optional<Number> number(pugi::xml_node node, char const* attribute, bool needed = true) {
     pugi::xml_attribute const found = node.attribute(attribute);
     if (!found) {
-      if (needed) report(Severity::warning, node, "attribute " + std::string(attribute) + " is missing");
+      if (needed) report_missing(node, attribute);
       return std::nullopt;
     }
     return number<Number>(node, found);
@@ -132,9 +141,7 @@ class XmlContext {
   [[nodiscard]] std::optional<Number> number(pugi::xml_node node, pugi::xml_attribute found) {
     std::optional<Number> const value = parse_number<Number>(found.value());
     if (!value)
-      report(Severity::warning, node,
-             std::string(found.name()) + "=\"" + found.value() + "\" is not a finite " +
-                 (std::is_integral_v<Number> ? "whole number" : "number, written like 12.5"));
+      report_no_number(node, found, std::is_integral_v<Number> ? "whole number" : "number, written like 12.5");
     return value;
   }
   /// As `number`, for an attribute that may be missing (then `fallback`) or bad (reported, then `fallback`).
@@ -157,6 +164,13 @@ class XmlContext {
   char const* junction = nullptr;
   std::optional<std::size_t> section;
   std::optional<int> lane;
+
+  struct NamedAttribute {
+    std::string_view name;
+    pugi::xml_attribute attribute;
+    bool is_read = false;
+  };
+  std::vector<NamedAttribute> attributes;  ///< working memory of `AttributeReader`
 
  private:
   [[nodiscard]] std::string ids() const {
