@@ -56,6 +56,8 @@ struct RoadLink {
   ElementType element_type = ElementType::road;
   std::string id;
   ContactPoint contact_point = ContactPoint::none;  ///< always `none` for junctions
+  std::optional<double>
+      element_s;  ///< where the other road is met, in place of one of its ends (virtual junctions) [m]
   int line = 0;
 };
 

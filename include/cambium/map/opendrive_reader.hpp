@@ -66,6 +66,8 @@ namespace detail {
   }
   if (type == "junction")
     link.element_type = opendrive::ElementType::junction;
+  else if (node.attribute("elementS"))
+    link.element_s = context.number<double>(node, "elementS");
   else
     link.contact_point = read_contact_point(context, node);
   return link;

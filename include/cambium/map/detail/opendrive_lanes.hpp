@@ -133,8 +133,6 @@ inline void check_lane_width(XmlContext& context, pugi::xml_node node, opendrive
   if (lane.id == 0) return;
   if (lane.widths.empty() && lane.borders.empty())
     context.report(Severity::warning, node, "the lane has neither width nor border; its width counts as 0");
-  if (lane.direction == opendrive::LaneDirection::both)
-    context.report(Severity::info, node, "traffic in both directions is not supported yet; it runs in the usual one");
   if (!lane.widths.empty() && !lane.borders.empty())
     context.report(Severity::info, node, "the lane has widths and borders; the widths count");
   if (!lane.widths.empty() && lane.widths.front().s > 0.0)
