@@ -153,7 +153,7 @@ class LaneLinker {
     if (exits.count == 0) {
       warn(connection.line, "connection", ids,
            "road " + connection.incoming_road +
-               (junction.type == "virtual" ? " does not meet the connecting road: that gives no elementS"
+               (is_virtual(junction) ? " does not meet the connecting road: that gives no elementS"
                                            : " is not linked to this junction") +
                "; the connection was left out");
       return;
@@ -179,7 +179,7 @@ class LaneLinker {
     bool const at_end = touches(ContactPoint::end), at_start = touches(ContactPoint::start);
     if (!at_end && !at_start) {
       auto const& link = links_.link_at(entry.road, entry.end);
-      bool const meets = junction.type == "virtual" && link && link->id == links_.document().roads[incoming].id;
+      bool const meets = is_virtual(junction) && link && link->id == links_.document().roads[incoming].id;
       return meets ? links_.follow(link) : SectionEnds{};
     }
     bool const by_end = at_end != at_start ? at_end : is_nearer(incoming, entry);

@@ -138,7 +138,7 @@ class LinkCheck {
     if (finding.fault == NetworkFault::border_step) what = "with a border " + size + " m away from its own";
     if (finding.fault == NetworkFault::kink) what = size + " rad off its direction";
     report(finding.fault == NetworkFault::gap ? Severity::warning : Severity::info,
-           written != nullptr ? written->line : 0, "link",
+           written != nullptr ? static_cast<int>(written->line) : 0, "link",
            "road " + name(lane) + ", section " + std::to_string(lane.section) + ", lane " + std::to_string(lane.number),
            "lane " + std::to_string(next.number) + " of road " + name(next) + ", section " +
                std::to_string(next.section) + ", goes on " + what + others_text(count));

@@ -100,7 +100,7 @@ class MissingLinks {
   void report(Severity severity, Lane const& lane, std::string sentence) {
     auto const& road = links_.document().roads[index_of(lane.road)];
     auto const* written = road.lane_sections[lane.section].find(lane.number);
-    diagnostics_.push_back({severity, file_, written != nullptr ? written->line : 0, "link",
+    diagnostics_.push_back({severity, file_, written != nullptr ? static_cast<int>(written->line) : 0, "link",
                             "road " + road.id + ", lane " + std::to_string(lane.number), std::move(sentence)});
   }
 

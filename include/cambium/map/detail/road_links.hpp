@@ -44,6 +44,15 @@ template <class Connection>
   return connection.connecting_road;
 }
 
+/// Whether the junction's connecting roads meet a road in its middle.
+template <class Junction>
+[[nodiscard]] bool is_virtual(Junction const& junction) {
+  if constexpr (requires { junction.type == "virtual"; })
+    return junction.type == "virtual";
+  else
+    return junction.type == decltype(junction.type)::virtual_;
+}
+
 /// Where the links of a document's roads lead. Keeps references to both.
 class RoadLinks {
  public:

@@ -13,6 +13,21 @@
 
 namespace cambium::map::detail {
 
+/// Lets a lane's records count from a place `shift` [m] behind the section's start.
+template <class Lane>
+void move_records(Lane& lane, double shift) {
+  for (auto& record : lane.widths) record.s -= shift;
+  for (auto& record : lane.borders) record.s -= shift;
+  for (auto& speed : lane.speeds) speed.s -= shift;
+  auto const move = [shift](auto& records) {
+    for (auto& record : records) record.s_offset -= shift;
+  };
+  move(lane.road_marks);
+  if constexpr (requires { lane.heights; }) move(lane.heights);
+  if constexpr (requires { lane.accesses; }) move(lane.accesses);
+  if constexpr (requires { lane.rules; }) move(lane.rules);
+}
+
 /// Lets a lane section begin at `s` [m] of the road, with the lanes and their links as they were. Nothing to do where
 /// one begins there already, or nearer than `shortest_section`.
 inline void split_section(opendrive::Road& road, double s) {
@@ -26,10 +41,7 @@ inline void split_section(opendrive::Road& road, double s) {
   opendrive::LaneSection behind = *at;
   behind.s = s;
   for (auto& lane : behind.lanes) {
-    for (auto& record : lane.widths) record.s -= shift;
-    for (auto& record : lane.borders) record.s -= shift;
-    for (auto& mark : lane.road_marks) mark.s_offset -= shift;
-    for (auto& speed : lane.speeds) speed.s -= shift;
+    move_records(lane, shift);
     if (lane.id != 0) lane.predecessors = {lane.id};
   }
   for (auto& lane : at->lanes)
