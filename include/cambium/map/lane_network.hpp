@@ -19,7 +19,7 @@ enum class NetworkFault : std::uint8_t {
   dangling,       ///< a successor or predecessor that is not in the map
   one_sided,      ///< a successor that does not have the lane as predecessor, or the other way round
   gap,            ///< the path of a successor does not begin where this lane's path ends
-  border_step,    ///< the paths meet, but the borders do not: the width jumps
+  border_step,    ///< the paths meet without a kink, but the borders do not: the width jumps
   kink,           ///< a successor begins in another direction
   possible_link,  ///< the lane has no successor, but ends where a lane without predecessor begins
   dead_end,       ///< the lane has no successor, and nothing begins at its end
@@ -59,7 +59,7 @@ class NetworkCheck {
       : lanes_(lanes), tolerances_(tolerances) {}
 
   [[nodiscard]] std::vector<NetworkFinding> run() {
-    find_possible_links();
+    find_possible_links([](Lane const&, Lane const&) { return true; });
     for (auto const& lane : lanes_) {
       check_links(lane, lane.successors, &Lane::predecessors);
       check_links(lane, lane.predecessors, &Lane::successors);
@@ -70,11 +70,12 @@ class NetworkCheck {
     return std::move(findings_);
   }
 
-  /// The possible links alone, by lane.
-  std::vector<NetworkFinding> const& find_possible_links() {
+  /// The possible links alone, by lane: of those that `permits(from, to)`.
+  template <class Permits>
+  std::vector<NetworkFinding> const& find_possible_links(Permits const& permits) {
     collect_begins();
     for (auto const& lane : lanes_)
-      if (lane.drivable() && !lane.path.empty() && lane.successors.empty()) find_possible_link(lane);
+      if (lane.drivable() && !lane.path.empty() && lane.successors.empty()) find_possible_link(lane, permits);
     for (auto const& finding : possible_) entered_.push_back(finding.other);
     std::sort(entered_.begin(), entered_.end());
     return possible_;
@@ -117,12 +118,13 @@ class NetworkCheck {
     if (!next.drivable() || next.path.empty()) return;
     double const gap = distance(lane.path, next.path);
     if (gap > tolerances_.gap) findings_.push_back({NetworkFault::gap, lane.id, id, gap});
+    double const turn = geometry::angle_difference(begin_of(next.path).heading, end_of(lane.path).heading);
+    bool const is_kink = std::abs(turn) > tolerances_.kink;
+    if (is_kink) findings_.push_back({NetworkFault::kink, lane.id, id, turn});
     double const step = std::max(distance(lane.left, next.left), distance(lane.right, next.right));
     // A lane that has merged is beside its successor with one border at least.
-    if (gap <= tolerances_.gap && step > tolerances_.gap && !is_valid(lane.merges_into))
+    if (!is_kink && gap <= tolerances_.gap && step > tolerances_.gap && !is_valid(lane.merges_into))
       findings_.push_back({NetworkFault::border_step, lane.id, id, step});
-    double const turn = geometry::angle_difference(begin_of(next.path).heading, end_of(lane.path).heading);
-    if (std::abs(turn) > tolerances_.kink) findings_.push_back({NetworkFault::kink, lane.id, id, turn});
   }
 
   void add_end(Lane const& lane) {
@@ -145,7 +147,8 @@ class NetworkCheck {
   }
 
   /// The nearest begin within the tolerances.
-  void find_possible_link(Lane const& lane) {
+  template <class Permits>
+  void find_possible_link(Lane const& lane, Permits const& permits) {
     auto const end = end_of(lane.path);
     double best = tolerances_.link_distance;
     LaneId with = none<LaneId>;
@@ -157,6 +160,7 @@ class NetworkCheck {
       double const apart = (begin.position() - end.position()).norm();
       if (apart > best || (apart == best && is_valid(with))) continue;
       if (std::abs(geometry::angle_difference(begin.heading, end.heading)) > tolerances_.link_direction) continue;
+      if (!permits(lane, lanes_[index_of(at->lane)])) continue;
       best = apart;
       with = at->lane;
     }

@@ -28,10 +28,13 @@ class MissingLinks {
   [[nodiscard]] std::set<LaneId> find(bool infer) {
     std::set<LaneId> dead_ends;
     NetworkTolerances const tolerances;
-    for (auto const& finding : NetworkCheck(lanes_, tolerances).find_possible_links()) {
+    NetworkCheck check(lanes_, tolerances);
+    auto const can_follow = [this](Lane const& from, Lane const& to) {
+      return permits(exit_of(from), entry_of(to)) && permits(entry_of(to), exit_of(from));
+    };
+    for (auto const& finding : check.find_possible_links(can_follow)) {
       auto& from = lanes_[index_of(finding.lane)];
       auto& to = lanes_[index_of(finding.other)];
-      if (!permits(exit_of(from), entry_of(to)) || !permits(entry_of(to), exit_of(from))) continue;
       report(infer ? Severity::info : Severity::warning, from,
              "it has no successor, but " + describe(to) + " begins where it ends; " +
                  (infer ? "the two were joined" : "is the link missing? It was left as a dead end"));
