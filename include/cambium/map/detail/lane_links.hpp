@@ -64,20 +64,25 @@ class LaneLinker {
   /// Calls `visit(RoadLane, end)` for lane `number` at a section's end; where the section is too short for lanes, for
   /// those behind it that the lane is linked to.
   template <class Visit>
-  void visit_lanes(SectionEnd const& at, int number, Visit const& visit, int depth = 0) const {
+  void visit_lanes(SectionEnd const& at, int number, Visit const& visit) const {
+    int steps = 64;  // through short sections
+    visit_lanes(at, number, visit, steps);
+  }
+
+  template <class Visit>
+  void visit_lanes(SectionEnd const& at, int number, Visit const& visit, int& steps) const {
     auto const& section = roads_[at.road].sections[at.section];
     if (section.end - section.begin >= shortest_section) {
       for (auto const& lane : section.lanes)
         if (lane.number == number && is_valid(lane.id)) visit(lane, at.end);
       return;
     }
-    constexpr int most = 16;  // short sections in a row
     auto const* lane = written(at, number);
-    if (lane == nullptr || depth == most) return;
+    if (lane == nullptr) return;
     SectionEnd const other{at.road, at.section, opposite(at.end)};
     for (auto const& next : links_.beyond(other))
       for (int const to : other.end == ContactPoint::end ? lane->successors : lane->predecessors)
-        visit_lanes(next, to, visit, depth + 1);
+        if (--steps >= 0) visit_lanes(next, to, visit, steps);
   }
 
   /// Enters that lane `number` at a section's end meets lane `to` at the others, whichever way each is driven.
@@ -115,6 +120,10 @@ class LaneLinker {
 
   void link_road(std::size_t r) {
     auto const& road = links_.document().roads[r];
+    for (auto const* link : {&road.predecessor, &road.successor})
+      if (*link && (*link)->element_s && links_.find((*link)->id) && links_.follow(*link).count == 0)
+        warn((*link)->line, link == &road.predecessor ? "predecessor" : "successor", "road " + road.id,
+             "its elementS is no place in the middle of road " + (*link)->id + "; the link was left out");
     for (std::size_t k = 0; k < road.lane_sections.size(); ++k) {
       SectionEnd const start{r, k, ContactPoint::start}, end{r, k, ContactPoint::end};
       SectionEnds const before = links_.beyond(start), behind = links_.beyond(end);

@@ -33,7 +33,8 @@ void move_records(Lane& lane, double shift) {
 inline void split_section(opendrive::Road& road, double s) {
   auto& sections = road.lane_sections;
   auto const next = std::find_if(sections.begin(), sections.end(), [s](auto const& section) { return section.s > s; });
-  if (next == sections.begin()) return;
+  constexpr std::size_t most = 1000;  // sections of a road that is split
+  if (next == sections.begin() || sections.size() > most) return;
   auto const at = next - 1;
   double const end = next == sections.end() ? road.geometry_length() : next->s;
   double const shift = s - at->s;
