@@ -240,3 +240,52 @@ TEST_CASE("a route leads wherever the links tables lead, and nowhere else") {
   CHECK(reached > 1000);
   CHECK(not_reached > 1000);
 }
+
+TEST_CASE("lanes of one road are linked from section to section, over those without length, too") {
+  auto const folder = corpus::find("opendrive");
+  if (!folder) return;
+  int links = 0, over = 0;
+  for (auto const& path : corpus::maps(*folder)) {
+    CAPTURE(path.filename().string());
+    std::vector<Diagnostic> diagnostics;
+    auto const document = read_opendrive_document(corpus::read(path), "", diagnostics);
+    auto const map = build_map(document, {}, "", diagnostics);
+    for (std::size_t r = 0; r < document.roads.size(); ++r) {
+      auto const& sections = document.roads[r].lane_sections;
+      auto const& road = map->roads()[r];
+      if (road.sections.size() != sections.size()) continue;  // split: it closes upon itself
+      auto const has_length = [&](std::size_t k) { return road.sections[k].end - road.sections[k].begin >= 1e-6; };
+      auto const find = [&](std::size_t k, int number) {
+        for (auto const& lane : road.sections[k].lanes)
+          if (lane.number == number) return lane.id;
+        return none<LaneId>;
+      };
+      for (std::size_t k = 0; k < sections.size(); ++k)
+        for (auto const& lane : sections[k].lanes) {
+          if (lane.id == 0 || !has_length(k)) continue;
+          std::vector<int> ids = lane.successors;
+          std::size_t next = k + 1;
+          for (; next < sections.size() && !has_length(next); ++next) {
+            std::vector<int> behind;
+            for (int const id : ids)
+              if (auto const* passed = sections[next].find(id))
+                behind.insert(behind.end(), passed->successors.begin(), passed->successors.end());
+            ids = behind;
+          }
+          if (next >= sections.size()) continue;
+          for (int const id : ids) {
+            auto const a = find(k, lane.id), b = find(next, id);
+            if (!is_valid(a) || !is_valid(b)) continue;
+            auto const &from = map->lane(map->lane(a).along_road ? a : b),
+                       &to = map->lane(map->lane(a).along_road ? b : a);
+            CHECK_MESSAGE((has(from.successors, to.id) || is_valid(from.merges_into)), map->describe(from.id));
+            ++links;
+            over += next > k + 1;
+          }
+        }
+    }
+  }
+  MESSAGE(links << " links within roads, " << over << " of them over sections without length");
+  CHECK(links > 1000);
+  CHECK(over > 20);
+}
