@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cambium/geometry/angle.hpp"
+#include "cambium/map/detail/road_links.hpp"
 #include "cambium/map/opendrive_document.hpp"
 
 /// Documents that say the same in another way: mirrored, moved, with roads written from their other end.
@@ -154,10 +155,11 @@ inline OpenDriveDocument with_reversed_roads(OpenDriveDocument document, std::se
   }
   for (auto& junction : document.junctions)
     for (auto& connection : junction.connections) {
-      flip(connection.contact_point, connection.connecting_road);
+      std::string const& entered = cambium::map::detail::entered_road(connection);
+      flip(connection.contact_point, entered);
       for (auto& link : connection.lane_links) {
         if (ids.contains(connection.incoming_road)) link.from = -link.from;
-        if (ids.contains(connection.connecting_road)) link.to = -link.to;
+        if (ids.contains(entered)) link.to = -link.to;
       }
     }
   return document;

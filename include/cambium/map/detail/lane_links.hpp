@@ -163,7 +163,7 @@ class LaneLinker {
       warn(connection.line, "connection", ids,
            "road " + connection.incoming_road +
                (is_virtual(junction) ? " does not meet the connecting road: that gives no elementS"
-                                           : " is not linked to this junction") +
+                                     : " is not linked to this junction") +
                "; the connection was left out");
       return;
     }
