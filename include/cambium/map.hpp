@@ -7,6 +7,7 @@
 #include "cambium/map/cubic.hpp"
 #include "cambium/map/lane.hpp"
 #include "cambium/map/lane_adjacency.hpp"
+#include "cambium/map/lane_network.hpp"
 #include "cambium/map/lane_position.hpp"
 #include "cambium/map/lane_tree.hpp"
 #include "cambium/map/lane_type.hpp"

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -14,7 +13,12 @@
 #include "cambium/core/diagnostic.hpp"
 #include "cambium/map/detail/lane_geometry.hpp"
 #include "cambium/map/detail/lane_links.hpp"
+#include "cambium/map/detail/lane_merges.hpp"
+#include "cambium/map/detail/link_check.hpp"
+#include "cambium/map/detail/missing_links.hpp"
+#include "cambium/map/detail/road_links.hpp"
 #include "cambium/map/detail/section_sampler.hpp"
+#include "cambium/map/detail/split_roads.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/opendrive_document.hpp"
 #include "cambium/map/overlaps.hpp"
@@ -40,13 +44,7 @@ class MapBuild {
     for (auto const& road : document_.roads) add_road(road);
     if (parts_.lanes.empty())
       throw MapError(file_, "the file has no lane with a length", "give a file with lanes beside lane 0");
-    LaneLinker(document_, parts_.roads, parts_.lanes, file_, diagnostics_).link();
-    // From the lanes that go on outwards: one may merge into another that merges itself.
-    for (bool found = true; found;) {
-      found = false;
-      for (auto& lane : parts_.lanes)
-        if (lane.drivable() && lane.successors.empty() && find_merge(lane)) found = swing(lane) || found;
-    }
+    link_lanes();
     number_lane_coordinate();
     find_overlaps(
         parts_.lanes, [this](Lane const& lane, double s) { return elevation(lane, s); },
@@ -56,6 +54,18 @@ class MapBuild {
   }
 
  private:
+  void link_lanes() {
+    RoadLinks const links(document_, parts_.roads);
+    LaneLinker(links, parts_.lanes, file_, diagnostics_).link();
+    MissingLinks missing(links, parts_.lanes, file_, diagnostics_);
+    auto const dead_ends = missing.find(parts_.options.infer_links);
+    LaneMerger(parts_.roads, parts_.lanes, parts_.options, dead_ends).merge();
+    missing.report_dead_ends(dead_ends);
+    LinkCheck check(links, file_, diagnostics_);
+    check.report_one_sided();
+    check.report_joints(parts_.lanes);
+  }
+
   /// Height of a lane's path [m], to tell a bridge from a crossing.
   [[nodiscard]] double elevation(Lane const& lane, double s) const {
     double const u = s / lane.length();
@@ -81,7 +91,7 @@ class MapBuild {
       for (auto const& lane : section.lanes)
         if (lane.id != 0)
           result.lanes.push_back(
-              {lane.id, none<LaneId>, CubicProfile(lane.widths, BeforeFirst::hold),
+              {lane.id, none<LaneId>, none<LaneId>, CubicProfile(lane.widths, BeforeFirst::hold),
                CubicProfile(lane.widths.empty() ? lane.borders : std::vector<CubicRecord>(), BeforeFirst::hold)});
       road.sections.push_back(std::move(result));
     }
@@ -100,9 +110,8 @@ class MapBuild {
 
   void add_section(opendrive::Road const& source, Road& road, std::size_t k) {
     auto& section = road.sections[k];
-    if (section.lanes.empty() || section.end - section.begin < 1e-6) return;
+    if (section.lanes.empty() || section.end - section.begin < shortest_section) return;
     auto const cross_sections = SectionSampler(road, section, parts_.options).sample();
-    auto const first = parts_.lanes.size();
     for (std::size_t column = 0; column < section.lanes.size(); ++column) {
       auto const& written = *source.lane_sections[k].find(section.lanes[column].number);
       Lane lane = make_lane(source, written, road, k);
@@ -116,8 +125,30 @@ class MapBuild {
       }
       section.lanes[column].id = lane.id;
       parts_.lanes.push_back(std::move(lane));
+      if (runs_both_ways(written)) section.lanes[column].opposite = add_opposite(cross_sections, column);
     }
-    for (std::size_t i = first; i + 1 < parts_.lanes.size(); ++i) make_neighbors(parts_.lanes[i], parts_.lanes[i + 1]);
+    RoadLane const* left = nullptr;
+    for (auto const& lane : section.lanes) {
+      if (!is_valid(lane.id)) continue;
+      if (left != nullptr) make_neighbors(*left, lane);
+      left = &lane;
+    }
+  }
+
+  [[nodiscard]] static bool runs_both_ways(opendrive::Lane const& lane) {
+    return lane.direction == opendrive::LaneDirection::both || lane.type == LaneType::bidirectional;
+  }
+
+  /// Adds the last lane once more, driven the other way.
+  LaneId add_opposite(std::span<CrossSection const> cross_sections, std::size_t column) {
+    Lane lane = parts_.lanes.back();
+    lane.id = static_cast<LaneId>(parts_.lanes.size());
+    lane.opposite = parts_.lanes.back().id;
+    lane.along_road = !lane.along_road;
+    (void)has_geometry(lane, cross_sections, column);  // the other one has
+    parts_.lanes.back().opposite = lane.id;
+    parts_.lanes.push_back(std::move(lane));
+    return parts_.lanes.back().id;
   }
 
   [[nodiscard]] static bool has_geometry(Lane& lane, std::span<CrossSection const> cross_sections, std::size_t column) {
@@ -149,75 +180,13 @@ class MapBuild {
   /// A speed limit as lanes keep it: 0 for "no limit".
   [[nodiscard]] static double finite_or_none(double limit) { return std::isfinite(limit) ? limit : 0.0; }
 
-  /// `a` lies left of `b` as seen along the road.
-  static void make_neighbors(Lane& a, Lane& b) {
+  /// `left` lies left of `right` as seen along the road. Nobody changes onto a lane with oncoming traffic.
+  void make_neighbors(RoadLane const& left, RoadLane const& right) {
+    auto &a = parts_.lanes[index_of(left.id)], &b = parts_.lanes[index_of(right.id)];
     if (!a.drivable() || !b.drivable() || a.along_road != b.along_road) return;
+    if (is_valid(left.opposite) || is_valid(right.opposite)) return;
     (a.along_road ? a.right_neighbor : a.left_neighbor) = b.id;
     (b.along_road ? b.left_neighbor : b.right_neighbor) = a.id;
-  }
-
-  /// A lane that ends while its neighbour goes on merges into that one.
-  bool find_merge(Lane& lane) {
-    bool const keeps_left = parts_.roads[index_of(lane.road)].left_hand_traffic;
-    for (auto const side : {keeps_left ? lane.right_neighbor : lane.left_neighbor,
-                            keeps_left ? lane.left_neighbor : lane.right_neighbor}) {
-      if (!is_valid(side) || parts_.lanes[index_of(side)].successors.empty() || dead_ends_.contains(lane.id)) continue;
-      if (goes_on_unlinked(lane, parts_.lanes[index_of(side)])) break;
-      lane.merges_into = side;
-      return true;
-    }
-    return false;
-  }
-
-  /// True where a lane beside the neighbour's successor begins at this lane's end: the file forgot the link.
-  [[nodiscard]] bool goes_on_unlinked(Lane const& lane, Lane const& neighbor) {
-    auto const end = lane.path.pose(lane.length()).position();
-    for (auto const next : neighbor.successors)
-      for (auto const beside :
-           {parts_.lanes[index_of(next)].left_neighbor, parts_.lanes[index_of(next)].right_neighbor}) {
-        if (!is_valid(beside)) continue;
-        auto const& candidate = parts_.lanes[index_of(beside)];
-        if (!candidate.predecessors.empty() || (candidate.path.pose(0.0).position() - end).norm() > 0.5) continue;
-        diagnostics_.push_back(
-            {Severity::warning, file_, 0, "link",
-             "road " + parts_.roads[index_of(lane.road)].name + ", lane " + std::to_string(lane.number),
-             "it has no successor, but lane " + std::to_string(candidate.number) + " of road " +
-                 parts_.roads[index_of(candidate.road)].name +
-                 " begins where it ends; is the link missing? It was left as a dead end"});
-        dead_ends_.insert(lane.id);
-        return true;
-      }
-    return false;
-  }
-
-  [[nodiscard]] static std::size_t column_of(RoadSection const& section, LaneId id) {
-    return static_cast<std::size_t>(
-        std::find_if(section.lanes.begin(), section.lanes.end(), [id](RoadLane const& l) { return l.id == id; }) -
-        section.lanes.begin());
-  }
-
-  /// Lets the lane's path swing onto the neighbour's and go on as that one does.
-  bool swing(Lane& lane) {
-    // [m] between the stations of a swing: its curvature is some 0.03 1/m at most (3.5 m over 30 m).
-    double const spacing = std::clamp(std::sqrt(8.0 * 0.7 * parts_.options.position_tolerance / 0.03), 0.05, 1.5);
-    auto const& road = parts_.roads[index_of(lane.road)];
-    auto const& section = road.sections[lane.section];
-    auto const column = column_of(section, lane.id), target = column_of(section, lane.merges_into);
-    auto const cross_sections = SectionSampler(road, section, parts_.options).sample(spacing);
-    double const from = taper_begin(cross_sections, column, lane.along_road, parts_.options.merge_length);
-    double const to = lane.along_road ? section.end : section.begin;
-    auto const path = [&](CrossSection const& c) { return merging_path(c, column, target, from, to); };
-    if (!set_geometry(lane, cross_sections, column, path)) {
-      lane.merges_into = none<LaneId>;
-      dead_ends_.insert(lane.id);
-      return false;
-    }
-    auto const start = road.reference_line.at(from);
-    lane.merge_begin = lane.path.project({start.x, start.y}).s;
-    auto const& neighbor = parts_.lanes[index_of(lane.merges_into)];
-    lane.successors = neighbor.successors;
-    for (auto const next : lane.successors) parts_.lanes[index_of(next)].predecessors.push_back(lane.id);
-    return !lane.successors.empty();
   }
 
   /// Every lane gets a range of its own, apart from the next by more than an agent can be past a lane's end.
@@ -233,17 +202,24 @@ class MapBuild {
   OpenDriveDocument const& document_;
   std::string file_;
   std::vector<Diagnostic>& diagnostics_;
-  std::set<LaneId> dead_ends_;  ///< lanes that could not be merged
   Map::Parts parts_;
 };
 
 }  // namespace detail
 
-/// The map that a document describes; what was odd is added to `diagnostics`, with `file` as the place. Throws
-/// `MapError` where no lane is left.
+/// The map that a document describes; what was odd is added to `diagnostics`, with `file` as the place: links that lead
+/// nowhere, that only one side knows, or that seem to be missing (see `MapOptions::infer_links`), joined lanes that do
+/// not meet. Throws `MapError` where no lane is left.
+///
+/// A lane for both directions (`direction="both"`, type bidirectional) becomes two lanes, see `Lane::opposite`. Lanes
+/// are linked at their ends only: a section is split where a connecting road of a virtual junction meets the middle of
+/// a road, and in the middle of a road of one section that closes upon itself.
 [[nodiscard]] inline std::shared_ptr<Map const> build_map(OpenDriveDocument const& document, MapOptions const& options,
                                                           std::string file, std::vector<Diagnostic>& diagnostics) {
-  return detail::MapBuild(document, options, std::move(file), diagnostics).build();
+  auto const places = detail::places_to_split(document);
+  if (places.empty()) return detail::MapBuild(document, options, std::move(file), diagnostics).build();
+  auto const split = detail::split_roads(document, places);
+  return detail::MapBuild(split, options, std::move(file), diagnostics).build();
 }
 
 }  // namespace cambium::map

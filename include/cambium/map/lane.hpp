@@ -55,8 +55,11 @@ struct Lane {
 
   LaneId left_neighbor = none<LaneId>;   ///< next lane to the left with the same travel direction, drivable
   LaneId right_neighbor = none<LaneId>;  ///< next lane to the right with the same travel direction, drivable
-  LaneId merges_into = none<LaneId>;     ///< the neighbour that this lane's path joins at its end
-  double merge_begin{};                  ///< where the path leaves the centre line [m]; only with `merges_into`
+  /// The same strip driven the other way: a lane for both directions is two lanes. They are oncoming to each other:
+  /// neither is a neighbour of any lane, and their lying on each other is no overlap.
+  LaneId opposite = none<LaneId>;
+  LaneId merges_into = none<LaneId>;  ///< the neighbour that this lane's path joins at its end
+  double merge_begin{};               ///< where the path leaves the centre line [m]; only with `merges_into`
   std::vector<LaneId> successors, predecessors;
   std::vector<Overlap> overlaps;  ///< sorted by `begin`
 

@@ -33,6 +33,7 @@ struct MapOptions {
   double overlap_clearance = 2.5;  ///< paths closer than this cannot carry vehicles side by side [m]
   double merge_view = 120.0;   ///< how far before an overlap merging lanes take each other's traffic into account [m]
   double merge_length = 60.0;  ///< longest stretch over which an ending lane swings onto its neighbour [m]
+  bool infer_links = false;    ///< join lanes that one another's ends meet, where the file has forgotten the link
 
   static constexpr double turn_per_tolerance = 6.0;
   static constexpr char const* name = "map_options";
@@ -47,7 +48,9 @@ struct MapOptions {
                            parameter("merge_view", &P::merge_view, "m", Range{0, 1000},
                                      "how far before an overlap merging traffic is taken into account"),
                            parameter("merge_length", &P::merge_length, "m", Range{30, 1000},
-                                     "longest stretch over which an ending lane swings onto its neighbour"));
+                                     "longest stretch over which an ending lane swings onto its neighbour"),
+                           parameter("infer_links", &P::infer_links, "-", Range{0, 1},
+                                     "join lanes whose ends meet where the file has forgotten the link"));
   }
 };
 

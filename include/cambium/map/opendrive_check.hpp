@@ -34,8 +34,12 @@ class DocumentCheck {
     index(document_->roads, roads_, "road", " is there twice; the second one was left out");
     index(document_->junctions, junctions_, "junction", " is there twice; the second one was left out");
     for (opendrive::Road& road : document_->roads) check(road);
-    for (opendrive::Junction const& junction : document_->junctions)
+    for (opendrive::Junction const& junction : document_->junctions) {
+      if (junction.connections.empty())
+        report(Severity::warning, junction.line, "junction", "junction " + junction.id,
+               "it has no connection; no lane leads through it");
       for (opendrive::Connection const& connection : junction.connections) check(junction, connection);
+    }
   }
 
  private:
@@ -56,6 +60,7 @@ class DocumentCheck {
   void check(opendrive::Road& road) {
     std::string const ids = "road " + road.id;
     check_length(road, ids);
+    check_short_geometries(road, ids);
     for (auto const* link : {&road.predecessor, &road.successor}) {
       if (!*link) continue;
       bool const is_road = (*link)->element_type == opendrive::ElementType::road;
@@ -89,10 +94,25 @@ class DocumentCheck {
     }
   }
 
+  /// Geometries too short to be meant: they are kept, and harm nothing.
+  void check_short_geometries(opendrive::Road const& road, std::string const& ids) {
+    constexpr double short_one = 1e-9;  // [m]
+    int count = 0, line = 0;
+    for (std::size_t i = 0; i < road.geometries.size(); ++i)
+      if (road.geometries[i].length < short_one && count++ == 0) line = road.geometry_lines[i];
+    if (count > 0)
+      report(Severity::warning, line, "geometry", ids,
+             "it is shorter than a millionth of a millimetre" +
+                 (count > 1 ? " (and " + std::to_string(count - 1) + " more)" : std::string()) +
+                 "; that is kept, but hardly meant");
+  }
+
   /// Reports where a geometry does not go on where the one before ends. False where nobody could drive there: it is far
   /// off, or what the curve does in the gap is beyond telling.
   [[nodiscard]] bool is_continuous(opendrive::Road const& road) {
-    constexpr double noticeable = 0.1, bearable = 100.0;  // [m]; the first also [rad]
+    constexpr double slight = 1e-3, noticeable = 0.1, bearable = 100.0;  // [m]; `noticeable` also [rad]
+    double widest = 0.0;                                                 // of the slight ones
+    int slight_ones = 0, slight_line = 0;
     auto const lost = [&](std::size_t i, std::string const& what) {
       report(Severity::error, road.geometry_lines[i], "geometry", "road " + road.id, what + "; the road was left out");
       return false;
@@ -107,12 +127,23 @@ class DocumentCheck {
       CurvePoint const end = evaluate(before, before.length);
       double const gap = std::hypot(next.x - end.x, next.y - end.y);
       double const turn = std::abs(geometry::angle_difference(next.heading, end.heading));
-      if (gap <= noticeable && turn <= noticeable) continue;
+      if (gap <= noticeable && turn <= noticeable) {
+        slight_ones += gap > slight;
+        if (gap > std::max(slight, widest)) {
+          widest = gap;
+          slight_line = road.geometry_lines[i];
+        }
+        continue;
+      }
       std::string const sentence =
           "it starts " + rounded_text(gap) + " m and " + rounded_text(turn) + " rad off the end of the geometry before";
       if (gap > bearable) return lost(i, sentence);
       report(Severity::warning, road.geometry_lines[i], "geometry", "road " + road.id, sentence);
     }
+    if (slight_ones > 0)
+      report(Severity::warning, slight_line, "geometry", "road " + road.id,
+             "it starts " + rounded_text(widest) + " m off the end of the geometry before" +
+                 (slight_ones > 1 ? " (and " + std::to_string(slight_ones - 1) + " others a little less)" : ""));
     return true;
   }
 

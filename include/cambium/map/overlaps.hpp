@@ -66,6 +66,9 @@ class OverlapFinder {
         for (auto const id : *linked)
           for (auto const side : {lanes_[index_of(id)].left_neighbor, lanes_[index_of(id)].right_neighbor})
             if (is_valid(side)) beside_[i].push_back(side);
+      for (auto const* linked : {&ahead_[i], &behind_[i]})
+        for (auto const id : *linked)
+          if (is_valid(lanes_[index_of(id)].opposite)) beside_[i].push_back(lanes_[index_of(id)].opposite);
     }
   }
 

@@ -19,7 +19,8 @@ namespace cambium::map {
 /// file gives borders instead, the t of its outer border.
 struct RoadLane {
   int number{};
-  LaneId id = none<LaneId>;
+  LaneId id = none<LaneId>;  ///< as driven in the direction that traffic rule, side and the file's `direction` say
+  LaneId opposite = none<LaneId>;  ///< the same strip driven the other way; only where traffic runs in both directions
   CubicProfile width;
   CubicProfile border;  ///< in force where it has records
 };

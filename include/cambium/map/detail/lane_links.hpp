@@ -2,31 +2,38 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <map>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "cambium/core/diagnostic.hpp"
+#include "cambium/map/detail/road_links.hpp"
 #include "cambium/map/lane.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/opendrive_document.hpp"
 
 namespace cambium::map::detail {
 
+/// Enters that `to` follows `from`.
+inline void join_lanes(Lane& from, Lane& to) {
+  from.successors.push_back(to.id);
+  to.predecessors.push_back(from.id);
+}
+
 /// Joins lanes by what the file says, in the direction of travel. Links are read from both sides; each is entered once.
+/// They lead through sections that are too short for lanes in the map. A link into the middle of a road (virtual
+/// junctions) joins what is driven into that place with what is driven out of it; "elementDir" is not needed for that.
 class LaneLinker {
  public:
-  LaneLinker(OpenDriveDocument const& document, std::vector<Road> const& roads, std::vector<Lane>& lanes,
-             std::string const& file, std::vector<Diagnostic>& diagnostics)
-      : document_(document), roads_(roads), lanes_(lanes), file_(file), diagnostics_(diagnostics) {
-    for (std::size_t i = 0; i < document.roads.size(); ++i) index_.emplace(document.roads[i].id, i);
-  }
+  LaneLinker(RoadLinks const& links, std::vector<Lane>& lanes, std::string const& file,
+             std::vector<Diagnostic>& diagnostics)
+      : links_(links), roads_(links.roads()), lanes_(lanes), file_(file), diagnostics_(diagnostics) {}
 
   void link() {
-    for (std::size_t r = 0; r < document_.roads.size(); ++r) link_road(r);
-    for (auto const& junction : document_.junctions)
+    auto const& document = links_.document();
+    for (std::size_t r = 0; r < document.roads.size(); ++r) link_road(r);
+    for (auto const& junction : document.junctions)
       for (auto const& connection : junction.connections) link_connection(junction, connection);
     for (auto& lane : lanes_) {
       sort_unique(lane.successors);
@@ -37,137 +44,173 @@ class LaneLinker {
  private:
   using ContactPoint = opendrive::ContactPoint;
 
-  /// One end of one lane section of a road.
-  struct SectionEnd {
-    std::size_t road, section;
-    ContactPoint end;
-  };
-
   static void sort_unique(std::vector<LaneId>& ids) {
     std::sort(ids.begin(), ids.end());
     ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
-  }
-
-  [[nodiscard]] SectionEnd road_end(std::size_t road, ContactPoint end) const {
-    return {road, end == ContactPoint::end ? roads_[road].sections.size() - 1 : 0, end};
-  }
-
-  [[nodiscard]] LaneId find(SectionEnd const& at, int number) const {
-    for (auto const& lane : roads_[at.road].sections[at.section].lanes)
-      if (lane.number == number) return lane.id;
-    return none<LaneId>;
   }
 
   void warn(int line, std::string element, std::string ids, std::string sentence) const {
     diagnostics_.push_back({Severity::warning, file_, line, std::move(element), std::move(ids), std::move(sentence)});
   }
 
-  /// Enters that lane `a` at its road's end `ea` meets lane `b` at `eb`, in the direction of travel.
-  void join(LaneId a, ContactPoint ea, LaneId b, ContactPoint eb, int line) {
-    if (!is_valid(a) || !is_valid(b) || a == b) return;
-    auto& la = lanes_[index_of(a)];
-    auto& lb = lanes_[index_of(b)];
-    bool const leaves_a = la.along_road == (ea == ContactPoint::end);
-    bool const leaves_b = lb.along_road == (eb == ContactPoint::end);
-    if (leaves_a == leaves_b) {
-      if (la.drivable() && lb.drivable())
-        warn(line, "link", "road " + roads_[index_of(la.road)].name + ", lane " + std::to_string(la.number),
-             "it is linked to road " + roads_[index_of(lb.road)].name + ", lane " + std::to_string(lb.number) +
-                 ", which is driven the other way; the link was left out");
+  [[nodiscard]] opendrive::Lane const* written(SectionEnd const& at, int number) const {
+    return links_.document().roads[at.road].lane_sections[at.section].find(number);
+  }
+
+  [[nodiscard]] bool is_written(SectionEnds const& ends, int number) const {
+    return std::any_of(ends.begin(), ends.end(), [&](SectionEnd const& at) { return written(at, number) != nullptr; });
+  }
+
+  /// Calls `visit(RoadLane, end)` for lane `number` at a section's end; where the section is too short for lanes, for
+  /// those behind it that the lane is linked to.
+  template <class Visit>
+  void visit_lanes(SectionEnd const& at, int number, Visit const& visit) const {
+    int steps = 64;  // through short sections
+    visit_lanes(at, number, visit, steps);
+  }
+
+  template <class Visit>
+  void visit_lanes(SectionEnd const& at, int number, Visit const& visit, int& steps) const {
+    auto const& section = roads_[at.road].sections[at.section];
+    if (section.end - section.begin >= shortest_section) {
+      for (auto const& lane : section.lanes)
+        if (lane.number == number && is_valid(lane.id)) visit(lane, at.end);
       return;
     }
-    auto& from = leaves_a ? la : lb;
-    auto& to = leaves_a ? lb : la;
-    from.successors.push_back(to.id);
-    to.predecessors.push_back(from.id);
+    auto const* lane = written(at, number);
+    if (lane == nullptr) return;
+    SectionEnd const other{at.road, at.section, opposite(at.end)};
+    for (auto const& next : links_.beyond(other))
+      for (int const to : other.end == ContactPoint::end ? lane->successors : lane->predecessors)
+        if (--steps >= 0) visit_lanes(next, to, visit, steps);
+  }
+
+  /// Enters that lane `number` at a section's end meets lane `to` at the others, whichever way each is driven.
+  void join(SectionEnd const& from, int number, SectionEnds const& others, int to, int line) {
+    bool met = false, joined = false;
+    LaneId of = none<LaneId>, with = none<LaneId>;
+    visit_lanes(from, number, [&](RoadLane const& a, ContactPoint end_a) {
+      for (auto const& other : others)
+        visit_lanes(other, to, [&](RoadLane const& b, ContactPoint end_b) {
+          met = true;
+          of = a.id;
+          with = b.id;
+          for (auto const first : {a.id, a.opposite})
+            for (auto const second : {b.id, b.opposite}) joined = join(first, end_a, second, end_b) || joined;
+        });
+    });
+    if (!met || joined || of == with) return;
+    auto const &a = lanes_[index_of(of)], &b = lanes_[index_of(with)];
+    if (a.drivable() && b.drivable())
+      warn(line, "link", "road " + roads_[index_of(a.road)].name + ", lane " + std::to_string(a.number),
+           "it is linked to road " + roads_[index_of(b.road)].name + ", lane " + std::to_string(b.number) +
+               ", which is driven the other way; the link was left out");
+  }
+
+  /// True where one of the lanes is driven into the place where their ends meet, the other out of it.
+  bool join(LaneId a, ContactPoint end_a, LaneId b, ContactPoint end_b) {
+    if (!is_valid(a) || !is_valid(b) || a == b) return false;
+    auto &la = lanes_[index_of(a)], &lb = lanes_[index_of(b)];
+    bool const leaves_a = la.along_road == (end_a == ContactPoint::end);
+    bool const leaves_b = lb.along_road == (end_b == ContactPoint::end);
+    if (leaves_a == leaves_b || la.opposite == b) return false;
+    leaves_a ? join_lanes(la, lb) : join_lanes(lb, la);
+    return true;
   }
 
   void link_road(std::size_t r) {
-    auto const& road = document_.roads[r];
-    for (std::size_t k = 0; k < road.lane_sections.size(); ++k)
+    auto const& road = links_.document().roads[r];
+    for (auto const* link : {&road.predecessor, &road.successor})
+      if (*link && (*link)->element_s && links_.find((*link)->id) && links_.follow(*link).count == 0)
+        warn((*link)->line, link == &road.predecessor ? "predecessor" : "successor", "road " + road.id,
+             "its elementS is no place in the middle of road " + (*link)->id + "; the link was left out");
+    for (std::size_t k = 0; k < road.lane_sections.size(); ++k) {
+      SectionEnd const start{r, k, ContactPoint::start}, end{r, k, ContactPoint::end};
+      SectionEnds const before = links_.beyond(start), behind = links_.beyond(end);
       for (auto const& lane : road.lane_sections[k].lanes) {
         if (lane.id == 0) continue;
-        bool const first = k == 0, last = k + 1 == road.lane_sections.size();
-        link_lane(r, k, lane, ContactPoint::end, lane.successors,
-                  last ? follow(road.successor) : SectionEnd{r, k + 1, ContactPoint::start});
-        link_lane(r, k, lane, ContactPoint::start, lane.predecessors,
-                  first ? follow(road.predecessor) : SectionEnd{r, k - 1, ContactPoint::end});
+        link_lane(end, lane, lane.successors, behind);
+        link_lane(start, lane, lane.predecessors, before);
       }
+    }
   }
 
-  /// The section end behind a road link; nothing where the link names a junction (its connections say), no road, or
-  /// none at all.
-  [[nodiscard]] std::optional<SectionEnd> follow(std::optional<opendrive::RoadLink> const& link) const {
-    if (!link || link->element_type != opendrive::ElementType::road || link->contact_point == ContactPoint::none)
-      return std::nullopt;
-    auto const at = index_.find(link->id);
-    if (at == index_.end()) return std::nullopt;
-    return road_end(at->second, link->contact_point);
-  }
-
-  void link_lane(std::size_t r, std::size_t k, opendrive::Lane const& lane, ContactPoint end,
-                 std::vector<int> const& numbers, std::optional<SectionEnd> const& other) {
-    if (!other) return;
+  void link_lane(SectionEnd const& at, opendrive::Lane const& lane, std::vector<int> const& numbers,
+                 SectionEnds const& others) {
+    if (others.count == 0) return;
     for (int const number : numbers) {
-      LaneId const target = find(*other, number);
-      if (!is_valid(target) && number != 0)
+      std::size_t const other = others.at[0].road;
+      // The reader says so of sections of one road.
+      if (number != 0 && links_.is_road_end(at) && !is_written(others, number))
         warn(lane.line, "link",
-             "road " + roads_[r].name + ", section " + std::to_string(k) + ", lane " + std::to_string(lane.id),
-             "it names lane " + std::to_string(number) + " of road " + roads_[other->road].name +
+             "road " + roads_[at.road].name + ", section " + std::to_string(at.section) + ", lane " +
+                 std::to_string(lane.id),
+             "it names lane " + std::to_string(number) + " of road " + roads_[other].name +
                  ", which is not there; the link was left out");
-      join(find({r, k, end}, lane.id), end, target, other->end, lane.line);
+      join(at, lane.id, others, number, lane.line);
     }
   }
 
   void link_connection(opendrive::Junction const& junction, opendrive::Connection const& connection) {
-    auto const incoming = index_.find(connection.incoming_road), connecting = index_.find(connection.entered_road());
-    if (incoming == index_.end() || connecting == index_.end()) return;  // the reader has said so
+    auto const incoming = links_.find(connection.incoming_road), connecting = links_.find(connection.entered_road());
+    if (!incoming || !connecting) return;  // the reader has said so
+    std::string const ids = "junction " + junction.id + ", connection " + connection.id;
     ContactPoint const contact =
         connection.contact_point == ContactPoint::none ? ContactPoint::start : connection.contact_point;
-    auto const entry = road_end(connecting->second, contact);
-    auto const exit = incoming_end(incoming->second, junction.id, entry);
-    if (!exit) {
-      warn(connection.line, "connection", "junction " + junction.id + ", connection " + connection.id,
-           "road " + connection.incoming_road + " is not linked to this junction; the connection was left out");
+    auto const entry = links_.road_end(*connecting, contact);
+    auto const exits = incoming_ends(*incoming, junction, entry);
+    if (exits.count == 0) {
+      warn(connection.line, "connection", ids,
+           "road " + connection.incoming_road +
+               ((junction.type == opendrive::JunctionType::virtual_) ? " does not meet the connecting road: that gives no elementS"
+                                     : " is not linked to this junction") +
+               "; the connection was left out");
       return;
     }
     for (auto const& link : connection.lane_links) {
-      LaneId const from = find(*exit, link.from), to = find(entry, link.to);
-      if (!is_valid(from) || !is_valid(to))
-        warn(connection.line, "laneLink", "junction " + junction.id + ", connection " + connection.id,
+      if (!is_written(exits, link.from) || written(entry, link.to) == nullptr)
+        warn(connection.line, "laneLink", ids,
              "lane " + std::to_string(link.from) + " of road " + connection.incoming_road + " or lane " +
                  std::to_string(link.to) + " of road " + connection.entered_road() +
                  " is not there; the link was left out");
-      join(from, exit->end, to, entry.end, connection.line);
+      join(entry, link.to, exits, link.from, connection.line);
     }
   }
 
-  /// The end of the incoming road that touches the junction; where both do, the one nearer to the connecting road.
-  [[nodiscard]] std::optional<SectionEnd> incoming_end(std::size_t incoming, std::string const& junction,
-                                                       SectionEnd const& entry) const {
-    auto const& road = document_.roads[incoming];
-    auto const touches = [&](std::optional<opendrive::RoadLink> const& link) {
-      return link && link->element_type == opendrive::ElementType::junction && link->id == junction;
+  /// The end of the incoming road that touches the junction; where both do, the one nearer to the connecting road. In
+  /// a virtual junction the place in the middle of the road that the connecting road says it meets.
+  [[nodiscard]] SectionEnds incoming_ends(std::size_t incoming, opendrive::Junction const& junction,
+                                          SectionEnd const& entry) const {
+    auto const touches = [&](ContactPoint end) {
+      auto const& link = links_.link_at(incoming, end);
+      return link && link->element_type == opendrive::ElementType::junction && link->id == junction.id;
     };
-    bool const at_end = touches(road.successor), at_start = touches(road.predecessor);
-    if (!at_end && !at_start) return std::nullopt;
-    if (at_end != at_start) return road_end(incoming, at_end ? ContactPoint::end : ContactPoint::start);
+    bool const at_end = touches(ContactPoint::end), at_start = touches(ContactPoint::start);
+    if (!at_end && !at_start) {
+      auto const& link = links_.link_at(entry.road, entry.end);
+      bool const meets = (junction.type == opendrive::JunctionType::virtual_) && link && link->id == links_.document().roads[incoming].id;
+      return meets ? links_.follow(link) : SectionEnds{};
+    }
+    bool const by_end = at_end != at_start ? at_end : is_nearer(incoming, entry);
+    return {{links_.road_end(incoming, by_end ? ContactPoint::end : ContactPoint::start), {}}, 1};
+  }
+
+  /// Whether the road's end is nearer to the place than its start.
+  [[nodiscard]] bool is_nearer(std::size_t road, SectionEnd const& place) const {
     auto const end_point = [&](std::size_t r, ContactPoint end) {
       auto const p = roads_[r].reference_line.at(end == ContactPoint::end ? roads_[r].length : 0.0);
       return geometry::Point(p.x, p.y);
     };
-    auto const target = end_point(entry.road, entry.end);
-    double const from_end = (end_point(incoming, ContactPoint::end) - target).norm();
-    double const from_start = (end_point(incoming, ContactPoint::start) - target).norm();
-    return road_end(incoming, from_end <= from_start ? ContactPoint::end : ContactPoint::start);
+    auto const target = end_point(place.road, place.end);
+    return (end_point(road, ContactPoint::end) - target).norm() <=
+           (end_point(road, ContactPoint::start) - target).norm();
   }
 
-  OpenDriveDocument const& document_;
+  RoadLinks const& links_;
   std::vector<Road> const& roads_;
   std::vector<Lane>& lanes_;
   std::string const& file_;
   std::vector<Diagnostic>& diagnostics_;
-  std::map<std::string, std::size_t> index_;
 };
 
 }  // namespace cambium::map::detail

@@ -1,0 +1,314 @@
+// What a known reader of these maps (BARK, as studied) does wrong, and this one must not: a test for each.
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "../support/corpus.hpp"
+#include "cambium/map/lane_network.hpp"
+#include "road_text.hpp"
+
+namespace {
+
+using namespace road_text;
+using cambium::LaneId;
+using cambium::LoadedMap;
+using cambium::Severity;
+
+bool has_route(LoadedMap const& loaded, At const& from, At const& to) {
+  auto const& map = *loaded.map;
+  return map.shortest_route(map.find_lane(from.road, from.s, from.lane), map.find_lane(to.road, to.s, to.lane))
+      .has_value();
+}
+
+/// No joined lanes are apart or kinked: whoever joins the wrong ends is found out.
+void check_that_all_meet(LoadedMap const& loaded) {
+  for (auto const& f : cambium::check_lane_network(*loaded.map))
+    CHECK_MESSAGE((f.fault == cambium::NetworkFault::dead_end || f.fault == cambium::NetworkFault::no_way_in),
+                  loaded.map->describe(f.lane) << ": " << to_string(f.fault));
+}
+
+constexpr double half_turn = cambium::geometry::pi;
+
+}  // namespace
+
+TEST_CASE("a junction at the road's start is entered there") {
+  Road incoming, connecting;
+  incoming.x = 200;  // its start is at x = 200, its end at x = 300; lane 1 is driven towards the start
+  incoming.before = to_junction("7");
+  incoming.sections = {{0, {{.id = 1, .before = {}, .behind = {1}}}}, {60, {{.id = 1, .before = {1}}}}};
+  connecting.id = "2";
+  connecting.x = 200;
+  connecting.heading = half_turn;
+  connecting.junction = "7";
+  connecting.before = to_start("1");
+  connecting.sections[0].lanes = {{.id = -1, .before = {1}}};
+  auto const loaded = load(file({incoming, connecting}, junction("7", connection("1", "2", "start", 1, -1))));
+  CHECK(loaded.diagnostics.empty());
+  CHECK(leads(loaded, {"1", 10, 1}, {"2", 10, -1}));
+  CHECK_FALSE(leads(loaded, {"1", 90, 1}, {"2", 10, -1}));
+  CHECK(has_route(loaded, {"1", 90, 1}, {"2", 10, -1}));
+  check_that_all_meet(loaded);
+}
+
+TEST_CASE("an incoming road is left from its last section, not from its first one") {
+  Road incoming, connecting;
+  incoming.behind = to_junction("7");
+  incoming.sections = {{0, {{.id = -1, .behind = {-1}}}}, {50, {{.id = -1, .before = {-1}}}}};
+  connecting.id = "2";
+  connecting.x = 100;
+  connecting.junction = "7";
+  connecting.before = to_end("1");
+  auto const loaded = load(file({incoming, connecting}, junction("7", connection("1", "2", "start", -1, -1))));
+  CHECK(leads(loaded, {"1", 90, -1}, {"2", 10, -1}));
+  CHECK_FALSE(leads(loaded, {"1", 10, -1}, {"2", 10, -1}));
+  check_that_all_meet(loaded);
+}
+
+TEST_CASE("a connecting road that runs backwards is entered at its end") {
+  Road incoming, connecting, outgoing;
+  incoming.behind = to_junction("7");
+  connecting.id = "2";
+  connecting.x = 150;
+  connecting.length = 50;
+  connecting.heading = half_turn;
+  connecting.junction = "7";
+  connecting.before = to_start("3");
+  connecting.behind = to_end("1");
+  connecting.sections[0].lanes = {{.id = 1, .before = {-1}, .behind = {-1}}};
+  outgoing.id = "3";
+  outgoing.x = 150;
+  outgoing.before = to_junction("7");
+  auto const loaded = load(file({incoming, connecting, outgoing}, junction("7", connection("1", "2", "end", -1, 1))));
+  CHECK(loaded.diagnostics.empty());
+  CHECK(leads(loaded, {"1", 10, -1}, {"2", 10, 1}));
+  CHECK(leads(loaded, {"2", 10, 1}, {"3", 10, -1}));
+  CHECK(has_route(loaded, {"1", 10, -1}, {"3", 90, -1}));
+  check_that_all_meet(loaded);
+}
+
+TEST_CASE("roads that meet with their ends, or with their starts, are joined there") {
+  for (bool const by_end : {true, false}) {
+    Road a, b;
+    (by_end ? a.behind : a.before) = by_end ? to_end("2") : to_start("2");
+    b.id = "2";
+    b.x = by_end ? 200 : 0;
+    b.heading = half_turn;
+    if (!by_end) b.x = 0;
+    (by_end ? b.behind : b.before) = by_end ? to_end("1") : to_start("1");
+    std::vector<int> const there{-1};
+    a.sections[0].lanes =
+        by_end ? std::vector<Lane>{{.id = -1, .behind = {1}}} : std::vector<Lane>{{.id = -1, .before = {1}}};
+    b.sections[0].lanes =
+        by_end ? std::vector<Lane>{{.id = 1, .behind = there}} : std::vector<Lane>{{.id = 1, .before = there}};
+    auto const loaded = load(file({a, b}));
+    CHECK(loaded.diagnostics.empty());
+    // Lane -1 of road 1 runs along it, lane 1 of road 2 against that: out of the joint of the ends into ...
+    CHECK(leads(loaded, {"1", 50, -1}, {"2", 50, 1}) == by_end);
+    CHECK(leads(loaded, {"2", 50, 1}, {"1", 50, -1}) != by_end);
+    check_that_all_meet(loaded);
+  }
+}
+
+TEST_CASE("links are entered in the direction of travel only") {
+  Road a, b;
+  a.behind = to_start("2");
+  a.sections[0].lanes = {{.id = 1, .behind = {1}}, {.id = -1, .behind = {-1}}};
+  b.id = "2";
+  b.x = 100;
+  b.before = to_end("1");
+  b.sections[0].lanes = {{.id = 1, .before = {1}}, {.id = -1, .before = {-1}}};
+  auto const loaded = load(file({a, b}));
+  CHECK(has_route(loaded, {"1", 1, -1}, {"2", 1, -1}));
+  CHECK_FALSE(has_route(loaded, {"2", 1, -1}, {"1", 1, -1}));
+  CHECK(has_route(loaded, {"2", 1, 1}, {"1", 1, 1}));
+  CHECK_FALSE(has_route(loaded, {"1", 1, 1}, {"2", 1, 1}));
+  for (auto const& lane : loaded.map->lanes()) CHECK(lane.successors.size() + lane.predecessors.size() == 1);
+}
+
+TEST_CASE("road ids above 1000, and ids that are no numbers, are ids like any other") {
+  for (std::string const id : {"1001", "4294967296", "99999999999999999999", "main street/7", "-5"}) {
+    Road a, b;
+    a.before = to_end(id);  // what leads into it must not get lost, either
+    a.sections[0].lanes[0].before = {-1};
+    b.id = id;
+    b.x = -100;
+    b.behind = to_start("1");
+    b.sections[0].lanes[0].behind = {-1};
+    auto const loaded = load(file({a, b}));
+    CHECK(loaded.diagnostics.empty());
+    CHECK(has_route(loaded, {id, 1, -1}, {"1", 99, -1}));
+  }
+}
+
+TEST_CASE("a road without successor keeps its predecessor") {
+  Road a, b;
+  b.id = "2";
+  b.x = 100;
+  b.before = to_end("1");
+  b.sections[0].lanes[0].before = {-1};
+  auto const loaded = load(file({a, b}));
+  CHECK(leads(loaded, {"1", 1, -1}, {"2", 1, -1}));
+}
+
+TEST_CASE("several sections of one road are linked to each other, and only the last one to the next road") {
+  Road a, b;
+  a.behind = to_start("2");
+  a.sections = {{0, {{.id = -1, .behind = {-1}}}},
+                {30, {{.id = -1, .before = {-1}, .behind = {-2}}}},
+                {60, {{.id = -1}, {.id = -2, .before = {-1}, .behind = {-1}}}}};
+  a.sections[2].lanes[0].width = 0.5;
+  a.sections[2].lanes[0].type = "shoulder";
+  b.id = "2";
+  b.x = 100;
+  b.before = to_end("1");
+  b.lane_offset = "<laneOffset s=\"0\" a=\"-0.5\" b=\"0\" c=\"0\" d=\"0\"/>";
+  auto const loaded = load(file({a, b}));
+  CHECK(leads(loaded, {"1", 10, -1}, {"1", 40, -1}));
+  CHECK(leads(loaded, {"1", 40, -1}, {"1", 70, -2}));
+  CHECK(leads(loaded, {"1", 70, -2}, {"2", 10, -1}));
+  CHECK(lane_at(loaded, {"1", 10, -1}).successors.size() == 1);
+  CHECK(lane_at(loaded, {"1", 40, -1}).successors.size() == 1);
+  CHECK(has_route(loaded, {"1", 1, -1}, {"2", 99, -1}));
+}
+
+TEST_CASE("a corridor follows from two roads' ids") {
+  Road a, b;
+  a.behind = to_start("2");
+  a.sections[0].lanes[0].behind = {-1};
+  b.id = "2";
+  b.x = 100;
+  auto const loaded = load(file({a, b}));
+  auto const& map = *loaded.map;
+  auto const route = map.shortest_route(map.find_lane("1", 0, -1), map.find_lane("2", 100, -1));
+  REQUIRE(route.has_value());
+  CHECK(route->lanes.size() == 2);
+  CHECK(route->length == doctest::Approx(200));
+}
+
+TEST_CASE("routes are by length, not by number of lanes, and lengths are no whole numbers") {
+  // Two ways from road 1 to road 9: one long road, or three that are 0.6 m shorter in sum.
+  Road start, end, detour;
+  start.behind = to_junction("7");
+  end.id = "9";
+  end.x = 200;
+  end.before = to_junction("8");
+  detour.id = "2";
+  detour.x = 100;
+  detour.length = 99.9;
+  detour.junction = "7";
+  detour.before = to_end("1");
+  detour.behind = to_start("9");
+  detour.sections[0].lanes[0].behind = {-1};
+  std::vector<Road> roads{start, end, detour};
+  for (int i = 0; i < 3; ++i) {
+    Road piece;
+    piece.id = "3" + std::to_string(i);
+    piece.x = 100 + 33.1 * i;
+    piece.length = 33.1;
+    piece.junction = "7";
+    piece.before = to_end(i == 0 ? std::string("1") : "3" + std::to_string(i - 1));
+    piece.behind = to_start(i == 2 ? std::string("9") : "3" + std::to_string(i + 1));
+    piece.sections[0].lanes[0].behind = {-1};
+    roads.push_back(piece);
+  }
+  auto const loaded =
+      load(file(roads, junction("7", connection("1", "2", "start", -1, -1) + connection("1", "30", "start", -1, -1))));
+  auto const& map = *loaded.map;
+  auto const route = map.shortest_route(map.find_lane("1", 1, -1), map.find_lane("9", 1, -1));
+  REQUIRE(route.has_value());
+  CHECK(route->lanes.size() == 5);
+  CHECK(route->length == doctest::Approx(200 + 3 * 33.1).epsilon(1e-9));
+}
+
+TEST_CASE("the lane offset moves all lanes the same way, by every record, to the side that the specification says") {
+  Road road;
+  road.sections[0].lanes = {{.id = 2}, {.id = 1}, {.id = -1}, {.id = -2}};
+  road.lane_offset =
+      "<laneOffset s=\"0\" a=\"0.5\" b=\"0\" c=\"0\" d=\"0\"/>"
+      "<laneOffset s=\"50\" a=\"0.5\" b=\"-0.05\" c=\"0\" d=\"0\"/>";
+  auto const loaded = load(file({road}));
+  for (auto const& [s, offset] : {std::pair(20.0, 0.5), std::pair(90.0, -1.5)})
+    for (int const lane : {2, 1, -1, -2}) {
+      double const y = offset + (lane > 0 ? lane - 0.5 : lane + 0.5) * 3.5;
+      auto const& path = lane_at(loaded, {"1", s, lane}).path;
+      CHECK(std::abs(path.project({s, y}).lateral) < 1e-6);
+      auto const& left = lane > 0 ? lane_at(loaded, {"1", s, lane}).right : lane_at(loaded, {"1", s, lane}).left;
+      CHECK(std::abs(left.project({s, y + 1.75}).lateral) < 1e-2);  // to the left along the road
+    }
+}
+
+TEST_CASE("a curved lane is found, far from the chord between its ends") {
+  Road road;
+  road.length = 0.5 * 2 * half_turn * 100;  // half a circle of 100 m
+  road.curvature = 0.01;
+  auto const loaded = load(file({road}));
+  for (int i = 1; i < 20; ++i) {
+    double const turn = half_turn * i / 20;
+    cambium::geometry::Pose const pose{101.75 * std::sin(turn), 100 - 101.75 * std::cos(turn), turn};
+    auto const hit = loaded.map->nearest_lane(pose, 0.1);
+    REQUIRE(hit.has_value());
+    CHECK(hit->lane == loaded.map->find_lane("1", 1, -1));
+    CHECK_FALSE(loaded.map->nearest_lane({pose.x * 0.5, 100 + (pose.y - 100) * 0.5, turn}, 5.0).has_value());
+  }
+}
+
+TEST_CASE("a missing header, plan view or lane is a finding, and the rest is read") {
+  Road a, b;
+  b.id = "2";
+  b.y = 50;
+  std::string const good = file({a, b});
+  auto const without = [&](std::string const& begin, std::string const& end) {
+    auto const at = good.find(begin);
+    auto const to = good.find(end, at) + end.size();
+    return load(good.substr(0, at) + good.substr(to));
+  };
+  auto const headless = without("<header", "/>");
+  CHECK(headless.map->roads().size() == 2);
+  CHECK(count(headless, Severity::warning, "no header") == 1);
+  auto const unplanned = without("<planView>", "</planView>");
+  CHECK(unplanned.map->roads().size() == 1);
+  CHECK(count(unplanned, Severity::warning, "has no geometry") == 1);
+  auto const laneless = without("<lanes>", "</lanes>");
+  CHECK(laneless.map->roads().size() == 1);
+  CHECK(count(laneless, Severity::warning, "no lane section") == 1);
+}
+
+TEST_CASE("a lane link to a lane that is not there costs that link only") {
+  Road a, b;
+  a.behind = to_start("2");
+  a.sections[0].lanes = {{.id = -1, .behind = {-1}}, {.id = -2, .behind = {-7}}};
+  b.id = "2";
+  b.x = 100;
+  b.before = to_end("1");
+  auto const loaded = load(file({a, b}));
+  CHECK(count(loaded, Severity::warning, "it names lane -7 of road 2, which is not there") == 1);
+  CHECK(leads(loaded, {"1", 1, -1}, {"2", 1, -1}));
+}
+
+TEST_CASE("the four-way intersection can be crossed from each arm into each other arm") {
+  auto const path = corpus::find("opendrive/4way_intersection.xodr");
+  if (!path) return;
+  auto const loaded = cambium::load_opendrive(path->string());
+  auto const& map = *loaded.map;
+  std::vector<LaneId> in, out;
+  for (auto const& lane : map.lanes()) {
+    if (!lane.drivable() || is_valid(map.road(lane.road).junction)) continue;
+    if (!lane.successors.empty()) in.push_back(lane.id);
+    if (!lane.predecessors.empty()) out.push_back(lane.id);
+  }
+  CHECK(in.size() == 4);
+  CHECK(out.size() == 4);
+  int routes = 0;
+  for (auto const from : in)
+    for (auto const to : out) {
+      auto const route = map.shortest_route(from, to);
+      routes += route.has_value();
+      bool const same_arm = map.lane(from).road == map.lane(to).road;
+      CHECK(route.has_value() != same_arm);
+      if (route) CHECK(route->lanes.size() == 3);
+    }
+  CHECK(routes == 12);
+}
