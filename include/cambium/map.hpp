@@ -1,11 +1,14 @@
-/// The map room but for what builds maps: `cambium/map/build_map.hpp` and `routing.hpp` (Boost.Graph) come with
-/// `cambium/map/opendrive.hpp`.
+/// The map room but for what builds maps, `cambium/map/build_map.hpp` and `routing.hpp` (Boost.Graph), which come with
+/// `cambium/map/opendrive.hpp`, and the union of lanes, `cambium/map/road_area.hpp` (Boost.Geometry).
 #pragma once
 
 #include "cambium/map/build_corridor.hpp"
 #include "cambium/map/corridor.hpp"
 #include "cambium/map/cubic.hpp"
+#include "cambium/map/find_corridor.hpp"
+#include "cambium/map/junction.hpp"
 #include "cambium/map/lane.hpp"
+#include "cambium/map/lane_area.hpp"
 #include "cambium/map/lane_position.hpp"
 #include "cambium/map/lane_tree.hpp"
 #include "cambium/map/lane_type.hpp"
@@ -14,3 +17,4 @@
 #include "cambium/map/opendrive_document.hpp"
 #include "cambium/map/parametric_cubic.hpp"
 #include "cambium/map/reference_line.hpp"
+#include "cambium/map/route.hpp"
