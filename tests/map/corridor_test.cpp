@@ -1,11 +1,18 @@
-// g++ 12 takes a part of Boost.Geometry's check of polygons for uninitialised.
-#if defined(__GNUC__) && !defined(__clang__)
+// As in polygon_union.hpp.
+#if defined(__clang__)
+#pragma clang diagnostic push
+#if __has_warning("-Wenum-constexpr-conversion")
+#pragma clang diagnostic ignored "-Wenum-constexpr-conversion"
+#endif
+#elif defined(__GNUC__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif
 #include <boost/geometry/algorithms/is_valid.hpp>
 #include <boost/geometry/geometries/multi_polygon.hpp>
-#if defined(__GNUC__) && !defined(__clang__)
+#if defined(__clang__)
+#pragma clang diagnostic pop
+#elif defined(__GNUC__)
 #pragma GCC diagnostic pop
 #endif
 

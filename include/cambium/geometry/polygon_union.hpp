@@ -6,8 +6,13 @@
 #include <utility>
 #include <vector>
 
-// g++ 12 takes parts of Boost.Geometry for uninitialised.
-#if defined(__GNUC__) && !defined(__clang__)
+// g++ 12 takes parts of Boost.Geometry for uninitialised; clang 19 rejects an enumeration of Boost 1.74.
+#if defined(__clang__)
+#pragma clang diagnostic push
+#if __has_warning("-Wenum-constexpr-conversion")
+#pragma clang diagnostic ignored "-Wenum-constexpr-conversion"
+#endif
+#elif defined(__GNUC__)
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif
@@ -15,7 +20,9 @@
 #include <boost/geometry/geometries/multi_polygon.hpp>
 #include <boost/geometry/geometries/point_xy.hpp>
 #include <boost/geometry/geometries/polygon.hpp>
-#if defined(__GNUC__) && !defined(__clang__)
+#if defined(__clang__)
+#pragma clang diagnostic pop
+#elif defined(__GNUC__)
 #pragma GCC diagnostic pop
 #endif
 

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "cambium/core/error.hpp"
-#include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/line.hpp"
 #include "cambium/geometry/polygon.hpp"
 #include "cambium/map/corridor.hpp"
@@ -57,8 +56,8 @@ class StripPolygons {
   /// Grows the ring by a cross-section where it stays simple; true also where there is nothing to add.
   bool append(StripSection const& section) {
     constexpr double shortest = 1e-4;  // [m] between a side's vertices
-    auto const [sin, cos] = geometry::sin_cos(section.heading);
-    auto const advances = [sin = sin, cos = cos](Point const& from, Point const& to) {
+    double const sin = std::sin(section.heading), cos = std::cos(section.heading);
+    auto const advances = [&](Point const& from, Point const& to) {
       return (to.x() - from.x()) * cos + (to.y() - from.y()) * sin > shortest;
     };
     auto const &l = left_.back(), &r = right_.back();
@@ -119,10 +118,8 @@ class StripPolygons {
   constexpr double least = 1e-3;
   double const middle = 0.5 * (sides.left - sides.right);
   double const half = std::max(0.5 * (sides.left + sides.right) + growth, least);
-  auto const [sin, cos] = geometry::sin_cos(on_line.heading);
-  auto const at = [&, sin = sin, cos = cos](double t) {
-    return geometry::Point(on_line.x - t * sin, on_line.y + t * cos);
-  };
+  double const sin = std::sin(on_line.heading), cos = std::cos(on_line.heading);
+  auto const at = [&](double t) { return geometry::Point(on_line.x - t * sin, on_line.y + t * cos); };
   return {at(middle + half), at(middle - half), on_line.heading};
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "cambium/map/lane.hpp"
@@ -10,7 +11,8 @@
 
 namespace cambium::map::detail {
 
-/// The document's junctions, in its order, with the roads and lanes that belong to them.
+/// The document's junctions, in its order (the roads' junction ids count so), with the roads and lanes that belong to
+/// them.
 [[nodiscard]] inline std::vector<Junction> make_junctions(OpenDriveDocument const& document,
                                                           std::span<Road const> roads, std::span<Lane const> lanes) {
   std::vector<Junction> junctions;
@@ -18,12 +20,13 @@ namespace cambium::map::detail {
     Junction junction;
     junction.id = static_cast<JunctionId>(junctions.size());
     junction.name = written.id;
-    for (auto const& road : roads)
-      if (road.junction == junction.id) junction.roads.push_back(road.id);
-    for (auto const& lane : lanes)
-      if (roads[index_of(lane.road)].junction == junction.id) junction.lanes.push_back(lane.id);
     junctions.push_back(std::move(junction));
   }
+  for (auto const& road : roads)
+    if (is_valid(road.junction)) junctions[index_of(road.junction)].roads.push_back(road.id);
+  for (auto const& lane : lanes)
+    if (auto const id = roads[index_of(lane.road)].junction; is_valid(id))
+      junctions[index_of(id)].lanes.push_back(lane.id);
   return junctions;
 }
 
