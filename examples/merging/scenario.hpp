@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -122,8 +123,8 @@ inline void find_merge(cambium::Map const& map, Entrance& entrance) {
                             "give a map with an on-ramp or a lane drop, such as maps/merging.xodr");
   site.ramp = *ramp;
   site.crossings = count_crossings(*site.map, site.entrances);
-  auto const limit = site.map->lane(site.entrances[site.ramp].route.lanes.front()).speed_limit;
-  if (limit > 0) site.free_speed = limit;
+  auto const limit = site.map->lane(site.entrances[site.ramp].route.lanes.front()).speed_limit_at(0.0);
+  if (std::isfinite(limit)) site.free_speed = limit;
   return site;
 }
 

@@ -1,9 +1,11 @@
-/// The room `geometry`: angles, poses, arc-length lines, polygons, boxes, vehicle shapes, collision, Frenet frame.
+/// The room `geometry`: angles, poses, arc-length lines, polygons, boxes, vehicle shapes, collision, Frenet frame. The
+/// union of polygons (Boost.Geometry) is apart: `cambium/geometry/polygon_union.hpp`.
 #pragma once
 
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/box.hpp"
 #include "cambium/geometry/collision.hpp"
+#include "cambium/geometry/convex_hull.hpp"
 #include "cambium/geometry/frenet.hpp"
 #include "cambium/geometry/line.hpp"
 #include "cambium/geometry/oriented_box.hpp"

@@ -1,13 +1,16 @@
-/// The map room but for what builds maps: `cambium/map/build_map.hpp` and `routing.hpp` (Boost.Graph) come with
-/// `cambium/map/opendrive.hpp`.
+/// The map room but for what builds maps, `cambium/map/build_map.hpp` and `routing.hpp` (Boost.Graph), which come with
+/// `cambium/map/opendrive.hpp`, and the union of lanes, `cambium/map/road_area.hpp` (Boost.Geometry).
 #pragma once
 
 #include "cambium/map/build_corridor.hpp"
 #include "cambium/map/corridor.hpp"
 #include "cambium/map/cubic.hpp"
+#include "cambium/map/find_corridor.hpp"
+#include "cambium/map/junction.hpp"
 #include "cambium/map/lane.hpp"
 #include "cambium/map/lane_adjacency.hpp"
 #include "cambium/map/lane_network.hpp"
+#include "cambium/map/lane_area.hpp"
 #include "cambium/map/lane_position.hpp"
 #include "cambium/map/lane_tree.hpp"
 #include "cambium/map/lane_type.hpp"
@@ -23,3 +26,4 @@
 #include "cambium/map/road.hpp"
 #include "cambium/map/road_lanes.hpp"
 #include "cambium/map/station_offset.hpp"
+#include "cambium/map/route.hpp"

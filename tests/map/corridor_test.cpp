@@ -1,3 +1,21 @@
+// As in polygon_union.hpp.
+#if defined(__clang__)
+#pragma clang diagnostic push
+#if __has_warning("-Wenum-constexpr-conversion")
+#pragma clang diagnostic ignored "-Wenum-constexpr-conversion"
+#endif
+#elif defined(__GNUC__)
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
+#endif
+#include <boost/geometry/algorithms/is_valid.hpp>
+#include <boost/geometry/geometries/multi_polygon.hpp>
+#if defined(__clang__)
+#pragma clang diagnostic pop
+#elif defined(__GNUC__)
+#pragma GCC diagnostic pop
+#endif
+
 #include "cambium/map/build_corridor.hpp"
 
 #include <algorithm>
@@ -5,13 +23,19 @@
 #include <filesystem>
 #include <limits>
 #include <map>
+#include <memory>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
 
+#include "cambium/map/find_corridor.hpp"
+#include "cambium/map/lane_area.hpp"
+#include "cambium/map/lane_position.hpp"
 #include "cambium/map/opendrive.hpp"
+#include "cambium/map/road_area.hpp"
 #include "../support/corpus.hpp"
 #include "lanes_by_hand.hpp"
 
@@ -112,6 +136,45 @@ struct Merge {
     link(lanes, approach, ramp);
   }
 };
+
+/// Every map of the project and of the corpus.
+template <class Check>
+void for_each_real_map(Check const& check) {
+  auto files = corpus::maps(std::filesystem::path(CAMBIUM_SOURCE_DIR) / "maps");
+  if (auto const folder = corpus::find("opendrive"))
+    for (auto& file : corpus::maps(*folder)) files.push_back(file);
+  Numbers random{1};
+  for (auto const& file : files) {
+    CAPTURE(file.string());
+    check(*load_opendrive(file.string()).map, random);
+  }
+}
+
+/// Corridors straight on from a few lanes, and along routes between lanes.
+template <class Check>
+void for_some_routes(Map const& map, Numbers& random, Check const& check) {
+  auto const any = [&] { return static_cast<LaneId>(random(0, static_cast<double>(map.lanes().size()) - 1e-9)); };
+  for (int i = 0; i < 6; ++i) {
+    auto const lane = any();
+    CAPTURE(map.describe(lane));
+    check(*build_road_corridor(map, straight_route(map, lane, random(0, 1000))));
+    auto const reached = map.reachable(lane, 500.0);
+    auto const to = reached[static_cast<std::size_t>(random(0, static_cast<double>(reached.size()) - 1e-9))].lane;
+    CAPTURE(map.describe(to));
+    check(*build_road_corridor(map, *map.shortest_route(lane, to)));
+  }
+}
+
+/// Valid by Boost.Geometry, holes counter-clockwise as they come.
+bool is_valid_polygon(geometry::Polygon const& outer, std::vector<geometry::Polygon> const& holes) {
+  geometry::detail::BoostPolygon polygon = geometry::detail::to_boost(outer);
+  for (auto const& hole : holes) {
+    auto ring = geometry::detail::to_boost(hole).outer();
+    std::reverse(ring.begin(), ring.end());
+    polygon.inners().push_back(ring);
+  }
+  return boost::geometry::is_valid(polygon);
+}
 
 }  // namespace
 
@@ -375,6 +438,236 @@ TEST_CASE("straight on from every drivable lane of the project's and the corpus'
       for (auto const& corridor : road->corridors) check_feeder_laws(*map, corridor);
     }
   }
+}
+
+TEST_CASE("positions on a corridor and on its lanes lead to each other, and to the same widths and limits") {
+  for_each_real_map([](Map const& map, Numbers& random) {
+    for_some_routes(map, random, [&](RoadCorridor const& road) {
+      std::size_t wrong = 0;
+      for (auto const& corridor : road.corridors)
+        for (int i = 0; i < 20; ++i) {
+          double const s = random(0, corridor.length());
+          auto const at = corridor.lane_at(s);
+          auto const& lane = map.lane(at.lane);
+          auto const& piece = corridor.pieces[corridor.piece_at(s, 0)];
+          wrong += at.lane != piece.lane || corridor.type_at(s) != lane.type;
+          bool const is_first = corridor.pieces[corridor.piece_at(*corridor.position_of(at), 0)].begin == piece.begin;
+          if (is_first) wrong += !(std::abs(*corridor.position_of(at) - s) < 1e-6);
+          if (s - piece.begin < 2.5) continue;  // where gaps are bridged
+          wrong += !((lane.path.pose(at.s).position() - corridor.center.pose(s).position()).norm() < 0.02);
+          double const width = lane.widths_at(at.s).left + lane.widths_at(at.s).right;
+          wrong += !(std::abs(corridor.width_at(s) - width) < 0.04);
+          wrong += corridor.speed_limit_at(s) != lane.speed_limit_at(at.s) &&
+                   corridor.speed_limit_at(s + 0.02) != lane.speed_limit_at(at.s + 0.02);
+          wrong += corridor.length_until_end(s) != corridor.length() - s;
+        }
+      CHECK(wrong == 0);
+      CHECK(road.corridors[0].length_until_end(road.corridors[0].length() + 5) == 0.0);
+      CHECK_FALSE(road.corridors[0].position_of({none<LaneId>, 0}).has_value());
+    });
+  });
+}
+
+TEST_CASE("a corridor's limit changes where its lanes' limits do, and is none where none has any") {
+  std::vector<Lane> lanes;
+  auto const a = add_straight(lanes, {0, 0, 0}, 100), b = add_straight(lanes, {100, 0, 0}, 100),
+             c = add_straight(lanes, {200, 0, 0}, 100);
+  link(lanes, a, b);
+  link(lanes, b, c);
+  auto const plain = make_map(lanes);
+  CHECK(build_road_corridor(*plain, straight_route(*plain, a))->corridors[0].speed_limits.empty());
+  lanes[index_of(a)].speed_limits = {{0, 30}, {40, 20}};
+  lanes[index_of(b)].speed_limits = {{0, 20}, {70, 10}};
+  auto const map = make_map(lanes);
+  auto const road = build_road_corridor(*map, straight_route(*map, a));
+  double const infinity = -never;
+  CHECK(road->corridors[0].speed_limits == std::vector<SpeedStep>{{0, 30}, {40, 20}, {170, 10}, {200, infinity}});
+}
+
+TEST_CASE("the ground of corridors and roads is made of valid polygons that hold what is in the lanes, and no more") {
+  for_each_real_map([](Map const& map, Numbers& random) {
+    for_some_routes(map, random, [&](RoadCorridor const& road) {
+      std::vector<std::vector<geometry::Polygon>> grounds;
+      std::size_t invalid = 0, missed = 0, beyond = 0;
+      for (auto const& corridor : road.corridors) {
+        grounds.push_back(area_of(corridor));
+        for (auto const& polygon : grounds.back()) invalid += !is_valid_polygon(polygon, {});
+      }
+      auto const ground = area_of(road);
+      for (auto const& area : ground) invalid += !is_valid_polygon(area.outer, area.holes);
+      CHECK(invalid == 0);
+      for (std::size_t i = 0; i < road.corridors.size(); ++i) {
+        auto const& corridor = road.corridors[i];
+        for (int k = 0; k < 10; ++k) {
+          double const s = random(0.01, 0.99) * corridor.length();
+          auto const sides = corridor.widths_at(s);
+          if (sides.left + sides.right < 0.5) continue;
+          auto const pose = corridor.center.pose(s);
+          auto const at = [&pose](double t) {
+            return Point(pose.x - t * std::sin(pose.heading), pose.y + t * std::cos(pose.heading));
+          };
+          auto const holds = [](auto const& areas, Point const& p) {
+            return std::any_of(areas.begin(), areas.end(), [&p](auto const& area) { return area.contains(p); });
+          };
+          Point const inside = at(random(-sides.right + 0.1, sides.left - 0.1));
+          missed += !holds(grounds[i], inside) || !holds(ground, inside);
+          Point const outside = at(sides.left + 0.5);
+          if (map.lanes_near(outside, 0.3).empty()) beyond += holds(grounds[i], outside) || holds(ground, outside);
+        }
+      }
+      CHECK(missed == 0);
+      CHECK(beyond == 0);
+    });
+  });
+}
+
+TEST_CASE("where a curve is tighter than half the lane's width its inner fold is left out of its ground") {
+  std::vector<Lane> lanes;
+  auto samples = arc({0, 0, 0}, 0.0, 10, 0.5);
+  auto const bend = arc({10, 0, 0}, 1.0, 0.5 * geometry::pi, 0.05),
+             rest = arc({11, 1, 0.5 * geometry::pi}, 0.0, 10, 0.5);
+  samples.insert(samples.end(), bend.begin() + 1, bend.end());
+  samples.insert(samples.end(), rest.begin() + 1, rest.end());
+  auto const id = add_lane(lanes, samples);
+  auto const ground = area_of(lanes[index_of(id)]);
+  REQUIRE(ground.size() == 1);
+  CHECK(ground[0].is_simple());
+  CHECK(is_valid_polygon(ground[0], {}));
+  // Two straight parts and the outer quarter disc; the inner corner, 0.75 m square, is in both straight parts.
+  double const expected = 2 * 10 * 3.5 + 0.25 * geometry::pi * 2.75 * 2.75 - 0.75 * 0.75;
+  CHECK(ground[0].area() == doctest::Approx(expected).epsilon(0.02));
+}
+
+TEST_CASE("a lane that runs over itself has several polygons, a stretch of it one, and no stretch none") {
+  std::vector<Lane> lanes;
+  auto const id = add_lane(lanes, arc({0, 0, 0}, 1.0 / 30, 2.5 * geometry::pi * 30, 1.0));
+  auto const& lane = lanes[index_of(id)];
+  auto const ground = area_of(lane);
+  REQUIRE(ground.size() == 2);
+  double area = 0.0;
+  for (auto const& polygon : ground) {
+    CHECK(is_valid_polygon(polygon, {}));
+    area += polygon.area();
+  }
+  CHECK(area == doctest::Approx(lane.length() * 3.5).epsilon(1e-3));
+  auto const part = area_of(lane, {10, 20});
+  REQUIRE(part.size() == 1);
+  CHECK(part[0].area() == doctest::Approx(35).epsilon(1e-2));
+  CHECK(area_of(lane, {20, 20}).empty());
+  CHECK(area_of(lane, {30, 20}).empty());
+  CHECK_THROWS_AS((void)area_of(lane, {std::nan(""), 20}), MapError);
+  // The union has a hole in its middle.
+  auto const all = geometry::union_of(ground);
+  REQUIRE(all.size() == 1);
+  CHECK(all[0].holes.size() == 1);
+  CHECK_FALSE(all[0].contains({0, 30}));
+  CHECK(all[0].contains({0, 0}));
+}
+
+TEST_CASE("the nearest corridor is the one that holds a place, by direction where several do, and else the nearest") {
+  std::vector<Lane> lanes;
+  auto const left = add_straight(lanes, {0, 0, 0}, 100), right = add_straight(lanes, {0, -3.5, 0}, 100);
+  put_beside(lanes, left, right);
+  auto const map = make_map(lanes);
+  auto const road = build_road_corridor(*map, straight_route(*map, left));
+  auto const at = nearest_corridor(*road, Pose{50, -1.5, 0.1});
+  CHECK(at.corridor == 0);
+  CHECK(at.s == doctest::Approx(50));
+  CHECK(at.lateral == doctest::Approx(-1.5));
+  CHECK(at.heading_error == doctest::Approx(0.1));
+  CHECK(nearest_corridor(*road, Point(50, -2.0)).corridor == 1);
+  CHECK(nearest_corridor(*road, Point(50, 30.0)).corridor == 0);
+  CHECK(nearest_corridor(*road, Point(-7, -30.0)).corridor == 1);
+  CHECK(nearest_corridor(*road, Point(50, -2.0)).heading_error == 0.0);
+  CHECK(nearest_corridor(RoadCorridor{}, Point(0, 0)).corridor == no_corridor);
+  CHECK(road->left_of(1, 50) == 0);
+  CHECK(road->right_of(0, 50) == 1);
+  CHECK(road->left_of(0, 50) == no_corridor);
+  CHECK(road->lanes() == std::vector<LaneId>{left, right});
+  // Two ways from one place: the direction decides.
+  std::vector<Lane> fork;
+  auto const a = add_straight(fork, {0, 0, 0}, 50), straight = add_straight(fork, {50, 0, 0}, 50),
+             turns = add_straight(fork, {50, 0, 0.3}, 50);
+  link(fork, a, straight);
+  link(fork, a, turns);
+  auto const forked = make_map(fork);
+  RoadCorridor both;
+  for (auto const next : {straight, turns})
+    both.corridors.push_back(build_road_corridor(*forked, route_of(*forked, {a, next}))->corridors[0]);
+  CHECK(nearest_corridor(both, Pose{53, 0.3, 0.02}).corridor == 0);
+  CHECK(nearest_corridor(both, Pose{53, 0.3, 0.31}).corridor == 1);
+}
+
+TEST_CASE("a road corridor is found from a pose to a point or a polygon") {
+  auto const map = load_opendrive((std::filesystem::path(CAMBIUM_SOURCE_DIR) / "maps" / "merging.xodr").string()).map;
+  auto const ramp = map->find_lane("2", 10, -1);
+  auto const start = map->lane(ramp).path.pose(5.0);
+  auto const way = straight_route(*map, ramp);
+  auto const& last = map->lane(way.lanes.back());
+  auto const goal = last.path.pose(0.5 * last.length()).position();
+  auto const to_point = build_road_corridor(*map, start, goal);
+  CHECK(to_point->route.front() == ramp);
+  CHECK(to_point->route.back() == last.id);
+  geometry::Polygon const area({goal + Point(-3, -3), goal + Point(3, -3), goal + Point(3, 3), goal + Point(-3, 3)});
+  auto const to_area = build_road_corridor(*map, start, area);
+  CHECK(map->lane(to_area->route.back()).road == last.road);
+  CHECK_THROWS_AS((void)build_road_corridor(*map, Pose{1e5, 1e5, 0}, goal), MapError);
+  CHECK_THROWS_AS((void)build_road_corridor(*map, start, Point(1e5, 1e5)), MapError);
+  CHECK_THROWS_AS((void)build_road_corridor(*map, map->lane(last.id).path.pose(10), start.position()), MapError);
+}
+
+TEST_CASE("a road corridor is found along roads in either direction") {
+  int several = 0, backward = 0;
+  for_each_real_map([&](Map const& map, Numbers& random) {
+    for_some_routes(map, random, [&](RoadCorridor const& road) {
+      // What a route from end to end passes is found again by its roads' names.
+      std::vector<std::string> names;
+      for (auto const lane : road.route)
+        if (auto const& name = map.road(map.lane(lane).road).name; names.empty() || names.back() != name)
+          names.push_back(name);
+      std::set<std::string> const distinct(names.begin(), names.end());
+      if (distinct.size() != names.size() || names.size() > 6) return;
+      auto const direction = map.lane(road.route.front()).along_road ? RoadDirection::forward : RoadDirection::backward;
+      std::shared_ptr<RoadCorridor const> found;
+      try {
+        found = build_road_corridor(map, names, direction);
+      } catch (MapError const&) {  // a lane that begins or ends amid its road
+        return;
+      }
+      std::vector<std::string> passed;
+      for (auto const lane : found->route)
+        if (auto const& name = map.road(map.lane(lane).road).name; passed.empty() || passed.back() != name)
+          passed.push_back(name);
+      CHECK(passed == names);
+      several += names.size() > 2;
+      backward += direction == RoadDirection::backward;
+      CHECK(map.lane(found->route.front()).along_road == (direction == RoadDirection::forward));
+    });
+  });
+  CHECK(several > 20);
+  CHECK(backward > 20);
+  auto const map = load_opendrive((std::filesystem::path(CAMBIUM_SOURCE_DIR) / "maps" / "merging.xodr").string()).map;
+  std::vector<std::string> const none_there{"77"}, back{"1", "2"};
+  CHECK_THROWS_AS((void)build_road_corridor(*map, none_there, RoadDirection::forward), MapError);
+  CHECK_THROWS_AS((void)build_road_corridor(*map, back, RoadDirection::forward), MapError);
+  CHECK_THROWS_AS((void)build_road_corridor(*map, std::vector<std::string>{}, RoadDirection::forward), MapError);
+}
+
+TEST_CASE("a route that leads round to its start's lane has a corridor, too") {
+  std::vector<Lane> lanes;
+  std::vector<LaneId> ring;
+  for (int i = 0; i < 3; ++i) {
+    Pose const start = i == 0 ? Pose{0, 0, 0} : end_of(lanes.back());
+    ring.push_back(add_lane(lanes, arc(start, 2 * geometry::pi / 300, 100, 1.0)));
+  }
+  for (std::size_t i = 0; i < 3; ++i) link(lanes, ring[i], ring[(i + 1) % 3]);
+  auto const map = make_map(lanes);
+  auto const road = build_road_corridor(*map, route_of(*map, {ring[0], ring[1], ring[2], ring[0]}));
+  CHECK(road->corridors[0].length() == doctest::Approx(400).epsilon(1e-3));
+  CHECK(*road->corridors[0].position_of({ring[0], 20}) == doctest::Approx(20).epsilon(1e-3));
+  CHECK(road->corridors[0].lane_at(320).lane == ring[0]);
+  CHECK(road->corridors[0].lane_at(320).s == doctest::Approx(20).epsilon(1e-2));
+  CHECK(area_of(road->corridors[0]).size() == 2);
 }
 
 TEST_CASE("on the merging map the on-ramp's traffic is seen from the main road, and the other way round") {

@@ -131,8 +131,12 @@ std::string fault_of(std::shared_ptr<cb::Map const> const& map) {
     for (auto const& w : lane.widths)
       if (!std::isfinite(w.left) || !std::isfinite(w.right)) return name + ": a width is not finite";
     if (lane.widths.size() != lane.path.segments().size() + 1) return name + ": widths are missing";
-    if (!std::isfinite(lane.index_begin + lane.speed_limit + lane.merge_begin))
-      return name + ": a number is not finite";
+    if (!std::isfinite(lane.index_begin + lane.merge_begin)) return name + ": a number is not finite";
+    for (auto const& step : lane.speed_limits)
+      if (!std::isfinite(step.begin) || !(step.limit > 0)) return name + ": a speed limit is none";
+    for (auto const* changes : {&lane.left_changes, &lane.right_changes})
+      for (auto const& stretch : *changes)
+        if (!std::isfinite(stretch.begin + stretch.end)) return name + ": a lane change is not finite";
     for (auto const& o : lane.overlaps)
       if (!std::isfinite(o.begin + o.end + o.other_begin + o.other_end)) return name + ": an overlap is not finite";
   }

@@ -80,6 +80,8 @@ inline void link(std::vector<Lane>& lanes, LaneId from, LaneId to) {
 inline void put_beside(std::vector<Lane>& lanes, LaneId left, LaneId right) {
   lanes[index_of(left)].right_neighbor = right;
   lanes[index_of(right)].left_neighbor = left;
+  lanes[index_of(left)].right_changes = {{0.0, lanes[index_of(left)].length()}};
+  lanes[index_of(right)].left_changes = {{0.0, lanes[index_of(right)].length()}};
   lanes[index_of(right)].road = lanes[index_of(left)].road;
   lanes[index_of(right)].number = lanes[index_of(left)].number - 1;
 }

@@ -34,6 +34,7 @@ class LaneJoiner {
     if (left_.size() > 1) corridor.left = geometry::Line::from_samples(left_);
     if (right_.size() > 1) corridor.right = geometry::Line::from_samples(right_);
     corridor.pieces = make_pieces(corridor.center);
+    corridor.speed_limits = join_limits(corridor.pieces);
     auto const& last = map_.lane(lanes.back());
     corridor.continues = std::any_of(last.successors.begin(), last.successors.end(),
                                      [&](LaneId next) { return may_enter(last, map_.lane(next)); });
@@ -109,10 +110,27 @@ class LaneJoiner {
     for (std::size_t i = 0; i < starts_.size(); ++i) {
       auto const& start = starts_[i];
       std::size_t const last = i + 1 < starts_.size() ? starts_[i + 1].begin : segments.size();
-      double const offset = map_.lane(start.lane).index_begin + start.s - position(start.anchor);
-      pieces.push_back({start.lane, position(start.begin), position(last), offset, no_corridor, no_corridor});
+      auto const& lane = map_.lane(start.lane);
+      double const offset = start.s - position(start.anchor);
+      pieces.push_back({start.lane, position(start.begin), position(last), lane.index_begin + offset, no_corridor,
+                        no_corridor, lane.type, offset});
     }
     return pieces;
+  }
+
+  [[nodiscard]] std::vector<SpeedStep> join_limits(std::span<CorridorPiece const> pieces) const {
+    std::vector<SpeedStep> joined;
+    auto const add = [&joined](double begin, double limit) {
+      if (joined.empty() || joined.back().limit != limit) joined.push_back({begin, limit});
+    };
+    for (auto const& piece : pieces) {
+      auto const& lane = map_.lane(piece.lane);
+      add(piece.begin, lane.speed_limit_at(0.0));
+      for (auto const& step : lane.speed_limits)
+        if (step.begin > 0.0) add(std::clamp(step.begin - piece.lane_offset, piece.begin, piece.end), step.limit);
+    }
+    if (joined.size() == 1 && !std::isfinite(joined.front().limit)) joined.clear();
+    return joined;
   }
 
   Map const& map_;

@@ -11,6 +11,8 @@
 #include <vector>
 
 #include "cambium/core/diagnostic.hpp"
+#include "cambium/map/detail/junctions.hpp"
+#include "cambium/map/detail/lane_change_marks.hpp"
 #include "cambium/map/detail/lane_geometry.hpp"
 #include "cambium/map/detail/lane_links.hpp"
 #include "cambium/map/detail/lane_merges.hpp"
@@ -19,6 +21,7 @@
 #include "cambium/map/detail/road_links.hpp"
 #include "cambium/map/detail/section_sampler.hpp"
 #include "cambium/map/detail/split_roads.hpp"
+#include "cambium/map/detail/speed_limits.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/opendrive_document.hpp"
 #include "cambium/map/overlaps.hpp"
@@ -39,17 +42,19 @@ class MapBuild {
 
   [[nodiscard]] std::shared_ptr<Map const> build() {
     check_parameters(parts_.options, "MapOptions");
-    for (auto const& junction : document_.junctions) parts_.junctions.push_back(junction.id);
     parts_.roads.reserve(document_.roads.size());
     for (auto const& road : document_.roads) add_road(road);
     if (parts_.lanes.empty())
       throw MapError(file_, "the file has no lane with a length", "give a file with lanes beside lane 0");
     link_lanes();
+    set_speed_limits(document_, parts_.roads, parts_.lanes);
+    set_lane_changes(document_, parts_.roads, parts_.lanes);
+    parts_.junctions = make_junctions(document_, parts_.roads, parts_.lanes);
     number_lane_coordinate();
     find_overlaps(
         parts_.lanes, [this](Lane const& lane, double s) { return elevation(lane, s); },
         parts_.options.overlap_clearance);
-    parts_.route_finder = make_route_finder(parts_.lanes);
+    parts_.route_finder = make_route_finder();
     return std::make_shared<Map const>(std::move(parts_));
   }
 
@@ -102,8 +107,8 @@ class MapBuild {
     auto const id = static_cast<RoadId>(parts_.roads.size());
     parts_.roads.push_back(make_road(source, id, document_.header.offset));
     auto& road = parts_.roads.back();
-    for (std::size_t j = 0; j < parts_.junctions.size(); ++j)
-      if (!source.junction.empty() && parts_.junctions[j] == source.junction)
+    for (std::size_t j = 0; j < document_.junctions.size(); ++j)
+      if (!source.junction.empty() && document_.junctions[j].id == source.junction)
         road.junction = static_cast<JunctionId>(j);
     for (std::size_t k = 0; k < road.sections.size(); ++k) add_section(source, road, k);
   }
@@ -114,7 +119,7 @@ class MapBuild {
     auto const cross_sections = SectionSampler(road, section, parts_.options).sample();
     for (std::size_t column = 0; column < section.lanes.size(); ++column) {
       auto const& written = *source.lane_sections[k].find(section.lanes[column].number);
-      Lane lane = make_lane(source, written, road, k);
+      Lane lane = make_lane(written, road, k);
       lane.id = static_cast<LaneId>(parts_.lanes.size());
       if (!has_geometry(lane, cross_sections, column)) {
         diagnostics_.push_back(
@@ -159,8 +164,7 @@ class MapBuild {
     }
   }
 
-  [[nodiscard]] static Lane make_lane(opendrive::Road const& source, opendrive::Lane const& written, Road const& road,
-                                      std::size_t k) {
+  [[nodiscard]] static Lane make_lane(opendrive::Lane const& written, Road const& road, std::size_t k) {
     Lane lane;
     lane.road = road.id;
     lane.section = static_cast<std::uint32_t>(k);
@@ -170,15 +174,8 @@ class MapBuild {
     if (written.direction == opendrive::LaneDirection::reversed) lane.along_road = !lane.along_road;
     lane.road_begin = road.sections[k].begin;
     lane.road_end = road.sections[k].end;
-    for (auto const& type : source.types)
-      if (type.s <= lane.road_begin + 1e-9 && type.limit) lane.speed_limit = finite_or_none(*type.limit);
-    for (auto const& speed : written.speeds)
-      if (speed.s <= 1e-9 && speed.limit) lane.speed_limit = finite_or_none(*speed.limit);
     return lane;
   }
-
-  /// A speed limit as lanes keep it: 0 for "no limit".
-  [[nodiscard]] static double finite_or_none(double limit) { return std::isfinite(limit) ? limit : 0.0; }
 
   /// `left` lies left of `right` as seen along the road. Nobody changes onto a lane with oncoming traffic.
   void make_neighbors(RoadLane const& left, RoadLane const& right) {

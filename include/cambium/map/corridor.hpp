@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -23,6 +24,8 @@ struct CorridorPiece {
   double index_offset{};             ///< lane coordinate = corridor position + index_offset
   std::uint16_t left = no_corridor;  ///< number of the corridor that holds the lane's left neighbour
   std::uint16_t right = no_corridor;
+  LaneType type = LaneType::none;
+  double lane_offset{};  ///< position on the lane's path = corridor position + lane_offset [m]
 };
 
 /// A stretch of a lane outside of the corridor whose traffic counts in it: a lane that merges in (from `merge_view`
@@ -45,13 +48,14 @@ struct Feeder {
 
 /// A chain of lanes along which a vehicle drives: what behaviours follow. Immutable, shared.
 struct LaneCorridor {
-  geometry::Line center;              ///< the lanes' paths, joined
-  std::vector<SideWidths> widths;     ///< at the centre line's vertices
-  geometry::Line left, right;         ///< borders
-  std::vector<CorridorPiece> pieces;  ///< sorted by `begin`, gapless
-  std::vector<Feeder> feeders;        ///< sorted by `begin`
-  bool continues = false;             ///< the road goes on beyond the end: the corridor ends because the route does
-  bool reaches_destination = false;   ///< it holds the route's last lane
+  geometry::Line center;                ///< the lanes' paths, joined
+  std::vector<SideWidths> widths;       ///< at the centre line's vertices
+  geometry::Line left, right;           ///< borders
+  std::vector<CorridorPiece> pieces;    ///< sorted by `begin`, gapless
+  std::vector<Feeder> feeders;          ///< sorted by `begin`
+  std::vector<SpeedStep> speed_limits;  ///< along the corridor, sorted; empty where nothing limits the speed
+  bool continues = false;               ///< the road goes on beyond the end: the corridor ends because the route does
+  bool reaches_destination = false;     ///< it holds the route's last lane
 
   [[nodiscard]] double length() const { return center.length(); }
 
@@ -61,6 +65,45 @@ struct LaneCorridor {
     while (i + 1 < pieces.size() && s >= pieces[i + 1].begin) ++i;
     while (i > 0 && s < pieces[i].begin) --i;
     return static_cast<std::uint16_t>(i);
+  }
+
+  /// The piece that holds `s`, the first or last one beyond the ends. O(log pieces).
+  [[nodiscard]] CorridorPiece const& piece_at(double s) const {
+    auto const next = std::upper_bound(pieces.begin(), pieces.end(), s,
+                                       [](double value, CorridorPiece const& piece) { return value < piece.begin; });
+    return next == pieces.begin() ? pieces.front() : *(next - 1);
+  }
+
+  /// The place on a lane's path that is at `s`, which counts as that of the nearer end beyond the ends. O(log pieces).
+  [[nodiscard]] LaneStation lane_at(double s) const {
+    auto const& piece = piece_at(s);
+    return {piece.lane, std::max(0.0, std::clamp(s, piece.begin, piece.end) + piece.lane_offset)};
+  }
+
+  /// Where the corridor passes `station`; the first time, where its lane comes more than once; nothing where the lane
+  /// is not in it. A station beyond the lane's ends counts as the end. [m], O(pieces).
+  [[nodiscard]] std::optional<double> position_of(LaneStation const& station) const {
+    for (auto const& piece : pieces)
+      if (piece.lane == station.lane) return std::clamp(station.s - piece.lane_offset, piece.begin, piece.end);
+    return std::nullopt;
+  }
+
+  /// What is left of the corridor behind `s` [m]; 0 beyond its end.
+  [[nodiscard]] double length_until_end(double s) const { return std::max(0.0, length() - s); }
+
+  /// The speed limit at `s`; infinite where there is none. [m/s], O(log steps).
+  [[nodiscard]] double speed_limit_at(double s) const { return map::speed_limit_at(speed_limits, s); }
+
+  /// The type of the lane at `s`. O(log pieces).
+  [[nodiscard]] LaneType type_at(double s) const { return piece_at(s).type; }
+
+  /// Distances from the centre line to the lane's borders at `s` [m]. O(log n).
+  [[nodiscard]] SideWidths widths_at(double s) const { return widths_at(s, center.find(s)); }
+
+  /// The lane's width at `s` [m]. O(log n).
+  [[nodiscard]] double width_at(double s) const {
+    auto const sides = widths_at(s);
+    return sides.left + sides.right;
   }
 
   /// Distances from the centre line to the lane's borders at `s` within `segment` of the centre line [m].
@@ -84,6 +127,25 @@ struct RoadCorridor {
       for (auto const& piece : corridors[i].pieces)
         if (piece.lane == lane) return static_cast<std::uint16_t>(i);
     return no_corridor;
+  }
+
+  /// Number of the corridor left (right) of number `corridor` at `s` [m], `no_corridor` where there is none. O(log
+  /// pieces).
+  [[nodiscard]] std::uint16_t left_of(std::uint16_t corridor, double s) const {
+    return corridors[corridor].piece_at(s).left;
+  }
+  [[nodiscard]] std::uint16_t right_of(std::uint16_t corridor, double s) const {
+    return corridors[corridor].piece_at(s).right;
+  }
+
+  /// All lanes, by id, each once. O(n log n).
+  [[nodiscard]] std::vector<LaneId> lanes() const {
+    std::vector<LaneId> result;
+    for (auto const& corridor : corridors)
+      for (auto const& piece : corridor.pieces) result.push_back(piece.lane);
+    std::sort(result.begin(), result.end());
+    result.erase(std::unique(result.begin(), result.end()), result.end());
+    return result;
   }
 };
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
+#include <span>
 #include <vector>
 
 #include "cambium/core/ids.hpp"
@@ -13,6 +15,38 @@ namespace cambium::map {
 /// Distances from a lane's path to its two borders [m]; negative where the path runs outside of the lane.
 struct SideWidths {
   double left{}, right{};
+};
+
+/// A stretch of a line, from arc length `begin` to `end` [m].
+struct PathStretch {
+  double begin{}, end{};
+
+  friend bool operator==(PathStretch const&, PathStretch const&) = default;
+};
+
+/// A speed limit, in force from arc length `begin` [m] on up to the next step.
+struct SpeedStep {
+  double begin{};
+  double limit = std::numeric_limits<double>::infinity();  ///< [m/s], infinite where there is none
+
+  friend bool operator==(SpeedStep const&, SpeedStep const&) = default;
+};
+
+/// The limit in force at arc length `s` [m], the first one before its begin; infinite where `steps` is empty. [m/s],
+/// O(log steps).
+[[nodiscard]] inline double speed_limit_at(std::span<SpeedStep const> steps, double s) {
+  if (steps.empty()) return std::numeric_limits<double>::infinity();
+  auto const next = std::upper_bound(steps.begin(), steps.end(), s,
+                                     [](double value, SpeedStep const& step) { return value < step.begin; });
+  return (next == steps.begin() ? next : next - 1)->limit;
+}
+
+/// A place along a lane: `s` [m] along its path.
+struct LaneStation {
+  LaneId lane = none<LaneId>;
+  double s{};
+
+  friend bool operator==(LaneStation const&, LaneStation const&) = default;
 };
 
 /// How two lanes that overlap relate.
@@ -44,9 +78,9 @@ struct Lane {
   std::uint32_t section{};  ///< index of the lane section within the road
   int number{};             ///< the file's lane id: negative right of the reference line
   LaneType type = LaneType::none;
-  bool along_road = true;           ///< travel direction is that of increasing road s
-  double road_begin{}, road_end{};  ///< the section's range of road s [m], road_begin < road_end
-  double speed_limit{};             ///< [m/s], 0 where the file gives none
+  bool along_road = true;               ///< travel direction is that of increasing road s
+  double road_begin{}, road_end{};      ///< the section's range of road s [m], road_begin < road_end
+  std::vector<SpeedStep> speed_limits;  ///< along the path, sorted; empty where nothing limits the speed
 
   geometry::Line path;             ///< what a vehicle follows (see above)
   std::vector<SideWidths> widths;  ///< at the path's vertices
@@ -58,6 +92,9 @@ struct Lane {
   /// The same strip driven the other way: a lane for both directions is two lanes. They are oncoming to each other:
   /// neither is a neighbour of any lane, and their lying on each other is no overlap.
   LaneId opposite = none<LaneId>;
+  /// Where the road marks permit a change to the left and right neighbour: stretches of the path, sorted, apart. Empty
+  /// without a neighbour there.
+  std::vector<PathStretch> left_changes, right_changes;
   LaneId merges_into = none<LaneId>;  ///< the neighbour that this lane's path joins at its end
   double merge_begin{};               ///< where the path leaves the centre line [m]; only with `merges_into`
   std::vector<LaneId> successors, predecessors;
@@ -68,6 +105,14 @@ struct Lane {
 
   [[nodiscard]] double length() const { return path.length(); }
   [[nodiscard]] bool drivable() const { return is_drivable(type); }
+
+  /// The speed limit at path position `s` [m]; infinite where there is none. [m/s], O(log steps).
+  [[nodiscard]] double speed_limit_at(double s) const { return map::speed_limit_at(speed_limits, s); }
+
+  /// Whether the road marks permit a change to the left (right) neighbour at path position `s` [m]; false without a
+  /// neighbour there. O(stretches).
+  [[nodiscard]] bool may_change_left(double s) const { return holds(left_changes, s); }
+  [[nodiscard]] bool may_change_right(double s) const { return holds(right_changes, s); }
 
   /// Distances from the path to the borders at path position `s` [m], interpolated between the vertices. O(log n).
   [[nodiscard]] SideWidths widths_at(double s) const { return widths_at(s, path.find(s)); }
@@ -90,6 +135,10 @@ struct Lane {
   [[nodiscard]] double fraction(double s, std::uint32_t i) const {
     auto const& segment = path.segments()[i];
     return std::clamp((s - segment.s) / segment.length, 0.0, 1.0);
+  }
+  [[nodiscard]] static bool holds(std::vector<PathStretch> const& stretches, double s) {
+    return std::any_of(stretches.begin(), stretches.end(),
+                       [s](PathStretch const& stretch) { return s >= stretch.begin && s <= stretch.end; });
   }
 };
 

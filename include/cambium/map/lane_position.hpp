@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <tuple>
 
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/line.hpp"
@@ -44,6 +46,43 @@ struct LanePosition {
   LanePosition hint;
   hint.segment = road.corridors[number].center.project(pose.position()).segment;
   return locate(road, number, pose, hint);
+}
+
+namespace detail {
+
+/// See `nearest_corridor`. Where `heading` is null directions do not count.
+[[nodiscard]] inline LanePosition nearest_corridor(RoadCorridor const& road, geometry::Point const& p,
+                                                   double const* heading) {
+  LanePosition best;
+  auto best_rank = std::tuple(0.0, 0.0, 0.0);
+  for (std::size_t i = 0; i < road.corridors.size(); ++i) {
+    auto const& corridor = road.corridors[i];
+    auto at = locate(road, static_cast<std::uint16_t>(i), {p.x(), p.y(), heading ? *heading : 0.0});
+    if (!heading) at.heading_error = 0.0;
+    auto const sides = corridor.widths_at(at.s, at.segment);
+    double const aside = std::max({at.lateral - sides.left, -sides.right - at.lateral, 0.0});
+    double const outside = std::hypot(aside, std::max({-at.s, at.s - corridor.length(), 0.0}));
+    double const turn = outside > 0.0 ? 0.0 : std::floor(std::abs(at.heading_error) / 0.05);
+    auto const rank = std::tuple(outside, turn, std::abs(at.lateral));
+    if (best.corridor != no_corridor && !(rank < best_rank)) continue;
+    best = at;
+    best_rank = rank;
+  }
+  return best;
+}
+
+}  // namespace detail
+
+/// The lane corridor of `road` that a vehicle at `pose` is in, and where on it: that which holds the position; of
+/// several that with the best direction (to steps of 0.05 rad), then that whose centre line is nearest, then the first.
+/// Where none holds it, the nearest. On no corridor only where the road has none. O(segments).
+[[nodiscard]] inline LanePosition nearest_corridor(RoadCorridor const& road, geometry::Pose const& pose) {
+  return detail::nearest_corridor(road, pose.position(), &pose.heading);
+}
+
+/// As above for a point: directions do not count, and the heading error is 0.
+[[nodiscard]] inline LanePosition nearest_corridor(RoadCorridor const& road, geometry::Point const& p) {
+  return detail::nearest_corridor(road, p, nullptr);
 }
 
 }  // namespace cambium::map

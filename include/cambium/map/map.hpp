@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -21,6 +22,7 @@
 #include "cambium/map/detail/follow_lane.hpp"
 #include "cambium/map/lane_tree.hpp"
 #include "cambium/map/road.hpp"
+#include "cambium/map/route.hpp"
 
 namespace cambium::map {
 
@@ -54,19 +56,18 @@ struct MapOptions {
   }
 };
 
-/// The way from a start to a destination: lanes in order; neighbours in the list are successors, or beside each other
-/// (a lane change).
-struct Route {
-  std::vector<LaneId> lanes;
-  double length{};  ///< [m]
+/// Of two roads through a junction, traffic on `high` goes before traffic on `low`.
+struct RoadPriority {
+  RoadId high = none<RoadId>, low = none<RoadId>;
 };
 
-/// Finds routes: the part of a map that needs a graph library is behind this, so that worlds compile without it.
-class RouteFinder {
- public:
-  virtual ~RouteFinder() = default;
-  /// Shortest route, nothing if there is none.
-  [[nodiscard]] virtual std::optional<Route> shortest_route(LaneId from, LaneId to) const = 0;
+/// Where roads meet. Its area and conflicts: `cambium/map/junction.hpp`.
+struct Junction {
+  JunctionId id = none<JunctionId>;
+  std::string name;                      ///< the file's id
+  std::vector<RoadId> roads;             ///< the connecting roads; none in direct and virtual junctions
+  std::vector<LaneId> lanes;             ///< of the connecting roads, of any type
+  std::vector<RoadPriority> priorities;  ///< as written in the file
 };
 
 /// Roads, lanes and how they hang together. Immutable; made by `load_opendrive` or `build_map`, shared by worlds.
@@ -75,7 +76,7 @@ class Map {
   struct Parts {
     std::vector<Road> roads;
     std::vector<Lane> lanes;
-    std::vector<std::string> junctions;  ///< the file's ids
+    std::vector<Junction> junctions;
     MapOptions options;
     std::unique_ptr<RouteFinder const> route_finder;
   };
@@ -86,6 +87,7 @@ class Map {
 
   [[nodiscard]] std::span<Road const> roads() const { return parts_.roads; }
   [[nodiscard]] std::span<Lane const> lanes() const { return parts_.lanes; }
+  [[nodiscard]] std::span<Junction const> junctions() const { return parts_.junctions; }
   [[nodiscard]] MapOptions const& options() const { return parts_.options; }
 
   /// Precondition: the map has it.
@@ -96,6 +98,11 @@ class Map {
   [[nodiscard]] Lane const& lane(LaneId id) const {
     CAMBIUM_ASSERT(index_of(id) < parts_.lanes.size(), "Map::lane: the map has no lane of that id");
     return parts_.lanes[index_of(id)];
+  }
+
+  [[nodiscard]] Junction const& junction(JunctionId id) const {
+    CAMBIUM_ASSERT(index_of(id) < parts_.junctions.size(), "Map::junction: the map has no junction of that id");
+    return parts_.junctions[index_of(id)];
   }
 
   /// The road with the file's id `name`. Throws `MapError` if there is none. O(roads).
@@ -162,12 +169,46 @@ class Map {
   /// True when a drivable lane holds the point. O(log n), no allocation.
   [[nodiscard]] bool on_drivable_lane(geometry::Point const& p) const { return tree_.any_drivable_at(p); }
 
-  /// Shortest way from lane to lane by length; lane changes allowed between neighbours. Nothing if there is none.
-  [[nodiscard]] std::optional<Route> shortest_route(LaneId from, LaneId to) const {
-    return parts_.route_finder ? parts_.route_finder->shortest_route(from, to) : std::nullopt;
+  /// The cheapest way from `from` to `to`; nothing if there is none. Where the start lies behind the destination on one
+  /// lane it leads round to it, if there is a way. Throws `MapError` for a lane that the map does not have, a station
+  /// that is not a number, and options out of range. O((V + E) log V) for V lanes and E links.
+  [[nodiscard]] std::optional<Route> shortest_route(LaneStation from, LaneStation to, RouteOptions options = {}) const {
+    options.max_routes = 1;
+    auto found = routes(from, to, options);
+    if (found.empty()) return std::nullopt;
+    return std::move(found.front());
+  }
+  /// As above, from the begin of `from` to the end of `to`.
+  [[nodiscard]] std::optional<Route> shortest_route(LaneId from, LaneId to, RouteOptions options = {}) const {
+    return shortest_route(LaneStation{from}, end_of(to), std::move(options));
+  }
+
+  /// The `RouteOptions::max_routes` cheapest ways, cheapest first; fewer where there are no more. None passes a lane
+  /// twice, but for the one that leads round to its start's lane. Throws as above. O(k n (V + E) log V) for k routes of
+  /// n lanes.
+  [[nodiscard]] std::vector<Route> routes(LaneStation from, LaneStation to, RouteOptions const& options) const {
+    if (!parts_.route_finder) return {};
+    return parts_.route_finder->routes(parts_.lanes, from, to, options);
+  }
+  /// As above, from the begin of `from` to the end of `to`.
+  [[nodiscard]] std::vector<Route> routes(LaneId from, LaneId to, RouteOptions const& options) const {
+    return routes(LaneStation{from}, end_of(to), options);
+  }
+
+  /// The lanes that can be reached from `from` at a cost of `budget` at most, its own first, the cheapest first; of
+  /// equal ones the smallest id. Throws as above, and for a budget that is negative or not a number. O((V + E) log V).
+  [[nodiscard]] std::vector<ReachedLane> reachable(LaneStation from, double budget,
+                                                   RouteOptions const& options = {}) const {
+    if (!parts_.route_finder) return {};
+    return parts_.route_finder->reachable(parts_.lanes, from, budget, options);
+  }
+  [[nodiscard]] std::vector<ReachedLane> reachable(LaneId from, double budget, RouteOptions const& options = {}) const {
+    return reachable(LaneStation{from}, budget, options);
   }
 
  private:
+  [[nodiscard]] static LaneStation end_of(LaneId lane) { return {lane, std::numeric_limits<double>::infinity()}; }
+
   [[nodiscard]] static std::string where_of(std::string_view road, double s) {
     return "road " + std::string(road) + ", s " + cambium::detail::rounded_text(s);
   }

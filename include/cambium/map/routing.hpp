@@ -1,14 +1,16 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <iterator>
 #include <limits>
 #include <memory>
-#include <optional>
-#include <string>
+#include <set>
+#include <span>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -18,40 +20,12 @@
 
 #include "cambium/core/error.hpp"
 #include "cambium/core/ids.hpp"
+#include "cambium/map/detail/route_graph.hpp"
 #include "cambium/map/lane.hpp"
-#include "cambium/map/map.hpp"
+#include "cambium/map/route.hpp"
 
-namespace cambium::map::detail {
-
-/// A way from lane to lane: ahead over the lane's end, or to the side.
-struct LaneStep {
-  std::uint32_t from{}, to{};
-  double cost{};  ///< [m]
-  bool ahead{};
-
-  friend bool operator==(LaneStep const&, LaneStep const&) = default;
-};
-
-/// Steps sorted by `from`, as a graph in the sense of Boost.Graph: an edge is a `LaneStep`. (Boost's own compressed
-/// graph would do too, but takes longer to compile.)
-struct LaneGraph {
-  std::vector<LaneStep> steps;
-  std::vector<std::uint32_t> first;  ///< of each lane's steps, and one more
-  std::vector<std::uint32_t> lanes;  ///< 0, 1, 2, ...
-};
-
-/// What a step costs, as a property map.
-struct StepCost {
-  using key_type = LaneStep;
-  using value_type = double;
-  using reference = double;
-  using category = boost::readable_property_map_tag;
-
-  friend double get(StepCost, LaneStep const& step) { return step.cost; }
-};
-
-}  // namespace cambium::map::detail
-
+/// `LaneGraph` as a graph in the sense of Boost.Graph: an edge is a `LaneStep`. (Boost's own compressed graph would do
+/// too, but takes longer to compile.)
 template <>
 struct boost::graph_traits<cambium::map::detail::LaneGraph> {
   using vertex_descriptor = std::uint32_t;
@@ -59,7 +33,7 @@ struct boost::graph_traits<cambium::map::detail::LaneGraph> {
   using out_edge_iterator = std::vector<edge_descriptor>::const_iterator;
   using vertex_iterator = std::vector<std::uint32_t>::const_iterator;
   using directed_category = boost::directed_tag;
-  using edge_parallel_category = boost::allow_parallel_edge_tag;
+  using edge_parallel_category = boost::disallow_parallel_edge_tag;
   struct traversal_category : boost::incidence_graph_tag, boost::vertex_list_graph_tag {};
   using vertices_size_type = std::size_t;
   using edges_size_type = std::size_t;
@@ -70,113 +44,222 @@ namespace cambium::map {
 
 namespace detail {
 
-[[nodiscard]] inline auto out_edges(std::uint32_t lane, LaneGraph const& g) {
+[[nodiscard]] inline auto out_edges(std::uint32_t place, LaneGraph const& g) {
   auto const at = [&g](std::uint32_t i) { return g.steps.begin() + static_cast<std::ptrdiff_t>(i); };
-  return std::pair(at(g.first[lane]), at(g.first[lane + 1]));
+  return std::pair(at(g.first[place]), at(g.first[place + 1]));
 }
-[[nodiscard]] inline std::size_t out_degree(std::uint32_t lane, LaneGraph const& g) {
-  return g.first[lane + 1] - g.first[lane];
+[[nodiscard]] inline std::size_t out_degree(std::uint32_t place, LaneGraph const& g) {
+  return g.first[place + 1] - g.first[place];
 }
 [[nodiscard]] inline std::uint32_t source(LaneStep const& step, LaneGraph const&) { return step.from; }
 [[nodiscard]] inline std::uint32_t target(LaneStep const& step, LaneGraph const&) { return step.to; }
-[[nodiscard]] inline auto vertices(LaneGraph const& g) { return std::pair(g.lanes.begin(), g.lanes.end()); }
-[[nodiscard]] inline std::size_t num_vertices(LaneGraph const& g) { return g.lanes.size(); }
+[[nodiscard]] inline auto vertices(LaneGraph const& g) { return std::pair(g.places.begin(), g.places.end()); }
+[[nodiscard]] inline std::size_t num_vertices(LaneGraph const& g) { return g.places.size(); }
 
-/// Dijkstra's algorithm over the lanes, see `make_route_finder`.
-class GraphRouteFinder final : public RouteFinder {
- public:
-  explicit GraphRouteFinder(std::vector<Lane> const& lanes) {
-    for (auto const& lane : lanes) {
-      lengths_.push_back(lane.length());
-      graph_.first.push_back(static_cast<std::uint32_t>(graph_.steps.size()));
-      graph_.lanes.push_back(static_cast<std::uint32_t>(lane.id));
-      auto const add = [&](LaneId to, double cost, bool ahead) {
-        if (!is_valid(to) || (lane.drivable() && !lanes[index_of(to)].drivable())) return;
-        graph_.steps.push_back({static_cast<std::uint32_t>(lane.id), static_cast<std::uint32_t>(to), cost, ahead});
-      };
-      for (auto const next : lane.successors) add(next, lane.length(), true);
-      add(lane.left_neighbor, lane_change_cost, false);
-      add(lane.right_neighbor, lane_change_cost, false);
-    }
-    graph_.first.push_back(static_cast<std::uint32_t>(graph_.steps.size()));
+/// What a search may not use.
+struct Closed {
+  std::vector<bool> places;                                 ///< empty: none
+  std::set<std::pair<std::uint32_t, std::uint32_t>> steps;  ///< (from, to)
+};
+
+/// What a step costs, as a property map; infinite where it is closed.
+struct StepCost {
+  using key_type = LaneStep;
+  using value_type = double;
+  using reference = double;
+  using category = boost::readable_property_map_tag;
+
+  Closed const* closed;
+
+  friend double get(StepCost const& map, LaneStep const& step) {
+    bool const is_closed = (!map.closed->places.empty() && map.closed->places[step.to]) ||
+                           (!map.closed->steps.empty() && map.closed->steps.contains({step.from, step.to}));
+    return is_closed ? std::numeric_limits<double>::infinity() : step.cost;
   }
+};
 
-  [[nodiscard]] std::optional<Route> shortest_route(LaneId from, LaneId to) const override {
-    check(from, "start");
-    check(to, "destination");
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    auto const start = static_cast<std::uint32_t>(from);
-    auto const count = lengths_.size();
-    std::vector<double> distance(count, infinity);
-    std::vector<LaneStep> last_step(count);
-    std::vector<boost::default_color_type> color(count, boost::white_color);
-    distance[start] = 0.0;
+/// Dijkstra's algorithm (1959) from one place: what it costs to come to the others.
+class LaneSearch {
+ public:
+  /// Ends when `goal` is reached, or all that costs `budget` at most.
+  LaneSearch(LaneGraph const& graph, std::uint32_t start, std::uint32_t goal, double budget, Closed const& closed)
+      : distance_(graph.places.size(), infinity), previous_(graph.places.size()) {
+    std::vector<boost::default_color_type> color(graph.places.size(), boost::white_color);
+    distance_[start] = 0.0;
     auto const place = boost::identity_property_map();
     try {
       boost::dijkstra_shortest_paths_no_init(
-          graph_, start, boost::dummy_property_map(), boost::make_iterator_property_map(distance.begin(), place),
-          StepCost(), place, std::less<double>(), boost::closed_plus<double>(infinity), 0.0,
-          Recorder(static_cast<std::uint32_t>(to), last_step), boost::make_iterator_property_map(color.begin(), place));
-    } catch (Arrived const&) {
-      return route(from, to, last_step);
+          graph, start, boost::dummy_property_map(), boost::make_iterator_property_map(distance_.begin(), place),
+          StepCost{&closed}, place, std::less<double>(), boost::closed_plus<double>(infinity), 0.0,
+          Recorder(*this, goal, budget), boost::make_iterator_property_map(color.begin(), place));
+    } catch (Ended const&) {
     }
-    return std::nullopt;
+  }
+
+  /// Cost of coming to `place`: true where it is within the budget and not beyond the goal. Infinite where there is no
+  /// way.
+  [[nodiscard]] double cost(std::uint32_t place) const { return distance_[place]; }
+
+  /// The places on the way from `start` to `place`, both included. There must be one.
+  [[nodiscard]] std::vector<std::uint32_t> path(std::uint32_t start, std::uint32_t place) const {
+    std::vector<std::uint32_t> path{place};
+    while (path.back() != start) path.push_back(previous_[path.back()]);
+    std::reverse(path.begin(), path.end());
+    return path;
   }
 
  private:
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+
   /// Boost.Graph's way to end a search is to throw.
-  struct Arrived {};
-  /// Notes by which step each lane is reached best, and stops at the destination.
+  struct Ended {};
+  /// Notes from where each place is reached best, and ends the search.
   class Recorder : public boost::default_dijkstra_visitor {
    public:
-    Recorder(std::uint32_t destination, std::vector<LaneStep>& last_step)
-        : destination_(destination), last_step_(&last_step) {}
-    void examine_vertex(std::uint32_t lane, LaneGraph const&) const {
-      if (lane == destination_) throw Arrived{};
+    Recorder(LaneSearch& search, std::uint32_t goal, double budget) : search_(&search), goal_(goal), budget_(budget) {}
+    void examine_vertex(std::uint32_t place, LaneGraph const&) const {
+      double const cost = search_->distance_[place];
+      if (place == goal_ || cost > budget_ || cost == infinity) throw Ended{};
     }
-    void edge_relaxed(LaneStep const& step, LaneGraph const&) const { (*last_step_)[step.to] = step; }
+    void edge_relaxed(LaneStep const& step, LaneGraph const&) const { search_->previous_[step.to] = step.from; }
 
    private:
-    std::uint32_t destination_;
-    std::vector<LaneStep>* last_step_;
+    LaneSearch* search_;
+    std::uint32_t goal_;
+    double budget_;
   };
 
-  void check(LaneId lane, char const* what) const {
-    if (index_of(lane) >= lengths_.size())
-      throw MapError("route", std::string("its ") + what + ", lane " + to_string(lane) + ", is not in the map",
-                     "see Map::lanes for those it has");
-  }
+  std::vector<double> distance_;
+  std::vector<std::uint32_t> previous_;
+};
 
-  [[nodiscard]] Route route(LaneId from, LaneId to, std::vector<LaneStep> const& last_step) const {
-    Route result;
-    result.lanes.push_back(to);
-    result.length = lengths_[index_of(to)];
-    for (auto lane = to; lane != from;) {
-      auto const& step = last_step[index_of(lane)];
-      if (step.ahead) result.length += step.cost;
-      lane = static_cast<LaneId>(step.from);
-      result.lanes.push_back(lane);
+/// The k cheapest ways without a loop (Yen 1971).
+class YenSearch {
+ public:
+  using Path = std::vector<std::uint32_t>;
+
+  YenSearch(LaneGraph const& graph, std::uint32_t start, std::uint32_t goal)
+      : graph_(graph), start_(start), goal_(goal) {}
+
+  /// At most `count` paths, sorted by cost, then by places.
+  [[nodiscard]] std::vector<std::pair<double, Path>> find(std::size_t count) {
+    std::vector<std::pair<double, Path>> found;
+    if (count == 0) return found;
+    offer({}, start_, {});
+    while (found.size() < count && !candidates_.empty()) {
+      found.push_back(*candidates_.begin());
+      candidates_.erase(candidates_.begin());
+      if (found.size() < count) branch(found);
     }
-    std::reverse(result.lanes.begin(), result.lanes.end());
-    return result;
+    return found;
   }
 
-  static constexpr double lane_change_cost = 10.0;  // [m]
+ private:
+  /// Looks for the best way from `spur` on; `root` leads there.
+  void offer(Path root, std::uint32_t spur, Closed const& closed) {
+    LaneSearch const search(graph_, spur, goal_, std::numeric_limits<double>::infinity(), closed);
+    if (search.cost(goal_) == std::numeric_limits<double>::infinity()) return;
+    auto const rest = search.path(spur, goal_);
+    root.insert(root.end(), rest.begin(), rest.end());
+    candidates_.emplace(cost(root), std::move(root));
+  }
 
-  LaneGraph graph_;
-  std::vector<double> lengths_;
+  /// Looks for ways that leave the last one found at each of its places, where no other found one does.
+  void branch(std::vector<std::pair<double, Path>> const& found) {
+    Path const last = found.back().second;
+    Closed closed;
+    closed.places.assign(graph_.places.size(), false);
+    for (std::size_t i = 0; i + 1 < last.size(); ++i) {
+      auto const here = last.begin() + static_cast<std::ptrdiff_t>(i);
+      closed.steps.clear();
+      for (auto const& [cost, path] : found)
+        if (path.size() > i + 1 && std::equal(last.begin(), here + 1, path.begin()))
+          closed.steps.emplace(path[i], path[i + 1]);
+      offer(Path(last.begin(), here), *here, closed);
+      closed.places[*here] = true;
+    }
+  }
+
+  [[nodiscard]] double cost(Path const& path) const {
+    double sum = 0.0;
+    for (std::size_t i = 0; i + 1 < path.size(); ++i)
+      for (auto const& step : graph_.from(path[i]))
+        if (step.to == path[i + 1]) sum += step.cost;
+    return sum;
+  }
+
+  LaneGraph const& graph_;
+  std::uint32_t start_, goal_;
+  std::set<std::pair<double, Path>> candidates_;
+};
+
+/// See `make_route_finder`.
+class GraphRouteFinder final : public RouteFinder {
+ public:
+  [[nodiscard]] std::vector<Route> routes(std::span<Lane const> lanes, LaneStation from, LaneStation to,
+                                          RouteOptions const& options) const override {
+    if (!is_valid(to.lane))
+      throw MapError("route", "its destination names no lane", "see Map::lanes for those there are");
+    RouteGraphBuilder builder(lanes, from, to, options);
+    std::vector<Route> routes;
+    if (builder.is_ahead()) {
+      double const share = builder.to_share() - builder.from_share();
+      double const cost = share > 0.0 ? share * builder.cost(builder.start()) : 0.0;
+      if (options.max_routes > 0 && std::isfinite(cost))
+        routes.push_back({{from.lane}, share * lanes[index_of(from.lane)].length(), cost});
+      return routes;
+    }
+    auto const graph = builder.build();
+    for (auto const& [cost, path] : YenSearch(graph, builder.start(), builder.goal()).find(options.max_routes))
+      routes.push_back(make_route(lanes, builder, graph, path, cost));
+    return routes;
+  }
+
+  [[nodiscard]] std::vector<ReachedLane> reachable(std::span<Lane const> lanes, LaneStation from, double budget,
+                                                   RouteOptions const& options) const override {
+    if (!(budget >= 0.0)) throw MapError("reachable lanes", "the budget is negative or not a number", "give 0 or more");
+    RouteGraphBuilder builder(lanes, from, {}, options);
+    auto const graph = builder.build();
+    LaneSearch const search(graph, builder.start(), builder.goal(), budget, {});
+    std::vector<ReachedLane> reached;
+    for (std::uint32_t i = 0; i < lanes.size(); ++i)
+      if (search.cost(i) <= budget && std::isfinite(search.cost(i)))
+        reached.push_back({static_cast<LaneId>(i), search.cost(i)});
+    std::sort(reached.begin(), reached.end(), [](ReachedLane const& a, ReachedLane const& b) {
+      return std::tie(a.cost, a.lane) < std::tie(b.cost, b.lane);
+    });
+    return reached;
+  }
+
+ private:
+  [[nodiscard]] static Route make_route(std::span<Lane const> lanes, RouteGraphBuilder const& builder,
+                                        LaneGraph const& graph, std::vector<std::uint32_t> const& path, double cost) {
+    Route route{{}, 0.0, cost};
+    double begin = builder.from_share();  // where the current lane is entered
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      auto const lane = builder.lane_of(path[i]);
+      route.lanes.push_back(static_cast<LaneId>(lane));
+      bool const is_last = i + 1 == path.size();
+      bool const ahead = !is_last && is_ahead(graph, path[i], path[i + 1]);
+      if (is_last || ahead) route.length += ((is_last ? builder.to_share() : 1.0) - begin) * lanes[lane].length();
+      if (ahead) begin = 0.0;
+    }
+    return route;
+  }
+
+  [[nodiscard]] static bool is_ahead(LaneGraph const& graph, std::uint32_t from, std::uint32_t to) {
+    auto const steps = graph.from(from);
+    return std::any_of(steps.begin(), steps.end(), [to](LaneStep const& step) { return step.to == to && step.ahead; });
+  }
 };
 
 }  // namespace detail
 
-/// A finder of shortest routes over `lanes` (Dijkstra 1959, by Boost.Graph; O((V + E) log V) a query). Keeps no
-/// reference to them. The number of a lane must be its place in `lanes`.
-///
-/// A route costs its length, and 10 m for each change to a neighbouring lane; the first and the last lane count whole.
-/// Of routes with equal costs always the same one is found. No route leads from a drivable lane onto one that is not.
-/// `shortest_route` throws `MapError` for a lane that the map does not have.
-[[nodiscard]] inline std::unique_ptr<RouteFinder const> make_route_finder(std::vector<Lane> const& lanes) {
-  return std::make_unique<detail::GraphRouteFinder const>(lanes);
+/// A finder of routes by Boost.Graph. A route costs what is driven of its lanes, and each change to a neighbouring
+/// lane; of lanes beside each other that it changes between only the last one counts. Of routes with equal costs always
+/// the same one is found. No route leads from a drivable lane onto one that is not.
+[[nodiscard]] inline std::unique_ptr<RouteFinder const> make_route_finder() {
+  return std::make_unique<detail::GraphRouteFinder const>();
 }
 
 }  // namespace cambium::map

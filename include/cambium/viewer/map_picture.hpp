@@ -97,7 +97,8 @@ class MapDrawing {
     std::string text = "road " + escape_markup(map_.road(lane.road).name) + ", section " +
                        std::to_string(lane.section) + ", lane " + std::to_string(lane.number) + " (" +
                        std::string(to_string(lane.type)) + "), " + svg_number(lane.length(), 1) + " m";
-    if (lane.speed_limit > 0.0) text += ", " + svg_number(3.6 * lane.speed_limit, 0) + " km/h";
+    double const limit = lane.speed_limit_at(0.5 * lane.length());
+    if (std::isfinite(limit)) text += ", " + svg_number(3.6 * limit, 0) + " km/h";
     for (auto const next : lane.successors) text += "\nto " + name_of(map_.lane(next));
     if (is_valid(lane.merges_into)) text += "\nmerges into " + name_of(map_.lane(lane.merges_into));
     return text;

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "cambium/map/lane.hpp"
+#include "cambium/map/map.hpp"
+#include "cambium/map/opendrive_document.hpp"
+
+namespace cambium::map::detail {
+
+/// The document's junctions, in its order (the roads' junction ids count so), with the roads and lanes that belong to
+/// them.
+[[nodiscard]] inline std::vector<Junction> make_junctions(OpenDriveDocument const& document,
+                                                          std::span<Road const> roads, std::span<Lane const> lanes) {
+  std::vector<Junction> junctions;
+  for (auto const& written : document.junctions) {
+    Junction junction;
+    junction.id = static_cast<JunctionId>(junctions.size());
+    junction.name = written.id;
+    junctions.push_back(std::move(junction));
+  }
+  for (auto const& road : roads)
+    if (is_valid(road.junction)) junctions[index_of(road.junction)].roads.push_back(road.id);
+  for (auto const& lane : lanes)
+    if (auto const id = roads[index_of(lane.road)].junction; is_valid(id))
+      junctions[index_of(id)].lanes.push_back(lane.id);
+  return junctions;
+}
+
+}  // namespace cambium::map::detail

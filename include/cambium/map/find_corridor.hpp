@@ -1,0 +1,170 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cambium/core/error.hpp"
+#include "cambium/core/ids.hpp"
+#include "cambium/geometry/polygon.hpp"
+#include "cambium/geometry/pose.hpp"
+#include "cambium/map/build_corridor.hpp"
+#include "cambium/map/corridor.hpp"
+#include "cambium/map/lane.hpp"
+#include "cambium/map/map.hpp"
+#include "cambium/map/route.hpp"
+
+namespace cambium::map {
+
+/// Which way a road is driven: along its reference line or against it.
+enum class RoadDirection : std::uint8_t { forward, backward };
+
+namespace detail {
+
+inline constexpr double goal_radius = 5.0;  ///< how far from a lane a start or goal may be [m]
+
+[[nodiscard]] inline std::string place_text(geometry::Point const& p) {
+  return "(" + cambium::detail::rounded_text(p.x()) + ", " + cambium::detail::rounded_text(p.y()) + ")";
+}
+
+/// The drivable lanes that hold `p`; where none does the nearest one.
+[[nodiscard]] inline std::vector<LaneStation> stations_at(Map const& map, geometry::Point const& p) {
+  std::vector<LaneStation> stations;
+  for (auto const& hit : map.lanes_near(p, goal_radius))
+    if (map.lane(hit.lane).drivable() && (hit.distance == 0.0 || stations.empty()))
+      stations.push_back({hit.lane, hit.s});
+  return stations;
+}
+
+/// Where the paths of drivable lanes come into `area` first; where none does, the lanes at its middle.
+[[nodiscard]] inline std::vector<LaneStation> stations_in(Map const& map, geometry::Polygon const& area) {
+  constexpr double step = 0.5;  // [m]
+  auto const& box = area.bounding_box();
+  auto const center = box.center();
+  double const radius = std::hypot(box.max_x - center.x(), box.max_y - center.y());
+  std::vector<LaneStation> stations;
+  for (auto const& hit : map.lanes_near(center, radius)) {
+    auto const& lane = map.lane(hit.lane);
+    if (!lane.drivable()) continue;
+    int const count = static_cast<int>(std::ceil(lane.length() / step));
+    for (int i = 0; i <= count; ++i) {
+      double const s = lane.length() * i / count;
+      if (!area.contains(lane.path.pose(s).position())) continue;
+      stations.push_back({hit.lane, s});
+      break;
+    }
+  }
+  return stations.empty() ? stations_at(map, center) : stations;
+}
+
+/// The corridor along the cheapest route from `start` to any of `goals`.
+[[nodiscard]] inline std::shared_ptr<RoadCorridor const> corridor_to(Map const& map, geometry::Pose const& start,
+                                                                     std::span<LaneStation const> goals,
+                                                                     geometry::Point const& goal,
+                                                                     RouteOptions const& options) {
+  auto const from = map.nearest_lane(start, goal_radius);
+  if (!from)
+    throw MapError("road corridor", "no drivable lane near its start " + place_text(start.position()),
+                   "start within 5 m of a lane and along it");
+  if (goals.empty())
+    throw MapError("road corridor", "no drivable lane near its goal " + place_text(goal),
+                   "give a goal within 5 m of a lane");
+  std::optional<Route> best;
+  for (auto const& to : goals) {
+    auto route = map.shortest_route({from->lane, from->s}, to, options);
+    if (route && (!best || route->cost < best->cost)) best = std::move(route);
+  }
+  if (!best)
+    throw MapError("road corridor",
+                   "there is no route from " + map.describe(from->lane) + " to " + map.describe(goals.front().lane),
+                   "choose a goal that the lane leads to");
+  return build_road_corridor(map, *best);
+}
+
+/// The lanes by which traffic in one direction comes onto a road, or leaves it.
+[[nodiscard]] inline std::vector<LaneId> lanes_at_end(Map const& map, Road const& road, RoadDirection direction,
+                                                      bool entry) {
+  bool const forward = direction == RoadDirection::forward;
+  std::vector<LaneId> lanes;
+  for (std::size_t i = 0; i < road.sections.size() && lanes.empty(); ++i) {
+    auto const& section = road.sections[forward == entry ? i : road.sections.size() - 1 - i];
+    for (auto const& lane : section.lanes)
+      if (is_valid(lane.id) && map.lane(lane.id).drivable() && map.lane(lane.id).along_road == forward)
+        lanes.push_back(lane.id);
+  }
+  return lanes;
+}
+
+/// The roads that a route passes, in order.
+[[nodiscard]] inline std::vector<RoadId> roads_of(Map const& map, Route const& route) {
+  std::vector<RoadId> roads;
+  for (auto const lane : route.lanes)
+    if (roads.empty() || roads.back() != map.lane(lane).road) roads.push_back(map.lane(lane).road);
+  return roads;
+}
+
+}  // namespace detail
+
+/// The road corridor along the cheapest route from the lane at `start` (see `Map::nearest_lane`) to a lane at `goal`.
+/// Throws `MapError` where there is no lane within 5 m of either, or no route.
+[[nodiscard]] inline std::shared_ptr<RoadCorridor const> build_road_corridor(Map const& map,
+                                                                             geometry::Pose const& start,
+                                                                             geometry::Point const& goal,
+                                                                             RouteOptions const& options = {}) {
+  return detail::corridor_to(map, start, detail::stations_at(map, goal), goal, options);
+}
+
+/// As above, to the first place in the polygon `goal` that a route comes to; where no lane passes through it, to its
+/// middle.
+[[nodiscard]] inline std::shared_ptr<RoadCorridor const> build_road_corridor(Map const& map,
+                                                                             geometry::Pose const& start,
+                                                                             geometry::Polygon const& goal,
+                                                                             RouteOptions const& options = {}) {
+  return detail::corridor_to(map, start, detail::stations_in(map, goal), goal.bounding_box().center(), options);
+}
+
+/// The road corridor along roads, given by the file's ids in the order in which they are driven, the first one in
+/// `direction`. Lanes are changed where that is needed, whatever the marks say. Throws `MapError` for a road that the
+/// map does not have, and where the roads do not lead into each other that way.
+[[nodiscard]] inline std::shared_ptr<RoadCorridor const> build_road_corridor(Map const& map,
+                                                                             std::span<std::string const> roads,
+                                                                             RoadDirection direction) {
+  std::vector<RoadId> order;
+  for (auto const& name : roads) order.push_back(map.find_road(name).id);
+  if (order.empty()) throw MapError("road corridor", "it has no road", "give at least one");
+  RouteOptions options;
+  options.obey_lane_marks = false;
+  options.own_cost = [&order](Lane const& lane) {
+    bool const is_on_way = std::find(order.begin(), order.end(), lane.road) != order.end();
+    return is_on_way ? lane.length() : std::numeric_limits<double>::infinity();
+  };
+  std::vector<LaneId> ends;
+  for (auto const way : {RoadDirection::forward, RoadDirection::backward}) {
+    if (order.size() == 1 && way != direction) continue;
+    for (auto const lane : detail::lanes_at_end(map, map.road(order.back()), way, false)) ends.push_back(lane);
+  }
+  std::optional<Route> best;
+  for (auto const from : detail::lanes_at_end(map, map.road(order.front()), direction, true))
+    for (auto const to : ends)
+      for (auto& route : map.routes(from, to, options)) {
+        if (detail::roads_of(map, route) != order || (best && best->cost <= route.cost)) continue;
+        best = std::move(route);
+      }
+  if (!best) {
+    std::string names;
+    for (auto const& name : roads) names += (names.empty() ? "" : ", ") + name;
+    throw MapError("road corridor", "the roads " + names + " do not lead into each other in this direction",
+                   "list every road on the way, connecting roads too");
+  }
+  return build_road_corridor(map, *best);
+}
+
+}  // namespace cambium::map

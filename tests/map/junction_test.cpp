@@ -1,0 +1,217 @@
+#include "cambium/map/junction.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "cambium/geometry/convex_hull.hpp"
+#include "cambium/map/opendrive.hpp"
+#include "../support/corpus.hpp"
+#include "lanes_by_hand.hpp"
+
+using namespace by_hand;
+
+namespace {
+
+template <class Check>
+void for_each_corpus_map(Check const& check) {
+  auto const folder = corpus::find("opendrive");
+  if (!folder) return;
+  for (auto const& file : corpus::maps(*folder)) {
+    CAPTURE(file.string());
+    check(*load_opendrive(file.string()).map);
+  }
+}
+
+/// A crossing of two lanes, and a third that merges into the first, in junction 0.
+struct Crossing {
+  LaneId across, along, joins, after;
+  std::shared_ptr<Map const> map;
+
+  Crossing() {
+    std::vector<Lane> lanes;
+    along = add_straight(lanes, {-50, 0, 0}, 100);
+    across = add_straight(lanes, {0, -30, 0.5 * geometry::pi}, 60);
+    auto samples = arc({50, 0, geometry::pi}, 1.0 / 100, 40, 0.5);  // backwards from where it joins
+    std::reverse(samples.begin(), samples.end());
+    for (auto& p : samples) p.heading -= geometry::pi;
+    joins = add_lane(lanes, samples);
+    after = add_straight(lanes, {50, 0, 0}, 50);
+    link(lanes, along, after);
+    link(lanes, joins, after);
+    find_overlaps(lanes, {}, 2.5);
+    Map::Parts parts;
+    Junction junction{static_cast<JunctionId>(0), "j", {}, {along, across, joins}, {}};
+    for (std::size_t i = 0; i < lanes.size(); ++i) {
+      Road road;
+      road.id = static_cast<RoadId>(i);
+      if (i < 3) {
+        road.junction = junction.id;
+        junction.roads.push_back(road.id);
+      }
+      parts.roads.push_back(std::move(road));
+    }
+    junction.priorities.push_back({map_road(lanes, along), map_road(lanes, joins)});
+    parts.lanes = std::move(lanes);
+    parts.junctions = {junction, {static_cast<JunctionId>(1), "empty", {}, {}, {}}};
+    map = std::make_shared<Map const>(std::move(parts));
+  }
+
+  static RoadId map_road(std::vector<Lane> const& lanes, LaneId lane) { return lanes[index_of(lane)].road; }
+};
+
+}  // namespace
+
+TEST_CASE("the convex hull holds all points, has corners among them, and turns left at each") {
+  Numbers random{7};
+  for (int run = 0; run < 200; ++run) {
+    std::vector<Point> points;
+    int const count = static_cast<int>(random(3, 30));
+    // On a coarse grid, so that points coincide and lie on lines.
+    for (int i = 0; i < count; ++i) points.emplace_back(std::floor(random(0, 6)), std::floor(random(0, 6)));
+    auto const hull = geometry::convex_hull(points);
+    for (std::size_t i = 0; hull.size() > 2 && i < hull.size(); ++i) {
+      auto const &a = hull[i], &b = hull[(i + 1) % hull.size()], &c = hull[(i + 2) % hull.size()];
+      CHECK(geometry::turn(a, b, c) > 0.0);
+      for (auto const& p : points) CHECK(geometry::turn(a, b, p) >= 0.0);
+      CHECK(std::count(points.begin(), points.end(), a) > 0);
+    }
+    if (hull.size() > 2) continue;
+    for (auto const& p : points) CHECK(geometry::turn(hull.front(), hull.back(), p) == 0.0);
+  }
+}
+
+TEST_CASE("two convex polygons have in common what both hold") {
+  Numbers random{3};
+  int inside = 0;
+  for (int run = 0; run < 300; ++run) {
+    std::vector<std::vector<Point>> hulls;
+    for (int k = 0; k < 2; ++k) {
+      std::vector<Point> points;
+      for (int i = 0; i < 8; ++i) points.emplace_back(random(0, 10) + 3 * k, random(0, 10));
+      hulls.push_back(geometry::convex_hull(points));
+    }
+    auto const common = geometry::convex_intersection(hulls[0], hulls[1]);
+    auto const holds = [](std::vector<Point> const& hull, Point const& p, double margin) {
+      for (std::size_t i = 0; i < hull.size(); ++i) {
+        auto const& a = hull[i];
+        auto const& b = hull[(i + 1) % hull.size()];
+        if (geometry::turn(a, b, p) < margin * (b - a).norm()) return false;
+      }
+      return hull.size() > 2;
+    };
+    for (int i = 0; i < 20; ++i) {
+      Point const p(random(0, 13), random(0, 10));
+      bool const in_both = holds(hulls[0], p, 1e-6) && holds(hulls[1], p, 1e-6);
+      if (in_both) CHECK(holds(common, p, -1e-6));
+      if (holds(common, p, 1e-6)) CHECK((holds(hulls[0], p, -1e-6) && holds(hulls[1], p, -1e-6)));
+      inside += in_both;
+    }
+  }
+  CHECK(inside > 500);
+}
+
+TEST_CASE("lanes of a junction conflict where they cross and merge, on the ground that both cover") {
+  Crossing const crossing;
+  auto const conflicts = conflict_areas(*crossing.map, static_cast<JunctionId>(0));
+  REQUIRE(conflicts.size() == 2);
+  auto const& cross = conflicts[0];
+  CHECK(cross.first == crossing.along);
+  CHECK(cross.second == crossing.across);
+  CHECK(cross.kind == OverlapKind::crossing);
+  CHECK(cross.on_first.begin == doctest::Approx(47.5).epsilon(1e-3));
+  CHECK(cross.on_second.end == doctest::Approx(32.5).epsilon(1e-3));
+  REQUIRE(cross.area.has_value());
+  CHECK(cross.area->area() == doctest::Approx(3.5 * 3.5));
+  CHECK(cross.area->contains({1.7, -1.7}));
+  auto const& merge = conflicts[1];
+  CHECK(merge.second == crossing.joins);
+  CHECK(merge.kind == OverlapKind::merge);
+  CHECK(merge.on_first.end == doctest::Approx(100));
+  REQUIRE(merge.area.has_value());
+  CHECK(merge.area->contains({49.9, 0}));
+  CHECK_FALSE(merge.area->contains({20, 0}));
+}
+
+TEST_CASE("priorities say who goes first, and nothing where there is none") {
+  Crossing const crossing;
+  auto const& junction = crossing.map->junctions()[0];
+  auto const road = [&](LaneId lane) { return crossing.map->lane(lane).road; };
+  CHECK(goes_first(junction, road(crossing.joins), road(crossing.along)) == road(crossing.along));
+  CHECK(goes_first(junction, road(crossing.along), road(crossing.joins)) == road(crossing.along));
+  CHECK_FALSE(goes_first(junction, road(crossing.along), road(crossing.across)).has_value());
+}
+
+TEST_CASE("a junction without connecting roads has no area and no conflicts; one that is not there is an error") {
+  Crossing const crossing;
+  auto const empty = static_cast<JunctionId>(1);
+  CHECK_FALSE(junction_area(*crossing.map, empty).has_value());
+  CHECK(conflict_areas(*crossing.map, empty).empty());
+  CHECK_THROWS_AS((void)junction_area(*crossing.map, static_cast<JunctionId>(2)), MapError);
+  CHECK_THROWS_AS((void)conflict_areas(*crossing.map, none<JunctionId>), MapError);
+}
+
+TEST_CASE("on real maps junctions know their roads, and their area holds every border point of these") {
+  std::size_t junctions = 0, without = 0;
+  for_each_corpus_map([&](Map const& map) {
+    std::set<std::string> names;
+    for (auto const& junction : map.junctions()) {
+      ++junctions;
+      CHECK(&map.junction(junction.id) == &junction);
+      CHECK(names.insert(junction.name).second);
+      std::size_t lanes = 0, outside = 0;
+      for (auto const road : junction.roads) CHECK(map.road(road).junction == junction.id);
+      for (auto const& lane : map.lanes()) lanes += map.road(lane.road).junction == junction.id;
+      CHECK(lanes == junction.lanes.size());
+      auto const area = junction_area(map, junction.id);
+      CHECK(area.has_value() == !junction.lanes.empty());
+      without += !area;
+      for (auto const id : junction.lanes)
+        for (auto const* border : {&map.lane(id).left, &map.lane(id).right})
+          for (auto const& p : border->points()) outside += !area->contains(p) && area->distance_to_border(p) > 1e-6;
+      CHECK(outside == 0);
+    }
+  });
+  CHECK(junctions > 50);
+  CHECK(without > 0);
+}
+
+TEST_CASE("on real maps conflicts are those overlaps of lanes that lie in one junction, with ground of both lanes") {
+  std::size_t crossings = 0, merges = 0, splits = 0;
+  for_each_corpus_map([&](Map const& map) {
+    for (auto const& junction : map.junctions()) {
+      auto const conflicts = conflict_areas(map, junction.id);
+      std::size_t overlaps = 0, wrong = 0;
+      for (auto const& lane : map.lanes())
+        for (auto const& o : lane.overlaps)
+          overlaps +=
+              map.road(lane.road).junction == junction.id && map.road(map.lane(o.other).road).junction == junction.id;
+      CHECK(2 * conflicts.size() == overlaps);  // each is entered in both lanes
+      for (auto const& c : conflicts) {
+        crossings += c.kind == OverlapKind::crossing;
+        merges += c.kind == OverlapKind::merge;
+        splits += c.kind == OverlapKind::split;
+        wrong += !(c.on_first.begin <= c.on_first.end) || c.on_first.begin < 0.0 ||
+                 c.on_first.end > map.lane(c.first).length() + 1e-9;
+        if (!c.area) continue;
+        wrong += !c.area->is_convex();
+        // Its corners are in both lanes.
+        for (auto const& corner : c.area->points()) {
+          auto const hits = map.lanes_near(corner, 0.3);
+          for (auto const id : {c.first, c.second})
+            wrong += std::none_of(hits.begin(), hits.end(), [id](LaneHit const& hit) { return hit.lane == id; });
+        }
+      }
+      CHECK(wrong == 0);
+    }
+  });
+  CHECK(crossings > 100);
+  CHECK(merges > 100);
+  CHECK(splits > 100);
+}
