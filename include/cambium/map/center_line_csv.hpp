@@ -6,8 +6,8 @@
 #include <cmath>
 #include <cstddef>
 #include <fstream>
-#include <iterator>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -162,9 +162,10 @@ class CenterLineReader {
                                                      geometry::Point const& origin = {0.0, 0.0}) {
   std::ifstream file(path, std::ios::binary);
   if (!file) throw MapError(path, "the file cannot be opened", "check the path");
-  std::string text;
-  std::copy(std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>(), std::back_inserter(text));
-  return read_center_line_csv(text, path, origin);
+  std::ostringstream text;
+  if (!(text << file.rdbuf()))  // a folder opens, but cannot be read
+    throw MapError(path, "it is empty or cannot be read as a file", "give a table with the columns x and y");
+  return read_center_line_csv(text.str(), path, origin);
 }
 
 /// A road with one lane, -1, along the line: as wide as its table says, else `lane_width` [m]. Throws `MapError` as
