@@ -71,14 +71,16 @@ class DocumentCheck {
     check_records(road, ids);
   }
 
-  void check_length(opendrive::Road const& road, std::string const& ids) {
+  void check_length(opendrive::Road& road, std::string const& ids) {
     double const length = road.geometry_length();
-    if (road.length < 0.0)
+    if (road.length < 0.0) {
       report(Severity::warning, road.line, "road", ids, "the length is missing or negative; the geometries' counts");
-    else if (std::abs(road.length - length) > 1e-3)
+      road.length = length;
+    } else if (std::abs(road.length - length) > 1e-3) {
       report(Severity::warning, road.line, "road", ids,
              "the length is " + rounded_text(road.length) + " m, but the geometries end at " + rounded_text(length) +
                  " m; theirs counts");
+    }
     for (std::size_t i = 1; i < road.geometries.size(); ++i) {
       double const gap = road.geometries[i].s - road.geometries[i - 1].s - road.geometries[i - 1].length;
       if (std::abs(gap) > 1e-3)
@@ -198,7 +200,8 @@ class DocumentCheck {
   }
 
   void check(opendrive::Junction const& junction, opendrive::Connection const& connection) {
-    for (std::string const* id : {&connection.incoming_road, &connection.connecting_road})
+    if (connection.predecessor || connection.successor) return;
+    for (std::string const* id : {&connection.incoming_road, &connection.entered_road()})
       if (!roads_.contains(*id))
         report(Severity::warning, connection.line, "connection", "junction " + junction.id,
                "there is no usable road \"" + *id + "\"; connection " + connection.id + " leads nowhere");

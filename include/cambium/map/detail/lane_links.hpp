@@ -120,7 +120,7 @@ class LaneLinker {
   }
 
   void link_connection(opendrive::Junction const& junction, opendrive::Connection const& connection) {
-    auto const incoming = index_.find(connection.incoming_road), connecting = index_.find(connection.connecting_road);
+    auto const incoming = index_.find(connection.incoming_road), connecting = index_.find(connection.entered_road());
     if (incoming == index_.end() || connecting == index_.end()) return;  // the reader has said so
     ContactPoint const contact =
         connection.contact_point == ContactPoint::none ? ContactPoint::start : connection.contact_point;
@@ -136,7 +136,7 @@ class LaneLinker {
       if (!is_valid(from) || !is_valid(to))
         warn(connection.line, "laneLink", "junction " + junction.id + ", connection " + connection.id,
              "lane " + std::to_string(link.from) + " of road " + connection.incoming_road + " or lane " +
-                 std::to_string(link.to) + " of road " + connection.connecting_road +
+                 std::to_string(link.to) + " of road " + connection.entered_road() +
                  " is not there; the link was left out");
       join(from, exit->end, to, entry.end, connection.line);
     }

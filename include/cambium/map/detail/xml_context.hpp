@@ -125,10 +125,15 @@ class XmlContext {
       if (needed) report(Severity::warning, node, "attribute " + std::string(attribute) + " is missing");
       return std::nullopt;
     }
+    return number<Number>(node, found);
+  }
+  /// As above, of an attribute that is there.
+  template <class Number>
+  [[nodiscard]] std::optional<Number> number(pugi::xml_node node, pugi::xml_attribute found) {
     std::optional<Number> const value = parse_number<Number>(found.value());
     if (!value)
       report(Severity::warning, node,
-             std::string(attribute) + "=\"" + found.value() + "\" is not a finite " +
+             std::string(found.name()) + "=\"" + found.value() + "\" is not a finite " +
                  (std::is_integral_v<Number> ? "whole number" : "number, written like 12.5"));
     return value;
   }

@@ -6,9 +6,11 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "cambium/map/detail/attribute_reader.hpp"
 #include "cambium/map/detail/stable_sort.hpp"
 #include "cambium/map/detail/xml_context.hpp"
 #include "cambium/map/opendrive_document.hpp"
@@ -52,89 +54,66 @@ void sort_records(XmlContext& context, pugi::xml_node parent, std::vector<Record
   return good && has_start ? std::optional(record) : std::nullopt;
 }
 
-/// All `name` children of `parent` as sorted cubic records.
-[[nodiscard]] inline std::vector<CubicRecord> read_cubics(XmlContext& context, pugi::xml_node parent, char const* name,
-                                                          char const* start) {
-  std::vector<CubicRecord> records;
-  for_each_child(parent, name, [&](pugi::xml_node node) {
-    if (std::optional<CubicRecord> const record = read_cubic(context, node, start)) records.push_back(*record);
-  });
-  sort_records(context, parent, records, &CubicRecord::s, name);
-  return records;
+/// Appends the record if it is usable.
+inline void append_cubic(XmlContext& context, pugi::xml_node node, char const* start,
+                         std::vector<CubicRecord>& records) {
+  if (std::optional<CubicRecord> const record = read_cubic(context, node, start)) records.push_back(*record);
 }
 
-/// A speed limit in m/s from `max` and `unit` (m/s when absent).
-[[nodiscard]] inline std::optional<double> read_speed(XmlContext& context, pugi::xml_node node) {
+/// The speed limit of a `speed` element into a record that has `limit` and `unit`.
+template <class Record>
+void read_speed(XmlContext& context, pugi::xml_node node, Record& record) {
   std::string_view const text = trimmed(node.attribute("max").value());
   std::string_view const unit = trimmed(node.attribute("unit").value());
-  if (text == "no limit") return std::numeric_limits<double>::infinity();
-  if (text == "undefined") return std::nullopt;
+  if (text == "no limit") record.limit = std::numeric_limits<double>::infinity();
+  if (text == "no limit" || text == "undefined") return;
   std::optional<double> const value = context.number<double>(node, "max");
-  if (!value) return std::nullopt;
-  if (*value < 0.0) {
-    context.report(Severity::warning, node, "the speed limit is negative; no limit was read");
-    return std::nullopt;
-  }
-  if (unit.empty() || unit == "m/s") return value;
-  if (unit == "km/h") return *value / 3.6;
-  if (unit == "mph") return *value * 0.44704;
+  if (!value) return;
+  if (*value < 0.0) return context.report(Severity::warning, node, "the speed limit is negative; no limit was read");
+  for (auto const& [word, known] : words(record.unit))
+    if (word == unit || unit.empty()) {
+      record.unit = known;
+      record.limit = in_metres_per_second(*value, known);
+      return;
+    }
   context.report(Severity::warning, node,
                  "unit \"" + std::string(unit) + "\" is none of m/s, km/h, mph; no limit was read");
-  return std::nullopt;
 }
 
-[[nodiscard]] inline opendrive::LaneChange lane_change_from_string(std::string_view word) {
-  using enum opendrive::LaneChange;
-  if (word == "both") return both;
-  if (word == "increase") return increase;
-  if (word == "decrease") return decrease;
-  if (word == "none") return none;
-  return unspecified;
-}
-
-[[nodiscard]] inline opendrive::RoadMark read_road_mark(XmlContext& context, pugi::xml_node node) {
-  opendrive::RoadMark mark;
-  mark.s_offset = context.number_or(node, "sOffset", 0.0);
-  mark.type = node.attribute("type").value();
-  mark.color = node.attribute("color").value();
-  mark.width = context.number_or(node, "width", 0.0);
-  mark.lane_change = lane_change_from_string(node.attribute("laneChange").value());
-  return mark;
-}
-
-/// The ids of all predecessor or successor elements; those that are no whole number are reported and left out.
-[[nodiscard]] inline std::vector<int> read_lane_links(XmlContext& context, pugi::xml_node lane, char const* name) {
-  std::vector<int> ids;
-  for_each_child(find_child(lane, "link"), name, [&](pugi::xml_node node) {
-    if (std::optional<int> const id = context.number<int>(node, "id")) ids.push_back(*id);
+inline void read_lane_links(XmlContext& context, pugi::xml_node node, opendrive::Lane& lane) {
+  read_container(context, find_child(node, "link"), lane.rest, [&](pugi::xml_node child, std::string_view name) {
+    if (name != "predecessor" && name != "successor") return false;
+    if (std::optional<int> const id = context.number<int>(child, "id"))
+      (name == "successor" ? lane.successors : lane.predecessors).push_back(*id);
+    return true;
   });
-  return ids;
 }
 
 inline void read_lane_children(XmlContext& context, pugi::xml_node node, opendrive::Lane& lane) {
   for_each_child(node, [&](pugi::xml_node child, std::string_view name) {
-    if (name == "width") {
-      if (auto const record = read_cubic(context, child, "sOffset")) lane.widths.push_back(*record);
-    } else if (name == "border") {
-      if (auto const record = read_cubic(context, child, "sOffset")) lane.borders.push_back(*record);
-    } else if (name == "roadMark") {
-      lane.road_marks.push_back(read_road_mark(context, child));
-    } else if (name == "speed") {
-      lane.speeds.push_back({context.number_or(child, "sOffset", 0.0), read_speed(context, child)});
-    }
+    if (name == "width") return append_cubic(context, child, "sOffset", lane.widths);
+    if (name == "border") return append_cubic(context, child, "sOffset", lane.borders);
+    if (name == "roadMark") return append_leaf(context, child, lane.road_marks);
+    if (name == "height") return append_leaf(context, child, lane.heights);
+    if (name == "access") return append_leaf(context, child, lane.accesses);
+    if (name == "rule") return append_leaf(context, child, lane.rules);
+    if (name == "speed")
+      return read_speed(context, child, lane.speeds.emplace_back(context.number_or(child, "sOffset", 0.0)));
+    if (name != "link") keep_element(context, child, lane.rest);
   });
   sort_records(context, node, lane.widths, &CubicRecord::s, "width records");
   sort_records(context, node, lane.borders, &CubicRecord::s, "border records");
   sort_records(context, node, lane.road_marks, &opendrive::RoadMark::s_offset, "road marks");
   sort_records(context, node, lane.speeds, &opendrive::SpeedRecord::s, "speed records");
+  sort_records(context, node, lane.heights, &opendrive::LaneHeight::s_offset, "height records");
+  sort_records(context, node, lane.accesses, &opendrive::LaneAccess::s_offset, "access records");
+  sort_records(context, node, lane.rules, &opendrive::LaneRule::s_offset, "rule records");
 }
 
 inline void check_lane_width(XmlContext& context, pugi::xml_node node, opendrive::Lane const& lane) {
   if (lane.id == 0) return;
   if (lane.widths.empty() && lane.borders.empty())
     context.report(Severity::warning, node, "the lane has neither width nor border; its width counts as 0");
-  if (lane.direction == opendrive::LaneDirection::both)
-    context.report(Severity::info, node, "traffic in both directions is not supported yet; it runs in the usual one");
   if (!lane.widths.empty() && !lane.borders.empty())
     context.report(Severity::info, node, "the lane has widths and borders; the widths count");
   if (!lane.widths.empty() && lane.widths.front().s > 0.0)
@@ -144,27 +123,19 @@ inline void check_lane_width(XmlContext& context, pugi::xml_node node, opendrive
 
 /// One lane, or nothing when its id is unusable.
 [[nodiscard]] inline std::optional<opendrive::Lane> read_lane(XmlContext& context, pugi::xml_node node) {
-  std::optional<int> const id = context.number<int>(node, "id");
-  if (!id) {
+  opendrive::Lane lane;
+  if (!read_attributes(context, node, lane)) {
     context.report(Severity::error, node, "the lane was left out, for it has no usable id");
     return std::nullopt;
   }
-  context.lane = *id;
-  opendrive::Lane lane;
-  lane.id = *id;
-  lane.line = context.line(node);
-  std::string_view const type = node.attribute("type").value();
-  lane.type = type.empty() ? LaneType::none : lane_type_from_string(type);
-  if (type.empty() && *id != 0) context.report(Severity::warning, node, "attribute type is missing; none was taken");
+  context.lane = lane.id;
+  pugi::xml_attribute const type = node.attribute("type");
+  if (lane.type == LaneType::none && lane.id != 0 && *type.value() == '\0')
+    context.report(Severity::warning, node, "attribute type is missing; none was taken");
   if (lane.type == LaneType::other)
     context.report(Severity::info, node,
-                   "lane type \"" + std::string(type) + "\" is not known; nobody will drive there");
-  lane.level = node.attribute("level").as_bool();
-  std::string_view const direction = node.attribute("direction").value();
-  if (direction == "reversed") lane.direction = opendrive::LaneDirection::reversed;
-  if (direction == "both") lane.direction = opendrive::LaneDirection::both;
-  lane.predecessors = read_lane_links(context, node, "predecessor");
-  lane.successors = read_lane_links(context, node, "successor");
+                   "lane type \"" + std::string(type.value()) + "\" is not known; nobody will drive there");
+  read_lane_links(context, node, lane);
   read_lane_children(context, node, lane);
   check_lane_width(context, node, lane);
   context.lane.reset();
@@ -200,39 +171,60 @@ inline void order_lanes(XmlContext& context, pugi::xml_node node, opendrive::Lan
                          std::to_string(lanes[i].id) + "; the two count as neighbours");
 }
 
+inline void read_side(XmlContext& context, pugi::xml_node node, std::string_view side,
+                      opendrive::LaneSection& section) {
+  int const sign = side == "left" ? 1 : side == "right" ? -1 : 0;
+  read_container(context, node, section.rest, [&](pugi::xml_node child, std::string_view name) {
+    if (name != "lane") return false;
+    std::optional<opendrive::Lane> lane = read_lane(context, child);
+    if (!lane) return true;
+    if ((lane->id > 0) - (lane->id < 0) != sign)
+      context.report(
+          Severity::warning, child,
+          "lane " + std::to_string(lane->id) + " is written as " + std::string(side) + "; its id's sign counts");
+    section.lanes.push_back(std::move(*lane));
+    return true;
+  });
+}
+
 /// One lane section, or nothing when its start is unusable.
 [[nodiscard]] inline std::optional<opendrive::LaneSection> read_lane_section(XmlContext& context, pugi::xml_node node) {
-  std::optional<double> const s = context.number<double>(node, "s");
-  if (!s) {
+  opendrive::LaneSection section;
+  if (!read_attributes(context, node, section)) {
     context.report(Severity::error, node, "the lane section was left out, for its s is unusable");
     return std::nullopt;
   }
-  opendrive::LaneSection section;
-  section.s = *s;
-  section.line = context.line(node);
-  section.single_side = node.attribute("singleSide").as_bool();
-  for_each_child(node, [&](pugi::xml_node side, std::string_view name) {
-    if (name != "left" && name != "center" && name != "right") return;
-    for_each_child(side, "lane", [&](pugi::xml_node lane_node) {
-      std::optional<opendrive::Lane> lane = read_lane(context, lane_node);
-      if (!lane) return;
-      int const sign = name == "left" ? 1 : name == "right" ? -1 : 0;
-      if ((lane->id > 0) - (lane->id < 0) != sign)
-        context.report(
-            Severity::warning, lane_node,
-            "lane " + std::to_string(lane->id) + " is written as " + std::string(name) + "; its id's sign counts");
-      section.lanes.push_back(std::move(*lane));
-    });
+  for (std::string_view const side : {"left", "center", "right"})
+    for_each_child(node, side, [&](pugi::xml_node child) { read_side(context, child, side, section); });
+  for_each_child(node, [&](pugi::xml_node child, std::string_view name) {
+    if (name != "left" && name != "center" && name != "right") keep_element(context, child, section.rest);
   });
   order_lanes(context, node, section);
   return section;
 }
 
-/// Gives a section that speaks for one side only the other side's lanes, as they go on from the section before.
+/// Moves a lane's records to a section that starts `shift` [m] later; what has ended before is dropped.
+template <class Record>
+void move_start(std::vector<Record>& records, double Record::*start, double shift) {
+  std::size_t ended = 0;
+  while (ended + 1 < records.size() && records[ended + 1].*start <= shift) ++ended;
+  records.erase(records.begin(), records.begin() + static_cast<std::ptrdiff_t>(ended));
+  for (Record& record : records) {
+    double const s = record.*start - shift;
+    if constexpr (std::is_same_v<Record, CubicRecord>)
+      if (s < 0.0)
+        record = {0.0, record.value(shift), record.derivative(shift), 0.5 * record.second_derivative(shift), record.d};
+    record.*start = std::max(0.0, s);
+  }
+}
+
+/// Gives a section that speaks for one side only the other side's lanes, as they go on from the section before; it then
+/// speaks for both.
 inline void complete_single_sides(std::vector<opendrive::LaneSection>& sections) {
   for (std::size_t k = 1; k < sections.size(); ++k) {
     opendrive::LaneSection& section = sections[k];
     if (!section.single_side) continue;
+    section.single_side = false;
     double const shift = section.s - sections[k - 1].s;
     for (int const side : {1, -1}) {
       auto const is_there = [side](opendrive::Lane const& lane) { return lane.id * side > 0; };
@@ -240,10 +232,13 @@ inline void complete_single_sides(std::vector<opendrive::LaneSection>& sections)
       for (opendrive::Lane& before : sections[k - 1].lanes) {
         if (!is_there(before)) continue;
         opendrive::Lane lane = before;
-        for (CubicRecord& record : lane.widths) record.s -= shift;
-        for (CubicRecord& record : lane.borders) record.s -= shift;
-        for (opendrive::RoadMark& mark : lane.road_marks) mark.s_offset -= shift;
-        for (opendrive::SpeedRecord& speed : lane.speeds) speed.s -= shift;
+        move_start(lane.widths, &CubicRecord::s, shift);
+        move_start(lane.borders, &CubicRecord::s, shift);
+        move_start(lane.road_marks, &opendrive::RoadMark::s_offset, shift);
+        move_start(lane.speeds, &opendrive::SpeedRecord::s, shift);
+        move_start(lane.heights, &opendrive::LaneHeight::s_offset, shift);
+        move_start(lane.accesses, &opendrive::LaneAccess::s_offset, shift);
+        move_start(lane.rules, &opendrive::LaneRule::s_offset, shift);
         before.successors = lane.predecessors = {lane.id};
         section.lanes.push_back(std::move(lane));
       }

@@ -1,0 +1,227 @@
+#pragma once
+
+#include <cstddef>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <pugixml.hpp>
+
+#include "cambium/map/detail/opendrive_fields.hpp"
+#include "cambium/map/detail/opendrive_object_fields.hpp"
+#include "cambium/map/detail/xml_context.hpp"
+#include "cambium/map/opendrive_element.hpp"
+
+namespace cambium::map::detail {
+
+/// Adds an attribute; of several of one name, which XML forbids, the first counts.
+inline void keep_attribute(std::vector<opendrive::Attribute>& attributes, pugi::xml_attribute attribute) {
+  for (opendrive::Attribute const& known : attributes)
+    if (known.name == attribute.name()) return;
+  attributes.push_back({attribute.name(), attribute.value()});
+}
+
+/// Any element as plain data. What lies deeper than 100 levels is left out and reported.
+[[nodiscard]] inline opendrive::Element read_element(XmlContext& context, pugi::xml_node node, int depth = 0) {
+  opendrive::Element element;
+  element.name = node.name();
+  for (pugi::xml_attribute a = node.first_attribute(); a; a = a.next_attribute()) keep_attribute(element.attributes, a);
+  for (pugi::xml_node child = node.first_child(); child; child = child.next_sibling()) {
+    if (child.type() == pugi::node_pcdata || child.type() == pugi::node_cdata)
+      element.text += child.value();
+    else if (child.type() == pugi::node_element && depth < 100)
+      element.children.push_back(read_element(context, child, depth + 1));
+    else if (child.type() == pugi::node_element)
+      context.report(Severity::warning, child, "it lies more than 100 levels deep in user data; it was left out");
+  }
+  return element;
+}
+
+inline void keep_element(XmlContext& context, pugi::xml_node node, opendrive::Rest& rest) {
+  rest.elements.push_back(read_element(context, node));
+}
+
+/// A visitor of `fields` that fills them from an element's attributes. What it cannot read is reported; unless it is
+/// needed it is kept in the rest, and so is what no field asked for.
+class AttributeReader {
+ public:
+  AttributeReader(XmlContext& context, pugi::xml_node node, opendrive::Rest* rest)
+      : context_(&context), node_(node), rest_(rest), hint_(node.first_attribute()) {}
+
+  template <class T>
+  void needed(char const* name, T& field) {
+    pugi::xml_attribute const found = find(name);
+    if (!found) context_->report(Severity::warning, node_, "attribute " + std::string(name) + " is missing");
+    good_ = found && read(found, field) && good_;
+  }
+  void needed(char const* name, std::string& field) {
+    id(name, field);
+    if (!field.empty()) return;
+    context_->report(Severity::warning, node_, "attribute " + std::string(name) + " is missing or empty");
+    good_ = false;
+  }
+  template <class T>
+  void optional(char const* name, T& field) {
+    if (pugi::xml_attribute const found = find(name); found && !read(found, field)) keep(found);
+  }
+  template <class T>
+  void always(char const* name, T& field) {
+    optional(name, field);
+  }
+  void id(char const* name, std::string& field) {
+    if (pugi::xml_attribute const found = find(name)) field = trimmed(found.value());
+  }
+  void id_or(char const* name, std::string& field, std::string_view nothing) {
+    id(name, field);
+    if (field == nothing) field.clear();
+  }
+  void yes_no(char const* name, bool& field) { optional(name, field); }
+
+  /// True when all that is needed was there.
+  [[nodiscard]] bool good() const { return good_; }
+  /// True when there are attributes that no field asked for.
+  [[nodiscard]] bool has_more() const {
+    return std::distance(node_.attributes_begin(), node_.attributes_end()) > found_;
+  }
+
+ private:
+  /// Attributes mostly come in the order of the fields, so that the search ends where it begins.
+  [[nodiscard]] pugi::xml_attribute find(char const* name) {
+    pugi::xml_attribute const found = node_.attribute(name, hint_);
+    if (found) ++found_;
+    return found;
+  }
+  void keep(pugi::xml_attribute attribute) {
+    if (rest_) keep_attribute(rest_->attributes, attribute);
+  }
+
+  template <class Number>
+  requires std::is_arithmetic_v<Number>
+  [[nodiscard]] bool read(pugi::xml_attribute attribute, Number& field) {
+    std::optional<Number> const value = context_->number<Number>(node_, attribute);
+    if (value) field = *value;
+    return value.has_value();
+  }
+  template <class Number>
+  [[nodiscard]] bool read(pugi::xml_attribute attribute, std::optional<Number>& field) {
+    field = context_->number<Number>(node_, attribute);
+    return field.has_value();
+  }
+  [[nodiscard]] bool read(pugi::xml_attribute attribute, bool& field) {
+    field = attribute.as_bool();
+    return true;
+  }
+  [[nodiscard]] bool read(pugi::xml_attribute attribute, std::string& field) {
+    field = attribute.value();
+    return true;
+  }
+  /// The reader of lanes says what it thinks of an unknown type.
+  [[nodiscard]] bool read(pugi::xml_attribute attribute, LaneType& field) {
+    std::string_view const word = attribute.value();
+    field = word.empty() ? LaneType::none : lane_type_from_string(word);
+    return field != LaneType::other || word == to_string(LaneType::other);
+  }
+  template <class Enum>
+  requires std::is_enum_v<Enum>
+  [[nodiscard]] bool read(pugi::xml_attribute attribute, Enum& field) {
+    std::string_view const found = attribute.value();
+    if (found.empty()) return true;
+    std::string all;
+    for (auto const& [word, value] : words(Enum{})) {
+      field = value;
+      if (word == found) return true;
+    }
+    if (!word_of(field).empty()) field = Enum{};
+    for (auto const& [word, value] : words(Enum{}))
+      if (!word.empty()) all += (all.empty() ? "" : ", ") + std::string(word);
+    std::string const taken = word_of(field).empty() ? "" : "; " + std::string(word_of(field)) + " was taken";
+    context_->report(Severity::warning, node_,
+                     std::string(attribute.name()) + "=\"" + std::string(found) + "\" is none of " + all + taken);
+    return false;
+  }
+
+  XmlContext* context_;
+  pugi::xml_node node_;
+  opendrive::Rest* rest_;
+  pugi::xml_attribute hint_;
+  std::ptrdiff_t found_ = 0;
+  bool good_ = true;
+};
+
+/// A visitor that finds out whether one of the fields has an attribute's name.
+struct FieldSearch {
+  std::string_view name;
+  bool found = false;
+
+  void needed(std::string_view field, auto const&) { found = found || field == name; }
+  void optional(std::string_view field, auto const&) { found = found || field == name; }
+  void always(std::string_view field, auto const&) { found = found || field == name; }
+  void id(std::string_view field, auto const&) { found = found || field == name; }
+  void id_or(std::string_view field, auto const&, std::string_view) { found = found || field == name; }
+  void yes_no(std::string_view field, auto const&) { found = found || field == name; }
+};
+
+/// Fills the fields of `x` from the attributes of `node`, and `rest` (unless null) with the other attributes. False
+/// when one that is needed is missing or bad.
+template <class T>
+[[nodiscard]] bool read_attributes(XmlContext& context, pugi::xml_node node, T& x, opendrive::Rest* rest) {
+  AttributeReader reader(context, node, rest);
+  fields(reader, x);
+  if (!rest || !reader.has_more()) return reader.good();
+  for (pugi::xml_attribute a = node.first_attribute(); a; a = a.next_attribute()) {
+    FieldSearch search{a.name()};
+    fields(search, x);
+    if (!search.found) keep_attribute(rest->attributes, a);
+  }
+  return reader.good();
+}
+
+template <class T>
+[[nodiscard]] bool read_attributes(XmlContext& context, pugi::xml_node node, T& x) {
+  if constexpr (requires { x.line; }) x.line = context.line(node);
+  return read_attributes(context, node, x, &x.rest);
+}
+
+/// The element as a `T`, with all its children in the rest; nothing when something that it needs is missing or bad.
+template <class T>
+[[nodiscard]] std::optional<T> read_leaf(XmlContext& context, pugi::xml_node node) {
+  T x;
+  if (!read_attributes(context, node, x)) {
+    context.report(Severity::error, node, "it was left out for that, see the finding before");
+    return std::nullopt;
+  }
+  for_each_child(node, [&](pugi::xml_node child, std::string_view) { keep_element(context, child, x.rest); });
+  return x;
+}
+
+/// Appends the element as `read_leaf` gives it.
+template <class T>
+void append_leaf(XmlContext& context, pugi::xml_node node, std::vector<T>& list) {
+  if (std::optional<T> x = read_leaf<T>(context, node)) list.push_back(std::move(*x));
+}
+
+/// Calls `take(child, name)` for every child of a container, a null node included; what it does not take (false), and
+/// the container's attributes, go to the rest of the parent as an element of the container's name.
+template <class Take>
+void read_container(XmlContext& context, pugi::xml_node node, opendrive::Rest& rest, Take const& take) {
+  std::string_view const container = local_name(node);
+  opendrive::Element* kept = nullptr;
+  auto const keep = [&]() -> opendrive::Element& {
+    for (opendrive::Element& known : rest.elements)
+      if (known.name == container) kept = &known;
+    if (kept) return *kept;
+    kept = &rest.elements.emplace_back();
+    kept->name = container;
+    return *kept;
+  };
+  for_each_child(node, [&](pugi::xml_node child, std::string_view name) {
+    if (!take(child, name)) keep().children.push_back(read_element(context, child));
+  });
+  for (pugi::xml_attribute a = node.first_attribute(); a; a = a.next_attribute()) keep_attribute(keep().attributes, a);
+}
+
+}  // namespace cambium::map::detail
