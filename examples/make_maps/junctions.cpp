@@ -1,4 +1,5 @@
 #include <array>
+#include <utility>
 
 #include "maps.hpp"
 
@@ -82,6 +83,11 @@ MapBuilder intersection_3way() {
   builder.add_turn("100", {"2", end}, {"3", end}, {"21", "west to the right", {{-1, 1}}, kmh(25.0)});
   builder.add_turn("100", {"3", end}, {"1", end}, {"30", "south to the right", {{-1, 1}}, kmh(25.0)});
   builder.add_turn("100", {"3", end}, {"2", end}, {"31", "south to the left", {{-1, 2}}, kmh(30.0)});
+  // The main road goes before the side road, and who turns left from it before nobody that it crosses.
+  auto& priorities = builder.document().junctions.back().priorities;
+  for (auto const& [high, low] :
+       {std::pair{"10", "31"}, {"11", "31"}, {"20", "11"}, {"20", "30"}, {"20", "31"}, {"21", "11"}})
+    priorities.push_back({high, low});
   return builder;
 }
 
@@ -123,6 +129,7 @@ MapBuilder roundabout() {
                      {number + "02", "out to arm " + number, {{-1, 2}}, kmh(30.0)});
     builder.add_turn(junction, {number, end}, {behind, start},
                      {number + "03", "in from arm " + number, {{-2, -1}}, kmh(30.0)});
+    builder.document().junctions.back().priorities.push_back({number + "01", number + "03"});
   }
   return builder;
 }

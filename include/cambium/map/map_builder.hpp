@@ -164,7 +164,7 @@ class MapBuilder {
     std::vector<Diagnostic> unheard;
     auto& found = diagnostics != nullptr ? *diagnostics : unheard;
     auto document = document_;
-    document.header.line = std::max(1, document.header.line);  // 0 would say that there is no header
+    if (document.header.line == 0) document.header.line = 1;  // 0 would say that there is no header
     check_opendrive_document(document, document.header.name, found);
     return build_map(document, options, document.header.name, found);
   }

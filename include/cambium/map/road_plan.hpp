@@ -64,12 +64,14 @@ struct RoadPlan {
   mark.type = std::move(type);
   mark.color = "white";
   mark.lane_change = lane_change;
+  mark.weight = "standard";
   return mark;
 }
 
 /// From `from` at station `s` to `to` `length` [m] further on, with slope 0 at both.
 [[nodiscard]] inline CubicRecord smooth_step(double s, double from, double to, double length) {
   double const rise = to - from;
+  if (rise == 0.0) return {s, from, 0.0, 0.0, 0.0};
   return {s, from, 0.0, 3.0 * rise / (length * length), -2.0 * rise / (length * length * length)};
 }
 
@@ -82,6 +84,11 @@ class RoadMaker {
 
   [[nodiscard]] opendrive::Road make() {
     if (plan_.line.empty()) fail("it has no geometry", "lay out a line, see lay_from");
+    for (auto const& g : plan_.line)
+      if (!std::isfinite(g.s + g.x + g.y + g.heading + g.curvature_start + g.curvature_end) ||
+          !(g.length > 0.0 && g.length <= 1e6))
+        fail("a geometry has a number that is not finite, or a length not above 0 or beyond 1000 km",
+             "lay out a line, see lay_from");
     if (plan_.sections.empty() || plan_.sections.front().s != 0.0)
       fail("it has no lane section at s 0", "give sections, the first one at 0");
     check(plan_.lane_offset, "lane offset");
@@ -151,8 +158,10 @@ class RoadMaker {
     if (plan.widths.empty()) result.widths = {smooth_step(0.0, plan.width, end_width, length)};
     for (std::size_t r = 0; r < result.widths.size(); ++r) {
       double const to = r + 1 < result.widths.size() ? result.widths[r + 1].s : length;
-      if (!(extremes(result.widths[r], result.widths[r].s, to).first > -1e-6))
-        fail("the width of lane " + std::to_string(result.id) + " falls below 0", "give widths that do not");
+      auto const [low, high] = extremes(result.widths[r], result.widths[r].s, to);
+      if (!(low > -1e-6 && high <= 1000.0))
+        fail("the width of lane " + std::to_string(result.id) + " falls below 0, or beyond 1 km",
+             "give widths that do not");
     }
     if (plan.speed_limit) {
       result.speeds.emplace_back();

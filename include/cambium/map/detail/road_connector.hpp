@@ -205,16 +205,21 @@ class RoadConnector {
     add_connection(junction(id), outside, way, links);
   }
 
-  /// A connection for those of the lanes that lead from `incoming` onto `way`.
+  /// A connection for those of the lanes that lead from `incoming` onto `way`, where one of them is drivable.
   void add_connection(opendrive::Junction& at, RoadEnd const& incoming, RoadEnd const& way, Links const& links) const {
     opendrive::Connection connection;
+    bool const is_direct = at.type == opendrive::JunctionType::direct;
     connection.incoming_road = incoming.road;
-    connection.connecting_road = way.road;
+    (is_direct ? connection.linked_road : connection.connecting_road) = way.road;
     connection.contact_point = way.end;
-    for (auto const& l : links)
-      if (leaves(road(incoming), incoming.end, find_lane(road(incoming), incoming.end, l.from)))
-        connection.lane_links.push_back(l);
-    if (connection.lane_links.empty()) return;
+    bool leads_on = false;
+    for (auto const& link : links) {
+      auto const& lane = find_lane(road(incoming), incoming.end, link.from);
+      if (!leaves(road(incoming), incoming.end, lane)) continue;
+      connection.lane_links.push_back(link);
+      leads_on = leads_on || is_drivable(lane.type);
+    }
+    if (!leads_on) return;
     connection.id = std::to_string(at.connections.size());
     at.connections.push_back(std::move(connection));
   }
@@ -230,7 +235,7 @@ class RoadConnector {
     for (auto const& end : {a, b}) {
       auto const& link = link_of(end);
       if (!link || link->element_type != opendrive::ElementType::junction) continue;
-      if (junction(link->id).type != "direct" || (id && *id != link->id))
+      if (junction(link->id).type != opendrive::JunctionType::direct || (id && *id != link->id))
         throw MapError("road " + end.road, "it is linked to a junction already",
                        "connect it to a connecting road of that junction");
       id = link->id;
@@ -239,7 +244,7 @@ class RoadConnector {
       id = free_id_();
       document_.junctions.emplace_back();
       document_.junctions.back().id = *id;
-      document_.junctions.back().type = "direct";
+      document_.junctions.back().type = opendrive::JunctionType::direct;
     }
     auto& result = junction(*id);
     for (auto const& end : {a, b}) {
