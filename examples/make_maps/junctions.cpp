@@ -83,7 +83,7 @@ MapBuilder intersection_3way() {
   builder.add_turn("100", {"2", end}, {"3", end}, {"21", "west to the right", {{-1, 1}}, kmh(25.0)});
   builder.add_turn("100", {"3", end}, {"1", end}, {"30", "south to the right", {{-1, 1}}, kmh(25.0)});
   builder.add_turn("100", {"3", end}, {"2", end}, {"31", "south to the left", {{-1, 2}}, kmh(30.0)});
-  // The main road goes before the side road, and who turns left from it before nobody that it crosses.
+  // The main road goes before the side road, and on the main road who goes straight on or right before who turns left.
   auto& priorities = builder.document().junctions.back().priorities;
   for (auto const& [high, low] :
        {std::pair{"10", "31"}, {"11", "31"}, {"20", "11"}, {"20", "30"}, {"20", "31"}, {"21", "11"}})

@@ -16,7 +16,7 @@
 #include "cambium/map/reference_line.hpp"
 
 /// Lays out the plan view of roads: pieces one behind the other, curves between two poses, curves through points. All
-/// of it meets to 1e-9 m and 1e-12 rad. Poses are rounded to 1e-10 m and 1e-13 rad before the next piece is laid out
+/// of it meets to 1e-9 m and 1e-9 rad. Poses are rounded to 1e-10 m and 1e-13 rad before the next piece is laid out
 /// from them: so errors do not add up along a road, and every compiler's sine gives the same numbers. Every function
 /// throws `MapError` for numbers that are not finite.
 namespace cambium::map {
