@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -110,33 +109,12 @@ namespace {
 
 /// A road of one lane, 3.5 m wide: 40 m straight on, arcs of that length and those curvatures, 40 m straight on.
 std::shared_ptr<cb::Map const> bends(std::vector<double> const& curvatures, double length) {
-  std::ostringstream geometries;
-  geometries.precision(17);
-  double s = 0, x = 0, y = 0, heading = 0;
-  auto const add = [&](double curvature, double part) {
-    geometries << "<geometry s=\"" << s << "\" x=\"" << x << "\" y=\"" << y << "\" hdg=\"" << heading << "\" length=\""
-               << part << "\">";
-    if (curvature == 0.0)
-      geometries << "<line/></geometry>";
-    else
-      geometries << "<arc curvature=\"" << curvature << "\"/></geometry>";
-    double const middle = heading + curvature * part / 2;
-    double const chord = curvature == 0.0 ? part : 2 / curvature * std::sin(curvature * part / 2);
-    s += part;
-    x += chord * std::cos(middle);
-    y += chord * std::sin(middle);
-    heading += curvature * part;
-  };
-  add(0.0, 40.0);
-  for (double const curvature : curvatures) add(curvature, length);
-  add(0.0, 40.0);
-  return support::map_of(
-      "<OpenDRIVE><header revMajor=\"1\" revMinor=\"6\"/><road id=\"1\" junction=\"-1\" length=\"" + std::to_string(s) +
-      "\"><planView>" + geometries.str() +
-      "</planView><lanes><laneOffset s=\"0\" a=\"1.75\" b=\"0\" c=\"0\" d=\"0\"/><laneSection s=\"0\"><center><lane "
-      "id=\"0\" "
-      "type=\"none\"/></center><right><lane id=\"-1\" type=\"driving\"><width sOffset=\"0\" a=\"3.5\" b=\"0\" c=\"0\" "
-      "d=\"0\"/></lane></right></laneSection></lanes></road></OpenDRIVE>");
+  std::vector<cb::map::CurvePiece> pieces{{40.0}};
+  for (double const curvature : curvatures) pieces.push_back({length, curvature, curvature});
+  pieces.push_back({40.0});
+  return support::map_of({.line = cb::map::lay_from({}, pieces),
+                          .sections = {{.right = cb::map::equal_lanes(1)}},
+                          .lane_offset = {{0.0, 1.75, 0.0, 0.0, 0.0}}});
 }
 
 /// Vehicles of all sizes at random along such a road.

@@ -1,28 +1,24 @@
 #include "maps.hpp"
 
-#include <sstream>
+#include <cstddef>
+#include <utility>
 
+#include "cambium/map/map_builder.hpp"
 #include "cambium/map/opendrive.hpp"
 #include "corpus.hpp"
 
 namespace support {
 
-std::shared_ptr<cambium::Map const> map_of(std::string const& text) { return cambium::parse_opendrive(text).map; }
+std::shared_ptr<cambium::Map const> map_of(cambium::map::RoadPlan road) {
+  cambium::MapBuilder builder;
+  builder.add_road(std::move(road));
+  return builder.build();
+}
 
 std::shared_ptr<cambium::Map const> straight_road(int lanes, double length, double curvature) {
-  std::ostringstream xml;
-  xml.precision(17);
-  xml << R"(<OpenDRIVE><header revMajor="1" revMinor="6"/><road id="1" junction="-1" length=")" << length
-      << R"("><planView><geometry s="0" x="0" y="0" hdg="0" length=")" << length << R"(">)";
-  if (curvature == 0.0)
-    xml << "<line/>";
-  else
-    xml << R"(<arc curvature=")" << curvature << R"("/>)";
-  xml << R"(</geometry></planView><lanes><laneSection s="0"><center><lane id="0" type="none"/></center><right>)";
-  for (int lane = 1; lane <= lanes; ++lane)
-    xml << R"(<lane id="-)" << lane << R"(" type="driving"><width sOffset="0" a="3.5" b="0" c="0" d="0"/></lane>)";
-  xml << "</right></laneSection></lanes></road></OpenDRIVE>";
-  return map_of(xml.str());
+  return map_of({.id = "1",
+                 .line = cambium::map::lay_from({}, {{length, curvature, curvature}}),
+                 .sections = {{.right = cambium::map::equal_lanes(static_cast<std::size_t>(lanes))}}});
 }
 
 std::shared_ptr<cambium::Map const> own_map(std::string const& name) {

@@ -3,9 +3,11 @@
 #include <memory>
 #include <string>
 
+#include "cambium/map/curve_layout.hpp"
 #include "cambium/map/map.hpp"
+#include "cambium/map/road_plan.hpp"
 
-/// Maps for tests, read in one translation unit so that the others need not compile a reader.
+/// Maps for tests, built in one translation unit so that the others need not compile what builds them.
 namespace support {
 
 /// A road "1" from the origin along +x with `lanes` lanes of 3.5 m to the right of the reference line.
@@ -14,8 +16,8 @@ std::shared_ptr<cambium::Map const> straight_road(int lanes = 2, double length =
 /// The project's own map of that file name.
 std::shared_ptr<cambium::Map const> own_map(std::string const& name);
 
-/// The map of an OpenDRIVE text.
-std::shared_ptr<cambium::Map const> map_of(std::string const& text);
+/// The map of one road.
+std::shared_ptr<cambium::Map const> map_of(cambium::map::RoadPlan road);
 
 /// The map of an OpenDRIVE file of the corpus; null where there is no corpus (see `corpus::find`).
 std::shared_ptr<cambium::Map const> corpus_map(std::string const& name);

@@ -468,13 +468,8 @@ TEST_CASE("objects are in the lanes that their outlines reach into, to half a me
 }
 
 TEST_CASE("who has left the road is nobody's leader, and who is in another lane is seen there") {
-  auto const map = support::map_of(
-      R"(<OpenDRIVE><header revMajor="1" revMinor="6"/><road id="1" junction="-1" length="500"><planView>
-      <geometry s="0" x="0" y="0" hdg="0" length="500"><line/></geometry></planView><lanes><laneSection s="0">
-      <left><lane id="1" type="driving"><width sOffset="0" a="3.5" b="0" c="0" d="0"/></lane></left>
-      <center><lane id="0" type="none"/></center>
-      <right><lane id="-1" type="driving"><width sOffset="0" a="3.5" b="0" c="0" d="0"/></lane></right>
-      </laneSection></lanes></road></OpenDRIVE>)");
+  auto const map = support::map_of({.line = cb::map::lay_from({}, {{500.0}}),
+                                    .sections = {{.left = cb::map::equal_lanes(1), .right = cb::map::equal_lanes(1)}}});
   Sim world(map);
   auto const follower = world.add({.position = {50, -1.75}, .speed = 10});
   auto const other = world.add({.position = {100, -1.75}, .speed = 5});

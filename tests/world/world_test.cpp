@@ -289,14 +289,8 @@ TEST_CASE("states set from outside place the agent anew") {
 
 TEST_CASE("a state set where the route passes twice is taken for the pass that the agent is on") {
   // A road that crosses its own beginning: out to the east, round to the left, and back over it.
-  auto const map = support::map_of(
-      R"(<OpenDRIVE><header revMajor="1" revMinor="6"/><road id="1" junction="-1" length="435.619449">
-      <planView><geometry s="0" x="0" y="0" hdg="0" length="100"><line/></geometry>
-      <geometry s="100" x="100" y="0" hdg="0" length="235.619449"><arc curvature="0.02"/></geometry>
-      <geometry s="335.619449" x="50" y="50" hdg="4.71238898" length="100"><line/></geometry></planView>
-      <lanes><laneSection s="0"><center><lane id="0" type="none"/></center>
-      <right><lane id="-1" type="driving"><width sOffset="0" a="3.5" b="0" c="0" d="0"/></lane></right>
-      </laneSection></lanes></road></OpenDRIVE>)");
+  auto const map = support::map_of({.line = cb::map::lay_from({}, {{100.0}, {235.619449, 0.02, 0.02}, {100.0}}),
+                                    .sections = {{.right = cb::map::equal_lanes(1)}}});
   Sim world(map);
   auto const id = world.add({.position = {30, -1.75}, .speed = 20, .behavior = cb::ConstantAcceleration{}});
   double last = world.record(id).lane.s;

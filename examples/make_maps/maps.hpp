@@ -1,0 +1,23 @@
+#pragma once
+
+#include "cambium/map/map_builder.hpp"
+
+/// cambium's own maps.
+namespace make_maps {
+
+using cambium::MapBuilder;
+using namespace cambium::map;
+using cambium::map::opendrive::ContactPoint;
+using cambium::map::opendrive::LaneChange;
+
+constexpr double kmh(double speed) { return speed / 3.6; }  ///< [m/s]
+
+MapBuilder highway();            ///< three lanes, winding
+MapBuilder lane_drop();          ///< three lanes become two
+MapBuilder merging();            ///< an on-ramp with an acceleration lane
+MapBuilder highway_exit();       ///< a deceleration lane and an off-ramp
+MapBuilder intersection_3way();  ///< a side road meets a main road with a lane to turn left
+MapBuilder intersection_4way();  ///< two roads of two lanes a direction cross
+MapBuilder roundabout();         ///< one lane, four arms
+
+}  // namespace make_maps

@@ -1,0 +1,178 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <fstream>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "cambium/core/error.hpp"
+#include "cambium/geometry/pose.hpp"
+#include "cambium/map/lane.hpp"
+#include "cambium/map/polyline_roads.hpp"
+#include "cambium/map/road_plan.hpp"
+
+namespace cambium::map {
+
+/// The centre line of a lane from a table, and what else the table says about each of its points.
+struct CenterLine {
+  std::vector<geometry::Point> points;  ///< [m]
+  std::vector<double> headings;         ///< [rad]; empty where the table has none
+  std::vector<SideWidths> widths;       ///< distances to the borders [m]; empty where the table has none
+};
+
+namespace detail {
+
+/// Reads a centre line's table, see `read_center_line_csv`.
+class CenterLineReader {
+ public:
+  CenterLineReader(std::string_view text, std::string const& name, geometry::Point const& origin)
+      : text_(text), name_(name), origin_(origin) {}
+
+  [[nodiscard]] CenterLine read() {
+    if (text_.substr(0, 3) == "\xEF\xBB\xBF") text_.remove_prefix(3);
+    for (bool first = true; !text_.empty();) {
+      auto const end = std::min(text_.find('\n'), text_.size());
+      auto const line = trimmed(text_.substr(0, end));
+      text_.remove_prefix(std::min(end + 1, text_.size()));
+      ++line_;
+      if (line.empty() || line.front() == '#') continue;
+      auto const cells = split(line);
+      if (!(std::exchange(first, false) && read_heading(cells))) add_row(cells);
+    }
+    if (result_.points.size() < 2)
+      throw MapError(name_, "it has fewer than two different points", "give a table with the columns x and y");
+    return std::move(result_);
+  }
+
+ private:
+  enum Column { x, y, heading, left_x, left_y, right_x, right_y, columns };
+  using Row = std::array<double, columns>;
+
+  [[noreturn]] void fail(std::string const& what, std::string const& remedy) const {
+    throw MapError(name_ + ":" + std::to_string(line_), what, remedy);
+  }
+
+  [[nodiscard]] static std::string_view trimmed(std::string_view text) {
+    constexpr std::string_view blank = " \t\r\"";
+    auto const begin = text.find_first_not_of(blank);
+    if (begin == std::string_view::npos) return {};
+    return text.substr(begin, text.find_last_not_of(blank) + 1 - begin);
+  }
+
+  [[nodiscard]] static std::vector<std::string_view> split(std::string_view line) {
+    std::vector<std::string_view> cells;
+    for (std::size_t begin = 0; begin <= line.size();) {
+      auto const end = std::min(line.find_first_of(",;", begin), line.size());
+      cells.push_back(trimmed(line.substr(begin, end - begin)));
+      begin = end + 1;
+    }
+    return cells;
+  }
+
+  [[nodiscard]] static std::optional<double> number(std::string_view text) {
+    double value = 0.0;
+    if (text.starts_with('+')) text.remove_prefix(1);
+    auto const [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (problem != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
+    return value;
+  }
+
+  /// Takes the first row as the columns' names; false where it is one of numbers, whose columns are x, y, heading.
+  bool read_heading(std::vector<std::string_view> const& cells) {
+    if (number(cells.front())) {
+      for (std::size_t i = 0; i < std::min<std::size_t>(cells.size(), 3); ++i) column_[i] = i;
+      return false;
+    }
+    constexpr std::array<std::array<std::string_view, 3>, columns> names{{{"x", "x_center", "center_x"},
+                                                                          {"y", "y_center", "center_y"},
+                                                                          {"heading", "theta", "yaw"},
+                                                                          {"x_leftbound", "left_x", "x_left"},
+                                                                          {"y_leftbound", "left_y", "y_left"},
+                                                                          {"x_rightbound", "right_x", "x_right"},
+                                                                          {"y_rightbound", "right_y", "y_right"}}};
+    for (std::size_t column = 0; column < columns; ++column)
+      for (std::size_t i = 0; i < cells.size(); ++i)
+        if (std::count(names[column].begin(), names[column].end(), cells[i]) > 0) column_[column] = i;
+    if (!column_[x] || !column_[y])
+      fail("there are no columns x and y", "name the columns x and y, or x_center and y_center, in the first row");
+    return true;
+  }
+
+  [[nodiscard]] bool has_borders() const {
+    return column_[left_x] && column_[left_y] && column_[right_x] && column_[right_y];
+  }
+
+  void add_row(std::vector<std::string_view> const& cells) {
+    if (!column_[y]) fail("there is only one number", "give x and y, separated by a comma");
+    Row row{};
+    for (std::size_t i = 0; i < columns; ++i) {
+      if (!column_[i]) continue;
+      auto const value = *column_[i] < cells.size() ? number(cells[*column_[i]]) : std::nullopt;
+      if (!value)
+        fail("cell " + std::to_string(*column_[i] + 1) +
+                 (*column_[i] < cells.size()
+                      ? " is no finite number: \"" + std::string(cells[*column_[i]].substr(0, 40)) + "\""
+                      : " is missing"),
+             "give a number with a decimal point");
+      row[i] = *value;
+    }
+    geometry::Point const point = geometry::Point(row[x], row[y]) - origin_;
+    if (!(point.cwiseAbs().maxCoeff() <= 1e8)) fail("the point lies beyond 100 000 km", "give coordinates in m");
+    if (!result_.points.empty() && (point - result_.points.back()).norm() <= 1e-3) return;  // a joint written twice
+    result_.points.push_back(point);
+    if (column_[heading]) result_.headings.push_back(row[heading]);
+    if (has_borders())
+      result_.widths.push_back({std::hypot(row[left_x] - row[x], row[left_y] - row[y]),
+                                std::hypot(row[right_x] - row[x], row[right_y] - row[y])});
+  }
+
+  std::string_view text_;
+  std::string const& name_;
+  geometry::Point origin_;
+  int line_ = 0;
+  std::array<std::optional<std::size_t>, columns> column_{};
+  CenterLine result_;
+};
+
+}  // namespace detail
+
+/// The centre line in a table of comma- (or semicolon-) separated values, a point a row in travel direction; `name`
+/// names the text in messages, `origin` is subtracted from all coordinates [m]. The first row names the columns:
+/// x and y, or x_center and y_center; optional are theta (or heading, yaw) [rad], and all four of x_leftbound,
+/// y_leftbound, x_rightbound, y_rightbound: the tables of lanes that BARK reads. Other columns are passed over. A first
+/// row of numbers means the columns x, y and, where there is a third, theta. Empty rows and those that begin with # are
+/// passed over, and so are points within a millimetre of the one before. Throws `MapError` with the line where a cell
+/// is missing or no finite number, and where there are fewer than two points. Linear in the length of the text.
+[[nodiscard]] inline CenterLine read_center_line_csv(std::string_view text, std::string const& name = "text",
+                                                     geometry::Point const& origin = {0.0, 0.0}) {
+  return detail::CenterLineReader(text, name, origin).read();
+}
+
+/// As `read_center_line_csv`, from a file. Throws `MapError` where it cannot be read, too.
+[[nodiscard]] inline CenterLine load_center_line_csv(std::string const& path,
+                                                     geometry::Point const& origin = {0.0, 0.0}) {
+  std::ifstream file(path, std::ios::binary);
+  if (!file) throw MapError(path, "the file cannot be opened", "check the path");
+  std::ostringstream text;
+  if (!(text << file.rdbuf()))  // a folder opens, but cannot be read
+    throw MapError(path, "it is empty or cannot be read as a file", "give a table with the columns x and y");
+  return read_center_line_csv(text.str(), path, origin);
+}
+
+/// A road with one lane, -1, along the line: as wide as its table says, else `lane_width` [m]. Throws `MapError` as
+/// `lane_along`.
+[[nodiscard]] inline RoadPlan lane_along(CenterLine const& line, double lane_width = 3.5) {
+  std::vector<SideWidths> const same{{0.5 * lane_width, 0.5 * lane_width}};
+  return lane_along(line.points, line.widths.empty() ? same : line.widths, line.headings);
+}
+
+}  // namespace cambium::map

@@ -1,0 +1,293 @@
+#include "cambium/map/map_builder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "cambium/map/opendrive.hpp"
+#include "cambium/map/opendrive_writer.hpp"
+#include "lanes_by_hand.hpp"
+
+using namespace by_hand;
+using geometry::pi;
+using opendrive::ContactPoint;
+
+namespace {
+
+constexpr auto start = ContactPoint::start;
+constexpr auto end = ContactPoint::end;
+
+RoadPlan straight(std::string id, Pose const& from, double length, std::size_t left, std::size_t right) {
+  return {.id = std::move(id),
+          .line = lay_from(from, {{length}}),
+          .sections = {{.left = equal_lanes(left), .right = equal_lanes(right)}}};
+}
+
+std::shared_ptr<Map const> checked(MapBuilder const& builder) {
+  std::vector<Diagnostic> diagnostics;
+  auto map = builder.build({}, &diagnostics);
+  for (auto const& d : diagnostics) FAIL_CHECK(to_string(d));
+  return map;
+}
+
+LaneId lane_at(Map const& map, char const* road, int number) { return map.find_lane(road, 0.5, number); }
+
+bool leads(Map const& map, LaneId from, LaneId to) {
+  auto const& next = map.lane(from).successors;
+  auto const& before = map.lane(to).predecessors;
+  bool const there = std::count(next.begin(), next.end(), to) == 1;
+  CHECK(there == (std::count(before.begin(), before.end(), from) == 1));
+  return there;
+}
+
+std::string what_of(auto const& run) {
+  try {
+    run();
+  } catch (MapError const& problem) {
+    return problem.what();
+  }
+  return "no error";
+}
+
+/// Lanes in a form that does not depend on ids, in order: for comparing maps. `mirror` -1: at the x axis, with left
+/// and right swapped.
+std::vector<std::vector<double>> contents(Map const& map, double mirror = 1.0) {
+  std::vector<std::vector<double>> lanes;
+  for (auto const& lane : map.lanes()) {
+    auto const name = std::stod(map.road(lane.road).name);
+    auto& row = lanes.emplace_back(std::vector<double>{name, double(lane.section), mirror * lane.number});
+    for (auto const& p : {lane.path.pose(0.0), lane.path.pose(0.5 * lane.length()), lane.path.pose(lane.length())}) {
+      row.push_back(std::round(1e6 * p.x));
+      row.push_back(std::round(1e6 * mirror * p.y) + 0.0);
+    }
+    std::vector<double> next;
+    for (auto const id : lane.successors)
+      next.push_back(std::stod(map.road(map.lane(id).road).name) * 100 + mirror * map.lane(id).number);
+    std::sort(next.begin(), next.end());
+    row.insert(row.end(), next.begin(), next.end());
+  }
+  std::sort(lanes.begin(), lanes.end());
+  return lanes;
+}
+
+/// A crossing of four arms with all turns; `mirror` -1: of left-hand traffic, mirrored at the x axis.
+MapBuilder crossing(int mirror) {
+  MapBuilder builder;
+  builder.add_junction("100");
+  for (int i = 0; i < 4; ++i) {
+    double const angle = mirror * 0.5 * pi * i;
+    auto const at = geometry::to_map({0, 0, angle}, {25.0, 0.0});
+    auto arm = straight(std::to_string(i + 1), {}, 1.0, 2, 2);
+    arm.line = lay_to({at.x(), at.y(), angle + pi}, {{50.0}});
+    if (mirror < 0) arm.rule = opendrive::TrafficRule::left_hand;
+    builder.add_road(arm);
+  }
+  for (int i = 0; i < 4; ++i) {
+    auto const arm = [i](int further) { return RoadEnd{std::to_string((i + further) % 4 + 1), end}; };
+    auto const id = [i](int turn) { return std::to_string(200 + 10 * i + turn); };
+    builder.add_turn("100", arm(0), arm(2), {.id = id(0)});
+    builder.add_turn("100", arm(0), arm(1), {.id = id(1), .lanes = {{-2 * mirror, 2 * mirror}}});
+    builder.add_turn("100", arm(0), arm(3), {.id = id(2), .lanes = {{-mirror, mirror}}});
+  }
+  return builder;
+}
+
+}  // namespace
+
+TEST_CASE("a road in three lines") {
+  MapBuilder builder;
+  builder.add_road({.id = "1", .line = lay_from({}, {{500.0}}), .sections = {{.right = equal_lanes(2)}}});
+  auto const map = checked(builder);
+  REQUIRE(map->lanes().size() == 2);
+  CHECK(map->lanes()[0].path.pose(100.0).y == doctest::Approx(-1.75));
+  CHECK(map->lanes()[1].left_neighbor == map->lanes()[0].id);
+  CHECK(builder.road("1").lane_sections[0].lanes[1].road_marks[0].lane_change == opendrive::LaneChange::both);
+}
+
+TEST_CASE("ids are numbers of their own where none are given") {
+  MapBuilder builder;
+  auto const a = builder.add_road(straight("", {}, 10, 0, 1)), b = builder.add_road(straight("", {0, 50, 0}, 10, 0, 1));
+  auto const junction = builder.add_junction();
+  CHECK(a != b);
+  CHECK(junction != a);
+  CHECK(junction != b);
+  CHECK(checked(builder)->lanes().size() == 2);
+}
+
+TEST_CASE("lanes taper, open and end from section to section") {
+  MapBuilder builder;
+  auto road = straight("1", {}, 300, 0, 2);
+  road.sections.push_back({.s = 100, .right = {{}, {.end_width = 0.0, .next = 0}}});
+  road.sections.push_back({.s = 200, .right = {{.next = -2}}});
+  road.sections.push_back({.s = 250, .right = {{.width = 0.0, .end_width = 3.0}, {}}});
+  builder.add_road(road);
+  auto const map = checked(builder);
+  auto const lane = [&map](double s, int number) { return map->find_lane("1", s, number); };
+  CHECK(leads(*map, lane(50, -2), lane(150, -2)));
+  CHECK(map->lane(lane(150, -2)).merges_into == lane(150, -1));
+  CHECK(leads(*map, lane(220, -1), lane(260, -2)));
+  CHECK(map->lane(lane(260, -1)).predecessors.empty());
+  auto const& opening = map->lane(lane(260, -1));
+  CHECK(opening.widths.front().left == doctest::Approx(0.0));
+  CHECK(opening.widths.back().left == doctest::Approx(1.5));
+}
+
+TEST_CASE("two roads are joined whichever of their ends meet") {
+  for (auto const end_a : {start, end})
+    for (auto const end_b : {start, end}) {
+      MapBuilder builder;
+      // Both touch the origin; where it is the road's end, the road is laid out to it.
+      auto a = straight("1", {}, 1, 2, 3), b = straight("2", {}, 1, 2, 3);
+      a.line = end_a == end ? lay_to({0, 0, 0}, {{100.0}}) : lay_from({0, 0, pi}, {{100.0}});
+      b.line = end_b == start ? lay_from({0, 0, 0}, {{100.0}}) : lay_to({0, 0, pi}, {{100.0}});
+      builder.add_road(a);
+      builder.add_road(b);
+      builder.connect({"1", end_a}, {"2", end_b});
+      auto const map = checked(builder);
+      int joined = 0;
+      for (auto const& lane : map->lanes()) {
+        if (is_valid(lane.merges_into)) continue;  // it ends there
+        for (auto const id : lane.successors) {
+          auto const& next = map->lane(id);
+          CHECK((lane.path.samples().back().position() - next.path.samples().front().position()).norm() < 1e-9);
+          CHECK(next.number == (end_a == end_b ? -lane.number : lane.number));
+        }
+        joined += static_cast<int>(lane.successors.size());
+      }
+      CHECK(joined == (end_a == end_b ? 4 : 5));
+    }
+}
+
+TEST_CASE("forks and joints need only a connect for each branch, in any order") {
+  std::vector<std::pair<char const*, char const*>> branches{{"1", "3"}, {"1", "4"}, {"2", "4"}};
+  do {
+    MapBuilder builder;
+    for (auto const& [id, x] : {std::pair{"1", -50.0}, {"2", -50.0}, {"3", 0.0}, {"4", 0.0}})
+      builder.add_road(straight(id, {x, 0, 0}, 50, 1, 1));
+    for (auto const& [from, to] : branches) builder.connect({from, end}, {to, start});
+    CHECK(builder.document().junctions.size() == 1);
+    for (auto const& map : {checked(builder), parse_opendrive(write_opendrive(builder.document())).map}) {
+      CHECK(leads(*map, lane_at(*map, "1", -1), lane_at(*map, "3", -1)));
+      CHECK(leads(*map, lane_at(*map, "1", -1), lane_at(*map, "4", -1)));
+      CHECK(leads(*map, lane_at(*map, "2", -1), lane_at(*map, "4", -1)));
+      CHECK_FALSE(leads(*map, lane_at(*map, "2", -1), lane_at(*map, "3", -1)));
+      CHECK(leads(*map, lane_at(*map, "4", 1), lane_at(*map, "2", 1)));
+      CHECK(leads(*map, lane_at(*map, "3", 1), lane_at(*map, "1", 1)));
+    }
+  } while (std::next_permutation(branches.begin(), branches.end()));
+}
+
+TEST_CASE("a lane that forks: its two ways overlap, and routes lead along both") {
+  MapBuilder builder;
+  builder.add_road(straight("1", {}, 100, 0, 1));
+  builder.add_road(straight("2", {100, 0, 0}, 100, 0, 1));
+  auto third = straight("3", {}, 1, 0, 1);
+  third.line = lay_from({100, 0, 0}, {{30.0, 0.0, -0.02}, {60.0, -0.02, -0.02}});
+  builder.add_road(third);
+  builder.connect({"1", end}, {"2", start});
+  builder.connect({"1", end}, {"3", start});
+  auto const map = checked(builder);
+  for (auto const* to : {"2", "3"}) CHECK(map->shortest_route(lane_at(*map, "1", -1), lane_at(*map, to, -1)));
+  auto const& overlaps = map->lane(lane_at(*map, "2", -1)).overlaps;
+  REQUIRE(overlaps.size() == 1);
+  CHECK(overlaps[0].kind == OverlapKind::split);
+}
+
+TEST_CASE("turns join lanes smoothly, with the widths of both") {
+  MapBuilder builder;
+  builder.add_junction("9");
+  auto from = straight("1", {0, -60, 0.5 * pi}, 40, 0, 1), to = straight("2", {25, 3, 0.1}, 50, 0, 2);
+  from.sections[0].right[0].width = 3.0;
+  for (auto& lane : to.sections[0].right) lane.width = 4.0;
+  builder.add_road(from);
+  builder.add_road(to);
+  auto const id = builder.add_turn("9", {"1", end}, {"2", start}, {.lanes = {{-1, -2}}, .speed_limit = 8.0});
+  auto const map = checked(builder);
+  auto const& turn = map->lane(lane_at(*map, id.c_str(), -1));
+  CHECK(leads(*map, lane_at(*map, "1", -1), turn.id));
+  CHECK(leads(*map, turn.id, lane_at(*map, "2", -2)));
+  CHECK(turn.speed_limit == 8.0);
+  auto const& before = map->lane(lane_at(*map, "1", -1));
+  auto const& behind = map->lane(lane_at(*map, "2", -2));
+  for (auto border : {&Lane::left, &Lane::right, &Lane::path}) {
+    auto const ends = [border](Lane const& lane) { return (lane.*border).samples(); };
+    CHECK((ends(before).back().position() - ends(turn).front().position()).norm() < 1e-8);
+    CHECK((ends(turn).back().position() - ends(behind).front().position()).norm() < 1e-8);
+    CHECK(std::abs(geometry::angle_difference(ends(turn).back().heading, ends(behind).front().heading)) < 1e-6);
+  }
+}
+
+TEST_CASE("a crossing of left-hand traffic is the mirror image of one of right-hand traffic") {
+  auto const right = checked(crossing(1)), left = checked(crossing(-1));
+  CHECK(right->lanes().size() == 32);
+  CHECK(contents(*right) == contents(*left, -1.0));
+  for (auto const& lane : left->lanes())
+    for (auto const& other : left->lanes()) {
+      if (!lane.predecessors.empty() || !other.successors.empty()) continue;
+      CHECK(left->shortest_route(lane.id, other.id).has_value() == (lane.road != other.road));
+    }
+}
+
+TEST_CASE("a built map is that of its written file") {
+  auto builder = crossing(1);
+  builder.add_road(straight("50", {300, 0, 1}, 40, 1, 2));
+  auto const text = write_opendrive(builder.document());
+  auto const loaded = parse_opendrive(text);
+  CHECK(loaded.diagnostics.empty());
+  CHECK(contents(*loaded.map) == contents(*checked(builder)));
+}
+
+TEST_CASE("what cannot be built is refused with a sentence") {
+  double const nan = std::numeric_limits<double>::quiet_NaN();
+  MapBuilder builder;
+  builder.add_road(straight("1", {}, 100, 1, 1));
+  builder.add_road(straight("2", {101, 0, 0}, 100, 1, 1));
+  builder.add_junction("9");
+  CHECK(what_of([&] { builder.connect({"1", end}, {"7", start}); }).starts_with("road 7: there is none of that id"));
+  CHECK(what_of([&] {
+          builder.connect({"1", end}, {"2", start});
+        }).find("they do not meet: there are 1 m") < std::string::npos);
+  CHECK(what_of([&] {
+          builder.connect({"1", end}, {"2", start}, {{-1, -2}});
+        }).starts_with("road 2, start, lane -2: there is no such lane"));
+  CHECK(what_of([&] {
+          builder.add_turn("9", {"1", end}, {"2", start}, {.lanes = {{1, -1}}});
+        }).find("the wrong way") < std::string::npos);
+  CHECK_THROWS_AS(builder.connect({"1", ContactPoint::none}, {"2", start}), MapError);
+  CHECK_THROWS_AS(builder.add_turn("8", {"1", end}, {"2", start}), MapError);
+  CHECK_THROWS_AS((void)builder.lane_pose({"1", end}, 0), MapError);
+  CHECK_THROWS_AS(builder.add_junction("9"), MapError);
+  CHECK_THROWS_AS(builder.add_road(straight("1", {}, 10, 0, 1)), MapError);
+  auto const refused = [&](auto const& change) {
+    auto plan = straight("", {0, 99, 0}, 100, 0, 1);
+    change(plan);
+    CHECK_THROWS_AS(builder.add_road(plan), MapError);
+  };
+  refused([](RoadPlan& plan) { plan.line.clear(); });
+  refused([](RoadPlan& plan) { plan.sections.clear(); });
+  refused([](RoadPlan& plan) { plan.sections[0].s = 5; });
+  refused([](RoadPlan& plan) { plan.sections.push_back({.s = 100}); });
+  refused([](RoadPlan& plan) { plan.sections.push_back({}); });
+  refused([](RoadPlan& plan) { plan.junction = "8"; });
+  refused([nan](RoadPlan& plan) { plan.sections.push_back({.s = nan}); });
+  refused([nan](RoadPlan& plan) { plan.speed_limit = nan; });
+  refused([](RoadPlan& plan) { plan.speed_limit = -1.0; });
+  refused([nan](RoadPlan& plan) { plan.lane_offset = {{0, nan, 0, 0, 0}}; });
+  refused([nan](RoadPlan& plan) { plan.line[0].x = nan; });
+  refused([nan](RoadPlan& plan) { plan.line[0].length = nan; });
+  for (double const width : {nan, -1.0, 1e9, std::numeric_limits<double>::infinity()}) {
+    refused([width](RoadPlan& plan) { plan.sections[0].right[0].width = width; });
+    refused([width](RoadPlan& plan) { plan.sections[0].right[0].end_width = width; });
+    refused([width](RoadPlan& plan) { plan.sections[0].right[0].widths = {{0, width, 0, 0, 0}}; });
+  }
+  refused([](RoadPlan& plan) {
+    plan.sections[0].right[0].next = -7;
+    plan.sections.push_back({.s = 50, .right = equal_lanes(1)});
+  });
+  CHECK(builder.document().roads.size() == 2);
+  CHECK_THROWS_AS((void)MapBuilder().build(), MapError);
+}

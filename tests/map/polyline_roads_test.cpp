@@ -1,0 +1,184 @@
+// Lanes from points: through the builder to the map, and from tables.
+#include "cambium/map/polyline_roads.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "cambium/map/center_line_csv.hpp"
+#include "cambium/map/map_builder.hpp"
+#include "lanes_by_hand.hpp"
+
+using namespace by_hand;
+
+namespace {
+
+/// Points on a winding line, and beside it at a distance to the left.
+Point winding(double u, double beside = 0.0) {
+  double const slope = 0.9 * std::cos(0.03 * u), norm = std::hypot(1.0, slope);
+  return {u - beside * slope / norm, 30.0 * std::sin(0.03 * u) + beside / norm};
+}
+
+template <class At>
+std::vector<Point> points_of(At const& at, double step = 4.0) {
+  std::vector<Point> points;
+  for (double u = 0.0; u <= 200.0; u += step) points.push_back(at(u));
+  return points;
+}
+
+double distance(geometry::Line const& line, Point const& p) {
+  auto const foot = line.project(p);
+  return std::hypot(foot.lateral, std::max({-foot.s, foot.s - line.length(), 0.0}));
+}
+
+std::string what_of(auto const& run) {
+  try {
+    run();
+  } catch (MapError const& problem) {
+    return problem.what();
+  }
+  return "no error";
+}
+
+}  // namespace
+
+TEST_CASE("a lane along points passes through them, with borders at the distances given and no kinks") {
+  auto const center = points_of([](double u) { return winding(u); });
+  std::vector<SideWidths> widths;
+  for (std::size_t i = 0; i < center.size(); ++i) {
+    double const w = 1.75 + 0.5 * std::sin(0.2 * static_cast<double>(i));
+    widths.push_back({w, w});
+  }
+  MapBuilder builder;
+  builder.add_road(lane_along(center, widths));
+  std::vector<Diagnostic> diagnostics;
+  auto const map = builder.build({}, &diagnostics);
+  CHECK(diagnostics.empty());
+  REQUIRE(map->lanes().size() == 1);
+  auto const& lane = map->lanes()[0];
+  for (std::size_t i = 0; i < center.size(); ++i) {
+    CHECK(distance(lane.path, center[i]) < 0.01);
+    CHECK(distance(lane.left, winding(4.0 * static_cast<double>(i), widths[i].left)) < 0.03);
+    CHECK(distance(lane.right, winding(4.0 * static_cast<double>(i), -widths[i].right)) < 0.03);
+  }
+  for (auto const& segment : lane.path.segments()) CHECK(std::abs(segment.curvature * segment.length) < 0.02);
+}
+
+TEST_CASE("lanes between polylines have these as their borders, and are neighbours") {
+  std::vector<std::vector<Point>> borders;
+  for (double const beside : {1.75, -1.75, -5.25, -9.0})
+    borders.push_back(points_of([beside](double u) { return winding(u, beside); }, 1.5 - 0.05 * beside));
+  MapBuilder builder;
+  builder.add_road(lanes_between(borders));
+  std::vector<Diagnostic> diagnostics;
+  auto const map = builder.build({}, &diagnostics);
+  CHECK(diagnostics.empty());
+  REQUIRE(map->lanes().size() == 3);
+  for (std::size_t i = 0; i < 3; ++i) {
+    auto const& lane = map->lanes()[i];
+    for (double u = 10.0; u < 190.0; u += 1.7) {
+      CHECK(distance(lane.left, winding(u, i == 0 ? 1.75 : i == 1 ? -1.75 : -5.25)) < 0.02);
+      CHECK(distance(lane.right, winding(u, i == 0 ? -1.75 : i == 1 ? -5.25 : -9.0)) < 0.02);
+    }
+  }
+  CHECK(map->lanes()[0].right_neighbor == map->lanes()[1].id);
+  CHECK(map->lanes()[2].left_neighbor == map->lanes()[1].id);
+}
+
+TEST_CASE("polylines that make no lane are refused") {
+  double const nan = std::numeric_limits<double>::quiet_NaN();
+  std::vector<Point> const line{{0, 0}, {10, 0}, {20, 1}};
+  using Widths = std::vector<SideWidths>;
+  for (auto const& widths :
+       {Widths{}, Widths{{1, 1}, {1, 1}}, Widths{{-1, 1}}, Widths{{1, nan}}, Widths{{1, 1}, {1, 1}, {1, -0.1}}})
+    CHECK_THROWS_AS((void)lane_along(line, widths), MapError);
+  CHECK_THROWS_AS((void)lane_along(std::vector<Point>{{0, 0}}, Widths{{1, 1}}), MapError);
+  CHECK_THROWS_AS((void)lane_along(std::vector<Point>{{0, 0}, {0, 0}}, Widths{{1, 1}}), MapError);
+  using Borders = std::vector<std::vector<Point>>;
+  for (auto const& borders : {Borders{}, Borders{line}, Borders{line, {}}, Borders{line, {{0, 3}, {20, 4}}},
+                              Borders{line, {{0, -3}, {nan, 4}}}, Borders{line, {{0, -300}, {20, -300}}}})
+    CHECK_THROWS_AS((void)lanes_between(borders), MapError);
+}
+
+TEST_CASE("a centre line is read from a table of x and y") {
+  for (auto const* text : {"x,y\n0,0\n10,0\n20,1\n", "# a lane\r\nx;y\r\n0;0\r\n\r\n10;+0.0\r\n 20 ; 1e0 \r\n",
+                           "0,0\n10,0\n20,1", "\xEF\xBB\xBFid,\"y\",\"x\"\n7,0,0\n7,0,10\n7,0,10\nq,1,20\n"}) {
+    CAPTURE(text);
+    auto const line = read_center_line_csv(text);
+    REQUIRE(line.points.size() == 3);
+    CHECK(line.points[1] == Point(10, 0));
+    CHECK(line.points[2] == Point(20, 1));
+    CHECK(line.headings.empty());
+    CHECK(line.widths.empty());
+  }
+  auto const line = read_center_line_csv("x,y,theta\n5,5,0.1\n6,5,0.2\n", "text", {5, 5});
+  CHECK(line.points[0] == Point(0, 0));
+  CHECK(line.headings == std::vector<double>{0.1, 0.2});
+}
+
+TEST_CASE("a table as BARK's, with the borders, becomes a map of one lane") {
+  std::string text = "lane_id,x_center,y_center,x_rightbound,y_rightbound,x_leftbound,y_leftbound\n";
+  auto const cells = [](Point const& p) { return "," + std::to_string(p.x() + 6.9e5) + "," + std::to_string(p.y()); };
+  for (double u = 0.0; u <= 200.0; u += 1.0)
+    text +=
+        std::to_string(u < 100 ? 1 : 2) + cells(winding(u)) + cells(winding(u, -2.8)) + cells(winding(u, 1.9)) + "\n";
+  auto const line = read_center_line_csv(text, "lanes.csv", {6.9e5, 0});
+  REQUIRE(line.widths.size() == 201);
+  MapBuilder builder;
+  builder.add_road(lane_along(line));
+  auto const map = builder.build();
+  auto const& lane = map->lanes()[0];
+  for (double u = 0.0; u <= 200.0; u += 3.3) {
+    CHECK(distance(lane.path, winding(u, -0.45)) < 0.02);
+    CHECK(distance(lane.left, winding(u, 1.9)) < 0.02);
+    CHECK(distance(lane.right, winding(u, -2.8)) < 0.02);
+  }
+}
+
+TEST_CASE("a table that is none is refused, with the line") {
+  CHECK(what_of([] { (void)read_center_line_csv("x,y\n0,0\n1,abc\n", "a.csv"); }) ==
+        "a.csv:3: cell 2 is no finite number: \"abc\"; give a number with a decimal point");
+  CHECK(what_of([] {
+          (void)read_center_line_csv("x,y\n0,0\n\n1\n", "a.csv");
+        }).starts_with("a.csv:4: cell 2 is missing"));
+  CHECK(what_of([] {
+          (void)read_center_line_csv("a,b\n0,0\n1,1", "a.csv");
+        }).starts_with("a.csv:1: there are no columns"));
+  for (auto const* text :
+       {"", "\n\n", "x,y", "x,y\n1,1\n1,1\n", "1\n2\n", "0,0\nnan,1\n", "0,0\ninf,1\n", "0,0\n1e9,1\n",
+        "0,0\n1e999,1\n", "0,0\n1,1x\n", ",,,\n", "x,y\n,\n", "x,y\n\"\",\"\"\n", "x,y,theta\n0,0,0\n1,1\n"})
+    CHECK_MESSAGE(what_of([&] { (void)read_center_line_csv(text); }) != "no error", text);
+  CHECK_THROWS_AS((void)load_center_line_csv("/no/such/file.csv"), MapError);
+  CHECK_THROWS_AS((void)load_center_line_csv("/"), MapError);
+}
+
+TEST_CASE("damaged tables are read or refused, never worse") {
+  std::string const good = "id,x,y,theta,x_left\n1,0.5,1,0.1,3\n2,10,-0.5,0.2,3\n3,20.25,1e1,0.3,3\n";
+  Numbers random{4};
+  std::string const letters = "0123456789.,;-+eE\n\r\"# xyNaninf\0\xff";
+  for (int i = 0; i < 3000; ++i) {
+    std::string text = good;
+    for (int k = 0; k < 3; ++k) {
+      auto const at = static_cast<std::size_t>(random(0, static_cast<double>(text.size()) - 0.01));
+      auto const letter = letters[static_cast<std::size_t>(random(0, static_cast<double>(letters.size()) - 0.01))];
+      if (i % 3 == 0)
+        text.erase(at, 1);
+      else if (i % 3 == 1)
+        text.insert(at, 1, letter);
+      else
+        text[at] = letter;
+    }
+    try {
+      MapBuilder builder;
+      builder.add_road(lane_along(read_center_line_csv(text)));
+      auto const map = builder.build();
+      for (auto const& lane : map->lanes())
+        for (auto const& p : lane.path.points()) REQUIRE(std::isfinite(p.x() + p.y()));
+    } catch (MapError const&) {
+    }
+  }
+}
