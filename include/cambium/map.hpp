@@ -1,7 +1,6 @@
-/// The map room but for what builds maps, `cambium/map/build_map.hpp` and `routing.hpp` (Boost.Graph), which come with
-/// `cambium/map/opendrive.hpp`, and the union of lanes, `cambium/map/road_area.hpp` (Boost.Geometry).
-/// The map room but for what builds maps: `cambium/map/build_map.hpp` and `routing.hpp` (Boost.Graph) come with
-/// `cambium/map/opendrive.hpp` and `cambium/map/map_builder.hpp`.
+/// The map room but for what builds maps, which needs Boost.Graph (`cambium/map/build_map.hpp`, `routing.hpp`,
+/// `map_builder.hpp`; `opendrive.hpp` brings the first two), and the union of lanes, which needs Boost.Geometry
+/// (`road_area.hpp`).
 #pragma once
 
 #include "cambium/map/build_corridor.hpp"
