@@ -150,7 +150,10 @@ struct Plain {
   double s;
 
   [[nodiscard]] opendrive::LaneSection const& section() const {
-    return document.roads[index_of(lane.road)].lane_sections[lane.section];
+    auto const* found = &document.roads[index_of(lane.road)].lane_sections.front();
+    for (auto const& section : document.roads[index_of(lane.road)].lane_sections)
+      if (section.s <= s) found = &section;
+    return *found;  // the map may have split it
   }
   [[nodiscard]] double limit() const {
     double limit = infinity;
@@ -158,7 +161,7 @@ struct Plain {
       if (type.s <= s) limit = type.limit && *type.limit > 0 ? *type.limit : infinity;
     std::optional<double> own;
     for (auto const& speed : section().find(lane.number)->speeds)
-      if (lane.road_begin + speed.s <= s) own = speed.limit;
+      if (section().s + speed.s <= s) own = speed.limit;
     return own && *own > 0 ? *own : limit;
   }
   [[nodiscard]] bool permits(int to) const {
@@ -166,7 +169,7 @@ struct Plain {
     int const border = to * lane.number < 0 ? 0 : (away ? lane.number : to);
     auto change = opendrive::LaneChange::both;
     for (auto const& mark : section().find(border)->road_marks)
-      if (lane.road_begin + mark.s_offset <= s) change = mark.lane_change;
+      if (section().s + mark.s_offset <= s) change = mark.lane_change;
     if (change == opendrive::LaneChange::increase) return to > lane.number;
     if (change == opendrive::LaneChange::decrease) return to < lane.number;
     return change != opendrive::LaneChange::none;
@@ -178,9 +181,9 @@ struct Plain {
       if (near(type.s)) return true;
     for (auto const& written : section().lanes) {
       for (auto const& mark : written.road_marks)
-        if (near(lane.road_begin + mark.s_offset)) return true;
+        if (near(section().s + mark.s_offset)) return true;
       for (auto const& speed : written.speeds)
-        if (near(lane.road_begin + speed.s)) return true;
+        if (near(section().s + speed.s)) return true;
     }
     return false;
   }

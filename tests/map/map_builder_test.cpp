@@ -210,7 +210,7 @@ TEST_CASE("turns join lanes smoothly, with the widths of both") {
   auto const& turn = map->lane(lane_at(*map, id.c_str(), -1));
   CHECK(leads(*map, lane_at(*map, "1", -1), turn.id));
   CHECK(leads(*map, turn.id, lane_at(*map, "2", -2)));
-  CHECK(turn.speed_limit == 8.0);
+  CHECK(turn.speed_limit_at(0.0) == 8.0);
   auto const& before = map->lane(lane_at(*map, "1", -1));
   auto const& behind = map->lane(lane_at(*map, "2", -2));
   for (auto border : {&Lane::left, &Lane::right, &Lane::path}) {

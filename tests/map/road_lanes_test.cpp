@@ -10,7 +10,7 @@
 
 #include "cambium/map/build_corridor.hpp"
 #include "cambium/map/opendrive.hpp"
-#include "support/corpus.hpp"
+#include "../support/corpus.hpp"
 
 namespace cb = cambium;
 using cb::geometry::Point;

@@ -7,7 +7,7 @@
 #include <doctest/doctest.h>
 
 #include "cambium/map/opendrive.hpp"
-#include "support/corpus.hpp"
+#include "../support/corpus.hpp"
 
 namespace {
 

@@ -47,8 +47,8 @@ class MapBuild {
     if (parts_.lanes.empty())
       throw MapError(file_, "the file has no lane with a length", "give a file with lanes beside lane 0");
     link_lanes();
-    set_speed_limits(document_, parts_.roads, parts_.lanes);
-    set_lane_changes(document_, parts_.roads, parts_.lanes);
+    set_speed_limits(document_, parts_.lanes);
+    set_lane_changes(document_, parts_.lanes);
     parts_.junctions = make_junctions(document_, parts_.roads, parts_.lanes);
     number_lane_coordinate();
     find_overlaps(
@@ -73,10 +73,7 @@ class MapBuild {
 
   /// Height of a lane's path [m], to tell a bridge from a crossing.
   [[nodiscard]] double elevation(Lane const& lane, double s) const {
-    double const u = s / lane.length();
-    double const road_s = lane.along_road ? lane.road_begin + u * (lane.road_end - lane.road_begin)
-                                          : lane.road_end - u * (lane.road_end - lane.road_begin);
-    return parts_.roads[index_of(lane.road)].elevation.value(road_s);
+    return parts_.roads[index_of(lane.road)].elevation.value(lane.station_at(s));
   }
 
   [[nodiscard]] static Road make_road(opendrive::Road const& source, RoadId id, opendrive::HeaderOffset const& offset) {

@@ -130,6 +130,23 @@ struct Lane {
   [[nodiscard]] double station_at(double s, std::uint32_t segment) const {
     return stations[segment] + fraction(s, segment) * (stations[segment + 1] - stations[segment]);
   }
+  /// Path position beside road station `station`, interpolated between the vertices; an end of the path for what lies
+  /// beyond it. [m], O(log n).
+  [[nodiscard]] double position_at(double station) const {
+    double const sign = along_road ? 1.0 : -1.0;
+    auto const next =
+        std::partition_point(stations.begin(), stations.end(), [&](double at) { return sign * at <= sign * station; });
+    if (next == stations.begin()) return 0.0;
+    if (next == stations.end()) return length();
+    auto const i = static_cast<std::size_t>(next - stations.begin()) - 1;
+    auto const& segment = path.segments()[i];
+    return segment.s + segment.length * (station - stations[i]) / (stations[i + 1] - stations[i]);
+  }
+  /// The stretch of the path between two road stations, in any order [m]. O(log n).
+  [[nodiscard]] PathStretch stretch_between(double station, double other) const {
+    double const a = position_at(station), b = position_at(other);
+    return {std::min(a, b), std::max(a, b)};
+  }
 
  private:
   [[nodiscard]] double fraction(double s, std::uint32_t i) const {

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <span>
+#include <string_view>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -12,14 +14,19 @@
 namespace cambium::map::detail {
 
 /// The document's junctions, in its order (the roads' junction ids count so), with the roads and lanes that belong to
-/// them.
+/// them. Priorities between roads that are not in the map are left out.
 [[nodiscard]] inline std::vector<Junction> make_junctions(OpenDriveDocument const& document,
                                                           std::span<Road const> roads, std::span<Lane const> lanes) {
+  std::unordered_map<std::string_view, RoadId> ids;
+  for (auto const& road : roads) ids.emplace(road.name, road.id);
   std::vector<Junction> junctions;
   for (auto const& written : document.junctions) {
     Junction junction;
     junction.id = static_cast<JunctionId>(junctions.size());
     junction.name = written.id;
+    for (auto const& priority : written.priorities)
+      if (ids.contains(priority.high) && ids.contains(priority.low))
+        junction.priorities.push_back({ids.at(priority.high), ids.at(priority.low)});
     junctions.push_back(std::move(junction));
   }
   for (auto const& road : roads)

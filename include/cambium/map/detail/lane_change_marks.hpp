@@ -7,7 +7,6 @@
 #include <utility>
 #include <vector>
 
-#include "cambium/map/detail/path_position.hpp"
 #include "cambium/map/lane.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/opendrive_document.hpp"
@@ -17,7 +16,7 @@ namespace cambium::map::detail {
 /// What the marks of a section say about changing lanes.
 class LaneChangeMarks {
  public:
-  LaneChangeMarks(opendrive::LaneSection const& section, Road const& road) : section_(section), road_(road) {}
+  explicit LaneChangeMarks(opendrive::LaneSection const& section) : section_(section) {}
 
   /// The stretches of the path of `lane` from which the marks permit a change to its neighbour `to`.
   [[nodiscard]] std::vector<PathStretch> permitted(Lane const& lane, Lane const& to) const {
@@ -34,7 +33,7 @@ class LaneChangeMarks {
     for (std::size_t i = 0; i + 1 < stations.size(); ++i) {
       double const from = stations[i], until = stations[i + 1];
       if (until - from < 1e-6 || !is_permitted(lane.number, to.number, from - lane.road_begin)) continue;
-      auto const stretch = path_stretch(road_, lane, from, until);
+      auto const stretch = lane.stretch_between(from, until);
       if (from != end_of_last)
         stretches.push_back(stretch);
       else
@@ -68,16 +67,14 @@ class LaneChangeMarks {
   }
 
   opendrive::LaneSection const& section_;
-  Road const& road_;
 };
 
 /// Fills `Lane::left_changes` and `right_changes` from the `laneChange` attributes of the road marks: a mark without
 /// one permits both ways, as the standard says, and so does a border without a mark; what the mark looks like does not
 /// count. Call it when neighbours and paths are final.
-inline void set_lane_changes(OpenDriveDocument const& document, std::span<Road const> roads, std::span<Lane> lanes) {
+inline void set_lane_changes(OpenDriveDocument const& document, std::span<Lane> lanes) {
   for (auto& lane : lanes) {
-    LaneChangeMarks const marks(document.roads[index_of(lane.road)].lane_sections[lane.section],
-                                roads[index_of(lane.road)]);
+    LaneChangeMarks const marks(document.roads[index_of(lane.road)].lane_sections[lane.section]);
     lane.left_changes = lane.right_changes = {};
     if (is_valid(lane.left_neighbor)) lane.left_changes = marks.permitted(lane, lanes[index_of(lane.left_neighbor)]);
     if (is_valid(lane.right_neighbor)) lane.right_changes = marks.permitted(lane, lanes[index_of(lane.right_neighbor)]);

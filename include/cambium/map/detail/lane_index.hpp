@@ -197,7 +197,7 @@ class LaneIndex {
 
   std::vector<Stretch> stretches_;  ///< in the lanes' order, and one more that is in none
   std::vector<Run> runs_;           ///< of stretches, by box
-  std::vector<Box> boxes_;  ///< until the tree is made
+  std::vector<Box> boxes_;          ///< until the tree is made
   BoxTree tree_;
 };
 

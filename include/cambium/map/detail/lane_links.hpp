@@ -162,8 +162,9 @@ class LaneLinker {
     if (exits.count == 0) {
       warn(connection.line, "connection", ids,
            "road " + connection.incoming_road +
-               ((junction.type == opendrive::JunctionType::virtual_) ? " does not meet the connecting road: that gives no elementS"
-                                     : " is not linked to this junction") +
+               ((junction.type == opendrive::JunctionType::virtual_)
+                    ? " does not meet the connecting road: that gives no elementS"
+                    : " is not linked to this junction") +
                "; the connection was left out");
       return;
     }
@@ -188,7 +189,8 @@ class LaneLinker {
     bool const at_end = touches(ContactPoint::end), at_start = touches(ContactPoint::start);
     if (!at_end && !at_start) {
       auto const& link = links_.link_at(entry.road, entry.end);
-      bool const meets = (junction.type == opendrive::JunctionType::virtual_) && link && link->id == links_.document().roads[incoming].id;
+      bool const meets = (junction.type == opendrive::JunctionType::virtual_) && link &&
+                         link->id == links_.document().roads[incoming].id;
       return meets ? links_.follow(link) : SectionEnds{};
     }
     bool const by_end = at_end != at_start ? at_end : is_nearer(incoming, entry);

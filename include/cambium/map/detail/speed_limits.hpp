@@ -8,7 +8,6 @@
 #include <span>
 #include <vector>
 
-#include "cambium/map/detail/path_position.hpp"
 #include "cambium/map/lane.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/opendrive_document.hpp"
@@ -27,7 +26,7 @@ template <class Record>
 
 /// Fills `Lane::speed_limits`: the lane's own records where one gives a limit ("no limit" is one), else the road's. Of
 /// roads, a type record without a speed ends the limit before it. Call it when the paths are final.
-inline void set_speed_limits(OpenDriveDocument const& document, std::span<Road const> roads, std::span<Lane> lanes) {
+inline void set_speed_limits(OpenDriveDocument const& document, std::span<Lane> lanes) {
   constexpr double infinity = std::numeric_limits<double>::infinity();
   for (auto& lane : lanes) {
     auto const& source = document.roads[index_of(lane.road)];
@@ -47,7 +46,7 @@ inline void set_speed_limits(OpenDriveDocument const& document, std::span<Road c
       if (!(from >= lane.road_begin && to - from > 1e-6)) continue;
       auto const own = limit_in_force(written.speeds, from - lane.road_begin);
       double const limit = own ? *own : limit_in_force(source.types, from).value_or(infinity);
-      steps.push_back({path_stretch(roads[index_of(lane.road)], lane, from, to).begin, limit});
+      steps.push_back({lane.stretch_between(from, to).begin, limit});
     }
     if (!lane.along_road) std::reverse(steps.begin(), steps.end());
     auto const same = [](SpeedStep const& a, SpeedStep const& b) { return a.limit == b.limit; };
