@@ -30,5 +30,6 @@
 #include "cambium/map/road.hpp"
 #include "cambium/map/road_lanes.hpp"
 #include "cambium/map/road_plan.hpp"
+#include "cambium/map/road_surface.hpp"
 #include "cambium/map/route.hpp"
 #include "cambium/map/station_offset.hpp"

@@ -15,6 +15,8 @@ namespace cb = cambium;
 using cb::map::LanePoint;
 using cb::map::Road;
 
+constexpr auto none = cb::none<cb::LaneId>;
+
 double angle_between(double a, double b) { return std::abs(cb::geometry::angle_difference(a, b)); }
 
 struct Comparison {
@@ -91,9 +93,9 @@ TEST_CASE("a lane's heading and curvature are the derivatives of its centre line
   road.lane_offset = cb::map::CubicProfile({{0.0, 0.5, -0.02, 1e-3, 0.0}});
   road.sections = {{0.0,
                     60.0,
-                    {{1, cb::none<cb::LaneId>, cb::none<cb::LaneId>, cb::map::CubicProfile({{0.0, 3.0, 0.05, -2e-3, 3e-5}}), {}},
-                     {-1, cb::none<cb::LaneId>, cb::none<cb::LaneId>, cb::map::CubicProfile({{0.0, 2.0, 0.0, 4e-3, -4e-5}}), {}},
-                     {-2, cb::none<cb::LaneId>, cb::none<cb::LaneId>, cb::map::CubicProfile({{0.0, 4.0, -0.1, 0.0, 0.0}}), {}}}}};
+                    {{1, none, none, cb::map::CubicProfile({{0.0, 3.0, 0.05, -2e-3, 3e-5}}), {}, {}},
+                     {-1, none, none, cb::map::CubicProfile({{0.0, 2.0, 0.0, 4e-3, -4e-5}}), {}, {}},
+                     {-2, none, none, cb::map::CubicProfile({{0.0, 4.0, -0.1, 0.0, 0.0}}), {}, {}}}}};
   for (int const number : {1, -1, -2})
     for (double s = 1.0; s < 59.0; s += 3.7) {
       auto const d = compare_with_differences(road, s, number, 1e-4);
@@ -109,8 +111,7 @@ TEST_CASE("there is no lane 0, none outside of the road, and none that the secti
   road.length = 10.0;
   road.reference_line = cb::map::ReferenceLine({{0.0, 0.0, 0.0, 0.0, 10.0}});
   cb::map::CubicProfile const three({{0.0, 3.0, 0.0, 0.0, 0.0}}), four({{0.0, 4.0, 0.0, 0.0, 0.0}});
-  road.sections = {{2.0, 5.0, {{-1, cb::none<cb::LaneId>, cb::none<cb::LaneId>, three, {}}}},
-                   {5.0, 10.0, {{-1, cb::none<cb::LaneId>, cb::none<cb::LaneId>, four, {}}}}};
+  road.sections = {{2.0, 5.0, {{-1, none, none, three, {}, {}}}}, {5.0, 10.0, {{-1, none, none, four, {}, {}}}}};
   CHECK_FALSE(lane_point(road, 3.0, 0));
   CHECK_FALSE(lane_point(road, 3.0, 1));
   CHECK_FALSE(lane_point(road, 3.0, -2));

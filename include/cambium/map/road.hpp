@@ -15,6 +15,17 @@
 
 namespace cambium::map {
 
+/// Height of a lane's borders above the road's surface from `s` on (from the section's start), a kerb say [m].
+struct LaneHeight {
+  double s{}, inner{}, outer{};
+};
+
+/// Height of the surface across the road at station `s` [m], as a profile over t.
+struct ShapeProfile {
+  double s{};
+  CubicProfile height;
+};
+
 /// A lane of the road cross-section: exact width as a function of the distance from the section's start, or where the
 /// file gives borders instead, the t of its outer border.
 struct RoadLane {
@@ -22,7 +33,8 @@ struct RoadLane {
   LaneId id = none<LaneId>;  ///< as driven in the direction that traffic rule, side and the file's `direction` say
   LaneId opposite = none<LaneId>;  ///< the same strip driven the other way; only where traffic runs in both directions
   CubicProfile width;
-  CubicProfile border;  ///< in force where it has records
+  CubicProfile border;              ///< in force where it has records
+  std::vector<LaneHeight> heights;  ///< above the road's surface, sorted
 };
 
 struct RoadSection {
@@ -37,7 +49,12 @@ struct Road {
   JunctionId junction = none<JunctionId>;
   bool left_hand_traffic = false;
   ReferenceLine reference_line;
-  CubicProfile lane_offset, elevation;
+  CubicProfile lane_offset;
+  CubicProfile elevation;                        ///< of the reference line, without `elevation_offset` [m]
+  double elevation_offset{};                     ///< of the whole map [m]
+  CubicProfile superelevation;                   ///< [rad], positive where the left side is the higher one
+  CubicProfile crossfall_left, crossfall_right;  ///< [rad], positive where the side falls outwards
+  std::vector<ShapeProfile> shape;               ///< sorted
   std::vector<RoadSection> sections;
   double length{};
 
