@@ -26,7 +26,7 @@ namespace yardstick {
 
 /// What the repetitions of one benchmark gave.
 struct Result {
-  std::string counter;  ///< ns_per_agent_step, ns_per_copy, per_second or ms; empty when the benchmark failed
+  std::string counter;  ///< ns_per_agent_step, ns_per_copy, per_second, ms or ns; empty when the benchmark failed
   double best = 0.0;    ///< the minimum; of a rate, the maximum
   double median = 0.0;
   double allocations = 0.0;  ///< the most of any repetition, per step, copy or roll-out
@@ -81,7 +81,7 @@ class TableReporter : public benchmark::BenchmarkReporter {
     for (auto const& run : runs) {
       result.order = run.family_index;
       result.message = run.report_label;
-      for (char const* counter : {per_agent_step, per_copy, rate, milliseconds}) {
+      for (char const* counter : {per_agent_step, per_copy, rate, milliseconds, per_query}) {
         auto const found = run.counters.find(counter);
         if (found == run.counters.end()) continue;
         result.counter = counter;

@@ -19,6 +19,7 @@ inline constexpr char const* per_agent_step = "ns_per_agent_step";
 inline constexpr char const* per_copy = "ns_per_copy";
 inline constexpr char const* rate = "per_second";
 inline constexpr char const* milliseconds = "ms";
+inline constexpr char const* per_query = "ns";
 inline constexpr char const* allocation_counter = "allocations";
 
 /// Registers `function` (void(benchmark::State&)) as `name`, which stays plain in the output; adds the minimum and
@@ -71,6 +72,14 @@ void measure_duration(benchmark::State& state, Action&& action) {
   detail::run_counted(state, std::forward<Action>(action));
   state.counters[milliseconds] = {static_cast<double>(state.iterations()) * 1e-3,
                                   benchmark::Counter::kIsRate | benchmark::Counter::kInvert};
+}
+
+/// Measures `queries`, which asks `count` times: counters ns (per query) and allocations (per query).
+template <class Queries>
+void measure_queries(benchmark::State& state, std::size_t count, Queries&& queries) {
+  detail::run_counted(state, std::forward<Queries>(queries));
+  state.counters[allocation_counter] = state.counters[allocation_counter] / static_cast<double>(count);
+  state.counters[per_query] = detail::nanoseconds(state, static_cast<double>(count));
 }
 
 /// Measures `action`, say one roll-out: counters per_second and allocations (per action).

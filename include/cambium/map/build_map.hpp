@@ -22,6 +22,7 @@
 #include "cambium/map/detail/section_sampler.hpp"
 #include "cambium/map/detail/split_roads.hpp"
 #include "cambium/map/detail/speed_limits.hpp"
+#include "cambium/map/make_roads.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/opendrive_document.hpp"
 #include "cambium/map/overlaps.hpp"
@@ -42,8 +43,10 @@ class MapBuild {
 
   [[nodiscard]] std::shared_ptr<Map const> build() {
     check_parameters(parts_.options, "MapOptions");
-    parts_.roads.reserve(document_.roads.size());
-    for (auto const& road : document_.roads) add_road(road);
+    parts_.roads = make_roads(document_);
+    for (std::size_t i = 0; i < parts_.roads.size(); ++i)
+      for (std::size_t k = 0; k < parts_.roads[i].sections.size(); ++k)
+        add_section(document_.roads[i], parts_.roads[i], k);
     if (parts_.lanes.empty())
       throw MapError(file_, "the file has no lane with a length", "give a file with lanes beside lane 0");
     link_lanes();
@@ -74,64 +77,6 @@ class MapBuild {
   /// Height of a lane's path [m], to tell a bridge from a crossing.
   [[nodiscard]] double elevation(Lane const& lane, double s) const {
     return parts_.roads[index_of(lane.road)].elevation.value(lane.station_at(s));
-  }
-
-  [[nodiscard]] static Road make_road(opendrive::Road const& source, RoadId id, opendrive::HeaderOffset const& offset) {
-    Road road;
-    road.id = id;
-    road.name = source.id;
-    road.left_hand_traffic = source.rule == opendrive::TrafficRule::left_hand;
-    road.reference_line = opendrive::make_reference_line(source, offset);
-    road.lane_offset = CubicProfile(source.lane_offset);
-    road.elevation = CubicProfile(source.elevation);
-    road.elevation_offset = offset.z;
-    set_surface(source, road);
-    road.length = source.geometry_length();
-    for (std::size_t k = 0; k < source.lane_sections.size(); ++k) {
-      auto const& section = source.lane_sections[k];
-      RoadSection result;
-      result.begin = section.s;
-      result.end = k + 1 < source.lane_sections.size() ? source.lane_sections[k + 1].s : road.length;
-      for (auto const& lane : section.lanes) {
-        if (lane.id == 0) continue;
-        std::vector<LaneHeight> heights;
-        for (auto const& height : lane.heights) heights.push_back({height.s_offset, height.inner, height.outer});
-        result.lanes.push_back(
-            {lane.id, none<LaneId>, none<LaneId>, CubicProfile(lane.widths, BeforeFirst::hold),
-             CubicProfile(lane.widths.empty() ? lane.borders : std::vector<CubicRecord>(), BeforeFirst::hold),
-             std::move(heights)});
-      }
-      road.sections.push_back(std::move(result));
-    }
-    return road;
-  }
-
-  /// What lies across the road's elevation.
-  static void set_surface(opendrive::Road const& source, Road& road) {
-    road.superelevation = CubicProfile(source.superelevation);
-    std::vector<CubicRecord> left, right;
-    for (auto const& crossfall : source.crossfall) {
-      if (crossfall.side != opendrive::Side::right) left.push_back(crossfall.record);
-      if (crossfall.side != opendrive::Side::left) right.push_back(crossfall.record);
-    }
-    road.crossfall_left = CubicProfile(std::move(left));
-    road.crossfall_right = CubicProfile(std::move(right));
-    for (std::size_t i = 0; i < source.shape.size();) {
-      std::vector<CubicRecord> records;
-      double const s = source.shape[i].s;
-      for (; i < source.shape.size() && source.shape[i].s == s; ++i) records.push_back(source.shape[i].record);
-      road.shape.push_back({s, CubicProfile(std::move(records), BeforeFirst::hold)});
-    }
-  }
-
-  void add_road(opendrive::Road const& source) {
-    auto const id = static_cast<RoadId>(parts_.roads.size());
-    parts_.roads.push_back(make_road(source, id, document_.header.offset));
-    auto& road = parts_.roads.back();
-    for (std::size_t j = 0; j < document_.junctions.size(); ++j)
-      if (!source.junction.empty() && document_.junctions[j].id == source.junction)
-        road.junction = static_cast<JunctionId>(j);
-    for (std::size_t k = 0; k < road.sections.size(); ++k) add_section(source, road, k);
   }
 
   void add_section(opendrive::Road const& source, Road& road, std::size_t k) {
