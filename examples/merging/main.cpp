@@ -68,7 +68,7 @@ std::vector<Outcome> run_on(Site const& site, Settings const& settings) {
   try {
     return run_all(site, settings);
   } catch (cb::WorldError const& problem) {
-    throw cb::MapError(settings.map_file, problem.what(), "look at it with examples/run map_picture");
+    throw cb::MapError(settings.map_file, problem.what(), "look at it with examples/run map --picture");
   }
 }
 

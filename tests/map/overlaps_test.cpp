@@ -7,6 +7,7 @@
 
 #include <doctest/doctest.h>
 
+#include "cambium/map/map_builder.hpp"
 #include "lanes_by_hand.hpp"
 
 using namespace by_hand;
@@ -243,4 +244,20 @@ TEST_CASE("overlaps are where a look along every pair of lanes finds them") {
     }
   }
   CHECK(total > 100);
+}
+
+TEST_CASE("narrow oncoming lanes of roads that follow each other are no conflict") {
+  cambium::MapBuilder builder;
+  for (char const* id : {"1", "2"}) {
+    cambium::map::RoadPlan road;
+    road.id = id;
+    road.line = cambium::map::lay_from({id[0] == '1' ? 0.0 : 50.0, 0.0, 0.0}, {{50.0}});
+    road.sections = {{.left = cambium::map::equal_lanes(1, 2.0), .right = cambium::map::equal_lanes(1, 2.0)}};
+    builder.add_road(road);
+  }
+  builder.connect({"1", cambium::map::opendrive::ContactPoint::end},
+                  {"2", cambium::map::opendrive::ContactPoint::start});
+  auto const map = builder.build();
+  REQUIRE(map->lanes().size() == 4);
+  for (auto const& lane : map->lanes()) CHECK(lane.overlaps.empty());
 }

@@ -62,14 +62,19 @@ class OverlapFinder {
       auto const& lane = lanes_[i];
       add_linked(lane, &Lane::successors, 0.0, ahead_[i]);
       add_linked(lane, &Lane::predecessors, 0.0, behind_[i]);
-      for (auto const* linked : {&lane.successors, &lane.predecessors})
-        for (auto const id : *linked)
-          for (auto const side : {lanes_[index_of(id)].left_neighbor, lanes_[index_of(id)].right_neighbor})
-            if (is_valid(side)) beside_[i].push_back(side);
       for (auto const* linked : {&ahead_[i], &behind_[i]})
-        for (auto const id : *linked)
-          if (is_valid(lanes_[index_of(id)].opposite)) beside_[i].push_back(lanes_[index_of(id)].opposite);
+        for (auto const id : *linked) add_cross_section(index_of(id), beside_[i]);
     }
+  }
+
+  /// The lanes of the same section of the road, oncoming ones too: they stand one behind the other in `lanes_`.
+  void add_cross_section(std::size_t lane, std::vector<LaneId>& beside) const {
+    auto const is_same = [&](std::size_t i) {
+      return lanes_[i].road == lanes_[lane].road && lanes_[i].section == lanes_[lane].section;
+    };
+    auto first = lane;
+    while (first > 0 && is_same(first - 1)) --first;
+    for (; first < lanes_.size() && is_same(first); ++first) beside.push_back(lanes_[first].id);
   }
 
   /// The lanes behind a lane's end (or before its begin), and those behind them while they are too short to come
@@ -233,11 +238,11 @@ class OverlapFinder {
 /// k pairs of them that are close.
 ///
 /// Left out are lanes that belong together anyway: one behind the other (also with lanes in between that are shorter
-/// than twice the clearance), neighbours of those, and lanes of the same road at the same station, unless one merges
-/// into the other. Kinds: crossing where the directions differ by more than 60 degrees in the middle of the stretch;
-/// else merge where both end in a common successor; else split where both begin behind a common predecessor; else split
-/// where they are closer at the stretch's begin than at its end; else merge. For merge and split, begin and end are
-/// beside each other on the two lanes: where one lane begins or ends, so does the overlap.
+/// than twice the clearance), those beside these, oncoming ones too, and lanes of the same road at the same station,
+/// unless one merges into the other. Kinds: crossing where the directions differ by more than 60 degrees in the middle
+/// of the stretch; else merge where both end in a common successor; else split where both begin behind a common
+/// predecessor; else split where they are closer at the stretch's begin than at its end; else merge. For merge and
+/// split, begin and end are beside each other on the two lanes: where one lane begins or ends, so does the overlap.
 inline void find_overlaps(std::vector<Lane>& lanes, LaneElevation const& elevation, double clearance) {
   detail::OverlapFinder(lanes, elevation, clearance).find();
 }
