@@ -1,12 +1,13 @@
 // Reads an OpenDRIVE map: says what it contains and what is odd about it, draws it, and answers queries from tables.
 
-#include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <string>
 
 #include "cambium/core/write_file.hpp"
-#include "cambium/map/routing.hpp"
 #include "cambium/viewer/map_picture.hpp"
+#include "cambium/viewer/record_world.hpp"
+#include "cambium/viewer/svg_picture.hpp"
 
 #include "../common/command_line.hpp"
 #include "../common/map_file.hpp"
@@ -16,18 +17,25 @@
 namespace {
 
 struct Settings {
-  std::string file, picture, poses, nearest, out, links;
+  std::string file, picture, sketch, poses, nearest, out, links;
   std::vector<std::string> route;
   bool infer_links = false;
 };
 
 void run(Settings const& settings) {
-  auto const opened = examples::open_map(settings.file);
+  auto const opened = examples::open_map(settings.file, {.infer_links = settings.infer_links});
   std::cout << map_example::summary(opened, settings.file);
   for (auto const& diagnostic : opened.diagnostics) std::cout << "  " << to_string(diagnostic) << "\n";
   if (!settings.picture.empty()) {
     cambium::write_map_picture(settings.picture, *opened.map, {.title = settings.file});
     std::cout << "picture: " << settings.picture << "\n";
+  }
+  if (!settings.sketch.empty()) {
+    cambium::Recording recording;
+    recording.lanes = cambium::recorded_lanes(*opened.map);
+    recording.title = std::filesystem::path(settings.file).filename().string();
+    cambium::write_svg_picture(settings.sketch, recording);
+    std::cout << "sketch: " << settings.sketch << "\n";
   }
   if (!settings.poses.empty()) cambium::write_file(settings.out, map_example::poses(*opened.map, settings.poses));
   if (!settings.nearest.empty()) cambium::write_file(settings.out, map_example::nearest(*opened.map, settings.nearest));
@@ -42,6 +50,8 @@ int main(int argc, char** argv) {
   CLI::App program("Reads an OpenDRIVE map: what it contains, what is odd about it, pictures, queries.", "map");
   program.add_option("FILE", settings.file, "OpenDRIVE map (.xodr)")->type_name("")->required();
   program.add_option("--picture", settings.picture, "draw the map (.svg, or .html that zooms)")->type_name("OUT");
+  program.add_option("--sketch", settings.sketch, "draw it small, with a close-up, for a document (.svg)")
+      ->type_name("OUT");
   auto* const poses = program.add_option("--poses", settings.poses, "columns road,s,lane: where these lanes are");
   auto* const nearest =
       program.add_option("--nearest", settings.nearest, "columns x,y: the lanes that hold the points");
@@ -49,6 +59,7 @@ int main(int argc, char** argv) {
   poses->type_name("IN.csv")->needs(out)->excludes(nearest);
   nearest->type_name("IN.csv")->needs(out);
   program.add_option("--links", settings.links, "write which lanes meet at the ends of roads")->type_name("OUT.csv");
+  program.add_flag("--infer-links", settings.infer_links, "join lanes whose ends meet where the file forgot the link");
   program.add_option("--route", settings.route, "print the shortest route between two places, as road:lane:s each")
       ->type_name("FROM TO")
       ->expected(2);

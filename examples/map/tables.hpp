@@ -63,7 +63,7 @@ inline std::string links(cb::map::OpenDriveDocument const& document) {
 }
 
 /// A place "road:lane:s" of the command line; the road's id may have colons itself.
-inline cb::LaneId find_place(cb::Map const& map, std::string const& word) {
+inline cb::map::LaneStation find_place(cb::Map const& map, std::string const& word) {
   auto const second = word.rfind(':'),
              first = second == 0 || second == word.npos ? word.npos : word.rfind(':', second - 1);
   int lane = 0;
@@ -71,7 +71,8 @@ inline cb::LaneId find_place(cb::Map const& map, std::string const& word) {
   if (first == word.npos || !examples::read_number(word.substr(first + 1, second - first - 1), lane) ||
       !examples::read_number(word.substr(second + 1), s))
     throw cb::Error("--route", "'" + word + "' is no place", "write it as road:lane:s, say 12:-1:30.5");
-  return map.find_lane(word.substr(0, first), s, lane);
+  auto const id = map.find_lane(word.substr(0, first), s, lane);
+  return {id, map.lane(id).position_at(s)};
 }
 
 /// The shortest route between two places, a lane a line.

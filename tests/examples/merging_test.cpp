@@ -15,46 +15,14 @@
 
 #include "../support/corpus.hpp"
 #include "../viewer/browser.hpp"
+#include "program.hpp"
 
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string content_of(fs::path const& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-struct Run {
-  int code = -1;
-  std::string out, err;
-};
-
-/// The program with these words as its command line.
-class Program {
- public:
-  Program() : path_(CAMBIUM_EXAMPLES_DIR "/merging") {}
-
-  /// False, with a message, where the examples are not built.
-  [[nodiscard]] bool is_there() const {
-    if (fs::exists(path_)) return true;
-    MESSAGE("skipped: there is no " << path_.string() << "; build the examples");
-    return false;
-  }
-
-  [[nodiscard]] Run run(std::vector<std::string> const& words) const {
-    browser::TemporaryFolder const folder;
-    auto const out = folder.path() / "out", err = folder.path() / "err";
-    std::string command = browser::quoted(path_.string());
-    for (auto const& word : words) command += ' ' + browser::quoted(word);
-    int const status =
-        std::system((command + " >" + browser::quoted(out.string()) + " 2>" + browser::quoted(err.string())).c_str());
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, content_of(out), content_of(err)};
-  }
-
- private:
-  fs::path path_;
-};
+using program::content_of;
+using program::Program;
+using program::Run;
 
 /// The whole number that follows `key` in a text; -1 where the key is missing.
 long number_after(std::string const& text, std::string const& key) {
@@ -104,7 +72,7 @@ void check_same_on_any_threads(Program const& program, std::vector<std::string> 
 }  // namespace
 
 TEST_CASE("--help lists the options and is no error") {
-  Program const program;
+  Program const program("merging");
   if (!program.is_there()) return;
   auto const help = program.run({"--help"});
   CHECK(help.code == 0);
@@ -117,7 +85,7 @@ TEST_CASE("--help lists the options and is no error") {
 
 TEST_CASE(
     "what is wrong with the command line, the map or the folder is said in one line that names it, with exit code 2") {
-  Program const program;
+  Program const program("merging");
   if (!program.is_there()) return;
   browser::TemporaryFolder const folder;
   auto const file = [&](char const* name, std::string const& text) {
@@ -165,18 +133,19 @@ TEST_CASE(
 }
 
 TEST_CASE("the same seed gives the same files on any number of threads, another seed others") {
-  Program const program;
+  Program const program("merging");
   if (!program.is_there()) return;
   check_same_on_any_threads(program, {});
 }
 
 TEST_CASE("so it does on the corpus' maps of real merges") {
-  Program const program;
+  Program const program("merging");
   if (!program.is_there()) return;
   for (std::string const name : {"DR_DEU_Merging_MT_v01_shifted.xodr", "DR_DEU_Merging_MT_v01_centered.xodr",
                                  "DR_CHN_Merging_ZS_partial_v02.xodr"}) {
     CAPTURE(name);
-    if (auto const map = corpus::find("opendrive/" + name)) check_same_on_any_threads(program, {"--map", map->string()});
+    if (auto const map = corpus::find("opendrive/" + name))
+      check_same_on_any_threads(program, {"--map", map->string()});
   }
 }
 
@@ -231,7 +200,7 @@ std::vector<std::string> colours(fs::path const& chromium, fs::path const& page,
 }  // namespace
 
 TEST_CASE("replay.html plays the replayed scenario in a browser, with the ego where trajectories.csv has it") {
-  Program const program;
+  Program const program("merging");
   if (!program.is_there()) return;
   auto const chromium = browser::find();
   if (!chromium) {

@@ -30,7 +30,7 @@ struct RouteOptions {
   RouteCost cost = RouteCost::length;
   /// Cost of driving a whole lane, instead of `cost`; not negative, infinite closes the lane. Called once a lane and
   /// query. A part of a lane costs its share.
-  std::function<double(Lane const&)> own_cost;
+  std::function<double(Lane const&)> own_cost{};
   double lane_change_cost =
       10.0;  ///< of a change to a neighbouring lane, in the unit of the cost; infinite: no changes
   /// A change needs a place where the road marks permit it (behind the start, before the destination on their lanes).

@@ -1,0 +1,131 @@
+// The map example as a user meets it.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "../support/corpus.hpp"
+#include "../viewer/browser.hpp"
+#include "program.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using program::content_of;
+using program::Program;
+
+std::string const merging = CAMBIUM_SOURCE_DIR "/maps/merging.xodr";
+
+bool has(std::string const& text, std::string const& part) { return text.find(part) != std::string::npos; }
+
+}  // namespace
+
+TEST_CASE("it says what a map contains and draws it") {
+  Program const map("map");
+  if (!map.is_there()) return;
+  browser::TemporaryFolder const folder;
+  for (char const* name : {"map.svg", "map.html", "sketch.svg"}) {
+    auto const picture = folder.path() / name;
+    auto const run = map.run({merging, std::string(name) == "sketch.svg" ? "--sketch" : "--picture", picture.string()});
+    CHECK(run.code == 0);
+    CHECK(run.err.empty());
+    for (char const* part : {"5, 8 lane sections", "1 default; 2 connections", "12 driving", "1 merges", "none"})
+      CHECK(has(run.out, part));
+    auto const text = content_of(picture);
+    for (char const* part : {"<svg", "</svg>", "11:-1"}) CHECK(has(text, part));
+  }
+}
+
+TEST_CASE("poses, nearest lanes and links of real maps are those of the oracle") {
+  Program const map("map");
+  auto const folder = corpus::find("opendrive");
+  if (!map.is_there() || !folder) return;
+  browser::TemporaryFolder const out;
+  for (char const* stem : {"fabriksgatan", "ParametricCubicCurveComplexRoad", "soderleden"}) {
+    CAPTURE(stem);
+    auto const file = (*folder / stem).string() + ".xodr";
+    auto const oracle = *folder / "oracle" / (std::string(stem) + ".csv");
+    auto const written = [&](char const* name) { return (out.path() / name).string(); };
+    REQUIRE(map.run({file, "--poses", oracle.string(), "--out", written("poses"), "--links", written("links")}).code ==
+            0);
+    REQUIRE(map.run({file, "--nearest", oracle.string(), "--out", written("nearest")}).code == 0);
+    CHECK(has(content_of(written("poses")), "road,s,lane,x,y,hdg,width,t,rx,ry,rhdg,rk\n"));
+    CHECK(has(content_of(written("nearest")), "road,lane,s,t,distance,query\n"));
+    auto const expected = corpus::table(oracle), poses = corpus::table(written("poses"));
+    REQUIRE(poses.size() == expected.size());
+    for (std::size_t i = 0; i < poses.size(); ++i)
+      for (auto const& [ours, theirs] : {std::pair{3, 5}, {4, 6}, {6, 8}, {7, 9}, {8, 14}, {9, 15}, {11, 17}})
+        CHECK(std::abs(std::stod(poses[i][static_cast<std::size_t>(ours)]) -
+                       std::stod(expected[i][static_cast<std::size_t>(theirs)])) < 1e-6);
+    auto const nearest = corpus::table(written("nearest"));
+    std::size_t found = 0, row = 0;
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      while (row < nearest.size() && std::stoul(nearest[row][5]) < i) ++row;
+      if (expected[i][23] != "1" || std::stod(expected[i][8]) <= 0.5) continue;
+      REQUIRE(row < nearest.size());
+      CHECK(nearest[row][0] == expected[i][0]);
+      CHECK(nearest[row][1] == expected[i][2]);
+      CHECK(std::abs(std::stod(nearest[row][2]) - std::stod(expected[i][1])) < 1e-6);
+      ++found;
+    }
+    CHECK(found > 40);
+    std::size_t rows = 0;
+    for (auto const& link : corpus::table(*folder / "oracle" / (std::string(stem) + ".links.csv")))
+      rows += link.size() > 1;
+    CHECK(corpus::table(written("links")).size() == rows);
+  }
+}
+
+TEST_CASE("a route is printed lane by lane, and where there is none it is an error") {
+  Program const map("map");
+  if (!map.is_there()) return;
+  auto const run = map.run({merging, "--route", "2:-1:5", "3:-1:300"});
+  CHECK(run.code == 0);
+  CHECK(has(run.out, "route of 6 lanes, "));
+  CHECK(has(run.out, "  road 11, section 0, lane -1, "));
+  auto const none = map.run({merging, "--route", "3:-1:300", "2:-1:5"});
+  CHECK(none.code == 2);
+  CHECK(has(none.err, "there is no way from 3:-1:300 to 2:-1:5"));
+}
+
+TEST_CASE("what is wrong is said in one line, with exit code 2 and nothing written") {
+  Program const map("map");
+  if (!map.is_there()) return;
+  browser::TemporaryFolder const folder;
+  auto const table = (folder.path() / "in.csv").string(), out = (folder.path() / "out.csv").string();
+  auto const write = [&](std::string const& text) { std::ofstream(table) << text; };
+  struct Wrong {
+    std::string text;
+    std::vector<std::string> words;
+    char const* sentence;
+  };
+  for (auto const& wrong :
+       std::vector<Wrong>{{"", {}, "FILE is required"},
+                          {"", {"nosuch.xodr"}, "nosuch.xodr: the file cannot be opened"},
+                          {"<a>", {table}, "in.csv:1: the file is not well-formed XML"},
+                          {"<a/>", {table}, "not <OpenDRIVE>"},
+                          {"", {merging, "--picture", out}, "an .svg or an .html"},
+                          {"", {merging, "--poses", table}, "--poses requires --out"},
+                          {"", {merging, "--poses", table, "--out", out}, "in.csv: it has no row"},
+                          {"road,s,lane\n1,5,-1\n1,5,-9\n",
+                           {merging, "--poses", table, "--out", out},
+                           "in.csv:3: road 1 has no lane -9"},
+                          {"1,five,-1\n", {merging, "--poses", table, "--out", out}, "in.csv:1: s is 'five'"},
+                          {"1,nan,-1\n", {merging, "--poses", table, "--out", out}, "in.csv:1: s is 'nan'"},
+                          {"77,5,-1\n", {merging, "--poses", table, "--out", out}, "road 77: the map has no such road"},
+                          {"x,y\n1\n", {merging, "--nearest", table, "--out", out}, "in.csv:2: there is no y in it"},
+                          {"", {merging, "--route", "1:-1", "2:-1:5"}, "'1:-1' is no place"},
+                          {"", {merging, "--route", "1:-1:5", "9:-1:5"}, "road 9: the map has no such road"},
+                          {"", {merging, "--links", "/nosuch/folder/links.csv"}, "cannot be written"}}) {
+    write(wrong.text);
+    auto const run = map.run(wrong.words);
+    CAPTURE(wrong.sentence);
+    CAPTURE(run.err);
+    CHECK(run.code == 2);
+    CHECK(has(run.err, wrong.sentence));
+    CHECK(run.err.find('\n') == run.err.size() - 1);
+    CHECK_FALSE(fs::exists(out));
+  }
+}
