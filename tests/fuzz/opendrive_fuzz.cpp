@@ -73,7 +73,9 @@ void check_queries(cb::Map const& map) {
   for (std::size_t i = 0; i < map.lanes().size(); i += 1 + map.lanes().size() / 3) {
     auto const& lane = map.lanes()[i];
     if (is_valid(lane.merges_into)) continue;  // its path leaves the lane
-    auto const pose = lane.path.pose(0.5 * lane.length());
+    auto pose = lane.path.pose(0.5 * lane.length());
+    auto const& chord = lane.path.segments()[lane.path.find(0.5 * lane.length())];
+    pose.heading = std::atan2(chord.uy, chord.ux);  // at a jump of the reference line the path's own is another one
     auto const near = map.lanes_near(pose.position(), 1.0);
     auto const is_it = [&](auto const& hit) { return hit.lane == lane.id; };
     if (std::none_of(near.begin(), near.end(), is_it)) fail(map.describe(lane.id) + ": not found on its own path");
