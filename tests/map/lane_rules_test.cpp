@@ -197,8 +197,10 @@ TEST_CASE("on real maps lanes say what the records at each of their places say")
   std::size_t forbidden = 0, permitted = 0, limited = 0, wrong = 0;
   for (auto const& file : corpus::maps(*folder)) {
     std::vector<Diagnostic> diagnostics;
-    auto const document = read_opendrive_document(corpus::read(file), file.string(), diagnostics);
-    auto const map = build_map(document, {}, file.string(), diagnostics);
+    auto const written = read_opendrive_document(corpus::read(file), file.string(), diagnostics);
+    auto const map = build_map(written, {}, file.string(), diagnostics);
+    auto const document =
+        map::detail::split_roads(written, map::detail::places_to_split(written));  // with the map's sections
     for (auto const& lane : map->lanes()) {
       if (is_valid(lane.merges_into)) continue;  // its path leaves its cross-sections' order a little
       for (double const share : {0.1, 0.37, 0.5, 0.93}) {

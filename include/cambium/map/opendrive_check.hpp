@@ -117,16 +117,26 @@ class DocumentCheck {
       report(Severity::error, road.geometry_lines[i], "geometry", "road " + road.id, what + "; the road was left out");
       return false;
     };
-    if (turn_beyond(road.geometries.front(), 0.0, road.geometries.front().s) > 1.0)
-      return lost(0, "the road has no geometry before " + rounded_text(road.geometries.front().s) + " m");
+    std::size_t const last = road.geometries.size() - 1;
+    if (!(road.geometry_length() > 0.0))
+      return lost(last, "the geometries end at " + rounded_text(road.geometry_length()) + " m");
+    double const first_s = road.geometries.front().s;
+    if (turn_beyond(road.geometries.front(), 0.0, first_s) > 1.0)
+      return lost(0, "the road has no geometry before " + rounded_text(first_s) + " m");
+    if (std::abs(first_s) > slight)
+      report(
+          Severity::warning, road.geometry_lines[0], "geometry", "road " + road.id,
+          "the first geometry starts at " + rounded_text(first_s) + " m, not at 0; the road starts at 0 all the same");
     for (std::size_t i = 1; i < road.geometries.size(); ++i) {
       Geometry const& before = road.geometries[i - 1];
       Geometry const& next = road.geometries[i];
       if (turn_beyond(before, before.length, next.s - before.s - before.length) > 1.0)
         return lost(i, "there is no geometry for " + rounded_text(next.s - before.s - before.length) + " m before it");
       CurvePoint const end = evaluate(before, before.length);
-      double const gap = std::hypot(next.x - end.x, next.y - end.y);
-      double const turn = std::abs(geometry::angle_difference(next.heading, end.heading));
+      CurvePoint const start =
+          next.kind == GeometryKind::cubic ? evaluate(next, 0.0) : CurvePoint{next.x, next.y, next.heading};
+      double const gap = std::hypot(start.x - end.x, start.y - end.y);
+      double const turn = std::abs(geometry::angle_difference(start.heading, end.heading));
       if (gap <= noticeable && turn <= noticeable) {
         slight_ones += gap > slight;
         if (gap > std::max(slight, widest)) {
@@ -176,12 +186,12 @@ class DocumentCheck {
   double leave_out_wild(std::vector<CubicRecord>& records, double end, int line, char const* element, Ids const& ids) {
     constexpr double largest = 1000.0;  // [m]
     double lowest = 0.0;
-    for (std::size_t i = 0; i < records.size();) {
+    // From the back: where a record is left out, the one before it holds up to the next one that is kept.
+    for (std::size_t i = records.size(); i-- > 0;) {
       double const to = i + 1 < records.size() ? std::min(end, records[i + 1].s) : end;
       auto const [low, high] = extremes(records[i], records[i].s, std::max(to, records[i].s));
       if (low >= -largest && high <= largest) {
         lowest = std::min(lowest, low);
-        ++i;
         continue;
       }
       report(Severity::error, line, element, ids(),

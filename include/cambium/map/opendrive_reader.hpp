@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <iterator>
 #include <optional>
@@ -24,12 +25,21 @@
 namespace cambium::map {
 namespace detail {
 
+/// An offset that leads out of the world counts as none.
+inline void read_offset(XmlContext& context, pugi::xml_node node, opendrive::HeaderOffset& offset) {
+  static_cast<void>(read_attributes(context, node, offset, nullptr));
+  if (std::max({std::abs(offset.x), std::abs(offset.y), std::abs(offset.z)}) <= 1e8 && std::abs(offset.heading) <= 1e4)
+    return;
+  context.report(Severity::warning, node,
+                 "it lies beyond 100 000 km, or turns by more than 10 000 rad; it was left out");
+  offset = {};
+}
+
 [[nodiscard]] inline opendrive::Header read_header(XmlContext& context, pugi::xml_node node) {
   opendrive::Header header;
   static_cast<void>(read_attributes(context, node, header));  // it needs none
   header.geo_reference = trimmed(find_child(node, "geoReference").child_value());
-  if (pugi::xml_node const offset = find_child(node, "offset"))
-    static_cast<void>(read_attributes(context, offset, header.offset, nullptr));
+  if (pugi::xml_node const offset = find_child(node, "offset")) read_offset(context, offset, header.offset);
   for_each_child(node, [&](pugi::xml_node child, std::string_view name) {
     if (name != "geoReference" && name != "offset") keep_element(context, child, header.rest);
   });

@@ -32,7 +32,7 @@ class ParametricCubic {
   /// The poly3 v(u) with `v` as its coefficients, from u = 0 on, that is `length` [m] long.
   [[nodiscard]] static ParametricCubic along_u(Coefficients const& v, double length) {
     double low = 0.0, high = length;  // it is at least as long as u is
-    for (int i = 0; i < 100 && high - low > 1e-15 * length; ++i) {
+    for (int i = 0; i < 100 && high - low > 1e-15 * high; ++i) {
       double const middle = 0.5 * (low + high);
       (ParametricCubic({0, 1, 0, 0}, v, middle).length() < length ? low : high) = middle;
     }

@@ -21,18 +21,17 @@ class LaneChangeMarks {
   /// The stretches of the path of `lane` from which the marks permit a change to its neighbour `to`.
   [[nodiscard]] std::vector<PathStretch> permitted(Lane const& lane, Lane const& to) const {
     std::vector<double> stations{lane.road_begin, lane.road_end};
-    int const low = std::min(lane.number, to.number), high = std::max(lane.number, to.number);
-    for (int number = low; number < high; ++number)
-      if (auto const* border = border_above(number))
-        for (auto const& mark : border->road_marks)
-          if (std::isfinite(mark.s_offset))
-            stations.push_back(std::min(lane.road_begin + std::max(mark.s_offset, 0.0), lane.road_end));
+    auto const borders = borders_between(lane.number, to.number);
+    for (auto const* border : borders)
+      for (auto const& mark : border->road_marks)
+        if (std::isfinite(mark.s_offset))
+          stations.push_back(std::min(lane.road_begin + std::max(mark.s_offset, 0.0), lane.road_end));
     std::sort(stations.begin(), stations.end());
     std::vector<PathStretch> stretches;
     double end_of_last = -1.0;
     for (std::size_t i = 0; i + 1 < stations.size(); ++i) {
       double const from = stations[i], until = stations[i + 1];
-      if (until - from < 1e-6 || !is_permitted(lane.number, to.number, from - lane.road_begin)) continue;
+      if (until - from < 1e-6 || !is_permitted(borders, to.number > lane.number, from - lane.road_begin)) continue;
       auto const stretch = lane.stretch_between(from, until);
       if (from != end_of_last)
         stretches.push_back(stretch);
@@ -46,21 +45,29 @@ class LaneChangeMarks {
   }
 
  private:
-  /// Whose marks are those of the border between the lanes `number` and `number` + 1: of the one nearer to lane 0.
-  [[nodiscard]] opendrive::Lane const* border_above(int number) const {
-    return section_.find(number >= 0 ? number : number + 1);
+  using Borders = std::vector<opendrive::Lane const*>;
+
+  /// The lanes whose marks are those of the borders between the lanes `a` and `b`: of each border the lane nearer to
+  /// lane 0. Ids may be any distance apart.
+  [[nodiscard]] Borders borders_between(int a, int b) const {
+    int const low = std::min(a, b), high = std::max(a, b);
+    Borders borders;
+    auto at = std::partition_point(section_.lanes.begin(), section_.lanes.end(),
+                                   [high](opendrive::Lane const& lane) { return lane.id > high; });
+    for (; at != section_.lanes.end() && at->id >= low; ++at)
+      if (at->id == 0 || at->id != (at->id > 0 ? high : low)) borders.push_back(&*at);
+    return borders;
   }
 
-  /// Whether the marks at `s` behind the section's start [m] let a vehicle from lane `from` into lane `to`.
-  [[nodiscard]] bool is_permitted(int from, int to, double s) const {
+  /// Whether the marks at `s` behind the section's start [m] let a vehicle change to the next higher (lower) lane.
+  [[nodiscard]] static bool is_permitted(Borders const& borders, bool to_higher, double s) {
     using opendrive::LaneChange;
-    for (int number = std::min(from, to); number < std::max(from, to); ++number) {
-      auto const* border = border_above(number);
-      auto change = LaneChange::unspecified;
-      if (border)
-        for (auto const& mark : border->road_marks)
-          if (mark.s_offset <= s + 1e-9) change = mark.lane_change;
-      if (change == LaneChange::none || change == (to > from ? LaneChange::decrease : LaneChange::increase))
+    for (auto const* border : borders) {
+      auto const& marks = border->road_marks;
+      auto const next = std::upper_bound(marks.begin(), marks.end(), s + 1e-9,
+                                         [](double v, auto const& mark) { return v < mark.s_offset; });
+      auto const change = next == marks.begin() ? LaneChange::unspecified : (next - 1)->lane_change;
+      if (change == LaneChange::none || change == (to_higher ? LaneChange::decrease : LaneChange::increase))
         return false;
     }
     return true;

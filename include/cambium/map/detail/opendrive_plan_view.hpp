@@ -93,7 +93,12 @@ using cambium::detail::rounded_text;
 /// False when something is so large that nobody could drive there.
 [[nodiscard]] inline bool is_within_bounds(XmlContext& context, pugi::xml_node node, Geometry const& g) {
   constexpr double farthest = 1e8, longest = 1e6;  // [m]: beyond any map
-  if (!(std::abs(g.x) <= farthest && std::abs(g.y) <= farthest && std::abs(g.s) <= longest && g.length <= longest)) {
+  double length = g.length, shift = 0.0;
+  if (g.cubic) {
+    length = std::max(length, g.cubic->length());
+    shift = std::max(std::abs(g.cubic->u()[0]), std::abs(g.cubic->v()[0]));
+  }
+  if (!(std::max({std::abs(g.x), std::abs(g.y), shift}) <= farthest && std::max(std::abs(g.s), length) <= longest)) {
     context.report(Severity::warning, node, "a coordinate lies beyond 100 000 km, or a length beyond 1000 km");
     return false;
   }

@@ -70,8 +70,13 @@ class SectionSampler {
     auto const add = [&](double s) {
       if (s > section_.begin && s < section_.end) points.push_back(s);
     };
-    for (auto const& g : road_.reference_line.geometries()) add(g.s);
-    for (auto const& record : road_.lane_offset.records()) add(record.s);
+    auto const add_those_inside = [&](auto records) {  // a road may have thousands, and as many sections
+      auto at = std::partition_point(records.begin(), records.end(),
+                                     [&](auto const& record) { return record.s <= section_.begin; });
+      for (; at != records.end() && at->s < section_.end; ++at) points.push_back(at->s);
+    };
+    add_those_inside(road_.reference_line.geometries());
+    add_those_inside(road_.lane_offset.records());
     for (auto const& lane : section_.lanes)
       for (auto const* profile : {&lane.width, &lane.border})
         for (auto const& record : profile->records()) add(section_.begin + record.s);

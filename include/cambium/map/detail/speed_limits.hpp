@@ -18,9 +18,9 @@ namespace cambium::map::detail {
 /// nonsense.
 template <class Record>
 [[nodiscard]] std::optional<double> limit_in_force(std::vector<Record> const& records, double s) {
-  std::optional<double> limit;
-  for (auto const& record : records)
-    if (record.s <= s + 1e-9) limit = record.limit;
+  auto const next =
+      std::upper_bound(records.begin(), records.end(), s + 1e-9, [](double v, Record const& r) { return v < r.s; });
+  auto const limit = next == records.begin() ? std::nullopt : (next - 1)->limit;
   return limit && *limit > 0.0 ? limit : std::nullopt;
 }
 
@@ -36,7 +36,9 @@ inline void set_speed_limits(OpenDriveDocument const& document, std::span<Lane> 
     auto const add = [&](double s) {
       if (std::isfinite(s)) stations.push_back(s);
     };
-    for (auto const& type : source.types) add(type.s);
+    auto type = std::partition_point(source.types.begin(), source.types.end(),
+                                     [&](auto const& t) { return t.s < lane.road_begin; });
+    for (; type != source.types.end() && type->s < lane.road_end; ++type) add(type->s);
     for (auto const& speed : written.speeds) add(lane.road_begin + speed.s);
     std::sort(stations.begin(), stations.end());
     std::vector<SpeedStep> steps;

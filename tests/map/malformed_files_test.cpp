@@ -1,0 +1,448 @@
+// Malformed files at which other readers crash, invent places or fall silent, each with its stated outcome here: an
+// error, or what is said and what the map then is.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "../support/map_faults.hpp"
+#include "cambium/map/opendrive.hpp"
+#include "road_text.hpp"
+
+namespace {
+
+using cambium::Diagnostic;
+using cambium::MapError;
+using cambium::Severity;
+
+/// A straight road of two lanes, one that bends left behind it, and behind that a connecting road.
+std::string const good_file = R"(<?xml version="1.0"?>
+<OpenDRIVE>
+  <header revMajor="1" revMinor="6"/>
+  <road id="1" length="100" junction="-1">
+    <link><successor elementType="road" elementId="2" contactPoint="start"/></link>
+    <planView>
+      <geometry s="0" x="0" y="0" hdg="0" length="60"><line/></geometry>
+      <geometry s="60" x="60" y="0" hdg="0" length="40"><line/></geometry>
+    </planView>
+    <lanes><laneSection s="0">
+      <center><lane id="0" type="none"/></center>
+      <right>
+        <lane id="-1" type="driving">
+          <link><successor id="-1"/></link>
+          <width sOffset="0" a="3" b="0" c="0" d="0"/>
+        </lane>
+        <lane id="-2" type="driving"><width sOffset="0" a="2" b="0" c="0" d="0"/></lane>
+      </right>
+    </laneSection></lanes>
+  </road>
+  <road id="2" length="50" junction="-1">
+    <link><predecessor elementType="road" elementId="1" contactPoint="end"/>
+      <successor elementType="junction" elementId="9"/></link>
+    <planView><geometry s="0" x="100" y="0" hdg="0" length="50"><arc curvature="0.01"/></geometry></planView>
+    <lanes><laneSection s="0">
+      <center><lane id="0" type="none"/></center>
+      <right><lane id="-1" type="driving">
+        <link><predecessor id="-1"/></link>
+        <width sOffset="0" a="3" b="0" c="0" d="0"/>
+      </lane></right>
+    </laneSection></lanes>
+  </road>
+  <road id="3" length="10" junction="9">
+    <link><predecessor elementType="road" elementId="2" contactPoint="end"/></link>
+    <planView><geometry s="0" x="147.9425538604203" y="12.24174381096272" hdg="0.5" length="10"><line/></geometry></planView>
+    <lanes><laneSection s="0">
+      <center><lane id="0" type="none"/></center>
+      <right><lane id="-1" type="driving">
+        <link><predecessor id="-1"/></link>
+        <width sOffset="0" a="3" b="0" c="0" d="0"/>
+      </lane></right>
+    </laneSection></lanes>
+  </road>
+  <junction id="9" name=""><connection id="0" incomingRoad="2" connectingRoad="3" contactPoint="start">
+    <laneLink from="-1" to="-1"/></connection></junction>
+</OpenDRIVE>
+)";
+
+/// A text, and what the map is that is made of it.
+struct Case {
+  char const* name;
+  std::vector<std::pair<std::string, std::string>> changes;  ///< of the good file, one after the other
+  Severity severity;
+  char const* element;  ///< of the finding; none where nothing is to be found
+  char const* words;    ///< of its sentence
+  std::size_t roads = 3, lanes = 4;
+  double length = 100.0;  ///< of the first lane's path [m]
+  double end_y = -1.5;    ///< where that ends [m]
+  double width = 3.0;     ///< of that in its middle [m]
+  bool is_linked = true;  ///< whether a lane leads into the other road
+};
+
+std::string const second_geometry =
+    R"(<geometry s="0" x="100" y="0" hdg="0" length="50"><arc curvature="0.01"/></geometry>)";
+std::string const first_width = R"(<width sOffset="0" a="3" b="0" c="0" d="0"/>)";
+std::string const both_geometries = R"(<geometry s="0" x="0" y="0" hdg="0" length="60"><line/></geometry>
+      <geometry s="60" x="60" y="0" hdg="0" length="40"><line/></geometry>)";
+auto constexpr warning = Severity::warning;
+auto constexpr failure = Severity::error;
+auto constexpr info = Severity::info;
+char const* const nothing = "";
+
+std::vector<Case> const cases{
+    {"no header", {{R"(<header revMajor="1" revMinor="6"/>)", ""}}, warning, "header", "no header"},
+    {"section without lane 0",
+     {{R"(<center><lane id="0" type="none"/></center>)", ""}},
+     warning,
+     "laneSection",
+     "no lane 0"},
+    {"arc of curvature 0", {{R"(<line/></geometry>)", R"(<arc curvature="0"/></geometry>)"}}, info, nothing, nothing},
+    {"spiral whose curvatures are equal",
+     {{R"(<arc curvature="0.01"/>)", R"(<spiral curvStart="0.01" curvEnd="0.01"/>)"}},
+     info,
+     nothing,
+     nothing},
+    {"spiral of length 0",
+     {{second_geometry,
+       second_geometry +
+           R"(<geometry s="50" x="148" y="12" hdg="0.5" length="0"><spiral curvStart="0" curvEnd="0.1"/></geometry>)"}},
+     info,
+     "geometry",
+     "length 0 was left out"},
+    {"unknown geometry",
+     {{R"(<arc curvature="0.01"/>)", "<clothoids/>"}},
+     warning,
+     "geometry",
+     "none of line, arc, spiral",
+     2,
+     3,
+     100.0,
+     -1.5,
+     3.0,
+     false},
+    {"empty plan view", {{second_geometry, ""}}, warning, "planView", "has no geometry", 2, 3, 100.0, -1.5, 3.0, false},
+    {"no plan view",
+     {{"<planView>" + second_geometry + "</planView>", ""}},
+     warning,
+     "road",
+     "has no geometry",
+     2,
+     3,
+     100.0,
+     -1.5,
+     3.0,
+     false},
+    {"userData before the geometry's kind", {{"<line/>", "<userData code=\"x\"/><line/>"}}, info, nothing, nothing},
+    {"userData behind the geometry's kind", {{"<line/>", "<line/><userData code=\"x\"/>"}}, info, nothing, nothing},
+    {"comment in a geometry", {{"<line/>", "<!-- <arc curvature=\"1\"/> --><line/>"}}, info, nothing, nothing},
+    {"gap between lane ids", {{R"(<lane id="-2")", R"(<lane id="-5")"}}, warning, "lane", "no lane between -1 and -5"},
+    {"lane ids as far apart as they can be",
+     {{R"(<lane id="-2")", R"(<lane id="-2147483648")"}},
+     warning,
+     "lane",
+     "no lane between -1 and -2147483648"},
+    {"negative width",
+     {{R"(a="3")", R"(a="-3")"}},
+     warning,
+     "lane",
+     "its width falls to -3 m; below 0 it counts as 0",
+     3,
+     4,
+     100.0,
+     0.0,
+     0.0},
+    {"no width", {{first_width, ""}}, warning, "lane", "neither width nor border", 3, 4, 100.0, 0.0, 0.0},
+    {"width that is not a number",
+     {{R"(a="3")", R"(a="NaN")"}},
+     warning,
+     "width",
+     "a=\"NaN\" is not a finite number",
+     3,
+     4,
+     100.0,
+     0.0,
+     0.0},
+    {"infinite width",
+     {{R"(a="3")", R"(a="inf")"}},
+     warning,
+     "width",
+     "a=\"inf\" is not a finite number",
+     3,
+     4,
+     100.0,
+     0.0,
+     0.0},
+    {"text in a number",
+     {{R"(a="3")", R"(a="3 m")"}},
+     warning,
+     "width",
+     "a=\"3 m\" is not a finite number",
+     3,
+     4,
+     100.0,
+     0.0,
+     0.0},
+    {"comma in a number",
+     {{R"(a="3")", R"(a="3,5")"}},
+     warning,
+     "width",
+     "a=\"3,5\" is not a finite number",
+     3,
+     4,
+     100.0,
+     0.0,
+     0.0},
+    {"text in a number of a geometry",
+     {{R"(x="100")", R"(x="100m")"}},
+     warning,
+     "geometry",
+     "x=\"100m\" is not a finite number",
+     2,
+     3,
+     100.0,
+     -1.5,
+     3.0,
+     false},
+    {"number beyond all doubles",
+     {{R"(a="3")", R"(a="1e999")"}},
+     warning,
+     "width",
+     "is not a finite number",
+     3,
+     4,
+     100.0,
+     0.0,
+     0.0},
+    {"road longer than its geometry",
+     {{R"(length="100")", R"(length="140")"}},
+     warning,
+     "road",
+     "the length is 140 m, but the geometries end at 100 m"},
+    {"road shorter than its geometry",
+     {{R"(length="100")", R"(length="20")"}},
+     warning,
+     "road",
+     "the length is 20 m, but the geometries end at 100 m"},
+    {"geometries not in order",
+     {{both_geometries, R"(<geometry s="60" x="60" y="0" hdg="0" length="40"><line/></geometry>
+      <geometry s="0" x="0" y="0" hdg="0" length="60"><line/></geometry>)"}},
+     warning,
+     "planView",
+     "not in the order of s"},
+    {"lane offset that starts late",
+     {{"<laneSection", R"(<laneOffset s="50" a="1" b="0" c="0" d="0"/><laneSection)"}},
+     warning,
+     "link",
+     "goes on 1 m away",
+     3,
+     4,
+     100.0,
+     -0.5},
+    {"width that starts late",
+     {{R"(<width sOffset="0" a="2")", R"(<width sOffset="60" a="2")"}},
+     warning,
+     "lane",
+     "its first value counts before it too"},
+    {"the next lane's width starts late",
+     {{R"(<width sOffset="0" a="3")", R"(<width sOffset="60" a="3")"}},
+     warning,
+     "lane",
+     "its first value counts before it too"},
+    {"road id twice",
+     {{R"(<road id="2")", R"(<road id="1")"}},
+     failure,
+     "road",
+     "id 1 is there twice",
+     2,
+     3,
+     100.0,
+     -1.5,
+     3.0,
+     false},
+    {"link to a road that is not there",
+     {{R"(elementId="2")", R"(elementId="22")"}},
+     warning,
+     "successor",
+     "no usable road 22"},
+    {"connection to a road that is not there",
+     {{R"(connectingRoad="3")", R"(connectingRoad="22")"}},
+     warning,
+     "connection",
+     "no usable road \"22\""},
+    {"connection from a road that is not there",
+     {{R"(incomingRoad="2")", R"(incomingRoad="11")"}},
+     warning,
+     "connection",
+     "no usable road \"11\""},
+    {"no contact point",
+     {{R"(elementId="2" contactPoint="start")", R"(elementId="2")"}},
+     warning,
+     "successor",
+     "contactPoint is missing"},
+    {"several predecessors of a lane",
+     {{R"(<predecessor id="-1"/>)", R"(<predecessor id="-1"/><predecessor id="-2"/>)"}},
+     info,
+     nothing,
+     nothing},
+    {"lane section behind the road's end",
+     {{"</laneSection></lanes>", R"(</laneSection><laneSection s="300"><center><lane id="0"/></center><right>
+       <lane id="-1" type="driving"/></right></laneSection></lanes>)"}},
+     warning,
+     "laneSection",
+     "behind the road's end; it was left out"},
+    {"header offset beyond the earth",
+     {{"<header", R"(<header><offset x="1e300" y="0" z="0" hdg="0"/></header><ignored)"}},
+     warning,
+     "offset",
+     "beyond 100 000 km"},
+    {"poly3 that starts far away",
+     {{R"(<arc curvature="0.01"/>)", R"(<poly3 a="1e20" b="0" c="0" d="0"/>)"}},
+     warning,
+     "geometry",
+     "beyond 100 000 km",
+     2,
+     3,
+     100.0,
+     -1.5,
+     3.0,
+     false},
+    {"paramPoly3 without end",
+     {{R"(<arc curvature="0.01"/>)",
+       R"(<paramPoly3 pRange="normalized" aU="0" bU="1e9" cU="0" dU="0" aV="0" bV="0" cV="0" dV="0"/>)"}},
+     warning,
+     "geometry",
+     "beyond 1000 km",
+     2,
+     3,
+     100.0,
+     -1.5,
+     3.0,
+     false},
+    {"geometries that end before the road begins",
+     {{R"(<geometry s="0" x="100")", R"(<geometry s="-50" x="100")"}},
+     failure,
+     "geometry",
+     "the geometries end at 0 m; the road was left out",
+     2,
+     3,
+     100.0,
+     -1.5,
+     3.0,
+     false},
+    {"a wild width hidden by another one at its place",
+     {{R"(<width sOffset="0" a="2" b="0")",
+       R"(<width sOffset="0" a="2" b="1e9"/><width sOffset="0" a="2" b="1e8"/><width sOffset="0" a="2" b="0")"}},
+     info,
+     nothing,
+     nothing},
+    {"wild widths at one place",
+     {{R"(<width sOffset="0" a="2" b="0")",
+       R"(<width sOffset="0" a="2" b="1e9" c="0" d="0"/><width sOffset="0" a="2" b="1e9")"}},
+     failure,
+     "width",
+     "it was left out"},
+    {"paramPoly3 of nothing but zeros",
+     {{R"(<arc curvature="0.01"/>)",
+       R"(<paramPoly3 pRange="arcLength" aU="0" bU="0" cU="0" dU="0" aV="0" bV="0" cV="0" dV="0"/>)"}},
+     warning,
+     "paramPoly3",
+     "has no length",
+     2,
+     3,
+     100.0,
+     -1.5,
+     3.0,
+     false},
+};
+
+/// A text that is no map at all.
+struct Refused {
+  char const* name;
+  std::string text;
+  char const* words;
+};
+
+std::vector<Refused> const refused{
+    {"empty", "", "not well-formed XML"},
+    {"not XML", "road 1: 100 m", "not well-formed XML"},
+    {"bytes", std::string("\0\xff\xfe\x01<\0", 6), "not well-formed XML"},
+    {"truncated XML", good_file.substr(0, good_file.size() / 2), "not well-formed XML"},
+    {"wrong root", "<osm><header/></osm>", "the root element is <osm>"},
+    {"no roads", "<OpenDRIVE><header/></OpenDRIVE>", "no usable road"},
+    {"nothing but a road without lanes",
+     R"(<OpenDRIVE><header/><road id="1" length="5"><planView><geometry s="0" x="0" y="0" hdg="0" length="5"><line/>
+     </geometry></planView></road></OpenDRIVE>)",
+     "no usable road"},
+    {"nothing but lane 0",
+     R"(<OpenDRIVE><header/><road id="1" length="5"><planView><geometry s="0" x="0" y="0" hdg="0" length="5"><line/>
+     </geometry></planView><lanes><laneSection s="0"><center><lane id="0"/></center></laneSection></lanes></road>
+     </OpenDRIVE>)",
+     "no lane with a length"},
+};
+
+std::string changed(Case const& c) {
+  std::string text = good_file;
+  for (auto const& [from, to] : c.changes) {
+    auto const at = text.find(from);
+    REQUIRE_MESSAGE(at != text.npos, "the file has no " << from);
+    text.replace(at, from.size(), to);
+  }
+  return text;
+}
+
+void check_finding(Case const& c, std::vector<Diagnostic> const& diagnostics) {
+  if (std::string_view(c.element).empty()) {
+    CHECK_MESSAGE(diagnostics.empty(), to_string(diagnostics.front()));
+    return;
+  }
+  bool is_found = false;
+  std::string all;
+  for (auto const& d : diagnostics) {
+    is_found |= d.severity == c.severity && d.element == c.element && d.sentence.find(c.words) != std::string::npos;
+    all += "\n" + to_string(d);
+  }
+  CHECK_MESSAGE(is_found, "found was only" << all);
+}
+
+void check_map(Case const& c, cambium::Map const& map) {
+  CHECK(map_faults::first_fault(map) == "");
+  CHECK(map.roads().size() == c.roads);
+  REQUIRE(map.lanes().size() == c.lanes);
+  auto const& lane = map.lanes()[0];
+  CHECK(lane.length() == doctest::Approx(c.length).epsilon(0.005));
+  CHECK(lane.path.pose(lane.length()).y == doctest::Approx(c.end_y).epsilon(1e-9));
+  auto const widths = lane.widths_at(0.5 * lane.length());
+  CHECK(widths.left + widths.right == doctest::Approx(c.width).epsilon(1e-9));
+  CHECK(lane.successors.empty() != c.is_linked);
+}
+
+}  // namespace
+
+TEST_CASE("a malformed file gives the map and the finding that are stated for it") {
+  auto const good = road_text::load(good_file);
+  CHECK(good.diagnostics.empty());
+  check_map({"the good file", {}, info, nothing, nothing}, *good.map);
+  for (auto const& c : cases) {
+    std::string const name = c.name;
+    CAPTURE(name);
+    auto const loaded = road_text::load(changed(c));
+    check_finding(c, loaded.diagnostics);
+    check_map(c, *loaded.map);
+  }
+}
+
+TEST_CASE("what is no map is refused with a sentence, the place and a remedy") {
+  for (auto const& r : refused) {
+    std::string const name = r.name;
+    CAPTURE(name);
+    std::string said;
+    try {
+      (void)road_text::load(r.text);
+    } catch (MapError const& error) {
+      said = error.what();
+    }
+    CHECK_MESSAGE(said.find(r.words) != std::string::npos, said);
+    CHECK(said.starts_with("test.xodr"));
+  }
+}
