@@ -30,7 +30,8 @@ class DocumentCheck {
 
   void run() {
     if (document_->header.line == 0) report(Severity::warning, 0, "header", "", "the file has no header");
-    std::erase_if(document_->roads, [this](opendrive::Road const& road) { return !is_continuous(road); });
+    std::erase_if(document_->roads,
+                  [this](opendrive::Road const& road) { return !is_continuous(road) || !has_lanes(road); });
     index(document_->roads, roads_, "road", " is there twice; the second one was left out");
     index(document_->junctions, junctions_, "junction", " is there twice; the second one was left out");
     for (opendrive::Road& road : document_->roads) check(road);
@@ -105,6 +106,15 @@ class DocumentCheck {
              "it is shorter than a millionth of a millimetre" +
                  (count > 1 ? " (and " + std::to_string(count - 1) + " more)" : std::string()) +
                  "; that is kept, but hardly meant");
+  }
+
+  /// False where all lane sections lie behind the road's end.
+  [[nodiscard]] bool has_lanes(opendrive::Road const& road) {
+    opendrive::LaneSection const& first = road.lane_sections.front();
+    if (first.s <= road.geometry_length()) return true;
+    report(Severity::error, first.line, "laneSection", "road " + road.id,
+           "the first section starts at " + rounded_text(first.s) + " m, behind the road's end; the road was left out");
+    return false;
   }
 
   /// Reports where a geometry does not go on where the one before ends. False where nobody could drive there: it is far
