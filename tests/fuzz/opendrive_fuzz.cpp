@@ -2,7 +2,7 @@
 // MapError; and what was read and written again is read as the same. Damage is done to the XML tree, not to bytes.
 //
 // For long (clang only): cmake --build build --target opendrive_fuzz, then, with a folder for what is found,
-//   build/tests/opendrive_fuzz -max_len=20000 -timeout=20 -rss_limit_mb=4096 -max_total_time=3600 FOUND/ maps/
+//   build/tests/fuzz/opendrive_fuzz -max_len=20000 -timeout=20 -rss_limit_mb=4096 -max_total_time=3600 FOUND/ maps/
 // A file of a finding is given as the only argument to repeat it.
 #include <algorithm>
 #include <cmath>
@@ -46,7 +46,7 @@ bool is_small(cb::map::OpenDriveDocument const& document) {
     for (auto const& g : road.geometries)
       turn += g.length * (std::abs(g.curvature_start) + std::abs(g.curvature_end)) * static_cast<double>(lanes);
   }
-  return area < 2e4 && turn < 500.0 && records < 200;
+  return area < 5e3 && turn < 200.0 && records < 100;
 }
 
 /// Whether XML may hold all characters of a text: others are replaced where it is written.

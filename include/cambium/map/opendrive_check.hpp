@@ -30,7 +30,8 @@ class DocumentCheck {
 
   void run() {
     if (document_->header.line == 0) report(Severity::warning, 0, "header", "", "the file has no header");
-    std::erase_if(document_->roads, [this](opendrive::Road const& road) { return !is_continuous(road); });
+    std::erase_if(document_->roads,
+                  [this](opendrive::Road const& road) { return !is_continuous(road) || !has_lanes(road); });
     index(document_->roads, roads_, "road", " is there twice; the second one was left out");
     index(document_->junctions, junctions_, "junction", " is there twice; the second one was left out");
     for (opendrive::Road& road : document_->roads) check(road);
@@ -107,6 +108,15 @@ class DocumentCheck {
                  "; that is kept, but hardly meant");
   }
 
+  /// False where all lane sections lie behind the road's end.
+  [[nodiscard]] bool has_lanes(opendrive::Road const& road) {
+    opendrive::LaneSection const& first = road.lane_sections.front();
+    if (first.s <= road.geometry_length()) return true;
+    report(Severity::error, first.line, "laneSection", "road " + road.id,
+           "the first section starts at " + rounded_text(first.s) + " m, behind the road's end; the road was left out");
+    return false;
+  }
+
   /// Reports where a geometry does not go on where the one before ends. False where nobody could drive there: it is far
   /// off, or what the curve does in the gap is beyond telling.
   [[nodiscard]] bool is_continuous(opendrive::Road const& road) {
@@ -164,9 +174,12 @@ class DocumentCheck {
     return distance > 0.0 ? distance * (curvature + 0.5 * rate * distance) : 0.0;
   }
 
-  /// Leaves out records of widths and of the lane offset that are beyond any road, and reports negative widths.
+  /// Leaves out records of widths, heights and of the lane offset that are beyond any road, and reports negative
+  /// widths.
   void check_records(opendrive::Road& road, std::string const& ids) {
-    leave_out_wild(road.lane_offset, road.geometry_length(), road.line, "laneOffset", [&] { return ids; });
+    auto const of_road = [&] { return ids; };
+    leave_out_wild(road.lane_offset, road.geometry_length(), road.line, "laneOffset", of_road);
+    leave_out_wild(road.elevation, road.geometry_length(), road.line, "elevation", of_road, 1e5);
     for (std::size_t i = 0; i < road.lane_sections.size(); ++i) {
       opendrive::LaneSection& section = road.lane_sections[i];
       double const end = i + 1 < road.lane_sections.size() ? road.lane_sections[i + 1].s : road.geometry_length();
@@ -181,10 +194,10 @@ class DocumentCheck {
     }
   }
 
-  /// Removes records that leave +-1 km before `end`; returns the smallest value of the others.
+  /// Removes records that leave +-`largest` [m] before `end`; returns the smallest value of the others.
   template <class Ids>
-  double leave_out_wild(std::vector<CubicRecord>& records, double end, int line, char const* element, Ids const& ids) {
-    constexpr double largest = 1000.0;  // [m]
+  double leave_out_wild(std::vector<CubicRecord>& records, double end, int line, char const* element, Ids const& ids,
+                        double largest = 1000.0) {
     double lowest = 0.0;
     // From the back: where a record is left out, the one before it holds up to the next one that is kept.
     for (std::size_t i = records.size(); i-- > 0;) {
@@ -263,8 +276,8 @@ class DocumentCheck {
 /// Checks a document as a whole and appends what it finds: double ids (the later element is removed), links and
 /// connections that lead nowhere (kept), lane sections behind the road's end (removed) or before its start (moved
 /// there), geometries that do not go on where the one before ends (kept; the road is removed where that is 100 m away),
-/// widths and lane offsets beyond 1 km (removed), lengths that contradict the geometries (kept; the geometries count).
-/// Linear in the size of the document but for the few lanes of a section.
+/// widths and lane offsets beyond 1 km and heights beyond 100 km (removed), lengths that contradict the geometries
+/// (kept; the geometries count). Linear in the size of the document but for the few lanes of a section.
 inline void check_opendrive_document(OpenDriveDocument& document, std::string file_name,
                                      std::vector<Diagnostic>& diagnostics) {
   detail::DocumentCheck(document, std::move(file_name), diagnostics).run();
