@@ -9,6 +9,7 @@
 #include "../support/corpus.hpp"
 #include "cambium/map/lane_network.hpp"
 #include "road_text.hpp"
+#include "../support/maps.hpp"
 
 namespace {
 
@@ -291,7 +292,7 @@ TEST_CASE("a lane link to a lane that is not there costs that link only") {
 TEST_CASE("the four-way intersection can be crossed from each arm into each other arm") {
   auto const path = corpus::find("opendrive/4way_intersection.xodr");
   if (!path) return;
-  auto const loaded = cambium::load_opendrive(path->string());
+  auto const loaded = support::load_opendrive(path->string());
   auto const& map = *loaded.map;
   std::vector<LaneId> in, out;
   for (auto const& lane : map.lanes()) {

@@ -11,9 +11,9 @@
 #include <doctest/doctest.h>
 
 #include "cambium/geometry/convex_hull.hpp"
-#include "cambium/map/opendrive.hpp"
 #include "../support/corpus.hpp"
 #include "lanes_by_hand.hpp"
+#include "../support/maps.hpp"
 
 using namespace by_hand;
 
@@ -25,7 +25,7 @@ void for_each_corpus_map(Check const& check) {
   if (!folder) return;
   for (auto const& file : corpus::maps(*folder)) {
     CAPTURE(file.string());
-    check(*load_opendrive(file.string()).map);
+    check(*support::load_opendrive(file.string()).map);
   }
 }
 

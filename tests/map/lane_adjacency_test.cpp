@@ -7,8 +7,8 @@
 
 #include <doctest/doctest.h>
 
-#include "cambium/map/opendrive.hpp"
 #include "../support/corpus.hpp"
+#include "../support/maps.hpp"
 
 namespace {
 
@@ -37,7 +37,7 @@ TEST_CASE("the lanes that meet at the ends of roads are those of the links table
   for (auto const& file : corpus::maps(*folder)) {
     std::vector<cb::Diagnostic> diagnostics;
     std::multiset<Row> ours, theirs;
-    for (auto const& link : lane_adjacency(cb::map::load_opendrive_document(file.string(), diagnostics)))
+    for (auto const& link : lane_adjacency(support::load_opendrive_document(file.string(), diagnostics)))
       ours.insert(row_of(link));
     for (auto row : corpus::table(file.parent_path() / "oracle" / file.stem().concat(".links.csv"))) {
       if (row.size() < 7) continue;  // an empty line

@@ -7,8 +7,9 @@
 
 #include <doctest/doctest.h>
 
-#include "cambium/map/opendrive.hpp"
 #include "../support/corpus.hpp"
+#include "../support/maps.hpp"
+#include "cambium/map/detail/split_roads.hpp"
 
 using namespace cambium;
 using namespace cambium::map;
@@ -37,7 +38,7 @@ std::shared_ptr<Map const> road(std::string const& left, std::string const& cent
       "</geometry></planView><lanes><laneSection s=\"0\">" + (left.empty() ? "" : "<left>" + left + "</left>") +
       "<center>" + center + "</center>" + (right.empty() ? "" : "<right>" + right + "</right>") +
       "</laneSection></lanes></road></OpenDRIVE>";
-  return parse_opendrive(text).map;
+  return support::parse_opendrive(text).map;
 }
 
 using Stretches = std::vector<PathStretch>;
@@ -197,8 +198,8 @@ TEST_CASE("on real maps lanes say what the records at each of their places say")
   std::size_t forbidden = 0, permitted = 0, limited = 0, wrong = 0;
   for (auto const& file : corpus::maps(*folder)) {
     std::vector<Diagnostic> diagnostics;
-    auto const written = read_opendrive_document(corpus::read(file), file.string(), diagnostics);
-    auto const map = build_map(written, {}, file.string(), diagnostics);
+    auto const written = support::read_opendrive_document(corpus::read(file), file.string(), diagnostics);
+    auto const map = support::build_map(written, {}, file.string(), diagnostics);
     auto const document =
         map::detail::split_roads(written, map::detail::places_to_split(written));  // with the map's sections
     for (auto const& lane : map->lanes()) {

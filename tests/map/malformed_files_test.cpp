@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "../support/map_faults.hpp"
-#include "cambium/map/opendrive.hpp"
 #include "road_text.hpp"
+#include "../support/maps.hpp"
 
 namespace {
 

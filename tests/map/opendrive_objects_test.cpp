@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "../support/corpus.hpp"
-#include "cambium/map/opendrive_reader.hpp"
 #include "cambium/map/opendrive_writer.hpp"
+#include "../support/maps.hpp"
 
 namespace {
 
@@ -31,7 +31,7 @@ struct Reading {
 
 Reading read(std::string const& text) {
   Reading reading;
-  reading.document = read_opendrive_document(text, "test.xodr", reading.diagnostics);
+  reading.document = support::read_opendrive_document(text, "test.xodr", reading.diagnostics);
   return reading;
 }
 

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "cambium/map/opendrive_reader.hpp"
 #include "../support/corpus.hpp"
+#include "../support/maps.hpp"
 
 namespace {
 
@@ -90,7 +90,7 @@ struct Reading {
 
 Reading read(std::string const& text) {
   Reading reading;
-  reading.document = read_opendrive_document(text, "test.xodr", reading.diagnostics);
+  reading.document = support::read_opendrive_document(text, "test.xodr", reading.diagnostics);
   return reading;
 }
 
@@ -378,7 +378,7 @@ TEST_CASE("every map of the corpus is read, or refused for a geometry that comes
   for (auto const& map : maps) {
     std::vector<Diagnostic> diagnostics;
     try {
-      roads += read_opendrive_document(corpus::read(map), map.filename().string(), diagnostics).roads.size();
+      roads += support::read_opendrive_document(corpus::read(map), map.filename().string(), diagnostics).roads.size();
     } catch (MapError const& error) {
       ++refused;
       CHECK(contains(error.what(), "not supported yet"));

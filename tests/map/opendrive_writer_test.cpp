@@ -17,7 +17,8 @@
 #include "../support/corpus.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"
-#include "cambium/map/opendrive_reader.hpp"
+#include "../support/maps.hpp"
+#include "cambium/map/detail/xml_context.hpp"
 
 namespace {
 
@@ -27,7 +28,7 @@ using cambium::MapError;
 
 OpenDriveDocument read(std::string const& text) {
   std::vector<Diagnostic> diagnostics;
-  return read_opendrive_document(text, "test.xodr", diagnostics);
+  return support::read_opendrive_document(text, "test.xodr", diagnostics);
 }
 
 std::vector<std::filesystem::path> all_maps() {
@@ -271,7 +272,7 @@ TEST_CASE("what is left of a damaged file is read again as it was written") {
          from="-1" to="-1"/></connection><priority high="1" low="2"/></junction>)");
   int readable = 0;
   for (auto const& original : {good, rich})
-    for (std::size_t at = 0; at < original.size(); at += original.size() > 3000 ? 7 : 1) {
+    for (std::size_t at = 0; at<original.size(); at += original.size()> 3000 ? 7 : 1) {
       auto text = original;
       text.erase(at, 1);
       OpenDriveDocument document;
