@@ -23,7 +23,7 @@ endif()
 
 if(CAMBIUM_FUZZ_COMPILER AND CAMBIUM_FUZZ_PUGIXML AND CAMBIUM_CAN_FUZZ)
   set(fuzzer ${CMAKE_CURRENT_BINARY_DIR}/fuzz/opendrive_fuzz)
-  file(MAKE_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/fuzz)
+  file(MAKE_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}/fuzz/found)  # what is new goes there
   # Another compiler than the project's, perhaps: so a command instead of a target of the project's own.
   add_custom_command(OUTPUT ${fuzzer}
     COMMAND ${CAMBIUM_FUZZ_COMPILER} ${fuzz_flags} @${compile_flags} ${CAMBIUM_WARNINGS} -Werror -MMD -MT ${fuzzer}
@@ -35,7 +35,7 @@ if(CAMBIUM_FUZZ_COMPILER AND CAMBIUM_FUZZ_PUGIXML AND CAMBIUM_CAN_FUZZ)
   set_tests_properties(fuzz.build PROPERTIES FIXTURES_SETUP opendrive_fuzz)
   add_test(NAME fuzz.opendrive
     COMMAND ${fuzzer} -max_len=6000 -seed=1 -runs=4000 -max_total_time=30 -timeout=20 -rss_limit_mb=4096
-      -artifact_prefix=${CMAKE_CURRENT_BINARY_DIR}/fuzz/ ${fuzz_source}/seeds)
+      -artifact_prefix=${CMAKE_CURRENT_BINARY_DIR}/fuzz/ ${CMAKE_CURRENT_BINARY_DIR}/fuzz/found ${fuzz_source}/seeds)
   set_tests_properties(fuzz.opendrive PROPERTIES FIXTURES_REQUIRED opendrive_fuzz)
 else()
   add_test(NAME fuzz.opendrive COMMAND ${CMAKE_COMMAND} -E echo "skipped: no clang with libFuzzer and sanitizers here")
