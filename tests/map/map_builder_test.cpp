@@ -115,7 +115,7 @@ TEST_CASE("ids are numbers of their own where none are given") {
   CHECK(a != b);
   CHECK(junction != a);
   CHECK(junction != b);
-  CHECK(checked(builder)->lanes().size() == 2);
+  CHECK(builder.build()->lanes().size() == 2);
 }
 
 TEST_CASE("lanes taper, open and end from section to section") {
