@@ -31,6 +31,12 @@ inline void negate(std::vector<int>& ids) {
 inline void negate_lanes(opendrive::LaneSection& section) {
   for (auto& lane : section.lanes) {
     lane.id = -lane.id;
+    for (auto& mark : lane.road_marks) {
+      if (mark.lane_change == opendrive::LaneChange::increase)
+        mark.lane_change = opendrive::LaneChange::decrease;
+      else if (mark.lane_change == opendrive::LaneChange::decrease)
+        mark.lane_change = opendrive::LaneChange::increase;
+    }
     lane.borders = negated(lane.borders);
   }
   std::reverse(section.lanes.begin(), section.lanes.end());
