@@ -123,3 +123,19 @@ TEST_CASE("a station beside a lane's path position is right to the sampling's to
       }
   }
 }
+
+TEST_CASE("a lane is asked for by its id where its section reaches, its end included") {
+  auto const map = support::own_map("lane_drop.xodr");
+  for (auto const& lane : map->lanes()) {
+    for (double const u : {0.0, 0.3, 1.0}) {
+      double const s = lane.road_begin + u * (lane.road_end - lane.road_begin);
+      auto const p = lane_point(*map, lane.id, s);
+      REQUIRE(p.has_value());
+      Point const center(p->center.x, p->center.y);
+      if (!is_valid(lane.merges_into)) CHECK((lane.path.pose(lane.position_at(s)).position() - center).norm() < 0.02);
+    }
+    CHECK_FALSE(lane_point(*map, lane.id, lane.road_begin - 0.01));
+    CHECK_FALSE(lane_point(*map, lane.id, lane.road_end + 0.01));
+    CHECK_FALSE(lane_point(*map, lane.id, std::nan("")));
+  }
+}

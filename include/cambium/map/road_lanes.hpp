@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <tuple>
 #include <vector>
 
@@ -40,6 +41,15 @@ inline void add_lanes_at(Road const& road, StationOffset const& foot, std::vecto
 }
 
 }  // namespace detail
+
+/// As `lane_point` of its road: the lane `id` at road station `s` [m]; nothing outside of its section.
+[[nodiscard]] inline std::optional<LanePoint> lane_point(Map const& map, LaneId id, double s) {
+  auto const& lane = map.lane(id);
+  if (!(s >= lane.road_begin && s <= lane.road_end)) return std::nullopt;
+  auto const& road = map.road(lane.road);
+  // At its end the next section begins: there the lane is what it is just before.
+  return lane_point(road, s == lane.road_end && s < road.length ? std::nextafter(s, lane.road_begin) : s, lane.number);
+}
 
 /// The exact place of `p` on the road of `hit`, which `Map::lanes_near` or `Map::nearest_lane` has found for it. Some
 /// evaluations of the reference line.
