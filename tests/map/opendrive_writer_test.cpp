@@ -192,12 +192,13 @@ TEST_CASE("a cubic whose parameter ends anywhere is written as the same curve") 
 TEST_CASE("speed limits are written in the unit that they were read in, and give the same limit again") {
   for (char const* unit : {"km/h", "mph", "m/s"})
     for (int speed = 0; speed <= 200; ++speed)
-      for (char const* fraction : {"", ".5", ".37"}) {
+      for (char const* fraction : {"", ".5", ".37", ".997999999999998"}) {
         auto const written = "max=\"" + std::to_string(speed) + fraction + "\" unit=\"" + unit + "\"";
         auto const document = read(road_with("<line/>", "<speed sOffset=\"0\" " + written + "/>"));
         auto const text = write_opendrive(document);
         auto const expected = speed == 0 && *fraction == '\0' ? "max=\"0\"" : written;
-        CHECK_MESSAGE(count(text, expected) == 1, written);
+        bool const is_short = std::string(fraction).size() < 4;  // of others another value may give the same limit
+        if (is_short) CHECK_MESSAGE(count(text, expected) == 1, written);
         CHECK(read(text) == document);
       }
   for (char const* other : {"no limit", "undefined"}) {
@@ -207,7 +208,7 @@ TEST_CASE("speed limits are written in the unit that they were read in, and give
   }
 }
 
-TEST_CASE("a limit that no whole number of its unit gives is written in m/s, exactly") {
+TEST_CASE("a limit that no number of its unit gives is written in m/s, exactly") {
   auto document = read(road_with("<line/>"));
   cambium::RandomStream random(1, 2, 3);
   for (int i = 0; i < 200; ++i) {

@@ -1,8 +1,8 @@
 #pragma once
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -31,13 +31,13 @@ inline void write_limit(XmlText& xml, std::optional<double> const& limit, opendr
   if (!limit) return xml.attribute("max", "undefined");
   if (std::isinf(*limit) && *limit > 0.0) return xml.attribute("max", "no limit");
   if (unit != opendrive::SpeedUnit::metres_per_second) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
     double const value = *limit / in_metres_per_second(1.0, unit);
-    char text[32];
-    char const* const end = std::to_chars(text, text + sizeof text, value, std::chars_format::general, 12).ptr;
-    double rounded{};
-    std::from_chars(text, end, rounded);
-    if (in_metres_per_second(rounded, unit) == *limit) {
-      xml.attribute("max", {text, static_cast<std::size_t>(end - text)});
+    double const below = std::nextafter(value, -infinity), above = std::nextafter(value, infinity);
+    for (double const candidate : {std::round(value * 1e9) / 1e9, value, below, above, std::nextafter(below, -infinity),
+                                   std::nextafter(above, infinity)}) {
+      if (in_metres_per_second(candidate, unit) != *limit) continue;
+      write_number(xml, "max", candidate);
       return xml.attribute("unit", word_of(unit));
     }
   }
