@@ -35,7 +35,7 @@ struct CrossSection {
 class SectionSampler {
  public:
   SectionSampler(Road const& road, RoadSection const& section, MapOptions const& options)
-      : road_(road), section_(section), options_(options), walker_(road.reference_line.walker()) {
+      : road_(road), section_(section), options_(options) {
     left_lanes_ = static_cast<std::size_t>(std::count_if(section.lanes.begin(), section.lanes.end(),
                                                          [](RoadLane const& lane) { return lane.number > 0; }));
   }
@@ -48,12 +48,12 @@ class SectionSampler {
     for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
       double const inside = 0.5 * (breaks[i] + breaks[i + 1]);
       auto from = cross_section(breaks[i], inside);
-      auto const last = cross_section(breaks[i + 1], inside);
+      auto const last = cross_section(breaks[i + 1], inside, &from);
       if (i > 0) add_before_kink(breaks[i], breaks[i - 1], from, result);
       result.push_back(from);
       int const pieces = longest > 0 ? static_cast<int>(std::ceil((breaks[i + 1] - breaks[i]) / longest)) : 1;
       for (int k = 1; k < pieces; ++k) {
-        auto const to = cross_section(breaks[i] + (breaks[i + 1] - breaks[i]) * k / pieces, inside);
+        auto const to = cross_section(breaks[i] + (breaks[i + 1] - breaks[i]) * k / pieces, inside, &from);
         refine(from, to, inside, 0, result);
         result.push_back(to);
         from = to;
@@ -95,15 +95,15 @@ class SectionSampler {
     return record != nullptr ? Lateral{record->value(s), record->derivative(s)} : Lateral{p.value(s), 0.0};
   }
 
-  [[nodiscard]] CurvePoint reference(double s, double inside) {
+  /// The cross-section at `s` by the records in force at `inside`; `near` is one of those, of the same interval between
+  /// breaks: from there a spiral is not far.
+  [[nodiscard]] CrossSection cross_section(double s, double inside, CrossSection const* near = nullptr) const {
     auto const& line = road_.reference_line;
     auto const& g = line.geometries()[line.locate(inside)];
-    return g.kind == GeometryKind::spiral && line.locate(s) == line.locate(inside) ? walker_.at(s)
-                                                                                   : evaluate(g, s - g.s);
-  }
-
-  [[nodiscard]] CrossSection cross_section(double s, double inside) {
-    CrossSection cross{s, reference(s, inside), {}, std::vector<Lateral>(section_.lanes.size() + 1)};
+    CrossSection cross{s,
+                       near != nullptr ? advance(g, near->reference, near->s, s) : evaluate(g, s - g.s),
+                       {},
+                       std::vector<Lateral>(section_.lanes.size() + 1)};
     cross.direction = geometry::sin_cos(cross.reference.heading);
     auto const offset = profile(road_.lane_offset, s, inside);
     cross.borders[left_lanes_] = offset;
@@ -174,7 +174,7 @@ class SectionSampler {
   void refine(CrossSection const& a, CrossSection const& b, double inside, int depth,
               std::vector<CrossSection>& result) {
     if (depth > 16 || b.s - a.s < 1e-3 || straight(a.s, b.s, inside)) return;
-    auto const middle = cross_section(0.5 * (a.s + b.s), inside);
+    auto const middle = cross_section(0.5 * (a.s + b.s), inside, &a);
     bool const has_room_to_wind = depth == 0 && b.s - a.s > 40.0;  // its middle alone says too little
     if (!has_room_to_wind && fits(a, middle, b) && (bends_evenly(inside) || quarters_fit(a, b, inside))) return;
     refine(a, middle, inside, depth + 1, result);
@@ -191,7 +191,7 @@ class SectionSampler {
   /// Whether the heading between `a` and `b` is near to the interpolated one at the quarters, too.
   [[nodiscard]] bool quarters_fit(CrossSection const& a, CrossSection const& b, double inside) {
     for (double const u : {0.25, 0.75}) {
-      auto const at = cross_section(a.s + u * (b.s - a.s), inside);
+      auto const at = cross_section(a.s + u * (b.s - a.s), inside, &a);
       for (std::size_t i = 0; i + 1 < a.borders.size(); ++i) {
         double const from = a.at(a.center(i)).heading;
         double const turn = geometry::angle_difference(b.at(b.center(i)).heading, from);
@@ -228,7 +228,6 @@ class SectionSampler {
   Road const& road_;
   RoadSection const& section_;
   MapOptions const& options_;
-  ReferenceLine::Walker walker_;
   std::size_t left_lanes_ = 0;
 };
 
