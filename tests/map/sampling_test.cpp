@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <tuple>
 
 #include <doctest/doctest.h>
 
@@ -39,7 +40,6 @@ void add_deviation(Map const& map, Lane const& lane, Deviation& worst) {
       if (exact->width < 0.0) continue;  // the sampled lane takes 0 there, and the ones outside of it follow
       Point const center(exact->center.x, exact->center.y);
       double const off = distance(lane.path, center, s);
-      if (off > 0.5) continue;  // an inner lane had a width below 0
       worst.path = std::max(worst.path, off);
       std::uint32_t cursor = i;
       double const heading = lane.path.pose(s, cursor).heading + (lane.along_road ? 0.0 : cb::geometry::pi);
@@ -74,5 +74,28 @@ TEST_CASE("sampled lanes keep within the tolerances between their vertices on ev
     CHECK(worst.border <= 0.01);
     CHECK(worst.heading <= 0.5 * cb::geometry::pi / 180);
     CHECK(worst.places > 0);
+  }
+}
+
+TEST_CASE("what steps in the file steps in the sampled lanes, and not before") {
+  cb::map::RoadPlan road;
+  road.id = "1";
+  road.line = cb::map::lay_from({}, {{100.0}});
+  cb::map::LanePlan lane;
+  lane.widths = {{0.0, 3.0, 0.0, 0.0, 0.0}, {50.0, 4.0, 0.0, 0.0, 0.0}};
+  road.sections = {{.right = {lane, cb::map::LanePlan{}}}};
+  road.lane_offset = {{0.0, 0.0, 0.0, 0.0, 0.0}, {70.0, 0.05, 0.0, 0.0, 0.0}};
+  auto const map = support::map_of(road);
+  for (auto const& [s, width, y] : {std::tuple(40.0, 3.0, -1.5),
+                                    {49.9, 3.0, -1.5},
+                                    {50.1, 4.0, -2.0},
+                                    {69.9, 4.0, -2.0},
+                                    {70.1, 4.0, -1.95},
+                                    {90.0, 4.0, -1.95}}) {
+    auto const& at = map->lane(map->find_lane("1", s, -1));
+    auto const widths = at.widths_at(at.position_at(s));
+    CAPTURE(s);
+    CHECK(std::abs(widths.left + widths.right - width) < 1e-9);
+    CHECK(std::abs(at.path.pose(at.position_at(s)).y - y) < 1e-9);
   }
 }

@@ -87,13 +87,19 @@ struct Smoothstep {
   double const begin_of_lane = along_road ? sections.front().s : sections.back().s;
   double begin = end.s;
   if (widest > 0.0 && width(end) < 0.5 * widest) {
-    auto const wide = [&](CrossSection const& c) { return width(c) > 0.95 * widest; };
-    if (along_road) {
-      auto const at = std::find_if(sections.rbegin(), sections.rend(), wide);
-      begin = at->s;
-    } else {
-      auto const at = std::find_if(sections.begin(), sections.end(), wide);
-      begin = at->s;
+    // From the end backwards to where it has 95 % of its width, between two stations by interpolation.
+    double const wide = 0.95 * widest;
+    auto const crossing = [&](CrossSection const& narrow, CrossSection const& c) {
+      double const rise = width(c) - width(narrow);
+      return rise > 0.0 ? c.s + (width(c) - wide) / rise * (narrow.s - c.s) : c.s;
+    };
+    auto const last = sections.size() - 1;
+    for (std::size_t i = 1; i <= last; ++i) {
+      auto const &narrow = along_road ? sections[last - i + 1] : sections[i - 1],
+                 &c = along_road ? sections[last - i] : sections[i];
+      if (!(width(c) > wide)) continue;
+      begin = crossing(narrow, c);
+      break;
     }
   }
   constexpr double shortest = 30.0;  // [m] a swing shorter than this is no longer comfortable

@@ -74,17 +74,17 @@ class LaneMerger {
     auto const& road = roads_[index_of(lane.road)];
     auto const& section = road.sections[lane.section];
     auto const column = column_of(section, lane.id), target = column_of(section, lane.merges_into);
-    auto const cross_sections = SectionSampler(road, section, options_).sample(spacing);
-    double const from = taper_begin(cross_sections, column, lane.along_road, options_.merge_length);
+    SectionSampler const sampler(road, section, options_);
+    double const from = taper_begin(sampler.sample(), column, lane.along_road, options_.merge_length);
     double const to = lane.along_road ? section.end : section.begin;
+    auto const cross_sections = sampler.sample(spacing, std::min(from, to), std::max(from, to));
     auto const path = [&](CrossSection const& c) { return merging_path(c, column, target, from, to); };
     if (!set_geometry(lane, cross_sections, column, path)) {
       lane.merges_into = none<LaneId>;
       dead_ends_.insert(lane.id);
       return false;
     }
-    auto const start = road.reference_line.at(from);
-    lane.merge_begin = lane.path.project({start.x, start.y}).s;
+    lane.merge_begin = lane.position_at(from);
     auto const& neighbor = lanes_[index_of(lane.merges_into)];
     lane.successors = neighbor.successors;
     for (auto const next : lane.successors) lanes_[index_of(next)].predecessors.push_back(lane.id);

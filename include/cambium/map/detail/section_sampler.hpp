@@ -41,24 +41,29 @@ class SectionSampler {
   }
 
   /// Cross-sections from the section's begin to its end, ends included; every place where a record or a geometry begins
-  /// is among them. With `longest` > 0 no two are farther apart than that [m].
-  [[nodiscard]] std::vector<CrossSection> sample(double longest = 0.0) {
+  /// is among them.
+  [[nodiscard]] std::vector<CrossSection> sample() const { return sample(0.0, 0.0, 0.0); }
+
+  /// As above; between the stations `from` and `to` no two are farther apart than `longest` [m].
+  [[nodiscard]] std::vector<CrossSection> sample(double longest, double from, double to) const {
     auto const breaks = break_points();
     std::vector<CrossSection> result;
     for (std::size_t i = 0; i + 1 < breaks.size(); ++i) {
       double const inside = 0.5 * (breaks[i] + breaks[i + 1]);
-      auto from = cross_section(breaks[i], inside);
-      auto const last = cross_section(breaks[i + 1], inside, &from);
-      if (i > 0) add_before_kink(breaks[i], breaks[i - 1], from, result);
-      result.push_back(from);
-      int const pieces = longest > 0 ? static_cast<int>(std::ceil((breaks[i + 1] - breaks[i]) / longest)) : 1;
-      for (int k = 1; k < pieces; ++k) {
-        auto const to = cross_section(breaks[i] + (breaks[i + 1] - breaks[i]) * k / pieces, inside, &from);
-        refine(from, to, inside, 0, result);
-        result.push_back(to);
-        from = to;
+      auto at = cross_section(breaks[i], inside);
+      auto const last = cross_section(breaks[i + 1], inside, &at);
+      if (i > 0) add_before_break(breaks[i], breaks[i - 1], at, result);
+      result.push_back(at);
+      double const dense_begin = std::max(breaks[i], from), dense_end = std::min(breaks[i + 1], to);
+      for (int k = 0; longest > 0.0 && dense_begin + k * longest < dense_end; ++k) {
+        double const s = dense_begin + k * longest;
+        if (s - at.s < 1e-6 || breaks[i + 1] - s < 1e-6) continue;
+        auto const next = cross_section(s, inside, &at);
+        refine(at, next, inside, 0, result);
+        result.push_back(next);
+        at = next;
       }
-      refine(from, last, inside, 0, result);
+      refine(at, last, inside, 0, result);
       if (i + 2 == breaks.size()) result.push_back(last);
     }
     return result;
@@ -130,22 +135,25 @@ class SectionSampler {
     return cross;
   }
 
-  /// Where a line has a kink at `s`, whose cross-section behind it is `behind`, adds a station a little before: only on
-  /// these last millimetres the interpolated heading is that of neither side.
-  void add_before_kink(double s, double last_break, CrossSection const& behind, std::vector<CrossSection>& result) {
+  /// Where a line has a kink or a step at `s`, whose cross-section behind it is `behind`, adds a station a little
+  /// before: only on these last millimetres is what is interpolated that of neither side.
+  void add_before_break(double s, double last_break, CrossSection const& behind,
+                        std::vector<CrossSection>& result) const {
     constexpr double little = 1e-3;  // [m]
+    double const inside = 0.5 * (last_break + s);
     if (s - result.back().s < 2.0 * little) return;
-    auto const before = cross_section(s - little, 0.5 * (last_break + s));
-    for (std::size_t i = 0; i < before.borders.size(); ++i)
-      if (turns(before.at(before.borders[i]), behind.at(behind.borders[i])) ||
-          (i + 1 < before.borders.size() && turns(before.at(before.center(i)), behind.at(behind.center(i))))) {
-        result.push_back(before);
+    auto const end = cross_section(s, inside);
+    for (std::size_t i = 0; i < end.borders.size(); ++i)
+      if (breaks(end.at(end.borders[i]), behind.at(behind.borders[i])) ||
+          (i + 1 < end.borders.size() && breaks(end.at(end.center(i)), behind.at(behind.center(i))))) {
+        result.push_back(cross_section(s - little, inside));
         return;
       }
   }
 
-  [[nodiscard]] bool turns(geometry::LineSample const& a, geometry::LineSample const& b) const {
-    return std::abs(geometry::angle_difference(b.heading, a.heading)) > options_.heading_tolerance;
+  [[nodiscard]] bool breaks(geometry::LineSample const& a, geometry::LineSample const& b) const {
+    return std::hypot(b.x - a.x, b.y - a.y) > 0.3 * options_.position_tolerance ||
+           std::abs(geometry::angle_difference(b.heading, a.heading)) > options_.heading_tolerance;
   }
 
   /// Whether a straight chord from `a` to `b` is good enough for a curve through `m`.
@@ -172,7 +180,7 @@ class SectionSampler {
 
   /// Appends the stations needed strictly between `a` and `b`.
   void refine(CrossSection const& a, CrossSection const& b, double inside, int depth,
-              std::vector<CrossSection>& result) {
+              std::vector<CrossSection>& result) const {
     if (depth > 16 || b.s - a.s < 1e-3 || straight(a.s, b.s, inside)) return;
     auto const middle = cross_section(0.5 * (a.s + b.s), inside, &a);
     bool const has_room_to_wind = depth == 0 && b.s - a.s > 40.0;  // its middle alone says too little
@@ -189,7 +197,7 @@ class SectionSampler {
   }
 
   /// Whether the heading between `a` and `b` is near to the interpolated one at the quarters, too.
-  [[nodiscard]] bool quarters_fit(CrossSection const& a, CrossSection const& b, double inside) {
+  [[nodiscard]] bool quarters_fit(CrossSection const& a, CrossSection const& b, double inside) const {
     for (double const u : {0.25, 0.75}) {
       auto const at = cross_section(a.s + u * (b.s - a.s), inside, &a);
       for (std::size_t i = 0; i + 1 < a.borders.size(); ++i) {
