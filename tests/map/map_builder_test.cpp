@@ -291,3 +291,21 @@ TEST_CASE("what cannot be built is refused with a sentence") {
   CHECK(builder.document().roads.size() == 2);
   CHECK_THROWS_AS((void)MapBuilder().build(), MapError);
 }
+
+TEST_CASE("a document that was changed to something unusable loses those roads, with a word") {
+  MapBuilder builder;
+  for (char const* id : {"1", "2", "3", "4"}) builder.add_road(straight(id, {0, id[0] * 50.0, 0}, 100, 0, 1));
+  auto document = builder.document();
+  document.roads[0].geometries.push_back({100.0, 100.0, document.roads[0].geometries[0].y, 0.0, 10.0});
+  document.roads[1].geometries.clear();
+  document.roads[2].lane_sections.clear();
+  document.roads[3].geometries[0].kind = GeometryKind::cubic;
+  std::vector<Diagnostic> diagnostics;
+  check_opendrive_document(document, "changed", diagnostics);
+  REQUIRE(document.roads.size() == 1);
+  CHECK(document.roads[0].id == "1");
+  CHECK(std::count_if(diagnostics.begin(), diagnostics.end(), [](Diagnostic const& d) {
+          return d.sentence.find("a cubic without its curve") != std::string::npos;
+        }) == 3);
+  CHECK(build_map(document, {}, "changed", diagnostics)->lanes().size() == 1);
+}

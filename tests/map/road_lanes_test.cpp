@@ -139,3 +139,19 @@ TEST_CASE("a lane is asked for by its id where its section reaches, its end incl
     CHECK_FALSE(lane_point(*map, lane.id, std::nan("")));
   }
 }
+
+TEST_CASE("a point on the outer side of a kink has its place at the kink") {
+  cb::map::RoadPlan road;
+  road.id = "1";
+  road.line = {{0.0, 0.0, 0.0, 0.0, 50.0}, {50.0, 50.0, 0.0, 0.2, 50.0}};
+  road.sections = {{.right = cb::map::equal_lanes(2)}};
+  auto const map = support::map_of(road);
+  Point const outside(50.0 + 2.0 * std::sin(0.1), -2.0 * std::cos(0.1));
+  auto const places = cb::map::road_places(*map, outside);
+  REQUIRE(places.size() == 1);
+  CHECK(places[0].number == -1);
+  CHECK(places[0].s == doctest::Approx(50.0));
+  CHECK(places[0].t == doctest::Approx(-2.0));
+  CHECK(cb::map::road_places(*map, Point(-0.5, -2.0)).empty());
+  CHECK(cb::map::road_places(*map, Point(0.0, -2.0)).size() == 1);
+}

@@ -30,8 +30,9 @@ class DocumentCheck {
 
   void run() {
     if (document_->header.line == 0) report(Severity::warning, 0, "header", "", "the file has no header");
-    std::erase_if(document_->roads,
-                  [this](opendrive::Road const& road) { return !is_continuous(road) || !has_lanes(road); });
+    std::erase_if(document_->roads, [this](opendrive::Road& road) {
+      return !is_whole(road) || !is_continuous(road) || !has_lanes(road);
+    });
     index(document_->roads, roads_, "road", " is there twice; the second one was left out");
     index(document_->junctions, junctions_, "junction", " is there twice; the second one was left out");
     for (opendrive::Road& road : document_->roads) check(road);
@@ -114,6 +115,18 @@ class DocumentCheck {
     if (first.s <= road.geometry_length()) return true;
     report(Severity::error, first.line, "laneSection", "road " + road.id,
            "the first section starts at " + rounded_text(first.s) + " m, behind the road's end; the road was left out");
+    return false;
+  }
+
+  /// Whether a road, which may have been made in code, has what every road has.
+  [[nodiscard]] bool is_whole(opendrive::Road& road) {
+    road.geometry_lines.resize(road.geometries.size());
+    bool const has_curves = std::all_of(road.geometries.begin(), road.geometries.end(), [](Geometry const& g) {
+      return g.kind != GeometryKind::cubic || g.cubic != nullptr;
+    });
+    if (!road.geometries.empty() && !road.lane_sections.empty() && has_curves) return true;
+    report(Severity::error, road.line, "road", "road " + road.id,
+           "it has no geometry, no lane section, or a cubic without its curve; it was left out");
     return false;
   }
 

@@ -28,15 +28,18 @@ namespace detail {
 
 /// Appends the lanes of `road` at (`foot.s`, `foot.t`).
 inline void add_lanes_at(Road const& road, StationOffset const& foot, std::vector<RoadPlace>& places) {
-  constexpr double tolerance = 1e-6;                         // [m]
-  if (foot.distance > std::abs(foot.t) + tolerance) return;  // beyond an end of the road
+  constexpr double tolerance = 1e-6;  // [m]
+  bool const is_beside = foot.distance <= std::abs(foot.t) + tolerance;
+  bool const at_end = foot.s <= tolerance || foot.s >= road.length - tolerance;
+  if (at_end && !is_beside) return;                                            // beyond an end of the road
+  double const t = is_beside ? foot.t : std::copysign(foot.distance, foot.t);  // on the outer side of a kink
   auto const* section = road.section_at(foot.s);
   if (section == nullptr) return;
   for (auto const& lane : section->lanes) {
     auto const p = lane_point(road, foot.s, lane.number);
     auto const [low, high] = std::minmax(p->inner_t, p->outer_t);
-    if (p->width > 0.0 && foot.t >= low - tolerance && foot.t <= high + tolerance)
-      places.push_back({road.id, lane.number, lane.id, foot.s, foot.t, std::abs(foot.t - p->t)});
+    if (p->width > 0.0 && t >= low - tolerance && t <= high + tolerance)
+      places.push_back({road.id, lane.number, lane.id, foot.s, t, std::abs(t - p->t)});
   }
 }
 
