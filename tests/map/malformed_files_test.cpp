@@ -449,6 +449,16 @@ TEST_CASE("a malformed file gives the map and the finding that are stated for it
   }
 }
 
+TEST_CASE("a map on which nobody may drive is a map, with a finding") {
+  std::string text = good_file;
+  for (std::string const type = "driving"; text.find(type) != text.npos;)
+    text.replace(text.find(type), type.size(), "sidewalk");
+  auto const loaded = road_text::load(text);
+  CHECK(loaded.map->lanes().size() == 4);
+  REQUIRE(loaded.diagnostics.size() == 1);
+  CHECK(to_string(loaded.diagnostics[0]) == "test.xodr: warning: there is no lane that one may drive on");
+}
+
 TEST_CASE("what is no map is refused with a sentence, the place and a remedy") {
   for (auto const& r : refused) {
     std::string const name = r.name;
