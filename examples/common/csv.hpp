@@ -21,7 +21,17 @@ template <class Number>
   return problem == std::errc{} && end == text.data() + text.size() && value - value == Number{};
 }
 
-/// A table of comma-separated values, whose first line may name its columns. No quotes: a cell ends at the comma.
+/// `text` as a cell that `CsvTable` reads back: in quotes where it must be (RFC 4180).
+[[nodiscard]] inline std::string csv_cell(std::string const& text) {
+  bool const has_blank_end = !text.empty() && (text.front() == ' ' || text.back() == ' ');
+  if (!has_blank_end && text.find_first_of(",\"\r\n") == text.npos) return text;
+  std::string cell = "\"";
+  for (char const c : text) cell += c == '"' ? "\"\"" : std::string(1, c);
+  return cell + '"';
+}
+
+/// A table of comma-separated values, whose first line may name its columns. Cells may be in quotes, but end in their
+/// line.
 class CsvTable {
  public:
   /// Reads the columns `names` of `file`: by these names where the first line has them (in any order, among others),
@@ -31,10 +41,12 @@ class CsvTable {
     if (!in) fail(0, "it cannot be opened", "check the path");
     std::string line;
     for (int number = 1; std::getline(in, line); ++number) {
+      if (number == 1 && line.starts_with("\xEF\xBB\xBF")) line.erase(0, 3);
       if (!line.empty() && line.back() == '\r') line.pop_back();
       if (line.empty()) continue;
-      if (rows_.empty() && places_.empty() && take_heading(line)) continue;
-      add_row(number, line);
+      std::vector<std::string> const cells = split(number, line);
+      if (rows_.empty() && places_.empty() && take_heading(number, cells)) continue;
+      add_row(number, cells);
     }
     if (in.bad() || rows_.empty()) fail(0, "it has no row that could be read", "give lines of " + joined());
   }
@@ -62,35 +74,56 @@ class CsvTable {
     std::vector<std::string> cells;
   };
 
-  [[nodiscard]] static std::vector<std::string> split(std::string_view line) {
+  /// Where the cell that begins at `begin` ends: at its comma or the end of the line; npos where its quote stays open.
+  [[nodiscard]] static std::size_t end_of_cell(std::string_view line, std::size_t begin) {
+    std::size_t const first = line.find_first_not_of(' ', begin);
+    if (first == line.npos || line[first] != '"') return std::min(line.find(',', begin), line.size());
+    bool is_open = true;
+    for (std::size_t i = first + 1; i < line.size(); ++i) {
+      if (line[i] == '"') is_open = !is_open;
+      if (line[i] == ',' && !is_open) return i;
+    }
+    return is_open ? line.npos : line.size();
+  }
+
+  /// What a cell says, without the blanks around it and without its quotes.
+  [[nodiscard]] static std::string content(std::string_view cell) {
+    while (!cell.empty() && cell.front() == ' ') cell.remove_prefix(1);
+    while (!cell.empty() && cell.back() == ' ') cell.remove_suffix(1);
+    if (cell.size() < 2 || cell.front() != '"' || cell.back() != '"') return std::string(cell);
+    std::string text(cell.substr(1, cell.size() - 2));
+    for (std::size_t at = text.find("\"\""); at != text.npos; at = text.find("\"\"", at + 1)) text.erase(at, 1);
+    return text;
+  }
+
+  [[nodiscard]] std::vector<std::string> split(int number, std::string_view line) const {
     std::vector<std::string> cells;
     for (std::size_t begin = 0; begin <= line.size();) {
-      std::size_t const end = std::min(line.find(',', begin), line.size());
-      std::string_view cell = line.substr(begin, end - begin);
-      while (!cell.empty() && cell.front() == ' ') cell.remove_prefix(1);
-      while (!cell.empty() && cell.back() == ' ') cell.remove_suffix(1);
-      cells.emplace_back(cell);
+      std::size_t const end = end_of_cell(line, begin);
+      if (end == line.npos) fail(number, "a quote in it is not closed", "close it in its line");
+      cells.push_back(content(line.substr(begin, end - begin)));
       begin = end + 1;
     }
     return cells;
   }
 
-  bool take_heading(std::string const& line) {
-    std::vector<std::string> const cells = split(line);
+  bool take_heading(int line, std::vector<std::string> const& cells) {
     std::vector<std::size_t> places;
-    for (std::string const& name : names_)
-      for (std::size_t i = 0; i < cells.size(); ++i)
-        if (cells[i] == name) {
-          places.push_back(i);
-          break;
-        }
-    if (places.size() != names_.size()) return false;
-    places_ = places;
-    return true;
+    std::string missing;
+    for (std::string const& name : names_) {
+      auto const found = std::find(cells.begin(), cells.end(), name);
+      if (found == cells.end()) missing += (missing.empty() ? "" : ",") + name;
+      places.push_back(static_cast<std::size_t>(found - cells.begin()));
+    }
+    double number = 0.0;
+    auto const is_number = [&number](std::string const& cell) { return read_number(cell, number); };
+    if (!missing.empty() && std::none_of(cells.begin(), cells.end(), is_number))
+      fail(line, "the first line names none of " + missing, "give the columns " + joined() + ", with or without names");
+    if (missing.empty()) places_ = places;
+    return missing.empty();
   }
 
-  void add_row(int line, std::string const& text) {
-    std::vector<std::string> const cells = split(text);
+  void add_row(int line, std::vector<std::string> const& cells) {
     Row row{line, {}};
     for (std::size_t i = 0; i < names_.size(); ++i) {
       std::size_t const place = places_.empty() ? i : places_[i];

@@ -1,9 +1,13 @@
 // Reads an OpenDRIVE map: says what it contains and what is odd about it, draws it, and answers queries from tables.
 
+#include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <string>
+#include <utility>
+#include <vector>
 
+#include "cambium/core/error.hpp"
 #include "cambium/core/write_file.hpp"
 #include "cambium/viewer/map_picture.hpp"
 #include "cambium/viewer/record_world.hpp"
@@ -22,7 +26,27 @@ struct Settings {
   bool infer_links = false;
 };
 
+/// Throws where files would be overwritten that are read, or one by the other, or not be written at all.
+void check_files(Settings const& settings) {
+  namespace fs = std::filesystem;
+  if (!settings.out.empty() && settings.poses.empty() && settings.nearest.empty())
+    throw cambium::Error("--out", "there is nothing to write", "give --poses or --nearest too");
+  if (!settings.sketch.empty() && fs::path(settings.sketch).extension() != ".svg")
+    throw cambium::Error("--sketch " + settings.sketch, "it is no .svg", "name a file that ends in .svg");
+  std::vector<fs::path> taken;
+  for (auto const* input : {&settings.file, &settings.poses, &settings.nearest})
+    if (!input->empty()) taken.push_back(fs::weakly_canonical(*input));
+  for (auto const* output : {&settings.picture, &settings.sketch, &settings.out, &settings.links}) {
+    if (output->empty()) continue;
+    auto path = fs::weakly_canonical(*output);
+    if (std::find(taken.begin(), taken.end(), path) != taken.end())
+      throw cambium::Error(*output, "it is read, or written twice", "give every output a file of its own");
+    taken.push_back(std::move(path));
+  }
+}
+
 void run(Settings const& settings) {
+  check_files(settings);
   auto const opened = examples::open_map(settings.file, {.infer_links = settings.infer_links});
   std::cout << map_example::summary(opened, settings.file);
   for (auto const& diagnostic : opened.diagnostics) std::cout << "  " << to_string(diagnostic) << "\n";
@@ -63,6 +87,13 @@ int main(int argc, char** argv) {
   program.add_option("--route", settings.route, "print the shortest route between two places, as road:lane:s each")
       ->type_name("FROM TO")
       ->expected(2);
-  program.footer("Numbers are in m and rad. Exit code: 0 also with warnings, 2 with an error.");
+  program.footer(
+      "Columns that are written, in m and rad:\n"
+      "  --poses    road,s,lane,x,y,hdg,width,t,rx,ry,rhdg,rk: the lane's middle, the reference line (r...)\n"
+      "  --nearest  road,lane,s,t,distance,query: query is the number of the point from 0; a point in no lane gives "
+      "no\n"
+      "             row\n"
+      "  --links    road,end,lane,next_road,next_contact,next_lane,via: as written in the file\n"
+      "Exit code: 0 where there is a map, whatever is odd about it; 2 where there is none, or another error.");
   return examples::run_program(program, argc, argv, [&] { run(settings); });
 }

@@ -35,7 +35,9 @@ inline char const* kind_of(cb::map::Geometry const& g) {
 }
 
 inline std::string header_text(odr::Header const& header) {
-  std::string text = "OpenDRIVE " + std::to_string(header.rev_major) + "." + std::to_string(header.rev_minor);
+  std::string text = "OpenDRIVE, revision not written";
+  if (header.rev_major > 0)
+    text = "OpenDRIVE " + std::to_string(header.rev_major) + "." + std::to_string(header.rev_minor);
   if (!header.name.empty()) text += " \"" + header.name + '"';
   if (!header.vendor.empty()) text += " by " + header.vendor;
   return text;
@@ -89,6 +91,7 @@ inline std::string map_text(cb::Map const& map) {
   }
   using cb::detail::rounded_text;
   std::string text = line("lanes", list(types));
+  if (length == 0.0) return text + line("to drive on", "no lane");
   text += line("to drive on", rounded_text(length) + " m of lanes, x from " + rounded_text(box.min_x) + " to " +
                                   rounded_text(box.max_x) + ", y from " + rounded_text(box.min_y) + " to " +
                                   rounded_text(box.max_y) + " m");

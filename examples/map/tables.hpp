@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "cambium/geometry/angle.hpp"
@@ -12,7 +13,17 @@
 namespace map_example {
 
 namespace cb = cambium;
+using examples::csv_cell;
 using examples::digits;
+
+/// The road that a row names in its first column.
+inline cb::map::Road const& road_of(cb::Map const& map, examples::CsvTable const& rows, std::size_t row) {
+  try {
+    return map.find_road(rows.word(row, 0));
+  } catch (cb::MapError const&) {
+    rows.fail_at(row, "the map has no road " + rows.word(row, 0), "look at the --picture for its roads");
+  }
+}
 
 /// Where lanes are: for each row road,s,lane of `file` the lane's centre, width and lateral offset, and the reference
 /// line.
@@ -22,12 +33,12 @@ inline std::string poses(cb::Map const& map, std::string const& file) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     auto const s = rows.number<double>(i, 1);
     auto const lane = rows.number<int>(i, 2);
-    auto const& road = map.find_road(rows.word(i, 0));
+    auto const& road = road_of(map, rows, i);
     auto const p = lane_point(road, s, lane);
     if (!p)
       rows.fail_at(i, "road " + road.name + " has no lane " + std::to_string(lane) + " at s " + rows.word(i, 1),
                    "ask for lanes that it has there, but lane 0");
-    text += road.name + ',' + digits(s) + ',' + std::to_string(lane);
+    text += csv_cell(road.name) + ',' + digits(s) + ',' + std::to_string(lane);
     for (double const value :
          {p->center.x, p->center.y, cb::geometry::normalize_angle(p->center.heading), p->width, p->t, p->reference.x,
           p->reference.y, cb::geometry::normalize_angle(p->reference.heading), p->reference.curvature})
@@ -44,7 +55,7 @@ inline std::string nearest(cb::Map const& map, std::string const& file) {
   std::string text = "road,lane,s,t,distance,query\n";
   for (std::size_t i = 0; i < rows.size(); ++i)
     for (auto const& place : road_places(map, {rows.number<double>(i, 0), rows.number<double>(i, 1)}))
-      text += map.road(place.road).name + ',' + std::to_string(place.number) + ',' + digits(place.s) + ',' +
+      text += csv_cell(map.road(place.road).name) + ',' + std::to_string(place.number) + ',' + digits(place.s) + ',' +
               digits(place.t) + ',' + digits(place.distance) + ',' + std::to_string(i) + '\n';
   return text;
 }
@@ -56,9 +67,9 @@ inline std::string links(cb::map::OpenDriveDocument const& document) {
   };
   std::string text = "road,end,lane,next_road,next_contact,next_lane,via\n";
   for (auto const& link : lane_adjacency(document))
-    text += link.road + ',' + word(link.end) + ',' + std::to_string(link.lane) + ',' + link.next_road + ',' +
-            word(link.next_end) + ',' + std::to_string(link.next_lane) + ',' +
-            (link.junction.empty() ? "road" : "junction:" + link.junction) + '\n';
+    text += csv_cell(link.road) + ',' + word(link.end) + ',' + std::to_string(link.lane) + ',' +
+            csv_cell(link.next_road) + ',' + word(link.next_end) + ',' + std::to_string(link.next_lane) + ',' +
+            csv_cell(link.junction.empty() ? "road" : "junction:" + link.junction) + '\n';
   return text;
 }
 

@@ -78,6 +78,34 @@ TEST_CASE("poses, nearest lanes and links of real maps are those of the oracle")
   }
 }
 
+TEST_CASE("ids with commas and quotes are written in quotes and read again; the summary has no odd numbers") {
+  Program const map("map");
+  if (!map.is_there()) return;
+  browser::TemporaryFolder const folder;
+  auto const file = (folder.path() / "m.xodr").string(), in = (folder.path() / "in.csv").string(),
+             out = (folder.path() / "out.csv").string();
+  auto const write_map = [&](std::string const& type) {
+    std::ofstream(file) << R"(<OpenDRIVE><road id="a,&quot;b" length="9"><planView><geometry s="0" x="0" y="0" hdg="0")"
+                        << R"( length="9"><line/></geometry></planView><lanes><laneSection s="0"><center><lane id="0")"
+                        << R"(/></center><right><lane id="-1" type=")" << type
+                        << R"("><width sOffset="0" a="3" b="0" c="0" d="0"/></lane></right>)"
+                        << "</laneSection></lanes></road></OpenDRIVE>";
+  };
+  write_map("driving");
+  std::ofstream(in) << "\xEF\xBB\xBFroad,s,lane\r\n\"a,\"\"b\", 5 ,\"-1\"\r\n";
+  CHECK(map.run({file, "--poses", in, "--out", out}).code == 0);
+  CHECK(has(content_of(out), "\n\"a,\"\"b\",5,-1,5,-1.5,"));
+  std::ofstream(in) << "5,-1\n";
+  CHECK(map.run({file, "--nearest", in, "--out", out}).code == 0);
+  CHECK(has(content_of(out), "\n\"a,\"\"b\",-1,5,"));
+  write_map("sidewalk");
+  auto const run = map.run({file});
+  CHECK(run.code == 0);
+  CHECK_FALSE(has(run.out, "inf"));
+  CHECK(has(run.out, "no lane\n"));
+  CHECK(has(run.out, "revision not written"));
+}
+
 TEST_CASE("a route is printed lane by lane, and where there is none it is an error") {
   Program const map("map");
   if (!map.is_there()) return;
@@ -101,24 +129,32 @@ TEST_CASE("what is wrong is said in one line, with exit code 2 and nothing writt
     std::vector<std::string> words;
     char const* sentence;
   };
-  for (auto const& wrong :
-       std::vector<Wrong>{{"", {}, "FILE is required"},
-                          {"", {"nosuch.xodr"}, "nosuch.xodr: the file cannot be opened"},
-                          {"<a>", {table}, "in.csv:1: the file is not well-formed XML"},
-                          {"<a/>", {table}, "not <OpenDRIVE>"},
-                          {"", {merging, "--picture", out}, "an .svg or an .html"},
-                          {"", {merging, "--poses", table}, "--poses requires --out"},
-                          {"", {merging, "--poses", table, "--out", out}, "in.csv: it has no row"},
-                          {"road,s,lane\n1,5,-1\n1,5,-9\n",
-                           {merging, "--poses", table, "--out", out},
-                           "in.csv:3: road 1 has no lane -9"},
-                          {"1,five,-1\n", {merging, "--poses", table, "--out", out}, "in.csv:1: s is 'five'"},
-                          {"1,nan,-1\n", {merging, "--poses", table, "--out", out}, "in.csv:1: s is 'nan'"},
-                          {"77,5,-1\n", {merging, "--poses", table, "--out", out}, "road 77: the map has no such road"},
-                          {"x,y\n1\n", {merging, "--nearest", table, "--out", out}, "in.csv:2: there is no y in it"},
-                          {"", {merging, "--route", "1:-1", "2:-1:5"}, "'1:-1' is no place"},
-                          {"", {merging, "--route", "1:-1:5", "9:-1:5"}, "road 9: the map has no such road"},
-                          {"", {merging, "--links", "/nosuch/folder/links.csv"}, "cannot be written"}}) {
+  for (auto const& wrong : std::vector<Wrong>{
+           {"", {}, "FILE is required"},
+           {"", {"nosuch.xodr"}, "nosuch.xodr: the file cannot be opened"},
+           {"<a>", {table}, "in.csv:1: the file is not well-formed XML"},
+           {"<a/>", {table}, "not <OpenDRIVE>"},
+           {"", {merging, "--picture", out}, "an .svg or an .html"},
+           {"", {merging, "--poses", table}, "--poses requires --out"},
+           {"", {merging, "--poses", table, "--out", out}, "in.csv: it has no row"},
+           {"road,s,lane\n1,5,-1\n1,5,-9\n",
+            {merging, "--poses", table, "--out", out},
+            "in.csv:3: road 1 has no lane -9"},
+           {"1,five,-1\n", {merging, "--poses", table, "--out", out}, "in.csv:1: s is 'five'"},
+           {"1,nan,-1\n", {merging, "--poses", table, "--out", out}, "in.csv:1: s is 'nan'"},
+           {"77,5,-1\n", {merging, "--poses", table, "--out", out}, "in.csv:1: the map has no road 77"},
+           {"Weg,Ort,Spur\n1,5,-1\n",
+            {merging, "--poses", table, "--out", out},
+            "in.csv:1: the first line names none of road,s,lane"},
+           {"\"1,5,-1\n", {merging, "--poses", table, "--out", out}, "in.csv:1: a quote in it is not"},
+           {"1,5,-1\n", {merging, "--poses", table, "--out", table}, "it is read, or written twice"},
+           {"1,5,-1\n", {merging, "--poses", table, "--out", out, "--links", out}, "it is read, or written twice"},
+           {"", {merging, "--out", out}, "--out: there is nothing to write"},
+           {"", {merging, "--sketch", out}, "name a file that ends in .svg"},
+           {"x,y\n1\n", {merging, "--nearest", table, "--out", out}, "in.csv:2: there is no y in it"},
+           {"", {merging, "--route", "1:-1", "2:-1:5"}, "'1:-1' is no place"},
+           {"", {merging, "--route", "1:-1:5", "9:-1:5"}, "road 9: the map has no such road"},
+           {"", {merging, "--links", "/nosuch/folder/links.csv"}, "cannot be written"}}) {
     write(wrong.text);
     auto const run = map.run(wrong.words);
     CAPTURE(wrong.sentence);

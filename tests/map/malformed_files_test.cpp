@@ -214,6 +214,27 @@ std::vector<Case> const cases{
      100.0,
      0.0,
      0.0},
+    {"number closer to 0 than all doubles", {{R"(b="0")", R"(b="1e-400")"}}, info, nothing, nothing},
+    {"long number closer to 0 than all doubles",
+     {{R"(b="0")", R"(b="-0.)" + std::string(400, '0') + "1\""}},
+     info,
+     nothing,
+     nothing},
+    {"second lanes",
+     {{"</lanes>", "</lanes><lanes><laneSection s=\"0\"/></lanes>"}},
+     warning,
+     "lanes",
+     "there is a second <lanes>; it was left out"},
+    {"second plan view",
+     {{"</planView>", "</planView><planView/>"}},
+     warning,
+     "planView",
+     "there is a second <planView>; it was left out"},
+    {"two documents in one",
+     {{"</OpenDRIVE>", "</OpenDRIVE>\n<?xml version=\"1.0\"?><!-- --><OpenDRIVE><road/></OpenDRIVE>"}},
+     warning,
+     "OpenDRIVE",
+     "what follows </OpenDRIVE> was left out"},
     {"road longer than its geometry",
      {{R"(length="100")", R"(length="140")"}},
      warning,
@@ -447,6 +468,16 @@ TEST_CASE("a malformed file gives the map and the finding that are stated for it
     check_finding(c, loaded.diagnostics);
     check_map(c, *loaded.map);
   }
+}
+
+TEST_CASE("a map on which nobody may drive is a map, with a finding") {
+  std::string text = good_file;
+  for (std::string const type = "driving"; text.find(type) != text.npos;)
+    text.replace(text.find(type), type.size(), "sidewalk");
+  auto const loaded = road_text::load(text);
+  CHECK(loaded.map->lanes().size() == 4);
+  REQUIRE(loaded.diagnostics.size() == 1);
+  CHECK(to_string(loaded.diagnostics[0]) == "test.xodr: warning: there is no lane that one may drive on");
 }
 
 TEST_CASE("what is no map is refused with a sentence, the place and a remedy") {

@@ -49,6 +49,8 @@ class MapBuild {
         add_section(document_.roads[i], parts_.roads[i], k);
     if (parts_.lanes.empty())
       throw MapError(file_, "the file has no lane with a length", "give a file with lanes beside lane 0");
+    if (std::none_of(parts_.lanes.begin(), parts_.lanes.end(), [](Lane const& lane) { return lane.drivable(); }))
+      diagnostics_.push_back({Severity::warning, file_, 0, {}, {}, "there is no lane that one may drive on"});
     link_lanes();
     set_speed_limits(document_, parts_.lanes);
     set_lane_changes(document_, parts_.lanes);
@@ -172,7 +174,7 @@ class MapBuild {
 
 /// The map that a document describes; what was odd is added to `diagnostics`, with `file` as the place: links that lead
 /// nowhere, that only one side knows, or that seem to be missing (see `MapOptions::infer_links`), joined lanes that do
-/// not meet. Throws `MapError` where no lane is left.
+/// not meet, a map without a lane to drive on. Throws `MapError` where no lane is left.
 ///
 /// A lane for both directions (`direction="both"`, type bidirectional) becomes two lanes, see `Lane::opposite`. Lanes
 /// are linked at their ends only: a section is split where a connecting road of a virtual junction meets the middle of

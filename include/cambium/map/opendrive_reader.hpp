@@ -115,6 +115,21 @@ inline void read_lateral_profile(XmlContext& context, pugi::xml_node road_node, 
   return !road.lane_sections.empty();
 }
 
+/// Of every container in a road the first is read.
+inline void report_second_containers(XmlContext& context, pugi::xml_node road_node) {
+  constexpr std::string_view names[] = {"link",  "planView", "elevationProfile", "lateralProfile",
+                                        "lanes", "objects",  "signals"};
+  bool is_there[std::size(names)] = {};
+  for_each_child(road_node, [&](pugi::xml_node child, std::string_view name) {
+    auto const found = std::find(std::begin(names), std::end(names), name);
+    if (found == std::end(names)) return;
+    bool& seen = is_there[found - std::begin(names)];
+    if (seen)
+      context.report(Severity::warning, child, "there is a second <" + std::string(name) + ">; it was left out");
+    seen = true;
+  });
+}
+
 /// False when the road is unusable.
 [[nodiscard]] inline bool read_road(XmlContext& context, pugi::xml_node node, opendrive::Road& road) {
   road.length = -1.0;  // missing
@@ -122,6 +137,7 @@ inline void read_lateral_profile(XmlContext& context, pugi::xml_node road_node, 
     context.report(Severity::error, node, "the road was left out, for it has no id");
     return false;
   }
+  report_second_containers(context, node);
   read_road_links(context, node, road);
   read_road_types(context, node, road);
   if (!read_plan_view(context, node, road) || !read_lanes(context, node, road)) {
@@ -184,11 +200,12 @@ inline void read_top_level(XmlContext& context, pugi::xml_node node, std::string
 
 /// Reads an OpenDRIVE file (revisions 1.1 to 1.8) from its text; `file_name` only names it in messages. Numbers are
 /// read in the C locale. What is odd goes to `diagnostics`, and is read as far as it makes sense: a bad record is left
-/// out, so is a signal, object or controller without an id or a place, and a road with an unusable geometry. An XML
-/// namespace prefix is ignored. What the document has no field for is kept in its `rest`s, but for comments, and for
-/// what stands unexpected in a single record (cubics, speeds, lane links' ids, header offset, the curve of a geometry).
-/// Throws `MapError` when the text is no XML, its root is not OpenDRIVE, or no road is usable. Linear in the length of
-/// the text; lines are counted in bytes of UTF-8.
+/// out, so is a signal, object or controller without an id or a place, a road with an unusable geometry, a road's
+/// second container of one name, and what follows the root element. An XML namespace prefix is ignored. What the
+/// document has no field for is kept in its `rest`s, but for comments, and for what stands unexpected in a single
+/// record (cubics, speeds, lane links' ids, header offset, the curve of a geometry). Throws `MapError` when the text is
+/// no XML, its root is not OpenDRIVE, or no road is usable. Linear in the length of the text; lines are counted in
+/// bytes of UTF-8.
 [[nodiscard]] inline OpenDriveDocument read_opendrive_document(std::string_view text, std::string file_name,
                                                                std::vector<Diagnostic>& diagnostics) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
@@ -200,6 +217,8 @@ inline void read_top_level(XmlContext& context, pugi::xml_node node, std::string
     detail::keep_attribute(document.rest.attributes, a);
   detail::for_each_child(
       root, [&](pugi::xml_node node, std::string_view name) { detail::read_top_level(context, node, name, document); });
+  if (pugi::xml_node const next = root.next_sibling())
+    context.report(Severity::warning, next, "what follows </OpenDRIVE> was left out");
   check_opendrive_document(document, context.file(), diagnostics);
   if (document.roads.empty()) {
     std::string why;
