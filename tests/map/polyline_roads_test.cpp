@@ -89,6 +89,27 @@ TEST_CASE("lanes between polylines have these as their borders, and are neighbou
   CHECK(map->lanes()[2].left_neighbor == map->lanes()[1].id);
 }
 
+TEST_CASE("a lane between rings that nearly close keeps its width, wherever its borders end") {
+  auto const ring = [](double radius, double from, double to) {
+    std::vector<Point> points;
+    for (double degrees = from; degrees <= to; degrees += 1.0) {
+      double const angle = -degrees * geometry::pi / 180.0;  // clockwise
+      points.emplace_back(radius * std::cos(angle), radius * std::sin(angle));
+    }
+    return points;
+  };
+  for (double const late : {0.0, 3.0}) {
+    auto const plan = lanes_between(std::vector{ring(23.5, 0, 350), ring(20, late, 350 - late)});
+    double least = 100.0, most = 0.0;
+    for (auto const& record : plan.sections.front().right.front().widths) {
+      least = std::min(least, record.a);
+      most = std::max(most, record.a);
+    }
+    CHECK(least > (late > 0.0 ? 3.45 : 3.49));
+    CHECK(most < 3.51);
+  }
+}
+
 TEST_CASE("polylines that make no lane are refused") {
   double const nan = std::numeric_limits<double>::quiet_NaN();
   std::vector<Point> const line{{0, 0}, {10, 0}, {20, 1}};

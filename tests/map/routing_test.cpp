@@ -299,6 +299,41 @@ TEST_CASE("a start behind its destination on the same lane leads round, where th
   CHECK(ring.map()->shortest_route(LaneStation{only, 60}, LaneStation{only, 40})->length == doctest::Approx(80));
 }
 
+TEST_CASE("a route passes its start's lane and its destination's again where only their other parts lead on") {
+  Lanes lanes;
+  auto const left = lanes.add(100), right = lanes.add(100), off = lanes.add(30);
+  put_beside(lanes.all, left, right);
+  link(lanes.all, left, left);
+  link(lanes.all, right, right);
+  link(lanes.all, left, off);
+  lanes.all[index_of(right)].left_changes = {{0.0, 20.0}};
+  lanes.all[index_of(left)].right_changes = {};
+  auto const check = [&](LaneStation from, LaneStation to, std::vector<LaneId> const& way, double cost, double length) {
+    auto const route = lanes.map()->shortest_route(from, to);
+    REQUIRE(route.has_value());
+    CHECK(route->lanes == way);
+    CHECK(route->cost == doctest::Approx(cost));
+    CHECK(route->length == doctest::Approx(length));
+  };
+  check({right, 50}, {left, 80}, {right, right, left}, 50 + lane_change + 80, 50 + 80);
+  check({right, 50}, {off, 10}, {right, right, left, off}, 50 + lane_change + 100 + 10, 50 + 100 + 10);
+  check({right, 10}, {left, 80}, {right, left}, lane_change + 70, 70);
+  auto const reached = lanes.map()->reachable(LaneStation{right, 50}, infinity);
+  REQUIRE(reached.size() == 3);
+  CHECK(reached[0].cost == 0.0);
+  CHECK(reached[1].lane == left);
+  CHECK(reached[1].cost == doctest::Approx(50 + lane_change));
+  CHECK(lanes.map()->reachable(LaneStation{right, 50}, 59.0).size() == 1);
+  // The change comes behind the destination.
+  lanes.all[index_of(right)].left_changes = {{40.0, 60.0}};
+  check({right, 0}, {left, 20}, {right, left, left}, lane_change + 100 + 20, 100 + 20);
+  // Other routes do not go round for nothing.
+  RouteOptions lawless;
+  lawless.obey_lane_marks = false;
+  for (auto const& route : lanes.map()->routes(LaneStation{left, 50}, LaneStation{off, 10}, lawless))
+    CHECK(std::count(route.lanes.begin(), route.lanes.end(), left) <= 2);
+}
+
 TEST_CASE("lanes are changed where marks permit it, unless they are not obeyed") {
   Lanes lanes;
   auto const a = lanes.add(100), right = lanes.add(100), next = lanes.add(50);

@@ -43,21 +43,24 @@ namespace detail {
   return records;
 }
 
-/// Where the line to the right of `pose` meets `polyline`, whose ends go on straight: the distance [m], infinite where
-/// it does not within 100 m.
+/// Where the line to the right of `pose` meets `polyline` as that passes ahead, not back: the distance [m]. Where it
+/// meets none of its segments, the ends go on straight, and that counts which is met nearer to it. Infinite where it
+/// does not within 100 m.
 [[nodiscard]] inline double distance_to_the_right(geometry::Pose const& pose,
                                                   std::span<geometry::Point const> polyline) {
-  constexpr double farthest = 100.0;
-  double nearest = std::numeric_limits<double>::infinity();
+  constexpr double farthest = 100.0, tolerance = 1e-6;
+  using Hit = std::pair<double, double>;  // how far beyond the polyline's ends, how far to the right
+  Hit best{std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
   for (std::size_t i = 0; i + 1 < polyline.size(); ++i) {
     auto const a = geometry::to_local(pose, polyline[i]), b = geometry::to_local(pose, polyline[i + 1]);
-    if (a.x() == b.x()) continue;
+    if (!(a.x() < b.x())) continue;
     double const u = -a.x() / (b.x() - a.x());
-    if ((u < 0.0 && i > 0) || (u > 1.0 && i + 2 < polyline.size())) continue;
+    double const beyond = std::max({-u - tolerance, u - 1.0 - tolerance, 0.0}) * (b - a).norm();
+    if (beyond > 0.0 && (u < 0.0 ? i > 0 : i + 2 < polyline.size())) continue;
     double const right = -(a.y() + u * (b.y() - a.y()));
-    if (right > -1e-6 && right < std::min(nearest, farthest)) nearest = right;
+    if (right > -1e-6 && right < farthest) best = std::min(best, Hit{beyond, right});
   }
-  return nearest;
+  return best.second;
 }
 
 [[nodiscard]] inline std::vector<double> stations_of(std::vector<Geometry> const& line) {

@@ -204,7 +204,7 @@ class GraphRouteFinder final : public RouteFinder {
     std::vector<Route> routes;
     if (builder.is_ahead()) {
       double const share = builder.to_share() - builder.from_share();
-      double const cost = share > 0.0 ? share * builder.cost(builder.start()) : 0.0;
+      double const cost = share > 0.0 ? share * builder.cost(builder.lane_of(builder.start())) : 0.0;
       if (options.max_routes > 0 && std::isfinite(cost))
         routes.push_back({{from.lane}, share * lanes[index_of(from.lane)].length(), cost});
       return routes;
@@ -222,9 +222,11 @@ class GraphRouteFinder final : public RouteFinder {
     auto const graph = builder.build();
     LaneSearch const search(graph, builder.start(), builder.goal(), budget, {});
     std::vector<ReachedLane> reached;
-    for (std::uint32_t i = 0; i < lanes.size(); ++i)
-      if (search.cost(i) <= budget && std::isfinite(search.cost(i)))
-        reached.push_back({static_cast<LaneId>(i), search.cost(i)});
+    for (std::uint32_t i = 0; i < lanes.size(); ++i) {
+      auto const own = builder.start_place(i);
+      double const cost = own == builder.no_place ? search.cost(i) : std::min(search.cost(i), search.cost(own));
+      if (cost <= budget && std::isfinite(cost)) reached.push_back({static_cast<LaneId>(i), cost});
+    }
     std::sort(reached.begin(), reached.end(), [](ReachedLane const& a, ReachedLane const& b) {
       return std::tie(a.cost, a.lane) < std::tie(b.cost, b.lane);
     });

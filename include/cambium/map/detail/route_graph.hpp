@@ -27,7 +27,8 @@ struct LaneStep {
   friend bool operator==(LaneStep const&, LaneStep const&) = default;
 };
 
-/// Steps sorted by `from`, one for each pair of places. Place i is lane i; one more is the destination.
+/// Steps sorted by `from`, one for each pair of places. Place i is lane i; one more is the destination, and behind it
+/// come those of the start.
 struct LaneGraph {
   std::vector<LaneStep> steps;
   std::vector<std::uint32_t> first;   ///< of each place's steps, and one more
@@ -78,37 +79,41 @@ inline void check_route_options(RouteOptions const& options) {
 
 /// Builds the graph of one query.
 ///
-/// The lanes of the start are those that its lane leads to by changes alone, ahead of it: what is left of them costs
-/// its share. Nothing leads back into them: it would have been there already. Where the start is on its lane's begin
-/// that lane is the only one. The destination is a place of its own; steps into its lane lead there.
+/// The start has places of its own: one for each lane that its lane leads to by changes alone, ahead of it. What is
+/// left of these lanes costs its share; nothing leads back into the places, but a route may come to the lanes again,
+/// from their begin. Where the start is on its lane's begin it is the lane's place. The destination is a place of its
+/// own; steps into its lane lead there.
 class RouteGraphBuilder {
  public:
+  static constexpr std::uint32_t no_place = std::numeric_limits<std::uint32_t>::max();
+
   /// `to`: no destination where it names no lane.
   RouteGraphBuilder(std::span<Lane const> lanes, LaneStation from, LaneStation to, RouteOptions const& options)
       : lanes_(lanes), options_(options), costs_(lane_costs(lanes, options)) {
     start_ = station(from, "start", from_share_);
     if (is_valid(to.lane)) goal_lane_ = station(to, "destination", to_share_);
-    is_start_.assign(lanes.size(), false);
-    find_start_lanes();
+    start_places_.assign(lanes.size(), no_place);
+    if (from_share_ > 0.0) find_start_lanes();
   }
 
-  [[nodiscard]] std::uint32_t start() const { return start_; }
+  [[nodiscard]] std::uint32_t start() const { return start_lanes_.empty() ? start_ : goal() + 1; }
   [[nodiscard]] std::uint32_t goal() const { return static_cast<std::uint32_t>(lanes_.size()); }
   [[nodiscard]] double from_share() const { return from_share_; }
   [[nodiscard]] double to_share() const { return to_share_; }
-  [[nodiscard]] bool is_start(std::uint32_t lane) const { return is_start_[lane]; }
   [[nodiscard]] double cost(std::uint32_t lane) const { return costs_[lane]; }
   /// The lane of a place.
-  [[nodiscard]] std::uint32_t lane_of(std::uint32_t place) const { return place == goal() ? goal_lane_ : place; }
+  [[nodiscard]] std::uint32_t lane_of(std::uint32_t place) const {
+    if (place > goal()) return start_lanes_[place - goal() - 1];
+    return place == goal() ? goal_lane_ : place;
+  }
+  /// The place of the start on a lane, `no_place` where there is none.
+  [[nodiscard]] std::uint32_t start_place(std::uint32_t lane) const { return start_places_[lane]; }
   /// The destination lies ahead of the start on one lane.
   [[nodiscard]] bool is_ahead() const { return start_ == goal_lane_ && from_share_ <= to_share_; }
 
   [[nodiscard]] LaneGraph build() {
-    for (auto const& lane : lanes_) {
-      for (auto const next : lane.successors) add_ahead(lane, next);
-      add_side(lane, lane.left_neighbor, lane.left_changes);
-      add_side(lane, lane.right_neighbor, lane.right_changes);
-    }
+    for (std::uint32_t i = 0; i < lanes_.size(); ++i) add_steps(i);
+    for (std::uint32_t i = 0; i < start_lanes_.size(); ++i) add_steps(goal() + 1 + i);
     return finished();
   }
 
@@ -136,18 +141,18 @@ class RouteGraphBuilder {
   }
 
   void find_start_lanes() {
-    is_start_[start_] = true;
-    if (from_share_ == 0.0) return;
-    std::vector<std::uint32_t> found{start_};
-    while (!found.empty()) {
-      auto const& lane = lanes_[found.back()];
-      found.pop_back();
+    auto const add_lane = [&](std::uint32_t lane) {
+      start_places_[lane] = goal() + 1 + static_cast<std::uint32_t>(start_lanes_.size());
+      start_lanes_.push_back(lane);
+    };
+    add_lane(start_);
+    for (std::size_t i = 0; i < start_lanes_.size(); ++i) {
+      auto const& lane = lanes_[start_lanes_[i]];
       for (auto const& [side, changes] :
-           {std::pair(lane.left_neighbor, &lane.left_changes), std::pair(lane.right_neighbor, &lane.right_changes)}) {
-        if (!may_go(lane, side) || is_start_[index_of(side)] || !may_change(lane, *changes, from_share_, 1.0)) continue;
-        is_start_[index_of(side)] = true;
-        found.push_back(static_cast<std::uint32_t>(side));
-      }
+           {std::pair(lane.left_neighbor, &lane.left_changes), std::pair(lane.right_neighbor, &lane.right_changes)})
+        if (may_go(lane, side) && start_places_[index_of(side)] == no_place &&
+            may_change(lane, *changes, from_share_, 1.0))
+          add_lane(static_cast<std::uint32_t>(side));
     }
   }
 
@@ -155,26 +160,33 @@ class RouteGraphBuilder {
     if (std::isfinite(cost)) graph_.steps.push_back({from, to, cost, ahead});
   }
 
-  void add_ahead(Lane const& lane, LaneId next) {
+  void add_steps(std::uint32_t place) {
+    auto const& lane = lanes_[lane_of(place)];
+    double const begin = place > goal() ? from_share_ : 0.0;
+    add_side(lane, place, begin, lane.left_neighbor, lane.left_changes);
+    add_side(lane, place, begin, lane.right_neighbor, lane.right_changes);
+    // Once more over the end of the start's lane leads nowhere that the start does not lead to at less.
+    if (place == start_ && place != start()) return;
+    for (auto const next : lane.successors) add_ahead(lane, place, begin, next);
+  }
+
+  void add_ahead(Lane const& lane, std::uint32_t from, double begin, LaneId next) {
     if (!may_go(lane, next)) return;
-    auto const from = static_cast<std::uint32_t>(lane.id), to = static_cast<std::uint32_t>(next);
-    double const cost = is_start_[from] ? (1.0 - from_share_) * costs_[from] : costs_[from];
+    auto const to = static_cast<std::uint32_t>(next);
+    double const cost = (1.0 - begin) * costs_[index_of(lane.id)];
     if (to == goal_lane_)
       add(from, goal(), cost + to_share_ * costs_[to], true);
-    else if (!is_start_[to] && to != from)
+    else if (to != from)
       add(from, to, cost, true);
   }
 
-  void add_side(Lane const& lane, LaneId side, std::span<PathStretch const> changes) {
+  void add_side(Lane const& lane, std::uint32_t from, double begin, LaneId side, std::span<PathStretch const> changes) {
     if (!may_go(lane, side)) return;
-    auto const from = static_cast<std::uint32_t>(lane.id), to = static_cast<std::uint32_t>(side);
-    double const begin = is_start_[from] ? from_share_ : 0.0;
-    if (to == goal_lane_ && begin <= to_share_) {
-      if (may_change(lane, changes, begin, to_share_))
-        add(from, goal(), options_.lane_change_cost + (to_share_ - begin) * costs_[to], false);
-    } else if ((!is_start_[to] || is_start_[from]) && may_change(lane, changes, begin, 1.0)) {
-      if (std::isfinite(costs_[to])) add(from, to, options_.lane_change_cost, false);
-    }
+    auto const to = static_cast<std::uint32_t>(side);
+    if (to == goal_lane_ && begin <= to_share_ && may_change(lane, changes, begin, to_share_))
+      add(from, goal(), options_.lane_change_cost + (to_share_ - begin) * costs_[to], false);
+    else if (may_change(lane, changes, begin, 1.0) && std::isfinite(costs_[to]))
+      add(from, from > goal() ? start_place(to) : to, options_.lane_change_cost, false);
   }
 
   [[nodiscard]] LaneGraph finished() {
@@ -184,7 +196,7 @@ class RouteGraphBuilder {
     });
     auto const same = [](LaneStep const& a, LaneStep const& b) { return a.from == b.from && a.to == b.to; };
     steps.erase(std::unique(steps.begin(), steps.end(), same), steps.end());
-    for (std::uint32_t place = 0, i = 0; place <= goal(); ++place) {
+    for (std::uint32_t place = 0, i = 0; place <= goal() + start_lanes_.size(); ++place) {
       graph_.places.push_back(place);
       graph_.first.push_back(i);
       while (i < steps.size() && steps[i].from == place) ++i;
@@ -196,9 +208,10 @@ class RouteGraphBuilder {
   std::span<Lane const> lanes_;
   RouteOptions const& options_;
   std::vector<double> costs_;
-  std::uint32_t start_{}, goal_lane_ = std::numeric_limits<std::uint32_t>::max();
+  std::uint32_t start_{}, goal_lane_ = no_place;
   double from_share_{}, to_share_{};
-  std::vector<bool> is_start_;
+  std::vector<std::uint32_t> start_lanes_;   // of the start's places; none where it is on its lane's begin
+  std::vector<std::uint32_t> start_places_;  // of each lane
   LaneGraph graph_;
 };
 
