@@ -35,6 +35,7 @@
 #include "cambium/map/lane_area.hpp"
 #include "cambium/map/lane_position.hpp"
 #include "cambium/map/road_area.hpp"
+#include "cambium/map/routing.hpp"
 #include "../support/corpus.hpp"
 #include "lanes_by_hand.hpp"
 #include "../support/maps.hpp"
@@ -639,6 +640,20 @@ TEST_CASE("a road corridor is found from a pose to a point or a polygon") {
   CHECK_THROWS_AS((void)build_road_corridor(*map, Pose{1e5, 1e5, 0}, goal), MapError);
   CHECK_THROWS_AS((void)build_road_corridor(*map, start, Point(1e5, 1e5)), MapError);
   CHECK_THROWS_AS((void)build_road_corridor(*map, map->lane(last.id).path.pose(10), start.position()), MapError);
+}
+
+TEST_CASE("a start in the polygon of its goal is there already") {
+  std::vector<Lane> lanes;
+  auto const lane = add_straight(lanes, {0, 0, 0}, 100);
+  Map::Parts parts;
+  parts.lanes = lanes;
+  parts.roads.emplace_back().id = lanes.front().road;
+  parts.route_finder = make_route_finder();
+  Map const map(std::move(parts));
+  geometry::Polygon const area({{40, -3}, {60, -3}, {60, 3}, {40, 3}});
+  for (double const x : {20.0, 40.5, 50.0, 59.5})
+    CHECK(build_road_corridor(map, Pose{x, 0.5, 0}, area)->route == std::vector<LaneId>{lane});
+  CHECK_THROWS_AS((void)build_road_corridor(map, Pose{61, 0, 0}, area), MapError);
 }
 
 TEST_CASE("a road corridor is found along roads in either direction") {
