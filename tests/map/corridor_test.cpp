@@ -35,6 +35,7 @@
 #include "cambium/map/lane_area.hpp"
 #include "cambium/map/lane_position.hpp"
 #include "cambium/map/road_area.hpp"
+#include "cambium/map/routing.hpp"
 #include "../support/corpus.hpp"
 #include "lanes_by_hand.hpp"
 #include "../support/maps.hpp"
@@ -393,6 +394,30 @@ TEST_CASE("behind the corridor's begin there is traffic too, for a hundred metre
   CHECK(feeders[2].lane == merge.ramp);
 }
 
+TEST_CASE("behind a ring of microns and behind lanes linked crosswise the traffic is found at once") {
+  std::vector<Lane> ring;
+  auto const only = add_straight(ring, {0, 0, 0}, 2e-5);
+  link(ring, only, only);
+  auto const round = make_map(ring);
+  CHECK(build_road_corridor(*round, straight_route(*round, only))->corridors[0].feeders.size() == 1);
+  // 2^30 ways lead through thirty sections.
+  std::vector<Lane> crosswise;
+  std::vector<LaneId> last;
+  for (int i = 0; i < 30; ++i) {
+    LaneId const left = add_straight(crosswise, {3.0 * i, 0, 0}, 3),
+                 right = add_straight(crosswise, {3.0 * i, -9, 0}, 3);
+    for (auto const before : last)
+      for (auto const next : {left, right}) link(crosswise, before, next);
+    last = {left, right};
+  }
+  auto const map = make_map(crosswise);
+  auto const road = build_road_corridor(*map, route_of(*map, {last.front()}));
+  auto const& corridor = road->corridors[0];
+  check_feeder_laws(*map, corridor);
+  CHECK(corridor.feeders.size() == 2 * 29);
+  CHECK(corridor.feeders.front().begin == doctest::Approx(-3.0 * 29));
+}
+
 TEST_CASE("a lane that leads in at a right angle feeds the corridor from its joint on") {
   std::vector<Lane> lanes;
   auto const before = add_straight(lanes, {-100, 0, 0}, 100), after = add_straight(lanes, {0, 0, 0}, 100);
@@ -615,6 +640,20 @@ TEST_CASE("a road corridor is found from a pose to a point or a polygon") {
   CHECK_THROWS_AS((void)build_road_corridor(*map, Pose{1e5, 1e5, 0}, goal), MapError);
   CHECK_THROWS_AS((void)build_road_corridor(*map, start, Point(1e5, 1e5)), MapError);
   CHECK_THROWS_AS((void)build_road_corridor(*map, map->lane(last.id).path.pose(10), start.position()), MapError);
+}
+
+TEST_CASE("a start in the polygon of its goal is there already") {
+  std::vector<Lane> lanes;
+  auto const lane = add_straight(lanes, {0, 0, 0}, 100);
+  Map::Parts parts;
+  parts.lanes = lanes;
+  parts.roads.emplace_back().id = lanes.front().road;
+  parts.route_finder = make_route_finder();
+  Map const map(std::move(parts));
+  geometry::Polygon const area({{40, -3}, {60, -3}, {60, 3}, {40, 3}});
+  for (double const x : {20.0, 40.5, 50.0, 59.5})
+    CHECK(build_road_corridor(map, Pose{x, 0.5, 0}, area)->route == std::vector<LaneId>{lane});
+  CHECK_THROWS_AS((void)build_road_corridor(map, Pose{61, 0, 0}, area), MapError);
 }
 
 TEST_CASE("a road corridor is found along roads in either direction") {

@@ -122,13 +122,16 @@ inline constexpr double goal_radius = 5.0;  ///< how far from a lane a start or 
   return detail::corridor_to(map, start, detail::stations_at(map, goal), goal, options);
 }
 
-/// As above, to the first place in the polygon `goal` that a route comes to; where no lane passes through it, to its
-/// middle.
+/// As above, to the first place in the polygon `goal` that a route comes to, which is the start where it holds that;
+/// where no lane passes through it, to its middle.
 [[nodiscard]] inline std::shared_ptr<RoadCorridor const> build_road_corridor(Map const& map,
                                                                              geometry::Pose const& start,
                                                                              geometry::Polygon const& goal,
                                                                              RouteOptions const& options = {}) {
-  return detail::corridor_to(map, start, detail::stations_in(map, goal), goal.bounding_box().center(), options);
+  auto goals = detail::stations_in(map, goal);
+  if (auto const from = map.nearest_lane(start, detail::goal_radius); from && goal.contains(start.position()))
+    goals = {{from->lane, from->s}};
+  return detail::corridor_to(map, start, goals, goal.bounding_box().center(), options);
 }
 
 /// The road corridor along roads, given by the file's ids in the order in which they are driven, the first one in

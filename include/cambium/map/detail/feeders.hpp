@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <map>
 #include <tuple>
 #include <vector>
 
@@ -25,13 +26,11 @@ class FeederFinder {
     for (auto const& piece : corridor_.pieces)
       for (auto const& overlap : map_.lane(piece.lane).overlaps) add_overlap(piece, overlap);
     auto const& first = corridor_.pieces.front();
-    add_predecessors(first.lane, none<LaneId>, rear_view, first.begin, never, true);
+    add_predecessors(first.lane, rear_view, first.begin, never, true);
     for (std::size_t i = 0; i < corridor_.pieces.size(); ++i) {
       auto const& piece = corridor_.pieces[i];
       auto const& lane = map_.lane(piece.lane);
-      if (i > 0)
-        add_predecessors(piece.lane, corridor_.pieces[i - 1].lane, map_.options().merge_view, piece.begin, piece.begin,
-                         false);
+      if (i > 0) add_predecessors(piece.lane, map_.options().merge_view, piece.begin, piece.begin, false);
       for (auto const& overlap : lane.overlaps)
         if (overlap.kind == OverlapKind::merge && !holds(overlap.other))
           add_upstream_of(overlap, position(piece, overlap.begin));
@@ -67,19 +66,36 @@ class FeederFinder {
     double const length = std::min(view, overlap.other_begin);
     add({other.id, other.index_begin + overlap.other_begin - length, other.index_begin + overlap.other_begin,
          begin - length, begin, begin});
-    if (length < view) add_predecessors(other.id, none<LaneId>, view - length, begin - length, begin, false);
+    if (length < view) add_predecessors(other.id, view - length, begin - length, begin, false);
   }
 
-  /// Adds the predecessors of `lane` but `known`, and those behind them, up to `view` [m] back; `end` is the image of
-  /// the lane's begin.
-  void add_predecessors(LaneId lane, LaneId known, double view, double end, double free_until, bool with_own) {
-    for (auto const before : map_.lane(lane).predecessors) {
-      auto const& previous = map_.lane(before);
-      if (before == known || !previous.drivable() || (!with_own && holds(before))) continue;
-      double const length = std::min(view, previous.length());
+  /// Adds the predecessors of `lane` and those behind them, up to `view` [m] back; `end` is the image of the lane's
+  /// begin. One way is followed to its end before the next; of a lane come to again no more than what is new, so that
+  /// lanes linked crosswise or in rings are not followed over and over.
+  void add_predecessors(LaneId lane, double view, double end, double free_until, bool with_own) {
+    constexpr double worth_it = 0.01;  // [m]
+    struct Way {
+      LaneId lane;
+      double view, end;
+    };
+    std::vector<Way> open;
+    std::map<LaneId, double> seen;  // the largest view
+    auto const open_before = [&](Way const& way) {
+      auto const& before = map_.lane(way.lane).predecessors;
+      for (auto i = before.rbegin(); i != before.rend(); ++i)
+        if (map_.lane(*i).drivable() && (with_own || !holds(*i))) open.push_back({*i, way.view, way.end});
+    };
+    for (open_before({lane, view, end}); !open.empty();) {
+      auto const way = open.back();
+      open.pop_back();
+      auto const [mark, is_new] = seen.emplace(way.lane, way.view);
+      if (!is_new && way.view < mark->second + worth_it) continue;
+      mark->second = way.view;
+      auto const& previous = map_.lane(way.lane);
+      double const length = std::min(way.view, previous.length());
       double const index_end = previous.index_begin + previous.length();
-      add({before, index_end - length, index_end, end - length, end, free_until});
-      if (length < view) add_predecessors(before, none<LaneId>, view - length, end - length, free_until, with_own);
+      add({way.lane, index_end - length, index_end, way.end - length, way.end, free_until});
+      if (length < way.view) open_before({way.lane, way.view - length, way.end - length});
     }
   }
 
