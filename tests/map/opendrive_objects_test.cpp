@@ -203,7 +203,7 @@ TEST_CASE("junctions of every kind keep connections, priorities and controllers"
 <priority high="1" low="2"/><controller id="c" type="0" sequence="1"/><crossPath id="0"/></junction>
 <junction id="12" type="roundabout"/>)"));
   for (auto const& d : r.diagnostics) MESSAGE(to_string(d));
-  CHECK(r.diagnostics.size() == 1);  // of the unknown type
+  CHECK(r.diagnostics.size() == 2);  // of the unknown type, and that it has no connection
   auto const& junctions = r.document.junctions;
   REQUIRE(junctions.size() == 3);
   CHECK(junctions[0].type == opendrive::JunctionType::direct);
