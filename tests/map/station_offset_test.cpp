@@ -22,10 +22,9 @@ using cb::map::ReferenceLine;
 /// The nearest of many points of the line.
 double distance_by_search(ReferenceLine const& line, Point const& p, double step) {
   double best = std::numeric_limits<double>::infinity();
-  auto walker = line.walker();
   auto const count = static_cast<int>(line.length() / step) + 1;
   for (int i = 0; i <= count; ++i) {
-    auto const at = walker.at(line.length() * i / count);
+    auto const at = line.at(line.length() * i / count);
     best = std::min(best, std::hypot(p.x() - at.x, p.y() - at.y));
   }
   return best;

@@ -69,8 +69,7 @@ struct Overlap {
 /// One lane of one lane section, as it is driven: everything runs in the direction of travel.
 ///
 /// The `path` is what a vehicle follows: the lane's centre line; but where the lane ends beside a neighbour that goes
-/// on
-/// (`merges_into`: a lane drop, the end of an acceleration lane), it swings over onto the neighbour's centre line
+/// on (`merges_into`: a lane drop, the end of an acceleration lane), it swings over onto the neighbour's centre line
 /// before the end, and the neighbour's successors are this lane's successors too.
 struct Lane {
   LaneId id = none<LaneId>;

@@ -163,7 +163,7 @@ class ReferenceLine {
   }
 
   /// The point at station `s` [m], at a joint that of the later geometry. O(log geometries); a spiral costs up to 20
-  /// sine-cosine pairs for each 0.7 rad from its start (see `Walker` for many stations). Precondition: not empty.
+  /// sine-cosine pairs for each 0.7 rad from its start (see `advance` for many stations). Precondition: not empty.
   [[nodiscard]] CurvePoint at(double s) const {
     Geometry const& g = geometries_[locate(s)];
     return evaluate(g, s - g.s);
@@ -185,45 +185,6 @@ class ReferenceLine {
   /// Sorted by `s`; the starts are the places where the curvature may jump.
   [[nodiscard]] std::span<Geometry const> geometries() const { return geometries_; }
   [[nodiscard]] bool empty() const { return geometries_.empty(); }
-
-  /// Evaluates a line at increasing stations: as `at`, but a spiral is integrated from the station before only (agrees
-  /// with `at` to 1e-12 m). Going back is allowed and costs one `at`. Refers to the line, which has to outlive it.
-  class Walker {
-   public:
-    explicit Walker(ReferenceLine const& line) : line_(&line) {}
-
-    [[nodiscard]] CurvePoint at(double s) {
-      std::span<Geometry const> const all = line_->geometries();
-      if (s < station_ || !started_) return restart(line_->locate(s), s);
-      std::size_t index = index_;
-      while (index + 1 < all.size() && all[index + 1].s <= s) ++index;
-      if (index != index_ || all[index].kind != GeometryKind::spiral) return restart(index, s);
-      return advance(all[index], s);
-    }
-
-   private:
-    CurvePoint restart(std::size_t index, double s) {
-      Geometry const& g = line_->geometries()[index];
-      started_ = true;
-      index_ = index;
-      station_ = s;
-      return last_ = evaluate(g, s - g.s);
-    }
-    CurvePoint advance(Geometry const& g, double s) {
-      last_ = map::advance(g, last_, station_, s);
-      station_ = s;
-      return last_;
-    }
-
-    ReferenceLine const* line_;
-    CurvePoint last_;
-    double station_ = 0.0;
-    std::size_t index_ = 0;
-    bool started_ = false;
-  };
-
-  [[nodiscard]] Walker walker() const& { return Walker(*this); }
-  Walker walker() const&& = delete;  // it would refer to a line that is gone
 
  private:
   std::vector<Geometry> geometries_;

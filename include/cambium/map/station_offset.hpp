@@ -32,11 +32,11 @@ namespace detail {
 /// Newton's method for the foot point of `p` on the geometries of a line: where (p - r(s)) . T(s) = 0.
 class FootFinder {
  public:
-  FootFinder(ReferenceLine const& line, geometry::Point const& p) : all_(line.geometries()), p_(p) {}
+  FootFinder(ReferenceLine const& line, geometry::Point const& p) : line_(line), all_(line.geometries()), p_(p) {}
 
   /// The foot point that the search comes to from `s`, a local minimum of the distance.
   [[nodiscard]] StationOffset from(double s) {
-    index_ = index_at(s);
+    index_ = line_.locate(s);
     s = std::clamp(s, begin(), end());
     double low = -infinity, high = infinity;  // the foot point is between them
     for (int i = 0; i < 100; ++i) {
@@ -65,12 +65,6 @@ class FootFinder {
  private:
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 
-  [[nodiscard]] std::size_t index_at(double s) const {
-    std::size_t const next = static_cast<std::size_t>(
-        std::upper_bound(all_.begin(), all_.end(), s, [](double v, Geometry const& g) { return v < g.s; }) -
-        all_.begin());
-    return next == 0 ? 0 : next - 1;
-  }
   [[nodiscard]] double begin() const { return all_[index_].s; }
   [[nodiscard]] double end() const {
     return index_ + 1 < all_.size() ? all_[index_ + 1].s : all_[index_].s + all_[index_].length;
@@ -89,6 +83,7 @@ class FootFinder {
     return true;
   }
 
+  ReferenceLine const& line_;
   std::span<Geometry const> all_;
   geometry::Point p_;
   std::size_t index_ = 0;

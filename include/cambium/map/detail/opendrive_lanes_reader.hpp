@@ -6,11 +6,11 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "cambium/map/detail/attribute_reader.hpp"
+#include "cambium/map/detail/move_records.hpp"
 #include "cambium/map/detail/stable_sort.hpp"
 #include "cambium/map/detail/xml_context.hpp"
 #include "cambium/map/opendrive_document.hpp"
@@ -208,21 +208,6 @@ inline void read_side(XmlContext& context, pugi::xml_node node, std::string_view
   return true;
 }
 
-/// Moves a lane's records to a section that starts `shift` [m] later; what has ended before is dropped.
-template <class Record>
-void move_start(std::vector<Record>& records, double Record::*start, double shift) {
-  std::size_t ended = 0;
-  while (ended + 1 < records.size() && records[ended + 1].*start <= shift) ++ended;
-  records.erase(records.begin(), records.begin() + static_cast<std::ptrdiff_t>(ended));
-  for (Record& record : records) {
-    double const s = record.*start - shift;
-    if constexpr (std::is_same_v<Record, CubicRecord>)
-      if (s < 0.0)
-        record = {0.0, record.value(shift), record.derivative(shift), 0.5 * record.second_derivative(shift), record.d};
-    record.*start = std::max(0.0, s);
-  }
-}
-
 /// Gives a section that speaks for one side only the other side's lanes, as they go on from the section before; it then
 /// speaks for both.
 inline void complete_single_sides(std::vector<opendrive::LaneSection>& sections) {
@@ -237,13 +222,7 @@ inline void complete_single_sides(std::vector<opendrive::LaneSection>& sections)
       for (opendrive::Lane& before : sections[k - 1].lanes) {
         if (!is_there(before)) continue;
         opendrive::Lane lane = before;
-        move_start(lane.widths, &CubicRecord::s, shift);
-        move_start(lane.borders, &CubicRecord::s, shift);
-        move_start(lane.road_marks, &opendrive::RoadMark::s_offset, shift);
-        move_start(lane.speeds, &opendrive::SpeedRecord::s, shift);
-        move_start(lane.heights, &opendrive::LaneHeight::s_offset, shift);
-        move_start(lane.accesses, &opendrive::LaneAccess::s_offset, shift);
-        move_start(lane.rules, &opendrive::LaneRule::s_offset, shift);
+        move_records(lane, shift);
         before.successors = lane.predecessors = {lane.id};
         section.lanes.push_back(std::move(lane));
       }
