@@ -41,6 +41,22 @@ template <class P>
                 "upper bound of the acceleration"));
 }
 
+/// These parameters alone: what a model holds beside its own, or assumes of others. Defaults are BARK's.
+struct IdmParameters {
+  double desired_speed = 15.0;
+  double time_headway = 1.5;
+  double minimum_gap = 2.0;
+  double maximum_acceleration = 1.7;
+  double comfortable_deceleration = 1.67;
+  double exponent = 4.0;
+  double lowest_acceleration = -5.0;
+  double highest_acceleration = 8.0;
+
+  static constexpr char const* name = "idm";
+  static constexpr auto parameters() { return idm_parameters<IdmParameters>(); }
+};
+static_assert(HasIdmParameters<IdmParameters>);
+
 /// x to the power of `exponent`; IDM's usual 4 without `pow`.
 template <class Scalar>
 [[nodiscard]] Scalar idm_power(Scalar x, double exponent) {

@@ -10,6 +10,7 @@
 #include "cambium/geometry/shape.hpp"
 #include "cambium/map/corridor.hpp"
 #include "cambium/map/lane_position.hpp"
+#include "cambium/map/map.hpp"
 
 namespace cambium {
 
@@ -19,7 +20,24 @@ struct Neighbor {
   ObjectId object = none<ObjectId>;  ///< what it is; none where it is an agent
   double gap{};  ///< free road between the two, bumper to bumper [m]; negative where they overlap lengthwise. Where the
                  ///< other is in a merging lane and the merge is still ahead: see `TrafficIndex::gap_between`.
-  double speed{};  ///< of the other along its lane [m/s]
+  double speed{};        ///< of the other along its lane [m/s]
+  double length{};       ///< of the other along its lane [m]
+  std::uint32_t slot{};  ///< its place among the agents or the objects
+};
+
+/// The next road users ahead and behind on one lane corridor, and the own place there.
+struct Neighbors {
+  std::optional<Neighbor> front, rear;
+  map::LanePosition position;
+};
+
+/// Another agent as seen by an observer.
+template <MotionState S>
+struct ObservedAgent {
+  AgentId id = none<AgentId>;
+  S state;
+  geometry::Shape shape;
+  double acceleration{};  ///< over the last step, along its heading [m/s^2]: what brake lights tell
 };
 
 /// The least a behaviour may ask of what it sees; `ObservedWorld` offers it. Concepts are checked against this type,
@@ -28,18 +46,19 @@ struct ViewArchetype {
   using State = cambium::State;
   using Dynamics = SingleTrack;
 
-  [[nodiscard]] double time() const;                             ///< of the frame that is seen [s]
-  [[nodiscard]] State const& state() const;                      ///< own state, as observed
-  [[nodiscard]] geometry::Shape const& shape() const;            ///< own shape
-  [[nodiscard]] Dynamics const& dynamics() const;                ///< own vehicle model
-  [[nodiscard]] map::RoadCorridor const& road() const;           ///< the lanes of the own route
-  [[nodiscard]] map::LaneCorridor const& corridor() const;       ///< the lane corridor the agent is in
-  [[nodiscard]] map::LanePosition const& lane_position() const;  ///< where it is in there
-  [[nodiscard]] std::optional<Neighbor> front() const;           ///< next ahead along the own lane corridor
-  [[nodiscard]] std::optional<Neighbor> rear() const;            ///< next behind
-  [[nodiscard]] std::optional<Neighbor> front(
-      std::uint16_t corridor) const;  ///< next ahead along another lane corridor of the road
-  [[nodiscard]] std::optional<Neighbor> rear(std::uint16_t corridor) const;  ///< next behind
+  [[nodiscard]] double time() const;                   ///< of the frame that is seen [s]
+  [[nodiscard]] State const& state() const;            ///< own state, as observed
+  [[nodiscard]] geometry::Shape const& shape() const;  ///< own shape
+  [[nodiscard]] Dynamics const& dynamics() const;      ///< own vehicle model
+  [[nodiscard]] Map const& map() const;
+  [[nodiscard]] map::RoadCorridor const& road() const;                          ///< the lanes of the own route
+  [[nodiscard]] map::LaneCorridor const& corridor() const;                      ///< the lane corridor the agent is in
+  [[nodiscard]] map::LanePosition const& lane_position() const;                 ///< where it is in there
+  [[nodiscard]] map::LanePosition lane_position(std::uint16_t corridor) const;  ///< and on another one of the road
+  [[nodiscard]] std::optional<Neighbor> front() const;              ///< next ahead along the own lane corridor
+  [[nodiscard]] std::optional<Neighbor> rear() const;               ///< next behind
+  [[nodiscard]] Neighbors neighbors(std::uint16_t corridor) const;  ///< both, along another lane corridor of the road
+  [[nodiscard]] ObservedAgent<State> agent(Neighbor const& neighbor) const;  ///< the neighbour itself; not of objects
   [[nodiscard]] RandomStream random(
       std::uint32_t purpose) const;  ///< numbers of their own for (seed, agent, step, purpose)
 };

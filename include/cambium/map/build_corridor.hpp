@@ -112,8 +112,14 @@ class LaneJoiner {
       std::size_t const last = i + 1 < starts_.size() ? starts_[i + 1].begin : segments.size();
       auto const& lane = map_.lane(start.lane);
       double const offset = start.s - position(start.anchor);
-      pieces.push_back({start.lane, position(start.begin), position(last), lane.index_begin + offset, no_corridor,
-                        no_corridor, lane.type, offset});
+      pieces.push_back({.lane = start.lane,
+                        .begin = position(start.begin),
+                        .end = position(last),
+                        .index_offset = lane.index_begin + offset,
+                        .type = lane.type,
+                        .lane_offset = offset,
+                        .first_segment = static_cast<std::uint32_t>(start.begin),
+                        .segments = static_cast<std::uint32_t>(last - start.begin)});
     }
     return pieces;
   }
@@ -217,8 +223,14 @@ class LaneJoiner {
     auto corridor = detail::LaneJoiner(map).join(chain.lanes);
     for (std::size_t i = 0; i < corridor.pieces.size(); ++i) {
       auto& piece = corridor.pieces[i];
-      piece.left = detail::chain_of(map, chains, chain.begin + i, map.lane(piece.lane).left_neighbor);
-      piece.right = detail::chain_of(map, chains, chain.begin + i, map.lane(piece.lane).right_neighbor);
+      auto const stage = chain.begin + i;
+      auto const piece_of = [&](std::uint16_t number) {
+        return static_cast<std::uint16_t>(number == no_corridor ? 0 : stage - chains[number].begin);
+      };
+      piece.left = detail::chain_of(map, chains, stage, map.lane(piece.lane).left_neighbor);
+      piece.right = detail::chain_of(map, chains, stage, map.lane(piece.lane).right_neighbor);
+      piece.left_piece = piece_of(piece.left);
+      piece.right_piece = piece_of(piece.right);
     }
     corridor.reaches_destination = chain.has(route.lanes.back());
     detail::FeederFinder(map, corridor).find();

@@ -25,7 +25,9 @@ struct CorridorPiece {
   std::uint16_t left = no_corridor;  ///< number of the corridor that holds the lane's left neighbour
   std::uint16_t right = no_corridor;
   LaneType type = LaneType::none;
-  double lane_offset{};  ///< position on the lane's path = corridor position + lane_offset [m]
+  std::uint16_t left_piece{}, right_piece{};  ///< number of the neighbour's piece there; only with `left`, `right`
+  double lane_offset{};                       ///< position on the lane's path = corridor position + lane_offset [m]
+  std::uint32_t first_segment{}, segments{};  ///< of the corridor's centre line: where its own begin, and how many
 };
 
 /// A stretch of a lane outside of the corridor whose traffic counts in it: a lane that merges in (from `merge_view`

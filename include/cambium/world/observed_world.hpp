@@ -17,14 +17,6 @@
 
 namespace cambium {
 
-/// Another agent as seen by an observer.
-template <MotionState S>
-struct ObservedAgent {
-  AgentId id = none<AgentId>;
-  S state;
-  geometry::Shape shape;
-};
-
 /// What one agent sees of its world: a view of a few pointers, valid until the world changes. States, and with them
 /// gaps, neighbours' speeds and the own lane position, pass through the agent's observer model; who is next to whom is
 /// the truth. It shows states, shapes, the map, neighbours and the agent's own route; never what the others intend:
@@ -76,16 +68,25 @@ class ObservedWorld {
     return neighbor(world_->traffic().rear(corridor(), query(record_->lane), objects_on_lanes(), in_traffic()), -1);
   }
 
-  /// Next road user ahead along lane corridor `number` of the own road, from the place beside the agent. O(log n).
-  [[nodiscard]] std::optional<Neighbor> front(std::uint16_t number) const {
-    if (number == record_->lane.corridor) return front();
-    return neighbor(world_->traffic().front(road().corridors[number], query(beside(number)), objects_on_lanes(), false),
-                    1);
+  /// Where the agent is on lane corridor `number` of its road. O(lanes of the corridor).
+  [[nodiscard]] map::LanePosition lane_position(std::uint16_t number) const {
+    auto const& at = lane_position();
+    return number == at.corridor ? at : detail::locate_beside(map(), road(), at, number, pose_of(state()));
   }
-  [[nodiscard]] std::optional<Neighbor> rear(std::uint16_t number) const {
-    if (number == record_->lane.corridor) return rear();
-    return neighbor(world_->traffic().rear(road().corridors[number], query(beside(number)), objects_on_lanes(), false),
-                    -1);
+
+  /// Next road users ahead and behind along lane corridor `number` of the own road, from the place beside the agent.
+  /// O(log n).
+  [[nodiscard]] Neighbors neighbors(std::uint16_t number) const {
+    if (number == record_->lane.corridor) return {front(), rear(), lane_position()};
+    auto const at = detail::locate_beside(map(), road(), record_->lane, number, pose_of(record_->state));
+    auto const hits = world_->traffic().both(road().corridors[number], query(at), objects_on_lanes());
+    return {neighbor(hits.front, 1), neighbor(hits.rear, -1), perfect ? at : lane_position(number)};
+  }
+
+  /// The agent that a neighbour is. O(1). Not for neighbours that are objects.
+  [[nodiscard]] ObservedAgent<State> agent(Neighbor const& neighbor) const {
+    CAMBIUM_ASSERT(is_valid(neighbor.agent), "ObservedWorld::agent: the neighbour is an object");
+    return observed_agent(neighbor.slot);
   }
 
   /// Calls `f(ObservedAgent)` for every other agent in traffic, in the order of their ids.
@@ -93,8 +94,7 @@ class ObservedWorld {
   void for_each_other(F&& f) const {
     auto const& agents = world_->roster().agents;
     for (std::uint32_t i = 0; i < agents.size(); ++i)
-      if (i != slot_ && record(i).status == AgentStatus::driving)
-        f(ObservedAgent<State>{agents[i].id, observed(i), agents[i].shape});
+      if (i != slot_ && record(i).status == AgentStatus::driving) f(observed_agent(i));
   }
 
   /// A world of its own, as this agent sees it, in which everybody behaves as `prediction` says: to be stepped, copied
@@ -127,8 +127,9 @@ class ObservedWorld {
     return {slot_, at.s, shape().front, shape().rear, at.piece};
   }
 
-  [[nodiscard]] map::LanePosition beside(std::uint16_t number) const {
-    return detail::locate_beside(map(), road(), record_->lane, number, pose_of(record_->state));
+  [[nodiscard]] ObservedAgent<State> observed_agent(std::uint32_t slot) const {
+    auto const& agent = world_->roster().agents[slot];
+    return {agent.id, observed(slot), agent.shape, record(slot).action.acceleration};
   }
 
   /// The neighbour ahead (`sign` 1) or behind (-1), as observed.
@@ -136,11 +137,12 @@ class ObservedWorld {
     if (!hit) return std::nullopt;
     auto const agent = hit->is_object ? none<AgentId> : static_cast<AgentId>(hit->id);
     auto const object = hit->is_object ? static_cast<ObjectId>(hit->id) : none<ObjectId>;
-    if constexpr (perfect) return Neighbor{agent, object, hit->gap, hit->speed};
+    if constexpr (perfect) return Neighbor{agent, object, hit->gap, hit->speed, hit->length, hit->slot};
     double gap = hit->gap - sign * shift(slot_);
-    if (hit->is_object) return Neighbor{agent, object, gap, 0.0};
+    if (hit->is_object) return Neighbor{agent, object, gap, 0.0, hit->length, hit->slot};
     gap += sign * shift(hit->slot);
-    return Neighbor{agent, object, gap, observed(hit->slot).speed * std::cos(record(hit->slot).lane.heading_error)};
+    double const speed = observed(hit->slot).speed * std::cos(record(hit->slot).lane.heading_error);
+    return Neighbor{agent, object, gap, speed, hit->length, hit->slot};
   }
 
   /// How far the observer moves an agent along its lane [m].

@@ -43,6 +43,12 @@ struct TrafficHit {
   bool is_object = false;
   double gap = std::numeric_limits<double>::infinity();  ///< [m]
   double speed{};                                        ///< along its lane [m/s]
+  double length{};                                       ///< along its lane [m]
+};
+
+/// Next ahead and behind.
+struct TrafficHits {
+  std::optional<TrafficHit> front, rear;
 };
 
 /// Who is where on the lanes, sorted, so that the next road user along a corridor is the next in the list.
@@ -102,8 +108,31 @@ class TrafficIndex {
   /// search).
   [[nodiscard]] std::optional<TrafficHit> front(map::LaneCorridor const& corridor, TrafficQuery const& query,
                                                 std::span<TrafficEntry const> objects, bool own) const {
+    return front_from(own ? rank_[query.slot] + 1 : upper(agents_, key(corridor, query), query.slot), corridor, query,
+                      objects);
+  }
+
+  /// Next behind the asker on `corridor`.
+  [[nodiscard]] std::optional<TrafficHit> rear(map::LaneCorridor const& corridor, TrafficQuery const& query,
+                                               std::span<TrafficEntry const> objects, bool own) const {
+    return rear_from(own ? rank_[query.slot] : lower(agents_, key(corridor, query), query.slot), corridor, query,
+                     objects);
+  }
+
+  /// Both, with one search.
+  [[nodiscard]] TrafficHits both(map::LaneCorridor const& corridor, TrafficQuery const& query,
+                                 std::span<TrafficEntry const> objects) const {
+    auto const start = lower(agents_, key(corridor, query), query.slot);
+    return {front_from(start, corridor, query, objects), rear_from(start, corridor, query, objects)};
+  }
+
+ private:
+  using List = std::span<TrafficEntry const>;
+
+  /// Next ahead; among the agents, entry `start` is the first candidate on the asker's piece.
+  [[nodiscard]] std::optional<TrafficHit> front_from(std::size_t start, map::LaneCorridor const& corridor,
+                                                     TrafficQuery const& query, List objects) const {
     TrafficHit best;
-    std::size_t const start = own ? rank_[query.slot] + 1 : upper(agents_, key(corridor, query), query.slot);
     front_on_corridor(agents_, false, corridor, query, start, best);
     if (!straddling_.empty())
       front_on_corridor(straddling_, false, corridor, query, upper(straddling_, key(corridor, query), query.slot),
@@ -122,11 +151,10 @@ class TrafficIndex {
     return found(best);
   }
 
-  /// Next behind the asker on `corridor`.
-  [[nodiscard]] std::optional<TrafficHit> rear(map::LaneCorridor const& corridor, TrafficQuery const& query,
-                                               std::span<TrafficEntry const> objects, bool own) const {
+  /// Next behind; among the agents, candidates lie before entry `start`.
+  [[nodiscard]] std::optional<TrafficHit> rear_from(std::size_t start, map::LaneCorridor const& corridor,
+                                                    TrafficQuery const& query, List objects) const {
     TrafficHit best;
-    std::size_t const start = own ? rank_[query.slot] : lower(agents_, key(corridor, query), query.slot);
     rear_on_corridor(agents_, false, corridor, query, start, best);
     if (!straddling_.empty())
       rear_on_corridor(straddling_, false, corridor, query, lower(straddling_, key(corridor, query), query.slot), best);
@@ -144,9 +172,6 @@ class TrafficIndex {
     return found(best);
   }
 
- private:
-  using List = std::span<TrafficEntry const>;
-
   [[nodiscard]] static std::optional<TrafficHit> found(TrafficHit const& best) {
     if (best.gap == std::numeric_limits<double>::infinity()) return std::nullopt;
     return best;
@@ -157,14 +182,17 @@ class TrafficIndex {
     return std::min(std::max(query.s, piece.begin - 1.0), piece.end + 1.0) + piece.index_offset;
   }
 
-  /// First entry behind which (position, slot) sorts.
+  /// First entry that sorts behind (position, slot).
   [[nodiscard]] static std::size_t upper(List list, double position, std::uint32_t slot) {
-    return static_cast<std::size_t>(
-        std::upper_bound(list.begin(), list.end(), TrafficEntry{position, 0, 0, 0, slot, 0}) - list.begin());
+    auto i = first_at(list, position);
+    while (i < list.size() && list[i].position == position && list[i].slot <= slot) ++i;
+    return i;
   }
+  /// First entry that does not sort before (position, slot).
   [[nodiscard]] static std::size_t lower(List list, double position, std::uint32_t slot) {
-    return static_cast<std::size_t>(
-        std::lower_bound(list.begin(), list.end(), TrafficEntry{position, 0, 0, 0, slot, 0}) - list.begin());
+    auto i = first_at(list, position);
+    while (i < list.size() && list[i].position == position && list[i].slot < slot) ++i;
+    return i;
   }
 
   /// First entry at `position` or beyond: a binary search without branches to mispredict.
@@ -181,7 +209,7 @@ class TrafficIndex {
   }
 
   static void offer(TrafficHit& best, TrafficEntry const& entry, bool is_object, double gap) {
-    if (gap < best.gap) best = {entry.slot, entry.id, is_object, gap, entry.speed};
+    if (gap < best.gap) best = {entry.slot, entry.id, is_object, gap, entry.speed, entry.front + entry.rear};
   }
 
   static void front_on_corridor(List list, bool is_object, map::LaneCorridor const& corridor, TrafficQuery const& query,

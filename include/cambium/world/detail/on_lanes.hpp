@@ -20,14 +20,22 @@ namespace cambium::detail {
 inline constexpr double on_path = 0.3;
 
 /// The place beside `at` on lane corridor `number` of the same road, for an agent at `pose`: found from the lanes
-/// beside, for a corridor may come by the same place twice. O(lanes of the corridor).
+/// beside, for a corridor may come by the same place twice. O(1) for a corridor that is next, else O(lanes of the
+/// corridor).
 [[nodiscard]] inline map::LanePosition locate_beside(Map const& map, map::RoadCorridor const& road,
                                                      map::LanePosition const& at, std::uint16_t number,
                                                      geometry::Pose const& pose) {
   auto const& from = road.corridors[at.corridor].pieces[at.piece];
   auto const& corridor = road.corridors[number];
-  double const share = (at.s - from.begin) / (from.end - from.begin);
   map::LanePosition hint;
+  if (number == from.left || number == from.right) {
+    hint.piece = number == from.left ? from.left_piece : from.right_piece;
+    auto const& to = corridor.pieces[hint.piece];
+    auto const passed = at.segment > from.first_segment ? at.segment - from.first_segment : 0;
+    hint.segment = to.first_segment + passed * to.segments / std::max(from.segments, 1u);
+    return map::locate(road, number, pose, hint);
+  }
+  double const share = (at.s - from.begin) / (from.end - from.begin);
   for (bool const leftwards : {true, false})
     for (LaneId lane = from.lane; is_valid(lane);
          lane = leftwards ? map.lane(lane).left_neighbor : map.lane(lane).right_neighbor)

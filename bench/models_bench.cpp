@@ -1,0 +1,90 @@
+// What each behaviour costs in traffic that suits it, beside kernels that do the same work with nothing around it.
+
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "cambium/behavior/behavior_set.hpp"
+#include "cambium/behavior/idm_classic.hpp"
+#include "cambium/behavior/mobil.hpp"
+#include "cambium/core/distributions.hpp"
+#include "cambium/core/random.hpp"
+#include "cambium/dynamics/single_track.hpp"
+#include "cambium/execution/interpolate.hpp"
+#include "cambium/world/world.hpp"
+
+#include "support/maps.hpp"
+#include "yardstick/main.hpp"
+#include "yardstick/register.hpp"
+
+namespace cb = cambium;
+
+namespace {
+
+constexpr double dt = 0.2;         // [s]
+constexpr int steps_per_run = 50;  // then the world is set back, so that traffic stays what it was
+
+template <class... Behaviors>
+using Sim = cb::World<cb::BehaviorSet<Behaviors...>, cb::InterpolateExecution, cb::SingleTrack>;
+
+/// Vehicles of one behaviour on a three-lane highway; `driver` makes one with a desired speed [m/s].
+template <class World, class Driver>
+World highway(std::size_t agents, Driver const& driver) {
+  double const length = 60.0 * static_cast<double>(agents) / 3.0 + 300.0;
+  World world(support::winding_road(length + 800.0), {.seed = 1});
+  cb::RandomStream random(7, 0, 0);
+  auto const& section = world.map().roads()[0].sections[0];
+  std::size_t number = 0;
+  while (world.size() < agents) {
+    auto const& lane = world.map().lane(section.lanes[number % section.lanes.size()].id);
+    double const row = static_cast<double>(number / section.lanes.size());
+    ++number;
+    if (!lane.drivable()) continue;
+    auto const pose = lane.path.pose(10.0 + 60.0 * row + 20.0 * cb::uniform01(random));
+    world.add({.position = pose.position(),
+               .heading = pose.heading,
+               .speed = 10.0 + 6.0 * cb::uniform01(random),
+               .behavior = driver(11.0 + 11.0 * cb::uniform01(random))});
+  }
+  return world;
+}
+
+template <class World, class Make>
+void register_steps(std::string const& name, std::size_t agents, Make make) {
+  auto start = std::make_shared<std::unique_ptr<World>>();  // made when first measured
+  yardstick::add("models/" + name + "/" + std::to_string(agents), [=](benchmark::State& state) {
+    if (!*start) *start = std::make_unique<World>(make(agents));
+    World world = **start;
+    int k = 0;
+    for (int i = 0; i < 2 * steps_per_run; ++i) world.step(dt);  // everything has its memory now
+    world = **start;
+    yardstick::measure_step(state, (*start)->size(), [&] {
+      if (++k % steps_per_run == 0) world = **start;
+      benchmark::DoNotOptimize(world.step(dt));
+    });
+  });
+}
+
+void print_ratios(yardstick::Results const& results) {
+  std::printf("\nratios of the best\n");
+  auto const row = [&](char const* a, char const* b, char const* target) {
+    if (auto const r = yardstick::ratio(results, a, b)) std::printf("  %-26s / %-22s %6.2f   %s\n", a, b, *r, target);
+  };
+  row("models/mobil/20", "yardstick/mobil/20", "");
+  row("models/mobil/10000", "models/mobil/100", "(nothing super-linear)");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  for (std::size_t const n : {std::size_t{20}, std::size_t{100}, std::size_t{10000}}) {
+    register_steps<Sim<cb::IdmClassic>>("idm_classic", n, [](std::size_t agents) {
+      return highway<Sim<cb::IdmClassic>>(agents, [](double v) { return cb::IdmClassic{.desired_speed = v}; });
+    });
+    register_steps<Sim<cb::Mobil>>("mobil", n, [](std::size_t agents) {
+      return highway<Sim<cb::Mobil>>(agents, [](double v) { return cb::Mobil{.idm = {.desired_speed = v}}; });
+    });
+  }
+  yardstick::register_yardsticks();
+  return yardstick::run_benchmarks(argc, argv, "What each behaviour costs, beside kernels.", print_ratios);
+}

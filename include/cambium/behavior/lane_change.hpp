@@ -1,0 +1,105 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <tuple>
+
+#include "cambium/behavior/follow_lane.hpp"
+#include "cambium/core/parameters.hpp"
+
+namespace cambium {
+
+/// How a vehicle lies beside a line that it converges to: as a function of the distance along the line.
+template <class Scalar>
+struct LateralCourse {
+  Scalar offset{};  ///< left positive [m]
+  Scalar slope{};   ///< change of the offset per metre [-]
+  Scalar bend{};    ///< change of the slope per metre [1/m]
+};
+
+/// The course after `distance` [m] of the one with the least squared jerk over `length` [m] that ends on the line and
+/// along it: a polynomial of order 5 (Takahashi, Hongo, Ninomiya, Sugimoto 1989; Werling, Ziegler, Kammel, Thrun 2010,
+/// section IV). `length` > 0; on the line from there on.
+template <class Scalar>
+[[nodiscard]] LateralCourse<Scalar> converge(LateralCourse<Scalar> const& start, Scalar length, Scalar distance) {
+  if (!(distance < length)) return {};
+  Scalar const d = start.offset, v = start.slope * length, a = start.bend * length * length, u = distance / length;
+  Scalar const c2 = a / Scalar(2), c3 = Scalar(-10) * d - Scalar(6) * v - Scalar(3) * c2,
+               c4 = Scalar(15) * d + Scalar(8) * v + Scalar(3) * c2, c5 = Scalar(-6) * d - Scalar(3) * v - c2;
+  Scalar const offset = d + u * (v + u * (c2 + u * (c3 + u * (c4 + u * c5))));
+  Scalar const slope = v + u * (Scalar(2) * c2 + u * (Scalar(3) * c3 + u * (Scalar(4) * c4 + u * Scalar(5) * c5)));
+  Scalar const bend = Scalar(2) * c2 + u * (Scalar(6) * c3 + u * (Scalar(12) * c4 + u * Scalar(20) * c5));
+  return {offset, slope / length, bend / (length * length)};
+}
+
+/// A lane change in progress: what a behaviour that changes lanes remembers of it.
+struct LaneChange {
+  std::uint16_t target = map::no_corridor;  ///< number of the lane corridor that it leads to; none: keeps its lane
+  float left{};                             ///< of its length [m]
+  float bend{};                             ///< of its course at the vehicle [1/m]
+
+  [[nodiscard]] bool active() const { return target != map::no_corridor; }
+
+  friend bool operator==(LaneChange const&, LaneChange const&) = default;
+};
+
+/// How long a lane change takes.
+struct LaneChangeCourse {
+  double duration = 4.0;
+  double minimum_length = 15.0;
+
+  static constexpr char const* name = "lane_change_course";
+  static constexpr auto parameters() {
+    return std::make_tuple(
+        parameter("duration", &LaneChangeCourse::duration, "s", Range{0.5, 30}, "from one centre line to the other"),
+        parameter("minimum_length", &LaneChangeCourse::minimum_length, "m", Range{5, 200},
+                  "however slow the vehicle drives"));
+  }
+
+  /// The begin of a change to lane corridor `target` at `speed` [m/s].
+  [[nodiscard]] LaneChange begin(std::uint16_t target, double speed) const {
+    return {target, static_cast<float>(std::max(minimum_length, speed * duration)), 0.0f};
+  }
+};
+
+/// The plan that drives `motion` along the course of a lane change, from where the vehicle is: deviations are taken in
+/// as they are seen. Ends the change when it is done, or its lane is. Without one: keeps the lane.
+template <class View>
+[[nodiscard]] Plan<View> plan_lane_change(View const& view, LaneChange& change,
+                                          LongitudinalMotion<double> const& motion, double dt) {
+  if (!change.active()) return plan_along_lane(view, motion, dt);
+  map::LanePosition const at = view.lane_position(change.target);
+  auto const& corridor = view.road().corridors[change.target];
+  if (at.s >= corridor.length() || std::abs(at.heading_error) > 1.0) {  // it ends, or was left otherwise
+    change = {};
+    return plan_along_lane(view, motion, dt);
+  }
+  double const stretch = std::max(0.1, 1.0 - corridor.center.segments()[at.segment].curvature * at.lateral);
+  LateralCourse<double> const start{at.lateral, stretch * std::tan(at.heading_error), change.bend};
+  double const along = motion.distance * std::cos(at.heading_error) / stretch;
+  auto const course = converge(start, static_cast<double>(change.left), along);
+  Plan<View> plan;
+  typename View::State next = view.state();
+  next.time = view.time() + dt;
+  place_on_lane(corridor, at.s + along, course.offset, std::atan(course.slope / stretch), at.segment, next);
+  next.speed = motion.speed;
+  plan.trajectory.push_back(next);
+  plan.action.acceleration = (motion.speed - view.state().speed) / dt;
+  change.left -= static_cast<float>(along);
+  change.bend = static_cast<float>(course.bend);
+  if (!(change.left > 0.0f)) change = {};
+  return plan;
+}
+
+/// The nearer of two neighbours to follow: that for which `acceleration` is less. Nothing where there is neither.
+template <class F>
+[[nodiscard]] std::optional<Neighbor> more_restrictive(std::optional<Neighbor> const& a,
+                                                       std::optional<Neighbor> const& b, F const& acceleration) {
+  if (!a || !b) return a ? a : b;
+  return acceleration(*a) <= acceleration(*b) ? a : b;
+}
+
+}  // namespace cambium
