@@ -91,6 +91,21 @@ TEST_CASE("inputs are brought within what the vehicle can do") {
   }
 }
 
+TEST_CASE("steering stays within the lateral acceleration that the tyres give") {
+  cb::SingleTrack const model{.lateral_acceleration_limit = 5.0};
+  for (double speed = 0.0; speed < 60.0; speed += 0.37)
+    for (double const asked : {-1.0, -0.2, -0.01, 0.01, 0.05, 0.2, 0.6}) {
+      double const steering = model.limited({0.0, asked}, {.speed = speed}).steering;
+      double const lateral = speed * speed * std::tan(steering) / model.wheel_base;
+      CHECK(std::abs(lateral) <= 5.0 * (1 + 1e-12));
+      CHECK(steering * asked >= 0.0);
+      CHECK(std::abs(steering) <= 0.6);
+      // Not less than needed: either all that was asked for, or a limit.
+      bool const full = steering == asked || std::abs(steering) == 0.6 || std::abs(lateral) > 5.0 * (1 - 1e-12);
+      CHECK(full);
+    }
+}
+
 TEST_CASE("a vehicle without wheel base is refused by name") {
   CHECK_THROWS_WITH_AS(cb::check_parameters(cb::SingleTrack{.wheel_base = 0.0}), doctest::Contains("wheel_base"),
                        cb::ParameterError);

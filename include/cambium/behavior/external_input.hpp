@@ -37,32 +37,17 @@ struct ExternalInput {
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory const& memory, double dt) const {
     auto const& model = view.dynamics();
-    auto start = view.state();
-    start.speed = std::max(0.0, start.speed);
-    auto const input = model.limited({memory.acceleration, memory.steering}, start);
+    Action const asked{memory.acceleration, memory.steering};
+    auto x = view.state();
+    x.speed = std::max(0.0, x.speed);
     Plan<View> plan;
-    // A braking vehicle drives until it stands, and stands from then on.
-    double const moving = input.acceleration < 0 ? std::min(dt, -start.speed / input.acceleration) : dt;
-    if (moving > 0) plan.trajectory.push_back(integrate(model, start, input, moving));
-    if (moving < dt) {
-      auto standing = plan.trajectory.empty() ? start : plan.trajectory.back();
-      standing.time = start.time + dt;
-      standing.speed = 0;
-      plan.trajectory.push_back(standing);
-    }
-    plan.trajectory.back().time = view.time() + dt;
-    plan.action = {input.acceleration, input.steering};
-    return plan;
-  }
-
- private:
-  template <class Model>
-  [[nodiscard]] typename Model::State integrate(Model const& model, typename Model::State x,
-                                                typename Model::Input const& u, double duration) const {
-    auto const steps = static_cast<int>(std::ceil(duration / longest_substep));
+    plan.action = action_of(model.input(asked, x), asked);
+    auto const steps = static_cast<int>(std::ceil(dt / longest_substep));
     for (int i = 0; i < steps; ++i)
-      x = scheme == Scheme::rk4 ? rk4_step(model, x, u, duration / steps) : euler_step(model, x, u, duration / steps);
-    return x;
+      x = scheme == Scheme::rk4 ? drive(model, x, asked, dt / steps) : drive<true>(model, x, asked, dt / steps);
+    x.time = view.time() + dt;
+    plan.trajectory.push_back(x);
+    return plan;
   }
 };
 static_assert(BehaviorModel<ExternalInput>);

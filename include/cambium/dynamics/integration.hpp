@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 #include "cambium/dynamics/dynamic_model.hpp"
 
 namespace cambium {
@@ -19,6 +21,34 @@ template <class Model, class State = typename Model::State, class Input = typena
   auto const k3 = model.derivative(add_scaled(x, k2, dt / 2), u);
   auto const k4 = model.derivative(add_scaled(x, k3, dt), u);
   return add_scaled(add_scaled(add_scaled(add_scaled(x, k1, dt / 6), k2, dt / 3), k3, dt / 3), k4, dt / 6);
+}
+
+/// The state of a vehicle that has come to a stop there: speed 0, and what the model's `stopped` says.
+template <class Model, class State = typename Model::State>
+[[nodiscard]] State stopped(Model const& model, State x) {
+  x.speed = 0.0;
+  if constexpr (requires { model.stopped(x); }) return model.stopped(x);
+  return x;
+}
+
+/// Where a vehicle is after `dt` [s] whose driver holds `action`, within the model's limits: one Runge-Kutta step, or
+/// Euler step. It never reverses: one that brakes to standstill within the step stands from then on.
+template <bool euler = false, DynamicModel Model>
+[[nodiscard]] typename Model::State drive(Model const& model, typename Model::State x, Action const& action,
+                                          double dt) {
+  auto const u = model.input(action, x);
+  double const end = x.time + dt, change = model.derivative(x, u).speed;
+  x.speed = std::max(0.0, x.speed);
+  double const moving = x.speed + change * dt < 0.0 ? x.speed / -change : dt;
+  if (moving > 0.0) {
+    if constexpr (euler)
+      x = euler_step(model, x, u, moving);
+    else
+      x = rk4_step(model, x, u, moving);
+  }
+  if (moving < dt || x.speed < 0.0) x = stopped(model, x);
+  x.time = end;
+  return x;
 }
 
 }  // namespace cambium

@@ -3,7 +3,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "cambium/core/macros.hpp"
 #include "cambium/core/plan.hpp"
+#include "cambium/execution/execution_model.hpp"
 #include "cambium/map/lane_position.hpp"
 
 namespace cambium {
@@ -20,21 +22,22 @@ enum class AgentStatus : std::uint8_t {
 };
 
 /// What a step changes of one agent.
-template <MotionState S, class Memory>
+template <MotionState S, class Memory, class ExecutionMemory = NoExecutionMemory>
 struct AgentRecord {
   S state;
   map::LanePosition lane;
   Action action;  ///< of the step that led here
   Memory memory;
   AgentStatus status = AgentStatus::driving;
+  [[no_unique_address]] ExecutionMemory execution{};
 
   friend bool operator==(AgentRecord const&, AgentRecord const&) = default;
 };
 
 /// What a step changes: time and one record per agent, in the order of the roster, in one buffer.
-template <MotionState S, class Memory>
+template <MotionState S, class Memory, class ExecutionMemory = NoExecutionMemory>
 struct Frame {
-  using Record = AgentRecord<S, Memory>;
+  using Record = AgentRecord<S, Memory, ExecutionMemory>;
 
   double time = 0.0;       ///< [s]
   std::uint64_t step = 0;  ///< steps made since the world began

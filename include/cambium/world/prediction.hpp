@@ -32,6 +32,9 @@ struct Prediction {
   return 0x80000000u | static_cast<std::uint32_t>(agent);
 }
 
+/// The stream purpose of execution models: that for observing no agent.
+inline constexpr std::uint32_t execution_purpose = observation_purpose(none<AgentId>);
+
 /// The agent behaves as `ego`, the others as `others`: behaviours of `Set`.
 template <class Set, class Ego, class Others>
 [[nodiscard]] Prediction<Set> predict_as(Ego const& ego, Others const& others) {
@@ -87,7 +90,8 @@ template <class Set, class World>
     auto lane = record.lane;
     if constexpr (!World::Observer::perfect)
       lane = map::locate(*agent.road, lane.corridor, {state.x, state.y, state.heading}, lane);
-    seen.agents.push_back({state, lane, record.action, Set::initial_memory(behavior), AgentStatus::driving});
+    seen.agents.push_back({state, lane, record.action, Set::initial_memory(behavior), AgentStatus::driving, {}});
+    if (i == slot) seen.agents.back().execution = record.execution;
   }
   return Predicted(world.shared_map(), std::move(assumed), std::move(seen));
 }

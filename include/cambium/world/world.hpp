@@ -61,7 +61,7 @@ class World {
   using Dynamics = DynamicModelType;
   using Observer = ObserverType;
   using State = typename Dynamics::State;
-  using FrameType = Frame<State, typename Set::Memory>;
+  using FrameType = Frame<State, typename Set::Memory, ExecutionMemoryOf<Execution, State>>;
   using Record = typename FrameType::Record;
   using RosterType = Roster<Behavior, Execution, Dynamics, Observer>;
   using View = ObservedWorld<World>;
@@ -256,7 +256,8 @@ class World {
   /// The agent's situation as goals ask it. Throws as `slot_of`.
   [[nodiscard]] GoalSituation situation(AgentId id) const {
     auto const slot = slot_of(id);
-    auto const& [state, lane, action, memory, status] = frame_.agents[slot];
+    auto const& state = frame_.agents[slot].state;
+    auto const& lane = frame_.agents[slot].lane;
     auto const& agent = roster_->agents[slot];
     auto const& piece = agent.road->corridors[lane.corridor].pieces[lane.piece];
     return {{state.x, state.y, state.heading},
@@ -297,6 +298,7 @@ class World {
     auto& record = frame_.agents[slot];
     record.state = state;
     record.action = {};
+    record.execution = {};
     record.status = AgentStatus::driving;
     record.lane = detail::relocate(*roster_->agents[slot].road, record.lane, {state.x, state.y, state.heading});
     scratch_.fresh = false;
@@ -411,7 +413,8 @@ class World {
     auto const& agent = roster_->agents[slot];
     auto const plan = Set::plan(agent.behavior, View(*this, slot), next.memory, dt);
     if (plan.status != PlanStatus::valid) return stop_planning(plan.status, agent.id, next, result, end);
-    auto const executed = agent.execution.execute(plan, now.state, agent.dynamics, end);
+    auto const executed = execute(agent.execution, plan, now.state, agent.dynamics, end, next.execution,
+                                  [&] { return execution_stream(agent.id); });
     if (!executed.valid) return fail(StepProblem::no_execution, agent.id, next, result);
     if (!is_finite(executed.state) || !std::isfinite(plan.action.acceleration + plan.action.steering))
       return fail(StepProblem::not_finite, agent.id, next, result);
@@ -420,6 +423,10 @@ class World {
     next.action = plan.action;
     detail::move_on_lane(*map_, *agent.road, 0.5 * (now.state.speed + next.state.speed) * dt, next);
     if (next.status != AgentStatus::driving) ++result.left;
+  }
+
+  [[nodiscard]] RandomStream execution_stream(AgentId id) const {
+    return {roster_->seed, static_cast<std::uint32_t>(id), static_cast<std::uint32_t>(frame_.step), execution_purpose};
   }
 
   static void stop_planning(PlanStatus status, AgentId id, Record& next, StepResult& result, double end) {
