@@ -6,10 +6,12 @@
 
 #include "cambium/behavior/behavior_set.hpp"
 #include "cambium/behavior/idm_classic.hpp"
+#include "cambium/behavior/idm_lane_tracking.hpp"
 #include "cambium/behavior/mobil.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/dynamics/single_track.hpp"
+#include "cambium/evaluation/collision.hpp"
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/world/world.hpp"
 
@@ -49,8 +51,17 @@ World highway(std::size_t agents, Driver const& driver) {
   return world;
 }
 
-template <class World, class Make>
-void register_steps(std::string const& name, std::size_t agents, Make make) {
+/// Judges nothing.
+struct NoEvaluator {
+  template <class World>
+  int evaluate(World const&) const {
+    return 0;
+  }
+};
+
+/// Steps, each judged by `evaluator`.
+template <class World, class Make, class Evaluator = NoEvaluator>
+void register_steps(std::string const& name, std::size_t agents, Make make, Evaluator evaluator = {}) {
   auto start = std::make_shared<std::unique_ptr<World>>();  // made when first measured
   yardstick::add("models/" + name + "/" + std::to_string(agents), [=](benchmark::State& state) {
     if (!*start) *start = std::make_unique<World>(make(agents));
@@ -61,6 +72,7 @@ void register_steps(std::string const& name, std::size_t agents, Make make) {
     yardstick::measure_step(state, (*start)->size(), [&] {
       if (++k % steps_per_run == 0) world = **start;
       benchmark::DoNotOptimize(world.step(dt));
+      benchmark::DoNotOptimize(evaluator.evaluate(world));
     });
   });
 }
@@ -71,6 +83,8 @@ void print_ratios(yardstick::Results const& results) {
     if (auto const r = yardstick::ratio(results, a, b)) std::printf("  %-26s / %-22s %6.2f   %s\n", a, b, *r, target);
   };
   row("models/mobil/20", "yardstick/mobil/20", "");
+  row("models/idm_lane_tracking/20", "yardstick/full/20", "(target 1.5)");
+  row("models/idm_lane_tracking/10000", "models/idm_lane_tracking/100", "(nothing super-linear)");
   row("models/mobil/10000", "models/mobil/100", "(nothing super-linear)");
 }
 
@@ -84,6 +98,13 @@ int main(int argc, char** argv) {
     register_steps<Sim<cb::Mobil>>("mobil", n, [](std::size_t agents) {
       return highway<Sim<cb::Mobil>>(agents, [](double v) { return cb::Mobil{.idm = {.desired_speed = v}}; });
     });
+  }
+  for (std::size_t const n : {std::size_t{20}, std::size_t{100}, std::size_t{10000}}) {
+    using World = Sim<cb::IdmLaneTracking>;
+    auto const make = [](std::size_t agents) {
+      return highway<World>(agents, [](double v) { return cb::IdmLaneTracking{.idm = {.desired_speed = v}}; });
+    };
+    register_steps<World>("idm_lane_tracking", n, make, cb::CollisionAny{});
   }
   yardstick::register_yardsticks();
   return yardstick::run_benchmarks(argc, argv, "What each behaviour costs, beside kernels.", print_ratios);
