@@ -114,8 +114,9 @@ Worst compare(std::string const& file, std::vector<cb::map::LaneCorridor> const&
     if (next == by.end() || row.step < first_step) continue;
     auto const* const leader = row.front < 0 ? nullptr : by.at({row.step, row.front});
     RowView const view(row, leader, corridors[static_cast<std::size_t>(row.corridor)]);
-    cb::NoMemory memory;
-    auto const plan = behavior_of(row.agent).plan(view, memory, 0.2);
+    auto const behavior = behavior_of(row.agent);
+    cb::MemoryOf<std::remove_cvref_t<decltype(behavior)>> memory;
+    auto const plan = behavior.plan(view, memory, 0.2);
     auto const end = cb::InterpolateExecution{}.execute(plan, row.state, view.model, row.state.time + 0.2);
     auto const& expected = *next->second;
     worst.place = std::max(worst.place, std::hypot(end.state.x - expected.state.x, end.state.y - expected.state.y));

@@ -6,7 +6,9 @@
 #include <limits>
 #include <type_traits>
 
+#include "cambium/core/distributions.hpp"
 #include "cambium/core/error.hpp"
+#include "cambium/core/random.hpp"
 #include "cambium/dynamics/integration.hpp"
 
 #include "../support/dual.hpp"
@@ -88,6 +90,22 @@ TEST_CASE("inputs are brought within what the vehicle can do") {
     CHECK(most.steering == 0.4);
     CHECK(least.acceleration == -6.0);
     CHECK(least.steering == -0.4);
+  }
+}
+
+TEST_CASE("the single track's own Runge-Kutta step is the general one") {
+  cb::SingleTrack const model;
+  cb::RandomStream random(6, 0, 0);
+  for (int i = 0; i < 5000; ++i) {
+    auto const between = [&](double low, double high) { return low + (high - low) * cb::uniform01(random); };
+    cb::State const x{between(0, 100), between(-100, 100), between(-100, 100),
+                      i % 10 == 0 ? between(-3e5, 3e5) : between(-10, 10), between(-5, 50)};
+    cb::SingleTrackInput<double> const u{between(-8, 4), between(-0.6, 0.6)};
+    auto const own = cb::rk4_step(model, x, u, 0.3);
+    auto const general = cb::rk4_step<cb::SingleTrack>(model, x, u, 0.3);
+    CHECK(std::hypot(own.x - general.x, own.y - general.y) < 1e-9);
+    CHECK(std::abs(own.heading - general.heading) < 1e-9);
+    CHECK(std::abs(own.speed - general.speed) + std::abs(own.time - general.time) < 1e-12);
   }
 }
 

@@ -75,13 +75,22 @@ struct IdmLaneTracking {
         parameter("tolerance", &Self::tolerance, "m/s^2", Range{1e-12, 1}, "error of the speed, as speed per second"));
   }
 
+  /// How far the road ahead is known to have no curve to slow down for.
+  struct Memory {
+    std::uint32_t from{}, straight_until{};  ///< segments of the centre line; the second one is not known
+    std::uint16_t corridor = map::no_corridor;
+
+    friend bool operator==(Memory const&, Memory const&) = default;
+  };
+
   template <class View>
-  [[nodiscard]] Plan<View> plan(View const& view, NoMemory&, double dt) const {
+  [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
     double const speed = std::max(0.0, view.state().speed);
     auto p = within_limits(rules, idm, view, speed);
-    if (slow_for_curves && integration == Integration::rk4) slow_down(p, view, speed);
-    auto const leader = leader_to_follow<true>(
-        rules, view, view.front(), [&](Leader const& l) { return acc_acceleration(p, coolness, speed, l); });
+    if (slow_for_curves && integration == Integration::rk4) slow_down(p, view, speed, memory);
+    auto const law = [&](Leader const& l) { return acc_acceleration(p, coolness, speed, l); };
+    auto const leader = coolness > 0.0 ? leader_to_follow<true>(rules, view, view.front(), law)
+                                       : leader_to_follow<false>(rules, view, view.front(), law);
     return integration == Integration::rk4 ? drive_along(view, p, leader, dt) : bark_plan(view, p, leader, dt);
   }
 
@@ -94,16 +103,23 @@ struct IdmLaneTracking {
   }
 
  private:
-  /// Desires no more speed than what lets it take the curves within its way to brake.
+  /// Desires no more speed than what lets it take the curves within its way to brake. O(curved segments within it),
+  /// beside those that are new.
   template <class View>
-  void slow_down(IdmParameters& p, View const& view, double speed) const {
+  void slow_down(IdmParameters& p, View const& view, double speed, Memory& memory) const {
     auto const& at = view.lane_position();
     auto const segments = view.corridor().center.segments();
-    double const twice_braking = 2.0 * p.comfortable_deceleration,
-                 square = std::max(speed, p.desired_speed) * std::max(speed, p.desired_speed);
-    double const reach = at.s + square / twice_braking + 1.0;
+    if (memory.corridor != at.corridor || at.segment < memory.from) memory = {at.segment, 0, at.corridor};
+    memory.from = at.segment;
+    double const twice_braking = 2.0 * p.comfortable_deceleration, reach = at.s + speed * (speed / twice_braking + 1.0);
+    double const fastest = std::max(speed, idm.desired_speed), square = fastest * fastest;
+    auto i = static_cast<std::size_t>(std::max(at.segment, memory.straight_until));
+    while (i < segments.size() && segments[i].s < reach &&
+           std::abs(segments[i].curvature) * square <= lateral_acceleration_limit)
+      ++i;
+    memory.straight_until = static_cast<std::uint32_t>(i);
     double lowest = square;
-    for (auto i = static_cast<std::size_t>(at.segment); i < segments.size() && segments[i].s < reach; ++i) {
+    for (; i < segments.size() && segments[i].s < reach; ++i) {
       double const room = twice_braking * std::max(0.0, segments[i].s - at.s), bend = std::abs(segments[i].curvature);
       if (bend * (lowest - room) > lateral_acceleration_limit) lowest = room + lateral_acceleration_limit / bend;
     }

