@@ -13,10 +13,9 @@ namespace cambium {
 [[nodiscard]] inline double cah_acceleration(double speed, Leader const& leader, double most) {
   double const a = std::min(leader.acceleration, most), gap = std::max(leader.gap, 1e-9);
   double const closing = speed - leader.speed;
-  if (leader.speed * closing <= -2.0 * gap * a) {  // the leader stands before the two would be at the closest
-    double const denominator = leader.speed * leader.speed - 2.0 * gap * a;
-    return denominator > 0.0 ? speed * speed * a / denominator : a;
-  }
+  double const denominator = leader.speed * leader.speed - 2.0 * gap * a;
+  // The leader stands before the two would be at the closest; one that stands already is left to the other case.
+  if (leader.speed * closing <= -2.0 * gap * a && denominator > 0.0) return speed * speed * a / denominator;
   return a - (closing > 0.0 ? closing * closing / (2.0 * gap) : 0.0);
 }
 

@@ -113,15 +113,14 @@ struct IdmLaneTracking {
     memory.from = at.segment;
     double const twice_braking = 2.0 * p.comfortable_deceleration, reach = at.s + speed * (speed / twice_braking + 1.0);
     double const fastest = std::max(speed, idm.desired_speed), square = fastest * fastest;
+    double const comfortable = 0.85 * lateral_acceleration_limit;  // the rest is for corrections
     auto i = static_cast<std::size_t>(std::max(at.segment, memory.straight_until));
-    while (i < segments.size() && segments[i].s < reach &&
-           std::abs(segments[i].curvature) * square <= lateral_acceleration_limit)
-      ++i;
+    while (i < segments.size() && segments[i].s < reach && std::abs(segments[i].curvature) * square <= comfortable) ++i;
     memory.straight_until = static_cast<std::uint32_t>(i);
     double lowest = square;
     for (; i < segments.size() && segments[i].s < reach; ++i) {
       double const room = twice_braking * std::max(0.0, segments[i].s - at.s), bend = std::abs(segments[i].curvature);
-      if (bend * (lowest - room) > lateral_acceleration_limit) lowest = room + lateral_acceleration_limit / bend;
+      if (bend * (lowest - room) > comfortable) lowest = room + comfortable / bend;
     }
     if (lowest < square) p.desired_speed = std::clamp(std::sqrt(lowest), 0.1, p.desired_speed);
   }

@@ -78,15 +78,17 @@ template <bool heed_acceleration = false, class View, class F>
 }
 
 /// The highest speed [m/s] at `s` of a corridor that lets a driver who brakes by `deceleration` [m/s^2] be at each
-/// limit ahead in time; infinite where there is none. O(limits within the way to brake).
+/// limit ahead 3 s in time, as car following comes down to a desired speed slowly; infinite where there is none.
+/// O(limits within the way to brake).
 [[nodiscard]] inline double permitted_speed(map::LaneCorridor const& corridor, double s, double speed,
                                             double deceleration) {
   double permitted = corridor.speed_limit_at(s);
-  double const reach = s + speed * speed / (2.0 * deceleration);
+  double const early = s + 3.0 * speed, reach = early + speed * speed / (2.0 * deceleration);
   for (auto const& step : corridor.speed_limits) {
     if (step.begin <= s) continue;
     if (step.begin > reach) break;
-    permitted = std::min(permitted, std::sqrt(step.limit * step.limit + 2.0 * deceleration * (step.begin - s)));
+    double const room = std::max(0.0, step.begin - early);
+    permitted = std::min(permitted, std::sqrt(step.limit * step.limit + 2.0 * deceleration * room));
   }
   return permitted;
 }

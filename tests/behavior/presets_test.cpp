@@ -1,0 +1,23 @@
+#include "cambium/behavior/presets.hpp"
+
+#include <doctest/doctest.h>
+
+namespace cb = cambium;
+
+TEST_CASE("drivers from the literature are within the parameters' ranges and drive as they are called") {
+  using namespace cb::presets;
+  for (auto const& p : {treiber_2000(), kesting_2010_car(), kesting_2010_truck(), aggressive(), timid()})
+    CHECK_NOTHROW(cb::check_parameters(p));
+  double const gap = 40.0, speed = 25.0, leader = 24.0;
+  double const hasty = cb::idm_acceleration(aggressive(), speed, gap, leader),
+               usual = cb::idm_acceleration(kesting_2010_car(), speed, gap, leader),
+               careful = cb::idm_acceleration(timid(), speed, gap, leader);
+  CHECK(hasty > usual);
+  CHECK(usual > careful);
+  // Treiber, Hennecke, Helbing 2000: static capacity of about 1700 to 2000 vehicles per hour at l = 5 m.
+  double capacity = 0.0;
+  for (double v = 1.0; v < 33.0; v += 0.1)
+    capacity = std::max(capacity, 3600 * v / (5.0 + cb::idm_equilibrium_gap(treiber_2000(), v)));
+  CHECK(capacity > 1600.0);
+  CHECK(capacity < 2000.0);
+}
