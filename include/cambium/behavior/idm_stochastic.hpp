@@ -15,7 +15,7 @@
 namespace cambium {
 
 /// A driver who now and then lets others in: for a while it follows, beside its own leader, the next vehicle ahead in
-/// each neighbouring lane that ends soon; then for a while it does not.
+/// each neighbouring lane that ends soon or joins its own; then for a while it does not.
 template <class Distribution>
 struct Yielding {
   bool enabled = false;
@@ -29,7 +29,7 @@ struct Yielding {
         parameter("enabled", &Yielding::enabled, "-", Range{0, 1}, "whether it ever lets others in"),
         parameter("yields", &Yielding::yields, "s", {}, "how long it does; at least 0.1 s"),
         parameter("insists", &Yielding::insists, "s", {}, "how long it does not; at least 0.1 s"),
-        parameter("horizon", &Yielding::horizon, "m", Range{0, 10'000}, "lanes that end within this count"));
+        parameter("horizon", &Yielding::horizon, "m", Range{0, 10'000}, "lanes that end or join within this count"));
   }
 };
 
@@ -102,7 +102,7 @@ struct BasicIdmStochastic {
     auto const p = within_limits(rules, drawn == Drawn::per_agent ? draw(own) : draw(stream), view, speed);
     auto const law = [&](Leader const& l) { return idm_acceleration(p, speed, l.gap, l.speed); };
     auto leader = leader_to_follow(rules, view, view.front(), law);
-    if (memory.yields) let_in(view, law, leader);
+    if (memory.yields) let_in(view, law, p.comfortable_deceleration, leader);
     return plan_along_lane(view, idm_motion(p, speed, leader.gap, leader.speed, dt, tolerance), dt);
   }
 
@@ -119,16 +119,20 @@ struct BasicIdmStochastic {
   }
 
   template <class View, class Law>
-  void let_in(View const& view, Law const& law, Leader& leader) const {
-    auto const& piece = view.corridor().pieces[view.lane_position().piece];
-    for (auto const side : {piece.left, piece.right}) {
+  void let_in(View const& view, Law const& law, double hardest, Leader& leader) const {
+    auto const& at = view.lane_position();
+    auto const& own = view.corridor();
+    for (auto const side : {own.pieces[at.piece].left, own.pieces[at.piece].right}) {
       if (side == map::no_corridor) continue;
       auto const there = view.neighbors(side);
       auto const& lane = view.road().corridors[side];
-      bool const ends = !lane.continues && !lane.reaches_destination;
-      if (!ends || lane.length_until_end(there.position.s) > yielding.horizon || !there.front) continue;
+      double const s = there.position.s + yielding.horizon;
+      bool const ends = s > lane.length() && !lane.continues && !lane.reaches_destination;
+      bool const joins = lane.piece_at(s).lane == own.piece_at(at.s + yielding.horizon).lane;
+      if (!there.front || !(ends || joins)) continue;
       Leader const other = leader_of<false>(view, there.front);
-      if (other.gap > 0.0 && law(other) < law(leader)) leader = other;
+      double const braking = -law(other);
+      if (other.gap > 0.0 && braking <= hardest && -braking < law(leader)) leader = other;
     }
   }
 };
