@@ -15,7 +15,8 @@
 namespace cambium {
 
 /// A driver who now and then lets others in: for a while it follows, beside its own leader, the next vehicle ahead in
-/// each neighbouring lane that ends soon or joins its own; then for a while it does not.
+/// each neighbouring lane that ends soon or joins its own, where comfortable braking is enough; then for a while it
+/// does not.
 template <class Distribution>
 struct Yielding {
   bool enabled = false;

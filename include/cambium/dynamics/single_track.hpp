@@ -107,8 +107,8 @@ struct SingleTrack {
 };
 static_assert(DynamicModel<SingleTrack>);
 
-/// The Runge-Kutta step of the single track: the same as the general one, but for rounding, in a third of the time: the
-/// headings of all stages are known beforehand, so that their sines are taken side by side.
+/// The Runge-Kutta step of the single track: the general one's result, but for rounding, with less work: the headings
+/// of all stages are known beforehand, and their sines can be taken side by side.
 [[nodiscard]] inline State rk4_step(SingleTrack const& model, State const& x, SingleTrackInput<double> const& u,
                                     double dt) {
   double const half = dt / 2, sixth = dt / 6;
