@@ -89,8 +89,9 @@ struct IdmLaneTracking {
     auto p = within_limits(rules, idm, view, speed);
     if (slow_for_curves && integration == Integration::rk4) slow_down(p, view, speed, memory);
     auto const law = [&](Leader const& l) { return acc_acceleration(p, coolness, speed, l); };
-    auto const leader = coolness > 0.0 ? leader_to_follow<true>(rules, view, view.front(), law)
-                                       : leader_to_follow<false>(rules, view, view.front(), law);
+    auto const next = view.front();
+    auto const leader = coolness > 0.0 ? leader_to_follow<true>(rules, view, next, law)
+                                       : leader_to_follow<false>(rules, view, next, law);
     return integration == Integration::rk4 ? drive_along(view, p, leader, dt) : bark_plan(view, p, leader, dt);
   }
 
