@@ -166,7 +166,7 @@ TEST_CASE_TEMPLATE("a delay widens the error of a lane change, but it stays boun
   auto const at_once = follow(Execution{}, cb::SingleTrack{}, lane_change<cb::State>, 10.0);
   auto const delayed = follow(late, cb::SingleTrack{}, lane_change<cb::State>, 10.0);
   MESSAGE(std::string(Execution::name) << ": across " << at_once.across << " m at once, " << delayed.across
-                          << " m delayed by 0.2 s");
+                                       << " m delayed by 0.2 s");
   CHECK(delayed.across > 1.2 * at_once.across);
   CHECK(delayed.across < 0.5);
 }
