@@ -13,6 +13,7 @@
 #include "cambium/map/lane_position.hpp"
 #include "cambium/observer/perfect.hpp"
 #include "cambium/world/detail/entering.hpp"
+#include "cambium/world/detail/seen.hpp"
 #include "cambium/world/frame.hpp"
 
 namespace cambium {
@@ -26,11 +27,6 @@ struct Prediction {
   /// Of the predicted world; by default drawn for (world, observer, step): not the true one.
   std::optional<std::uint64_t> seed{};
 };
-
-/// The stream purpose for observing `agent`: apart from those that behaviours use.
-[[nodiscard]] constexpr std::uint32_t observation_purpose(AgentId agent) {
-  return 0x80000000u | static_cast<std::uint32_t>(agent);
-}
 
 /// The agent behaves as `ego`, the others as `others`: behaviours of `Set`.
 template <class Set, class Ego, class Others>
@@ -48,8 +44,9 @@ template <class Set, class Behavior>
 }
 
 /// The world that agent number `slot` of `world` expects: states as it observes them, behaviours as `prediction` says.
-/// The others keep their routes, as if they signalled them, but not their goals. Agents that are not in traffic are
-/// left out. Throws `ParameterError` where a parameter of an assumed behaviour is out of its range.
+/// The others keep their routes, as if they signalled them, but not their goals. Agents that are not in traffic, or not
+/// seen, are left out; what is seen late counts as the present. Throws `ParameterError` where a parameter of an assumed
+/// behaviour is out of its range.
 template <class Set, class World>
 [[nodiscard]] typename World::template WithBehaviors<Set> predicted_world(World const& world, std::uint32_t slot,
                                                                           Prediction<Set> const& prediction) {
@@ -77,17 +74,20 @@ template <class Set, class World>
   for (std::uint32_t i = 0; i < roster.agents.size(); ++i) {
     auto const& agent = roster.agents[i];
     auto const& record = frame.agents[i];
-    if (record.status != AgentStatus::driving) continue;
+    if (record.status != AgentStatus::driving || !detail::is_seen(world, slot, i)) continue;
     auto const& behavior = i == slot ? prediction.ego : prediction.others;
     assumed->agents.push_back(
         {agent.id, agent.shape, agent.road, behavior, agent.execution, agent.dynamics, PerfectObserver{}});
     assumed->goals.push_back(i == slot ? roster.goals[i] : Goal{});
-    auto const random = stream(observation_purpose(agent.id));
-    auto const& state = observer.observer.observe(record.state, i == slot, random);
+    typename World::State state = detail::seen_state(world, slot, i);
+    state.time = frame.time;
     auto lane = record.lane;
     if constexpr (!World::Observer::perfect)
       lane = map::locate(*agent.road, lane.corridor, {state.x, state.y, state.heading}, lane);
-    seen.agents.push_back({state, lane, record.action, Set::initial_memory(behavior), AgentStatus::driving});
+    Action action = record.action;
+    action.acceleration = detail::seen_acceleration(world, slot, i);
+    seen.agents.push_back({state, lane, action, Set::initial_memory(behavior), AgentStatus::driving,
+                           i == slot ? record.goals_passed : std::uint8_t{0}});
   }
   return Predicted(world.shared_map(), std::move(assumed), std::move(seen));
 }
