@@ -68,6 +68,7 @@ template <class Set, class World>
   assumed->seed = prediction.seed ? *prediction.seed : stream(seed_purpose)();
   assumed->next_agent_id = roster.next_agent_id;
   assumed->next_object_id = roster.next_object_id;
+  assumed->has_sequences = roster.has_sequences;
   assumed->objects = roster.objects;
   assumed->object_entries = roster.object_entries;
   typename Predicted::FrameType seen{frame.time, frame.step, {}};
