@@ -2,12 +2,45 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <tuple>
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/dynamics/integration.hpp"
 
 namespace cambium {
+
+/// How an input is integrated.
+enum class InputScheme : std::uint8_t { rk4, euler };
+
+/// The plan of a vehicle that is given `input` from now on for `dt` [s], by its own model and within that one's limits,
+/// in equal parts of at most `longest_substep` [s]. Never reverses: a braking vehicle stands from where it stops.
+template <class View>
+[[nodiscard]] Plan<View> plan_with_input(View const& view, typename View::Dynamics::Input const& wanted, double dt,
+                                         InputScheme scheme, double longest_substep) {
+  auto const& model = view.dynamics();
+  auto const integrate = [&](auto x, auto const& u, double duration) {
+    auto const steps = static_cast<int>(std::ceil(duration / longest_substep));
+    for (int i = 0; i < steps; ++i)
+      x = scheme == InputScheme::rk4 ? rk4_step(model, x, u, duration / steps)
+                                     : euler_step(model, x, u, duration / steps);
+    return x;
+  };
+  auto start = view.state();
+  start.speed = std::max(0.0, start.speed);
+  auto const input = model.limited(wanted, start);
+  Plan<View> plan;
+  double const moving = input.acceleration < 0 ? std::min(dt, -start.speed / input.acceleration) : dt;
+  if (moving > 0) plan.trajectory.push_back(integrate(start, input, moving));
+  if (moving < dt) {
+    auto standing = plan.trajectory.empty() ? start : plan.trajectory.back();
+    standing.speed = 0;
+    plan.trajectory.push_back(standing);
+  }
+  plan.trajectory.back().time = view.time() + dt;
+  plan.action = {input.acceleration, input.steering};
+  return plan;
+}
 
 /// Drives as told from outside: a planner, a search or a learner sets the input (acceleration, steering) in the agent's
 /// memory by `World::memory`, and the vehicle model carries it out over the step. Heeds neither lanes nor others. Never
@@ -21,7 +54,7 @@ struct ExternalInput {
     friend bool operator==(Memory const&, Memory const&) = default;
   };
 
-  enum class Scheme { rk4, euler };
+  using Scheme = InputScheme;
 
   Scheme scheme = Scheme::rk4;
   double longest_substep = 0.1;
@@ -36,33 +69,7 @@ struct ExternalInput {
 
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory const& memory, double dt) const {
-    auto const& model = view.dynamics();
-    auto start = view.state();
-    start.speed = std::max(0.0, start.speed);
-    auto const input = model.limited({memory.acceleration, memory.steering}, start);
-    Plan<View> plan;
-    // A braking vehicle drives until it stands, and stands from then on.
-    double const moving = input.acceleration < 0 ? std::min(dt, -start.speed / input.acceleration) : dt;
-    if (moving > 0) plan.trajectory.push_back(integrate(model, start, input, moving));
-    if (moving < dt) {
-      auto standing = plan.trajectory.empty() ? start : plan.trajectory.back();
-      standing.time = start.time + dt;
-      standing.speed = 0;
-      plan.trajectory.push_back(standing);
-    }
-    plan.trajectory.back().time = view.time() + dt;
-    plan.action = {input.acceleration, input.steering};
-    return plan;
-  }
-
- private:
-  template <class Model>
-  [[nodiscard]] typename Model::State integrate(Model const& model, typename Model::State x,
-                                                typename Model::Input const& u, double duration) const {
-    auto const steps = static_cast<int>(std::ceil(duration / longest_substep));
-    for (int i = 0; i < steps; ++i)
-      x = scheme == Scheme::rk4 ? rk4_step(model, x, u, duration / steps) : euler_step(model, x, u, duration / steps);
-    return x;
+    return plan_with_input(view, {memory.acceleration, memory.steering}, dt, scheme, longest_substep);
   }
 };
 static_assert(BehaviorModel<ExternalInput>);
