@@ -84,6 +84,26 @@ class ObservedWorld {
     return {neighbor(hits.front, 1), neighbor(hits.rear, -1), perfect ? at : lane_position(number)};
   }
 
+  /// Calls `f(ObservedAgent)` for every agent that is on lane corridor `number` of the own road, or reaches into it,
+  /// within `distance` [m], at most `TrafficIndex::horizon`, ahead of or behind the place beside the agent; for some of
+  /// them more than once. Returns the next objects there. O(log n + agents found).
+  template <class F>
+  Neighbors for_each_near(std::uint16_t number, double distance, F&& f) const {
+    auto const at = number == record_->lane.corridor
+                        ? record_->lane
+                        : detail::locate_beside(map(), road(), record_->lane, number, pose_of(record_->state));
+    auto const visit = [&](std::uint32_t slot) {
+      if (detail::is_seen(*world_, slot_, slot)) f(observed_agent(slot));
+      return false;
+    };
+    TrafficQuery const own{slot_, at.s, shape().front, shape().rear, at.piece};
+    SightedQuery<decltype(visit)> const query{own, visit, distance};
+    auto hits = world_->traffic().both(road().corridors[number], query, objects_on_lanes());
+    for (auto* hit : {&hits.front, &hits.rear})
+      if (*hit && !(*hit)->is_object) hit->reset();
+    return {neighbor(hits.front, 1), neighbor(hits.rear, -1), perfect ? at : lane_position(number)};
+  }
+
   /// The agent that a neighbour is. O(1). Not for neighbours that are objects.
   [[nodiscard]] ObservedAgent<State> agent(Neighbor const& neighbor) const {
     CAMBIUM_ASSERT(is_valid(neighbor.agent), "ObservedWorld::agent: the neighbour is an object");

@@ -43,9 +43,9 @@ struct TrafficQuery {
 template <class Sees>
 struct SightedQuery : TrafficQuery {
   Sees sees;
+  double far = 400.0;  ///< who is farther ends the search, seen or not [m]
 
   [[nodiscard]] bool skips(TrafficEntry const& entry, double distance) const {
-    constexpr double far = 400.0;  // who is not near ends the search, seen or not
     return entry.slot == slot || (distance <= far && !sees(entry.slot));
   }
 };
