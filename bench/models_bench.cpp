@@ -7,6 +7,8 @@
 #include "cambium/behavior/behavior_set.hpp"
 #include "cambium/behavior/idm_classic.hpp"
 #include "cambium/behavior/mobil.hpp"
+#include "cambium/behavior/random_macro_actions.hpp"
+#include "cambium/behavior/rss_conformant.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/dynamics/single_track.hpp"
@@ -83,6 +85,13 @@ int main(int argc, char** argv) {
     });
     register_steps<Sim<cb::Mobil>>("mobil", n, [](std::size_t agents) {
       return highway<Sim<cb::Mobil>>(agents, [](double v) { return cb::Mobil{.idm = {.desired_speed = v}}; });
+    });
+    using Rss = cb::RssConformant<cb::IdmClassic>;
+    register_steps<Sim<Rss>>("rss_conformant", n, [](std::size_t agents) {
+      return highway<Sim<Rss>>(agents, [](double v) { return Rss{.nominal = {.desired_speed = v}}; });
+    });
+    register_steps<Sim<cb::RandomMacroActions>>("random_macro_actions", n, [](std::size_t agents) {
+      return highway<Sim<cb::RandomMacroActions>>(agents, [](double) { return cb::RandomMacroActions{}; });
     });
   }
   yardstick::register_yardsticks();
