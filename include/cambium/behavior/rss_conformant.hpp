@@ -9,6 +9,7 @@
 #include "cambium/behavior/constant_acceleration.hpp"
 #include "cambium/behavior/follow_lane.hpp"
 #include "cambium/behavior/rss.hpp"
+#include "cambium/core/macros.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/shape.hpp"
 
@@ -54,7 +55,8 @@ struct RssConformant {
   /// The proper response to all that is near, where the vehicle means to be in the state `end` after `dt` [s]: `brake`
   /// where the situation is dangerous as it is, a side to keep off from where it would be, for coming closer.
   template <class View>
-  [[nodiscard]] RssResponse response(View const& view, typename View::State const& end, double dt) const {
+  CAMBIUM_NOINLINE [[nodiscard]] RssResponse response(View const& view, typename View::State const& end,
+                                                      double dt) const {
     RssResponse all;
     auto const now = across(view, view.state(), view.shape()), then = across(view, end, view.shape());
     double const speed = std::max(0.0, view.state().speed);
