@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 #include <vector>
 
 #include "../world/fixtures.hpp"
@@ -110,10 +109,9 @@ Tally drive(bool safe, std::uint32_t scenarios, std::uint64_t seed) {
     tally.collisions += collided;
     for (auto const& record : world.frame().agents) tally.standing += record.state.speed < 0.1;
   }
-  MESSAGE((safe ? "safe: " : "nominal: ")
-          << tally.scenarios << " scenarios, " << tally.vehicles << " vehicles, " << tally.lane_changes
-          << " lane changes, " << tally.standing << " stand at the end, " << tally.collisions
-          << " scenarios with a collision");
+  MESSAGE(tally.scenarios << " scenarios, " << tally.vehicles << " vehicles, " << tally.lane_changes
+                          << " lane changes, " << tally.standing << " stand at the end, " << tally.collisions
+                          << " scenarios with a collision");
   return tally;
 }
 
