@@ -8,6 +8,8 @@
 #include "cambium/behavior/idm_classic.hpp"
 #include "cambium/behavior/idm_lane_tracking.hpp"
 #include "cambium/behavior/mobil.hpp"
+#include "cambium/behavior/random_macro_actions.hpp"
+#include "cambium/behavior/rss_conformant.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/dynamics/single_track.hpp"
@@ -97,6 +99,13 @@ int main(int argc, char** argv) {
     });
     register_steps<Sim<cb::Mobil>>("mobil", n, [](std::size_t agents) {
       return highway<Sim<cb::Mobil>>(agents, [](double v) { return cb::Mobil{.idm = {.desired_speed = v}}; });
+    });
+    using Rss = cb::RssConformant<cb::IdmClassic>;
+    register_steps<Sim<Rss>>("rss_conformant", n, [](std::size_t agents) {
+      return highway<Sim<Rss>>(agents, [](double v) { return Rss{.nominal = {.desired_speed = v}}; });
+    });
+    register_steps<Sim<cb::RandomMacroActions>>("random_macro_actions", n, [](std::size_t agents) {
+      return highway<Sim<cb::RandomMacroActions>>(agents, [](double) { return cb::RandomMacroActions{}; });
     });
   }
   for (std::size_t const n : {std::size_t{20}, std::size_t{100}, std::size_t{10000}}) {

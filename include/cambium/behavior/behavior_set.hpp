@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -49,6 +50,18 @@ struct BehaviorSet {
   /// The memory an agent starts with.
   [[nodiscard]] static Memory initial_memory(Any const& behavior) {
     return initial_memory(behavior, std::index_sequence_for<Behaviors...>{});
+  }
+
+  /// When the behaviour begins [s]; until then the agent is not in traffic. -infinity where it does not say so.
+  [[nodiscard]] static double start_time(Any const& behavior) {
+    return std::visit(
+        [](auto const& model) {
+          if constexpr (requires { model.start_time(); })
+            return static_cast<double>(model.start_time());
+          else
+            return -std::numeric_limits<double>::infinity();
+        },
+        behavior);
   }
 
   /// Calls the agent's own behaviour with its own memory. One well-predicted branch per alternative, no virtual call.

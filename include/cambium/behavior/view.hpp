@@ -58,6 +58,9 @@ struct ViewArchetype {
   [[nodiscard]] std::optional<Neighbor> front() const;              ///< next ahead along the own lane corridor
   [[nodiscard]] std::optional<Neighbor> rear() const;               ///< next behind
   [[nodiscard]] Neighbors neighbors(std::uint16_t corridor) const;  ///< both, along another lane corridor of the road
+  /// Calls `f(ObservedAgent)` for who is near along a lane corridor; returns the next objects there.
+  template <class F>
+  Neighbors for_each_near(std::uint16_t corridor, double distance, F&& f) const;
   [[nodiscard]] ObservedAgent<State> agent(Neighbor const& neighbor) const;  ///< the neighbour itself; not of objects
   [[nodiscard]] RandomStream random(
       std::uint32_t purpose) const;  ///< numbers of their own for (seed, agent, step, purpose)

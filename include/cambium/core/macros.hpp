@@ -19,6 +19,13 @@
 #define CAMBIUM_FLATTEN
 #endif
 
+/// Keeps a large function out of those that call it, even where they are flattened.
+#if defined(__GNUC__)
+#define CAMBIUM_NOINLINE [[gnu::noinline]]
+#else
+#define CAMBIUM_NOINLINE
+#endif
+
 /// Asks the processor to load what is at an address that will soon be read. The address need not be valid.
 #if defined(__GNUC__)
 #define CAMBIUM_PREFETCH(address) __builtin_prefetch(address)

@@ -10,6 +10,7 @@
 #include "cambium/goal/goal.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/world/detail/on_lanes.hpp"
+#include "cambium/world/detail/seen.hpp"
 #include "cambium/world/frame.hpp"
 #include "cambium/world/prediction.hpp"
 #include "cambium/world/static_object.hpp"
@@ -19,8 +20,8 @@ namespace cambium {
 
 /// What one agent sees of its world: a view of a few pointers, valid until the world changes. States, and with them
 /// gaps, neighbours' speeds and the own lane position, pass through the agent's observer model; who is next to whom is
-/// the truth. It shows states, shapes, the map, neighbours and the agent's own route; never what the others intend:
-/// `predict` asks for a model of that.
+/// the truth, but for those that the observer does not see. It shows states, shapes, the map, neighbours and the
+/// agent's own route; never what the others intend: `predict` asks for a model of that.
 template <class World>
 class ObservedWorld {
  public:
@@ -83,6 +84,26 @@ class ObservedWorld {
     return {neighbor(hits.front, 1), neighbor(hits.rear, -1), perfect ? at : lane_position(number)};
   }
 
+  /// Calls `f(ObservedAgent)` for every agent that is on lane corridor `number` of the own road, or reaches into it,
+  /// within `distance` [m], at most `TrafficIndex::horizon`, ahead of or behind the place beside the agent; for some of
+  /// them more than once. Returns the next objects there. O(log n + agents found).
+  template <class F>
+  Neighbors for_each_near(std::uint16_t number, double distance, F&& f) const {
+    auto const at = number == record_->lane.corridor
+                        ? record_->lane
+                        : detail::locate_beside(map(), road(), record_->lane, number, pose_of(record_->state));
+    auto const visit = [&](std::uint32_t slot) {
+      if (detail::is_seen(*world_, slot_, slot)) f(observed_agent(slot));
+      return false;
+    };
+    TrafficQuery const own{slot_, at.s, shape().front, shape().rear, at.piece};
+    SightedQuery<decltype(visit)> const query{own, visit, distance};
+    auto hits = world_->traffic().both(road().corridors[number], query, objects_on_lanes());
+    for (auto* hit : {&hits.front, &hits.rear})
+      if (*hit && !(*hit)->is_object) hit->reset();
+    return {neighbor(hits.front, 1), neighbor(hits.rear, -1), perfect ? at : lane_position(number)};
+  }
+
   /// The agent that a neighbour is. O(1). Not for neighbours that are objects.
   [[nodiscard]] ObservedAgent<State> agent(Neighbor const& neighbor) const {
     CAMBIUM_ASSERT(is_valid(neighbor.agent), "ObservedWorld::agent: the neighbour is an object");
@@ -94,7 +115,8 @@ class ObservedWorld {
   void for_each_other(F&& f) const {
     auto const& agents = world_->roster().agents;
     for (std::uint32_t i = 0; i < agents.size(); ++i)
-      if (i != slot_ && record(i).status == AgentStatus::driving) f(observed_agent(i));
+      if (i != slot_ && record(i).status == AgentStatus::driving && detail::is_seen(*world_, slot_, i))
+        f(observed_agent(i));
   }
 
   /// A world of its own, as this agent sees it, in which everybody behaves as `prediction` says: to be stepped, copied
@@ -118,18 +140,23 @@ class ObservedWorld {
   [[nodiscard]] auto const& record(std::uint32_t slot) const { return world_->frame().agents[slot]; }
   [[nodiscard]] std::span<TrafficEntry const> objects_on_lanes() const { return world_->roster().object_entries; }
 
-  [[nodiscard]] decltype(auto) observed(std::uint32_t slot) const {
-    auto const& agent = world_->roster().agents[slot];
-    return own_->observer.observe(record(slot).state, slot == slot_, random(observation_purpose(agent.id)));
-  }
+  [[nodiscard]] decltype(auto) observed(std::uint32_t slot) const { return detail::seen_state(*world_, slot_, slot); }
 
-  [[nodiscard]] TrafficQuery query(map::LanePosition const& at) const {
-    return {slot_, at.s, shape().front, shape().rear, at.piece};
+  [[nodiscard]] auto query(map::LanePosition const& at) const {
+    TrafficQuery const query{slot_, at.s, shape().front, shape().rear, at.piece};
+    if constexpr (detail::hides<World>) {
+      auto const sees = [world = world_, own = slot_](std::uint32_t slot) {
+        return detail::is_seen(*world, own, slot);
+      };
+      return SightedQuery<decltype(sees)>{query, sees};
+    } else {
+      return query;
+    }
   }
 
   [[nodiscard]] ObservedAgent<State> observed_agent(std::uint32_t slot) const {
     auto const& agent = world_->roster().agents[slot];
-    return {agent.id, observed(slot), agent.shape, record(slot).action.acceleration};
+    return {agent.id, observed(slot), agent.shape, detail::seen_acceleration(*world_, slot_, slot)};
   }
 
   /// The neighbour ahead (`sign` 1) or behind (-1), as observed.

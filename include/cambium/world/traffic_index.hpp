@@ -34,6 +34,20 @@ struct TrafficQuery {
   double s{};
   double front{}, rear{};
   std::uint16_t piece{};
+
+  /// Whether an entry, `distance` [m] away, is passed over: it is the asker's own.
+  [[nodiscard]] bool skips(TrafficEntry const& entry, double /*distance*/) const { return entry.slot == slot; }
+};
+
+/// One who does not see everybody: `sees(slot)` says whom.
+template <class Sees>
+struct SightedQuery : TrafficQuery {
+  Sees sees;
+  double far = 400.0;  ///< who is farther ends the search, seen or not [m]
+
+  [[nodiscard]] bool skips(TrafficEntry const& entry, double distance) const {
+    return entry.slot == slot || (distance <= far && !sees(entry.slot));
+  }
 };
 
 /// What was found: an agent, or an object.
@@ -106,21 +120,24 @@ class TrafficIndex {
 
   /// Next ahead of the asker on `corridor`. `own`: the asker's own entry lies on this corridor's piece (saves a
   /// search).
-  [[nodiscard]] std::optional<TrafficHit> front(map::LaneCorridor const& corridor, TrafficQuery const& query,
+  template <class Query>
+  [[nodiscard]] std::optional<TrafficHit> front(map::LaneCorridor const& corridor, Query const& query,
                                                 std::span<TrafficEntry const> objects, bool own) const {
     return front_from(own ? rank_[query.slot] + 1 : upper(agents_, key(corridor, query), query.slot), corridor, query,
                       objects);
   }
 
   /// Next behind the asker on `corridor`.
-  [[nodiscard]] std::optional<TrafficHit> rear(map::LaneCorridor const& corridor, TrafficQuery const& query,
+  template <class Query>
+  [[nodiscard]] std::optional<TrafficHit> rear(map::LaneCorridor const& corridor, Query const& query,
                                                std::span<TrafficEntry const> objects, bool own) const {
     return rear_from(own ? rank_[query.slot] : lower(agents_, key(corridor, query), query.slot), corridor, query,
                      objects);
   }
 
   /// Both, with one search.
-  [[nodiscard]] TrafficHits both(map::LaneCorridor const& corridor, TrafficQuery const& query,
+  template <class Query>
+  [[nodiscard]] TrafficHits both(map::LaneCorridor const& corridor, Query const& query,
                                  std::span<TrafficEntry const> objects) const {
     auto const start = lower(agents_, key(corridor, query), query.slot);
     return {front_from(start, corridor, query, objects), rear_from(start, corridor, query, objects)};
@@ -130,8 +147,9 @@ class TrafficIndex {
   using List = std::span<TrafficEntry const>;
 
   /// Next ahead; among the agents, entry `start` is the first candidate on the asker's piece.
+  template <class Query>
   [[nodiscard]] std::optional<TrafficHit> front_from(std::size_t start, map::LaneCorridor const& corridor,
-                                                     TrafficQuery const& query, List objects) const {
+                                                     Query const& query, List objects) const {
     TrafficHit best;
     front_on_corridor(agents_, false, corridor, query, start, best);
     if (!straddling_.empty())
@@ -152,8 +170,9 @@ class TrafficIndex {
   }
 
   /// Next behind; among the agents, candidates lie before entry `start`.
+  template <class Query>
   [[nodiscard]] std::optional<TrafficHit> rear_from(std::size_t start, map::LaneCorridor const& corridor,
-                                                    TrafficQuery const& query, List objects) const {
+                                                    Query const& query, List objects) const {
     TrafficHit best;
     rear_on_corridor(agents_, false, corridor, query, start, best);
     if (!straddling_.empty())
@@ -177,7 +196,8 @@ class TrafficIndex {
     return best;
   }
 
-  [[nodiscard]] static double key(map::LaneCorridor const& corridor, TrafficQuery const& query) {
+  template <class Query>
+  [[nodiscard]] static double key(map::LaneCorridor const& corridor, Query const& query) {
     auto const& piece = corridor.pieces[query.piece];  // beyond the corridor's ends other lanes' coordinates begin
     return std::min(std::max(query.s, piece.begin - 1.0), piece.end + 1.0) + piece.index_offset;
   }
@@ -212,11 +232,12 @@ class TrafficIndex {
     if (gap < best.gap) best = {entry.slot, entry.id, is_object, gap, entry.speed, entry.front + entry.rear};
   }
 
-  static void front_on_corridor(List list, bool is_object, map::LaneCorridor const& corridor, TrafficQuery const& query,
+  template <class Query>
+  static void front_on_corridor(List list, bool is_object, map::LaneCorridor const& corridor, Query const& query,
                                 std::size_t start, TrafficHit& best) {
     auto const& pieces = corridor.pieces;
     for (std::size_t p = query.piece, i = start;;) {
-      while (i < list.size() && list[i].slot == query.slot && !is_object)
+      while (!is_object && i < list.size() && query.skips(list[i], list[i].position - pieces[p].index_offset - query.s))
         ++i;  // the asker's own, reached over from another lane
       if (i < list.size() && list[i].position <= pieces[p].end + 1.0 + pieces[p].index_offset) {
         double const s = list[i].position - pieces[p].index_offset;
@@ -228,11 +249,13 @@ class TrafficIndex {
     }
   }
 
-  static void rear_on_corridor(List list, bool is_object, map::LaneCorridor const& corridor, TrafficQuery const& query,
+  template <class Query>
+  static void rear_on_corridor(List list, bool is_object, map::LaneCorridor const& corridor, Query const& query,
                                std::size_t start, TrafficHit& best) {
     auto const& pieces = corridor.pieces;
     for (std::size_t p = query.piece, i = start;;) {  // candidates lie before i
-      while (i > 0 && list[i - 1].slot == query.slot && !is_object) --i;
+      while (!is_object && i > 0 && query.skips(list[i - 1], query.s - (list[i - 1].position - pieces[p].index_offset)))
+        --i;
       if (i > 0 && list[i - 1].position >= pieces[p].begin - 1.0 + pieces[p].index_offset) {
         auto const& entry = list[i - 1];
         double const s = entry.position - pieces[p].index_offset;
@@ -244,14 +267,16 @@ class TrafficIndex {
     }
   }
 
-  static void front_on_feeder(List list, bool is_object, map::Feeder const& feeder, TrafficQuery const& query,
+  template <class Query>
+  static void front_on_feeder(List list, bool is_object, map::Feeder const& feeder, Query const& query,
                               TrafficHit& best) {
     double const from = query.s <= feeder.begin ? feeder.index_begin : feeder.index_at(query.s);
     // Rounding of the mapping must not lose an entry: start early, then go on to the first that is ahead.
     for (auto i = first_at(list, from - 1e-6); i < list.size() && list[i].position <= feeder.index_end; ++i) {
       auto const& entry = list[i];
-      if (entry.position < feeder.index_begin || (entry.slot == query.slot && !is_object)) continue;
+      if (entry.position < feeder.index_begin) continue;
       double const s = feeder.image(entry.position);
+      if (!is_object && query.skips(entry, s - query.s)) continue;
       bool const ahead = s > query.s || (s == query.s && entry.slot > query.slot);
       if (!ahead) continue;
       if (s - query.s <= horizon)
@@ -260,14 +285,16 @@ class TrafficIndex {
     }
   }
 
-  static void rear_on_feeder(List list, bool is_object, map::Feeder const& feeder, TrafficQuery const& query,
+  template <class Query>
+  static void rear_on_feeder(List list, bool is_object, map::Feeder const& feeder, Query const& query,
                              TrafficHit& best) {
     double const to = query.s >= feeder.end ? feeder.index_end : feeder.index_at(query.s);
     for (auto i = upper(list, to + 1e-6, std::numeric_limits<std::uint32_t>::max());
          i > 0 && list[i - 1].position >= feeder.index_begin; --i) {
       auto const& entry = list[i - 1];
-      if (entry.position > feeder.index_end || (entry.slot == query.slot && !is_object)) continue;
+      if (entry.position > feeder.index_end) continue;
       double const s = feeder.image(entry.position);
+      if (!is_object && query.skips(entry, query.s - s)) continue;
       bool const behind = s < query.s || (s == query.s && entry.slot < query.slot);
       if (!behind) continue;
       if (query.s - s <= horizon)

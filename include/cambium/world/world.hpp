@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -61,7 +62,8 @@ class World {
   using Dynamics = DynamicModelType;
   using Observer = ObserverType;
   using State = typename Dynamics::State;
-  using FrameType = Frame<State, typename Set::Memory, ExecutionMemoryOf<Execution, State>>;
+  using FrameType =
+      Frame<State, typename Set::Memory, ExecutionMemoryOf<Execution, State>, detail::PastOf<State, Observer>>;
   using Record = typename FrameType::Record;
   using RosterType = Roster<Behavior, Execution, Dynamics, Observer>;
   using View = ObservedWorld<World>;
@@ -160,6 +162,9 @@ class World {
     record.state.heading = spec.heading.value_or(center.pose(record.lane.s).heading);
     record.state.speed = spec.speed;
     record.memory = Set::initial_memory(spec.behavior);
+    if (Set::start_time(spec.behavior) > frame_.time + same_time) record.status = AgentStatus::not_started;
+    detail::forget_past(record);
+    Goal const goal = detail::entering_goal(spec.goal, lane, where);
 
     auto& roster = writable_roster();
     auto const slot = static_cast<std::ptrdiff_t>(std::lower_bound(roster.agents.begin(), roster.agents.end(), id,
@@ -169,8 +174,10 @@ class World {
     roster.next_agent_id = std::max(roster.next_agent_id, static_cast<std::uint32_t>(id) + 1);
     roster.agents.insert(roster.agents.begin() + slot,
                          {id, spec.shape, road, spec.behavior, spec.execution, spec.dynamics, spec.observer});
-    roster.goals.insert(roster.goals.begin() + slot, spec.goal);
+    roster.goals.insert(roster.goals.begin() + slot, goal);
     frame_.agents.insert(frame_.agents.begin() + slot, record);
+    roster.has_sequences = roster.has_sequences || std::holds_alternative<GoalSequence>(goal);
+    pass_goals(static_cast<std::size_t>(slot), frame_.agents[static_cast<std::size_t>(slot)]);
     scratch_.forget();
     return id;
   }
@@ -256,14 +263,7 @@ class World {
   /// The agent's situation as goals ask it. Throws as `slot_of`.
   [[nodiscard]] GoalSituation situation(AgentId id) const {
     auto const slot = slot_of(id);
-    auto const& state = frame_.agents[slot].state;
-    auto const& lane = frame_.agents[slot].lane;
-    auto const& agent = roster_->agents[slot];
-    auto const& piece = agent.road->corridors[lane.corridor].pieces[lane.piece];
-    return {{state.x, state.y, state.heading},
-            agent.shape,
-            piece.lane,
-            lane.s + piece.index_offset - map_->lane(piece.lane).index_begin};
+    return situation(slot, frame_.agents[slot]);
   }
 
   /// The lane that the agent is in, by its lane corridor. Throws as `slot_of`.
@@ -299,8 +299,10 @@ class World {
     record.state = state;
     record.action = {};
     record.execution = {};
+    if (record.status != AgentStatus::driving) detail::forget_past(record);
     record.status = AgentStatus::driving;
     record.lane = detail::relocate(*roster_->agents[slot].road, record.lane, {state.x, state.y, state.heading});
+    pass_goals(slot, record);
     scratch_.fresh = false;
   }
 
@@ -378,6 +380,32 @@ class World {
   }
 
  private:
+  static constexpr double same_time = 1e-9;  // [s]
+
+  [[nodiscard]] GoalSituation situation(std::size_t slot, Record const& record) const {
+    auto const& [state, lane] = std::tie(record.state, record.lane);
+    auto const& agent = roster_->agents[slot];
+    auto const& piece = agent.road->corridors[lane.corridor].pieces[lane.piece];
+    return {{state.x, state.y, state.heading},
+            agent.shape,
+            piece.lane,
+            lane.s + piece.index_offset - map_->lane(piece.lane).index_begin,
+            state.speed,
+            lane.lateral,
+            lane.heading_error,
+            agent.road.get(),
+            lane.corridor,
+            lane.s,
+            record.goals_passed};
+  }
+
+  /// Notes which parts of a sequence of goals an agent in traffic has reached.
+  void pass_goals(std::size_t slot, Record& record) const {
+    auto const* const sequence = std::get_if<GoalSequence>(&roster_->goals[slot]);
+    if (sequence && record.status != AgentStatus::not_started)
+      record.goals_passed = static_cast<std::uint8_t>(sequence->pass(situation(slot, record)));
+  }
+
   void check_fits(FrameType const& frame) const {
     if (frame.agents.size() != roster_->agents.size())
       throw WorldError("World",
@@ -418,11 +446,14 @@ class World {
     if (!executed.valid) return fail(StepProblem::no_execution, agent.id, next, result);
     if (!is_finite(executed.state) || !std::isfinite(plan.action.acceleration + plan.action.steering))
       return fail(StepProblem::not_finite, agent.id, next, result);
+    if constexpr (past_steps_of < Observer >> 0) next.past.push(now.state, now.action.acceleration);
     next.status = AgentStatus::driving;
     next.state = executed.state;
     next.action = plan.action;
+    if (now.status != AgentStatus::driving) detail::forget_past(next);
     detail::move_on_lane(*map_, *agent.road, 0.5 * (now.state.speed + next.state.speed) * dt, next);
     if (next.status != AgentStatus::driving) ++result.left;
+    if (roster_->has_sequences) pass_goals(slot, next);
   }
 
   [[nodiscard]] RandomStream execution_stream(AgentId id) const {

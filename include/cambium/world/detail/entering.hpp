@@ -6,6 +6,8 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -66,41 +68,111 @@ inline constexpr double path_radius = 2.5;
       "enter on a lane and along its direction");
 }
 
-/// The lanes where a goal's route may end; none for goals without a place.
-[[nodiscard]] inline std::vector<LaneId> destinations(Map const& map, Goal const& goal, std::string const& where) {
-  std::vector<LaneId> lanes;
-  if (auto const* lane = std::get_if<ReachLane>(&goal)) {
-    if (index_of(lane->lane) >= map.lanes().size())
-      throw WorldError(where, "its goal names lane " + to_string(lane->lane) + ", which the map does not have",
-                       "use Map::find_lane");
-    if (!(lane->from <= lane->to))
-      throw WorldError(where, "its goal's stretch of lane ends before it begins", "give from <= to");
-    lanes.push_back(lane->lane);
+/// The agent's goal, complete: lanes beside count from the one that it enters in. Throws `WorldError` for a sequence
+/// that is too long, or within another goal.
+[[nodiscard]] inline Goal entering_goal(Goal goal, LaneId lane, std::string const& where, bool is_outer = true) {
+  if (auto* const beside = std::get_if<ReachLaneBeside>(&goal); beside && !is_valid(beside->from)) beside->from = lane;
+  auto const complete = [&](std::vector<Goal>& parts) {
+    for (auto& part : parts) part = entering_goal(std::move(part), lane, where, false);
+  };
+  if (auto* const all = std::get_if<AllGoals>(&goal)) complete(all->parts);
+  if (auto* const any = std::get_if<AnyGoal>(&goal)) complete(any->parts);
+  if (auto* const sequence = std::get_if<GoalSequence>(&goal)) {
+    if (!is_outer) throw WorldError(where, "its goal has a sequence within another goal", "put the sequence outside");
+    if (sequence->parts.size() > 255)
+      throw WorldError(where, "its goal is a sequence of more than 255 parts", "leave some out");
+    complete(sequence->parts);
   }
-  if (auto const* polygon = std::get_if<ReachPolygon>(&goal)) {
-    auto points = points_around(polygon->area, 1.0);
-    points.insert(points.begin(), polygon->area.bounding_box().center());
-    for (auto const& p : points)
-      for (auto const& hit : map.lanes_near(p, entering_radius))
-        if (map.lane(hit.lane).drivable() && std::find(lanes.begin(), lanes.end(), hit.lane) == lanes.end())
-          lanes.push_back(hit.lane);
-    if (lanes.empty())
-      throw WorldError(where, "its goal, a polygon, is not near a drivable lane",
-                       "give the route too, or a goal on a lane");
-  }
-  return lanes;
+  return goal;
 }
 
-/// The route from `start`: as given, else to the goal, else straight on. Throws `WorldError` where there is none.
-[[nodiscard]] inline map::Route entering_route(Map const& map, LaneId start, std::optional<map::Route> const& given,
-                                               Goal const& goal, std::string const& where) {
-  if (given) return *given;
-  auto const ends = destinations(map, goal, where);
-  if (ends.empty()) return map::straight_route(map, start);
+/// Lanes where a goal's route may end, collected from its parts.
+class Destinations {
+ public:
+  Destinations(Map const& map, std::string const& where) : map_(&map), where_(&where) {}
+
+  [[nodiscard]] std::vector<LaneId> of(Goal const& goal) const {
+    return std::visit([this](auto const& g) { return lanes(g); }, goal);
+  }
+
+ private:
+  template <class G>
+  [[nodiscard]] std::vector<LaneId> lanes(G const&) const {
+    return {};
+  }
+
+  [[nodiscard]] std::vector<LaneId> lanes(ReachLane const& goal) const { return lane(goal.lane, goal.from, goal.to); }
+  [[nodiscard]] std::vector<LaneId> lanes(LaneLimits const& goal) const {
+    return is_valid(goal.lane) ? lane(goal.lane, goal.from, goal.to) : std::vector<LaneId>{};
+  }
+
+  /// Of goals to be reached at once the first place counts.
+  [[nodiscard]] std::vector<LaneId> lanes(AllGoals const& goal) const {
+    std::vector<LaneId> first;
+    for (auto const& part : goal.parts)
+      if (auto found = of(part); first.empty()) first = std::move(found);
+    return first;
+  }
+  [[nodiscard]] std::vector<LaneId> lanes(AnyGoal const& goal) const {
+    std::vector<LaneId> all;
+    for (auto const& part : goal.parts)
+      for (auto const lane : of(part)) all.push_back(lane);
+    return all;
+  }
+
+  [[nodiscard]] std::vector<LaneId> lanes(ReachPolygon const& goal) const {
+    std::vector<LaneId> lanes;
+    auto points = points_around(goal.area, 1.0);
+    points.insert(points.begin(), goal.area.bounding_box().center());
+    for (auto const& p : points)
+      for (auto const& hit : map_->lanes_near(p, entering_radius))
+        if (map_->lane(hit.lane).drivable() && std::find(lanes.begin(), lanes.end(), hit.lane) == lanes.end())
+          lanes.push_back(hit.lane);
+    if (lanes.empty())
+      throw WorldError(*where_, "its goal, a polygon, is not near a drivable lane",
+                       "give the route too, or a goal on a lane");
+    return lanes;
+  }
+
+  [[nodiscard]] std::vector<LaneId> lane(LaneId lane, double from, double to) const {
+    if (index_of(lane) >= map_->lanes().size())
+      throw WorldError(*where_, "its goal names lane " + to_string(lane) + ", which the map does not have",
+                       "use Map::find_lane");
+    if (!(from <= to)) throw WorldError(*where_, "its goal's stretch of lane ends before it begins", "give from <= to");
+    return {lane};
+  }
+
+  Map const* map_;
+  std::string const* where_;
+};
+
+/// The way from `start` to the first of `ends` that it leads to. Throws `WorldError` where there is none.
+[[nodiscard]] inline map::Route route_to_one(Map const& map, LaneId start, std::vector<LaneId> const& ends,
+                                             std::string const& where) {
   for (auto const end : ends)
     if (auto route = map.shortest_route(start, end)) return *route;
   throw WorldError(where, "there is no route from " + map.describe(start) + " to " + map.describe(ends.front()),
                    "choose a goal that the lane leads to");
+}
+
+/// The route from `start`: as given, else to the goal, by way of all places of a sequence, else straight on. Throws
+/// `WorldError` where there is none.
+[[nodiscard]] inline map::Route entering_route(Map const& map, LaneId start, std::optional<map::Route> const& given,
+                                               Goal const& goal, std::string const& where) {
+  if (given) return *given;
+  Destinations const destinations(map, where);
+  auto const* const sequence = std::get_if<GoalSequence>(&goal);
+  std::size_t const stages = sequence ? sequence->parts.size() : 1;
+  map::Route route;
+  for (std::size_t i = 0; i < stages; ++i) {
+    auto const ends = destinations.of(sequence ? sequence->parts[i] : goal);
+    if (ends.empty()) continue;
+    auto const part = route_to_one(map, route.lanes.empty() ? start : route.lanes.back(), ends, where);
+    route.lanes.insert(route.lanes.end(), part.lanes.begin() + (route.lanes.empty() ? 0 : 1), part.lanes.end());
+    route.length += part.length;
+    route.cost += part.cost;
+  }
+  return route.lanes.empty() ? map::straight_route(map, start) : route;
 }
 
 /// Where on `road` an agent of `spec` enters, in lane `lane`: in the main corridor if that holds the lane.
@@ -146,6 +218,17 @@ void check_if_described(std::variant<Alternatives...> const& any, std::string co
   std::visit([&where](auto const& parameters) { check_if_described(parameters, where); }, any);
 }
 
+/// As above for an observer, or for those that it is made of.
+template <class Observer>
+void check_observer(Observer const& observer, std::string const& where) {
+  if constexpr (requires { observer.stages; })
+    std::apply([&where](auto const&... stage) { (check_observer(stage, where), ...); }, observer.stages);
+  else if constexpr (requires { observer.any; })
+    std::visit([&where](auto const& one) { check_observer(one, where); }, observer.any);
+  else
+    check_if_described(observer, where);
+}
+
 /// Throws `WorldError` or `ParameterError` where a number of `spec` is no good.
 template <class Spec>
 void check_entering(Spec const& spec, std::string const& where) {
@@ -157,7 +240,7 @@ void check_entering(Spec const& spec, std::string const& where) {
   check_if_described(spec.shape, where);
   check_if_described(spec.execution, where);
   check_if_described(spec.dynamics, where);
-  check_if_described(spec.observer, where);
+  check_observer(spec.observer, where);
   if (!(spec.shape.length() > 0 && spec.shape.width() > 0))
     throw WorldError(where, "its shape has no length or no width", "leave the shape out to get a car");
 }
