@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -31,6 +32,15 @@ struct Neighbors {
   map::LanePosition position;
 };
 
+/// A place on another lane corridor beside the own one: to ask for neighbours there, see `ViewArchetype::beside`.
+struct BesidePlace {
+  double s{};               ///< along the corridor's centre line [m]
+  std::uint32_t segment{};  ///< of the centre line there
+  std::uint16_t corridor = map::no_corridor;
+  std::uint16_t piece{};
+  std::size_t entry{};  ///< where the search for neighbours begins
+};
+
 /// Another agent as seen by an observer.
 template <MotionState S>
 struct ObservedAgent {
@@ -58,6 +68,10 @@ struct ViewArchetype {
   [[nodiscard]] std::optional<Neighbor> front() const;              ///< next ahead along the own lane corridor
   [[nodiscard]] std::optional<Neighbor> rear() const;               ///< next behind
   [[nodiscard]] Neighbors neighbors(std::uint16_t corridor) const;  ///< both, along another lane corridor of the road
+  [[nodiscard]] BesidePlace beside(std::uint16_t corridor) const;   ///< the place there beside the own one, and from it
+  [[nodiscard]] std::optional<Neighbor> front(BesidePlace const& place) const;  ///< next ahead
+  [[nodiscard]] std::optional<Neighbor> rear(BesidePlace const& place) const;   ///< next behind
+  [[nodiscard]] bool has_goal() const;  ///< whether it matters in which lane the route ends
   [[nodiscard]] ObservedAgent<State> agent(Neighbor const& neighbor) const;  ///< the neighbour itself; not of objects
   [[nodiscard]] RandomStream random(
       std::uint32_t purpose) const;  ///< numbers of their own for (seed, agent, step, purpose)

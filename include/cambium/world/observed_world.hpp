@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <type_traits>
+#include <variant>
 
 #include "cambium/behavior/view.hpp"
 #include "cambium/goal/goal.hpp"
@@ -78,10 +79,33 @@ class ObservedWorld {
   /// O(log n).
   [[nodiscard]] Neighbors neighbors(std::uint16_t number) const {
     if (number == record_->lane.corridor) return {front(), rear(), lane_position()};
-    auto const at = detail::locate_beside(map(), road(), record_->lane, number, pose_of(record_->state));
-    auto const hits = world_->traffic().both(road().corridors[number], query(at), objects_on_lanes());
-    return {neighbor(hits.front, 1), neighbor(hits.rear, -1), perfect ? at : lane_position(number)};
+    auto const place = beside(number);
+    return {front(place), rear(place), lane_position(number)};
   }
+
+  /// The place beside the agent on lane corridor `number` of the own road, another than the own. O(1) where that is
+  /// next to the own one, else O(lanes of the corridor); plus a search, O(log n).
+  [[nodiscard]] BesidePlace beside(std::uint16_t number) const {
+    auto place = detail::place_beside(map(), road(), record_->lane, number, pose_of(record_->state));
+    place.entry = world_->traffic().find(road().corridors[number], query(place));
+    if constexpr (!perfect) place.s += shift(slot_);
+    return place;
+  }
+
+  /// Next road users ahead of and behind such a place. O(1) while the next one is in the same lane.
+  [[nodiscard]] std::optional<Neighbor> front(BesidePlace const& place) const {
+    return neighbor(world_->traffic().front_from(place.entry, road().corridors[place.corridor], query(truth(place)),
+                                                 objects_on_lanes()),
+                    1);
+  }
+  [[nodiscard]] std::optional<Neighbor> rear(BesidePlace const& place) const {
+    return neighbor(world_->traffic().rear_from(place.entry, road().corridors[place.corridor], query(truth(place)),
+                                                objects_on_lanes()),
+                    -1);
+  }
+
+  /// Whether it matters in which lane the route ends.
+  [[nodiscard]] bool has_goal() const { return !std::holds_alternative<NoGoal>(goal()); }
 
   /// The agent that a neighbour is. O(1). Not for neighbours that are objects.
   [[nodiscard]] ObservedAgent<State> agent(Neighbor const& neighbor) const {
@@ -123,7 +147,14 @@ class ObservedWorld {
     return own_->observer.observe(record(slot).state, slot == slot_, random(observation_purpose(agent.id)));
   }
 
-  [[nodiscard]] TrafficQuery query(map::LanePosition const& at) const {
+  /// The place as it is, not as the observer shows it.
+  [[nodiscard]] BesidePlace truth(BesidePlace place) const {
+    if constexpr (!perfect) place.s -= shift(slot_);
+    return place;
+  }
+
+  template <class Place>
+  [[nodiscard]] TrafficQuery query(Place const& at) const {
     return {slot_, at.s, shape().front, shape().rear, at.piece};
   }
 

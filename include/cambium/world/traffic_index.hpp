@@ -46,11 +46,6 @@ struct TrafficHit {
   double length{};                                       ///< along its lane [m]
 };
 
-/// Next ahead and behind.
-struct TrafficHits {
-  std::optional<TrafficHit> front, rear;
-};
-
 /// Who is where on the lanes, sorted, so that the next road user along a corridor is the next in the list.
 ///
 /// Agents are kept in one list by lane coordinate; the order of the last step is repaired, not rebuilt (insertion sort;
@@ -119,19 +114,15 @@ class TrafficIndex {
                      objects);
   }
 
-  /// Both, with one search.
-  [[nodiscard]] TrafficHits both(map::LaneCorridor const& corridor, TrafficQuery const& query,
-                                 std::span<TrafficEntry const> objects) const {
-    auto const start = lower(agents_, key(corridor, query), query.slot);
-    return {front_from(start, corridor, query, objects), rear_from(start, corridor, query, objects)};
+  /// Where in the list of agents the asker's place is: one search for `front_from` and `rear_from`. O(log n).
+  [[nodiscard]] std::size_t find(map::LaneCorridor const& corridor, TrafficQuery const& query) const {
+    return lower(agents_, key(corridor, query), query.slot);
   }
-
- private:
-  using List = std::span<TrafficEntry const>;
 
   /// Next ahead; among the agents, entry `start` is the first candidate on the asker's piece.
   [[nodiscard]] std::optional<TrafficHit> front_from(std::size_t start, map::LaneCorridor const& corridor,
-                                                     TrafficQuery const& query, List objects) const {
+                                                     TrafficQuery const& query,
+                                                     std::span<TrafficEntry const> objects) const {
     TrafficHit best;
     front_on_corridor(agents_, false, corridor, query, start, best);
     if (!straddling_.empty())
@@ -153,7 +144,8 @@ class TrafficIndex {
 
   /// Next behind; among the agents, candidates lie before entry `start`.
   [[nodiscard]] std::optional<TrafficHit> rear_from(std::size_t start, map::LaneCorridor const& corridor,
-                                                    TrafficQuery const& query, List objects) const {
+                                                    TrafficQuery const& query,
+                                                    std::span<TrafficEntry const> objects) const {
     TrafficHit best;
     rear_on_corridor(agents_, false, corridor, query, start, best);
     if (!straddling_.empty())
@@ -171,6 +163,9 @@ class TrafficIndex {
     }
     return found(best);
   }
+
+ private:
+  using List = std::span<TrafficEntry const>;
 
   [[nodiscard]] static std::optional<TrafficHit> found(TrafficHit const& best) {
     if (best.gap == std::numeric_limits<double>::infinity()) return std::nullopt;
