@@ -32,6 +32,15 @@ struct Neighbors {
   map::LanePosition position;
 };
 
+/// A road user in a lane that is still to merge into the own lane corridor, by where it will be there.
+struct MergingNeighbor {
+  AgentId agent = none<AgentId>;
+  double s{};      ///< of its reference point: as far from the merge as it is on its own lane [m]
+  double front{};  ///< how far it reaches from there forward [m]
+  double rear{};   ///< and back [m]
+  double speed{};  ///< [m/s]
+};
+
 /// A place on another lane corridor beside the own one: to ask for neighbours there, see `ViewArchetype::beside`.
 struct BesidePlace {
   double s{};               ///< along the corridor's centre line [m]
@@ -71,6 +80,9 @@ struct ViewArchetype {
   [[nodiscard]] BesidePlace beside(std::uint16_t corridor) const;   ///< the place there beside the own one, and from it
   [[nodiscard]] std::optional<Neighbor> front(BesidePlace const& place) const;  ///< next ahead
   [[nodiscard]] std::optional<Neighbor> rear(BesidePlace const& place) const;   ///< next behind
+  [[nodiscard]] std::optional<Neighbor> front_in_lane() const;  ///< as `front`, without lanes that are still to merge
+  [[nodiscard]] std::optional<MergingNeighbor> merging(double merge, double behind) const;  ///< the foremost behind
+  [[nodiscard]] AgentId id() const;
   [[nodiscard]] bool has_goal() const;  ///< whether it matters in which lane the route ends
   [[nodiscard]] ObservedAgent<State> agent(Neighbor const& neighbor) const;  ///< the neighbour itself; not of objects
   [[nodiscard]] RandomStream random(

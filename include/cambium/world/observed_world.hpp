@@ -104,6 +104,22 @@ class ObservedWorld {
                     -1);
   }
 
+  /// As `front`, but without those who are in lanes that are still to merge into the own one.
+  [[nodiscard]] std::optional<Neighbor> front_in_lane() const {
+    auto asked = query(record_->lane);
+    asked.with_merging = false;
+    return neighbor(world_->traffic().front(corridor(), asked, objects_on_lanes(), in_traffic()), 1);
+  }
+
+  /// Of the agents in lanes that are still to merge into the own corridor at `merge` (see `Feeder::free_until`), the
+  /// foremost that is behind corridor position `behind`. O(feeders), plus a search in each.
+  [[nodiscard]] std::optional<MergingNeighbor> merging(double merge, double behind) const {
+    auto const entry = world_->traffic().merging(corridor(), merge, behind, slot_);
+    if (!entry) return std::nullopt;
+    double const s = perfect ? entry->position : entry->position + shift(entry->slot);
+    return MergingNeighbor{static_cast<AgentId>(entry->id), s, entry->front, entry->rear, entry->speed};
+  }
+
   /// Whether it matters in which lane the route ends.
   [[nodiscard]] bool has_goal() const { return !std::holds_alternative<NoGoal>(goal()); }
 

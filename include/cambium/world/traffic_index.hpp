@@ -34,6 +34,7 @@ struct TrafficQuery {
   double s{};
   double front{}, rear{};
   std::uint16_t piece{};
+  bool with_merging = true;  ///< who is in a lane that is still to merge counts
 };
 
 /// What was found: an agent, or an object.
@@ -58,13 +59,9 @@ class TrafficIndex {
   /// Farthest reference point that is a neighbour, along the corridor [m].
   static constexpr double horizon = 400.0;
 
-  /// Gap [m] between a follower's front end and its leader's rear end (corridor positions) where the two lanes are one
-  /// from `merge` on. Before that the two may be side by side: the follower is given half of its way to the merge on
-  /// top, so that a gap opens bit by bit, but never more than the way to whichever is farther, leader or merge.
+  /// See `map::gap_before_merge`.
   [[nodiscard]] static double gap_between(double follower_front, double leader_rear, double merge) {
-    double const gap = leader_rear - follower_front, to_merge = merge - follower_front;
-    if (to_merge <= 0.0) return gap;
-    return std::min(gap + 0.5 * to_merge, std::max(gap, to_merge));
+    return map::gap_before_merge(follower_front, leader_rear, merge);
   }
 
   /// Takes in `count` agents. `entry_of(slot, list)` gives each one's `TrafficEntry` (position +infinity: on no lane of
@@ -134,7 +131,7 @@ class TrafficIndex {
       if (feeder.begin > query.s + std::min(horizon, best.gap + query.front + longest_rear_) && objects.empty())
         break;  // nobody there is closer
       if (feeder.begin > query.s + horizon) break;
-      if (feeder.end < query.s) continue;
+      if (feeder.end < query.s || (!query.with_merging && feeder.is_still_to_merge())) continue;
       front_on_feeder(agents_, false, feeder, query, best);
       if (!straddling_.empty()) front_on_feeder(straddling_, false, feeder, query, best);
       if (!objects.empty()) front_on_feeder(objects, true, feeder, query, best);
@@ -156,12 +153,32 @@ class TrafficIndex {
       if (feeder.begin > query.s) break;
       if (feeder.end < query.s - std::min(horizon, best.gap + query.rear + longest_front_) && objects.empty())
         continue;  // nobody there is closer
-      if (feeder.end < query.s - horizon) continue;
+      if (feeder.end < query.s - horizon || (!query.with_merging && feeder.is_still_to_merge())) continue;
       rear_on_feeder(agents_, false, feeder, query, best);
       if (!straddling_.empty()) rear_on_feeder(straddling_, false, feeder, query, best);
       if (!objects.empty()) rear_on_feeder(objects, true, feeder, query, best);
     }
     return found(best);
+  }
+
+  /// Of the agents in lanes that are still to merge into `corridor` at `merge`, the one with the foremost image on the
+  /// corridor not beyond `behind`: its entry, with the image as position. O(feeders), plus a search in each.
+  [[nodiscard]] std::optional<TrafficEntry> merging(map::LaneCorridor const& corridor, double merge, double behind,
+                                                    std::uint32_t asker) const {
+    std::optional<TrafficEntry> best;
+    for (auto const& feeder : corridor.feeders) {
+      if (feeder.free_until != merge || !feeder.is_still_to_merge() || feeder.begin > behind) continue;
+      double const to = behind >= feeder.end ? feeder.index_end : feeder.index_at(behind);
+      for (auto i = upper(agents_, to, std::numeric_limits<std::uint32_t>::max());
+           i > 0 && agents_[i - 1].position >= feeder.index_begin; --i) {
+        auto entry = agents_[i - 1];
+        if (entry.slot == asker) continue;
+        entry.position = feeder.image(entry.position);
+        if (!best || entry.position > best->position) best = entry;
+        break;
+      }
+    }
+    return best;
   }
 
  private:
