@@ -22,7 +22,7 @@ namespace cambium {
 struct ZipMerge {
   IdmParameters idm{};
   double zone = 150.0;
-  double reach = 8.0;
+  double reach = 12.0;
   double patience = 4.0;
   double tolerance = 1e-4;
 
