@@ -50,9 +50,8 @@ struct LaneChangeRuleBased {
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
     return changing.drive(view, memory, idm, tolerance, dt,
-                          [this](View const& v, detail::IdmLaw const& law, double speed, detail::Restriction const&,
-                                 bool may_change) {
-                            return may_change ? roomiest_side(v, law, speed) : map::no_corridor;
+                          [this](LaneKeeping<View> const& now) {
+                            return now.may_change ? roomiest_side(now) : map::no_corridor;
                           });
   }
 
@@ -62,11 +61,12 @@ struct LaneChangeRuleBased {
   }
 
   template <class View>
-  [[nodiscard]] std::uint16_t roomiest_side(View const& view, detail::IdmLaw const& law, double speed) const {
+  [[nodiscard]] std::uint16_t roomiest_side(LaneKeeping<View> const& now) const {
+    auto const& view = now.view;
     auto const& piece = view.corridor().pieces[view.lane_position().piece];
     if (piece.left == map::no_corridor && piece.right == map::no_corridor) return map::no_corridor;
     auto const urgency = lane_urgency(view, route_horizon);
-    double best = space_ahead(view.front()) + advantage;
+    double best = space_ahead(now.leader) + advantage;
     auto target = map::no_corridor;
     for (bool const left : {true, false}) {
       auto const side = left ? piece.left : piece.right;
@@ -79,7 +79,7 @@ struct LaneChangeRuleBased {
       double const ahead = urge > 0.0 ? std::numeric_limits<double>::infinity() : space_ahead(option.front);
       if (!(ahead > best)) continue;
       option.rear = view.rear(option.place);
-      if (!space(view, option) || !changing.is_safe(view, law, speed, option, changing.safe_deceleration)) continue;
+      if (!space(view, option) || !changing.is_safe(view, now.law, now.speed, option, changing.safe_deceleration)) continue;
       best = ahead;
       target = side;
     }

@@ -79,6 +79,18 @@ struct Restriction {
 
 }  // namespace detail
 
+/// A driver that keeps its lane, as its rule for changing lanes sees it.
+template <class View>
+struct LaneKeeping {
+  View const& view;
+  detail::IdmLaw const& law;              ///< its car following
+  double speed;                           ///< [m/s]
+  std::optional<Neighbor> const& leader;  ///< next ahead
+  double lane_end;                        ///< see there
+  bool may_change;                        ///< not in the time of rest
+  detail::Restriction& ahead;             ///< what it follows; a rule may add to it
+};
+
 /// How a driver changes lanes once it has decided to: what it assumes of others, what it finds safe, when it gives up.
 /// A change takes time and follows a smooth course. It is aborted where it has become unsafe, or where somebody comes
 /// into the same gap from the other side, while the way back does not leave the old lane. Meanwhile the leaders in all
@@ -120,9 +132,8 @@ struct LaneChanging {
     friend bool operator==(Memory const&, Memory const&) = default;
   };
 
-  /// The plan of a driver who follows by IDM and changes lanes where `choose(view, law, speed, ahead, may_change)` says
-  /// so: it returns the side to change to, as the number of its lane corridor, or none; it may add to `ahead`, what the
-  /// driver follows in its lane. Not called during a change; in the time of rest `may_change` is false.
+  /// The plan of a driver who follows by IDM and changes lanes where `choose(LaneKeeping)` says so: it returns the side
+  /// to change to, as the number of its lane corridor, or none. Not called during a change.
   template <class View, class Choose>
   [[nodiscard]] Plan<View> drive(View const& view, Memory& memory, IdmParameters const& idm, double tolerance,
                                  double dt, Choose const& choose) const {
@@ -136,9 +147,10 @@ struct LaneChanging {
       auto const ahead = ahead_while_changing(view, law, speed, leader, memory.change);
       return plan_lane_change(view, memory.change, idm_motion(idm, speed, ahead.gap, ahead.speed, dt, tolerance), dt);
     }
-    auto ahead = ahead_in_lane(view, law, speed, leader);
+    double const end = lane_end(view, home, view.lane_position().piece);
+    auto ahead = ahead_in_lane(view, law, speed, leader, end);
     bool const may_change = memory.rest == 0.0f;
-    auto const target = choose(view, law, speed, ahead, may_change);
+    auto const target = choose(LaneKeeping<View>{view, law, speed, leader, end, may_change, ahead});
     if (may_change && target != map::no_corridor) {
       memory.change = course.begin(target, speed, room(view, leader));
       memory.rest = static_cast<float>(rest + course.duration);
@@ -147,12 +159,15 @@ struct LaneChanging {
     return plan_lane_change(view, memory.change, idm_motion(idm, speed, ahead.gap, ahead.speed, dt, tolerance), dt);
   }
 
+  /// How a follower drives, as this driver assumes it.
+  [[nodiscard]] detail::IdmLaw law_of(Neighbor const& who) const {
+    auto const& assumed = who.length > truck_length ? trucks : others;
+    return detail::IdmLaw(assumed, std::max(assumed.desired_speed, who.speed));
+  }
+
   /// Acceleration of a follower as this driver assumes it [m/s^2]. Objects stand: they neither gain nor lose.
   [[nodiscard]] double follower(std::optional<Neighbor> const& who, double gap, double leader_speed) const {
-    if (!who || !is_valid(who->agent)) return 0.0;
-    auto const& assumed = who->length > truck_length ? trucks : others;
-    double const speed = std::max(0.0, who->speed);
-    return detail::IdmLaw(assumed, std::max(assumed.desired_speed, speed))(speed, gap, leader_speed);
+    return who && is_valid(who->agent) ? law_of(*who)(std::max(0.0, who->speed), gap, leader_speed) : 0.0;
   }
 
   /// Whether nobody has to brake harder than `deceleration` [m/s^2], gaps are left, and nobody comes into the same gap
@@ -255,12 +270,11 @@ struct LaneChanging {
 
   template <class View>
   [[nodiscard]] detail::Restriction ahead_in_lane(View const& view, detail::IdmLaw const& law, double speed,
-                                                  std::optional<Neighbor> const& leader) const {
+                                                  std::optional<Neighbor> const& leader, double end) const {
     auto const& at = view.lane_position();
     auto const& piece = view.corridor().pieces[at.piece];
     detail::Restriction ahead{infinite, 0.0, law.free(speed)};
     add_leader(ahead, law, speed, leader, piece.left != map::no_corridor || piece.right != map::no_corridor);
-    double const end = lane_end(view, at.corridor, at.piece);
     if (end < infinite && is_dead_end(view.corridor(), end))
       ahead.add(law, speed, end - at.s - view.shape().front - course.minimum_length, 0.0);
     return ahead;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 #include <tuple>
+#include <utility>
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/corridor_filters.hpp"
@@ -98,10 +99,9 @@ struct BasicMobil {
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
     return changing.drive(view, memory, idm, tolerance, dt,
-                          [this](View const& v, detail::IdmLaw const& law, double speed, detail::Restriction& ahead,
-                                 bool may_change) {
-                            if (keep_right) pass_nobody_outside(v, law, speed, ahead);
-                            return may_change ? best_side(v, law, speed, ahead.acceleration) : map::no_corridor;
+                          [this](LaneKeeping<View> const& now) {
+                            if (keep_right) pass_nobody_outside(now);
+                            return now.may_change ? best_side(now) : map::no_corridor;
                           });
   }
 
@@ -113,23 +113,19 @@ struct BasicMobil {
 
   /// The side that it pays most to change to, if one pays.
   template <class View>
-  [[nodiscard]] std::uint16_t best_side(View const& view, detail::IdmLaw const& law, double speed, double own) const {
-    auto const& at = view.lane_position();
-    auto const& piece = view.corridor().pieces[at.piece];
+  [[nodiscard]] std::uint16_t best_side(LaneKeeping<View> const& now) const {
+    auto const& view = now.view;
+    auto const& piece = view.corridor().pieces[view.lane_position().piece];
     if (piece.left == map::no_corridor && piece.right == map::no_corridor) return map::no_corridor;
-    MobilSituation situation{.own = own};
-    auto const front = view.front(), rear = view.rear();
-    if (rear) {
-      double const length = view.shape().length();
-      situation.old_follower = changing.follower(rear, rear->gap, speed);
-      situation.old_follower_after = changing.follower(rear, gap_without(rear, front, length), speed_of(front));
-    }
+    MobilSituation situation{.own = now.ahead.acceleration};
+    if (auto const rear = view.rear())
+      std::tie(situation.old_follower, situation.old_follower_after) = followers_view(now, rear, now.leader);
     // What changing is worth beside the own acceleration after it: a side that cannot pay needs no look.
-    double const others = politeness * (situation.old_follower_after - situation.old_follower) - own - threshold;
-    bool const is_prejudged = politeness >= 0.0 && !keep_right;
-    double const most = others + std::abs(bias) + law.free(speed);
-    if (is_prejudged && most <= 0.0 && lane_end(view, at.corridor, at.piece) == free_road) return map::no_corridor;
-    auto const urgency = lane_urgency(view, route_horizon);
+    double const others =
+        politeness * (situation.old_follower_after - situation.old_follower) - situation.own - threshold;
+    bool const goes_on = now.lane_end == free_road, is_prejudged = politeness >= 0.0 && !keep_right;
+    if (is_prejudged && goes_on && others + std::abs(bias) + now.law.free(now.speed) <= 0.0) return map::no_corridor;
+    auto const urgency = goes_on ? LaneUrgency{} : lane_urgency(view, route_horizon);
     bool const inner_is_left = !keeps_left(view, piece.lane);
     double best = 0.0;
     auto target = map::no_corridor;
@@ -137,16 +133,17 @@ struct BasicMobil {
       auto const side = left ? piece.left : piece.right;
       if (side == map::no_corridor || !changing.marks_permit(view, left)) continue;
       bool const inwards = left == inner_is_left;
-      double const urge = left ? urgency.left : urgency.right;
-      double const pull = (inwards ? -bias : bias) + route_bias * urge;
       LaneOption option{view.beside(side), left, {}, {}};
-      if (urge <= 0.0 && lane_end(view, side, option.place.piece) - option.place.s < minimum_remaining) continue;
+      double const remaining = lane_end(view, side, option.place.piece) - option.place.s;
+      double const urge = !goes_on ? (left ? urgency.left : urgency.right) : -std::max(0.0, 1.0 - remaining / route_horizon);
+      if (urge <= 0.0 && remaining < minimum_remaining) continue;
+      double const pull = (inwards ? -bias : bias) + route_bias * urge;
       option.front = view.front(option.place);
-      situation.own_after = law(speed, option.front);
+      situation.own_after = now.law(now.speed, option.front);
       if (is_prejudged && others + situation.own_after + pull <= best) continue;
       option.rear = view.rear(option.place);
-      double const worth = this->worth(view, situation, option, front, speed, inwards) + pull;
-      if (!(worth > best) || !changing.is_safe(view, law, speed, option, changing.safe_deceleration) ||
+      double const worth = worth_of(now, situation, option, inwards) + pull;
+      if (!(worth > best) || !changing.is_safe(view, now.law, now.speed, option, changing.safe_deceleration) ||
           !filters(view, option))
         continue;
       best = worth;
@@ -155,16 +152,27 @@ struct BasicMobil {
     return target;
   }
 
+  /// Acceleration of a follower behind this vehicle, and behind `front`, who is next without it.
   template <class View>
-  [[nodiscard]] double worth(View const& view, MobilSituation situation, LaneOption const& option,
-                             std::optional<Neighbor> const& front, double speed, bool inwards) const {
-    double const without = gap_without(option.rear, option.front, view.shape().length());
-    situation.new_follower = changing.follower(option.rear, without, speed_of(option.front));
-    situation.new_follower_after = changing.follower(option.rear, option.rear ? option.rear->gap : free_road, speed);
+  [[nodiscard]] std::pair<double, double> followers_view(LaneKeeping<View> const& now,
+                                                         std::optional<Neighbor> const& rear,
+                                                         std::optional<Neighbor> const& front) const {
+    if (!rear || !is_valid(rear->agent)) return {0.0, 0.0};
+    auto const law = changing.law_of(*rear);
+    double const speed = std::max(0.0, rear->speed);
+    double const behind = law(speed, rear->gap, now.speed);
+    if (!front) return {behind, law.free(speed)};
+    return {behind, law(speed, rear->gap + now.view.shape().length() + front->gap, front->speed)};
+  }
+
+  template <class View>
+  [[nodiscard]] double worth_of(LaneKeeping<View> const& now, MobilSituation situation, LaneOption const& option,
+                                bool inwards) const {
+    std::tie(situation.new_follower_after, situation.new_follower) = followers_view(now, option.rear, option.front);
     if (keep_right) {
       // Eq. 5 to 7: on the outer side nobody is passed, and only the follower in the inner lane counts.
-      auto const& in_inner_lane = inwards ? option.front : front;
-      if (in_inner_lane && speed > in_inner_lane->speed && in_inner_lane->speed > critical_speed)
+      auto const& in_inner_lane = inwards ? option.front : now.leader;
+      if (in_inner_lane && now.speed > in_inner_lane->speed && in_inner_lane->speed > critical_speed)
         (inwards ? situation.own : situation.own_after) = std::min(situation.own, situation.own_after);
       if (inwards)
         situation.old_follower = situation.old_follower_after = 0.0;
@@ -176,14 +184,13 @@ struct BasicMobil {
 
   /// Eq. 5 for the own driving: who is faster than the leader in the inner lane follows that one, too.
   template <class View>
-  void pass_nobody_outside(View const& view, detail::IdmLaw const& law, double speed,
-                           detail::Restriction& ahead) const {
-    auto const& piece = view.corridor().pieces[view.lane_position().piece];
-    auto const inner = keeps_left(view, piece.lane) ? piece.right : piece.left;
+  void pass_nobody_outside(LaneKeeping<View> const& now) const {
+    auto const& piece = now.view.corridor().pieces[now.view.lane_position().piece];
+    auto const inner = keeps_left(now.view, piece.lane) ? piece.right : piece.left;
     if (inner == map::no_corridor) return;
-    auto const there = view.front(view.beside(inner));
-    if (there && speed > there->speed && there->speed > critical_speed && there->gap > 0.0)
-      ahead.add(law, speed, there->gap, there->speed);
+    auto const there = now.view.front(now.view.beside(inner));
+    if (there && now.speed > there->speed && there->speed > critical_speed && there->gap > 0.0)
+      now.ahead.add(now.law, now.speed, there->gap, there->speed);
   }
 
   template <class View>
@@ -193,14 +200,6 @@ struct BasicMobil {
   }
 
   static constexpr double free_road = std::numeric_limits<double>::infinity();
-
-  [[nodiscard]] static double speed_of(std::optional<Neighbor> const& who) { return who ? who->speed : 0.0; }
-
-  /// The gap that a follower has when this vehicle, between it and its leader, is not there.
-  [[nodiscard]] static double gap_without(std::optional<Neighbor> const& rear, std::optional<Neighbor> const& front,
-                                          double length) {
-    return rear && front ? rear->gap + length + front->gap : free_road;
-  }
 };
 
 /// MOBIL as published.
