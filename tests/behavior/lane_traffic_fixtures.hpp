@@ -34,8 +34,8 @@ std::vector<cb::geometry::OrientedBox> boxes(World const& world) {
   for (std::size_t i = 0; i < world.size(); ++i) {
     auto const& record = world.frame().agents[i];
     if (record.status != cb::AgentStatus::driving) continue;
-    result.push_back(cb::geometry::box_of(world.roster().agents[i].shape,
-                                          {record.state.x, record.state.y, record.state.heading}));
+    result.push_back(
+        cb::geometry::box_of(world.roster().agents[i].shape, {record.state.x, record.state.y, record.state.heading}));
   }
   return result;
 }

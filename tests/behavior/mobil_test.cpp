@@ -79,7 +79,8 @@ TEST_CASE("of two who change into the same gap from both sides in the same step,
     add(world, 1, 212 + gap, 0.6 * v, cb::ConstantAcceleration{});
     add(world, 3, 212 + gap + between(-3, 3), 0.6 * v, cb::ConstantAcceleration{});
     double const apart = seed % 4 == 0 ? 0.0 : between(-12, 12);
-    auto const a = add(world, 1, 190, v, mobil(1.3 * v)), b = add(world, 3, 190 + apart, v * between(0.97, 1.03), mobil(1.3 * v));
+    auto const a = add(world, 1, 190, v, mobil(1.3 * v)),
+               b = add(world, 3, 190 + apart, v * between(0.97, 1.03), mobil(1.3 * v));
     for (int k = 0; k < 100; ++k) {
       auto const before = world.frame();
       world.step(seed % 3 == 0 ? 0.1 : 0.2);
@@ -91,7 +92,8 @@ TEST_CASE("of two who change into the same gap from both sides in the same step,
       both_began += began(a) && began(b);
       for (auto const id : {a, b}) {
         auto const slot = world.slot_of(id);
-        auto const &was = std::get<0>(before.agents[slot].memory).change, &now = std::get<0>(world.frame().agents[slot].memory).change;
+        auto const &was = std::get<0>(before.agents[slot].memory).change,
+                   &now = std::get<0>(world.frame().agents[slot].memory).change;
         aborted += was.active() && now.active() && was.target != now.target;
       }
       collided += collisions(world);
@@ -192,9 +194,8 @@ TEST_CASE("the more polite drivers are, the less deceleration they impose on oth
           if (!there.rear) continue;
           auto const& driver = std::get<0>(world.roster().agents[i].behavior);
           double const alone = there.front ? there.rear->gap + view.shape().length() + there.front->gap : 1e9;
-          double const loss =
-              driver.changing.follower(there.rear, alone, there.front ? there.front->speed : 0.0) -
-              driver.changing.follower(there.rear, there.rear->gap, view.state().speed);
+          double const loss = driver.changing.follower(there.rear, alone, there.front ? there.front->speed : 0.0) -
+                              driver.changing.follower(there.rear, there.rear->gap, view.state().speed);
           total += std::max(0.0, loss);
         }
       }
@@ -275,7 +276,8 @@ TEST_CASE("drivers go around a standing object, and wait before it while the oth
     };
     std::vector<cb::geometry::Point> const corners{corner(-2, -1), corner(2, -1), corner(2, 1), corner(-2, 1)};
     world.add_object(cb::geometry::Polygon(corners));
-    auto const driver = add(world, number, 150.0 + 100.0 * cb::uniform01(random), 8 + 10 * cb::uniform01(random), mobil(18.0));
+    auto const driver =
+        add(world, number, 150.0 + 100.0 * cb::uniform01(random), 8 + 10 * cb::uniform01(random), mobil(18.0));
     for (double s = 60.0; s < 440.0; s += 16.0 + 6.0 * cb::uniform01(random))
       add(world, 3 - number, s, 10.0, cb::IdmClassic{.desired_speed = 10.0});
     bool waited = false;

@@ -15,8 +15,8 @@ namespace {
 
 using Sim = Traffic<cb::ZipMerge, cb::IdmClassic>;
 
-/// Two queues before the lane drop; `block` vehicles of one lane come in a row, then as many of the other, `spacing` [m]
-/// from one to the next.
+/// Two queues before the lane drop; `block` vehicles of one lane come in a row, then as many of the other, `spacing`
+/// [m] from one to the next.
 template <class Driver>
 std::map<cb::AgentId, int> queues(Sim& world, std::uint64_t seed, int block, double spacing, Driver const& driver) {
   cb::RandomStream random(seed, 0, 0);
@@ -128,7 +128,8 @@ TEST_CASE("at a ramp that merges in a junction ramp and main road alternate, and
       for (auto const& entry : road(std::to_string(number)).sections[0].lanes) {
         auto const& lane = map->lane(entry.id);
         if (!lane.drivable() || (number == 1 && entry.number != -2)) continue;
-        for (double s = lane.length() - 10.0 * cb::uniform01(random); s > 5.0; s -= 12.0 + 6.0 * cb::uniform01(random)) {
+        for (double s = lane.length() - 10.0 * cb::uniform01(random); s > 5.0;
+             s -= 12.0 + 6.0 * cb::uniform01(random)) {
           auto const pose = lane.path.pose(s);
           from[world.add({.position = pose.position(), .heading = pose.heading, .speed = 5.0, .behavior = zip(14.0)})] =
               number;

@@ -13,8 +13,8 @@ namespace cambium {
 /// A condition that a lane beside must fulfil for a change into it: a described struct with
 ///   `template <class View> bool operator()(View const& view, LaneOption const& option) const`.
 template <class F>
-concept CorridorFilter = std::copyable<F> && Described<F> && requires(F const filter, ViewArchetype const view,
-                                                                      LaneOption const option) {
+concept CorridorFilter = std::copyable<F> && Described<F> &&
+    requires(F const filter, ViewArchetype const view, LaneOption const option) {
   { filter(view, option) } -> std::convertible_to<bool>;
 };
 
@@ -81,8 +81,8 @@ struct RemainingLength {
 
   static constexpr char const* name = "remaining_length";
   static constexpr auto parameters() {
-    return std::make_tuple(
-        parameter("least", &RemainingLength::least, "m", Range{0, 10'000}, "left of the lane from beside the vehicle on"));
+    return std::make_tuple(parameter("least", &RemainingLength::least, "m", Range{0, 10'000},
+                                     "left of the lane from beside the vehicle on"));
   }
 
   template <class View>

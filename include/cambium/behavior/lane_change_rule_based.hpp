@@ -49,10 +49,9 @@ struct LaneChangeRuleBased {
 
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
-    return changing.drive(view, memory, idm, tolerance, dt,
-                          [this](LaneKeeping<View> const& now) {
-                            return now.may_change ? roomiest_side(now) : map::no_corridor;
-                          });
+    return changing.drive(view, memory, idm, tolerance, dt, [this](LaneKeeping<View> const& now) {
+      return now.may_change ? roomiest_side(now) : map::no_corridor;
+    });
   }
 
  private:
@@ -79,7 +78,8 @@ struct LaneChangeRuleBased {
       double const ahead = urge > 0.0 ? std::numeric_limits<double>::infinity() : space_ahead(option.front);
       if (!(ahead > best)) continue;
       option.rear = view.rear(option.place);
-      if (!space(view, option) || !changing.is_safe(view, now.law, now.speed, option, changing.safe_deceleration)) continue;
+      if (!space(view, option) || !changing.is_safe(view, now.law, now.speed, option, changing.safe_deceleration))
+        continue;
       best = ahead;
       target = side;
     }

@@ -296,9 +296,9 @@ struct LaneChanging {
       add_leader(ahead, law, speed, leader, true);
       // While it reaches over the border, the leader there counts, too.
       auto const sides = corridor.widths_at(at.s, at.segment);
-      auto const beside = at.lateral + view.shape().left > sides.left      ? piece.left
+      auto const beside = at.lateral + view.shape().left > sides.left     ? piece.left
                           : view.shape().right - at.lateral > sides.right ? piece.right
-                                                                           : map::no_corridor;
+                                                                          : map::no_corridor;
       if (beside == map::no_corridor) return ahead;
       auto const other = view.front(view.beside(beside));
       if (other && other->gap > 0.0 && !is_passed(*other, left - 0.5 * course.minimum_length))

@@ -63,7 +63,9 @@ template <class View>
   auto const& at = view.lane_position();
   auto const& piece = view.corridor().pieces[at.piece];
   double const remaining = lane_end(view, at.corridor, at.piece) - at.s;
-  auto const closeness = [&](double length, int lanes) { return std::clamp(1.0 - length / (lanes * horizon), 0.0, 1.0); };
+  auto const closeness = [&](double length, int lanes) {
+    return std::clamp(1.0 - length / (lanes * horizon), 0.0, 1.0);
+  };
   if (remaining == infinite) {
     auto const away = [&](std::uint16_t number, std::uint16_t there) {
       if (number == map::no_corridor) return 0.0;

@@ -76,8 +76,9 @@ struct BasicMobil {
         parameter("changing", &P::changing, "-", {}, "how it changes lanes, and what it assumes of others"),
         parameter("politeness", &P::politeness, "-", Range{-1, 10}, "weight of the followers' accelerations"),
         parameter("threshold", &P::threshold, "m/s^2", Range{0, 10}, "advantage that makes a change worth it"),
-        parameter("bias", &P::bias, "m/s^2", Range{-10, 10}, "in favour of the outer lane (right; with left-hand "
-                                                             "traffic left); negative: of the inner one"),
+        parameter("bias", &P::bias, "m/s^2", Range{-10, 10},
+                  "in favour of the outer lane (right; with left-hand "
+                  "traffic left); negative: of the inner one"),
         parameter("keep_right", &P::keep_right, "-", Range{0, 1},
                   "European rule: no passing on the outer side above critical_speed (eq. 5 to 7)"),
         parameter("critical_speed", &P::critical_speed, "m/s", Range{0, 100},
@@ -98,11 +99,10 @@ struct BasicMobil {
 
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
-    return changing.drive(view, memory, idm, tolerance, dt,
-                          [this](LaneKeeping<View> const& now) {
-                            if (keep_right) pass_nobody_outside(now);
-                            return now.may_change ? best_side(now) : map::no_corridor;
-                          });
+    return changing.drive(view, memory, idm, tolerance, dt, [this](LaneKeeping<View> const& now) {
+      if (keep_right) pass_nobody_outside(now);
+      return now.may_change ? best_side(now) : map::no_corridor;
+    });
   }
 
  private:
@@ -135,7 +135,8 @@ struct BasicMobil {
       bool const inwards = left == inner_is_left;
       LaneOption option{view.beside(side), left, {}, {}};
       double const remaining = lane_end(view, side, option.place.piece) - option.place.s;
-      double const urge = !goes_on ? (left ? urgency.left : urgency.right) : -std::max(0.0, 1.0 - remaining / route_horizon);
+      double const urge =
+          !goes_on ? (left ? urgency.left : urgency.right) : -std::max(0.0, 1.0 - remaining / route_horizon);
       if (urge <= 0.0 && remaining < minimum_remaining) continue;
       double const pull = (inwards ? -bias : bias) + route_bias * urge;
       option.front = view.front(option.place);

@@ -15,10 +15,10 @@ namespace cambium {
 
 /// Zip merge: keeps its lane up to where it merges with another, and there lets one vehicle from the other lane in
 /// before itself, behind the vehicle ahead (the alternate order that, for instance, the German StVO asks for in section
-/// 7 (4)). The first of the other lane behind the vehicle ahead is let in where it is ahead, beside, or not farther back
-/// than `reach`; who is first of all of its lane goes before those behind it. Between the two a gap opens bit by bit, in
-/// proportion to the way that is left. After `patience` at a standstill it goes when there is room. Car following by
-/// IDM.
+/// 7 (4)). The first of the other lane behind the vehicle ahead is let in where it is ahead, beside, or not farther
+/// back than `reach`; who is first of all of its lane goes before those behind it. Between the two a gap opens bit by
+/// bit, in proportion to the way that is left. After `patience` at a standstill it goes when there is room. Car
+/// following by IDM.
 struct ZipMerge {
   IdmParameters idm{};
   double zone = 150.0;
@@ -33,7 +33,8 @@ struct ZipMerge {
         parameter("idm", &P::idm, "-", {}, "the driver's own car following"),
         parameter("zone", &P::zone, "m", Range{1, 400}, "how far before a merge it begins to give way"),
         parameter("reach", &P::reach, "m", Range{0, 100}, "how far back a vehicle is still let in before"),
-        parameter("patience", &P::patience, "s", Range{0, 600}, "at a standstill, until it no longer waits to be passed"),
+        parameter("patience", &P::patience, "s", Range{0, 600},
+                  "at a standstill, until it no longer waits to be passed"),
         parameter("tolerance", &P::tolerance, "m/s^2", Range{1e-12, 1},
                   "error of the exact integration, as speed per second"));
   }

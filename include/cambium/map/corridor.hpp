@@ -28,8 +28,8 @@ struct CorridorPiece {
   std::uint16_t left_piece{}, right_piece{};  ///< number of the neighbour's piece there; only with `left`, `right`
   double lane_offset{};                       ///< position on the lane's path = corridor position + lane_offset [m]
   std::uint32_t first_segment{}, segments{};  ///< of the corridor's centre line: where its own begin, and how many
-  /// Where at the latest a vehicle should have changed lanes, for there the next merge into a neighbour begins or, where
-  /// the corridor does not go as far as the route, the corridor ends; infinite where neither is ahead [m].
+  /// Where at the latest a vehicle should have changed lanes, for there the next merge into a neighbour begins or,
+  /// where the corridor does not go as far as the route, the corridor ends; infinite where neither is ahead [m].
   double lane_end = std::numeric_limits<double>::infinity();
 };
 

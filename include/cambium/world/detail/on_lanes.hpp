@@ -28,8 +28,8 @@ inline constexpr double on_path = 0.3;
   hint.piece = number == from.left ? from.left_piece : from.right_piece;
   auto const& to = road.corridors[number].pieces[hint.piece];
   auto const passed = at.segment > from.first_segment ? at.segment - from.first_segment : 0;
-  hint.segment = to.first_segment +
-                 (to.segments == from.segments ? passed : passed * to.segments / std::max(from.segments, 1u));
+  hint.segment =
+      to.first_segment + (to.segments == from.segments ? passed : passed * to.segments / std::max(from.segments, 1u));
   return hint;
 }
 
