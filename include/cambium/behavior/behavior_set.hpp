@@ -15,6 +15,14 @@ template <class... Ts>
 inline constexpr bool all_different = true;
 template <class T, class... Ts>
 inline constexpr bool all_different<T, Ts...> = (!std::is_same_v<T, Ts> && ...) && all_different<Ts...>;
+/// Whether a behaviour says that it asks for neighbours in the lanes beside: `static constexpr bool looks_beside`.
+template <class B>
+inline constexpr bool looks_beside = [] {
+  if constexpr (requires { B::looks_beside; })
+    return B::looks_beside;
+  else
+    return false;
+}();
 }  // namespace detail
 
 /// The closed set of behaviours that the agents of a world may have. An agent has one of them with parameters of its
@@ -37,6 +45,9 @@ struct BehaviorSet {
   /// Whether `B` is one of the set.
   template <class B>
   static constexpr bool contains = (std::is_same_v<B, Behaviors> || ...);
+
+  /// Whether some of them ask for neighbours in the lanes beside: then those are worth being loaded ahead.
+  static constexpr bool looks_beside = (detail::looks_beside<Behaviors> || ...);
 
   /// Place of `B` in the set.
   template <class B>

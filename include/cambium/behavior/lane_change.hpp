@@ -49,19 +49,29 @@ struct LaneChange {
 /// How long a lane change takes.
 struct LaneChangeCourse {
   double duration = 4.0;
+  double shortest_duration = 2.5;
   double minimum_length = 15.0;
 
   static constexpr char const* name = "lane_change_course";
   static constexpr auto parameters() {
     return std::make_tuple(
         parameter("duration", &LaneChangeCourse::duration, "s", Range{0.5, 30}, "from one centre line to the other"),
+        parameter("shortest_duration", &LaneChangeCourse::shortest_duration, "s", Range{0.5, 30},
+                  "where less room is left, and for the way back of an aborted change"),
         parameter("minimum_length", &LaneChangeCourse::minimum_length, "m", Range{5, 200},
                   "however slow the vehicle drives"));
   }
 
-  /// The begin of a change to lane corridor `target` at `speed` [m/s].
-  [[nodiscard]] LaneChange begin(std::uint16_t target, double speed) const {
-    return {target, static_cast<float>(std::max(minimum_length, speed * duration)), 0.0f};
+  /// The begin of a change to lane corridor `target` at `speed` [m/s], within `room` [m] where that can be done.
+  [[nodiscard]] LaneChange begin(std::uint16_t target, double speed,
+                                 double room = std::numeric_limits<double>::infinity()) const {
+    double const shortest = std::max(minimum_length, speed * std::min(shortest_duration, duration));
+    return {target, static_cast<float>(std::max(shortest, std::min(speed * duration, room))), 0.0f};
+  }
+
+  /// The way back to lane corridor `home` at `speed` [m/s]; `bend`: of the course until then, at the vehicle.
+  [[nodiscard]] LaneChange back(std::uint16_t home, double speed, float bend) const {
+    return {home, static_cast<float>(std::max(minimum_length, speed * std::min(shortest_duration, duration))), bend};
   }
 };
 
@@ -94,12 +104,20 @@ template <class View>
   return plan;
 }
 
-/// The nearer of two neighbours to follow: that for which `acceleration` is less. Nothing where there is neither.
-template <class F>
-[[nodiscard]] std::optional<Neighbor> more_restrictive(std::optional<Neighbor> const& a,
-                                                       std::optional<Neighbor> const& b, F const& acceleration) {
-  if (!a || !b) return a ? a : b;
-  return acceleration(*a) <= acceleration(*b) ? a : b;
+/// Whether the vehicle stays within the lane that `change` leads to, if it begins now from within that lane.
+template <class View>
+[[nodiscard]] bool stays_within_lane(View const& view, LaneChange const& change) {
+  map::LanePosition const at = view.lane_position(change.target);
+  auto const& corridor = view.road().corridors[change.target];
+  auto const sides = corridor.widths_at(at.s, at.segment);
+  LateralCourse<double> const start{at.lateral, std::tan(std::clamp(at.heading_error, -1.0, 1.0)), change.bend};
+  constexpr int samples = 8;
+  for (int i = 0; i < samples; ++i) {
+    double const length = change.left;
+    double const offset = converge(start, length, length * i / samples).offset;
+    if (offset > sides.left || -offset > sides.right) return false;
+  }
+  return true;
 }
 
 }  // namespace cambium

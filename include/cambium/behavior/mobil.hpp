@@ -6,14 +6,16 @@
 #include <limits>
 #include <optional>
 #include <tuple>
+#include <utility>
 
 #include "cambium/behavior/behavior_model.hpp"
+#include "cambium/behavior/corridor_filters.hpp"
 #include "cambium/behavior/idm.hpp"
-#include "cambium/behavior/lane_change.hpp"
+#include "cambium/behavior/lane_changing.hpp"
 
 namespace cambium {
 
-/// What the followers of a lane change would gain: accelerations [m/s^2] now and after the change.
+/// What a driver and the followers of a lane change would gain: accelerations [m/s^2] now and after the change.
 struct MobilSituation {
   double own{}, own_after{};
   double new_follower{}, new_follower_after{};
@@ -44,187 +46,165 @@ template <HasMobilParameters P>
 
 /// Lane changing by MOBIL (Kesting, Treiber, Helbing 2007, "General lane-changing model MOBIL for car-following
 /// models"), car following by IDM. Changes where that pays for itself and, weighed by `politeness`, for the old and the
-/// new follower, and nobody has to brake harder than `safe_deceleration`. A change takes time, follows a smooth course,
-/// and is aborted as long as the vehicle is in its old lane, when it has become unsafe. Other drivers are taken to
-/// have the parameters `others` (long vehicles: `trucks`), and at least the desired speed that they show.
-struct Mobil {
+/// new follower, and where it is safe (see `LaneChanging`, which has how a change is carried out). Of a side that does
+/// not pay for the driver itself and its old follower, what a new follower might gain there is not asked.
+///
+/// `Filters`: further conditions, see `corridor_filters.hpp`; `Mobil` is without any.
+template <class... Filters>
+struct BasicMobil {
   IdmParameters idm{};
-  IdmParameters others{};
-  IdmParameters trucks{.desired_speed = 23.0, .time_headway = 1.7, .maximum_acceleration = 0.9};
-  double truck_length = 7.5;
+  LaneChanging changing{};
   double politeness = 0.2;
   double threshold = 0.2;
-  double safe_deceleration = 4.0;
   double bias = 0.0;
   bool keep_right = false;
   double critical_speed = 16.7;
   double route_bias = 2.0;
   double route_horizon = 300.0;
   double minimum_remaining = 60.0;
-  double rest = 3.0;
-  bool heed_marks = true;
-  LaneChangeCourse course{};
   double tolerance = 1e-4;
+  [[no_unique_address]] AllOf<Filters...> filters{};
+
+  using Memory = LaneChanging::Memory;
+  static constexpr bool looks_beside = true;
 
   static constexpr char const* name = "mobil";
   static constexpr auto parameters() {
-    return std::make_tuple(
-        parameter("idm", &Mobil::idm, "-", {}, "the driver's own car following"),
-        parameter("others", &Mobil::others, "-", {}, "what it assumes of other drivers"),
-        parameter("trucks", &Mobil::trucks, "-", {}, "what it assumes of drivers of long vehicles"),
-        parameter("truck_length", &Mobil::truck_length, "m", Range{0, 100}, "vehicles longer than this are trucks"),
-        parameter("politeness", &Mobil::politeness, "-", Range{-1, 10}, "weight of the followers' accelerations"),
-        parameter("threshold", &Mobil::threshold, "m/s^2", Range{0, 10}, "advantage that makes a change worth it"),
-        parameter("safe_deceleration", &Mobil::safe_deceleration, "m/s^2", Range{0, 20},
-                  "nobody is made to brake harder"),
-        parameter("bias", &Mobil::bias, "m/s^2", Range{-10, 10}, "in favour of the right lane; left: negative"),
-        parameter("keep_right", &Mobil::keep_right, "-", Range{0, 1},
-                  "European rule: no passing on the right above critical_speed (eq. 5 to 7)"),
-        parameter("critical_speed", &Mobil::critical_speed, "m/s", Range{0, 100},
-                  "below it, in congestion, keep_right lets pass on the right"),
-        parameter("route_bias", &Mobil::route_bias, "m/s^2", Range{0, 20},
-                  "in favour of the lane that the route needs, at its end"),
-        parameter("route_horizon", &Mobil::route_horizon, "m", Range{0, 10'000},
-                  "from how far before a lane's end it counts"),
-        parameter("minimum_remaining", &Mobil::minimum_remaining, "m", Range{0, 10'000},
+    using P = BasicMobil;
+    auto const own = std::make_tuple(
+        parameter("idm", &P::idm, "-", {}, "the driver's own car following"),
+        parameter("changing", &P::changing, "-", {}, "how it changes lanes, and what it assumes of others"),
+        parameter("politeness", &P::politeness, "-", Range{-1, 10}, "weight of the followers' accelerations"),
+        parameter("threshold", &P::threshold, "m/s^2", Range{0, 10}, "advantage that makes a change worth it"),
+        parameter("bias", &P::bias, "m/s^2", Range{-10, 10},
+                  "in favour of the outer lane (right; with left-hand "
+                  "traffic left); negative: of the inner one"),
+        parameter("keep_right", &P::keep_right, "-", Range{0, 1},
+                  "European rule: no passing on the outer side above critical_speed (eq. 5 to 7)"),
+        parameter("critical_speed", &P::critical_speed, "m/s", Range{0, 100},
+                  "up to it, in congestion, keep_right lets pass on the outer side"),
+        parameter("route_bias", &P::route_bias, "m/s^2", Range{0, 20},
+                  "in favour of a lane that goes further, where the own one ends"),
+        parameter("route_horizon", &P::route_horizon, "m", Range{1, 10'000},
+                  "from how far before a lane's end it counts, for each lane to be crossed"),
+        parameter("minimum_remaining", &P::minimum_remaining, "m", Range{0, 10'000},
                   "no change, but for the route, into a lane that ends sooner"),
-        parameter("rest", &Mobil::rest, "s", Range{0, 600}, "no further change within this time of the last"),
-        parameter("heed_marks", &Mobil::heed_marks, "-", Range{0, 1}, "change only where the road marks permit it"),
-        parameter("course", &Mobil::course, "-", {}, "how long a change takes"),
-        parameter("tolerance", &Mobil::tolerance, "m/s^2", Range{1e-12, 1},
+        parameter("tolerance", &P::tolerance, "m/s^2", Range{1e-12, 1},
                   "error of the exact integration, as speed per second"));
+    if constexpr (sizeof...(Filters) > 0)
+      return std::tuple_cat(own, std::make_tuple(parameter("filters", &P::filters, "-", {}, "further conditions")));
+    else
+      return own;
   }
-
-  struct Memory {
-    LaneChange change{};
-    float rest{};  ///< [s] until the next change may begin
-
-    friend bool operator==(Memory const&, Memory const&) = default;
-  };
 
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
-    double const speed = std::max(0.0, view.state().speed);
-    auto const follow = [&](std::optional<Neighbor> const& leader) {
-      return leader ? idm_acceleration(idm, speed, leader->gap, leader->speed)
-                    : idm_acceleration(idm, speed, free_road, 0.0);
-    };
-    auto leader = view.front();
-    memory.rest = std::max(0.0f, memory.rest - static_cast<float>(dt));
-    if (!memory.change.active()) {
-      if (memory.rest == 0.0f) consider(view, follow, leader, memory);
-    } else if (memory.change.target != view.lane_position().corridor &&
-               !is_safe(view, follow, view.neighbors(memory.change.target))) {
-      memory.change = course.begin(view.lane_position().corridor, speed);
-    }
-    if (memory.change.active() && memory.change.target != view.lane_position().corridor)
-      leader = more_restrictive(leader, view.neighbors(memory.change.target).front,
-                                [&](Neighbor const& n) { return follow(n); });
-    double const gap = leader ? leader->gap : free_road, leader_speed = leader ? leader->speed : 0.0;
-    return plan_lane_change(view, memory.change, idm_motion(idm, speed, gap, leader_speed, dt, tolerance), dt);
+    return changing.drive(view, memory, idm, tolerance, dt, [this](LaneKeeping<View> const& now) {
+      if (keep_right) pass_nobody_outside(now);
+      return now.may_change ? best_side(now) : map::no_corridor;
+    });
   }
 
  private:
-  static constexpr double free_road = std::numeric_limits<double>::infinity();
+  /// What the incentive asks for.
+  struct Weights {
+    double politeness, threshold, safe_deceleration;
+  };
 
-  /// IDM of a follower as this driver assumes it. Objects stand: they neither gain nor lose.
-  [[nodiscard]] double follower(std::optional<Neighbor> const& who, double gap, double leader_speed) const {
-    if (!who || !is_valid(who->agent)) return 0.0;
-    auto assumed = who->length > truck_length ? trucks : others;
-    assumed.desired_speed = std::max(assumed.desired_speed, who->speed);
-    return idm_acceleration(assumed, std::max(0.0, who->speed), gap, leader_speed);
-  }
-
-  template <class View, class Follow>
-  [[nodiscard]] bool is_safe(View const& view, Follow const& follow, Neighbors const& there) const {
-    double const gap = there.rear ? there.rear->gap : free_road;
-    return mobil_is_safe(
-        *this, {.own_after = follow(there.front), .new_follower_after = follower(there.rear, gap, view.state().speed)});
-  }
-
-  /// Begins the change that pays most, if one pays.
-  template <class View, class Follow>
-  void consider(View const& view, Follow const& follow, std::optional<Neighbor> const& front, Memory& memory) const {
-    auto const& at = view.lane_position();
-    auto const& piece = view.corridor().pieces[at.piece];
-    if (piece.left == map::no_corridor && piece.right == map::no_corridor) return;
-    double const own = follow(front), length = view.shape().length();
-    auto const rear = view.rear();
-    MobilSituation situation{.own = own};
-    situation.old_follower = follower(rear, rear ? rear->gap : 0.0, view.state().speed);
-    situation.old_follower_after = follower(rear, gap_without(rear, front, length), front ? front->speed : 0.0);
+  /// The side that it pays most to change to, if one pays.
+  template <class View>
+  [[nodiscard]] std::uint16_t best_side(LaneKeeping<View> const& now) const {
+    auto const& view = now.view;
+    auto const& piece = view.corridor().pieces[view.lane_position().piece];
+    if (piece.left == map::no_corridor && piece.right == map::no_corridor) return map::no_corridor;
+    MobilSituation situation{.own = now.ahead.acceleration};
+    if (auto const rear = view.rear())
+      std::tie(situation.old_follower, situation.old_follower_after) = followers_view(now, rear, now.leader);
+    // What changing is worth beside the own acceleration after it: a side that cannot pay needs no look.
+    double const others =
+        politeness * (situation.old_follower_after - situation.old_follower) - situation.own - threshold;
+    bool const goes_on = now.lane_end == free_road, is_prejudged = politeness >= 0.0 && !keep_right;
+    if (is_prejudged && goes_on && others + std::abs(bias) + now.law.free(now.speed) <= 0.0) return map::no_corridor;
+    auto const urgency = goes_on ? LaneUrgency{} : lane_urgency(view, route_horizon);
+    bool const inner_is_left = !keeps_left(view, piece.lane);
     double best = 0.0;
+    auto target = map::no_corridor;
     for (bool const left : {true, false}) {
       auto const side = left ? piece.left : piece.right;
-      if (side == map::no_corridor || !marks_permit(view, left)) continue;
-      auto const there = view.neighbors(side);
-      auto const& corridor = view.road().corridors[side];
-      if (!corridor.reaches_destination && corridor.length_until_end(there.position.s) < minimum_remaining) continue;
-      double const gap = there.rear ? there.rear->gap : free_road;
-      situation.own_after = follow(there.front);
-      situation.new_follower =
-          follower(there.rear, gap_without(there.rear, there.front, length), there.front ? there.front->speed : 0.0);
-      situation.new_follower_after = follower(there.rear, gap, view.state().speed);
-      if (!mobil_is_safe(*this, situation)) continue;
-      double const worth =
-          incentive(situation, front, there.front, view.state().speed, left) + towards_route(view, left);
-      if (worth <= best) continue;
+      if (side == map::no_corridor || !changing.marks_permit(view, left)) continue;
+      bool const inwards = left == inner_is_left;
+      LaneOption option{view.beside(side), left, {}, {}};
+      double const remaining = lane_end(view, side, option.place.piece) - option.place.s;
+      double const urge =
+          !goes_on ? (left ? urgency.left : urgency.right) : -std::max(0.0, 1.0 - remaining / route_horizon);
+      if (urge <= 0.0 && remaining < minimum_remaining) continue;
+      double const pull = (inwards ? -bias : bias) + route_bias * urge;
+      option.front = view.front(option.place);
+      situation.own_after = now.law(now.speed, option.front);
+      if (is_prejudged && others + situation.own_after + pull <= best) continue;
+      option.rear = view.rear(option.place);
+      double const worth = worth_of(now, situation, option, inwards) + pull;
+      if (!(worth > best) || !changing.is_safe(view, now.law, now.speed, option, changing.safe_deceleration) ||
+          !filters(view, option))
+        continue;
       best = worth;
-      memory.change = course.begin(side, view.state().speed);
-      memory.rest = static_cast<float>(rest + course.duration);
+      target = side;
     }
+    return target;
   }
 
-  /// The gap that a follower has when this vehicle, between it and its leader, is not there.
-  [[nodiscard]] static double gap_without(std::optional<Neighbor> const& rear, std::optional<Neighbor> const& front,
-                                          double length) {
-    return rear && front ? rear->gap + length + front->gap : free_road;
-  }
-
-  [[nodiscard]] double incentive(MobilSituation situation, std::optional<Neighbor> const& front,
-                                 std::optional<Neighbor> const& beside, double speed, bool left) const {
-    double const to_the_right = left ? -bias : bias;
-    if (!keep_right) return mobil_incentive(*this, situation) + to_the_right;
-    // Eq. 5 to 7: on the right nobody is passed, and only the follower on the left counts.
-    auto const& in_left_lane = left ? beside : front;
-    if (in_left_lane && speed > in_left_lane->speed && in_left_lane->speed > critical_speed)
-      (left ? situation.own : situation.own_after) = std::min(situation.own, situation.own_after);
-    if (left)
-      situation.old_follower = situation.old_follower_after = 0.0;
-    else
-      situation.new_follower = situation.new_follower_after = 0.0;
-    return mobil_incentive(*this, situation) + to_the_right;
+  /// Acceleration of a follower behind this vehicle, and behind `front`, who is next without it.
+  template <class View>
+  [[nodiscard]] std::pair<double, double> followers_view(LaneKeeping<View> const& now,
+                                                         std::optional<Neighbor> const& rear,
+                                                         std::optional<Neighbor> const& front) const {
+    if (!rear || !is_valid(rear->agent)) return {0.0, 0.0};
+    auto const law = changing.law_of(*rear);
+    double const speed = std::max(0.0, rear->speed);
+    double const behind = law(speed, rear->gap, now.speed);
+    if (!front) return {behind, law.free(speed)};
+    return {behind, law(speed, rear->gap + now.view.shape().length() + front->gap, front->speed)};
   }
 
   template <class View>
-  [[nodiscard]] bool marks_permit(View const& view, bool left) const {
-    if (!heed_marks) return true;
-    auto const& at = view.lane_position();
-    auto const& piece = view.corridor().pieces[at.piece];
-    auto const& lane = view.map().lane(piece.lane);
-    double const s = at.s + piece.lane_offset;
-    return left ? lane.may_change_left(s) : lane.may_change_right(s);
+  [[nodiscard]] double worth_of(LaneKeeping<View> const& now, MobilSituation situation, LaneOption const& option,
+                                bool inwards) const {
+    std::tie(situation.new_follower_after, situation.new_follower) = followers_view(now, option.rear, option.front);
+    if (keep_right) {
+      // Eq. 5 to 7: on the outer side nobody is passed, and only the follower in the inner lane counts.
+      auto const& in_inner_lane = inwards ? option.front : now.leader;
+      if (in_inner_lane && now.speed > in_inner_lane->speed && in_inner_lane->speed > critical_speed)
+        (inwards ? situation.own : situation.own_after) = std::min(situation.own, situation.own_after);
+      if (inwards)
+        situation.old_follower = situation.old_follower_after = 0.0;
+      else
+        situation.new_follower = situation.new_follower_after = 0.0;
+    }
+    return mobil_incentive(Weights{politeness, threshold, changing.safe_deceleration}, situation);
   }
 
-  /// Bonus of a change to the side where the lane is that the route needs; malus of one that leads away.
+  /// Eq. 5 for the own driving: who is faster than the leader in the inner lane follows that one, too.
   template <class View>
-  [[nodiscard]] double towards_route(View const& view, bool left) const {
-    auto const& at = view.lane_position();
-    auto const& road = view.road();
-    double const remaining = view.corridor().length_until_end(at.s);
-    if (route_bias == 0.0 || remaining > route_horizon || !road.corridors[road.main].reaches_destination) return 0.0;
-    auto const needs = [&](bool leftwards) {
-      for (LaneId lane = view.corridor().pieces[at.piece].lane; is_valid(lane);) {
-        lane = leftwards ? view.map().lane(lane).left_neighbor : view.map().lane(lane).right_neighbor;
-        if (is_valid(lane) && road.corridor_of(lane) == road.main) return true;
-      }
-      return false;
-    };
-    double const bonus = route_bias * (1.0 - remaining / route_horizon);
-    if (at.corridor == road.main) return -bonus;
-    return needs(left) ? bonus : needs(!left) ? -bonus : 0.0;
+  void pass_nobody_outside(LaneKeeping<View> const& now) const {
+    auto const& piece = now.view.corridor().pieces[now.view.lane_position().piece];
+    auto const inner = keeps_left(now.view, piece.lane) ? piece.right : piece.left;
+    if (inner == map::no_corridor) return;
+    auto const there = now.view.front(now.view.beside(inner));
+    if (there && now.speed > there->speed && there->speed > critical_speed && there->gap > 0.0)
+      now.ahead.add(now.law, now.speed, there->gap, there->speed);
   }
+
+  template <class View>
+  [[nodiscard]] bool keeps_left(View const& view, LaneId lane) const {
+    if (bias == 0.0 && !keep_right) return false;
+    return view.map().road(view.map().lane(lane).road).left_hand_traffic;
+  }
+
+  static constexpr double free_road = std::numeric_limits<double>::infinity();
 };
+
+/// MOBIL as published.
+using Mobil = BasicMobil<>;
 static_assert(BehaviorModel<Mobil>);
 
 }  // namespace cambium

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 
@@ -29,6 +30,24 @@ struct Neighbor {
 struct Neighbors {
   std::optional<Neighbor> front, rear;
   map::LanePosition position;
+};
+
+/// A road user in a lane that is still to merge into the own lane corridor, by where it will be there.
+struct MergingNeighbor {
+  AgentId agent = none<AgentId>;
+  double s{};      ///< of its reference point: as far from the merge as it is on its own lane [m]
+  double front{};  ///< how far it reaches from there forward [m]
+  double rear{};   ///< and back [m]
+  double speed{};  ///< [m/s]
+};
+
+/// A place on another lane corridor beside the own one: to ask for neighbours there, see `ViewArchetype::beside`.
+struct BesidePlace {
+  double s{};               ///< along the corridor's centre line [m]
+  std::uint32_t segment{};  ///< of the centre line there
+  std::uint16_t corridor = map::no_corridor;
+  std::uint16_t piece{};
+  std::size_t entry{};  ///< where the search for neighbours begins
 };
 
 /// Another agent as seen by an observer.
@@ -61,6 +80,13 @@ struct ViewArchetype {
   /// Calls `f(ObservedAgent)` for who is near along a lane corridor; returns the next objects there.
   template <class F>
   Neighbors for_each_near(std::uint16_t corridor, double distance, F&& f) const;
+  [[nodiscard]] BesidePlace beside(std::uint16_t corridor) const;  ///< the place there beside the own one, and from it
+  [[nodiscard]] std::optional<Neighbor> front(BesidePlace const& place) const;  ///< next ahead
+  [[nodiscard]] std::optional<Neighbor> rear(BesidePlace const& place) const;   ///< next behind
+  [[nodiscard]] std::optional<Neighbor> front_in_lane() const;  ///< as `front`, without lanes that are still to merge
+  [[nodiscard]] std::optional<MergingNeighbor> merging(double merge, double behind) const;  ///< the foremost behind
+  [[nodiscard]] AgentId id() const;
+  [[nodiscard]] bool has_goal() const;  ///< whether it matters in which lane the route ends
   [[nodiscard]] ObservedAgent<State> agent(Neighbor const& neighbor) const;  ///< the neighbour itself; not of objects
   [[nodiscard]] RandomStream random(
       std::uint32_t purpose) const;  ///< numbers of their own for (seed, agent, step, purpose)

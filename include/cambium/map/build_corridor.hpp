@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <utility>
@@ -145,6 +146,16 @@ class LaneJoiner {
   std::vector<Start> starts_;
 };
 
+/// Sets the pieces' `lane_end`. `is_short`: the corridor ends before the route does.
+inline void set_lane_ends(Map const& map, LaneCorridor& corridor, bool is_short) {
+  double end = is_short ? corridor.length() : std::numeric_limits<double>::infinity();
+  for (auto piece = corridor.pieces.rbegin(); piece != corridor.pieces.rend(); ++piece) {
+    auto const& lane = map.lane(piece->lane);
+    if (is_valid(lane.merges_into)) end = lane.merge_begin - piece->lane_offset;
+    piece->lane_end = end;
+  }
+}
+
 /// The number of the chain that holds `lane` in `stage`; of several, one that has not come there by a merge, else the
 /// first.
 [[nodiscard]] inline std::uint16_t chain_of(Map const& map, std::span<LaneChain const> chains, std::size_t stage,
@@ -232,6 +243,7 @@ class LaneJoiner {
       piece.left_piece = piece_of(piece.left);
       piece.right_piece = piece_of(piece.right);
     }
+    detail::set_lane_ends(map, corridor, chain.begin + chain.lanes.size() < stages.size());
     corridor.reaches_destination = chain.has(route.lanes.back());
     detail::FeederFinder(map, corridor).find();
     road->corridors.push_back(std::move(corridor));

@@ -28,6 +28,9 @@ struct CorridorPiece {
   std::uint16_t left_piece{}, right_piece{};  ///< number of the neighbour's piece there; only with `left`, `right`
   double lane_offset{};                       ///< position on the lane's path = corridor position + lane_offset [m]
   std::uint32_t first_segment{}, segments{};  ///< of the corridor's centre line: where its own begin, and how many
+  /// Where at the latest a vehicle should have changed lanes, for there the next merge into a neighbour begins or,
+  /// where the corridor does not go as far as the route, the corridor ends; infinite where neither is ahead [m].
+  double lane_end = std::numeric_limits<double>::infinity();
 };
 
 /// A stretch of a lane outside of the corridor whose traffic counts in it: a lane that merges in (from `merge_view`
@@ -40,6 +43,8 @@ struct Feeder {
   /// Corridor position from which on the two lanes are one [m].
   double free_until = -std::numeric_limits<double>::infinity();
 
+  /// Whether it lies before the merge.
+  [[nodiscard]] bool is_still_to_merge() const { return end <= free_until; }
   [[nodiscard]] double image(double index) const {
     return begin + (index - index_begin) * (end - begin) / (index_end - index_begin);
   }
@@ -47,6 +52,15 @@ struct Feeder {
     return index_begin + (s - begin) * (index_end - index_begin) / (end - begin);
   }
 };
+
+/// Gap [m] between a follower's front end and its leader's rear end (corridor positions) where the two lanes are one
+/// from `merge` on. Before that the two may be side by side: the follower is given half of its way to the merge on top,
+/// so that a gap opens bit by bit, but never more than the way to whichever is farther, leader or merge.
+[[nodiscard]] inline double gap_before_merge(double follower_front, double leader_rear, double merge) {
+  double const gap = leader_rear - follower_front, to_merge = merge - follower_front;
+  if (to_merge <= 0.0) return gap;
+  return std::min(gap + 0.5 * to_merge, std::max(gap, to_merge));
+}
 
 /// A chain of lanes along which a vehicle drives: what behaviours follow. Immutable, shared.
 struct LaneCorridor {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <type_traits>
+#include <variant>
 
 #include "cambium/behavior/view.hpp"
 #include "cambium/goal/goal.hpp"
@@ -79,9 +80,8 @@ class ObservedWorld {
   /// O(log n).
   [[nodiscard]] Neighbors neighbors(std::uint16_t number) const {
     if (number == record_->lane.corridor) return {front(), rear(), lane_position()};
-    auto const at = detail::locate_beside(map(), road(), record_->lane, number, pose_of(record_->state));
-    auto const hits = world_->traffic().both(road().corridors[number], query(at), objects_on_lanes());
-    return {neighbor(hits.front, 1), neighbor(hits.rear, -1), perfect ? at : lane_position(number)};
+    auto const place = beside(number);
+    return {front(place), rear(place), lane_position(number)};
   }
 
   /// Calls `f(ObservedAgent)` for every agent that is on lane corridor `number` of the own road, or reaches into it,
@@ -98,11 +98,53 @@ class ObservedWorld {
     };
     TrafficQuery const own{slot_, at.s, shape().front, shape().rear, at.piece};
     SightedQuery<decltype(visit)> const query{own, visit, distance};
-    auto hits = world_->traffic().both(road().corridors[number], query, objects_on_lanes());
-    for (auto* hit : {&hits.front, &hits.rear})
-      if (*hit && !(*hit)->is_object) hit->reset();
-    return {neighbor(hits.front, 1), neighbor(hits.rear, -1), perfect ? at : lane_position(number)};
+    auto const& along = road().corridors[number];
+    auto const entry = world_->traffic().find(along, own);
+    auto const object = [](std::optional<TrafficHit> hit) { return hit && hit->is_object ? hit : std::nullopt; };
+    return {neighbor(object(world_->traffic().front_from(entry, along, query, objects_on_lanes())), 1),
+            neighbor(object(world_->traffic().rear_from(entry, along, query, objects_on_lanes())), -1),
+            perfect ? at : lane_position(number)};
   }
+
+  /// The place beside the agent on lane corridor `number` of the own road, another than the own. O(1) where that is
+  /// next to the own one, else O(lanes of the corridor); plus a search, O(log n).
+  [[nodiscard]] BesidePlace beside(std::uint16_t number) const {
+    auto place = detail::place_beside(map(), road(), record_->lane, number, pose_of(record_->state));
+    place.entry = world_->traffic().find(road().corridors[number], query(place));
+    if constexpr (!perfect) place.s += shift(slot_);
+    return place;
+  }
+
+  /// Next road users ahead of and behind such a place. O(1) while the next one is in the same lane.
+  [[nodiscard]] std::optional<Neighbor> front(BesidePlace const& place) const {
+    return neighbor(world_->traffic().front_from(place.entry, road().corridors[place.corridor], query(truth(place)),
+                                                 objects_on_lanes()),
+                    1);
+  }
+  [[nodiscard]] std::optional<Neighbor> rear(BesidePlace const& place) const {
+    return neighbor(world_->traffic().rear_from(place.entry, road().corridors[place.corridor], query(truth(place)),
+                                                objects_on_lanes()),
+                    -1);
+  }
+
+  /// As `front`, but without those who are in lanes that are still to merge into the own one.
+  [[nodiscard]] std::optional<Neighbor> front_in_lane() const {
+    auto asked = query(record_->lane);
+    asked.with_merging = false;
+    return neighbor(world_->traffic().front(corridor(), asked, objects_on_lanes(), in_traffic()), 1);
+  }
+
+  /// Of the agents in lanes that are still to merge into the own corridor at `merge` (see `Feeder::free_until`), the
+  /// foremost that is behind corridor position `behind`. O(feeders), plus a search in each.
+  [[nodiscard]] std::optional<MergingNeighbor> merging(double merge, double behind) const {
+    auto const entry = world_->traffic().merging(corridor(), merge, behind, slot_);
+    if (!entry) return std::nullopt;
+    double const s = perfect ? entry->position : entry->position + shift(entry->slot);
+    return MergingNeighbor{static_cast<AgentId>(entry->id), s, entry->front, entry->rear, entry->speed};
+  }
+
+  /// Whether it matters in which lane the route ends.
+  [[nodiscard]] bool has_goal() const { return !std::holds_alternative<NoGoal>(goal()); }
 
   /// The agent that a neighbour is. O(1). Not for neighbours that are objects.
   [[nodiscard]] ObservedAgent<State> agent(Neighbor const& neighbor) const {
@@ -142,7 +184,14 @@ class ObservedWorld {
 
   [[nodiscard]] decltype(auto) observed(std::uint32_t slot) const { return detail::seen_state(*world_, slot_, slot); }
 
-  [[nodiscard]] auto query(map::LanePosition const& at) const {
+  /// The place as it is, not as the observer shows it.
+  [[nodiscard]] BesidePlace truth(BesidePlace place) const {
+    if constexpr (!perfect) place.s -= shift(slot_);
+    return place;
+  }
+
+  template <class Place>
+  [[nodiscard]] auto query(Place const& at) const {
     TrafficQuery const query{slot_, at.s, shape().front, shape().rear, at.piece};
     if constexpr (detail::hides<World>) {
       auto const sees = [world = world_, own = slot_](std::uint32_t slot) {

@@ -34,6 +34,7 @@ struct TrafficQuery {
   double s{};
   double front{}, rear{};
   std::uint16_t piece{};
+  bool with_merging = true;  ///< who is in a lane that is still to merge counts
 
   /// Whether an entry, `distance` [m] away, is passed over: it is the asker's own.
   [[nodiscard]] bool skips(TrafficEntry const& entry, double /*distance*/) const { return entry.slot == slot; }
@@ -60,11 +61,6 @@ struct TrafficHit {
   double length{};                                       ///< along its lane [m]
 };
 
-/// Next ahead and behind.
-struct TrafficHits {
-  std::optional<TrafficHit> front, rear;
-};
-
 /// Who is where on the lanes, sorted, so that the next road user along a corridor is the next in the list.
 ///
 /// Agents are kept in one list by lane coordinate; the order of the last step is repaired, not rebuilt (insertion sort;
@@ -77,13 +73,9 @@ class TrafficIndex {
   /// Farthest reference point that is a neighbour, along the corridor [m].
   static constexpr double horizon = 400.0;
 
-  /// Gap [m] between a follower's front end and its leader's rear end (corridor positions) where the two lanes are one
-  /// from `merge` on. Before that the two may be side by side: the follower is given half of its way to the merge on
-  /// top, so that a gap opens bit by bit, but never more than the way to whichever is farther, leader or merge.
+  /// See `map::gap_before_merge`.
   [[nodiscard]] static double gap_between(double follower_front, double leader_rear, double merge) {
-    double const gap = leader_rear - follower_front, to_merge = merge - follower_front;
-    if (to_merge <= 0.0) return gap;
-    return std::min(gap + 0.5 * to_merge, std::max(gap, to_merge));
+    return map::gap_before_merge(follower_front, leader_rear, merge);
   }
 
   /// Takes in `count` agents. `entry_of(slot, list)` gives each one's `TrafficEntry` (position +infinity: on no lane of
@@ -135,21 +127,15 @@ class TrafficIndex {
                      objects);
   }
 
-  /// Both, with one search.
-  template <class Query>
-  [[nodiscard]] TrafficHits both(map::LaneCorridor const& corridor, Query const& query,
-                                 std::span<TrafficEntry const> objects) const {
-    auto const start = lower(agents_, key(corridor, query), query.slot);
-    return {front_from(start, corridor, query, objects), rear_from(start, corridor, query, objects)};
+  /// Where in the list of agents the asker's place is: one search for `front_from` and `rear_from`. O(log n).
+  [[nodiscard]] std::size_t find(map::LaneCorridor const& corridor, TrafficQuery const& query) const {
+    return lower(agents_, key(corridor, query), query.slot);
   }
-
- private:
-  using List = std::span<TrafficEntry const>;
 
   /// Next ahead; among the agents, entry `start` is the first candidate on the asker's piece.
   template <class Query>
   [[nodiscard]] std::optional<TrafficHit> front_from(std::size_t start, map::LaneCorridor const& corridor,
-                                                     Query const& query, List objects) const {
+                                                     Query const& query, std::span<TrafficEntry const> objects) const {
     TrafficHit best;
     front_on_corridor(agents_, false, corridor, query, start, best);
     if (!straddling_.empty())
@@ -161,7 +147,7 @@ class TrafficIndex {
       if (feeder.begin > query.s + std::min(horizon, best.gap + query.front + longest_rear_) && objects.empty())
         break;  // nobody there is closer
       if (feeder.begin > query.s + horizon) break;
-      if (feeder.end < query.s) continue;
+      if (feeder.end < query.s || (!query.with_merging && feeder.is_still_to_merge())) continue;
       front_on_feeder(agents_, false, feeder, query, best);
       if (!straddling_.empty()) front_on_feeder(straddling_, false, feeder, query, best);
       if (!objects.empty()) front_on_feeder(objects, true, feeder, query, best);
@@ -172,7 +158,7 @@ class TrafficIndex {
   /// Next behind; among the agents, candidates lie before entry `start`.
   template <class Query>
   [[nodiscard]] std::optional<TrafficHit> rear_from(std::size_t start, map::LaneCorridor const& corridor,
-                                                    Query const& query, List objects) const {
+                                                    Query const& query, std::span<TrafficEntry const> objects) const {
     TrafficHit best;
     rear_on_corridor(agents_, false, corridor, query, start, best);
     if (!straddling_.empty())
@@ -183,13 +169,36 @@ class TrafficIndex {
       if (feeder.begin > query.s) break;
       if (feeder.end < query.s - std::min(horizon, best.gap + query.rear + longest_front_) && objects.empty())
         continue;  // nobody there is closer
-      if (feeder.end < query.s - horizon) continue;
+      if (feeder.end < query.s - horizon || (!query.with_merging && feeder.is_still_to_merge())) continue;
       rear_on_feeder(agents_, false, feeder, query, best);
       if (!straddling_.empty()) rear_on_feeder(straddling_, false, feeder, query, best);
       if (!objects.empty()) rear_on_feeder(objects, true, feeder, query, best);
     }
     return found(best);
   }
+
+  /// Of the agents in lanes that are still to merge into `corridor` at `merge`, the one with the foremost image on the
+  /// corridor not beyond `behind`: its entry, with the image as position. O(feeders), plus a search in each.
+  [[nodiscard]] std::optional<TrafficEntry> merging(map::LaneCorridor const& corridor, double merge, double behind,
+                                                    std::uint32_t asker) const {
+    std::optional<TrafficEntry> best;
+    for (auto const& feeder : corridor.feeders) {
+      if (feeder.free_until != merge || !feeder.is_still_to_merge() || feeder.begin > behind) continue;
+      double const to = behind >= feeder.end ? feeder.index_end : feeder.index_at(behind);
+      for (auto i = upper(agents_, to, std::numeric_limits<std::uint32_t>::max());
+           i > 0 && agents_[i - 1].position >= feeder.index_begin; --i) {
+        auto entry = agents_[i - 1];
+        if (entry.slot == asker) continue;
+        entry.position = feeder.image(entry.position);
+        if (!best || entry.position > best->position) best = entry;
+        break;
+      }
+    }
+    return best;
+  }
+
+ private:
+  using List = std::span<TrafficEntry const>;
 
   [[nodiscard]] static std::optional<TrafficHit> found(TrafficHit const& best) {
     if (best.gap == std::numeric_limits<double>::infinity()) return std::nullopt;

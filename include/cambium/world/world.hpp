@@ -348,6 +348,10 @@ class World {
         auto const* const segment = road_under(slot + 6);
         CAMBIUM_PREFETCH(segment);
         CAMBIUM_PREFETCH(segment + 1);
+        if constexpr (Set::looks_beside) {
+          CAMBIUM_PREFETCH(road_beside(slot + 6, true));
+          CAMBIUM_PREFETCH(road_beside(slot + 6, false));
+        }
       }
       advance(slot, dt, end, next[slot], result);
     }
@@ -429,9 +433,20 @@ class World {
   }
 
   /// Where on its road an agent is whose turn comes soon: loaded ahead, where a world does not fit into the cache.
+  /// (Compilers drop calls to functions that do nothing but prefetch.)
   [[nodiscard]] geometry::Line::Segment const* road_under(std::size_t slot) const {
     auto const& at = frame_.agents[slot].lane;
     return roster_->agents[slot].road->corridors[at.corridor].center.segments().data() + at.segment;
+  }
+
+  /// The same on the lane to the left (right) of it; where there is none, its own place.
+  [[nodiscard]] geometry::Line::Segment const* road_beside(std::size_t slot, bool left) const {
+    auto const& at = frame_.agents[slot].lane;
+    auto const& road = *roster_->agents[slot].road;
+    auto const& piece = road.corridors[at.corridor].pieces[at.piece];
+    auto const side = left ? piece.left : piece.right;
+    if (side == map::no_corridor) return road_under(slot);
+    return road.corridors[side].center.segments().data() + detail::hint_beside(road, at, piece, side).segment;
   }
 
   CAMBIUM_FLATTEN void advance(std::uint32_t slot, double dt, double end, Record& next, StepResult& result) const {

@@ -8,6 +8,7 @@
 #include <map>
 #include <vector>
 
+#include "cambium/behavior/view.hpp"
 #include "cambium/map/lane_position.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/world/frame.hpp"
@@ -19,6 +20,19 @@ namespace cambium::detail {
 /// An agent this close to its path follows it, whatever the borders do: the path of an ending lane crosses one [m].
 inline constexpr double on_path = 0.3;
 
+/// Where beside `at` a lane corridor that is next is about, `piece` being the piece of it that is beside: lanes of one
+/// section are mostly sampled at the same stations.
+[[nodiscard]] inline map::LanePosition hint_beside(map::RoadCorridor const& road, map::LanePosition const& at,
+                                                   map::CorridorPiece const& from, std::uint16_t number) {
+  map::LanePosition hint;
+  hint.piece = number == from.left ? from.left_piece : from.right_piece;
+  auto const& to = road.corridors[number].pieces[hint.piece];
+  auto const passed = at.segment > from.first_segment ? at.segment - from.first_segment : 0;
+  hint.segment =
+      to.first_segment + (to.segments == from.segments ? passed : passed * to.segments / std::max(from.segments, 1u));
+  return hint;
+}
+
 /// The place beside `at` on lane corridor `number` of the same road, for an agent at `pose`: found from the lanes
 /// beside, for a corridor may come by the same place twice. O(1) for a corridor that is next, else O(lanes of the
 /// corridor).
@@ -28,13 +42,8 @@ inline constexpr double on_path = 0.3;
   auto const& from = road.corridors[at.corridor].pieces[at.piece];
   auto const& corridor = road.corridors[number];
   map::LanePosition hint;
-  if (number == from.left || number == from.right) {
-    hint.piece = number == from.left ? from.left_piece : from.right_piece;
-    auto const& to = corridor.pieces[hint.piece];
-    auto const passed = at.segment > from.first_segment ? at.segment - from.first_segment : 0;
-    hint.segment = to.first_segment + passed * to.segments / std::max(from.segments, 1u);
-    return map::locate(road, number, pose, hint);
-  }
+  if (number == from.left || number == from.right)
+    return map::locate(road, number, pose, hint_beside(road, at, from, number));
   double const share = (at.s - from.begin) / (from.end - from.begin);
   for (bool const leftwards : {true, false})
     for (LaneId lane = from.lane; is_valid(lane);
@@ -47,6 +56,21 @@ inline constexpr double on_path = 0.3;
         return map::locate(road, number, pose, hint);
       }
   return map::locate(road, number, pose);
+}
+
+/// As `locate_beside`, but only what neighbours are found with.
+[[nodiscard]] inline BesidePlace place_beside(Map const& map, map::RoadCorridor const& road,
+                                              map::LanePosition const& at, std::uint16_t number,
+                                              geometry::Pose const& pose) {
+  auto const& from = road.corridors[at.corridor].pieces[at.piece];
+  if (number != from.left && number != from.right) {
+    auto const place = locate_beside(map, road, at, number, pose);
+    return {place.s, place.segment, number, place.piece, 0};
+  }
+  auto const& corridor = road.corridors[number];
+  auto const hint = hint_beside(road, at, from, number);
+  auto const foot = corridor.center.project(pose.position(), hint.segment);
+  return {foot.s, foot.segment, number, corridor.piece_at(foot.s, hint.piece), 0};
 }
 
 /// Finds the new place of an agent that has driven `distance` [m] on its road: in its lane corridor, or in the next one
