@@ -34,6 +34,7 @@ struct TrafficQuery {
   double s{};
   double front{}, rear{};
   std::uint16_t piece{};
+  bool by_rule = false;  ///< leave out who is still to merge in a junction (see `Feeder::by_rule`)
 };
 
 /// What was found: an agent, or an object.
@@ -117,6 +118,22 @@ class TrafficIndex {
                                                std::span<TrafficEntry const> objects, bool own) const {
     return rear_from(own ? rank_[query.slot] : lower(agents_, key(corridor, query), query.slot), corridor, query,
                      objects);
+  }
+
+  /// Calls `f(entry, is_object)` for all that reach into lane coordinates `begin` to `end` of one lane; agents in the
+  /// order of their positions, those that reach in from another lane after them, objects last. O(log n) and those near.
+  template <class F>
+  void for_each_in(double begin, double end, std::span<TrafficEntry const> objects, F&& f) const {
+    auto const visit = [&](List list, bool is_object) {
+      if (list.empty()) return;
+      // Objects are entered in parts of 10 m at most.
+      double const longest = is_object ? 10.0 : std::max(longest_front_, longest_rear_);
+      for (auto i = first_at(list, begin - longest); i < list.size() && list[i].position <= end + longest; ++i)
+        if (list[i].position + list[i].front >= begin && list[i].position - list[i].rear <= end) f(list[i], is_object);
+    };
+    visit(agents_, false);
+    visit(straddling_, false);
+    visit(objects, true);
   }
 
   /// Both, with one search.
@@ -252,6 +269,7 @@ class TrafficIndex {
       auto const& entry = list[i];
       if (entry.position < feeder.index_begin || (entry.slot == query.slot && !is_object)) continue;
       double const s = feeder.image(entry.position);
+      if (query.by_rule && feeder.by_rule && s + entry.front < feeder.free_until) continue;
       bool const ahead = s > query.s || (s == query.s && entry.slot > query.slot);
       if (!ahead) continue;
       if (s - query.s <= horizon)
