@@ -50,6 +50,16 @@ struct BesidePlace {
   std::size_t entry{};  ///< where the search for neighbours begins
 };
 
+/// A road user somewhere on a lane: an agent, or an object.
+struct LaneUser {
+  AgentId agent = none<AgentId>;     ///< who it is; none where it is a static object
+  ObjectId object = none<ObjectId>;  ///< what it is; none where it is an agent
+  double position{};                 ///< of its reference point, lane coordinate [m]
+  double front{}, rear{};            ///< its reach from there along the lane [m]
+  double speed{};                    ///< along the lane [m/s]
+  std::uint32_t slot{};              ///< its place among the agents or the objects
+};
+
 /// Another agent as seen by an observer.
 template <MotionState S>
 struct ObservedAgent {
@@ -74,8 +84,9 @@ struct ViewArchetype {
   [[nodiscard]] map::LaneCorridor const& corridor() const;                      ///< the lane corridor the agent is in
   [[nodiscard]] map::LanePosition const& lane_position() const;                 ///< where it is in there
   [[nodiscard]] map::LanePosition lane_position(std::uint16_t corridor) const;  ///< and on another one of the road
-  [[nodiscard]] std::optional<Neighbor> front() const;              ///< next ahead along the own lane corridor
-  [[nodiscard]] std::optional<Neighbor> rear() const;               ///< next behind
+  [[nodiscard]] std::optional<Neighbor> front() const;          ///< next ahead along the own lane corridor
+  [[nodiscard]] std::optional<Neighbor> front_by_rule() const;  ///< but for those who are still to merge in a junction
+  [[nodiscard]] std::optional<Neighbor> rear() const;           ///< next behind
   [[nodiscard]] Neighbors neighbors(std::uint16_t corridor) const;  ///< both, along another lane corridor of the road
   /// Calls `f(ObservedAgent)` for who is near along a lane corridor; returns the next objects there.
   template <class F>
@@ -88,6 +99,11 @@ struct ViewArchetype {
   [[nodiscard]] AgentId id() const;
   [[nodiscard]] bool has_goal() const;  ///< whether it matters in which lane the route ends
   [[nodiscard]] ObservedAgent<State> agent(Neighbor const& neighbor) const;  ///< the neighbour itself; not of objects
+  template <class F>
+  void for_each_on_lane(double index_begin, double index_end, F&& f) const;  ///< `f(LaneUser)` for those who reach in
+  [[nodiscard]] bool signals_way(LaneUser const& user,
+                                 LaneId lane) const;  ///< whether its turn signal says that it will come by `lane`
+  [[nodiscard]] std::optional<Neighbor> front_of(LaneUser const& user) const;  ///< who is next ahead of it on its way
   [[nodiscard]] RandomStream random(
       std::uint32_t purpose) const;  ///< numbers of their own for (seed, agent, step, purpose)
 };

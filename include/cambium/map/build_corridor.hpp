@@ -14,6 +14,7 @@
 #include "cambium/core/ids.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/map/corridor.hpp"
+#include "cambium/map/detail/conflicts.hpp"
 #include "cambium/map/detail/feeders.hpp"
 #include "cambium/map/detail/lane_chains.hpp"
 #include "cambium/map/map.hpp"
@@ -221,7 +222,8 @@ inline void set_lane_ends(Map const& map, LaneCorridor& corridor, bool is_short)
 /// - lanes that lead into one of its lanes without an overlap: likewise, free until that lane begins;
 /// - lanes that have just split off: on the overlap;
 /// - lanes that lead to its begin: 100 m back, with negative images (of a ring, the corridor's own last lanes too).
-/// Lanes that cross it are none. No stretch of a lane has two images, except by different corridors.
+/// Lanes that cross it are none; those are its conflicts, with lanes that merge with it in a junction. No stretch of a
+/// lane has two images, except by different corridors.
 [[nodiscard]] inline std::shared_ptr<RoadCorridor const> build_road_corridor(Map const& map, Route const& route) {
   auto const stages = detail::route_stages(map, route.lanes);
   auto const chains = detail::lane_chains(map, stages);
@@ -246,6 +248,11 @@ inline void set_lane_ends(Map const& map, LaneCorridor& corridor, bool is_short)
     detail::set_lane_ends(map, corridor, chain.begin + chain.lanes.size() < stages.size());
     corridor.reaches_destination = chain.has(route.lanes.back());
     detail::FeederFinder(map, corridor).find();
+    corridor.conflicts = detail::find_conflicts(map, corridor);
+    for (auto& feeder : corridor.feeders)
+      feeder.by_rule = std::any_of(corridor.conflicts.begin(), corridor.conflicts.end(), [&](Conflict const& conflict) {
+        return conflict.kind == OverlapKind::merge && std::abs(conflict.begin - feeder.free_until) < 1e-3;
+      });
     road->corridors.push_back(std::move(corridor));
   }
   return road;

@@ -42,6 +42,7 @@ struct Feeder {
   double begin{}, end{};
   /// Corridor position from which on the two lanes are one [m].
   double free_until = -std::numeric_limits<double>::infinity();
+  bool by_rule = false;  ///< the two merge in a junction: who goes first is a matter of right of way, see `Conflict`
 
   /// Whether it lies before the merge.
   [[nodiscard]] bool is_still_to_merge() const { return end <= free_until; }
@@ -62,6 +63,23 @@ struct Feeder {
   return std::min(gap + 0.5 * to_merge, std::max(gap, to_merge));
 }
 
+/// A stretch of the map-wide lane coordinate (see `Lane::index_begin`), and how far its end lies before a conflict.
+struct ApproachStretch {
+  double index_begin{}, index_end{};
+  double to_conflict{};  ///< from `index_end` along the lanes to the other lane's conflict stretch [m]
+};
+
+/// Where a lane outside of the corridor crosses it or merges with it: a vehicle in the stretch here and one in the
+/// other lane's stretch would touch.
+struct Conflict {
+  LaneId other = none<LaneId>;
+  OverlapKind kind = OverlapKind::crossing;
+  RightOfWay right_of_way = RightOfWay::equal;  ///< of this corridor's traffic
+  double begin{}, end{};                        ///< corridor position [m]
+  double index_begin{}, index_end{};            ///< lane coordinate of the other lane's stretch
+  std::vector<ApproachStretch> approaches;      ///< the ways to that stretch, up to `MapOptions::merge_view` back
+};
+
 /// A chain of lanes along which a vehicle drives: what behaviours follow. Immutable, shared.
 struct LaneCorridor {
   geometry::Line center;                ///< the lanes' paths, joined
@@ -69,6 +87,7 @@ struct LaneCorridor {
   geometry::Line left, right;           ///< borders
   std::vector<CorridorPiece> pieces;    ///< sorted by `begin`, gapless
   std::vector<Feeder> feeders;          ///< sorted by `begin`
+  std::vector<Conflict> conflicts;      ///< sorted by `begin`
   std::vector<SpeedStep> speed_limits;  ///< along the corridor, sorted; empty where nothing limits the speed
   bool continues = false;               ///< the road goes on beyond the end: the corridor ends because the route does
   bool reaches_destination = false;     ///< it holds the route's last lane

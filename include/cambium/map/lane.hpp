@@ -56,6 +56,13 @@ enum class OverlapKind : std::uint8_t {
   crossing,  ///< one passes over the other
 };
 
+/// Where the paths of two lanes meet: who lets whom go first.
+enum class RightOfWay : std::uint8_t {
+  equal,   ///< neither: whoever is there first
+  first,   ///< this lane's traffic goes first
+  yields,  ///< this lane's traffic lets the other's go first
+};
+
 /// A stretch on which a vehicle in this lane and one in another lane cannot be side by side: the lanes' paths are
 /// closer than the map's overlap clearance. `begin`, `end` [m] on this lane's path, `other_begin`, `other_end` on the
 /// other's.

@@ -70,6 +70,14 @@ class ObservedWorld {
     return neighbor(world_->traffic().rear(corridor(), query(record_->lane), objects_on_lanes(), in_traffic()), -1);
   }
 
+  /// As `front`, but for those who are still to merge in a junction: there the right of way says who goes first, see
+  /// `LaneCorridor::conflicts`.
+  [[nodiscard]] std::optional<Neighbor> front_by_rule() const {
+    auto asker = query(record_->lane);
+    asker.by_rule = true;
+    return neighbor(world_->traffic().front(corridor(), asker, objects_on_lanes(), in_traffic()), 1);
+  }
+
   /// Where the agent is on lane corridor `number` of its road. O(lanes of the corridor).
   [[nodiscard]] map::LanePosition lane_position(std::uint16_t number) const {
     auto const& at = lane_position();
@@ -145,6 +153,53 @@ class ObservedWorld {
 
   /// Whether it matters in which lane the route ends.
   [[nodiscard]] bool has_goal() const { return !std::holds_alternative<NoGoal>(goal()); }
+
+  /// Calls `f(LaneUser)` for those who reach into lane coordinates `index_begin` to `index_end` of one lane (see
+  /// `Lane::index_begin`), the agent itself left out. O(log n) and those near.
+  template <class F>
+  void for_each_on_lane(double index_begin, double index_end, F&& f) const {
+    world_->traffic().for_each_in(index_begin, index_end, objects_on_lanes(), [&](auto const& entry, bool is_object) {
+      if (is_object) {
+        f(LaneUser{.object = static_cast<ObjectId>(entry.id),
+                   .position = entry.position,
+                   .front = entry.front,
+                   .rear = entry.rear,
+                   .slot = entry.slot});
+      } else if (entry.slot != slot_ && detail::is_seen(*world_, slot_, entry.slot)) {
+        LaneUser user{static_cast<AgentId>(entry.id),
+                      none<ObjectId>,
+                      entry.position,
+                      entry.front,
+                      entry.rear,
+                      entry.speed,
+                      entry.slot};
+        if constexpr (!perfect) {
+          user.position += shift(entry.slot);
+          user.speed += observed(entry.slot).speed - record(entry.slot).state.speed;
+        }
+        f(user);
+      }
+    });
+  }
+
+  /// Whether an agent's turn signals say that it will come by `lane`, or it is there: the way ahead is all that they
+  /// tell. Objects go nowhere. O(lanes of its road).
+  [[nodiscard]] bool signals_way(LaneUser const& user, LaneId lane) const {
+    if (!is_valid(user.agent)) return false;
+    return world_->roster().agents[user.slot].road->corridor_of(lane) != map::no_corridor;
+  }
+
+  /// Who is next ahead of another road user on its own way; nothing for objects.
+  [[nodiscard]] std::optional<Neighbor> front_of(LaneUser const& user) const {
+    if (!is_valid(user.agent)) return std::nullopt;
+    auto const& agent = world_->roster().agents[user.slot];
+    auto const& at = record(user.slot).lane;
+    TrafficQuery asker{user.slot, at.s, agent.shape.front, agent.shape.rear, at.piece};
+    asker.by_rule = true;
+    return neighbor(world_->traffic().front(agent.road->corridors[at.corridor], asker, objects_on_lanes(),
+                                            world_->traffic().has(user.slot)),
+                    1);
+  }
 
   /// The agent that a neighbour is. O(1). Not for neighbours that are objects.
   [[nodiscard]] ObservedAgent<State> agent(Neighbor const& neighbor) const {

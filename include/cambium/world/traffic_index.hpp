@@ -35,6 +35,7 @@ struct TrafficQuery {
   double front{}, rear{};
   std::uint16_t piece{};
   bool with_merging = true;  ///< who is in a lane that is still to merge counts
+  bool by_rule = false;      ///< leave out who is still to merge in a junction (see `Feeder::by_rule`)
 
   /// Whether an entry, `distance` [m] away, is passed over: it is the asker's own.
   [[nodiscard]] bool skips(TrafficEntry const& entry, double /*distance*/) const { return entry.slot == slot; }
@@ -130,6 +131,22 @@ class TrafficIndex {
   /// Where in the list of agents the asker's place is: one search for `front_from` and `rear_from`. O(log n).
   [[nodiscard]] std::size_t find(map::LaneCorridor const& corridor, TrafficQuery const& query) const {
     return lower(agents_, key(corridor, query), query.slot);
+  }
+
+  /// Calls `f(entry, is_object)` for all that reach into lane coordinates `begin` to `end` of one lane; agents in the
+  /// order of their positions, those that reach in from another lane after them, objects last. O(log n) and those near.
+  template <class F>
+  void for_each_in(double begin, double end, std::span<TrafficEntry const> objects, F&& f) const {
+    auto const visit = [&](List list, bool is_object) {
+      if (list.empty()) return;
+      // Objects are entered in parts of 10 m at most.
+      double const longest = is_object ? 10.0 : std::max(longest_front_, longest_rear_);
+      for (auto i = first_at(list, begin - longest); i < list.size() && list[i].position <= end + longest; ++i)
+        if (list[i].position + list[i].front >= begin && list[i].position - list[i].rear <= end) f(list[i], is_object);
+    };
+    visit(agents_, false);
+    visit(straddling_, false);
+    visit(objects, true);
   }
 
   /// Next ahead; among the agents, entry `start` is the first candidate on the asker's piece.
@@ -286,6 +303,7 @@ class TrafficIndex {
       if (entry.position < feeder.index_begin) continue;
       double const s = feeder.image(entry.position);
       if (!is_object && query.skips(entry, s - query.s)) continue;
+      if (query.by_rule && feeder.by_rule && s + entry.front < feeder.free_until) continue;
       bool const ahead = s > query.s || (s == query.s && entry.slot > query.slot);
       if (!ahead) continue;
       if (s - query.s <= horizon)
