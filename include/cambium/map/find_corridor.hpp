@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -23,9 +22,6 @@
 #include "cambium/map/route.hpp"
 
 namespace cambium::map {
-
-/// Which way a road is driven: along its reference line or against it.
-enum class RoadDirection : std::uint8_t { forward, backward };
 
 namespace detail {
 
