@@ -65,7 +65,7 @@ for (const input of document.querySelectorAll('input'))
                                           MapLegend const& legend) {
   std::string page = "<!doctype html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>" + escape_markup(title) +
                      "</title>\n<style>body{margin:0;font:14px system-ui,'DejaVu Sans',sans-serif;background:#eef1ec}"
-                     "nav{position:fixed;top:8px;left:8px;padding:8px 12px;border-radius:8px;background:#fffd;"
+                     "nav{position:fixed;top:8px;left:8px;max-width:350px;padding:8px 12px;border-radius:8px;background:#fffd;"
                      "box-shadow:0 1px 4px #0003}nav label{margin-left:10px}summary{cursor:pointer}"
                      "#map{display:block;width:100vw;height:100vh;cursor:grab}</style>\n<nav><b>" +
                      escape_markup(title) + "</b>";
