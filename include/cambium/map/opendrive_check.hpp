@@ -12,8 +12,8 @@
 
 #include "cambium/core/diagnostic.hpp"
 #include "cambium/core/error.hpp"
-#include "cambium/geometry/angle.hpp"
 #include "cambium/map/cubic.hpp"
+#include "cambium/map/detail/geometry_check.hpp"
 #include "cambium/map/opendrive_document.hpp"
 #include "cambium/map/reference_line.hpp"
 
@@ -31,7 +31,7 @@ class DocumentCheck {
   void run() {
     if (document_->header.line == 0) report(Severity::warning, 0, "header", "", "the file has no header");
     std::erase_if(document_->roads, [this](opendrive::Road& road) {
-      return !is_whole(road) || !is_continuous(road) || !has_lanes(road);
+      return !is_whole(road) || !GeometryCheck(road, file_, *diagnostics_).is_continuous() || !has_lanes(road);
     });
     index(document_->roads, roads_, "road", " is there twice; the second one was left out");
     index(document_->junctions, junctions_, "junction", " is there twice; the second one was left out");
@@ -128,63 +128,6 @@ class DocumentCheck {
     report(Severity::error, road.line, "road", "road " + road.id,
            "it has no geometry, no lane section, or a cubic without its curve; it was left out");
     return false;
-  }
-
-  /// Reports where a geometry does not go on where the one before ends. False where nobody could drive there: it is far
-  /// off, or what the curve does in the gap is beyond telling.
-  [[nodiscard]] bool is_continuous(opendrive::Road const& road) {
-    constexpr double slight = 1e-3, noticeable = 0.1, bearable = 100.0;  // [m]; `noticeable` also [rad]
-    double widest = 0.0;                                                 // of the slight ones
-    int slight_ones = 0, slight_line = 0;
-    auto const lost = [&](std::size_t i, std::string const& what) {
-      report(Severity::error, road.geometry_lines[i], "geometry", "road " + road.id, what + "; the road was left out");
-      return false;
-    };
-    std::size_t const last = road.geometries.size() - 1;
-    if (!(road.geometry_length() > 0.0))
-      return lost(last, "the geometries end at " + rounded_text(road.geometry_length()) + " m");
-    double const first_s = road.geometries.front().s;
-    if (turn_beyond(road.geometries.front(), 0.0, first_s) > 1.0)
-      return lost(0, "the road has no geometry before " + rounded_text(first_s) + " m");
-    if (std::abs(first_s) > slight)
-      report(
-          Severity::warning, road.geometry_lines[0], "geometry", "road " + road.id,
-          "the first geometry starts at " + rounded_text(first_s) + " m, not at 0; the road starts at 0 all the same");
-    for (std::size_t i = 1; i < road.geometries.size(); ++i) {
-      Geometry const& before = road.geometries[i - 1];
-      Geometry const& next = road.geometries[i];
-      if (turn_beyond(before, before.length, next.s - before.s - before.length) > 1.0)
-        return lost(i, "there is no geometry for " + rounded_text(next.s - before.s - before.length) + " m before it");
-      CurvePoint const end = evaluate(before, before.length);
-      CurvePoint const start =
-          next.kind == GeometryKind::cubic ? evaluate(next, 0.0) : CurvePoint{next.x, next.y, next.heading};
-      double const gap = std::hypot(start.x - end.x, start.y - end.y);
-      double const turn = std::abs(geometry::angle_difference(start.heading, end.heading));
-      if (gap <= noticeable && turn <= noticeable) {
-        slight_ones += gap > slight;
-        if (gap > std::max(slight, widest)) {
-          widest = gap;
-          slight_line = road.geometry_lines[i];
-        }
-        continue;
-      }
-      std::string const sentence =
-          "it starts " + rounded_text(gap) + " m and " + rounded_text(turn) + " rad off the end of the geometry before";
-      if (gap > bearable) return lost(i, sentence);
-      report(Severity::warning, road.geometry_lines[i], "geometry", "road " + road.id, sentence);
-    }
-    if (slight_ones > 0)
-      report(Severity::warning, slight_line, "geometry", "road " + road.id,
-             "it starts " + rounded_text(widest) + " m off the end of the geometry before" +
-                 (slight_ones > 1 ? " (and " + std::to_string(slight_ones - 1) + " others a little less)" : ""));
-    return true;
-  }
-
-  /// How far a geometry turns where it is continued for `distance` [m] from `end` (its own begin or end) [rad].
-  [[nodiscard]] static double turn_beyond(Geometry const& g, double end, double distance) {
-    double const rate = std::abs(curvature_rate(g)),
-                 curvature = std::abs(end > 0.0 ? g.curvature_end : g.curvature_start);
-    return distance > 0.0 ? distance * (curvature + 0.5 * rate * distance) : 0.0;
   }
 
   /// Leaves out records of widths, heights and of the lane offset that are beyond any road, and reports negative

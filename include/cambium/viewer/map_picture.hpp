@@ -24,7 +24,7 @@ namespace cambium {
 /// the `WIDTH` metres around (X, Y).
 [[nodiscard]] inline std::string html_map_picture(Map const& map, MapPictureOptions const& options = {}) {
   detail::MapDrawing drawing(map, options);
-  constexpr double width = 340.0;  // [px]
+  constexpr double width = 370.0;  // [px]
   auto const legend = options.legend ? drawing.legend(width) : detail::MapLegend{};
   return detail::map_page(options.title, drawing.text(false), width, legend);
 }

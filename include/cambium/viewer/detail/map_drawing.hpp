@@ -63,7 +63,8 @@ class MapDrawing {
     draw_scale_bar(scale, height);
     if (with_legend)
       out_ += "<g transform=\"translate(0 " + svg_number(height) + ")scale(" + svg_number(1.0 / scale, 6) + ")\">" +
-              key.text + "</g>\n";
+              "<rect class=\"ground\" width=\"" + svg_number(options_.width) + "\" height=\"" + svg_number(key.height) +
+              "\"/>" + key.text + "</g>\n";
     return out_ + "</svg>\n";
   }
 

@@ -49,7 +49,7 @@ struct MapLegend {
 
 /// The entries in columns on a picture `width` [px] wide.
 [[nodiscard]] inline MapLegend map_legend(std::vector<LegendEntry> const& entries, double width) {
-  constexpr double column = 165.0, row = 20.0, margin = 8.0;  // [px]
+  constexpr double column = 180.0, row = 20.0, margin = 8.0;  // [px]
   auto const columns = static_cast<std::size_t>(std::max(1.0, (width - margin) / column));
   std::string text = "<g class=\"legend\">";
   for (std::size_t i = 0; i < entries.size(); ++i) {

@@ -19,7 +19,7 @@ inline constexpr std::string_view map_picture_style =
     ".areas .parking{fill:#a9b9d6}.areas .bus,.areas .taxi,.areas .HOV{fill:#a68f74}"
     ".areas .restricted,.areas .roadWorks{fill:#d5b3b3}.areas .tram,.areas .rail{fill:#a3a37f}"
     ".areas path:hover{fill:#5b9bd5}"
-    ".conflicts path{fill:#b3123c;fill-opacity:.3;stroke:#b3123c;stroke-width:.06}"
+    ".conflicts{opacity:.28}.conflicts path{fill:#d4456b;stroke:#700622;stroke-width:.06}"
     ".overlaps path{fill:none;stroke-width:.9;opacity:.4}"
     ".crossing{stroke:#e02b2b}.merge{stroke:#ff8c1a}.split{stroke:#8e44ec}"
     ".arrows path{fill:#fff;opacity:.85}"
@@ -63,12 +63,14 @@ for (const input of document.querySelectorAll('input'))
 /// A page around a map's picture, with its legend of `width` [px].
 [[nodiscard]] inline std::string map_page(std::string_view title, std::string const& picture, double width,
                                           MapLegend const& legend) {
-  std::string page = "<!doctype html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>" + escape_markup(title) +
-                     "</title>\n<style>body{margin:0;font:14px system-ui,'DejaVu Sans',sans-serif;background:#eef1ec}"
-                     "nav{position:fixed;top:8px;left:8px;max-width:350px;padding:8px 12px;border-radius:8px;background:#fffd;"
-                     "box-shadow:0 1px 4px #0003}nav label{margin-left:10px}summary{cursor:pointer}"
-                     "#map{display:block;width:100vw;height:100vh;cursor:grab}</style>\n<nav><b>" +
-                     escape_markup(title) + "</b>";
+  std::string page =
+      "<!doctype html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>" + escape_markup(title) +
+      "</title>\n<style>body{margin:0;font:14px system-ui,'DejaVu Sans',sans-serif;background:#eef1ec}"
+      "nav{position:fixed;top:8px;left:8px;max-width:380px;padding:8px 12px;border-radius:8px;background:#fffd;"
+      "box-shadow:0 1px 4px #0003}nav label{margin-right:8px;white-space:nowrap}nav "
+      "b{display:block}summary{cursor:pointer}"
+      "#map{display:block;width:100vw;height:100vh;cursor:grab}</style>\n<nav><b>" +
+      escape_markup(title) + "</b>";
   for (char const* layer : {"arrows", "labels", "links", "overlaps", "conflicts"})
     if (picture.find("<g class=\"" + std::string(layer) + '"') != picture.npos)
       page += std::string("<label><input type=\"checkbox\" checked name=\"") + layer + "\">" + layer + "</label>";
