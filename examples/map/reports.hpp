@@ -132,8 +132,8 @@ inline std::string corridor_text(cb::Map const& map, cb::map::RoadCorridor const
     text += '\n';
   }
   auto const& main = corridor.corridors[corridor.main];
-  text += "corridor of " + std::to_string(corridor.lanes().size()) + " lanes; straight to the destination " +
-          metres(main.length()) + " m";
+  text += "corridor of " + std::to_string(corridor.lanes().size()) + " lanes; those in line with the destination are " +
+          metres(main.length()) + " m long";
   return text + (main.continues ? ", and the road goes on\n" : ", where the road ends\n");
 }
 

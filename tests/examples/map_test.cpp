@@ -114,10 +114,11 @@ TEST_CASE("a route is printed lane by lane, and where there is none it is an err
   CHECK(has(run.out, "route of 6 lanes, "));
   CHECK(has(run.out, "  road 11, section 0, lane -1: 49.82 m, 3.5 m wide, 80 km/h\n"));
   CHECK(has(run.out, "lane -3: 60.15 m, 3.5 to 0 m wide, 100 km/h, 3 of 3 from the left\n"));
-  CHECK(has(run.out, "corridor of 10 lanes; straight to the destination 649.61 m, where the road ends\n"));
+  CHECK(has(run.out,
+            "corridor of 10 lanes; those in line with the destination are 649.61 m long, where the road ends\n"));
   auto const by_pose = map.run({merging, "--route", "10,-1.75,0", "744,82.5"});
   CHECK(by_pose.code == 0);
-  CHECK(has(by_pose.out, "  road 1, section 0, lane -1: 300 m"));
+  CHECK(has(by_pose.out, "route of 6 lanes\n  road 1, section 0, lane -1: 240.27 m"));
   auto const none = map.run({merging, "--route", "3:-1:300", "2:-1:5"});
   CHECK(none.code == 2);
   CHECK(has(none.err, "there is no way from 3:-1:300 to 2:-1:5"));
