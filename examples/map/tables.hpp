@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <string>
 
+#include "cambium/core/error.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/map/lane_adjacency.hpp"
 #include "cambium/map/map.hpp"
@@ -94,7 +95,8 @@ inline std::string route(cb::Map const& map, std::string const& from, std::strin
   std::string text =
       "route of " + std::to_string(found->lanes.size()) + " lanes, " + cb::detail::rounded_text(found->length) + " m\n";
   for (auto const id : found->lanes)
-    text += "  " + map.describe(id) + ", " + cb::detail::rounded_text(map.lane(id).length()) + " m\n";
+    text += "  " + cb::detail::printable(map.describe(id)) + ", " + cb::detail::rounded_text(map.lane(id).length()) +
+            " m\n";
   return text;
 }
 

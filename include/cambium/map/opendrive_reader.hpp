@@ -134,7 +134,7 @@ inline void report_second_containers(XmlContext& context, pugi::xml_node road_no
 [[nodiscard]] inline bool read_road(XmlContext& context, pugi::xml_node node, opendrive::Road& road) {
   road.length = -1.0;  // missing
   if (!read_attributes(context, node, road)) {
-    context.report(Severity::error, node, "the road was left out, for it has no id");
+    context.report(Severity::warning, node, "the road was left out, for it has no id");
     return false;
   }
   report_second_containers(context, node);

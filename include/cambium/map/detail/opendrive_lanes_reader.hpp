@@ -126,7 +126,7 @@ inline void check_lane_width(XmlContext& context, pugi::xml_node node, opendrive
 /// False when the lane's id is unusable.
 [[nodiscard]] inline bool read_lane(XmlContext& context, pugi::xml_node node, opendrive::Lane& lane) {
   if (!read_attributes(context, node, lane)) {
-    context.report(Severity::error, node, "the lane was left out, for it has no usable id");
+    context.report(Severity::warning, node, "the lane was left out, for it has no usable id");
     return false;
   }
   context.lane = lane.id;
@@ -154,7 +154,7 @@ inline void order_lanes(XmlContext& context, pugi::xml_node node, opendrive::Lan
       ++i;
       continue;
     }
-    context.report(Severity::error, lanes[i].line, "lane",
+    context.report(Severity::warning, lanes[i].line, "lane",
                    "lane id " + std::to_string(lanes[i].id) + " is there twice; the second one was left out");
     lanes.erase(lanes.begin() + static_cast<std::ptrdiff_t>(i));
   }
@@ -191,7 +191,7 @@ inline void read_side(XmlContext& context, pugi::xml_node node, std::string_view
 /// False when the section's start is unusable.
 [[nodiscard]] inline bool read_lane_section(XmlContext& context, pugi::xml_node node, opendrive::LaneSection& section) {
   if (!read_attributes(context, node, section)) {
-    context.report(Severity::error, node, "the lane section was left out, for its s is unusable");
+    context.report(Severity::warning, node, "the lane section was left out, for its s is unusable");
     return false;
   }
   std::size_t count = 0;

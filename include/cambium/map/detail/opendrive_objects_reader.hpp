@@ -15,7 +15,7 @@ template <class T, class Take>
 void append_with(XmlContext& context, pugi::xml_node node, std::vector<T>& list, Take const& take) {
   T x;
   if (!read_attributes(context, node, x))
-    return context.report(Severity::error, node, "it was left out for that, see the finding before");
+    return context.report(Severity::warning, node, "it was left out for that, see the finding before");
   for_each_child(node, [&](pugi::xml_node child, std::string_view name) {
     if (!take(child, name, x)) keep_element(context, child, x.rest);
   });
@@ -43,7 +43,7 @@ inline void append_outline(XmlContext& context, pugi::xml_node node, opendrive::
 inline void append_object(XmlContext& context, pugi::xml_node node, std::vector<opendrive::Object>& objects) {
   opendrive::Object object;
   if (!read_attributes(context, node, object))
-    return context.report(Severity::error, node, "it was left out for that, see the finding before");
+    return context.report(Severity::warning, node, "it was left out for that, see the finding before");
   read_container(context, find_child(node, "outlines"), object.rest, [&](pugi::xml_node child, std::string_view name) {
     if (name == "outline") append_outline(context, child, object);
     return name == "outline";
