@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 
 #include "cambium/core/error.hpp"
+#include "cambium/core/text.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/map/lane_adjacency.hpp"
 #include "cambium/map/map.hpp"
@@ -78,13 +80,15 @@ inline std::string links(cb::map::OpenDriveDocument const& document) {
 inline cb::map::LaneStation find_place(cb::Map const& map, std::string const& word) {
   auto const second = word.rfind(':'),
              first = second == 0 || second == word.npos ? word.npos : word.rfind(':', second - 1);
-  int lane = 0;
-  double s = 0.0;
-  if (first == word.npos || !examples::read_number(word.substr(first + 1, second - first - 1), lane) ||
-      !examples::read_number(word.substr(second + 1), s))
-    throw cb::Error("--route", "'" + word + "' is no place", "write it as road:lane:s, say 12:-1:30.5");
-  auto const id = map.find_lane(word.substr(0, first), s, lane);
-  return {id, map.lane(id).position_at(s)};
+  std::optional<int> lane;
+  std::optional<double> s;
+  if (first != word.npos) {
+    lane = cb::detail::parse_number<int>(word.substr(first + 1, second - first - 1));
+    s = cb::detail::parse_number<double>(word.substr(second + 1));
+  }
+  if (!lane || !s) throw cb::Error("--route", "'" + word + "' is no place", "write it as road:lane:s, say 12:-1:30.5");
+  auto const id = map.find_lane(word.substr(0, first), *s, *lane);
+  return {id, map.lane(id).position_at(*s)};
 }
 
 /// The shortest route between two places, a lane a line.
