@@ -170,4 +170,21 @@ class XmlContext {
   std::vector<Diagnostic>* diagnostics_;
 };
 
+/// As `find_child`, of what may be there once: further ones are reported, for they are not read.
+[[nodiscard]] inline pugi::xml_node find_only_child(XmlContext& context, pugi::xml_node parent, std::string_view name) {
+  pugi::xml_node first;
+  for_each_child(parent, name, [&](pugi::xml_node child) {
+    if (first)
+      context.report(Severity::warning, child, "there is a second <" + std::string(name) + ">; it was left out");
+    else
+      first = child;
+  });
+  return first;
+}
+
+/// Reports what stands in an element that has attributes only: it is not read.
+inline void report_content(XmlContext& context, pugi::xml_node node) {
+  if (node.first_child()) context.report(Severity::warning, node, "what stands in it was left out");
+}
+
 }  // namespace cambium::map::detail
