@@ -17,7 +17,10 @@
 #include <benchmark/benchmark.h>
 #include <pugixml.hpp>
 
-#include "cambium/map/lane_adjacency.hpp"
+#include "cambium/map/detail/lane_links.hpp"
+#include "cambium/map/detail/road_links.hpp"
+#include "cambium/map/detail/split_roads.hpp"
+#include "cambium/map/detail/unsampled_lane.hpp"
 #include "cambium/map/make_roads.hpp"
 #include "cambium/map/map_builder.hpp"
 #include "cambium/map/opendrive.hpp"
@@ -52,6 +55,46 @@ std::vector<fs::path> files() {
   return files;
 }
 
+/// The lanes of all sections, with ids but without geometry.
+std::vector<cb::map::Lane> unsampled_lanes(cb::map::OpenDriveDocument const& document,
+                                           std::vector<cb::map::Road>& roads) {
+  std::vector<cb::map::Lane> lanes;
+  auto const add = [&lanes](cb::map::Lane lane) {
+    lane.id = static_cast<cb::LaneId>(lanes.size());
+    lanes.push_back(std::move(lane));
+    return lanes.back().id;
+  };
+  for (std::size_t r = 0; r < roads.size(); ++r)
+    for (std::size_t k = 0; k < roads[r].sections.size(); ++k) {
+      auto& section = roads[r].sections[k];
+      if (section.end - section.begin < cb::map::detail::shortest_section) continue;
+      for (auto& beside : section.lanes) {
+        auto const& written = *document.roads[r].lane_sections[k].find(beside.number);
+        auto lane = cb::map::detail::unsampled_lane(written, roads[r], k);
+        beside.id = add(lane);
+        if (!cb::map::detail::runs_both_ways(written)) continue;
+        lane.along_road = !lane.along_road;
+        lane.opposite = beside.id;
+        beside.opposite = add(std::move(lane));
+        lanes[index_of(beside.id)].opposite = beside.opposite;
+      }
+    }
+  return lanes;
+}
+
+/// All of a map but its samples: the document, exact roads, and lanes that know which follow them.
+std::vector<cb::map::Lane> read_and_link(std::string const& text, std::string const& name) {
+  std::vector<cb::Diagnostic> diagnostics;
+  auto document = cb::map::read_opendrive_document(text, name, diagnostics);
+  if (auto const places = cb::map::detail::places_to_split(document); !places.empty())
+    document = cb::map::detail::split_roads(std::move(document), places);
+  auto roads = cb::map::make_roads(document);
+  auto lanes = unsampled_lanes(document, roads);
+  cb::map::detail::RoadLinks const links(document, roads);
+  cb::map::detail::LaneLinker(links, lanes, name, diagnostics).link();
+  return lanes;
+}
+
 void register_loading(std::string const& stem, std::shared_ptr<std::string const> const& text) {
   yardstick::add("map/xml/" + stem, [text](benchmark::State& state) {
     yardstick::measure_duration(state, [&] {
@@ -60,13 +103,7 @@ void register_loading(std::string const& stem, std::shared_ptr<std::string const
     });
   });
   yardstick::add("map/load/" + stem, [text, stem](benchmark::State& state) {
-    yardstick::measure_duration(state, [&] {
-      std::vector<cb::Diagnostic> diagnostics;
-      auto const document = cb::map::read_opendrive_document(*text, stem, diagnostics);
-      auto const roads = cb::map::make_roads(document);
-      benchmark::DoNotOptimize(roads.data());
-      benchmark::DoNotOptimize(lane_adjacency(document).data());
-    });
+    yardstick::measure_duration(state, [&] { benchmark::DoNotOptimize(read_and_link(*text, stem).data()); });
   });
   yardstick::add("map/sampled/" + stem, [text, stem](benchmark::State& state) {
     std::vector<cb::Diagnostic> diagnostics;

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "cambium/core/error.hpp"
+#include "cambium/core/text.hpp"
 #include "cambium/map/build_corridor.hpp"
 #include "cambium/map/find_corridor.hpp"
 #include "cambium/map/junction.hpp"
@@ -19,6 +21,9 @@
 
 namespace map_example {
 
+/// A lane as the map describes it, fit for a terminal.
+inline std::string lane_name(cb::Map const& map, cb::LaneId lane) { return cb::detail::printable(map.describe(lane)); }
+
 /// What is odd about how lanes hang together, a finding a line.
 inline std::string network(cb::Map const& map) {
   using cb::map::NetworkFault;
@@ -29,8 +34,8 @@ inline std::string network(cb::Map const& map) {
       text += " of " + cb::detail::rounded_text(finding.size) + " rad";
     else if (finding.size > 0.0)
       text += " of " + cb::detail::rounded_text(finding.size) + " m";
-    text += ": " + map.describe(finding.lane);
-    if (is_valid(finding.other)) text += " and " + map.describe(finding.other);
+    text += ": " + lane_name(map, finding.lane);
+    if (is_valid(finding.other)) text += " and " + lane_name(map, finding.other);
     text += '\n';
   }
   return text.empty() ? "  the lanes hang together\n" : text;
@@ -56,7 +61,7 @@ inline std::string junction(cb::Map const& map, std::string const& name) {
   }
   text += '\n';
   auto const place = [&map](cb::LaneId lane, cb::map::PathStretch const& stretch) {
-    return map.describe(lane) + " from " + metres(stretch.begin) + " to " + metres(stretch.end) + " m";
+    return lane_name(map, lane) + " from " + metres(stretch.begin) + " to " + metres(stretch.end) + " m";
   };
   for (auto const& conflict : conflict_areas(map, found->id)) {
     constexpr char const* kinds[] = {"merge", "split", "crossing"};
@@ -85,12 +90,12 @@ inline cb::map::LaneStation find_place(cb::Map const& map, std::string const& op
   if (last == "forward") direction = cb::map::RoadDirection::forward;
   if (last == "backward") direction = cb::map::RoadDirection::backward;
   if (direction) last = take();
-  int lane = 0;
-  double s = 0.0;
-  if (!examples::read_number(last, s) || !examples::read_number(take(), lane))
+  auto const s = cb::detail::parse_number<double>(last);
+  auto const lane = cb::detail::parse_number<int>(take());
+  if (!s || !lane)
     throw cb::Error(option, "'" + word + "' is no place", "write it as road:lane:s, say 12:-1:30.5, or see --help");
-  auto const id = direction ? map.find_lane(rest, s, lane, *direction) : map.find_lane(rest, s, lane);
-  return {id, map.lane(id).position_at(s)};
+  auto const id = direction ? map.find_lane(rest, *s, *lane, *direction) : map.find_lane(rest, *s, *lane);
+  return {id, map.lane(id).position_at(*s)};
 }
 
 /// "50 km/h, from 40 m on 30 km/h".
@@ -125,7 +130,7 @@ inline std::string corridor_text(cb::Map const& map, cb::map::RoadCorridor const
     auto const begin = width(0.0), end = width(lane.length());
     int const left = count_beside(map, corridor, id, &cb::map::Lane::left_neighbor),
               right = count_beside(map, corridor, id, &cb::map::Lane::right_neighbor);
-    text += "  " + map.describe(id) + ": " + metres(lane.length()) + " m, " +
+    text += "  " + lane_name(map, id) + ": " + metres(lane.length()) + " m, " +
             (begin == end ? begin : begin + " to " + end) + " m wide, " + limits(lane);
     if (left + right > 0)
       text += ", " + std::to_string(left + 1) + " of " + std::to_string(left + right + 1) + " from the left";
@@ -140,10 +145,10 @@ inline std::string corridor_text(cb::Map const& map, cb::map::RoadCorridor const
 /// The numbers of "x,y" or "x,y,heading"; none where it is neither.
 inline std::vector<double> coordinates(std::string const& word) {
   std::vector<double> numbers;
-  for (std::size_t begin = 0; begin <= word.size();) {
-    auto const end = std::min(word.find(',', begin), word.size());
-    if (!examples::read_number(word.substr(begin, end - begin), numbers.emplace_back())) return {};
-    begin = end + 1;
+  for (auto const part : cb::detail::split(word, ",")) {
+    auto const number = cb::detail::parse_number<double>(part);
+    if (!number) return {};
+    numbers.push_back(*number);
   }
   return numbers;
 }
@@ -164,12 +169,12 @@ inline std::string route(cb::Map const& map, std::string const& from, std::strin
 
 /// What can be reached from a place within so many metres, lane by lane.
 inline std::string reachable(cb::Map const& map, std::string const& from, std::string const& distance) {
-  double budget = 0.0;
-  if (!examples::read_number(distance, budget) || budget < 0.0)
+  auto const budget = cb::detail::parse_number<double>(distance);
+  if (!budget || *budget < 0.0)
     throw cb::Error("--reachable", "'" + distance + "' is no distance", "give metres, 0 or more");
-  auto const reached = map.reachable(find_place(map, "--reachable", from), budget);
-  std::string text = std::to_string(reached.size()) + " lanes can be reached within " + metres(budget) + " m\n";
-  for (auto const& lane : reached) text += "  " + map.describe(lane.lane) + ": " + metres(lane.cost) + " m\n";
+  auto const reached = map.reachable(find_place(map, "--reachable", from), *budget);
+  std::string text = std::to_string(reached.size()) + " lanes can be reached within " + metres(*budget) + " m\n";
+  for (auto const& lane : reached) text += "  " + lane_name(map, lane.lane) + ": " + metres(lane.cost) + " m\n";
   return text;
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cambium/core/error.hpp"
+#include "cambium/geometry/box.hpp"
 #include "cambium/map/junction.hpp"
 #include "cambium/map/lane_network.hpp"
 #include "cambium/map/map.hpp"
@@ -53,7 +54,7 @@ inline std::string header_text(odr::Header const& header) {
     text = "OpenDRIVE " + std::to_string(header.rev_major) + "." + std::to_string(header.rev_minor);
   if (!header.name.empty()) text += " \"" + header.name + '"';
   if (!header.vendor.empty()) text += " by " + header.vendor;
-  return text;
+  return cb::detail::printable(text);
 }
 
 /// What is written in the file.
@@ -74,7 +75,8 @@ inline std::string document_text(odr::Document const& document) {
     connections += junction.connections.size();
   }
   std::string text = line("file", header_text(document.header));
-  if (!document.header.geo_reference.empty()) text += line("projection", document.header.geo_reference);
+  if (!document.header.geo_reference.empty())
+    text += line("projection", cb::detail::printable(document.header.geo_reference));
   text += line("roads", std::to_string(document.roads.size()) + ", " + std::to_string(sections) +
                             " lane sections; geometries: " + list(geometries) +
                             (left_hand > 0 ? "; left-hand traffic" : ""));

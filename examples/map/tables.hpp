@@ -1,10 +1,14 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 
+#include "cambium/core/error.hpp"
+#include "cambium/core/text.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/map/lane_adjacency.hpp"
+#include "cambium/map/make_roads.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/road_lanes.hpp"
 #include "cambium/map/road_surface.hpp"
@@ -69,7 +73,7 @@ inline std::string links(cb::map::OpenDriveDocument const& document) {
     return end == cb::map::opendrive::ContactPoint::end ? "end" : "start";
   };
   std::string text = "road,end,lane,next_road,next_contact,next_lane,via\n";
-  for (auto const& link : lane_adjacency(document))
+  for (auto const& link : lane_adjacency(document, cb::map::make_roads(document)))
     text += csv_cell(link.road) + ',' + word(link.end) + ',' + std::to_string(link.lane) + ',' +
             csv_cell(link.next_road) + ',' + word(link.next_end) + ',' + std::to_string(link.next_lane) + ',' +
             csv_cell(link.junction.empty() ? "road" : "junction:" + link.junction) + '\n';

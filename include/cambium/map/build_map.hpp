@@ -22,6 +22,7 @@
 #include "cambium/map/detail/section_sampler.hpp"
 #include "cambium/map/detail/split_roads.hpp"
 #include "cambium/map/detail/speed_limits.hpp"
+#include "cambium/map/detail/unsampled_lane.hpp"
 #include "cambium/map/make_roads.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/opendrive_document.hpp"
@@ -87,7 +88,7 @@ class MapBuild {
     auto const cross_sections = SectionSampler(road, section, parts_.options).sample();
     for (std::size_t column = 0; column < section.lanes.size(); ++column) {
       auto const& written = *source.lane_sections[k].find(section.lanes[column].number);
-      Lane lane = make_lane(written, road, k);
+      Lane lane = unsampled_lane(written, road, k);
       lane.id = static_cast<LaneId>(parts_.lanes.size());
       if (!has_geometry(lane, cross_sections, column)) {
         diagnostics_.push_back(
@@ -108,10 +109,6 @@ class MapBuild {
     }
   }
 
-  [[nodiscard]] static bool runs_both_ways(opendrive::Lane const& lane) {
-    return lane.direction == opendrive::LaneDirection::both || lane.type == LaneType::bidirectional;
-  }
-
   /// Adds the last lane once more, driven the other way.
   LaneId add_opposite(std::span<CrossSection const> cross_sections, std::size_t column) {
     Lane lane = parts_.lanes.back();
@@ -130,19 +127,6 @@ class MapBuild {
     } catch (MapError const&) {  // a point that is not a finite number
       return false;
     }
-  }
-
-  [[nodiscard]] static Lane make_lane(opendrive::Lane const& written, Road const& road, std::size_t k) {
-    Lane lane;
-    lane.road = road.id;
-    lane.section = static_cast<std::uint32_t>(k);
-    lane.number = written.id;
-    lane.type = written.type;
-    lane.along_road = (written.id < 0) != road.left_hand_traffic;
-    if (written.direction == opendrive::LaneDirection::reversed) lane.along_road = !lane.along_road;
-    lane.road_begin = road.sections[k].begin;
-    lane.road_end = road.sections[k].end;
-    return lane;
   }
 
   /// `left` lies left of `right` as seen along the road. Nobody changes onto a lane with oncoming traffic.

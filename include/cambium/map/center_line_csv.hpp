@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <fstream>
@@ -10,11 +9,11 @@
 #include <sstream>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "cambium/core/error.hpp"
+#include "cambium/core/text.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/lane.hpp"
 #include "cambium/map/polyline_roads.hpp"
@@ -31,6 +30,8 @@ struct CenterLine {
 
 namespace detail {
 
+using cambium::detail::parse_number;
+
 /// Reads a centre line's table, see `read_center_line_csv`.
 class CenterLineReader {
  public:
@@ -41,7 +42,7 @@ class CenterLineReader {
     if (text_.substr(0, 3) == "\xEF\xBB\xBF") text_.remove_prefix(3);
     for (bool first = true; !text_.empty();) {
       auto const end = std::min(text_.find('\n'), text_.size());
-      auto const line = trimmed(text_.substr(0, end));
+      auto const line = cambium::detail::trimmed(text_.substr(0, end), blank);
       text_.remove_prefix(std::min(end + 1, text_.size()));
       ++line_;
       if (line.empty() || line.front() == '#') continue;
@@ -56,39 +57,21 @@ class CenterLineReader {
  private:
   enum Column { x, y, heading, left_x, left_y, right_x, right_y, columns };
   using Row = std::array<double, columns>;
+  static constexpr std::string_view blank = " \t\r\"";  // cells may stand in quotes
 
   [[noreturn]] void fail(std::string const& what, std::string const& remedy) const {
     throw MapError(name_ + ":" + std::to_string(line_), what, remedy);
   }
 
-  [[nodiscard]] static std::string_view trimmed(std::string_view text) {
-    constexpr std::string_view blank = " \t\r\"";
-    auto const begin = text.find_first_not_of(blank);
-    if (begin == std::string_view::npos) return {};
-    return text.substr(begin, text.find_last_not_of(blank) + 1 - begin);
-  }
-
   [[nodiscard]] static std::vector<std::string_view> split(std::string_view line) {
-    std::vector<std::string_view> cells;
-    for (std::size_t begin = 0; begin <= line.size();) {
-      auto const end = std::min(line.find_first_of(",;", begin), line.size());
-      cells.push_back(trimmed(line.substr(begin, end - begin)));
-      begin = end + 1;
-    }
+    auto cells = cambium::detail::split(line, ",;");
+    for (auto& cell : cells) cell = cambium::detail::trimmed(cell, blank);
     return cells;
-  }
-
-  [[nodiscard]] static std::optional<double> number(std::string_view text) {
-    double value = 0.0;
-    if (text.starts_with('+')) text.remove_prefix(1);
-    auto const [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (problem != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-    return value;
   }
 
   /// Takes the first row as the columns' names; false where it is one of numbers, whose columns are x, y, heading.
   bool read_heading(std::vector<std::string_view> const& cells) {
-    if (number(cells.front())) {
+    if (parse_number<double>(cells.front())) {
       for (std::size_t i = 0; i < std::min<std::size_t>(cells.size(), 3); ++i) column_[i] = i;
       return false;
     }
@@ -116,7 +99,7 @@ class CenterLineReader {
     Row row{};
     for (std::size_t i = 0; i < columns; ++i) {
       if (!column_[i]) continue;
-      auto const value = *column_[i] < cells.size() ? number(cells[*column_[i]]) : std::nullopt;
+      auto const value = *column_[i] < cells.size() ? parse_number<double>(cells[*column_[i]]) : std::nullopt;
       if (!value)
         fail("cell " + std::to_string(*column_[i] + 1) +
                  (*column_[i] < cells.size()

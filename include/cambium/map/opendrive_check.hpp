@@ -53,7 +53,7 @@ class DocumentCheck {
     std::unordered_set<std::string> seen;
     std::erase_if(elements, [&](Element const& element) {
       if (seen.insert(element.id).second) return false;
-      report(Severity::error, element.line, kind, "", "id " + element.id + sentence);
+      report(Severity::warning, element.line, kind, "", "id " + element.id + sentence);
       return true;
     });
     for (Element const& element : elements) ids.insert(element.id);
@@ -113,7 +113,7 @@ class DocumentCheck {
   [[nodiscard]] bool has_lanes(opendrive::Road const& road) {
     opendrive::LaneSection const& first = road.lane_sections.front();
     if (first.s <= road.geometry_length()) return true;
-    report(Severity::error, first.line, "laneSection", "road " + road.id,
+    report(Severity::warning, first.line, "laneSection", "road " + road.id,
            "the first section starts at " + rounded_text(first.s) + " m, behind the road's end; the road was left out");
     return false;
   }
@@ -125,7 +125,7 @@ class DocumentCheck {
       return g.kind != GeometryKind::cubic || g.cubic != nullptr;
     });
     if (!road.geometries.empty() && !road.lane_sections.empty() && has_curves) return true;
-    report(Severity::error, road.line, "road", "road " + road.id,
+    report(Severity::warning, road.line, "road", "road " + road.id,
            "it has no geometry, no lane section, or a cubic without its curve; it was left out");
     return false;
   }
@@ -163,7 +163,7 @@ class DocumentCheck {
         lowest = std::min(lowest, low);
         continue;
       }
-      report(Severity::error, line, element, ids(),
+      report(Severity::warning, line, element, ids(),
              "the record at " + rounded_text(records[i].s) + " m reaches " + rounded_text(high > largest ? high : low) +
                  " m; it was left out");
       records.erase(records.begin() + static_cast<std::ptrdiff_t>(i));

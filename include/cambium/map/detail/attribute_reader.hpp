@@ -190,7 +190,7 @@ template <class T>
 template <class T>
 [[nodiscard]] bool read_leaf(XmlContext& context, pugi::xml_node node, T& x) {
   if (!read_attributes(context, node, x)) {
-    context.report(Severity::error, node, "it was left out for that, see the finding before");
+    context.report(Severity::warning, node, "it was left out for that, see the finding before");
     return false;
   }
   for_each_child(node, [&](pugi::xml_node child, std::string_view) { keep_element(context, child, x.rest); });

@@ -49,7 +49,7 @@ class GeometryCheck {
   static constexpr double slight = 1e-3;  // [m]
 
   bool lose(std::size_t geometry, std::string const& what) {
-    report(Severity::error, road_.geometry_lines[geometry], what + "; the road was left out");
+    report(Severity::warning, road_.geometry_lines[geometry], what + "; the road was left out");
     return false;
   }
 

@@ -29,6 +29,7 @@ void sort_records(XmlContext& context, pugi::xml_node parent, std::vector<Record
                                                            char const* start) {
   CubicRecord record;
   bool good = true;
+  report_content(context, node);
   // One walk over the attributes instead of five searches: these records are most of a file.
   bool has_start = false;
   for (pugi::xml_attribute attribute = node.first_attribute(); attribute; attribute = attribute.next_attribute()) {
@@ -63,6 +64,7 @@ inline void append_cubic(XmlContext& context, pugi::xml_node node, char const* s
 /// The speed limit of a `speed` element into a record that has `limit` and `unit`.
 template <class Record>
 void read_speed(XmlContext& context, pugi::xml_node node, Record& record) {
+  report_content(context, node);
   std::string_view const text = trimmed(node.attribute("max").value());
   std::string_view const unit = trimmed(node.attribute("unit").value());
   if (text == "no limit") record.limit = std::numeric_limits<double>::infinity();
@@ -81,8 +83,10 @@ void read_speed(XmlContext& context, pugi::xml_node node, Record& record) {
 }
 
 inline void read_lane_links(XmlContext& context, pugi::xml_node node, opendrive::Lane& lane) {
-  read_container(context, find_child(node, "link"), lane.rest, [&](pugi::xml_node child, std::string_view name) {
+  pugi::xml_node const container = find_only_child(context, node, "link");
+  read_container(context, container, lane.rest, [&](pugi::xml_node child, std::string_view name) {
     if (name != "predecessor" && name != "successor") return false;
+    report_content(context, child);
     if (std::optional<int> const id = context.number<int>(child, "id"))
       (name == "successor" ? lane.successors : lane.predecessors).push_back(*id);
     return true;
@@ -126,7 +130,7 @@ inline void check_lane_width(XmlContext& context, pugi::xml_node node, opendrive
 /// False when the lane's id is unusable.
 [[nodiscard]] inline bool read_lane(XmlContext& context, pugi::xml_node node, opendrive::Lane& lane) {
   if (!read_attributes(context, node, lane)) {
-    context.report(Severity::error, node, "the lane was left out, for it has no usable id");
+    context.report(Severity::warning, node, "the lane was left out, for it has no usable id");
     return false;
   }
   context.lane = lane.id;
@@ -149,15 +153,13 @@ inline void order_lanes(XmlContext& context, pugi::xml_node node, opendrive::Lan
   std::vector<opendrive::Lane>& lanes = section.lanes;
   auto const from_left = [](opendrive::Lane const& lane) { return -static_cast<long long>(lane.id); };
   stable_sort(lanes, from_left);
-  for (std::size_t i = 1; i < lanes.size();) {
-    if (lanes[i].id != lanes[i - 1].id) {
-      ++i;
-      continue;
-    }
-    context.report(Severity::error, lanes[i].line, "lane",
-                   "lane id " + std::to_string(lanes[i].id) + " is there twice; the second one was left out");
-    lanes.erase(lanes.begin() + static_cast<std::ptrdiff_t>(i));
-  }
+  auto const is_double = [&](opendrive::Lane const& before, opendrive::Lane const& lane) {
+    if (before.id != lane.id) return false;
+    context.report(Severity::warning, lane.line, "lane",
+                   "lane id " + std::to_string(lane.id) + " is there twice; the second one was left out");
+    return true;
+  };
+  lanes.erase(std::unique(lanes.begin(), lanes.end(), is_double), lanes.end());
   if (!section.find(0)) {
     context.report(Severity::warning, node, "the section has no lane 0; an empty one was added");
     opendrive::Lane centre;
@@ -191,7 +193,7 @@ inline void read_side(XmlContext& context, pugi::xml_node node, std::string_view
 /// False when the section's start is unusable.
 [[nodiscard]] inline bool read_lane_section(XmlContext& context, pugi::xml_node node, opendrive::LaneSection& section) {
   if (!read_attributes(context, node, section)) {
-    context.report(Severity::error, node, "the lane section was left out, for its s is unusable");
+    context.report(Severity::warning, node, "the lane section was left out, for its s is unusable");
     return false;
   }
   std::size_t count = 0;

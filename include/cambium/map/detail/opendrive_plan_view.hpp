@@ -82,8 +82,10 @@ using cambium::detail::rounded_text;
   for_each_child(node, [&](pugi::xml_node child, std::string_view name) {
     if (std::find(std::begin(kinds), std::end(kinds), name) == std::end(kinds))
       return keep_element(context, child, rest);
-    if (!is_found) good = read_kind(context, child, name, g);
-    is_found = true;
+    if (std::exchange(is_found, true))
+      return context.report(Severity::warning, child, "the geometry has a curve before; this one was left out");
+    report_content(context, child);
+    good = read_kind(context, child, name, g);
   });
   if (!is_found)
     context.report(Severity::warning, node, "the geometry is none of line, arc, spiral, poly3, paramPoly3");
@@ -142,7 +144,7 @@ struct ReadGeometry {
 
 /// False when there is no usable plan view.
 [[nodiscard]] inline bool read_plan_view(XmlContext& context, pugi::xml_node road_node, opendrive::Road& road) {
-  pugi::xml_node const node = find_child(road_node, "planView");
+  pugi::xml_node const node = find_only_child(context, road_node, "planView");
   std::vector<ReadGeometry> all;
   bool good = true;
   read_container(context, node, road.rest, [&](pugi::xml_node child, std::string_view name) {

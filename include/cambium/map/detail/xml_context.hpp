@@ -1,14 +1,11 @@
 #pragma once
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <cstddef>
 #include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -16,6 +13,7 @@
 #include <pugixml.hpp>
 
 #include "cambium/core/diagnostic.hpp"
+#include "cambium/core/text.hpp"
 
 namespace cambium::map::detail {
 
@@ -47,38 +45,8 @@ class LineTable {
   std::size_t cursor_ = 0;
 };
 
-/// `text` without white space at its ends.
-[[nodiscard]] inline std::string_view trimmed(std::string_view text) {
-  auto const is_blank = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; };
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
-/// Whether a number that is out of the range of doubles is too small for it, not too large. One whose exponent is
-/// outweighed by hundreds of digits before it counts by its exponent.
-[[nodiscard]] inline bool is_underflow(std::string_view number) {
-  if (auto const exponent = number.find_first_of("eE"); exponent != number.npos)
-    return number.substr(exponent + 1).starts_with('-');
-  return number.find_first_not_of("-0") == number.find('.');
-}
-
-/// The finite number that the whole of `text` spells, in the C locale; a leading '+' is allowed, and what is closer to
-/// 0 than any double is 0.
-template <class Number>
-[[nodiscard]] std::optional<Number> parse_number(std::string_view text) {
-  text = trimmed(text);
-  if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1);
-  Number value{};
-  auto const [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (end != text.data() + text.size()) return std::nullopt;
-  if constexpr (std::is_floating_point_v<Number>) {
-    if (error == std::errc::result_out_of_range && is_underflow(text)) return Number{};
-    if (!std::isfinite(value)) return std::nullopt;
-  }
-  if (error != std::errc{}) return std::nullopt;
-  return value;
-}
+using cambium::detail::parse_number;
+using cambium::detail::trimmed;
 
 /// An element's or attribute's name without its namespace prefix.
 [[nodiscard]] inline std::string_view local_name(char const* name) {
@@ -201,5 +169,22 @@ class XmlContext {
   std::string file_;
   std::vector<Diagnostic>* diagnostics_;
 };
+
+/// As `find_child`, of what may be there once: further ones are reported, for they are not read.
+[[nodiscard]] inline pugi::xml_node find_only_child(XmlContext& context, pugi::xml_node parent, std::string_view name) {
+  pugi::xml_node first;
+  for_each_child(parent, name, [&](pugi::xml_node child) {
+    if (first)
+      context.report(Severity::warning, child, "there is a second <" + std::string(name) + ">; it was left out");
+    else
+      first = child;
+  });
+  return first;
+}
+
+/// Reports what stands in an element that has attributes only: it is not read.
+inline void report_content(XmlContext& context, pugi::xml_node node) {
+  if (node.first_child()) context.report(Severity::warning, node, "what stands in it was left out");
+}
 
 }  // namespace cambium::map::detail
