@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cambium/core/diagnostic.hpp"
+#include "cambium/map/detail/exact_paths.hpp"
 #include "cambium/map/detail/junctions.hpp"
 #include "cambium/map/detail/lane_change_marks.hpp"
 #include "cambium/map/detail/lane_geometry.hpp"
@@ -56,9 +57,10 @@ class MapBuild {
     set_lane_changes(document_, parts_.lanes);
     parts_.junctions = make_junctions(document_, parts_.roads, parts_.lanes);
     number_lane_coordinate();
+    ExactPaths const paths(parts_.roads, parts_.lanes, parts_.options);
     find_overlaps(
         parts_.lanes, [this](Lane const& lane, double s) { return elevation(lane, s); },
-        parts_.options.overlap_clearance);
+        parts_.options.overlap_clearance, [&paths](Lane const& lane, double s) { return paths.at(lane, s); });
     parts_.route_finder = make_route_finder();
     return std::make_shared<Map const>(std::move(parts_));
   }
