@@ -33,15 +33,6 @@ class OverlapFinder {
     for (auto& lane : lanes_) lane.overlaps.clear();
     find_related();
     find_contacts();
-    std::sort(contacts_.begin(), contacts_.end(), [](Contact const& l, Contact const& r) {
-      return std::tie(l.a, l.b, l.on_a.begin, l.on_b.begin) < std::tie(r.a, r.b, r.on_a.begin, r.on_b.begin);
-    });
-    for (auto begin = contacts_.begin(); begin != contacts_.end();) {
-      auto const end =
-          std::find_if(begin, contacts_.end(), [&](Contact const& c) { return c.a != begin->a || c.b != begin->b; });
-      join(std::span<Contact const>(begin, end));
-      begin = end;
-    }
     for (auto& lane : lanes_)
       std::sort(lane.overlaps.begin(), lane.overlaps.end(), [](Overlap const& l, Overlap const& r) {
         return std::tie(l.begin, l.other, l.other_begin) < std::tie(r.begin, r.other, r.other_begin);
@@ -109,7 +100,7 @@ class OverlapFinder {
   }
 
   void find_contacts() {
-    constexpr double tolerance = 0.005, longest = 20.0;  // [m] of chords; the overlaps' ends are refined afterwards
+    constexpr double tolerance = 0.01, longest = 50.0;  // [m] of chords; the overlaps' ends are refined afterwards
     std::vector<LaneChord> chords;
     for (auto const& lane : lanes_)
       if (lane.drivable()) add_chords(lane, tolerance, longest, chords);
@@ -122,22 +113,37 @@ class OverlapFinder {
     }
     last_contact_.assign(lanes_.size(), 0);
     BoxTree const tree(boxes);
-    for (std::size_t i = 0; i < chords.size(); ++i)
+    for (std::size_t i = 0; i < chords.size(); ++i) {
       tree.visit(boxes[i].grown(clearance_), [&](std::uint32_t j) {
         if (chords[i].lane < chords[j].lane) add_contact(chords[i], chords[j]);
         return false;
       });
+      if (i + 1 == chords.size() || chords[i + 1].lane != chords[i].lane) join_contacts();
+    }
+  }
+
+  /// Joins the contacts of one lane with all others: they would fill the memory where many lanes lie on each other.
+  void join_contacts() {
+    std::sort(contacts_.begin(), contacts_.end(), [](Contact const& l, Contact const& r) {
+      return std::tie(l.b, l.on_a.begin, l.on_b.begin) < std::tie(r.b, r.on_a.begin, r.on_b.begin);
+    });
+    for (auto begin = contacts_.begin(); begin != contacts_.end();) {
+      auto const end = std::find_if(begin, contacts_.end(), [&](Contact const& c) { return c.b != begin->b; });
+      join(std::span<Contact const>(begin, end));
+      begin = end;
+    }
+    contacts_.clear();
   }
 
   void add_contact(LaneChord const& a, LaneChord const& b) {
+    if (auto const* last = last_contact(b); last && last->on_a.has(a.on_path) && last->on_b.has(b.on_path)) return;
     constexpr double clear_height = 3.0;  // [m] enough for one to pass under the other
     if (std::abs(a.elevation - b.elevation) > clear_height || are_beside(a, b) || are_related(a.lane, b.lane)) return;
-    if (auto const* last = last_contact(a, b); last && last->on_a.has(a.on_path) && last->on_b.has(b.on_path)) return;
     auto const on_a = stretch_near(a, b, clearance_);
     if (!on_a) return;
     auto const on_b = stretch_near(b, a, clearance_);
     if (!on_b) return;
-    if (auto* last = last_contact(a, b); last && last->on_a.touches(*on_a) && last->on_b.touches(*on_b)) {
+    if (auto* last = last_contact(b); last && last->on_a.touches(*on_a) && last->on_b.touches(*on_b)) {
       last->on_a.add(*on_a);
       last->on_b.add(*on_b);
       return;
@@ -146,10 +152,10 @@ class OverlapFinder {
     contacts_.push_back({a.lane, b.lane, *on_a, *on_b});
   }
 
-  /// The last contact of the two chords' lanes: mostly the one that they continue. Lane `a` of the contacts ascends.
-  [[nodiscard]] Contact* last_contact(LaneChord const& a, LaneChord const& b) {
+  /// The last contact of the present lane with that of `b`: mostly the one that they continue.
+  [[nodiscard]] Contact* last_contact(LaneChord const& b) {
     auto const i = last_contact_[b.lane];
-    return i < contacts_.size() && contacts_[i].a == a.lane && contacts_[i].b == b.lane ? &contacts_[i] : nullptr;
+    return i < contacts_.size() && contacts_[i].b == b.lane ? &contacts_[i] : nullptr;
   }
 
   /// Joins the contacts of one pair of lanes that touch on both of them, and enters an overlap for each group.
@@ -170,8 +176,7 @@ class OverlapFinder {
     }
     for (auto& g : groups) {
       auto &a = lanes_[g.a], &b = lanes_[g.b];
-      ends_.refine(a, g.on_a, b, g.on_b);
-      if (!(g.on_a.begin < g.on_a.end && g.on_b.begin < g.on_b.end)) continue;
+      if (!ends_.refine(a, g.on_a, b, g.on_b)) continue;
       bool const is_crossing = turn_between(a, g.on_a, b, g.on_b) > geometry::pi / 3;
       if (!is_crossing) {
         ends_.trim(a, g.on_a, b, g.on_b);
@@ -210,16 +215,19 @@ class OverlapFinder {
   double clearance_;
   OverlapEnds ends_;
   std::vector<std::vector<LaneId>> ahead_, behind_, beside_;  ///< by lane
-  std::vector<Contact> contacts_;
-  std::vector<std::size_t> last_contact_;  ///< by the other lane
+  std::vector<Contact> contacts_;                             ///< of the present lane with others
+  std::vector<std::size_t> last_contact_;                     ///< by the other lane
 };
 
 }  // namespace detail
 
 /// Fills `Lane::overlaps` of the drivable lanes: the stretches on which two lanes' paths are closer than `clearance`
-/// [m], on both lanes, to 2 mm on the sampled paths. `elevation` may be empty; where it is given, paths more than 3 m
-/// above each other do not overlap. A lane's number must be its place in `lanes`. O((n + k) log n) for n path segments,
-/// k pairs of them that are close.
+/// [m], on both lanes. An end lies within 1 cm, along the path, of where the distance of the exact paths (`place`;
+/// without one, the sampled paths) is the clearance, however slowly the lanes come together. Lanes whose sampled paths
+/// come 2 cm closer than that, or less, may be missed, and gaps as shallow may be passed over. `elevation` may be
+/// empty; where it is given, paths more than 3 m above each other do not overlap. A lane's number must be its place in
+/// `lanes`. O((n + k) log n) for n path segments, k pairs of them that are close; memory O(n) and the pairs of one
+/// lane.
 ///
 /// Left out are lanes that belong together anyway: one behind the other (also with lanes in between that are shorter
 /// than twice the clearance), those beside these, oncoming ones too, and lanes of the same road at the same station,

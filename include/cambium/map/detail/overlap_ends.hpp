@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <optional>
 
 #include "cambium/geometry/line.hpp"
 #include "cambium/geometry/pose.hpp"
@@ -22,13 +23,20 @@ class OverlapEnds {
   /// Without `place` the sampled paths are the exact ones.
   OverlapEnds(LanePlace const& place, double clearance) : place_(place), clearance_(clearance) {}
 
-  /// Lets the stretches begin and end where one lane is as far from the other as the clearance.
-  void refine(Lane const& a, Stretch& on_a, Lane const& b, Stretch& on_b) const {
+  /// Lets the stretches begin and end where one lane is as far from the other as the clearance. False where the exact
+  /// paths do not come so near.
+  [[nodiscard]] bool refine(Lane const& a, Stretch& on_a, Lane const& b, Stretch& on_b) const {
     bool const same_way = std::cos(a.path.pose(on_a.middle()).heading - b.path.pose(on_b.middle()).heading) > 0.0;
     Stretch const near_b = same_way ? on_b : Stretch{on_b.end, on_b.begin},
                   near_a = same_way ? on_a : Stretch{on_a.end, on_a.begin};
-    on_a = {refined(a, on_a.begin, on_a.end, b, near_b.begin), refined(a, on_a.end, on_a.begin, b, near_b.end)};
-    on_b = {refined(b, on_b.begin, on_b.end, a, near_a.begin), refined(b, on_b.end, on_b.begin, a, near_a.end)};
+    auto const a_begin = refined(a, on_a.begin, on_a.end, b, near_b.begin),
+               a_end = refined(a, on_a.end, on_a.begin, b, near_b.end),
+               b_begin = refined(b, on_b.begin, on_b.end, a, near_a.begin),
+               b_end = refined(b, on_b.end, on_b.begin, a, near_a.end);
+    if (!a_begin || !a_end || !b_begin || !b_end) return false;
+    on_a = {*a_begin, *a_end};
+    on_b = {*b_begin, *b_end};
+    return on_a.begin < on_a.end && on_b.begin < on_b.end;
   }
 
   /// Where `a` begins or ends within the overlap, lets the stretch on `b` do so beside it: what is near to `a` beyond
@@ -67,16 +75,19 @@ class OverlapEnds {
     double s = std::clamp(lane.path.project(p, lane.path.find(near)).s, 0.0, lane.length());
     for (int i = 0;; ++i) {
       auto const q = at(lane, s);
-      double const dx = p.x() - q.x, dy = p.y() - q.y;
-      double const next = std::clamp(s + dx * std::cos(q.heading) + dy * std::sin(q.heading), 0.0, lane.length());
-      if (std::abs(next - s) < 1e-3 || i == 8) return {next, std::hypot(dx, dy)};  // off by a ten thousandth of that
+      double const dx = p.x() - q.x, dy = p.y() - q.y, ux = std::cos(q.heading), uy = std::sin(q.heading);
+      // On the inner side of a bend the foot point moves faster than the point.
+      double const speed = std::max(0.1, 1.0 - lane.path.curvature(s) * (ux * dy - uy * dx));
+      double const next = std::clamp(s + (dx * ux + dy * uy) / speed, 0.0, lane.length());
+      if (std::abs(next - s) < 1e-3 || i == 20) return {next, std::hypot(dx, dy)};  // off by a ten thousandth of that
       s = next;
     }
   }
 
   /// Moves `end` of the stretch between `end` and `other_end` to where `a` is exactly as far from `b` as the clearance.
-  /// Stays where no such place is found: the lanes only graze each other.
-  [[nodiscard]] double refined(Lane const& a, double end, double other_end, Lane const& b, double near) const {
+  /// Nothing where the whole stretch is farther off: the lanes only graze each other.
+  [[nodiscard]] std::optional<double> refined(Lane const& a, double end, double other_end, Lane const& b,
+                                              double near) const {
     constexpr double farthest = 50.0;  // [m] outwards: lanes part as slowly as that
     auto const excess = [&](double s) {
       auto const nearest = foot(at(a, s).position(), b, near);
@@ -88,21 +99,20 @@ class OverlapEnds {
     double const outwards = end < other_end ? -1.0 : 1.0;
     bool const goes_out = bracket.from_excess < 0.0;
     double const limit = goes_out ? std::clamp(end + outwards * farthest, 0.0, a.length()) : other_end;
-    double const direction = goes_out ? outwards : -outwards;
-    if (end == limit) return end;
-    for (double step = 0.05;; step *= 2.0) {
-      double const s = direction * (end + direction * step - limit) < 0.0 ? end + direction * step : limit;
-      double const here = excess(s);
-      bool const is_beyond = (here < 0.0) != goes_out;
-      if (is_beyond) {
-        bracket.to = s;
-        bracket.to_excess = here;
-        return on_path(a, root(bracket, excess));
-      }
-      if (s == limit) return goes_out && (s == 0.0 || s == a.length()) ? s : end;
-      bracket.from = s;
-      bracket.from_excess = here;
+    // Outwards in growing steps, for the end is mostly near; inwards in even ones, to find what is left.
+    constexpr int pieces = 16;
+    for (int i = 1;; ++i) {
+      double const step = goes_out ? std::min(0.05 * std::exp2(i - 1) / std::max(std::abs(limit - end), 1e-9), 1.0)
+                                   : static_cast<double>(i) / pieces;
+      bracket.to = step < 1.0 ? end + step * (limit - end) : limit;
+      bracket.to_excess = excess(bracket.to);
+      if ((bracket.to_excess < 0.0) != goes_out) return on_path(a, root(bracket, excess));
+      if (bracket.to == limit) break;
+      bracket.from = bracket.to;
+      bracket.from_excess = bracket.to_excess;
     }
+    if (!goes_out) return std::nullopt;
+    return limit == 0.0 || limit == a.length() ? limit : end;
   }
 
   /// Between two places there is one where the excess is 0.
