@@ -158,32 +158,36 @@ class OverlapFinder {
     return i < contacts_.size() && contacts_[i].b == b.lane ? &contacts_[i] : nullptr;
   }
 
-  /// Joins the contacts of one pair of lanes that touch on both of them, and enters an overlap for each group.
-  void join(std::span<Contact const> contacts) {
-    std::vector<Contact> groups;
-    for (auto contact : contacts) {
-      for (std::size_t i = 0; i < groups.size();) {
-        if (!groups[i].on_a.touches(contact.on_a) || !groups[i].on_b.touches(contact.on_b)) {
-          ++i;
-          continue;
-        }
-        contact.on_a.add(groups[i].on_a);
-        contact.on_b.add(groups[i].on_b);
-        groups.erase(groups.begin() + static_cast<std::ptrdiff_t>(i));
-        i = 0;  // the larger one may touch others
+  /// Adds a contact of one pair of lanes, joined with those that it touches on both of them.
+  static void add_joined(Contact contact, std::vector<Contact>& groups) {
+    for (std::size_t i = 0; i < groups.size();) {
+      if (!groups[i].on_a.touches(contact.on_a) || !groups[i].on_b.touches(contact.on_b)) {
+        ++i;
+        continue;
       }
-      groups.push_back(contact);
+      contact.on_a.add(groups[i].on_a);
+      contact.on_b.add(groups[i].on_b);
+      groups.erase(groups.begin() + static_cast<std::ptrdiff_t>(i));
+      i = 0;  // the larger one may touch others
     }
-    for (auto& g : groups) {
+    groups.push_back(contact);
+  }
+
+  /// Enters the overlaps of one pair of lanes.
+  void join(std::span<Contact const> contacts) {
+    std::vector<Contact> groups, refined;
+    for (auto const& contact : contacts) add_joined(contact, groups);
+    for (auto& g : groups)  // ends that were apart on the chords may prove to be one stretch
+      if (ends_.refine(lanes_[g.a], g.on_a, lanes_[g.b], g.on_b)) add_joined(g, refined);
+    for (auto& g : refined) {
       auto &a = lanes_[g.a], &b = lanes_[g.b];
-      if (!ends_.refine(a, g.on_a, b, g.on_b)) continue;
       bool const is_crossing = turn_between(a, g.on_a, b, g.on_b) > geometry::pi / 3;
       if (!is_crossing) {
         ends_.trim(a, g.on_a, b, g.on_b);
         ends_.trim(b, g.on_b, a, g.on_a);
-        constexpr double shortest = 0.01;  // [m]
-        if (g.on_a.end - g.on_a.begin < shortest || g.on_b.end - g.on_b.begin < shortest) continue;
       }
+      constexpr double shortest = 0.01;  // [m]
+      if (g.on_a.end - g.on_a.begin < shortest || g.on_b.end - g.on_b.begin < shortest) continue;
       auto const kind = is_crossing ? OverlapKind::crossing : kind_of(g);
       a.overlaps.push_back({b.id, kind, g.on_a.begin, g.on_a.end, g.on_b.begin, g.on_b.end});
       b.overlaps.push_back({a.id, kind, g.on_b.begin, g.on_b.end, g.on_a.begin, g.on_a.end});
