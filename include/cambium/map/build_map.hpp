@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cambium/core/diagnostic.hpp"
+#include "cambium/map/detail/exact_paths.hpp"
 #include "cambium/map/detail/junctions.hpp"
 #include "cambium/map/detail/lane_change_marks.hpp"
 #include "cambium/map/detail/lane_geometry.hpp"
@@ -19,6 +20,7 @@
 #include "cambium/map/detail/link_check.hpp"
 #include "cambium/map/detail/missing_links.hpp"
 #include "cambium/map/detail/road_links.hpp"
+#include "cambium/map/detail/require_buildable.hpp"
 #include "cambium/map/detail/section_sampler.hpp"
 #include "cambium/map/detail/split_roads.hpp"
 #include "cambium/map/detail/speed_limits.hpp"
@@ -57,9 +59,10 @@ class MapBuild {
     set_lane_changes(document_, parts_.lanes);
     parts_.junctions = make_junctions(document_, parts_.roads, parts_.lanes);
     number_lane_coordinate();
+    ExactPaths const paths(parts_.roads, parts_.lanes, parts_.options);
     find_overlaps(
         parts_.lanes, [this](Lane const& lane, double s) { return elevation(lane, s); },
-        parts_.options.overlap_clearance);
+        parts_.options.overlap_clearance, [&paths](Lane const& lane, double s) { return paths.at(lane, s); });
     parts_.route_finder = make_route_finder();
     return std::make_shared<Map const>(std::move(parts_));
   }
@@ -158,13 +161,16 @@ class MapBuild {
 
 /// The map that a document describes; what was odd is added to `diagnostics`, with `file` as the place: links that lead
 /// nowhere, that only one side knows, or that seem to be missing (see `MapOptions::infer_links`), joined lanes that do
-/// not meet, a map without a lane to drive on. Throws `MapError` where no lane is left.
+/// not meet, a map without a lane to drive on. Throws `MapError` where no lane is left, and where a document, which may
+/// have been made or changed in code, lacks what the reader guarantees: geometries and lane sections in order and
+/// finite, a curve for each cubic, no id twice. (`check_opendrive_document` finds more, and mends some of it.)
 ///
 /// A lane for both directions (`direction="both"`, type bidirectional) becomes two lanes, see `Lane::opposite`. Lanes
 /// are linked at their ends only: a section is split where a connecting road of a virtual junction meets the middle of
 /// a road, and in the middle of a road of one section that closes upon itself.
 [[nodiscard]] inline std::shared_ptr<Map const> build_map(OpenDriveDocument const& document, MapOptions const& options,
                                                           std::string file, std::vector<Diagnostic>& diagnostics) {
+  detail::RequireBuildable::check(document);
   auto const places = detail::places_to_split(document);
   if (places.empty()) return detail::MapBuild(document, options, std::move(file), diagnostics).build();
   auto const split = detail::split_roads(document, places);

@@ -16,6 +16,7 @@
 #include "cambium/core/text.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/lane.hpp"
+#include "cambium/map/lane_type.hpp"
 #include "cambium/map/polyline_roads.hpp"
 #include "cambium/map/road_plan.hpp"
 
@@ -151,11 +152,35 @@ class CenterLineReader {
   return read_center_line_csv(text.str(), path, origin);
 }
 
-/// A road with one lane, -1, along the line: as wide as its table says, else `lane_width` [m]. Throws `MapError` as
-/// `lane_along`.
+/// A road with one lane to drive on, -1, whose path is the line, to 1 mm: as wide as its table says, else `lane_width`
+/// [m]. Where the distances to the left and the right border differ, by more than 2 mm anywhere, the lane takes the
+/// smaller one on both sides (a lane's path is the middle of its borders), and the rest becomes a lane of the type
+/// shoulder, 1 or -2: so the outermost borders are the table's at its points, but nobody plans to drive on the rest.
+/// Who wants the whole width as one lane, with its middle as the path, gives `line.points` and `line.widths` to the
+/// other `lane_along`. Throws `MapError` as that.
 [[nodiscard]] inline RoadPlan lane_along(CenterLine const& line, double lane_width = 3.5) {
-  std::vector<SideWidths> const same{{0.5 * lane_width, 0.5 * lane_width}};
-  return lane_along(line.points, line.widths.empty() ? same : line.widths, line.headings);
+  std::vector<SideWidths> own, rest;
+  for (auto const& w : line.widths) {
+    double const half = std::min(w.left, w.right);
+    own.push_back({half, half});
+    rest.push_back({w.left - half, w.right - half});
+  }
+  if (own.empty()) own.push_back({0.5 * lane_width, 0.5 * lane_width});
+  constexpr double slight = 2e-3;  // [m]
+  auto const is_slight = [](SideWidths const& w) { return std::max(w.left, w.right) <= slight; };
+  if (std::all_of(rest.begin(), rest.end(), is_slight))
+    return lane_along(line.points, line.widths.empty() ? own : line.widths, line.headings);
+  auto plan = lane_along(line.points, own, line.headings);
+  auto const stations = detail::stations_of(plan.line);
+  auto const add = [&](double SideWidths::*side, std::vector<LanePlan>& lanes) {
+    std::vector<double> widths;
+    for (auto const& w : rest) widths.push_back(w.*side);
+    if (*std::max_element(widths.begin(), widths.end()) > slight)
+      lanes.push_back({.type = LaneType::shoulder, .widths = detail::monotone_profile(stations, widths)});
+  };
+  add(&SideWidths::left, plan.sections.front().left);
+  add(&SideWidths::right, plan.sections.front().right);
+  return plan;
 }
 
 }  // namespace cambium::map

@@ -75,7 +75,7 @@ class LaneMerger {
     auto const& section = road.sections[lane.section];
     auto const column = column_of(section, lane.id), target = column_of(section, lane.merges_into);
     SectionSampler const sampler(road, section, options_);
-    double const from = taper_begin(sampler.sample(), column, lane.along_road, options_.merge_length);
+    double const from = taper_begin(sampler, column, lane.along_road, options_.merge_length);
     double const to = lane.along_road ? section.end : section.begin;
     auto const cross_sections = sampler.sample(spacing, std::min(from, to), std::max(from, to));
     auto const path = [&](CrossSection const& c) { return merging_path(c, column, target, from, to); };

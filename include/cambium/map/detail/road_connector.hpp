@@ -15,8 +15,10 @@
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/cubic.hpp"
 #include "cambium/map/lane_type.hpp"
+#include "cambium/map/make_roads.hpp"
 #include "cambium/map/opendrive_document.hpp"
 #include "cambium/map/reference_line.hpp"
+#include "cambium/map/road.hpp"
 
 namespace cambium::map {
 
@@ -68,13 +70,13 @@ struct LaneSpan {
   double const s = end == ContactPoint::end ? road.geometry_length() : 0.0;
   auto const& section = section_at(road, end);
   int const sign = id < 0 ? -1 : 1;
-  double t = CubicProfile(road.lane_offset).value(s), inner = t;
+  double const ds = s - section.s;
+  Lateral outer{CubicProfile(road.lane_offset).value(s)}, inner = outer;
   for (int number = sign; number != id + sign; number += sign) {
-    inner = t;
-    if (auto const* lane = section.find(number))
-      t += sign * std::max(0.0, CubicProfile(lane->widths, BeforeFirst::hold).value(s - section.s));
+    inner = outer;
+    if (auto const* lane = section.find(number)) outer = clamped_outer_border(make_road_lane(*lane), inner, ds, ds);
   }
-  return {inner, t};
+  return {inner.t, outer.t};
 }
 
 /// The pose `t` beside a road's end, looking away from the road.

@@ -12,6 +12,7 @@
 #include "cambium/map/cubic.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/reference_line.hpp"
+#include "cambium/map/road.hpp"
 
 namespace cambium::map::detail {
 
@@ -43,6 +44,12 @@ class SectionSampler {
   /// Cross-sections from the section's begin to its end, ends included; every place where a record or a geometry begins
   /// is among them.
   [[nodiscard]] std::vector<CrossSection> sample() const { return sample(0.0, 0.0, 0.0); }
+
+  /// The exact cross-section at station `s` [m], the nearest of the section where it lies outside.
+  [[nodiscard]] CrossSection at(double s) const {
+    s = std::clamp(s, section_.begin, std::nextafter(section_.end, section_.begin));
+    return cross_section(s, s);
+  }
 
   /// As above; between the stations `from` and `to` no two are farther apart than `longest` [m].
   [[nodiscard]] std::vector<CrossSection> sample(double longest, double from, double to) const {
@@ -94,12 +101,6 @@ class SectionSampler {
     return result;
   }
 
-  /// Value and slope at `s` of the record in force at `inside`.
-  [[nodiscard]] static Lateral profile(CubicProfile const& p, double s, double inside) {
-    auto const* record = p.find(inside);
-    return record != nullptr ? Lateral{record->value(s), record->derivative(s)} : Lateral{p.value(s), 0.0};
-  }
-
   /// The cross-section at `s` by the records in force at `inside`; `near` is one of those, of the same interval between
   /// breaks: from there a spiral is not far.
   [[nodiscard]] CrossSection cross_section(double s, double inside, CrossSection const* near = nullptr) const {
@@ -110,28 +111,12 @@ class SectionSampler {
                        {},
                        std::vector<Lateral>(section_.lanes.size() + 1)};
     cross.direction = geometry::sin_cos(cross.reference.heading);
-    auto const offset = profile(road_.lane_offset, s, inside);
-    cross.borders[left_lanes_] = offset;
-    auto const width = [&](std::size_t lane) {
-      auto const& p = section_.lanes[lane].width;
-      double const ds = s - section_.begin, at = inside - section_.begin;
-      auto const w = profile(p, ds, at);
-      if (w.t > 1e-9) return w;
-      return profile(p, at, at).t > 0.0 && w.t > -1e-9 ? w : Lateral{};  // a width below 0 counts as 0
-    };
-    // The outer border of lane `i` on side `sign` (left 1), beyond its inner one.
-    auto const outer = [&](std::size_t i, Lateral const& inner, double sign) -> Lateral {
-      if (section_.lanes[i].border.empty()) {
-        auto const w = width(i);
-        return {inner.t + sign * w.t, inner.slope + sign * w.slope};
-      }
-      auto const b = profile(section_.lanes[i].border, s - section_.begin, inside - section_.begin);
-      double const t = sign * std::abs(b.t);  // some files write magnitudes
-      return sign * (t - inner.t) > 0.0 ? Lateral{t, b.t * sign < 0.0 ? -b.slope : b.slope} : inner;
-    };
-    for (std::size_t i = left_lanes_; i-- > 0;) cross.borders[i] = outer(i, cross.borders[i + 1], 1.0);
+    cross.borders[left_lanes_] = lateral_at(road_.lane_offset, s, inside);
+    double const ds = s - section_.begin, at = inside - section_.begin;
+    for (std::size_t i = left_lanes_; i-- > 0;)
+      cross.borders[i] = clamped_outer_border(section_.lanes[i], cross.borders[i + 1], ds, at);
     for (std::size_t i = left_lanes_; i < section_.lanes.size(); ++i)
-      cross.borders[i + 1] = outer(i, cross.borders[i], -1.0);
+      cross.borders[i + 1] = clamped_outer_border(section_.lanes[i], cross.borders[i], ds, at);
     return cross;
   }
 
