@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <string>
 #include <vector>
 
@@ -117,7 +119,7 @@ inline std::string fault_of_places(Map const& map) {
     bool const leaves = is_valid(lane.merges_into);  // its path does
     if (!leaves && std::find(in.begin(), in.end(), lane.id) == in.end()) return "a lane is not where its path is";
     bool const on = map.on_drivable_lane(beside);
-    auto const near = map.lanes_near(beside, 0.0);
+    auto const near = map.lanes_near(beside, LaneTree::slack);
     if (on != std::any_of(near.begin(), near.end(), [&](auto const& h) { return map.lane(h.lane).drivable(); }))
       return "a point is on a lane and is not";
     if (lane.widths.size() < 500 && !is_finite(area_of(lane))) return "a lane's area is not finite";
@@ -131,11 +133,14 @@ inline std::string fault_of_places(Map const& map) {
 }
 
 inline std::string fault_of_picture(Map const& map) {
-  auto const picture = svg_map_picture(map, {.labels = false});
-  auto const drawn = picture.substr(std::min(picture.find("</style>"), picture.size()));
-  for (char const* word : {"nan", "inf"})
-    if (drawn.find(word) != drawn.npos) return std::string("the picture has a number that is ") + word;
-  return svg_map_picture(map).size() < drawn.size() ? "labels make the picture smaller" : "";
+  auto const picture = svg_map_picture(map);
+  for (char const* numbers : {" d=\"", "translate(", "viewBox=\""})  // elsewhere there are the file's words
+    for (auto at = picture.find(numbers); at != picture.npos; at = picture.find(numbers, at + 1)) {
+      auto const begin = at + std::strlen(numbers);
+      auto const drawn = picture.substr(begin, picture.find_first_of("\")", begin) - begin);
+      if (drawn.find_first_of("ni") != drawn.npos) return "the picture has a number that is none: " + drawn;
+    }
+  return "";
 }
 
 /// What fails first, what is thrown included; empty where all of it works.
