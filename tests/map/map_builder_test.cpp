@@ -376,7 +376,7 @@ TEST_CASE("what is connected once more stays as it is") {
   CHECK(once.junctions.back().connections.size() == 4);
   for (int i = 0; i < 2; ++i) connect(true);
   CHECK(builder.document() == once);
-  builder.connect({"1", end}, {"2", start});  // lane -2 is new
+  builder.connect({"1", end}, {"2", start}, {{-2, -2}, {-2, -2}, {-1, -1}});  // lane -2 is new
   CHECK(builder.document().junctions.back().connections.size() == 5);
   CHECK(builder.document().junctions.back().connections.back().lane_links.size() == 1);
 }
@@ -412,7 +412,10 @@ TEST_CASE("ids that were changed in the document are known") {
   builder.document().roads.erase(builder.document().roads.begin() + 1);
   CHECK(std::as_const(builder).road("1").predecessor->id == "renamed");
   CHECK_THROWS_AS((void)builder.end_pose({"2", end}), MapError);
+  auto& held = builder.document();
   CHECK_NOTHROW(builder.add_road(straight("2", {}, 50, 0, 1)));
+  std::swap(held.roads[0], held.roads[1]);
+  CHECK(builder.road("renamed").id == "renamed");
 }
 
 TEST_CASE("a document that was changed to something unusable loses those roads, with a word") {
