@@ -1,5 +1,6 @@
 // Fuzzes the OpenDRIVE reader with libFuzzer: whatever the text, there is a map without a number that is none, or a
-// MapError; and what was read and written again is read as the same. Damage is done to the XML tree, not to bytes.
+// MapError; what was read and written again is read as the same; and whatever the map, all that users do with one
+// works: routes, corridors, junctions, look-ups, pictures. Damage is done to the XML tree, not to bytes.
 //
 // For long (clang only): cmake --build build --target opendrive_fuzz, then, with a folder for what is found,
 //   build/tests/fuzz/opendrive_fuzz -max_len=20000 -timeout=20 -rss_limit_mb=4096 -max_total_time=3600 FOUND/ maps/
@@ -18,6 +19,7 @@
 #include <pugixml.hpp>
 
 #include "../support/map_faults.hpp"
+#include "../support/map_use.hpp"
 #include "../support/xml_damage.hpp"
 #include "cambium/map/lane_network.hpp"
 #include "cambium/map/opendrive.hpp"
@@ -91,6 +93,7 @@ void check_map(cb::Map const& map) {
     if (finding.fault == cb::NetworkFault::one_sided || finding.fault == cb::NetworkFault::dangling)
       fail(map.describe(finding.lane) + ": " + std::string(to_string(finding.fault)));
   check_queries(map);
+  if (auto const failure = map_use::first_failure(map); !failure.empty()) fail(failure);
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
-#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,6 +13,7 @@
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/cubic.hpp"
+#include "cambium/map/detail/document_index.hpp"
 #include "cambium/map/lane_type.hpp"
 #include "cambium/map/make_roads.hpp"
 #include "cambium/map/opendrive_document.hpp"
@@ -124,11 +124,10 @@ struct LaneSpan {
   return wanted;
 }
 
-/// Enters links between road ends into a document.
+/// Enters links between road ends into a document; what is there already is not entered again.
 class RoadConnector {
  public:
-  RoadConnector(opendrive::Document& document, std::function<std::string()> free_id)
-      : document_(document), free_id_(std::move(free_id)) {}
+  RoadConnector(opendrive::Document& document, DocumentIndex& index) : document_(document), index_(index) {}
 
   void connect(RoadEnd const& a, RoadEnd const& b, std::vector<opendrive::LaneLink> const& links) {
     bool const through_a = !road(a).junction.empty(), through_b = !road(b).junction.empty();
@@ -141,10 +140,7 @@ class RoadConnector {
  private:
   using Links = std::vector<opendrive::LaneLink>;
 
-  [[nodiscard]] opendrive::Road& road(RoadEnd const& end) const {
-    return *std::find_if(document_.roads.begin(), document_.roads.end(),
-                         [&end](opendrive::Road const& r) { return r.id == end.road; });
-  }
+  [[nodiscard]] opendrive::Road& road(RoadEnd const& end) const { return index_.road(document_, end.road); }
   [[nodiscard]] std::optional<opendrive::RoadLink>& link_of(RoadEnd const& end) const {
     return end.end == ContactPoint::end ? road(end).successor : road(end).predecessor;
   }
@@ -152,10 +148,7 @@ class RoadConnector {
     auto& l = find_lane(road(end), end.end, lane);
     return end.end == ContactPoint::end ? l.successors : l.predecessors;
   }
-  [[nodiscard]] opendrive::Junction& junction(std::string const& id) const {
-    return *std::find_if(document_.junctions.begin(), document_.junctions.end(),
-                         [&id](opendrive::Junction const& j) { return j.id == id; });
-  }
+  [[nodiscard]] opendrive::Junction& junction(std::string const& id) const { return index_.junction(document_, id); }
   [[nodiscard]] static opendrive::RoadLink to_road(RoadEnd const& end) {
     opendrive::RoadLink link;
     link.id = end.road;
@@ -217,13 +210,24 @@ class RoadConnector {
     bool leads_on = false;
     for (auto const& link : links) {
       auto const& lane = find_lane(road(incoming), incoming.end, link.from);
-      if (!leaves(road(incoming), incoming.end, lane)) continue;
+      if (!leaves(road(incoming), incoming.end, lane) || is_in(connection, link)) continue;
+      if (std::any_of(at.connections.begin(), at.connections.end(), [&](opendrive::Connection const& there) {
+            return there.incoming_road == incoming.road && there.entered_road() == way.road &&
+                   there.contact_point == way.end && is_in(there, link);
+          }))
+        continue;
       connection.lane_links.push_back(link);
       leads_on = leads_on || is_drivable(lane.type);
     }
     if (!leads_on) return;
     connection.id = std::to_string(at.connections.size());
     at.connections.push_back(std::move(connection));
+  }
+
+  [[nodiscard]] static bool is_in(opendrive::Connection const& connection, opendrive::LaneLink const& link) {
+    auto const& links = connection.lane_links;
+    return std::any_of(links.begin(), links.end(),
+                       [&link](auto const& l) { return l.from == link.from && l.to == link.to; });
   }
 
   void add_connections(opendrive::Junction& at, RoadEnd const& a, RoadEnd const& b, Links const& links) const {
@@ -243,7 +247,7 @@ class RoadConnector {
       id = link->id;
     }
     if (!id) {
-      id = free_id_();
+      id = index_.free_id(document_);
       document_.junctions.emplace_back();
       document_.junctions.back().id = *id;
       document_.junctions.back().type = opendrive::JunctionType::direct;
@@ -275,7 +279,7 @@ class RoadConnector {
   }
 
   opendrive::Document& document_;
-  std::function<std::string()> free_id_;
+  DocumentIndex& index_;
 };
 
 }  // namespace detail
