@@ -155,19 +155,21 @@ class DocumentCheck {
   double leave_out_wild(std::vector<CubicRecord>& records, double end, int line, char const* element, Ids const& ids,
                         double largest = 1000.0) {
     double lowest = 0.0;
+    std::size_t kept = records.size();
     // From the back: where a record is left out, the one before it holds up to the next one that is kept.
     for (std::size_t i = records.size(); i-- > 0;) {
-      double const to = i + 1 < records.size() ? std::min(end, records[i + 1].s) : end;
+      double const to = kept < records.size() ? std::min(end, records[kept].s) : end;
       auto const [low, high] = extremes(records[i], records[i].s, std::max(to, records[i].s));
       if (low >= -largest && high <= largest) {
         lowest = std::min(lowest, low);
+        records[--kept] = records[i];
         continue;
       }
       report(Severity::warning, line, element, ids(),
              "the record at " + rounded_text(records[i].s) + " m reaches " + rounded_text(high > largest ? high : low) +
                  " m; it was left out");
-      records.erase(records.begin() + static_cast<std::ptrdiff_t>(i));
     }
+    records.erase(records.begin(), records.begin() + static_cast<std::ptrdiff_t>(kept));
     return lowest;
   }
 
