@@ -150,6 +150,8 @@ TEST_CASE("the nearest lanes of a direction are those that a look at every lane 
   CHECK(compared > 200);
   CHECK(tree.near({0, 0}, {.radius = std::nan("")}).empty());
   CHECK(tree.near({0, 0}, {.radius = infinity, .count = 1000}).size() == lanes.size());
+  CHECK(tree.near({0, 0}, {.radius = infinity}).size() == lanes.size());
+  for (double const r : {1e30, 3.5e38, 1e300, infinity}) CHECK(tree.in({-r, -r, r, r}).size() == lanes.size());
 }
 
 TEST_CASE("the lanes in a box are those whose area meets it") {

@@ -182,6 +182,15 @@ TEST_CASE("a table that is none is refused, with the line") {
   CHECK_THROWS_AS((void)load_center_line_csv("/"), MapError);
 }
 
+TEST_CASE("a table that says two things is refused rather than read as one of them") {
+  CHECK(what_of([] { (void)read_center_line_csv("x;y\n0,5;0,5\n10,5;0,5\n", "a.csv"); }) ==
+        "a.csv:2: cell 1 is no finite number: \"0,5\"; give a number with a decimal point");
+  CHECK(what_of([] { (void)read_center_line_csv("x,y\n0,0\n10,0,5,6\n", "a.csv"); }) ==
+        "a.csv:3: it has 4 cells, the first row 2; give each row the same columns, and numbers a decimal point");
+  for (auto const* text : {"x,y,theta\n0,0,45\n7,7,45\n14,14,45\n", "0,0,3.14\n10,0,3.14\n"})
+    CHECK(what_of([&] { (void)read_center_line_csv(text); }).find("does not fit the way") != std::string::npos);
+}
+
 TEST_CASE("damaged tables are read or refused, never worse") {
   std::string const good = "id,x,y,theta,x_left\n1,0.5,1,0.1,3\n2,10,-0.5,0.2,3\n3,20.25,1e1,0.3,3\n";
   Numbers random{4};

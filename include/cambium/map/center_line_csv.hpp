@@ -14,6 +14,7 @@
 
 #include "cambium/core/error.hpp"
 #include "cambium/core/text.hpp"
+#include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/lane.hpp"
 #include "cambium/map/lane_type.hpp"
@@ -64,9 +65,15 @@ class CenterLineReader {
     throw MapError(name_ + ":" + std::to_string(line_), what, remedy);
   }
 
-  [[nodiscard]] static std::vector<std::string_view> split(std::string_view line) {
-    auto cells = cambium::detail::split(line, ",;");
+  /// The cells of a row. The first one says which separator the table has, and how many cells at most.
+  [[nodiscard]] std::vector<std::string_view> split(std::string_view line) {
+    if (cells_ == 0 && line.find(';') != line.npos) separator_ = ";";
+    auto cells = cambium::detail::split(line, separator_);
     for (auto& cell : cells) cell = cambium::detail::trimmed(cell, blank);
+    if (cells_ == 0) cells_ = cells.size();
+    if (cells.size() > cells_)
+      fail("it has " + std::to_string(cells.size()) + " cells, the first row " + std::to_string(cells_),
+           "give each row the same columns, and numbers a decimal point");
     return cells;
   }
 
@@ -112,6 +119,7 @@ class CenterLineReader {
     geometry::Point const point = geometry::Point(row[x], row[y]) - origin_;
     if (!(point.cwiseAbs().maxCoeff() <= 1e8)) fail("the point lies beyond 100 000 km", "give coordinates in m");
     if (!result_.points.empty() && (point - result_.points.back()).norm() <= 1e-3) return;  // a joint written twice
+    if (column_[heading] && !result_.points.empty()) check_heading(row[heading], point - result_.points.back());
     result_.points.push_back(point);
     if (column_[heading]) result_.headings.push_back(row[heading]);
     if (has_borders())
@@ -119,7 +127,17 @@ class CenterLineReader {
                                 std::hypot(row[right_x] - row[x], row[right_y] - row[y])});
   }
 
+  void check_heading(double theta, geometry::Point const& way) const {
+    constexpr double several_turns = 8.0 * geometry::pi;  // more than that, and it is degrees
+    double const off = geometry::angle_difference(theta, std::atan2(way.y(), way.x()));
+    if (std::abs(off) > 0.5 * geometry::pi || std::abs(theta) > several_turns)
+      fail("the heading " + cambium::detail::rounded_text(theta) + " does not fit the way from the point before",
+           "give headings in radians, in travel direction, or leave the column out");
+  }
+
   std::string_view text_;
+  std::string_view separator_ = ",";
+  std::size_t cells_ = 0;  ///< of the first row
   std::string const& name_;
   geometry::Point origin_;
   int line_ = 0;
@@ -129,13 +147,14 @@ class CenterLineReader {
 
 }  // namespace detail
 
-/// The centre line in a table of comma- (or semicolon-) separated values, a point a row in travel direction; `name`
-/// names the text in messages, `origin` is subtracted from all coordinates [m]. The first row names the columns:
-/// x and y, or x_center and y_center; optional are theta (or heading, yaw) [rad], and all four of x_leftbound,
-/// y_leftbound, x_rightbound, y_rightbound: the tables of lanes that BARK reads. Other columns are passed over. A first
-/// row of numbers means the columns x, y and, where there is a third, theta. Empty rows and those that begin with # are
-/// passed over, and so are points within a millimetre of the one before. Throws `MapError` with the line where a cell
-/// is missing or no finite number, and where there are fewer than two points. Linear in the length of the text.
+/// The centre line in a table of comma- (or, where the first row has one, semicolon-) separated values, a point a row
+/// in travel direction; `name` names the text in messages, `origin` is subtracted from all coordinates [m]. The first
+/// row names the columns: x and y, or x_center and y_center; optional are theta (or heading, yaw) [rad], and all four
+/// of x_leftbound, y_leftbound, x_rightbound, y_rightbound: the tables of lanes that BARK reads. Other columns are
+/// passed over. A first row of numbers means the columns x, y and, where there is a third, theta. Empty rows and those
+/// that begin with # are passed over, and so are points within a millimetre of the one before. Throws `MapError` with
+/// the line where a cell is missing, one too many or no finite number, or theta points away from the way that the
+/// points go, and where there are fewer than two points. Linear in the length of the text.
 [[nodiscard]] inline CenterLine read_center_line_csv(std::string_view text, std::string const& name = "text",
                                                      geometry::Point const& origin = {0.0, 0.0}) {
   return detail::CenterLineReader(text, name, origin).read();
