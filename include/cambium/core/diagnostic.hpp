@@ -1,5 +1,6 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -39,6 +40,19 @@ struct Diagnostic {
   text += d.ids;
   if (!d.element.empty() || !d.ids.empty()) text += ": ";
   return detail::printable(text + d.sentence);
+}
+
+/// " (finding)" for a message that nothing usable is left: the first finding by which something was left out, else the
+/// first warning; empty where there is none.
+[[nodiscard]] inline std::string likely_cause(std::span<Diagnostic const> findings) {
+  Diagnostic const* cause = nullptr;
+  for (auto const& finding : findings) {
+    if (finding.severity == Severity::info) continue;
+    bool const left_out = finding.sentence.find("left out") != std::string::npos;
+    if (cause == nullptr || left_out) cause = &finding;
+    if (left_out) break;
+  }
+  return cause == nullptr ? std::string() : " (" + to_string(*cause) + ")";
 }
 
 }  // namespace cambium

@@ -210,13 +210,9 @@ inline void read_top_level(XmlContext& context, pugi::xml_node node, std::string
   if (pugi::xml_node const next = root.next_sibling())
     context.report(Severity::warning, next, "what follows </OpenDRIVE> was left out");
   check_opendrive_document(document, context.file(), diagnostics);
-  if (document.roads.empty()) {
-    std::string why;
-    for (Diagnostic const& d : diagnostics)
-      if (why.empty() && d.severity != Severity::info && d.line > 0) why = " (first finding: " + to_string(d) + ")";
-    throw MapError(context.file(), "the file has no usable road" + why,
+  if (document.roads.empty())
+    throw MapError(context.file(), "the file has no usable road" + likely_cause(diagnostics),
                    "give a file with a road that has a plan view and lanes");
-  }
   return document;
 }
 
