@@ -416,6 +416,11 @@ std::vector<Refused> const refused{
      </geometry></planView><lanes><laneSection s="0"><center><lane id="0"/></center></laneSection></lanes></road>
      </OpenDRIVE>)",
      "no lane with a length"},
+    {"lanes whose ids are none",
+     R"(<OpenDRIVE><header/><road id="1" length="5"><planView><geometry s="0" x="0" y="0" hdg="0" length="5"><line/>
+     </geometry></planView><lanes><laneSection s="0"><center><lane id="0"/></center><right><lane id="one"/></right>
+     </laneSection></lanes></road></OpenDRIVE>)",
+     "the lane was left out, for it has no usable id"},
 };
 
 std::string changed(Case const& c) {
