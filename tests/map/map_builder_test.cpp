@@ -487,3 +487,23 @@ TEST_CASE("a document that was changed to something unusable loses those roads, 
         }) == 3);
   CHECK(build_map(document, {}, "changed", diagnostics)->lanes().size() == 1);
 }
+
+TEST_CASE("a junction that only a sidewalk leads through needs no connection") {
+  MapBuilder builder;
+  for (auto const& [id, x] : {std::pair{"1", 0.0}, {"2", 80.0}})
+    builder.add_road({.id = id,
+                      .line = lay_from({x, 0, 0}, {{50.0}}),
+                      .sections = {{.right = {{.type = LaneType::sidewalk, .width = 2.0}}}}});
+  builder.add_junction("9");
+  auto const findings = [&builder] {
+    std::vector<Diagnostic> diagnostics;
+    (void)builder.build({}, &diagnostics);
+    return std::count_if(diagnostics.begin(), diagnostics.end(), [](Diagnostic const& d) {
+      return d.sentence.find("no lane leads through it") != std::string::npos;
+    });
+  };
+  CHECK(findings() == 1);
+  builder.add_turn("9", {"1", end}, {"2", start}, {.lanes = {{-1, -1}}});
+  CHECK(builder.document().junctions[0].connections.empty());
+  CHECK(findings() == 0);
+}

@@ -37,8 +37,8 @@ char const* const everything = R"(<OpenDRIVE>
   <lateralProfile><superelevation s="0" a="0.01" b="0" c="0" d="0"/>
     <crossfall s="0" a="0.01" b="0" c="0" d="0" side="left"/><shape s="0" t="0" a="0.1" b="0" c="0" d="0"/></lateralProfile>
   <lanes><laneOffset s="0" a="0.5" b="0" c="0" d="0"/>
-    <laneSection s="0">
-      <left><lane id="1" type="driving"><border sOffset="0" a="3" b="0" c="0" d="0"/></lane></left>
+    <laneSection s="0" singleSide="false">
+      <left><lane id="1" type="driving" level="false"><border sOffset="0" a="3" b="0" c="0" d="0"/></lane></left>
       <center><lane id="0" type="none"><roadMark sOffset="0" type="solid"/></lane></center>
       <right><lane id="-1" type="driving"><link><predecessor id="-1"/><successor id="-1"/></link>
         <width sOffset="0" a="3" b="0" c="0" d="0"/>
@@ -212,8 +212,8 @@ TEST_CASE("a value that nobody understands is kept in any attribute, or found, a
 TEST_CASE("a word that is neither true nor false is found") {
   for (char const* const attribute : {"level=\"maybe\"", "level=\"twice\""}) {
     auto text = std::string(everything);
-    std::string const lane = "<lane id=\"1\" type=\"driving\"";
-    text.insert(text.find(lane) + lane.size(), std::string(" ") + attribute);
+    std::string const sound = "level=\"false\"";
+    text.replace(text.find(sound), sound.size(), attribute);
     auto const after = outcome_of(text);
     CHECK(after.findings == std::vector<std::string>{"lane"});
     CHECK(after.written.find(attribute) != std::string::npos);
