@@ -61,7 +61,7 @@ class DocumentCheck {
     for (Element const& element : elements) ids.insert(element.id);
   }
 
-  /// The junctions whose connecting roads have lanes, none of them drivable: these need no connections.
+  /// The junctions with linked connecting roads, and no drivable lane on any: these need no connections.
   [[nodiscard]] Index junctions_to_walk() const {
     Index walked, driven;
     for (opendrive::Road const& road : document_->roads) {
@@ -71,7 +71,10 @@ class DocumentCheck {
             return std::any_of(section.lanes.begin(), section.lanes.end(),
                                [](opendrive::Lane const& lane) { return lane.id != 0 && is_drivable(lane.type); });
           });
-      (is_driven ? driven : walked).insert(road.junction);
+      if (is_driven)
+        driven.insert(road.junction);
+      else if (road.predecessor && road.successor)
+        walked.insert(road.junction);
     }
     for (std::string_view const junction : driven) walked.erase(junction);
     return walked;
