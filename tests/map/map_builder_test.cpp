@@ -11,6 +11,7 @@
 
 #include "cambium/map/opendrive.hpp"
 #include "cambium/map/opendrive_writer.hpp"
+#include "../support/allocations.hpp"
 #include "lanes_by_hand.hpp"
 
 using namespace by_hand;
@@ -381,24 +382,75 @@ TEST_CASE("what is connected once more stays as it is") {
   CHECK(builder.document().junctions.back().connections.back().lane_links.size() == 1);
 }
 
-TEST_CASE("ten thousand roads, joined and with turns, by their ids") {
-  constexpr int count = 10000;
-  MapBuilder builder;
-  auto const name = [](int number) { return std::to_string(number); };
-  for (int i = 0; i < count; ++i) builder.add_road(straight("", {10.0 * (i + i / 10), 0, 0}, 10, 1, 1));
-  for (int i = 1; i < count; ++i) {
-    if (i % 10 > 0) {
-      builder.connect({name(i), end}, {name(i + 1), start});
-      continue;
+TEST_CASE("two thousand roads, joined and with turns, are made with about twice the allocations of half") {
+  auto const make = [](MapBuilder& builder, int count) {
+    auto const before = support::allocations();
+    auto const name = [](int number) { return std::to_string(number); };
+    for (int i = 0; i < count; ++i) builder.add_road(straight("", {10.0 * (i + i / 10), 0, 0}, 10, 1, 1));
+    for (int i = 1; i < count; ++i) {
+      if (i % 10 > 0) {
+        builder.connect({name(i), end}, {name(i + 1), start});
+        continue;
+      }
+      auto const junction = builder.add_junction("j" + name(i));
+      builder.add_turn(junction, {name(i), end}, {name(i + 1), start}, {.id = "t" + junction});
     }
-    auto const junction = builder.add_junction("j" + name(i));
-    builder.add_turn(junction, {name(i), end}, {name(i + 1), start}, {.id = "t" + junction});
+    return support::allocations() - before;
+  };
+  MapBuilder half, whole;
+  auto const few = make(half, 1000), all = make(whole, 2000);
+  CHECK(all < 3 * few);
+  CHECK(whole.road("1999").predecessor->id == "1998");
+  CHECK(whole.road("tj500").predecessor->id == "500");
+  CHECK(whole.document().roads.size() == 2199);
+  CHECK(whole.add_junction() == "2200");
+  CHECK(whole.add_junction() == "2201");
+}
+
+TEST_CASE("road ends where no lane goes on as a lane of the other are not connected") {
+  MapBuilder builder;
+  builder.add_road(straight("1", {}, 50, 0, 1));
+  builder.add_road(straight("2", {5000, 5000, 1}, 50, 0, 1));
+  builder.add_road(straight("3", {50, 0, 0}, 50, 1, 1));
+  auto const before = builder.document();
+  auto const why = [&](RoadEnd const& a, RoadEnd const& b) { return what_of([&] { builder.connect(a, b); }); };
+  std::string const none_faces = "no lane of the one goes on as a lane of the other";
+  CHECK(why({"1", end}, {"2", end}).find(none_faces) != std::string::npos);
+  CHECK(why({"1", end}, {"1", end}).find(none_faces) != std::string::npos);
+  CHECK(why({"1", end}, {"2", start}).find("they do not meet") != std::string::npos);
+  CHECK(why({"3", end}, {"3", end}).find("they do not meet") != std::string::npos);
+  CHECK(builder.document() == before);
+  CHECK(why({"1", end}, {"3", start}) == "no error");
+}
+
+TEST_CASE("a link that only one of the roads' lanes names becomes a connection like any other") {
+  for (bool const known_to_first : {true, false}) {
+    CAPTURE(known_to_first);
+    MapBuilder builder;
+    builder.add_road(straight("1", {}, 50, 1, 1));
+    for (auto const* id : {"2", "3"}) builder.add_road(straight(id, {50, 0, 0}, 50, 1, 1));
+    builder.connect({"1", end}, {"2", start});
+    for (auto& lane : builder.document().roads[known_to_first ? 1 : 0].lane_sections[0].lanes)
+      (known_to_first ? lane.predecessors : lane.successors).clear();
+    builder.connect({"1", end}, {"3", start});
+    auto const map = checked(builder);
+    for (auto const* id : {"2", "3"}) {
+      CHECK(leads(*map, lane_at(*map, "1", -1), lane_at(*map, id, -1)));
+      CHECK(leads(*map, lane_at(*map, id, 1), lane_at(*map, "1", 1)));
+    }
   }
-  CHECK(builder.road("9999").predecessor->id == "9998");
-  CHECK(builder.road("tj5000").predecessor->id == "5000");
-  CHECK(builder.document().roads.size() == 10999);
-  CHECK(builder.add_junction() == "11000");
-  CHECK(builder.add_junction() == "11001");
+}
+
+TEST_CASE("a link that another road contradicts is not dissolved") {
+  MapBuilder builder;
+  builder.add_road(straight("1", {}, 50, 0, 1));
+  for (auto const* id : {"2", "3"}) builder.add_road(straight(id, {50, 0, 0}, 50, 0, 1));
+  builder.connect({"1", end}, {"2", start});
+  builder.document().roads[1].predecessor->id = "3";
+  auto const before = builder.document();
+  auto const why = what_of([&] { builder.connect({"1", end}, {"3", start}); });
+  CHECK(why.find("only one of them is linked to the other") != std::string::npos);
+  CHECK(builder.document() == before);
 }
 
 TEST_CASE("ids that were changed in the document are known") {
@@ -434,4 +486,24 @@ TEST_CASE("a document that was changed to something unusable loses those roads, 
           return d.sentence.find("a cubic without its curve") != std::string::npos;
         }) == 3);
   CHECK(build_map(document, {}, "changed", diagnostics)->lanes().size() == 1);
+}
+
+TEST_CASE("a junction that only a sidewalk leads through needs no connection") {
+  MapBuilder builder;
+  for (auto const& [id, x] : {std::pair{"1", 0.0}, {"2", 80.0}})
+    builder.add_road({.id = id,
+                      .line = lay_from({x, 0, 0}, {{50.0}}),
+                      .sections = {{.right = {{.type = LaneType::sidewalk, .width = 2.0}}}}});
+  builder.add_junction("9");
+  auto const findings = [&builder] {
+    std::vector<Diagnostic> diagnostics;
+    (void)builder.build({}, &diagnostics);
+    return std::count_if(diagnostics.begin(), diagnostics.end(), [](Diagnostic const& d) {
+      return d.sentence.find("no lane leads through it") != std::string::npos;
+    });
+  };
+  CHECK(findings() == 1);
+  builder.add_turn("9", {"1", end}, {"2", start}, {.lanes = {{-1, -1}}});
+  CHECK(builder.document().junctions[0].connections.empty());
+  CHECK(findings() == 0);
 }

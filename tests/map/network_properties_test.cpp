@@ -14,6 +14,8 @@
 
 #include <doctest/doctest.h>
 
+#include "cambium/core/random.hpp"
+
 #include "../support/corpus.hpp"
 #include "transformed_documents.hpp"
 #include "../support/maps.hpp"
@@ -133,19 +135,13 @@ void compare(Map const& map, Map const& other, LaneNames const& names, Transform
   CHECK(wrong_overlaps == 0);
 }
 
-/// Small own generator: the same lanes on every platform.
-std::uint64_t next(std::uint64_t& state) {
-  state = state * 6364136223846793005ULL + 1442695040888963407ULL;
-  return state >> 33;
-}
-
 /// Routes between random lanes are there in both maps or in none, and as long. Their number.
 int compare_routes(Map const& map, Map const& other, LaneNames const& names, double tolerance) {
   int routes = 0;
-  std::uint64_t state = 7;
+  cambium::RandomStream next(7, 0, 0);
   for (int i = 0; i < 60; ++i) {
-    auto const from = static_cast<LaneId>(next(state) % map.lanes().size()),
-               to = static_cast<LaneId>(next(state) % map.lanes().size());
+    auto const from = static_cast<LaneId>(next() % map.lanes().size()),
+               to = static_cast<LaneId>(next() % map.lanes().size());
     auto const a = map.shortest_route(from, to), b = other.shortest_route(renamed(from, names), renamed(to, names));
     REQUIRE(a.has_value() == b.has_value());
     if (!a) continue;

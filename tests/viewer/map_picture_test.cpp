@@ -50,12 +50,11 @@ TEST_CASE("a picture's width is a number of pixels, and a map of nothing has a p
 TEST_CASE("the legend names what the picture has, and nothing else") {
   auto const loaded = two_roads();
   auto const all = cambium::svg_map_picture(*loaded.map);
-  for (char const* entry :
-       {"lane to drive on", "lane of type sidewalk", "travel direction", "leads to", "begins, no way in",
-        "ends, no way on", "crosses another lane", "merges with one", "splits from one"})
+  for (char const* entry : {"lane to drive on", "lane of type sidewalk", "travel direction"})
     CHECK(count(all, std::string(">") + entry + "<") == 1);
   CHECK_FALSE(has(all, "of type median"));
   CHECK_FALSE(has(all, "in a junction"));
+  CHECK_FALSE(has(all, ">leads to<"));
   auto const bare = cambium::svg_map_picture(*loaded.map, {.arrows = false, .links = false, .overlaps = false});
   for (char const* entry : {"travel direction", "leads to", "merges with one"}) CHECK_FALSE(has(bare, entry));
   CHECK_FALSE(has(cambium::svg_map_picture(*loaded.map, {.legend = false}), "class=\"legend\""));
@@ -63,7 +62,29 @@ TEST_CASE("the legend names what the picture has, and nothing else") {
   auto const junction = support::load_opendrive(CAMBIUM_SOURCE_DIR "/maps/intersection_4way.xodr");
   auto const crossing = cambium::svg_map_picture(*junction.map);
   CHECK(has(crossing, "ground of two lanes"));
+  CHECK(has(crossing, ">leads to<"));
   CHECK(count(crossing, "<title>ground of ") == 52);
+}
+
+TEST_CASE("the legend names those overlaps and ends that are drawn") {
+  int shown = 0, left_out = 0;
+  for (char const* const name : {"merging", "highway", "roundabout", "intersection_4way", "highway_exit"}) {
+    CAPTURE(name);
+    auto const map = support::own_map(std::string(name) + ".xodr");
+    auto const picture = cambium::svg_map_picture(*map);
+    for (auto const& [entry, drawn] : {std::pair("crosses another lane", ": crossing with "),
+                                       {"merges with one", ": merge with "},
+                                       {"splits from one", ": split with "},
+                                       {"begins, no way in", " begins here<"},
+                                       {"ends, no way on", " ends here<"}}) {
+      CAPTURE(entry);
+      bool const is_drawn = has(picture, drawn);
+      CHECK(count(picture, std::string(">") + entry + "<") == (is_drawn ? 1 : 0));
+      ++(is_drawn ? shown : left_out);
+    }
+  }
+  CHECK(shown > 5);
+  CHECK(left_out > 3);
 }
 
 TEST_CASE("a part shows the lanes in its box, and no more") {

@@ -45,6 +45,15 @@ class MapBuild {
   }
 
   [[nodiscard]] std::shared_ptr<Map const> build() {
+    add_lanes();
+    link_lanes();
+    return finish();
+  }
+
+  // The stages of `build`, in their order:
+
+  /// Roads, and lanes with their geometry and neighbours.
+  void add_lanes() {
     check_parameters(parts_.options, "MapOptions");
     parts_.roads = make_roads(document_);
     for (std::size_t i = 0; i < parts_.roads.size(); ++i)
@@ -55,7 +64,23 @@ class MapBuild {
                      "give a file with lanes beside lane 0");
     if (std::none_of(parts_.lanes.begin(), parts_.lanes.end(), [](Lane const& lane) { return lane.drivable(); }))
       diagnostics_.push_back({Severity::warning, file_, 0, {}, {}, "there is no lane that one may drive on"});
-    link_lanes();
+  }
+
+  /// What follows on what, and what merges.
+  void link_lanes() {
+    RoadLinks const links(document_, parts_.roads);
+    LaneLinker(links, parts_.lanes, file_, diagnostics_).link();
+    MissingLinks missing(links, parts_.lanes, file_, diagnostics_);
+    auto const dead_ends = missing.find(parts_.options.infer_links);
+    LaneMerger(parts_.roads, parts_.lanes, parts_.options, dead_ends).merge();
+    missing.report_dead_ends(dead_ends);
+    LinkCheck check(links, file_, diagnostics_);
+    check.report_one_sided();
+    check.report_joints(parts_.lanes);
+  }
+
+  /// Limits, marks, junctions, overlaps: all that a world needs.
+  [[nodiscard]] std::shared_ptr<Map const> finish() {
     set_speed_limits(document_, parts_.lanes);
     set_lane_changes(document_, parts_.lanes);
     parts_.junctions = make_junctions(document_, parts_.roads, parts_.lanes);
@@ -69,18 +94,6 @@ class MapBuild {
   }
 
  private:
-  void link_lanes() {
-    RoadLinks const links(document_, parts_.roads);
-    LaneLinker(links, parts_.lanes, file_, diagnostics_).link();
-    MissingLinks missing(links, parts_.lanes, file_, diagnostics_);
-    auto const dead_ends = missing.find(parts_.options.infer_links);
-    LaneMerger(parts_.roads, parts_.lanes, parts_.options, dead_ends).merge();
-    missing.report_dead_ends(dead_ends);
-    LinkCheck check(links, file_, diagnostics_);
-    check.report_one_sided();
-    check.report_joints(parts_.lanes);
-  }
-
   /// Height of a lane's path [m], to tell a bridge from a crossing.
   [[nodiscard]] double elevation(Lane const& lane, double s) const {
     return parts_.roads[index_of(lane.road)].elevation.value(lane.station_at(s));
@@ -158,6 +171,15 @@ class MapBuild {
   Map::Parts parts_;
 };
 
+/// Calls `run` with the document as `MapBuild` needs it: buildable, and with sections split where lanes meet the middle
+/// of others.
+template <class Run>
+auto with_split_roads(OpenDriveDocument const& document, Run const& run) {
+  RequireBuildable::check(document);
+  auto const places = places_to_split(document);
+  return places.empty() ? run(document) : run(split_roads(document, places));
+}
+
 }  // namespace detail
 
 /// The map that a document describes; what was odd is added to `diagnostics`, with `file` as the place: links that lead
@@ -171,11 +193,9 @@ class MapBuild {
 /// a road, and in the middle of a road of one section that closes upon itself.
 [[nodiscard]] inline std::shared_ptr<Map const> build_map(OpenDriveDocument const& document, MapOptions const& options,
                                                           std::string file, std::vector<Diagnostic>& diagnostics) {
-  detail::RequireBuildable::check(document);
-  auto const places = detail::places_to_split(document);
-  if (places.empty()) return detail::MapBuild(document, options, std::move(file), diagnostics).build();
-  auto const split = detail::split_roads(document, places);
-  return detail::MapBuild(split, options, std::move(file), diagnostics).build();
+  return detail::with_split_roads(document, [&](OpenDriveDocument const& split) {
+    return detail::MapBuild(split, options, std::move(file), diagnostics).build();
+  });
 }
 
 }  // namespace cambium::map

@@ -96,13 +96,16 @@ class MapBuilder {
   /// Where one of the roads is a connecting road, the other becomes linked to its junction, with connections for the
   /// lanes that lead in. Else, where an end is linked already to another road, the two links become connections of a
   /// direct junction: so forks and joints need nothing but a `connect` for each of their branches. What is linked
-  /// already stays so. Throws `MapError` where there is no such lane, or lanes to be linked lie more than 0.5 m or
-  /// 0.5 rad apart. O(lanes and geometries of the roads, connections of the junction).
+  /// already stays so. Throws `MapError` where there is no such lane or none to be linked, or lanes to be linked lie
+  /// more than 0.5 m or 0.5 rad apart. O(lanes and geometries of the roads, connections of the junction).
   void connect(RoadEnd const& a, RoadEnd const& b, std::vector<opendrive::LaneLink> links = {}) {
     index_.update(document_);
     auto const& road_a = checked(a);
     auto const& road_b = checked(b);
     if (links.empty()) links = detail::facing_lanes(road_a, a.end, road_b, b.end);
+    if (links.empty())
+      throw MapError("road " + a.road + " and road " + b.road, "no lane of the one goes on as a lane of the other",
+                     "name the lanes, or turn one of the roads round");
     for (auto const& link : links) {
       auto const from = lane_pose(a, link.from), to = lane_pose(b, link.to);
       double const gap = (from.position() - to.position()).norm();

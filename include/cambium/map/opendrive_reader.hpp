@@ -27,8 +27,8 @@ namespace detail {
 
 /// An offset that leads out of the world counts as none.
 inline void read_offset(XmlContext& context, pugi::xml_node node, opendrive::HeaderOffset& offset) {
-  static_cast<void>(read_attributes(context, node, offset, nullptr));
   report_content(context, node);
+  static_cast<void>(read_attributes(context, node, offset, nullptr));
   if (std::max({std::abs(offset.x), std::abs(offset.y), std::abs(offset.z)}) <= 1e8 && std::abs(offset.heading) <= 1e4)
     return;
   context.report(Severity::warning, node,
@@ -40,6 +40,8 @@ inline void read_offset(XmlContext& context, pugi::xml_node node, opendrive::Hea
   opendrive::Header header;
   static_cast<void>(read_attributes(context, node, header));  // it needs none
   pugi::xml_node const reference = find_only_child(context, node, "geoReference");
+  for (pugi::xml_attribute a = reference.first_attribute(); a; a = a.next_attribute())
+    lose_attribute(context, reference, a);
   header.geo_reference = trimmed(reference.child_value());
   if (reference.first_child().next_sibling())
     context.report(Severity::warning, reference, "what follows its first text was left out");
@@ -53,8 +55,14 @@ inline void read_offset(XmlContext& context, pugi::xml_node node, opendrive::Hea
 inline void read_road_types(XmlContext& context, pugi::xml_node road_node, opendrive::Road& road) {
   for_each_child(road_node, "type", [&](pugi::xml_node node) {
     opendrive::RoadType& type = road.types.emplace_back();
-    static_cast<void>(read_attributes(context, node, type));
-    if (auto const speed = find_only_child(context, node, "speed")) read_speed(context, speed, type);
+    if (!read_attributes(context, node, type)) {
+      road.types.pop_back();
+      return context.report(Severity::warning, node, "it was left out for that, see the finding before");
+    }
+    if (auto const speed = find_only_child(context, node, "speed")) {
+      report_others(context, speed, {"max", "unit"});
+      read_speed(context, speed, type);
+    }
     for_each_child(node, [&](pugi::xml_node child, std::string_view name) {
       if (name != "speed") keep_element(context, child, type.rest);
     });
@@ -75,12 +83,12 @@ inline void read_lateral_record(XmlContext& context, pugi::xml_node node, std::s
                                 opendrive::Road& road) {
   if (name == "superelevation") return append_cubic(context, node, "s", road.superelevation);
   if (name == "crossfall") {
-    std::optional<CubicRecord> const record = read_cubic(context, node, "s");
+    std::optional<CubicRecord> const record = read_cubic(context, node, "s", "side");
     if (!record) return;
     road.crossfall.push_back({*record, opendrive::Side::both});
     return AttributeReader(context, node, nullptr).optional("side", road.crossfall.back().side);
   }
-  std::optional<CubicRecord> const record = read_cubic(context, node, "t");
+  std::optional<CubicRecord> const record = read_cubic(context, node, "t", "s");
   std::optional<double> const s = context.number<double>(node, "s");
   if (record && s) road.shape.push_back({*s, *record});
 }
@@ -194,7 +202,8 @@ inline void read_top_level(XmlContext& context, pugi::xml_node node, std::string
 /// what may be there once, what stands in an element that has attributes only (cubics, speeds, lane links, header
 /// offset, curves), and what follows the root element. An XML namespace prefix is ignored. What the
 /// document has no field for is kept in its `rest`s, but for comments, text between elements, and attributes that are
-/// not known of an element that has attributes only. Throws `MapError` when the text is no XML, its root is not
+/// not known of an element that has attributes only; of the latter two there is one finding for each kind of element,
+/// with their number. Throws `MapError` when the text is no XML, its root is not
 /// OpenDRIVE, or no road is usable. Linear in the length of the text; lines are counted in bytes of UTF-8.
 [[nodiscard]] inline OpenDriveDocument read_opendrive_document(std::string_view text, std::string file_name,
                                                                std::vector<Diagnostic>& diagnostics) {
@@ -207,6 +216,8 @@ inline void read_top_level(XmlContext& context, pugi::xml_node node, std::string
     detail::keep_attribute(document.rest.attributes, a);
   detail::for_each_child(
       root, [&](pugi::xml_node node, std::string_view name) { detail::read_top_level(context, node, name, document); });
+  detail::lose_text(context, root);
+  context.report_losses();
   if (pugi::xml_node const next = root.next_sibling())
     context.report(Severity::warning, next, "what follows </OpenDRIVE> was left out");
   check_opendrive_document(document, context.file(), diagnostics);

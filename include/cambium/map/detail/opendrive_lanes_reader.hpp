@@ -24,9 +24,10 @@ void sort_records(XmlContext& context, pugi::xml_node parent, std::vector<Record
     context.report(Severity::warning, parent, std::string(what) + " are not in the order of s; they were sorted");
 }
 
-/// A cubic record: without a good start or with a bad coefficient it is left out, a missing coefficient counts as 0.
-[[nodiscard]] inline std::optional<CubicRecord> read_cubic(XmlContext& context, pugi::xml_node node,
-                                                           char const* start) {
+/// A cubic record, whose element may have one attribute `beside` it: without a good start or with a bad coefficient it
+/// is left out, a missing coefficient counts as 0.
+[[nodiscard]] inline std::optional<CubicRecord> read_cubic(XmlContext& context, pugi::xml_node node, char const* start,
+                                                           std::string_view beside = {}) {
   CubicRecord record;
   bool good = true;
   report_content(context, node);
@@ -35,7 +36,10 @@ void sort_records(XmlContext& context, pugi::xml_node parent, std::vector<Record
   for (pugi::xml_attribute attribute = node.first_attribute(); attribute; attribute = attribute.next_attribute()) {
     std::string_view const name = attribute.name();
     bool const is_start = name == start;
-    if (!is_start && (name.size() != 1 || name[0] < 'a' || name[0] > 'd')) continue;
+    if (!is_start && (name.size() != 1 || name[0] < 'a' || name[0] > 'd')) {
+      if (name != beside) lose_attribute(context, node, attribute);
+      continue;
+    }
     std::optional<double> const value = parse_number<double>(attribute.value());
     double* const coefficients[] = {&record.a, &record.b, &record.c, &record.d};
     if (!value) {
@@ -64,7 +68,6 @@ inline void append_cubic(XmlContext& context, pugi::xml_node node, char const* s
 /// The speed limit of a `speed` element into a record that has `limit` and `unit`.
 template <class Record>
 void read_speed(XmlContext& context, pugi::xml_node node, Record& record) {
-  report_content(context, node);
   std::string_view const text = trimmed(node.attribute("max").value());
   std::string_view const unit = trimmed(node.attribute("unit").value());
   if (text == "no limit") record.limit = std::numeric_limits<double>::infinity();
@@ -82,11 +85,24 @@ void read_speed(XmlContext& context, pugi::xml_node node, Record& record) {
                  "unit \"" + std::string(unit) + "\" is none of m/s, km/h, mph; no limit was read");
 }
 
+/// A speed record, left out where its place is bad.
+inline void append_lane_speed(XmlContext& context, pugi::xml_node node, std::vector<opendrive::SpeedRecord>& records) {
+  report_others(context, node, {"sOffset", "max", "unit"});
+  opendrive::SpeedRecord record;
+  if (pugi::xml_attribute const place = node.attribute("sOffset")) {
+    std::optional<double> const s = context.number<double>(node, place);
+    if (!s) return context.report(Severity::warning, node, "it was left out for that, see the finding before");
+    record.s = *s;
+  }
+  read_speed(context, node, record);
+  records.push_back(std::move(record));
+}
+
 inline void read_lane_links(XmlContext& context, pugi::xml_node node, opendrive::Lane& lane) {
   pugi::xml_node const container = find_only_child(context, node, "link");
   read_container(context, container, lane.rest, [&](pugi::xml_node child, std::string_view name) {
     if (name != "predecessor" && name != "successor") return false;
-    report_content(context, child);
+    report_others(context, child, {"id"});
     if (std::optional<int> const id = context.number<int>(child, "id"))
       (name == "successor" ? lane.successors : lane.predecessors).push_back(*id);
     return true;
@@ -101,10 +117,7 @@ inline void read_lane_children(XmlContext& context, pugi::xml_node node, opendri
     if (name == "height") return append_leaf(context, child, lane.heights);
     if (name == "access") return append_leaf(context, child, lane.accesses);
     if (name == "rule") return append_leaf(context, child, lane.rules);
-    if (name == "speed") {
-      lane.speeds.push_back({context.number_or(child, "sOffset", 0.0), std::nullopt});
-      return read_speed(context, child, lane.speeds.back());
-    }
+    if (name == "speed") return append_lane_speed(context, child, lane.speeds);
     if (name != "link") keep_element(context, child, lane.rest);
   });
   sort_records(context, node, lane.widths, &CubicRecord::s, "width records");

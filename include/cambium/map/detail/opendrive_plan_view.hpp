@@ -75,6 +75,15 @@ using cambium::detail::rounded_text;
   return true;
 }
 
+/// Reports what is not read of a curve's element.
+inline void report_curve(XmlContext& context, pugi::xml_node node, std::string_view kind) {
+  if (kind == "line") return report_others(context, node, {});
+  if (kind == "arc") return report_others(context, node, {"curvature"});
+  if (kind == "spiral") return report_others(context, node, {"curvStart", "curvEnd"});
+  if (kind == "poly3") return report_others(context, node, {"a", "b", "c", "d"});
+  report_others(context, node, {"aU", "bU", "cU", "dU", "aV", "bV", "cV", "dV", "pRange"});
+}
+
 /// The curve of a geometry element: the child that says its kind may stand anywhere among other children.
 [[nodiscard]] inline bool read_curve(XmlContext& context, pugi::xml_node node, Geometry& g, opendrive::Rest& rest) {
   constexpr std::string_view kinds[] = {"line", "arc", "spiral", "poly3", "paramPoly3"};
@@ -84,7 +93,7 @@ using cambium::detail::rounded_text;
       return keep_element(context, child, rest);
     if (std::exchange(is_found, true))
       return context.report(Severity::warning, child, "the geometry has a curve before; this one was left out");
-    report_content(context, child);
+    report_curve(context, child, name);
     good = read_kind(context, child, name, g);
   });
   if (!is_found)

@@ -210,10 +210,10 @@ class RoadConnector {
     bool leads_on = false;
     for (auto const& link : links) {
       auto const& lane = find_lane(road(incoming), incoming.end, link.from);
-      if (!leaves(road(incoming), incoming.end, lane) || is_in(connection, link)) continue;
+      if (!leaves(road(incoming), incoming.end, lane) || is_in(connection.lane_links, link)) continue;
       if (std::any_of(at.connections.begin(), at.connections.end(), [&](opendrive::Connection const& there) {
             return there.incoming_road == incoming.road && there.entered_road() == way.road &&
-                   there.contact_point == way.end && is_in(there, link);
+                   there.contact_point == way.end && is_in(there.lane_links, link);
           }))
         continue;
       connection.lane_links.push_back(link);
@@ -224,8 +224,7 @@ class RoadConnector {
     at.connections.push_back(std::move(connection));
   }
 
-  [[nodiscard]] static bool is_in(opendrive::Connection const& connection, opendrive::LaneLink const& link) {
-    auto const& links = connection.lane_links;
+  [[nodiscard]] static bool is_in(Links const& links, opendrive::LaneLink const& link) {
     return std::any_of(links.begin(), links.end(),
                        [&link](auto const& l) { return l.from == link.from && l.to == link.to; });
   }
@@ -261,21 +260,30 @@ class RoadConnector {
     return result;
   }
 
-  /// Turns a plain link into connections.
+  /// Turns a plain link into connections; either side may have been the only one to name a pair of lanes.
   void dissolve(RoadEnd const& a, RoadEnd const& b, opendrive::Junction& into) const {
-    Links links;
-    for (auto const& lane : section_at(road(a), a.end).lanes)
-      if (lane.id != 0)
-        for (int const to : links_of(a, lane.id)) links.push_back({lane.id, to});
-    for (auto const& l : links) {
-      links_of(a, l.from).clear();
-      links_of(b, l.to).clear();
-    }
+    if (!is_free_for(b, a))
+      throw MapError("road " + a.road + " and road " + b.road, "only one of them is linked to the other",
+                     "mend that link of the document first");
+    auto links = named_links(a, b);
+    for (auto const& link : reversed(named_links(b, a)))
+      if (!is_in(links, link)) links.push_back(link);
     link_of(a).reset();
     link_of(b).reset();
     link_to_junction(a, into.id);
     link_to_junction(b, into.id);
     add_connections(into, a, b, links);
+  }
+
+  /// Takes from the lanes at `a` their links to lanes at `b`.
+  [[nodiscard]] Links named_links(RoadEnd const& a, RoadEnd const& b) const {
+    Links links;
+    for (auto const& lane : section_at(road(a), a.end).lanes) {
+      if (lane.id == 0) continue;
+      for (int const to : std::exchange(links_of(a, lane.id), {}))
+        links.push_back({lane.id, find_lane(road(b), b.end, to).id});
+    }
+    return links;
   }
 
   opendrive::Document& document_;

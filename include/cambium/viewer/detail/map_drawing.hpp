@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <numbers>
@@ -72,24 +73,33 @@ class MapDrawing {
   [[nodiscard]] MapLegend legend(double width) const {
     std::vector<LegendEntry> entries;
     std::set<std::string_view> types;
-    bool has_junction = false;
+    bool has_junction = false, has_link = false, has_begin = false, has_end = false;
+    std::array<bool, 3> has_overlap{};  // by kind
     for (auto const id : lanes_) {
       auto const& lane = map_.lane(id);
       if (!lane.drivable()) types.insert(to_string(lane.type));
       has_junction = has_junction || is_in_junction(lane);
+      has_link = has_link || !lane.successors.empty();
+      has_begin = has_begin || (lane.drivable() && lane.predecessors.empty());
+      has_end = has_end || (lane.drivable() && lane.successors.empty());
+      for (auto const& overlap : lane.overlaps) has_overlap[static_cast<std::size_t>(overlap.kind)] = true;
     }
+    auto const add = [&entries](bool is_there, LegendEntry const& entry) {
+      if (is_there) entries.push_back(entry);
+    };
     entries.push_back({LegendShape::area, "driving", "lane to drive on"});
     if (has_junction) entries.push_back({LegendShape::area, "driving junction", "in a junction"});
     for (auto const type : types) entries.push_back({LegendShape::area, type, "lane of type " + std::string(type)});
     if (options_.arrows) entries.push_back({LegendShape::arrow, "", "travel direction"});
-    if (options_.links)
-      entries.insert(entries.end(), {{LegendShape::link, "", "leads to"},
-                                     {LegendShape::dot, "begin", "begins, no way in"},
-                                     {LegendShape::dot, "end", "ends, no way on"}});
-    if (options_.overlaps)
-      entries.insert(entries.end(), {{LegendShape::stretch, "crossing", "crosses another lane"},
-                                     {LegendShape::stretch, "merge", "merges with one"},
-                                     {LegendShape::stretch, "split", "splits from one"}});
+    add(options_.links && has_link, {LegendShape::link, "", "leads to"});
+    add(options_.links && has_begin, {LegendShape::dot, "begin", "begins, no way in"});
+    add(options_.links && has_end, {LegendShape::dot, "end", "ends, no way on"});
+    auto const overlaps = [&](map::OverlapKind kind) {
+      return options_.overlaps && has_overlap[static_cast<std::size_t>(kind)];
+    };
+    add(overlaps(map::OverlapKind::crossing), {LegendShape::stretch, "crossing", "crosses another lane"});
+    add(overlaps(map::OverlapKind::merge), {LegendShape::stretch, "merge", "merges with one"});
+    add(overlaps(map::OverlapKind::split), {LegendShape::stretch, "split", "splits from one"});
     if (options_.conflicts && has_junction) entries.push_back({LegendShape::conflict, "", "ground of two lanes"});
     return map_legend(entries, width);
   }
