@@ -15,10 +15,9 @@ namespace cambium::map::detail {
   if (g.length < 0.0) return "the length is negative";
   bool const is_cubic = g.kind == GeometryKind::cubic;
   if (is_cubic && (g.cubic == nullptr || !(g.length > 0.0))) return "it is a cubic without its curve or its length";
-  if (is_cubic && !within(g.cubic->length(), longest)) return "its curve is longer than 1000 km";
-  bool const is_shifted = is_cubic && !(within(g.cubic->u()[0], farthest) && within(g.cubic->v()[0], farthest));
-  if (is_shifted || !within(g.x, farthest) || !within(g.y, farthest) || !within(g.s, longest) ||
-      !within(g.length, longest))
+  bool const is_far = is_cubic && !(within(g.cubic->length(), longest) && within(g.cubic->u()[0], farthest) &&
+                                    within(g.cubic->v()[0], farthest));
+  if (is_far || !within(g.x, farthest) || !within(g.y, farthest) || !within(g.s, longest) || !within(g.length, longest))
     return "a coordinate lies beyond 100 000 km or a length beyond 1000 km, or is not finite";
   if (!within(g.heading, 1e4)) return "hdg is beyond 10 000 rad, or not finite";
   if (!std::isfinite(g.curvature_start) || !std::isfinite(g.curvature_end)) return "the curvature is not finite";
