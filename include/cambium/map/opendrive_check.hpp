@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -14,6 +15,9 @@
 #include "cambium/core/error.hpp"
 #include "cambium/map/cubic.hpp"
 #include "cambium/map/detail/geometry_check.hpp"
+#include "cambium/map/detail/geometry_fault.hpp"
+#include "cambium/map/detail/move_records.hpp"
+#include "cambium/map/detail/require_buildable.hpp"
 #include "cambium/map/lane_type.hpp"
 #include "cambium/map/opendrive_document.hpp"
 #include "cambium/map/reference_line.hpp"
@@ -31,6 +35,10 @@ class DocumentCheck {
 
   void run() {
     if (document_->header.line == 0) report(Severity::warning, 0, "header", "", "the file has no header");
+    if (!is_bearable(document_->header.offset)) {
+      report(Severity::warning, document_->header.line, "offset", "", "it is beyond any map; it was left out");
+      document_->header.offset = {};
+    }
     std::erase_if(document_->roads, [this](opendrive::Road& road) {
       return !is_whole(road) || !GeometryCheck(road, file_, *diagnostics_).is_continuous() || !has_lanes(road);
     });
@@ -48,6 +56,7 @@ class DocumentCheck {
 
  private:
   using Index = std::unordered_set<std::string_view>;
+  static constexpr double highest = 1e5;  ///< [m]
 
   /// Collects the ids and removes later elements of an id that was there before.
   template <class Element>
@@ -142,26 +151,32 @@ class DocumentCheck {
   /// Whether a road, which may have been made in code, has what every road has.
   [[nodiscard]] bool is_whole(opendrive::Road& road) {
     road.geometry_lines.resize(road.geometries.size());
-    bool const has_curves = std::all_of(road.geometries.begin(), road.geometries.end(), [](Geometry const& g) {
-      return g.kind != GeometryKind::cubic || g.cubic != nullptr;
-    });
-    if (!road.geometries.empty() && !road.lane_sections.empty() && has_curves) return true;
-    report(Severity::warning, road.line, "road", "road " + road.id,
-           "it has no geometry, no lane section, or a cubic without its curve; it was left out");
+    char const* fault = road.lane_sections.empty() ? "it has no lane section"
+                        : road.geometries.empty()  ? "it has no geometry"
+                                                   : nullptr;
+    for (std::size_t i = 0; i < road.geometries.size() && fault == nullptr; ++i) fault = fault_of(road.geometries[i]);
+    if (fault == nullptr) return true;
+    report(Severity::warning, road.line, "road", "road " + road.id, std::string(fault) + "; the road was left out");
     return false;
   }
 
   /// Leaves out records of widths, heights and of the lane offset that are beyond any road, and reports negative
   /// widths.
   void check_records(opendrive::Road& road, std::string const& ids) {
+    constexpr double steepest = 10.0;  // [rad]
     auto const of_road = [&] { return ids; };
     leave_out_wild(road.lane_offset, road.geometry_length(), road.line, "laneOffset", of_road);
-    leave_out_wild(road.elevation, road.geometry_length(), road.line, "elevation", of_road, 1e5);
+    leave_out_wild(road.elevation, road.geometry_length(), road.line, "elevation", of_road, highest);
+    leave_out_wild(road.superelevation, road.geometry_length(), road.line, "superelevation", of_road, steepest, "rad");
+    check_surface(road, ids);
     for (std::size_t i = 0; i < road.lane_sections.size(); ++i) {
       opendrive::LaneSection& section = road.lane_sections[i];
       double const end = i + 1 < road.lane_sections.size() ? road.lane_sections[i + 1].s : road.geometry_length();
       for (opendrive::Lane& lane : section.lanes) {
         auto const of = [&] { return ids + ", section " + std::to_string(i) + ", lane " + std::to_string(lane.id); };
+        leave_out(lane.heights, lane.line, "height", of(), [](opendrive::LaneHeight const& height) {
+          return std::abs(height.inner) <= highest && std::abs(height.outer) <= highest;
+        });
         leave_out_wild(lane.borders, end - section.s, lane.line, "border", of);
         double const lowest = leave_out_wild(lane.widths, end - section.s, lane.line, "width", of);
         if (lowest < -1e-3)
@@ -171,10 +186,43 @@ class DocumentCheck {
     }
   }
 
+  /// Leaves out what tilts or bends the road across beyond any road.
+  void check_surface(opendrive::Road& road, std::string const& ids) {
+    constexpr double steepest = 10.0, farthest = 1000.0;  // [rad], [m] to the side
+    auto const keeps_within = [](CubicRecord const& record, double end, double largest) {
+      auto const [low, high] = extremes(record, record.s, std::max(end, record.s));
+      return low >= -largest && high <= largest;
+    };
+    leave_out(road.crossfall, road.line, "crossfall", ids, [&](opendrive::Crossfall const& crossfall) {
+      auto const* const last = road.crossfall.data() + road.crossfall.size();
+      auto const* const next = std::find_if(
+          &crossfall + 1, last, [&](opendrive::Crossfall const& other) { return other.side == crossfall.side; });
+      double const end = next != last ? next->record.s : road.geometry_length();
+      return keeps_within(crossfall.record, std::min(end, road.geometry_length()), steepest);
+    });
+    leave_out(road.shape, road.line, "shape", ids, [&](opendrive::LateralShape const& shape) {
+      auto const* const next = &shape + 1;
+      bool const is_last = next == road.shape.data() + road.shape.size() || next->s != shape.s;
+      double const end = is_last ? farthest : std::min(farthest, next->record.s);
+      return keeps_within(shape.record, end, highest);
+    });
+  }
+
+  template <class Record, class Keep>
+  void leave_out(std::vector<Record>& records, int line, char const* element, std::string const& ids,
+                 Keep const& keep) {
+    std::vector<Record> kept;
+    std::copy_if(records.begin(), records.end(), std::back_inserter(kept), keep);
+    if (kept.size() == records.size()) return;
+    report(Severity::warning, line, element, ids,
+           std::to_string(records.size() - kept.size()) + " records are beyond any road; they were left out");
+    records = std::move(kept);
+  }
+
   /// Removes records that leave +-`largest` [m] before `end`; returns the smallest value of the others.
   template <class Ids>
   double leave_out_wild(std::vector<CubicRecord>& records, double end, int line, char const* element, Ids const& ids,
-                        double largest = 1000.0) {
+                        double largest = 1000.0, char const* unit = "m") {
     double lowest = 0.0;
     std::size_t kept = records.size();
     // From the back: where a record is left out, the one before it holds up to the next one that is kept.
@@ -188,7 +236,7 @@ class DocumentCheck {
       }
       report(Severity::warning, line, element, ids(),
              "the record at " + rounded_text(records[i].s) + " m reaches " + rounded_text(high > largest ? high : low) +
-                 " m; it was left out");
+                 " " + unit + "; it was left out");
     }
     records.erase(records.begin(), records.begin() + static_cast<std::ptrdiff_t>(kept));
     return lowest;
@@ -206,6 +254,7 @@ class DocumentCheck {
       if (section.s >= 0.0) break;
       report(Severity::warning, section.line, "laneSection", ids,
              "the section starts at " + rounded_text(section.s) + " m; it counts from the road's start on");
+      for (opendrive::Lane& lane : section.lanes) move_records(lane, -section.s);
       section.s = 0.0;
     }
     if (road.lane_sections.front().s > 0.0)
@@ -262,8 +311,9 @@ class DocumentCheck {
 /// Checks a document as a whole and appends what it finds: double ids (the later element is removed), links and
 /// connections that lead nowhere (kept), lane sections behind the road's end (removed) or before its start (moved
 /// there), geometries that do not go on where the one before ends (kept; the road is removed where that is 100 m away),
-/// widths and lane offsets beyond 1 km and heights beyond 100 km (removed), lengths that contradict the geometries
-/// (kept; the geometries count). O(n log n) in the size of the document.
+/// widths and lane offsets beyond 1 km, heights beyond 100 km, tilts beyond 10 rad, a header's offset beyond any map
+/// (removed), lengths that contradict the geometries (kept; the geometries count). O(n log n) in the size of the
+/// document.
 inline void check_opendrive_document(OpenDriveDocument& document, std::string file_name,
                                      std::vector<Diagnostic>& diagnostics) {
   detail::DocumentCheck(document, std::move(file_name), diagnostics).run();

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <span>
 #include <tuple>
 #include <vector>
@@ -40,23 +41,44 @@ class OverlapFinder {
   }
 
  private:
-  /// Stretches of the lanes `a` < `b` that are close to each other.
+  /// Stretches of the lanes `a` <= `b` that are close to each other.
   struct Contact {
     std::uint32_t a, b;
     Stretch on_a, on_b;
   };
 
-  /// For each lane those that it hangs together with: being close to them is no conflict.
+  /// A lane that another one hangs together with, at a common joint.
+  struct Linked {
+    LaneId lane;
+    double between;  ///< length of the lanes between the two [m]
+  };
+
+  /// A joint of a lane: near it, being close to `other` is no conflict.
+  struct Joint {
+    LaneId other;
+    bool at_end, at_other_end;  ///< of the lane, of `other`; else at the begin
+    double between;             ///< as in `Linked`
+  };
+
+  /// For each lane those that it hangs together with, those beside them included.
   void find_related() {
     ahead_.assign(lanes_.size(), {});
-    behind_ = beside_ = ahead_;
-    for (std::size_t i = 0; i < lanes_.size(); ++i) {
-      auto const& lane = lanes_[i];
-      add_linked(lane, &Lane::successors, 0.0, ahead_[i]);
-      add_linked(lane, &Lane::predecessors, 0.0, behind_[i]);
-      for (auto const* linked : {&ahead_[i], &behind_[i]})
-        for (auto const id : *linked) add_cross_section(index_of(id), beside_[i]);
-    }
+    behind_ = ahead_;
+    joints_.assign(lanes_.size(), {});
+    for (std::size_t i = 0; i < lanes_.size(); ++i)
+      for (bool const at_end : {true, false}) {
+        std::vector<Linked> linked;
+        add_linked(lanes_[i], at_end ? &Lane::successors : &Lane::predecessors, 0.0, linked);
+        for (auto const& link : linked) {
+          (at_end ? ahead_ : behind_)[i].push_back(link.lane);
+          std::vector<LaneId> beside;
+          add_cross_section(index_of(link.lane), beside);
+          for (auto const id : beside) {
+            bool const same_way = lanes_[index_of(id)].along_road == lanes_[index_of(link.lane)].along_road;
+            joints_[i].push_back({id, at_end, at_end != same_way, link.between});
+          }
+        }
+      }
   }
 
   /// The lanes of the same section of the road, oncoming ones too: they stand one behind the other in `lanes_`.
@@ -72,9 +94,9 @@ class OverlapFinder {
   /// The lanes behind a lane's end (or before its begin), and those behind them while they are too short to come
   /// between.
   void add_linked(Lane const& lane, std::vector<LaneId> Lane::*links, double between,
-                  std::vector<LaneId>& linked) const {
+                  std::vector<Linked>& linked) const {
     for (auto const id : lane.*links) {
-      linked.push_back(id);
+      linked.push_back({id, between});
       double const length = between + lanes_[index_of(id)].length();
       if (length < 2.0 * clearance_ && linked.size() < 64) add_linked(lanes_[index_of(id)], links, length, linked);
     }
@@ -84,16 +106,28 @@ class OverlapFinder {
     return std::find(list.begin(), list.end(), id) != list.end();
   }
 
-  [[nodiscard]] bool are_related(std::uint32_t a, std::uint32_t b) const {
-    auto const ia = static_cast<LaneId>(a), ib = static_cast<LaneId>(b);
-    return has(ahead_[a], ib) || has(behind_[a], ib) || has(beside_[a], ib) || has(beside_[b], ia);
+  /// Whether the lanes are close because they hang together: the contact reaches their common joint, or nearly so.
+  [[nodiscard]] bool is_at_joint(Contact const& c) const { return is_at_joint(c.a, c.on_a, c.b, c.on_b); }
+
+  [[nodiscard]] bool is_at_joint(std::uint32_t a, Stretch const& on_a, std::uint32_t b, Stretch const& on_b) const {
+    constexpr double near = 10.0;  // [m] along the paths: no loop is so short
+    auto const left = [&](std::uint32_t i, Stretch const& on, bool to_end) {
+      return to_end ? lanes_[i].length() - on.end : on.begin;
+    };
+    auto const holds = [&](std::uint32_t i, Stretch const& on, std::uint32_t j, Stretch const& on_other) {
+      return std::any_of(joints_[i].begin(), joints_[i].end(), [&](Joint const& joint) {
+        return index_of(joint.other) == j &&
+               left(i, on, joint.at_end) + joint.between + left(j, on_other, joint.at_other_end) < near;
+      });
+    };
+    return holds(a, on_a, b, on_b) || holds(b, on_b, a, on_a);
   }
 
   [[nodiscard]] static bool have_common(std::vector<LaneId> const& l, std::vector<LaneId> const& r) {
     return std::any_of(l.begin(), l.end(), [&r](LaneId id) { return has(r, id); });
   }
 
-  /// Lanes of one road are side by side, or one after the other, where their stations are about the same.
+  /// Lanes of one road are side by side, one after the other, or the same where their stations are about the same.
   [[nodiscard]] bool are_beside(LaneChord const& a, LaneChord const& b) const {
     auto const &la = lanes_[a.lane], &lb = lanes_[b.lane];
     return la.road == lb.road && la.merges_into != lb.id && lb.merges_into != la.id && a.on_road.gap(b.on_road) < 10.0;
@@ -106,16 +140,16 @@ class OverlapFinder {
       if (lane.drivable()) add_chords(lane, tolerance, longest, chords);
     std::vector<Box> boxes(chords.size());
     for (std::size_t i = 0; i < chords.size(); ++i) {
-      auto& c = chords[i];
+      auto const& c = chords[i];
       boxes[i].add(c.x, c.y);
       boxes[i].add(c.x + c.ux * c.length, c.y + c.uy * c.length);
-      if (elevation_) c.elevation = elevation_(lanes_[c.lane], c.on_path.middle());
     }
     last_contact_.assign(lanes_.size(), 0);
     BoxTree const tree(boxes);
     for (std::size_t i = 0; i < chords.size(); ++i) {
       tree.visit(boxes[i].grown(clearance_), [&](std::uint32_t j) {
-        if (chords[i].lane < chords[j].lane) add_contact(chords[i], chords[j]);
+        if (std::tie(chords[i].lane, i) < std::tuple<std::uint32_t, std::size_t>(chords[j].lane, j))
+          add_contact(chords[i], chords[j]);
         return false;
       });
       if (i + 1 == chords.size() || chords[i + 1].lane != chords[i].lane) join_contacts();
@@ -137,12 +171,11 @@ class OverlapFinder {
 
   void add_contact(LaneChord const& a, LaneChord const& b) {
     if (auto const* last = last_contact(b); last && last->on_a.has(a.on_path) && last->on_b.has(b.on_path)) return;
-    constexpr double clear_height = 3.0;  // [m] enough for one to pass under the other
-    if (std::abs(a.elevation - b.elevation) > clear_height || are_beside(a, b) || are_related(a.lane, b.lane)) return;
+    if (are_beside(a, b)) return;
     auto const on_a = stretch_near(a, b, clearance_);
     if (!on_a) return;
     auto const on_b = stretch_near(b, a, clearance_);
-    if (!on_b) return;
+    if (!on_b || pass_over(a, *on_a, b, *on_b)) return;
     if (auto* last = last_contact(b); last && last->on_a.touches(*on_a) && last->on_b.touches(*on_b)) {
       last->on_a.add(*on_a);
       last->on_b.add(*on_b);
@@ -150,6 +183,22 @@ class OverlapFinder {
     }
     last_contact_[b.lane] = contacts_.size();
     contacts_.push_back({a.lane, b.lane, *on_a, *on_b});
+  }
+
+  /// Whether one of the lanes is a bridge over the other, all along the stretches.
+  [[nodiscard]] bool pass_over(LaneChord const& a, Stretch const& on_a, LaneChord const& b, Stretch const& on_b) const {
+    if (!elevation_) return false;
+    constexpr double clear_height = 3.0;  // [m] enough for one to pass under the other
+    bool const same_way = a.ux * b.ux + a.uy * b.uy > 0.0;
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (double const u : {0.0, 0.5, 1.0}) {
+      double const s = on_a.begin + u * (on_a.end - on_a.begin);
+      double const other_s = on_b.begin + (same_way ? u : 1.0 - u) * (on_b.end - on_b.begin);
+      double const above = elevation_(lanes_[a.lane], s) - elevation_(lanes_[b.lane], other_s);
+      low = std::min(low, above);
+      high = std::max(high, above);
+    }
+    return low > clear_height || high < -clear_height;
   }
 
   /// The last contact of the present lane with that of `b`: mostly the one that they continue.
@@ -178,7 +227,7 @@ class OverlapFinder {
     std::vector<Contact> groups, refined;
     for (auto const& contact : contacts) add_joined(contact, groups);
     for (auto& g : groups)  // ends that were apart on the chords may prove to be one stretch
-      if (ends_.refine(lanes_[g.a], g.on_a, lanes_[g.b], g.on_b)) add_joined(g, refined);
+      if (!is_at_joint(g) && ends_.refine(lanes_[g.a], g.on_a, lanes_[g.b], g.on_b)) add_joined(g, refined);
     for (auto& g : refined) {
       auto &a = lanes_[g.a], &b = lanes_[g.b];
       bool const is_crossing = turn_between(a, g.on_a, b, g.on_b) > geometry::pi / 3;
@@ -218,9 +267,10 @@ class OverlapFinder {
   LaneElevation const& elevation_;
   double clearance_;
   OverlapEnds ends_;
-  std::vector<std::vector<LaneId>> ahead_, behind_, beside_;  ///< by lane
-  std::vector<Contact> contacts_;                             ///< of the present lane with others
-  std::vector<std::size_t> last_contact_;                     ///< by the other lane
+  std::vector<std::vector<LaneId>> ahead_, behind_;  ///< by lane
+  std::vector<std::vector<Joint>> joints_;           ///< by lane
+  std::vector<Contact> contacts_;                    ///< of the present lane with others
+  std::vector<std::size_t> last_contact_;            ///< by the other lane
 };
 
 }  // namespace detail
@@ -229,12 +279,14 @@ class OverlapFinder {
 /// [m], on both lanes. An end lies within 1 cm, along the path, of where the distance of the exact paths (`place`;
 /// without one, the sampled paths) is the clearance, however slowly the lanes come together. Lanes whose sampled paths
 /// come 2 cm closer than that, or less, may be missed, and gaps as shallow may be passed over. `elevation` may be
-/// empty; where it is given, paths more than 3 m above each other do not overlap. A lane's number must be its place in
-/// `lanes`. O((n + k) log n) for n path segments, k pairs of them that are close; memory O(n) and the pairs of one
+/// empty; where it is given, paths more than 3 m above each other at the place do not overlap. A lane that crosses
+/// itself overlaps with itself, too: each of the two stretches is the other's other. A lane's number must be its place
+/// in `lanes`. O((n + k) log n) for n path segments, k pairs of them that are close; memory O(n) and the pairs of one
 /// lane.
 ///
-/// Left out are lanes that belong together anyway: one behind the other (also with lanes in between that are shorter
-/// than twice the clearance), those beside these, oncoming ones too, and lanes of the same road at the same station,
+/// Left out is where lanes belong together anyway: near the joint of lanes one behind the other (also with lanes in
+/// between that are shorter than twice the clearance) and of those beside these, oncoming ones too, that is where a
+/// stretch comes within 10 m of it along the paths; and lanes of the same road at about the same station,
 /// unless one merges into the other. Kinds: crossing where the directions differ by more than 60 degrees in the middle
 /// of the stretch; else merge where both end in a common successor; else split where both begin behind a common
 /// predecessor; else split where they are closer at the stretch's begin than at its end; else merge. For merge and

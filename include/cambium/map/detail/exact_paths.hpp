@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <span>
 
@@ -39,12 +38,6 @@ class ExactPaths {
   }
 
  private:
-  [[nodiscard]] static std::size_t column_of(RoadSection const& section, int number) {
-    return static_cast<std::size_t>(std::find_if(section.lanes.begin(), section.lanes.end(),
-                                                 [number](RoadLane const& l) { return l.number == number; }) -
-                                    section.lanes.begin());
-  }
-
   std::span<Road const> roads_;
   std::span<Lane const> lanes_;
   MapOptions const& options_;

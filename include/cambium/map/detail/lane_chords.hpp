@@ -34,11 +34,10 @@ struct LaneChord {
   double x{}, y{}, ux{}, uy{}, length{};  ///< as in `geometry::Line::Segment`
   Stretch on_path;                        ///< path positions [m]
   Stretch on_road;                        ///< road stations [m]
-  double elevation{};                     ///< in its middle [m]
 };
 
-/// Appends chords that keep within `tolerance` of the lane's path and are not longer than `longest` [m] (unless a
-/// segment is).
+/// Appends chords that keep within `tolerance` of the lane's path and are not longer than `longest` [m]: a straight
+/// road is one segment however long.
 inline void add_chords(Lane const& lane, double tolerance, double longest, std::vector<LaneChord>& chords) {
   auto const segments = lane.path.segments();
   auto const scale = (lane.road_end - lane.road_begin) / lane.length();
@@ -61,11 +60,17 @@ inline void add_chords(Lane const& lane, double tolerance, double longest, std::
     }
     double const length = std::hypot(x, y), ux = (first.ux * x - first.uy * y) / length,
                  uy = (first.uy * x + first.ux * y) / length;
-    Stretch const on_path{first.s, segments[j].s + segments[j].length};
-    Stretch const on_road =
-        lane.along_road ? Stretch{lane.road_begin + scale * on_path.begin, lane.road_begin + scale * on_path.end}
-                        : Stretch{lane.road_end - scale * on_path.end, lane.road_end - scale * on_path.begin};
-    chords.push_back({static_cast<std::uint32_t>(lane.id), first.x, first.y, ux, uy, length, on_path, on_road, 0.0});
+    double const from = first.s, to = segments[j].s + segments[j].length;
+    auto const pieces = std::max(1.0, std::ceil(length / longest));
+    for (double k = 0.0; k < pieces; ++k) {
+      Stretch const on_path{from + k / pieces * (to - from), from + (k + 1.0) / pieces * (to - from)};
+      Stretch const on_road =
+          lane.along_road ? Stretch{lane.road_begin + scale * on_path.begin, lane.road_begin + scale * on_path.end}
+                          : Stretch{lane.road_end - scale * on_path.end, lane.road_end - scale * on_path.begin};
+      double const along = k / pieces * length;
+      chords.push_back({static_cast<std::uint32_t>(lane.id), first.x + along * ux, first.y + along * uy, ux, uy,
+                        length / pieces, on_path, on_road});
+    }
     i = j + 1;
   }
 }

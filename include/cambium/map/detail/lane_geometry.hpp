@@ -10,8 +10,16 @@
 #include "cambium/geometry/line.hpp"
 #include "cambium/map/detail/section_sampler.hpp"
 #include "cambium/map/lane.hpp"
+#include "cambium/map/road.hpp"
 
 namespace cambium::map::detail {
+
+/// The place of the lane `number` among those of its section.
+[[nodiscard]] inline std::size_t column_of(RoadSection const& section, int number) {
+  return static_cast<std::size_t>(std::find_if(section.lanes.begin(), section.lanes.end(),
+                                               [number](RoadLane const& lane) { return lane.number == number; }) -
+                                  section.lanes.begin());
+}
 
 /// Fills a lane's path, widths, stations and borders from cross-sections: column `column` of the section.
 /// `path_of(cross)` gives the path's lateral coordinate. False where the lane has no length (its inner side

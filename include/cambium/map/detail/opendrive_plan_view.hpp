@@ -11,6 +11,7 @@
 
 #include "cambium/core/error.hpp"
 #include "cambium/map/detail/attribute_reader.hpp"
+#include "cambium/map/detail/geometry_fault.hpp"
 #include "cambium/map/detail/stable_sort.hpp"
 #include "cambium/map/reference_line.hpp"
 
@@ -101,30 +102,6 @@ inline void report_curve(XmlContext& context, pugi::xml_node node, std::string_v
   return is_found && good;
 }
 
-/// False when something is so large that nobody could drive there.
-[[nodiscard]] inline bool is_within_bounds(XmlContext& context, pugi::xml_node node, Geometry const& g) {
-  constexpr double farthest = 1e8, longest = 1e6;  // [m]: beyond any map
-  double length = g.length, shift = 0.0;
-  if (g.cubic) {
-    length = std::max(length, g.cubic->length());
-    shift = std::max(std::abs(g.cubic->u()[0]), std::abs(g.cubic->v()[0]));
-  }
-  if (!(std::max({std::abs(g.x), std::abs(g.y), shift}) <= farthest && std::max(std::abs(g.s), length) <= longest)) {
-    context.report(Severity::warning, node, "a coordinate lies beyond 100 000 km, or a length beyond 1000 km");
-    return false;
-  }
-  if (!(std::abs(g.heading) <= 1e4)) {
-    context.report(Severity::warning, node, "hdg is beyond 10 000 rad");
-    return false;
-  }
-  constexpr double max_turn = 1000.0;  // rad: more than any road, little enough to be integrated
-  if (!(std::max(std::abs(g.curvature_start), std::abs(g.curvature_end)) * g.length < max_turn)) {
-    context.report(Severity::warning, node, "the curve turns by more than 1000 rad");
-    return false;
-  }
-  return true;
-}
-
 /// A geometry with what goes along with it.
 struct ReadGeometry {
   Geometry geometry;
@@ -137,15 +114,14 @@ struct ReadGeometry {
   ReadGeometry read;
   Geometry& g = read.geometry;
   if (!read_attributes(context, node, g, &read.rest) || !read_curve(context, node, g, read.rest)) return false;
-  if (g.length < 0.0) {
-    context.report(Severity::warning, node, "the length is negative");
-    return false;
-  }
   if (g.length == 0.0) {
     context.report(Severity::info, node, "a geometry of length 0 was left out");
     return true;
   }
-  if (!is_within_bounds(context, node, g)) return false;
+  if (auto const* const fault = fault_of(g)) {
+    context.report(Severity::warning, node, fault);
+    return false;
+  }
   read.line = context.line(node);
   all.push_back(std::move(read));
   return true;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <unordered_set>
@@ -10,19 +11,25 @@
 
 #include "cambium/core/error.hpp"
 #include "cambium/map/cubic.hpp"
+#include "cambium/map/detail/geometry_fault.hpp"
 #include "cambium/map/opendrive_document.hpp"
 #include "cambium/map/reference_line.hpp"
 
 namespace cambium::map::detail {
+
+/// Whether a map can be moved by an offset: by no more than the coordinates of geometries may be.
+[[nodiscard]] inline bool is_bearable(opendrive::HeaderOffset const& offset) {
+  return std::abs(offset.x) <= 1e8 && std::abs(offset.y) <= 1e8 && std::abs(offset.z) <= 1e8 &&
+         std::abs(offset.heading) <= 1e4;
+}
 
 /// Throws `MapError` where a document, which may have been made or changed in code, lacks what the reader guarantees
 /// and a map cannot be made without. Linear in the document.
 class RequireBuildable {
  public:
   static void check(OpenDriveDocument const& document) {
-    auto const& offset = document.header.offset;
-    RequireBuildable("header").require(std::isfinite(offset.x + offset.y + offset.z + offset.heading),
-                                       "its offset is not finite", "give finite numbers");
+    RequireBuildable("header").require(is_bearable(document.header.offset),
+                                       "its offset is not finite, or beyond any map", "give m and rad");
     std::unordered_set<std::string_view> ids;
     for (auto const& road : document.roads) {
       RequireBuildable const here("road " + road.id);
@@ -30,6 +37,7 @@ class RequireBuildable {
       here.check_line(road);
       for (auto const* records : {&road.elevation, &road.superelevation, &road.lane_offset})
         here.check_records(*records, "of the road");
+      for (auto const& type : road.types) here.check_speed(type.s, type.limit, "of the road");
       for (auto const& crossfall : road.crossfall) here.check_record(crossfall.record, "of the crossfall");
       for (auto const& shape : road.shape) here.check_record(shape.record, "of the shape");
       here.check_sections(road);
@@ -43,20 +51,10 @@ class RequireBuildable {
     if (!holds) throw MapError(where_, what, remedy);
   }
 
-  /// The bounds are the reader's.
   void check_line(opendrive::Road const& road) const {
-    constexpr double farthest = 1e8, longest = 1e6, most_turn = 1000.0;  // [m], [m], [rad]
-    for (auto const& g : road.geometries) {
-      require(std::max(std::abs(g.x), std::abs(g.y)) <= farthest && std::abs(g.heading) <= 1e4 &&
-                  std::abs(g.s) <= longest && g.length >= 0.0 && g.length <= longest,
-              "a geometry has a number that is not finite or beyond any map, or a length below 0",
-              "give m and rad; see lay_from");
-      require(std::max(std::abs(g.curvature_start), std::abs(g.curvature_end)) * g.length < most_turn &&
-                  std::isfinite(g.curvature_start + g.curvature_end),
-              "a geometry turns by more than 1000 rad, or its curvature is not finite", "give curvatures in 1/m");
-      require(g.kind != GeometryKind::cubic || (g.cubic != nullptr && g.length > 0.0 && g.cubic->length() <= longest),
-              "a geometry of the kind cubic has no curve, or no length", "set its cubic and length");
-    }
+    for (auto const& g : road.geometries)
+      if (auto const* const fault = fault_of(g))
+        throw MapError(where_, std::string("a geometry: ") + fault, "see lay_from");
     bool const is_sorted = std::is_sorted(road.geometries.begin(), road.geometries.end(),
                                           [](Geometry const& a, Geometry const& b) { return a.s < b.s; });
     require(is_sorted, "its geometries are not in the order of s", "sort them");
@@ -83,13 +81,16 @@ class RequireBuildable {
     check_records(lane.widths, "of a lane's width");
     check_records(lane.borders, "of a lane's border");
     for (auto const& height : lane.heights)
-      require(std::isfinite(height.s_offset + height.inner + height.outer), "a lane's height is not finite",
-              "give finite numbers");
-    for (auto const& speed : lane.speeds)
-      require(std::isfinite(speed.s) && !(speed.limit && std::isnan(*speed.limit)), "a lane's speed is not a number",
-              "give m and m/s");
+      require(std::isfinite(height.s_offset) && std::isfinite(height.inner) && std::isfinite(height.outer),
+              "a lane's height is not finite", "give finite numbers");
+    for (auto const& speed : lane.speeds) check_speed(speed.s, speed.limit, "of a lane");
     for (auto const& mark : lane.road_marks)
       require(std::isfinite(mark.s_offset), "a road mark begins at no finite place", "give it in m");
+  }
+
+  void check_speed(double s, std::optional<double> const& limit, char const* of) const {
+    if (!std::isfinite(s) || (limit && std::isnan(*limit)))
+      throw MapError(where_, std::string("a speed ") + of + " is not a number", "give m and m/s");
   }
 
   void check_records(std::vector<CubicRecord> const& records, char const* of) const {
@@ -97,8 +98,7 @@ class RequireBuildable {
   }
 
   void check_record(CubicRecord const& r, char const* of) const {
-    if (!std::isfinite(r.s + r.a + r.b + r.c + r.d))
-      throw MapError(where_, std::string("a record ") + of + " is not finite", "give finite numbers");
+    if (!is_finite(r)) throw MapError(where_, std::string("a record ") + of + " is not finite", "give finite numbers");
   }
 
   std::string where_;
