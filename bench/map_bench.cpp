@@ -1,8 +1,8 @@
 // What reading maps and asking them costs, beside what pugixml alone takes for the same files.
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -17,7 +17,8 @@
 #include <benchmark/benchmark.h>
 #include <pugixml.hpp>
 
-#include "cambium/map/lane_adjacency.hpp"
+#include "cambium/core/random.hpp"
+#include "cambium/map/build_map.hpp"
 #include "cambium/map/make_roads.hpp"
 #include "cambium/map/map_builder.hpp"
 #include "cambium/map/opendrive.hpp"
@@ -52,6 +53,22 @@ std::vector<fs::path> files() {
   return files;
 }
 
+/// What is built of a map: each stage with those before it.
+enum class Stage { read, sampled, linked };
+
+/// Runs the stages that `parse_opendrive` consists of, up to `last`, with lanes sampled to 5 cm.
+std::size_t run_stages(std::string const& text, std::string const& name, Stage last) {
+  std::vector<cb::Diagnostic> diagnostics;
+  auto const document = cb::map::read_opendrive_document(text, name, diagnostics);
+  if (last == Stage::read) return cb::map::make_roads(document).size();
+  return cb::map::detail::with_split_roads(document, [&](cb::map::OpenDriveDocument const& split) {
+    cb::map::detail::MapBuild build(split, {.position_tolerance = 0.05}, name, diagnostics);
+    build.add_lanes();
+    if (last == Stage::linked) build.link_lanes();
+    return diagnostics.size();
+  });
+}
+
 void register_loading(std::string const& stem, std::shared_ptr<std::string const> const& text) {
   yardstick::add("map/xml/" + stem, [text](benchmark::State& state) {
     yardstick::measure_duration(state, [&] {
@@ -59,27 +76,11 @@ void register_loading(std::string const& stem, std::shared_ptr<std::string const
       benchmark::DoNotOptimize(xml.load_buffer(text->data(), text->size()).status);
     });
   });
-  yardstick::add("map/load/" + stem, [text, stem](benchmark::State& state) {
-    yardstick::measure_duration(state, [&] {
-      std::vector<cb::Diagnostic> diagnostics;
-      auto const document = cb::map::read_opendrive_document(*text, stem, diagnostics);
-      auto const roads = cb::map::make_roads(document);
-      benchmark::DoNotOptimize(roads.data());
-      benchmark::DoNotOptimize(lane_adjacency(document).data());
+  for (auto const& [kind, stage] :
+       {std::pair("map/read/", Stage::read), {"map/sampled/", Stage::sampled}, {"map/linked/", Stage::linked}})
+    yardstick::add(kind + stem, [text, stem, last = stage](benchmark::State& state) {
+      yardstick::measure_duration(state, [&] { benchmark::DoNotOptimize(run_stages(*text, stem, last)); });
     });
-  });
-  yardstick::add("map/sampled/" + stem, [text, stem](benchmark::State& state) {
-    std::vector<cb::Diagnostic> diagnostics;
-    auto const roads = cb::map::make_roads(cb::map::read_opendrive_document(*text, stem, diagnostics));
-    cb::MapOptions options;
-    options.position_tolerance = 0.05;
-    yardstick::measure_duration(state, [&] {
-      for (auto const& road : roads)
-        for (auto const& section : road.sections)
-          if (section.end - section.begin > cb::map::detail::shortest_section)
-            benchmark::DoNotOptimize(cb::map::detail::SectionSampler(road, section, options).sample().data());
-    });
-  });
   yardstick::add("map/world_ready/" + stem, [text, stem](benchmark::State& state) {
     yardstick::measure_duration(state,
                                 [&] { benchmark::DoNotOptimize(cb::parse_opendrive(*text, {}, stem).map.get()); });
@@ -99,11 +100,8 @@ struct Queries {
   std::vector<Pose> walk;
 
   explicit Queries(std::string const& text) : map(cb::parse_opendrive(text).map) {
-    std::uint64_t random = 1;
-    auto const below = [&random](std::size_t n) {
-      random = random * 6364136223846793005ULL + 1442695040888963407ULL;
-      return static_cast<std::size_t>(random >> 33) % n;
-    };
+    cb::RandomStream random(1, 0, 0);
+    auto const below = [&random](std::size_t n) { return static_cast<std::size_t>(random() % n); };
     auto const lanes = map->lanes();
     while (places.size() < 20000) {
       auto const& lane = lanes[below(lanes.size())];
@@ -161,12 +159,27 @@ std::string many_geometries(int count) {
   return cb::map::write_opendrive(builder.document());
 }
 
+/// The parts of what it takes to load a map, as differences of the best times.
+void print_parts(yardstick::Results const& results) {
+  auto const best = [&](char const* kind) {
+    auto const found = results.find(std::string("map/") + kind + "/Town04");
+    return found == results.end() ? std::nan("") : found->second.best;
+  };
+  double const sampling = best("sampled") - best("read"), linking = best("linked") - best("sampled");
+  if (!std::isfinite(sampling + linking + best("world_ready"))) return;
+  std::printf(
+      "\nTown04 [ms]: document, exact roads and links between lanes %.1f (at most 12), sampled lanes and borders "
+      "at 5 cm %.1f more (20), world-ready %.1f (60)\n",
+      best("read") + linking, sampling, best("world_ready"));
+}
+
 void print_ratios(yardstick::Results const& results) {
+  print_parts(results);
   std::printf("\nratios of the best\n");
   auto const row = [&](char const* a, char const* b) {
     if (auto const r = yardstick::ratio(results, a, b)) std::printf("  %-32s / %-32s %6.2f\n", a, b, *r);
   };
-  row("map/load/Town04", "map/xml/Town04");
+  row("map/read/Town04", "map/xml/Town04");
   row("map/world_ready/Town04", "map/xml/Town04");
   row("map/world_ready/3000_geometries", "map/world_ready/1000_geometries");
 }

@@ -1,23 +1,22 @@
 #pragma once
 
-#include <charconv>
 #include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <iostream>
 #include <string>
-#include <system_error>
 
 #include <CLI/CLI.hpp>
+
+#include "cambium/core/text.hpp"
 
 namespace examples {
 
 /// Accepts whole numbers from `low` to `high`. (CLI11's own range lets numbers pass that no integer holds.)
 [[nodiscard]] inline CLI::Validator whole_number(std::uint64_t low, std::uint64_t high) {
   auto const check = [low, high](std::string const& word) -> std::string {
-    std::uint64_t value = 0;
-    auto const [end, problem] = std::from_chars(word.data(), word.data() + word.size(), value);
-    if (problem == std::errc{} && end == word.data() + word.size() && value >= low && value <= high) return {};
+    auto const value = cambium::detail::parse_number<std::uint64_t>(word);
+    if (value && *value >= low && *value <= high) return {};
     return "needs a whole number from " + std::to_string(low) + " to " + std::to_string(high) + ", not '" + word + "'";
   };
   return CLI::Validator(check, "");

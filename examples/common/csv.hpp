@@ -6,20 +6,13 @@
 #include <fstream>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "cambium/core/error.hpp"
+#include "cambium/core/text.hpp"
 
 namespace examples {
-
-/// Reads all of `text` as a finite number; false where it is none.
-template <class Number>
-[[nodiscard]] bool read_number(std::string_view text, Number& value) {
-  auto const [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-  return problem == std::errc{} && end == text.data() + text.size() && value - value == Number{};
-}
 
 /// `text` as a cell that `CsvTable` reads back: in quotes where it must be (RFC 4180).
 [[nodiscard]] inline std::string csv_cell(std::string const& text) {
@@ -57,8 +50,7 @@ class CsvTable {
   /// The cell as a finite number. Throws `cambium::Error` where it is none.
   template <class Number>
   [[nodiscard]] Number number(std::size_t row, std::size_t column) const {
-    Number value{};
-    if (read_number(word(row, column), value)) return value;
+    if (auto const value = cambium::detail::parse_number<Number>(word(row, column))) return *value;
     fail(rows_[row].line, names_[column] + " is '" + word(row, column) + "', which is no finite number of its kind",
          "write it like 12.5, the lane like -1");
   }
@@ -88,8 +80,7 @@ class CsvTable {
 
   /// What a cell says, without the blanks around it and without its quotes.
   [[nodiscard]] static std::string content(std::string_view cell) {
-    while (!cell.empty() && cell.front() == ' ') cell.remove_prefix(1);
-    while (!cell.empty() && cell.back() == ' ') cell.remove_suffix(1);
+    cell = cambium::detail::trimmed(cell, " ");
     if (cell.size() < 2 || cell.front() != '"' || cell.back() != '"') return std::string(cell);
     std::string text(cell.substr(1, cell.size() - 2));
     for (std::size_t at = text.find("\"\""); at != text.npos; at = text.find("\"\"", at + 1)) text.erase(at, 1);
@@ -115,8 +106,7 @@ class CsvTable {
       if (found == cells.end()) missing += (missing.empty() ? "" : ",") + name;
       places.push_back(static_cast<std::size_t>(found - cells.begin()));
     }
-    double number = 0.0;
-    auto const is_number = [&number](std::string const& cell) { return read_number(cell, number); };
+    auto const is_number = [](std::string const& cell) { return bool(cambium::detail::parse_number<double>(cell)); };
     if (!missing.empty() && std::none_of(cells.begin(), cells.end(), is_number))
       fail(line, "the first line names none of " + missing, "give the columns " + joined() + ", with or without names");
     if (missing.empty()) places_ = places;

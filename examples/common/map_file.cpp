@@ -1,12 +1,22 @@
 #include "map_file.hpp"
 
+#include <filesystem>
 #include <iostream>
 
+#include "cambium/map/center_line_csv.hpp"
+#include "cambium/map/map_builder.hpp"
 #include "cambium/map/opendrive.hpp"
 
 examples::OpenedMap examples::open_map(std::string const& file, cambium::MapOptions const& options) {
   OpenedMap opened;
-  opened.document = cambium::map::load_opendrive_document(file, opened.diagnostics);
+  std::filesystem::path const path(file);
+  if (path.extension() == ".csv") {
+    cambium::map::MapBuilder builder(path.stem().string());
+    builder.add_road(lane_along(cambium::map::load_center_line_csv(file)));
+    opened.document = builder.document();
+  } else {
+    opened.document = cambium::map::load_opendrive_document(file, opened.diagnostics);
+  }
   opened.map = cambium::map::build_map(opened.document, options, file, opened.diagnostics);
   return opened;
 }

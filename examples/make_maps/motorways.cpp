@@ -34,6 +34,16 @@ RoadPlan motorway(std::string id, std::string name, double limit) {
   return {.id = std::move(id), .name = std::move(name), .type = "motorway", .speed_limit = kmh(limit)};
 }
 
+/// The main road 10 in junction 100, without a shoulder where the ramp comes or leaves.
+RoadPlan through_junction(double limit, std::vector<Geometry> line, std::size_t count, double width) {
+  RoadPlan road = motorway("10", "main through junction", limit);
+  road.line = std::move(line);
+  road.junction = "100";
+  road.sections = {carriageway(0.0, count, width)};
+  road.sections[0].right.pop_back();
+  return road;
+}
+
 }  // namespace
 
 MapBuilder highway() {
@@ -73,11 +83,7 @@ MapBuilder merging() {
   before.sections = {carriageway(0.0, 2, lane_width), carriageway(240.0, 2, lane_width)};
   before.sections[1].right.back().end_width = 0.0;  // makes room for the ramp
 
-  RoadPlan through = motorway("10", "main through junction", 100.0);
-  through.line = lay_from(end_of(before.line), {{50.0}});
-  through.junction = "100";
-  through.sections = {carriageway(0.0, 2, lane_width)};
-  through.sections[0].right.pop_back();  // the ramp comes where the shoulder was
+  RoadPlan through = through_junction(100.0, lay_from(end_of(before.line), {{50.0}}), 2, lane_width);
 
   RoadPlan after = motorway("3", "main after", 100.0);
   after.line =
@@ -120,11 +126,7 @@ MapBuilder highway_exit() {
   before.sections[1].right[3].end_width = width;
   before.sections[1].right[3].width = 0.0;
 
-  RoadPlan through = motorway("10", "main through junction", 120.0);
-  through.line = lay_from(end_of(before.line), {{70.0}});
-  through.junction = "100";
-  through.sections = {carriageway(0.0, 3, width)};
-  through.sections[0].right.pop_back();  // the ramp leaves where the shoulder was
+  RoadPlan through = through_junction(120.0, lay_from(end_of(before.line), {{70.0}}), 3, width);
 
   RoadPlan after = motorway("3", "main after", 120.0);
   after.line = lay_from(end_of(through.line), {{150.0}, {80.0, 0.0, left}, {70.0, left, left}});

@@ -1,9 +1,10 @@
-// Reads an OpenDRIVE map: says what it contains and what is odd about it, draws it, and answers queries from tables.
+// Reads a map: says what it contains and what is odd about it, draws it, and answers queries.
 
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -15,15 +16,17 @@
 
 #include "../common/command_line.hpp"
 #include "../common/map_file.hpp"
+#include "reports.hpp"
 #include "summary.hpp"
 #include "tables.hpp"
 
 namespace {
 
 struct Settings {
-  std::string file, picture, sketch, poses, nearest, out, links;
-  std::vector<std::string> route;
-  bool infer_links = false;
+  std::string file, picture, sketch, poses, nearest, out, links, junction;
+  std::vector<std::string> route, reachable;
+  std::vector<double> part;
+  bool infer_links = false, in_space = false, network = false;
 };
 
 /// Throws where files would be overwritten that are read, or one by the other, or not be written at all.
@@ -33,63 +36,106 @@ void check_files(Settings const& settings) {
     throw cambium::Error("--out", "there is nothing to write", "give --poses or --nearest too");
   if (!settings.sketch.empty() && fs::path(settings.sketch).extension() != ".svg")
     throw cambium::Error("--sketch " + settings.sketch, "it is no .svg", "name a file that ends in .svg");
+  auto const real = [](std::string const& name) {
+    std::error_code problem;  // what cannot be looked at cannot be opened either
+    auto path = fs::weakly_canonical(name, problem);
+    return problem ? fs::path(name) : path;
+  };
   std::vector<fs::path> taken;
   for (auto const* input : {&settings.file, &settings.poses, &settings.nearest})
-    if (!input->empty()) taken.push_back(fs::weakly_canonical(*input));
+    if (!input->empty()) taken.push_back(real(*input));
   for (auto const* output : {&settings.picture, &settings.sketch, &settings.out, &settings.links}) {
     if (output->empty()) continue;
-    auto path = fs::weakly_canonical(*output);
+    auto path = real(*output);
     if (std::find(taken.begin(), taken.end(), path) != taken.end())
       throw cambium::Error(*output, "it is read, or written twice", "give every output a file of its own");
     taken.push_back(std::move(path));
   }
 }
 
-void run(Settings const& settings) {
-  check_files(settings);
-  auto const opened = examples::open_map(settings.file, {.infer_links = settings.infer_links});
-  std::cout << map_example::summary(opened, settings.file);
-  for (auto const& diagnostic : opened.diagnostics) std::cout << "  " << to_string(diagnostic) << "\n";
+void draw(cambium::Map const& map, Settings const& settings) {
   if (!settings.picture.empty()) {
-    cambium::write_map_picture(settings.picture, *opened.map, {.title = settings.file});
+    cambium::MapPictureOptions options{.title = settings.file};
+    if (auto const& p = settings.part; !p.empty()) options.part = {p[0], p[1], p[2], p[3]};
+    cambium::write_map_picture(settings.picture, map, options);
     std::cout << "picture: " << settings.picture << "\n";
   }
   if (!settings.sketch.empty()) {
     cambium::Recording recording;
-    recording.lanes = cambium::recorded_lanes(*opened.map);
+    recording.lanes = cambium::recorded_lanes(map);
     recording.title = std::filesystem::path(settings.file).filename().string();
     cambium::write_svg_picture(settings.sketch, recording);
     std::cout << "sketch: " << settings.sketch << "\n";
   }
-  if (!settings.poses.empty()) cambium::write_file(settings.out, map_example::poses(*opened.map, settings.poses));
-  if (!settings.nearest.empty()) cambium::write_file(settings.out, map_example::nearest(*opened.map, settings.nearest));
-  if (!settings.links.empty()) cambium::write_file(settings.links, map_example::links(opened.document));
-  if (!settings.route.empty()) std::cout << map_example::route(*opened.map, settings.route[0], settings.route[1]);
 }
 
-}  // namespace
+void run(Settings const& settings) {
+  namespace example = map_example;
+  check_files(settings);
+  auto const opened = examples::open_map(settings.file, {.infer_links = settings.infer_links});
+  auto const& map = *opened.map;
+  std::cout << example::summary(opened, settings.file);
+  for (auto const& diagnostic : opened.diagnostics) std::cout << "  " << to_string(diagnostic) << "\n";
+  draw(map, settings);
+  if (settings.network) std::cout << example::network(map);
+  if (!settings.junction.empty()) std::cout << example::junction(map, settings.junction);
+  if (!settings.route.empty()) std::cout << example::route(map, settings.route[0], settings.route[1]);
+  if (!settings.reachable.empty()) std::cout << example::reachable(map, settings.reachable[0], settings.reachable[1]);
+  if (!settings.poses.empty())
+    cambium::write_file(settings.out, example::poses(map, settings.poses, settings.in_space));
+  if (!settings.nearest.empty()) cambium::write_file(settings.out, example::nearest(map, settings.nearest));
+  if (!settings.links.empty()) cambium::write_file(settings.links, example::links(opened.document));
+}
 
-int main(int argc, char** argv) {
-  Settings settings;
-  CLI::App program("Reads an OpenDRIVE map: what it contains, what is odd about it, pictures, queries.", "map");
-  program.add_option("FILE", settings.file, "OpenDRIVE map (.xodr)")->type_name("")->required();
-  program.add_option("--picture", settings.picture, "draw the map (.svg, or .html that zooms)")->type_name("OUT");
+/// The options, and what `--help` says of them.
+void describe(CLI::App& program, Settings& settings) {
+  program.add_option("FILE", settings.file, "OpenDRIVE map (.xodr), or columns x,y: a lane's centre line (.csv)")
+      ->type_name("")
+      ->required();
+  auto* const picture =
+      program.add_option("--picture", settings.picture, "draw the map (.svg, or .html that zooms)")->type_name("OUT");
+  program.add_option("--part", settings.part, "draw only what lies in this box of the map")
+      ->type_name("XMIN YMIN XMAX YMAX")
+      ->expected(4)
+      ->needs(picture);
   program.add_option("--sketch", settings.sketch, "draw it small, with a close-up, for a document (.svg)")
       ->type_name("OUT");
+  program.add_flag("--network", settings.network, "list gaps, kinks, dead ends and one-sided links of lanes");
+  program
+      .add_option("--junction", settings.junction, "list where its lanes get in each other's way, and who goes first")
+      ->type_name("ID");
+  program.add_option("--route", settings.route, "print the shortest route between two places, and its lanes")
+      ->type_name("FROM TO")
+      ->expected(2);
+  program.add_option("--reachable", settings.reachable, "list the lanes that can be reached within a distance")
+      ->type_name("FROM METRES")
+      ->expected(2);
   auto* const poses = program.add_option("--poses", settings.poses, "columns road,s,lane: where these lanes are");
   auto* const nearest =
       program.add_option("--nearest", settings.nearest, "columns x,y: the lanes that hold the points");
   auto* const out = program.add_option("--out", settings.out, "what --poses or --nearest write")->type_name("OUT.csv");
   poses->type_name("IN.csv")->needs(out)->excludes(nearest);
   nearest->type_name("IN.csv")->needs(out);
+  program.add_flag("--surface", settings.in_space, "--poses on the road's surface in space, too")->needs(poses);
   program.add_option("--links", settings.links, "write which lanes meet at the ends of roads")->type_name("OUT.csv");
+  auto const is_said = [](std::string const& word) { return std::string(word.empty() ? "needs a word, not ''" : ""); };
+  for (auto* const option : program.get_options())
+    if (option->get_expected_max() == 1) option->check(is_said, "");
   program.add_flag("--infer-links", settings.infer_links, "join lanes whose ends meet where the file forgot the link");
-  program.add_option("--route", settings.route, "print the shortest route between two places, as road:lane:s each")
-      ->type_name("FROM TO")
-      ->expected(2);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Settings settings;
+  CLI::App program("Reads a road map: what it contains, what is odd about it, pictures, queries.", "map");
+  describe(program, settings);
   program.footer(
+      "A place (FROM, TO) is road:lane:s, s in m along the road, say 12:-1:30.5; in a lane for both directions\n"
+      "12:-1:30.5:backward is that against the road. --route takes x,y,heading and x,y, too.\n"
       "Columns that are written, in m and rad:\n"
       "  --poses    road,s,lane,x,y,hdg,width,t,rx,ry,rhdg,rk: the lane's middle, the reference line (r...)\n"
+      "             with --surface also sx,sy,sz: the lane's middle in space\n"
       "  --nearest  road,lane,s,t,distance,query: query is the number of the point from 0; a point in no lane gives "
       "no\n"
       "             row\n"

@@ -1,13 +1,17 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <map>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "cambium/core/error.hpp"
 #include "cambium/geometry/box.hpp"
+#include "cambium/map/junction.hpp"
+#include "cambium/map/lane_network.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/opendrive_document.hpp"
 
@@ -17,6 +21,9 @@ namespace map_example {
 
 namespace cb = cambium;
 namespace odr = cambium::map::opendrive;
+
+/// A number of metres to the centimetre.
+inline std::string metres(double value) { return cb::detail::rounded_text(std::round(100.0 * value) / 100.0 + 0.0); }
 
 /// "3 arc, 2 line" from counts by name.
 inline std::string list(std::map<std::string, std::size_t> const& counts) {
@@ -34,13 +41,20 @@ inline char const* kind_of(cb::map::Geometry const& g) {
   return words[static_cast<std::size_t>(g.kind)];
 }
 
+/// "dead end" for `dead_end`.
+inline std::string readable(cb::map::NetworkFault fault) {
+  std::string word(to_string(fault));
+  std::replace(word.begin(), word.end(), '_', ' ');
+  return word;
+}
+
 inline std::string header_text(odr::Header const& header) {
   std::string text = "OpenDRIVE, revision not written";
   if (header.rev_major > 0)
     text = "OpenDRIVE " + std::to_string(header.rev_major) + "." + std::to_string(header.rev_minor);
   if (!header.name.empty()) text += " \"" + header.name + '"';
   if (!header.vendor.empty()) text += " by " + header.vendor;
-  return text;
+  return cb::detail::printable(text);
 }
 
 /// What is written in the file.
@@ -61,7 +75,8 @@ inline std::string document_text(odr::Document const& document) {
     connections += junction.connections.size();
   }
   std::string text = line("file", header_text(document.header));
-  if (!document.header.geo_reference.empty()) text += line("projection", document.header.geo_reference);
+  if (!document.header.geo_reference.empty())
+    text += line("projection", cb::detail::printable(document.header.geo_reference));
   text += line("roads", std::to_string(document.roads.size()) + ", " + std::to_string(sections) +
                             " lane sections; geometries: " + list(geometries) +
                             (left_hand > 0 ? "; left-hand traffic" : ""));
@@ -72,32 +87,46 @@ inline std::string document_text(odr::Document const& document) {
   return text;
 }
 
+/// Where lanes get in each other's way.
+inline std::string overlaps_text(cb::Map const& map) {
+  std::map<std::string, std::size_t> overlaps;
+  constexpr char const* kinds[] = {"merges", "splits", "crossings"};
+  for (auto const& lane : map.lanes())
+    for (auto const& overlap : lane.overlaps)
+      if (lane.id < overlap.other) ++overlaps[kinds[static_cast<std::size_t>(overlap.kind)]];
+  std::size_t in_junctions = 0, ruled = 0;
+  for (auto const& junction : map.junctions())
+    for (auto const& conflict : conflict_areas(map, junction.id)) {
+      ++in_junctions;
+      ruled += goes_first(junction, map.lane(conflict.first).road, map.lane(conflict.second).road).has_value();
+    }
+  if (in_junctions == 0) return list(overlaps);
+  return list(overlaps) + "; " + std::to_string(in_junctions) + " of them in junctions, where priorities rule " +
+         std::to_string(ruled);
+}
+
 /// What the map has.
 inline std::string map_text(cb::Map const& map) {
-  std::map<std::string, std::size_t> types, overlaps;
-  constexpr char const* kinds[] = {"merges", "splits", "crossings"};
-  std::size_t dead_ends = 0, merging = 0;
+  std::map<std::string, std::size_t> types, faults;
+  std::size_t merging = 0;
   double length = 0.0;
-  cb::geometry::Box box;
   for (auto const& lane : map.lanes()) {
     ++types[std::string(to_string(lane.type))];
     if (!lane.drivable()) continue;
     length += lane.length();
-    dead_ends += lane.successors.empty();
     merging += is_valid(lane.merges_into);
-    for (auto const& p : lane.path.points()) box.add(p.x(), p.y());
-    for (auto const& overlap : lane.overlaps)
-      if (lane.id < overlap.other) ++overlaps[kinds[static_cast<std::size_t>(overlap.kind)]];
   }
-  using cb::detail::rounded_text;
+  for (auto const& finding : check_lane_network(map)) ++faults[readable(finding.fault)];
   std::string text = line("lanes", list(types));
+  if (!map.lanes().empty()) {
+    auto const& box = map.bounds();
+    text += line("extent", "x from " + metres(box.min_x) + " to " + metres(box.max_x) + ", y from " +
+                               metres(box.min_y) + " to " + metres(box.max_y) + " m");
+  }
   if (length == 0.0) return text + line("to drive on", "no lane");
-  text += line("to drive on", rounded_text(length) + " m of lanes, x from " + rounded_text(box.min_x) + " to " +
-                                  rounded_text(box.max_x) + ", y from " + rounded_text(box.min_y) + " to " +
-                                  rounded_text(box.max_y) + " m");
-  text += line("lane ends", std::to_string(dead_ends) + " without a way on, " + std::to_string(merging) +
-                                " that merge into a neighbour");
-  return text + line("overlaps", list(overlaps));
+  text += line("to drive on", metres(length) + " m of lanes; " + std::to_string(merging) +
+                                  (merging == 1 ? " merges" : " merge") + " into a neighbour");
+  return text + line("overlaps", overlaps_text(map)) + line("network", list(faults));
 }
 
 /// What the file contains and how much is odd about it.

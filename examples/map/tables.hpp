@@ -1,12 +1,17 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 
+#include "cambium/core/error.hpp"
+#include "cambium/core/text.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/map/lane_adjacency.hpp"
+#include "cambium/map/make_roads.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/road_lanes.hpp"
+#include "cambium/map/road_surface.hpp"
 
 #include "../common/csv.hpp"
 
@@ -26,10 +31,10 @@ inline cb::map::Road const& road_of(cb::Map const& map, examples::CsvTable const
 }
 
 /// Where lanes are: for each row road,s,lane of `file` the lane's centre, width and lateral offset, and the reference
-/// line.
-inline std::string poses(cb::Map const& map, std::string const& file) {
+/// line; `in_space` also the centre on the road's surface, which rises and leans.
+inline std::string poses(cb::Map const& map, std::string const& file, bool in_space) {
   examples::CsvTable const rows(file, {"road", "s", "lane"});
-  std::string text = "road,s,lane,x,y,hdg,width,t,rx,ry,rhdg,rk\n";
+  std::string text = "road,s,lane,x,y,hdg,width,t,rx,ry,rhdg,rk" + std::string(in_space ? ",sx,sy,sz\n" : "\n");
   for (std::size_t i = 0; i < rows.size(); ++i) {
     auto const s = rows.number<double>(i, 1);
     auto const lane = rows.number<int>(i, 2);
@@ -43,6 +48,8 @@ inline std::string poses(cb::Map const& map, std::string const& file) {
          {p->center.x, p->center.y, cb::geometry::normalize_angle(p->center.heading), p->width, p->t, p->reference.x,
           p->reference.y, cb::geometry::normalize_angle(p->reference.heading), p->reference.curvature})
       text += ',' + digits(value);
+    if (in_space)
+      for (double const value : surface_at(road, s, p->t).position) text += ',' + digits(value);
     text += '\n';
   }
   return text;
@@ -66,35 +73,10 @@ inline std::string links(cb::map::OpenDriveDocument const& document) {
     return end == cb::map::opendrive::ContactPoint::end ? "end" : "start";
   };
   std::string text = "road,end,lane,next_road,next_contact,next_lane,via\n";
-  for (auto const& link : lane_adjacency(document))
+  for (auto const& link : lane_adjacency(document, cb::map::make_roads(document)))
     text += csv_cell(link.road) + ',' + word(link.end) + ',' + std::to_string(link.lane) + ',' +
             csv_cell(link.next_road) + ',' + word(link.next_end) + ',' + std::to_string(link.next_lane) + ',' +
             csv_cell(link.junction.empty() ? "road" : "junction:" + link.junction) + '\n';
-  return text;
-}
-
-/// A place "road:lane:s" of the command line; the road's id may have colons itself.
-inline cb::map::LaneStation find_place(cb::Map const& map, std::string const& word) {
-  auto const second = word.rfind(':'),
-             first = second == 0 || second == word.npos ? word.npos : word.rfind(':', second - 1);
-  int lane = 0;
-  double s = 0.0;
-  if (first == word.npos || !examples::read_number(word.substr(first + 1, second - first - 1), lane) ||
-      !examples::read_number(word.substr(second + 1), s))
-    throw cb::Error("--route", "'" + word + "' is no place", "write it as road:lane:s, say 12:-1:30.5");
-  auto const id = map.find_lane(word.substr(0, first), s, lane);
-  return {id, map.lane(id).position_at(s)};
-}
-
-/// The shortest route between two places, a lane a line.
-inline std::string route(cb::Map const& map, std::string const& from, std::string const& to) {
-  auto const start = find_place(map, from), end = find_place(map, to);
-  auto const found = map.shortest_route(start, end);
-  if (!found) throw cb::MapError("--route", "there is no way from " + from + " to " + to, "look at the --picture");
-  std::string text =
-      "route of " + std::to_string(found->lanes.size()) + " lanes, " + cb::detail::rounded_text(found->length) + " m\n";
-  for (auto const id : found->lanes)
-    text += "  " + map.describe(id) + ", " + cb::detail::rounded_text(map.lane(id).length()) + " m\n";
   return text;
 }
 

@@ -11,5 +11,6 @@
 #include "cambium/core/plan.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/core/state.hpp"
+#include "cambium/core/text.hpp"
 #include "cambium/core/version.hpp"
 #include "cambium/core/write_file.hpp"

@@ -112,10 +112,74 @@ TEST_CASE("a route is printed lane by lane, and where there is none it is an err
   auto const run = map.run({merging, "--route", "2:-1:5", "3:-1:300"});
   CHECK(run.code == 0);
   CHECK(has(run.out, "route of 6 lanes, "));
-  CHECK(has(run.out, "  road 11, section 0, lane -1, "));
+  CHECK(has(run.out, "  road 11, section 0, lane -1: 49.82 m, 3.5 m wide, 80 km/h\n"));
+  CHECK(has(run.out, "lane -3: 60.15 m, 3.5 to 0 m wide, 100 km/h, 3 of 3 from the left\n"));
+  CHECK(has(run.out,
+            "corridor of 10 lanes; those in line with the destination are 649.61 m long, where the road ends\n"));
+  auto const by_pose = map.run({merging, "--route", "10,-1.75,0", "744,82.5"});
+  CHECK(by_pose.code == 0);
+  CHECK(has(by_pose.out, "route of 6 lanes\n  road 1, section 0, lane -1: 240.27 m"));
   auto const none = map.run({merging, "--route", "3:-1:300", "2:-1:5"});
   CHECK(none.code == 2);
   CHECK(has(none.err, "there is no way from 3:-1:300 to 2:-1:5"));
+}
+
+TEST_CASE("what can be reached is listed from the nearest lane on") {
+  Program const map("map");
+  if (!map.is_there()) return;
+  auto const run = map.run({merging, "--reachable", "2:-1:5", "200"});
+  CHECK(run.code == 0);
+  CHECK(has(run.out, "2 lanes can be reached within 200 m\n  road 2, section 0, lane -1: 0 m\n  road 11, "));
+}
+
+TEST_CASE("findings about the network and conflicts of a junction are listed") {
+  Program const map("map");
+  if (!map.is_there()) return;
+  auto const network = map.run({merging, "--network"});
+  CHECK(has(network.out, "network        2 dead end, 3 no way in\n"));
+  CHECK(has(network.out, "  dead end: road 3, section 2, lane -1\n"));
+  auto const junction = map.run({CAMBIUM_SOURCE_DIR "/maps/intersection_4way.xodr", "--junction", "100"});
+  CHECK(junction.code == 0);
+  CHECK(has(junction.out, "52 of them in junctions, where priorities rule 0\n"));
+  CHECK(has(junction.out, "junction 100: 12 roads, "));
+  std::size_t lines = 0;
+  for (char const* kind : {"\n  crossing: road ", "\n  merge: road ", "\n  split: road "})
+    for (auto at = junction.out.find(kind); at != std::string::npos; at = junction.out.find(kind, at + 1)) ++lines;
+  CHECK(lines == 52);
+}
+
+TEST_CASE("the other direction of a lane for both is named with its direction") {
+  Program const map("map");
+  if (!map.is_there()) return;
+  browser::TemporaryFolder const folder;
+  auto const file = (folder.path() / "m.xodr").string();
+  std::ofstream(file) << R"(<OpenDRIVE><road id="a:1" length="90"><planView><geometry s="0" x="0" y="0" hdg="0")"
+                      << R"( length="90"><line/></geometry></planView><lanes><laneSection s="0"><center><lane id="0"/>)"
+                      << R"(</center><right><lane id="-1" type="bidirectional"><width sOffset="0" a="3" b="0" c="0")"
+                      << R"( d="0"/></lane></right></laneSection></lanes></road></OpenDRIVE>)";
+  auto const back = map.run({file, "--route", "a:1:-1:50:backward", "a:1:-1:20:backward"});
+  CHECK(back.code == 0);
+  CHECK(has(back.out, "route of 1 lanes, 30 m\n  road a:1, section 0, lane -1, backward: 90 m"));
+  CHECK(map.run({file, "--route", "a:1:-1:20", "a:1:-1:50:forward"}).code == 0);
+  CHECK(map.run({file, "--route", "a:1:-1:50", "a:1:-1:20"}).code == 2);
+}
+
+TEST_CASE("the table of a centre line is a map too, and poses come on the road's surface") {
+  Program const map("map");
+  if (!map.is_there()) return;
+  browser::TemporaryFolder const folder;
+  auto const line = (folder.path() / "line.csv").string(), in = (folder.path() / "in.csv").string(),
+             out = (folder.path() / "out.csv").string();
+  std::ofstream(line) << "x,y\n0,0\n40,0\n80,0\n";
+  std::ofstream(in) << "1,30,-1\n";
+  auto const run = map.run({line, "--poses", in, "--out", out, "--surface"});
+  CHECK(run.code == 0);
+  CHECK(has(run.out, "1 driving"));
+  auto const rows = corpus::table(out);
+  REQUIRE(rows.size() == 1);
+  REQUIRE(rows[0].size() == 15);
+  CHECK(std::stod(rows[0][12]) == doctest::Approx(30));
+  CHECK(std::stod(rows[0][14]) == 0.0);
 }
 
 TEST_CASE("what is wrong is said in one line, with exit code 2 and nothing written") {
@@ -123,7 +187,10 @@ TEST_CASE("what is wrong is said in one line, with exit code 2 and nothing writt
   if (!map.is_there()) return;
   browser::TemporaryFolder const folder;
   auto const table = (folder.path() / "in.csv").string(), out = (folder.path() / "out.csv").string();
-  auto const write = [&](std::string const& text) { std::ofstream(table) << text; };
+  auto const xodr = (folder.path() / "in.xodr").string();
+  auto const write = [&](std::string const& text) {
+    for (auto const& file : {table, xodr}) std::ofstream(file) << text;
+  };
   struct Wrong {
     std::string text;
     std::vector<std::string> words;
@@ -132,8 +199,9 @@ TEST_CASE("what is wrong is said in one line, with exit code 2 and nothing writt
   for (auto const& wrong : std::vector<Wrong>{
            {"", {}, "FILE is required"},
            {"", {"nosuch.xodr"}, "nosuch.xodr: the file cannot be opened"},
-           {"<a>", {table}, "in.csv:1: the file is not well-formed XML"},
-           {"<a/>", {table}, "not <OpenDRIVE>"},
+           {"<a>", {xodr}, "in.xodr:1: the file is not well-formed XML"},
+           {"<a/>", {xodr}, "not <OpenDRIVE>"},
+           {"<a/>", {table}, "in.csv:1: there are no columns x and y"},
            {"", {merging, "--picture", out}, "an .svg or an .html"},
            {"", {merging, "--poses", table}, "--poses requires --out"},
            {"", {merging, "--poses", table, "--out", out}, "in.csv: it has no row"},
@@ -154,6 +222,18 @@ TEST_CASE("what is wrong is said in one line, with exit code 2 and nothing writt
            {"x,y\n1\n", {merging, "--nearest", table, "--out", out}, "in.csv:2: there is no y in it"},
            {"", {merging, "--route", "1:-1", "2:-1:5"}, "'1:-1' is no place"},
            {"", {merging, "--route", "1:-1:5", "9:-1:5"}, "road 9: the map has no such road"},
+           {"", {merging, "--junction", "7"}, "--junction 7: the map has no such junction; it has 100"},
+           {"", {merging, "--junction", ""}, "--junction: needs a word"},
+           {"", {merging, "--route", "1:-1:5", "1:-1:999"}, "give a place from s 0 to 300 m"},
+           {"", {merging, "--route", "1:-1:5:backward", "1:-1:9"}, "it is driven the other way only"},
+           {"", {merging, "--route", "10,-1.75,0", "0,500"}, "no drivable lane near its goal (0, 500)"},
+           {"", {merging, "--reachable", "1:-1:5", "nan"}, "'nan' is no distance"},
+           {"", {merging, "--part", "0", "0", "1", "1"}, "--part requires --picture"},
+           {"",
+            {merging, "--picture", (folder.path() / "a.svg").string(), "--part", "1", "0", "0", "1"},
+            "the part to show has no area"},
+           {"x,y\n1,2\n", {table, "--links", table}, "it is read, or written twice"},
+           {"", {table}, "in.csv: it is empty or cannot be read"},
            {"", {merging, "--links", "/nosuch/folder/links.csv"}, "cannot be written"}}) {
     write(wrong.text);
     auto const run = map.run(wrong.words);

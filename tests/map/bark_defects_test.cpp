@@ -2,11 +2,13 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <doctest/doctest.h>
 
 #include "../support/corpus.hpp"
+#include "cambium/map/find_corridor.hpp"
 #include "cambium/map/lane_network.hpp"
 #include "road_text.hpp"
 #include "../support/maps.hpp"
@@ -16,6 +18,8 @@ namespace {
 using namespace road_text;
 using cambium::LaneId;
 using cambium::Severity;
+using cambium::map::build_road_corridor;
+using cambium::map::RoadDirection;
 using support::Loaded;
 
 bool has_route(Loaded const& loaded, At const& from, At const& to) {
@@ -175,18 +179,61 @@ TEST_CASE("several sections of one road are linked to each other, and only the l
   CHECK(has_route(loaded, {"1", 1, -1}, {"2", 99, -1}));
 }
 
-TEST_CASE("a corridor follows from two roads' ids") {
+// There no corridor at all comes of road ids: its search never says that it has found one.
+TEST_CASE("a corridor follows from two roads' ids, in either direction") {
   Road a, b;
   a.behind = to_start("2");
-  a.sections[0].lanes[0].behind = {-1};
+  a.sections[0].lanes = {{.id = 1, .behind = {1}}, {.id = -1, .behind = {-1}}};
   b.id = "2";
   b.x = 100;
+  b.before = to_end("1");
+  b.sections[0].lanes = {{.id = 1, .before = {1}}, {.id = -1, .before = {-1}}};
   auto const loaded = load(file({a, b}));
   auto const& map = *loaded.map;
-  auto const route = map.shortest_route(map.find_lane("1", 0, -1), map.find_lane("2", 100, -1));
-  REQUIRE(route.has_value());
-  CHECK(route->lanes.size() == 2);
-  CHECK(route->length == doctest::Approx(200));
+  using Names = std::vector<std::string>;
+  for (bool const forward : {true, false}) {
+    auto const names = forward ? Names{"1", "2"} : Names{"2", "1"};
+    auto const direction = forward ? RoadDirection::forward : RoadDirection::backward;
+    auto const road = build_road_corridor(map, names, direction);
+    REQUIRE(road != nullptr);
+    REQUIRE(road->corridors.size() == 1);
+    auto const& corridor = road->corridors[road->main];
+    int const number = forward ? -1 : 1;
+    REQUIRE(corridor.pieces.size() == 2);
+    CHECK(corridor.pieces[0].lane == map.find_lane(names[0], 50, number));
+    CHECK(corridor.pieces[1].lane == map.find_lane(names[1], 50, number));
+    CHECK(corridor.length() == doctest::Approx(200));
+    auto const pose = corridor.center.pose(150);
+    CHECK(pose.x == doctest::Approx(forward ? 150 : 50));
+    CHECK(pose.y == doctest::Approx(number * 1.75));
+    CHECK(corridor.reaches_destination);
+    // The same roads, against their traffic or in the other order, are no way.
+    auto const other = forward ? RoadDirection::backward : RoadDirection::forward;
+    CHECK_THROWS_AS((void)build_road_corridor(map, names, other), cambium::MapError);
+  }
+}
+
+// There a corridor is looked up by a hash of the road ids alone, so that another one with the same hash is returned.
+TEST_CASE("each list of roads has a corridor of its own") {
+  std::vector<Road> roads;
+  for (auto const& [id, x, y] :
+       {std::tuple("1", 0.0, 0.0), {"23", 100.0, 0.0}, {"12", 0.0, 50.0}, {"3", 100.0, 50.0}}) {
+    Road road;
+    road.id = id;
+    road.x = x;
+    road.y = y;
+    (x > 0.0 ? road.before : road.behind) = x > 0.0 ? to_end(y > 0.0 ? "12" : "1") : to_start(y > 0.0 ? "3" : "23");
+    (x > 0.0 ? road.sections[0].lanes[0].before : road.sections[0].lanes[0].behind) = {-1};
+    roads.push_back(road);
+  }
+  auto const loaded = load(file(roads));
+  using Names = std::vector<std::string>;
+  for (auto const& names : {Names{"1", "23"}, Names{"12", "3"}, Names{"1"}, Names{"12"}, Names{"1", "23"}}) {
+    auto const road = build_road_corridor(*loaded.map, names, RoadDirection::forward);
+    REQUIRE(road->route.size() == names.size());
+    for (std::size_t i = 0; i < names.size(); ++i)
+      CHECK(loaded.map->road(loaded.map->lane(road->route[i]).road).name == names[i]);
+  }
 }
 
 TEST_CASE("routes are by length, not by number of lanes, and lengths are no whole numbers") {
@@ -236,6 +283,11 @@ TEST_CASE("the lane offset moves all lanes the same way, by every record, to the
       double const y = offset + (lane > 0 ? lane - 0.5 : lane + 0.5) * 3.5;
       auto const& path = lane_at(loaded, {"1", s, lane}).path;
       CHECK(std::abs(path.project({s, y}).lateral) < 1e-6);
+      // There the first record alone widens lanes 1 and -1: borders of the right move the wrong way, by 1 m.
+      auto const& outer = lane_at(loaded, {"1", s, lane}).right;  // in travel direction
+      double const theirs = lane * 3.5 + std::copysign(0.5, lane);
+      CHECK(std::abs(outer.project({s, offset + lane * 3.5}).lateral) < 1e-2);
+      if (lane < 0 || s > 50.0) CHECK(std::abs(outer.project({s, theirs}).lateral) > 0.9);
       auto const& left = lane > 0 ? lane_at(loaded, {"1", s, lane}).right : lane_at(loaded, {"1", s, lane}).left;
       CHECK(std::abs(left.project({s, y + 1.75}).lateral) < 1e-2);  // to the left along the road
     }

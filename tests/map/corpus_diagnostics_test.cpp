@@ -16,39 +16,39 @@ using cambium::Severity;
 
 struct Expected {
   char const* map;
-  int infos, warnings, errors;
+  int infos, warnings;
   bool must_warn = false;  ///< the corpus' description says that it is faulty
 };
 
 Expected const expected[]{
-    {"4way_intersection", 0, 0, 0},
-    {"Crossing8Course", 0, 0, 0},
-    {"DR_CHN_Merging_ZS_partial_v02", 0, 0, 0},
-    {"DR_DEU_Merging_MT_v01_centered", 0, 0, 0},
-    {"DR_DEU_Merging_MT_v01_shifted", 0, 0, 0},
-    {"Ex_Entry_Exit", 0, 3, 0},                    // two lane links to lanes that are not there, a gap of 2 cm
-    {"ParametricCubicCurveComplexRoad", 0, 0, 0},  // its hdg is not the curves' direction, which has no kinks
-    {"SingleRoadNegativeWidth", 0, 1, 0, true},
-    {"SingleRoadSDirectionChange", 0, 0, 0},
-    {"SingleRoadTinyGeometry", 0, 1, 0, true},
-    {"Town04", 6, 2, 0, true},  // sections without length; gaps in two reference lines
-    {"city_highway_straight", 0, 0, 0},
+    {"4way_intersection", 0, 0},
+    {"Crossing8Course", 0, 0},
+    {"DR_CHN_Merging_ZS_partial_v02", 0, 0},
+    {"DR_DEU_Merging_MT_v01_centered", 0, 0},
+    {"DR_DEU_Merging_MT_v01_shifted", 0, 0},
+    {"Ex_Entry_Exit", 0, 3},                    // two lane links to lanes that are not there, a gap of 2 cm
+    {"ParametricCubicCurveComplexRoad", 0, 0},  // its hdg is not the curves' direction, which has no kinks
+    {"SingleRoadNegativeWidth", 0, 1, true},
+    {"SingleRoadSDirectionChange", 0, 0},
+    {"SingleRoadTinyGeometry", 0, 1, true},
+    {"Town04", 6, 2, true},  // sections without length; gaps in two reference lines
+    {"city_highway_straight", 0, 0},
     {"e6mini-lht", 0, 0, 0},
-    {"fabriksgatan", 0, 0, 0},
-    {"highway_example_with_merge_and_split", 0, 0, 0},
-    {"lane_border", 0, 0, 0},
-    {"libopendrive_test", 26, 6, 0, true},  // the same, and lanes that do not meet by 2 to 5 cm
-    {"multi_intersections", 0, 0, 0},
-    {"parking_demo", 0, 0, 0},
-    {"positive18", 0, 0, 0},
-    {"road_corridor_test", 0, 10, 0, true},  // links to nowhere, and to the wrong ends of roads
-    {"route_strategy_test_road", 0, 0, 0},
-    {"simple_3way_intersection_lht", 0, 0, 0},
-    {"soderleden", 1, 1, 0},  // a road link that is not returned
-    {"threeway_intersection", 0, 0, 0},
-    {"two_plus_one", 0, 0, 0},
-    {"velodrome", 0, 0, 0},
-    {"virtual_junction_priority", 0, 1, 0, true},  // a junction without connections
+    {"fabriksgatan", 0, 0},
+    {"highway_example_with_merge_and_split", 0, 0},
+    {"lane_border", 0, 0},
+    {"libopendrive_test", 26, 6, true},  // the same, and lanes that do not meet by 2 to 5 cm
+    {"multi_intersections", 0, 0},
+    {"parking_demo", 0, 0},
+    {"positive18", 0, 0},
+    {"road_corridor_test", 0, 10, true},  // links to nowhere, and to the wrong ends of roads
+    {"route_strategy_test_road", 0, 0},
+    {"simple_3way_intersection_lht", 0, 0},
+    {"soderleden", 1, 1},  // a road link that is not returned
+    {"threeway_intersection", 0, 0},
+    {"two_plus_one", 0, 0},
+    {"velodrome", 0, 0},
+    {"virtual_junction_priority", 0, 1, true},  // a junction without connections
 };
 
 }  // namespace
@@ -69,7 +69,6 @@ TEST_CASE("the maps of the corpus have the findings that are known, and no other
     CAPTURE(all);
     CHECK(count(Severity::info) == e.infos);
     CHECK(count(Severity::warning) == e.warnings);
-    CHECK(count(Severity::error) == e.errors);
     CHECK((!e.must_warn || count(Severity::warning) > 0));
     for (auto const& d : loaded.diagnostics) {
       CHECK(d.line > 0);

@@ -731,3 +731,30 @@ TEST_CASE("on the merging map the on-ramp's traffic is seen from the main road, 
   auto const a = main_corridor.center.pose(on_main->begin), b = ramp_corridor.center.pose(on_ramp->begin);
   CHECK((a.position() - b.position()).norm() == doctest::Approx(map->options().overlap_clearance).epsilon(0.02));
 }
+
+TEST_CASE("a list of roads may come to a road again") {
+  auto const map = support::own_map("roundabout.xodr");
+  using Names = std::vector<std::string>;
+  auto const roads_of = [&map](RoadCorridor const& road) {
+    Names names;
+    for (std::size_t i = 0; i < road.route.size(); ++i) {
+      auto const& name = map->road(map->lane(road.route[i]).road).name;
+      if (names.empty() || names.back() != name) names.push_back(name);
+    }
+    return names;
+  };
+  auto const forward = cambium::map::RoadDirection::forward;
+  for (auto const& names : {Names{"11", "201", "12", "301", "13", "401", "14", "101", "11"},
+                            Names{"1", "103", "11", "201", "12", "301", "13", "401", "14", "101", "11", "202", "2"},
+                            Names{"11", "201", "12", "301", "13", "401", "14", "101"}, Names{"11"}}) {
+    auto const road = build_road_corridor(*map, names, forward);
+    CHECK(roads_of(*road) == names);
+    check_laws(*map, *road);
+    for (auto const& corridor : road->corridors) check_feeder_laws(*map, corridor);
+    double length = 0.0;
+    for (auto const lane : road->route) length += map->lane(lane).length();
+    CHECK(road->corridors[road->main].length() == doctest::Approx(length).epsilon(0.01));
+  }
+  CHECK_THROWS_AS((void)build_road_corridor(*map, Names{"11", "12"}, forward), MapError);
+  CHECK_THROWS_AS((void)build_road_corridor(*map, Names{"11", "11"}, forward), MapError);
+}

@@ -18,6 +18,7 @@ using cambium::map::check_lane_network;
 using cambium::map::LaneType;
 using cambium::map::NetworkFault;
 using cambium::map::NetworkFinding;
+using cambium::map::RoadDirection;
 
 int count(std::vector<NetworkFinding> const& findings, NetworkFault fault) {
   return static_cast<int>(
@@ -289,6 +290,15 @@ TEST_CASE("a lane for both directions is two lanes, oncoming to each other, and 
     }
     CHECK(map.nearest_lane({50, -1.75, 0.0})->lane == there.id);
     CHECK(map.nearest_lane({50, -1.75, cambium::geometry::pi})->lane == back.id);
+    CHECK(map.find_lane("1", 50, -1) == there.id);
+    CHECK(map.find_lane("1", 50, -1, RoadDirection::forward) == there.id);
+    CHECK(map.find_lane("1", 50, -1, RoadDirection::backward) == back.id);
+    CHECK(map.describe(there.id) == "road 1, section 0, lane -1, forward");
+    CHECK(map.describe(back.id) == "road 1, section 0, lane -1, backward");
+    CHECK(is_valid(map.find_lane("1", 50, -2, RoadDirection::forward)));
+    CHECK_THROWS_WITH_AS((void)map.find_lane("1", 50, -2, RoadDirection::backward),
+                         doctest::Contains("road 1, section 0, lane -2: it is driven the other way only"),
+                         cambium::MapError);
   }
 }
 

@@ -149,7 +149,11 @@ TEST_CASE("the nearest lanes of a direction are those that a look at every lane 
   }
   CHECK(compared > 200);
   CHECK(tree.near({0, 0}, {.radius = std::nan("")}).empty());
+  for (auto const& lane : lanes)
+    CHECK_FALSE(tree.nearest_drivable({lane.path.pose(0).x, lane.path.pose(0).y, std::nan("")}, 5.0));
   CHECK(tree.near({0, 0}, {.radius = infinity, .count = 1000}).size() == lanes.size());
+  CHECK(tree.near({0, 0}, {.radius = infinity}).size() == lanes.size());
+  for (double const r : {1e30, 3.5e38, 1e300, infinity}) CHECK(tree.in({-r, -r, r, r}).size() == lanes.size());
 }
 
 TEST_CASE("the lanes in a box are those whose area meets it") {

@@ -10,6 +10,8 @@
 
 #include <doctest/doctest.h>
 
+#include "cambium/core/random.hpp"
+
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"
 
@@ -179,12 +181,6 @@ class Reach {
   std::vector<std::vector<LaneId>> steps_;
 };
 
-/// Small own generator: the same lanes on every platform.
-std::uint64_t next(std::uint64_t& state) {
-  state = state * 6364136223846793005ULL + 1442695040888963407ULL;
-  return state >> 33;
-}
-
 }  // namespace
 
 TEST_CASE("every row of the links tables is a link of the map, and every link between roads is a row") {
@@ -215,7 +211,7 @@ TEST_CASE("a route leads wherever the links tables lead, and nowhere else") {
   auto const folder = corpus::find("opendrive");
   if (!folder) return;
   cambium::map::RouteOptions const options{.obey_lane_marks = false};  // the tables know nothing of marks
-  std::uint64_t state = 1;
+  cambium::RandomStream next(1, 0, 0);
   int reached = 0, not_reached = 0;
   for (auto const& path : corpus::maps(*folder)) {
     auto const map = support::load_opendrive(path.string()).map;
@@ -229,7 +225,7 @@ TEST_CASE("a route leads wherever the links tables lead, and nowhere else") {
     std::vector<bool> seen;
     for (std::size_t i = 0; i < pairs; ++i) {
       LaneId const from = lanes[(all ? i : i / 20 * 20 * 7919) / (all ? lanes.size() : 1) % lanes.size()];
-      LaneId const to = lanes[all ? i % lanes.size() : next(state) % lanes.size()];
+      LaneId const to = lanes[all ? i % lanes.size() : next() % lanes.size()];
       if (all || i % 20 == 0) seen = reach.from(from);
       bool const has_route = map->shortest_route(from, to, options).has_value();
       CHECK_MESSAGE(has_route == seen[index_of(to)], path.stem().string()

@@ -86,7 +86,6 @@ std::string const first_width = R"(<width sOffset="0" a="3" b="0" c="0" d="0"/>)
 std::string const both_geometries = R"(<geometry s="0" x="0" y="0" hdg="0" length="60"><line/></geometry>
       <geometry s="60" x="60" y="0" hdg="0" length="40"><line/></geometry>)";
 auto constexpr warning = Severity::warning;
-auto constexpr failure = Severity::error;
 auto constexpr info = Severity::info;
 char const* const nothing = "";
 
@@ -272,7 +271,7 @@ std::vector<Case> const cases{
      "its first value counts before it too"},
     {"road id twice",
      {{R"(<road id="2")", R"(<road id="1")"}},
-     failure,
+     warning,
      "road",
      "id 1 is there twice",
      2,
@@ -342,7 +341,7 @@ std::vector<Case> const cases{
      false},
     {"geometries that end before the road begins",
      {{R"(<geometry s="0" x="100")", R"(<geometry s="-50" x="100")"}},
-     failure,
+     warning,
      "geometry",
      "the geometries end at 0 m; the road was left out",
      2,
@@ -354,7 +353,7 @@ std::vector<Case> const cases{
     {"all lane sections behind the road's end",
      {{"<planView>" + second_geometry + "</planView>\n    <lanes><laneSection s=\"0\"",
        "<planView>" + second_geometry + "</planView><lanes><laneSection s=\"1e300\""}},
-     failure,
+     warning,
      "laneSection",
      "behind the road's end; the road was left out",
      2,
@@ -365,7 +364,7 @@ std::vector<Case> const cases{
      false},
     {"a height beyond all numbers",
      {{"<lanes>", R"(<elevationProfile><elevation s="0" a="0" b="0" c="0" d="1e305"/></elevationProfile><lanes>)"}},
-     failure,
+     warning,
      "elevation",
      "it was left out"},
     {"a wild width hidden by another one at its place",
@@ -377,7 +376,7 @@ std::vector<Case> const cases{
     {"wild widths at one place",
      {{R"(<width sOffset="0" a="2" b="0")",
        R"(<width sOffset="0" a="2" b="1e9" c="0" d="0"/><width sOffset="0" a="2" b="1e9")"}},
-     failure,
+     warning,
      "width",
      "it was left out"},
     {"paramPoly3 of nothing but zeros",
@@ -417,6 +416,11 @@ std::vector<Refused> const refused{
      </geometry></planView><lanes><laneSection s="0"><center><lane id="0"/></center></laneSection></lanes></road>
      </OpenDRIVE>)",
      "no lane with a length"},
+    {"lanes whose ids are none",
+     R"(<OpenDRIVE><header/><road id="1" length="5"><planView><geometry s="0" x="0" y="0" hdg="0" length="5"><line/>
+     </geometry></planView><lanes><laneSection s="0"><center><lane id="0"/></center><right><lane id="one"/></right>
+     </laneSection></lanes></road></OpenDRIVE>)",
+     "the lane was left out, for it has no usable id"},
 };
 
 std::string changed(Case const& c) {

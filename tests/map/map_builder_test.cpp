@@ -4,12 +4,14 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
 
 #include "cambium/map/opendrive.hpp"
 #include "cambium/map/opendrive_writer.hpp"
+#include "../support/allocations.hpp"
 #include "lanes_by_hand.hpp"
 
 using namespace by_hand;
@@ -292,6 +294,184 @@ TEST_CASE("what cannot be built is refused with a sentence") {
   CHECK_THROWS_AS((void)MapBuilder().build(), MapError);
 }
 
+TEST_CASE("what is wrong in a plan is named by its number") {
+  auto const complaint = [](auto const& change) {
+    auto plan = straight("1", {}, 100, 0, 2);
+    plan.line = lay_from({}, {{40.0}, {30.0, 0.01, 0.01}, {30.0}});
+    change(plan);
+    return what_of([&] { MapBuilder().add_road(plan); });
+  };
+  auto const has = [](std::string const& text, std::string const& part) {
+    CHECK_MESSAGE(text.find(part) < text.size(), text);
+  };
+  has(complaint([](RoadPlan&) {}), "no error");
+  has(complaint([](RoadPlan& p) { p.line[0].s = 1.0; }), "geometry 0 is at s 1 m instead of 0 m");
+  has(complaint([](RoadPlan& p) { p.line[2].s = 60.0; }), "geometry 2 is at s 60 m instead of 70 m");
+  has(complaint([](RoadPlan& p) { p.line[1].y = 0.5; }), "geometry 1 begins 0.5 m and 0 rad from where");
+  has(complaint([](RoadPlan& p) { p.line[1].heading = 0.25; }), "geometry 1 begins 0 m and 0.25 rad from where");
+  has(complaint([](RoadPlan& p) { p.line[1].length = -30.0; }), "geometry 1 has no length");
+  has(complaint([](RoadPlan& p) { p.line[2].x = NAN; }), "geometry 2: a coordinate lies beyond");
+  has(complaint([](RoadPlan& p) { p.line[2].curvature_end = 1e9; }),
+      "geometry 2: the curve turns by more than 1000 rad");
+  has(complaint([](RoadPlan& p) { p.line[0].kind = GeometryKind::cubic; }),
+      "geometry 0: it is a cubic without its curve");
+  auto const widths = [&](std::vector<CubicRecord> const& records) {
+    return complaint([&](RoadPlan& p) { p.sections[0].right[1].widths = records; });
+  };
+  has(widths({{0, 3, 0, 0, 0}, {50, 3, 0, 0, 0}, {70, 3, 0, 0, 0}}), "no error");
+  has(widths({{0, 3, 0, 0, 0}, {50, 3, 0, 0, 0}, {20, 3, 0, 0, 0}}),
+      "lane -2, width record 2 is at s 20 m, not behind the one before, at 50 m");
+  has(widths({{0, 3, 0, 0, 0}, {0, 4, 0, 0, 0}}), "width record 1 is at s 0 m, not behind the one before, at 0 m");
+  has(widths({{-1, 3, 0, 0, 0}}), "width record 0 is at s -1 m, not behind 0");
+  has(widths({{0, 3, 0, 0, 0}, {50, NAN, 0, 0, 0}}), "width record 1 is not finite");
+  has(complaint([](RoadPlan& p) {
+        p.lane_offset = {{30, 0, 0, 0, 0}, {10, 1, 0, 0, 0}};
+      }),
+      "lane offset record 1 is at s 10 m, not behind the one before, at 30 m");
+  has(complaint([](RoadPlan& p) { p.line.front().s = 0.004; }), "no error");  // rounded as in files
+}
+
+TEST_CASE("what fails changes nothing") {
+  MapBuilder builder;
+  for (auto const* id : {"8", "9"}) builder.add_junction(id);
+  for (auto const& [id, x] : {std::pair{"1", 0.0}, {"2", 80.0}, {"3", 80.0}, {"4", 30.0}, {"5", 50.0}, {"6", 0.0}})
+    builder.add_road(straight(id, {x, 0, 0}, 50, 0, 1));
+  builder.add_turn("8", {"1", end}, {"3", start});
+  builder.connect({"4", end}, {"2", start});
+  auto const fails = [&builder](auto const& run, std::string const& why) {
+    auto const before = builder.document();
+    auto const what = what_of([&] { run(); });
+    CHECK_MESSAGE(what.find(why) < what.size(), what);
+    CHECK(builder.document() == before);
+  };
+  // Where the turn begins, where it ends, its id:
+  fails([&] { builder.add_turn("9", {"1", end}, {"2", start}); }, "it is linked to another road or junction");
+  fails([&] { builder.add_turn("9", {"6", end}, {"2", start}); }, "it is linked to another road or junction");
+  fails([&] { builder.add_turn("9", {"6", end}, {"3", start}, {.id = "5"}); }, "there is one of that id");
+  fails([&] { builder.connect({"1", end}, {"5", start}); }, "it is linked to a junction already");
+  // A link that cannot be dissolved, for a lane that is not there:
+  builder.document().roads[3].lane_sections[0].lanes[1].successors = {-7};
+  builder.add_road(straight("77", {80, 0, 0}, 50, 0, 1));
+  fails([&] { builder.connect({"4", end}, {"77", start}); }, "road 2, start, lane -7: there is no such lane");
+  // And all of it goes on as if nothing had been.
+  CHECK(builder.add_turn("9", {"6", end}, {"77", start}, {.id = "10"}) == "10");
+  CHECK(builder.document().roads.size() == 9);
+}
+
+TEST_CASE("what is connected once more stays as it is") {
+  MapBuilder builder;
+  builder.add_junction("9");
+  for (auto const& [id, x] : {std::pair{"1", 0.0}, {"2", 50.0}, {"3", 50.0}, {"4", 100.0}, {"5", 170.0}})
+    builder.add_road(straight(id, {x, 0, 0}, 50, 1, 2));
+  auto const turn = builder.add_turn("9", {"4", end}, {"5", start}, {.lanes = {{-1, -1}}});
+  auto const connect = [&](bool again) {
+    for (auto const* to : {"2", "3"}) {
+      builder.connect({"1", end}, {to, start}, {{-1, -1}, {1, 1}});
+      if (again) builder.connect({to, start}, {"1", end}, {{-1, -1}, {-1, -1}});
+    }
+    builder.connect({"2", end}, {"4", start});
+    if (again) builder.connect({"4", start}, {"2", end});
+    if (again) builder.connect({"4", end}, {turn, start}, {{-1, -1}});
+  };
+  connect(false);
+  auto const once = builder.document();
+  CHECK(once.junctions.size() == 2);
+  CHECK(once.junctions.back().connections.size() == 4);
+  for (int i = 0; i < 2; ++i) connect(true);
+  CHECK(builder.document() == once);
+  builder.connect({"1", end}, {"2", start}, {{-2, -2}, {-2, -2}, {-1, -1}});  // lane -2 is new
+  CHECK(builder.document().junctions.back().connections.size() == 5);
+  CHECK(builder.document().junctions.back().connections.back().lane_links.size() == 1);
+}
+
+TEST_CASE("two thousand roads, joined and with turns, are made with about twice the allocations of half") {
+  auto const make = [](MapBuilder& builder, int count) {
+    auto const before = support::allocations();
+    auto const name = [](int number) { return std::to_string(number); };
+    for (int i = 0; i < count; ++i) builder.add_road(straight("", {10.0 * (i + i / 10), 0, 0}, 10, 1, 1));
+    for (int i = 1; i < count; ++i) {
+      if (i % 10 > 0) {
+        builder.connect({name(i), end}, {name(i + 1), start});
+        continue;
+      }
+      auto const junction = builder.add_junction("j" + name(i));
+      builder.add_turn(junction, {name(i), end}, {name(i + 1), start}, {.id = "t" + junction});
+    }
+    return support::allocations() - before;
+  };
+  MapBuilder half, whole;
+  auto const few = make(half, 1000), all = make(whole, 2000);
+  CHECK(all < 3 * few);
+  CHECK(whole.road("1999").predecessor->id == "1998");
+  CHECK(whole.road("tj500").predecessor->id == "500");
+  CHECK(whole.document().roads.size() == 2199);
+  CHECK(whole.add_junction() == "2200");
+  CHECK(whole.add_junction() == "2201");
+}
+
+TEST_CASE("road ends where no lane goes on as a lane of the other are not connected") {
+  MapBuilder builder;
+  builder.add_road(straight("1", {}, 50, 0, 1));
+  builder.add_road(straight("2", {5000, 5000, 1}, 50, 0, 1));
+  builder.add_road(straight("3", {50, 0, 0}, 50, 1, 1));
+  auto const before = builder.document();
+  auto const why = [&](RoadEnd const& a, RoadEnd const& b) { return what_of([&] { builder.connect(a, b); }); };
+  std::string const none_faces = "no lane of the one goes on as a lane of the other";
+  CHECK(why({"1", end}, {"2", end}).find(none_faces) != std::string::npos);
+  CHECK(why({"1", end}, {"1", end}).find(none_faces) != std::string::npos);
+  CHECK(why({"1", end}, {"2", start}).find("they do not meet") != std::string::npos);
+  CHECK(why({"3", end}, {"3", end}).find("they do not meet") != std::string::npos);
+  CHECK(builder.document() == before);
+  CHECK(why({"1", end}, {"3", start}) == "no error");
+}
+
+TEST_CASE("a link that only one of the roads' lanes names becomes a connection like any other") {
+  for (bool const known_to_first : {true, false}) {
+    CAPTURE(known_to_first);
+    MapBuilder builder;
+    builder.add_road(straight("1", {}, 50, 1, 1));
+    for (auto const* id : {"2", "3"}) builder.add_road(straight(id, {50, 0, 0}, 50, 1, 1));
+    builder.connect({"1", end}, {"2", start});
+    for (auto& lane : builder.document().roads[known_to_first ? 1 : 0].lane_sections[0].lanes)
+      (known_to_first ? lane.predecessors : lane.successors).clear();
+    builder.connect({"1", end}, {"3", start});
+    auto const map = checked(builder);
+    for (auto const* id : {"2", "3"}) {
+      CHECK(leads(*map, lane_at(*map, "1", -1), lane_at(*map, id, -1)));
+      CHECK(leads(*map, lane_at(*map, id, 1), lane_at(*map, "1", 1)));
+    }
+  }
+}
+
+TEST_CASE("a link that another road contradicts is not dissolved") {
+  MapBuilder builder;
+  builder.add_road(straight("1", {}, 50, 0, 1));
+  for (auto const* id : {"2", "3"}) builder.add_road(straight(id, {50, 0, 0}, 50, 0, 1));
+  builder.connect({"1", end}, {"2", start});
+  builder.document().roads[1].predecessor->id = "3";
+  auto const before = builder.document();
+  auto const why = what_of([&] { builder.connect({"1", end}, {"3", start}); });
+  CHECK(why.find("only one of them is linked to the other") != std::string::npos);
+  CHECK(builder.document() == before);
+}
+
+TEST_CASE("ids that were changed in the document are known") {
+  MapBuilder builder;
+  for (auto const* id : {"1", "2"}) builder.add_road(straight(id, {}, 50, 0, 1));
+  builder.document().roads[0].id = "renamed";
+  CHECK_NOTHROW(builder.add_road(straight("1", {50, 0, 0}, 50, 0, 1)));
+  CHECK_THROWS_AS(builder.add_road(straight("renamed", {}, 50, 0, 1)), MapError);
+  builder.connect({"renamed", end}, {"1", start});
+  CHECK(builder.road("renamed").successor->id == "1");
+  builder.document().roads.erase(builder.document().roads.begin() + 1);
+  CHECK(std::as_const(builder).road("1").predecessor->id == "renamed");
+  CHECK_THROWS_AS((void)builder.end_pose({"2", end}), MapError);
+  auto& held = builder.document();
+  CHECK_NOTHROW(builder.add_road(straight("2", {}, 50, 0, 1)));
+  std::swap(held.roads[0], held.roads[1]);
+  CHECK(builder.road("renamed").id == "renamed");
+}
+
 TEST_CASE("a document that was changed to something unusable loses those roads, with a word") {
   MapBuilder builder;
   for (char const* id : {"1", "2", "3", "4"}) builder.add_road(straight(id, {0, id[0] * 50.0, 0}, 100, 0, 1));
@@ -305,7 +485,27 @@ TEST_CASE("a document that was changed to something unusable loses those roads, 
   REQUIRE(document.roads.size() == 1);
   CHECK(document.roads[0].id == "1");
   CHECK(std::count_if(diagnostics.begin(), diagnostics.end(), [](Diagnostic const& d) {
-          return d.sentence.find("a cubic without its curve") != std::string::npos;
+          return d.sentence.find("the road was left out") != std::string::npos;
         }) == 3);
   CHECK(build_map(document, {}, "changed", diagnostics)->lanes().size() == 1);
+}
+
+TEST_CASE("a junction that only a sidewalk leads through needs no connection") {
+  MapBuilder builder;
+  for (auto const& [id, x] : {std::pair{"1", 0.0}, {"2", 80.0}})
+    builder.add_road({.id = id,
+                      .line = lay_from({x, 0, 0}, {{50.0}}),
+                      .sections = {{.right = {{.type = LaneType::sidewalk, .width = 2.0}}}}});
+  builder.add_junction("9");
+  auto const findings = [&builder] {
+    std::vector<Diagnostic> diagnostics;
+    (void)builder.build({}, &diagnostics);
+    return std::count_if(diagnostics.begin(), diagnostics.end(), [](Diagnostic const& d) {
+      return d.sentence.find("no lane leads through it") != std::string::npos;
+    });
+  };
+  CHECK(findings() == 1);
+  builder.add_turn("9", {"1", end}, {"2", start}, {.lanes = {{-1, -1}}});
+  CHECK(builder.document().junctions[0].connections.empty());
+  CHECK(findings() == 0);
 }

@@ -317,7 +317,7 @@ TEST_CASE(
     CHECK(r.document.roads[0].signals[0].id == "good");
     CHECK(r.document.roads[0].signal_references.empty());
     REQUIRE(r.find("it was left out"));
-    CHECK(r.find("it was left out")->severity == cambium::Severity::error);
+    CHECK(r.find("it was left out")->severity == cambium::Severity::warning);
   }
   auto const r = read(file_with(R"(<signals><signal id="1" s="1" t="0" value="fast" zOffset="inf" orientation="up"
     pitch="" dynamic="maybe"/></signals><objects><object id="o" s="0" t="0" width="wide"><repeat s="0"/></object></objects>)"));

@@ -3,11 +3,17 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
 
+#include "cambium/map/build_map.hpp"
 #include "cambium/map/map_builder.hpp"
+#include "cambium/map/opendrive.hpp"
+#include "../support/corpus.hpp"
+#include "../support/map_use.hpp"
+#include "../support/maps.hpp"
 #include "lanes_by_hand.hpp"
 
 using namespace by_hand;
@@ -188,18 +194,91 @@ TEST_CASE("a bridge does not overlap with the lane below, a ramp on the ground d
 
 TEST_CASE("a road that comes back over itself overlaps there, but not along its lanes") {
   std::vector<Lane> lanes;
-  // Two lanes of one road, 2.2 m apart, around a circle and a bit on: they cross each other's beginning.
+  // Two lanes of one road, 2.2 m apart: straight on, three quarters of a circle around to the left, and straight on.
   for (double const radius : {30.0, 32.2}) {
-    auto samples = arc({0, -radius, 0}, 1 / radius, 0.9 * 2 * pi * radius, 0.5);
-    auto const tail = arc({samples.back().x, samples.back().y, samples.back().heading}, -0.02, 60, 0.5);
-    samples.insert(samples.end(), tail.begin() + 1, tail.end());
+    std::vector<LineSample> samples;
+    for (auto const& [curvature, length] : {std::pair(0.0, 100.0), {1 / radius, 1.5 * pi * radius}, {0.0, 100.0}}) {
+      Pose const start = samples.empty() ? Pose{0, 30.0 - radius, 0}
+                                         : Pose{samples.back().x, samples.back().y, samples.back().heading};
+      auto const piece = arc(start, curvature, length, 0.5);
+      samples.insert(samples.end(), piece.begin() + (samples.empty() ? 0 : 1), piece.end());
+    }
     auto& lane = lanes[index_of(add_lane(lanes, samples))];
     lane.road = static_cast<RoadId>(0);
-    lane.road_end = 240.0;
+    lane.road_end = 345.0;
   }
   find(lanes);
   check_consistent(lanes);
-  for (auto const& o : lanes[0].overlaps) CHECK(std::abs(o.begin - o.other_begin) > 20.0);
+  for (auto const& lane : lanes) {
+    CHECK(lane.overlaps.size() == 4);  // with itself, and with the other one, each way
+    for (auto const& o : lane.overlaps) {
+      CHECK(o.kind == OverlapKind::crossing);
+      CHECK(std::abs(o.begin - o.other_begin) > 20.0);
+    }
+  }
+}
+
+TEST_CASE("a bridge is told from a crossing by the heights at the place, however long the straight roads are") {
+  for (auto const& [height, overlaps] : {std::pair(2.5, 1u), {10.0, 0u}, {-0.3, 1u}, {-0.7, 0u}}) {
+    cambium::MapBuilder builder;
+    builder.add_road({.id = "rises", .line = lay_from({}, {{400.0}}), .sections = {{.right = equal_lanes(1)}}});
+    builder.add_road(
+        {.id = "level", .line = lay_from({50, -50, pi / 2}, {{100.0}}), .sections = {{.right = equal_lanes(1)}}});
+    builder.road("rises").elevation = {{0.0, 0.0, 0.05, 0.0, 0.0}};
+    builder.road("level").elevation = {{0.0, height, 0.0, 0.0, 0.0}};
+    auto const map = builder.build();
+    CAPTURE(height);
+    CHECK(map->lanes()[0].overlaps.size() == overlaps);
+  }
+}
+
+TEST_CASE("a ramp overlaps with the road that it rises over only while it is low") {
+  std::vector<Lane> lanes;
+  add_straight(lanes, {0, 0, 0}, 600);
+  auto const ramp = add_straight(lanes, {600, 1, pi}, 600);
+  find(lanes, [ramp](Lane const& lane, double s) { return lane.id == ramp ? 0.02 * s : 0.0; });
+  REQUIRE(lanes[0].overlaps.size() == 1);
+  CHECK(lanes[0].overlaps[0].end == doctest::Approx(600));
+  CHECK(lanes[0].overlaps[0].begin < 450);
+  CHECK(lanes[0].overlaps[0].begin > 350);
+}
+
+TEST_CASE("a road that leads into a loop which crosses it overlaps with it there, and not at their joint") {
+  for (double const radius : {8.0, 20.0, 60.0}) {
+    cambium::MapBuilder builder;
+    builder.add_road({.id = "1", .line = lay_from({}, {{200.0}}), .sections = {{.right = equal_lanes(1)}}});
+    builder.add_road({.id = "2",
+                      .line = lay_from({200, 0, 0}, {{1.5 * pi * radius, 1 / radius, 1 / radius}, {100.0 + radius}}),
+                      .sections = {{.right = equal_lanes(1)}}});
+    builder.connect({"1", opendrive::ContactPoint::end}, {"2", opendrive::ContactPoint::start});
+    auto const map = builder.build();
+    CAPTURE(radius);
+    auto const& first = map->lanes()[0];
+    REQUIRE(first.successors.size() == 1);
+    REQUIRE(first.overlaps.size() == 1);
+    auto const& o = first.overlaps[0];
+    CHECK(o.kind == OverlapKind::crossing);
+    CHECK(std::abs(o.begin - (200.0 - radius - 1.75 - clearance)) < 0.01);  // the lane lies right of its road
+    CHECK(std::abs(o.end - o.begin - 2.0 * clearance) < 0.01);
+  }
+}
+
+TEST_CASE("a lane that crosses itself overlaps with itself, both ways") {
+  constexpr double radius = 40.0;
+  cambium::MapBuilder builder;
+  builder.add_road({.id = "1",
+                    .line = lay_from({}, {{200.0}, {1.5 * pi * radius, 1 / radius, 1 / radius}, {200.0}}),
+                    .sections = {{.right = equal_lanes(1)}}});
+  auto const map = builder.build();
+  auto const& lane = map->lanes()[0];
+  check_consistent({lane});
+  REQUIRE(lane.overlaps.size() == 2);
+  CHECK(lane.overlaps[0].other == lane.id);
+  CHECK(lane.overlaps[0].kind == OverlapKind::crossing);
+  CHECK(std::abs(lane.overlaps[0].begin - (200.0 - radius - 1.75 - clearance)) < 0.01);
+  CHECK(std::abs(lane.overlaps[0].end - lane.overlaps[0].begin - 2.0 * clearance) < 0.01);
+  CHECK(lane.overlaps[1].begin == lane.overlaps[0].other_begin);
+  CHECK(map_use::first_failure(*map) == "");
 }
 
 TEST_CASE("overlaps are where a look along every pair of lanes finds them") {
@@ -260,4 +339,43 @@ TEST_CASE("narrow oncoming lanes of roads that follow each other are no conflict
   auto const map = builder.build();
   REQUIRE(map->lanes().size() == 4);
   for (auto const& lane : map->lanes()) CHECK(lane.overlaps.empty());
+}
+
+TEST_CASE("on every map of the corpus overlaps end within 1 cm of where finely sampled lanes come as near") {
+  auto const folder = corpus::find("opendrive");
+  if (!folder) return;
+  MapOptions fine;
+  fine.position_tolerance = 5e-5;
+  fine.heading_tolerance = 1e-3;
+  std::size_t ends = 0;
+  for (auto const& file : corpus::maps(*folder)) {
+    CAPTURE(file.stem().string());
+    auto const map = support::load_opendrive(file.string()).map;
+    auto const twin = cambium::load_opendrive(file.string(), fine).map;
+    REQUIRE(map->lanes().size() == twin->lanes().size());
+    std::vector<Lane> lanes(twin->lanes().begin(), twin->lanes().end());
+    find_overlaps(
+        lanes, [&](Lane const& lane, double s) { return twin->road(lane.road).elevation.value(lane.station_at(s)); },
+        fine.overlap_clearance);  // without the exact paths
+    double worst = 0.0;
+    for (auto const& lane : map->lanes()) {
+      auto const& other = lanes[index_of(lane.id)];
+      CAPTURE(map->describe(lane.id));
+      CHECK(lane.overlaps.size() == other.overlaps.size());
+      for (auto const& o : lane.overlaps) {
+        auto const off = [&](double s, double fine_s) {
+          auto const foot = other.path.project(lane.path.pose(s).position(), other.path.find(fine_s)).s;
+          return std::abs(std::clamp(foot, 0.0, other.length()) - fine_s);
+        };
+        double nearest = std::numeric_limits<double>::infinity();
+        for (auto const& f : other.overlaps)
+          if (f.other == o.other && f.kind == o.kind)
+            nearest = std::min(nearest, std::max(off(o.begin, f.begin), off(o.end, f.end)));
+        worst = std::max(worst, nearest);
+        ends += 2;
+      }
+    }
+    CHECK(worst < 0.01);
+  }
+  CHECK(ends > 9000);
 }

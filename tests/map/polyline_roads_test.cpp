@@ -141,7 +141,7 @@ TEST_CASE("a centre line is read from a table of x and y") {
   CHECK(line.headings == std::vector<double>{0.1, 0.2});
 }
 
-TEST_CASE("a table as BARK's, with the borders, becomes a map of one lane") {
+TEST_CASE("a table as BARK's, with the borders, becomes a map of one lane and a shoulder") {
   std::string text = "lane_id,x_center,y_center,x_rightbound,y_rightbound,x_leftbound,y_leftbound\n";
   auto const cells = [](Point const& p) { return "," + std::to_string(p.x() + 6.9e5) + "," + std::to_string(p.y()); };
   for (double u = 0.0; u <= 200.0; u += 1.0)
@@ -153,10 +153,15 @@ TEST_CASE("a table as BARK's, with the borders, becomes a map of one lane") {
   builder.add_road(lane_along(line));
   auto const map = builder.build();
   auto const& lane = map->lanes()[0];
+  REQUIRE(map->lanes().size() == 2);
+  auto const& shoulder = map->lanes()[1];
+  CHECK(lane.drivable());
+  CHECK(shoulder.type == LaneType::shoulder);
   for (double u = 0.0; u <= 200.0; u += 3.3) {
-    CHECK(distance(lane.path, winding(u, -0.45)) < 0.02);
+    CHECK(distance(lane.path, winding(u)) < 0.02);
     CHECK(distance(lane.left, winding(u, 1.9)) < 0.02);
-    CHECK(distance(lane.right, winding(u, -2.8)) < 0.02);
+    CHECK(distance(lane.right, winding(u, -1.9)) < 0.02);
+    CHECK(distance(shoulder.right, winding(u, -2.8)) < 0.02);
   }
 }
 
@@ -175,6 +180,15 @@ TEST_CASE("a table that is none is refused, with the line") {
     CHECK_MESSAGE(what_of([&] { (void)read_center_line_csv(text); }) != "no error", text);
   CHECK_THROWS_AS((void)load_center_line_csv("/no/such/file.csv"), MapError);
   CHECK_THROWS_AS((void)load_center_line_csv("/"), MapError);
+}
+
+TEST_CASE("a table that says two things is refused rather than read as one of them") {
+  CHECK(what_of([] { (void)read_center_line_csv("x;y\n0,5;0,5\n10,5;0,5\n", "a.csv"); }) ==
+        "a.csv:2: cell 1 is no finite number: \"0,5\"; give a number with a decimal point");
+  CHECK(what_of([] { (void)read_center_line_csv("x,y\n0,0\n10,0,5,6\n", "a.csv"); }) ==
+        "a.csv:3: it has 4 cells, the first row 2; give each row the same columns, and numbers a decimal point");
+  for (auto const* text : {"x,y,theta\n0,0,45\n7,7,45\n14,14,45\n", "0,0,3.14\n10,0,3.14\n"})
+    CHECK(what_of([&] { (void)read_center_line_csv(text); }).find("does not fit the way") != std::string::npos);
 }
 
 TEST_CASE("damaged tables are read or refused, never worse") {
@@ -201,5 +215,38 @@ TEST_CASE("damaged tables are read or refused, never worse") {
         for (auto const& p : lane.path.points()) REQUIRE(std::isfinite(p.x() + p.y()));
     } catch (MapError const&) {
     }
+  }
+}
+
+TEST_CASE("the path of a table's lane is its centre line, also where the borders are not as far on both sides") {
+  std::string text = "x,y,x_leftbound,y_leftbound,x_rightbound,y_rightbound\n";
+  auto const left = [](double u) { return 3.0 + std::sin(0.05 * u); };
+  auto const right = [](double u) { return 2.5 + 1.5 * std::sin(0.02 * u); };
+  auto const points = points_of([](double u) { return winding(u); });
+  for (double u = 0.0; u <= 200.0; u += 4.0) {
+    for (auto const& p : {winding(u), winding(u, left(u)), winding(u, -right(u))})
+      text += std::to_string(p.x()) + "," + std::to_string(p.y()) + ",";
+    text.back() = '\n';
+  }
+  MapBuilder builder;
+  auto const line = read_center_line_csv(text);
+  builder.add_road(lane_along(line));
+  auto const map = builder.build();
+  std::size_t drivable = 0;
+  for (auto const& lane : map->lanes()) {
+    drivable += lane.drivable();
+    if (!lane.drivable()) CHECK(lane.type == LaneType::shoulder);
+  }
+  CHECK(drivable == 1);
+  auto const& road = map->roads()[0];
+  for (std::size_t i = 1; i + 1 < points.size(); ++i) {
+    double const u = 4.0 * static_cast<double>(i);
+    auto const hit = map->nearest_lane({points[i].x(), points[i].y(), std::atan(0.9 * std::cos(0.03 * u))});
+    REQUIRE(hit.has_value());
+    CHECK(std::abs(hit->lateral) < 0.011);  // the path is sampled to 1 cm
+    double const s = map->lane(hit->lane).station_at(hit->s);
+    CHECK(std::abs(lane_point(road, s, -1)->t) < 1e-9);  // exactly the reference line
+    CHECK(std::abs(lane_point(road, s, 1)->outer_t - left(u)) < 0.02);
+    CHECK(std::abs(lane_point(road, s, -2)->outer_t + right(u)) < 0.02);
   }
 }

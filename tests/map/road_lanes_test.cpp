@@ -11,6 +11,7 @@
 #include "cambium/map/build_corridor.hpp"
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"
+#include "road_text.hpp"
 
 namespace cb = cambium;
 using cb::geometry::Point;
@@ -141,11 +142,11 @@ TEST_CASE("a lane is asked for by its id where its section reaches, its end incl
 }
 
 TEST_CASE("a point on the outer side of a kink has its place at the kink") {
-  cb::map::RoadPlan road;
-  road.id = "1";
-  road.line = {{0.0, 0.0, 0.0, 0.0, 50.0}, {50.0, 50.0, 0.0, 0.2, 50.0}};
-  road.sections = {{.right = cb::map::equal_lanes(2)}};
-  auto const map = support::map_of(road);
+  auto text = road_text::file({{.sections = {{.lanes = {{-1}, {-2}}}}}});
+  std::string const line = R"(length="100"><line/></geometry>)";
+  text.replace(text.find(line), line.size(), R"(length="50"><line/></geometry>
+    <geometry s="50" x="50" y="0" hdg="0.2" length="50"><line/></geometry>)");
+  auto const map = road_text::load(text).map;
   Point const outside(50.0 + 2.0 * std::sin(0.1), -2.0 * std::cos(0.1));
   auto const places = cb::map::road_places(*map, outside);
   REQUIRE(places.size() == 1);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string>
 #include <tuple>
 
@@ -28,11 +29,12 @@ double distance(cb::geometry::Line const& line, Point const& p, double near) {
   return std::abs(foot.lateral);
 }
 
-/// Looks at a lane's path and borders between its vertices.
-void add_deviation(Map const& map, Lane const& lane, Deviation& worst) {
+/// Looks at a lane's path and borders in so many places between its vertices.
+void add_deviation(Map const& map, Lane const& lane, Deviation& worst, int places = 3) {
   auto const& road = map.road(lane.road);
   for (std::uint32_t i = 0; i < lane.path.segments().size(); ++i)
-    for (double const u : {0.2, 0.5, 0.8}) {
+    for (int k = 0; k < places; ++k) {
+      double const u = places == 3 ? 0.2 + 0.3 * k : (k + 0.5) / places;
       auto const& g = lane.path.segments()[i];
       double const s = g.s + u * g.length, station = lane.station_at(s, i);
       auto const exact = lane_point(road, station, lane.number);
@@ -98,4 +100,33 @@ TEST_CASE("what steps in the file steps in the sampled lanes, and not before") {
     CHECK(std::abs(widths.left + widths.right - width) < 1e-9);
     CHECK(std::abs(at.path.pose(at.position_at(s)).y - y) < 1e-9);
   }
+}
+
+TEST_CASE("a gentle S is sampled within the tolerance wherever its inflection lies and however long it is") {
+  for (double const length : {20.0, 40.0, 100.0, 300.0, 1000.0, 3000.0})
+    for (double const inflection : {0.125, 0.25, 0.375, 0.5, 0.75})
+      for (double const turn : {0.002, 0.0056, 0.02}) {
+        // k s (s - middle) (s - 2 middle), with the slope `turn` at its begin.
+        double const middle = inflection * length, k = turn / (2.0 * middle * middle), b = turn, c = -3.0 * k * middle;
+        cb::map::RoadPlan wound, bent;
+        wound.id = bent.id = "1";
+        wound.line = cb::map::lay_from({}, {{length}});
+        wound.sections = bent.sections = {{.right = cb::map::equal_lanes(1)}};
+        wound.lane_offset = {{0.0, 0.0, b, c, k}};
+        auto const curve = std::make_shared<cb::map::ParametricCubic const>(
+            cb::map::ParametricCubic::Coefficients{0.0, 1.0, 0.0, 0.0},
+            cb::map::ParametricCubic::Coefficients{0.0, b, c, k}, length);
+        bent.line = {{.length = length, .kind = cb::map::GeometryKind::cubic, .cubic = curve}};
+        CAPTURE(length);
+        CAPTURE(inflection);
+        CAPTURE(turn);
+        for (auto const* road : {&wound, &bent}) {
+          auto const map = support::map_of(*road);
+          Deviation worst;
+          add_deviation(*map, map->lanes()[0], worst, 40);
+          CHECK(worst.path <= 0.01);
+          CHECK(worst.border <= 0.01);
+          CHECK(worst.heading <= 0.5 * cb::geometry::pi / 180);
+        }
+      }
 }

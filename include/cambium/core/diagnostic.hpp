@@ -1,24 +1,21 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
 
+#include "cambium/core/error.hpp"
+
 namespace cambium {
 
-/// How much a finding matters: `info` is worth knowing, `warning` was read anyway (perhaps repaired, or a part is
-/// missing), `error` was left out because it is broken.
-enum class Severity { info, warning, error };
+/// How much a finding matters. What leaves nothing usable is no finding: it is thrown.
+enum class Severity {
+  info,     ///< Odd, but the map is what the file seems to mean.
+  warning,  ///< A part of the file was left out or replaced, or may not be meant as it was read.
+};
 
 [[nodiscard]] constexpr std::string_view to_string(Severity severity) {
-  switch (severity) {
-    case Severity::info:
-      return "info";
-    case Severity::warning:
-      return "warning";
-    case Severity::error:
-      return "error";
-  }
-  return "error";
+  return severity == Severity::info ? "info" : "warning";
 }
 
 /// Something odd in a user's file that did not stop the reading. A value on the result: the library never prints.
@@ -33,7 +30,8 @@ struct Diagnostic {
   friend bool operator==(Diagnostic const&, Diagnostic const&) = default;
 };
 
-/// One line: "file:line: warning: <element> of ids: sentence".
+/// One line: "file:line: warning: <element> of ids: sentence". The fields hold the file's own words; here control
+/// characters are spelled out (\x1b).
 [[nodiscard]] inline std::string to_string(Diagnostic const& d) {
   std::string text = d.file;
   if (d.line > 0) text += ":" + std::to_string(d.line);
@@ -41,7 +39,20 @@ struct Diagnostic {
   if (!d.element.empty()) text += "<" + d.element + ">" + (d.ids.empty() ? "" : " of ");
   text += d.ids;
   if (!d.element.empty() || !d.ids.empty()) text += ": ";
-  return text + d.sentence;
+  return detail::printable(text + d.sentence);
+}
+
+/// " (finding)" for a message that nothing usable is left: the first finding by which something was left out, else the
+/// first warning; empty where there is none.
+[[nodiscard]] inline std::string likely_cause(std::span<Diagnostic const> findings) {
+  Diagnostic const* cause = nullptr;
+  for (auto const& finding : findings) {
+    if (finding.severity == Severity::info) continue;
+    bool const left_out = finding.sentence.find("left out") != std::string::npos;
+    if (cause == nullptr || left_out) cause = &finding;
+    if (left_out) break;
+  }
+  return cause == nullptr ? std::string() : " (" + to_string(*cause) + ")";
 }
 
 }  // namespace cambium

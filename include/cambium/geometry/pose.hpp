@@ -13,6 +13,10 @@ using Point = Eigen::Vector2d;
 struct Pose {
   double x{}, y{}, heading{};
 
+  Pose() = default;
+  /// All three: two numbers are a point, not a pose of heading 0.
+  constexpr Pose(double x_, double y_, double heading_) : x(x_), y(y_), heading(heading_) {}
+
   [[nodiscard]] Point position() const { return {x, y}; }
 
   friend bool operator==(Pose const&, Pose const&) = default;

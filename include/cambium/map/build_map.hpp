@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cambium/core/diagnostic.hpp"
+#include "cambium/map/detail/exact_paths.hpp"
 #include "cambium/map/detail/junctions.hpp"
 #include "cambium/map/detail/lane_change_marks.hpp"
 #include "cambium/map/detail/lane_geometry.hpp"
@@ -19,9 +20,11 @@
 #include "cambium/map/detail/link_check.hpp"
 #include "cambium/map/detail/missing_links.hpp"
 #include "cambium/map/detail/road_links.hpp"
+#include "cambium/map/detail/require_buildable.hpp"
 #include "cambium/map/detail/section_sampler.hpp"
 #include "cambium/map/detail/split_roads.hpp"
 #include "cambium/map/detail/speed_limits.hpp"
+#include "cambium/map/detail/unsampled_lane.hpp"
 #include "cambium/map/make_roads.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/opendrive_document.hpp"
@@ -42,28 +45,28 @@ class MapBuild {
   }
 
   [[nodiscard]] std::shared_ptr<Map const> build() {
+    add_lanes();
+    link_lanes();
+    return finish();
+  }
+
+  // The stages of `build`, in their order:
+
+  /// Roads, and lanes with their geometry and neighbours.
+  void add_lanes() {
     check_parameters(parts_.options, "MapOptions");
     parts_.roads = make_roads(document_);
     for (std::size_t i = 0; i < parts_.roads.size(); ++i)
       for (std::size_t k = 0; k < parts_.roads[i].sections.size(); ++k)
         add_section(document_.roads[i], parts_.roads[i], k);
     if (parts_.lanes.empty())
-      throw MapError(file_, "the file has no lane with a length", "give a file with lanes beside lane 0");
+      throw MapError(file_, "the file has no lane with a length" + likely_cause(diagnostics_),
+                     "give a file with lanes beside lane 0");
     if (std::none_of(parts_.lanes.begin(), parts_.lanes.end(), [](Lane const& lane) { return lane.drivable(); }))
       diagnostics_.push_back({Severity::warning, file_, 0, {}, {}, "there is no lane that one may drive on"});
-    link_lanes();
-    set_speed_limits(document_, parts_.lanes);
-    set_lane_changes(document_, parts_.lanes);
-    parts_.junctions = make_junctions(document_, parts_.roads, parts_.lanes);
-    number_lane_coordinate();
-    find_overlaps(
-        parts_.lanes, [this](Lane const& lane, double s) { return elevation(lane, s); },
-        parts_.options.overlap_clearance);
-    parts_.route_finder = make_route_finder();
-    return std::make_shared<Map const>(std::move(parts_));
   }
 
- private:
+  /// What follows on what, and what merges.
   void link_lanes() {
     RoadLinks const links(document_, parts_.roads);
     LaneLinker(links, parts_.lanes, file_, diagnostics_).link();
@@ -76,6 +79,21 @@ class MapBuild {
     check.report_joints(parts_.lanes);
   }
 
+  /// Limits, marks, junctions, overlaps: all that a world needs.
+  [[nodiscard]] std::shared_ptr<Map const> finish() {
+    set_speed_limits(document_, parts_.lanes);
+    set_lane_changes(document_, parts_.lanes);
+    parts_.junctions = make_junctions(document_, parts_.roads, parts_.lanes);
+    number_lane_coordinate();
+    ExactPaths const paths(parts_.roads, parts_.lanes, parts_.options);
+    find_overlaps(
+        parts_.lanes, [this](Lane const& lane, double s) { return elevation(lane, s); },
+        parts_.options.overlap_clearance, [&paths](Lane const& lane, double s) { return paths.at(lane, s); });
+    parts_.route_finder = make_route_finder();
+    return std::make_shared<Map const>(std::move(parts_));
+  }
+
+ private:
   /// Height of a lane's path [m], to tell a bridge from a crossing.
   [[nodiscard]] double elevation(Lane const& lane, double s) const {
     return parts_.roads[index_of(lane.road)].elevation.value(lane.station_at(s));
@@ -87,7 +105,7 @@ class MapBuild {
     auto const cross_sections = SectionSampler(road, section, parts_.options).sample();
     for (std::size_t column = 0; column < section.lanes.size(); ++column) {
       auto const& written = *source.lane_sections[k].find(section.lanes[column].number);
-      Lane lane = make_lane(written, road, k);
+      Lane lane = unsampled_lane(written, road, k);
       lane.id = static_cast<LaneId>(parts_.lanes.size());
       if (!has_geometry(lane, cross_sections, column)) {
         diagnostics_.push_back(
@@ -108,10 +126,6 @@ class MapBuild {
     }
   }
 
-  [[nodiscard]] static bool runs_both_ways(opendrive::Lane const& lane) {
-    return lane.direction == opendrive::LaneDirection::both || lane.type == LaneType::bidirectional;
-  }
-
   /// Adds the last lane once more, driven the other way.
   LaneId add_opposite(std::span<CrossSection const> cross_sections, std::size_t column) {
     Lane lane = parts_.lanes.back();
@@ -130,19 +144,6 @@ class MapBuild {
     } catch (MapError const&) {  // a point that is not a finite number
       return false;
     }
-  }
-
-  [[nodiscard]] static Lane make_lane(opendrive::Lane const& written, Road const& road, std::size_t k) {
-    Lane lane;
-    lane.road = road.id;
-    lane.section = static_cast<std::uint32_t>(k);
-    lane.number = written.id;
-    lane.type = written.type;
-    lane.along_road = (written.id < 0) != road.left_hand_traffic;
-    if (written.direction == opendrive::LaneDirection::reversed) lane.along_road = !lane.along_road;
-    lane.road_begin = road.sections[k].begin;
-    lane.road_end = road.sections[k].end;
-    return lane;
   }
 
   /// `left` lies left of `right` as seen along the road. Nobody changes onto a lane with oncoming traffic.
@@ -170,21 +171,31 @@ class MapBuild {
   Map::Parts parts_;
 };
 
+/// Calls `run` with the document as `MapBuild` needs it: buildable, and with sections split where lanes meet the middle
+/// of others.
+template <class Run>
+auto with_split_roads(OpenDriveDocument const& document, Run const& run) {
+  RequireBuildable::check(document);
+  auto const places = places_to_split(document);
+  return places.empty() ? run(document) : run(split_roads(document, places));
+}
+
 }  // namespace detail
 
 /// The map that a document describes; what was odd is added to `diagnostics`, with `file` as the place: links that lead
 /// nowhere, that only one side knows, or that seem to be missing (see `MapOptions::infer_links`), joined lanes that do
-/// not meet, a map without a lane to drive on. Throws `MapError` where no lane is left.
+/// not meet, a map without a lane to drive on. Throws `MapError` where no lane is left, and where a document, which may
+/// have been made or changed in code, lacks what the reader guarantees: geometries and lane sections in order and
+/// finite, a curve for each cubic, no id twice. (`check_opendrive_document` finds more, and mends some of it.)
 ///
 /// A lane for both directions (`direction="both"`, type bidirectional) becomes two lanes, see `Lane::opposite`. Lanes
 /// are linked at their ends only: a section is split where a connecting road of a virtual junction meets the middle of
 /// a road, and in the middle of a road of one section that closes upon itself.
 [[nodiscard]] inline std::shared_ptr<Map const> build_map(OpenDriveDocument const& document, MapOptions const& options,
                                                           std::string file, std::vector<Diagnostic>& diagnostics) {
-  auto const places = detail::places_to_split(document);
-  if (places.empty()) return detail::MapBuild(document, options, std::move(file), diagnostics).build();
-  auto const split = detail::split_roads(document, places);
-  return detail::MapBuild(split, options, std::move(file), diagnostics).build();
+  return detail::with_split_roads(document, [&](OpenDriveDocument const& split) {
+    return detail::MapBuild(split, options, std::move(file), diagnostics).build();
+  });
 }
 
 }  // namespace cambium::map

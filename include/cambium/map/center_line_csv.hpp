@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <fstream>
@@ -10,13 +9,15 @@
 #include <sstream>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "cambium/core/error.hpp"
+#include "cambium/core/text.hpp"
+#include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/lane.hpp"
+#include "cambium/map/lane_type.hpp"
 #include "cambium/map/polyline_roads.hpp"
 #include "cambium/map/road_plan.hpp"
 
@@ -31,6 +32,8 @@ struct CenterLine {
 
 namespace detail {
 
+using cambium::detail::parse_number;
+
 /// Reads a centre line's table, see `read_center_line_csv`.
 class CenterLineReader {
  public:
@@ -41,7 +44,7 @@ class CenterLineReader {
     if (text_.substr(0, 3) == "\xEF\xBB\xBF") text_.remove_prefix(3);
     for (bool first = true; !text_.empty();) {
       auto const end = std::min(text_.find('\n'), text_.size());
-      auto const line = trimmed(text_.substr(0, end));
+      auto const line = cambium::detail::trimmed(text_.substr(0, end), blank);
       text_.remove_prefix(std::min(end + 1, text_.size()));
       ++line_;
       if (line.empty() || line.front() == '#') continue;
@@ -56,39 +59,27 @@ class CenterLineReader {
  private:
   enum Column { x, y, heading, left_x, left_y, right_x, right_y, columns };
   using Row = std::array<double, columns>;
+  static constexpr std::string_view blank = " \t\r\"";  // cells may stand in quotes
 
   [[noreturn]] void fail(std::string const& what, std::string const& remedy) const {
     throw MapError(name_ + ":" + std::to_string(line_), what, remedy);
   }
 
-  [[nodiscard]] static std::string_view trimmed(std::string_view text) {
-    constexpr std::string_view blank = " \t\r\"";
-    auto const begin = text.find_first_not_of(blank);
-    if (begin == std::string_view::npos) return {};
-    return text.substr(begin, text.find_last_not_of(blank) + 1 - begin);
-  }
-
-  [[nodiscard]] static std::vector<std::string_view> split(std::string_view line) {
-    std::vector<std::string_view> cells;
-    for (std::size_t begin = 0; begin <= line.size();) {
-      auto const end = std::min(line.find_first_of(",;", begin), line.size());
-      cells.push_back(trimmed(line.substr(begin, end - begin)));
-      begin = end + 1;
-    }
+  /// The cells of a row. The first one says which separator the table has, and how many cells at most.
+  [[nodiscard]] std::vector<std::string_view> split(std::string_view line) {
+    if (cells_ == 0 && line.find(';') != line.npos) separator_ = ";";
+    auto cells = cambium::detail::split(line, separator_);
+    for (auto& cell : cells) cell = cambium::detail::trimmed(cell, blank);
+    if (cells_ == 0) cells_ = cells.size();
+    if (cells.size() > cells_)
+      fail("it has " + std::to_string(cells.size()) + " cells, the first row " + std::to_string(cells_),
+           "give each row the same columns, and numbers a decimal point");
     return cells;
-  }
-
-  [[nodiscard]] static std::optional<double> number(std::string_view text) {
-    double value = 0.0;
-    if (text.starts_with('+')) text.remove_prefix(1);
-    auto const [end, problem] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (problem != std::errc{} || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;
-    return value;
   }
 
   /// Takes the first row as the columns' names; false where it is one of numbers, whose columns are x, y, heading.
   bool read_heading(std::vector<std::string_view> const& cells) {
-    if (number(cells.front())) {
+    if (parse_number<double>(cells.front())) {
       for (std::size_t i = 0; i < std::min<std::size_t>(cells.size(), 3); ++i) column_[i] = i;
       return false;
     }
@@ -116,7 +107,7 @@ class CenterLineReader {
     Row row{};
     for (std::size_t i = 0; i < columns; ++i) {
       if (!column_[i]) continue;
-      auto const value = *column_[i] < cells.size() ? number(cells[*column_[i]]) : std::nullopt;
+      auto const value = *column_[i] < cells.size() ? parse_number<double>(cells[*column_[i]]) : std::nullopt;
       if (!value)
         fail("cell " + std::to_string(*column_[i] + 1) +
                  (*column_[i] < cells.size()
@@ -128,6 +119,7 @@ class CenterLineReader {
     geometry::Point const point = geometry::Point(row[x], row[y]) - origin_;
     if (!(point.cwiseAbs().maxCoeff() <= 1e8)) fail("the point lies beyond 100 000 km", "give coordinates in m");
     if (!result_.points.empty() && (point - result_.points.back()).norm() <= 1e-3) return;  // a joint written twice
+    if (column_[heading] && !result_.points.empty()) check_heading(row[heading], point - result_.points.back());
     result_.points.push_back(point);
     if (column_[heading]) result_.headings.push_back(row[heading]);
     if (has_borders())
@@ -135,7 +127,17 @@ class CenterLineReader {
                                 std::hypot(row[right_x] - row[x], row[right_y] - row[y])});
   }
 
+  void check_heading(double theta, geometry::Point const& way) const {
+    constexpr double several_turns = 8.0 * geometry::pi;  // more than that, and it is degrees
+    double const off = geometry::angle_difference(theta, std::atan2(way.y(), way.x()));
+    if (std::abs(off) > 0.5 * geometry::pi || std::abs(theta) > several_turns)
+      fail("the heading " + cambium::detail::rounded_text(theta) + " does not fit the way from the point before",
+           "give headings in radians, in travel direction, or leave the column out");
+  }
+
   std::string_view text_;
+  std::string_view separator_ = ",";
+  std::size_t cells_ = 0;  ///< of the first row
   std::string const& name_;
   geometry::Point origin_;
   int line_ = 0;
@@ -145,13 +147,14 @@ class CenterLineReader {
 
 }  // namespace detail
 
-/// The centre line in a table of comma- (or semicolon-) separated values, a point a row in travel direction; `name`
-/// names the text in messages, `origin` is subtracted from all coordinates [m]. The first row names the columns:
-/// x and y, or x_center and y_center; optional are theta (or heading, yaw) [rad], and all four of x_leftbound,
-/// y_leftbound, x_rightbound, y_rightbound: the tables of lanes that BARK reads. Other columns are passed over. A first
-/// row of numbers means the columns x, y and, where there is a third, theta. Empty rows and those that begin with # are
-/// passed over, and so are points within a millimetre of the one before. Throws `MapError` with the line where a cell
-/// is missing or no finite number, and where there are fewer than two points. Linear in the length of the text.
+/// The centre line in a table of comma- (or, where the first row has one, semicolon-) separated values, a point a row
+/// in travel direction; `name` names the text in messages, `origin` is subtracted from all coordinates [m]. The first
+/// row names the columns: x and y, or x_center and y_center; optional are theta (or heading, yaw) [rad], and all four
+/// of x_leftbound, y_leftbound, x_rightbound, y_rightbound: the tables of lanes that BARK reads. Other columns are
+/// passed over. A first row of numbers means the columns x, y and, where there is a third, theta. Empty rows and those
+/// that begin with # are passed over, and so are points within a millimetre of the one before. Throws `MapError` with
+/// the line where a cell is missing, one too many or no finite number, or theta points away from the way that the
+/// points go, and where there are fewer than two points. Linear in the length of the text.
 [[nodiscard]] inline CenterLine read_center_line_csv(std::string_view text, std::string const& name = "text",
                                                      geometry::Point const& origin = {0.0, 0.0}) {
   return detail::CenterLineReader(text, name, origin).read();
@@ -168,11 +171,35 @@ class CenterLineReader {
   return read_center_line_csv(text.str(), path, origin);
 }
 
-/// A road with one lane, -1, along the line: as wide as its table says, else `lane_width` [m]. Throws `MapError` as
-/// `lane_along`.
+/// A road with one lane to drive on, -1, whose path is the line, to 1 mm: as wide as its table says, else `lane_width`
+/// [m]. Where the distances to the left and the right border differ, by more than 2 mm anywhere, the lane takes the
+/// smaller one on both sides (a lane's path is the middle of its borders), and the rest becomes a lane of the type
+/// shoulder, 1 or -2: so the outermost borders are the table's at its points, but nobody plans to drive on the rest.
+/// Who wants the whole width as one lane, with its middle as the path, gives `line.points` and `line.widths` to the
+/// other `lane_along`. Throws `MapError` as that.
 [[nodiscard]] inline RoadPlan lane_along(CenterLine const& line, double lane_width = 3.5) {
-  std::vector<SideWidths> const same{{0.5 * lane_width, 0.5 * lane_width}};
-  return lane_along(line.points, line.widths.empty() ? same : line.widths, line.headings);
+  std::vector<SideWidths> own, rest;
+  for (auto const& w : line.widths) {
+    double const half = std::min(w.left, w.right);
+    own.push_back({half, half});
+    rest.push_back({w.left - half, w.right - half});
+  }
+  if (own.empty()) own.push_back({0.5 * lane_width, 0.5 * lane_width});
+  constexpr double slight = 2e-3;  // [m]
+  auto const is_slight = [](SideWidths const& w) { return std::max(w.left, w.right) <= slight; };
+  if (std::all_of(rest.begin(), rest.end(), is_slight))
+    return lane_along(line.points, line.widths.empty() ? own : line.widths, line.headings);
+  auto plan = lane_along(line.points, own, line.headings);
+  auto const stations = detail::stations_of(plan.line);
+  auto const add = [&](double SideWidths::*side, std::vector<LanePlan>& lanes) {
+    std::vector<double> widths;
+    for (auto const& w : rest) widths.push_back(w.*side);
+    if (*std::max_element(widths.begin(), widths.end()) > slight)
+      lanes.push_back({.type = LaneType::shoulder, .widths = detail::monotone_profile(stations, widths)});
+  };
+  add(&SideWidths::left, plan.sections.front().left);
+  add(&SideWidths::right, plan.sections.front().right);
+  return plan;
 }
 
 }  // namespace cambium::map

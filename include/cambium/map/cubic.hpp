@@ -31,6 +31,11 @@ struct CubicRecord {
   friend bool operator==(CubicRecord const&, CubicRecord const&) = default;
 };
 
+/// Whether all numbers of a record are finite; their sum need not be.
+[[nodiscard]] inline bool is_finite(CubicRecord const& r) {
+  return std::isfinite(r.s) && std::isfinite(r.a) && std::isfinite(r.b) && std::isfinite(r.c) && std::isfinite(r.d);
+}
+
 /// The smallest and the largest value of `record` on the stations from `from` to `to`.
 [[nodiscard]] inline std::pair<double, double> extremes(CubicRecord const& record, double from, double to) {
   double low = std::min(record.value(from), record.value(to)), high = std::max(record.value(from), record.value(to));

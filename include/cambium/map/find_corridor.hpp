@@ -1,10 +1,7 @@
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -18,14 +15,12 @@
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/build_corridor.hpp"
 #include "cambium/map/corridor.hpp"
+#include "cambium/map/detail/road_list_search.hpp"
 #include "cambium/map/lane.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/route.hpp"
 
 namespace cambium::map {
-
-/// Which way a road is driven: along its reference line or against it.
-enum class RoadDirection : std::uint8_t { forward, backward };
 
 namespace detail {
 
@@ -89,28 +84,6 @@ inline constexpr double goal_radius = 5.0;  ///< how far from a lane a start or 
   return build_road_corridor(map, *best);
 }
 
-/// The lanes by which traffic in one direction comes onto a road, or leaves it.
-[[nodiscard]] inline std::vector<LaneId> lanes_at_end(Map const& map, Road const& road, RoadDirection direction,
-                                                      bool entry) {
-  bool const forward = direction == RoadDirection::forward;
-  std::vector<LaneId> lanes;
-  for (std::size_t i = 0; i < road.sections.size() && lanes.empty(); ++i) {
-    auto const& section = road.sections[forward == entry ? i : road.sections.size() - 1 - i];
-    for (auto const& lane : section.lanes)
-      if (is_valid(lane.id) && map.lane(lane.id).drivable() && map.lane(lane.id).along_road == forward)
-        lanes.push_back(lane.id);
-  }
-  return lanes;
-}
-
-/// The roads that a route passes, in order.
-[[nodiscard]] inline std::vector<RoadId> roads_of(Map const& map, Route const& route) {
-  std::vector<RoadId> roads;
-  for (auto const lane : route.lanes)
-    if (roads.empty() || roads.back() != map.lane(lane).road) roads.push_back(map.lane(lane).road);
-  return roads;
-}
-
 }  // namespace detail
 
 /// The road corridor along the cheapest route from the lane at `start` (see `Map::nearest_lane`) to a lane at `goal`.
@@ -135,39 +108,20 @@ inline constexpr double goal_radius = 5.0;  ///< how far from a lane a start or 
 }
 
 /// The road corridor along roads, given by the file's ids in the order in which they are driven, the first one in
-/// `direction`. Lanes are changed where that is needed, whatever the marks say. Throws `MapError` for a road that the
-/// map does not have, and where the roads do not lead into each other that way.
+/// `direction`; a road may come again. Lanes are changed where that is needed, whatever the marks say. Throws
+/// `MapError` for a road that the map does not have, and where the roads do not lead into each other that way. O(n log
+/// n) in the lanes of the roads, but for the corridor.
 [[nodiscard]] inline std::shared_ptr<RoadCorridor const> build_road_corridor(Map const& map,
                                                                              std::span<std::string const> roads,
                                                                              RoadDirection direction) {
   std::vector<RoadId> order;
   for (auto const& name : roads) order.push_back(map.find_road(name).id);
   if (order.empty()) throw MapError("road corridor", "it has no road", "give at least one");
-  RouteOptions options;
-  options.obey_lane_marks = false;
-  options.own_cost = [&order](Lane const& lane) {
-    bool const is_on_way = std::find(order.begin(), order.end(), lane.road) != order.end();
-    return is_on_way ? lane.length() : std::numeric_limits<double>::infinity();
-  };
-  std::vector<LaneId> ends;
-  for (auto const way : {RoadDirection::forward, RoadDirection::backward}) {
-    if (order.size() == 1 && way != direction) continue;
-    for (auto const lane : detail::lanes_at_end(map, map.road(order.back()), way, false)) ends.push_back(lane);
-  }
-  std::optional<Route> best;
-  for (auto const from : detail::lanes_at_end(map, map.road(order.front()), direction, true))
-    for (auto const to : ends)
-      for (auto& route : map.routes(from, to, options)) {
-        if (detail::roads_of(map, route) != order || (best && best->cost <= route.cost)) continue;
-        best = std::move(route);
-      }
-  if (!best) {
-    std::string names;
-    for (auto const& name : roads) names += (names.empty() ? "" : ", ") + name;
-    throw MapError("road corridor", "the roads " + names + " do not lead into each other in this direction",
-                   "list every road on the way, connecting roads too");
-  }
-  return build_road_corridor(map, *best);
+  if (auto const route = detail::RoadListSearch(map, order).find(direction)) return build_road_corridor(map, *route);
+  std::string names;
+  for (auto const& name : roads) names += (names.empty() ? "" : ", ") + name;
+  throw MapError("road corridor", "the roads " + names + " do not lead into each other in this direction",
+                 "list every road on the way, connecting roads too");
 }
 
 }  // namespace cambium::map

@@ -130,6 +130,7 @@ template <class WidthsAt>
                                                        double growth) {
   if (std::isnan(stretch.begin) || std::isnan(stretch.end))
     throw MapError("lane area", "its begin or end is not a number");
+  if (!std::isfinite(growth)) throw MapError("lane area", "its growth is no finite number", "give metres");
   double const begin = std::clamp(stretch.begin, 0.0, line.length()),
                end = std::clamp(stretch.end, begin, line.length());
   std::vector<StripSection> sections;
@@ -157,7 +158,7 @@ inline constexpr PathStretch whole_path{0.0, std::numeric_limits<double>::infini
 /// The ground of `lane` on a stretch of its path, widened by `growth` [m] to either side: simple polygons one behind
 /// the other that share an edge each. It is one polygon, but where the lane runs over itself. Where the inner border of
 /// a tight curve folds, the fold is left out. Empty for a stretch without a length. Throws `MapError` for a stretch
-/// that is not a number. O(n^2) for n vertices, a few ns a pair.
+/// that is not a number and a growth that is not finite. O(n^2) for n vertices, a few ns a pair.
 [[nodiscard]] inline std::vector<geometry::Polygon> area_of(Lane const& lane, PathStretch stretch = detail::whole_path,
                                                             double growth = 0.0) {
   auto const widths = [&lane](double s) { return lane.widths_at(s); };

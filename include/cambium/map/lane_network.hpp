@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cambium/geometry/angle.hpp"
+#include "cambium/map/detail/box_tree.hpp"
 #include "cambium/map/lane.hpp"
 #include "cambium/map/map.hpp"
 
@@ -82,11 +83,6 @@ class NetworkCheck {
   }
 
  private:
-  struct Begin {
-    double x;
-    LaneId lane;
-  };
-
   [[nodiscard]] static geometry::Pose begin_of(geometry::Line const& line) {
     std::uint32_t first = 0;
     return line.pose(0.0, first);
@@ -139,37 +135,41 @@ class NetworkCheck {
   }
 
   void collect_begins() {
-    for (auto const& lane : lanes_)
-      if (lane.drivable() && !lane.path.empty() && lane.predecessors.empty())
-        begins_.push_back({begin_of(lane.path).x, lane.id});
-    std::sort(begins_.begin(), begins_.end(),
-              [](Begin const& l, Begin const& r) { return l.x != r.x ? l.x < r.x : l.lane < r.lane; });
+    std::vector<detail::Box> places;
+    for (auto const& lane : lanes_) {
+      if (!lane.drivable() || lane.path.empty() || !lane.predecessors.empty()) continue;
+      begins_.push_back(lane.id);
+      places.emplace_back().add(begin_of(lane.path).x, begin_of(lane.path).y);
+    }
+    begin_tree_ = BoxTree(places);
   }
 
-  /// The nearest begin within the tolerances.
+  /// The nearest begin within the tolerances; of equal ones the first lane's.
   template <class Permits>
   void find_possible_link(Lane const& lane, Permits const& permits) {
     auto const end = end_of(lane.path);
-    double best = tolerances_.link_distance;
+    double const reach = tolerances_.link_distance;
+    double best = reach;
     LaneId with = none<LaneId>;
-    auto const first = std::lower_bound(begins_.begin(), begins_.end(), end.x - best,
-                                        [](Begin const& b, double x) { return b.x < x; });
-    for (auto at = first; at != begins_.end() && at->x <= end.x + tolerances_.link_distance; ++at) {
-      if (at->lane == lane.id || at->lane == lane.opposite) continue;
-      auto const begin = begin_of(lanes_[index_of(at->lane)].path);
+    begin_tree_.visit({end.x - reach, end.y - reach, end.x + reach, end.y + reach}, [&](std::uint32_t i) {
+      auto const& other = lanes_[index_of(begins_[i])];
+      if (other.id == lane.id || other.id == lane.opposite) return false;
+      auto const begin = begin_of(other.path);
       double const apart = (begin.position() - end.position()).norm();
-      if (apart > best || (apart == best && is_valid(with))) continue;
-      if (std::abs(geometry::angle_difference(begin.heading, end.heading)) > tolerances_.link_direction) continue;
-      if (!permits(lane, lanes_[index_of(at->lane)])) continue;
+      if (!(apart < best || (apart == best && !(with < other.id)))) return false;
+      if (std::abs(geometry::angle_difference(begin.heading, end.heading)) > tolerances_.link_direction) return false;
+      if (!permits(lane, other)) return false;
       best = apart;
-      with = at->lane;
-    }
+      with = other.id;
+      return false;
+    });
     if (is_valid(with)) possible_.push_back({NetworkFault::possible_link, lane.id, with, best});
   }
 
   std::span<Lane const> lanes_;
   NetworkTolerances const& tolerances_;
-  std::vector<Begin> begins_;
+  std::vector<LaneId> begins_;            ///< lanes without predecessor
+  BoxTree begin_tree_;                    ///< of the points where these begin
   std::vector<NetworkFinding> possible_;  ///< by lane
   std::vector<LaneId> entered_;           ///< the others of those, sorted
   std::vector<NetworkFinding> findings_;

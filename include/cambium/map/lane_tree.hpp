@@ -80,6 +80,7 @@ class LaneTree {
   /// allocation.
   [[nodiscard]] std::optional<LaneHit> nearest_drivable(geometry::Pose const& pose, double radius) const {
     double const c = std::cos(pose.heading), s = std::sin(pose.heading);
+    if (!std::isfinite(c)) return std::nullopt;  // a heading that is none fits no lane
     Best holding, nearest;
     drivable_.visit(pose.position(), 0.0, [&](LaneHit const& hit, Direction const& d) {
       if (hit.distance > 0.0) return false;

@@ -33,6 +33,17 @@ inline void set_surface(opendrive::Road const& source, Road& road) {
   }
 }
 
+[[nodiscard]] inline RoadLane make_road_lane(opendrive::Lane const& lane) {
+  std::vector<LaneHeight> heights;
+  for (auto const& height : lane.heights) heights.push_back({height.s_offset, height.inner, height.outer});
+  return {lane.id,
+          none<LaneId>,
+          none<LaneId>,
+          CubicProfile(lane.widths, BeforeFirst::hold),
+          CubicProfile(lane.widths.empty() ? lane.borders : std::vector<CubicRecord>(), BeforeFirst::hold),
+          std::move(heights)};
+}
+
 [[nodiscard]] inline Road make_road(opendrive::Road const& source, RoadId id, opendrive::HeaderOffset const& offset) {
   Road road;
   road.id = id;
@@ -49,15 +60,8 @@ inline void set_surface(opendrive::Road const& source, Road& road) {
     RoadSection result;
     result.begin = section.s;
     result.end = k + 1 < source.lane_sections.size() ? source.lane_sections[k + 1].s : road.length;
-    for (auto const& lane : section.lanes) {
-      if (lane.id == 0) continue;
-      std::vector<LaneHeight> heights;
-      for (auto const& height : lane.heights) heights.push_back({height.s_offset, height.inner, height.outer});
-      result.lanes.push_back(
-          {lane.id, none<LaneId>, none<LaneId>, CubicProfile(lane.widths, BeforeFirst::hold),
-           CubicProfile(lane.widths.empty() ? lane.borders : std::vector<CubicRecord>(), BeforeFirst::hold),
-           std::move(heights)});
-    }
+    for (auto const& lane : section.lanes)
+      if (lane.id != 0) result.lanes.push_back(make_road_lane(lane));
     road.sections.push_back(std::move(result));
   }
   return road;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -8,6 +9,7 @@
 #include <string>
 #include <string_view>
 #include <tuple>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -16,10 +18,12 @@
 #include "cambium/core/macros.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/geometry/angle.hpp"
+#include "cambium/geometry/box.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/corridor.hpp"
-#include "cambium/map/lane.hpp"
+#include "cambium/map/detail/find_lane.hpp"
 #include "cambium/map/detail/follow_lane.hpp"
+#include "cambium/map/lane.hpp"
 #include "cambium/map/lane_tree.hpp"
 #include "cambium/map/road.hpp"
 #include "cambium/map/route.hpp"
@@ -61,6 +65,9 @@ struct RoadPriority {
   RoadId high = none<RoadId>, low = none<RoadId>;
 };
 
+/// Which way a road or lane is driven: along its road's reference line or against it.
+enum class RoadDirection : std::uint8_t { forward, backward };
+
 /// Where roads meet. Its area and conflicts: `cambium/map/junction.hpp`.
 struct Junction {
   JunctionId id = none<JunctionId>;
@@ -81,7 +88,7 @@ class Map {
     std::unique_ptr<RouteFinder const> route_finder;
   };
 
-  explicit Map(Parts parts) : parts_(std::move(parts)), tree_(parts_.lanes) {}
+  explicit Map(Parts parts) : parts_(std::move(parts)), tree_(parts_.lanes), bounds_(bounds_of(parts_.lanes)) {}
   Map(Map const&) = delete;
   Map& operator=(Map const&) = delete;
 
@@ -89,6 +96,10 @@ class Map {
   [[nodiscard]] std::span<Lane const> lanes() const { return parts_.lanes; }
   [[nodiscard]] std::span<Junction const> junctions() const { return parts_.junctions; }
   [[nodiscard]] MapOptions const& options() const { return parts_.options; }
+
+  /// The smallest box around all lanes of any type, borders and paths; the empty box (`min_x > max_x`) where the map
+  /// has no lane.
+  [[nodiscard]] geometry::Box const& bounds() const { return bounds_; }
 
   /// Precondition: the map has it.
   [[nodiscard]] Road const& road(RoadId id) const {
@@ -112,29 +123,26 @@ class Map {
     throw MapError("road " + std::string(name), "the map has no such road", "see Map::roads for those it has");
   }
 
-  /// Lane `number` of road `name` at road position `s` [m], the road's end included. Throws `MapError` if there is
-  /// none. O(roads).
+  /// Lane `number` of road `name` at road position `s` [m], the road's end included; of a lane for both directions the
+  /// one that is driven as its side of the road is. Throws `MapError` if there is none. O(roads).
   [[nodiscard]] LaneId find_lane(std::string_view name, double s, int number) const {
-    auto const& road = find_road(name);
-    if (!(s >= 0.0)) throw MapError(where_of(name, s), "it lies before the road", "give a place on it");
-    double const inside = s <= road.length + 1e-3 ? std::min(s, road.length) : s;  // lengths are often written rounded
-    std::string const where = where_of(name, s);
-    for (auto const& section : road.sections) {
-      if (inside < section.begin || inside > section.end) continue;
-      if (inside == section.end && &section != &road.sections.back()) continue;
-      for (auto const& lane : section.lanes)
-        if (lane.number == number && is_valid(lane.id)) return lane.id;
-      throw MapError(where, "there is no lane " + std::to_string(number), "see Map::roads for those it has");
-    }
-    throw MapError(where, "the road is " + cambium::detail::rounded_text(road.length) + " m long",
-                   "give a place on it");
+    return detail::lane_at(find_road(name), s, number).id;
+  }
+  /// As above: that which is driven in `direction`, as only one lane of each strip is, but for both-way ones.
+  [[nodiscard]] LaneId find_lane(std::string_view name, double s, int number, RoadDirection direction) const {
+    auto const& found = detail::lane_at(find_road(name), s, number);
+    for (auto const id : {found.id, found.opposite})
+      if (is_valid(id) && lane(id).along_road == (direction == RoadDirection::forward)) return id;
+    throw MapError(describe(found.id), "it is driven the other way only", "give the other direction, or none");
   }
 
-  /// Name of a lane for messages: "road 12, section 0, lane -1".
+  /// Name of a lane for messages: "road 12, section 0, lane -1"; with ", backward" (or forward) where traffic runs in
+  /// both directions.
   [[nodiscard]] std::string describe(LaneId id) const {
     auto const& l = lane(id);
+    std::string const direction = !is_valid(l.opposite) ? "" : l.along_road ? ", forward" : ", backward";
     return "road " + road(l.road).name + ", section " + std::to_string(l.section) + ", lane " +
-           std::to_string(l.number);
+           std::to_string(l.number) + direction;
   }
 
   /// Lanes of any type that hold `p`, or come within `radius` [m] of it, nearest first. O(log n).
@@ -164,6 +172,19 @@ class Map {
     CAMBIUM_ASSERT(index_of(previous.lane) < parts_.lanes.size(), "Map::nearest_lane: the map has no lane of that id");
     if (auto const hit = detail::follow_lane(parts_.lanes, pose, previous)) return hit;
     return nearest_lane(pose, radius);
+  }
+
+  /// Catches `nearest_lane({x, y})`, which would pass for a pose of heading 0.
+  template <class None = void>
+  std::optional<LaneHit> nearest_lane(double const (&)[2], double = 5.0) const {
+    static_assert(!std::is_void_v<None>,
+                  "cambium::Map::nearest_lane({x, y}): two numbers are no pose; give the heading too, {x, y, heading}, "
+                  "or ask for the point, lanes_near({x, y}, {.radius = 5, .count = 1, .only_drivable = true})");
+    return {};
+  }
+  template <class None = void>
+  std::optional<LaneHit> nearest_lane(double const (&xy)[2], LaneHit const&, double radius = 5.0) const {
+    return nearest_lane<None>(xy, radius);
   }
 
   /// True when a drivable lane holds the point. O(log n), no allocation.
@@ -209,12 +230,17 @@ class Map {
  private:
   [[nodiscard]] static LaneStation end_of(LaneId lane) { return {lane, std::numeric_limits<double>::infinity()}; }
 
-  [[nodiscard]] static std::string where_of(std::string_view road, double s) {
-    return "road " + std::string(road) + ", s " + cambium::detail::rounded_text(s);
+  [[nodiscard]] static geometry::Box bounds_of(std::span<Lane const> lanes) {
+    geometry::Box box;
+    for (auto const& lane : lanes)
+      for (auto const* line : {&lane.path, &lane.left, &lane.right})
+        for (auto const& p : line->points()) box.add(p.x(), p.y());
+    return box;
   }
 
   Parts parts_;
   LaneTree tree_;
+  geometry::Box bounds_;
 };
 
 }  // namespace cambium::map

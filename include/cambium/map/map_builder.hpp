@@ -1,8 +1,6 @@
 #pragma once
 
-#include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <cstdlib>
 #include <memory>
 #include <optional>
@@ -16,7 +14,9 @@
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/build_map.hpp"
 #include "cambium/map/curve_layout.hpp"
+#include "cambium/map/detail/document_index.hpp"
 #include "cambium/map/detail/road_connector.hpp"
+#include "cambium/map/detail/rollback.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/opendrive_check.hpp"
 #include "cambium/map/opendrive_document.hpp"
@@ -41,7 +41,8 @@ struct TurnPlan {
 ///     builder.add_road({.id = "1", .line = lay_from({}, {{500.0}}), .sections = {{.right = equal_lanes(2)}}});
 ///     auto const map = builder.build();
 ///
-/// All functions throw `MapError` for roads and junctions that are not there, and for numbers that are not finite.
+/// All functions throw `MapError` for roads and junctions that are not there, and for numbers that are not finite; what
+/// throws has changed nothing.
 class MapBuilder {
  public:
   explicit MapBuilder(std::string name = "map") {
@@ -51,24 +52,29 @@ class MapBuilder {
     document_.header.vendor = "cambium";
   }
 
-  /// Adds a road; gives its id. Throws `MapError` where the id is taken, the line or the first section is missing,
-  /// sections are not in order, or a width falls below 0.
+  /// Adds a road; gives its id. Throws `MapError` where the id is taken, the line or the first section is missing, a
+  /// geometry does not begin where the one before ends (to 1 cm and 0.01 rad), sections or records are not in order, or
+  /// a width falls below 0. Linear in the plan.
   std::string add_road(RoadPlan plan) {
-    if (plan.id.empty()) plan.id = free_id();
-    if (index_of_road(plan.id)) throw MapError("road " + plan.id, "there is one of that id", "give another id");
-    if (!plan.junction.empty()) (void)junction(plan.junction);
+    index_.update(document_);
+    if (plan.id.empty()) plan.id = index_.free_id(document_);
+    if (index_.has_road(plan.id)) throw MapError("road " + plan.id, "there is one of that id", "give another id");
+    if (!plan.junction.empty()) (void)index_.junction(document_, plan.junction);
     document_.roads.push_back(detail::RoadMaker(std::move(plan)).make());
+    index_.update(document_);
     return document_.roads.back().id;
   }
 
   /// Adds an empty junction; gives its id (without one, the next free number). Throws `MapError` where the id is taken.
   std::string add_junction(std::string id = {}, std::string name = {}) {
-    if (id.empty()) id = free_id();
-    for (auto const& other : document_.junctions)
-      if (other.id == id) throw MapError("junction " + id, "there is one of that id", "give another id");
-    document_.junctions.emplace_back();
-    document_.junctions.back().id = id;
-    document_.junctions.back().name = std::move(name);
+    index_.update(document_);
+    if (id.empty()) id = index_.free_id(document_);
+    if (index_.has_junction(id)) throw MapError("junction " + id, "there is one of that id", "give another id");
+    opendrive::Junction junction;
+    junction.id = id;
+    junction.name = std::move(name);
+    document_.junctions.push_back(std::move(junction));
+    index_.update(document_);
     return id;
   }
 
@@ -89,12 +95,17 @@ class MapBuilder {
   ///
   /// Where one of the roads is a connecting road, the other becomes linked to its junction, with connections for the
   /// lanes that lead in. Else, where an end is linked already to another road, the two links become connections of a
-  /// direct junction: so forks and joints need nothing but a `connect` for each of their branches. Throws `MapError`
-  /// where there is no such lane, or lanes to be linked lie more than 0.5 m or 0.5 rad apart.
+  /// direct junction: so forks and joints need nothing but a `connect` for each of their branches. What is linked
+  /// already stays so. Throws `MapError` where there is no such lane or none to be linked, or lanes to be linked lie
+  /// more than 0.5 m or 0.5 rad apart. O(lanes and geometries of the roads, connections of the junction).
   void connect(RoadEnd const& a, RoadEnd const& b, std::vector<opendrive::LaneLink> links = {}) {
+    index_.update(document_);
     auto const& road_a = checked(a);
     auto const& road_b = checked(b);
     if (links.empty()) links = detail::facing_lanes(road_a, a.end, road_b, b.end);
+    if (links.empty())
+      throw MapError("road " + a.road + " and road " + b.road, "no lane of the one goes on as a lane of the other",
+                     "name the lanes, or turn one of the roads round");
     for (auto const& link : links) {
       auto const from = lane_pose(a, link.from), to = lane_pose(b, link.to);
       double const gap = (from.position() - to.position()).norm();
@@ -105,7 +116,10 @@ class MapBuilder {
                            cambium::detail::rounded_text(turn) + " rad between them",
                        "lay the one road out from the end of the other, see end_pose");
     }
-    detail::RoadConnector(document_, [this] { return free_id(); }).connect(a, b, links);
+    detail::Rollback rollback(document_, index_);
+    for (auto const* end : {&a, &b}) rollback.watch_road(end->road);
+    detail::RoadConnector(document_, index_).connect(a, b, links);
+    rollback.keep();
   }
 
   /// Adds a connecting road to a junction: a smooth way (`connecting_curve`) from lanes that leave `from` to lanes that
@@ -113,30 +127,16 @@ class MapBuilder {
   /// the one's to the other's. Gives its id. Throws `MapError` as `connect`, for lanes that lead the wrong way, and
   /// where there are none.
   std::string add_turn(std::string const& junction_id, RoadEnd const& from, RoadEnd const& to, TurnPlan plan = {}) {
-    (void)junction(junction_id);
+    index_.update(document_);
+    (void)index_.junction(document_, junction_id);
     auto const lanes = detail::turn_lanes(checked(from), checked(to), from, to, std::move(plan.lanes));
-    bool const left_hand = checked(from).rule == opendrive::TrafficRule::left_hand;
-    auto begin = lane_pose(from, lanes.front().from), end = lane_pose(to, lanes.front().to);
-    end.heading += geometry::pi;
-    RoadPlan road{.id = plan.id.empty() ? free_id() : plan.id, .name = std::move(plan.name)};
-    road.line = connecting_curve(begin, end);
-    road.rule = checked(from).rule;
-    road.speed_limit = plan.speed_limit;
+    auto road = turn_plan(from, to, lanes, std::move(plan));
     road.junction = junction_id;
-    double const length = road.line.back().s + road.line.back().length;
-    auto const unmarked = make_mark("none", opendrive::LaneChange::none);
-    SectionPlan section{.middle_mark = unmarked};
-    auto& side = left_hand ? section.left : section.right;
-    for (auto const& link : lanes)
-      side.push_back({.type = detail::find_lane(checked(from), from.end, link.from).type,
-                      .width = detail::lane_span(checked(from), from.end, link.from).width(),
-                      .end_width = detail::lane_span(checked(to), to.end, link.to).width(),
-                      .mark = unmarked});
-    double const sign = left_hand ? -0.5 : 0.5;
-    road.lane_offset = {smooth_step(0.0, sign * side.front().width, sign * *side.front().end_width, length)};
-    road.sections = {std::move(section)};
+    int const step = road.sections.front().left.empty() ? -1 : 1;
+    detail::Rollback rollback(document_, index_);
+    for (auto const* end : {&from, &to}) rollback.watch_road(end->road);
+    rollback.watch_junction(junction_id);
     auto const id = add_road(std::move(road));
-    int const step = left_hand ? 1 : -1;
     std::vector<opendrive::LaneLink> enter, leave;
     for (auto const& link : lanes) {
       int const own = step * (static_cast<int>(enter.size()) + 1);
@@ -145,17 +145,21 @@ class MapBuilder {
     }
     connect(from, {id, opendrive::ContactPoint::start}, enter);
     connect({id, opendrive::ContactPoint::end}, to, leave);
+    rollback.keep();
     return id;
   }
 
   /// What has been made so far. Whoever needs more than the functions above (elevations, marks, a header offset) may
-  /// change it.
+  /// change it, before the next call of another function.
   [[nodiscard]] opendrive::Document const& document() const { return document_; }
-  [[nodiscard]] opendrive::Document& document() { return document_; }
+  [[nodiscard]] opendrive::Document& document() {
+    index_.forget();
+    return document_;
+  }
 
-  /// A road of the document. Throws `MapError` where there is none of that id.
-  [[nodiscard]] opendrive::Road& road(std::string const& id) { return document_.roads[checked_index(id)]; }
-  [[nodiscard]] opendrive::Road const& road(std::string const& id) const { return document_.roads[checked_index(id)]; }
+  /// A road of the document, whose id is to be left as it is. Throws `MapError` where there is none of that id. O(1).
+  [[nodiscard]] opendrive::Road& road(std::string const& id) { return index_.road(document_, id); }
+  [[nodiscard]] opendrive::Road const& road(std::string const& id) const { return index_.road(document_, id); }
 
   /// The map of what has been made so far, checked as a file would be; what is odd goes to `diagnostics`. Throws
   /// `MapError` where there is no lane.
@@ -170,16 +174,29 @@ class MapBuilder {
   }
 
  private:
-  [[nodiscard]] std::optional<std::size_t> index_of_road(std::string const& id) const {
-    for (std::size_t i = 0; i < document_.roads.size(); ++i)
-      if (document_.roads[i].id == id) return i;
-    return std::nullopt;
-  }
-
-  [[nodiscard]] std::size_t checked_index(std::string const& id) const {
-    auto const index = index_of_road(id);
-    if (!index) throw MapError("road " + id, "there is none of that id", "add it first");
-    return *index;
+  /// The connecting road of a turn.
+  [[nodiscard]] RoadPlan turn_plan(RoadEnd const& from, RoadEnd const& to,
+                                   std::vector<opendrive::LaneLink> const& lanes, TurnPlan plan) const {
+    bool const left_hand = checked(from).rule == opendrive::TrafficRule::left_hand;
+    auto begin = lane_pose(from, lanes.front().from), end = lane_pose(to, lanes.front().to);
+    end.heading += geometry::pi;
+    RoadPlan road{.id = std::move(plan.id), .name = std::move(plan.name)};
+    road.line = connecting_curve(begin, end);
+    road.rule = checked(from).rule;
+    road.speed_limit = plan.speed_limit;
+    double const length = road.line.back().s + road.line.back().length;
+    auto const unmarked = make_mark("none", opendrive::LaneChange::none);
+    SectionPlan section{.middle_mark = unmarked};
+    auto& side = left_hand ? section.left : section.right;
+    for (auto const& link : lanes)
+      side.push_back({.type = detail::find_lane(checked(from), from.end, link.from).type,
+                      .width = detail::lane_span(checked(from), from.end, link.from).width(),
+                      .end_width = detail::lane_span(checked(to), to.end, link.to).width(),
+                      .mark = unmarked});
+    double const sign = left_hand ? -0.5 : 0.5;
+    road.lane_offset = {smooth_step(0.0, sign * side.front().width, sign * *side.front().end_width, length)};
+    road.sections = {std::move(section)};
+    return road;
   }
 
   [[nodiscard]] opendrive::Road const& checked(RoadEnd const& end) const {
@@ -188,25 +205,8 @@ class MapBuilder {
     return road(end.road);
   }
 
-  [[nodiscard]] opendrive::Junction const& junction(std::string const& id) const {
-    for (auto const& junction : document_.junctions)
-      if (junction.id == id) return junction;
-    throw MapError("junction " + id, "there is none of that id", "add it first, see add_junction");
-  }
-
-  /// The smallest number from 1 on that no road and no junction has.
-  [[nodiscard]] std::string free_id() const {
-    auto const is_taken = [this](std::string const& id) {
-      auto const same = [&id](auto const& element) { return element.id == id; };
-      return std::any_of(document_.roads.begin(), document_.roads.end(), same) ||
-             std::any_of(document_.junctions.begin(), document_.junctions.end(), same);
-    };
-    auto number = document_.roads.size() + 1;
-    while (is_taken(std::to_string(number))) ++number;
-    return std::to_string(number);
-  }
-
   opendrive::Document document_;
+  detail::DocumentIndex index_;
 };
 
 }  // namespace cambium::map

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -12,8 +13,12 @@
 
 #include "cambium/core/diagnostic.hpp"
 #include "cambium/core/error.hpp"
-#include "cambium/geometry/angle.hpp"
 #include "cambium/map/cubic.hpp"
+#include "cambium/map/detail/geometry_check.hpp"
+#include "cambium/map/detail/geometry_fault.hpp"
+#include "cambium/map/detail/move_records.hpp"
+#include "cambium/map/detail/require_buildable.hpp"
+#include "cambium/map/lane_type.hpp"
 #include "cambium/map/opendrive_document.hpp"
 #include "cambium/map/reference_line.hpp"
 
@@ -30,14 +35,19 @@ class DocumentCheck {
 
   void run() {
     if (document_->header.line == 0) report(Severity::warning, 0, "header", "", "the file has no header");
+    if (!is_bearable(document_->header.offset)) {
+      report(Severity::warning, document_->header.line, "offset", "", "it is beyond any map; it was left out");
+      document_->header.offset = {};
+    }
     std::erase_if(document_->roads, [this](opendrive::Road& road) {
-      return !is_whole(road) || !is_continuous(road) || !has_lanes(road);
+      return !is_whole(road) || !GeometryCheck(road, file_, *diagnostics_).is_continuous() || !has_lanes(road);
     });
     index(document_->roads, roads_, "road", " is there twice; the second one was left out");
     index(document_->junctions, junctions_, "junction", " is there twice; the second one was left out");
     for (opendrive::Road& road : document_->roads) check(road);
+    auto const walked = junctions_to_walk();
     for (opendrive::Junction const& junction : document_->junctions) {
-      if (junction.connections.empty())
+      if (junction.connections.empty() && !walked.contains(junction.id))
         report(Severity::warning, junction.line, "junction", "junction " + junction.id,
                "it has no connection; no lane leads through it");
       for (opendrive::Connection const& connection : junction.connections) check(junction, connection);
@@ -46,6 +56,7 @@ class DocumentCheck {
 
  private:
   using Index = std::unordered_set<std::string_view>;
+  static constexpr double highest = 1e5;  ///< [m]
 
   /// Collects the ids and removes later elements of an id that was there before.
   template <class Element>
@@ -53,10 +64,29 @@ class DocumentCheck {
     std::unordered_set<std::string> seen;
     std::erase_if(elements, [&](Element const& element) {
       if (seen.insert(element.id).second) return false;
-      report(Severity::error, element.line, kind, "", "id " + element.id + sentence);
+      report(Severity::warning, element.line, kind, "", "id " + element.id + sentence);
       return true;
     });
     for (Element const& element : elements) ids.insert(element.id);
+  }
+
+  /// The junctions with linked connecting roads, and no drivable lane on any: these need no connections.
+  [[nodiscard]] Index junctions_to_walk() const {
+    Index walked, driven;
+    for (opendrive::Road const& road : document_->roads) {
+      if (road.junction.empty()) continue;
+      bool const is_driven =
+          std::any_of(road.lane_sections.begin(), road.lane_sections.end(), [](opendrive::LaneSection const& section) {
+            return std::any_of(section.lanes.begin(), section.lanes.end(),
+                               [](opendrive::Lane const& lane) { return lane.id != 0 && is_drivable(lane.type); });
+          });
+      if (is_driven)
+        driven.insert(road.junction);
+      else if (road.predecessor && road.successor)
+        walked.insert(road.junction);
+    }
+    for (std::string_view const junction : driven) walked.erase(junction);
+    return walked;
   }
 
   void check(opendrive::Road& road) {
@@ -113,7 +143,7 @@ class DocumentCheck {
   [[nodiscard]] bool has_lanes(opendrive::Road const& road) {
     opendrive::LaneSection const& first = road.lane_sections.front();
     if (first.s <= road.geometry_length()) return true;
-    report(Severity::error, first.line, "laneSection", "road " + road.id,
+    report(Severity::warning, first.line, "laneSection", "road " + road.id,
            "the first section starts at " + rounded_text(first.s) + " m, behind the road's end; the road was left out");
     return false;
   }
@@ -121,83 +151,32 @@ class DocumentCheck {
   /// Whether a road, which may have been made in code, has what every road has.
   [[nodiscard]] bool is_whole(opendrive::Road& road) {
     road.geometry_lines.resize(road.geometries.size());
-    bool const has_curves = std::all_of(road.geometries.begin(), road.geometries.end(), [](Geometry const& g) {
-      return g.kind != GeometryKind::cubic || g.cubic != nullptr;
-    });
-    if (!road.geometries.empty() && !road.lane_sections.empty() && has_curves) return true;
-    report(Severity::error, road.line, "road", "road " + road.id,
-           "it has no geometry, no lane section, or a cubic without its curve; it was left out");
+    char const* fault = road.lane_sections.empty() ? "it has no lane section"
+                        : road.geometries.empty()  ? "it has no geometry"
+                                                   : nullptr;
+    for (std::size_t i = 0; i < road.geometries.size() && fault == nullptr; ++i) fault = fault_of(road.geometries[i]);
+    if (fault == nullptr) return true;
+    report(Severity::warning, road.line, "road", "road " + road.id, std::string(fault) + "; the road was left out");
     return false;
-  }
-
-  /// Reports where a geometry does not go on where the one before ends. False where nobody could drive there: it is far
-  /// off, or what the curve does in the gap is beyond telling.
-  [[nodiscard]] bool is_continuous(opendrive::Road const& road) {
-    constexpr double slight = 1e-3, noticeable = 0.1, bearable = 100.0;  // [m]; `noticeable` also [rad]
-    double widest = 0.0;                                                 // of the slight ones
-    int slight_ones = 0, slight_line = 0;
-    auto const lost = [&](std::size_t i, std::string const& what) {
-      report(Severity::error, road.geometry_lines[i], "geometry", "road " + road.id, what + "; the road was left out");
-      return false;
-    };
-    std::size_t const last = road.geometries.size() - 1;
-    if (!(road.geometry_length() > 0.0))
-      return lost(last, "the geometries end at " + rounded_text(road.geometry_length()) + " m");
-    double const first_s = road.geometries.front().s;
-    if (turn_beyond(road.geometries.front(), 0.0, first_s) > 1.0)
-      return lost(0, "the road has no geometry before " + rounded_text(first_s) + " m");
-    if (std::abs(first_s) > slight)
-      report(
-          Severity::warning, road.geometry_lines[0], "geometry", "road " + road.id,
-          "the first geometry starts at " + rounded_text(first_s) + " m, not at 0; the road starts at 0 all the same");
-    for (std::size_t i = 1; i < road.geometries.size(); ++i) {
-      Geometry const& before = road.geometries[i - 1];
-      Geometry const& next = road.geometries[i];
-      if (turn_beyond(before, before.length, next.s - before.s - before.length) > 1.0)
-        return lost(i, "there is no geometry for " + rounded_text(next.s - before.s - before.length) + " m before it");
-      CurvePoint const end = evaluate(before, before.length);
-      CurvePoint const start =
-          next.kind == GeometryKind::cubic ? evaluate(next, 0.0) : CurvePoint{next.x, next.y, next.heading};
-      double const gap = std::hypot(start.x - end.x, start.y - end.y);
-      double const turn = std::abs(geometry::angle_difference(start.heading, end.heading));
-      if (gap <= noticeable && turn <= noticeable) {
-        slight_ones += gap > slight;
-        if (gap > std::max(slight, widest)) {
-          widest = gap;
-          slight_line = road.geometry_lines[i];
-        }
-        continue;
-      }
-      std::string const sentence =
-          "it starts " + rounded_text(gap) + " m and " + rounded_text(turn) + " rad off the end of the geometry before";
-      if (gap > bearable) return lost(i, sentence);
-      report(Severity::warning, road.geometry_lines[i], "geometry", "road " + road.id, sentence);
-    }
-    if (slight_ones > 0)
-      report(Severity::warning, slight_line, "geometry", "road " + road.id,
-             "it starts " + rounded_text(widest) + " m off the end of the geometry before" +
-                 (slight_ones > 1 ? " (and " + std::to_string(slight_ones - 1) + " others a little less)" : ""));
-    return true;
-  }
-
-  /// How far a geometry turns where it is continued for `distance` [m] from `end` (its own begin or end) [rad].
-  [[nodiscard]] static double turn_beyond(Geometry const& g, double end, double distance) {
-    double const rate = std::abs(curvature_rate(g)),
-                 curvature = std::abs(end > 0.0 ? g.curvature_end : g.curvature_start);
-    return distance > 0.0 ? distance * (curvature + 0.5 * rate * distance) : 0.0;
   }
 
   /// Leaves out records of widths, heights and of the lane offset that are beyond any road, and reports negative
   /// widths.
   void check_records(opendrive::Road& road, std::string const& ids) {
+    constexpr double steepest = 10.0;  // [rad]
     auto const of_road = [&] { return ids; };
     leave_out_wild(road.lane_offset, road.geometry_length(), road.line, "laneOffset", of_road);
-    leave_out_wild(road.elevation, road.geometry_length(), road.line, "elevation", of_road, 1e5);
+    leave_out_wild(road.elevation, road.geometry_length(), road.line, "elevation", of_road, highest);
+    leave_out_wild(road.superelevation, road.geometry_length(), road.line, "superelevation", of_road, steepest, "rad");
+    check_surface(road, ids);
     for (std::size_t i = 0; i < road.lane_sections.size(); ++i) {
       opendrive::LaneSection& section = road.lane_sections[i];
       double const end = i + 1 < road.lane_sections.size() ? road.lane_sections[i + 1].s : road.geometry_length();
       for (opendrive::Lane& lane : section.lanes) {
         auto const of = [&] { return ids + ", section " + std::to_string(i) + ", lane " + std::to_string(lane.id); };
+        leave_out(lane.heights, lane.line, "height", of(), [](opendrive::LaneHeight const& height) {
+          return std::abs(height.inner) <= highest && std::abs(height.outer) <= highest;
+        });
         leave_out_wild(lane.borders, end - section.s, lane.line, "border", of);
         double const lowest = leave_out_wild(lane.widths, end - section.s, lane.line, "width", of);
         if (lowest < -1e-3)
@@ -207,24 +186,59 @@ class DocumentCheck {
     }
   }
 
+  /// Leaves out what tilts or bends the road across beyond any road.
+  void check_surface(opendrive::Road& road, std::string const& ids) {
+    constexpr double steepest = 10.0, farthest = 1000.0;  // [rad], [m] to the side
+    auto const keeps_within = [](CubicRecord const& record, double end, double largest) {
+      auto const [low, high] = extremes(record, record.s, std::max(end, record.s));
+      return low >= -largest && high <= largest;
+    };
+    leave_out(road.crossfall, road.line, "crossfall", ids, [&](opendrive::Crossfall const& crossfall) {
+      auto const* const last = road.crossfall.data() + road.crossfall.size();
+      auto const* const next = std::find_if(
+          &crossfall + 1, last, [&](opendrive::Crossfall const& other) { return other.side == crossfall.side; });
+      double const end = next != last ? next->record.s : road.geometry_length();
+      return keeps_within(crossfall.record, std::min(end, road.geometry_length()), steepest);
+    });
+    leave_out(road.shape, road.line, "shape", ids, [&](opendrive::LateralShape const& shape) {
+      auto const* const next = &shape + 1;
+      bool const is_last = next == road.shape.data() + road.shape.size() || next->s != shape.s;
+      double const end = is_last ? farthest : std::min(farthest, next->record.s);
+      return keeps_within(shape.record, end, highest);
+    });
+  }
+
+  template <class Record, class Keep>
+  void leave_out(std::vector<Record>& records, int line, char const* element, std::string const& ids,
+                 Keep const& keep) {
+    std::vector<Record> kept;
+    std::copy_if(records.begin(), records.end(), std::back_inserter(kept), keep);
+    if (kept.size() == records.size()) return;
+    report(Severity::warning, line, element, ids,
+           std::to_string(records.size() - kept.size()) + " records are beyond any road; they were left out");
+    records = std::move(kept);
+  }
+
   /// Removes records that leave +-`largest` [m] before `end`; returns the smallest value of the others.
   template <class Ids>
   double leave_out_wild(std::vector<CubicRecord>& records, double end, int line, char const* element, Ids const& ids,
-                        double largest = 1000.0) {
+                        double largest = 1000.0, char const* unit = "m") {
     double lowest = 0.0;
+    std::size_t kept = records.size();
     // From the back: where a record is left out, the one before it holds up to the next one that is kept.
     for (std::size_t i = records.size(); i-- > 0;) {
-      double const to = i + 1 < records.size() ? std::min(end, records[i + 1].s) : end;
+      double const to = kept < records.size() ? std::min(end, records[kept].s) : end;
       auto const [low, high] = extremes(records[i], records[i].s, std::max(to, records[i].s));
       if (low >= -largest && high <= largest) {
         lowest = std::min(lowest, low);
+        records[--kept] = records[i];
         continue;
       }
-      report(Severity::error, line, element, ids(),
+      report(Severity::warning, line, element, ids(),
              "the record at " + rounded_text(records[i].s) + " m reaches " + rounded_text(high > largest ? high : low) +
-                 " m; it was left out");
-      records.erase(records.begin() + static_cast<std::ptrdiff_t>(i));
+                 " " + unit + "; it was left out");
     }
+    records.erase(records.begin(), records.begin() + static_cast<std::ptrdiff_t>(kept));
     return lowest;
   }
 
@@ -240,6 +254,7 @@ class DocumentCheck {
       if (section.s >= 0.0) break;
       report(Severity::warning, section.line, "laneSection", ids,
              "the section starts at " + rounded_text(section.s) + " m; it counts from the road's start on");
+      for (opendrive::Lane& lane : section.lanes) move_records(lane, -section.s);
       section.s = 0.0;
     }
     if (road.lane_sections.front().s > 0.0)
@@ -257,12 +272,19 @@ class DocumentCheck {
              ids + ", section " + std::to_string(where) + ", lane " + std::to_string(lane.id),
              "there is no lane " + std::to_string(to) + " in the section beside; the link leads nowhere");
     };
+    auto const ids_of = [](opendrive::LaneSection const& of) {
+      std::vector<int> numbers;
+      for (opendrive::Lane const& lane : of.lanes) numbers.push_back(lane.id);
+      std::sort(numbers.begin(), numbers.end());
+      return numbers;
+    };
+    auto const here = ids_of(section), there = ids_of(next);
     for (opendrive::Lane const& lane : section.lanes)
       for (int const to : lane.successors)
-        if (!next.find(to)) dangling(lane, to, index, "successor");
+        if (!std::binary_search(there.begin(), there.end(), to)) dangling(lane, to, index, "successor");
     for (opendrive::Lane const& lane : next.lanes)
       for (int const to : lane.predecessors)
-        if (!section.find(to)) dangling(lane, to, index + 1, "predecessor");
+        if (!std::binary_search(here.begin(), here.end(), to)) dangling(lane, to, index + 1, "predecessor");
   }
 
   void check(opendrive::Junction const& junction, opendrive::Connection const& connection) {
@@ -289,8 +311,9 @@ class DocumentCheck {
 /// Checks a document as a whole and appends what it finds: double ids (the later element is removed), links and
 /// connections that lead nowhere (kept), lane sections behind the road's end (removed) or before its start (moved
 /// there), geometries that do not go on where the one before ends (kept; the road is removed where that is 100 m away),
-/// widths and lane offsets beyond 1 km and heights beyond 100 km (removed), lengths that contradict the geometries
-/// (kept; the geometries count). Linear in the size of the document but for the few lanes of a section.
+/// widths and lane offsets beyond 1 km, heights beyond 100 km, tilts beyond 10 rad, a header's offset beyond any map
+/// (removed), lengths that contradict the geometries (kept; the geometries count). O(n log n) in the size of the
+/// document.
 inline void check_opendrive_document(OpenDriveDocument& document, std::string file_name,
                                      std::vector<Diagnostic>& diagnostics) {
   detail::DocumentCheck(document, std::move(file_name), diagnostics).run();

@@ -27,6 +27,7 @@ namespace detail {
 
 /// An offset that leads out of the world counts as none.
 inline void read_offset(XmlContext& context, pugi::xml_node node, opendrive::HeaderOffset& offset) {
+  report_content(context, node);
   static_cast<void>(read_attributes(context, node, offset, nullptr));
   if (std::max({std::abs(offset.x), std::abs(offset.y), std::abs(offset.z)}) <= 1e8 && std::abs(offset.heading) <= 1e4)
     return;
@@ -38,8 +39,13 @@ inline void read_offset(XmlContext& context, pugi::xml_node node, opendrive::Hea
 [[nodiscard]] inline opendrive::Header read_header(XmlContext& context, pugi::xml_node node) {
   opendrive::Header header;
   static_cast<void>(read_attributes(context, node, header));  // it needs none
-  header.geo_reference = trimmed(find_child(node, "geoReference").child_value());
-  if (pugi::xml_node const offset = find_child(node, "offset")) read_offset(context, offset, header.offset);
+  pugi::xml_node const reference = find_only_child(context, node, "geoReference");
+  for (pugi::xml_attribute a = reference.first_attribute(); a; a = a.next_attribute())
+    lose_attribute(context, reference, a);
+  header.geo_reference = trimmed(reference.child_value());
+  if (reference.first_child().next_sibling())
+    context.report(Severity::warning, reference, "what follows its first text was left out");
+  if (auto const offset = find_only_child(context, node, "offset")) read_offset(context, offset, header.offset);
   for_each_child(node, [&](pugi::xml_node child, std::string_view name) {
     if (name != "geoReference" && name != "offset") keep_element(context, child, header.rest);
   });
@@ -49,17 +55,23 @@ inline void read_offset(XmlContext& context, pugi::xml_node node, opendrive::Hea
 inline void read_road_types(XmlContext& context, pugi::xml_node road_node, opendrive::Road& road) {
   for_each_child(road_node, "type", [&](pugi::xml_node node) {
     opendrive::RoadType& type = road.types.emplace_back();
-    static_cast<void>(read_attributes(context, node, type));
+    if (!read_attributes(context, node, type)) {
+      road.types.pop_back();
+      return context.report(Severity::warning, node, "it was left out for that, see the finding before");
+    }
+    if (auto const speed = find_only_child(context, node, "speed")) {
+      report_others(context, speed, {"max", "unit"});
+      read_speed(context, speed, type);
+    }
     for_each_child(node, [&](pugi::xml_node child, std::string_view name) {
-      if (name != "speed") return keep_element(context, child, type.rest);
-      if (!type.limit) read_speed(context, child, type);
+      if (name != "speed") keep_element(context, child, type.rest);
     });
   });
   sort_records(context, road_node, road.types, &opendrive::RoadType::s, "road types");
 }
 
 inline void read_elevation(XmlContext& context, pugi::xml_node road_node, opendrive::Road& road) {
-  pugi::xml_node const node = find_child(road_node, "elevationProfile");
+  pugi::xml_node const node = find_only_child(context, road_node, "elevationProfile");
   read_container(context, node, road.rest, [&](pugi::xml_node child, std::string_view name) {
     if (name == "elevation") append_cubic(context, child, "s", road.elevation);
     return name == "elevation";
@@ -71,18 +83,18 @@ inline void read_lateral_record(XmlContext& context, pugi::xml_node node, std::s
                                 opendrive::Road& road) {
   if (name == "superelevation") return append_cubic(context, node, "s", road.superelevation);
   if (name == "crossfall") {
-    std::optional<CubicRecord> const record = read_cubic(context, node, "s");
+    std::optional<CubicRecord> const record = read_cubic(context, node, "s", "side");
     if (!record) return;
     road.crossfall.push_back({*record, opendrive::Side::both});
     return AttributeReader(context, node, nullptr).optional("side", road.crossfall.back().side);
   }
-  std::optional<CubicRecord> const record = read_cubic(context, node, "t");
+  std::optional<CubicRecord> const record = read_cubic(context, node, "t", "s");
   std::optional<double> const s = context.number<double>(node, "s");
   if (record && s) road.shape.push_back({*s, *record});
 }
 
 inline void read_lateral_profile(XmlContext& context, pugi::xml_node road_node, opendrive::Road& road) {
-  pugi::xml_node const node = find_child(road_node, "lateralProfile");
+  pugi::xml_node const node = find_only_child(context, road_node, "lateralProfile");
   read_container(context, node, road.rest, [&](pugi::xml_node child, std::string_view name) {
     if (name != "superelevation" && name != "crossfall" && name != "shape") return false;
     read_lateral_record(context, child, name, road);
@@ -96,7 +108,7 @@ inline void read_lateral_profile(XmlContext& context, pugi::xml_node road_node, 
 
 /// False when there is no usable lane section.
 [[nodiscard]] inline bool read_lanes(XmlContext& context, pugi::xml_node road_node, opendrive::Road& road) {
-  pugi::xml_node const node = find_child(road_node, "lanes");
+  pugi::xml_node const node = find_only_child(context, road_node, "lanes");
   std::size_t index = 0;
   read_container(context, node, road.rest, [&](pugi::xml_node child, std::string_view name) {
     if (name == "laneOffset") append_cubic(context, child, "s", road.lane_offset);
@@ -115,29 +127,13 @@ inline void read_lateral_profile(XmlContext& context, pugi::xml_node road_node, 
   return !road.lane_sections.empty();
 }
 
-/// Of every container in a road the first is read.
-inline void report_second_containers(XmlContext& context, pugi::xml_node road_node) {
-  constexpr std::string_view names[] = {"link",  "planView", "elevationProfile", "lateralProfile",
-                                        "lanes", "objects",  "signals"};
-  bool is_there[std::size(names)] = {};
-  for_each_child(road_node, [&](pugi::xml_node child, std::string_view name) {
-    auto const found = std::find(std::begin(names), std::end(names), name);
-    if (found == std::end(names)) return;
-    bool& seen = is_there[found - std::begin(names)];
-    if (seen)
-      context.report(Severity::warning, child, "there is a second <" + std::string(name) + ">; it was left out");
-    seen = true;
-  });
-}
-
 /// False when the road is unusable.
 [[nodiscard]] inline bool read_road(XmlContext& context, pugi::xml_node node, opendrive::Road& road) {
   road.length = -1.0;  // missing
   if (!read_attributes(context, node, road)) {
-    context.report(Severity::error, node, "the road was left out, for it has no id");
+    context.report(Severity::warning, node, "the road was left out, for it has no id");
     return false;
   }
-  report_second_containers(context, node);
   read_road_links(context, node, road);
   read_road_types(context, node, road);
   if (!read_plan_view(context, node, road) || !read_lanes(context, node, road)) {
@@ -178,6 +174,8 @@ inline void report_second_containers(XmlContext& context, pugi::xml_node road_no
 inline void read_top_level(XmlContext& context, pugi::xml_node node, std::string_view name,
                            OpenDriveDocument& document) {
   if (name == "header") {
+    if (document.header.line > 0)
+      return context.report(Severity::warning, node, "there is a second <header>; it was left out");
     document.header = read_header(context, node);
   } else if (name == "road") {
     pugi::xml_attribute const id = node.attribute("id");
@@ -200,12 +198,13 @@ inline void read_top_level(XmlContext& context, pugi::xml_node node, std::string
 
 /// Reads an OpenDRIVE file (revisions 1.1 to 1.8) from its text; `file_name` only names it in messages. Numbers are
 /// read in the C locale. What is odd goes to `diagnostics`, and is read as far as it makes sense: a bad record is left
-/// out, so is a signal, object or controller without an id or a place, a road with an unusable geometry, a road's
-/// second container of one name, and what follows the root element. An XML namespace prefix is ignored. What the
-/// document has no field for is kept in its `rest`s, but for comments, and for what stands unexpected in a single
-/// record (cubics, speeds, lane links' ids, header offset, the curve of a geometry). Throws `MapError` when the text is
-/// no XML, its root is not OpenDRIVE, or no road is usable. Linear in the length of the text; lines are counted in
-/// bytes of UTF-8.
+/// out, so is a signal, object or controller without an id or a place, a road with an unusable geometry, the second of
+/// what may be there once, what stands in an element that has attributes only (cubics, speeds, lane links, header
+/// offset, curves), and what follows the root element. An XML namespace prefix is ignored. What the
+/// document has no field for is kept in its `rest`s, but for comments, text between elements, and attributes that are
+/// not known of an element that has attributes only; of the latter two there is one finding for each kind of element,
+/// with their number. Throws `MapError` when the text is no XML, its root is not
+/// OpenDRIVE, or no road is usable. Linear in the length of the text; lines are counted in bytes of UTF-8.
 [[nodiscard]] inline OpenDriveDocument read_opendrive_document(std::string_view text, std::string file_name,
                                                                std::vector<Diagnostic>& diagnostics) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
@@ -217,16 +216,14 @@ inline void read_top_level(XmlContext& context, pugi::xml_node node, std::string
     detail::keep_attribute(document.rest.attributes, a);
   detail::for_each_child(
       root, [&](pugi::xml_node node, std::string_view name) { detail::read_top_level(context, node, name, document); });
+  detail::lose_text(context, root);
+  context.report_losses();
   if (pugi::xml_node const next = root.next_sibling())
     context.report(Severity::warning, next, "what follows </OpenDRIVE> was left out");
   check_opendrive_document(document, context.file(), diagnostics);
-  if (document.roads.empty()) {
-    std::string why;
-    for (Diagnostic const& d : diagnostics)
-      if (why.empty() && d.severity != Severity::info && d.line > 0) why = " (first finding: " + to_string(d) + ")";
-    throw MapError(context.file(), "the file has no usable road" + why,
+  if (document.roads.empty())
+    throw MapError(context.file(), "the file has no usable road" + likely_cause(diagnostics),
                    "give a file with a road that has a plan view and lanes");
-  }
   return document;
 }
 

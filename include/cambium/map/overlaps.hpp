@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <span>
 #include <tuple>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "cambium/geometry/angle.hpp"
 #include "cambium/map/detail/box_tree.hpp"
 #include "cambium/map/detail/lane_chords.hpp"
+#include "cambium/map/detail/overlap_ends.hpp"
 #include "cambium/map/lane.hpp"
 
 namespace cambium::map {
@@ -25,22 +27,13 @@ namespace detail {
 /// See `find_overlaps`.
 class OverlapFinder {
  public:
-  OverlapFinder(std::vector<Lane>& lanes, LaneElevation const& elevation, double clearance)
-      : lanes_(lanes), elevation_(elevation), clearance_(clearance) {}
+  OverlapFinder(std::vector<Lane>& lanes, LaneElevation const& elevation, double clearance, LanePlace const& place)
+      : lanes_(lanes), elevation_(elevation), clearance_(clearance), ends_(place, clearance) {}
 
   void find() {
     for (auto& lane : lanes_) lane.overlaps.clear();
     find_related();
     find_contacts();
-    std::sort(contacts_.begin(), contacts_.end(), [](Contact const& l, Contact const& r) {
-      return std::tie(l.a, l.b, l.on_a.begin, l.on_b.begin) < std::tie(r.a, r.b, r.on_a.begin, r.on_b.begin);
-    });
-    for (auto begin = contacts_.begin(); begin != contacts_.end();) {
-      auto const end =
-          std::find_if(begin, contacts_.end(), [&](Contact const& c) { return c.a != begin->a || c.b != begin->b; });
-      join(std::span<Contact const>(begin, end));
-      begin = end;
-    }
     for (auto& lane : lanes_)
       std::sort(lane.overlaps.begin(), lane.overlaps.end(), [](Overlap const& l, Overlap const& r) {
         return std::tie(l.begin, l.other, l.other_begin) < std::tie(r.begin, r.other, r.other_begin);
@@ -48,23 +41,44 @@ class OverlapFinder {
   }
 
  private:
-  /// Stretches of the lanes `a` < `b` that are close to each other.
+  /// Stretches of the lanes `a` <= `b` that are close to each other.
   struct Contact {
     std::uint32_t a, b;
     Stretch on_a, on_b;
   };
 
-  /// For each lane those that it hangs together with: being close to them is no conflict.
+  /// A lane that another one hangs together with, at a common joint.
+  struct Linked {
+    LaneId lane;
+    double between;  ///< length of the lanes between the two [m]
+  };
+
+  /// A joint of a lane: near it, being close to `other` is no conflict.
+  struct Joint {
+    LaneId other;
+    bool at_end, at_other_end;  ///< of the lane, of `other`; else at the begin
+    double between;             ///< as in `Linked`
+  };
+
+  /// For each lane those that it hangs together with, those beside them included.
   void find_related() {
     ahead_.assign(lanes_.size(), {});
-    behind_ = beside_ = ahead_;
-    for (std::size_t i = 0; i < lanes_.size(); ++i) {
-      auto const& lane = lanes_[i];
-      add_linked(lane, &Lane::successors, 0.0, ahead_[i]);
-      add_linked(lane, &Lane::predecessors, 0.0, behind_[i]);
-      for (auto const* linked : {&ahead_[i], &behind_[i]})
-        for (auto const id : *linked) add_cross_section(index_of(id), beside_[i]);
-    }
+    behind_ = ahead_;
+    joints_.assign(lanes_.size(), {});
+    for (std::size_t i = 0; i < lanes_.size(); ++i)
+      for (bool const at_end : {true, false}) {
+        std::vector<Linked> linked;
+        add_linked(lanes_[i], at_end ? &Lane::successors : &Lane::predecessors, 0.0, linked);
+        for (auto const& link : linked) {
+          (at_end ? ahead_ : behind_)[i].push_back(link.lane);
+          std::vector<LaneId> beside;
+          add_cross_section(index_of(link.lane), beside);
+          for (auto const id : beside) {
+            bool const same_way = lanes_[index_of(id)].along_road == lanes_[index_of(link.lane)].along_road;
+            joints_[i].push_back({id, at_end, at_end != same_way, link.between});
+          }
+        }
+      }
   }
 
   /// The lanes of the same section of the road, oncoming ones too: they stand one behind the other in `lanes_`.
@@ -80,9 +94,9 @@ class OverlapFinder {
   /// The lanes behind a lane's end (or before its begin), and those behind them while they are too short to come
   /// between.
   void add_linked(Lane const& lane, std::vector<LaneId> Lane::*links, double between,
-                  std::vector<LaneId>& linked) const {
+                  std::vector<Linked>& linked) const {
     for (auto const id : lane.*links) {
-      linked.push_back(id);
+      linked.push_back({id, between});
       double const length = between + lanes_[index_of(id)].length();
       if (length < 2.0 * clearance_ && linked.size() < 64) add_linked(lanes_[index_of(id)], links, length, linked);
     }
@@ -92,76 +106,137 @@ class OverlapFinder {
     return std::find(list.begin(), list.end(), id) != list.end();
   }
 
-  [[nodiscard]] bool are_related(std::uint32_t a, std::uint32_t b) const {
-    auto const ia = static_cast<LaneId>(a), ib = static_cast<LaneId>(b);
-    return has(ahead_[a], ib) || has(behind_[a], ib) || has(beside_[a], ib) || has(beside_[b], ia);
+  /// Whether the lanes are close because they hang together: the contact reaches their common joint, or nearly so.
+  [[nodiscard]] bool is_at_joint(Contact const& c) const { return is_at_joint(c.a, c.on_a, c.b, c.on_b); }
+
+  [[nodiscard]] bool is_at_joint(std::uint32_t a, Stretch const& on_a, std::uint32_t b, Stretch const& on_b) const {
+    constexpr double near = 10.0;  // [m] along the paths: no loop is so short
+    auto const left = [&](std::uint32_t i, Stretch const& on, bool to_end) {
+      return to_end ? lanes_[i].length() - on.end : on.begin;
+    };
+    auto const holds = [&](std::uint32_t i, Stretch const& on, std::uint32_t j, Stretch const& on_other) {
+      return std::any_of(joints_[i].begin(), joints_[i].end(), [&](Joint const& joint) {
+        return index_of(joint.other) == j &&
+               left(i, on, joint.at_end) + joint.between + left(j, on_other, joint.at_other_end) < near;
+      });
+    };
+    return holds(a, on_a, b, on_b) || holds(b, on_b, a, on_a);
   }
 
   [[nodiscard]] static bool have_common(std::vector<LaneId> const& l, std::vector<LaneId> const& r) {
     return std::any_of(l.begin(), l.end(), [&r](LaneId id) { return has(r, id); });
   }
 
-  /// Lanes of one road are side by side, or one after the other, where their stations are about the same.
+  /// Lanes of one road are side by side, one after the other, or the same where their stations are about the same.
   [[nodiscard]] bool are_beside(LaneChord const& a, LaneChord const& b) const {
     auto const &la = lanes_[a.lane], &lb = lanes_[b.lane];
     return la.road == lb.road && la.merges_into != lb.id && lb.merges_into != la.id && a.on_road.gap(b.on_road) < 10.0;
   }
 
   void find_contacts() {
-    constexpr double tolerance = 0.005, longest = 20.0;  // [m] of chords; the overlaps' ends are refined afterwards
+    constexpr double tolerance = 0.01, longest = 50.0;  // [m] of chords; the overlaps' ends are refined afterwards
     std::vector<LaneChord> chords;
     for (auto const& lane : lanes_)
       if (lane.drivable()) add_chords(lane, tolerance, longest, chords);
     std::vector<Box> boxes(chords.size());
     for (std::size_t i = 0; i < chords.size(); ++i) {
-      auto& c = chords[i];
+      auto const& c = chords[i];
       boxes[i].add(c.x, c.y);
       boxes[i].add(c.x + c.ux * c.length, c.y + c.uy * c.length);
-      if (elevation_) c.elevation = elevation_(lanes_[c.lane], c.on_path.middle());
     }
+    last_contact_.assign(lanes_.size(), 0);
     BoxTree const tree(boxes);
-    for (std::size_t i = 0; i < chords.size(); ++i)
+    for (std::size_t i = 0; i < chords.size(); ++i) {
       tree.visit(boxes[i].grown(clearance_), [&](std::uint32_t j) {
-        if (chords[i].lane < chords[j].lane) add_contact(chords[i], chords[j]);
+        if (std::tie(chords[i].lane, i) < std::tuple<std::uint32_t, std::size_t>(chords[j].lane, j))
+          add_contact(chords[i], chords[j]);
         return false;
       });
+      if (i + 1 == chords.size() || chords[i + 1].lane != chords[i].lane) join_contacts();
+    }
+  }
+
+  /// Joins the contacts of one lane with all others: they would fill the memory where many lanes lie on each other.
+  void join_contacts() {
+    std::sort(contacts_.begin(), contacts_.end(), [](Contact const& l, Contact const& r) {
+      return std::tie(l.b, l.on_a.begin, l.on_b.begin) < std::tie(r.b, r.on_a.begin, r.on_b.begin);
+    });
+    for (auto begin = contacts_.begin(); begin != contacts_.end();) {
+      auto const end = std::find_if(begin, contacts_.end(), [&](Contact const& c) { return c.b != begin->b; });
+      join(std::span<Contact const>(begin, end));
+      begin = end;
+    }
+    contacts_.clear();
   }
 
   void add_contact(LaneChord const& a, LaneChord const& b) {
-    constexpr double clear_height = 3.0;  // [m] enough for one to pass under the other
-    if (std::abs(a.elevation - b.elevation) > clear_height || are_beside(a, b) || are_related(a.lane, b.lane)) return;
+    if (auto const* last = last_contact(b); last && last->on_a.has(a.on_path) && last->on_b.has(b.on_path)) return;
+    if (are_beside(a, b)) return;
     auto const on_a = stretch_near(a, b, clearance_);
     if (!on_a) return;
     auto const on_b = stretch_near(b, a, clearance_);
-    if (on_b) contacts_.push_back({a.lane, b.lane, *on_a, *on_b});
+    if (!on_b || pass_over(a, *on_a, b, *on_b)) return;
+    if (auto* last = last_contact(b); last && last->on_a.touches(*on_a) && last->on_b.touches(*on_b)) {
+      last->on_a.add(*on_a);
+      last->on_b.add(*on_b);
+      return;
+    }
+    last_contact_[b.lane] = contacts_.size();
+    contacts_.push_back({a.lane, b.lane, *on_a, *on_b});
   }
 
-  /// Joins the contacts of one pair of lanes that touch on both of them, and enters an overlap for each group.
-  void join(std::span<Contact const> contacts) {
-    std::vector<Contact> groups;
-    for (auto contact : contacts) {
-      for (std::size_t i = 0; i < groups.size();) {
-        if (!groups[i].on_a.touches(contact.on_a) || !groups[i].on_b.touches(contact.on_b)) {
-          ++i;
-          continue;
-        }
-        contact.on_a.add(groups[i].on_a);
-        contact.on_b.add(groups[i].on_b);
-        groups.erase(groups.begin() + static_cast<std::ptrdiff_t>(i));
-        i = 0;  // the larger one may touch others
-      }
-      groups.push_back(contact);
+  /// Whether one of the lanes is a bridge over the other, all along the stretches.
+  [[nodiscard]] bool pass_over(LaneChord const& a, Stretch const& on_a, LaneChord const& b, Stretch const& on_b) const {
+    if (!elevation_) return false;
+    constexpr double clear_height = 3.0;  // [m] enough for one to pass under the other
+    bool const same_way = a.ux * b.ux + a.uy * b.uy > 0.0;
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (double const u : {0.0, 0.5, 1.0}) {
+      double const s = on_a.begin + u * (on_a.end - on_a.begin);
+      double const other_s = on_b.begin + (same_way ? u : 1.0 - u) * (on_b.end - on_b.begin);
+      double const above = elevation_(lanes_[a.lane], s) - elevation_(lanes_[b.lane], other_s);
+      low = std::min(low, above);
+      high = std::max(high, above);
     }
-    for (auto& g : groups) {
+    return low > clear_height || high < -clear_height;
+  }
+
+  /// The last contact of the present lane with that of `b`: mostly the one that they continue.
+  [[nodiscard]] Contact* last_contact(LaneChord const& b) {
+    auto const i = last_contact_[b.lane];
+    return i < contacts_.size() && contacts_[i].b == b.lane ? &contacts_[i] : nullptr;
+  }
+
+  /// Adds a contact of one pair of lanes, joined with those that it touches on both of them.
+  static void add_joined(Contact contact, std::vector<Contact>& groups) {
+    for (std::size_t i = 0; i < groups.size();) {
+      if (!groups[i].on_a.touches(contact.on_a) || !groups[i].on_b.touches(contact.on_b)) {
+        ++i;
+        continue;
+      }
+      contact.on_a.add(groups[i].on_a);
+      contact.on_b.add(groups[i].on_b);
+      groups.erase(groups.begin() + static_cast<std::ptrdiff_t>(i));
+      i = 0;  // the larger one may touch others
+    }
+    groups.push_back(contact);
+  }
+
+  /// Enters the overlaps of one pair of lanes.
+  void join(std::span<Contact const> contacts) {
+    std::vector<Contact> groups, refined;
+    for (auto const& contact : contacts) add_joined(contact, groups);
+    for (auto& g : groups)  // ends that were apart on the chords may prove to be one stretch
+      if (!is_at_joint(g) && ends_.refine(lanes_[g.a], g.on_a, lanes_[g.b], g.on_b)) add_joined(g, refined);
+    for (auto& g : refined) {
       auto &a = lanes_[g.a], &b = lanes_[g.b];
-      refine(a.path, g.on_a, b.path, g.on_b);
       bool const is_crossing = turn_between(a, g.on_a, b, g.on_b) > geometry::pi / 3;
       if (!is_crossing) {
-        trim(a.path, g.on_a, b.path, g.on_b);
-        trim(b.path, g.on_b, a.path, g.on_a);
-        constexpr double shortest = 0.01;  // [m]
-        if (g.on_a.end - g.on_a.begin < shortest || g.on_b.end - g.on_b.begin < shortest) continue;
+        ends_.trim(a, g.on_a, b, g.on_b);
+        ends_.trim(b, g.on_b, a, g.on_a);
       }
+      constexpr double shortest = 0.01;  // [m]
+      if (g.on_a.end - g.on_a.begin < shortest || g.on_b.end - g.on_b.begin < shortest) continue;
       auto const kind = is_crossing ? OverlapKind::crossing : kind_of(g);
       a.overlaps.push_back({b.id, kind, g.on_a.begin, g.on_a.end, g.on_b.begin, g.on_b.end});
       b.overlaps.push_back({a.id, kind, g.on_b.begin, g.on_b.end, g.on_a.begin, g.on_a.end});
@@ -171,41 +246,6 @@ class OverlapFinder {
   /// Angle between the lanes' directions in the middle of the stretches [rad].
   [[nodiscard]] static double turn_between(Lane const& a, Stretch const& on_a, Lane const& b, Stretch const& on_b) {
     return std::abs(geometry::angle_difference(a.path.pose(on_a.middle()).heading, b.path.pose(on_b.middle()).heading));
-  }
-
-  void refine(geometry::Line const& a, Stretch& on_a, geometry::Line const& b, Stretch& on_b) const {
-    bool const same_way = std::cos(a.pose(on_a.middle()).heading - b.pose(on_b.middle()).heading) > 0.0;
-    Stretch const near_b = same_way ? on_b : Stretch{on_b.end, on_b.begin},
-                  near_a = same_way ? on_a : Stretch{on_a.end, on_a.begin};
-    on_a = {refined_end(a, on_a.begin, false, b, near_b.begin, clearance_),
-            refined_end(a, on_a.end, true, b, near_b.end, clearance_)};
-    on_b = {refined_end(b, on_b.begin, false, a, near_a.begin, clearance_),
-            refined_end(b, on_b.end, true, a, near_a.end, clearance_)};
-  }
-
-  /// Where `a` begins or ends within the overlap, lets the stretch on `b` do so beside it: what is near to `a` beyond
-  /// its end is so to the lane behind it.
-  static void trim(geometry::Line const& a, Stretch const& on_a, geometry::Line const& b, Stretch& on_b) {
-    constexpr double tolerance = 1e-3;
-    if (on_a.begin == 0.0) {
-      double const s = std::min(beside(a.pose(0.0), b, on_b.begin).begin, b.length());
-      if (s > on_b.begin + tolerance) on_b.begin = s;
-    }
-    if (on_a.end == a.length()) {
-      double const s = std::max(beside(a.pose(a.length()), b, on_b.end).end, 0.0);
-      if (s < on_b.end - tolerance) on_b.end = s;
-    }
-  }
-
-  /// The foot point of the lane end `end` on `b`, and the place on `b` from which `end` is the foot point, in the order
-  /// of `b`; the same for lanes side by side.
-  [[nodiscard]] static Stretch beside(geometry::Pose const& end, geometry::Line const& b, double near) {
-    double const foot = b.project(end.position(), b.find(near)).s;
-    auto const pose = b.pose(foot);
-    double const ux = std::cos(end.heading), uy = std::sin(end.heading);
-    double const ahead = (pose.x - end.x) * ux + (pose.y - end.y) * uy;
-    double const other = foot - ahead / std::max(0.5, std::cos(end.heading - pose.heading));
-    return {std::min(foot, other), std::max(foot, other)};
   }
 
   /// Kind of an overlap of lanes with about the same direction.
@@ -226,25 +266,34 @@ class OverlapFinder {
   std::vector<Lane>& lanes_;
   LaneElevation const& elevation_;
   double clearance_;
-  std::vector<std::vector<LaneId>> ahead_, behind_, beside_;  ///< by lane
-  std::vector<Contact> contacts_;
+  OverlapEnds ends_;
+  std::vector<std::vector<LaneId>> ahead_, behind_;  ///< by lane
+  std::vector<std::vector<Joint>> joints_;           ///< by lane
+  std::vector<Contact> contacts_;                    ///< of the present lane with others
+  std::vector<std::size_t> last_contact_;            ///< by the other lane
 };
 
 }  // namespace detail
 
 /// Fills `Lane::overlaps` of the drivable lanes: the stretches on which two lanes' paths are closer than `clearance`
-/// [m], on both lanes, to 2 mm on the sampled paths. `elevation` may be empty; where it is given, paths more than 3 m
-/// above each other do not overlap. A lane's number must be its place in `lanes`. O((n + k) log n) for n path segments,
-/// k pairs of them that are close.
+/// [m], on both lanes. An end lies within 1 cm, along the path, of where the distance of the exact paths (`place`;
+/// without one, the sampled paths) is the clearance, however slowly the lanes come together. Lanes whose sampled paths
+/// come 2 cm closer than that, or less, may be missed, and gaps as shallow may be passed over. `elevation` may be
+/// empty; where it is given, paths more than 3 m above each other at the place do not overlap. A lane that crosses
+/// itself overlaps with itself, too: each of the two stretches is the other's other. A lane's number must be its place
+/// in `lanes`. O((n + k) log n) for n path segments, k pairs of them that are close; memory O(n) and the pairs of one
+/// lane.
 ///
-/// Left out are lanes that belong together anyway: one behind the other (also with lanes in between that are shorter
-/// than twice the clearance), those beside these, oncoming ones too, and lanes of the same road at the same station,
+/// Left out is where lanes belong together anyway: near the joint of lanes one behind the other (also with lanes in
+/// between that are shorter than twice the clearance) and of those beside these, oncoming ones too, that is where a
+/// stretch comes within 10 m of it along the paths; and lanes of the same road at about the same station,
 /// unless one merges into the other. Kinds: crossing where the directions differ by more than 60 degrees in the middle
 /// of the stretch; else merge where both end in a common successor; else split where both begin behind a common
 /// predecessor; else split where they are closer at the stretch's begin than at its end; else merge. For merge and
 /// split, begin and end are beside each other on the two lanes: where one lane begins or ends, so does the overlap.
-inline void find_overlaps(std::vector<Lane>& lanes, LaneElevation const& elevation, double clearance) {
-  detail::OverlapFinder(lanes, elevation, clearance).find();
+inline void find_overlaps(std::vector<Lane>& lanes, LaneElevation const& elevation, double clearance,
+                          LanePlace const& place = {}) {
+  detail::OverlapFinder(lanes, elevation, clearance, place).find();
 }
 
 }  // namespace cambium::map

@@ -74,8 +74,9 @@ namespace detail {
 
 /// A road with one lane, -1, along the points of its centre line (`curve_through`: it passes through them without
 /// kinks). `widths`: the distances from there to the lane's borders [m], one for all points or one a point, smooth
-/// between them. (A lane's path is the middle between its borders: not `center` where the distances differ.) Throws
-/// `MapError` as `curve_through`, and for widths that are negative or not as many as needed.
+/// between them. (A lane's path is the middle between its borders: not `center` where the distances differ;
+/// `lane_along` of a `CenterLine` keeps it there.) Throws `MapError` as `curve_through`, and for widths that are
+/// negative or not as many as needed.
 [[nodiscard]] inline RoadPlan lane_along(std::span<geometry::Point const> center, std::span<SideWidths const> widths,
                                          std::span<double const> headings = {}) {
   if (widths.size() != 1 && widths.size() != center.size())

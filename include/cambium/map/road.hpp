@@ -122,18 +122,32 @@ struct LanePoint {
 
 namespace detail {
 
-[[nodiscard]] inline Lateral lateral_at(CubicProfile const& profile, double s) {
-  if (auto const* record = profile.find(s))
+/// Value and derivatives at `s` by the record in force at `inside`.
+[[nodiscard]] inline Lateral lateral_at(CubicProfile const& profile, double s, double inside) {
+  if (auto const* record = profile.find(inside))
     return {record->value(s), record->derivative(s), record->second_derivative(s)};
   return {profile.value(s), 0.0, 0.0};
 }
 
-/// The outer border of `lane`, `ds` behind its section's start; some files write the magnitude of a right border.
-[[nodiscard]] inline Lateral outer_border(RoadLane const& lane, Lateral const& inner, double ds) {
+/// The outer border of `lane` as written, `ds` behind its section's start, by the records in force at `inside` (from
+/// there too): some files write the magnitude of a right border.
+[[nodiscard]] inline Lateral outer_border(RoadLane const& lane, Lateral const& inner, double ds, double inside) {
   double const sign = lane.number > 0 ? 1.0 : -1.0;
-  if (lane.border.empty()) return inner + sign * lateral_at(lane.width, ds);
-  Lateral const border = lateral_at(lane.border, ds);
+  if (lane.border.empty()) return inner + sign * lateral_at(lane.width, ds, inside);
+  Lateral const border = lateral_at(lane.border, ds, inside);
   return border.t * sign < 0.0 ? -1.0 * border : border;
+}
+
+/// As above, but not on the inner side of `inner`: a width below 0 counts as 0.
+[[nodiscard]] inline Lateral clamped_outer_border(RoadLane const& lane, Lateral const& inner, double ds,
+                                                  double inside) {
+  constexpr double rounding = 1e-9;  // [m]
+  Lateral const outer = outer_border(lane, inner, ds, inside);
+  double const width = lane.number > 0 ? outer.t - inner.t : inner.t - outer.t;
+  if (width > rounding) return outer;
+  // At the place where the lane comes up from nothing, its slope counts.
+  bool const rises = width > -rounding && lane.border.empty() && lateral_at(lane.width, inside, inside).t > 0.0;
+  return rises ? outer : inner;
 }
 
 }  // namespace detail
@@ -148,9 +162,10 @@ namespace detail {
   auto const& lanes = section->lanes;
   bool const is_left = number > 0;
   auto const middle = std::partition_point(lanes.begin(), lanes.end(), [](RoadLane const& l) { return l.number > 0; });
-  Lateral inner = detail::lateral_at(road.lane_offset, s);
+  Lateral inner = detail::lateral_at(road.lane_offset, s, s);
+  double const ds = s - section->begin;
   auto const place = [&](RoadLane const& lane) -> std::optional<LanePoint> {
-    Lateral const outer = detail::outer_border(lane, inner, s - section->begin);
+    Lateral const outer = detail::outer_border(lane, inner, ds, ds);
     if (lane.number == number) {
       Lateral const center = 0.5 * (inner + outer);
       auto const reference = road.reference_line.at(s);

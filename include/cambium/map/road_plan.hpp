@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "cambium/core/error.hpp"
+#include "cambium/geometry/angle.hpp"
 #include "cambium/map/cubic.hpp"
+#include "cambium/map/detail/geometry_fault.hpp"
 #include "cambium/map/lane_type.hpp"
 #include "cambium/map/opendrive_document.hpp"
 #include "cambium/map/reference_line.hpp"
@@ -22,7 +24,7 @@ struct LanePlan {
   LaneType type = LaneType::driving;
   double width = 3.5;                   ///< [m]
   std::optional<double> end_width{};    ///< [m] at the section's end, reached with borders that start and end parallel
-  std::vector<CubicRecord> widths{};    ///< instead of the two before; s counts from the section's start
+  std::vector<CubicRecord> widths{};    ///< instead of the two before; sorted, s counts from the section's start
   std::optional<double> speed_limit{};  ///< [m/s]; else the road's
   /// Mark of the outer border; without one broken towards a lane of the same direction, else solid.
   std::optional<opendrive::RoadMark> mark{};
@@ -44,7 +46,7 @@ struct RoadPlan {
   std::string name{};
   std::vector<Geometry> line{};  ///< see `lay_from`, `lay_to`, `connecting_curve`, `curve_through`
   std::vector<SectionPlan> sections{};
-  std::vector<CubicRecord> lane_offset{};  ///< t of the border between left and right lanes
+  std::vector<CubicRecord> lane_offset{};  ///< t of the border between left and right lanes; sorted
   std::string type{};                      ///< OpenDRIVE's word, such as "town", "rural", "motorway"
   std::optional<double> speed_limit{};     ///< [m/s]
   opendrive::TrafficRule rule = opendrive::TrafficRule::right_hand;
@@ -83,12 +85,7 @@ class RoadMaker {
   explicit RoadMaker(RoadPlan plan) : plan_(std::move(plan)), where_("road " + plan_.id) {}
 
   [[nodiscard]] opendrive::Road make() {
-    if (plan_.line.empty()) fail("it has no geometry", "lay out a line, see lay_from");
-    for (auto const& g : plan_.line)
-      if (!std::isfinite(g.s + g.x + g.y + g.heading + g.curvature_start + g.curvature_end) ||
-          !(g.length > 0.0 && g.length <= 1e6))
-        fail("a geometry has a number that is not finite, or a length not above 0 or beyond 1000 km",
-             "lay out a line, see lay_from");
+    check_line();
     if (plan_.sections.empty() || plan_.sections.front().s != 0.0)
       fail("it has no lane section at s 0", "give sections, the first one at 0");
     check(plan_.lane_offset, "lane offset");
@@ -116,9 +113,45 @@ class RoadMaker {
     throw MapError(where_, what, remedy);
   }
 
+  /// Each geometry begins where the one before ends, up to the rounding of files.
+  void check_line() const {
+    constexpr double tolerance = 0.01;  // [m], [rad]
+    char const* const remedy = "lay out a line, see lay_from";
+    if (plan_.line.empty()) fail("it has no geometry", remedy);
+    double end = 0.0;
+    std::optional<CurvePoint> before;
+    for (std::size_t i = 0; i < plan_.line.size(); ++i) {
+      auto const& g = plan_.line[i];
+      std::string const which = "geometry " + std::to_string(i);
+      if (!(g.length > 0.0)) fail(which + " has no length", remedy);
+      if (auto const* const fault = fault_of(g)) fail(which + ": " + fault, remedy);
+      if (!(std::abs(g.s - end) <= tolerance))
+        fail(which + " is at s " + cambium::detail::rounded_text(g.s) + " m instead of " +
+                 cambium::detail::rounded_text(end) + " m, where the one before ends",
+             remedy);
+      auto const begin = evaluate(g, 0.0);
+      double const gap = before ? std::hypot(begin.x - before->x, begin.y - before->y) : 0.0;
+      double const turn = before ? std::abs(geometry::angle_difference(begin.heading, before->heading)) : 0.0;
+      if (!(gap <= tolerance && turn <= tolerance))
+        fail(which + " begins " + cambium::detail::rounded_text(gap) + " m and " + cambium::detail::rounded_text(turn) +
+                 " rad from where the one before ends",
+             remedy);
+      before = evaluate(g, g.length);
+      end = g.s + g.length;
+    }
+  }
+
+  /// Records are finite, in the order of s and not before 0.
   void check(std::vector<CubicRecord> const& records, std::string const& of) const {
-    for (auto const& r : records)
-      if (!std::isfinite(r.s + r.a + r.b + r.c + r.d)) fail("a " + of + " is not finite", "give finite numbers");
+    for (std::size_t i = 0; i < records.size(); ++i) {
+      auto const& r = records[i];
+      std::string const which = of + " record " + std::to_string(i);
+      if (!is_finite(r)) fail(which + " is not finite", "give finite numbers");
+      if (!(i > 0 ? r.s > records[i - 1].s : r.s >= 0.0))
+        fail(which + " is at s " + cambium::detail::rounded_text(r.s) + " m, not behind " +
+                 (i > 0 ? "the one before, at " + cambium::detail::rounded_text(records[i - 1].s) + " m" : "0"),
+             "give records in the order of s");
+    }
   }
 
   void check_limit(std::optional<double> const& limit) const {
@@ -147,13 +180,13 @@ class RoadMaker {
   [[nodiscard]] opendrive::Lane lane(std::vector<LanePlan> const& side, std::size_t i, int sign, double length) const {
     auto const& plan = side[i];
     check_limit(plan.speed_limit);
-    check(plan.widths, "width");
     double const end_width = plan.end_width.value_or(plan.width);
     if (!(plan.width >= 0.0 && plan.width <= 1000.0 && end_width >= 0.0 && end_width <= 1000.0))
       fail("a lane's width is negative, beyond 1 km or not a number", "give widths in m");
     opendrive::Lane result;
     result.id = sign * (static_cast<int>(i) + 1);
     result.type = plan.type;
+    check(plan.widths, "lane " + std::to_string(result.id) + ", width");
     result.widths = plan.widths;
     if (plan.widths.empty()) result.widths = {smooth_step(0.0, plan.width, end_width, length)};
     for (std::size_t r = 0; r < result.widths.size(); ++r) {

@@ -3,7 +3,7 @@
 #include <cambium/geometry/pose.hpp>
 
 int main() {
-  cambium::geometry::Pose const pose{.x = 1.0, .y = 2.0, .heading = 0.0};
+  cambium::geometry::Pose const pose{1.0, 2.0, 0.0};
   bool const moved = cambium::geometry::to_map(pose, {3.0, 4.0}) == cambium::geometry::Point(4.0, 6.0);
   return moved && cambium::index_of(cambium::AgentId{7}) == 7 ? 0 : 1;
 }

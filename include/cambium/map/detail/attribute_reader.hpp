@@ -84,6 +84,10 @@ class AttributeReader {
     if (field == nothing) field.clear();
   }
   void yes_no(std::string_view name, bool& field) { optional(name, field); }
+  /// A bad one makes the element unusable.
+  void place(std::string_view name, double& field) {
+    if (pugi::xml_attribute const found = find(name)) good_ = read(found, field) && good_;
+  }
 
   /// True when all that is needed was there.
   [[nodiscard]] bool good() const { return good_; }
@@ -94,7 +98,8 @@ class AttributeReader {
       if (a.is_read) continue;
       bool const is_second =
           std::any_of(all.begin(), all.end(), [&](auto const& b) { return b.is_read && b.name == a.name; });
-      if (!is_second) keep(a.attribute);
+      if (is_second) continue;
+      rest_ ? keep(a.attribute) : lose_attribute(*context_, node_, a.attribute);
     }
   }
 
@@ -127,8 +132,13 @@ class AttributeReader {
     return field.has_value();
   }
   [[nodiscard]] bool read(pugi::xml_attribute attribute, bool& field) {
-    field = attribute.as_bool();
-    return true;
+    std::string_view const word = trimmed(attribute.value());
+    field = word == "true" || word == "yes" || word == "1";
+    if (field) return true;
+    for (std::string_view const no : {"", "false", "no", "0"})
+      if (word == no) return true;
+    report_no_truth(attribute);
+    return false;
   }
   [[nodiscard]] bool read(pugi::xml_attribute attribute, std::string& field) {
     field = attribute.value();
@@ -153,6 +163,11 @@ class AttributeReader {
     report_unknown_word(attribute, field);
     return false;
   }
+  [[gnu::cold]] void report_no_truth(pugi::xml_attribute attribute) {
+    context_->report(
+        Severity::warning, node_,
+        std::string(attribute.name()) + "=\"" + attribute.value() + "\" is neither true nor false; false was taken");
+  }
   template <class Enum>
   [[gnu::cold]] void report_unknown_word(pugi::xml_attribute attribute, Enum taken) {
     std::string all;
@@ -174,6 +189,7 @@ class AttributeReader {
 /// when one that is needed is missing or bad.
 template <class T>
 [[nodiscard]] bool read_attributes(XmlContext& context, pugi::xml_node node, T& x, opendrive::Rest* rest) {
+  lose_text(context, node);
   AttributeReader reader(context, node, rest);
   fields(reader, x);
   reader.keep_others();
@@ -190,7 +206,7 @@ template <class T>
 template <class T>
 [[nodiscard]] bool read_leaf(XmlContext& context, pugi::xml_node node, T& x) {
   if (!read_attributes(context, node, x)) {
-    context.report(Severity::error, node, "it was left out for that, see the finding before");
+    context.report(Severity::warning, node, "it was left out for that, see the finding before");
     return false;
   }
   for_each_child(node, [&](pugi::xml_node child, std::string_view) { keep_element(context, child, x.rest); });
@@ -221,6 +237,7 @@ void read_container(XmlContext& context, pugi::xml_node node, opendrive::Rest& r
     if (!take(child, name)) keep().children.push_back(read_element(context, child));
   });
   for (pugi::xml_attribute a = node.first_attribute(); a; a = a.next_attribute()) keep_attribute(keep().attributes, a);
+  lose_text(context, node);
 }
 
 }  // namespace cambium::map::detail

@@ -38,6 +38,7 @@ class AttributeWriter {
   void needed(std::string_view name, T const& value) {
     always(name, value);
   }
+  void place(std::string_view name, double value) { always(name, value); }
   template <class T>
   void optional(std::string_view name, T const& value) {
     if (!(value == T{})) always(name, value);

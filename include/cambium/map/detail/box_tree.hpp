@@ -100,13 +100,16 @@ class BoxTree {
     std::uint32_t level, index;
   };
 
+  static constexpr float largest = std::numeric_limits<float>::max();
+
+  // Within the finite floats: an infinite query must not meet the nodes' unused places.
   [[nodiscard]] static float below(double v) {
-    auto const f = static_cast<float>(v);
-    return static_cast<double>(f) <= v ? f : std::nextafter(f, -std::numeric_limits<float>::infinity());
+    auto const f = static_cast<float>(std::clamp<double>(v, -largest, largest));
+    return static_cast<double>(f) <= v || f == -largest ? f : std::nextafter(f, -largest);
   }
   [[nodiscard]] static float above(double v) {
-    auto const f = static_cast<float>(v);
-    return static_cast<double>(f) >= v ? f : std::nextafter(f, std::numeric_limits<float>::infinity());
+    auto const f = static_cast<float>(std::clamp<double>(v, -largest, largest));
+    return static_cast<double>(f) >= v || f == largest ? f : std::nextafter(f, largest);
   }
 
   void sort(std::span<Box const> boxes, Box const& all) {

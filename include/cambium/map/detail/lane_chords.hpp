@@ -19,6 +19,7 @@ struct Stretch {
   [[nodiscard]] double middle() const { return 0.5 * (begin + end); }
   /// Whether the two have a point in common, up to a millimetre.
   [[nodiscard]] bool touches(Stretch const& o) const { return begin <= o.end + 1e-3 && o.begin <= end + 1e-3; }
+  [[nodiscard]] bool has(Stretch const& o) const { return begin <= o.begin && o.end <= end; }
   /// How far the two are apart; negative where they overlap.
   [[nodiscard]] double gap(Stretch const& o) const { return std::max(begin, o.begin) - std::min(end, o.end); }
   void add(Stretch const& o) {
@@ -33,11 +34,10 @@ struct LaneChord {
   double x{}, y{}, ux{}, uy{}, length{};  ///< as in `geometry::Line::Segment`
   Stretch on_path;                        ///< path positions [m]
   Stretch on_road;                        ///< road stations [m]
-  double elevation{};                     ///< in its middle [m]
 };
 
-/// Appends chords that keep within `tolerance` of the lane's path and are not longer than `longest` [m] (unless a
-/// segment is).
+/// Appends chords that keep within `tolerance` of the lane's path and are not longer than `longest` [m]: a straight
+/// road is one segment however long.
 inline void add_chords(Lane const& lane, double tolerance, double longest, std::vector<LaneChord>& chords) {
   auto const segments = lane.path.segments();
   auto const scale = (lane.road_end - lane.road_begin) / lane.length();
@@ -60,11 +60,17 @@ inline void add_chords(Lane const& lane, double tolerance, double longest, std::
     }
     double const length = std::hypot(x, y), ux = (first.ux * x - first.uy * y) / length,
                  uy = (first.uy * x + first.ux * y) / length;
-    Stretch const on_path{first.s, segments[j].s + segments[j].length};
-    Stretch const on_road =
-        lane.along_road ? Stretch{lane.road_begin + scale * on_path.begin, lane.road_begin + scale * on_path.end}
-                        : Stretch{lane.road_end - scale * on_path.end, lane.road_end - scale * on_path.begin};
-    chords.push_back({static_cast<std::uint32_t>(lane.id), first.x, first.y, ux, uy, length, on_path, on_road, 0.0});
+    double const from = first.s, to = segments[j].s + segments[j].length;
+    auto const pieces = std::max(1.0, std::ceil(length / longest));
+    for (double k = 0.0; k < pieces; ++k) {
+      Stretch const on_path{from + k / pieces * (to - from), from + (k + 1.0) / pieces * (to - from)};
+      Stretch const on_road =
+          lane.along_road ? Stretch{lane.road_begin + scale * on_path.begin, lane.road_begin + scale * on_path.end}
+                          : Stretch{lane.road_end - scale * on_path.end, lane.road_end - scale * on_path.begin};
+      double const along = k / pieces * length;
+      chords.push_back({static_cast<std::uint32_t>(lane.id), first.x + along * ux, first.y + along * uy, ux, uy,
+                        length / pieces, on_path, on_road});
+    }
     i = j + 1;
   }
 }
@@ -98,43 +104,6 @@ inline void add_chords(Lane const& lane, double tolerance, double longest, std::
   if (!(result.end - result.begin > 1e-6)) return std::nullopt;
   double const scale = (a.on_path.end - a.on_path.begin) / a.length;
   return Stretch{a.on_path.begin + scale * result.begin, a.on_path.begin + scale * result.end};
-}
-
-/// Distance from the place at `s` on `path` to the path of `other`, of which segment `hint` is near [m].
-[[nodiscard]] inline double distance_at(geometry::Line const& path, double s, std::uint32_t& cursor,
-                                        geometry::Line const& other, std::uint32_t& hint) {
-  auto const foot = other.project(path.pose(s, cursor).position(), hint);
-  hint = foot.segment;
-  double const past = std::max({-foot.s, foot.s - other.length(), 0.0});
-  return past == 0.0 ? std::abs(foot.lateral) : std::hypot(foot.lateral, past);
-}
-
-/// Moves `end`, where `path` comes as near to `other` as `clearance` but for the chords' tolerance, to where it exactly
-/// does, within 2 mm; before it (`forward`) or behind it the path is nearer. Stays where no such place is found within
-/// 2 m, and at the path's end.
-[[nodiscard]] inline double refined_end(geometry::Line const& path, double end, bool forward,
-                                        geometry::Line const& other, double near, double clearance) {
-  constexpr double at_end = 1e-3;
-  if (!forward && end < at_end) return 0.0;
-  if (forward && end > path.length() - at_end) return path.length();
-  auto cursor = path.find(end), hint = other.find(near);
-  auto const excess = [&](double s) { return distance_at(path, s, cursor, other, hint) - clearance; };
-  double const here = excess(end);
-  double const direction = (here < 0.0) == forward ? 1.0 : -1.0;  // outwards where it is still near
-  double in = end, out = end;
-  for (double step = 0.05;; step *= 3.0) {
-    if (step > 2.0) return end;
-    double const s = std::clamp(end + direction * step, 0.0, path.length());
-    bool const is_near = excess(s) < 0.0;
-    (is_near ? in : out) = s;
-    if (is_near != (here < 0.0)) break;
-    if (s == 0.0 || s == path.length()) return s;
-  }
-  while (std::abs(out - in) > 2e-3) {
-    double const middle = 0.5 * (in + out);
-    (excess(middle) < 0.0 ? in : out) = middle;
-  }
-  return 0.5 * (in + out);
 }
 
 }  // namespace cambium::map::detail

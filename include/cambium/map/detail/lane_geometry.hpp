@@ -10,8 +10,16 @@
 #include "cambium/geometry/line.hpp"
 #include "cambium/map/detail/section_sampler.hpp"
 #include "cambium/map/lane.hpp"
+#include "cambium/map/road.hpp"
 
 namespace cambium::map::detail {
+
+/// The place of the lane `number` among those of its section.
+[[nodiscard]] inline std::size_t column_of(RoadSection const& section, int number) {
+  return static_cast<std::size_t>(std::find_if(section.lanes.begin(), section.lanes.end(),
+                                               [number](RoadLane const& lane) { return lane.number == number; }) -
+                                  section.lanes.begin());
+}
 
 /// Fills a lane's path, widths, stations and borders from cross-sections: column `column` of the section.
 /// `path_of(cross)` gives the path's lateral coordinate. False where the lane has no length (its inner side
@@ -78,8 +86,9 @@ struct Smoothstep {
 
 /// Where a lane begins to narrow towards its end, as a road station; `longest` [m] before the end where it does not
 /// narrow.
-[[nodiscard]] inline double taper_begin(std::span<CrossSection const> sections, std::size_t column, bool along_road,
+[[nodiscard]] inline double taper_begin(SectionSampler const& sampler, std::size_t column, bool along_road,
                                         double longest) {
+  auto const sections = sampler.sample();
   auto const width = [&](CrossSection const& c) { return c.borders[column].t - c.borders[column + 1].t; };
   double widest = 0.0;
   for (auto const& cross : sections) widest = std::max(widest, width(cross));
@@ -87,18 +96,21 @@ struct Smoothstep {
   double const begin_of_lane = along_road ? sections.front().s : sections.back().s;
   double begin = end.s;
   if (widest > 0.0 && width(end) < 0.5 * widest) {
-    // From the end backwards to where it has 95 % of its width, between two stations by interpolation.
+    // From the end backwards to where it has 95 % of its width.
     double const wide = 0.95 * widest;
-    auto const crossing = [&](CrossSection const& narrow, CrossSection const& c) {
-      double const rise = width(c) - width(narrow);
-      return rise > 0.0 ? c.s + (width(c) - wide) / rise * (narrow.s - c.s) : c.s;
+    auto const crossing = [&](double narrow, double broad) {
+      while (std::abs(narrow - broad) > 1e-4) {
+        double const middle = 0.5 * (narrow + broad);
+        (width(sampler.at(middle)) > wide ? broad : narrow) = middle;
+      }
+      return broad;
     };
     auto const last = sections.size() - 1;
     for (std::size_t i = 1; i <= last; ++i) {
       auto const &narrow = along_road ? sections[last - i + 1] : sections[i - 1],
                  &c = along_road ? sections[last - i] : sections[i];
       if (!(width(c) > wide)) continue;
-      begin = crossing(narrow, c);
+      begin = crossing(narrow.s, c.s);
       break;
     }
   }

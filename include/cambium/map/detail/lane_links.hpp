@@ -53,12 +53,9 @@ class LaneLinker {
     diagnostics_.push_back({Severity::warning, file_, line, std::move(element), std::move(ids), std::move(sentence)});
   }
 
-  [[nodiscard]] opendrive::Lane const* written(SectionEnd const& at, int number) const {
-    return links_.document().roads[at.road].lane_sections[at.section].find(number);
-  }
-
   [[nodiscard]] bool is_written(SectionEnds const& ends, int number) const {
-    return std::any_of(ends.begin(), ends.end(), [&](SectionEnd const& at) { return written(at, number) != nullptr; });
+    return std::any_of(ends.begin(), ends.end(),
+                       [&](SectionEnd const& at) { return links_.written(at, number) != nullptr; });
   }
 
   /// Calls `visit(RoadLane, end)` for lane `number` at a section's end; where the section is too short for lanes, for
@@ -77,7 +74,7 @@ class LaneLinker {
         if (lane.number == number && is_valid(lane.id)) visit(lane, at.end);
       return;
     }
-    auto const* lane = written(at, number);
+    auto const* lane = links_.written(at, number);
     if (lane == nullptr) return;
     SectionEnd const other{at.road, at.section, opposite(at.end)};
     for (auto const& next : links_.beyond(other))
@@ -152,13 +149,10 @@ class LaneLinker {
   }
 
   void link_connection(opendrive::Junction const& junction, opendrive::Connection const& connection) {
-    auto const incoming = links_.find(connection.incoming_road), connecting = links_.find(connection.entered_road());
-    if (!incoming || !connecting) return;  // the reader has said so
+    auto const entry = links_.entry_of(connection);
+    if (!entry || !links_.find(connection.incoming_road)) return;  // the reader has said so
     std::string const ids = "junction " + junction.id + ", connection " + connection.id;
-    ContactPoint const contact =
-        connection.contact_point == ContactPoint::none ? ContactPoint::start : connection.contact_point;
-    auto const entry = links_.road_end(*connecting, contact);
-    auto const exits = incoming_ends(*incoming, junction, entry);
+    auto const exits = links_.exits_of(junction, connection, *entry);
     if (exits.count == 0) {
       warn(connection.line, "connection", ids,
            "road " + connection.incoming_road +
@@ -169,43 +163,13 @@ class LaneLinker {
       return;
     }
     for (auto const& link : connection.lane_links) {
-      if (!is_written(exits, link.from) || written(entry, link.to) == nullptr)
+      if (!is_written(exits, link.from) || links_.written(*entry, link.to) == nullptr)
         warn(connection.line, "laneLink", ids,
              "lane " + std::to_string(link.from) + " of road " + connection.incoming_road + " or lane " +
                  std::to_string(link.to) + " of road " + connection.entered_road() +
                  " is not there; the link was left out");
-      join(entry, link.to, exits, link.from, connection.line);
+      join(*entry, link.to, exits, link.from, connection.line);
     }
-  }
-
-  /// The end of the incoming road that touches the junction; where both do, the one nearer to the connecting road. In
-  /// a virtual junction the place in the middle of the road that the connecting road says it meets.
-  [[nodiscard]] SectionEnds incoming_ends(std::size_t incoming, opendrive::Junction const& junction,
-                                          SectionEnd const& entry) const {
-    auto const touches = [&](ContactPoint end) {
-      auto const& link = links_.link_at(incoming, end);
-      return link && link->element_type == opendrive::ElementType::junction && link->id == junction.id;
-    };
-    bool const at_end = touches(ContactPoint::end), at_start = touches(ContactPoint::start);
-    if (!at_end && !at_start) {
-      auto const& link = links_.link_at(entry.road, entry.end);
-      bool const meets = (junction.type == opendrive::JunctionType::virtual_) && link &&
-                         link->id == links_.document().roads[incoming].id;
-      return meets ? links_.follow(link) : SectionEnds{};
-    }
-    bool const by_end = at_end != at_start ? at_end : is_nearer(incoming, entry);
-    return {{links_.road_end(incoming, by_end ? ContactPoint::end : ContactPoint::start), {}}, 1};
-  }
-
-  /// Whether the road's end is nearer to the place than its start.
-  [[nodiscard]] bool is_nearer(std::size_t road, SectionEnd const& place) const {
-    auto const end_point = [&](std::size_t r, ContactPoint end) {
-      auto const p = roads_[r].reference_line.at(end == ContactPoint::end ? roads_[r].length : 0.0);
-      return geometry::Point(p.x, p.y);
-    };
-    auto const target = end_point(place.road, place.end);
-    return (end_point(road, ContactPoint::end) - target).norm() <=
-           (end_point(road, ContactPoint::start) - target).norm();
   }
 
   RoadLinks const& links_;

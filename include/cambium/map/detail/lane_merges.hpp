@@ -61,21 +61,16 @@ class LaneMerger {
     return false;
   }
 
-  [[nodiscard]] static std::size_t column_of(RoadSection const& section, LaneId id) {
-    return static_cast<std::size_t>(
-        std::find_if(section.lanes.begin(), section.lanes.end(), [id](RoadLane const& l) { return l.id == id; }) -
-        section.lanes.begin());
-  }
-
   /// Lets the lane's path swing onto the neighbour's and go on as that one does.
   bool swing(Lane& lane) {
     // [m] between the stations of a swing: its curvature is some 0.03 1/m at most (3.5 m over 30 m).
     double const spacing = std::clamp(std::sqrt(8.0 * 0.7 * options_.position_tolerance / 0.03), 0.05, 1.5);
     auto const& road = roads_[index_of(lane.road)];
     auto const& section = road.sections[lane.section];
-    auto const column = column_of(section, lane.id), target = column_of(section, lane.merges_into);
+    auto const column = column_of(section, lane.number),
+               target = column_of(section, lanes_[index_of(lane.merges_into)].number);
     SectionSampler const sampler(road, section, options_);
-    double const from = taper_begin(sampler.sample(), column, lane.along_road, options_.merge_length);
+    double const from = taper_begin(sampler, column, lane.along_road, options_.merge_length);
     double const to = lane.along_road ? section.end : section.begin;
     auto const cross_sections = sampler.sample(spacing, std::min(from, to), std::max(from, to));
     auto const path = [&](CrossSection const& c) { return merging_path(c, column, target, from, to); };

@@ -11,6 +11,7 @@
 /// Which attribute of a file is which field of the document, said once for the reader and the writer. `fields(visit,
 /// x)` calls for every attribute of x's element, in the standard's order, one of
 ///   visit.needed(name, field)         without it the element is unusable; an id is not empty
+///   visit.place(name, double)         always written; 0 without it, a bad one makes the element unusable
 ///   visit.always(name, field)         written even if it has its default value
 ///   visit.optional(name, field)       left out where it has the type's default value
 ///   visit.id(name, string)            as optional; the reader takes white space off its ends
@@ -115,7 +116,7 @@ void fields(auto& visit, Of<opendrive::RoadLink> auto& x) {
 }
 
 void fields(auto& visit, Of<opendrive::RoadType> auto& x) {
-  visit.always("s", x.s);
+  visit.place("s", x.s);
   visit.always("type", x.type);
   visit.optional("country", x.country);
 }
@@ -141,7 +142,7 @@ void fields(auto& visit, Of<opendrive::Lane> auto& x) {
 }
 
 void fields(auto& visit, Of<opendrive::RoadMark> auto& x) {
-  visit.always("sOffset", x.s_offset);
+  visit.place("sOffset", x.s_offset);
   visit.always("type", x.type);
   visit.optional("weight", x.weight);
   visit.optional("color", x.color);
@@ -152,19 +153,19 @@ void fields(auto& visit, Of<opendrive::RoadMark> auto& x) {
 }
 
 void fields(auto& visit, Of<opendrive::LaneHeight> auto& x) {
-  visit.always("sOffset", x.s_offset);
+  visit.place("sOffset", x.s_offset);
   visit.always("inner", x.inner);
   visit.always("outer", x.outer);
 }
 
 void fields(auto& visit, Of<opendrive::LaneAccess> auto& x) {
-  visit.always("sOffset", x.s_offset);
+  visit.place("sOffset", x.s_offset);
   visit.optional("rule", x.rule);
   visit.optional("restriction", x.restriction);
 }
 
 void fields(auto& visit, Of<opendrive::LaneRule> auto& x) {
-  visit.always("sOffset", x.s_offset);
+  visit.place("sOffset", x.s_offset);
   visit.always("value", x.value);
 }
 

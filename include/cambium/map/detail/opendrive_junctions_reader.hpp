@@ -25,9 +25,10 @@ inline void report_missing_contact_point(XmlContext& context, pugi::xml_node nod
 }
 
 inline void read_road_links(XmlContext& context, pugi::xml_node road_node, opendrive::Road& road) {
-  pugi::xml_node const node = find_child(road_node, "link");
-  if (pugi::xml_node const child = find_child(node, "predecessor")) road.predecessor = read_road_link(context, child);
-  if (pugi::xml_node const child = find_child(node, "successor")) road.successor = read_road_link(context, child);
+  pugi::xml_node const node = find_only_child(context, road_node, "link");
+  if (auto const child = find_only_child(context, node, "predecessor"))
+    road.predecessor = read_road_link(context, child);
+  if (auto const child = find_only_child(context, node, "successor")) road.successor = read_road_link(context, child);
   read_container(context, node, road.rest,
                  [](pugi::xml_node, std::string_view name) { return name == "predecessor" || name == "successor"; });
 }
@@ -52,7 +53,7 @@ inline void read_road_links(XmlContext& context, pugi::xml_node road_node, opend
 [[nodiscard]] inline std::optional<opendrive::Junction> read_junction(XmlContext& context, pugi::xml_node node) {
   opendrive::Junction junction;
   if (!read_attributes(context, node, junction)) {
-    context.report(Severity::error, node, "the junction was left out, for it has no id");
+    context.report(Severity::warning, node, "the junction was left out, for it has no id");
     return std::nullopt;
   }
   for_each_child(node, [&](pugi::xml_node child, std::string_view name) {

@@ -24,17 +24,22 @@ void sort_records(XmlContext& context, pugi::xml_node parent, std::vector<Record
     context.report(Severity::warning, parent, std::string(what) + " are not in the order of s; they were sorted");
 }
 
-/// A cubic record: without a good start or with a bad coefficient it is left out, a missing coefficient counts as 0.
-[[nodiscard]] inline std::optional<CubicRecord> read_cubic(XmlContext& context, pugi::xml_node node,
-                                                           char const* start) {
+/// A cubic record, whose element may have one attribute `beside` it: without a good start or with a bad coefficient it
+/// is left out, a missing coefficient counts as 0.
+[[nodiscard]] inline std::optional<CubicRecord> read_cubic(XmlContext& context, pugi::xml_node node, char const* start,
+                                                           std::string_view beside = {}) {
   CubicRecord record;
   bool good = true;
+  report_content(context, node);
   // One walk over the attributes instead of five searches: these records are most of a file.
   bool has_start = false;
   for (pugi::xml_attribute attribute = node.first_attribute(); attribute; attribute = attribute.next_attribute()) {
     std::string_view const name = attribute.name();
     bool const is_start = name == start;
-    if (!is_start && (name.size() != 1 || name[0] < 'a' || name[0] > 'd')) continue;
+    if (!is_start && (name.size() != 1 || name[0] < 'a' || name[0] > 'd')) {
+      if (name != beside) lose_attribute(context, node, attribute);
+      continue;
+    }
     std::optional<double> const value = parse_number<double>(attribute.value());
     double* const coefficients[] = {&record.a, &record.b, &record.c, &record.d};
     if (!value) {
@@ -80,9 +85,24 @@ void read_speed(XmlContext& context, pugi::xml_node node, Record& record) {
                  "unit \"" + std::string(unit) + "\" is none of m/s, km/h, mph; no limit was read");
 }
 
+/// A speed record, left out where its place is bad.
+inline void append_lane_speed(XmlContext& context, pugi::xml_node node, std::vector<opendrive::SpeedRecord>& records) {
+  report_others(context, node, {"sOffset", "max", "unit"});
+  opendrive::SpeedRecord record;
+  if (pugi::xml_attribute const place = node.attribute("sOffset")) {
+    std::optional<double> const s = context.number<double>(node, place);
+    if (!s) return context.report(Severity::warning, node, "it was left out for that, see the finding before");
+    record.s = *s;
+  }
+  read_speed(context, node, record);
+  records.push_back(std::move(record));
+}
+
 inline void read_lane_links(XmlContext& context, pugi::xml_node node, opendrive::Lane& lane) {
-  read_container(context, find_child(node, "link"), lane.rest, [&](pugi::xml_node child, std::string_view name) {
+  pugi::xml_node const container = find_only_child(context, node, "link");
+  read_container(context, container, lane.rest, [&](pugi::xml_node child, std::string_view name) {
     if (name != "predecessor" && name != "successor") return false;
+    report_others(context, child, {"id"});
     if (std::optional<int> const id = context.number<int>(child, "id"))
       (name == "successor" ? lane.successors : lane.predecessors).push_back(*id);
     return true;
@@ -97,10 +117,7 @@ inline void read_lane_children(XmlContext& context, pugi::xml_node node, opendri
     if (name == "height") return append_leaf(context, child, lane.heights);
     if (name == "access") return append_leaf(context, child, lane.accesses);
     if (name == "rule") return append_leaf(context, child, lane.rules);
-    if (name == "speed") {
-      lane.speeds.push_back({context.number_or(child, "sOffset", 0.0), std::nullopt});
-      return read_speed(context, child, lane.speeds.back());
-    }
+    if (name == "speed") return append_lane_speed(context, child, lane.speeds);
     if (name != "link") keep_element(context, child, lane.rest);
   });
   sort_records(context, node, lane.widths, &CubicRecord::s, "width records");
@@ -126,7 +143,7 @@ inline void check_lane_width(XmlContext& context, pugi::xml_node node, opendrive
 /// False when the lane's id is unusable.
 [[nodiscard]] inline bool read_lane(XmlContext& context, pugi::xml_node node, opendrive::Lane& lane) {
   if (!read_attributes(context, node, lane)) {
-    context.report(Severity::error, node, "the lane was left out, for it has no usable id");
+    context.report(Severity::warning, node, "the lane was left out, for it has no usable id");
     return false;
   }
   context.lane = lane.id;
@@ -149,15 +166,13 @@ inline void order_lanes(XmlContext& context, pugi::xml_node node, opendrive::Lan
   std::vector<opendrive::Lane>& lanes = section.lanes;
   auto const from_left = [](opendrive::Lane const& lane) { return -static_cast<long long>(lane.id); };
   stable_sort(lanes, from_left);
-  for (std::size_t i = 1; i < lanes.size();) {
-    if (lanes[i].id != lanes[i - 1].id) {
-      ++i;
-      continue;
-    }
-    context.report(Severity::error, lanes[i].line, "lane",
-                   "lane id " + std::to_string(lanes[i].id) + " is there twice; the second one was left out");
-    lanes.erase(lanes.begin() + static_cast<std::ptrdiff_t>(i));
-  }
+  auto const is_double = [&](opendrive::Lane const& before, opendrive::Lane const& lane) {
+    if (before.id != lane.id) return false;
+    context.report(Severity::warning, lane.line, "lane",
+                   "lane id " + std::to_string(lane.id) + " is there twice; the second one was left out");
+    return true;
+  };
+  lanes.erase(std::unique(lanes.begin(), lanes.end(), is_double), lanes.end());
   if (!section.find(0)) {
     context.report(Severity::warning, node, "the section has no lane 0; an empty one was added");
     opendrive::Lane centre;
@@ -191,7 +206,7 @@ inline void read_side(XmlContext& context, pugi::xml_node node, std::string_view
 /// False when the section's start is unusable.
 [[nodiscard]] inline bool read_lane_section(XmlContext& context, pugi::xml_node node, opendrive::LaneSection& section) {
   if (!read_attributes(context, node, section)) {
-    context.report(Severity::error, node, "the lane section was left out, for its s is unusable");
+    context.report(Severity::warning, node, "the lane section was left out, for its s is unusable");
     return false;
   }
   std::size_t count = 0;

@@ -15,7 +15,7 @@ template <class T, class Take>
 void append_with(XmlContext& context, pugi::xml_node node, std::vector<T>& list, Take const& take) {
   T x;
   if (!read_attributes(context, node, x))
-    return context.report(Severity::error, node, "it was left out for that, see the finding before");
+    return context.report(Severity::warning, node, "it was left out for that, see the finding before");
   for_each_child(node, [&](pugi::xml_node child, std::string_view name) {
     if (!take(child, name, x)) keep_element(context, child, x.rest);
   });
@@ -43,11 +43,12 @@ inline void append_outline(XmlContext& context, pugi::xml_node node, opendrive::
 inline void append_object(XmlContext& context, pugi::xml_node node, std::vector<opendrive::Object>& objects) {
   opendrive::Object object;
   if (!read_attributes(context, node, object))
-    return context.report(Severity::error, node, "it was left out for that, see the finding before");
-  read_container(context, find_child(node, "outlines"), object.rest, [&](pugi::xml_node child, std::string_view name) {
-    if (name == "outline") append_outline(context, child, object);
-    return name == "outline";
-  });
+    return context.report(Severity::warning, node, "it was left out for that, see the finding before");
+  read_container(context, find_only_child(context, node, "outlines"), object.rest,
+                 [&](pugi::xml_node child, std::string_view name) {
+                   if (name == "outline") append_outline(context, child, object);
+                   return name == "outline";
+                 });
   for_each_child(node, [&](pugi::xml_node child, std::string_view name) {
     if (name == "outline") return append_outline(context, child, object);
     if (name == "repeat") return append_leaf(context, child, object.repeats);
@@ -58,7 +59,7 @@ inline void append_object(XmlContext& context, pugi::xml_node node, std::vector<
 }
 
 inline void read_objects(XmlContext& context, pugi::xml_node road_node, opendrive::Road& road) {
-  read_container(context, find_child(road_node, "objects"), road.rest,
+  read_container(context, find_only_child(context, road_node, "objects"), road.rest,
                  [&](pugi::xml_node child, std::string_view name) {
                    if (name == "object") append_object(context, child, road.objects);
                    if (name == "objectReference") append_with_validities(context, child, road.object_references);
@@ -67,7 +68,7 @@ inline void read_objects(XmlContext& context, pugi::xml_node road_node, opendriv
 }
 
 inline void read_signals(XmlContext& context, pugi::xml_node road_node, opendrive::Road& road) {
-  read_container(context, find_child(road_node, "signals"), road.rest,
+  read_container(context, find_only_child(context, road_node, "signals"), road.rest,
                  [&](pugi::xml_node child, std::string_view name) {
                    if (name == "signal") append_with_validities(context, child, road.signals);
                    if (name == "signalReference") append_with_validities(context, child, road.signal_references);

@@ -11,6 +11,7 @@
 
 #include "cambium/core/error.hpp"
 #include "cambium/map/detail/attribute_reader.hpp"
+#include "cambium/map/detail/geometry_fault.hpp"
 #include "cambium/map/detail/stable_sort.hpp"
 #include "cambium/map/reference_line.hpp"
 
@@ -75,6 +76,15 @@ using cambium::detail::rounded_text;
   return true;
 }
 
+/// Reports what is not read of a curve's element.
+inline void report_curve(XmlContext& context, pugi::xml_node node, std::string_view kind) {
+  if (kind == "line") return report_others(context, node, {});
+  if (kind == "arc") return report_others(context, node, {"curvature"});
+  if (kind == "spiral") return report_others(context, node, {"curvStart", "curvEnd"});
+  if (kind == "poly3") return report_others(context, node, {"a", "b", "c", "d"});
+  report_others(context, node, {"aU", "bU", "cU", "dU", "aV", "bV", "cV", "dV", "pRange"});
+}
+
 /// The curve of a geometry element: the child that says its kind may stand anywhere among other children.
 [[nodiscard]] inline bool read_curve(XmlContext& context, pugi::xml_node node, Geometry& g, opendrive::Rest& rest) {
   constexpr std::string_view kinds[] = {"line", "arc", "spiral", "poly3", "paramPoly3"};
@@ -82,36 +92,14 @@ using cambium::detail::rounded_text;
   for_each_child(node, [&](pugi::xml_node child, std::string_view name) {
     if (std::find(std::begin(kinds), std::end(kinds), name) == std::end(kinds))
       return keep_element(context, child, rest);
-    if (!is_found) good = read_kind(context, child, name, g);
-    is_found = true;
+    if (std::exchange(is_found, true))
+      return context.report(Severity::warning, child, "the geometry has a curve before; this one was left out");
+    report_curve(context, child, name);
+    good = read_kind(context, child, name, g);
   });
   if (!is_found)
     context.report(Severity::warning, node, "the geometry is none of line, arc, spiral, poly3, paramPoly3");
   return is_found && good;
-}
-
-/// False when something is so large that nobody could drive there.
-[[nodiscard]] inline bool is_within_bounds(XmlContext& context, pugi::xml_node node, Geometry const& g) {
-  constexpr double farthest = 1e8, longest = 1e6;  // [m]: beyond any map
-  double length = g.length, shift = 0.0;
-  if (g.cubic) {
-    length = std::max(length, g.cubic->length());
-    shift = std::max(std::abs(g.cubic->u()[0]), std::abs(g.cubic->v()[0]));
-  }
-  if (!(std::max({std::abs(g.x), std::abs(g.y), shift}) <= farthest && std::max(std::abs(g.s), length) <= longest)) {
-    context.report(Severity::warning, node, "a coordinate lies beyond 100 000 km, or a length beyond 1000 km");
-    return false;
-  }
-  if (!(std::abs(g.heading) <= 1e4)) {
-    context.report(Severity::warning, node, "hdg is beyond 10 000 rad");
-    return false;
-  }
-  constexpr double max_turn = 1000.0;  // rad: more than any road, little enough to be integrated
-  if (!(std::max(std::abs(g.curvature_start), std::abs(g.curvature_end)) * g.length < max_turn)) {
-    context.report(Severity::warning, node, "the curve turns by more than 1000 rad");
-    return false;
-  }
-  return true;
 }
 
 /// A geometry with what goes along with it.
@@ -126,15 +114,14 @@ struct ReadGeometry {
   ReadGeometry read;
   Geometry& g = read.geometry;
   if (!read_attributes(context, node, g, &read.rest) || !read_curve(context, node, g, read.rest)) return false;
-  if (g.length < 0.0) {
-    context.report(Severity::warning, node, "the length is negative");
-    return false;
-  }
   if (g.length == 0.0) {
     context.report(Severity::info, node, "a geometry of length 0 was left out");
     return true;
   }
-  if (!is_within_bounds(context, node, g)) return false;
+  if (auto const* const fault = fault_of(g)) {
+    context.report(Severity::warning, node, fault);
+    return false;
+  }
   read.line = context.line(node);
   all.push_back(std::move(read));
   return true;
@@ -142,7 +129,7 @@ struct ReadGeometry {
 
 /// False when there is no usable plan view.
 [[nodiscard]] inline bool read_plan_view(XmlContext& context, pugi::xml_node road_node, opendrive::Road& road) {
-  pugi::xml_node const node = find_child(road_node, "planView");
+  pugi::xml_node const node = find_only_child(context, road_node, "planView");
   std::vector<ReadGeometry> all;
   bool good = true;
   read_container(context, node, road.rest, [&](pugi::xml_node child, std::string_view name) {

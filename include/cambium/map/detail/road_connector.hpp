@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdlib>
-#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,9 +13,12 @@
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/cubic.hpp"
+#include "cambium/map/detail/document_index.hpp"
 #include "cambium/map/lane_type.hpp"
+#include "cambium/map/make_roads.hpp"
 #include "cambium/map/opendrive_document.hpp"
 #include "cambium/map/reference_line.hpp"
+#include "cambium/map/road.hpp"
 
 namespace cambium::map {
 
@@ -68,13 +70,13 @@ struct LaneSpan {
   double const s = end == ContactPoint::end ? road.geometry_length() : 0.0;
   auto const& section = section_at(road, end);
   int const sign = id < 0 ? -1 : 1;
-  double t = CubicProfile(road.lane_offset).value(s), inner = t;
+  double const ds = s - section.s;
+  Lateral outer{CubicProfile(road.lane_offset).value(s)}, inner = outer;
   for (int number = sign; number != id + sign; number += sign) {
-    inner = t;
-    if (auto const* lane = section.find(number))
-      t += sign * std::max(0.0, CubicProfile(lane->widths, BeforeFirst::hold).value(s - section.s));
+    inner = outer;
+    if (auto const* lane = section.find(number)) outer = clamped_outer_border(make_road_lane(*lane), inner, ds, ds);
   }
-  return {inner, t};
+  return {inner.t, outer.t};
 }
 
 /// The pose `t` beside a road's end, looking away from the road.
@@ -122,11 +124,10 @@ struct LaneSpan {
   return wanted;
 }
 
-/// Enters links between road ends into a document.
+/// Enters links between road ends into a document; what is there already is not entered again.
 class RoadConnector {
  public:
-  RoadConnector(opendrive::Document& document, std::function<std::string()> free_id)
-      : document_(document), free_id_(std::move(free_id)) {}
+  RoadConnector(opendrive::Document& document, DocumentIndex& index) : document_(document), index_(index) {}
 
   void connect(RoadEnd const& a, RoadEnd const& b, std::vector<opendrive::LaneLink> const& links) {
     bool const through_a = !road(a).junction.empty(), through_b = !road(b).junction.empty();
@@ -139,10 +140,7 @@ class RoadConnector {
  private:
   using Links = std::vector<opendrive::LaneLink>;
 
-  [[nodiscard]] opendrive::Road& road(RoadEnd const& end) const {
-    return *std::find_if(document_.roads.begin(), document_.roads.end(),
-                         [&end](opendrive::Road const& r) { return r.id == end.road; });
-  }
+  [[nodiscard]] opendrive::Road& road(RoadEnd const& end) const { return index_.road(document_, end.road); }
   [[nodiscard]] std::optional<opendrive::RoadLink>& link_of(RoadEnd const& end) const {
     return end.end == ContactPoint::end ? road(end).successor : road(end).predecessor;
   }
@@ -150,10 +148,7 @@ class RoadConnector {
     auto& l = find_lane(road(end), end.end, lane);
     return end.end == ContactPoint::end ? l.successors : l.predecessors;
   }
-  [[nodiscard]] opendrive::Junction& junction(std::string const& id) const {
-    return *std::find_if(document_.junctions.begin(), document_.junctions.end(),
-                         [&id](opendrive::Junction const& j) { return j.id == id; });
-  }
+  [[nodiscard]] opendrive::Junction& junction(std::string const& id) const { return index_.junction(document_, id); }
   [[nodiscard]] static opendrive::RoadLink to_road(RoadEnd const& end) {
     opendrive::RoadLink link;
     link.id = end.road;
@@ -215,13 +210,23 @@ class RoadConnector {
     bool leads_on = false;
     for (auto const& link : links) {
       auto const& lane = find_lane(road(incoming), incoming.end, link.from);
-      if (!leaves(road(incoming), incoming.end, lane)) continue;
+      if (!leaves(road(incoming), incoming.end, lane) || is_in(connection.lane_links, link)) continue;
+      if (std::any_of(at.connections.begin(), at.connections.end(), [&](opendrive::Connection const& there) {
+            return there.incoming_road == incoming.road && there.entered_road() == way.road &&
+                   there.contact_point == way.end && is_in(there.lane_links, link);
+          }))
+        continue;
       connection.lane_links.push_back(link);
       leads_on = leads_on || is_drivable(lane.type);
     }
     if (!leads_on) return;
     connection.id = std::to_string(at.connections.size());
     at.connections.push_back(std::move(connection));
+  }
+
+  [[nodiscard]] static bool is_in(Links const& links, opendrive::LaneLink const& link) {
+    return std::any_of(links.begin(), links.end(),
+                       [&link](auto const& l) { return l.from == link.from && l.to == link.to; });
   }
 
   void add_connections(opendrive::Junction& at, RoadEnd const& a, RoadEnd const& b, Links const& links) const {
@@ -241,7 +246,7 @@ class RoadConnector {
       id = link->id;
     }
     if (!id) {
-      id = free_id_();
+      id = index_.free_id(document_);
       document_.junctions.emplace_back();
       document_.junctions.back().id = *id;
       document_.junctions.back().type = opendrive::JunctionType::direct;
@@ -255,16 +260,14 @@ class RoadConnector {
     return result;
   }
 
-  /// Turns a plain link into connections.
+  /// Turns a plain link into connections; either side may have been the only one to name a pair of lanes.
   void dissolve(RoadEnd const& a, RoadEnd const& b, opendrive::Junction& into) const {
-    Links links;
-    for (auto const& lane : section_at(road(a), a.end).lanes)
-      if (lane.id != 0)
-        for (int const to : links_of(a, lane.id)) links.push_back({lane.id, to});
-    for (auto const& l : links) {
-      links_of(a, l.from).clear();
-      links_of(b, l.to).clear();
-    }
+    if (!is_free_for(b, a))
+      throw MapError("road " + a.road + " and road " + b.road, "only one of them is linked to the other",
+                     "mend that link of the document first");
+    auto links = named_links(a, b);
+    for (auto const& link : reversed(named_links(b, a)))
+      if (!is_in(links, link)) links.push_back(link);
     link_of(a).reset();
     link_of(b).reset();
     link_to_junction(a, into.id);
@@ -272,8 +275,19 @@ class RoadConnector {
     add_connections(into, a, b, links);
   }
 
+  /// Takes from the lanes at `a` their links to lanes at `b`.
+  [[nodiscard]] Links named_links(RoadEnd const& a, RoadEnd const& b) const {
+    Links links;
+    for (auto const& lane : section_at(road(a), a.end).lanes) {
+      if (lane.id == 0) continue;
+      for (int const to : std::exchange(links_of(a, lane.id), {}))
+        links.push_back({lane.id, find_lane(road(b), b.end, to).id});
+    }
+    return links;
+  }
+
   opendrive::Document& document_;
-  std::function<std::string()> free_id_;
+  DocumentIndex& index_;
 };
 
 }  // namespace detail

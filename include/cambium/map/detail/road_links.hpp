@@ -2,13 +2,15 @@
 
 #include <cmath>
 #include <cstddef>
-#include <map>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <unordered_map>
 #include <vector>
 
-#include "cambium/map/map.hpp"
+#include "cambium/geometry/pose.hpp"
 #include "cambium/map/opendrive_document.hpp"
+#include "cambium/map/road.hpp"
 
 namespace cambium::map::detail {
 
@@ -36,7 +38,7 @@ struct SectionEnds {
   return end == opendrive::ContactPoint::start ? opendrive::ContactPoint::end : opendrive::ContactPoint::start;
 }
 
-/// Where the links of a document's roads lead. Keeps references to both.
+/// Where the links of a document's roads and the connections of its junctions lead. Keeps references to both.
 class RoadLinks {
  public:
   using ContactPoint = opendrive::ContactPoint;
@@ -48,8 +50,8 @@ class RoadLinks {
   [[nodiscard]] OpenDriveDocument const& document() const { return document_; }
   [[nodiscard]] std::vector<Road> const& roads() const { return roads_; }
 
-  /// The place of the road of that id. O(log roads).
-  [[nodiscard]] std::optional<std::size_t> find(std::string const& id) const {
+  /// The place of the road of that id. O(1) on average.
+  [[nodiscard]] std::optional<std::size_t> find(std::string_view id) const {
     auto const at = index_.find(id);
     return at == index_.end() ? std::nullopt : std::optional(at->second);
   }
@@ -60,6 +62,11 @@ class RoadLinks {
 
   [[nodiscard]] bool is_road_end(SectionEnd const& at) const {
     return at.end == ContactPoint::end ? at.section + 1 == roads_[at.road].sections.size() : at.section == 0;
+  }
+
+  /// What the file says of a lane of the section; null where it is not there. O(lanes).
+  [[nodiscard]] opendrive::Lane const* written(SectionEnd const& at, int number) const {
+    return document_.roads[at.road].lane_sections[at.section].find(number);
   }
 
   /// The road's link at one of its ends.
@@ -83,10 +90,51 @@ class RoadLinks {
   [[nodiscard]] SectionEnds beyond(SectionEnd const& at) const {
     if (is_road_end(at)) return follow(link_at(at.road, at.end));
     bool const ahead = at.end == ContactPoint::end;
-    return {{{at.road, ahead ? at.section + 1 : at.section - 1, opposite(at.end)}, {}}, 1};
+    return one({at.road, ahead ? at.section + 1 : at.section - 1, opposite(at.end)});
+  }
+
+  /// The end at which a connection enters its road; none where that road is not there.
+  [[nodiscard]] std::optional<SectionEnd> entry_of(opendrive::Connection const& connection) const {
+    auto const road = find(connection.entered_road());
+    if (!road) return std::nullopt;
+    return road_end(*road,
+                    connection.contact_point == ContactPoint::none ? ContactPoint::start : connection.contact_point);
+  }
+
+  /// The end of a connection's incoming road that touches the junction; where both do, the one that the entered road
+  /// names at its `entry`, else the one nearer to that. In a virtual junction the place in the middle of the road that
+  /// the entered road names. None where the incoming road is not there, or meets the junction nowhere.
+  [[nodiscard]] SectionEnds exits_of(opendrive::Junction const& junction, opendrive::Connection const& connection,
+                                     SectionEnd const& entry) const {
+    auto const incoming = find(connection.incoming_road);
+    if (!incoming) return {};
+    auto const touches = [&](ContactPoint end) {
+      auto const& link = link_at(*incoming, end);
+      return link && link->element_type == opendrive::ElementType::junction && link->id == junction.id;
+    };
+    bool const at_end = touches(ContactPoint::end), at_start = touches(ContactPoint::start);
+    if (at_end != at_start) return one(road_end(*incoming, at_end ? ContactPoint::end : ContactPoint::start));
+    auto const& link = link_at(entry.road, entry.end);
+    SectionEnds const named = link && link->id == connection.incoming_road ? follow(link) : SectionEnds{};
+    if (!at_end) return junction.type == opendrive::JunctionType::virtual_ ? named : SectionEnds{};
+    if (named.count == 1 && is_road_end(named.at[0])) return named;
+    bool const by_end = distance(road_end(*incoming, ContactPoint::end), entry) <=
+                        distance(road_end(*incoming, ContactPoint::start), entry);
+    return one(road_end(*incoming, by_end ? ContactPoint::end : ContactPoint::start));
   }
 
  private:
+  [[nodiscard]] static SectionEnds one(SectionEnd const& at) { return {{at, {}}, 1}; }
+
+  /// Between the reference lines' ends [m].
+  [[nodiscard]] double distance(SectionEnd const& a, SectionEnd const& b) const {
+    auto const point = [this](SectionEnd const& at) {
+      auto const p = roads_[at.road].reference_line.at(at.end == ContactPoint::end ? roads_[at.road].length : 0.0);
+      return geometry::Point(p.x, p.y);
+    };
+    return (point(a) - point(b)).norm();
+  }
+
   /// The section ends that meet at `s` of a road, where sections were split for that (`split_roads`).
   [[nodiscard]] SectionEnds around(std::size_t road, double s) const {
     SectionEnds ends;
@@ -102,7 +150,7 @@ class RoadLinks {
 
   OpenDriveDocument const& document_;
   std::vector<Road> const& roads_;
-  std::map<std::string, std::size_t> index_;
+  std::unordered_map<std::string_view, std::size_t> index_;
 };
 
 }  // namespace cambium::map::detail

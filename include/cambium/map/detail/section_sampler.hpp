@@ -12,6 +12,7 @@
 #include "cambium/map/cubic.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/reference_line.hpp"
+#include "cambium/map/road.hpp"
 
 namespace cambium::map::detail {
 
@@ -43,6 +44,12 @@ class SectionSampler {
   /// Cross-sections from the section's begin to its end, ends included; every place where a record or a geometry begins
   /// is among them.
   [[nodiscard]] std::vector<CrossSection> sample() const { return sample(0.0, 0.0, 0.0); }
+
+  /// The exact cross-section at station `s` [m], the nearest of the section where it lies outside.
+  [[nodiscard]] CrossSection at(double s) const {
+    s = std::clamp(s, section_.begin, std::nextafter(section_.end, section_.begin));
+    return cross_section(s, s);
+  }
 
   /// As above; between the stations `from` and `to` no two are farther apart than `longest` [m].
   [[nodiscard]] std::vector<CrossSection> sample(double longest, double from, double to) const {
@@ -94,12 +101,6 @@ class SectionSampler {
     return result;
   }
 
-  /// Value and slope at `s` of the record in force at `inside`.
-  [[nodiscard]] static Lateral profile(CubicProfile const& p, double s, double inside) {
-    auto const* record = p.find(inside);
-    return record != nullptr ? Lateral{record->value(s), record->derivative(s)} : Lateral{p.value(s), 0.0};
-  }
-
   /// The cross-section at `s` by the records in force at `inside`; `near` is one of those, of the same interval between
   /// breaks: from there a spiral is not far.
   [[nodiscard]] CrossSection cross_section(double s, double inside, CrossSection const* near = nullptr) const {
@@ -110,28 +111,12 @@ class SectionSampler {
                        {},
                        std::vector<Lateral>(section_.lanes.size() + 1)};
     cross.direction = geometry::sin_cos(cross.reference.heading);
-    auto const offset = profile(road_.lane_offset, s, inside);
-    cross.borders[left_lanes_] = offset;
-    auto const width = [&](std::size_t lane) {
-      auto const& p = section_.lanes[lane].width;
-      double const ds = s - section_.begin, at = inside - section_.begin;
-      auto const w = profile(p, ds, at);
-      if (w.t > 1e-9) return w;
-      return profile(p, at, at).t > 0.0 && w.t > -1e-9 ? w : Lateral{};  // a width below 0 counts as 0
-    };
-    // The outer border of lane `i` on side `sign` (left 1), beyond its inner one.
-    auto const outer = [&](std::size_t i, Lateral const& inner, double sign) -> Lateral {
-      if (section_.lanes[i].border.empty()) {
-        auto const w = width(i);
-        return {inner.t + sign * w.t, inner.slope + sign * w.slope};
-      }
-      auto const b = profile(section_.lanes[i].border, s - section_.begin, inside - section_.begin);
-      double const t = sign * std::abs(b.t);  // some files write magnitudes
-      return sign * (t - inner.t) > 0.0 ? Lateral{t, b.t * sign < 0.0 ? -b.slope : b.slope} : inner;
-    };
-    for (std::size_t i = left_lanes_; i-- > 0;) cross.borders[i] = outer(i, cross.borders[i + 1], 1.0);
+    cross.borders[left_lanes_] = lateral_at(road_.lane_offset, s, inside);
+    double const ds = s - section_.begin, at = inside - section_.begin;
+    for (std::size_t i = left_lanes_; i-- > 0;)
+      cross.borders[i] = clamped_outer_border(section_.lanes[i], cross.borders[i + 1], ds, at);
     for (std::size_t i = left_lanes_; i < section_.lanes.size(); ++i)
-      cross.borders[i + 1] = outer(i, cross.borders[i], -1.0);
+      cross.borders[i + 1] = clamped_outer_border(section_.lanes[i], cross.borders[i], ds, at);
     return cross;
   }
 
@@ -156,17 +141,19 @@ class SectionSampler {
            std::abs(geometry::angle_difference(b.heading, a.heading)) > options_.heading_tolerance;
   }
 
+  /// How far `m` is from the chord from `a` to `b` [m].
+  [[nodiscard]] static double off_chord(geometry::LineSample const& a, geometry::LineSample const& m,
+                                        geometry::LineSample const& b) {
+    double const dx = b.x - a.x, dy = b.y - a.y, chord = std::hypot(dx, dy);
+    return chord > 1e-9 ? std::abs(dx * (m.y - a.y) - dy * (m.x - a.x)) / chord : std::hypot(m.x - a.x, m.y - a.y);
+  }
+
   /// Whether a straight chord from `a` to `b` is good enough for a curve through `m`.
   [[nodiscard]] bool fits(geometry::LineSample const& a, geometry::LineSample const& m,
                           geometry::LineSample const& b) const {
-    double const dx = b.x - a.x, dy = b.y - a.y;
-    double const chord = std::hypot(dx, dy);
-    double const off =
-        chord > 1e-9 ? std::abs(dx * (m.y - a.y) - dy * (m.x - a.x)) / chord : std::hypot(m.x - a.x, m.y - a.y);
     double const turn = geometry::angle_difference(b.heading, a.heading);
     // The middle is where an arc is farthest from its chord; the margin covers curves that are not arcs.
-    return off <= 0.7 * options_.position_tolerance &&
-           std::abs(turn) <= MapOptions::turn_per_tolerance * options_.heading_tolerance &&
+    return is_near(a, m, b) && std::abs(turn) <= MapOptions::turn_per_tolerance * options_.heading_tolerance &&
            std::abs(geometry::angle_difference(m.heading, a.heading) - 0.5 * turn) <= 0.7 * options_.heading_tolerance;
   }
 
@@ -196,18 +183,27 @@ class SectionSampler {
     return (kind == GeometryKind::line || kind == GeometryKind::arc) && has_linear_borders(inside);
   }
 
-  /// Whether the heading between `a` and `b` is near to the interpolated one at the quarters, too.
+  /// Whether the curves between `a` and `b` are near to the chords at the quarters, too, and the headings to the
+  /// interpolated ones. A cubic, and what a spiral is on so short a piece, that keeps within 0.7 of the tolerance at
+  /// the quarters and in the middle does so within 0.77 of it everywhere.
   [[nodiscard]] bool quarters_fit(CrossSection const& a, CrossSection const& b, double inside) const {
     for (double const u : {0.25, 0.75}) {
       auto const at = cross_section(a.s + u * (b.s - a.s), inside, &a);
-      for (std::size_t i = 0; i + 1 < a.borders.size(); ++i) {
-        double const from = a.at(a.center(i)).heading;
-        double const turn = geometry::angle_difference(b.at(b.center(i)).heading, from);
-        double const off = geometry::angle_difference(at.at(at.center(i)).heading, from) - u * turn;
-        if (std::abs(off) > 0.7 * options_.heading_tolerance) return false;
+      for (std::size_t i = 0; i < a.borders.size(); ++i) {
+        if (!is_near(a.at(a.borders[i]), at.at(at.borders[i]), b.at(b.borders[i]))) return false;
+        if (i + 1 == a.borders.size()) break;
+        auto const from = a.at(a.center(i)), to = b.at(b.center(i)), here = at.at(at.center(i));
+        double const turn = geometry::angle_difference(to.heading, from.heading);
+        double const off = geometry::angle_difference(here.heading, from.heading) - u * turn;
+        if (!is_near(from, here, to) || std::abs(off) > 0.7 * options_.heading_tolerance) return false;
       }
     }
     return true;
+  }
+
+  [[nodiscard]] bool is_near(geometry::LineSample const& a, geometry::LineSample const& m,
+                             geometry::LineSample const& b) const {
+    return off_chord(a, m, b) <= 0.7 * options_.position_tolerance;
   }
 
   [[nodiscard]] bool has_linear_borders(double inside) const {

@@ -1,14 +1,11 @@
 #pragma once
 
 #include <algorithm>
-#include <charconv>
-#include <cmath>
 #include <cstddef>
 #include <initializer_list>
 #include <optional>
 #include <string>
 #include <string_view>
-#include <system_error>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -16,6 +13,7 @@
 #include <pugixml.hpp>
 
 #include "cambium/core/diagnostic.hpp"
+#include "cambium/core/text.hpp"
 
 namespace cambium::map::detail {
 
@@ -47,38 +45,8 @@ class LineTable {
   std::size_t cursor_ = 0;
 };
 
-/// `text` without white space at its ends.
-[[nodiscard]] inline std::string_view trimmed(std::string_view text) {
-  auto const is_blank = [](char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\n'; };
-  while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
-  while (!text.empty() && is_blank(text.back())) text.remove_suffix(1);
-  return text;
-}
-
-/// Whether a number that is out of the range of doubles is too small for it, not too large. One whose exponent is
-/// outweighed by hundreds of digits before it counts by its exponent.
-[[nodiscard]] inline bool is_underflow(std::string_view number) {
-  if (auto const exponent = number.find_first_of("eE"); exponent != number.npos)
-    return number.substr(exponent + 1).starts_with('-');
-  return number.find_first_not_of("-0") == number.find('.');
-}
-
-/// The finite number that the whole of `text` spells, in the C locale; a leading '+' is allowed, and what is closer to
-/// 0 than any double is 0.
-template <class Number>
-[[nodiscard]] std::optional<Number> parse_number(std::string_view text) {
-  text = trimmed(text);
-  if (text.size() > 1 && text.front() == '+' && text[1] != '-') text.remove_prefix(1);
-  Number value{};
-  auto const [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (end != text.data() + text.size()) return std::nullopt;
-  if constexpr (std::is_floating_point_v<Number>) {
-    if (error == std::errc::result_out_of_range && is_underflow(text)) return Number{};
-    if (!std::isfinite(value)) return std::nullopt;
-  }
-  if (error != std::errc{}) return std::nullopt;
-  return value;
-}
+using cambium::detail::parse_number;
+using cambium::detail::trimmed;
 
 /// An element's or attribute's name without its namespace prefix.
 [[nodiscard]] inline std::string_view local_name(char const* name) {
@@ -138,6 +106,24 @@ class XmlContext {
     report(Severity::warning, node, std::string(found.name()) + "=\"" + found.value() + "\" is not a finite " + number);
   }
 
+  /// Notes that something in an element is not read: `what` is an attribute, or text. See `report_losses`.
+  [[gnu::cold]] void lose(pugi::xml_node node, std::string what) {
+    auto const kind = local_name(node);
+    for (Loss& known : losses_)
+      if (known.element == kind) return static_cast<void>(++known.count);
+    losses_.push_back({std::string(kind), std::move(what), ids(), line(node), 1});
+  }
+  /// Reports what `lose` has noted, once for each kind of element.
+  void report_losses() {
+    for (Loss& loss : losses_)
+      diagnostics_->push_back({Severity::warning, file_, loss.line, std::move(loss.element), std::move(loss.ids),
+                               loss.what + " is not known there; it was left out" +
+                                   (loss.count > 1 ? ", like " + std::to_string(loss.count - 1) +
+                                                         " more attributes and texts in such elements"
+                                                   : std::string())});
+    losses_.clear();
+  }
+
   /// The attribute as a finite number; reports a bad one, and a missing one if it is `needed`.
   template <class Number>
   [[nodiscard]] std::optional<Number> number(pugi::xml_node node, char const* attribute, bool needed = true) {
@@ -155,11 +141,6 @@ class XmlContext {
     if (!value)
       report_no_number(node, found, std::is_integral_v<Number> ? "whole number" : "number, written like 12.5");
     return value;
-  }
-  /// As `number`, for an attribute that may be missing (then `fallback`) or bad (reported, then `fallback`).
-  template <class Number>
-  [[nodiscard]] Number number_or(pugi::xml_node node, char const* attribute, Number fallback) {
-    return number<Number>(node, attribute, false).value_or(fallback);
   }
   /// Fills all of `targets` from the attributes of those names, each needed; false when one is missing or bad.
   [[nodiscard]] bool numbers(pugi::xml_node node, std::initializer_list<std::pair<char const*, double*>> targets) {
@@ -185,6 +166,11 @@ class XmlContext {
   std::vector<NamedAttribute> attributes;  ///< working memory of `AttributeReader`
 
  private:
+  struct Loss {
+    std::string element, what, ids;  ///< of the first one
+    int line{}, count{};
+  };
+
   [[nodiscard]] std::string ids() const {
     std::string text;
     auto const add = [&text](char const* kind, std::string const& id) {
@@ -200,6 +186,41 @@ class XmlContext {
   LineTable lines_;
   std::string file_;
   std::vector<Diagnostic>* diagnostics_;
+  std::vector<Loss> losses_;  ///< a handful
 };
+
+/// As `find_child`, of what may be there once: further ones are reported, for they are not read.
+[[nodiscard]] inline pugi::xml_node find_only_child(XmlContext& context, pugi::xml_node parent, std::string_view name) {
+  pugi::xml_node first;
+  for_each_child(parent, name, [&](pugi::xml_node child) {
+    if (first)
+      context.report(Severity::warning, child, "there is a second <" + std::string(name) + ">; it was left out");
+    else
+      first = child;
+  });
+  return first;
+}
+
+/// Reports what stands in an element that has attributes only: it is not read.
+inline void report_content(XmlContext& context, pugi::xml_node node) {
+  if (node.first_child()) context.report(Severity::warning, node, "what stands in it was left out");
+}
+
+inline void lose_attribute(XmlContext& context, pugi::xml_node node, pugi::xml_attribute attribute) {
+  context.lose(node, "attribute " + std::string(attribute.name()));
+}
+
+/// As `report_content`, and notes the attributes that are none of those `known`.
+inline void report_others(XmlContext& context, pugi::xml_node node, std::initializer_list<std::string_view> known) {
+  report_content(context, node);
+  for (pugi::xml_attribute a = node.first_attribute(); a; a = a.next_attribute())
+    if (std::find(known.begin(), known.end(), a.name()) == known.end()) lose_attribute(context, node, a);
+}
+
+/// Notes text in an element that has none.
+inline void lose_text(XmlContext& context, pugi::xml_node node) {
+  for (pugi::xml_node child = node.first_child(); child; child = child.next_sibling())
+    if (child.type() == pugi::node_pcdata || child.type() == pugi::node_cdata) context.lose(node, "text");
+}
 
 }  // namespace cambium::map::detail

@@ -3,6 +3,8 @@
 #include <string>
 #include <string_view>
 
+#include "cambium/viewer/detail/map_legend.hpp"
+#include "cambium/viewer/detail/svg_panel.hpp"
 #include "cambium/viewer/detail/text.hpp"
 
 namespace cambium::detail {
@@ -17,13 +19,14 @@ inline constexpr std::string_view map_picture_style =
     ".areas .parking{fill:#a9b9d6}.areas .bus,.areas .taxi,.areas .HOV{fill:#a68f74}"
     ".areas .restricted,.areas .roadWorks{fill:#d5b3b3}.areas .tram,.areas .rail{fill:#a3a37f}"
     ".areas path:hover{fill:#5b9bd5}"
+    ".conflicts{opacity:.28}.conflicts path{fill:#d4456b;stroke:#700622;stroke-width:.06}"
     ".overlaps path{fill:none;stroke-width:.9;opacity:.4}"
     ".crossing{stroke:#e02b2b}.merge{stroke:#ff8c1a}.split{stroke:#8e44ec}"
     ".arrows path{fill:#fff;opacity:.85}"
     ".links path{fill:none;stroke:#0a8f4b;stroke-width:.18;opacity:.8}.links .tip{fill:#0a8f4b;stroke:none}"
     ".links .end circle{fill:#d61f1f}.links .begin circle{fill:#1f6fd6}"
     ".labels text{fill:#101820;text-anchor:middle;pointer-events:none}"
-    ".scale{fill:#101820}";
+    ".legend text{fill:#101820}.scale{fill:#101820}";
 
 /// What makes the picture's view box follow the mouse wheel and the pointer, and the boxes switch layers.
 inline constexpr std::string_view map_page_script = R"(
@@ -57,23 +60,25 @@ for (const input of document.querySelectorAll('input'))
   };
 )";
 
-/// A page around a map's picture.
-[[nodiscard]] inline std::string map_page(std::string_view title, std::string const& picture) {
-  std::string page = "<!doctype html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>" + escape_markup(title) +
-                     "</title>\n<style>body{margin:0;font:14px system-ui,'DejaVu Sans',sans-serif;background:#eef1ec}"
-                     "nav{position:fixed;top:8px;left:8px;padding:8px 12px;border-radius:8px;background:#fffd;"
-                     "box-shadow:0 1px 4px #0003}nav label{margin-left:10px}nav small{display:block;margin-top:4px}"
-                     "i{display:inline-block;width:14px;height:4px;margin:0 4px 3px 8px}"
-                     "svg{display:block;width:100vw;height:100vh;cursor:grab}</style>\n<nav><b>" +
-                     escape_markup(title) + "</b>";
-  for (char const* layer : {"arrows", "labels", "links", "overlaps"})
-    page += std::string("<label><input type=\"checkbox\" checked name=\"") + layer + "\">" + layer + "</label>";
-  page +=
-      " <button id=\"whole\">whole map</button><small><i style=\"background:#e02b2b\"></i>crossing"
-      "<i style=\"background:#ff8c1a\"></i>merge<i style=\"background:#8e44ec\"></i>split"
-      "<i style=\"background:#0a8f4b\"></i>link<i style=\"background:#1f6fd6\"></i>begin"
-      "<i style=\"background:#d61f1f\"></i>dead end</small></nav>\n";
-  return page + picture + "<script>" + std::string(map_page_script) + "</script></html>\n";
+/// A page around a map's picture, with its legend of `width` [px].
+[[nodiscard]] inline std::string map_page(std::string_view title, std::string const& picture, double width,
+                                          MapLegend const& legend) {
+  std::string page =
+      "<!doctype html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>" + escape_markup(title) +
+      "</title>\n<style>body{margin:0;font:14px system-ui,'DejaVu Sans',sans-serif;background:#eef1ec}"
+      "nav{position:fixed;top:8px;left:8px;max-width:380px;padding:8px 12px;border-radius:8px;background:#fffd;"
+      "box-shadow:0 1px 4px #0003}nav label{margin-right:8px;white-space:nowrap}nav "
+      "b{display:block}summary{cursor:pointer}"
+      "#map{display:block;width:100vw;height:100vh;cursor:grab}</style>\n<nav><b>" +
+      escape_markup(title) + "</b>";
+  for (char const* layer : {"arrows", "labels", "links", "overlaps", "conflicts"})
+    if (picture.find("<g class=\"" + std::string(layer) + '"') != picture.npos)
+      page += std::string("<label><input type=\"checkbox\" checked name=\"") + layer + "\">" + layer + "</label>";
+  page += " <button id=\"whole\">whole map</button>";
+  if (!legend.text.empty())
+    page += "<details open><summary>legend</summary><svg width=\"" + svg_number(width) + "\" height=\"" +
+            svg_number(legend.height) + "\">" + legend.text + "</svg></details>";
+  return page + "</nav>\n" + picture + "<script>" + std::string(map_page_script) + "</script></html>\n";
 }
 
 }  // namespace cambium::detail

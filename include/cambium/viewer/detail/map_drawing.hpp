@@ -1,0 +1,281 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <set>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cambium/core/error.hpp"
+#include "cambium/core/ids.hpp"
+#include "cambium/geometry/box.hpp"
+#include "cambium/geometry/pose.hpp"
+#include "cambium/map/junction.hpp"
+#include "cambium/map/map.hpp"
+#include "cambium/viewer/detail/map_legend.hpp"
+#include "cambium/viewer/detail/map_page.hpp"
+#include "cambium/viewer/detail/svg_panel.hpp"
+#include "cambium/viewer/detail/text.hpp"
+#include "cambium/viewer/map_picture_options.hpp"
+
+namespace cambium::detail {
+
+/// Draws a map as SVG in layers, in metres, with the map's y axis upwards.
+class MapDrawing {
+ public:
+  MapDrawing(Map const& map, MapPictureOptions const& options) : map_(map), options_(options) {
+    if (!(options.width >= 1.0 && options.width <= 1e5))
+      throw Error("map picture", "it cannot be " + rounded_text(options.width) + " px wide", "give 1 to 100 000 px");
+    if (options.part) {
+      lanes_ = map.lanes_in(box_ = checked(*options.part));
+    } else {
+      box_ = (map.lanes().empty() ? geometry::Box{0.0, 0.0, 0.0, 0.0} : map.bounds()).grown(5.0);
+      for (auto const& lane : map.lanes()) lanes_.push_back(lane.id);
+    }
+    double const width = box_.max_x - box_.min_x, height = box_.max_y - box_.min_y;
+    double const aside = std::max(0.0, 0.5 * (height / 4.0 - width)),
+                 above = std::max(0.0, 0.5 * (width / 25.0 - height));
+    box_ = {box_.min_x - aside, box_.min_y - above, box_.max_x + aside, box_.max_y + above};
+  }
+
+  /// The picture; what its colours mean below the map, where `with_legend`.
+  [[nodiscard]] std::string text(bool with_legend) {
+    double const width = box_.max_x - box_.min_x, height = box_.max_y - box_.min_y;
+    double const scale = options_.width / width;
+    MapLegend const key = legend(options_.width);
+    double const strip = with_legend ? key.height / scale : 0.0;
+    out_ = "<svg xmlns=\"http://www.w3.org/2000/svg\" id=\"map\" width=\"" + svg_number(options_.width) +
+           "\" height=\"" + svg_number((height + strip) * scale) + "\" viewBox=\"0 0 " + svg_number(width) + ' ' +
+           svg_number(height + strip) + "\" data-west=\"" + svg_number(box_.min_x) + "\" data-north=\"" +
+           svg_number(box_.max_y) + "\" font-family=\"system-ui,'DejaVu Sans',sans-serif\">\n<title>" +
+           escape_markup(options_.title) + "</title>\n<style>" + std::string(map_picture_style) + "</style>\n";
+    out_ += "<rect class=\"ground\" width=\"100%\" height=\"100%\"/>\n";
+    layer("areas", [this] { draw_areas(); });
+    if (options_.conflicts) layer("conflicts", [this] { draw_conflicts(); });
+    if (options_.overlaps) layer("overlaps", [this] { draw_overlaps(); });
+    if (options_.arrows) layer("arrows", [this] { draw_arrows(); });
+    if (options_.links) layer("links", [this] { draw_links(); });
+    if (options_.labels) layer("labels", [this] { draw_labels(); });
+    draw_scale_bar(scale, height);
+    if (with_legend)
+      out_ += "<g transform=\"translate(0 " + svg_number(height) + ")scale(" + svg_number(1.0 / scale, 6) + ")\">" +
+              "<rect class=\"ground\" width=\"" + svg_number(options_.width) + "\" height=\"" + svg_number(key.height) +
+              "\"/>" + key.text + "</g>\n";
+    return out_ + "</svg>\n";
+  }
+
+  /// What the colours mean that the picture has, as SVG in pixels.
+  [[nodiscard]] MapLegend legend(double width) const {
+    std::vector<LegendEntry> entries;
+    std::set<std::string_view> types;
+    bool has_junction = false, has_link = false, has_begin = false, has_end = false;
+    std::array<bool, 3> has_overlap{};  // by kind
+    for (auto const id : lanes_) {
+      auto const& lane = map_.lane(id);
+      if (!lane.drivable()) types.insert(to_string(lane.type));
+      has_junction = has_junction || is_in_junction(lane);
+      has_link = has_link || !lane.successors.empty();
+      has_begin = has_begin || (lane.drivable() && lane.predecessors.empty());
+      has_end = has_end || (lane.drivable() && lane.successors.empty());
+      for (auto const& overlap : lane.overlaps) has_overlap[static_cast<std::size_t>(overlap.kind)] = true;
+    }
+    auto const add = [&entries](bool is_there, LegendEntry const& entry) {
+      if (is_there) entries.push_back(entry);
+    };
+    entries.push_back({LegendShape::area, "driving", "lane to drive on"});
+    if (has_junction) entries.push_back({LegendShape::area, "driving junction", "in a junction"});
+    for (auto const type : types) entries.push_back({LegendShape::area, type, "lane of type " + std::string(type)});
+    if (options_.arrows) entries.push_back({LegendShape::arrow, "", "travel direction"});
+    add(options_.links && has_link, {LegendShape::link, "", "leads to"});
+    add(options_.links && has_begin, {LegendShape::dot, "begin", "begins, no way in"});
+    add(options_.links && has_end, {LegendShape::dot, "end", "ends, no way on"});
+    auto const overlaps = [&](map::OverlapKind kind) {
+      return options_.overlaps && has_overlap[static_cast<std::size_t>(kind)];
+    };
+    add(overlaps(map::OverlapKind::crossing), {LegendShape::stretch, "crossing", "crosses another lane"});
+    add(overlaps(map::OverlapKind::merge), {LegendShape::stretch, "merge", "merges with one"});
+    add(overlaps(map::OverlapKind::split), {LegendShape::stretch, "split", "splits from one"});
+    if (options_.conflicts && has_junction) entries.push_back({LegendShape::conflict, "", "ground of two lanes"});
+    return map_legend(entries, width);
+  }
+
+ private:
+  [[nodiscard]] static geometry::Box const& checked(geometry::Box const& part) {
+    double const width = part.max_x - part.min_x, height = part.max_y - part.min_y;
+    if (width > 0.0 && height > 0.0 && std::isfinite(width + height)) return part;
+    throw Error("map picture", "the part to show has no area, or no end", "give a box with min < max");
+  }
+
+  template <class Draw>
+  void layer(char const* name, Draw const& draw) {
+    out_ += std::string("<g class=\"") + name + "\">\n";
+    draw();
+    out_ += "</g>\n";
+  }
+
+  [[nodiscard]] std::string place(geometry::Point const& p) const {
+    return svg_number(p.x() - box_.min_x) + ' ' + svg_number(box_.max_y - p.y());
+  }
+  [[nodiscard]] std::string turned(geometry::Pose const& pose) const {
+    return "translate(" + place(pose.position()) + ")rotate(" +
+           svg_number(-pose.heading * 180.0 / std::numbers::pi, 1) + ")";
+  }
+  [[nodiscard]] std::string path(std::span<geometry::Point const> points) const {
+    std::string text;
+    for (auto const& p : points) text += (text.empty() ? 'M' : 'L') + place(p);
+    return text;
+  }
+
+  /// The part of a lane's path from `begin` to `end` [m].
+  [[nodiscard]] static std::vector<geometry::Point> stretch(map::Lane const& lane, double begin, double end) {
+    std::vector<geometry::Point> points{lane.path.pose(begin).position()};
+    for (auto const& g : lane.path.segments())
+      if (g.s > begin && g.s < end) points.emplace_back(g.x, g.y);
+    points.push_back(lane.path.pose(end).position());
+    return points;
+  }
+
+  [[nodiscard]] bool is_in_junction(map::Lane const& lane) const {
+    return lane.drivable() && is_valid(map_.road(lane.road).junction);
+  }
+
+  [[nodiscard]] std::string label_of(map::Lane const& lane) const {
+    return escape_markup(map_.road(lane.road).name) + ':' + std::to_string(lane.number);
+  }
+  /// As the label; of a lane for both directions with that.
+  [[nodiscard]] std::string name_of(map::Lane const& lane) const {
+    return label_of(lane) + (!is_valid(lane.opposite) ? "" : lane.along_road ? ", forward" : ", backward");
+  }
+
+  [[nodiscard]] std::string tooltip(map::Lane const& lane) const {
+    std::string text = "road " + escape_markup(map_.road(lane.road).name) + ", section " +
+                       std::to_string(lane.section) + ", lane " + std::to_string(lane.number) + " (" +
+                       std::string(to_string(lane.type)) + "), " + svg_number(lane.length(), 1) + " m";
+    double const limit = lane.speed_limit_at(0.5 * lane.length());
+    if (std::isfinite(limit)) text += ", " + svg_number(3.6 * limit, 0) + " km/h";
+    for (auto const next : lane.successors) text += "\nto " + name_of(map_.lane(next));
+    if (is_valid(lane.merges_into)) text += "\nmerges into " + name_of(map_.lane(lane.merges_into));
+    return text;
+  }
+
+  void draw_areas() {
+    for (bool const drivable : {false, true})
+      for (auto const id : lanes_) {
+        auto const& lane = map_.lane(id);
+        if (lane.drivable() != drivable) continue;
+        auto outline = lane.left.points();
+        auto const right = lane.right.points();
+        outline.insert(outline.end(), right.rbegin(), right.rend());
+        if (outline.size() < 3) continue;
+        out_ += "<path class=\"" + std::string(drivable ? "driving" : to_string(lane.type)) +
+                (is_in_junction(lane) ? " junction" : "") + "\" d=\"" + path(outline) + "Z\"><title>" + tooltip(lane) +
+                "</title></path>\n";
+      }
+  }
+
+  void draw_overlaps() {
+    static constexpr char const* names[] = {"merge", "split", "crossing"};
+    for (auto const id : lanes_) {
+      auto const& lane = map_.lane(id);
+      for (auto const& overlap : lane.overlaps)
+        out_ += std::string("<path class=\"") + names[static_cast<std::size_t>(overlap.kind)] + "\" d=\"" +
+                path(stretch(lane, overlap.begin, overlap.end)) + "\"><title>" + name_of(lane) + ": " +
+                names[static_cast<std::size_t>(overlap.kind)] + " with " + name_of(map_.lane(overlap.other)) +
+                "</title></path>\n";
+    }
+  }
+
+  void draw_conflicts() {
+    auto const is_shown = [this](LaneId id) { return std::binary_search(lanes_.begin(), lanes_.end(), id); };
+    for (auto const& junction : map_.junctions()) {
+      if (std::none_of(junction.lanes.begin(), junction.lanes.end(), is_shown)) continue;
+      for (auto const& conflict : conflict_areas(map_, junction.id)) {
+        if (!conflict.area || !is_shown(conflict.first)) continue;
+        auto const &first = map_.lane(conflict.first), &second = map_.lane(conflict.second);
+        out_ += "<path d=\"" + path(conflict.area->points()) + "Z\"><title>ground of " + name_of(first) + " and " +
+                name_of(second);
+        if (auto const road = goes_first(junction, first.road, second.road))
+          out_ += "; road " + escape_markup(map_.road(*road).name) + " goes first";
+        out_ += "</title></path>\n";
+      }
+    }
+  }
+
+  void draw_arrows() {
+    constexpr double spacing = 30.0, shortest = 4.0;  // [m]
+    for (auto const id : lanes_) {
+      auto const& lane = map_.lane(id);
+      if (!lane.drivable() || lane.length() < shortest) continue;
+      int const count = std::max(1, static_cast<int>(lane.length() / spacing));
+      for (int i = 0; i < count; ++i)
+        out_ += "<path transform=\"" + turned(lane.path.pose(lane.length() * (i + 0.25) / count)) +
+                "\" d=\"M-1.5.08H.4V.4L1.5 0 .4-.4V-.08H-1.5Z\"/>\n";
+    }
+  }
+
+  void draw_links() {
+    constexpr double reach = 2.5;  // [m]
+    for (auto const id : lanes_) {
+      auto const& lane = map_.lane(id);
+      auto const end = lane.path.pose(lane.length());
+      auto const from = lane.path.pose(lane.length() - std::min(reach, lane.length() / 3)).position();
+      for (auto const successor : lane.successors) {
+        auto const& next = map_.lane(successor);
+        auto const to = next.path.pose(std::min(reach, next.length() / 3));
+        out_ += "<path d=\"M" + place(from) + "Q" + place(end.position()) + ' ' + place(to.position()) +
+                "\"/><path class=\"tip\" transform=\"" + turned(to) + "\" d=\"M0 0L-.7.3V-.3Z\"/>\n";
+      }
+      if (!lane.drivable()) continue;
+      if (lane.successors.empty()) draw_dot("end", lane, end.position());
+      if (lane.predecessors.empty()) draw_dot("begin", lane, lane.path.pose(0.0).position());
+    }
+  }
+
+  void draw_dot(char const* kind, map::Lane const& lane, geometry::Point const& at) {
+    out_ += std::string("<g class=\"") + kind + "\" transform=\"translate(" + place(at) +
+            ")\"><circle r=\".5\"/><title>" + name_of(lane) + (kind[0] == 'e' ? " ends here" : " begins here") +
+            "</title></g>\n";
+  }
+
+  void draw_labels() {
+    constexpr double shortest = 4.0;  // [m]
+    for (auto const id : lanes_) {
+      auto const& lane = map_.lane(id);
+      if (lane.length() < shortest || (is_valid(lane.opposite) && lane.opposite < lane.id))
+        continue;  // one of both directions
+      double const s = 0.5 * lane.length();
+      auto const widths = lane.widths_at(s);
+      if (widths.left + widths.right < 0.8) continue;
+      auto pose = lane.path.pose(s);
+      if (std::cos(pose.heading) < 0.0) pose.heading += std::numbers::pi;
+      double const size = is_valid(map_.road(lane.road).junction) ? 0.7 : 1.1;
+      out_ += "<text transform=\"" + turned(pose) + "\" font-size=\"" +
+              svg_number(std::min(size, 0.5 * (widths.left + widths.right)), 2) + "\" dy=\".35em\">" + label_of(lane) +
+              "</text>\n";
+    }
+  }
+
+  /// A bar of a round length, some 120 px long.
+  void draw_scale_bar(double scale, double height) {
+    double const wanted = 120.0 / scale, power = std::pow(10.0, std::floor(std::log10(wanted)));
+    double const length = wanted >= 5 * power ? 5 * power : wanted >= 2 * power ? 2 * power : power;
+    double const pixel = 1.0 / scale;
+    out_ += "<g class=\"scale\" transform=\"translate(" + svg_number(12 * pixel, 3) + ' ' +
+            svg_number(height - 12 * pixel, 3) + ")\">" + svg_box(0, -3 * pixel, length, 3 * pixel, "") + "<text y=\"" +
+            svg_number(-6 * pixel, 3) + "\" font-size=\"" + svg_number(12 * pixel, 3) + "\">" + svg_number(length) +
+            " m</text></g>\n";
+  }
+
+  Map const& map_;
+  MapPictureOptions const& options_;
+  geometry::Box box_;
+  std::vector<LaneId> lanes_;  ///< those shown, sorted
+  std::string out_;
+};
+
+}  // namespace cambium::detail
