@@ -312,7 +312,7 @@ TEST_CASE("what is wrong in a plan is named by its number") {
   has(complaint([](RoadPlan& p) { p.line[1].length = -30.0; }), "geometry 1 has no length");
   has(complaint([](RoadPlan& p) { p.line[2].x = NAN; }), "geometry 2: a coordinate lies beyond");
   has(complaint([](RoadPlan& p) { p.line[2].curvature_end = 1e9; }),
-      "geometry 2: the curve turns by more than 1000 rad");
+      "geometry 2: the curve turns by more than 100 rad");
   has(complaint([](RoadPlan& p) { p.line[0].kind = GeometryKind::cubic; }),
       "geometry 0: it is a cubic without its curve");
   auto const widths = [&](std::vector<CubicRecord> const& records) {
