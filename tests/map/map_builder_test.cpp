@@ -347,6 +347,8 @@ TEST_CASE("what fails changes nothing") {
   // Where the turn begins, where it ends, its id:
   fails([&] { builder.add_turn("9", {"1", end}, {"2", start}); }, "it is linked to another road or junction");
   fails([&] { builder.add_turn("9", {"6", end}, {"2", start}); }, "it is linked to another road or junction");
+  fails([&] { builder.add_junction("-1"); }, "its id says none");
+  fails([&] { builder.add_road({.id = " ", .line = {}, .sections = {}}); }, "its id says none");
   fails([&] { builder.add_turn("9", {"6", end}, {"3", start}, {.id = "5"}); }, "there is one of that id");
   fails([&] { builder.connect({"1", end}, {"5", start}); }, "it is linked to a junction already");
   // A link that cannot be dissolved, for a lane that is not there:
