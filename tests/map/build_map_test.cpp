@@ -57,7 +57,7 @@ TEST_CASE("a document made in code that lacks what a map needs is refused with t
        },
        "speed of the road is not a number"},
       {[](opendrive::Road& r) { r.geometries[1].length = 1e9; }, "beyond 1000 km"},
-      {[](opendrive::Road& r) { r.geometries[1].curvature_end = 1e6; }, "1000 rad"},
+      {[](opendrive::Road& r) { r.geometries[1].curvature_end = 1e6; }, "100 rad"},
       {[](opendrive::Road& r) { r.geometries[1].curvature_start = nan; }, "not finite"},
       {[](opendrive::Road& r) { std::swap(r.geometries[0], r.geometries[1]); }, "order of s"},
       {[](opendrive::Road& r) { r.lane_sections[0].s = nan; }, "order of s"},

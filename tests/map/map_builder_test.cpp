@@ -312,7 +312,7 @@ TEST_CASE("what is wrong in a plan is named by its number") {
   has(complaint([](RoadPlan& p) { p.line[1].length = -30.0; }), "geometry 1 has no length");
   has(complaint([](RoadPlan& p) { p.line[2].x = NAN; }), "geometry 2: a coordinate lies beyond");
   has(complaint([](RoadPlan& p) { p.line[2].curvature_end = 1e9; }),
-      "geometry 2: the curve turns by more than 1000 rad");
+      "geometry 2: the curve turns by more than 100 rad");
   has(complaint([](RoadPlan& p) { p.line[0].kind = GeometryKind::cubic; }),
       "geometry 0: it is a cubic without its curve");
   auto const widths = [&](std::vector<CubicRecord> const& records) {
@@ -347,6 +347,8 @@ TEST_CASE("what fails changes nothing") {
   // Where the turn begins, where it ends, its id:
   fails([&] { builder.add_turn("9", {"1", end}, {"2", start}); }, "it is linked to another road or junction");
   fails([&] { builder.add_turn("9", {"6", end}, {"2", start}); }, "it is linked to another road or junction");
+  fails([&] { builder.add_junction("-1"); }, "its id says none");
+  fails([&] { builder.add_road({.id = " ", .line = {}, .sections = {}}); }, "its id says none");
   fails([&] { builder.add_turn("9", {"6", end}, {"3", start}, {.id = "5"}); }, "there is one of that id");
   fails([&] { builder.connect({"1", end}, {"5", start}); }, "it is linked to a junction already");
   // A link that cannot be dissolved, for a lane that is not there:

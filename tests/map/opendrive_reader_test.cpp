@@ -265,7 +265,7 @@ Fault const faults[]{
      R"(<other s="0"><left>)", "XML", 0, 0},
     {"unknown lane type", R"(type="shoulder")", R"(type="hovercraft")", "\"hovercraft\" is not known", 23},
     {"unknown unit", R"(unit="mph")", R"(unit="knots")", "none of m/s, km/h, mph", 6},
-    {"curl without end", R"(curvature="0.01")", R"(curvature="1e9")", "more than 1000 rad", 9, 1},
+    {"curl without end", R"(curvature="0.01")", R"(curvature="1e9")", "more than 100 rad", 9, 1},
     {"unknown rule", R"(rule="LHT")", R"(rule="MIDDLE")", "none of RHT, LHT", 37},
 };
 

@@ -42,17 +42,20 @@ struct Diagnostic {
   return detail::printable(text + d.sentence);
 }
 
-/// " (finding)" for a message that nothing usable is left: the first finding by which something was left out, else the
-/// first warning; empty where there is none.
+/// " (finding)" for a message that nothing usable is left: the first warning by which something was left out, else the
+/// first one; empty where there is none. A road that was left out for a finding counts as lost by that.
 [[nodiscard]] inline std::string likely_cause(std::span<Diagnostic const> findings) {
-  Diagnostic const* cause = nullptr;
+  Diagnostic const* first = nullptr;
+  Diagnostic const* before = nullptr;
   for (auto const& finding : findings) {
     if (finding.severity == Severity::info) continue;
-    bool const left_out = finding.sentence.find("left out") != std::string::npos;
-    if (cause == nullptr || left_out) cause = &finding;
-    if (left_out) break;
+    auto const says = [&finding](char const* words) { return finding.sentence.find(words) != std::string::npos; };
+    bool const follows = before != nullptr && says("see the finding before");
+    if (follows || says("left out")) return " (" + to_string(follows ? *before : finding) + ")";
+    before = &finding;
+    if (first == nullptr) first = &finding;
   }
-  return cause == nullptr ? std::string() : " (" + to_string(*cause) + ")";
+  return first == nullptr ? std::string() : " (" + to_string(*first) + ")";
 }
 
 }  // namespace cambium

@@ -45,8 +45,8 @@ inline void check_piece(CurvePiece const& piece) {
   if (!(piece.length > 0.0 && piece.length <= 1e6) || std::isnan(piece.curvature_start + piece.curvature_end))
     throw MapError("curve", "a piece is " + cambium::detail::rounded_text(piece.length) + " m long",
                    "give a length above 0 and up to 1000 km, and finite curvatures");
-  if (!(steepest * piece.length <= 1000.0))
-    throw MapError("curve", "a piece turns by more than 1000 rad", "give a shorter one, or less curvature");
+  if (!(steepest * piece.length <= 100.0))
+    throw MapError("curve", "a piece turns by more than 100 rad", "give a shorter one, or less curvature");
 }
 
 [[nodiscard]] inline Geometry make_geometry(CurvePiece const& piece, geometry::Pose const& start) {

@@ -10,6 +10,7 @@
 
 #include "cambium/core/diagnostic.hpp"
 #include "cambium/core/error.hpp"
+#include "cambium/core/text.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/build_map.hpp"
@@ -52,12 +53,13 @@ class MapBuilder {
     document_.header.vendor = "cambium";
   }
 
-  /// Adds a road; gives its id. Throws `MapError` where the id is taken, the line or the first section is missing, a
-  /// geometry does not begin where the one before ends (to 1 cm and 0.01 rad), sections or records are not in order, or
-  /// a width falls below 0. Linear in the plan.
+  /// Adds a road; gives its id. Throws `MapError` where the id is taken or says none, the line or the first section is
+  /// missing, a geometry does not begin where the one before ends (to 1 cm and 0.01 rad), sections or records are not
+  /// in order, or a width falls below 0. Linear in the plan.
   std::string add_road(RoadPlan plan) {
     index_.update(document_);
     if (plan.id.empty()) plan.id = index_.free_id(document_);
+    check_id("road", plan.id);
     if (index_.has_road(plan.id)) throw MapError("road " + plan.id, "there is one of that id", "give another id");
     if (!plan.junction.empty()) (void)index_.junction(document_, plan.junction);
     document_.roads.push_back(detail::RoadMaker(std::move(plan)).make());
@@ -65,10 +67,12 @@ class MapBuilder {
     return document_.roads.back().id;
   }
 
-  /// Adds an empty junction; gives its id (without one, the next free number). Throws `MapError` where the id is taken.
+  /// Adds an empty junction; gives its id (without one, the next free number). Throws `MapError` where the id is taken
+  /// or says none.
   std::string add_junction(std::string id = {}, std::string name = {}) {
     index_.update(document_);
     if (id.empty()) id = index_.free_id(document_);
+    check_id("junction", id);
     if (index_.has_junction(id)) throw MapError("junction " + id, "there is one of that id", "give another id");
     opendrive::Junction junction;
     junction.id = id;
@@ -174,6 +178,12 @@ class MapBuilder {
   }
 
  private:
+  /// Files take "-1" for none, and pass over blanks around an id.
+  static void check_id(std::string const& what, std::string const& id) {
+    if (id == "-1" || cambium::detail::trimmed(id) != id)
+      throw MapError(what + " '" + id + "'", "its id says none, or has blanks around it", "give another id, or none");
+  }
+
   /// The connecting road of a turn.
   [[nodiscard]] RoadPlan turn_plan(RoadEnd const& from, RoadEnd const& to,
                                    std::vector<opendrive::LaneLink> const& lanes, TurnPlan plan) const {

@@ -10,7 +10,7 @@ namespace cambium::map::detail {
 /// Why nobody could drive on a geometry, or compute with it; null where nothing is wrong. One without a length is not.
 [[nodiscard]] inline char const* fault_of(Geometry const& g) {
   constexpr double farthest = 1e8, longest = 1e6;  // [m]: beyond any map
-  constexpr double most_turn = 1000.0;             // [rad]: more than any road, little enough to be integrated
+  constexpr double most_turn = 100.0;              // [rad]: more than any ramp winds
   auto const within = [](double value, double bound) { return std::abs(value) <= bound; };  // false for no number
   if (g.length < 0.0) return "the length is negative";
   bool const is_cubic = g.kind == GeometryKind::cubic;
@@ -22,7 +22,7 @@ namespace cambium::map::detail {
   if (!within(g.heading, 1e4)) return "hdg is beyond 10 000 rad, or not finite";
   if (!std::isfinite(g.curvature_start) || !std::isfinite(g.curvature_end)) return "the curvature is not finite";
   if (!(std::max(std::abs(g.curvature_start), std::abs(g.curvature_end)) * g.length < most_turn))
-    return "the curve turns by more than 1000 rad";
+    return "the curve turns by more than 100 rad";
   return nullptr;
 }
 
