@@ -118,22 +118,28 @@ std::shared_ptr<cb::Map const> map_of(cb::map::OpenDriveDocument const& document
   }
 }
 
-}  // namespace
-
-extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size) {
+/// The map of a text; null where it is refused, or too large to look at here.
+std::shared_ptr<cb::Map const> map_in(std::string_view text, bool infer_links) {
   try {
-    std::string_view const text(reinterpret_cast<char const*>(data), size);
     std::vector<cb::Diagnostic> diagnostics;
     auto const document = cb::map::read_opendrive_document(text, "text", diagnostics);
     check_written(document, text);
-    if (!is_small(document)) return 0;
+    if (!is_small(document)) return nullptr;
     cb::MapOptions options;
     options.position_tolerance = 0.1;
     options.heading_tolerance = 0.05;
-    options.infer_links = size % 2 != 0;
-    check_map(*map_of(document, options, diagnostics), is_used(text));
+    options.infer_links = infer_links;
+    return map_of(document, options, diagnostics);
   } catch (cb::MapError const&) {
+    return nullptr;
   }
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(std::uint8_t const* data, std::size_t size) {
+  std::string_view const text(reinterpret_cast<char const*>(data), size);
+  if (auto const map = map_in(text, size % 2 != 0)) check_map(*map, is_used(text));
   return 0;
 }
 
