@@ -423,7 +423,7 @@ std::vector<Refused> const refused{
      "the lane was left out, for it has no usable id"},
     {"a road that winds",
      R"(<OpenDRIVE><header/><road id="1" length="2970"><planView>
-     <geometry s="0" x="0" y="0" hdg="0" length="990"><arc curvature="0.1"/></geometry>
+     <geometry s="0" x="0" y="0" hdg="0" length="990"><arc curvature="0.1"/><line/></geometry>
      <geometry s="990" x="-9.992" y="10.398" hdg="99" length="990"><arc curvature="0.1"/></geometry>
      <geometry s="1980" x="0" y="0" hdg="198" length="990"><arc curvature="0.1"/></geometry></planView><lanes>
      <laneSection s="0"><center><lane id="0"/></center><right><lane id="-1"/></right></laneSection></lanes></road>

@@ -130,9 +130,9 @@ class CenterLineReader {
   }
 
   void check_heading(double theta, geometry::Point const& way) const {
-    constexpr double several_turns = 8.0 * geometry::pi;  // more than that, and it is degrees
     double const off = geometry::angle_difference(theta, std::atan2(way.y(), way.x()));
-    if (std::abs(off) > 0.5 * geometry::pi || std::abs(theta) > several_turns)
+    // Later ones may count laps; a first one beyond a turn is in degrees.
+    if (std::abs(off) > 0.5 * geometry::pi || std::abs(result_.headings.front()) > 2.0 * geometry::pi)
       fail("the heading " + cambium::detail::rounded_text(theta) +
                " does not fit the way between this point and the one before",
            "give headings in radians, in travel direction, or leave the column out");

@@ -10,23 +10,24 @@
 
 namespace cambium::map::detail {
 
-/// " (finding)" for a message that no road or lane is left: the first warning about one by which something was left
-/// out, or the one that this refers to; else the first one about any; empty where there is none.
+/// " (finding)" for a message that no road or lane is left: the first warning by which a road, a lane or something was
+/// left out, or the one that this refers to; else the first warning about one of their elements; empty where there is
+/// none.
 [[nodiscard]] inline std::string likely_cause(std::span<Diagnostic const> findings) {
   constexpr std::array<std::string_view, 11> carrying{"road",  "planView",   "geometry", "line", "arc",        "spiral",
                                                       "poly3", "paramPoly3", "lanes",    "lane", "laneSection"};
-  Diagnostic const* first = nullptr;
-  Diagnostic const* before = nullptr;
-  for (auto const& finding : findings) {
-    bool const matters = std::find(carrying.begin(), carrying.end(), finding.element) != carrying.end();
-    if (finding.severity == Severity::info || !matters) continue;
-    auto const says = [&finding](char const* words) { return finding.sentence.find(words) != std::string::npos; };
-    bool const follows = before != nullptr && says("see the finding before");
-    if (follows || says("left out")) return " (" + to_string(follows ? *before : finding) + ")";
-    before = &finding;
-    if (first == nullptr) first = &finding;
+  for (char const* words : {"the road was left out", "the lane was left out", "left out", ""}) {
+    Diagnostic const* before = nullptr;
+    for (auto const& finding : findings) {
+      bool const matters = std::find(carrying.begin(), carrying.end(), finding.element) != carrying.end();
+      if (finding.severity == Severity::info || !matters) continue;
+      auto const says = [&finding](char const* what) { return finding.sentence.find(what) != std::string::npos; };
+      if (says(words))
+        return " (" + to_string(before != nullptr && says("see the finding before") ? *before : finding) + ")";
+      before = &finding;
+    }
   }
-  return first == nullptr ? std::string() : " (" + to_string(*first) + ")";
+  return {};
 }
 
 }  // namespace cambium::map::detail
