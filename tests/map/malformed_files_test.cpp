@@ -416,11 +416,19 @@ std::vector<Refused> const refused{
      </geometry></planView><lanes><laneSection s="0"><center><lane id="0"/></center></laneSection></lanes></road>
      </OpenDRIVE>)",
      "no lane with a length"},
-    {"lanes whose ids are none",
-     R"(<OpenDRIVE><header/><road id="1" length="5"><planView><geometry s="0" x="0" y="0" hdg="0" length="5"><line/>
+    {"lanes whose ids are none, and something harmless before",
+     R"(<OpenDRIVE><header/><road id="1" length="5"><type s="x" type="town"/><planView><geometry s="0" x="0" y="0" hdg="0" length="5"><line/>
      </geometry></planView><lanes><laneSection s="0"><center><lane id="0"/></center><right><lane id="one"/></right>
      </laneSection></lanes></road></OpenDRIVE>)",
      "the lane was left out, for it has no usable id"},
+    {"a road that winds",
+     R"(<OpenDRIVE><header/><road id="1" length="2970"><planView>
+     <geometry s="0" x="0" y="0" hdg="0" length="990"><arc curvature="0.1"/><line/></geometry>
+     <geometry s="990" x="-9.992" y="10.398" hdg="99" length="990"><arc curvature="0.1"/></geometry>
+     <geometry s="1980" x="0" y="0" hdg="198" length="990"><arc curvature="0.1"/></geometry></planView><lanes>
+     <laneSection s="0"><center><lane id="0"/></center><right><lane id="-1"/></right></laneSection></lanes></road>
+     </OpenDRIVE>)",
+     "the road winds around itself by 297 rad; the road was left out"},
 };
 
 std::string changed(Case const& c) {

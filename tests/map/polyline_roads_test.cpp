@@ -187,8 +187,14 @@ TEST_CASE("a table that says two things is refused rather than read as one of th
         "a.csv:2: cell 1 is no finite number: \"0,5\"; give a number with a decimal point");
   CHECK(what_of([] { (void)read_center_line_csv("x,y\n0,0\n10,0,5,6\n", "a.csv"); }) ==
         "a.csv:3: it has 4 cells, the first row 2; give each row the same columns, and numbers a decimal point");
-  for (auto const* text : {"x,y,theta\n0,0,45\n7,7,45\n14,14,45\n", "0,0,3.14\n10,0,3.14\n"})
+  for (auto const* text :
+       {"x,y,theta\n0,0,45\n7,7,45\n14,14,45\n", "0,0,3.14\n10,0,3.14\n", "0,0,3.14\n10,0,0\n20,0,0\n"})
     CHECK(what_of([&] { (void)read_center_line_csv(text); }).find("does not fit the way") != std::string::npos);
+  std::string laps = "x,y,theta\n";
+  for (int i = 0; i <= 300; ++i)  // five laps, whose heading counts them
+    laps += std::to_string(30 * std::sin(0.1 * i)) + ',' + std::to_string(30 - 30 * std::cos(0.1 * i)) + ',' +
+            std::to_string(0.1 * i) + '\n';
+  CHECK(read_center_line_csv(laps).points.size() == 301);
 }
 
 TEST_CASE("damaged tables are read or refused, never worse") {

@@ -79,6 +79,20 @@ TEST_CASE("sampled lanes keep within the tolerances between their vertices on ev
   }
 }
 
+TEST_CASE("a road that winds keeps its whole length, however often it comes round") {
+  for (double const radius : {3.0, 25.0, 60.0})
+    for (double turns = 0.25; turns <= 15.01; turns += 0.05) {
+      double const length = 2.0 * cb::geometry::pi * radius * turns;
+      cb::map::RoadPlan road;
+      road.id = "1";
+      road.line = cb::map::lay_from({}, {{length, 1.0 / radius, 1.0 / radius}});
+      road.sections = {{.right = {{.width = 2.0}}}};
+      auto const map = support::map_of(road);
+      REQUIRE(map->lanes().size() == 1);
+      CHECK(map->lanes()[0].length() == doctest::Approx(length * (radius + 1.0) / radius).epsilon(2e-3));
+    }
+}
+
 TEST_CASE("what steps in the file steps in the sampled lanes, and not before") {
   cb::map::RoadPlan road;
   road.id = "1";

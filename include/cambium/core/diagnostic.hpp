@@ -1,6 +1,5 @@
 #pragma once
 
-#include <span>
 #include <string>
 #include <string_view>
 
@@ -40,22 +39,6 @@ struct Diagnostic {
   text += d.ids;
   if (!d.element.empty() || !d.ids.empty()) text += ": ";
   return detail::printable(text + d.sentence);
-}
-
-/// " (finding)" for a message that nothing usable is left: the first warning by which something was left out, else the
-/// first one; empty where there is none. A road that was left out for a finding counts as lost by that.
-[[nodiscard]] inline std::string likely_cause(std::span<Diagnostic const> findings) {
-  Diagnostic const* first = nullptr;
-  Diagnostic const* before = nullptr;
-  for (auto const& finding : findings) {
-    if (finding.severity == Severity::info) continue;
-    auto const says = [&finding](char const* words) { return finding.sentence.find(words) != std::string::npos; };
-    bool const follows = before != nullptr && says("see the finding before");
-    if (follows || says("left out")) return " (" + to_string(follows ? *before : finding) + ")";
-    before = &finding;
-    if (first == nullptr) first = &finding;
-  }
-  return first == nullptr ? std::string() : " (" + to_string(*first) + ")";
 }
 
 }  // namespace cambium

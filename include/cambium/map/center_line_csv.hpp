@@ -119,7 +119,9 @@ class CenterLineReader {
     geometry::Point const point = geometry::Point(row[x], row[y]) - origin_;
     if (!(point.cwiseAbs().maxCoeff() <= 1e8)) fail("the point lies beyond 100 000 km", "give coordinates in m");
     if (!result_.points.empty() && (point - result_.points.back()).norm() <= 1e-3) return;  // a joint written twice
-    if (column_[heading] && !result_.points.empty()) check_heading(row[heading], point - result_.points.back());
+    if (column_[heading] && !result_.points.empty())
+      for (double const theta : {result_.headings.back(), row[heading]})
+        check_heading(theta, point - result_.points.back());
     result_.points.push_back(point);
     if (column_[heading]) result_.headings.push_back(row[heading]);
     if (has_borders())
@@ -128,10 +130,11 @@ class CenterLineReader {
   }
 
   void check_heading(double theta, geometry::Point const& way) const {
-    constexpr double several_turns = 8.0 * geometry::pi;  // more than that, and it is degrees
     double const off = geometry::angle_difference(theta, std::atan2(way.y(), way.x()));
-    if (std::abs(off) > 0.5 * geometry::pi || std::abs(theta) > several_turns)
-      fail("the heading " + cambium::detail::rounded_text(theta) + " does not fit the way from the point before",
+    // Later ones may count laps; a first one beyond a turn is in degrees.
+    if (std::abs(off) > 0.5 * geometry::pi || std::abs(result_.headings.front()) > 2.0 * geometry::pi)
+      fail("the heading " + cambium::detail::rounded_text(theta) +
+               " does not fit the way between this point and the one before",
            "give headings in radians, in travel direction, or leave the column out");
   }
 

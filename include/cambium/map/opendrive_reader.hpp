@@ -14,6 +14,7 @@
 
 #include "cambium/core/diagnostic.hpp"
 #include "cambium/core/error.hpp"
+#include "cambium/map/detail/likely_cause.hpp"
 #include "cambium/map/detail/opendrive_junctions_reader.hpp"
 #include "cambium/map/detail/opendrive_lanes_reader.hpp"
 #include "cambium/map/detail/opendrive_objects_reader.hpp"
@@ -222,7 +223,7 @@ inline void read_top_level(XmlContext& context, pugi::xml_node node, std::string
     context.report(Severity::warning, next, "what follows </OpenDRIVE> was left out");
   check_opendrive_document(document, context.file(), diagnostics);
   if (document.roads.empty())
-    throw MapError(context.file(), "the file has no usable road" + likely_cause(diagnostics),
+    throw MapError(context.file(), "the file has no usable road" + detail::likely_cause(diagnostics),
                    "give a file with a road that has a plan view and lanes");
   return document;
 }

@@ -27,12 +27,13 @@ class ExactPaths {
     auto const& section = road.sections[lane.section];
     auto const column = column_of(section, lane.number);
     auto const cross = SectionSampler(road, section, options_).at(lane.station_at(s));
-    auto pose = cross.at(cross.center(column));
+    auto course = cross.center(column);
     if (is_valid(lane.merges_into)) {
       auto const target = column_of(section, lanes_[index_of(lane.merges_into)].number);
       double const from = lane.station_at(lane.merge_begin), to = lane.along_road ? section.end : section.begin;
-      pose = cross.at(merging_path(cross, column, target, from, to));
+      course = merging_path(cross, column, target, from, to);
     }
+    auto pose = cross.at(course);
     if (!lane.along_road) pose.heading += geometry::pi;
     return pose;
   }

@@ -46,7 +46,8 @@ class GeometryCheck {
   }
 
  private:
-  static constexpr double slight = 1e-3;  // [m]
+  static constexpr double slight = 1e-3;      // [m]
+  static constexpr double most_turn = 200.0;  // [rad]: more than any ramp winds, little enough for looking at all laps
 
   bool lose(std::size_t geometry, std::string const& what) {
     report(Severity::warning, road_.geometry_lines[geometry], what + "; the road was left out");
@@ -64,6 +65,14 @@ class GeometryCheck {
       report(
           Severity::warning, road_.geometry_lines[0],
           "the first geometry starts at " + rounded_text(first_s) + " m, not at 0; the road starts at 0 all the same");
+    double heading = 0.0, least = 0.0, most = 0.0;
+    for (auto const& g : road_.geometries) {
+      heading += 0.5 * (g.curvature_start + g.curvature_end) * g.length;
+      least = std::min(least, heading);
+      most = std::max(most, heading);
+    }
+    if (most - least > most_turn)
+      return lose(0, "the road winds around itself by " + rounded_text(most - least) + " rad");
     return true;
   }
 

@@ -86,7 +86,7 @@ class RoadListSearch {
     auto const& lane = map_.lane(at.lane);
     for (auto const side : {lane.left_neighbor, lane.right_neighbor})
       if (is_valid(side) && map_.lane(side).drivable())
-        offer({at.step, side}, cost + RouteOptions{}.lane_change_cost, at);
+        offer({at.step, side}, cost + lane_change_cost_, at);
     for (auto const next : lane.successors) {
       if (!map_.lane(next).drivable()) continue;
       if (stays_on_road(lane, map_.lane(next)))
@@ -121,6 +121,7 @@ class RoadListSearch {
 
   Map const& map_;
   std::span<RoadId const> order_;
+  double lane_change_cost_ = RouteOptions{}.lane_change_cost;  // [m]
   std::vector<LaneId> exits_;
   std::map<Place, Reached> reached_;
   std::set<std::pair<double, Place>> open_;

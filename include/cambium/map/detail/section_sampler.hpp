@@ -171,10 +171,18 @@ class SectionSampler {
     if (depth > 16 || b.s - a.s < 1e-3 || straight(a.s, b.s, inside)) return;
     auto const middle = cross_section(0.5 * (a.s + b.s), inside, &a);
     bool const has_room_to_wind = depth == 0 && b.s - a.s > 40.0;  // its middle alone says too little
-    if (!has_room_to_wind && fits(a, middle, b) && (bends_evenly(inside) || quarters_fit(a, b, inside))) return;
+    if (!has_room_to_wind && !winds(a, b) && fits(a, middle, b) && (bends_evenly(inside) || quarters_fit(a, b, inside)))
+      return;
     refine(a, middle, inside, depth + 1, result);
     result.push_back(middle);
     refine(middle, b, inside, depth + 1, result);
+  }
+
+  /// Whether the road turns so far from `a` to `b` that headings and places may come again. Exact but for cubics, which
+  /// turn less than once.
+  [[nodiscard]] static bool winds(CrossSection const& a, CrossSection const& b) {
+    double const sharpest = std::max(std::abs(a.reference.curvature), std::abs(b.reference.curvature));
+    return sharpest * (b.s - a.s) > 1.0;  // [rad]
   }
 
   /// Whether the middle tells how far the heading is off: not where it winds about the straight line of its ends.

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "cambium/core/diagnostic.hpp"
+
+namespace cambium::map::detail {
+
+/// " (finding)" for a message that no road or lane is left: the first warning by which a road, a lane or something was
+/// left out, or the one that this refers to; else the first warning about one of their elements; empty where there is
+/// none.
+[[nodiscard]] inline std::string likely_cause(std::span<Diagnostic const> findings) {
+  constexpr std::array<std::string_view, 11> carrying{"road",  "planView",   "geometry", "line", "arc",        "spiral",
+                                                      "poly3", "paramPoly3", "lanes",    "lane", "laneSection"};
+  for (char const* words : {"the road was left out", "the lane was left out", "left out", ""}) {
+    Diagnostic const* before = nullptr;
+    for (auto const& finding : findings) {
+      bool const matters = std::find(carrying.begin(), carrying.end(), finding.element) != carrying.end();
+      if (finding.severity == Severity::info || !matters) continue;
+      auto const says = [&finding](char const* what) { return finding.sentence.find(what) != std::string::npos; };
+      if (says(words))
+        return " (" + to_string(before != nullptr && says("see the finding before") ? *before : finding) + ")";
+      before = &finding;
+    }
+  }
+  return {};
+}
+
+}  // namespace cambium::map::detail
