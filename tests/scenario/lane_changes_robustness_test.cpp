@@ -52,7 +52,7 @@ std::vector<Sight> sights() {
           {"lasting noise", {lasting}},
           {"noise about itself, too", {lost}},
           {"0.2 s late", {cb::DelayedObserver<4>{.others = 1}}},
-          {"0.8 s late", {cb::DelayedObserver<4>{}}},
+          {"0.4 s late", {cb::DelayedObserver<4>{.others = 2}}},
           {"line of sight", {cb::OccludedObserver{}}},
           {"60 m", {cb::OccludedObserver{.range = 60.0}}}};
 }
@@ -92,9 +92,11 @@ void fill(World& world, std::vector<cb::LaneId> const& lanes, double end, std::u
   double const density = 1.0 + static_cast<double>(seed % 4);
   for (auto const id : lanes) {
     auto const& lane = world.map().lane(id);
+    auto const widths = lane.widths[lane.widths.size() / 2];
+    bool const is_wide = widths.left + widths.right > 3.3;  // in the bends of narrow lanes trucks swing out
     double speed = between(6.0, 14.0);
     for (double s = 5.0 + between(0.0, 30.0); s < std::min(end, lane.length() - 10.0);) {
-      bool const is_truck = cb::uniform01(random) < 0.1;
+      bool const is_truck = cb::uniform01(random) < 0.1 && is_wide;
       auto const shape = is_truck ? cb::geometry::truck() : cb::geometry::car();
       auto const pose = lane.path.pose(s + shape.rear);
       world.add({.position = pose.position(),
