@@ -7,13 +7,16 @@
 #include <cstdint>
 #include <initializer_list>
 #include <limits>
+#include <optional>
 #include <string>
 #include <tuple>
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/constant_acceleration.hpp"
 #include "cambium/behavior/idm.hpp"
+#include "cambium/behavior/idm_law.hpp"
 #include "cambium/behavior/lane_change.hpp"
+#include "cambium/behavior/lane_ends.hpp"
 #include "cambium/core/error.hpp"
 
 namespace cambium {
@@ -90,7 +93,7 @@ struct MacroActions {
         parameter("count", &P::count, "-", Range{1, capacity}, "how many of the actions there are"),
         parameter("highest_speed", &P::highest_speed, "m/s", Range{0, 200}, "not exceeded by accelerating"),
         parameter("minimum_remaining", &P::minimum_remaining, "m", Range{0, 10'000},
-                  "no change into a lane that ends sooner"),
+                  "no change into a lane that ends, or begins to merge into its neighbour, sooner"),
         parameter("idm", &P::idm, "-", {}, "how gaps are kept"),
         parameter("course", &P::course, "-", {}, "how long a change takes"),
         parameter("tolerance", &P::tolerance, "m/s^2", Range{1e-12, 1},
@@ -146,9 +149,8 @@ struct MacroActions {
     auto const& piece = view.corridor().pieces[at.piece];
     auto const side = kind == Kind::change_left ? piece.left : piece.right;
     if (side == none) return none;
-    auto const& corridor = view.road().corridors[side];
-    if (corridor.reaches_destination) return side;
-    return corridor.length_until_end(view.lane_position(side).s) < minimum_remaining ? none : side;
+    auto const there = view.lane_position(side);
+    return lane_end(view, side, there.piece) - there.s < minimum_remaining ? none : side;
   }
 
   template <class View>
@@ -156,12 +158,14 @@ struct MacroActions {
                                                   double speed, double dt) const {
     if (action.kind != Kind::keep_gap)
       return ConstantAcceleration{action.acceleration, highest_speed}.motion(speed, dt);
-    auto const response = [&](Neighbor const& n) { return idm_acceleration(idm, speed, n.gap, n.speed); };
-    auto leader = view.front();
-    if (change.active() && change.target != view.lane_position().corridor)
-      leader = more_restrictive(leader, view.neighbors(change.target).front, response);
-    return leader ? idm_motion(idm, speed, leader->gap, leader->speed, dt, tolerance)
-                  : idm_motion(idm, speed, std::numeric_limits<double>::infinity(), 0.0, dt, tolerance);
+    detail::IdmLaw const law(idm);
+    detail::Restriction ahead{std::numeric_limits<double>::infinity(), 0.0, law.free(speed)};
+    auto const heed = [&](std::optional<Neighbor> const& leader) {
+      if (leader) ahead.add(law, speed, leader->gap, leader->speed);
+    };
+    heed(view.front());
+    if (change.active() && change.target != view.lane_position().corridor) heed(view.front(view.beside(change.target)));
+    return idm_motion(idm, speed, ahead.gap, ahead.speed, dt, tolerance);
   }
 };
 static_assert(BehaviorModel<MacroActions>);

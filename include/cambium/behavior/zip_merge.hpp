@@ -42,6 +42,7 @@ struct ZipMerge {
   struct Memory {
     AgentId ahead = none<AgentId>;  ///< who was last ahead in the own lane before the merge
     float stood{};                  ///< how long it has been standing [s]
+    float bend{};                   ///< see `plan_to_center`
 
     friend bool operator==(Memory const&, Memory const&) = default;
   };
@@ -49,7 +50,7 @@ struct ZipMerge {
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
     double const speed = std::max(0.0, view.state().speed);
-    memory.stood = speed < 0.3 ? memory.stood + static_cast<float>(dt) : 0.0f;
+    wait(memory, speed, dt);
     detail::IdmLaw const law(idm);
     detail::Restriction ahead{infinite, 0.0, law.free(speed)};
     double const merge = next_merge(view);
@@ -63,11 +64,30 @@ struct ZipMerge {
     } else if (leader) {
       memory.ahead = leader->agent;
     }
-    return plan_along_lane(view, idm_motion(idm, speed, ahead.gap, ahead.speed, dt, tolerance), dt);
+    return plan_to_center(view, memory.bend, idm_motion(idm, speed, ahead.gap, ahead.speed, dt, tolerance), dt);
   }
 
  private:
   static constexpr double infinite = std::numeric_limits<double>::infinity();
+
+  /// Counts how long the vehicle has been standing. Who has lost patience and goes has none again before it drives.
+  void wait(Memory& memory, double speed, double dt) const {
+    constexpr double stands = 0.3, drives = 5.0;  // [m/s]
+    if (speed < stands)
+      memory.stood += static_cast<float>(dt);
+    else if (memory.stood <= static_cast<float>(patience) || speed > drives)
+      memory.stood = 0.0f;
+  }
+
+  /// Whether the vehicle ahead is on the own path; at the merge the other lane's vehicles are still beside it.
+  template <class View>
+  [[nodiscard]] bool is_on_path(View const& view, Neighbor const& leader, double s) const {
+    constexpr double beside = 1.5;  // [m]
+    if (!is_valid(leader.agent)) return true;
+    auto const& center = view.corridor().center;
+    auto const other = view.agent(leader);
+    return std::abs(center.project({other.state.x, other.state.y}, center.find(s)).lateral) < beside;
+  }
 
   /// Where the next merge within the zone is on the own corridor; infinite where there is none.
   template <class View>
@@ -93,7 +113,7 @@ struct ZipMerge {
       return std::nullopt;
     }
     double const rear_of_leader = front + leader->gap;
-    if (rear_of_leader < merge) memory.ahead = leader->agent;
+    if (rear_of_leader < merge && is_on_path(view, *leader, rear_of_leader)) memory.ahead = leader->agent;
     if (leader->agent != memory.ahead) {  // the other lane has had its turn
       auto const other = view.merging(merge, infinite);
       if (other && is_before(*other, reach)) return other;  // too far ahead to let this one in
