@@ -11,7 +11,7 @@
 
 #include "roll_out.hpp"
 
-namespace merging {
+namespace examples {
 
 struct Totals {
   std::uint64_t success = 0, collision = 0, time_out = 0, off_road = 0, agents = 0, agent_steps = 0, hard_brakings = 0,
@@ -38,8 +38,10 @@ struct Totals {
   return t;
 }
 
-[[nodiscard]] inline nlohmann::ordered_json summary(Settings const& settings, Site const& site,
-                                                    std::vector<Outcome> const& outcomes, Totals const& t) {
+/// The figures as a file keeps them. `add_facts(site, json)` beside the site adds what there is to say about it.
+template <class Site>
+[[nodiscard]] nlohmann::ordered_json summary(Settings const& settings, Site const& site,
+                                             std::vector<Outcome> const& outcomes, Totals const& t) {
   auto const n = static_cast<double>(settings.scenarios);
   nlohmann::ordered_json json;
   json["map"] = std::filesystem::path(settings.map_file).filename().string();
@@ -47,7 +49,7 @@ struct Totals {
   json["seed"] = settings.seed;
   json["steps"] = settings.steps;
   json["dt"] = dt;
-  json["entrances"] = site.entrances.size();
+  add_facts(site, json);
   json["success"] = static_cast<double>(t.success) / n;
   json["collision"] = static_cast<double>(t.collision) / n;
   json["time_out"] = static_cast<double>(t.time_out) / n;
@@ -87,4 +89,4 @@ inline void print_table(Settings const& settings, Totals const& t, double second
               settings.threads == 1 ? "" : "s");
 }
 
-}  // namespace merging
+}  // namespace examples
