@@ -98,9 +98,9 @@ struct Intersection {
     own.waited = memory.waited;
     follow(own, leader_of<false>(view, view.front_by_rule()));
     heed_conflicts(view, own, dt);
-    if (own.speed > starting)
+    if (own.speed > starting || (own.speed >= standing && own.at_line))
       memory.waited = 0.0f;
-    else if (own.speed < standing && own.at_line)
+    else if (own.at_line)
       memory.waited += static_cast<float>(dt);
     auto motion = idm_motion(own.idm, own.speed, own.leader.gap, own.leader.speed, dt, tolerance);
     if (own.bound.distance < motion.distance) motion = own.bound;
@@ -175,15 +175,21 @@ struct Intersection {
   /// Bounds the step's motion by what a conflict asks for.
   void obey(Claim claim, map::Conflict const& conflict, Own& own, double dt) const {
     double const to_conflict = conflict.begin - own.reach.front - air - own.s;
-    double const to_line = std::max(0.0, conflict.line - stop_margin - own.front);
-    bool const waits = claim != Claim::watch && own.front < conflict.line && can_stop(own.speed, to_line);
-    double const to_stop = waits ? std::min(to_line, std::max(0.0, to_conflict)) : to_conflict;
     if (to_conflict + air < 0.0) return;  // it is in there already
+    double const to_stop = claim == Claim::watch ? to_conflict : distance_to_stop(conflict, own, to_conflict);
     if (claim == Claim::yield && !can_stop(own.speed, to_stop)) return;
     double const braking = claim == Claim::watch ? safe_deceleration : own.idm.comfortable_deceleration;
     auto const motion = motion_before_stop(own.speed, to_stop, braking, -own.idm.lowest_acceleration, dt);
     if (motion.distance < own.bound.distance) own.bound = motion;
     own.at_line = own.at_line || to_stop < 2.0;
+  }
+
+  /// How far it goes to where it waits: before the line if it can still stop there, else before the conflict [m].
+  [[nodiscard]] double distance_to_stop(map::Conflict const& conflict, Own const& own, double to_conflict) const {
+    double const to_line = std::min(conflict.line - own.front - air, to_conflict);
+    if (to_line < 0.0 || !can_stop(own.speed, to_line)) return to_conflict;
+    double const to_margin = std::max(0.0, conflict.line - own.front - stop_margin);
+    return can_stop(own.speed, to_margin) ? std::min(to_margin, to_line) : to_line;
   }
 
   /// The strongest claim of all who are on their way to the conflict; merging leaders are followed.
@@ -239,11 +245,13 @@ struct Intersection {
                                 double way, double own_way, Own const& own) const {
     bool const inside = at + user.front > conflict.other_line, own_inside = own.front > conflict.line;
     if (inside != own_inside) return own_inside;
+    if (inside) return own_way != way ? own_way < way : view.id() < user.agent;
     bool const stands = user.speed < standing, own_stands = own.speed < standing;
     // Ids part those who lose their patience together.
     double const lost = patience + 0.5 * static_cast<double>(static_cast<std::uint32_t>(view.id()) % 16);
     if (stands && own.waited >= lost) return true;
-    if (own_stands && !stands && user.speed < starting && way < short_way) return false;
+    if (own_stands && !stands && user.speed < starting && conflict.other_line - at - user.front < short_way)
+      return false;
     if (conflict.right_of_way != map::RightOfWay::equal) return conflict.right_of_way == map::RightOfWay::first;
     return std::abs(own_way - way) > 2.0 ? own_way < way : view.id() < user.agent;
   }

@@ -251,7 +251,7 @@ inline void set_lane_ends(Map const& map, LaneCorridor& corridor, bool is_short)
     corridor.conflicts = detail::ConflictFinder(map, corridor).find();
     for (auto& feeder : corridor.feeders)
       feeder.by_rule = std::any_of(corridor.conflicts.begin(), corridor.conflicts.end(), [&](Conflict const& conflict) {
-        return conflict.kind == OverlapKind::merge && std::abs(conflict.meet - feeder.free_until) < 1e-3;
+        return std::abs(conflict.meet - feeder.free_until) < 1e-3;
       });
     road->corridors.push_back(std::move(corridor));
   }

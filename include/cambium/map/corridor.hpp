@@ -84,7 +84,7 @@ struct Conflict {
   double line{};        ///< corridor position where front ends wait: where the junction begins, else the conflict [m]
   double other_line{};  ///< likewise on the other's way [m]
   double shift{};       ///< where they merge or part: corridor position = position on the way + shift [m]
-  double meet{};        ///< corridor position where the lanes' paths come together [m]
+  double meet = std::numeric_limits<double>::infinity();  ///< where lanes that merge come together [m]
   /// The way: the other lane, those behind it back to `MapOptions::merge_view` before the conflict, and those that it
   /// leads into, as far as who is there may still reach back into the conflict.
   std::vector<ConflictWay> ways;

@@ -25,9 +25,13 @@ class ConflictFinder {
 
   [[nodiscard]] std::vector<Conflict> find() const {
     std::vector<Conflict> conflicts;
-    for (std::size_t i = 0; i < corridor_.pieces.size(); ++i)
-      for (auto const& overlap : map_.lane(corridor_.pieces[i].lane).overlaps)
+    for (std::size_t i = 0; i < corridor_.pieces.size(); ++i) {
+      auto const& lane = map_.lane(corridor_.pieces[i].lane);
+      for (auto const& overlap : lane.overlaps)
         if (auto conflict = conflict_at(i, overlap)) conflicts.push_back(std::move(*conflict));
+      for (auto const& overlap : passings(lane))
+        if (auto conflict = conflict_at(i, overlap)) conflicts.push_back(std::move(*conflict));
+    }
     std::sort(conflicts.begin(), conflicts.end(), [](Conflict const& a, Conflict const& b) {
       return std::tie(a.begin, a.other, a.other_begin) < std::tie(b.begin, b.other, b.other_begin);
     });
@@ -46,16 +50,42 @@ class ConflictFinder {
     auto const position = [&](double s) { return std::clamp(s - piece.lane_offset, piece.begin, piece.end); };
     Conflict conflict;
     conflict.other = overlap.other;
-    conflict.kind = overlap.kind;
+    conflict.kind = kind_of(map_.lane(piece.lane), overlap);
     conflict.right_of_way = right_of_way(map_, piece.lane, overlap);
-    conflict.meet = position(overlap.begin);
-    conflict.shift = overlap.kind == OverlapKind::split ? conflict.meet - overlap.other_begin
-                                                        : position(overlap.end) - overlap.other_end;
-    if (!find_touching(overlap, conflict.meet, position(overlap.end), conflict)) return std::nullopt;
+    double const begin = position(overlap.begin), end = position(overlap.end);
+    conflict.shift = conflict.kind == OverlapKind::split ? begin - overlap.other_begin : end - overlap.other_end;
+    if (overlap.kind == OverlapKind::merge) conflict.meet = begin;
+    if (!find_touching(overlap, begin, end, conflict)) return std::nullopt;
     conflict.line = std::min(conflict.begin + conflict_shape.front, junction_begin(number));
     conflict.other_line = std::min(conflict.other_begin + conflict_shape.front, junction_begin(overlap.other));
     add_ways(conflict);
     return conflict;
+  }
+
+  /// Lanes that come from, or lead into, lanes side by side are near each other there too, and may cross.
+  [[nodiscard]] OverlapKind kind_of(Lane const& lane, Overlap const& overlap) const {
+    auto const share = [](std::vector<LaneId> const& a, std::vector<LaneId> const& b) {
+      return std::any_of(a.begin(), a.end(), [&b](LaneId id) { return std::find(b.begin(), b.end(), id) != b.end(); });
+    };
+    auto const& other = map_.lane(overlap.other);
+    if (overlap.kind == OverlapKind::merge && share(lane.successors, other.successors)) return OverlapKind::merge;
+    if (overlap.kind == OverlapKind::split && share(lane.predecessors, other.predecessors)) return OverlapKind::split;
+    return OverlapKind::crossing;
+  }
+
+  /// The lanes of its junction whose paths keep apart from the lane's: bodies that swing out in bends may touch there.
+  [[nodiscard]] std::vector<Overlap> passings(Lane const& lane) const {
+    std::vector<Overlap> list;
+    auto const junction = junction_of(lane.id);
+    if (!is_valid(junction)) return list;
+    for (auto const id : map_.junction(junction).lanes) {
+      auto const& other = map_.lane(id);
+      bool const overlaps = std::any_of(lane.overlaps.begin(), lane.overlaps.end(),
+                                        [id](Overlap const& overlap) { return overlap.other == id; });
+      if (other.drivable() && !overlaps)
+        list.push_back({id, OverlapKind::crossing, 0.0, lane.length(), 0.0, other.length()});
+    }
+    return list;
   }
 
   [[nodiscard]] bool holds(LaneId lane) const {
@@ -103,7 +133,7 @@ class ConflictFinder {
   /// Sets the stretches on which bodies touch; false where they do not. Where lanes merge these end, and where they
   /// part these begin, with the overlap: there the two are one lane. O(places on one times places on the other).
   [[nodiscard]] bool find_touching(Overlap const& overlap, double begin, double end, Conflict& conflict) const {
-    bool const merges = overlap.kind == OverlapKind::merge, splits = overlap.kind == OverlapKind::split;
+    bool const merges = conflict.kind == OverlapKind::merge, splits = conflict.kind == OverlapKind::split;
     double const own_from = splits ? begin : std::max(0.0, begin - before),
                  own_to = merges ? end : std::min(corridor_.length(), end + behind);
     double const other_from = splits ? overlap.other_begin : overlap.other_begin - before,
