@@ -176,7 +176,7 @@ struct Intersection {
   void obey(Claim claim, map::Conflict const& conflict, Own& own, double dt) const {
     double const to_conflict = conflict.begin - own.reach.front - air - own.s;
     if (to_conflict + air < 0.0) return;  // it is in there already
-    double const to_stop = claim == Claim::watch ? to_conflict : distance_to_stop(conflict, own, to_conflict);
+    double const to_stop = distance_to_stop(claim, conflict, own, to_conflict);
     if (claim == Claim::yield && !can_stop(own.speed, to_stop)) return;
     double const braking = claim == Claim::watch ? safe_deceleration : own.idm.comfortable_deceleration;
     auto const motion = motion_before_stop(own.speed, to_stop, braking, -own.idm.lowest_acceleration, dt);
@@ -185,11 +185,13 @@ struct Intersection {
   }
 
   /// How far it goes to where it waits: before the line if it can still stop there, else before the conflict [m].
-  [[nodiscard]] double distance_to_stop(map::Conflict const& conflict, Own const& own, double to_conflict) const {
-    double const to_line = std::min(conflict.line - own.front - air, to_conflict);
+  [[nodiscard]] double distance_to_stop(Claim claim, map::Conflict const& conflict, Own const& own,
+                                        double to_conflict) const {
+    double const to_line = std::min(conflict.line - own.front, to_conflict);
     if (to_line < 0.0 || !can_stop(own.speed, to_line)) return to_conflict;
-    double const to_margin = std::max(0.0, conflict.line - own.front - stop_margin);
-    return can_stop(own.speed, to_margin) ? std::min(to_margin, to_line) : to_line;
+    for (double const margin : {claim == Claim::watch ? air : stop_margin, air})
+      if (can_stop(own.speed, to_line - margin)) return std::max(0.0, to_line - margin);
+    return to_line;
   }
 
   /// The strongest claim of all who are on their way to the conflict; merging leaders are followed.
@@ -229,8 +231,14 @@ struct Intersection {
         time_to_cover(way, user.speed, assumed_acceleration, std::max(user.speed, own.idm.desired_speed)),
         (way + conflict.other_end - conflict.other_begin + reach.front + reach.rear) / std::max(user.speed, standing)};
     Window const ours{arrival(own, own_way), arrival(own, conflict.end + own.reach.rear - own.s)};
-    bool const apart = ours.end + time_margin < theirs.begin || theirs.end + time_margin < ours.begin;
-    return apart ? Claim::free : Claim::yield;
+    if (theirs.end + time_margin < ours.begin) return is_inside(user, at, conflict) ? Claim::watch : Claim::free;
+    bool const slips_through = ours.end + time_margin < theirs.begin && !is_inside(user, at, conflict);
+    return slips_through ? Claim::free : Claim::yield;
+  }
+
+  /// Whether one at position `at` of its way is in the junction already.
+  [[nodiscard]] static bool is_inside(LaneUser const& user, double at, map::Conflict const& conflict) {
+    return at + user.front > conflict.other_line;
   }
 
   /// The earliest time [s] at which it has gone `distance` [m].
@@ -243,7 +251,7 @@ struct Intersection {
   template <class View>
   [[nodiscard]] bool goes_first(View const& view, map::Conflict const& conflict, LaneUser const& user, double at,
                                 double way, double own_way, Own const& own) const {
-    bool const inside = at + user.front > conflict.other_line, own_inside = own.front > conflict.line;
+    bool const inside = is_inside(user, at, conflict), own_inside = own.front > conflict.line;
     if (inside != own_inside) return own_inside;
     if (inside) return own_way != way ? own_way < way : view.id() < user.agent;
     bool const stands = user.speed < standing, own_stands = own.speed < standing;
