@@ -97,6 +97,17 @@ template <HasIdmParameters P>
                    : (p.minimum_gap + speed * p.time_headway) / std::sqrt(free);
 }
 
+/// The speed [m/s] at which followers keep `gap` [m]: what the gap above belongs to. 0 below the minimum gap.
+template <HasIdmParameters P>
+[[nodiscard]] double idm_equilibrium_speed(P const& p, double gap) {
+  double low = 0.0, high = p.desired_speed;
+  for (int i = 0; i < 60; ++i) {
+    double const middle = 0.5 * (low + high);
+    (idm_equilibrium_gap(p, middle) <= gap ? low : high) = middle;
+  }
+  return low;
+}
+
 namespace detail {
 
 /// The acceleration of a follower and how it changes along its motion.

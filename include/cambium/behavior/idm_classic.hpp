@@ -55,4 +55,16 @@ struct IdmClassic {
 };
 static_assert(BehaviorModel<IdmClassic>);
 
+/// A driver of these parameters, as of `presets`.
+[[nodiscard]] constexpr IdmClassic idm_classic(IdmParameters const& p) {
+  return {.desired_speed = p.desired_speed,
+          .time_headway = p.time_headway,
+          .minimum_gap = p.minimum_gap,
+          .maximum_acceleration = p.maximum_acceleration,
+          .comfortable_deceleration = p.comfortable_deceleration,
+          .exponent = p.exponent,
+          .lowest_acceleration = p.lowest_acceleration,
+          .highest_acceleration = p.highest_acceleration};
+}
+
 }  // namespace cambium
