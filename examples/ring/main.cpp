@@ -35,11 +35,12 @@ struct Settings {
 };
 
 cb::IdmParameters driver_of(std::string const& name) {
-  using namespace cb::presets;
-  if (name == "kesting_2010_car") return kesting_2010_car();
-  if (name == "aggressive") return aggressive();
-  if (name == "timid") return timid();
-  return treiber_2000();
+  std::string known;
+  for (auto const& preset : cb::presets::all) {
+    if (preset.name == name) return preset.parameters;
+    known += std::string(known.empty() ? "" : ", ") + preset.name;
+  }
+  throw cb::Error("--driver " + name, "there is no such driver", "there are " + known);
 }
 
 /// A density, what theory says of it and what came of it.
@@ -135,12 +136,12 @@ void print_table(Settings const& settings, cb::RingRoad const& road, std::vector
 }
 
 void run(Settings const& settings) {
+  auto const driver = driver_of(settings.driver);
   std::filesystem::path const folder(settings.out);
   std::error_code problem;
   std::filesystem::create_directories(folder, problem);
   if (problem)
     throw cb::Error(folder.string(), "the folder cannot be made (" + problem.message() + ")", "choose another --out");
-  auto const driver = driver_of(settings.driver);
   double const duration = 60.0 * static_cast<double>(settings.minutes), length = static_cast<double>(settings.length);
   auto const road = cb::make_ring_road(length, 2 + static_cast<int>(driver.desired_speed * duration / length));
   auto const rows = sweep(road, driver, duration);
@@ -170,9 +171,8 @@ int main(int argc, char** argv) {
         ->check(examples::whole_number(low, high))
         ->capture_default_str();
   };
-  program.add_option("--driver", settings.driver, "treiber_2000, kesting_2010_car, aggressive or timid")
+  program.add_option("--driver", settings.driver, "one of the presets, such as treiber_2000 or kesting_2010_car")
       ->type_name("NAME")
-      ->check(CLI::IsMember({"treiber_2000", "kesting_2010_car", "aggressive", "timid"}))
       ->capture_default_str();
   number("--length", settings.length, 500, 20'000, "of the ring [m]");
   number("--density", settings.density, 2, 120, "of the traffic whose waves are drawn [vehicles/km]");

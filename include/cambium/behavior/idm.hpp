@@ -53,6 +53,9 @@ struct IdmParameters {
   double highest_acceleration = 8.0;
 
   static constexpr char const* name = "idm";
+  static constexpr char const* summary =
+      "the parameters of the Intelligent Driver Model, where a model holds them beside its own";
+  static constexpr char const* source = "Treiber, Hennecke, Helbing 2000; defaults: BARK";
   static constexpr auto parameters() { return idm_parameters<IdmParameters>(); }
 };
 static_assert(HasIdmParameters<IdmParameters>);
