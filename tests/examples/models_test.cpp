@@ -1,6 +1,8 @@
 // README's tables of the models are what the program prints, and no model is missing there.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <regex>
 #include <string>
@@ -65,4 +67,13 @@ TEST_CASE("the program shows one model with all of its parameters, and names tho
   auto const none = program.run({"idm_modern"});
   CHECK(none.code == 2);
   CHECK(none.err.find("idm_classic") != std::string::npos);
+}
+
+TEST_CASE("a model of one's own takes README 25 lines, with all that uses it") {
+  auto const text = readme();
+  auto const model = text.find("struct OptimalVelocity");
+  REQUIRE(model != std::string::npos);
+  auto const begin = text.rfind("```cpp\n", model) + 7, end = text.find("```", model);
+  CHECK(std::count(text.begin() + static_cast<std::ptrdiff_t>(begin), text.begin() + static_cast<std::ptrdiff_t>(end),
+                   '\n') <= 25);
 }
