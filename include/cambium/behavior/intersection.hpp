@@ -63,6 +63,10 @@ struct Intersection {
   double tolerance = 1e-4;
 
   static constexpr char const* name = "intersection";
+  static constexpr char const* summary =
+      "IDM; gives way by priorities of the map, right before left, oncoming before turning; stops where somebody "
+      "predicted would come too close in time; resolves deadlocks";
+  static constexpr char const* source = "rules of the road (StVO sections 8 and 9); prediction: own";
   static constexpr auto parameters() {
     using P = Intersection;
     return std::make_tuple(

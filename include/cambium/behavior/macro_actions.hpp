@@ -87,6 +87,10 @@ struct MacroActions {
   double tolerance = 1e-4;
 
   static constexpr char const* name = "macro_actions";
+  static constexpr char const* summary =
+      "carries out what a search chooses: stay with an acceleration, change left or right, keep the gap by IDM; each "
+      "where its precondition holds";
+  static constexpr char const* source = "after BARK";
   static constexpr auto parameters() {
     using P = MacroActions;
     return std::make_tuple(

@@ -27,6 +27,9 @@ struct ZipMerge {
   double tolerance = 1e-4;
 
   static constexpr char const* name = "zip_merge";
+  static constexpr char const* summary =
+      "IDM; keeps its lane up to a merge and lets one vehicle from the other lane in before itself";
+  static constexpr char const* source = "rule: StVO section 7 (4); control of the gap: own";
   static constexpr auto parameters() {
     using P = ZipMerge;
     return std::make_tuple(

@@ -15,6 +15,10 @@ template <ObserverModel... Observers>
 struct ObserverChain {
   std::tuple<Observers...> stages{};
 
+  static constexpr char const* name = "observer_chain";
+  static constexpr char const* summary =
+      "one observer after the other: errors and delays add up, who is hidden to one is hidden";
+
   static constexpr bool perfect = (Observers::perfect && ...);
   static constexpr std::size_t past_steps = (past_steps_of<Observers> + ... + 0);
 
