@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <tuple>
 #include <type_traits>
 #include <variant>
 
@@ -214,6 +216,33 @@ class ObservedWorld {
     for (std::uint32_t i = 0; i < agents.size(); ++i)
       if (i != slot_ && record(i).status == AgentStatus::driving && detail::is_seen(*world_, slot_, i))
         f(observed_agent(i));
+  }
+
+  /// Calls `f(ObservedAgent)` for every other agent in traffic of which a circle about its reference point that holds
+  /// it comes within `distance` [m] of the own one, whatever lane it is on. In worlds of which a behaviour says that it
+  /// looks around O(agents found), in an order that does not depend on the lanes; else O(agents).
+  template <class F>
+  void for_each_around(double distance, F&& f) const {
+    auto const& own = record_->state;
+    auto const visit = [&](std::uint32_t slot) {
+      auto const& [shape, state] = std::tie(world_->roster().agents[slot].shape, record(slot).state);
+      double const reach = distance + std::max(shape.front, shape.rear) + std::max(shape.left, shape.right);
+      double const dx = state.x - own.x, dy = state.y - own.y;
+      if (slot == slot_ || !(dx * dx + dy * dy <= reach * reach) || !detail::is_seen(*world_, slot_, slot)) return;
+      f(observed_agent(slot));
+    };
+    if constexpr (World::Behaviors::looks_around) {
+      world_->plane().for_each_near({own.x - distance, own.y - distance, own.x + distance, own.y + distance}, visit);
+    } else {
+      for (std::uint32_t i = 0; i < world_->size(); ++i)
+        if (record(i).status == AgentStatus::driving) visit(i);
+    }
+  }
+
+  /// Calls `f(geometry::Polygon const&)` for the outlines of the static objects, in the order of their ids.
+  template <class F>
+  void for_each_object(F&& f) const {
+    for (auto const& object : world_->roster().objects) f(object.outline);
   }
 
   /// A world of its own, as this agent sees it, in which everybody behaves as `prediction` says: to be stepped, copied

@@ -74,6 +74,7 @@ template <class Set, class World>
   assumed->has_sequences = roster.has_sequences;
   assumed->objects = roster.objects;
   assumed->object_entries = roster.object_entries;
+  assumed->free_roads = roster.free_roads;
   typename Predicted::FrameType seen{frame.time, frame.step, {}};
   for (std::uint32_t i = 0; i < roster.agents.size(); ++i) {
     auto const& agent = roster.agents[i];

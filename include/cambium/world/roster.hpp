@@ -17,6 +17,11 @@
 
 namespace cambium {
 
+/// A free corridor as it was given, and as the world has it: with lane coordinates of its own, behind those of the map.
+struct FreeRoad {
+  std::shared_ptr<map::RoadCorridor const> given, numbered;
+};
+
 /// Who the agents of a world are: what does not change while nobody enters or leaves. Shared by copies of the world,
 /// copied on write. Agents are in order of their ids; an agent's place there is its slot, the same as in the frame.
 template <class Behavior, class Execution, class Dynamics, class Observer>
@@ -40,6 +45,8 @@ struct Roster {
   std::vector<StaticObject> objects;
   std::vector<TrafficEntry> object_entries;  ///< objects on the lanes that they stand in; slot: place in `objects`
   std::map<std::vector<LaneId>, std::shared_ptr<map::RoadCorridor const>> corridors;  ///< built so far, by route
+
+  std::vector<FreeRoad> free_roads;  ///< those that agents have entered on
 
   /// The agent's slot; nothing if there is no such agent. O(log n).
   [[nodiscard]] std::optional<std::size_t> slot_of(AgentId id) const {

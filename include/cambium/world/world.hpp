@@ -80,7 +80,8 @@ class World {
     geometry::Shape shape{};                                             ///< a car where not given
     Behavior behavior{};
     Goal goal{};
-    std::optional<map::Route> route{};  ///< else the shortest to the goal; without a goal straight on
+    std::optional<map::Route> route{};                ///< else the shortest to the goal; without a goal straight on
+    std::shared_ptr<map::RoadCorridor const> road{};  ///< instead of a route: see `map::build_free_corridor`
     Execution execution{};
     Dynamics dynamics{};
     Observer observer{};
@@ -148,13 +149,9 @@ class World {
     if (roster_->slot_of(id))
       throw WorldError(where, "the world has an agent of that id already", "leave the id out to get a free one");
     detail::check_entering(spec, where);
-    LaneId const lane = spec.route ? detail::entering_lane(*map_, spec.position, spec.heading, *spec.route, where)
-                                   : detail::entering_lane(*map_, spec.position, spec.heading, where);
-    auto const route = detail::entering_route(*map_, lane, spec.route, spec.goal, where);
-    auto const known = roster_->corridors.find(route.lanes);
-    auto const road = known != roster_->corridors.end() ? known->second : map::build_road_corridor(*map_, route);
+    auto const [road, route, lane, place] = entering(spec, where);
     Record record;
-    record.lane = detail::entering_position(*map_, spec, *road, lane, where);
+    record.lane = place;
     auto const& center = road->corridors[record.lane.corridor].center;
     record.state.time = frame_.time;
     record.state.x = spec.position.x();
@@ -170,7 +167,7 @@ class World {
     auto const slot = static_cast<std::ptrdiff_t>(std::lower_bound(roster.agents.begin(), roster.agents.end(), id,
                                                                    [](auto const& a, AgentId b) { return a.id < b; }) -
                                                   roster.agents.begin());
-    roster.corridors.emplace(route.lanes, road);
+    spec.road ? enter_free_road(roster, spec.road, road) : void(roster.corridors.emplace(route.lanes, road));
     roster.next_agent_id = std::max(roster.next_agent_id, static_cast<std::uint32_t>(id) + 1);
     roster.agents.insert(roster.agents.begin() + slot,
                          {id, spec.shape, road, spec.behavior, spec.execution, spec.dynamics, spec.observer});
@@ -228,7 +225,8 @@ class World {
     if (around > 10'000.0) throw WorldError("object", "its outline is longer than 10 km", "give coordinates in metres");
     auto& roster = writable_roster();
     StaticObject object{static_cast<ObjectId>(roster.next_object_id), std::move(outline)};
-    auto const entries = detail::object_entries(*map_, object, static_cast<std::uint32_t>(roster.objects.size()));
+    auto const entries =
+        detail::object_entries(*map_, roster.free_roads, object, static_cast<std::uint32_t>(roster.objects.size()));
     roster.object_entries.reserve(roster.object_entries.size() + entries.size());
     roster.objects.push_back(std::move(object));
     for (auto const& entry : entries)
@@ -325,6 +323,9 @@ class World {
   /// The traffic index; views use it. Up to date after `observe` and within a step.
   [[nodiscard]] TrafficIndex const& traffic() const { return scratch_.traffic; }
 
+  /// The index of the plane, likewise; only where behaviours look around.
+  [[nodiscard]] PlaneIndex const& plane() const { return scratch_.plane; }
+
   /// The largest time that a world may begin at [s]: steps are exact to well below a microsecond there.
   static constexpr double latest_time = 1e9;
 
@@ -386,21 +387,54 @@ class World {
  private:
   static constexpr double same_time = 1e-9;  // [s]
 
+  /// Where an agent enters. `route` is empty on a free corridor.
+  struct Entering {
+    std::shared_ptr<map::RoadCorridor const> road;
+    map::Route route;
+    LaneId lane = none<LaneId>;
+    map::LanePosition place;
+  };
+
+  [[nodiscard]] Entering entering(AgentSpec const& spec, std::string const& where) const {
+    if (spec.road) {
+      auto const road = detail::numbered_road(*map_, roster_->free_roads, spec.road, where);
+      return {road, {}, none<LaneId>, detail::entering_free(spec, *road, where)};
+    }
+    LaneId const lane = spec.route ? detail::entering_lane(*map_, spec.position, spec.heading, *spec.route, where)
+                                   : detail::entering_lane(*map_, spec.position, spec.heading, where);
+    auto const route = detail::entering_route(*map_, lane, spec.route, spec.goal, where);
+    auto const known = roster_->corridors.find(route.lanes);
+    auto const road = known != roster_->corridors.end() ? known->second : map::build_road_corridor(*map_, route);
+    return {road, route, lane, detail::entering_position(*map_, spec, *road, lane, where)};
+  }
+
+  /// Notes a free corridor that nobody has entered on before, and which objects stand on it.
+  static void enter_free_road(RosterType& roster, std::shared_ptr<map::RoadCorridor const> const& given,
+                              std::shared_ptr<map::RoadCorridor const> const& numbered) {
+    for (auto const& known : roster.free_roads)
+      if (known.numbered == numbered) return;
+    roster.free_roads.push_back({given, numbered});
+    for (std::uint32_t i = 0; i < roster.objects.size(); ++i)
+      detail::enter_object(numbered->corridors.front(), roster.objects[i], i, roster.object_entries);
+    std::sort(roster.object_entries.begin(), roster.object_entries.end());
+  }
+
   [[nodiscard]] GoalSituation situation(std::size_t slot, Record const& record) const {
     auto const& [state, lane] = std::tie(record.state, record.lane);
     auto const& agent = roster_->agents[slot];
     auto const& piece = agent.road->corridors[lane.corridor].pieces[lane.piece];
-    return {{state.x, state.y, state.heading},
-            agent.shape,
-            piece.lane,
-            lane.s + piece.index_offset - map_->lane(piece.lane).index_begin,
-            state.speed,
-            lane.lateral,
-            lane.heading_error,
-            agent.road.get(),
-            lane.corridor,
-            lane.s,
-            record.goals_passed};
+    return {
+        {state.x, state.y, state.heading},
+        agent.shape,
+        piece.lane,
+        lane.s + piece.index_offset - (is_valid(piece.lane) ? map_->lane(piece.lane).index_begin : piece.index_offset),
+        state.speed,
+        lane.lateral,
+        lane.heading_error,
+        agent.road.get(),
+        lane.corridor,
+        lane.s,
+        record.goals_passed};
   }
 
   /// Notes which parts of a sequence of goals an agent in traffic has reached.
@@ -429,6 +463,7 @@ class World {
   void refresh_traffic() {
     if (scratch_.fresh) return;
     detail::refresh_traffic(scratch_.traffic, *map_, *roster_, frame_);
+    if constexpr (Set::looks_around) detail::refresh_plane(scratch_.plane, *roster_, frame_);
     scratch_.fresh = true;
   }
 

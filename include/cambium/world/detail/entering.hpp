@@ -4,7 +4,9 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <tuple>
 #include <utility>
@@ -18,6 +20,7 @@
 #include "cambium/map/build_corridor.hpp"
 #include "cambium/map/lane_position.hpp"
 #include "cambium/map/map.hpp"
+#include "cambium/world/detail/objects_on_lanes.hpp"
 #include "cambium/world/detail/on_lanes.hpp"
 
 namespace cambium::detail {
@@ -197,6 +200,39 @@ template <class Spec>
   if (std::abs(at.heading_error) > geometry::pi / 2)
     throw WorldError(where, "it heads against the direction of its lane (" + map.describe(lane) + ")",
                      "leave the heading out, or enter along the lane");
+  return at;
+}
+
+/// The free corridor `given` as a world of `map` has it, which has met `known` before: with lane coordinates of its
+/// own. Throws `WorldError` where it has lanes.
+[[nodiscard]] inline std::shared_ptr<map::RoadCorridor const> numbered_road(
+    Map const& map, std::span<FreeRoad const> known, std::shared_ptr<map::RoadCorridor const> const& given,
+    std::string const& where) {
+  constexpr double apart = 10.0;  // [m]
+  double begin = lane_coordinate_end(map);
+  for (auto const& road : known) {
+    if (road.given == given || road.numbered == given) return road.numbered;
+    auto const& way = road.numbered->corridors.front();
+    begin = std::max(begin, way.pieces.front().index_offset + std::ceil(way.length() + apart));
+  }
+  if (given->corridors.size() != 1 || given->corridors.front().pieces.size() != 1 ||
+      is_valid(given->corridors.front().pieces.front().lane))
+    throw WorldError(where, "its road is no free corridor", "give the route, or what build_free_corridor returned");
+  auto road = std::make_shared<map::RoadCorridor>(*given);
+  road->corridors.front().pieces.front().index_offset = begin;
+  return road;
+}
+
+/// Where on the free corridor `road` an agent of `spec` enters. Throws `WorldError` where that is far.
+template <class Spec>
+[[nodiscard]] map::LanePosition entering_free(Spec const& spec, map::RoadCorridor const& road,
+                                              std::string const& where) {
+  auto at = map::locate(road, 0, {spec.position.x(), spec.position.y(), spec.heading.value_or(0.0)});
+  auto const& way = road.corridors.front();
+  double const beyond = std::max({-at.s, at.s - way.length(), 0.0});
+  if (!(std::hypot(at.lateral, beyond) <= entering_radius + 0.5 * way.width_at(at.s)))
+    throw WorldError(where, "its position is more than 5 m from its road", "enter on it");
+  if (!spec.heading) at.heading_error = 0.0;
   return at;
 }
 
