@@ -143,7 +143,7 @@ struct Pedestrian {
       around.add(
           {box, velocity, stride * velocity, geometry::distance(box, own), size <= largest_body ? 0.5 * size : 0.0});
     });
-    view.for_each_object([&](geometry::Polygon const& outline) {
+    view.for_each_object([&](ObjectId, geometry::Polygon const& outline) {
       if (around.object_count < detail::Surroundings::most && outline.bounding_box().grown(range).contains(own))
         around.objects[around.object_count++] = &outline;
     });
