@@ -8,6 +8,7 @@
 #include "cambium/map/corridor.hpp"
 #include "cambium/map/cubic.hpp"
 #include "cambium/map/find_corridor.hpp"
+#include "cambium/map/free_corridor.hpp"
 #include "cambium/map/junction.hpp"
 #include "cambium/map/lane.hpp"
 #include "cambium/map/lane_adjacency.hpp"

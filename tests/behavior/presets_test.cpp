@@ -4,6 +4,19 @@
 
 namespace cb = cambium;
 
+TEST_CASE("those on foot and on bicycles are within the models' ranges; a cyclist brakes no harder than it can") {
+  using namespace cb::presets;
+  CHECK_NOTHROW(cb::check_parameters(cyclist()));
+  CHECK_NOTHROW(cb::check_parameters(bicycle_dynamics()));
+  CHECK_NOTHROW(cb::check_parameters(pedestrian_dynamics()));
+  CHECK(cyclist().lowest_acceleration >= bicycle_dynamics().lowest_acceleration);
+  CHECK(cyclist().maximum_acceleration <= bicycle_dynamics().highest_acceleration);
+  CHECK(pedestrian_dynamics().highest_speed > 1.3 * 1.34);
+  auto const bicycle = cb::geometry::bicycle();
+  CHECK(bicycle_dynamics().wheel_base < bicycle.length());
+  CHECK(bicycle.front - bicycle_dynamics().wheel_base == doctest::Approx(bicycle.rear));  // wheels alike
+}
+
 TEST_CASE("drivers from the literature are within the parameters' ranges and drive as they are called") {
   using namespace cb::presets;
   for (auto const& preset : all) CHECK_NOTHROW(cb::check_parameters(preset.parameters));

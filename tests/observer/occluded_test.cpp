@@ -43,7 +43,7 @@ struct Plane {
 
 double between(double low, double high, cb::RandomStream& random) { return cb::Uniform{low, high}(random); }
 
-Plane sample(std::uint32_t number) {
+Plane sample(std::uint32_t number, std::size_t object_count = 2) {
   cb::RandomStream random(17, number, 0);
   Plane plane;
   std::vector<cb::geometry::Shape> const kinds{cb::geometry::car(), cb::geometry::truck(), cb::geometry::pedestrian()};
@@ -54,12 +54,13 @@ Plane sample(std::uint32_t number) {
     plane.states.push_back(state);
     plane.shapes.push_back(shape);
   }
-  while (plane.things.size() < 2) {  // an L, not convex
+  while (plane.things.size() < object_count) {  // an L, not convex
     double const x = between(-30, 30, random), y = between(-30, 30, random);
     cb::geometry::Polygon const outline(
         {{x, y}, {x + 8, y}, {x + 8, y + 1}, {x + 1, y + 1}, {x + 1, y + 6}, {x, y + 6}});
     bool free = true;
     for (std::uint32_t i = 0; i < plane.size(); ++i) free = free && !cb::geometry::intersects(plane.box(i), outline);
+    for (auto const& thing : plane.things) free = free && !cb::geometry::intersects(thing.outline, outline);
     if (free) plane.things.push_back({static_cast<cb::ObjectId>(plane.things.size()), outline});
   }
   return plane;
@@ -125,6 +126,57 @@ Counts compare(cb::OccludedObserver const& observer) {
       double const distance = cb::geometry::distance(plane.box(i), plane.box(0).center());
       if (widths[i] > observer.resolution + 2 * step) CHECK(sees == (distance <= observer.range));
       if (widths[i] < observer.resolution - 2 * step) CHECK_FALSE(sees);
+      ++(sees ? counts.seen : counts.hidden);
+    }
+  }
+  return counts;
+}
+
+/// By rays all around: how wide the widest clear stretch of each static object appears from vehicle 0 [rad].
+std::vector<double> object_widths_by_rays(Plane const& plane, cb::OccludedObserver const& observer, int rays) {
+  auto const eye = plane.box(0).center();
+  std::vector<double> widest(plane.things.size(), 0.0), run(plane.things.size(), 0.0), first(plane.things.size());
+  for (int k = 0; k < 2 * rays; ++k) {
+    double const angle = 2 * pi * k / rays, infinite = std::numeric_limits<double>::infinity();
+    Point const ray{std::cos(angle), std::sin(angle)};
+    double vehicle = infinite, nearest = infinite;
+    for (std::uint32_t i = 1; i < plane.size() && !observer.behind_vehicles; ++i) {
+      auto const corners = plane.box(i).corners();
+      for (std::size_t c = 0; c < 4; ++c) vehicle = std::min(vehicle, hit(eye, ray, corners[c], corners[(c + 1) % 4]));
+    }
+    for (std::size_t o = 0; o < plane.things.size(); ++o) {
+      auto const& outline = plane.things[o].outline;
+      first[o] = infinite;
+      for (std::size_t i = 0; i < outline.size(); ++i)
+        first[o] = std::min(first[o], hit(eye, ray, outline.edge(i).first, outline.edge(i).second));
+      nearest = std::min(nearest, first[o]);
+    }
+    bool const in_field =
+        std::abs(std::remainder(angle - plane.states[0].heading, 2 * pi)) <= 0.5 * observer.field_of_view;
+    for (std::size_t o = 0; o < first.size(); ++o) {
+      bool const clear =
+          in_field && first[o] < vehicle && (observer.behind_objects || first[o] == nearest) && first[o] < infinite;
+      run[o] = clear ? run[o] + 2 * pi / rays : 0.0;
+      widest[o] = std::max(widest[o], run[o]);
+    }
+  }
+  return widest;
+}
+
+Counts compare_objects(cb::OccludedObserver const& observer) {
+  constexpr int rays = 3600;
+  constexpr double step = 2 * pi / rays;
+  Counts counts;
+  for (std::uint32_t number = 0; number < 30; ++number) {
+    auto const plane = sample(number, 4);
+    auto const widths = object_widths_by_rays(plane, observer, rays);
+    for (std::uint32_t o = 0; o < plane.things.size(); ++o) {
+      CAPTURE(number);
+      CAPTURE(o);
+      bool const sees = observer.sees_object(plane, 0, o);
+      double const distance = cb::geometry::distance(plane.things[o].outline, plane.box(0).center());
+      if (widths[o] > observer.resolution + 2 * step) CHECK(sees == (distance <= observer.range));
+      if (widths[o] < observer.resolution - 2 * step) CHECK_FALSE(sees);
       ++(sees ? counts.seen : counts.hidden);
     }
   }
@@ -215,4 +267,43 @@ TEST_CASE("a neighbour behind one that is not seen is found") {
   CHECK_FALSE(at(0).rear());
   auto const side = static_cast<std::uint16_t>(1 - at(3).lane_position().corridor);
   CHECK(at(3).neighbors(side).front->agent == straddling);
+}
+
+TEST_CASE("which static objects are hidden is the same by intervals and by rays") {
+  auto const usual = compare_objects({.resolution = 0.02});
+  CHECK(usual.seen > 50);
+  CHECK(usual.hidden > 10);
+  CHECK(compare_objects({.resolution = 0.1}).hidden > usual.hidden);
+  CHECK(compare_objects({.resolution = 0.02, .behind_vehicles = true}).seen > usual.seen);
+  compare_objects({.resolution = 0.005, .behind_objects = true});
+  CHECK(compare_objects({.field_of_view = 2.0, .resolution = 0.02}).seen < usual.seen);
+  CHECK(compare_objects({.range = 15.0, .resolution = 0.02}).seen < usual.seen);
+  cb::OccludedObserver const knows{.range = 1.0, .objects_known = true};
+  CHECK(knows.sees_object(sample(0), 0, 1));
+}
+
+TEST_CASE("an object behind a truck is no neighbour, and in no prediction, until it is seen") {
+  World<cb::OccludedObserver> world(straight_road(1, 1000.0));
+  auto const ego = world.add({.position = {100, -1.75}, .speed = 10});
+  auto const truck = world.add({.position = {120, -1.75}, .speed = 10, .shape = cb::geometry::truck()});
+  auto const hidden = world.add_object(cb::geometry::Polygon({{150, -2.5}, {152, -2.5}, {152, -1.0}, {150, -1.0}}));
+  auto const farther = world.add_object(cb::geometry::Polygon({{170, -9.5}, {172, -9.5}, {172, 9.0}, {170, 9.0}}));
+  auto const seen = [&](auto view) {
+    std::vector<cb::ObjectId> ids;
+    view.for_each_object([&](cb::ObjectId id, cb::geometry::Polygon const&) { ids.push_back(id); });
+    return ids;
+  };
+  CHECK(seen(world.observe(ego)) == std::vector{farther});
+  CHECK(seen(world.observe(truck)) == std::vector{hidden, farther});
+  CHECK(world.observe(truck).front()->object == hidden);
+  auto const near = world.observe(ego).for_each_near(0, 200.0, [](auto const&) {});
+  REQUIRE(near.front);
+  CHECK(near.front->object == farther);
+  using Set = cb::BehaviorSet<cb::IdmClassic>;
+  auto prediction = world.observe(ego).predict(cb::predict_all_as<Set>(cb::IdmClassic{}));
+  REQUIRE(prediction.roster().objects.size() == 1);
+  CHECK(prediction.roster().objects[0].id == farther);
+  CHECK(prediction.observe(truck).front()->object == farther);
+  world.remove(truck);
+  CHECK(world.observe(ego).front()->object == hidden);
 }

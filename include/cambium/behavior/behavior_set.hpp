@@ -23,6 +23,14 @@ inline constexpr bool looks_beside = [] {
   else
     return false;
 }();
+/// Whether a behaviour says that it asks for who is around, on whatever lane: `static constexpr bool looks_around`.
+template <class B>
+inline constexpr bool looks_around = [] {
+  if constexpr (requires { B::looks_around; })
+    return B::looks_around;
+  else
+    return false;
+}();
 }  // namespace detail
 
 /// The closed set of behaviours that the agents of a world may have. An agent has one of them with parameters of its
@@ -48,6 +56,9 @@ struct BehaviorSet {
 
   /// Whether some of them ask for neighbours in the lanes beside: then those are worth being loaded ahead.
   static constexpr bool looks_beside = (detail::looks_beside<Behaviors> || ...);
+
+  /// Whether some of them ask for who is around, on whatever lane: then worlds keep an index of the plane.
+  static constexpr bool looks_around = (detail::looks_around<Behaviors> || ...);
 
   /// Place of `B` in the set.
   template <class B>

@@ -200,7 +200,7 @@ struct BasicMobil {
 
   template <class View>
   [[nodiscard]] bool keeps_left(View const& view, LaneId lane) const {
-    if (bias == 0.0 && !keep_right) return false;
+    if ((bias == 0.0 && !keep_right) || !is_valid(lane)) return false;
     return view.map().road(view.map().lane(lane).road).left_hand_traffic;
   }
 

@@ -1,8 +1,11 @@
 #pragma once
 
 #include "cambium/behavior/idm.hpp"
+#include "cambium/dynamics/kinematic_point.hpp"
+#include "cambium/dynamics/single_track.hpp"
 
-/// Drivers from the literature, as parameters of the car-following models. Vehicle shapes: geometry/shape.hpp.
+/// Drivers from the literature, as parameters of the car-following models, and vehicle models of the weak. Vehicle
+/// shapes: geometry/shape.hpp.
 namespace cambium::presets {
 
 /// Treiber, Hennecke, Helbing 2000, "Congested traffic states in empirical observations and microscopic simulations",
@@ -57,6 +60,39 @@ namespace cambium::presets {
           .maximum_acceleration = 1.0,
           .comfortable_deceleration = 1.3,
           .lowest_acceleration = -8.0};
+}
+
+/// Cyclist, as a driver of `bicycle_dynamics`. The numbers are chosen here: 18 km/h, a little below the highest speed
+/// that SUMO gives bicycles by default (20 km/h), started and stopped gently, with short gaps.
+[[nodiscard]] constexpr IdmParameters cyclist() {
+  return {.desired_speed = 18 / 3.6,
+          .time_headway = 1.0,
+          .minimum_gap = 1.0,
+          .maximum_acceleration = 0.8,
+          .comfortable_deceleration = 1.5,
+          .lowest_acceleration = -5.0};
+}
+
+/// Vehicle model of a bicycle (`geometry::bicycle`): it steers and cannot turn on the spot, so that it is a single
+/// track, not a point. It brakes by 5 m/s^2 before its rear wheel lifts off (a centre of mass 1.1 m high, 0.6 m behind
+/// the front axle), and leans by 27 degrees at most.
+[[nodiscard]] constexpr SingleTrack bicycle_dynamics() {
+  return {.wheel_base = 1.1,
+          .steering_limit = 0.8,
+          .lowest_acceleration = -5.0,
+          .highest_acceleration = 1.5,
+          .lateral_acceleration_limit = 5.0};
+}
+
+/// Vehicle model of one who walks, where plans are executed through the dynamics: fast enough for 1.3 times the desired
+/// speed of Helbing and Molnár 1995, and able to do what social forces ask for.
+[[nodiscard]] constexpr KinematicPoint pedestrian_dynamics() {
+  return {.wheel_base = 0.5,
+          .yaw_rate_limit = 10.0,
+          .lowest_acceleration = -10.0,
+          .highest_acceleration = 10.0,
+          .lateral_acceleration_limit = 10.0,
+          .highest_speed = 3.0};
 }
 
 /// A driver with its name and where its numbers are from.

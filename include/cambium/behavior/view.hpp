@@ -101,6 +101,10 @@ struct ViewArchetype {
   [[nodiscard]] ObservedAgent<State> agent(Neighbor const& neighbor) const;  ///< the neighbour itself; not of objects
   template <class F>
   void for_each_on_lane(double index_begin, double index_end, F&& f) const;  ///< `f(LaneUser)` for those who reach in
+  template <class F>
+  void for_each_around(double distance, F&& f) const;  ///< `f(ObservedAgent)` for who is near, on whatever lane or none
+  template <class F>
+  void for_each_object(F&& f) const;  ///< `f(id, outline)` for the static objects, outlines as polygons
   [[nodiscard]] bool signals_way(LaneUser const& user,
                                  LaneId lane) const;  ///< whether its turn signal says that it will come by `lane`
   [[nodiscard]] std::optional<Neighbor> front_of(LaneUser const& user) const;  ///< who is next ahead of it on its way

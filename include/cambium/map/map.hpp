@@ -187,6 +187,13 @@ class Map {
     return nearest_lane<None>(xy, radius);
   }
 
+  /// Calls `f(LaneHit)` for each foot point of `p` in a drivable lane that comes within `radius` [m] of it. O(log n)
+  /// and those found, no allocation.
+  template <class F>
+  void for_each_drivable_near(geometry::Point const& p, double radius, F&& f) const {
+    tree_.for_each_drivable(p, radius, f);
+  }
+
   /// True when a drivable lane holds the point. O(log n), no allocation.
   [[nodiscard]] bool on_drivable_lane(geometry::Point const& p) const { return tree_.any_drivable_at(p); }
 

@@ -39,6 +39,18 @@ struct ObserverChain {
     return std::apply([&](auto const&... stage) { return (by(stage) && ...); }, stages);
   }
 
+  template <class Scene>
+  [[nodiscard]] bool sees_object(Scene const& scene, std::uint32_t own, std::uint32_t object) const
+      requires(LimitedSightOfObjects<Observers, Scene> || ...) {
+    auto const by = [&](auto const& stage) {
+      if constexpr (LimitedSightOfObjects<std::remove_cvref_t<decltype(stage)>, Scene>)
+        return stage.sees_object(scene, own, object);
+      else
+        return true;
+    };
+    return std::apply([&](auto const&... stage) { return (by(stage) && ...); }, stages);
+  }
+
   template <MotionState S>
   [[nodiscard]] S observe(S const& truth, bool own, RandomStream const& random) const {
     S seen = truth;

@@ -18,6 +18,8 @@ namespace cambium {
 /// An observer may have more:
 /// - `template <class Scene> bool sees(Scene const& scene, std::uint32_t own, std::uint32_t other) const`: whether the
 ///   agent in slot `own` perceives that in slot `other` at all (see `ObserverScene`);
+/// - `template <class Scene> bool sees_object(Scene const& scene, std::uint32_t own, std::uint32_t object) const`:
+///   likewise static objects, by their place among them;
 /// - `static constexpr std::size_t past_steps` and `std::size_t steps_back(bool own) const`: it perceives states of up
 ///   to `past_steps` steps ago, which the world then keeps in its records.
 template <class O>
@@ -31,6 +33,12 @@ concept ObserverModel = std::copyable<O> &&
 template <class O, class Scene>
 concept LimitedSight = requires(O const observer, Scene const scene, std::uint32_t slot) {
   { observer.sees(scene, slot, slot) } -> std::convertible_to<bool>;
+};
+
+/// Whether observer `O` does not see all static objects.
+template <class O, class Scene>
+concept LimitedSightOfObjects = requires(O const observer, Scene const scene, std::uint32_t slot) {
+  { observer.sees_object(scene, slot, slot) } -> std::convertible_to<bool>;
 };
 
 /// How many steps back observer `O` may look.

@@ -35,6 +35,19 @@ struct ObserverSet {
         any);
   }
 
+  template <class Scene>
+  [[nodiscard]] bool sees_object(Scene const& scene, std::uint32_t own, std::uint32_t object) const
+      requires(LimitedSightOfObjects<Observers, Scene> || ...) {
+    return std::visit(
+        [&](auto const& one) {
+          if constexpr (LimitedSightOfObjects<std::remove_cvref_t<decltype(one)>, Scene>)
+            return one.sees_object(scene, own, object);
+          else
+            return true;
+        },
+        any);
+  }
+
   template <MotionState S>
   [[nodiscard]] S observe(S const& truth, bool own, RandomStream const& random) const {
     return std::visit([&](auto const& one) { return S(one.observe(truth, own, random)); }, any);

@@ -63,7 +63,7 @@ struct ViewInterval {
   return nearest;
 }
 
-/// The look at one vehicle.
+/// The look at one convex body of up to four corners: a vehicle, or an edge of a static object.
 class Sight {
  public:
   Sight(geometry::Point const& eye, geometry::OrientedBox const& target)
@@ -71,15 +71,20 @@ class Sight {
         center_(target.center()),
         radius_(std::hypot(target.half_length, target.half_width)),
         corners_(target.corners()) {
-    double const distance = (center_ - eye_).norm();
-    if (distance > 0.0) axis_ = (center_ - eye_) / distance;
-    seen_ = interval_of(corners_, eye_, axis_);
+    look();
+  }
+  Sight(geometry::Point const& eye, geometry::Point const& a, geometry::Point const& b)
+      : eye_(eye), center_(0.5 * (a + b)), radius_(0.5 * (b - a).norm()), corners_{a, b, a, b}, count_(2) {
+    look();
   }
 
-  /// Whether a part at least `resolution` [rad] wide is left of it; `each_cover(f)` calls `f(ViewInterval)` for what
-  /// lies in front.
-  template <class EachCover>
-  [[nodiscard]] bool has_clear_part(double resolution, EachCover const& each_cover) const {
+  /// The direction that angles are counted from [rad], map frame.
+  [[nodiscard]] double axis() const { return std::atan2(axis_.y(), axis_.x()); }
+
+  /// Calls `f(ViewInterval)` for the parts that are left of it until that returns true; returns whether it did.
+  /// `each_cover(g)` calls `g(ViewInterval)` for what lies in front.
+  template <class EachCover, class F>
+  bool any_clear_part(EachCover const& each_cover, F const& f) const {
     double at = seen_.from;
     while (at < seen_.to) {
       double covered = at, next = seen_.to;
@@ -96,7 +101,7 @@ class Sight {
         at = covered;
         continue;
       }
-      if (next - at >= resolution) return true;
+      if (f(ViewInterval{at, next})) return true;
       at = next;
     }
     return false;
@@ -120,7 +125,7 @@ class Sight {
       // Of two convex bodies that do not meet the same one is in front wherever both are seen.
       auto const [sin, cos] = geometry::sin_cos(0.5 * (from + to));
       geometry::Point const ray{axis_.x() * cos - axis_.y() * sin, axis_.x() * sin + axis_.y() * cos};
-      if (distance_along(corners, eye_, ray) < distance_along(corners_, eye_, ray)) return body;
+      if (distance_along(corners, eye_, ray) < distance_along(corners_of_target(), eye_, ray)) return body;
     }
     return {};
   }
@@ -134,9 +139,18 @@ class Sight {
   }
 
  private:
+  void look() {
+    double const distance = (center_ - eye_).norm();
+    if (distance > 0.0) axis_ = (center_ - eye_) / distance;
+    seen_ = interval_of(corners_of_target(), eye_, axis_);
+  }
+
+  [[nodiscard]] std::span<geometry::Point const> corners_of_target() const { return {corners_.data(), count_}; }
+
   geometry::Point eye_, center_, axis_{1.0, 0.0};
   double radius_;
   std::array<geometry::Point, 4> corners_;
+  std::size_t count_ = 4;
   ViewInterval seen_;
 };
 
@@ -144,14 +158,16 @@ class Sight {
 
 /// Sees by line of sight from the middle of its vehicle: whoever is within `range` and of whom some part, `resolution`
 /// wide at least, lies in its field of view and is hidden neither by a vehicle nor by a static object. Those it sees as
-/// they are, the others not at all. Static objects are known, as the map is. Exact for the rectangles of vehicles. Who
-/// overlaps with the observer's middle is seen. O(agents + edges of objects) for each part that is hidden.
+/// they are, the others not at all; static objects likewise. Exact for the rectangles of vehicles and the outlines of
+/// objects. Who overlaps with the observer's middle is seen. O(agents + edges of objects) for each part that is hidden,
+/// and for static objects times their edges.
 struct OccludedObserver {
   double range = 150.0;
   double field_of_view = 2 * geometry::pi;
   double resolution = 1e-3;
   bool behind_vehicles = false;
   bool behind_objects = false;
+  bool objects_known = false;
 
   static constexpr bool perfect = false;
   static constexpr char const* name = "occluded";
@@ -165,7 +181,8 @@ struct OccludedObserver {
         parameter("field_of_view", &P::field_of_view, "rad", Range{0, 7}, "about the own heading; 2 pi: all around"),
         parameter("resolution", &P::resolution, "rad", Range{0, 1}, "what appears smaller is not seen"),
         parameter("behind_vehicles", &P::behind_vehicles, "-", Range{0, 1}, "vehicles do not hide others"),
-        parameter("behind_objects", &P::behind_objects, "-", Range{0, 1}, "static objects do not hide vehicles"));
+        parameter("behind_objects", &P::behind_objects, "-", Range{0, 1}, "static objects do not hide others"),
+        parameter("objects_known", &P::objects_known, "-", Range{0, 1}, "static objects are known, as the map is"));
   }
 
   template <MotionState S>
@@ -180,14 +197,67 @@ struct OccludedObserver {
     if (geometry::distance(target, eye) > range) return false;
     if (target.contains(eye)) return true;
     detail::Sight const sight(eye, target);
-    return sight.has_clear_part(resolution, [&](auto const& cover) {
-      if (auto const hidden = sight.outside(scene.state(own).heading, field_of_view); !hidden.empty()) cover(hidden);
-      if (!behind_vehicles) cover_by_vehicles(scene, own, other, sight, eye, cover);
-      if (!behind_objects) cover_by_objects(scene, sight, cover);
+    return sight.any_clear_part([&](auto const& cover) { cover_all(scene, own, other, nobody, sight, eye, cover); },
+                                [&](detail::ViewInterval const& part) { return part.to - part.from >= resolution; });
+  }
+
+  template <class Scene>
+  [[nodiscard]] bool sees_object(Scene const& scene, std::uint32_t own, std::uint32_t object) const {
+    if (objects_known) return true;
+    auto const eye = geometry::box_of(scene.shape(own), scene.state(own)).center();
+    auto const& outline = scene.objects()[object].outline;
+    if (geometry::distance(outline, eye) > range) return false;
+    if (outline.contains(eye)) return true;
+    // Clear parts of its edges that adjoin are one.
+    return any_clear_edge(scene, own, object, eye, [&](detail::ViewInterval part) {
+      bool grows = part.to - part.from < resolution;
+      while (grows) {
+        grows = any_clear_edge(scene, own, object, eye, [&](detail::ViewInterval const& next) {
+          for (double const turn : {-2 * geometry::pi, 0.0, 2 * geometry::pi}) {
+            if (next.from + turn > part.to + 1e-9 || next.to + turn <= part.to + 1e-9) continue;
+            part.to = next.to + turn;
+            return true;
+          }
+          return false;
+        });
+        grows = grows && part.to - part.from < resolution;
+      }
+      return part.to - part.from >= resolution;
     });
   }
 
  private:
+  static constexpr std::uint32_t nobody = std::numeric_limits<std::uint32_t>::max();
+
+  /// Calls `f(ViewInterval)`, map frame, for the parts of the object's edges that nothing else hides until that returns
+  /// true; returns whether it did.
+  template <class Scene, class F>
+  bool any_clear_edge(Scene const& scene, std::uint32_t own, std::uint32_t object, geometry::Point const& eye,
+                      F const& f) const {
+    auto const& outline = scene.objects()[object].outline;
+    for (std::size_t i = 0; i < outline.size(); ++i) {
+      auto const ends = outline.edge(i);
+      detail::Sight const sight(eye, ends.first, ends.second);
+      bool const done =
+          sight.any_clear_part([&](auto const& cover) { cover_all(scene, own, nobody, object, sight, eye, cover); },
+                               [&](detail::ViewInterval const& part) {
+                                 double const axis = sight.axis();
+                                 return f(detail::ViewInterval{axis + part.from, axis + part.to});
+                               });
+      if (done) return true;
+    }
+    return false;
+  }
+
+  /// Calls `cover(ViewInterval)` for all that hides the target of `sight`: agent `other`, or object `object`.
+  template <class Scene, class Cover>
+  void cover_all(Scene const& scene, std::uint32_t own, std::uint32_t other, std::uint32_t object,
+                 detail::Sight const& sight, geometry::Point const& eye, Cover const& cover) const {
+    if (auto const hidden = sight.outside(scene.state(own).heading, field_of_view); !hidden.empty()) cover(hidden);
+    if (!behind_vehicles) cover_by_vehicles(scene, own, other, sight, eye, cover);
+    if (!behind_objects) cover_by_objects(scene, object, sight, cover);
+  }
+
   template <class Scene, class Cover>
   static void cover_by_vehicles(Scene const& scene, std::uint32_t own, std::uint32_t other, detail::Sight const& sight,
                                 geometry::Point const& eye, Cover const& cover) {
@@ -202,14 +272,19 @@ struct OccludedObserver {
   }
 
   template <class Scene, class Cover>
-  static void cover_by_objects(Scene const& scene, detail::Sight const& sight, Cover const& cover) {
-    for (auto const& object : scene.objects())
-      for (std::size_t i = 0; i < object.outline.size(); ++i) {
-        auto const [a, b] = object.outline.edge(i);
+  static void cover_by_objects(Scene const& scene, std::uint32_t except, detail::Sight const& sight,
+                               Cover const& cover) {
+    auto const& objects = scene.objects();
+    for (std::uint32_t k = 0; k < objects.size(); ++k) {
+      if (k == except) continue;
+      auto const& outline = objects[k].outline;
+      for (std::size_t i = 0; i < outline.size(); ++i) {
+        auto const [a, b] = outline.edge(i);
         std::array<geometry::Point, 2> const ends{a, b};
         auto const hidden = sight.cover_of(ends, 0.5 * (a + b), 0.5 * (b - a).norm());
         if (!hidden.empty()) cover(hidden);
       }
+    }
   }
 };
 static_assert(ObserverModel<OccludedObserver>);

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <tuple>
 #include <type_traits>
 #include <variant>
 
@@ -51,7 +53,6 @@ class ObservedWorld {
       return seen_lane_;
   }
   [[nodiscard]] map::LaneCorridor const& corridor() const { return road().corridors[lane_position().corridor]; }
-  [[nodiscard]] std::span<StaticObject const> objects() const { return world_->roster().objects; }
 
   /// Numbers of the agent's own for this step: the same whatever the order of agents, threads or copies. `purpose`
   /// below
@@ -105,7 +106,8 @@ class ObservedWorld {
       return false;
     };
     TrafficQuery const own{slot_, at.s, shape().front, shape().rear, at.piece};
-    SightedQuery<decltype(visit)> const query{own, visit, distance};
+    auto const sees_object = [this](std::uint32_t object) { return detail::is_object_seen(*world_, slot_, object); };
+    SightedQuery<decltype(visit), decltype(sees_object)> const query{own, visit, sees_object, distance};
     auto const& along = road().corridors[number];
     auto const entry = world_->traffic().find(along, own);
     auto const object = [](std::optional<TrafficHit> hit) { return hit && hit->is_object ? hit : std::nullopt; };
@@ -164,6 +166,7 @@ class ObservedWorld {
   void for_each_on_lane(double index_begin, double index_end, F&& f) const {
     world_->traffic().for_each_in(index_begin, index_end, objects_on_lanes(), [&](auto const& entry, bool is_object) {
       if (is_object) {
+        if (!detail::is_object_seen(*world_, slot_, entry.slot)) return;
         f(LaneUser{.object = static_cast<ObjectId>(entry.id),
                    .position = entry.position,
                    .front = entry.front,
@@ -220,6 +223,36 @@ class ObservedWorld {
         f(observed_agent(i));
   }
 
+  /// Calls `f(ObservedAgent)` for every other agent in traffic of which a circle about its reference point that holds
+  /// it comes within `distance` [m] of the own one, whatever lane it is on. In worlds of which a behaviour says that it
+  /// looks around O(agents found), in an order that does not depend on the lanes; else O(agents).
+  template <class F>
+  void for_each_around(double distance, F&& f) const {
+    auto const& own = record_->state;
+    auto const visit = [&](std::uint32_t slot) {
+      auto const& [shape, state] = std::tie(world_->roster().agents[slot].shape, record(slot).state);
+      double const reach = distance + std::max(shape.front, shape.rear) + std::max(shape.left, shape.right);
+      double const dx = state.x - own.x, dy = state.y - own.y;
+      if (slot == slot_ || !(dx * dx + dy * dy <= reach * reach) || !detail::is_seen(*world_, slot_, slot)) return;
+      f(observed_agent(slot));
+    };
+    if constexpr (World::Behaviors::looks_around) {
+      world_->plane().for_each_near({own.x - distance, own.y - distance, own.x + distance, own.y + distance}, visit);
+    } else {
+      for (std::uint32_t i = 0; i < world_->size(); ++i)
+        if (record(i).status == AgentStatus::driving) visit(i);
+    }
+  }
+
+  /// Calls `f(id, outline)`, an `ObjectId` and a `geometry::Polygon`, for the static objects that are seen, in the
+  /// order of their ids.
+  template <class F>
+  void for_each_object(F&& f) const {
+    auto const& objects = world_->roster().objects;
+    for (std::uint32_t i = 0; i < objects.size(); ++i)
+      if (detail::is_object_seen(*world_, slot_, i)) f(objects[i].id, objects[i].outline);
+  }
+
   /// A world of its own, as this agent sees it, in which everybody behaves as `prediction` says: to be stepped, copied
   /// and judged. History, observers and true behaviours stay behind. O(agents), allocates: do it once, then copy.
   template <class Set>
@@ -252,11 +285,14 @@ class ObservedWorld {
   template <class Place>
   [[nodiscard]] auto query(Place const& at) const {
     TrafficQuery const query{slot_, at.s, shape().front, shape().rear, at.piece};
-    if constexpr (detail::hides<World>) {
+    if constexpr (detail::hides<World> || detail::hides_objects<World>) {
       auto const sees = [world = world_, own = slot_](std::uint32_t slot) {
         return detail::is_seen(*world, own, slot);
       };
-      return SightedQuery<decltype(sees)>{query, sees};
+      auto const sees_object = [world = world_, own = slot_](std::uint32_t object) {
+        return detail::is_object_seen(*world, own, object);
+      };
+      return SightedQuery<decltype(sees), decltype(sees_object)>{query, sees, sees_object};
     } else {
       return query;
     }

@@ -2,10 +2,12 @@
 
 #include <concepts>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "cambium/behavior/behavior_set.hpp"
 #include "cambium/core/random.hpp"
@@ -46,6 +48,27 @@ template <class Set, class Behavior>
   return predict_as<Set>(behavior, behavior);
 }
 
+namespace detail {
+
+/// Takes over the static objects that agent number `slot` of `world` sees.
+template <class World, class Roster>
+void take_seen_objects(World const& world, std::uint32_t slot, Roster& assumed) {
+  auto const& roster = world.roster();
+  constexpr auto unseen = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> places(roster.objects.size(), unseen);
+  for (std::uint32_t i = 0; i < roster.objects.size(); ++i) {
+    if (!is_object_seen(world, slot, i)) continue;
+    places[i] = static_cast<std::uint32_t>(assumed.objects.size());
+    assumed.objects.push_back(roster.objects[i]);
+  }
+  for (auto entry : roster.object_entries) {
+    entry.slot = places[entry.slot];
+    if (entry.slot != unseen) assumed.object_entries.push_back(entry);  // still sorted: the order is kept
+  }
+}
+
+}  // namespace detail
+
 /// The world that agent number `slot` of `world` expects: states as it observes them, behaviours as `prediction` says.
 /// The others keep their routes, as if they signalled them, but not their goals. Agents that are not in traffic, or not
 /// seen, are left out; what is seen late counts as the present. Throws `ParameterError` where a parameter of an assumed
@@ -72,8 +95,8 @@ template <class Set, class World>
   assumed->next_agent_id = roster.next_agent_id;
   assumed->next_object_id = roster.next_object_id;
   assumed->has_sequences = roster.has_sequences;
-  assumed->objects = roster.objects;
-  assumed->object_entries = roster.object_entries;
+  detail::take_seen_objects(world, slot, *assumed);
+  assumed->free_roads = roster.free_roads;
   typename Predicted::FrameType seen{frame.time, frame.step, {}};
   for (std::uint32_t i = 0; i < roster.agents.size(); ++i) {
     auto const& agent = roster.agents[i];

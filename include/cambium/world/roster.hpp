@@ -19,6 +19,11 @@
 
 namespace cambium {
 
+/// A free corridor as it was given, and as the world has it: with lane coordinates of its own, behind those of the map.
+struct FreeRoad {
+  std::shared_ptr<map::RoadCorridor const> given, numbered;
+};
+
 /// Who the agents of a world are: what does not change while nobody enters or leaves. Shared by copies of the world,
 /// copied on write. Agents are in order of their ids; an agent's place there is its slot, the same as in the frame.
 template <class Behavior, class Execution, class Dynamics, class Observer>
@@ -43,6 +48,8 @@ struct Roster {
   std::vector<TrafficEntry> object_entries;  ///< objects on the lanes that they stand in; slot: place in `objects`
   std::map<std::vector<LaneId>, std::shared_ptr<map::RoadCorridor const>> corridors;  ///< built so far, by route
 
+  std::vector<FreeRoad> free_roads;  ///< those that agents have entered on
+
   /// The agent's slot; nothing if there is no such agent. O(log n).
   [[nodiscard]] std::optional<std::size_t> slot_of(AgentId id) const {
     auto const at =
@@ -51,12 +58,12 @@ struct Roster {
     return static_cast<std::size_t>(at - agents.begin());
   }
 
-  /// Takes in an agent whose id nobody has, on the route of `lanes`; returns its slot. O(n).
+  /// Takes in an agent whose id nobody has, on the route of `lanes`, none on a free corridor; returns its slot. O(n).
   std::size_t insert(Agent agent, Goal goal, std::vector<LaneId> const& lanes) {
     auto const place =
         std::lower_bound(agents.begin(), agents.end(), agent.id, [](Agent const& a, AgentId b) { return a.id < b; });
     auto const slot = place - agents.begin();
-    corridors.emplace(lanes, agent.road);
+    if (!lanes.empty()) corridors.emplace(lanes, agent.road);
     next_agent_id = std::max(next_agent_id, static_cast<std::uint32_t>(agent.id) + 1);
     agents.insert(place, std::move(agent));
     has_sequences = has_sequences || std::holds_alternative<GoalSequence>(goal);

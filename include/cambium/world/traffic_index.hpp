@@ -40,16 +40,22 @@ struct TrafficQuery {
 
   /// Whether an entry, `distance` [m] away, is passed over: it is the asker's own.
   [[nodiscard]] bool skips(TrafficEntry const& entry, double /*distance*/) const { return entry.slot == slot; }
+  /// The same of a static object.
+  [[nodiscard]] bool skips_object(TrafficEntry const&, double) const { return false; }
 };
 
-/// One who does not see everybody: `sees(slot)` says whom.
-template <class Sees>
+/// One who does not see everybody: `sees(slot)` says whom, `sees_object(slot)` which objects.
+template <class Sees, class SeesObject>
 struct SightedQuery : TrafficQuery {
   Sees sees;
+  SeesObject sees_object;
   double far = 400.0;  ///< who is farther ends the search, seen or not [m]
 
   [[nodiscard]] bool skips(TrafficEntry const& entry, double distance) const {
     return entry.slot == slot || (distance <= far && !sees(entry.slot));
+  }
+  [[nodiscard]] bool skips_object(TrafficEntry const& entry, double distance) const {
+    return distance <= far && !sees_object(entry.slot);
   }
 };
 
@@ -226,6 +232,11 @@ class TrafficIndex {
   }
 
   template <class Query>
+  [[nodiscard]] static bool skips(Query const& query, TrafficEntry const& entry, bool is_object, double distance) {
+    return is_object ? query.skips_object(entry, distance) : query.skips(entry, distance);
+  }
+
+  template <class Query>
   [[nodiscard]] static double key(map::LaneCorridor const& corridor, Query const& query) {
     auto const& piece = corridor.pieces[query.piece];  // beyond the corridor's ends other lanes' coordinates begin
     return std::min(std::max(query.s, piece.begin - 1.0), piece.end + 1.0) + piece.index_offset;
@@ -266,7 +277,7 @@ class TrafficIndex {
                                 std::size_t start, TrafficHit& best) {
     auto const& pieces = corridor.pieces;
     for (std::size_t p = query.piece, i = start;;) {
-      while (!is_object && i < list.size() && query.skips(list[i], list[i].position - pieces[p].index_offset - query.s))
+      while (i < list.size() && skips(query, list[i], is_object, list[i].position - pieces[p].index_offset - query.s))
         ++i;  // the asker's own, reached over from another lane
       if (i < list.size() && list[i].position <= pieces[p].end + 1.0 + pieces[p].index_offset) {
         double const s = list[i].position - pieces[p].index_offset;
@@ -283,7 +294,7 @@ class TrafficIndex {
                                std::size_t start, TrafficHit& best) {
     auto const& pieces = corridor.pieces;
     for (std::size_t p = query.piece, i = start;;) {  // candidates lie before i
-      while (!is_object && i > 0 && query.skips(list[i - 1], query.s - (list[i - 1].position - pieces[p].index_offset)))
+      while (i > 0 && skips(query, list[i - 1], is_object, query.s - (list[i - 1].position - pieces[p].index_offset)))
         --i;
       if (i > 0 && list[i - 1].position >= pieces[p].begin - 1.0 + pieces[p].index_offset) {
         auto const& entry = list[i - 1];
@@ -305,7 +316,7 @@ class TrafficIndex {
       auto const& entry = list[i];
       if (entry.position < feeder.index_begin) continue;
       double const s = feeder.image(entry.position);
-      if (!is_object && query.skips(entry, s - query.s)) continue;
+      if (skips(query, entry, is_object, s - query.s)) continue;
       if (query.by_rule && feeder.by_rule && s + entry.front < feeder.free_until) continue;
       bool const ahead = s > query.s || (s == query.s && entry.slot > query.slot);
       if (!ahead) continue;
@@ -324,7 +335,7 @@ class TrafficIndex {
       auto const& entry = list[i - 1];
       if (entry.position > feeder.index_end) continue;
       double const s = feeder.image(entry.position);
-      if (!is_object && query.skips(entry, query.s - s)) continue;
+      if (skips(query, entry, is_object, query.s - s)) continue;
       bool const behind = s < query.s || (s == query.s && entry.slot < query.slot);
       if (!behind) continue;
       if (query.s - s <= horizon)

@@ -80,7 +80,8 @@ class World {
     geometry::Shape shape{};                                             ///< a car where not given
     Behavior behavior{};
     Goal goal{};
-    std::optional<map::Route> route{};  ///< else the shortest to the goal; without a goal straight on
+    std::optional<map::Route> route{};                ///< else the shortest to the goal; without a goal straight on
+    std::shared_ptr<map::RoadCorridor const> road{};  ///< instead of a route: see `map::build_free_corridor`
     Execution execution{};
     Dynamics dynamics{};
     Observer observer{};
@@ -144,6 +145,7 @@ class World {
     AgentId const id = spec.id.value_or(static_cast<AgentId>(roster_->next_agent_id));
     auto entrant = detail::entrant<World>(*map_, *roster_, spec, id, frame_.time);
     auto& roster = writable_roster();
+    if (spec.road) detail::enter_free_road(roster, spec.road, entrant.agent.road);
     auto const slot = roster.insert(std::move(entrant.agent), std::move(entrant.goal), entrant.lanes);
     frame_.agents.insert(frame_.agents.begin() + static_cast<std::ptrdiff_t>(slot), entrant.record);
     pass_goals(slot, frame_.agents[slot]);
@@ -183,7 +185,8 @@ class World {
     for (std::size_t i = 0; i < outline.size(); ++i) around += (outline.edge(i).second - outline.edge(i).first).norm();
     if (around > 10'000.0) throw WorldError("object", "its outline is longer than 10 km", "give coordinates in metres");
     StaticObject object{static_cast<ObjectId>(roster_->next_object_id), std::move(outline)};
-    auto const lanes = detail::object_entries(*map_, object, static_cast<std::uint32_t>(roster_->objects.size()));
+    auto const lanes =
+        detail::object_entries(*map_, roster_->free_roads, object, static_cast<std::uint32_t>(roster_->objects.size()));
     return writable_roster().insert(std::move(object), lanes);
   }
 
@@ -270,6 +273,9 @@ class World {
   /// The traffic index; views use it. Up to date after `observe` and within a step.
   [[nodiscard]] TrafficIndex const& traffic() const { return scratch_.traffic; }
 
+  /// The index of the plane, likewise; only where behaviours look around.
+  [[nodiscard]] PlaneIndex const& plane() const { return scratch_.plane; }
+
   /// The largest time that a world may begin at [s]: steps are exact to well below a microsecond there.
   static constexpr double latest_time = 1e9;
 
@@ -333,17 +339,18 @@ class World {
     auto const& [state, lane] = std::tie(record.state, record.lane);
     auto const& agent = roster_->agents[slot];
     auto const& piece = agent.road->corridors[lane.corridor].pieces[lane.piece];
-    return {{state.x, state.y, state.heading},
-            agent.shape,
-            piece.lane,
-            lane.s + piece.index_offset - map_->lane(piece.lane).index_begin,
-            state.speed,
-            lane.lateral,
-            lane.heading_error,
-            agent.road.get(),
-            lane.corridor,
-            lane.s,
-            record.goals_passed};
+    return {
+        {state.x, state.y, state.heading},
+        agent.shape,
+        piece.lane,
+        lane.s + piece.index_offset - (is_valid(piece.lane) ? map_->lane(piece.lane).index_begin : piece.index_offset),
+        state.speed,
+        lane.lateral,
+        lane.heading_error,
+        agent.road.get(),
+        lane.corridor,
+        lane.s,
+        record.goals_passed};
   }
 
   /// Notes which parts of a sequence of goals an agent in traffic has reached.
@@ -372,6 +379,7 @@ class World {
   void refresh_traffic() {
     if (scratch_.fresh) return;
     detail::refresh_traffic(scratch_.traffic, *map_, *roster_, frame_);
+    if constexpr (Set::looks_around) detail::refresh_plane(scratch_.plane, *roster_, frame_);
     scratch_.fresh = true;
   }
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
-#include <map>
 #include <optional>
+#include <set>
 #include <tuple>
 #include <vector>
 
@@ -17,6 +17,43 @@
 #include "cambium/map/right_of_way.hpp"
 
 namespace cambium::map::detail {
+
+/// Adds the lanes behind `lane`, back to way position `until` [m], each once by its shortest way.
+inline void add_ways_behind(Map const& map, Lane const& lane, double until, std::vector<ConflictWay>& ways) {
+  struct Way {
+    LaneId lane;
+    double begin;  // [m]
+  };
+  std::set<LaneId> seen;
+  std::vector<Way> open{{lane.id, 0.0}};
+  for (std::size_t i = 0; i < open.size(); ++i) {
+    auto const way = open[i];
+    if (way.begin <= until) continue;
+    for (auto const before : map.lane(way.lane).predecessors) {
+      auto const& previous = map.lane(before);
+      if (!previous.drivable() || before == lane.id || !seen.insert(before).second) continue;
+      double const begin = way.begin - previous.length(), from = std::max(0.0, until - begin);
+      ways.push_back({previous.index_begin + from, previous.index_begin + previous.length(), begin + from});
+      open.push_back({before, begin});
+    }
+  }
+}
+
+/// The ways by which traffic comes to, and leaves, positions `from` to `to` [m] of `lane`, see `Conflict::ways`; of the
+/// lanes that it leads into those for which `skips(LaneId)` is false.
+template <class Skips>
+[[nodiscard]] std::vector<ConflictWay> ways_through(Map const& map, Lane const& lane, double from, double to,
+                                                    Skips const& skips) {
+  double const begin = std::max(0.0, from);
+  std::vector<ConflictWay> ways{{lane.index_begin + begin, lane.index_begin + lane.length(), begin}};
+  for (auto const id : lane.successors) {
+    auto const& next = map.lane(id);
+    if (to > lane.length() && !skips(id))
+      ways.push_back({next.index_begin, next.index_begin + std::min(next.length(), to - lane.length()), lane.length()});
+  }
+  add_ways_behind(map, lane, from, ways);
+  return ways;
+}
 
 /// Finds the conflicts of a lane corridor whose centre line and pieces are there already, see `Conflict`.
 class ConflictFinder {
@@ -162,39 +199,8 @@ class ConflictFinder {
 
   void add_ways(Conflict& conflict) const {
     double const view = conflict.kind == OverlapKind::split ? 0.0 : map_.options().merge_view;
-    auto const& other = map_.lane(conflict.other);
-    auto const add = [&conflict](Lane const& lane, double from, double to, double begin) {
-      conflict.ways.push_back({lane.index_begin + from, lane.index_begin + to, begin + from});
-    };
-    add(other, 0.0, other.length(), 0.0);
-    if (conflict.other_end > other.length())
-      for (auto const next : other.successors)
-        if (!holds(next))
-          add(map_.lane(next), 0.0, std::min(map_.lane(next).length(), conflict.other_end - other.length()),
-              other.length());
-    add_behind(other, conflict.other_begin - view, add);
-  }
-
-  /// Adds the lanes behind `lane`, back to way position `until`, each once by its shortest way.
-  template <class Add>
-  void add_behind(Lane const& lane, double until, Add const& add) const {
-    struct Way {
-      LaneId lane;
-      double begin;  // [m]
-    };
-    std::map<LaneId, double> seen;
-    std::vector<Way> open{{lane.id, 0.0}};
-    for (std::size_t i = 0; i < open.size(); ++i) {
-      auto const way = open[i];
-      if (way.begin <= until) continue;
-      for (auto const before_it : map_.lane(way.lane).predecessors) {
-        auto const& previous = map_.lane(before_it);
-        if (!previous.drivable() || before_it == lane.id || !seen.emplace(before_it, way.begin).second) continue;
-        double const begin = way.begin - previous.length();
-        add(previous, std::max(0.0, until - begin), previous.length(), begin);
-        open.push_back({before_it, begin});
-      }
-    }
+    conflict.ways = ways_through(map_, map_.lane(conflict.other), conflict.other_begin - view, conflict.other_end,
+                                 [this](LaneId lane) { return holds(lane); });
   }
 
   Map const& map_;

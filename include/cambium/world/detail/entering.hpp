@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <string>
 #include <tuple>
 #include <variant>
@@ -16,6 +18,8 @@
 #include "cambium/map/lane_position.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/world/detail/entering_route.hpp"
+#include "cambium/world/detail/objects_on_lanes.hpp"
+#include "cambium/world/detail/on_lanes.hpp"
 #include "cambium/world/detail/seen.hpp"
 #include "cambium/world/frame.hpp"
 
@@ -46,6 +50,39 @@ template <class Spec>
   if (std::abs(at.heading_error) > geometry::pi / 2)
     throw WorldError(where, "it heads against the direction of its lane (" + map.describe(lane) + ")",
                      "leave the heading out, or enter along the lane");
+  return at;
+}
+
+/// The free corridor `given` as a world of `map` has it, which has met `known` before: with lane coordinates of its
+/// own. Throws `WorldError` where it has lanes.
+[[nodiscard]] inline std::shared_ptr<map::RoadCorridor const> numbered_road(
+    Map const& map, std::span<FreeRoad const> known, std::shared_ptr<map::RoadCorridor const> const& given,
+    std::string const& where) {
+  constexpr double apart = 10.0;  // [m]
+  double begin = lane_coordinate_end(map);
+  for (auto const& road : known) {
+    if (road.given == given || road.numbered == given) return road.numbered;
+    auto const& way = road.numbered->corridors.front();
+    begin = std::max(begin, way.pieces.front().index_offset + std::ceil(way.length() + apart));
+  }
+  if (given->corridors.size() != 1 || given->corridors.front().pieces.size() != 1 ||
+      is_valid(given->corridors.front().pieces.front().lane))
+    throw WorldError(where, "its road is no free corridor", "give the route, or what build_free_corridor returned");
+  auto road = std::make_shared<map::RoadCorridor>(*given);
+  road->corridors.front().pieces.front().index_offset = begin;
+  return road;
+}
+
+/// Where on the free corridor `road` an agent of `spec` enters. Throws `WorldError` where that is far.
+template <class Spec>
+[[nodiscard]] map::LanePosition entering_free(Spec const& spec, map::RoadCorridor const& road,
+                                              std::string const& where) {
+  auto at = map::locate(road, 0, {spec.position.x(), spec.position.y(), spec.heading.value_or(0.0)});
+  auto const& way = road.corridors.front();
+  double const beyond = std::max({-at.s, at.s - way.length(), 0.0});
+  if (!(std::hypot(at.lateral, beyond) <= entering_radius + 0.5 * way.width_at(at.s)))
+    throw WorldError(where, "its position is more than 5 m from its road", "enter on it");
+  if (!spec.heading) at.heading_error = 0.0;
   return at;
 }
 
@@ -94,6 +131,41 @@ void check_entering(Spec const& spec, std::string const& where) {
     throw WorldError(where, "its shape has no length or no width", "leave the shape out to get a car");
 }
 
+/// Where an agent enters. `lanes`, its route, is empty on a free corridor.
+struct Entrance {
+  std::shared_ptr<map::RoadCorridor const> road;
+  std::vector<LaneId> lanes;
+  LaneId lane = none<LaneId>;
+  map::LanePosition place;
+};
+
+/// Where an agent of `spec` enters. Throws `WorldError` where its lane, its route or its road is no good.
+template <class Roster, class Spec>
+[[nodiscard]] Entrance entrance(Map const& map, Roster const& roster, Spec const& spec, std::string const& where) {
+  if (spec.road) {
+    auto const road = numbered_road(map, roster.free_roads, spec.road, where);
+    return {road, {}, none<LaneId>, entering_free(spec, *road, where)};
+  }
+  LaneId const lane = spec.route ? entering_lane(map, spec.position, spec.heading, *spec.route, where)
+                                 : entering_lane(map, spec.position, spec.heading, where);
+  auto const route = entering_route(map, lane, spec.route, spec.goal, where);
+  auto const known = roster.corridors.find(route.lanes);
+  auto const road = known != roster.corridors.end() ? known->second : map::build_road_corridor(map, route);
+  return {road, route.lanes, lane, entering_position(map, spec, *road, lane, where)};
+}
+
+/// Notes a free corridor that nobody has entered on before, and which objects stand on it.
+template <class Roster>
+void enter_free_road(Roster& roster, std::shared_ptr<map::RoadCorridor const> const& given,
+                     std::shared_ptr<map::RoadCorridor const> const& numbered) {
+  for (auto const& known : roster.free_roads)
+    if (known.numbered == numbered) return;
+  roster.free_roads.push_back({given, numbered});
+  for (std::uint32_t i = 0; i < roster.objects.size(); ++i)
+    enter_object(numbered->corridors.front(), roster.objects[i], i, roster.object_entries);
+  std::sort(roster.object_entries.begin(), roster.object_entries.end());
+}
+
 /// An agent about to enter: all that a world takes in of it. `lanes`: its route.
 template <class World>
 struct Entrant {
@@ -115,25 +187,20 @@ template <class World>
   if (roster.slot_of(id))
     throw WorldError(where, "the world has an agent of that id already", "leave the id out to get a free one");
   check_entering(spec, where);
-  LaneId const lane = spec.route ? entering_lane(map, spec.position, spec.heading, *spec.route, where)
-                                 : entering_lane(map, spec.position, spec.heading, where);
-  auto const route = entering_route(map, lane, spec.route, spec.goal, where);
-  auto const known = roster.corridors.find(route.lanes);
-  auto const road = known != roster.corridors.end() ? known->second : map::build_road_corridor(map, route);
+  auto const [road, lanes, lane, place] = entrance(map, roster, spec, where);
   typename World::Record record;
-  record.lane = entering_position(map, spec, *road, lane, where);
+  record.lane = place;
   record.state.time = time;
   record.state.x = spec.position.x();
   record.state.y = spec.position.y();
-  record.state.heading =
-      spec.heading.value_or(road->corridors[record.lane.corridor].center.pose(record.lane.s).heading);
+  record.state.heading = spec.heading.value_or(road->corridors[place.corridor].center.pose(place.s).heading);
   record.state.speed = spec.speed;
   record.memory = Set::initial_memory(spec.behavior);
   if (Set::start_time(spec.behavior) > time + same_time) record.status = AgentStatus::not_started;
   forget_past(record);
   return {{id, spec.shape, road, spec.behavior, spec.execution, spec.dynamics, spec.observer},
           entering_goal(spec.goal, lane, where),
-          route.lanes,
+          lanes,
           record};
 }
 

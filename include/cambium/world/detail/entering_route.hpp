@@ -14,7 +14,7 @@
 #include "cambium/goal/goal.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/route.hpp"
-#include "cambium/world/detail/on_lanes.hpp"
+#include "cambium/world/detail/objects_on_lanes.hpp"
 
 namespace cambium::detail {
 

@@ -73,6 +73,19 @@ template <class World>
     return true;
 }
 
+/// Whether static objects may be hidden from the observers of `World`.
+template <class World>
+inline constexpr bool hides_objects = LimitedSightOfObjects<typename World::Observer, ObserverScene<World>>;
+
+/// Whether the agent in slot `own` perceives the static object in place `object`.
+template <class World>
+[[nodiscard]] bool is_object_seen(World const& world, std::uint32_t own, std::uint32_t object) {
+  if constexpr (hides_objects<World>)
+    return world.roster().agents[own].observer.sees_object(ObserverScene<World>(world), own, object);
+  else
+    return true;
+}
+
 /// The state that the agent in slot `own` believes that in slot `other` to have. A perfect observer's is the truth
 /// itself.
 template <class World>
