@@ -18,6 +18,7 @@ struct Totals {
                 steps = 0;
   double speed_sum = 0.0;
   std::uint64_t most_interesting = 0;
+  std::vector<std::uint64_t> counts;
 };
 
 [[nodiscard]] inline Totals total(std::vector<Outcome> const& outcomes) {
@@ -33,15 +34,25 @@ struct Totals {
     t.hard_brakings += o.hard_brakings;
     t.steps += o.steps;
     t.speed_sum += o.speed_sum;
+    t.counts.resize(o.counts.size());
+    for (std::size_t k = 0; k < o.counts.size(); ++k) t.counts[k] += o.counts[k];
     if (o.interest() > outcomes[t.most_interesting].interest()) t.most_interesting = i;
   }
   return t;
 }
 
-/// The figures as a file keeps them. `add_facts(site, json)` beside the site adds what there is to say about it.
+/// "lane changes" as a key: "lane_changes".
+[[nodiscard]] inline std::string in_one_word(std::string text) {
+  std::replace(text.begin(), text.end(), ' ', '_');
+  return text;
+}
+
+/// The figures as a file keeps them; `counts` names what the scenarios count. `add_facts(site, json)` beside the site
+/// adds what there is to say about it.
 template <class Site>
 [[nodiscard]] nlohmann::ordered_json summary(Settings const& settings, Site const& site,
-                                             std::vector<Outcome> const& outcomes, Totals const& t) {
+                                             std::vector<Outcome> const& outcomes, Totals const& t,
+                                             std::vector<std::string> const& counts) {
   auto const n = static_cast<double>(settings.scenarios);
   nlohmann::ordered_json json;
   json["map"] = std::filesystem::path(settings.map_file).filename().string();
@@ -57,6 +68,7 @@ template <class Site>
   json["mean_speed"] = t.agent_steps > 0 ? t.speed_sum / static_cast<double>(t.agent_steps) : 0.0;
   json["mean_steps"] = static_cast<double>(t.steps) / n;
   json["hard_brakings"] = t.hard_brakings;
+  for (std::size_t k = 0; k < t.counts.size(); ++k) json[in_one_word(counts[k])] = t.counts[k];
   json["agents"] = t.agents;
   json["agent_steps"] = t.agent_steps;
   json["replayed_scenario"] = t.most_interesting;
@@ -70,7 +82,8 @@ template <class Site>
   return json;
 }
 
-inline void print_table(Settings const& settings, Totals const& t, double seconds) {
+inline void print_table(Settings const& settings, Totals const& t, double seconds,
+                        std::vector<std::string> const& counts) {
   auto const n = static_cast<double>(settings.scenarios);
   auto const percent = [n](std::uint64_t count) { return 100.0 * static_cast<double>(count) / n; };
   auto const steps = static_cast<double>(t.agent_steps);
@@ -84,6 +97,8 @@ inline void print_table(Settings const& settings, Totals const& t, double second
       percent(t.success), percent(t.collision), percent(t.time_out), percent(t.off_road));
   std::printf("  mean speed       %6.2f m/s\n  hard brakings    %6.2f per scenario (harder than %.0f m/s^2)\n",
               t.speed_sum / std::max(1.0, steps), static_cast<double>(t.hard_brakings) / n, -hard_braking);
+  for (std::size_t k = 0; k < t.counts.size(); ++k)
+    std::printf("  %-16s %6.2f per scenario\n", counts[k].c_str(), static_cast<double>(t.counts[k]) / n);
   std::printf("  agent-steps      %.3g in %.2f s: %.3g per second on %llu thread%s, sampling and judging included\n\n",
               steps, seconds, steps / seconds, static_cast<unsigned long long>(settings.threads),
               settings.threads == 1 ? "" : "s");

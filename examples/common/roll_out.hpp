@@ -41,7 +41,8 @@ struct Outcome {
   cambium::AgentId collided_first = cambium::none<cambium::AgentId>, collided_second = collided_first;
   std::uint64_t steps = 0, agent_steps = 0, hard_brakings = 0;
   double speed_sum = 0.0;
-  std::string trajectory;  // CSV rows, where asked for
+  std::vector<std::uint64_t> counts;  // what the scenario counts, see `Words::counts`
+  std::string trajectory;             // CSV rows, where asked for
 
   /// How much there is to see.
   [[nodiscard]] double interest() const {
@@ -113,7 +114,8 @@ class Film {
 ///
 /// A `Site` is what an example's scenarios have in common; beside it stand `sample_scenario(site, seed, number)`, whose
 /// result has a `world`, an `ego` and `marked`, the agents that the replay shows in a colour of their own, and
-/// `is_done(scenario)`, which says whether what was to be done is done.
+/// `is_done(scenario)`, which says after each step whether what was to be done is done. A scenario may have `counts`,
+/// which `is_done` keeps up to date.
 template <class Site>
 [[nodiscard]] Outcome run_scenario(Site const& site, Settings const& settings, std::uint64_t number,
                                    cambium::Recording* recording) {
@@ -148,6 +150,7 @@ template <class Site>
       outcome.kind = Outcome::Kind::success;
     is_over = verdict.any_collision || done || verdict.timed_out;
   }
+  if constexpr (requires { scenario.counts; }) outcome.counts = scenario.counts;
   if (film) *recording = film->develop(outcome);
   return outcome;
 }

@@ -23,8 +23,9 @@ namespace examples {
 
 /// What a program of sampled scenarios calls things.
 struct Words {
-  std::string title;    ///< of the replay: "Merging"
-  std::string success;  ///< "the ego merged"
+  std::string title;                  ///< of the replay: "Merging"
+  std::string success;                ///< "the ego merged"
+  std::vector<std::string> counts{};  ///< what its scenarios count: "lane changes"
 };
 
 /// "1 vehicle", "2 vehicles".
@@ -81,7 +82,7 @@ void write_results(std::filesystem::path const& folder, Site const& site, Settin
                      counted(replayed.hard_brakings, "hard braking") + ", seed " + std::to_string(settings.seed)};
   std::string rows = trajectory_columns;
   for (std::uint64_t i = 0; i < outcomes.size(); ++i) rows += i == shown ? replayed.trajectory : outcomes[i].trajectory;
-  auto const figures = summary(settings, site, outcomes, totals);
+  auto const figures = summary(settings, site, outcomes, totals, words.counts);
   cambium::write_file(folder / "trajectories.csv", rows);
   cambium::write_file(folder / "summary.json",
                       figures.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
@@ -106,7 +107,7 @@ void sample_and_report(Site const& site, Settings const& settings, Words const& 
   auto const totals = total(outcomes);
 
   write_results(folder, site, settings, words, outcomes, totals);
-  print_table(settings, totals, seconds);
+  print_table(settings, totals, seconds, words.counts);
   std::cout << "  " << (folder / "replay.html").string() << "       plays scenario " << totals.most_interesting
             << " in a browser\n  " << (folder / "summary.json").string()
             << "      these figures and each scenario's outcome\n  " << (folder / "trajectories.csv").string()
