@@ -40,6 +40,7 @@ class ConflictFinder {
 
  private:
   static constexpr double step = 0.5;  // [m] between two places of a body
+  static constexpr double shortest = 1.0;  // [m] of a lane on which a body swings out
   /// How far before and behind an overlap of paths the bodies may touch [m].
   static constexpr double before = 12.0, behind = 8.0;
 
@@ -77,12 +78,12 @@ class ConflictFinder {
   [[nodiscard]] std::vector<Overlap> passings(Lane const& lane) const {
     std::vector<Overlap> list;
     auto const junction = junction_of(lane.id);
-    if (!is_valid(junction)) return list;
+    if (!is_valid(junction) || lane.length() <= shortest) return list;
     for (auto const id : map_.junction(junction).lanes) {
       auto const& other = map_.lane(id);
       bool const overlaps = std::any_of(lane.overlaps.begin(), lane.overlaps.end(),
                                         [id](Overlap const& overlap) { return overlap.other == id; });
-      if (other.drivable() && !overlaps)
+      if (other.drivable() && !overlaps && other.length() > shortest)
         list.push_back({id, OverlapKind::crossing, 0.0, lane.length(), 0.0, other.length()});
     }
     return list;
