@@ -72,6 +72,7 @@ template <class Set, class World>
   assumed->next_agent_id = roster.next_agent_id;
   assumed->next_object_id = roster.next_object_id;
   assumed->has_sequences = roster.has_sequences;
+  assumed->lights = roster.lights;
   assumed->objects = roster.objects;
   assumed->object_entries = roster.object_entries;
   typename Predicted::FrameType seen{frame.time, frame.step, {}};

@@ -59,6 +59,7 @@ class ConflictFinder {
     if (!find_touching(overlap, begin, end, conflict)) return std::nullopt;
     conflict.line = std::min(conflict.begin + conflict_shape.front, junction_begin(number));
     conflict.other_line = std::min(conflict.other_begin + conflict_shape.front, junction_begin(overlap.other));
+    conflict.other_light = signs_before(map_, map_.lane(overlap.other)).light;
     add_ways(conflict);
     return conflict;
   }
