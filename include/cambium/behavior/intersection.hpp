@@ -86,7 +86,8 @@ struct Intersection {
   }
 
   struct Memory {
-    float waited{};  ///< has been standing before a junction for [s]
+    float waited{};            ///< has been standing before a junction for [s]
+    float stopped_at = -1.0f;  ///< corridor position of the last stop sign that it has stopped at [m]
 
     friend bool operator==(Memory const&, Memory const&) = default;
   };
@@ -102,6 +103,7 @@ struct Intersection {
     own.waited = memory.waited;
     follow(own, leader_of<false>(view, view.front_by_rule()));
     heed_conflicts(view, own, dt);
+    heed_signals(view, own, memory, dt);
     if (own.speed > starting || (own.speed >= standing && own.at_line))
       memory.waited = 0.0f;
     else if (own.at_line)
@@ -176,6 +178,32 @@ struct Intersection {
     }
   }
 
+  /// Stops at stop signs, and at lights that are red, or yellow as long as it can.
+  template <class View>
+  void heed_signals(View const& view, Own& own, Memory& memory, double dt) const {
+    for (auto const& signal : view.corridor().signals) {
+      double const to_line = signal.line - own.front;
+      if (to_line > look_ahead) break;
+      if (to_line < 0.0) continue;
+      if (signal.kind == map::SignalKind::stop) {
+        bool const stands_there = own.speed < standing && to_line < stop_margin + 1.0;
+        if (stands_there) memory.stopped_at = static_cast<float>(signal.line);
+        if (std::abs(static_cast<double>(memory.stopped_at) - signal.line) < 0.1) continue;
+      } else {
+        auto const color = view.light(signal.light);
+        if (color == map::LightColor::off || color == map::LightColor::green) continue;
+        if (color == map::LightColor::yellow && !can_stop(own.speed, to_line)) continue;
+      }
+      double const margin = can_stop(own.speed, to_line - stop_margin) ? stop_margin : 0.0;
+      bound(own, std::max(0.0, to_line - margin), own.idm.comfortable_deceleration, dt);
+    }
+  }
+
+  void bound(Own& own, double to_stop, double braking, double dt) const {
+    auto const motion = motion_before_stop(own.speed, to_stop, braking, -own.idm.lowest_acceleration, dt);
+    if (motion.distance < own.bound.distance) own.bound = motion;
+  }
+
   /// Bounds the step's motion by what a conflict asks for.
   void obey(Claim claim, map::Conflict const& conflict, Own& own, double dt) const {
     double const to_conflict = conflict.begin - own.reach.front - air - own.s;
@@ -183,8 +211,7 @@ struct Intersection {
     double const to_stop = distance_to_stop(claim, conflict, own, to_conflict);
     if (claim == Claim::yield && !can_stop(own.speed, to_stop)) return;
     double const braking = claim == Claim::watch ? safe_deceleration : own.idm.comfortable_deceleration;
-    auto const motion = motion_before_stop(own.speed, to_stop, braking, -own.idm.lowest_acceleration, dt);
-    if (motion.distance < own.bound.distance) own.bound = motion;
+    bound(own, to_stop, braking, dt);
     own.at_line = own.at_line || to_stop < 2.0;
   }
 
@@ -257,6 +284,8 @@ struct Intersection {
                                 double way, double own_way, Own const& own) const {
     bool const inside = is_inside(user, at, conflict), own_inside = own.front > conflict.line;
     if (inside != own_inside) return own_inside;
+    if (!inside && is_valid(conflict.other_light) && view.light(conflict.other_light) == map::LightColor::red)
+      return true;
     if (inside) return own_way != way ? own_way < way : view.id() < user.agent;
     bool const stands = user.speed < standing, own_stands = own.speed < standing;
     // Ids part those who lose their patience together.

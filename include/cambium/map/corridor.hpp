@@ -67,6 +67,15 @@ struct Feeder {
 /// The body that conflicts are found for: a car (`geometry::car`) with a hand's breadth of air all around.
 inline constexpr geometry::Shape conflict_shape{3.8, 1.1, 1.05, 1.05};
 
+/// A stop sign or a light for the corridor's traffic.
+struct CorridorSignal {
+  double line{};  ///< where front ends stop: where the junction behind it begins, else the signal [m]
+  SignalKind kind = SignalKind::stop;
+  LightId light = none<LightId>;
+
+  friend bool operator==(CorridorSignal const&, CorridorSignal const&) = default;
+};
+
 /// A stretch of the map-wide lane coordinate (see `Lane::index_begin`) on the way to, through and behind a conflict.
 struct ConflictWay {
   double index_begin{}, index_end{};
@@ -83,7 +92,8 @@ struct Conflict {
   double other_begin{}, other_end{};            ///< position along the other's way, as in `ways` [m]
   double line{};        ///< corridor position where front ends wait: where the junction begins, else the conflict [m]
   double other_line{};  ///< likewise on the other's way [m]
-  double shift{};       ///< where they merge or part: corridor position = position on the way + shift [m]
+  LightId other_light = none<LightId>;  ///< that stops the other's traffic
+  double shift{};  ///< where they merge or part: corridor position = position on the way + shift [m]
   double meet = std::numeric_limits<double>::infinity();  ///< where lanes that merge come together [m]
   /// The way: the other lane, those behind it back to `MapOptions::merge_view` before the conflict, and those that it
   /// leads into, as far as who is there may still reach back into the conflict.
@@ -98,6 +108,7 @@ struct LaneCorridor {
   std::vector<CorridorPiece> pieces;    ///< sorted by `begin`, gapless
   std::vector<Feeder> feeders;          ///< sorted by `begin`
   std::vector<Conflict> conflicts;      ///< sorted by `begin`
+  std::vector<CorridorSignal> signals;  ///< sorted by `line`
   std::vector<SpeedStep> speed_limits;  ///< along the corridor, sorted; empty where nothing limits the speed
   bool continues = false;               ///< the road goes on beyond the end: the corridor ends because the route does
   bool reaches_destination = false;     ///< it holds the route's last lane

@@ -42,8 +42,9 @@ struct Roster {
   std::uint32_t next_agent_id = 0;
   std::uint32_t next_object_id = 0;
   std::vector<Agent> agents;
-  std::vector<Goal> goals;     ///< by slot
-  bool has_sequences = false;  ///< one of them is, or was, a `GoalSequence`
+  std::vector<Goal> goals;             ///< by slot
+  bool has_sequences = false;          ///< one of them is, or was, a `GoalSequence`
+  std::vector<map::LightPlan> lights;  ///< by `LightId`; off beyond its end
   std::vector<StaticObject> objects;
   std::vector<TrafficEntry> object_entries;  ///< objects on the lanes that they stand in; slot: place in `objects`
   std::map<std::vector<LaneId>, std::shared_ptr<map::RoadCorridor const>> corridors;  ///< built so far, by route

@@ -178,6 +178,22 @@ class World {
     return departed;
   }
 
+  /// Sets the phases of a traffic light of the map; until then it is off. Throws `WorldError` for a light that the map
+  /// does not have and for numbers that are no plan. O(lights).
+  void set_light(LightId id, map::LightPlan const& plan) {
+    std::string const where = "light " + to_string(id);
+    if (index_of(id) >= map_->lights().size())
+      throw WorldError(where, "the map has no such traffic light", "see Map::lights for those it has");
+    bool const is_plan = plan.cycle >= 0.0 && plan.cycle <= 86'400.0 && plan.yellow >= 0.0 &&
+                         std::abs(plan.green_begin) <= 86'400.0 && plan.green_end >= plan.green_begin;
+    if (!is_plan || !std::isfinite(plan.yellow + plan.green_end))
+      throw WorldError(where, "its plan has a negative phase, or one of more than a day",
+                       "give green_begin <= green_end within the cycle");
+    auto& lights = writable_roster().lights;
+    lights.resize(std::max(lights.size(), index_of(id) + 1));
+    lights[index_of(id)] = plan;
+  }
+
   /// Puts a static object in the way; returns its id. Throws `WorldError` for one of more than 10 km around.
   /// O(objects), and the length around the outline.
   ObjectId add_object(geometry::Polygon outline) {

@@ -39,16 +39,13 @@ inline void add_ways_behind(Map const& map, Lane const& lane, double until, std:
   }
 }
 
-/// The ways by which traffic comes to, and leaves, positions `from` to `to` [m] of `lane`, see `Conflict::ways`; of the
-/// lanes that it leads into those for which `skips(LaneId)` is false.
-template <class Skips>
-[[nodiscard]] std::vector<ConflictWay> ways_through(Map const& map, Lane const& lane, double from, double to,
-                                                    Skips const& skips) {
+/// The ways by which traffic comes to, and leaves, positions `from` to `to` [m] of `lane`, see `Conflict::ways`.
+[[nodiscard]] inline std::vector<ConflictWay> ways_through(Map const& map, Lane const& lane, double from, double to) {
   double const begin = std::max(0.0, from);
   std::vector<ConflictWay> ways{{lane.index_begin + begin, lane.index_begin + lane.length(), begin}};
   for (auto const id : lane.successors) {
     auto const& next = map.lane(id);
-    if (to > lane.length() && !skips(id))
+    if (to > lane.length())
       ways.push_back({next.index_begin, next.index_begin + std::min(next.length(), to - lane.length()), lane.length()});
   }
   add_ways_behind(map, lane, from, ways);
@@ -76,14 +73,15 @@ class ConflictFinder {
   }
 
  private:
-  static constexpr double step = 0.5;  // [m] between two places of a body
+  static constexpr double step = 0.5;      // [m] between two places of a body
+  static constexpr double shortest = 1.0;  // [m] of a lane on which a body swings out
   /// How far before and behind an overlap of paths the bodies may touch [m].
   static constexpr double before = 12.0, behind = 8.0;
 
   [[nodiscard]] std::optional<Conflict> conflict_at(std::size_t number, Overlap const& overlap) const {
     auto const& piece = corridor_.pieces[number];
     bool const in_junction = is_valid(junction_of(piece.lane));
-    if (holds(overlap.other) || (overlap.kind == OverlapKind::merge && !in_junction)) return std::nullopt;
+    if (overlap.kind == OverlapKind::merge && !in_junction) return std::nullopt;
     auto const position = [&](double s) { return std::clamp(s - piece.lane_offset, piece.begin, piece.end); };
     Conflict conflict;
     conflict.other = overlap.other;
@@ -95,18 +93,35 @@ class ConflictFinder {
     if (!find_touching(overlap, begin, end, conflict)) return std::nullopt;
     conflict.line = std::min(conflict.begin + conflict_shape.front, junction_begin(number));
     conflict.other_line = std::min(conflict.other_begin + conflict_shape.front, junction_begin(overlap.other));
+    conflict.other_light = signs_before(map_, map_.lane(overlap.other)).light;
     add_ways(conflict);
     return conflict;
   }
 
+  /// The lanes outside of a lane's junction from which one comes to it (`ahead`: to which it leads); outside of
+  /// junctions those next to it.
+  [[nodiscard]] std::vector<LaneId> ends_of(Lane const& lane, bool ahead) const {
+    auto const junction = junction_of(lane.id);
+    std::vector<LaneId> ends, open{lane.id};
+    for (std::size_t i = 0; i < open.size() && i < 64; ++i)
+      for (auto const id : ahead ? map_.lane(open[i]).successors : map_.lane(open[i]).predecessors) {
+        bool const outside = !is_valid(junction) || junction_of(id) != junction;
+        auto& list = outside ? ends : open;
+        if (std::find(list.begin(), list.end(), id) == list.end()) list.push_back(id);
+      }
+    return ends;
+  }
+  [[nodiscard]] bool share_ends(Lane const& a, Lane const& b, bool ahead) const {
+    auto const of_a = ends_of(a, ahead), of_b = ends_of(b, ahead);
+    return std::any_of(of_a.begin(), of_a.end(),
+                       [&](LaneId id) { return std::find(of_b.begin(), of_b.end(), id) != of_b.end(); });
+  }
+
   /// Lanes that come from, or lead into, lanes side by side are near each other there too, and may cross.
   [[nodiscard]] OverlapKind kind_of(Lane const& lane, Overlap const& overlap) const {
-    auto const share = [](std::vector<LaneId> const& a, std::vector<LaneId> const& b) {
-      return std::any_of(a.begin(), a.end(), [&b](LaneId id) { return std::find(b.begin(), b.end(), id) != b.end(); });
-    };
     auto const& other = map_.lane(overlap.other);
-    if (overlap.kind == OverlapKind::merge && share(lane.successors, other.successors)) return OverlapKind::merge;
-    if (overlap.kind == OverlapKind::split && share(lane.predecessors, other.predecessors)) return OverlapKind::split;
+    if (overlap.kind == OverlapKind::merge && share_ends(lane, other, true)) return OverlapKind::merge;
+    if (overlap.kind == OverlapKind::split && share_ends(lane, other, false)) return OverlapKind::split;
     return OverlapKind::crossing;
   }
 
@@ -114,21 +129,18 @@ class ConflictFinder {
   [[nodiscard]] std::vector<Overlap> passings(Lane const& lane) const {
     std::vector<Overlap> list;
     auto const junction = junction_of(lane.id);
-    if (!is_valid(junction)) return list;
+    if (!is_valid(junction) || lane.length() <= shortest) return list;
     for (auto const id : map_.junction(junction).lanes) {
       auto const& other = map_.lane(id);
       bool const overlaps = std::any_of(lane.overlaps.begin(), lane.overlaps.end(),
                                         [id](Overlap const& overlap) { return overlap.other == id; });
-      if (other.drivable() && !overlaps)
+      if (other.drivable() && other.length() > shortest && !overlaps && !share_ends(lane, other, false) &&
+          !share_ends(lane, other, true))
         list.push_back({id, OverlapKind::crossing, 0.0, lane.length(), 0.0, other.length()});
     }
     return list;
   }
 
-  [[nodiscard]] bool holds(LaneId lane) const {
-    return std::any_of(corridor_.pieces.begin(), corridor_.pieces.end(),
-                       [lane](CorridorPiece const& p) { return p.lane == lane; });
-  }
   [[nodiscard]] JunctionId junction_of(LaneId lane) const { return map_.road(map_.lane(lane).road).junction; }
 
   /// Where the corridor enters the junction in which piece `number` lies; infinite where that lies in none.
@@ -154,10 +166,11 @@ class ConflictFinder {
   /// The other's path, straight on beyond its ends where no lane goes on there.
   [[nodiscard]] geometry::Pose pose_on_way(LaneId id, double s) const {
     auto const* lane = &map_.lane(id);
-    if (s < 0.0 && !lane->predecessors.empty()) {
+    for (int lanes = 0; lanes < 16 && s < 0.0 && !lane->predecessors.empty(); ++lanes) {
       lane = &map_.lane(lane->predecessors.front());
       s += lane->length();
-    } else if (s > lane->length() && !lane->successors.empty()) {
+    }
+    for (int lanes = 0; lanes < 16 && s > lane->length() && !lane->successors.empty(); ++lanes) {
       s -= lane->length();
       lane = &map_.lane(lane->successors.front());
     }
@@ -199,8 +212,7 @@ class ConflictFinder {
 
   void add_ways(Conflict& conflict) const {
     double const view = conflict.kind == OverlapKind::split ? 0.0 : map_.options().merge_view;
-    conflict.ways = ways_through(map_, map_.lane(conflict.other), conflict.other_begin - view, conflict.other_end,
-                                 [this](LaneId lane) { return holds(lane); });
+    conflict.ways = ways_through(map_, map_.lane(conflict.other), conflict.other_begin - view, conflict.other_end);
   }
 
   Map const& map_;
