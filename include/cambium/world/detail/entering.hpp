@@ -17,6 +17,7 @@
 #include "cambium/map/build_corridor.hpp"
 #include "cambium/map/lane_position.hpp"
 #include "cambium/map/map.hpp"
+#include "cambium/world/detail/check_described.hpp"
 #include "cambium/world/detail/entering_route.hpp"
 #include "cambium/world/detail/objects_on_lanes.hpp"
 #include "cambium/world/detail/on_lanes.hpp"
@@ -89,9 +90,6 @@ template <class Spec>
 /// Speeds beyond this are no vehicle's [m/s].
 inline constexpr double fastest = 1000.0;
 
-template <class... Alternatives>
-void check_if_described(std::variant<Alternatives...> const& any, std::string const& where);
-
 /// Throws `ParameterError` where a parameter of a described struct, or of the one that a set holds, is out of its
 /// range.
 template <class Parameters>
@@ -99,22 +97,6 @@ void check_if_described(Parameters const& parameters, std::string const& where) 
   if constexpr (Described<Parameters>) check_parameters(parameters, where);
   if constexpr (requires { parameters.any(); }) check_if_described(parameters.any(), where);
 }
-template <class... Alternatives>
-void check_if_described(std::variant<Alternatives...> const& any, std::string const& where) {
-  std::visit([&where](auto const& parameters) { check_if_described(parameters, where); }, any);
-}
-
-/// As above for an observer, or for those that it is made of.
-template <class Observer>
-void check_observer(Observer const& observer, std::string const& where) {
-  if constexpr (requires { observer.stages; })
-    std::apply([&where](auto const&... stage) { (check_observer(stage, where), ...); }, observer.stages);
-  else if constexpr (requires { observer.any; })
-    std::visit([&where](auto const& one) { check_observer(one, where); }, observer.any);
-  else
-    check_if_described(observer, where);
-}
-
 /// Throws `WorldError` or `ParameterError` where a number of `spec` is no good.
 template <class Spec>
 void check_entering(Spec const& spec, std::string const& where) {

@@ -14,6 +14,7 @@
 #include "cambium/goal/goal.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/route.hpp"
+#include "cambium/world/detail/check_described.hpp"
 #include "cambium/world/detail/objects_on_lanes.hpp"
 
 namespace cambium::detail {
@@ -65,8 +66,9 @@ inline constexpr double path_radius = 2.5;
 }
 
 /// The agent's goal, complete: lanes beside count from the one that it enters in. Throws `WorldError` for a sequence
-/// that is too long, or within another goal.
+/// that is too long, or within another goal, and `ParameterError` for a number out of its range.
 [[nodiscard]] inline Goal entering_goal(Goal goal, LaneId lane, std::string const& where, bool is_outer = true) {
+  check_if_described(goal, where);
   if (auto* const beside = std::get_if<ReachLaneBeside>(&goal); beside && !is_valid(beside->from)) beside->from = lane;
   auto const complete = [&](std::vector<Goal>& parts) {
     for (auto& part : parts) part = entering_goal(std::move(part), lane, where, false);
