@@ -3,11 +3,13 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "cambium/behavior/behavior_set.hpp"
 #include "cambium/behavior/idm_classic.hpp"
 #include "cambium/behavior/idm_lane_tracking.hpp"
 #include "cambium/behavior/mobil.hpp"
+#include "cambium/behavior/pedestrian.hpp"
 #include "cambium/behavior/random_macro_actions.hpp"
 #include "cambium/behavior/rss_conformant.hpp"
 #include "cambium/core/distributions.hpp"
@@ -15,6 +17,7 @@
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/execution/interpolate.hpp"
+#include "cambium/map/free_corridor.hpp"
 #include "cambium/world/world.hpp"
 
 #include "support/maps.hpp"
@@ -49,6 +52,24 @@ World highway(std::size_t agents, Driver const& driver) {
                .heading = pose.heading,
                .speed = 10.0 + 6.0 * cb::uniform01(random),
                .behavior = driver(11.0 + 11.0 * cb::uniform01(random))});
+  }
+  return world;
+}
+
+/// Pedestrians in groups of 20 that meet on a way of their own, 4 m wide.
+Sim<cb::Pedestrian> crowd(std::size_t agents) {
+  Sim<cb::Pedestrian> world(support::winding_road(300.0), {.seed = 1});
+  cb::RandomStream random(8, 0, 0);
+  for (double y = 1000.0; world.size() < agents; y += 10.0) {
+    std::vector<cb::geometry::Point> const there{{0.0, y}, {100.0, y}}, back{{100.0, y}, {0.0, y}};
+    auto const to = cb::map::build_free_corridor(world.map(), there, {.width = 4.0});
+    auto const fro = cb::map::build_free_corridor(world.map(), back, {.width = 4.0});
+    for (int k = 0; k < 20 && world.size() < agents; ++k)
+      world.add({.position = {40.0 + 20.0 * cb::uniform01(random), y + 3.0 * cb::uniform01(random) - 1.5},
+                 .speed = 1.3,
+                 .shape = cb::geometry::pedestrian(),
+                 .behavior = cb::Pedestrian{},
+                 .road = k % 2 == 0 ? to : fro});
   }
   return world;
 }
@@ -88,6 +109,7 @@ void print_ratios(yardstick::Results const& results) {
   row("models/idm_lane_tracking/20", "yardstick/full/20", "(target 1.5)");
   row("models/idm_lane_tracking/10000", "models/idm_lane_tracking/100", "(nothing super-linear)");
   row("models/mobil/10000", "models/mobil/100", "(nothing super-linear)");
+  row("models/social_force/10000", "models/social_force/100", "(nothing super-linear)");
 }
 
 }  // namespace
@@ -115,6 +137,8 @@ int main(int argc, char** argv) {
     };
     register_steps<World>("idm_lane_tracking", n, make, cb::CollisionAny{});
   }
+  for (std::size_t const n : {std::size_t{20}, std::size_t{100}, std::size_t{10000}})
+    register_steps<Sim<cb::Pedestrian>>("social_force", n, [](std::size_t agents) { return crowd(agents); });
   yardstick::register_yardsticks();
   return yardstick::run_benchmarks(argc, argv, "What each behaviour costs, beside kernels.", print_ratios);
 }

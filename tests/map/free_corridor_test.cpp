@@ -27,28 +27,26 @@ TEST_CASE("a way across a road knows the lanes that it crosses, and how far back
   auto const map = support::straight_road(2, 600.0);  // from y = 0 to y = -7
   auto const road = build(*map, {{320, 5}, {320, -10}}, {.width = 3.0, .view = 150.0});
   auto const& way = road->corridors.at(0);
-  REQUIRE(way.conflicts.size() == 2);
+  REQUIRE(way.crossings.size() == 2);
   double border = 5.0;
-  for (auto const& conflict : way.conflicts) {
-    CHECK(conflict.begin == doctest::Approx(border).epsilon(0.03));
-    CHECK(conflict.end == doctest::Approx(border + 3.5).epsilon(0.03));
-    CHECK(conflict.right_of_way == cb::map::RightOfWay::yields);
-    auto const& lane = map->lane(conflict.other);
+  for (auto const& crossing : way.crossings) {
+    CHECK(crossing.begin == doctest::Approx(border).epsilon(0.03));
+    CHECK(crossing.end == doctest::Approx(border + 3.5).epsilon(0.03));
+    auto const& lane = map->lane(crossing.lane);
     CHECK(lane.drivable());
-    CHECK(conflict.other_begin == doctest::Approx(318.5));
-    CHECK(conflict.other_end == doctest::Approx(321.5));
-    REQUIRE(conflict.ways.size() == 1);
-    CHECK(conflict.ways[0].index_end == doctest::Approx(lane.index_begin + lane.length()));
-    CHECK(conflict.ways[0].begin == doctest::Approx(conflict.other_begin - 150.0));
-    CHECK(conflict.ways[0].index_begin == doctest::Approx(lane.index_begin + conflict.ways[0].begin));
+    CHECK(crossing.index_begin - lane.index_begin == doctest::Approx(318.5));
+    CHECK(crossing.index_end - lane.index_begin == doctest::Approx(321.5));
+    REQUIRE(crossing.approaches.size() == 1);
+    CHECK(crossing.approaches[0].index_end == doctest::Approx(crossing.index_begin));
+    CHECK(crossing.approaches[0].index_end - crossing.approaches[0].index_begin == doctest::Approx(150.0));
     border += 3.5;
   }
-  CHECK(build(*map, {{0, 20}, {100, 30}})->corridors[0].conflicts.empty());
-  auto const oblique = build(*map, {{300, 5}, {330, -10}})->corridors[0].conflicts;
+  CHECK(build(*map, {{0, 20}, {100, 30}})->corridors[0].crossings.empty());
+  auto const oblique = build(*map, {{300, 5}, {330, -10}})->corridors[0].crossings;
   REQUIRE(oblique.size() == 2);
   CHECK(oblique[0].end - oblique[0].begin == doctest::Approx(3.5 * std::sqrt(5.0)).epsilon(0.02));
   // There and back: each lane twice.
-  CHECK(build(*map, {{320, 5}, {320, -10}, {330, -10}, {330, 5}})->corridors[0].conflicts.size() == 4);
+  CHECK(build(*map, {{320, 5}, {320, -10}, {330, -10}, {330, 5}})->corridors[0].crossings.size() == 4);
 }
 
 TEST_CASE("corners are rounded, and the way stays near its points") {

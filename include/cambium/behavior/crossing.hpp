@@ -42,23 +42,23 @@ struct CrossingParameters {
 
 namespace detail {
 
-/// Where one who walks `lateral` [m] beside its way's centre line is on the lane that it crosses [m].
+/// Where one who walks `lateral` [m] beside its way's centre line is in the lane that it crosses, in lane coordinates.
 struct CrossingStrip {
   double begin = std::numeric_limits<double>::infinity(), end = -begin;
 };
 
 template <class View>
-[[nodiscard]] CrossingStrip strip_of(View const& view, map::Conflict const& conflict) {
-  auto const& lane = view.map().lane(conflict.other);
+[[nodiscard]] CrossingStrip strip_of(View const& view, map::LaneCrossing const& crossing) {
+  auto const& lane = view.map().lane(crossing.lane);
   auto const& at = view.lane_position();
-  auto hint = lane.path.find(0.5 * (conflict.other_begin + conflict.other_end));
+  auto hint = lane.path.find(0.5 * (crossing.index_begin + crossing.index_end) - lane.index_begin);
   CrossingStrip strip;
-  for (double const s : {conflict.begin, conflict.end}) {
+  for (double const s : {crossing.begin, crossing.end}) {
     State there;
     place_on_lane(view.corridor(), s, at.lateral, 0.0, at.segment, there);
-    double const along = lane.path.project({there.x, there.y}, hint).s;
-    strip.begin = std::min(strip.begin, along - view.shape().radius());
-    strip.end = std::max(strip.end, along + view.shape().radius());
+    double const index = lane.index_begin + lane.path.project({there.x, there.y}, hint).s;
+    strip.begin = std::min(strip.begin, index - view.shape().radius());
+    strip.end = std::max(strip.end, index + view.shape().radius());
   }
   return strip;
 }
@@ -67,17 +67,17 @@ template <class View>
 /// rear of the body to the lane's borders [m]; `margin`: see `CrossingParameters::time_margin` [s].
 template <class View>
 [[nodiscard]] bool is_blocked(CrossingParameters const& p, SocialForceParameters const& social, View const& view,
-                              map::Conflict const& conflict, double speed, double to_begin, double to_end,
+                              map::LaneCrossing const& crossing, double speed, double to_begin, double to_end,
                               double margin) {
   double const walking = social.desired_speed;
   double const arrival = std::max(0.0, to_begin) / (social.highest_speed_ratio * walking);
   double const clearance =
       std::max(0.0, to_end) / walking + social.relaxation_time * std::max(0.0, 1.0 - speed / walking);
-  auto const strip = strip_of(view, conflict);
+  auto const strip = strip_of(view, crossing);
   bool blocked = false;
-  // `position`: on its way, counted from the begin of the lane that is crossed.
+  // `position`: as if the lanes before the one that is crossed had its lane coordinate.
   auto const heed = [&](LaneUser const& user, double position) {
-    if (blocked || position - user.rear > strip.end || !view.signals_way(user, conflict.other)) return;
+    if (blocked || position - user.rear > strip.end || !view.signals_way(user, crossing.lane)) return;
     double const distance = strip.begin - position - user.front, theirs = std::max(0.0, user.speed);
     if (distance > 0.0 && theirs * theirs < 2.0 * p.demanded_deceleration * distance) return;
     double const first = time_to_cover(distance, theirs, p.assumed_acceleration, std::max(theirs, p.assumed_speed));
@@ -85,9 +85,12 @@ template <class View>
     double const last = theirs > 0.1 ? way / theirs : std::numeric_limits<double>::infinity();
     blocked = first < clearance + margin && arrival < last + p.margin_behind;
   };
-  for (auto const& way : conflict.ways)
-    view.for_each_on_lane(way.index_begin, way.index_end,
-                          [&](LaneUser const& user) { heed(user, way.begin + user.position - way.index_begin); });
+  view.for_each_on_lane(crossing.index_begin, crossing.index_end,
+                        [&](LaneUser const& user) { heed(user, user.position); });
+  for (auto const& approach : crossing.approaches)
+    view.for_each_on_lane(approach.index_begin, approach.index_end, [&](LaneUser const& user) {
+      heed(user, crossing.index_begin - approach.to_crossing - approach.index_end + user.position);
+    });
   return blocked;
 }
 
@@ -105,16 +108,16 @@ template <class View>
   constexpr double toe = 0.2;   // [m] who reaches over the kerb no farther has not begun to cross
   double const s = view.lane_position().s, front = s + view.shape().front, rear = s - view.shape().rear;
   double row_begin = -infinite, row_end = -infinite;
-  for (auto const& conflict : view.corridor().conflicts) {
-    bool const is_next_row = conflict.begin > row_end + view.shape().length() + 2.0 * p.stop_margin;
-    if (is_next_row && conflict.begin > front + near) break;
-    if (is_next_row) row_begin = conflict.begin;
-    row_end = std::max(row_end, conflict.end);
-    if (conflict.end < rear || conflict.begin + toe < front) continue;  // behind it, or it is in there
+  for (auto const& crossing : view.corridor().crossings) {
+    bool const is_next_row = crossing.begin > row_end + view.shape().length() + 2.0 * p.stop_margin;
+    if (is_next_row && crossing.begin > front + near) break;
+    if (is_next_row) row_begin = crossing.begin;
+    row_end = std::max(row_end, crossing.end);
+    if (crossing.end < rear || crossing.begin + toe < front) continue;  // behind it, or it is in there
     bool const on_the_way = row_begin + toe < front;
-    if (detail::is_blocked(p, social, view, conflict, speed, conflict.begin - front, conflict.end - rear,
+    if (detail::is_blocked(p, social, view, crossing, speed, crossing.begin - front, crossing.end - rear,
                            on_the_way ? 0.0 : p.time_margin))
-      return (on_the_way ? conflict.begin : row_begin) - view.shape().front - s;
+      return (on_the_way ? crossing.begin : row_begin) - view.shape().front - s;
   }
   return infinite;
 }

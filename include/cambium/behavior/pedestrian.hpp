@@ -47,7 +47,7 @@ struct Surroundings {
 
   struct Other {
     geometry::OrientedBox box;
-    PlaneVector<double> velocity, stride;
+    PlaneVector<double> velocity;
     double distance;
     double radius;  ///< of a round body; 0 for a rectangle
   };
@@ -88,6 +88,9 @@ struct Pedestrian {
 
   static constexpr bool looks_around = true;
   static constexpr char const* name = "pedestrian";
+  static constexpr char const* summary =
+      "walks along its way by social forces, off others, borders and objects; crosses lanes in gaps of their traffic";
+  static constexpr char const* source = "Helbing and Molnár 1995; Johansson, Helbing, Shukla 2007; HCM 2000";
   static constexpr auto parameters() {
     using P = Pedestrian;
     return std::make_tuple(
@@ -138,10 +141,7 @@ struct Pedestrian {
       auto const box = geometry::box_of(other.shape, other.state);
       double const size = std::max(other.shape.length(), other.shape.width());
       auto const velocity = velocity_of(other.state);
-      // What is farther off than it can be felt does not matter: neither does a longer stride.
-      double const stride = std::min(social.stride_time, range / std::max(1e-3, velocity.norm()));
-      around.add(
-          {box, velocity, stride * velocity, geometry::distance(box, own), size <= largest_body ? 0.5 * size : 0.0});
+      around.add({box, velocity, geometry::distance(box, own), size <= largest_body ? 0.5 * size : 0.0});
     });
     view.for_each_object([&](ObjectId, geometry::Polygon const& outline) {
       if (around.object_count < detail::Surroundings::most && outline.bounding_box().grown(range).contains(own))
@@ -185,6 +185,12 @@ struct Pedestrian {
     }
   }
 
+  /// What is farther off than it can be felt does not matter: neither does a longer stride.
+  [[nodiscard]] Vector stride_of(detail::Surroundings::Other const& other, Walk const& walk) const {
+    Vector const velocity = social.relative_stride ? other.velocity - walk.velocity : other.velocity;
+    return std::min(social.stride_time, range / std::max(1e-3, velocity.norm())) * velocity;
+  }
+
   [[nodiscard]] Vector limited(Vector const& force) const {
     double const size = force.norm();
     return size > social.highest_acceleration ? (social.highest_acceleration / size) * force : force;
@@ -201,7 +207,7 @@ struct Pedestrian {
       Vector const apart{own.x() - from.x(), own.y() - from.y()};
       double const distance = apart.norm();
       if (!(distance > 1e-9)) continue;
-      auto const social_part = social_repulsion(social, apart, other.stride);
+      auto const social_part = social_repulsion(social, apart, stride_of(other, walk));
       sum = sum + sight_weight(social, ahead, social_part) * social_part;
       sum = sum + (contact_repulsion(social, distance - other.radius - body_radius) / distance) * apart;
     }

@@ -27,7 +27,10 @@ struct PlaneVector {
 /// The social force model's parameters, with the values of Helbing and Molnár 1995, "Social force model for pedestrian
 /// dynamics", Phys. Rev. E 51, 4282; those of the contact of bodies are of Helbing, Farkas, Vicsek 2000, "Simulating
 /// dynamical features of escape panic", Nature 407, 487 (2000 N for 80 kg, 0.08 m): in the first paper pedestrians are
-/// points.
+/// points. With `relative_stride` the way that another goes is seen from the own motion (as in Johansson, Helbing,
+/// Shukla 2007, "Specification of the social force pedestrian model by evolutionary adjustment to video tracking
+/// data"), without it over ground, as in 1995: then those behind push those ahead aside as oncoming ones do, and in a
+/// crowd that walks both ways no lanes of one direction form.
 struct SocialForceParameters {
   double desired_speed = 1.34;
   double relaxation_time = 0.5;
@@ -35,6 +38,7 @@ struct SocialForceParameters {
   double repulsion = 2.1;
   double repulsion_range = 0.3;
   double stride_time = 2.0;
+  bool relative_stride = true;
   double border_repulsion = 10.0;
   double border_range = 0.2;
   double sight_angle = 200.0 * geometry::pi / 180.0;
@@ -56,6 +60,8 @@ struct SocialForceParameters {
         parameter("repulsion", &P::repulsion, "m^2/s^2", Range{0, 1000}, "V0: potential at another pedestrian"),
         parameter("repulsion_range", &P::repulsion_range, "m", Range{0.01, 100}, "sigma: of that potential"),
         parameter("stride_time", &P::stride_time, "s", Range{0, 100}, "way of the other that is kept clear of"),
+        parameter("relative_stride", &P::relative_stride, "-", Range{0, 1},
+                  "that way is seen from the own motion, not over ground"),
         parameter("border_repulsion", &P::border_repulsion, "m^2/s^2", Range{0, 1000}, "U0: potential at a border"),
         parameter("border_range", &P::border_range, "m", Range{0.01, 100}, "R: of that potential"),
         parameter("sight_angle", &P::sight_angle, "rad", Range{0, 2 * geometry::pi},

@@ -34,6 +34,20 @@ struct CorridorPiece {
   double lane_end = std::numeric_limits<double>::infinity();
 };
 
+/// A stretch of the map-wide lane coordinate whose traffic comes to a crossing.
+struct CrossingApproach {
+  double index_begin{}, index_end{};
+  double to_crossing{};  ///< from `index_end` along the lanes [m]
+};
+
+/// A drivable lane that a free corridor crosses, from border to border (see `build_free_corridor`).
+struct LaneCrossing {
+  LaneId lane = none<LaneId>;
+  double begin{}, end{};                     ///< corridor position [m]
+  double index_begin{}, index_end{};         ///< lane coordinate of the stretch that the corridor covers
+  std::vector<CrossingApproach> approaches;  ///< the ways to that stretch
+};
+
 /// A stretch of a lane outside of the corridor whose traffic counts in it: a lane that merges in (from `merge_view`
 /// before the overlap on), one that has just split off and still overlaps, or one that leads onto the corridor's first
 /// lane. Lane coordinates [index_begin, index_end] map linearly onto corridor positions [begin, end].
@@ -112,6 +126,7 @@ struct LaneCorridor {
   std::vector<SpeedStep> speed_limits;  ///< along the corridor, sorted; empty where nothing limits the speed
   bool continues = false;               ///< the road goes on beyond the end: the corridor ends because the route does
   bool reaches_destination = false;     ///< it holds the route's last lane
+  std::vector<LaneCrossing> crossings;  ///< of a free corridor: the lanes that it crosses, sorted by `begin`
 
   [[nodiscard]] double length() const { return center.length(); }
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <map>
 #include <memory>
 #include <span>
 #include <tuple>
@@ -13,7 +15,6 @@
 #include "cambium/core/ids.hpp"
 #include "cambium/geometry/line.hpp"
 #include "cambium/map/corridor.hpp"
-#include "cambium/map/detail/conflicts.hpp"
 #include "cambium/map/map.hpp"
 
 namespace cambium::map {
@@ -56,23 +57,49 @@ namespace detail {
   return points;
 }
 
+/// The ways that lead to path position `at` of `lane`, `view` [m] back: the lane itself, then those behind it, each
+/// lane once by its shortest way.
+[[nodiscard]] inline std::vector<CrossingApproach> approaches_back(Map const& map, LaneId id, double at, double view) {
+  struct Way {
+    LaneId lane;
+    double end, to_crossing;  // [m]: path position where the stretch ends, and from there
+  };
+  std::map<LaneId, double> seen;  // shortest way from its end
+  std::vector<Way> open{{id, at, 0.0}};
+  std::vector<CrossingApproach> approaches;
+  for (std::size_t i = 0; i < open.size(); ++i) {
+    auto const way = open[i];
+    auto const& lane = map.lane(way.lane);
+    double const length = std::min(way.end, view - way.to_crossing);
+    if (length > 0.0)
+      approaches.push_back({lane.index_begin + way.end - length, lane.index_begin + way.end, way.to_crossing});
+    double const behind = way.to_crossing + way.end;
+    if (behind >= view) continue;
+    for (auto const before : lane.predecessors) {
+      auto const& previous = map.lane(before);
+      if (!previous.drivable() || before == id || !seen.emplace(before, behind).second) continue;
+      open.push_back({before, previous.length(), behind});
+    }
+  }
+  return approaches;
+}
+
 /// Where the way crosses drivable lanes: from border to border.
 class CrossingFinder {
  public:
   CrossingFinder(Map const& map, FreeCorridorOptions const& options) : map_(map), options_(options) {}
 
-  [[nodiscard]] std::vector<Conflict> find(geometry::Line const& way) {
+  [[nodiscard]] std::vector<LaneCrossing> find(geometry::Line const& way) {
     constexpr double step = 0.05;  // [m]
     auto const steps = static_cast<std::size_t>(std::ceil(way.length() / step));
     std::uint32_t cursor = 0;
     for (std::size_t i = 0; i <= steps; ++i) {
       double const s = std::min(way.length(), static_cast<double>(i) * step);
-      for (auto const& hit : map_.lanes_near(way.pose(s, cursor).position(), 0.0))
-        if (map_.lane(hit.lane).drivable()) pass(hit, s, step);
+      map_.for_each_drivable_near(way.pose(s, cursor).position(), 0.0, [&](LaneHit const& hit) { pass(hit, s, step); });
     }
     for (auto& crossing : crossings_) finish(crossing, step, way.length());
-    std::sort(crossings_.begin(), crossings_.end(), [](Conflict const& a, Conflict const& b) {
-      return std::tie(a.begin, a.other, a.other_begin) < std::tie(b.begin, b.other, b.other_begin);
+    std::sort(crossings_.begin(), crossings_.end(), [](LaneCrossing const& a, LaneCrossing const& b) {
+      return std::tie(a.begin, a.lane, a.index_begin) < std::tie(b.begin, b.lane, b.index_begin);
     });
     return std::move(crossings_);
   }
@@ -80,44 +107,36 @@ class CrossingFinder {
  private:
   /// The way is in a lane at `s`: still, or again.
   void pass(LaneHit const& hit, double s, double step) {
+    double const index = map_.lane(hit.lane).index_begin + hit.s;
     for (auto& crossing : crossings_) {
-      if (crossing.other != hit.lane || s - crossing.end > 2.0 * step) continue;
+      if (crossing.lane != hit.lane || s - crossing.end > 2.0 * step) continue;
       crossing.end = s;
-      crossing.other_begin = std::min(crossing.other_begin, hit.s);
-      crossing.other_end = std::max(crossing.other_end, hit.s);
+      crossing.index_begin = std::min(crossing.index_begin, index);
+      crossing.index_end = std::max(crossing.index_end, index);
       return;
     }
-    Conflict crossing;
-    crossing.other = hit.lane;
-    crossing.right_of_way = RightOfWay::yields;
-    crossing.begin = crossing.end = s;
-    crossing.other_begin = crossing.other_end = hit.s;
-    crossings_.push_back(std::move(crossing));
+    crossings_.push_back({hit.lane, s, s, index, index, {}});
   }
 
-  void finish(Conflict& crossing, double step, double length) const {
-    auto const& lane = map_.lane(crossing.other);
+  void finish(LaneCrossing& crossing, double step, double length) const {
+    auto const& lane = map_.lane(crossing.lane);
     double const half = 0.5 * options_.width;
     crossing.begin = std::max(0.0, crossing.begin - step);
     crossing.end = std::min(length, crossing.end + step);
-    crossing.line = crossing.begin;
-    crossing.other_begin = crossing.other_line = std::max(0.0, crossing.other_begin - half);
-    crossing.other_end = std::min(lane.length(), crossing.other_end + half);
-    crossing.ways = ways_through(map_, lane, crossing.other_begin - options_.view, crossing.other_end + farthest_rear,
-                                 [](LaneId) { return false; });
+    crossing.index_begin = std::max(lane.index_begin, crossing.index_begin - half);
+    crossing.index_end = std::min(lane.index_begin + lane.length(), crossing.index_end + half);
+    crossing.approaches = approaches_back(map_, lane.id, crossing.index_begin - lane.index_begin, options_.view);
   }
-
-  static constexpr double farthest_rear = 15.0;  // behind the reference point of a long vehicle [m]
 
   Map const& map_;
   FreeCorridorOptions const& options_;
-  std::vector<Conflict> crossings_;
+  std::vector<LaneCrossing> crossings_;
 };
 
 }  // namespace detail
 
 /// A way through `points` [m], its corners rounded, that belongs to no lane, as a road corridor of one lane corridor:
-/// for those on foot or on wheels who go beside the lanes and across. Its `conflicts` are the drivable lanes that it
+/// for those on foot or on wheels who go beside the lanes and across. Its `crossings` are the drivable lanes that it
 /// crosses, whose traffic goes first; a way along a lane is one long crossing of it. Bridges count as level. Worlds
 /// take it in `AgentSpec::road`; give agents on one way the same corridor, so that they are neighbours on it. Throws
 /// `MapError` for fewer than two distinct points, numbers that are not finite, a length beyond 10 km, or a width or
@@ -136,7 +155,7 @@ class CrossingFinder {
   corridor.widths.assign(count + 1, {0.5 * options.width, 0.5 * options.width});
   corridor.pieces.push_back(
       {.end = corridor.length(), .type = options.type, .segments = static_cast<std::uint32_t>(count)});
-  corridor.conflicts = detail::CrossingFinder(map, options).find(corridor.center);
+  corridor.crossings = detail::CrossingFinder(map, options).find(corridor.center);
   corridor.continues = corridor.reaches_destination = true;  // who comes to its end has arrived
   auto road = std::make_shared<RoadCorridor>();
   road->corridors.push_back(std::move(corridor));

@@ -32,7 +32,7 @@ namespace cambium {
 
 /// A free corridor as a recording shows it: beside the lanes; where it crosses them they are drawn over it.
 [[nodiscard]] inline RecordedLane recorded_way(map::LaneCorridor const& way) {
-  RecordedLane lane{.kind = RecordedLaneKind::other};
+  RecordedLane lane{.kind = RecordedLaneKind::way};
   auto const samples = way.center.samples();
   for (std::size_t i = 0; i < samples.size(); ++i) {
     geometry::Point const at = samples[i].position();

@@ -14,7 +14,7 @@ const canvas = element('view'), context = canvas.getContext('2d');
 const count = data.times.length, agents = data.agents.map(([id, kind, label, front, rear, left, right]) =>
   ({id, kind, label, front, rear, left, right, length: front + rear, width: left + right}));
 const ego = [4, 1].map(kind => agents.findIndex(agent => agent.kind === kind)).find(i => i >= 0) ?? -1;
-const kinds = ['other', 'ego', 'merging', 'static', 'collided'], surfaces = ['asphalt', 'verge', 'crossing'];
+const kinds = ['other', 'ego', 'merging', 'static', 'collided'], surfaces = ['asphalt', 'verge', 'crossing', 'verge'];
 const state = {at: 0, playing: false, follow: false, selected: -1, hovered: -1, lane: null, ids: false};
 const camera = {x: 0, y: 0, scale: 1};   // middle of the view [m], pixels per metre
 let width = 1, height = 1, ratio = 1, colour = {};
@@ -30,7 +30,7 @@ const lanes = data.lanes.map(([kind, label, points]) => {
   path.closePath();
   return {kind, label, path};
 });
-const surfacePaths = [1, 0, 2].map(kind => {
+const surfacePaths = [3, 1, 0, 2].map(kind => {
   const path = new Path2D();
   for (const lane of lanes) if (lane.kind === kind) path.addPath(lane.path);
   return [surfaces[kind], path];

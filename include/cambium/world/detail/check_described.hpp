@@ -9,6 +9,16 @@
 namespace cambium::detail {
 
 template <class... Alternatives>
+void check_if_described(std::variant<Alternatives...> const& any, std::string const& where);
+
+/// Throws `ParameterError` where a parameter of a described struct, or of the one that a set holds, is out of its
+/// range.
+template <class Parameters>
+void check_if_described(Parameters const& parameters, std::string const& where) {
+  if constexpr (Described<Parameters>) check_parameters(parameters, where);
+  if constexpr (requires { parameters.any(); }) check_if_described(parameters.any(), where);
+}
+template <class... Alternatives>
 void check_if_described(std::variant<Alternatives...> const& any, std::string const& where) {
   std::visit([&where](auto const& parameters) { check_if_described(parameters, where); }, any);
 }

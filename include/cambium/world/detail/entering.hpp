@@ -90,13 +90,6 @@ template <class Spec>
 /// Speeds beyond this are no vehicle's [m/s].
 inline constexpr double fastest = 1000.0;
 
-/// Throws `ParameterError` where a parameter of a described struct, or of the one that a set holds, is out of its
-/// range.
-template <class Parameters>
-void check_if_described(Parameters const& parameters, std::string const& where) {
-  if constexpr (Described<Parameters>) check_parameters(parameters, where);
-  if constexpr (requires { parameters.any(); }) check_if_described(parameters.any(), where);
-}
 /// Throws `WorldError` or `ParameterError` where a number of `spec` is no good.
 template <class Spec>
 void check_entering(Spec const& spec, std::string const& where) {
