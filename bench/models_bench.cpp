@@ -8,6 +8,7 @@
 #include "cambium/behavior/behavior_set.hpp"
 #include "cambium/behavior/idm_classic.hpp"
 #include "cambium/behavior/idm_lane_tracking.hpp"
+#include "cambium/behavior/intersection.hpp"
 #include "cambium/behavior/mobil.hpp"
 #include "cambium/behavior/pedestrian.hpp"
 #include "cambium/behavior/random_macro_actions.hpp"
@@ -71,6 +72,22 @@ Sim<cb::Pedestrian> crowd(std::size_t agents) {
                  .behavior = cb::Pedestrian{},
                  .road = k % 2 == 0 ? to : fro});
   }
+  return world;
+}
+
+/// Vehicles on all arms of the project's four-way crossing, the first ones 30 m before it, by all its ways.
+Sim<cb::Intersection> crossing(std::size_t agents) {
+  Sim<cb::Intersection> world(support::load_map(CAMBIUM_SOURCE_DIR "/maps/intersection_4way.xodr"), {.seed = 1});
+  cb::RandomStream random(7, 0, 0);
+  for (double row = 0.0; world.size() < agents; row += 16.0)
+    for (auto const& lane : world.map().lanes()) {
+      if (!lane.drivable() || !lane.predecessors.empty() || world.size() == agents) continue;
+      auto const next = cb::uniform_index(random, static_cast<std::uint32_t>(lane.successors.size()));
+      auto const pose = lane.path.pose(lane.length() - 30.0 - row);
+      cb::map::Route route{{lane.id, lane.successors[next]}, 0.0};
+      route.lanes.push_back(world.map().lane(route.lanes.back()).successors.front());
+      world.add({.position = pose.position(), .heading = pose.heading, .speed = 7.0, .route = route});
+    }
   return world;
 }
 
@@ -139,6 +156,7 @@ int main(int argc, char** argv) {
   }
   for (std::size_t const n : {std::size_t{20}, std::size_t{100}, std::size_t{10000}})
     register_steps<Sim<cb::Pedestrian>>("social_force", n, [](std::size_t agents) { return crowd(agents); });
+  register_steps<Sim<cb::Intersection>>("intersection", 10, crossing);
   yardstick::register_yardsticks();
   return yardstick::run_benchmarks(argc, argv, "What each behaviour costs, beside kernels.", print_ratios);
 }

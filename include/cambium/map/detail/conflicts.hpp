@@ -125,6 +125,12 @@ class ConflictFinder {
     return OverlapKind::crossing;
   }
 
+  /// Whether bodies on the two paths may touch, by circles around the paths.
+  [[nodiscard]] static bool is_near(Lane const& a, Lane const& b) {
+    auto const p = a.path.pose(0.5 * a.length()), q = b.path.pose(0.5 * b.length());
+    return std::hypot(p.x - q.x, p.y - q.y) < 0.5 * (a.length() + b.length()) + before;
+  }
+
   /// The lanes of its junction whose paths keep apart from the lane's: bodies that swing out in bends may touch there.
   [[nodiscard]] std::vector<Overlap> passings(Lane const& lane) const {
     std::vector<Overlap> list;
@@ -134,8 +140,8 @@ class ConflictFinder {
       auto const& other = map_.lane(id);
       bool const overlaps = std::any_of(lane.overlaps.begin(), lane.overlaps.end(),
                                         [id](Overlap const& overlap) { return overlap.other == id; });
-      if (other.drivable() && other.length() > shortest && !overlaps && !share_ends(lane, other, false) &&
-          !share_ends(lane, other, true))
+      if (other.drivable() && other.length() > shortest && !overlaps && is_near(lane, other) &&
+          !share_ends(lane, other, false) && !share_ends(lane, other, true))
         list.push_back({id, OverlapKind::crossing, 0.0, lane.length(), 0.0, other.length()});
     }
     return list;
@@ -193,14 +199,22 @@ class ConflictFinder {
       others.push_back(geometry::box_of(conflict_shape, pose_on_way(overlap.other, s)));
     double first = std::numeric_limits<double>::infinity(), last = -first;
     std::size_t first_other = others.size(), last_other = 0;
+    double const radius = conflict_shape.radius();
     for (double s = own_from; s <= own_to; s += step) {
       auto const body = geometry::box_of(conflict_shape, corridor_.center.pose(s));
-      for (std::size_t k = 0; k < others.size(); ++k) {
-        if (!geometry::intersects(body, others[k])) continue;
+      for (std::size_t k = 0; k < others.size();) {
+        double const dx = others[k].x - body.x, dy = others[k].y - body.y;
+        double const apart = std::sqrt(dx * dx + dy * dy) - 2.0 * radius;
+        if (apart > 2.0 * step) {  // none of the next ones is near, for bodies go no more than 2 m along 1 m of path
+          k += static_cast<std::size_t>(apart / (2.0 * step));
+          continue;
+        }
+        std::size_t const at = k++;
+        if (!geometry::intersects(body, others[at])) continue;
         first = std::min(first, s);
         last = s;
-        first_other = std::min(first_other, k);
-        last_other = std::max(last_other, k);
+        first_other = std::min(first_other, at);
+        last_other = std::max(last_other, at);
       }
     }
     conflict.begin = splits ? begin : first - step;
