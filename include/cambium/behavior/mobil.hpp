@@ -183,7 +183,8 @@ struct BasicMobil {
     return mobil_incentive(Weights{politeness, threshold, changing.safe_deceleration}, situation);
   }
 
-  /// Eq. 5 for the own driving: who is faster than the leader in the inner lane follows that one, too.
+  /// Eq. 5 for the own driving: who is faster than the leader in the inner lane follows that one, too; but as if it had
+  /// its desired headway at least, for nobody brakes hard only in order not to pass.
   template <class View>
   void pass_nobody_outside(LaneKeeping<View> const& now) const {
     auto const& piece = now.view.corridor().pieces[now.view.lane_position().piece];
@@ -191,7 +192,8 @@ struct BasicMobil {
     if (inner == map::no_corridor) return;
     auto const there = now.view.front(now.view.beside(inner));
     if (there && now.speed > there->speed && there->speed > critical_speed && there->gap > 0.0)
-      now.ahead.add(now.law, now.speed, there->gap, there->speed);
+      now.ahead.add(now.law, now.speed, std::max(there->gap, idm.minimum_gap + now.speed * idm.time_headway),
+                    there->speed);
   }
 
   template <class View>
