@@ -6,7 +6,9 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <tuple>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -67,7 +69,8 @@ struct Site {
   return exits;
 }
 
-/// Finds where a road of several lanes begins: of those with the most lanes the longest. Throws `MapError` where there
+/// Finds where a road of several lanes begins, at an edge of the map if there is one; of those the one with the most
+/// lanes, of these the longest. Throws `MapError` where there
 /// is none.
 [[nodiscard]] inline Site find_site(std::shared_ptr<cambium::Map const> map, std::string const& file) {
   Site best;
@@ -75,7 +78,10 @@ struct Site {
     if (!lane.drivable() || lane.length() < 50.0) continue;
     Site site{map, lanes_beside(*map, lane.id), {}, 1e9};
     for (auto const id : site.lanes) site.length = std::min(site.length, cambium::map::straight_route(*map, id).length);
-    auto const rank = [](Site const& s) { return std::pair(s.lanes.size(), s.length); };
+    auto const rank = [&](Site const& s) {
+      bool const begins_map = !s.lanes.empty() && map->lane(s.lanes[0]).predecessors.empty();
+      return std::tuple(begins_map, s.lanes.size(), s.length);
+    };
     if (site.lanes.size() >= 2 && site.length >= 150.0 && rank(site) > rank(best)) best = std::move(site);
   }
   for (auto const id : best.lanes) {  // traffic begins where the lanes are still apart
@@ -150,9 +156,10 @@ struct Scenario {
     for (auto const& vehicle : traffic_on(map, site, site.lanes[i], share).sample(random)) {
       auto const pose = road->corridors[road->main].center.pose(vehicle.s);
       bool const is_truck = vehicle.shape.length() > 7.5;
-      bool const is_ego = !is_truck && i == (site.lanes.size() - 1) / 2 && std::abs(vehicle.s - ego_at) < nearest;
-      bool const exits =
-          !site.exits.empty() && (is_ego || cambium::uniform01(random) < 0.15) && vehicle.s < 1.5 * ego_at;
+      bool const is_early = vehicle.s < 1.5 * ego_at;  // to see much of it, and to reach an exit
+      bool const is_ego =
+          is_early && !is_truck && i == (site.lanes.size() - 1) / 2 && std::abs(vehicle.s - ego_at) < nearest;
+      bool const exits = is_early && !site.exits.empty() && (is_ego || cambium::uniform01(random) < 0.15);
       auto const exit = exits ? cambium::uniform_index(random, static_cast<std::uint32_t>(site.exits.size())) : 0;
       auto const driver = sample_driver(is_truck, random);
       auto const id =
@@ -183,7 +190,7 @@ struct Scenario {
                             "give a map with longer lanes");
 }
 
-/// Counts lane changes; true when the ego is on its exit, or without one has come 500 m far or to the end.
+/// Counts lane changes; true when the ego is on its exit, or without one has come 500 m far or near the end.
 [[nodiscard]] inline bool is_done(Scenario& scenario) {
   auto const& world = scenario.world;
   for (std::size_t i = 0; i < world.size(); ++i) {
@@ -194,8 +201,9 @@ struct Scenario {
   auto const& record = world.record(scenario.ego);
   if (!std::holds_alternative<cambium::NoGoal>(world.roster().goals[world.slot_of(scenario.ego)]))
     return world.reached_goal(scenario.ego);
-  return record.status == cambium::AgentStatus::left_map || record.status == cambium::AgentStatus::arrived ||
-         std::hypot(record.state.x - scenario.start.x(), record.state.y - scenario.start.y()) > 500.0;
+  auto const& corridor = world.roster().agents[world.slot_of(scenario.ego)].road->corridors[record.lane.corridor];
+  cambium::geometry::Point const here{record.state.x, record.state.y};
+  return corridor.length_until_end(record.lane.s) < 30.0 || (here - scenario.start).norm() > 500.0;
 }
 
 /// What the summary says of the site.

@@ -135,6 +135,9 @@ struct LaneChanging {
     return !(rear && comes(view, *rear, option, false) && !rear_is_safe(*rear));
   }
 
+  /// The way of two changes at `speed` [m/s] and the rest between them [m].
+  [[nodiscard]] double there_and_back(double speed) const { return speed * (2.0 * course.duration + rest); }
+
   /// Whether the road marks permit a change, or do not count.
   template <class View>
   [[nodiscard]] bool marks_permit(View const& view, bool left) const {

@@ -88,7 +88,7 @@ struct BasicMobil {
         parameter("route_horizon", &P::route_horizon, "m", Range{1, 10'000},
                   "from how far before a lane's end it counts, for each lane to be crossed"),
         parameter("minimum_remaining", &P::minimum_remaining, "m", Range{0, 10'000},
-                  "no change, but for the route, into a lane that ends sooner"),
+                  "no change, but for the route, into a lane with less than this left when it could be left again"),
         parameter("tolerance", &P::tolerance, "m/s^2", Range{1e-12, 1},
                   "error of the exact integration, as speed per second"));
     if constexpr (sizeof...(Filters) > 0)
@@ -137,7 +137,7 @@ struct BasicMobil {
       double const remaining = lane_end(view, side, option.place.piece) - option.place.s;
       double const urge =
           !goes_on ? (left ? urgency.left : urgency.right) : -std::max(0.0, 1.0 - remaining / route_horizon);
-      if (urge <= 0.0 && remaining < minimum_remaining) continue;
+      if (urge <= 0.0 && remaining < minimum_remaining + changing.there_and_back(now.speed)) continue;
       double const pull = (inwards ? -bias : bias) + route_bias * urge;
       option.front = view.front(option.place);
       situation.own_after = now.law(now.speed, option.front);
