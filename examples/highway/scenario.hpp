@@ -121,6 +121,8 @@ struct Scenario {
   driver.politeness = kind < 0.2 ? 0.0 : 0.3;
   driver.keep_right = true;
   driver.bias = is_truck ? 0.6 : 0.3;
+  driver.route_horizon = 800.0;  // exits are announced early
+  driver.route_bias = 4.0;
   driver.changing.others = presets::kesting_2010_car();
   driver.changing.trucks = presets::kesting_2010_truck();
   return driver;
