@@ -40,7 +40,7 @@ struct LaneChangeRuleBased {
         parameter("changing", &P::changing, "-", {}, "how it changes lanes, and what it assumes of others"),
         parameter("space", &P::space, "-", {}, "what must be free in the new lane"),
         parameter("minimum_remaining", &P::minimum_remaining, "m", Range{0, 10'000},
-                  "no change, but for the route, into a lane that ends sooner"),
+                  "no change, but for the route, into a lane with less than this left when it could be left again"),
         parameter("advantage", &P::advantage, "m", Range{0, 1000}, "of free space that makes a change worth it"),
         parameter("horizon", &P::horizon, "m", Range{0, 400}, "as far as space counts"),
         parameter("route_horizon", &P::route_horizon, "m", Range{1, 10'000},
@@ -75,7 +75,7 @@ struct LaneChangeRuleBased {
       double const urge = left ? urgency.left : urgency.right;
       LaneOption option{view.beside(side), left, {}, {}};
       double const remaining = lane_end(view, side, option.place.piece) - option.place.s;
-      if (urge < 0.0 || (urge == 0.0 && remaining < minimum_remaining)) continue;
+      if (urge < 0.0 || (urge == 0.0 && remaining < minimum_remaining + changing.there_and_back(now.speed))) continue;
       option.front = view.front(option.place);
       double const ahead = urge > 0.0 ? std::numeric_limits<double>::infinity() : space_ahead(option.front);
       if (!(ahead > best)) continue;

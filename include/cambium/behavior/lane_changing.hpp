@@ -97,7 +97,7 @@ struct LaneChanging {
     auto ahead = ahead_in_lane(view, law, speed, leader, end);
     bool const may_change = memory.rest == 0.0f;
     auto const target = choose(LaneKeeping<View>{view, law, speed, leader, end, may_change, ahead});
-    if (may_change && target != map::no_corridor) {
+    if (may_change && target != map::no_corridor && is_wide_enough(view, target, 0.5 * speed * course.duration)) {
       memory.change = course.begin(target, speed, room(view, leader));
       memory.rest = static_cast<float>(rest + course.duration);
       ahead = ahead_while_changing(view, law, speed, leader, memory.change);
@@ -137,6 +137,9 @@ struct LaneChanging {
     if (front && comes(view, *front, option, true) && !front_is_safe(*front)) return false;
     return !(rear && comes(view, *rear, option, false) && !rear_is_safe(*rear));
   }
+
+  /// The way of two changes at `speed` [m/s] and the rest between them [m].
+  [[nodiscard]] double there_and_back(double speed) const { return speed * (2.0 * course.duration + rest); }
 
   /// Whether the road marks permit a change, or do not count.
   template <class View>
@@ -194,6 +197,14 @@ struct LaneChanging {
     auto random = view.random(purpose);
     memory.change = back;
     memory.rest = static_cast<float>(course.shortest_duration + rest * (0.5 + uniform01(random)));
+  }
+
+  /// Whether the vehicle fits into the lane `beside` where it comes in, `ahead` [m]: lanes may open slowly.
+  template <class View>
+  [[nodiscard]] static bool is_wide_enough(View const& view, std::uint16_t beside, double ahead) {
+    auto const& lane = view.road().corridors[beside];
+    double const s = std::min(view.lane_position(beside).s + ahead, lane.length());
+    return lane.width_at(s) > view.shape().width();
   }
 
   /// How long a change may be: it must lead around a standing object, and to before the end of the lane [m].

@@ -29,26 +29,24 @@ struct LaneUrgency {
 
 namespace detail {
 
-/// What is left of a lane corridor's lane beside the own place [m].
+/// What is left of a lane corridor's lane `along` [m] behind the begin of one of its pieces [m].
 template <class View>
-[[nodiscard]] double remaining_beside(View const& view, std::uint16_t number, std::uint16_t piece) {
-  auto const& at = view.lane_position();
-  double const along = at.s - view.corridor().pieces[at.piece].begin;
+[[nodiscard]] double remaining_from(View const& view, std::uint16_t number, std::uint16_t piece, double along) {
   return lane_end(view, number, piece) - view.road().corridors[number].pieces[piece].begin - along;
 }
 
-/// How many lanes to the left (right) the next one is that goes further than `remaining` [m]; 0: there is none.
+/// How many lanes to the left (right) of a piece of the own corridor the next one is that goes further than `remaining`
+/// [m] from the place `along` [m] behind its begin; 0: there is none.
 template <class View>
-[[nodiscard]] int lanes_to_go(View const& view, double remaining, bool left) {
+[[nodiscard]] int lanes_to_go(View const& view, std::uint16_t piece, double along, double remaining, bool left) {
   auto number = view.lane_position().corridor;
-  auto piece = view.lane_position().piece;
   constexpr int most = 16;
   for (int lanes = 1; lanes <= most; ++lanes) {
     auto const& at = view.road().corridors[number].pieces[piece];
     number = left ? at.left : at.right;
     piece = left ? at.left_piece : at.right_piece;
     if (number == map::no_corridor) return 0;
-    if (remaining_beside(view, number, piece) > remaining + 1.0) return lanes;
+    if (remaining_from(view, number, piece, along) > remaining + 1.0) return lanes;
   }
   return 0;
 }
@@ -56,7 +54,8 @@ template <class View>
 }  // namespace detail
 
 /// How the ends of lanes, dead or merging, and the lane that the goal needs pull to a side: from `horizon` [m] before
-/// them for each lane to be crossed, increasingly. O(1) where no end is near, else O(lanes beside).
+/// them for each lane to be crossed, increasingly. O(1) where no end is ahead, else O(lanes
+/// beside), at most at each piece up to the end.
 template <class View>
 [[nodiscard]] LaneUrgency lane_urgency(View const& view, double horizon) {
   constexpr double infinite = std::numeric_limits<double>::infinity();
@@ -69,17 +68,23 @@ template <class View>
   if (remaining == infinite) {
     auto const away = [&](std::uint16_t number, std::uint16_t there) {
       if (number == map::no_corridor) return 0.0;
-      double const left = detail::remaining_beside(view, number, there);
+      double const left = detail::remaining_from(view, number, there, at.s - piece.begin);
       return left == infinite ? 0.0 : -closeness(left, 1);
     };
     return {away(piece.left, piece.left_piece), away(piece.right, piece.right_piece)};
   }
-  int const to_the_left = detail::lanes_to_go(view, remaining, true);
-  int const to_the_right = detail::lanes_to_go(view, remaining, false);
-  if (to_the_left == 0 && to_the_right == 0) return {};
-  bool const left = to_the_right == 0 || (to_the_left != 0 && to_the_left <= to_the_right);
-  double const urgency = closeness(remaining, left ? to_the_left : to_the_right);
-  return left ? LaneUrgency{urgency, -urgency} : LaneUrgency{-urgency, urgency};
+  for (auto p = at.piece; p < view.corridor().pieces.size(); ++p) {  // the lane that goes further may begin later
+    double const begin = view.corridor().pieces[p].begin, along = p == at.piece ? at.s - begin : 0.0;
+    double const there = remaining + at.s - begin - along;
+    if (!(there > 0.0)) break;
+    int const to_the_left = detail::lanes_to_go(view, p, along, there, true);
+    int const to_the_right = detail::lanes_to_go(view, p, along, there, false);
+    if (to_the_left == 0 && to_the_right == 0) continue;
+    bool const left = to_the_right == 0 || (to_the_left != 0 && to_the_left <= to_the_right);
+    double const urgency = closeness(remaining, left ? to_the_left : to_the_right);
+    return left ? LaneUrgency{urgency, -urgency} : LaneUrgency{-urgency, urgency};
+  }
+  return {};
 }
 
 }  // namespace cambium

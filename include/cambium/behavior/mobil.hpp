@@ -46,7 +46,8 @@ template <HasMobilParameters P>
 
 /// Lane changing by MOBIL (Kesting, Treiber, Helbing 2007, "General lane-changing model MOBIL for car-following
 /// models"), car following by IDM. Changes where that pays for itself and, weighed by `politeness`, for the old and the
-/// new follower, and where it is safe (see `LaneChanging`, which has how a change is carried out). Of a side that does
+/// new follower, and where it is safe (see `LaneChanging`, which has how a change is carried out). Who must leave its
+/// lane comes down to the speed of the lane that it needs. Of a side that does
 /// not pay for the driver itself and its old follower, what a new follower might gain there is not asked.
 ///
 /// `Filters`: further conditions, see `corridor_filters.hpp`; `Mobil` is without any.
@@ -92,7 +93,7 @@ struct BasicMobil {
         parameter("route_horizon", &P::route_horizon, "m", Range{1, 10'000},
                   "from how far before a lane's end it counts, for each lane to be crossed"),
         parameter("minimum_remaining", &P::minimum_remaining, "m", Range{0, 10'000},
-                  "no change, but for the route, into a lane that ends sooner"),
+                  "no change, but for the route, into a lane with less than this left when it could be left again"),
         parameter("tolerance", &P::tolerance, "m/s^2", Range{1e-12, 1},
                   "error of the exact integration, as speed per second"));
     if constexpr (sizeof...(Filters) > 0)
@@ -141,9 +142,10 @@ struct BasicMobil {
       double const remaining = lane_end(view, side, option.place.piece) - option.place.s;
       double const urge =
           !goes_on ? (left ? urgency.left : urgency.right) : -std::max(0.0, 1.0 - remaining / route_horizon);
-      if (urge <= 0.0 && remaining < minimum_remaining) continue;
+      if (urge <= 0.0 && remaining < minimum_remaining + changing.there_and_back(now.speed)) continue;
       double const pull = (inwards ? -bias : bias) + route_bias * urge;
       option.front = view.front(option.place);
+      if (urge > 0.0 && !goes_on) adapt_to(now, option.front);
       situation.own_after = now.law(now.speed, option.front);
       if (is_prejudged && others + situation.own_after + pull <= best) continue;
       option.rear = view.rear(option.place);
@@ -155,6 +157,15 @@ struct BasicMobil {
       target = side;
     }
     return target;
+  }
+
+  /// Follows somebody in another lane who is slower; but as if it had its desired headway at least, for nobody brakes
+  /// hard for that.
+  template <class View>
+  void adapt_to(LaneKeeping<View> const& now, std::optional<Neighbor> const& front) const {
+    if (front && front->gap > 0.0 && front->speed < now.speed)
+      now.ahead.add(now.law, now.speed, std::max(front->gap, idm.minimum_gap + now.speed * idm.time_headway),
+                    front->speed);
   }
 
   /// Acceleration of a follower behind this vehicle, and behind `front`, who is next without it.
@@ -194,8 +205,7 @@ struct BasicMobil {
     auto const inner = keeps_left(now.view, piece.lane) ? piece.right : piece.left;
     if (inner == map::no_corridor) return;
     auto const there = now.view.front(now.view.beside(inner));
-    if (there && now.speed > there->speed && there->speed > critical_speed && there->gap > 0.0)
-      now.ahead.add(now.law, now.speed, there->gap, there->speed);
+    if (there && there->speed > critical_speed) adapt_to(now, there);
   }
 
   template <class View>
