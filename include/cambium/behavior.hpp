@@ -21,6 +21,7 @@
 #include "cambium/behavior/lane_changing.hpp"
 #include "cambium/behavior/lane_ends.hpp"
 #include "cambium/behavior/leader.hpp"
+#include "cambium/behavior/linear_stability.hpp"
 #include "cambium/behavior/macro_actions.hpp"
 #include "cambium/behavior/mobil.hpp"
 #include "cambium/behavior/motion_primitives.hpp"

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "cambium/behavior/linear_stability.hpp"
 #include "cambium/behavior/presets.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"
@@ -25,22 +26,14 @@ cb::IdmParameters any_driver(cb::RandomStream& random) {
           .lowest_acceleration = -8.0};
 }
 
-/// The law linearised about following at `speed`: change of the acceleration with gap, own and leader's speed.
-struct Linear {
-  double by_gap, by_speed, by_leader;
-};
-Linear linear(cb::IdmParameters const& p, double speed) {
-  double const gap = cb::idm_equilibrium_gap(p, speed), h = 1e-4;
-  auto const a = [&](double ds, double dv, double dl) {
-    return cb::idm_acceleration(p, speed + dv, gap + ds, speed + dl);
-  };
-  return {(a(h, 0, 0) - a(-h, 0, 0)) / (2 * h), (a(0, h, 0) - a(0, -h, 0)) / (2 * h),
-          (a(0, 0, h) - a(0, 0, -h)) / (2 * h)};
+cb::LinearFollowing linear(cb::IdmParameters const& p, double speed) {
+  auto const law = [&p](double v, double gap, double leader) { return cb::idm_acceleration(p, v, gap, leader); };
+  return cb::linear_following(law, speed, cb::idm_equilibrium_gap(p, speed));
 }
 
 /// How much a follower makes of its leader's oscillation of the angular frequency `w` [rad/s].
-double amplification(Linear const& f, double w) {
-  double const above = f.by_gap * f.by_gap + w * w * f.by_leader * f.by_leader;
+double amplification(cb::LinearFollowing const& f, double w) {
+  double const above = f.by_gap * f.by_gap + w * w * f.by_leader_speed * f.by_leader_speed;
   double const real = f.by_gap - w * w, imaginary = w * f.by_speed;
   return std::sqrt(above / (real * real + imaginary * imaginary));
 }
@@ -84,7 +77,7 @@ TEST_CASE("platoons damp or amplify a small wave as linear theory says, for stab
     double const speed = between(0.3, 0.8, random) * p.desired_speed;
     auto const f = linear(p, speed);
     // String stable: no frequency is amplified (Treiber, Kesting 2013, section 15.4): f_v^2 - f_l^2 >= 2 f_s.
-    double const margin = f.by_speed * f.by_speed - f.by_leader * f.by_leader - 2 * f.by_gap;
+    double const margin = f.by_speed * f.by_speed - f.by_leader_speed * f.by_leader_speed - 2 * f.by_gap;
     double const w = margin < 0.0 ? std::sqrt(-margin / 2) : 0.3;
     if (w < 0.08) continue;  // at the border: waves too long to wait for
     int const followers = 12;
@@ -94,6 +87,7 @@ TEST_CASE("platoons damp or amplify a small wave as linear theory says, for stab
     CAPTURE(margin);
     CHECK(measured == doctest::Approx(expected).epsilon(0.1));
     CHECK((measured < 1.0) == (margin > 0.0));
+    CHECK(f.is_string_stable() == (margin >= 0.0));
     (margin > 0.0 ? stable : unstable)++;
   }
   MESSAGE(stable << " stable and " << unstable << " unstable drivers");

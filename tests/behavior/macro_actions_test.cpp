@@ -133,6 +133,30 @@ TEST_CASE("changes are available where there is a lane on that side") {
   CHECK_FALSE(cb::MacroActions{}.available(at.world.observe(at.id), 7));
 }
 
+TEST_CASE("a change into a lane that ends too soon is not available, and not begun") {
+  World world(support::own_map("lane_drop.xodr"));
+  auto const& road = world.map().roads()[0];
+  auto const number = number_of(Kind::change_right);
+  auto const at = [&](double s) {
+    for (auto const& entry : road.sections[0].lanes)
+      if (entry.number == -2) {
+        auto const pose = world.map().lane(entry.id).path.pose(s);
+        return world.add({.position = pose.position(),
+                          .heading = pose.heading,
+                          .speed = 10,
+                          .behavior = cb::MacroActions{.minimum_remaining = 150.0}});
+      }
+    return cb::none<cb::AgentId>;
+  };
+  auto const far = at(200.0), near = at(390.0);
+  CHECK(cb::MacroActions{.minimum_remaining = 150.0}.available(world.observe(far), number));
+  CHECK_FALSE(cb::MacroActions{.minimum_remaining = 150.0}.available(world.observe(near), number));
+  for (auto const id : {far, near}) world.memory<cb::MacroActions>(id).choose(number);
+  world.step(0.25);
+  CHECK(world.memory<cb::MacroActions>(far).change.active());
+  CHECK_FALSE(world.memory<cb::MacroActions>(near).change.active());
+}
+
 TEST_CASE("keeping the gap is IDM") {
   World world(straight_road(1, 2000.0));
   world.add({.position = {100, -1.75}, .speed = 10, .behavior = cb::MacroActions{}});

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "lane_traffic_fixtures.hpp"
@@ -241,6 +242,71 @@ TEST_CASE("a fast driver does not pass a slower one on the right under the rule 
   }
 }
 
+namespace {
+
+/// In dense traffic, how many changes lead to another lane, and how many of them back to the one left within 12 s.
+std::pair<int, int> changes_and_returns(double threshold, double rest) {
+  int changes = 0, returns = 0;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    Sim world(support::straight_road(3, 3000.0), {.seed = seed});
+    fill(world, 3, 5.0, 700.0, 2.0, seed, [&](double v) {
+      auto driver = mobil(v);
+      driver.threshold = threshold;
+      driver.changing.rest = rest;
+      return driver;
+    });
+    struct Last {
+      std::uint16_t from = cb::map::no_corridor;
+      double time = -1e9;
+    };
+    std::vector<Last> last(world.size());
+    for (int k = 0; k < 300; ++k) {
+      auto const before = lanes(world);
+      world.step(0.2);
+      auto const after = lanes(world);
+      for (std::size_t i = 0; i < world.size(); ++i) {
+        if (before[i] == after[i]) continue;
+        ++changes;
+        returns += after[i] == last[i].from && world.time() - last[i].time < 12.0;
+        last[i] = {before[i], world.time()};
+      }
+    }
+  }
+  return {changes, returns};
+}
+
+}  // namespace
+
+TEST_CASE("the threshold and the rest after a change keep drivers from changing back and forth") {
+  auto const [changes, returns] = changes_and_returns(0.2, 3.0);
+  auto const [restless_changes, restless_returns] = changes_and_returns(0.0, 0.0);
+  MESSAGE(returns << " of " << changes << " lead back; without threshold and rest " << restless_returns << " of "
+                  << restless_changes);
+  CHECK(changes > 100);
+  CHECK(returns * 12 < changes);
+  CHECK(restless_returns > 3 * returns);
+}
+
+TEST_CASE("a follower is judged by what is assumed of vehicles as long as it, and by the speed that it shows") {
+  for (bool const is_truck : {false, true})
+    for (bool const truck_is_hindered : {false, true}) {
+      Sim world(support::straight_road(2, 2000.0));
+      add(world, 1, 230.0, 8.0, cb::ConstantAcceleration{});
+      cb::Mobil driver = mobil(20.0);
+      auto& wary = truck_is_hindered ? driver.changing.trucks : driver.changing.others;
+      wary.time_headway = 8.0;
+      auto const id = add(world, 1, 200.0, 14.0, driver);
+      auto const shape = is_truck ? cb::geometry::truck() : cb::geometry::car();
+      add(world, 2, 160.0 - shape.front, 14.0, cb::ConstantAcceleration{}, {}, shape);
+      world.step(0.2);
+      CHECK(world.memory<cb::Mobil>(id).change.active() == (is_truck != truck_is_hindered));
+    }
+  cb::LaneChanging const changing;
+  CHECK(changing.law_of({.speed = 40.0, .length = 4.5}).free(40.0) == doctest::Approx(0.0));
+  CHECK(changing.law_of({.speed = 10.0, .length = 4.5}).free(10.0) >
+        changing.law_of({.speed = 10.0, .length = 12.0}).free(10.0));
+}
+
 TEST_CASE("a change is aborted when somebody comes up in the new lane") {
   int aborted = 0;
   for (double const at : {60.0, 70.0, 80.0, 90.0, 100.0}) {
@@ -261,6 +327,63 @@ TEST_CASE("a change is aborted when somebody comes up in the new lane") {
     CHECK(began);
   }
   CHECK(aborted >= 2);
+}
+
+TEST_CASE(
+    "who leaves its lane for the next one hides who drives ahead there, but not for so long that somebody collides") {
+  int hidden = 0;
+  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+    cb::RandomStream random(seed, 1, 0);
+    auto const between = [&random](double low, double high) { return low + (high - low) * cb::uniform01(random); };
+    Sim world(support::straight_road(2, 2500.0, seed % 3 == 0 ? 0.002 : 0.0), {.seed = seed});
+    double const v = between(6, 22), slow = seed % 5 == 0 ? 0.0 : v * between(0.0, 0.8);
+    cb::IdmClassic const idm{.desired_speed = 1.2 * v};
+    auto const follower = add(world, 1, 100.0, v, seed % 2 == 0 ? Sim::Behavior(mobil(1.2 * v)) : Sim::Behavior(idm));
+    for (double const behind : {10.0, 30.0}) add(world, 2, 100.0 - behind, v, cb::IdmClassic{.desired_speed = v});
+    double const at = 104.5 + cb::idm_equilibrium_gap(idm, v) * between(0.7, 1.2);
+    auto const leaving = add(world, 1, at, v, mobil(1.5 * v));
+    double const way_to_brake = 6.5 + 1.5 * v + v * (v - slow) / 4;
+    auto const ahead = add(world, 1, at + way_to_brake * between(0.7, 1.5), slow, cb::ConstantAcceleration{});
+    for (int k = 0; k < 150; ++k) {
+      world.step(0.2);
+      CAPTURE(seed);
+      REQUIRE(collisions(world) == 0);
+      auto const leader = world.observe(follower).front();
+      if (!leader || leader->agent != leaving || world.record(leaving).lane.corridor == 0) continue;
+      auto const& own = world.record(follower);
+      double const gap = world.record(ahead).lane.s - own.lane.s - 4.5;
+      hidden += own.lane.corridor == 0 && cb::idm_acceleration(idm, own.state.speed, gap, slow) <
+                                              cb::idm_acceleration(idm, own.state.speed, leader->gap, leader->speed);
+    }
+  }
+  CHECK(hidden > 50);
+}
+
+TEST_CASE("who is off its lane's middle or direction comes back smoothly, however it came there") {
+  for (double const curvature : {0.0, 0.003})
+    for (double const turn : {-0.3, 0.0, 0.15})
+      for (double const speed : {0.5, 8.0, 30.0}) {
+        Sim world(support::straight_road(1, 1500.0, curvature));
+        auto const& lane = *std::find_if(world.map().lanes().begin(), world.map().lanes().end(),
+                                         [](auto const& candidate) { return candidate.drivable(); });
+        auto const pose = lane.path.pose(100.0);
+        auto const id = world.add({.position = cb::geometry::to_map(pose, {0.0, 0.6}),
+                                   .heading = pose.heading + turn,
+                                   .speed = speed,
+                                   .behavior = mobil(speed)});
+        double before = turn;
+        for (int k = 0; k < 400 && world.status(id) == cb::AgentStatus::driving; ++k) {
+          world.step(0.1);
+          auto const& at = world.record(id).lane;
+          CAPTURE(curvature);
+          CAPTURE(turn);
+          CAPTURE(speed);
+          CAPTURE(k);
+          CHECK(std::abs(at.heading_error - before) < 0.1);
+          before = at.heading_error;
+        }
+        if (speed > 1.0) CHECK(std::abs(world.record(id).lane.lateral) < 0.01);
+      }
 }
 
 TEST_CASE("drivers go around a standing object, and wait before it while the other lane is busy") {

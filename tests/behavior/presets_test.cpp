@@ -19,8 +19,7 @@ TEST_CASE("those on foot and on bicycles are within the models' ranges; a cyclis
 
 TEST_CASE("drivers from the literature are within the parameters' ranges and drive as they are called") {
   using namespace cb::presets;
-  for (auto const& p : {treiber_2000(), kesting_2010_car(), kesting_2010_truck(), aggressive(), timid()})
-    CHECK_NOTHROW(cb::check_parameters(p));
+  for (auto const& preset : all) CHECK_NOTHROW(cb::check_parameters(preset.parameters));
   double const gap = 40.0, speed = 25.0, leader = 24.0;
   double const hasty = cb::idm_acceleration(aggressive(), speed, gap, leader),
                usual = cb::idm_acceleration(kesting_2010_car(), speed, gap, leader),

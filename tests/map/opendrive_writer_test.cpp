@@ -290,3 +290,15 @@ TEST_CASE("what is left of a damaged file is read again as it was written") {
     }
   CHECK(readable > 900);
 }
+
+TEST_CASE("records that are left out leave none behind that would be, were the file read again") {
+  // Each is within bounds up to the next one, which is not; without that it holds farther.
+  auto text = road_with("<line/>", "");
+  text.insert(text.find("<lanes"), R"(<lateralProfile><crossfall side="left" s="0" a="0" b="0" c="1" d="0"/>
+    <crossfall side="left" s="1" a="0" b="0" c="1e9" d="0"/><shape s="0" t="0" a="0" b="0" c="-2" d="0"/>
+    <shape s="0" t="0" a="0" b="0" c="-2" d="0"/></lateralProfile>)");
+  auto const document = read(text);
+  CHECK(document.roads.at(0).crossfall.empty());
+  CHECK(document.roads[0].shape.empty());
+  CHECK(read(write_opendrive(document)) == document);
+}

@@ -22,6 +22,10 @@ struct AdaptiveCruiseControl {
   Integration integration = Integration::accurate;
 
   static constexpr char const* name = "adaptive_cruise_control";
+  static constexpr char const* summary =
+      "IDM, but where that brakes harder than the constant-acceleration heuristic c asks for: (1 - coolness) a_IDM + "
+      "coolness (c + b tanh((a_IDM - c) / b))";
+  static constexpr char const* source = "Kesting, Treiber, Helbing 2010, eq. 2.3 and 2.6";
   static constexpr auto parameters() {
     using Self = AdaptiveCruiseControl;
     return std::make_tuple(parameter("idm", &Self::idm, "-", {}, "the car following it is built on"),

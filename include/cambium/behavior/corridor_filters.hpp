@@ -60,6 +60,8 @@ struct FreeSpace {
   double time = 1.0;
 
   static constexpr char const* name = "free_space";
+  static constexpr char const* summary = "room ahead, and behind by a time times the difference of speeds";
+  static constexpr char const* source = "BARK";
   static constexpr auto parameters() {
     return std::make_tuple(parameter("front", &FreeSpace::front, "m", Range{0, 1000}, "least gap to the new leader"),
                            parameter("rear", &FreeSpace::rear, "m", Range{0, 1000}, "least gap to the new follower"),
@@ -80,6 +82,8 @@ struct RemainingLength {
   double least = 60.0;
 
   static constexpr char const* name = "remaining_length";
+  static constexpr char const* summary = "enough of the lane is left";
+  static constexpr char const* source = "BARK";
   static constexpr auto parameters() {
     return std::make_tuple(parameter("least", &RemainingLength::least, "m", Range{0, 10'000},
                                      "left of the lane from beside the vehicle on"));
@@ -97,6 +101,8 @@ struct SpeedLimitAtLeast {
   double speed = 0.0;
 
   static constexpr char const* name = "speed_limit_at_least";
+  static constexpr char const* summary = "the lane permits so much";
+  static constexpr char const* source = "own";
   static constexpr auto parameters() {
     return std::make_tuple(
         parameter("speed", &SpeedLimitAtLeast::speed, "m/s", Range{0, 200}, "least speed limit of the lane"));

@@ -50,6 +50,9 @@ struct ExternalInput {
   double longest_substep = 0.1;
 
   static constexpr char const* name = "external_input";
+  static constexpr char const* summary =
+      "carries out acceleration and steering set from outside, through the vehicle model";
+  static constexpr char const* source = "kinematics";
   static constexpr auto parameters() {
     return std::make_tuple(parameter("scheme", &ExternalInput::scheme, "-", Range{0, 1},
                                      "integration of the vehicle model: 0 RK4, 1 Euler"),

@@ -53,6 +53,9 @@ struct IdmParameters {
   double highest_acceleration = 8.0;
 
   static constexpr char const* name = "idm";
+  static constexpr char const* summary =
+      "the parameters of the Intelligent Driver Model, where a model holds them beside its own";
+  static constexpr char const* source = "Treiber, Hennecke, Helbing 2000; defaults: BARK";
   static constexpr auto parameters() { return idm_parameters<IdmParameters>(); }
 };
 static_assert(HasIdmParameters<IdmParameters>);
@@ -95,6 +98,17 @@ template <HasIdmParameters P>
   double const free = 1.0 - idm_power(speed / p.desired_speed, p.exponent);
   return free <= 0 ? std::numeric_limits<double>::infinity()
                    : (p.minimum_gap + speed * p.time_headway) / std::sqrt(free);
+}
+
+/// The speed [m/s] at which followers keep `gap` [m]: what the gap above belongs to. 0 below the minimum gap.
+template <HasIdmParameters P>
+[[nodiscard]] double idm_equilibrium_speed(P const& p, double gap) {
+  double low = 0.0, high = p.desired_speed;
+  for (int i = 0; i < 60; ++i) {
+    double const middle = 0.5 * (low + high);
+    (idm_equilibrium_gap(p, middle) <= gap ? low : high) = middle;
+  }
+  return low;
 }
 
 namespace detail {

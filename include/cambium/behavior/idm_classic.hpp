@@ -33,6 +33,10 @@ struct IdmClassic {
   RoadRules rules{};
 
   static constexpr char const* name = "idm_classic";
+  static constexpr char const* summary =
+      "keeps its lane; a = a_max (1 - (v/v0)^4 - (s*/s)^2), s* = s0 + max(0, v T + v (v - v_leader) / (2 sqrt(a_max "
+      "b)))";
+  static constexpr char const* source = "Treiber, Hennecke, Helbing 2000, eq. 3 and 4";
   static constexpr auto parameters() {
     return std::tuple_cat(
         idm_parameters<IdmClassic>(),
@@ -54,5 +58,17 @@ struct IdmClassic {
   }
 };
 static_assert(BehaviorModel<IdmClassic>);
+
+/// A driver of these parameters, as of `presets`.
+[[nodiscard]] constexpr IdmClassic idm_classic(IdmParameters const& p) {
+  return {.desired_speed = p.desired_speed,
+          .time_headway = p.time_headway,
+          .minimum_gap = p.minimum_gap,
+          .maximum_acceleration = p.maximum_acceleration,
+          .comfortable_deceleration = p.comfortable_deceleration,
+          .exponent = p.exponent,
+          .lowest_acceleration = p.lowest_acceleration,
+          .highest_acceleration = p.highest_acceleration};
+}
 
 }  // namespace cambium

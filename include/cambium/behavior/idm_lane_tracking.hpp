@@ -57,6 +57,10 @@ struct IdmLaneTracking {
   double tolerance = 1e-4;
 
   static constexpr char const* name = "idm_lane_tracking";
+  static constexpr char const* summary =
+      "along: IDM, or the ACC model where coolness > 0, slower in curves; across: front axle to the centre line, "
+      "steering = heading error - atan(k e / (v + v_soft)), through the vehicle model";
+  static constexpr char const* source = "Treiber, Hennecke, Helbing 2000; Hoffmann, Tomlin, Montemerlo, Thrun 2007";
   static constexpr auto parameters() {
     using Self = IdmLaneTracking;
     return std::make_tuple(

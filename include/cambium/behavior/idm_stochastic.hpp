@@ -25,6 +25,10 @@ struct Yielding {
   double horizon = 150.0;
 
   static constexpr char const* name = "yielding";
+  static constexpr char const* summary =
+      "now and then follows who is next ahead in a neighbouring lane that ends or joins, where comfortable braking is "
+      "enough";
+  static constexpr char const* source = "own";
   static constexpr auto parameters() {
     return std::make_tuple(
         parameter("enabled", &Yielding::enabled, "-", Range{0, 1}, "whether it ever lets others in"),
@@ -55,6 +59,9 @@ struct BasicIdmStochastic {
   double tolerance = 1e-4;
 
   static constexpr char const* name = "idm_stochastic";
+  static constexpr char const* summary =
+      "IDM with parameters drawn once for each agent or anew in every step; intentions to yield that alternate";
+  static constexpr char const* source = "law: Treiber, Hennecke, Helbing 2000; draws: own, after BARK";
   static constexpr auto parameters() {
     using Self = BasicIdmStochastic;
     return std::make_tuple(

@@ -53,6 +53,8 @@ struct LaneChangeCourse {
   double minimum_length = 15.0;
 
   static constexpr char const* name = "lane_change_course";
+  static constexpr char const* summary = "quintic course by the way driven: no jump of heading or curvature";
+  static constexpr char const* source = "own";
   static constexpr auto parameters() {
     return std::make_tuple(
         parameter("duration", &LaneChangeCourse::duration, "s", Range{0.5, 30}, "from one centre line to the other"),

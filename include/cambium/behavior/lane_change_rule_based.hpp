@@ -31,6 +31,8 @@ struct LaneChangeRuleBased {
   static constexpr bool looks_beside = true;
 
   static constexpr char const* name = "lane_change_rule_based";
+  static constexpr char const* summary = "IDM; changes to the lane with the most free space ahead, where that is safe";
+  static constexpr char const* source = "rule: BARK; safety: Kesting, Treiber, Helbing 2007";
   static constexpr auto parameters() {
     using P = LaneChangeRuleBased;
     return std::make_tuple(

@@ -52,6 +52,9 @@ struct LaneChanging {
   LaneChangeCourse course{};
 
   static constexpr char const* name = "lane_changing";
+  static constexpr char const* summary =
+      "a change along a smooth course, with rest between changes; aborted where it becomes unsafe";
+  static constexpr char const* source = "own";
   static constexpr auto parameters() {
     using P = LaneChanging;
     return std::make_tuple(

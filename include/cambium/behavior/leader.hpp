@@ -32,6 +32,8 @@ struct RoadRules {
   bool obey_speed_limits = false;
 
   static constexpr char const* name = "road_rules";
+  static constexpr char const* summary = "braking for the end of the lane, obeying speed limits";
+  static constexpr char const* source = "own; lane end: BARK";
   static constexpr auto parameters() {
     return std::make_tuple(
         parameter("lane_end", &RoadRules::lane_end, "-", Range{0, 2},

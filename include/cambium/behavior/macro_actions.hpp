@@ -16,6 +16,7 @@
 #include "cambium/behavior/idm.hpp"
 #include "cambium/behavior/idm_law.hpp"
 #include "cambium/behavior/lane_change.hpp"
+#include "cambium/behavior/lane_ends.hpp"
 #include "cambium/core/error.hpp"
 
 namespace cambium {
@@ -86,13 +87,17 @@ struct MacroActions {
   double tolerance = 1e-4;
 
   static constexpr char const* name = "macro_actions";
+  static constexpr char const* summary =
+      "carries out what a search chooses: stay with an acceleration, change left or right, keep the gap by IDM; each "
+      "where its precondition holds";
+  static constexpr char const* source = "after BARK";
   static constexpr auto parameters() {
     using P = MacroActions;
     return std::make_tuple(
         parameter("count", &P::count, "-", Range{1, capacity}, "how many of the actions there are"),
         parameter("highest_speed", &P::highest_speed, "m/s", Range{0, 200}, "not exceeded by accelerating"),
         parameter("minimum_remaining", &P::minimum_remaining, "m", Range{0, 10'000},
-                  "no change into a lane that ends sooner"),
+                  "no change into a lane that ends, or begins to merge into its neighbour, sooner"),
         parameter("idm", &P::idm, "-", {}, "how gaps are kept"),
         parameter("course", &P::course, "-", {}, "how long a change takes"),
         parameter("tolerance", &P::tolerance, "m/s^2", Range{1e-12, 1},
@@ -148,9 +153,8 @@ struct MacroActions {
     auto const& piece = view.corridor().pieces[at.piece];
     auto const side = kind == Kind::change_left ? piece.left : piece.right;
     if (side == none) return none;
-    auto const& corridor = view.road().corridors[side];
-    if (corridor.reaches_destination) return side;
-    return corridor.length_until_end(view.lane_position(side).s) < minimum_remaining ? none : side;
+    auto const there = view.lane_position(side);
+    return lane_end(view, side, there.piece) - there.s < minimum_remaining ? none : side;
   }
 
   template <class View>

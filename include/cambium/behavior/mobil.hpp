@@ -69,6 +69,10 @@ struct BasicMobil {
   static constexpr bool looks_beside = true;
 
   static constexpr char const* name = "mobil";
+  static constexpr char const* summary =
+      "IDM; changes lanes where a_new - a_old + politeness (gains of new and old follower) > threshold + bias, and the "
+      "new follower brakes no harder than is safe; each one has parameters of its own";
+  static constexpr char const* source = "Kesting, Treiber, Helbing 2007, eq. 2 to 7";
   static constexpr auto parameters() {
     using P = BasicMobil;
     auto const own = std::make_tuple(

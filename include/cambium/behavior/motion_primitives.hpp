@@ -39,6 +39,9 @@ struct MotionPrimitives {
   double longest_substep = 0.1;
 
   static constexpr char const* name = "motion_primitives";
+  static constexpr char const* summary =
+      "carries out one of a few inputs (acceleration, steering) through the vehicle model, as a search chooses";
+  static constexpr char const* source = "after BARK";
   static constexpr auto parameters() {
     using P = MotionPrimitives;
     return std::make_tuple(

@@ -95,4 +95,19 @@ namespace cambium::presets {
           .highest_speed = 3.0};
 }
 
+/// A driver with its name and where its numbers are from.
+struct Preset {
+  char const* name;
+  char const* source;
+  IdmParameters parameters;
+};
+
+/// All of them.
+inline constexpr Preset all[] = {
+    {"treiber_2000", "Treiber, Hennecke, Helbing 2000, table I", treiber_2000()},
+    {"kesting_2010_car", "Kesting, Treiber, Helbing 2010, table 1", kesting_2010_car()},
+    {"kesting_2010_truck", "Kesting, Treiber, Helbing 2010, table 1", kesting_2010_truck()},
+    {"aggressive", "own numbers; which way they go: Treiber, Kesting 2013, section 11.3.1", aggressive()},
+    {"timid", "own numbers, likewise", timid()}};
+
 }  // namespace cambium::presets

@@ -18,6 +18,8 @@ struct RandomMacroActions {
   double interval = 1.0;
 
   static constexpr char const* name = "random_macro_actions";
+  static constexpr char const* summary = "one of the available macro actions, each as likely, every interval";
+  static constexpr char const* source = "own";
   static constexpr auto parameters() {
     return std::make_tuple(parameter("macro", &RandomMacroActions::macro, "-", {}, "the actions"),
                            parameter("interval", &RandomMacroActions::interval, "s", Range{0, 3600},

@@ -21,6 +21,8 @@ struct RssParameters {
   double lateral_margin = 0.1;
 
   static constexpr char const* name = "rss";
+  static constexpr char const* summary = "what is assumed of road users: response time, bounds of accelerations";
+  static constexpr char const* source = "Shalev-Shwartz, Shammah, Shashua 2017; defaults: ad-rss-lib 4";
   static constexpr auto parameters() {
     using P = RssParameters;
     constexpr Range rate{0.01, 50};

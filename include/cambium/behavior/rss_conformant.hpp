@@ -27,6 +27,10 @@ struct RssConformant {
   RssParameters rss{};
 
   static constexpr char const* name = "rss_conformant";
+  static constexpr char const* summary =
+      "any behaviour; below the safe distances along and across it brakes, or comes no closer, as the proper response "
+      "asks";
+  static constexpr char const* source = "Shalev-Shwartz, Shammah, Shashua 2017";
   static constexpr auto parameters() {
     return std::make_tuple(
         parameter("nominal", &RssConformant::nominal, "-", {}, "the behaviour where nothing is dangerous"),

@@ -16,6 +16,8 @@ struct Safety {
   LaneChangeCourse course{};
 
   static constexpr char const* name = "safety";
+  static constexpr char const* summary = "brakes to standstill in the middle of its lane";
+  static constexpr char const* source = "own";
   static constexpr auto parameters() {
     return std::make_tuple(parameter("deceleration", &Safety::deceleration, "m/s^2", Range{0.01, 50}, "of the braking"),
                            parameter("course", &Safety::course, "-", {}, "how it comes to the middle of its lane"));

@@ -27,6 +27,9 @@ struct StaticTrajectory {
       : states(std::make_shared<std::vector<State> const>(std::move(recorded))) {}
 
   static constexpr char const* name = "static_trajectory";
+  static constexpr char const* summary =
+      "replays recorded states, between two of them linearly; enters and leaves traffic with its recording";
+  static constexpr char const* source = "interpolation";
   static constexpr auto parameters() { return std::make_tuple(); }
 
   /// Throws `ParameterError` where there are no states, one is not finite, or their times do not ascend.

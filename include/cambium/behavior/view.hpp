@@ -106,8 +106,8 @@ struct ViewArchetype {
   template <class F>
   void for_each_object(F&& f) const;  ///< `f(id, outline)` for the static objects, outlines as polygons
   [[nodiscard]] bool signals_way(LaneUser const& user,
-                                 LaneId lane) const;  ///< whether its turn signal says that it will come by `lane`
-  [[nodiscard]] std::optional<Neighbor> front_of(LaneUser const& user) const;  ///< who is next ahead of it on its way
+                                 LaneId lane) const;      ///< whether its turn signal says that it will come by `lane`
+  [[nodiscard]] map::LightColor light(LightId id) const;  ///< what a traffic light shows now
   [[nodiscard]] RandomStream random(
       std::uint32_t purpose) const;  ///< numbers of their own for (seed, agent, step, purpose)
 };

@@ -31,6 +31,9 @@ struct KinematicPoint {
   double highest_speed = 3.0;
 
   static constexpr char const* name = "kinematic_point";
+  static constexpr char const* summary =
+      "x' = v cos(heading), y' = v sin(heading), heading' = yaw rate, v' = a; turns on the spot";
+  static constexpr char const* source = "kinematics";
   static constexpr auto parameters() {
     using Self = KinematicPoint;
     return std::make_tuple(

@@ -74,6 +74,9 @@ struct SingleTrack {
   double lateral_acceleration_limit = 8.0;
 
   static constexpr char const* name = "single_track";
+  static constexpr char const* summary =
+      "x' = v cos(heading), y' = v sin(heading), heading' = v tan(steering) / wheel base, v' = a";
+  static constexpr char const* source = "Rajamani 2012, section 2.2, about the rear axle";
   static constexpr auto parameters() {
     return std::make_tuple(
         parameter("wheel_base", &SingleTrack::wheel_base, "m", Range{0.1, 20}, "distance between the axles"),

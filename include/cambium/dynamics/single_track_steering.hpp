@@ -49,6 +49,8 @@ struct SingleTrackSteering {
   double lateral_acceleration_limit = 8.0;
 
   static constexpr char const* name = "single_track_steering";
+  static constexpr char const* summary = "single track whose steering angle is a state, with a limited rate and a lag";
+  static constexpr char const* source = "Rajamani 2012, section 2.2; lag: own";
   static constexpr auto parameters() {
     using Self = SingleTrackSteering;
     return std::make_tuple(

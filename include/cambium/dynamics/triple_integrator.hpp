@@ -55,6 +55,8 @@ struct TripleIntegrator {
   double lowest_turning_speed = 0.05;
 
   static constexpr char const* name = "triple_integrator";
+  static constexpr char const* summary = "x''' = j_x, y''' = j_y, in the coordinates of the path";
+  static constexpr char const* source = "kinematics; after BARK";
   static constexpr auto parameters() {
     using Self = TripleIntegrator;
     return std::make_tuple(

@@ -22,6 +22,10 @@ struct LqrExecution {
   Actuation actuation{};
 
   static constexpr char const* name = "lqr";
+  static constexpr char const* summary =
+      "u = -K x with K from the discrete Riccati equation, across for (offset, heading error), along for (lag, speed "
+      "error)";
+  static constexpr char const* source = "linear-quadratic regulator; solver: Chu, Fan, Lin, Wang 2004";
   static constexpr auto parameters() {
     using Self = LqrExecution;
     constexpr Range weight{0, 1e6}, of_input{1e-6, 1e6};

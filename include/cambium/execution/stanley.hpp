@@ -18,6 +18,10 @@ struct StanleyExecution {
   Actuation actuation{};
 
   static constexpr char const* name = "stanley";
+  static constexpr char const* summary =
+      "steering = curvature and heading error - atan(k e / (v + v_soft)) at the front axle; acceleration by PI on "
+      "speed and lag";
+  static constexpr char const* source = "Hoffmann, Tomlin, Montemerlo, Thrun 2007";
   static constexpr auto parameters() {
     using Self = StanleyExecution;
     return std::make_tuple(

@@ -22,6 +22,8 @@ struct Actuation {
   Normal steering_noise{0.0, 0.0};
 
   static constexpr char const* name = "actuation";
+  static constexpr char const* summary = "delay of the commands, normal noise of acceleration and steering";
+  static constexpr char const* source = "own";
   static constexpr auto parameters() {
     return std::make_tuple(
         parameter("period", &Actuation::period, "s", Range{1e-3, 1}, "the controller acts at least this often"),

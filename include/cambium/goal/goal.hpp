@@ -20,12 +20,20 @@ using Goal = std::variant<NoGoal, ReachPolygon, ReachLane, StateLimits, LaneLimi
 /// Reached when all of its parts are, at the same time; without parts never.
 struct AllGoals {
   std::vector<Goal> parts;
+
+  static constexpr char const* name = "all_goals";
+  static constexpr char const* summary = "all of its parts, at the same time";
+
   [[nodiscard]] bool at_goal(GoalSituation const& at) const;
 };
 
 /// Reached when one of its parts is.
 struct AnyGoal {
   std::vector<Goal> parts;
+
+  static constexpr char const* name = "any_goal";
+  static constexpr char const* summary = "one of its parts";
+
   [[nodiscard]] bool at_goal(GoalSituation const& at) const;
 };
 
@@ -34,6 +42,10 @@ struct AnyGoal {
 /// that copies and snapshots of a world go on from there. At most 255 parts, and not within another goal.
 struct GoalSequence {
   std::vector<Goal> parts;
+
+  static constexpr char const* name = "goal_sequence";
+  static constexpr char const* summary = "its parts, one after the other";
+
   [[nodiscard]] bool at_goal(GoalSituation const& at) const { return at.passed >= parts.size() && !parts.empty(); }
 
   /// How many parts are passed, the agent being at `at`.

@@ -15,6 +15,7 @@
 #include "cambium/geometry/angle.hpp"
 #include "cambium/map/corridor.hpp"
 #include "cambium/map/detail/conflicts.hpp"
+#include "cambium/map/detail/corridor_signals.hpp"
 #include "cambium/map/detail/feeders.hpp"
 #include "cambium/map/detail/lane_chains.hpp"
 #include "cambium/map/map.hpp"
@@ -248,10 +249,11 @@ inline void set_lane_ends(Map const& map, LaneCorridor& corridor, bool is_short)
     detail::set_lane_ends(map, corridor, chain.begin + chain.lanes.size() < stages.size());
     corridor.reaches_destination = chain.has(route.lanes.back());
     detail::FeederFinder(map, corridor).find();
-    corridor.conflicts = detail::find_conflicts(map, corridor);
+    corridor.conflicts = detail::ConflictFinder(map, corridor).find();
+    corridor.signals = detail::corridor_signals(map, corridor);
     for (auto& feeder : corridor.feeders)
       feeder.by_rule = std::any_of(corridor.conflicts.begin(), corridor.conflicts.end(), [&](Conflict const& conflict) {
-        return conflict.kind == OverlapKind::merge && std::abs(conflict.begin - feeder.free_until) < 1e-3;
+        return std::abs(conflict.meet - feeder.free_until) < 1e-3;
       });
     road->corridors.push_back(std::move(corridor));
   }

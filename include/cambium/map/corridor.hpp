@@ -10,6 +10,7 @@
 
 #include "cambium/core/ids.hpp"
 #include "cambium/geometry/line.hpp"
+#include "cambium/geometry/shape.hpp"
 #include "cambium/map/lane.hpp"
 
 namespace cambium::map {
@@ -77,21 +78,40 @@ struct Feeder {
   return std::min(gap + 0.5 * to_merge, std::max(gap, to_merge));
 }
 
-/// A stretch of the map-wide lane coordinate (see `Lane::index_begin`), and how far its end lies before a conflict.
-struct ApproachStretch {
-  double index_begin{}, index_end{};
-  double to_conflict{};  ///< from `index_end` along the lanes to the other lane's conflict stretch [m]
+/// The body that conflicts are found for: a car (`geometry::car`) with a hand's breadth of air all around.
+inline constexpr geometry::Shape conflict_shape{3.8, 1.1, 1.05, 1.05};
+
+/// A stop sign or a light for the corridor's traffic.
+struct CorridorSignal {
+  double line{};  ///< where front ends stop: where the junction behind it begins, else the signal [m]
+  SignalKind kind = SignalKind::stop;
+  LightId light = none<LightId>;
+
+  friend bool operator==(CorridorSignal const&, CorridorSignal const&) = default;
 };
 
-/// Where a lane outside of the corridor crosses it or merges with it: a vehicle in the stretch here and one in the
-/// other lane's stretch would touch.
+/// A stretch of the map-wide lane coordinate (see `Lane::index_begin`) on the way to, through and behind a conflict.
+struct ConflictWay {
+  double index_begin{}, index_end{};
+  double begin{};  ///< of the way where the stretch begins: position on the other lane's path, negative before it [m]
+};
+
+/// Where a lane outside of the corridor crosses it, merges with it or parts from it. Stretches say where the reference
+/// points of two vehicles of `conflict_shape` may be when these touch.
 struct Conflict {
   LaneId other = none<LaneId>;
   OverlapKind kind = OverlapKind::crossing;
   RightOfWay right_of_way = RightOfWay::equal;  ///< of this corridor's traffic
   double begin{}, end{};                        ///< corridor position [m]
-  double index_begin{}, index_end{};            ///< lane coordinate of the other lane's stretch
-  std::vector<ApproachStretch> approaches;      ///< the ways to that stretch, up to `MapOptions::merge_view` back
+  double other_begin{}, other_end{};            ///< position along the other's way, as in `ways` [m]
+  double line{};        ///< corridor position where front ends wait: where the junction begins, else the conflict [m]
+  double other_line{};  ///< likewise on the other's way [m]
+  LightId other_light = none<LightId>;  ///< that stops the other's traffic
+  double shift{};  ///< where they merge or part: corridor position = position on the way + shift [m]
+  double meet = std::numeric_limits<double>::infinity();  ///< where lanes that merge come together [m]
+  /// The way: the other lane, those behind it back to `MapOptions::merge_view` before the conflict, and those that it
+  /// leads into, as far as who is there may still reach back into the conflict.
+  std::vector<ConflictWay> ways;
 };
 
 /// A chain of lanes along which a vehicle drives: what behaviours follow. Immutable, shared.
@@ -102,6 +122,7 @@ struct LaneCorridor {
   std::vector<CorridorPiece> pieces;    ///< sorted by `begin`, gapless
   std::vector<Feeder> feeders;          ///< sorted by `begin`
   std::vector<Conflict> conflicts;      ///< sorted by `begin`
+  std::vector<CorridorSignal> signals;  ///< sorted by `line`
   std::vector<SpeedStep> speed_limits;  ///< along the corridor, sorted; empty where nothing limits the speed
   bool continues = false;               ///< the road goes on beyond the end: the corridor ends because the route does
   bool reaches_destination = false;     ///< it holds the route's last lane

@@ -8,6 +8,7 @@
 
 #include "cambium/core/ids.hpp"
 #include "cambium/geometry/line.hpp"
+#include "cambium/map/signals.hpp"
 #include "cambium/map/lane_type.hpp"
 
 namespace cambium::map {
@@ -104,7 +105,8 @@ struct Lane {
   LaneId merges_into = none<LaneId>;  ///< the neighbour that this lane's path joins at its end
   double merge_begin{};               ///< where the path leaves the centre line [m]; only with `merges_into`
   std::vector<LaneId> successors, predecessors;
-  std::vector<Overlap> overlaps;  ///< sorted by `begin`
+  std::vector<Overlap> overlaps;    ///< sorted by `begin`
+  std::vector<LaneSignal> signals;  ///< signs and lights for it, sorted by place
 
   /// First of this lane's values of the map-wide lane coordinate: the lane owns [index_begin, index_begin + length].
   double index_begin{};

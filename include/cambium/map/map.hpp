@@ -84,6 +84,7 @@ class Map {
     std::vector<Road> roads;
     std::vector<Lane> lanes;
     std::vector<Junction> junctions;
+    std::vector<TrafficLight> lights;
     MapOptions options;
     std::unique_ptr<RouteFinder const> route_finder;
   };
@@ -95,6 +96,7 @@ class Map {
   [[nodiscard]] std::span<Road const> roads() const { return parts_.roads; }
   [[nodiscard]] std::span<Lane const> lanes() const { return parts_.lanes; }
   [[nodiscard]] std::span<Junction const> junctions() const { return parts_.junctions; }
+  [[nodiscard]] std::span<TrafficLight const> lights() const { return parts_.lights; }
   [[nodiscard]] MapOptions const& options() const { return parts_.options; }
 
   /// The smallest box around all lanes of any type, borders and paths; the empty box (`min_x > max_x`) where the map
@@ -121,6 +123,14 @@ class Map {
     for (auto const& road : parts_.roads)
       if (road.name == name) return road;
     throw MapError("road " + std::string(name), "the map has no such road", "see Map::roads for those it has");
+  }
+
+  /// The traffic light of that name (see `TrafficLight`). Throws `MapError` if there is none. O(lights).
+  [[nodiscard]] LightId find_light(std::string_view name) const {
+    for (auto const& light : parts_.lights)
+      if (light.name == name) return light.id;
+    throw MapError("light " + std::string(name), "the map has no such traffic light",
+                   "see Map::lights for those it has");
   }
 
   /// Lane `number` of road `name` at road position `s` [m], the road's end included; of a lane for both directions the

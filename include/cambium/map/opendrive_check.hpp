@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <iterator>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -13,10 +12,10 @@
 
 #include "cambium/core/diagnostic.hpp"
 #include "cambium/core/error.hpp"
-#include "cambium/map/cubic.hpp"
 #include "cambium/map/detail/geometry_check.hpp"
 #include "cambium/map/detail/geometry_fault.hpp"
 #include "cambium/map/detail/move_records.hpp"
+#include "cambium/map/detail/record_check.hpp"
 #include "cambium/map/detail/require_buildable.hpp"
 #include "cambium/map/lane_type.hpp"
 #include "cambium/map/opendrive_document.hpp"
@@ -56,7 +55,6 @@ class DocumentCheck {
 
  private:
   using Index = std::unordered_set<std::string_view>;
-  static constexpr double highest = 1e5;  ///< [m]
 
   /// Collects the ids and removes later elements of an id that was there before.
   template <class Element>
@@ -105,7 +103,7 @@ class DocumentCheck {
       report(Severity::warning, road.line, "road", ids,
              "there is no junction " + road.junction + " that it could belong to");
     check_sections(road, ids);
-    check_records(road, ids);
+    RecordCheck(road, file_, *diagnostics_).run();
   }
 
   void check_length(opendrive::Road& road, std::string const& ids) {
@@ -158,88 +156,6 @@ class DocumentCheck {
     if (fault == nullptr) return true;
     report(Severity::warning, road.line, "road", "road " + road.id, std::string(fault) + "; the road was left out");
     return false;
-  }
-
-  /// Leaves out records of widths, heights and of the lane offset that are beyond any road, and reports negative
-  /// widths.
-  void check_records(opendrive::Road& road, std::string const& ids) {
-    constexpr double steepest = 10.0;  // [rad]
-    auto const of_road = [&] { return ids; };
-    leave_out_wild(road.lane_offset, road.geometry_length(), road.line, "laneOffset", of_road);
-    leave_out_wild(road.elevation, road.geometry_length(), road.line, "elevation", of_road, highest);
-    leave_out_wild(road.superelevation, road.geometry_length(), road.line, "superelevation", of_road, steepest, "rad");
-    check_surface(road, ids);
-    for (std::size_t i = 0; i < road.lane_sections.size(); ++i) {
-      opendrive::LaneSection& section = road.lane_sections[i];
-      double const end = i + 1 < road.lane_sections.size() ? road.lane_sections[i + 1].s : road.geometry_length();
-      for (opendrive::Lane& lane : section.lanes) {
-        auto const of = [&] { return ids + ", section " + std::to_string(i) + ", lane " + std::to_string(lane.id); };
-        leave_out(lane.heights, lane.line, "height", of(), [](opendrive::LaneHeight const& height) {
-          return std::abs(height.inner) <= highest && std::abs(height.outer) <= highest;
-        });
-        leave_out_wild(lane.borders, end - section.s, lane.line, "border", of);
-        double const lowest = leave_out_wild(lane.widths, end - section.s, lane.line, "width", of);
-        if (lowest < -1e-3)
-          report(Severity::warning, lane.line, "lane", of(),
-                 "its width falls to " + rounded_text(lowest) + " m; below 0 it counts as 0");
-      }
-    }
-  }
-
-  /// Leaves out what tilts or bends the road across beyond any road.
-  void check_surface(opendrive::Road& road, std::string const& ids) {
-    constexpr double steepest = 10.0, farthest = 1000.0;  // [rad], [m] to the side
-    auto const keeps_within = [](CubicRecord const& record, double end, double largest) {
-      auto const [low, high] = extremes(record, record.s, std::max(end, record.s));
-      return low >= -largest && high <= largest;
-    };
-    leave_out(road.crossfall, road.line, "crossfall", ids, [&](opendrive::Crossfall const& crossfall) {
-      auto const* const last = road.crossfall.data() + road.crossfall.size();
-      auto const* const next = std::find_if(
-          &crossfall + 1, last, [&](opendrive::Crossfall const& other) { return other.side == crossfall.side; });
-      double const end = next != last ? next->record.s : road.geometry_length();
-      return keeps_within(crossfall.record, std::min(end, road.geometry_length()), steepest);
-    });
-    leave_out(road.shape, road.line, "shape", ids, [&](opendrive::LateralShape const& shape) {
-      auto const* const next = &shape + 1;
-      bool const is_last = next == road.shape.data() + road.shape.size() || next->s != shape.s;
-      double const end = is_last ? farthest : std::min(farthest, next->record.s);
-      return keeps_within(shape.record, end, highest);
-    });
-  }
-
-  template <class Record, class Keep>
-  void leave_out(std::vector<Record>& records, int line, char const* element, std::string const& ids,
-                 Keep const& keep) {
-    std::vector<Record> kept;
-    std::copy_if(records.begin(), records.end(), std::back_inserter(kept), keep);
-    if (kept.size() == records.size()) return;
-    report(Severity::warning, line, element, ids,
-           std::to_string(records.size() - kept.size()) + " records are beyond any road; they were left out");
-    records = std::move(kept);
-  }
-
-  /// Removes records that leave +-`largest` [m] before `end`; returns the smallest value of the others.
-  template <class Ids>
-  double leave_out_wild(std::vector<CubicRecord>& records, double end, int line, char const* element, Ids const& ids,
-                        double largest = 1000.0, char const* unit = "m") {
-    double lowest = 0.0;
-    std::size_t kept = records.size();
-    // From the back: where a record is left out, the one before it holds up to the next one that is kept.
-    for (std::size_t i = records.size(); i-- > 0;) {
-      double const to = kept < records.size() ? std::min(end, records[kept].s) : end;
-      auto const [low, high] = extremes(records[i], records[i].s, std::max(to, records[i].s));
-      if (low >= -largest && high <= largest) {
-        lowest = std::min(lowest, low);
-        records[--kept] = records[i];
-        continue;
-      }
-      report(Severity::warning, line, element, ids(),
-             "the record at " + rounded_text(records[i].s) + " m reaches " + rounded_text(high > largest ? high : low) +
-                 " " + unit + "; it was left out");
-    }
-    records.erase(records.begin(), records.begin() + static_cast<std::ptrdiff_t>(kept));
-    return lowest;
   }
 
   /// Leaves out sections behind the road's end (the first one always stays) and looks at the links between the others.

@@ -22,6 +22,8 @@ struct DelayedObserver {
   static constexpr bool perfect = false;
   static constexpr std::size_t past_steps = LongestDelay;
   static constexpr char const* name = "delayed";
+  static constexpr char const* summary = "sees the states of some steps ago";
+  static constexpr char const* source = "own";
   static constexpr auto parameters() {
     constexpr Range steps{0, static_cast<double>(LongestDelay)};
     return std::make_tuple(

@@ -15,6 +15,10 @@ template <ObserverModel... Observers>
 struct ObserverChain {
   std::tuple<Observers...> stages{};
 
+  static constexpr char const* name = "observer_chain";
+  static constexpr char const* summary =
+      "one observer after the other: errors and delays add up, who is hidden to one is hidden";
+
   static constexpr bool perfect = (Observers::perfect && ...);
   static constexpr std::size_t past_steps = (past_steps_of<Observers> + ... + 0);
 
@@ -47,13 +51,18 @@ struct ObserverChain {
     return std::apply([&](auto const&... stage) { return (by(stage) && ...); }, stages);
   }
 
+  /// By value; the truth itself where all stages are perfect.
   template <MotionState S>
-  [[nodiscard]] S observe(S const& truth, bool own, RandomStream const& random) const {
-    S seen = truth;
-    std::uint32_t number = 0;
-    std::apply([&](auto const&... stage) { ((seen = stage.observe(S(seen), own, random.part(number++))), ...); },
-               stages);
-    return seen;
+  [[nodiscard]] decltype(auto) observe(S const& truth, bool own, RandomStream const& random) const {
+    if constexpr (perfect) {
+      return (truth);
+    } else {
+      S seen = truth;
+      std::uint32_t number = 0;
+      std::apply([&](auto const&... stage) { ((seen = stage.observe(S(seen), own, random.part(number++))), ...); },
+                 stages);
+      return seen;
+    }
   }
 };
 

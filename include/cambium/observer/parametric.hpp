@@ -35,6 +35,9 @@ struct ObservationNoise {
   double heading_speed = 0.0;
 
   static constexpr char const* name = "observation_noise";
+  static constexpr char const* summary =
+      "normal errors of position, heading and speed: means, deviations, correlations";
+  static constexpr char const* source = "own";
   static constexpr auto parameters() {
     using P = ObservationNoise;
     constexpr Range one{-1, 1}, metres{-1000, 1000}, spread{0, 1000};
@@ -123,6 +126,9 @@ struct ParametricObserver {
 
   static constexpr bool perfect = false;
   static constexpr char const* name = "parametric";
+  static constexpr char const* summary =
+      "state + error, error ~ N(mean, covariance), about itself and about others, new in each step or lasting";
+  static constexpr char const* source = "normal distribution; after BARK";
   static constexpr auto parameters() {
     using P = ParametricObserver;
     return std::make_tuple(parameter("own", &P::own, "-", {}, "errors about itself"),

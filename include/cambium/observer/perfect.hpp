@@ -10,6 +10,8 @@ namespace cambium {
 struct PerfectObserver {
   static constexpr bool perfect = true;
   static constexpr char const* name = "perfect";
+  static constexpr char const* summary = "sees the truth";
+  static constexpr char const* source = "-";
   static constexpr auto parameters() { return std::make_tuple(); }
 
   template <MotionState S>

@@ -189,23 +189,17 @@ class ObservedWorld {
     });
   }
 
+  /// What a traffic light shows now; `off` where it has no plan (see `World::set_light`). O(1).
+  [[nodiscard]] map::LightColor light(LightId id) const {
+    auto const& lights = world_->roster().lights;
+    return index_of(id) < lights.size() ? lights[index_of(id)].at(time()) : map::LightColor::off;
+  }
+
   /// Whether an agent's turn signals say that it will come by `lane`, or it is there: the way ahead is all that they
   /// tell. Objects go nowhere. O(lanes of its road).
   [[nodiscard]] bool signals_way(LaneUser const& user, LaneId lane) const {
     if (!is_valid(user.agent)) return false;
     return world_->roster().agents[user.slot].road->corridor_of(lane) != map::no_corridor;
-  }
-
-  /// Who is next ahead of another road user on its own way; nothing for objects.
-  [[nodiscard]] std::optional<Neighbor> front_of(LaneUser const& user) const {
-    if (!is_valid(user.agent)) return std::nullopt;
-    auto const& agent = world_->roster().agents[user.slot];
-    auto const& at = record(user.slot).lane;
-    TrafficQuery asker{user.slot, at.s, agent.shape.front, agent.shape.rear, at.piece};
-    asker.by_rule = true;
-    return neighbor(world_->traffic().front(agent.road->corridors[at.corridor], asker, objects_on_lanes(),
-                                            world_->traffic().has(user.slot)),
-                    1);
   }
 
   /// The agent that a neighbour is. O(1). Not for neighbours that are objects.

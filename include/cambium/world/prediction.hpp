@@ -97,6 +97,7 @@ template <class Set, class World>
   assumed->has_sequences = roster.has_sequences;
   detail::take_seen_objects(world, slot, *assumed);
   assumed->free_roads = roster.free_roads;
+  assumed->lights = roster.lights;
   typename Predicted::FrameType seen{frame.time, frame.step, {}};
   for (std::uint32_t i = 0; i < roster.agents.size(); ++i) {
     auto const& agent = roster.agents[i];

@@ -143,78 +143,55 @@ class World {
   /// its lane, its route or its parameters are no good. O(agents), plus routing.
   AgentId add(AgentSpec const& spec) {
     AgentId const id = spec.id.value_or(static_cast<AgentId>(roster_->next_agent_id));
-    std::string const where = "agent " + to_string(id);
-    if (!is_valid(id))
-      throw WorldError(where, "there is no such id, or no further one is free", "give an id that nobody has");
-    if (roster_->slot_of(id))
-      throw WorldError(where, "the world has an agent of that id already", "leave the id out to get a free one");
-    detail::check_entering(spec, where);
-    auto const [road, route, lane, place] = entering(spec, where);
-    Record record;
-    record.lane = place;
-    auto const& center = road->corridors[record.lane.corridor].center;
-    record.state.time = frame_.time;
-    record.state.x = spec.position.x();
-    record.state.y = spec.position.y();
-    record.state.heading = spec.heading.value_or(center.pose(record.lane.s).heading);
-    record.state.speed = spec.speed;
-    record.memory = Set::initial_memory(spec.behavior);
-    if (Set::start_time(spec.behavior) > frame_.time + same_time) record.status = AgentStatus::not_started;
-    detail::forget_past(record);
-    Goal const goal = detail::entering_goal(spec.goal, lane, where);
-
+    auto entrant = detail::entrant<World>(*map_, *roster_, spec, id, frame_.time);
     auto& roster = writable_roster();
-    auto const slot = static_cast<std::ptrdiff_t>(std::lower_bound(roster.agents.begin(), roster.agents.end(), id,
-                                                                   [](auto const& a, AgentId b) { return a.id < b; }) -
-                                                  roster.agents.begin());
-    spec.road ? enter_free_road(roster, spec.road, road) : void(roster.corridors.emplace(route.lanes, road));
-    roster.next_agent_id = std::max(roster.next_agent_id, static_cast<std::uint32_t>(id) + 1);
-    roster.agents.insert(roster.agents.begin() + slot,
-                         {id, spec.shape, road, spec.behavior, spec.execution, spec.dynamics, spec.observer});
-    roster.goals.insert(roster.goals.begin() + slot, goal);
-    frame_.agents.insert(frame_.agents.begin() + slot, record);
-    roster.has_sequences = roster.has_sequences || std::holds_alternative<GoalSequence>(goal);
-    pass_goals(static_cast<std::size_t>(slot), frame_.agents[static_cast<std::size_t>(slot)]);
+    if (spec.road) detail::enter_free_road(roster, spec.road, entrant.agent.road);
+    auto const slot = roster.insert(std::move(entrant.agent), std::move(entrant.goal), entrant.lanes);
+    frame_.agents.insert(frame_.agents.begin() + static_cast<std::ptrdiff_t>(slot), entrant.record);
+    pass_goals(slot, frame_.agents[slot]);
     scratch_.forget();
     return id;
   }
 
   /// Removes an agent. Throws `WorldError` if there is no such agent. O(agents).
   void remove(AgentId id) {
-    auto const slot = static_cast<std::ptrdiff_t>(slot_of(id));
-    auto& roster = writable_roster();
-    roster.agents.erase(roster.agents.begin() + slot);
-    roster.goals.erase(roster.goals.begin() + slot);
-    frame_.agents.erase(frame_.agents.begin() + slot);
+    auto const slot = slot_of(id);
+    writable_roster().erase(slot);
+    frame_.agents.erase(frame_.agents.begin() + static_cast<std::ptrdiff_t>(slot));
     scratch_.forget();
   }
 
   /// Removes the agents that no longer take part in traffic; returns how many. They stay until then, with their last
   /// state. O(agents).
   std::size_t remove_departed() {
-    auto const departed = [this](std::size_t slot) {
-      auto const status = frame_.agents[slot].status;
-      return status != AgentStatus::driving && status != AgentStatus::not_started;
-    };
     std::vector<std::size_t> staying;
     for (std::size_t slot = 0; slot < size(); ++slot)
-      if (!departed(slot)) staying.push_back(slot);
-    auto const count = size() - staying.size();
-    if (count == 0) return 0;
-    auto& roster = writable_roster();
-    for (std::size_t to = 0; to < staying.size(); ++to) {
-      if (to == staying[to]) continue;
-      roster.agents[to] = std::move(roster.agents[staying[to]]);
-      roster.goals[to] = std::move(roster.goals[staying[to]]);
-      frame_.agents[to] = frame_.agents[staying[to]];
-    }
-    auto const gone = static_cast<std::ptrdiff_t>(staying.size());
-    roster.agents.erase(roster.agents.begin() + gone, roster.agents.end());
-    roster.goals.erase(roster.goals.begin() + gone, roster.goals.end());
-    frame_.agents.erase(frame_.agents.begin() + gone, frame_.agents.end());
-    std::erase_if(roster.corridors, [](auto const& entry) { return entry.second.use_count() == 1; });
+      if (auto const status = frame_.agents[slot].status;
+          status == AgentStatus::driving || status == AgentStatus::not_started)
+        staying.push_back(slot);
+    auto const departed = size() - staying.size();
+    if (departed == 0) return 0;
+    writable_roster().keep(staying);
+    for (std::size_t to = 0; to < staying.size(); ++to) frame_.agents[to] = frame_.agents[staying[to]];
+    frame_.agents.erase(frame_.agents.end() - static_cast<std::ptrdiff_t>(departed), frame_.agents.end());
     scratch_.forget();
-    return count;
+    return departed;
+  }
+
+  /// Sets the phases of a traffic light of the map; until then it is off. Throws `WorldError` for a light that the map
+  /// does not have and for numbers that are no plan. O(lights).
+  void set_light(LightId id, map::LightPlan const& plan) {
+    std::string const where = "light " + to_string(id);
+    if (index_of(id) >= map_->lights().size())
+      throw WorldError(where, "the map has no such traffic light", "see Map::lights for those it has");
+    bool const is_plan = plan.cycle >= 0.0 && plan.cycle <= 86'400.0 && plan.yellow >= 0.0 &&
+                         std::abs(plan.green_begin) <= 86'400.0 && plan.green_end >= plan.green_begin;
+    if (!is_plan || !std::isfinite(plan.yellow + plan.green_end))
+      throw WorldError(where, "its plan has a negative phase, or one of more than a day",
+                       "give green_begin <= green_end within the cycle");
+    auto& lights = writable_roster().lights;
+    lights.resize(std::max(lights.size(), index_of(id) + 1));
+    lights[index_of(id)] = plan;
   }
 
   /// Puts a static object in the way; returns its id. Throws `WorldError` for one of more than 10 km around.
@@ -223,16 +200,10 @@ class World {
     double around = 0.0;
     for (std::size_t i = 0; i < outline.size(); ++i) around += (outline.edge(i).second - outline.edge(i).first).norm();
     if (around > 10'000.0) throw WorldError("object", "its outline is longer than 10 km", "give coordinates in metres");
-    auto& roster = writable_roster();
-    StaticObject object{static_cast<ObjectId>(roster.next_object_id), std::move(outline)};
-    auto const entries =
-        detail::object_entries(*map_, roster.free_roads, object, static_cast<std::uint32_t>(roster.objects.size()));
-    roster.object_entries.reserve(roster.object_entries.size() + entries.size());
-    roster.objects.push_back(std::move(object));
-    for (auto const& entry : entries)
-      roster.object_entries.insert(std::upper_bound(roster.object_entries.begin(), roster.object_entries.end(), entry),
-                                   entry);
-    return static_cast<ObjectId>(roster.next_object_id++);
+    StaticObject object{static_cast<ObjectId>(roster_->next_object_id), std::move(outline)};
+    auto const lanes =
+        detail::object_entries(*map_, roster_->free_roads, object, static_cast<std::uint32_t>(roster_->objects.size()));
+    return writable_roster().insert(std::move(object), lanes);
   }
 
   /// Takes it away. Throws `WorldError` if there is no such object. O(objects).
@@ -240,12 +211,7 @@ class World {
     auto const& objects = roster_->objects;
     auto const at = std::find_if(objects.begin(), objects.end(), [id](StaticObject const& o) { return o.id == id; });
     if (at == objects.end()) throw WorldError("object " + to_string(id), "the world has no such object");
-    auto const place = at - objects.begin();
-    auto& roster = writable_roster();
-    roster.objects.erase(roster.objects.begin() + place);
-    auto const slot = static_cast<std::uint32_t>(place);
-    std::erase_if(roster.object_entries, [slot](TrafficEntry const& entry) { return entry.slot == slot; });
-    for (auto& entry : roster.object_entries) entry.slot -= entry.slot > slot;
+    writable_roster().erase_object(static_cast<std::size_t>(at - objects.begin()));
   }
 
   /// The agent's place in roster and frame. Throws `WorldError` if there is no such agent. O(log agents).
@@ -385,40 +351,6 @@ class World {
   }
 
  private:
-  static constexpr double same_time = 1e-9;  // [s]
-
-  /// Where an agent enters. `route` is empty on a free corridor.
-  struct Entering {
-    std::shared_ptr<map::RoadCorridor const> road;
-    map::Route route;
-    LaneId lane = none<LaneId>;
-    map::LanePosition place;
-  };
-
-  [[nodiscard]] Entering entering(AgentSpec const& spec, std::string const& where) const {
-    if (spec.road) {
-      auto const road = detail::numbered_road(*map_, roster_->free_roads, spec.road, where);
-      return {road, {}, none<LaneId>, detail::entering_free(spec, *road, where)};
-    }
-    LaneId const lane = spec.route ? detail::entering_lane(*map_, spec.position, spec.heading, *spec.route, where)
-                                   : detail::entering_lane(*map_, spec.position, spec.heading, where);
-    auto const route = detail::entering_route(*map_, lane, spec.route, spec.goal, where);
-    auto const known = roster_->corridors.find(route.lanes);
-    auto const road = known != roster_->corridors.end() ? known->second : map::build_road_corridor(*map_, route);
-    return {road, route, lane, detail::entering_position(*map_, spec, *road, lane, where)};
-  }
-
-  /// Notes a free corridor that nobody has entered on before, and which objects stand on it.
-  static void enter_free_road(RosterType& roster, std::shared_ptr<map::RoadCorridor const> const& given,
-                              std::shared_ptr<map::RoadCorridor const> const& numbered) {
-    for (auto const& known : roster.free_roads)
-      if (known.numbered == numbered) return;
-    roster.free_roads.push_back({given, numbered});
-    for (std::uint32_t i = 0; i < roster.objects.size(); ++i)
-      detail::enter_object(numbered->corridors.front(), roster.objects[i], i, roster.object_entries);
-    std::sort(roster.object_entries.begin(), roster.object_entries.end());
-  }
-
   [[nodiscard]] GoalSituation situation(std::size_t slot, Record const& record) const {
     auto const& [state, lane] = std::tie(record.state, record.lane);
     auto const& agent = roster_->agents[slot];

@@ -3,13 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <tuple>
-#include <utility>
 #include <variant>
 #include <vector>
 
@@ -20,163 +17,17 @@
 #include "cambium/map/build_corridor.hpp"
 #include "cambium/map/lane_position.hpp"
 #include "cambium/map/map.hpp"
+#include "cambium/world/detail/check_described.hpp"
+#include "cambium/world/detail/entering_route.hpp"
 #include "cambium/world/detail/objects_on_lanes.hpp"
 #include "cambium/world/detail/on_lanes.hpp"
+#include "cambium/world/detail/seen.hpp"
+#include "cambium/world/frame.hpp"
 
 namespace cambium::detail {
 
-/// Farthest that an agent may enter from the nearest lane [m].
-inline constexpr double entering_radius = 5.0;
-/// Farthest that an agent with a route may enter from the path of one of its lanes [m].
-inline constexpr double path_radius = 2.5;
-
-/// The lane of `route` whose path comes nearest to `position`, a radian off `heading` counting as 3 m: a path that
-/// swings over to its neighbour counts as its own lane there. Throws `WorldError` where none comes near, or only
-/// against it.
-[[nodiscard]] inline LaneId entering_lane(Map const& map, geometry::Point const& position,
-                                          std::optional<double> heading, map::Route const& route,
-                                          std::string const& where) {
-  if (route.lanes.empty()) throw WorldError(where, "its route is empty", "leave the route out to get the shortest");
-  LaneId best = none<LaneId>;
-  double smallest = std::numeric_limits<double>::infinity();
-  for (auto const id : route.lanes) {
-    if (index_of(id) >= map.lanes().size())
-      throw WorldError(where, "its route names a lane that the map does not have", "use Map::find_lane");
-    auto const& lane = map.lane(id);
-    auto const foot = lane.path.project(position);
-    double const distance = std::hypot(foot.lateral, std::max({-foot.s, foot.s - lane.length(), 0.0}));
-    double const along = lane.path.pose(foot.s).heading;
-    double const turn = heading ? std::abs(geometry::angle_difference(*heading, along)) : 0.0;
-    if (distance > path_radius || turn > geometry::pi / 2 || distance + 3.0 * turn >= smallest) continue;
-    smallest = distance + 3.0 * turn;
-    best = id;
-  }
-  if (!is_valid(best))
-    throw WorldError(where, "no lane of its route comes within 2.5 m of its position, in its direction",
-                     "begin the route there");
-  return best;
-}
-
-/// The drivable lane at `position`; without a heading the nearest one. Throws `WorldError` where there is none.
-[[nodiscard]] inline LaneId entering_lane(Map const& map, geometry::Point const& position,
-                                          std::optional<double> heading, std::string const& where) {
-  if (heading) {
-    if (auto const hit = map.nearest_lane({position.x(), position.y(), *heading}, entering_radius)) return hit->lane;
-  } else {
-    for (auto const& hit : map.lanes_near(position, entering_radius))
-      if (map.lane(hit.lane).drivable()) return hit.lane;
-  }
-  throw WorldError(
-      where, "no drivable lane within " + std::to_string(static_cast<int>(entering_radius)) + " m of its position",
-      "enter on a lane and along its direction");
-}
-
-/// The agent's goal, complete: lanes beside count from the one that it enters in. Throws `WorldError` for a sequence
-/// that is too long, or within another goal.
-[[nodiscard]] inline Goal entering_goal(Goal goal, LaneId lane, std::string const& where, bool is_outer = true) {
-  if (auto* const beside = std::get_if<ReachLaneBeside>(&goal); beside && !is_valid(beside->from)) beside->from = lane;
-  auto const complete = [&](std::vector<Goal>& parts) {
-    for (auto& part : parts) part = entering_goal(std::move(part), lane, where, false);
-  };
-  if (auto* const all = std::get_if<AllGoals>(&goal)) complete(all->parts);
-  if (auto* const any = std::get_if<AnyGoal>(&goal)) complete(any->parts);
-  if (auto* const sequence = std::get_if<GoalSequence>(&goal)) {
-    if (!is_outer) throw WorldError(where, "its goal has a sequence within another goal", "put the sequence outside");
-    if (sequence->parts.size() > 255)
-      throw WorldError(where, "its goal is a sequence of more than 255 parts", "leave some out");
-    complete(sequence->parts);
-  }
-  return goal;
-}
-
-/// Lanes where a goal's route may end, collected from its parts.
-class Destinations {
- public:
-  Destinations(Map const& map, std::string const& where) : map_(&map), where_(&where) {}
-
-  [[nodiscard]] std::vector<LaneId> of(Goal const& goal) const {
-    return std::visit([this](auto const& g) { return lanes(g); }, goal);
-  }
-
- private:
-  template <class G>
-  [[nodiscard]] std::vector<LaneId> lanes(G const&) const {
-    return {};
-  }
-
-  [[nodiscard]] std::vector<LaneId> lanes(ReachLane const& goal) const { return lane(goal.lane, goal.from, goal.to); }
-  [[nodiscard]] std::vector<LaneId> lanes(LaneLimits const& goal) const {
-    return is_valid(goal.lane) ? lane(goal.lane, goal.from, goal.to) : std::vector<LaneId>{};
-  }
-
-  /// Of goals to be reached at once the first place counts.
-  [[nodiscard]] std::vector<LaneId> lanes(AllGoals const& goal) const {
-    std::vector<LaneId> first;
-    for (auto const& part : goal.parts)
-      if (auto found = of(part); first.empty()) first = std::move(found);
-    return first;
-  }
-  [[nodiscard]] std::vector<LaneId> lanes(AnyGoal const& goal) const {
-    std::vector<LaneId> all;
-    for (auto const& part : goal.parts)
-      for (auto const lane : of(part)) all.push_back(lane);
-    return all;
-  }
-
-  [[nodiscard]] std::vector<LaneId> lanes(ReachPolygon const& goal) const {
-    std::vector<LaneId> lanes;
-    auto points = points_around(goal.area, 1.0);
-    points.insert(points.begin(), goal.area.bounding_box().center());
-    for (auto const& p : points)
-      for (auto const& hit : map_->lanes_near(p, entering_radius))
-        if (map_->lane(hit.lane).drivable() && std::find(lanes.begin(), lanes.end(), hit.lane) == lanes.end())
-          lanes.push_back(hit.lane);
-    if (lanes.empty())
-      throw WorldError(*where_, "its goal, a polygon, is not near a drivable lane",
-                       "give the route too, or a goal on a lane");
-    return lanes;
-  }
-
-  [[nodiscard]] std::vector<LaneId> lane(LaneId lane, double from, double to) const {
-    if (index_of(lane) >= map_->lanes().size())
-      throw WorldError(*where_, "its goal names lane " + to_string(lane) + ", which the map does not have",
-                       "use Map::find_lane");
-    if (!(from <= to)) throw WorldError(*where_, "its goal's stretch of lane ends before it begins", "give from <= to");
-    return {lane};
-  }
-
-  Map const* map_;
-  std::string const* where_;
-};
-
-/// The way from `start` to the first of `ends` that it leads to. Throws `WorldError` where there is none.
-[[nodiscard]] inline map::Route route_to_one(Map const& map, LaneId start, std::vector<LaneId> const& ends,
-                                             std::string const& where) {
-  for (auto const end : ends)
-    if (auto route = map.shortest_route(start, end)) return *route;
-  throw WorldError(where, "there is no route from " + map.describe(start) + " to " + map.describe(ends.front()),
-                   "choose a goal that the lane leads to");
-}
-
-/// The route from `start`: as given, else to the goal, by way of all places of a sequence, else straight on. Throws
-/// `WorldError` where there is none.
-[[nodiscard]] inline map::Route entering_route(Map const& map, LaneId start, std::optional<map::Route> const& given,
-                                               Goal const& goal, std::string const& where) {
-  if (given) return *given;
-  Destinations const destinations(map, where);
-  auto const* const sequence = std::get_if<GoalSequence>(&goal);
-  std::size_t const stages = sequence ? sequence->parts.size() : 1;
-  map::Route route;
-  for (std::size_t i = 0; i < stages; ++i) {
-    auto const ends = destinations.of(sequence ? sequence->parts[i] : goal);
-    if (ends.empty()) continue;
-    auto const part = route_to_one(map, route.lanes.empty() ? start : route.lanes.back(), ends, where);
-    route.lanes.insert(route.lanes.end(), part.lanes.begin() + (route.lanes.empty() ? 0 : 1), part.lanes.end());
-    route.length += part.length;
-    route.cost += part.cost;
-  }
-  return route.lanes.empty() ? map::straight_route(map, start) : route;
-}
+/// Times no farther apart are the same [s].
+inline constexpr double same_time = 1e-9;
 
 /// Where on `road` an agent of `spec` enters, in lane `lane`: in the main corridor if that holds the lane.
 template <class Spec>
@@ -239,32 +90,6 @@ template <class Spec>
 /// Speeds beyond this are no vehicle's [m/s].
 inline constexpr double fastest = 1000.0;
 
-template <class... Alternatives>
-void check_if_described(std::variant<Alternatives...> const& any, std::string const& where);
-
-/// Throws `ParameterError` where a parameter of a described struct, or of the one that a set holds, is out of its
-/// range.
-template <class Parameters>
-void check_if_described(Parameters const& parameters, std::string const& where) {
-  if constexpr (Described<Parameters>) check_parameters(parameters, where);
-  if constexpr (requires { parameters.any(); }) check_if_described(parameters.any(), where);
-}
-template <class... Alternatives>
-void check_if_described(std::variant<Alternatives...> const& any, std::string const& where) {
-  std::visit([&where](auto const& parameters) { check_if_described(parameters, where); }, any);
-}
-
-/// As above for an observer, or for those that it is made of.
-template <class Observer>
-void check_observer(Observer const& observer, std::string const& where) {
-  if constexpr (requires { observer.stages; })
-    std::apply([&where](auto const&... stage) { (check_observer(stage, where), ...); }, observer.stages);
-  else if constexpr (requires { observer.any; })
-    std::visit([&where](auto const& one) { check_observer(one, where); }, observer.any);
-  else
-    check_if_described(observer, where);
-}
-
 /// Throws `WorldError` or `ParameterError` where a number of `spec` is no good.
 template <class Spec>
 void check_entering(Spec const& spec, std::string const& where) {
@@ -279,6 +104,79 @@ void check_entering(Spec const& spec, std::string const& where) {
   check_observer(spec.observer, where);
   if (!(spec.shape.length() > 0 && spec.shape.width() > 0))
     throw WorldError(where, "its shape has no length or no width", "leave the shape out to get a car");
+}
+
+/// Where an agent enters. `lanes`, its route, is empty on a free corridor.
+struct Entrance {
+  std::shared_ptr<map::RoadCorridor const> road;
+  std::vector<LaneId> lanes;
+  LaneId lane = none<LaneId>;
+  map::LanePosition place;
+};
+
+/// Where an agent of `spec` enters. Throws `WorldError` where its lane, its route or its road is no good.
+template <class Roster, class Spec>
+[[nodiscard]] Entrance entrance(Map const& map, Roster const& roster, Spec const& spec, std::string const& where) {
+  if (spec.road) {
+    auto const road = numbered_road(map, roster.free_roads, spec.road, where);
+    return {road, {}, none<LaneId>, entering_free(spec, *road, where)};
+  }
+  LaneId const lane = spec.route ? entering_lane(map, spec.position, spec.heading, *spec.route, where)
+                                 : entering_lane(map, spec.position, spec.heading, where);
+  auto const route = entering_route(map, lane, spec.route, spec.goal, where);
+  auto const known = roster.corridors.find(route.lanes);
+  auto const road = known != roster.corridors.end() ? known->second : map::build_road_corridor(map, route);
+  return {road, route.lanes, lane, entering_position(map, spec, *road, lane, where)};
+}
+
+/// Notes a free corridor that nobody has entered on before, and which objects stand on it.
+template <class Roster>
+void enter_free_road(Roster& roster, std::shared_ptr<map::RoadCorridor const> const& given,
+                     std::shared_ptr<map::RoadCorridor const> const& numbered) {
+  for (auto const& known : roster.free_roads)
+    if (known.numbered == numbered) return;
+  roster.free_roads.push_back({given, numbered});
+  for (std::uint32_t i = 0; i < roster.objects.size(); ++i)
+    enter_object(numbered->corridors.front(), roster.objects[i], i, roster.object_entries);
+  std::sort(roster.object_entries.begin(), roster.object_entries.end());
+}
+
+/// An agent about to enter: all that a world takes in of it. `lanes`: its route.
+template <class World>
+struct Entrant {
+  typename World::RosterType::Agent agent;
+  Goal goal;
+  std::vector<LaneId> lanes;
+  typename World::Record record;
+};
+
+/// The agent of `spec`, of identity `id`, that enters at `time` [s]. Throws `WorldError` or `ParameterError` where its
+/// numbers, its id, its lane, its route or its parameters are no good. O(agents), plus routing.
+template <class World>
+[[nodiscard]] Entrant<World> entrant(Map const& map, typename World::RosterType const& roster,
+                                     typename World::AgentSpec const& spec, AgentId id, double time) {
+  using Set = typename World::Behaviors;
+  std::string const where = "agent " + to_string(id);
+  if (!is_valid(id))
+    throw WorldError(where, "there is no such id, or no further one is free", "give an id that nobody has");
+  if (roster.slot_of(id))
+    throw WorldError(where, "the world has an agent of that id already", "leave the id out to get a free one");
+  check_entering(spec, where);
+  auto const [road, lanes, lane, place] = entrance(map, roster, spec, where);
+  typename World::Record record;
+  record.lane = place;
+  record.state.time = time;
+  record.state.x = spec.position.x();
+  record.state.y = spec.position.y();
+  record.state.heading = spec.heading.value_or(road->corridors[place.corridor].center.pose(place.s).heading);
+  record.state.speed = spec.speed;
+  record.memory = Set::initial_memory(spec.behavior);
+  if (Set::start_time(spec.behavior) > time + same_time) record.status = AgentStatus::not_started;
+  forget_past(record);
+  return {{id, spec.shape, road, spec.behavior, spec.execution, spec.dynamics, spec.observer},
+          entering_goal(spec.goal, lane, where),
+          lanes,
+          record};
 }
 
 }  // namespace cambium::detail
