@@ -354,3 +354,33 @@ TEST_CASE("no input makes a pedestrian's state anything but finite") {
     }
   }
 }
+
+TEST_CASE("who is around is who is near, whatever lane it is on, as by looking at everybody") {
+  Sim world(road, {.seed = 3});
+  cb::RandomStream random(3, 6, 0);
+  auto const along = way({{300, 3}, {340, 3}}, 20.0);
+  std::vector<cb::AgentId> ids;
+  for (int i = 0; i < 30; ++i) ids.push_back(walk(world, along, {between(random, 300, 340), between(random, -8, 12)}));
+  for (int i = 0; i < 4; ++i)
+    ids.push_back(world.add({.position = {300.0 + 12 * i, -1.75},
+                             .shape = i % 2 ? cb::geometry::articulated_truck() : cb::geometry::car(),
+                             .behavior = cb::IdmClassic{}}));
+  int found = 0;
+  for (auto const id : ids) {
+    auto const view = world.observe(id);
+    for (double const distance : {0.0, 1.0, 5.0, 30.0}) {
+      std::vector<cb::AgentId> near, expected;
+      view.for_each_around(distance, [&](auto const& other) { near.push_back(other.id); });
+      view.for_each_other([&](auto const& other) {
+        double const reach =
+            distance + std::max(other.shape.front, other.shape.rear) + std::max(other.shape.left, other.shape.right);
+        if (std::hypot(other.state.x - view.state().x, other.state.y - view.state().y) <= reach)
+          expected.push_back(other.id);
+      });
+      std::sort(near.begin(), near.end());
+      CHECK(near == expected);
+      found += static_cast<int>(near.size());
+    }
+  }
+  CHECK(found > 1000);
+}

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -154,6 +155,28 @@ TEST_CASE("an object in a lane's neighbour query is there for cyclists and on fr
   }
   CHECK(world.state(cyclist).speed < 0.1);
   CHECK(world.state(ahead).speed < 0.1);
+}
+
+TEST_CASE("a cyclist that reaches out of its lane is in the way of those in the next one") {
+  auto const road = support::map_of({.id = "1",
+                                     .line = cb::map::lay_from({}, {{300.0}}),
+                                     .sections = {{.right = {{}, {.type = cb::map::LaneType::biking, .width = 2.0}}}}});
+  Sim world(road);
+  auto const biking = std::find_if(road->lanes().begin(), road->lanes().end(),
+                                   [](auto const& lane) { return lane.type == cb::map::LaneType::biking; });
+  auto const cyclist = world.add({.position = {60, -4.5},
+                                  .speed = 4,
+                                  .shape = cb::geometry::bicycle(),
+                                  .behavior = cb::IdmClassic{},
+                                  .route = cb::map::straight_route(*road, biking->id)});
+  auto const car = world.add({.position = {20, -1.75}, .speed = 4, .behavior = cb::IdmClassic{}});
+  CHECK_FALSE(world.observe(car).front());
+  world.set_state(cyclist, {.x = 60, .y = -3.7, .speed = 4});
+  REQUIRE(world.observe(car).front());
+  CHECK(world.observe(car).front()->agent == cyclist);
+  CHECK(world.observe(car).front()->gap == doctest::Approx(40 - 3.6 - 0.35));
+  CHECK(world.observe(car).front()->speed == doctest::Approx(4.0));
+  CHECK_FALSE(world.observe(cyclist).rear());  // nobody is in its own lane
 }
 
 TEST_CASE("ways that are none are refused, and goals on free ways work") {

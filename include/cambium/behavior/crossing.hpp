@@ -26,6 +26,9 @@ struct CrossingParameters {
   double demanded_deceleration = 0.0;
 
   static constexpr char const* name = "crossing";
+  static constexpr char const* summary =
+      "crosses a lane when no vehicle comes before it is across and a margin is over, or when who comes can still stop";
+  static constexpr char const* source = "critical gap: Highway Capacity Manual 2000, eq. 18-17; the rest: own";
   static constexpr auto parameters() {
     using P = CrossingParameters;
     return std::make_tuple(

@@ -89,8 +89,10 @@ struct Pedestrian {
   static constexpr bool looks_around = true;
   static constexpr char const* name = "pedestrian";
   static constexpr char const* summary =
-      "walks along its way by social forces, off others, borders and objects; crosses lanes in gaps of their traffic";
-  static constexpr char const* source = "Helbing and Molnár 1995; Johansson, Helbing, Shukla 2007; HCM 2000";
+      "walks along its way, a free corridor or lane, by social forces: off others, borders and objects; crosses lanes "
+      "in "
+      "gaps of their traffic";
+  static constexpr char const* source = "Helbing, Molnár 1995";
   static constexpr auto parameters() {
     using P = Pedestrian;
     return std::make_tuple(

@@ -108,6 +108,7 @@ inline constexpr Preset all[] = {
     {"kesting_2010_car", "Kesting, Treiber, Helbing 2010, table 1", kesting_2010_car()},
     {"kesting_2010_truck", "Kesting, Treiber, Helbing 2010, table 1", kesting_2010_truck()},
     {"aggressive", "own numbers; which way they go: Treiber, Kesting 2013, section 11.3.1", aggressive()},
-    {"timid", "own numbers, likewise", timid()}};
+    {"timid", "own numbers, likewise", timid()},
+    {"cyclist", "own numbers, about SUMO's default speed of bicycles", cyclist()}};
 
 }  // namespace cambium::presets

@@ -48,6 +48,13 @@ struct SocialForceParameters {
   double highest_acceleration = 10.0;
 
   static constexpr char const* name = "social_force";
+  static constexpr char const* summary =
+      "v' = (v_desired e - v) / tau - grad V0 exp(-b / sigma) for each other - grad U0 exp(-r / R) for each border, "
+      "less "
+      "by what is behind; bodies do not touch";
+  static constexpr char const* source =
+      "Helbing, Molnár 1995, eq. 1 to 11; relative stride: Johansson, Helbing, Shukla 2007; contact: Helbing, Farkas, "
+      "Vicsek 2000";
   static constexpr auto parameters() {
     using P = SocialForceParameters;
     return std::make_tuple(

@@ -172,7 +172,7 @@ struct OccludedObserver {
   static constexpr bool perfect = false;
   static constexpr char const* name = "occluded";
   static constexpr char const* summary =
-      "sees who is within range and field of view, and hidden neither by vehicles nor by static objects";
+      "sees vehicles and static objects that are within range and field of view, and not hidden by others";
   static constexpr char const* source = "geometry of lines of sight";
   static constexpr auto parameters() {
     using P = OccludedObserver;
