@@ -77,18 +77,12 @@ struct LaneChangeCourse {
   }
 };
 
-/// The plan that drives `motion` along the course of a lane change, from where the vehicle is: deviations are taken in
-/// as they are seen. Ends the change when it is done, or its lane is. Without one: keeps the lane.
+namespace detail {
+
+/// The plan that drives `motion` from `at` along the course that `change` has to the centre line of `corridor`.
 template <class View>
-[[nodiscard]] Plan<View> plan_lane_change(View const& view, LaneChange& change,
-                                          LongitudinalMotion<double> const& motion, double dt) {
-  if (!change.active()) return plan_along_lane(view, motion, dt);
-  map::LanePosition const at = view.lane_position(change.target);
-  auto const& corridor = view.road().corridors[change.target];
-  if (at.s >= corridor.length() || std::abs(at.heading_error) > 1.0) {  // it ends, or was left otherwise
-    change = {};
-    return plan_along_lane(view, motion, dt);
-  }
+[[nodiscard]] Plan<View> plan_course(View const& view, map::LaneCorridor const& corridor, map::LanePosition const& at,
+                                     LaneChange& change, LongitudinalMotion<double> const& motion, double dt) {
   double const stretch = std::max(0.1, 1.0 - corridor.center.segments()[at.segment].curvature * at.lateral);
   LateralCourse<double> const start{at.lateral, stretch * std::tan(at.heading_error), change.bend};
   double const along = motion.distance * std::cos(at.heading_error) / stretch;
@@ -102,6 +96,46 @@ template <class View>
   plan.action.acceleration = (motion.speed - view.state().speed) / dt;
   change.left -= static_cast<float>(along);
   change.bend = static_cast<float>(course.bend);
+  return plan;
+}
+
+/// Headings farther from the lane's [rad] have no course: the vehicle is turned along its lane.
+inline constexpr double most_aslant = 1.0;
+
+}  // namespace detail
+
+/// The plan that keeps the lane. Who is off its centre line or its direction, as after a change that was given up, or
+/// where observation errs, comes back smoothly, by a course that begins anew in each step; `bend` [1/m] is that of the
+/// course at the vehicle.
+template <class View>
+[[nodiscard]] Plan<View> plan_to_center(View const& view, float& bend, LongitudinalMotion<double> const& motion,
+                                        double dt) {
+  constexpr double near = 1e-3, shortest = 15.0, duration = 3.0;  // [m or rad], [m], [s]
+  auto const& at = view.lane_position();
+  double const aslant = std::abs(at.heading_error);
+  if ((std::abs(at.lateral) < near && aslant < near) || aslant > detail::most_aslant) {
+    bend = 0.0f;
+    return plan_along_lane(view, motion, dt);
+  }
+  LaneChange back{at.corridor, static_cast<float>(std::max(shortest, duration * motion.speed)), bend};
+  auto const plan = detail::plan_course(view, view.corridor(), at, back, motion, dt);
+  bend = back.bend;
+  return plan;
+}
+
+/// The plan that drives `motion` along the course of a lane change, from where the vehicle is: deviations are taken in
+/// as they are seen. Ends the change when it is done, or its lane is. Without one: see `plan_to_center`.
+template <class View>
+[[nodiscard]] Plan<View> plan_lane_change(View const& view, LaneChange& change,
+                                          LongitudinalMotion<double> const& motion, double dt) {
+  if (!change.active()) return plan_to_center(view, change.bend, motion, dt);
+  map::LanePosition const at = view.lane_position(change.target);
+  auto const& corridor = view.road().corridors[change.target];
+  if (at.s >= corridor.length() || std::abs(at.heading_error) > detail::most_aslant) {  // it ends, or was left
+    change = {};
+    return plan_to_center(view, change.bend, motion, dt);
+  }
+  auto const plan = detail::plan_course(view, corridor, at, change, motion, dt);
   if (!(change.left > 0.0f)) change = {};
   return plan;
 }

@@ -7,12 +7,14 @@
 #include <cstdint>
 #include <initializer_list>
 #include <limits>
+#include <optional>
 #include <string>
 #include <tuple>
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/constant_acceleration.hpp"
 #include "cambium/behavior/idm.hpp"
+#include "cambium/behavior/idm_law.hpp"
 #include "cambium/behavior/lane_change.hpp"
 #include "cambium/core/error.hpp"
 
@@ -160,12 +162,14 @@ struct MacroActions {
                                                   double speed, double dt) const {
     if (action.kind != Kind::keep_gap)
       return ConstantAcceleration{action.acceleration, highest_speed}.motion(speed, dt);
-    auto const response = [&](Neighbor const& n) { return idm_acceleration(idm, speed, n.gap, n.speed); };
-    auto leader = view.front();
-    if (change.active() && change.target != view.lane_position().corridor)
-      leader = more_restrictive(leader, view.neighbors(change.target).front, response);
-    return leader ? idm_motion(idm, speed, leader->gap, leader->speed, dt, tolerance)
-                  : idm_motion(idm, speed, std::numeric_limits<double>::infinity(), 0.0, dt, tolerance);
+    detail::IdmLaw const law(idm);
+    detail::Restriction ahead{std::numeric_limits<double>::infinity(), 0.0, law.free(speed)};
+    auto const heed = [&](std::optional<Neighbor> const& leader) {
+      if (leader) ahead.add(law, speed, leader->gap, leader->speed);
+    };
+    heed(view.front());
+    if (change.active() && change.target != view.lane_position().corridor) heed(view.front(view.beside(change.target)));
+    return idm_motion(idm, speed, ahead.gap, ahead.speed, dt, tolerance);
   }
 };
 static_assert(BehaviorModel<MacroActions>);

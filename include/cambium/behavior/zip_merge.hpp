@@ -45,6 +45,7 @@ struct ZipMerge {
   struct Memory {
     AgentId ahead = none<AgentId>;  ///< who was last ahead in the own lane before the merge
     float stood{};                  ///< how long it has been standing [s]
+    float bend{};                   ///< see `plan_to_center`
 
     friend bool operator==(Memory const&, Memory const&) = default;
   };
@@ -66,7 +67,7 @@ struct ZipMerge {
     } else if (leader) {
       memory.ahead = leader->agent;
     }
-    return plan_along_lane(view, idm_motion(idm, speed, ahead.gap, ahead.speed, dt, tolerance), dt);
+    return plan_to_center(view, memory.bend, idm_motion(idm, speed, ahead.gap, ahead.speed, dt, tolerance), dt);
   }
 
  private:

@@ -145,10 +145,14 @@ class ObservedWorld {
   /// Of the agents in lanes that are still to merge into the own corridor at `merge` (see `Feeder::free_until`), the
   /// foremost that is behind corridor position `behind`. O(feeders), plus a search in each.
   [[nodiscard]] std::optional<MergingNeighbor> merging(double merge, double behind) const {
-    auto const entry = world_->traffic().merging(corridor(), merge, behind, slot_);
+    auto const entry = world_->traffic().merging(corridor(), merge, behind, query(record_->lane));
     if (!entry) return std::nullopt;
-    double const s = perfect ? entry->position : entry->position + shift(entry->slot);
-    return MergingNeighbor{static_cast<AgentId>(entry->id), s, entry->front, entry->rear, entry->speed};
+    MergingNeighbor other{static_cast<AgentId>(entry->id), entry->position, entry->front, entry->rear, entry->speed};
+    if constexpr (!perfect) {
+      other.s += shift(entry->slot);
+      other.speed += observed(entry->slot).speed - record(entry->slot).state.speed;
+    }
+    return other;
   }
 
   /// Whether it matters in which lane the route ends.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -195,9 +196,11 @@ class TrafficIndex {
   }
 
   /// Of the agents in lanes that are still to merge into `corridor` at `merge`, the one with the foremost image on the
-  /// corridor not beyond `behind`: its entry, with the image as position. O(feeders), plus a search in each.
+  /// corridor not beyond `behind`: its entry, with the image as position. Whom `query` skips is passed over.
+  /// O(feeders), plus a search in each.
+  template <class Query>
   [[nodiscard]] std::optional<TrafficEntry> merging(map::LaneCorridor const& corridor, double merge, double behind,
-                                                    std::uint32_t asker) const {
+                                                    Query const& query) const {
     std::optional<TrafficEntry> best;
     for (auto const& feeder : corridor.feeders) {
       if (feeder.free_until != merge || !feeder.is_still_to_merge() || feeder.begin > behind) continue;
@@ -205,8 +208,8 @@ class TrafficIndex {
       for (auto i = upper(agents_, to, std::numeric_limits<std::uint32_t>::max());
            i > 0 && agents_[i - 1].position >= feeder.index_begin; --i) {
         auto entry = agents_[i - 1];
-        if (entry.slot == asker) continue;
         entry.position = feeder.image(entry.position);
+        if (query.skips(entry, std::abs(entry.position - query.s))) continue;
         if (!best || entry.position > best->position) best = entry;
         break;
       }
