@@ -150,3 +150,22 @@ TEST_CASE("agents of one world perceive by observers of their own kinds") {
   CHECK_THROWS_AS(world.add({.position = {300, -1.75}, .observer = {cb::OccludedObserver{.range = -1.0}}}),
                   cb::ParameterError);
 }
+
+TEST_CASE("a chain that changes nothing shows the truth itself, and is no other than a perfect observer") {
+  World<cb::ObserverChain<cb::PerfectObserver, cb::PerfectObserver>> world(straight_road(2, 1000.0));
+  auto const ego = world.add({.position = {100, -1.75}, .speed = 10});
+  world.add({.position = {130, -1.75}, .speed = 8});
+  auto const view = world.observe(ego);
+  CHECK(&view.state() == &world.state(ego));
+  CHECK(view.front()->gap == 30 - 4.5);
+  World<cb::ObserverChain<cb::ParametricObserver, cb::DelayedObserver<2>>> blind(world.shared_map());
+  blind.add({.position = {100, -1.75},
+             .speed = 10,
+             .observer = {{cb::ParametricObserver{}, cb::DelayedObserver<2>{.others = 0}}}});
+  blind.add({.position = {130, -1.75}, .speed = 8});
+  for (int i = 0; i < 20; ++i) {  // neither noise nor delay, but not known at compile time
+    world.step(0.2);
+    blind.step(0.2);
+    CHECK(blind.state(ego) == world.state(ego));
+  }
+}

@@ -107,7 +107,7 @@ TEST_CASE_TEMPLATE("recorded drives on every map are followed within bounds, wit
     replay(map, states, Execution{}, exact);
     replay(map, states, sloppy<Execution>(), noisy);
   });
-  auto const tell = [](char const* what, Deviations const& d) {
+  auto const tell = [](std::string const& what, Deviations const& d) {
     MESSAGE(std::string(Execution::name) << ", " << what << ", " << d.across.size() << " steps: across "
                                          << Deviations::quantile(d.across, 0.5) << " m in the middle, "
                                          << Deviations::quantile(d.across, 0.99) << " m at 99 %, "
@@ -117,6 +117,32 @@ TEST_CASE_TEMPLATE("recorded drives on every map are followed within bounds, wit
   };
   tell("as commanded", exact);
   tell("late and noisy", noisy);
-  CHECK(exact.across.size() > 5000);
   CHECK(noisy.across.size() > 5000);
+  CHECK(Deviations::quantile(exact.across, 1.0) < 0.02);
+  CHECK(Deviations::quantile(exact.along, 1.0) < 0.05);
+  CHECK(Deviations::quantile(noisy.across, 0.5) > 0.005);  // there is noise
+  CHECK(Deviations::quantile(noisy.across, 1.0) < 0.5);
+  CHECK(Deviations::quantile(noisy.along, 1.0) < 0.5);
+}
+
+TEST_CASE_TEMPLATE("lane tracking by late and noisy actuators stays near the centre line, and never goes astray",
+                   Execution, cb::StanleyExecution, cb::LqrExecution) {
+  auto const root = corpus::root();
+  if (!root) return;
+  std::vector<double> lateral;
+  for_some_lanes(*root, 8, [&](auto const& map, cb::map::Lane const& lane) {
+    World<cb::IdmLaneTracking, Execution> world(map);
+    auto const pose = lane.path.pose(2.0);
+    auto const id = world.add(
+        {.position = pose.position(), .heading = pose.heading, .speed = 3.0, .execution = sloppy<Execution>()});
+    for (int k = 0; k < 100 && world.step(dt) && world.status(id) == cb::AgentStatus::driving; ++k)
+      lateral.push_back(std::abs(world.record(id).lane.lateral));
+  });
+  MESSAGE(std::string(Execution::name) << ": rear axle off the centre line by " << Deviations::quantile(lateral, 0.5)
+                                       << " m in the middle, " << Deviations::quantile(lateral, 0.99) << " m at 99 %, "
+                                       << Deviations::quantile(lateral, 1.0) << " m at most");
+  CHECK(lateral.size() > 5000);
+  CHECK(Deviations::quantile(lateral, 0.9) < 0.15);
+  CHECK(Deviations::quantile(lateral, 0.99) < 1.5);  // in bends that take all grip already
+  CHECK(Deviations::quantile(lateral, 1.0) < 3.0);
 }

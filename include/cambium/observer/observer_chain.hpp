@@ -39,13 +39,18 @@ struct ObserverChain {
     return std::apply([&](auto const&... stage) { return (by(stage) && ...); }, stages);
   }
 
+  /// By value; the truth itself where all stages are perfect.
   template <MotionState S>
-  [[nodiscard]] S observe(S const& truth, bool own, RandomStream const& random) const {
-    S seen = truth;
-    std::uint32_t number = 0;
-    std::apply([&](auto const&... stage) { ((seen = stage.observe(S(seen), own, random.part(number++))), ...); },
-               stages);
-    return seen;
+  [[nodiscard]] decltype(auto) observe(S const& truth, bool own, RandomStream const& random) const {
+    if constexpr (perfect) {
+      return (truth);
+    } else {
+      S seen = truth;
+      std::uint32_t number = 0;
+      std::apply([&](auto const&... stage) { ((seen = stage.observe(S(seen), own, random.part(number++))), ...); },
+                 stages);
+      return seen;
+    }
   }
 };
 
