@@ -1,5 +1,6 @@
 #include <doctest/doctest.h>
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -151,4 +152,25 @@ TEST_CASE("routes lead to the places that goals name, a sequence's by way of all
     if (world.roster().corridors.size() > 12) break;
   }
   CHECK(world.roster().corridors.size() > 5);
+}
+
+TEST_CASE("a goal with a number that is none, or out of its range, is refused by name, also within another goal") {
+  Sim world(straight_road(2, 1000.0));
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  auto const lane = world.map().find_lane("1", 300.0, -1);
+  for (cb::Goal const& goal :
+       {cb::Goal{cb::LaneLimits{.left = nan}}, cb::Goal{cb::StateLimits{.heading_to = nan}},
+        cb::Goal{cb::ReachLaneEnd{-1.0}}, cb::Goal{cb::ReachLaneBeside{.tolerance = nan}},
+        cb::Goal{cb::AllGoals{{cb::ReachLane{lane}, cb::LaneLimits{.lowest_speed = nan}}}},
+        cb::Goal{cb::GoalSequence{{cb::ReachLane{lane}, cb::LaneLimits{.heading_error = -0.1}}}}}) {
+    CAPTURE(goal.index());
+    CHECK_THROWS_AS(world.add(driver(100, goal)), cb::ParameterError);
+  }
+  CHECK(world.size() == 0);
+  try {
+    world.add(driver(100, cb::ReachLaneEnd{-1.0}));
+  } catch (cb::ParameterError const& error) {
+    CHECK(std::string(error.what()).find("agent 0: reach_lane_end.distance: is -1 m") != std::string::npos);
+  }
+  CHECK_NOTHROW(world.add(driver(100, cb::LaneLimits{})));  // infinite limits are none
 }

@@ -68,9 +68,13 @@ inline constexpr double path_radius = 2.5;
       "enter on a lane and along its direction");
 }
 
+template <class... Alternatives>
+void check_if_described(std::variant<Alternatives...> const& any, std::string const& where);
+
 /// The agent's goal, complete: lanes beside count from the one that it enters in. Throws `WorldError` for a sequence
-/// that is too long, or within another goal.
+/// that is too long, or within another goal, and `ParameterError` for a number out of its range.
 [[nodiscard]] inline Goal entering_goal(Goal goal, LaneId lane, std::string const& where, bool is_outer = true) {
+  check_if_described(goal, where);
   if (auto* const beside = std::get_if<ReachLaneBeside>(&goal); beside && !is_valid(beside->from)) beside->from = lane;
   auto const complete = [&](std::vector<Goal>& parts) {
     for (auto& part : parts) part = entering_goal(std::move(part), lane, where, false);
@@ -202,9 +206,6 @@ template <class Spec>
 
 /// Speeds beyond this are no vehicle's [m/s].
 inline constexpr double fastest = 1000.0;
-
-template <class... Alternatives>
-void check_if_described(std::variant<Alternatives...> const& any, std::string const& where);
 
 /// Throws `ParameterError` where a parameter of a described struct, or of the one that a set holds, is out of its
 /// range.
