@@ -24,6 +24,7 @@
 #include "cambium/map/opendrive_objects.hpp"
 #include "cambium/map/parametric_cubic.hpp"
 #include "cambium/map/reference_line.hpp"
+#include "cambium/map/right_of_way.hpp"
 #include "cambium/map/road.hpp"
 #include "cambium/map/road_lanes.hpp"
 #include "cambium/map/road_surface.hpp"
