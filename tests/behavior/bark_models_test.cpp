@@ -134,6 +134,40 @@ Worst compare(std::string const& file, std::vector<cb::map::LaneCorridor> const&
   return worst;
 }
 
+/// Largest distance from BARK's agents over all 50 steps, each rolled out from its first row on by its own plans,
+/// behind the leader that BARK's table has [m].
+template <class BehaviorOf>
+double roll_out(std::string const& file, std::vector<cb::map::LaneCorridor> const& corridors,
+                BehaviorOf const& behavior_of) {
+  auto const rows = read_rows(file);
+  std::map<std::pair<int, int>, Row const*> by;
+  int steps = 0;
+  for (auto const& row : rows) {
+    by[{row.step, row.agent}] = &row;
+    steps = std::max(steps, row.step);
+  }
+  double worst = 0.0;
+  for (auto const& first : rows) {
+    if (first.step != 0 || first.agent > 5) continue;  // agent 6 only stands
+    auto const behavior = behavior_of(first.agent);
+    cb::MemoryOf<std::remove_cvref_t<decltype(behavior)>> memory;
+    auto state = first.state;
+    for (int k = 0; k < steps; ++k) {
+      Row row = *by.at({k, first.agent});
+      row.front_gap += row.state.x - state.x;  // of a lane along +x
+      row.state = state;
+      auto const* const leader = row.front < 0 ? nullptr : by.at({k, row.front});
+      RowView const view(row, leader, corridors[static_cast<std::size_t>(row.corridor)]);
+      auto const plan = behavior.plan(view, memory, 0.2);
+      state = cb::InterpolateExecution{}.execute(plan, state, view.model, row.state.time + 0.2).state;
+      auto const& expected = by.at({k + 1, first.agent})->state;
+      worst = std::max(worst, std::hypot(state.x - expected.x, state.y - expected.y));
+    }
+  }
+  MESSAGE(file << ": after up to " << steps << " steps no farther off than " << worst << " m");
+  return worst;
+}
+
 cb::IdmParameters bark_idm(double desired_speed) {
   cb::IdmParameters p{.desired_speed = desired_speed};
   p.comfortable_deceleration = 1.67f;  // BARK keeps it as a float
@@ -169,6 +203,26 @@ TEST_CASE("lane tracking with BARK's sub-steps is BARK's, but for BARK's angles 
   CHECK(worst.heading < 5e-7);
   CHECK(worst.speed < 1e-9);
   CHECK(worst.action < 1e-7);
+}
+
+TEST_CASE("rolled out over 50 steps the models are where BARK's are, within its tables' tolerances") {
+  if (!corpus::root()) return;
+  auto const idm = [](int agent) {
+    double const desired[] = {15, 12, 8, 18, 10};
+    cb::IdmClassic driver{.desired_speed = desired[agent - 1]};
+    driver.comfortable_deceleration = 1.67f;
+    driver.integration = cb::IdmClassic::Integration::bark_substeps;
+    return driver;
+  };
+  CHECK(roll_out("bark_idm_highway.csv", straight_corridors(), idm) < 1e-9);
+  auto const acc = [](int agent) {
+    cb::AdaptiveCruiseControl driver{.idm = bark_idm(agent == 1 ? 15 : agent == 2 ? 12 : 8)};
+    driver.integration = cb::AdaptiveCruiseControl::Integration::bark_substeps;
+    return driver;
+  };
+  CHECK(roll_out("bark_idm_coolness_highway.csv", straight_corridors(), acc) < 1e-9);
+  auto const tracking = [](int agent) { return lane_tracking(agent == 1 ? 15 : agent == 2 ? 12 : 10); };
+  CHECK(roll_out("bark_lanetracking_straight.csv", straight_corridors(), tracking) < 1e-4);
 }
 
 TEST_CASE("on an arc lane tracking is BARK's along BARK's coarse line; the true arc is another one") {
