@@ -174,24 +174,30 @@ TEST_CASE_TEMPLATE("a delay widens the error of a lane change, but it stays boun
 TEST_CASE("the noise of the actuators has the moments asked for") {
   cb::StanleyExecution execution;
   execution.cross_track_gain = execution.speed_gain = execution.lag_gain = 0.0;
-  execution.actuation.acceleration_noise = {0.1, 0.5};
+  execution.actuation = {.period = 0.1, .acceleration_noise = {0.1, 0.5}, .steering_noise = {0.005, 0.02}};
   int const steps = 20000;
   cb::TrackingMemory<cb::State> memory;
-  double sum = 0.0, squares = 0.0;
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d squares = Eigen::Matrix2d::Zero();
   for (int i = 0; i < steps; ++i) {
     cb::BasicPlan<cb::State> plan;
     plan.trajectory.push_back({.time = 0.1, .x = 1.0, .speed = 10.0});
     memory = {};
     cb::RandomStream random(3, 1, static_cast<std::uint32_t>(i));
     auto const x = execution.execute(plan, cb::State{.speed = 10.0}, cb::SingleTrack{}, 0.1, memory, random).state;
-    double const a = (x.speed - 10.0) / 0.1;
-    sum += a;
-    squares += a * a;
+    double const way = 0.1 * 0.5 * (10.0 + x.speed);
+    Eigen::Vector2d const noise((x.speed - 10.0) / 0.1, std::atan(x.heading * cb::SingleTrack{}.wheel_base / way));
+    sum += noise;
+    squares += noise * noise.transpose();
   }
-  double const mean = sum / steps, deviation = std::sqrt(squares / steps - mean * mean);
-  MESSAGE("mean " << mean << ", deviation " << deviation << " of 0.1, 0.5 m/s^2");
-  CHECK(std::abs(mean - 0.1) < 4 * 0.5 / std::sqrt(steps));
-  CHECK(std::abs(deviation - 0.5) < 4 * 0.5 / std::sqrt(2.0 * steps));
+  Eigen::Vector2d const mean = sum / steps, asked_mean(0.1, 0.005), asked(0.5, 0.02);
+  Eigen::Matrix2d const covariance = squares / steps - mean * mean.transpose();
+  for (int i = 0; i < 2; ++i) {
+    CAPTURE(i);
+    CHECK(std::abs(mean[i] - asked_mean[i]) < 4 * asked[i] / std::sqrt(steps));
+    CHECK(std::abs(std::sqrt(covariance(i, i)) - asked[i]) < 4 * asked[i] / std::sqrt(2.0 * steps));
+  }
+  CHECK(std::abs(covariance(0, 1)) < 4 * asked[0] * asked[1] / std::sqrt(steps));  // the two are independent
 }
 
 TEST_CASE_TEMPLATE("noise is the same for the same seed, another one for another, and the controller bounds it",
