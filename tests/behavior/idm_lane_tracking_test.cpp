@@ -121,6 +121,31 @@ TEST_CASE("it slows down for a curve in time, and not without being asked to") {
   CHECK(other_fastest > 1.1 * allowed);
 }
 
+TEST_CASE("before a bend it brakes comfortably, and enters it no faster than the tyres allow, nor much slower") {
+  for (double const radius : {15.0, 20.0, 40.0})
+    for (double const dt : {0.05, 0.2, 0.4}) {
+      auto const map = support::map_of({.id = "1",
+                                        .line = cb::map::lay_from({}, {{200.0}, {60.0, 1 / radius, 1 / radius}}),
+                                        .sections = {{.right = cb::map::equal_lanes(1)}}});
+      cb::World<cb::BehaviorSet<IdmLaneTracking>, cb::InterpolateExecution, cb::SingleTrack> world(map);
+      auto const id = world.add({.position = {10, -1.75}, .speed = 15.0});
+      double const allowed = std::sqrt(4.0 * (radius + 1.75));
+      double hardest = 0.0, entered = 0.0, fastest = 0.0;
+      while (world.state(id).x < 240 && world.record(id).lane.s < 245) {
+        REQUIRE(world.step(dt));
+        hardest = std::min(hardest, world.record(id).action.acceleration);
+        if (world.record(id).lane.s < 200) continue;
+        if (entered == 0.0) entered = world.state(id).speed;
+        fastest = std::max(fastest, world.state(id).speed);
+      }
+      CAPTURE(radius);
+      CAPTURE(dt);
+      CHECK(fastest < allowed);
+      CHECK(entered > 0.7 * allowed);
+      CHECK(hardest > -1.3 * cb::IdmParameters{}.comfortable_deceleration);
+    }
+}
+
 TEST_CASE("steering stays within the vehicle's limit and the driver's lateral acceleration") {
   IdmLaneTracking const driver;
   cb::RandomStream random(5, 0, 0);

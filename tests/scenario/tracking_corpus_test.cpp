@@ -125,8 +125,8 @@ TEST_CASE_TEMPLATE("recorded drives on every map are followed within bounds, wit
   CHECK(Deviations::quantile(noisy.along, 1.0) < 0.5);
 }
 
-TEST_CASE_TEMPLATE("lane tracking by late and noisy actuators stays near the centre line, and never goes astray",
-                   Execution, cb::StanleyExecution, cb::LqrExecution) {
+TEST_CASE_TEMPLATE("lane tracking by late and noisy actuators stays in its lane on every map", Execution,
+                   cb::StanleyExecution, cb::LqrExecution) {
   auto const root = corpus::root();
   if (!root) return;
   std::vector<double> lateral;
@@ -143,6 +143,6 @@ TEST_CASE_TEMPLATE("lane tracking by late and noisy actuators stays near the cen
                                        << Deviations::quantile(lateral, 1.0) << " m at most");
   CHECK(lateral.size() > 5000);
   CHECK(Deviations::quantile(lateral, 0.9) < 0.15);
-  CHECK(Deviations::quantile(lateral, 0.99) < 1.5);  // in bends that take all grip already
-  CHECK(Deviations::quantile(lateral, 1.0) < 4.0);
+  CHECK(Deviations::quantile(lateral, 0.99) < 0.4);
+  CHECK(Deviations::quantile(lateral, 1.0) < 1.0);
 }

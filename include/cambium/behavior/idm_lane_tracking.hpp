@@ -128,12 +128,19 @@ struct IdmLaneTracking {
       ++i;
     memory.straight_until = static_cast<std::uint32_t>(i);
     memory.known_until = i < segments.size() ? static_cast<float>(segments[i].s) : std::numeric_limits<float>::max();
-    double lowest = square;
+    double lowest = square, way = 0.0;
     for (; i < segments.size() && segments[i].s < reach; ++i) {
-      double const room = twice_braking * std::max(0.0, segments[i].s - at.s), bend = std::abs(segments[i].curvature);
-      if (bend * (lowest - room) > comfortable) lowest = room + comfortable / bend;
+      double const ahead = std::max(0.0, segments[i].s - at.s), room = twice_braking * ahead,
+                   bend = std::abs(segments[i].curvature);
+      if (!(bend * (lowest - room) > comfortable)) continue;
+      lowest = room + comfortable / bend;
+      way = ahead;
     }
-    if (lowest < square) p.desired_speed = std::clamp(std::sqrt(lowest), 0.1, p.desired_speed);
+    if (lowest >= square) return;
+    // IDM brakes comfortably only where it is that much faster than desired; within the last half second less so.
+    double const lead = std::pow(1.0 + p.comfortable_deceleration / p.maximum_acceleration, -1.0 / p.exponent);
+    double const share = std::min(1.0, way / std::max(1.0, 0.5 * speed));
+    p.desired_speed = std::clamp(std::sqrt(lowest) * (1.0 + share * (lead - 1.0)), 0.1, p.desired_speed);
   }
 
   template <class View>
