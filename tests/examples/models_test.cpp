@@ -48,26 +48,25 @@ TEST_CASE("every model, goal, driver and shape in the headers is in README's tab
     return Kind{CAMBIUM_SOURCE_DIR "/include/cambium/" + std::string(folder), std::regex(declaration), least};
   };
   auto const text = tables();
-  for (auto const& [folder, declaration, least] :
-       {kind("behavior", "\nstatic_assert\\((?:BehaviorModel|CorridorFilter)<(\\w+)[<>]", 17),
-        kind("dynamics", "\nstatic_assert\\(DynamicModel<(\\w+)[<>]", 4),
-        kind("execution", "\nstatic_assert\\(ExecutionModel<(\\w+)[<>]", 3),
-        kind("observer", "\nstatic_assert\\(ObserverModel<(\\w+)[<>]", 4),
-        kind("goal", "\nstruct ((?!GoalSituation)\\w+) \\{", 10),
-        kind("behavior", "constexpr IdmParameters (\\w+)\\(\\)", 5),
-        kind("geometry", "constexpr Shape (\\w+)\\(\\)", 8)}) {
+  for (auto const& one : {kind("behavior", "\nstatic_assert\\((?:BehaviorModel|CorridorFilter)<(\\w+)[<>]", 17),
+                          kind("dynamics", "\nstatic_assert\\(DynamicModel<(\\w+)[<>]", 4),
+                          kind("execution", "\nstatic_assert\\(ExecutionModel<(\\w+)[<>]", 3),
+                          kind("observer", "\nstatic_assert\\(ObserverModel<(\\w+)[<>]", 4),
+                          kind("goal", "\nstruct ((?!GoalSituation)\\w+) \\{", 10),
+                          kind("behavior", "constexpr IdmParameters (\\w+)\\(\\)", 5),
+                          kind("geometry", "constexpr Shape (\\w+)\\(\\)", 8)}) {
     int found = 0;
-    for (auto const& file : fs::directory_iterator(folder)) {
+    for (auto const& file : fs::directory_iterator(one.folder)) {
       auto const header = content_of(file.path());
-      for (std::sregex_iterator match(header.begin(), header.end(), declaration), end; match != end; ++match) {
+      for (std::sregex_iterator match(header.begin(), header.end(), one.declaration), end; match != end; ++match) {
         auto const name = (*match)[1].str();
         CAPTURE(name);
         CHECK(text.find("| `" + name) != std::string::npos);
         ++found;
       }
     }
-    CAPTURE(folder);
-    CHECK(found >= least);
+    CAPTURE(one.folder);
+    CHECK(found >= one.least);
   }
 }
 
