@@ -80,7 +80,7 @@ TEST_CASE("what comes from behind counts half: the field of view is 200 degrees 
     double const angle = degrees * cb::geometry::pi / 180;
     Vector const force{-std::cos(angle), -std::sin(angle)};  // by one in that direction
     if (std::abs(degrees) == 100) continue;
-    CHECK(cb::sight_weight(p, ahead, force) == (std::abs(degrees) < 100 ? 1.0 : 0.5));
+    CHECK(cb::sight_weight(p, std::cos(0.5 * p.sight_angle), ahead, force) == (std::abs(degrees) < 100 ? 1.0 : 0.5));
   }
 }
 

@@ -55,6 +55,7 @@ struct Surroundings {
   std::array<Other, most> others;
   std::array<geometry::Polygon const*, most> objects;
   std::size_t other_count = 0, object_count = 0;
+  double sight_cosine = 0.0;  ///< of half the angle in which others count fully
 
   /// Takes it in; of too many the nearest stay.
   void add(Other const& other) {
@@ -113,6 +114,7 @@ struct Pedestrian {
     auto const& start = view.state();
     detail::Surroundings around;
     gather(view, around);
+    around.sight_cosine = std::cos(0.5 * social.sight_angle);
     Walk walk{{start.x, start.y}, velocity_of(start), view.lane_position()};
     double const stop = distance_to_stop(crossing, social, view, start.speed) + walk.at.s;
     double const substeps = std::clamp(std::ceil(dt / longest_substep), 1.0, 400.0), h = dt / substeps;
@@ -210,7 +212,7 @@ struct Pedestrian {
       double const distance = apart.norm();
       if (!(distance > 1e-9)) continue;
       auto const social_part = social_repulsion(social, apart, stride_of(other, walk));
-      sum = sum + sight_weight(social, ahead, social_part) * social_part;
+      sum = sum + sight_weight(social, around.sight_cosine, ahead, social_part) * social_part;
       sum = sum + (contact_repulsion(social, distance - other.radius - body_radius) / distance) * apart;
     }
     for (std::size_t i = 0; i < around.object_count; ++i) {

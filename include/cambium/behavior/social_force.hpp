@@ -110,21 +110,21 @@ template <class Scalar>
 }
 
 /// Size [m/s^2] of the repulsion between bodies whose surfaces are `distance` [m] apart (Helbing, Farkas, Vicsek 2000);
-/// where they overlap as where they touch.
+/// where they overlap as where they touch; nothing beyond 20 times the range.
 template <class Scalar>
 [[nodiscard]] Scalar contact_repulsion(SocialForceParameters const& p, Scalar const& distance) {
   using std::exp;
   using std::max;
+  if (distance > Scalar(20.0 * p.contact_range)) return Scalar(0.0);  // 2e-9 of it
   return Scalar(p.contact_acceleration) * exp(Scalar(-1.0 / p.contact_range) * max(Scalar(0.0), distance));
 }
 
 /// How much a force counts for one who wants to go towards `ahead` (eq. 8): fully where its source is in sight, by
-/// `weight_behind` elsewhere. Both vectors of any length.
+/// `weight_behind` elsewhere. Both vectors of any length. `sight_cosine`: of half the `sight_angle`.
 template <class Scalar>
-[[nodiscard]] Scalar sight_weight(SocialForceParameters const& p, PlaneVector<Scalar> const& ahead,
+[[nodiscard]] Scalar sight_weight(SocialForceParameters const& p, double sight_cosine, PlaneVector<Scalar> const& ahead,
                                   PlaneVector<Scalar> const& force) {
-  using std::cos;
-  bool const seen = -dot(ahead, force) >= Scalar(cos(0.5 * p.sight_angle)) * ahead.norm() * force.norm();
+  bool const seen = -dot(ahead, force) >= Scalar(sight_cosine) * ahead.norm() * force.norm();
   return seen ? Scalar(1.0) : Scalar(p.weight_behind);
 }
 
