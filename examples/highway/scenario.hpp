@@ -150,7 +150,7 @@ struct Scenario {
   Scenario scenario{Simulation(site.map, {.seed = seed})};
   cambium::RandomStream random(seed, number, attempt);
   auto const& map = *site.map;
-  double const ego_at = std::min(0.2 * site.length, 200.0);
+  double const ego_at = std::min(0.12 * site.length, 150.0);
   double nearest = 1e9;
   for (std::size_t i = 0; i < site.lanes.size(); ++i) {
     double const share = static_cast<double>(i) / static_cast<double>(site.lanes.size() - 1);
@@ -163,7 +163,8 @@ struct Scenario {
           is_early && !is_truck && i == (site.lanes.size() - 1) / 2 && std::abs(vehicle.s - ego_at) < nearest;
       bool const exits = is_early && !site.exits.empty() && (is_ego || cambium::uniform01(random) < 0.15);
       auto const exit = exits ? cambium::uniform_index(random, static_cast<std::uint32_t>(site.exits.size())) : 0;
-      auto const driver = sample_driver(is_truck, random);
+      auto driver = sample_driver(is_truck, random);
+      if (exits) driver.changing.rest = 1.0;  // several lanes may have to be crossed
       auto const id =
           scenario.world.add({.position = pose.position(),
                               .heading = pose.heading,
