@@ -30,4 +30,5 @@
 #include "cambium/map/road_lanes.hpp"
 #include "cambium/map/road_surface.hpp"
 #include "cambium/map/route.hpp"
+#include "cambium/map/signals.hpp"
 #include "cambium/map/station_offset.hpp"

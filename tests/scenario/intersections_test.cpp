@@ -97,14 +97,14 @@ struct Tally {
   std::string first;  ///< what went wrong first
 };
 
-void run(std::shared_ptr<Map const> const& map, std::uint32_t number, std::vector<LaneId> const& from, double vans,
-         Tally& tally) {
+void run(std::shared_ptr<Map const> const& map, std::uint32_t number, std::vector<LaneId> const& from, double share,
+         geometry::Shape const& large, Tally& tally) {
   RandomStream random(17, number, 0);
   Sim world(map, {.seed = number});
   auto const wanted = 4 + uniform_index(random, 9);
   for (std::uint32_t i = 0; i < 4 * wanted && world.size() < wanted; ++i) {
     auto const lane = from[uniform_index(random, static_cast<std::uint32_t>(from.size()))];
-    try_to_add(world, lane, uniform01(random) < vans ? geometry::van() : geometry::car(), random);
+    try_to_add(world, lane, uniform01(random) < share ? large : geometry::car(), random);
   }
   tally.agents += world.size();
   CollisionAny const collision;
@@ -121,11 +121,12 @@ void run(std::shared_ptr<Map const> const& map, std::uint32_t number, std::vecto
     tally.first = "run " + std::to_string(number) + " at " + std::to_string(world.time()) + " s";
 }
 
-void check_all_pass(std::shared_ptr<Map const> const& map, std::string const& name, double vans = 0.0) {
+void check_all_pass(std::shared_ptr<Map const> const& map, std::string const& name, double share = 0.0,
+                    geometry::Shape const& large = geometry::van()) {
   auto const from = starts(*map);
   REQUIRE(!from.empty());
   Tally tally;
-  for (std::uint32_t number = 0; number < runs(); ++number) run(map, number, from, vans, tally);
+  for (std::uint32_t number = 0; number < runs(); ++number) run(map, number, from, share, large, tally);
   CAPTURE(name);
   CAPTURE(tally.first);
   CHECK(tally.collisions == 0);
@@ -145,6 +146,14 @@ TEST_CASE("nobody collides and nobody waits forever in sampled traffic at the pr
 TEST_CASE("so it is with vans among the cars") {
   for (char const* name : {"intersection_3way.xodr", "intersection_4way.xodr", "roundabout.xodr"})
     check_all_pass(support::own_map(name), name, 0.3);
+}
+
+TEST_CASE("so it is with trucks, where the conflicts are found for these") {
+  MapOptions options;
+  options.conflict_shape = {7.4, 3.0, 1.4, 1.4};
+  for (std::string const name : {"intersection_3way.xodr", "intersection_4way.xodr", "roundabout.xodr"})
+    check_all_pass(support::load_opendrive(CAMBIUM_SOURCE_DIR "/maps/" + name, options).map, name, 0.3,
+                   geometry::truck());
 }
 
 // Not Town04 and positive18: evaluators know no heights, and their bridges cross roads. Not libopendrive_test: in its

@@ -99,7 +99,7 @@ struct Intersection {
     own.idm = within_limits(rules, idm, view, own.speed);
     own.s = view.lane_position().s;
     own.front = own.s + view.shape().front;
-    own.reach = extra_reach(view.shape());
+    own.reach = extra_reach(view, view.shape().front, view.shape().rear, view.shape().width());
     own.waited = memory.waited;
     follow(own, leader_of<false>(view, view.front_by_rule()));
     heed_conflicts(view, own, dt);
@@ -120,7 +120,7 @@ struct Intersection {
   static constexpr double air = 0.3;        // [m] before a conflict
   static constexpr double infinite = std::numeric_limits<double>::infinity();
 
-  /// How far a body reaches beyond that of `map::conflict_shape` [m].
+  /// How far a body reaches beyond that of `MapOptions::conflict_shape` [m].
   struct Reach {
     double front{}, rear{};
   };
@@ -148,11 +148,9 @@ struct Intersection {
     double begin, end;
   };
 
-  [[nodiscard]] static Reach extra_reach(geometry::Shape const& shape) {
-    return extra_reach(shape.front, shape.rear, shape.width());
-  }
-  [[nodiscard]] static Reach extra_reach(double front, double rear, double width) {
-    constexpr auto known = map::conflict_shape;
+  template <class View>
+  [[nodiscard]] static Reach extra_reach(View const& view, double front, double rear, double width) {
+    auto const& known = view.map().options().conflict_shape;
     double const aside = std::max(0.0, width - known.width());
     return {std::max(0.0, front - known.front) + aside, std::max(0.0, rear - known.rear) + aside};
   }
@@ -241,7 +239,7 @@ struct Intersection {
   template <class View>
   [[nodiscard]] Claim claim_of(View const& view, map::Conflict const& conflict, LaneUser const& user, double at,
                                Own& own) const {
-    auto const reach = extra_reach(user.front, user.rear, 0.0);
+    auto const reach = extra_reach(view, user.front, user.rear, 0.0);
     if (at > conflict.other_end + reach.rear) return Claim::free;
     if (at < 0.0 && !view.signals_way(user, conflict.other)) return Claim::free;
     double const way = conflict.other_begin - reach.front - at;

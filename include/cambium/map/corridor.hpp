@@ -10,7 +10,6 @@
 
 #include "cambium/core/ids.hpp"
 #include "cambium/geometry/line.hpp"
-#include "cambium/geometry/shape.hpp"
 #include "cambium/map/lane.hpp"
 
 namespace cambium::map {
@@ -78,9 +77,6 @@ struct Feeder {
   return std::min(gap + 0.5 * to_merge, std::max(gap, to_merge));
 }
 
-/// The body that conflicts are found for: a car (`geometry::car`) with a hand's breadth of air all around.
-inline constexpr geometry::Shape conflict_shape{3.8, 1.1, 1.05, 1.05};
-
 /// A stop sign or a light for the corridor's traffic.
 struct CorridorSignal {
   double line{};  ///< where front ends stop: where the junction behind it begins, else the signal [m]
@@ -97,7 +93,7 @@ struct ConflictWay {
 };
 
 /// Where a lane outside of the corridor crosses it, merges with it or parts from it. Stretches say where the reference
-/// points of two vehicles of `conflict_shape` may be when these touch.
+/// points of two vehicles of `MapOptions::conflict_shape` may be when these touch.
 struct Conflict {
   LaneId other = none<LaneId>;
   OverlapKind kind = OverlapKind::crossing;

@@ -19,6 +19,7 @@
 #include "cambium/core/parameters.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/box.hpp"
+#include "cambium/geometry/shape.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/corridor.hpp"
 #include "cambium/map/detail/find_lane.hpp"
@@ -40,23 +41,28 @@ struct MapOptions {
   double merge_view = 120.0;   ///< how far before an overlap merging lanes take each other's traffic into account [m]
   double merge_length = 60.0;  ///< longest stretch over which an ending lane swings onto its neighbour [m]
   bool infer_links = false;    ///< join lanes that one another's ends meet, where the file has forgotten the link
+  /// The body that conflicts at junctions are found for: a car with a hand's breadth of air all around. Where longer
+  /// vehicles drive, which swing out farther, give the largest one's.
+  geometry::Shape conflict_shape{3.8, 1.1, 1.05, 1.05};
 
   static constexpr double turn_per_tolerance = 6.0;
   static constexpr char const* name = "map_options";
   static constexpr auto parameters() {
     using P = MapOptions;
-    return std::make_tuple(parameter("position_tolerance", &P::position_tolerance, "m", Range{1e-5, 10},
-                                     "largest distance of a sampled lane from the exact one"),
-                           parameter("heading_tolerance", &P::heading_tolerance, "rad", Range{1e-4, 1},
-                                     "largest deviation of a sampled lane's heading from the exact one"),
-                           parameter("overlap_clearance", &P::overlap_clearance, "m", Range{0.1, 20},
-                                     "paths closer than this cannot carry vehicles side by side"),
-                           parameter("merge_view", &P::merge_view, "m", Range{0, 1000},
-                                     "how far before an overlap merging traffic is taken into account"),
-                           parameter("merge_length", &P::merge_length, "m", Range{30, 1000},
-                                     "longest stretch over which an ending lane swings onto its neighbour"),
-                           parameter("infer_links", &P::infer_links, "-", Range{0, 1},
-                                     "join lanes whose ends meet where the file has forgotten the link"));
+    return std::make_tuple(
+        parameter("position_tolerance", &P::position_tolerance, "m", Range{1e-5, 10},
+                  "largest distance of a sampled lane from the exact one"),
+        parameter("heading_tolerance", &P::heading_tolerance, "rad", Range{1e-4, 1},
+                  "largest deviation of a sampled lane's heading from the exact one"),
+        parameter("overlap_clearance", &P::overlap_clearance, "m", Range{0.1, 20},
+                  "paths closer than this cannot carry vehicles side by side"),
+        parameter("merge_view", &P::merge_view, "m", Range{0, 1000},
+                  "how far before an overlap merging traffic is taken into account"),
+        parameter("merge_length", &P::merge_length, "m", Range{30, 1000},
+                  "longest stretch over which an ending lane swings onto its neighbour"),
+        parameter("infer_links", &P::infer_links, "-", Range{0, 1},
+                  "join lanes whose ends meet where the file has forgotten the link"),
+        parameter("conflict_shape", &P::conflict_shape, "-", {}, "the body that conflicts at junctions are found for"));
   }
 };
 

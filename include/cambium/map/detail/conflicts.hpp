@@ -55,7 +55,8 @@ inline void add_ways_behind(Map const& map, Lane const& lane, double until, std:
 /// Finds the conflicts of a lane corridor whose centre line and pieces are there already, see `Conflict`.
 class ConflictFinder {
  public:
-  ConflictFinder(Map const& map, LaneCorridor const& corridor) : map_(map), corridor_(corridor) {}
+  ConflictFinder(Map const& map, LaneCorridor const& corridor)
+      : map_(map), corridor_(corridor), body_(map.options().conflict_shape) {}
 
   [[nodiscard]] std::vector<Conflict> find() const {
     std::vector<Conflict> conflicts;
@@ -76,7 +77,8 @@ class ConflictFinder {
   static constexpr double step = 0.5;      // [m] between two places of a body
   static constexpr double shortest = 1.0;  // [m] of a lane on which a body swings out
   /// How far before and behind an overlap of paths the bodies may touch [m].
-  static constexpr double before = 12.0, behind = 8.0;
+  [[nodiscard]] double before() const { return body_.length() + 8.0; }
+  [[nodiscard]] double behind() const { return body_.rear + 8.0; }
 
   [[nodiscard]] std::optional<Conflict> conflict_at(std::size_t number, Overlap const& overlap) const {
     auto const& piece = corridor_.pieces[number];
@@ -91,8 +93,8 @@ class ConflictFinder {
     conflict.shift = conflict.kind == OverlapKind::split ? begin - overlap.other_begin : end - overlap.other_end;
     if (overlap.kind == OverlapKind::merge) conflict.meet = begin;
     if (!find_touching(overlap, begin, end, conflict)) return std::nullopt;
-    conflict.line = std::min(conflict.begin + conflict_shape.front, junction_begin(number));
-    conflict.other_line = std::min(conflict.other_begin + conflict_shape.front, junction_begin(overlap.other));
+    conflict.line = std::min(conflict.begin + body_.front, junction_begin(number));
+    conflict.other_line = std::min(conflict.other_begin + body_.front, junction_begin(overlap.other));
     conflict.other_light = signs_before(map_, map_.lane(overlap.other)).light;
     add_ways(conflict);
     return conflict;
@@ -126,9 +128,9 @@ class ConflictFinder {
   }
 
   /// Whether bodies on the two paths may touch, by circles around the paths.
-  [[nodiscard]] static bool is_near(Lane const& a, Lane const& b) {
+  [[nodiscard]] bool is_near(Lane const& a, Lane const& b) const {
     auto const p = a.path.pose(0.5 * a.length()), q = b.path.pose(0.5 * b.length());
-    return std::hypot(p.x - q.x, p.y - q.y) < 0.5 * (a.length() + b.length()) + before;
+    return std::hypot(p.x - q.x, p.y - q.y) < 0.5 * (a.length() + b.length()) + before();
   }
 
   /// The lanes of its junction whose paths keep apart from the lane's: bodies that swing out in bends may touch there.
@@ -190,18 +192,18 @@ class ConflictFinder {
   /// part these begin, with the overlap: there the two are one lane. O(places on one times places on the other).
   [[nodiscard]] bool find_touching(Overlap const& overlap, double begin, double end, Conflict& conflict) const {
     bool const merges = conflict.kind == OverlapKind::merge, splits = conflict.kind == OverlapKind::split;
-    double const own_from = splits ? begin : std::max(0.0, begin - before),
-                 own_to = merges ? end : std::min(corridor_.length(), end + behind);
-    double const other_from = splits ? overlap.other_begin : overlap.other_begin - before,
-                 other_to = merges ? overlap.other_end : overlap.other_end + behind;
+    double const own_from = splits ? begin : std::max(0.0, begin - before()),
+                 own_to = merges ? end : std::min(corridor_.length(), end + behind());
+    double const other_from = splits ? overlap.other_begin : overlap.other_begin - before(),
+                 other_to = merges ? overlap.other_end : overlap.other_end + behind();
     std::vector<geometry::OrientedBox> others;
     for (double s = other_from; s <= other_to; s += step)
-      others.push_back(geometry::box_of(conflict_shape, pose_on_way(overlap.other, s)));
+      others.push_back(geometry::box_of(body_, pose_on_way(overlap.other, s)));
     double first = std::numeric_limits<double>::infinity(), last = -first;
     std::size_t first_other = others.size(), last_other = 0;
-    double const radius = conflict_shape.radius();
+    double const radius = body_.radius();
     for (double s = own_from; s <= own_to; s += step) {
-      auto const body = geometry::box_of(conflict_shape, corridor_.center.pose(s));
+      auto const body = geometry::box_of(body_, corridor_.center.pose(s));
       for (std::size_t k = 0; k < others.size();) {
         double const dx = others[k].x - body.x, dy = others[k].y - body.y;
         double const apart = std::sqrt(dx * dx + dy * dy) - 2.0 * radius;
@@ -231,6 +233,7 @@ class ConflictFinder {
 
   Map const& map_;
   LaneCorridor const& corridor_;
+  geometry::Shape body_;
 };
 
 }  // namespace cambium::map::detail
