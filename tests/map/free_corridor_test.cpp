@@ -34,11 +34,12 @@ TEST_CASE("a way across a road knows the lanes that it crosses, and how far back
     CHECK(crossing.end == doctest::Approx(border + 3.5).epsilon(0.03));
     auto const& lane = map->lane(crossing.lane);
     CHECK(lane.drivable());
-    CHECK(crossing.index_begin - lane.index_begin == doctest::Approx(318.5));
-    CHECK(crossing.index_end - lane.index_begin == doctest::Approx(321.5));
-    REQUIRE(crossing.approaches.size() == 1);
-    CHECK(crossing.approaches[0].index_end == doctest::Approx(crossing.index_begin));
-    CHECK(crossing.approaches[0].index_end - crossing.approaches[0].index_begin == doctest::Approx(150.0));
+    CHECK(crossing.lane_begin == doctest::Approx(318.5));
+    CHECK(crossing.lane_end == doctest::Approx(321.5));
+    REQUIRE(crossing.ways.size() == 1);
+    CHECK(crossing.ways[0].index_end == doctest::Approx(lane.index_begin + lane.length()));
+    CHECK(crossing.ways[0].begin == doctest::Approx(crossing.lane_begin - 150.0));
+    CHECK(crossing.ways[0].index_begin == doctest::Approx(lane.index_begin + crossing.ways[0].begin));
     border += 3.5;
   }
   CHECK(build(*map, {{0, 20}, {100, 30}})->corridors[0].crossings.empty());

@@ -45,7 +45,7 @@ struct CrossingParameters {
 
 namespace detail {
 
-/// Where one who walks `lateral` [m] beside its way's centre line is in the lane that it crosses, in lane coordinates.
+/// Where one who walks `lateral` [m] beside its way's centre line is on the lane that it crosses [m].
 struct CrossingStrip {
   double begin = std::numeric_limits<double>::infinity(), end = -begin;
 };
@@ -54,14 +54,14 @@ template <class View>
 [[nodiscard]] CrossingStrip strip_of(View const& view, map::LaneCrossing const& crossing) {
   auto const& lane = view.map().lane(crossing.lane);
   auto const& at = view.lane_position();
-  auto hint = lane.path.find(0.5 * (crossing.index_begin + crossing.index_end) - lane.index_begin);
+  auto hint = lane.path.find(0.5 * (crossing.lane_begin + crossing.lane_end));
   CrossingStrip strip;
   for (double const s : {crossing.begin, crossing.end}) {
     State there;
     place_on_lane(view.corridor(), s, at.lateral, 0.0, at.segment, there);
-    double const index = lane.index_begin + lane.path.project({there.x, there.y}, hint).s;
-    strip.begin = std::min(strip.begin, index - view.shape().radius());
-    strip.end = std::max(strip.end, index + view.shape().radius());
+    double const along = lane.path.project({there.x, there.y}, hint).s;
+    strip.begin = std::min(strip.begin, along - view.shape().radius());
+    strip.end = std::max(strip.end, along + view.shape().radius());
   }
   return strip;
 }
@@ -78,7 +78,7 @@ template <class View>
       std::max(0.0, to_end) / walking + social.relaxation_time * std::max(0.0, 1.0 - speed / walking);
   auto const strip = strip_of(view, crossing);
   bool blocked = false;
-  // `position`: as if the lanes before the one that is crossed had its lane coordinate.
+  // `position`: on its way, counted from the begin of the lane that is crossed.
   auto const heed = [&](LaneUser const& user, double position) {
     if (blocked || position - user.rear > strip.end || !view.signals_way(user, crossing.lane)) return;
     double const distance = strip.begin - position - user.front, theirs = std::max(0.0, user.speed);
@@ -88,12 +88,9 @@ template <class View>
     double const last = theirs > 0.1 ? way / theirs : std::numeric_limits<double>::infinity();
     blocked = first < clearance + margin && arrival < last + p.margin_behind;
   };
-  view.for_each_on_lane(crossing.index_begin, crossing.index_end,
-                        [&](LaneUser const& user) { heed(user, user.position); });
-  for (auto const& approach : crossing.approaches)
-    view.for_each_on_lane(approach.index_begin, approach.index_end, [&](LaneUser const& user) {
-      heed(user, crossing.index_begin - approach.to_crossing - approach.index_end + user.position);
-    });
+  for (auto const& way : crossing.ways)
+    view.for_each_on_lane(way.index_begin, way.index_end,
+                          [&](LaneUser const& user) { heed(user, way.begin + user.position - way.index_begin); });
   return blocked;
 }
 

@@ -33,20 +33,6 @@ struct CorridorPiece {
   double lane_end = std::numeric_limits<double>::infinity();
 };
 
-/// A stretch of the map-wide lane coordinate whose traffic comes to a crossing.
-struct CrossingApproach {
-  double index_begin{}, index_end{};
-  double to_crossing{};  ///< from `index_end` along the lanes [m]
-};
-
-/// A drivable lane that a free corridor crosses, from border to border (see `build_free_corridor`).
-struct LaneCrossing {
-  LaneId lane = none<LaneId>;
-  double begin{}, end{};                     ///< corridor position [m]
-  double index_begin{}, index_end{};         ///< lane coordinate of the stretch that the corridor covers
-  std::vector<CrossingApproach> approaches;  ///< the ways to that stretch
-};
-
 /// A stretch of a lane outside of the corridor whose traffic counts in it: a lane that merges in (from `merge_view`
 /// before the overlap on), one that has just split off and still overlaps, or one that leads onto the corridor's first
 /// lane. Lane coordinates [index_begin, index_end] map linearly onto corridor positions [begin, end].
@@ -108,6 +94,14 @@ struct Conflict {
   /// The way: the other lane, those behind it back to `MapOptions::merge_view` before the conflict, and those that it
   /// leads into, as far as who is there may still reach back into the conflict.
   std::vector<ConflictWay> ways;
+};
+
+/// A drivable lane that a free corridor crosses, from border to border (see `build_free_corridor`).
+struct LaneCrossing {
+  LaneId lane = none<LaneId>;
+  double begin{}, end{};            ///< corridor position [m]
+  double lane_begin{}, lane_end{};  ///< of the stretch that the corridor covers: position on the lane's path [m]
+  std::vector<ConflictWay> ways;    ///< by which traffic comes to that stretch, positions counted from the lane's begin
 };
 
 /// A chain of lanes along which a vehicle drives: what behaviours follow. Immutable, shared.

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <span>
 #include <tuple>
@@ -15,6 +14,7 @@
 #include "cambium/core/ids.hpp"
 #include "cambium/geometry/line.hpp"
 #include "cambium/map/corridor.hpp"
+#include "cambium/map/detail/conflicts.hpp"
 #include "cambium/map/map.hpp"
 
 namespace cambium::map {
@@ -57,33 +57,6 @@ namespace detail {
   return points;
 }
 
-/// The ways that lead to path position `at` of `lane`, `view` [m] back: the lane itself, then those behind it, each
-/// lane once by its shortest way.
-[[nodiscard]] inline std::vector<CrossingApproach> approaches_back(Map const& map, LaneId id, double at, double view) {
-  struct Way {
-    LaneId lane;
-    double end, to_crossing;  // [m]: path position where the stretch ends, and from there
-  };
-  std::map<LaneId, double> seen;  // shortest way from its end
-  std::vector<Way> open{{id, at, 0.0}};
-  std::vector<CrossingApproach> approaches;
-  for (std::size_t i = 0; i < open.size(); ++i) {
-    auto const way = open[i];
-    auto const& lane = map.lane(way.lane);
-    double const length = std::min(way.end, view - way.to_crossing);
-    if (length > 0.0)
-      approaches.push_back({lane.index_begin + way.end - length, lane.index_begin + way.end, way.to_crossing});
-    double const behind = way.to_crossing + way.end;
-    if (behind >= view) continue;
-    for (auto const before : lane.predecessors) {
-      auto const& previous = map.lane(before);
-      if (!previous.drivable() || before == id || !seen.emplace(before, behind).second) continue;
-      open.push_back({before, previous.length(), behind});
-    }
-  }
-  return approaches;
-}
-
 /// Where the way crosses drivable lanes: from border to border.
 class CrossingFinder {
  public:
@@ -99,7 +72,7 @@ class CrossingFinder {
     }
     for (auto& crossing : crossings_) finish(crossing, step, way.length());
     std::sort(crossings_.begin(), crossings_.end(), [](LaneCrossing const& a, LaneCrossing const& b) {
-      return std::tie(a.begin, a.lane, a.index_begin) < std::tie(b.begin, b.lane, b.index_begin);
+      return std::tie(a.begin, a.lane, a.lane_begin) < std::tie(b.begin, b.lane, b.lane_begin);
     });
     return std::move(crossings_);
   }
@@ -107,15 +80,14 @@ class CrossingFinder {
  private:
   /// The way is in a lane at `s`: still, or again.
   void pass(LaneHit const& hit, double s, double step) {
-    double const index = map_.lane(hit.lane).index_begin + hit.s;
     for (auto& crossing : crossings_) {
       if (crossing.lane != hit.lane || s - crossing.end > 2.0 * step) continue;
       crossing.end = s;
-      crossing.index_begin = std::min(crossing.index_begin, index);
-      crossing.index_end = std::max(crossing.index_end, index);
+      crossing.lane_begin = std::min(crossing.lane_begin, hit.s);
+      crossing.lane_end = std::max(crossing.lane_end, hit.s);
       return;
     }
-    crossings_.push_back({hit.lane, s, s, index, index, {}});
+    crossings_.push_back({hit.lane, s, s, hit.s, hit.s, {}});
   }
 
   void finish(LaneCrossing& crossing, double step, double length) const {
@@ -123,10 +95,12 @@ class CrossingFinder {
     double const half = 0.5 * options_.width;
     crossing.begin = std::max(0.0, crossing.begin - step);
     crossing.end = std::min(length, crossing.end + step);
-    crossing.index_begin = std::max(lane.index_begin, crossing.index_begin - half);
-    crossing.index_end = std::min(lane.index_begin + lane.length(), crossing.index_end + half);
-    crossing.approaches = approaches_back(map_, lane.id, crossing.index_begin - lane.index_begin, options_.view);
+    crossing.lane_begin = std::max(0.0, crossing.lane_begin - half);
+    crossing.lane_end = std::min(lane.length(), crossing.lane_end + half);
+    crossing.ways = ways_through(map_, lane, crossing.lane_begin - options_.view, crossing.lane_end + farthest_rear);
   }
+
+  static constexpr double farthest_rear = 15.0;  // behind the reference point of a long vehicle [m]
 
   Map const& map_;
   FreeCorridorOptions const& options_;
