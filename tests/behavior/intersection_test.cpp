@@ -124,10 +124,10 @@ TEST_CASE("who brakes for a line comes to stand before it, at any step and speed
   }
 }
 
-TEST_CASE("whoever comes from the right goes first, whatever their ids and who was nearer by a little") {
+TEST_CASE("whoever comes from the right goes first, whatever their ids and who was nearer") {
   Crossing const crossing;
   for (bool const right_first_added : {true, false})
-    for (double const ahead : {0.0, 2.0, -2.0}) {
+    for (double const ahead : {0.0, -6.0, -12.0}) {
       Sim world(crossing.map);
       auto const east = crossing.route(1, 0),
                  north = crossing.route(2, 0);  // the one from the north comes from the right

@@ -44,9 +44,9 @@ namespace cambium {
 /// Crosses junctions by the rules of the road, else follows its lane by IDM. Before a junction it lets those go first
 /// who have the right of way (`map::right_of_way`), if they would come into its way; enters when all conflicts there
 /// are its own, and only if there is room behind them; then it goes first before all who are still outside. Whoever
-/// cannot stop any more before a conflict, or is in it, is never driven into. Where each one waits for another, one
-/// after the other goes after some patience. Others are taken to come by the ways that they signal, with their speed,
-/// and faster where that is the worse.
+/// cannot stop any more before a conflict, or is in it, is never driven into. It stops at red lights
+/// (`World::set_light`) and stop signs. Where each one waits for another, one after the other goes after some patience.
+/// Others are taken to come by the ways that they signal, with their speed, and faster where that is the worse.
 ///
 /// No two of them commit themselves to the same conflict: on the same frame each pair finds the same one to go first,
 /// and one who can still stop is never gone before by more than that one.
