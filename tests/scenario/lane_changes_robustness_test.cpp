@@ -1,10 +1,5 @@
 // Lane changes and zip merges of drivers who see with errors, late, or not everybody; and on real roads.
 // CAMBIUM_SAMPLES=100 takes that many times the seeds.
-#include "cambium/core/macros.hpp"
-// Compiling takes longer than running.
-#undef CAMBIUM_FLATTEN
-#define CAMBIUM_FLATTEN
-
 #include <doctest/doctest.h>
 
 #include <algorithm>

@@ -320,7 +320,10 @@ class World {
           CAMBIUM_PREFETCH(road_beside(slot + 6, false));
         }
       }
-      advance(slot, dt, end, next[slot], result);
+      if constexpr (Observer::perfect)
+        advance_inlined(slot, dt, end, next[slot], result);
+      else
+        advance(slot, dt, end, next[slot], result);
     }
     scratch_.remember(frame_);
     frame_.agents.swap(next);
@@ -416,7 +419,13 @@ class World {
     return road.corridors[side].center.segments().data() + detail::hint_beside(road, at, piece, side).segment;
   }
 
-  CAMBIUM_FLATTEN void advance(std::uint32_t slot, double dt, double end, Record& next, StepResult& result) const {
+  /// All in one function; with observers that would take minutes to compile.
+  CAMBIUM_FLATTEN void advance_inlined(std::uint32_t slot, double dt, double end, Record& next,
+                                       StepResult& result) const {
+    advance(slot, dt, end, next, result);
+  }
+
+  void advance(std::uint32_t slot, double dt, double end, Record& next, StepResult& result) const {
     Record const& now = frame_.agents[slot];
     next = now;
     if (now.status != AgentStatus::driving && now.status != AgentStatus::not_started) return;
