@@ -12,11 +12,14 @@
 #define CAMBIUM_ASSERT(condition, sentence) assert((condition) && (sentence))
 #endif
 
-/// Asks the compiler to inline everything that a function calls: worth a quarter of the time of a step.
+/// Asks the compiler to inline everything that a function calls: worth a quarter of the time of a step, and up to a
+/// minute of compiling where behaviours are large. Compile with `-DCAMBIUM_FLATTEN=` to do without.
+#ifndef CAMBIUM_FLATTEN
 #if defined(__GNUC__)
 #define CAMBIUM_FLATTEN [[gnu::flatten]]
 #else
 #define CAMBIUM_FLATTEN
+#endif
 #endif
 
 /// Keeps a large function out of those that call it, even where they are flattened.
