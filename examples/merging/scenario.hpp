@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include <nlohmann/json.hpp>
+
 #include "cambium/behavior/behavior_set.hpp"
 #include "cambium/behavior/idm_classic.hpp"
 #include "cambium/core/random.hpp"
@@ -144,7 +146,7 @@ inline void find_merge(cambium::Map const& map, Entrance& entrance) {
 struct Scenario {
   Simulation world;
   cambium::AgentId ego = cambium::none<cambium::AgentId>;
-  std::vector<cambium::AgentId> merging;  ///< all that come from the ramp
+  std::vector<cambium::AgentId> marked;  ///< all that come from the ramp
 };
 
 /// Whether a vehicle that has just entered and the one behind it could drive on without braking hard, merging traffic
@@ -198,10 +200,10 @@ struct Scenario {
         scenario.world.remove(id);
         continue;
       }
-      if (i == site.ramp) scenario.merging.push_back(id);
+      if (i == site.ramp) scenario.marked.push_back(id);
     }
   }
-  if (!scenario.merging.empty()) scenario.ego = scenario.merging[scenario.merging.size() / 2];
+  if (!scenario.marked.empty()) scenario.ego = scenario.marked[scenario.marked.size() / 2];
   return scenario;
 }
 
@@ -210,10 +212,16 @@ struct Scenario {
 [[nodiscard]] inline Scenario sample_scenario(Site const& site, std::uint64_t seed, std::uint32_t number) {
   for (std::uint32_t attempt = 0; attempt < 100; ++attempt) {
     auto scenario = draw_scenario(site, seed, number, attempt);
-    if (is_valid(scenario.ego) && scenario.world.size() > scenario.merging.size()) return scenario;
+    if (is_valid(scenario.ego) && scenario.world.size() > scenario.marked.size()) return scenario;
   }
   throw cambium::WorldError("scenario " + std::to_string(number), "no traffic fits on the map before its merge",
                             "give a map with longer lanes there");
 }
+
+/// Whether the ego has merged.
+[[nodiscard]] inline bool is_done(Scenario const& scenario) { return scenario.world.reached_goal(scenario.ego); }
+
+/// What the summary says of the site.
+inline void add_facts(Site const& site, nlohmann::ordered_json& json) { json["entrances"] = site.entrances.size(); }
 
 }  // namespace merging

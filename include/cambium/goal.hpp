@@ -2,3 +2,5 @@
 #pragma once
 
 #include "cambium/goal/goal.hpp"
+#include "cambium/goal/goal_situation.hpp"
+#include "cambium/goal/simple_goals.hpp"

@@ -3,6 +3,7 @@
 
 #include "cambium/world/frame.hpp"
 #include "cambium/world/observed_world.hpp"
+#include "cambium/world/plane_index.hpp"
 #include "cambium/world/prediction.hpp"
 #include "cambium/world/roster.hpp"
 #include "cambium/world/static_object.hpp"

@@ -54,13 +54,19 @@ TEST_CASE("more than the vehicle can do is not done, and the action says what wa
   Sim world(field());
   auto const id = add(world, 10.0);
   cb::SingleTrack const model;
+  auto const within_grip = [&] {
+    double const v = world.state(id).speed;
+    return std::atan(model.lateral_acceleration_limit * model.wheel_base / (v * v));
+  };
+  double steering = -within_grip();
   world.memory<ExternalInput>(id) = {100.0, -3.0};
   world.step(0.1);
-  CHECK(world.record(id).action == cb::Action{model.highest_acceleration, -model.steering_limit});
+  CHECK(world.record(id).action == cb::Action{model.highest_acceleration, steering});
   CHECK(world.state(id).speed == doctest::Approx(10 + 0.1 * model.highest_acceleration));
+  steering = within_grip();
   world.memory<ExternalInput>(id) = {-100.0, 3.0};
   world.step(0.1);
-  CHECK(world.record(id).action == cb::Action{model.lowest_acceleration, model.steering_limit});
+  CHECK(world.record(id).action == cb::Action{model.lowest_acceleration, steering});
 }
 
 TEST_CASE("a braking vehicle stops where the closed form says, within a step too, and never reverses") {

@@ -3,8 +3,6 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <limits>
 #include <string>
 #include <tuple>
@@ -175,10 +173,4 @@ TEST_CASE("whatever the parameters, the speeds and the gap, the motion is finite
     }
   }
   CHECK(bounded > 2000);
-}
-
-TEST_CASE("README shows IDM's parameters as they are described") {
-  std::ifstream file(CAMBIUM_SOURCE_DIR "/README.md");
-  std::string const readme{std::istreambuf_iterator<char>(file), {}};
-  CHECK(readme.find(cb::describe_parameters<cb::IdmClassic>()) != std::string::npos);
 }

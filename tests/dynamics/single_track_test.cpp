@@ -6,7 +6,9 @@
 #include <limits>
 #include <type_traits>
 
+#include "cambium/core/distributions.hpp"
 #include "cambium/core/error.hpp"
+#include "cambium/core/random.hpp"
 #include "cambium/dynamics/integration.hpp"
 
 #include "../support/dual.hpp"
@@ -89,6 +91,37 @@ TEST_CASE("inputs are brought within what the vehicle can do") {
     CHECK(least.acceleration == -6.0);
     CHECK(least.steering == -0.4);
   }
+}
+
+TEST_CASE("the single track's own Runge-Kutta step is the general one") {
+  cb::SingleTrack const model;
+  cb::RandomStream random(6, 0, 0);
+  for (int i = 0; i < 5000; ++i) {
+    auto const between = [&](double low, double high) { return low + (high - low) * cb::uniform01(random); };
+    cb::State const x{between(0, 100), between(-100, 100), between(-100, 100),
+                      i % 10 == 0 ? between(-3e5, 3e5) : between(-10, 10), between(-5, 50)};
+    cb::SingleTrackInput<double> const u{between(-8, 4), between(-0.6, 0.6)};
+    auto const own = cb::rk4_step(model, x, u, 0.3);
+    auto const general = cb::rk4_step<cb::SingleTrack>(model, x, u, 0.3);
+    CHECK(std::hypot(own.x - general.x, own.y - general.y) < 1e-9);
+    CHECK(std::abs(own.heading - general.heading) < 1e-9);
+    CHECK(std::abs(own.speed - general.speed) + std::abs(own.time - general.time) < 1e-12);
+  }
+}
+
+TEST_CASE("steering stays within the lateral acceleration that the tyres give") {
+  cb::SingleTrack const model{.lateral_acceleration_limit = 5.0};
+  for (double speed = 0.0; speed < 60.0; speed += 0.37)
+    for (double const asked : {-1.0, -0.2, -0.01, 0.01, 0.05, 0.2, 0.6}) {
+      double const steering = model.limited({0.0, asked}, {.speed = speed}).steering;
+      double const lateral = speed * speed * std::tan(steering) / model.wheel_base;
+      CHECK(std::abs(lateral) <= 5.0 * (1 + 1e-12));
+      CHECK(steering * asked >= 0.0);
+      CHECK(std::abs(steering) <= 0.6);
+      // Not less than needed: either all that was asked for, or a limit.
+      bool const full = steering == asked || std::abs(steering) == 0.6 || std::abs(lateral) > 5.0 * (1 - 1e-12);
+      CHECK(full);
+    }
 }
 
 TEST_CASE("a vehicle without wheel base is refused by name") {

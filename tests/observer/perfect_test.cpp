@@ -123,7 +123,7 @@ TEST_CASE("an agent that errs about itself errs about its lane position and its 
   CHECK(view.front()->gap == doctest::Approx(30 - 4.5 - 1.0));
   CHECK(view.rear()->gap == doctest::Approx(20 - 4.5 + 1.0));
   auto const beside = static_cast<std::uint16_t>(1 - view.lane_position().corridor);
-  CHECK(view.front(beside)->gap == doctest::Approx(50 - 3.6 - 1.0));
+  CHECK(view.neighbors(beside).front->gap == doctest::Approx(50 - 3.6 - 1.0));
 }
 
 TEST_CASE(

@@ -27,6 +27,8 @@ struct Dual {
   friend Dual cos(Dual const& x) { return {std::cos(x.v), -std::sin(x.v) * x.d}; }
   friend Dual sin(Dual const& x) { return {std::sin(x.v), std::cos(x.v) * x.d}; }
   friend Dual tan(Dual const& x) { return {std::tan(x.v), x.d / (std::cos(x.v) * std::cos(x.v))}; }
+  friend Dual sqrt(Dual const& x) { return {std::sqrt(x.v), x.d / (2 * std::sqrt(x.v))}; }
+  friend Dual exp(Dual const& x) { return {std::exp(x.v), std::exp(x.v) * x.d}; }
   friend Dual abs(Dual const& x) { return x.v < 0 ? -x : x; }
 };
 

@@ -354,7 +354,7 @@ void compare(Sim& world, bool mixed_fronts, Count& count) {
                            ? view.lane_position().s
                            : cb::map::locate(*agent.road, k, {state.x, state.y, state.heading}).s;
       for (int const sign : {1, -1}) {
-        auto const found = sign > 0 ? view.front(k) : view.rear(k);
+        auto const found = sign > 0 ? view.neighbors(k).front : view.neighbors(k).rear;
         auto const answer = look(twin, asker, s, all, sign);
         CAPTURE(map.describe(asker.lane));
         CAPTURE(state.x);

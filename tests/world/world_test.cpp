@@ -466,7 +466,7 @@ TEST_CASE("who has not started sees its neighbours as if it drove, and is seen b
     for (auto const& agent : world.roster().agents) {
       auto const view = world.observe(agent.id);
       for (std::uint16_t k = 0; k < agent.road->corridors.size(); ++k)
-        for (auto const& neighbor : {view.front(k), view.rear(k)})
+        for (auto const& neighbor : {view.neighbors(k).front, view.neighbors(k).rear})
           if (neighbor) CHECK_FALSE(late(neighbor->agent));
       view.for_each_other([&](auto const& other) { CHECK_FALSE(late(other.id)); });
       if (!late(agent.id)) continue;
@@ -476,8 +476,8 @@ TEST_CASE("who has not started sees its neighbours as if it drove, and is seen b
       Late driven(map, std::make_shared<Late::RosterType>(world.roster()), frame);
       auto const truth = driven.observe(agent.id);
       for (std::uint16_t k = 0; k < agent.road->corridors.size(); ++k) {
-        CHECK(same(view.front(k), truth.front(k)));
-        CHECK(same(view.rear(k), truth.rear(k)));
+        CHECK(same(view.neighbors(k).front, truth.neighbors(k).front));
+        CHECK(same(view.neighbors(k).rear, truth.neighbors(k).rear));
       }
       seen_by_it += truth.front().has_value() + truth.rear().has_value();
       for (auto const& other : world.roster().agents) {

@@ -32,6 +32,7 @@ using MemoryOf = typename detail::MemoryOf<B>::type;
 ///   `template <class View> Plan<View> plan(View const& view, Memory& memory, double dt) const`
 /// that says what the agent does over the next `dt` [s]: pure but for `memory`, no allocation, no exception. A world
 /// calls it once a step, on a view of frame k; `memory` is the agent's own, lives in the frame and is copied with it.
+/// It may have `double start_time() const` [s]: an agent that is added before is in traffic from then on only.
 template <class B>
 concept BehaviorModel = std::copyable<B> && std::copyable<MemoryOf<B>> && std::default_initializable<MemoryOf<B>> &&
     requires(B const behavior, ViewArchetype const view, MemoryOf<B> memory, double dt) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -14,6 +15,22 @@ template <class... Ts>
 inline constexpr bool all_different = true;
 template <class T, class... Ts>
 inline constexpr bool all_different<T, Ts...> = (!std::is_same_v<T, Ts> && ...) && all_different<Ts...>;
+/// Whether a behaviour says that it asks for neighbours in the lanes beside: `static constexpr bool looks_beside`.
+template <class B>
+inline constexpr bool looks_beside = [] {
+  if constexpr (requires { B::looks_beside; })
+    return B::looks_beside;
+  else
+    return false;
+}();
+/// Whether a behaviour says that it asks for who is around, on whatever lane: `static constexpr bool looks_around`.
+template <class B>
+inline constexpr bool looks_around = [] {
+  if constexpr (requires { B::looks_around; })
+    return B::looks_around;
+  else
+    return false;
+}();
 }  // namespace detail
 
 /// The closed set of behaviours that the agents of a world may have. An agent has one of them with parameters of its
@@ -37,6 +54,12 @@ struct BehaviorSet {
   template <class B>
   static constexpr bool contains = (std::is_same_v<B, Behaviors> || ...);
 
+  /// Whether some of them ask for neighbours in the lanes beside: then those are worth being loaded ahead.
+  static constexpr bool looks_beside = (detail::looks_beside<Behaviors> || ...);
+
+  /// Whether some of them ask for who is around, on whatever lane: then worlds keep an index of the plane.
+  static constexpr bool looks_around = (detail::looks_around<Behaviors> || ...);
+
   /// Place of `B` in the set.
   template <class B>
   static constexpr std::size_t index = [] {
@@ -49,6 +72,18 @@ struct BehaviorSet {
   /// The memory an agent starts with.
   [[nodiscard]] static Memory initial_memory(Any const& behavior) {
     return initial_memory(behavior, std::index_sequence_for<Behaviors...>{});
+  }
+
+  /// When the behaviour begins [s]; until then the agent is not in traffic. -infinity where it does not say so.
+  [[nodiscard]] static double start_time(Any const& behavior) {
+    return std::visit(
+        [](auto const& model) {
+          if constexpr (requires { model.start_time(); })
+            return static_cast<double>(model.start_time());
+          else
+            return -std::numeric_limits<double>::infinity();
+        },
+        behavior);
   }
 
   /// Calls the agent's own behaviour with its own memory. One well-predicted branch per alternative, no virtual call.

@@ -14,6 +14,9 @@ struct ConstantAcceleration {
   double highest_speed = 50.0;
 
   static constexpr char const* name = "constant_acceleration";
+  static constexpr char const* summary =
+      "keeps its lane; v grows or falls by a, until it stands or has its highest speed";
+  static constexpr char const* source = "kinematics";
   static constexpr auto parameters() {
     return std::make_tuple(parameter("acceleration", &ConstantAcceleration::acceleration, "m/s^2", Range{-50, 50},
                                      "held until the vehicle stands or is at its highest speed"),

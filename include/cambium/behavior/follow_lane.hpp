@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 
 #include "cambium/behavior/view.hpp"
 
@@ -13,19 +14,25 @@ struct LongitudinalMotion {
   Scalar speed{};     ///< [m/s]
 };
 
+/// Puts `state` at position `s` of a lane corridor, `lateral` [m] to the left of its centre line, heading along it
+/// but for `turn` [rad]. `hint`: a segment of the centre line nearby.
+template <MotionState State>
+void place_on_lane(map::LaneCorridor const& corridor, double s, double lateral, double turn, std::uint32_t hint,
+                   State& state) {
+  auto const& segment = corridor.center.segment_at(s, hint);
+  double const along = s - segment.s;
+  state.x = segment.x + segment.ux * along - segment.uy * lateral;
+  state.y = segment.y + segment.uy * along + segment.ux * lateral;
+  state.heading = segment.heading + segment.curvature * std::clamp(along, 0.0, segment.length) + turn;
+}
+
 /// The state `motion` further along the lane corridor after `dt` [s]: keeps its lateral offset, heads along the lane.
 template <class View>
 [[nodiscard]] typename View::State follow_lane(View const& view, LongitudinalMotion<double> const& motion, double dt) {
   auto const& position = view.lane_position();
-  auto cursor = position.segment;
-  double const s = position.s + motion.distance;
-  auto const& segment = view.corridor().center.segment_at(s, cursor);
-  double const along = s - segment.s;
   typename View::State next = view.state();
   next.time = view.time() + dt;
-  next.x = segment.x + segment.ux * along - segment.uy * position.lateral;
-  next.y = segment.y + segment.uy * along + segment.ux * position.lateral;
-  next.heading = segment.heading + segment.curvature * std::clamp(along, 0.0, segment.length);
+  place_on_lane(view.corridor(), position.s + motion.distance, position.lateral, 0.0, position.segment, next);
   next.speed = motion.speed;
   return next;
 }

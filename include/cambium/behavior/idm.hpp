@@ -41,6 +41,25 @@ template <class P>
                 "upper bound of the acceleration"));
 }
 
+/// These parameters alone: what a model holds beside its own, or assumes of others. Defaults are BARK's.
+struct IdmParameters {
+  double desired_speed = 15.0;
+  double time_headway = 1.5;
+  double minimum_gap = 2.0;
+  double maximum_acceleration = 1.7;
+  double comfortable_deceleration = 1.67;
+  double exponent = 4.0;
+  double lowest_acceleration = -5.0;
+  double highest_acceleration = 8.0;
+
+  static constexpr char const* name = "idm";
+  static constexpr char const* summary =
+      "the parameters of the Intelligent Driver Model, where a model holds them beside its own";
+  static constexpr char const* source = "Treiber, Hennecke, Helbing 2000; defaults: BARK";
+  static constexpr auto parameters() { return idm_parameters<IdmParameters>(); }
+};
+static_assert(HasIdmParameters<IdmParameters>);
+
 /// x to the power of `exponent`; IDM's usual 4 without `pow`.
 template <class Scalar>
 [[nodiscard]] Scalar idm_power(Scalar x, double exponent) {
@@ -79,6 +98,17 @@ template <HasIdmParameters P>
   double const free = 1.0 - idm_power(speed / p.desired_speed, p.exponent);
   return free <= 0 ? std::numeric_limits<double>::infinity()
                    : (p.minimum_gap + speed * p.time_headway) / std::sqrt(free);
+}
+
+/// The speed [m/s] at which followers keep `gap` [m]: what the gap above belongs to. 0 below the minimum gap.
+template <HasIdmParameters P>
+[[nodiscard]] double idm_equilibrium_speed(P const& p, double gap) {
+  double low = 0.0, high = p.desired_speed;
+  for (int i = 0; i < 60; ++i) {
+    double const middle = 0.5 * (low + high);
+    (idm_equilibrium_gap(p, middle) <= gap ? low : high) = middle;
+  }
+  return low;
 }
 
 namespace detail {

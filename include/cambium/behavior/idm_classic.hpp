@@ -1,12 +1,12 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <tuple>
 
+#include "cambium/behavior/bark.hpp"
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/idm.hpp"
+#include "cambium/behavior/leader.hpp"
 
 namespace cambium {
 
@@ -30,57 +30,45 @@ struct IdmClassic {
   double highest_acceleration = 8.0;
   Integration integration = Integration::exact;
   double tolerance = 1e-4;
+  RoadRules rules{};
 
   static constexpr char const* name = "idm_classic";
+  static constexpr char const* summary =
+      "keeps its lane; a = a_max (1 - (v/v0)^4 - (s*/s)^2), s* = s0 + max(0, v T + v (v - v_leader) / (2 sqrt(a_max "
+      "b)))";
+  static constexpr char const* source = "Treiber, Hennecke, Helbing 2000, eq. 3 and 4";
   static constexpr auto parameters() {
-    return std::tuple_cat(idm_parameters<IdmClassic>(),
-                          std::make_tuple(parameter("integration", &IdmClassic::integration, "-", Range{0, 1},
-                                                    "0 exact within the step, 1 BARK's sub-steps"),
-                                          parameter("tolerance", &IdmClassic::tolerance, "m/s^2", Range{1e-12, 1},
-                                                    "error of the exact integration, as speed per second")));
+    return std::tuple_cat(
+        idm_parameters<IdmClassic>(),
+        std::make_tuple(parameter("integration", &IdmClassic::integration, "-", Range{0, 1},
+                                  "0 exact within the step, 1 BARK's sub-steps"),
+                        parameter("tolerance", &IdmClassic::tolerance, "m/s^2", Range{1e-12, 1},
+                                  "error of the exact integration, as speed per second"),
+                        parameter("rules", &IdmClassic::rules, "-", {}, "what it heeds beside other road users")));
   }
 
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, NoMemory&, double dt) const {
-    constexpr double infinite = std::numeric_limits<double>::infinity();
-    auto const leader = view.front();
-    double const gap = leader ? leader->gap : infinite;
-    double const leader_speed = leader ? leader->speed : 0.0;
     double const speed = std::max(0.0, view.state().speed);
-    if (integration == Integration::bark_substeps) return bark_plan(view, speed, gap, leader_speed, dt);
-    return plan_along_lane(view, idm_motion(*this, speed, gap, leader_speed, dt, tolerance), dt);
-  }
-
- private:
-  /// BARK's acceleration: s* is not kept above the minimum gap.
-  [[nodiscard]] double bark_acceleration(double speed, double gap, double leader_speed) const {
-    if (gap <= 0) return lowest_acceleration;
-    double const desired_gap =
-        minimum_gap + speed * time_headway +
-        speed * (speed - leader_speed) / (2 * std::sqrt(maximum_acceleration * comfortable_deceleration));
-    double const closeness = desired_gap / gap;
-    double const a = maximum_acceleration * (1 - std::pow(speed / desired_speed, exponent) - closeness * closeness);
-    return std::clamp(a, lowest_acceleration, highest_acceleration);
-  }
-
-  template <class View>
-  [[nodiscard]] Plan<View> bark_plan(View const& view, double start_speed, double gap, double leader_speed,
-                                     double dt) const {
-    constexpr int substeps = 10;
-    double const h = dt / substeps;
-    Plan<View> plan;
-    LongitudinalMotion<double> motion{0.0, start_speed};
-    for (int i = 0; i < substeps; ++i) {
-      double const a = bark_acceleration(start_speed, gap, leader_speed);
-      if (i == 0) plan.action.acceleration = a;
-      motion.distance += motion.speed * h + a * h * h / 2;
-      motion.speed = std::clamp(motion.speed + a * h, 0.0, 50.0);
-      gap += leader_speed * h - (start_speed * h + a * h * h / 2);
-      plan.trajectory.push_back(follow_lane(view, motion, dt * (i + 1) / substeps));
-    }
-    return plan;
+    auto const p = within_limits(rules, *this, view, speed);
+    auto const leader = leader_to_follow(rules, view, view.front(),
+                                         [&](Leader const& l) { return idm_acceleration(p, speed, l.gap, l.speed); });
+    if (integration == Integration::bark_substeps) return bark::plan_along_lane(view, p, 0.0, leader, dt);
+    return plan_along_lane(view, idm_motion(p, speed, leader.gap, leader.speed, dt, tolerance), dt);
   }
 };
 static_assert(BehaviorModel<IdmClassic>);
+
+/// A driver of these parameters, as of `presets`.
+[[nodiscard]] constexpr IdmClassic idm_classic(IdmParameters const& p) {
+  return {.desired_speed = p.desired_speed,
+          .time_headway = p.time_headway,
+          .minimum_gap = p.minimum_gap,
+          .maximum_acceleration = p.maximum_acceleration,
+          .comfortable_deceleration = p.comfortable_deceleration,
+          .exponent = p.exponent,
+          .lowest_acceleration = p.lowest_acceleration,
+          .highest_acceleration = p.highest_acceleration};
+}
 
 }  // namespace cambium

@@ -124,6 +124,8 @@ struct Uniform {
   double high = 1.0;
 
   static constexpr char const* name = "uniform";
+  static constexpr char const* summary = "each value between two ends as likely";
+  static constexpr char const* source = "-";
   static constexpr auto parameters() {
     return std::make_tuple(parameter("low", &Uniform::low, "-", any_finite, "Lower end."),
                            parameter("high", &Uniform::high, "-", any_finite, "Upper end, not below the lower one."));
@@ -148,6 +150,8 @@ struct Normal {
   double deviation = 1.0;
 
   static constexpr char const* name = "normal";
+  static constexpr char const* summary = "mean and standard deviation; by inversion";
+  static constexpr char const* source = "-";
   static constexpr auto parameters() {
     return std::make_tuple(parameter("mean", &Normal::mean, "-", any_finite, "Mean."),
                            parameter("deviation", &Normal::deviation, "-", non_negative, "Standard deviation."));

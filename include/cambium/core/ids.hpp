@@ -18,6 +18,8 @@ enum class RoadId : std::uint32_t {};
 enum class LaneId : std::uint32_t {};
 /// Dense index of a junction in its `Map`.
 enum class JunctionId : std::uint32_t {};
+/// Dense index of a traffic light in its `Map`.
+enum class LightId : std::uint32_t {};
 
 template <class Id>
 concept StrongId = std::is_enum_v<Id> && std::is_same_v<std::underlying_type_t<Id>, std::uint32_t>;

@@ -12,11 +12,21 @@
 #define CAMBIUM_ASSERT(condition, sentence) assert((condition) && (sentence))
 #endif
 
-/// Asks the compiler to inline everything that a function calls: worth a quarter of the time of a step.
+/// Asks the compiler to inline everything that a function calls: worth a quarter of the time of a step, and up to a
+/// minute of compiling where behaviours are large. Compile with `-DCAMBIUM_FLATTEN=` to do without.
+#ifndef CAMBIUM_FLATTEN
 #if defined(__GNUC__)
 #define CAMBIUM_FLATTEN [[gnu::flatten]]
 #else
 #define CAMBIUM_FLATTEN
+#endif
+#endif
+
+/// Keeps a large function out of those that call it, even where they are flattened.
+#if defined(__GNUC__)
+#define CAMBIUM_NOINLINE [[gnu::noinline]]
+#else
+#define CAMBIUM_NOINLINE
 #endif
 
 /// Asks the processor to load what is at an address that will soon be read. The address need not be valid.

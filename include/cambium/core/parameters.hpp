@@ -49,7 +49,8 @@ template <class Owner, class Field>
 ///   `static constexpr auto parameters() { return std::make_tuple(parameter(...), ...); }`
 /// and, where fields depend on each other, `void check(std::string const& where) const`, which throws `ParameterError`;
 /// `where` is the full key of the struct ("traffic.json: source.spacing").
-/// Checking, printing, comparing, hashing and every file format follow from that.
+/// Models say more of themselves: `summary`, their law in short, and `source`, where it was published.
+/// Checking, printing, comparing, hashing, every file format and the documentation follow from that.
 template <class T>
 concept Described = requires {
   T::parameters();

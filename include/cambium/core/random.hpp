@@ -40,6 +40,25 @@ class RandomStream {
   [[nodiscard]] static constexpr result_type min() { return 0; }
   [[nodiscard]] static constexpr result_type max() { return ~result_type{0}; }
 
+  /// The step that the numbers belong to.
+  [[nodiscard]] constexpr std::uint32_t step() const { return counter_[2]; }
+
+  /// The stream of the same owner and purpose that belongs to `step`.
+  [[nodiscard]] constexpr RandomStream at_step(std::uint32_t step) const {
+    RandomStream other = *this;
+    other.counter_ = {0, counter_[1], step, counter_[3]};
+    other.has_spare_ = false;
+    return other;
+  }
+
+  /// Part `number` of this stream, below 256: for models made of several, each with numbers of its own. 2^25 draws.
+  [[nodiscard]] constexpr RandomStream part(std::uint32_t number) const {
+    RandomStream other = *this;
+    other.counter_[0] += number << 24;
+    other.has_spare_ = false;
+    return other;
+  }
+
   /// The next 64 bits.
   constexpr result_type operator()() {
     if (has_spare_) {

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+
 #include "cambium/dynamics/dynamic_model.hpp"
 
 namespace cambium {
@@ -19,6 +22,51 @@ template <class Model, class State = typename Model::State, class Input = typena
   auto const k3 = model.derivative(add_scaled(x, k2, dt / 2), u);
   auto const k4 = model.derivative(add_scaled(x, k3, dt), u);
   return add_scaled(add_scaled(add_scaled(add_scaled(x, k1, dt / 6), k2, dt / 3), k3, dt / 3), k4, dt / 6);
+}
+
+/// The state of a vehicle that has come to a stop there: speed 0, and what the model's `stopped` says.
+template <class Model, class State = typename Model::State>
+[[nodiscard]] State stopped(Model const& model, State x) {
+  x.speed = 0.0;
+  if constexpr (requires { model.stopped(x); }) return model.stopped(x);
+  return x;
+}
+
+namespace detail {
+
+template <bool euler, class Model>
+[[nodiscard]] typename Model::State drive_step(Model const& model, typename Model::State x, Action const& action,
+                                               double dt) {
+  auto const u = model.input(action, x);
+  double const end = x.time + dt, change = model.derivative(x, u).speed;
+  double const moving = x.speed + change * dt < 0.0 ? x.speed / -change : dt;
+  if (moving > 0.0) {
+    if constexpr (euler)
+      x = euler_step(model, x, u, moving);
+    else
+      x = rk4_step(model, x, u, moving);
+  }
+  if (moving < dt || x.speed < 0.0) x = cambium::stopped(model, x);
+  x.time = end;
+  return x;
+}
+
+}  // namespace detail
+
+/// Where a vehicle is after `dt` [s] whose driver holds `action`, within the model's limits: one Runge-Kutta step, or
+/// Euler step; of models with a `response_time`, in equal steps no longer than that. It never reverses: one that brakes
+/// to standstill within the step stands from then on.
+template <bool euler = false, DynamicModel Model>
+[[nodiscard]] typename Model::State drive(Model const& model, typename Model::State x, Action const& action,
+                                          double dt) {
+  x.speed = std::max(0.0, x.speed);
+  if constexpr (requires { double{model.response_time}; }) {
+    auto const steps = static_cast<int>(std::ceil(dt / model.response_time - 1e-9));
+    for (int i = 1; i < steps; ++i) x = detail::drive_step<euler>(model, x, action, dt / steps);
+    return detail::drive_step<euler>(model, x, action, dt / std::max(1, steps));
+  } else {
+    return detail::drive_step<euler>(model, x, action, dt);
+  }
 }
 
 }  // namespace cambium

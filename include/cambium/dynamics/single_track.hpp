@@ -7,6 +7,7 @@
 
 #include "cambium/core/parameters.hpp"
 #include "cambium/dynamics/dynamic_model.hpp"
+#include "cambium/geometry/angle.hpp"
 
 namespace cambium {
 
@@ -16,6 +17,48 @@ struct SingleTrackInput {
   Scalar acceleration{};  ///< [m/s^2]
   Scalar steering{};      ///< steering angle of the front axle, left positive [rad]
 };
+
+/// The largest steering angle [rad] up to `limit` at which the lateral acceleration v^2 tan(steering) / wheel base
+/// stays within its limit [m/s^2].
+[[nodiscard]] inline double steering_within_grip(double limit, double lateral_acceleration_limit, double wheel_base,
+                                                 double speed) {
+  double const tangent = lateral_acceleration_limit * wheel_base / (speed * speed);
+  // atan is concave: it lies above its chord, and without it most cases are decided.
+  if (limit <= 0.785 * std::min(1.0, tangent)) return limit;
+  return std::min(limit, std::atan(tangent));
+}
+
+/// Sine and cosine in any scalar.
+template <class Scalar>
+struct Direction {
+  Scalar sin, cos;
+};
+
+/// Sine and cosine of `angle` [rad] in any scalar; for `double` by `geometry::sin_cos`.
+template <class Scalar>
+[[nodiscard]] Direction<Scalar> direction_of(Scalar const& angle) {
+  if constexpr (std::is_same_v<Scalar, double>) {
+    auto const [s, c] = geometry::sin_cos(angle);
+    return {s, c};
+  } else {
+    using std::cos;
+    using std::sin;
+    return {sin(angle), cos(angle)};
+  }
+}
+
+/// Curvature [1/m] of the course of a vehicle's reference point on the rear axle under a steering angle below 1e5 rad.
+template <class Scalar>
+[[nodiscard]] Scalar steering_curvature(Scalar const& steering, double wheel_base) {
+  if constexpr (std::is_same_v<Scalar, double>) {
+    // Without a branch: where an input is held, the compiler finds that its tangent is needed once.
+    auto const [s, c] = geometry::sin_cos_bounded(steering);
+    return s / (c * wheel_base);
+  } else {
+    using std::tan;
+    return tan(steering) / Scalar(wheel_base);
+  }
+}
 
 /// Kinematic single-track ("bicycle") model about the centre of the rear axle (Rajamani 2012, Vehicle Dynamics and
 /// Control, section 2.2, with the reference point at the rear): x' = v cos(heading), y' = v sin(heading), heading' = v
@@ -28,8 +71,12 @@ struct SingleTrack {
   double steering_limit = 0.6;
   double lowest_acceleration = -8.0;
   double highest_acceleration = 4.0;
+  double lateral_acceleration_limit = 8.0;
 
   static constexpr char const* name = "single_track";
+  static constexpr char const* summary =
+      "x' = v cos(heading), y' = v sin(heading), heading' = v tan(steering) / wheel base, v' = a";
+  static constexpr char const* source = "Rajamani 2012, section 2.2, about the rear axle";
   static constexpr auto parameters() {
     return std::make_tuple(
         parameter("wheel_base", &SingleTrack::wheel_base, "m", Range{0.1, 20}, "distance between the axles"),
@@ -37,25 +84,52 @@ struct SingleTrack {
                   "largest steering angle to either side"),
         parameter("lowest_acceleration", &SingleTrack::lowest_acceleration, "m/s^2", Range{-50, 0}, "hardest braking"),
         parameter("highest_acceleration", &SingleTrack::highest_acceleration, "m/s^2", Range{0, 50},
-                  "fullest throttle"));
+                  "fullest throttle"),
+        parameter("lateral_acceleration_limit", &SingleTrack::lateral_acceleration_limit, "m/s^2", Range{0.1, 1000},
+                  "speed^2 times curvature; steering is kept within it"));
   }
 
   /// Change per second, in any scalar: `double`, `float`, one that differentiates.
   template <class Scalar>
   [[nodiscard]] BasicState<Scalar> derivative(BasicState<Scalar> const& x,
                                               SingleTrackInput<std::type_identity_t<Scalar>> const& u) const {
-    using std::cos;
-    using std::sin;
-    using std::tan;
-    return {Scalar(1), x.speed * cos(x.heading), x.speed * sin(x.heading),
-            x.speed * tan(u.steering) / Scalar(wheel_base), u.acceleration};
+    auto const along = direction_of(x.heading);
+    return {Scalar(1), x.speed * along.cos, x.speed * along.sin, x.speed * steering_curvature(u.steering, wheel_base),
+            u.acceleration};
   }
 
-  [[nodiscard]] Input limited(Input const& u, State const&) const {
-    return {std::clamp(u.acceleration, lowest_acceleration, highest_acceleration),
-            std::clamp(u.steering, -steering_limit, steering_limit)};
+  [[nodiscard]] Input limited(Input const& u, State const& x) const {
+    double const largest = steering_within_grip(std::min(std::abs(u.steering), steering_limit),
+                                                lateral_acceleration_limit, wheel_base, x.speed);
+    return {std::clamp(u.acceleration, lowest_acceleration, highest_acceleration), std::copysign(largest, u.steering)};
+  }
+
+  [[nodiscard]] Input input(Action const& action, State const& x) const {
+    return limited({action.acceleration, action.steering}, x);
   }
 };
 static_assert(DynamicModel<SingleTrack>);
+
+/// The Runge-Kutta step of the single track: the general one's result, but for rounding, with less work: the headings
+/// of all stages are known beforehand, and their sines can be taken side by side.
+[[nodiscard]] inline State rk4_step(SingleTrack const& model, State const& x, SingleTrackInput<double> const& u,
+                                    double dt) {
+  double const half = dt / 2, sixth = dt / 6;
+  double const middle = x.speed + half * u.acceleration, end = x.speed + dt * u.acceleration;
+  double const curvature = steering_curvature(u.steering, model.wheel_base);
+  double const turn = std::abs(x.heading) <= 1e5 ? x.heading : geometry::normalize_angle(x.heading);
+  double const headings[] = {turn, turn + half * x.speed * curvature, turn + half * middle * curvature,
+                             turn + dt * middle * curvature};
+  double const speeds[] = {x.speed, 2.0 * middle, 2.0 * middle, end};
+  double dx[4], dy[4];
+  for (int i = 0; i < 4; ++i) {
+    auto const [sin, cos] = geometry::sin_cos_bounded(headings[i]);
+    dx[i] = speeds[i] * cos;
+    dy[i] = speeds[i] * sin;
+  }
+  return {x.time + dt, x.x + sixth * ((dx[0] + dx[1]) + (dx[2] + dx[3])),
+          x.y + sixth * ((dy[0] + dy[1]) + (dy[2] + dy[3])),
+          x.heading + sixth * curvature * (x.speed + 4.0 * middle + end), end};
+}
 
 }  // namespace cambium

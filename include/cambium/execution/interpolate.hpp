@@ -14,6 +14,9 @@ namespace cambium {
 /// them, linearly. Never extrapolates: a plan that does not reach that time is invalid.
 struct InterpolateExecution {
   static constexpr char const* name = "interpolate";
+  static constexpr char const* summary =
+      "the plan's own state at the time asked for, between two of them linearly; never beyond the plan";
+  static constexpr char const* source = "interpolation";
   static constexpr auto parameters() { return std::make_tuple(); }
 
   template <MotionState S, class Dynamics>

@@ -71,13 +71,14 @@ struct Extent {
 /// City bus, 12.0 m x 2.55 m, wheel base 5.9 m, rear overhang 3.4 m (size of a Mercedes Citaro, rounded).
 [[nodiscard]] constexpr Shape bus() { return {8.6, 3.4, 1.275, 1.275}; }
 
-/// Motorcycle with rider, 2.2 m x 0.8 m, wheel base 1.5 m.
+/// Motorcycle with rider, 2.2 m x 0.8 m, wheel base 1.5 m (size of a BMW R 1250 without cases, rounded).
 [[nodiscard]] constexpr Shape motorcycle() { return {1.85, 0.35, 0.4, 0.4}; }
 
-/// Bicycle with rider, 1.8 m x 0.65 m, wheel base 1.1 m.
+/// Bicycle with rider, 1.8 m x 0.65 m, wheel base 1.1 m (a touring bicycle, as wide as its handlebar).
 [[nodiscard]] constexpr Shape bicycle() { return {1.45, 0.35, 0.325, 0.325}; }
 
-/// Pedestrian, a square of 0.6 m about the reference point.
+/// Pedestrian, a square of 0.6 m about the reference point: the longer axis, 0.61 m, of the body ellipse by which
+/// Fruin 1971, "Pedestrian planning and design", measures room (0.61 m x 0.46 m), as a body may turn on the spot.
 [[nodiscard]] constexpr Shape pedestrian() { return {0.3, 0.3, 0.3, 0.3}; }
 
 }  // namespace cambium::geometry

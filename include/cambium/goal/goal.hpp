@@ -1,54 +1,75 @@
 #pragma once
 
-#include <limits>
+#include <algorithm>
 #include <variant>
+#include <vector>
 
-#include "cambium/core/ids.hpp"
-#include "cambium/geometry/collision.hpp"
-#include "cambium/geometry/oriented_box.hpp"
-#include "cambium/geometry/polygon.hpp"
-#include "cambium/geometry/shape.hpp"
+#include "cambium/goal/goal_situation.hpp"
+#include "cambium/goal/simple_goals.hpp"
 
 namespace cambium {
 
-/// Where an agent is, as goals ask it.
-struct GoalSituation {
-  geometry::Pose pose;
-  geometry::Shape shape;
-  LaneId lane = none<LaneId>;  ///< of its lane corridor
-  double lane_position{};      ///< along that lane's path [m]
+struct AllGoals;
+struct AnyGoal;
+struct GoalSequence;
+
+/// What an agent wants to reach; decides its route where none is given. A value: combinations hold their parts.
+using Goal = std::variant<NoGoal, ReachPolygon, ReachLane, StateLimits, LaneLimits, ReachLaneEnd, ReachLaneBeside,
+                          AllGoals, AnyGoal, GoalSequence>;
+
+/// Reached when all of its parts are, at the same time; without parts never.
+struct AllGoals {
+  std::vector<Goal> parts;
+
+  static constexpr char const* name = "all_goals";
+  static constexpr char const* summary = "all of its parts, at the same time";
+
+  [[nodiscard]] bool at_goal(GoalSituation const& at) const;
 };
 
-/// Drives straight on: without a route of its own for 2 km (see `map::straight_route`), or until a lane would come
-/// again.
-struct NoGoal {
-  [[nodiscard]] bool at_goal(GoalSituation const&) const { return false; }
+/// Reached when one of its parts is.
+struct AnyGoal {
+  std::vector<Goal> parts;
+
+  static constexpr char const* name = "any_goal";
+  static constexpr char const* summary = "one of its parts";
+
+  [[nodiscard]] bool at_goal(GoalSituation const& at) const;
 };
 
-/// Reached with the whole shape inside of `area` (map frame).
-struct ReachPolygon {
-  geometry::Polygon area;
-  [[nodiscard]] bool at_goal(GoalSituation const& at) const {
-    return geometry::contains(area, geometry::box_of(at.shape, at.pose));
-  }
-};
+/// Reached when its parts have been, one after the other; a part is reached where the agent is at the end of a step, or
+/// where it enters, and several may be there. How many it has passed is in its record (`AgentRecord::goals_passed`), so
+/// that copies and snapshots of a world go on from there. At most 255 parts, and not within another goal.
+struct GoalSequence {
+  std::vector<Goal> parts;
 
-/// Reached with the reference point in `lane`, between `from` and `to` [m] along its path.
-struct ReachLane {
-  LaneId lane = none<LaneId>;
-  double from = 0.0;
-  double to = std::numeric_limits<double>::infinity();
-  [[nodiscard]] bool at_goal(GoalSituation const& at) const {
-    return at.lane == lane && at.lane_position >= from && at.lane_position <= to;
-  }
-};
+  static constexpr char const* name = "goal_sequence";
+  static constexpr char const* summary = "its parts, one after the other";
 
-/// What an agent wants to reach; decides its route where none is given.
-using Goal = std::variant<NoGoal, ReachPolygon, ReachLane>;
+  [[nodiscard]] bool at_goal(GoalSituation const& at) const { return at.passed >= parts.size() && !parts.empty(); }
+
+  /// How many parts are passed, the agent being at `at`.
+  [[nodiscard]] std::size_t pass(GoalSituation const& at) const;
+};
 
 /// True when the goal is reached. Pure.
 [[nodiscard]] inline bool at_goal(Goal const& goal, GoalSituation const& situation) {
   return std::visit([&](auto const& g) { return g.at_goal(situation); }, goal);
+}
+
+inline bool AllGoals::at_goal(GoalSituation const& at) const {
+  return !parts.empty() &&
+         std::all_of(parts.begin(), parts.end(), [&](Goal const& part) { return cambium::at_goal(part, at); });
+}
+
+inline bool AnyGoal::at_goal(GoalSituation const& at) const {
+  return std::any_of(parts.begin(), parts.end(), [&](Goal const& part) { return cambium::at_goal(part, at); });
+}
+
+inline std::size_t GoalSequence::pass(GoalSituation const& at) const {
+  auto passed = at.passed;
+  while (passed < parts.size() && cambium::at_goal(parts[passed], at)) ++passed;
+  return passed;
 }
 
 }  // namespace cambium

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <span>
 #include <utility>
@@ -13,6 +14,8 @@
 #include "cambium/core/ids.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/map/corridor.hpp"
+#include "cambium/map/detail/conflicts.hpp"
+#include "cambium/map/detail/corridor_signals.hpp"
 #include "cambium/map/detail/feeders.hpp"
 #include "cambium/map/detail/lane_chains.hpp"
 #include "cambium/map/map.hpp"
@@ -112,8 +115,14 @@ class LaneJoiner {
       std::size_t const last = i + 1 < starts_.size() ? starts_[i + 1].begin : segments.size();
       auto const& lane = map_.lane(start.lane);
       double const offset = start.s - position(start.anchor);
-      pieces.push_back({start.lane, position(start.begin), position(last), lane.index_begin + offset, no_corridor,
-                        no_corridor, lane.type, offset});
+      pieces.push_back({.lane = start.lane,
+                        .begin = position(start.begin),
+                        .end = position(last),
+                        .index_offset = lane.index_begin + offset,
+                        .type = lane.type,
+                        .lane_offset = offset,
+                        .first_segment = static_cast<std::uint32_t>(start.begin),
+                        .segments = static_cast<std::uint32_t>(last - start.begin)});
     }
     return pieces;
   }
@@ -138,6 +147,16 @@ class LaneJoiner {
   std::vector<SideWidths> widths_;
   std::vector<Start> starts_;
 };
+
+/// Sets the pieces' `lane_end`. `is_short`: the corridor ends before the route does.
+inline void set_lane_ends(Map const& map, LaneCorridor& corridor, bool is_short) {
+  double end = is_short ? corridor.length() : std::numeric_limits<double>::infinity();
+  for (auto piece = corridor.pieces.rbegin(); piece != corridor.pieces.rend(); ++piece) {
+    auto const& lane = map.lane(piece->lane);
+    if (is_valid(lane.merges_into)) end = lane.merge_begin - piece->lane_offset;
+    piece->lane_end = end;
+  }
+}
 
 /// The number of the chain that holds `lane` in `stage`; of several, one that has not come there by a merge, else the
 /// first.
@@ -204,7 +223,8 @@ class LaneJoiner {
 /// - lanes that lead into one of its lanes without an overlap: likewise, free until that lane begins;
 /// - lanes that have just split off: on the overlap;
 /// - lanes that lead to its begin: 100 m back, with negative images (of a ring, the corridor's own last lanes too).
-/// Lanes that cross it are none. No stretch of a lane has two images, except by different corridors.
+/// Lanes that cross it are none; those are its conflicts, with lanes that merge with it in a junction. No stretch of a
+/// lane has two images, except by different corridors.
 [[nodiscard]] inline std::shared_ptr<RoadCorridor const> build_road_corridor(Map const& map, Route const& route) {
   auto const stages = detail::route_stages(map, route.lanes);
   auto const chains = detail::lane_chains(map, stages);
@@ -217,11 +237,24 @@ class LaneJoiner {
     auto corridor = detail::LaneJoiner(map).join(chain.lanes);
     for (std::size_t i = 0; i < corridor.pieces.size(); ++i) {
       auto& piece = corridor.pieces[i];
-      piece.left = detail::chain_of(map, chains, chain.begin + i, map.lane(piece.lane).left_neighbor);
-      piece.right = detail::chain_of(map, chains, chain.begin + i, map.lane(piece.lane).right_neighbor);
+      auto const stage = chain.begin + i;
+      auto const piece_of = [&](std::uint16_t number) {
+        return static_cast<std::uint16_t>(number == no_corridor ? 0 : stage - chains[number].begin);
+      };
+      piece.left = detail::chain_of(map, chains, stage, map.lane(piece.lane).left_neighbor);
+      piece.right = detail::chain_of(map, chains, stage, map.lane(piece.lane).right_neighbor);
+      piece.left_piece = piece_of(piece.left);
+      piece.right_piece = piece_of(piece.right);
     }
+    detail::set_lane_ends(map, corridor, chain.begin + chain.lanes.size() < stages.size());
     corridor.reaches_destination = chain.has(route.lanes.back());
     detail::FeederFinder(map, corridor).find();
+    corridor.conflicts = detail::ConflictFinder(map, corridor).find();
+    corridor.signals = detail::corridor_signals(map, corridor);
+    for (auto& feeder : corridor.feeders)
+      feeder.by_rule = std::any_of(corridor.conflicts.begin(), corridor.conflicts.end(), [&](Conflict const& conflict) {
+        return std::abs(conflict.meet - feeder.free_until) < 1e-3;
+      });
     road->corridors.push_back(std::move(corridor));
   }
   return road;

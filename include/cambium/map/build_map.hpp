@@ -16,6 +16,7 @@
 #include "cambium/map/detail/lane_change_marks.hpp"
 #include "cambium/map/detail/lane_geometry.hpp"
 #include "cambium/map/detail/lane_links.hpp"
+#include "cambium/map/detail/lane_signals.hpp"
 #include "cambium/map/detail/lane_merges.hpp"
 #include "cambium/map/detail/likely_cause.hpp"
 #include "cambium/map/detail/link_check.hpp"
@@ -84,6 +85,7 @@ class MapBuild {
   [[nodiscard]] std::shared_ptr<Map const> finish() {
     set_speed_limits(document_, parts_.lanes);
     set_lane_changes(document_, parts_.lanes);
+    parts_.lights = LaneSignals(document_, parts_.lanes).set();
     parts_.junctions = make_junctions(document_, parts_.roads, parts_.lanes);
     number_lane_coordinate();
     ExactPaths const paths(parts_.roads, parts_.lanes, parts_.options);

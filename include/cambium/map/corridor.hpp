@@ -25,7 +25,12 @@ struct CorridorPiece {
   std::uint16_t left = no_corridor;  ///< number of the corridor that holds the lane's left neighbour
   std::uint16_t right = no_corridor;
   LaneType type = LaneType::none;
-  double lane_offset{};  ///< position on the lane's path = corridor position + lane_offset [m]
+  std::uint16_t left_piece{}, right_piece{};  ///< number of the neighbour's piece there; only with `left`, `right`
+  double lane_offset{};                       ///< position on the lane's path = corridor position + lane_offset [m]
+  std::uint32_t first_segment{}, segments{};  ///< of the corridor's centre line: where its own begin, and how many
+  /// Where at the latest a vehicle should have changed lanes, for there the next merge into a neighbour begins or,
+  /// where the corridor does not go as far as the route, the corridor ends; infinite where neither is ahead [m].
+  double lane_end = std::numeric_limits<double>::infinity();
 };
 
 /// A stretch of a lane outside of the corridor whose traffic counts in it: a lane that merges in (from `merge_view`
@@ -37,13 +42,66 @@ struct Feeder {
   double begin{}, end{};
   /// Corridor position from which on the two lanes are one [m].
   double free_until = -std::numeric_limits<double>::infinity();
+  bool by_rule = false;  ///< the two merge in a junction: who goes first is a matter of right of way, see `Conflict`
 
+  /// Whether it lies before the merge.
+  [[nodiscard]] bool is_still_to_merge() const { return end <= free_until; }
   [[nodiscard]] double image(double index) const {
     return begin + (index - index_begin) * (end - begin) / (index_end - index_begin);
   }
   [[nodiscard]] double index_at(double s) const {
     return index_begin + (s - begin) * (index_end - index_begin) / (end - begin);
   }
+};
+
+/// Gap [m] between a follower's front end and its leader's rear end (corridor positions) where the two lanes are one
+/// from `merge` on. Before that the two may be side by side: the follower is given half of its way to the merge on top,
+/// so that a gap opens bit by bit, but never more than the way to whichever is farther, leader or merge.
+[[nodiscard]] inline double gap_before_merge(double follower_front, double leader_rear, double merge) {
+  double const gap = leader_rear - follower_front, to_merge = merge - follower_front;
+  if (to_merge <= 0.0) return gap;
+  return std::min(gap + 0.5 * to_merge, std::max(gap, to_merge));
+}
+
+/// A stop sign or a light for the corridor's traffic.
+struct CorridorSignal {
+  double line{};  ///< where front ends stop: where the junction behind it begins, else the signal [m]
+  SignalKind kind = SignalKind::stop;
+  LightId light = none<LightId>;
+
+  friend bool operator==(CorridorSignal const&, CorridorSignal const&) = default;
+};
+
+/// A stretch of the map-wide lane coordinate (see `Lane::index_begin`) on the way to, through and behind a conflict.
+struct ConflictWay {
+  double index_begin{}, index_end{};
+  double begin{};  ///< of the way where the stretch begins: position on the other lane's path, negative before it [m]
+};
+
+/// Where a lane outside of the corridor crosses it, merges with it or parts from it. Stretches say where the reference
+/// points of two vehicles of `MapOptions::conflict_shape` may be when these touch.
+struct Conflict {
+  LaneId other = none<LaneId>;
+  OverlapKind kind = OverlapKind::crossing;
+  RightOfWay right_of_way = RightOfWay::equal;  ///< of this corridor's traffic
+  double begin{}, end{};                        ///< corridor position [m]
+  double other_begin{}, other_end{};            ///< position along the other's way, as in `ways` [m]
+  double line{};        ///< corridor position where front ends wait: where the junction begins, else the conflict [m]
+  double other_line{};  ///< likewise on the other's way [m]
+  LightId other_light = none<LightId>;  ///< that stops the other's traffic
+  double shift{};  ///< where they merge or part: corridor position = position on the way + shift [m]
+  double meet = std::numeric_limits<double>::infinity();  ///< where lanes that merge come together [m]
+  /// The way: the other lane, those behind it back to `MapOptions::merge_view` before the conflict, and those that it
+  /// leads into, as far as who is there may still reach back into the conflict.
+  std::vector<ConflictWay> ways;
+};
+
+/// A drivable lane that a free corridor crosses, from border to border (see `build_free_corridor`).
+struct LaneCrossing {
+  LaneId lane = none<LaneId>;
+  double begin{}, end{};            ///< corridor position [m]
+  double lane_begin{}, lane_end{};  ///< of the stretch that the corridor covers: position on the lane's path [m]
+  std::vector<ConflictWay> ways;    ///< by which traffic comes to that stretch, positions counted from the lane's begin
 };
 
 /// A chain of lanes along which a vehicle drives: what behaviours follow. Immutable, shared.
@@ -53,9 +111,12 @@ struct LaneCorridor {
   geometry::Line left, right;           ///< borders
   std::vector<CorridorPiece> pieces;    ///< sorted by `begin`, gapless
   std::vector<Feeder> feeders;          ///< sorted by `begin`
+  std::vector<Conflict> conflicts;      ///< sorted by `begin`
+  std::vector<CorridorSignal> signals;  ///< sorted by `line`
   std::vector<SpeedStep> speed_limits;  ///< along the corridor, sorted; empty where nothing limits the speed
   bool continues = false;               ///< the road goes on beyond the end: the corridor ends because the route does
   bool reaches_destination = false;     ///< it holds the route's last lane
+  std::vector<LaneCrossing> crossings;  ///< of a free corridor: the lanes that it crosses, sorted by `begin`
 
   [[nodiscard]] double length() const { return center.length(); }
 

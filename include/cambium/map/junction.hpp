@@ -15,6 +15,7 @@
 #include "cambium/map/lane.hpp"
 #include "cambium/map/lane_area.hpp"
 #include "cambium/map/map.hpp"
+#include "cambium/map/right_of_way.hpp"
 
 namespace cambium::map {
 
@@ -119,13 +120,6 @@ inline void check_junction(Map const& map, JunctionId id) {
     return std::tie(a.first, a.second, a.on_first.begin) < std::tie(b.first, b.second, b.on_first.begin);
   });
   return conflicts;
-}
-
-/// Which of two connecting roads goes first by the junction's priorities; nothing where these do not say.
-[[nodiscard]] inline std::optional<RoadId> goes_first(Junction const& junction, RoadId a, RoadId b) {
-  for (auto const& priority : junction.priorities)
-    if ((priority.high == a && priority.low == b) || (priority.high == b && priority.low == a)) return priority.high;
-  return std::nullopt;
 }
 
 }  // namespace cambium::map

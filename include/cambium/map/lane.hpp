@@ -8,6 +8,7 @@
 
 #include "cambium/core/ids.hpp"
 #include "cambium/geometry/line.hpp"
+#include "cambium/map/signals.hpp"
 #include "cambium/map/lane_type.hpp"
 
 namespace cambium::map {
@@ -56,6 +57,13 @@ enum class OverlapKind : std::uint8_t {
   crossing,  ///< one passes over the other
 };
 
+/// Where the paths of two lanes meet: who lets whom go first.
+enum class RightOfWay : std::uint8_t {
+  equal,   ///< neither: whoever is there first
+  first,   ///< this lane's traffic goes first
+  yields,  ///< this lane's traffic lets the other's go first
+};
+
 /// A stretch on which a vehicle in this lane and one in another lane cannot be side by side: the lanes' paths are
 /// closer than the map's overlap clearance. `begin`, `end` [m] on this lane's path, `other_begin`, `other_end` on the
 /// other's.
@@ -97,7 +105,8 @@ struct Lane {
   LaneId merges_into = none<LaneId>;  ///< the neighbour that this lane's path joins at its end
   double merge_begin{};               ///< where the path leaves the centre line [m]; only with `merges_into`
   std::vector<LaneId> successors, predecessors;
-  std::vector<Overlap> overlaps;  ///< sorted by `begin`
+  std::vector<Overlap> overlaps;    ///< sorted by `begin`
+  std::vector<LaneSignal> signals;  ///< signs and lights for it, sorted by place
 
   /// First of this lane's values of the map-wide lane coordinate: the lane owns [index_begin, index_begin + length].
   double index_begin{};

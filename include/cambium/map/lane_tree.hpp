@@ -99,6 +99,16 @@ class LaneTree {
     return std::nullopt;
   }
 
+  /// Calls `f(LaneHit)` for the drivable lanes that hold `p` or come within `radius` [m] of it: once for each foot
+  /// point there, in no particular order. O(log n) and those found, no allocation.
+  template <class F>
+  void for_each_drivable(geometry::Point const& p, double radius, F&& f) const {
+    drivable_.visit(p, radius, [&](LaneHit const& hit, Direction const&) {
+      if (hit.distance <= radius) f(hit);
+      return false;
+    });
+  }
+
   /// True when `p` is in a drivable lane, or not farther than `slack` from one. O(log n), no allocation.
   [[nodiscard]] bool any_drivable_at(geometry::Point const& p) const {
     return drivable_.visit(p, slack, [](LaneHit const& hit, Direction const&) { return hit.distance <= slack; });

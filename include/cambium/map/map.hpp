@@ -19,6 +19,7 @@
 #include "cambium/core/parameters.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/box.hpp"
+#include "cambium/geometry/shape.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/corridor.hpp"
 #include "cambium/map/detail/find_lane.hpp"
@@ -40,23 +41,28 @@ struct MapOptions {
   double merge_view = 120.0;   ///< how far before an overlap merging lanes take each other's traffic into account [m]
   double merge_length = 60.0;  ///< longest stretch over which an ending lane swings onto its neighbour [m]
   bool infer_links = false;    ///< join lanes that one another's ends meet, where the file has forgotten the link
+  /// The body that conflicts at junctions are found for: a car with a hand's breadth of air all around. Where longer
+  /// vehicles drive, which swing out farther, give the largest one's.
+  geometry::Shape conflict_shape{3.8, 1.1, 1.05, 1.05};
 
   static constexpr double turn_per_tolerance = 6.0;
   static constexpr char const* name = "map_options";
   static constexpr auto parameters() {
     using P = MapOptions;
-    return std::make_tuple(parameter("position_tolerance", &P::position_tolerance, "m", Range{1e-5, 10},
-                                     "largest distance of a sampled lane from the exact one"),
-                           parameter("heading_tolerance", &P::heading_tolerance, "rad", Range{1e-4, 1},
-                                     "largest deviation of a sampled lane's heading from the exact one"),
-                           parameter("overlap_clearance", &P::overlap_clearance, "m", Range{0.1, 20},
-                                     "paths closer than this cannot carry vehicles side by side"),
-                           parameter("merge_view", &P::merge_view, "m", Range{0, 1000},
-                                     "how far before an overlap merging traffic is taken into account"),
-                           parameter("merge_length", &P::merge_length, "m", Range{30, 1000},
-                                     "longest stretch over which an ending lane swings onto its neighbour"),
-                           parameter("infer_links", &P::infer_links, "-", Range{0, 1},
-                                     "join lanes whose ends meet where the file has forgotten the link"));
+    return std::make_tuple(
+        parameter("position_tolerance", &P::position_tolerance, "m", Range{1e-5, 10},
+                  "largest distance of a sampled lane from the exact one"),
+        parameter("heading_tolerance", &P::heading_tolerance, "rad", Range{1e-4, 1},
+                  "largest deviation of a sampled lane's heading from the exact one"),
+        parameter("overlap_clearance", &P::overlap_clearance, "m", Range{0.1, 20},
+                  "paths closer than this cannot carry vehicles side by side"),
+        parameter("merge_view", &P::merge_view, "m", Range{0, 1000},
+                  "how far before an overlap merging traffic is taken into account"),
+        parameter("merge_length", &P::merge_length, "m", Range{30, 1000},
+                  "longest stretch over which an ending lane swings onto its neighbour"),
+        parameter("infer_links", &P::infer_links, "-", Range{0, 1},
+                  "join lanes whose ends meet where the file has forgotten the link"),
+        parameter("conflict_shape", &P::conflict_shape, "-", {}, "the body that conflicts at junctions are found for"));
   }
 };
 
@@ -84,6 +90,7 @@ class Map {
     std::vector<Road> roads;
     std::vector<Lane> lanes;
     std::vector<Junction> junctions;
+    std::vector<TrafficLight> lights;
     MapOptions options;
     std::unique_ptr<RouteFinder const> route_finder;
   };
@@ -95,6 +102,7 @@ class Map {
   [[nodiscard]] std::span<Road const> roads() const { return parts_.roads; }
   [[nodiscard]] std::span<Lane const> lanes() const { return parts_.lanes; }
   [[nodiscard]] std::span<Junction const> junctions() const { return parts_.junctions; }
+  [[nodiscard]] std::span<TrafficLight const> lights() const { return parts_.lights; }
   [[nodiscard]] MapOptions const& options() const { return parts_.options; }
 
   /// The smallest box around all lanes of any type, borders and paths; the empty box (`min_x > max_x`) where the map
@@ -121,6 +129,14 @@ class Map {
     for (auto const& road : parts_.roads)
       if (road.name == name) return road;
     throw MapError("road " + std::string(name), "the map has no such road", "see Map::roads for those it has");
+  }
+
+  /// The traffic light of that name (see `TrafficLight`). Throws `MapError` if there is none. O(lights).
+  [[nodiscard]] LightId find_light(std::string_view name) const {
+    for (auto const& light : parts_.lights)
+      if (light.name == name) return light.id;
+    throw MapError("light " + std::string(name), "the map has no such traffic light",
+                   "see Map::lights for those it has");
   }
 
   /// Lane `number` of road `name` at road position `s` [m], the road's end included; of a lane for both directions the
@@ -185,6 +201,13 @@ class Map {
   template <class None = void>
   std::optional<LaneHit> nearest_lane(double const (&xy)[2], LaneHit const&, double radius = 5.0) const {
     return nearest_lane<None>(xy, radius);
+  }
+
+  /// Calls `f(LaneHit)` for each foot point of `p` in a drivable lane that comes within `radius` [m] of it. O(log n)
+  /// and those found, no allocation.
+  template <class F>
+  void for_each_drivable_near(geometry::Point const& p, double radius, F&& f) const {
+    tree_.for_each_drivable(p, radius, f);
   }
 
   /// True when a drivable lane holds the point. O(log n), no allocation.

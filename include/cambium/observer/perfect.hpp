@@ -1,27 +1,17 @@
 #pragma once
 
-#include <concepts>
 #include <tuple>
 
-#include "cambium/core/random.hpp"
-#include "cambium/core/state.hpp"
+#include "cambium/observer/observer_model.hpp"
 
 namespace cambium {
-
-/// How an agent perceives: `observe` gives the state that it believes an agent (itself included) to have. Pure: what is
-/// random is drawn from `random`, a stream keyed by (seed, observer, step) with the observed agent as its purpose.
-/// `perfect` says that nothing is changed, so that what is seen can be a view of the truth.
-template <class O>
-concept ObserverModel = std::copyable<O> &&
-    requires(O const observer, State const truth, RandomStream const random, bool own) {
-  { O::perfect } -> std::convertible_to<bool>;
-  { observer.observe(truth, own, random) } -> std::convertible_to<State>;
-};
 
 /// Sees the truth.
 struct PerfectObserver {
   static constexpr bool perfect = true;
   static constexpr char const* name = "perfect";
+  static constexpr char const* summary = "sees the truth";
+  static constexpr char const* source = "-";
   static constexpr auto parameters() { return std::make_tuple(); }
 
   template <MotionState S>

@@ -30,6 +30,19 @@ namespace cambium {
   return lanes;
 }
 
+/// A free corridor as a recording shows it: beside the lanes; where it crosses them they are drawn over it.
+[[nodiscard]] inline RecordedLane recorded_way(map::LaneCorridor const& way) {
+  RecordedLane lane{.kind = RecordedLaneKind::way};
+  auto const samples = way.center.samples();
+  for (std::size_t i = 0; i < samples.size(); ++i) {
+    geometry::Point const at = samples[i].position();
+    geometry::Point const aside(-std::sin(samples[i].heading), std::cos(samples[i].heading));
+    lane.left.push_back(at + way.widths[i].left * aside);
+    lane.right.push_back(at - way.widths[i].right * aside);
+  }
+  return lane;
+}
+
 /// A static object as a recording shows it: the rectangle around its outline that has the direction of its longest
 /// side.
 [[nodiscard]] inline std::pair<RecordedAgent, RecordedPose> recorded_object(StaticObject const& object) {
@@ -58,7 +71,9 @@ class WorldRecorder {
   template <class World>
   explicit WorldRecorder(World const& world, std::string title = {}) {
     recording_.title = std::move(title);
-    recording_.lanes = recorded_lanes(world.map());
+    for (auto const& road : world.roster().free_roads)
+      recording_.lanes.push_back(recorded_way(road.numbered->corridors.front()));
+    for (auto& lane : recorded_lanes(world.map())) recording_.lanes.push_back(std::move(lane));
     for (auto const& agent : world.roster().agents)
       recording_.agents.push_back({agent.id, agent.shape, "", RecordedAgentKind::other});
     agents_ = recording_.agents.size();

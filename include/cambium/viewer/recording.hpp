@@ -27,6 +27,7 @@ enum class RecordedLaneKind : std::uint32_t {
   driving = 0,   ///< a lane for vehicles
   other = 1,     ///< shoulder, border, parking: paved, but not driven on
   junction = 2,  ///< a lane within a junction; may overlap others
+  way = 3,       ///< a way that belongs to no lane, as of those on foot: under the lanes, without marks
 };
 
 /// An agent of a recording: what does not change over time.

@@ -148,7 +148,7 @@ class SvgPicture {
     double shortest = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < areas_.size(); ++i) {
       RecordedLaneKind const kind = recording_.lanes[i].kind;
-      if (areas_[i].empty() || kind == RecordedLaneKind::other) continue;
+      if (areas_[i].empty() || kind == RecordedLaneKind::other || kind == RecordedLaneKind::way) continue;
       double const length = (areas_[i].high - areas_[i].low).norm() - (kind == RecordedLaneKind::junction ? 1e9 : 0.0);
       if (length >= shortest - 1.0) continue;
       shortest = length;
@@ -158,8 +158,9 @@ class SvgPicture {
 
   void define_map() {
     out_ += "<defs>\n<g id=\"lanes\" stroke-linejoin=\"round\">\n";
-    for (RecordedLaneKind kind : {RecordedLaneKind::other, RecordedLaneKind::driving, RecordedLaneKind::junction}) {
-      std::string const colour = kind == RecordedLaneKind::other ? "#8d949c" : "#6d747d";
+    using Kind = RecordedLaneKind;
+    for (Kind kind : {Kind::way, Kind::other, Kind::driving, Kind::junction}) {
+      std::string const colour = kind == Kind::other || kind == Kind::way ? "#8d949c" : "#6d747d";
       for (std::size_t i = 0; i < areas_.size(); ++i)
         if (recording_.lanes[i].kind == kind && !areas_[i].empty())
           out_ += "<path fill=\"" + colour + "\" stroke=\"" + colour + "\" d=\"" + path(areas_[i].outline) + "Z\"/>\n";
@@ -188,10 +189,11 @@ class SvgPicture {
     double const length = agent.shape.front + agent.shape.rear, width = agent.shape.left + agent.shape.right;
     double const rear = -agent.shape.rear, right = -agent.shape.right;
     out_ += "<g transform=\"" + turned({pose.x, pose.y}, pose.heading) + "\">";
+    bool const walks = std::max(length, width) < 1.2;  // round, and without a windscreen
+    double const round = walks ? 0.5 * width : std::min(0.28 * width, 0.12 * length);
     out_ += svg_box(rear, right, length, width,
-                    "rx=\"" + svg_number(kind == 3 ? 0.0 : std::min(0.28 * width, 0.12 * length)) + "\" fill=\"" +
-                        colours[kind] + '"');
-    if (kind != 3) {
+                    "rx=\"" + svg_number(kind == 3 ? 0.0 : round) + "\" fill=\"" + colours[kind] + '"');
+    if (kind != 3 && !walks) {
       double const screen = length > 7.0 ? 1.2 : 0.39 * length;
       out_ += svg_box(agent.shape.front - screen, right + 0.1 * width, std::min(0.7, 0.15 * length), 0.8 * width,
                       "fill=\"#33404e\" stroke=\"none\"");

@@ -3,8 +3,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "cambium/core/macros.hpp"
 #include "cambium/core/plan.hpp"
+#include "cambium/execution/execution_model.hpp"
 #include "cambium/map/lane_position.hpp"
+#include "cambium/observer/observer_model.hpp"
 
 namespace cambium {
 
@@ -19,22 +22,26 @@ enum class AgentStatus : std::uint8_t {
   failed,       ///< its behaviour or execution gave no valid next state; it keeps the last valid one
 };
 
-/// What a step changes of one agent.
-template <MotionState S, class Memory>
+/// What a step changes of one agent. `ExecutionMemory`: what its execution model remembers; `Past`: what observers that
+/// see late need of it.
+template <MotionState S, class Memory, class ExecutionMemory = NoExecutionMemory, class Past = NoPast>
 struct AgentRecord {
   S state;
   map::LanePosition lane;
   Action action;  ///< of the step that led here
   Memory memory;
   AgentStatus status = AgentStatus::driving;
+  std::uint8_t goals_passed = 0;  ///< parts of its `GoalSequence` that it has reached
+  [[no_unique_address]] ExecutionMemory execution{};
+  [[no_unique_address]] Past past{};
 
   friend bool operator==(AgentRecord const&, AgentRecord const&) = default;
 };
 
 /// What a step changes: time and one record per agent, in the order of the roster, in one buffer.
-template <MotionState S, class Memory>
+template <MotionState S, class Memory, class ExecutionMemory = NoExecutionMemory, class Past = NoPast>
 struct Frame {
-  using Record = AgentRecord<S, Memory>;
+  using Record = AgentRecord<S, Memory, ExecutionMemory, Past>;
 
   double time = 0.0;       ///< [s]
   std::uint64_t step = 0;  ///< steps made since the world began

@@ -1,15 +1,19 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <tuple>
 #include <type_traits>
+#include <variant>
 
 #include "cambium/behavior/view.hpp"
 #include "cambium/goal/goal.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/world/detail/on_lanes.hpp"
+#include "cambium/world/detail/seen.hpp"
 #include "cambium/world/frame.hpp"
 #include "cambium/world/prediction.hpp"
 #include "cambium/world/static_object.hpp"
@@ -17,18 +21,10 @@
 
 namespace cambium {
 
-/// Another agent as seen by an observer.
-template <MotionState S>
-struct ObservedAgent {
-  AgentId id = none<AgentId>;
-  S state;
-  geometry::Shape shape;
-};
-
 /// What one agent sees of its world: a view of a few pointers, valid until the world changes. States, and with them
 /// gaps, neighbours' speeds and the own lane position, pass through the agent's observer model; who is next to whom is
-/// the truth. It shows states, shapes, the map, neighbours and the agent's own route; never what the others intend:
-/// `predict` asks for a model of that.
+/// the truth, but for those that the observer does not see. It shows states, shapes, the map, neighbours and the
+/// agent's own route; never what the others intend: `predict` asks for a model of that.
 template <class World>
 class ObservedWorld {
  public:
@@ -57,7 +53,6 @@ class ObservedWorld {
       return seen_lane_;
   }
   [[nodiscard]] map::LaneCorridor const& corridor() const { return road().corridors[lane_position().corridor]; }
-  [[nodiscard]] std::span<StaticObject const> objects() const { return world_->roster().objects; }
 
   /// Numbers of the agent's own for this step: the same whatever the order of agents, threads or copies. `purpose`
   /// below
@@ -76,16 +71,141 @@ class ObservedWorld {
     return neighbor(world_->traffic().rear(corridor(), query(record_->lane), objects_on_lanes(), in_traffic()), -1);
   }
 
-  /// Next road user ahead along lane corridor `number` of the own road, from the place beside the agent. O(log n).
-  [[nodiscard]] std::optional<Neighbor> front(std::uint16_t number) const {
-    if (number == record_->lane.corridor) return front();
-    return neighbor(world_->traffic().front(road().corridors[number], query(beside(number)), objects_on_lanes(), false),
+  /// As `front`, but for those who are still to merge in a junction: there the right of way says who goes first, see
+  /// `LaneCorridor::conflicts`.
+  [[nodiscard]] std::optional<Neighbor> front_by_rule() const {
+    auto asker = query(record_->lane);
+    asker.by_rule = true;
+    return neighbor(world_->traffic().front(corridor(), asker, objects_on_lanes(), in_traffic()), 1);
+  }
+
+  /// Where the agent is on lane corridor `number` of its road. O(lanes of the corridor).
+  [[nodiscard]] map::LanePosition lane_position(std::uint16_t number) const {
+    auto const& at = lane_position();
+    return number == at.corridor ? at : detail::locate_beside(map(), road(), at, number, pose_of(state()));
+  }
+
+  /// Next road users ahead and behind along lane corridor `number` of the own road, from the place beside the agent.
+  /// O(log n).
+  [[nodiscard]] Neighbors neighbors(std::uint16_t number) const {
+    if (number == record_->lane.corridor) return {front(), rear(), lane_position()};
+    auto const place = beside(number);
+    return {front(place), rear(place), lane_position(number)};
+  }
+
+  /// Calls `f(ObservedAgent)` for every agent that is on lane corridor `number` of the own road, or reaches into it,
+  /// within `distance` [m], at most `TrafficIndex::horizon`, ahead of or behind the place beside the agent; for some of
+  /// them more than once. Returns the next objects there. O(log n + agents found).
+  template <class F>
+  Neighbors for_each_near(std::uint16_t number, double distance, F&& f) const {
+    auto const at = number == record_->lane.corridor
+                        ? record_->lane
+                        : detail::locate_beside(map(), road(), record_->lane, number, pose_of(record_->state));
+    auto const visit = [&](std::uint32_t slot) {
+      if (detail::is_seen(*world_, slot_, slot)) f(observed_agent(slot));
+      return false;
+    };
+    TrafficQuery const own{slot_, at.s, shape().front, shape().rear, at.piece};
+    auto const sees_object = [this](std::uint32_t object) { return detail::is_object_seen(*world_, slot_, object); };
+    SightedQuery<decltype(visit), decltype(sees_object)> const query{own, visit, sees_object, distance};
+    auto const& along = road().corridors[number];
+    auto const entry = world_->traffic().find(along, own);
+    auto const object = [](std::optional<TrafficHit> hit) { return hit && hit->is_object ? hit : std::nullopt; };
+    return {neighbor(object(world_->traffic().front_from(entry, along, query, objects_on_lanes())), 1),
+            neighbor(object(world_->traffic().rear_from(entry, along, query, objects_on_lanes())), -1),
+            perfect ? at : lane_position(number)};
+  }
+
+  /// The place beside the agent on lane corridor `number` of the own road, another than the own. O(1) where that is
+  /// next to the own one, else O(lanes of the corridor); plus a search, O(log n).
+  [[nodiscard]] BesidePlace beside(std::uint16_t number) const {
+    auto place = detail::place_beside(map(), road(), record_->lane, number, pose_of(record_->state));
+    place.entry = world_->traffic().find(road().corridors[number], query(place));
+    if constexpr (!perfect) place.s += shift(slot_);
+    return place;
+  }
+
+  /// Next road users ahead of and behind such a place. O(1) while the next one is in the same lane.
+  [[nodiscard]] std::optional<Neighbor> front(BesidePlace const& place) const {
+    return neighbor(world_->traffic().front_from(place.entry, road().corridors[place.corridor], query(truth(place)),
+                                                 objects_on_lanes()),
                     1);
   }
-  [[nodiscard]] std::optional<Neighbor> rear(std::uint16_t number) const {
-    if (number == record_->lane.corridor) return rear();
-    return neighbor(world_->traffic().rear(road().corridors[number], query(beside(number)), objects_on_lanes(), false),
+  [[nodiscard]] std::optional<Neighbor> rear(BesidePlace const& place) const {
+    return neighbor(world_->traffic().rear_from(place.entry, road().corridors[place.corridor], query(truth(place)),
+                                                objects_on_lanes()),
                     -1);
+  }
+
+  /// As `front`, but without those who are in lanes that are still to merge into the own one.
+  [[nodiscard]] std::optional<Neighbor> front_in_lane() const {
+    auto asked = query(record_->lane);
+    asked.with_merging = false;
+    return neighbor(world_->traffic().front(corridor(), asked, objects_on_lanes(), in_traffic()), 1);
+  }
+
+  /// Of the agents in lanes that are still to merge into the own corridor at `merge` (see `Feeder::free_until`), the
+  /// foremost that is behind corridor position `behind`. O(feeders), plus a search in each.
+  [[nodiscard]] std::optional<MergingNeighbor> merging(double merge, double behind) const {
+    auto const entry = world_->traffic().merging(corridor(), merge, behind, query(record_->lane));
+    if (!entry) return std::nullopt;
+    MergingNeighbor other{static_cast<AgentId>(entry->id), entry->position, entry->front, entry->rear, entry->speed};
+    if constexpr (!perfect) {
+      other.s += shift(entry->slot);
+      other.speed += observed(entry->slot).speed - record(entry->slot).state.speed;
+    }
+    return other;
+  }
+
+  /// Whether it matters in which lane the route ends.
+  [[nodiscard]] bool has_goal() const { return !std::holds_alternative<NoGoal>(goal()); }
+
+  /// Calls `f(LaneUser)` for those who reach into lane coordinates `index_begin` to `index_end` of one lane (see
+  /// `Lane::index_begin`), the agent itself left out. O(log n) and those near.
+  template <class F>
+  void for_each_on_lane(double index_begin, double index_end, F&& f) const {
+    world_->traffic().for_each_in(index_begin, index_end, objects_on_lanes(), [&](auto const& entry, bool is_object) {
+      if (is_object) {
+        if (!detail::is_object_seen(*world_, slot_, entry.slot)) return;
+        f(LaneUser{.object = static_cast<ObjectId>(entry.id),
+                   .position = entry.position,
+                   .front = entry.front,
+                   .rear = entry.rear,
+                   .slot = entry.slot});
+      } else if (entry.slot != slot_ && detail::is_seen(*world_, slot_, entry.slot)) {
+        LaneUser user{static_cast<AgentId>(entry.id),
+                      none<ObjectId>,
+                      entry.position,
+                      entry.front,
+                      entry.rear,
+                      entry.speed,
+                      entry.slot};
+        if constexpr (!perfect) {
+          user.position += shift(entry.slot);
+          user.speed += observed(entry.slot).speed - record(entry.slot).state.speed;
+        }
+        f(user);
+      }
+    });
+  }
+
+  /// What a traffic light shows now; `off` where it has no plan (see `World::set_light`). O(1).
+  [[nodiscard]] map::LightColor light(LightId id) const {
+    auto const& lights = world_->roster().lights;
+    return index_of(id) < lights.size() ? lights[index_of(id)].at(time()) : map::LightColor::off;
+  }
+
+  /// Whether an agent's turn signals say that it will come by `lane`, or it is there: the way ahead is all that they
+  /// tell. Objects go nowhere. O(lanes of its road).
+  [[nodiscard]] bool signals_way(LaneUser const& user, LaneId lane) const {
+    if (!is_valid(user.agent)) return false;
+    return world_->roster().agents[user.slot].road->corridor_of(lane) != map::no_corridor;
+  }
+
+  /// The agent that a neighbour is. O(1). Not for neighbours that are objects.
+  [[nodiscard]] ObservedAgent<State> agent(Neighbor const& neighbor) const {
+    CAMBIUM_ASSERT(is_valid(neighbor.agent), "ObservedWorld::agent: the neighbour is an object");
+    return observed_agent(neighbor.slot);
   }
 
   /// Calls `f(ObservedAgent)` for every other agent in traffic, in the order of their ids.
@@ -93,8 +213,38 @@ class ObservedWorld {
   void for_each_other(F&& f) const {
     auto const& agents = world_->roster().agents;
     for (std::uint32_t i = 0; i < agents.size(); ++i)
-      if (i != slot_ && record(i).status == AgentStatus::driving)
-        f(ObservedAgent<State>{agents[i].id, observed(i), agents[i].shape});
+      if (i != slot_ && record(i).status == AgentStatus::driving && detail::is_seen(*world_, slot_, i))
+        f(observed_agent(i));
+  }
+
+  /// Calls `f(ObservedAgent)` for every other agent in traffic of which a circle about its reference point that holds
+  /// it comes within `distance` [m] of the own one, whatever lane it is on. In worlds of which a behaviour says that it
+  /// looks around O(agents found), in an order that does not depend on the lanes; else O(agents).
+  template <class F>
+  void for_each_around(double distance, F&& f) const {
+    auto const& own = record_->state;
+    auto const visit = [&](std::uint32_t slot) {
+      auto const& [shape, state] = std::tie(world_->roster().agents[slot].shape, record(slot).state);
+      double const reach = distance + std::max(shape.front, shape.rear) + std::max(shape.left, shape.right);
+      double const dx = state.x - own.x, dy = state.y - own.y;
+      if (slot == slot_ || !(dx * dx + dy * dy <= reach * reach) || !detail::is_seen(*world_, slot_, slot)) return;
+      f(observed_agent(slot));
+    };
+    if constexpr (World::Behaviors::looks_around) {
+      world_->plane().for_each_near({own.x - distance, own.y - distance, own.x + distance, own.y + distance}, visit);
+    } else {
+      for (std::uint32_t i = 0; i < world_->size(); ++i)
+        if (record(i).status == AgentStatus::driving) visit(i);
+    }
+  }
+
+  /// Calls `f(id, outline)`, an `ObjectId` and a `geometry::Polygon`, for the static objects that are seen, in the
+  /// order of their ids.
+  template <class F>
+  void for_each_object(F&& f) const {
+    auto const& objects = world_->roster().objects;
+    for (std::uint32_t i = 0; i < objects.size(); ++i)
+      if (detail::is_object_seen(*world_, slot_, i)) f(objects[i].id, objects[i].outline);
   }
 
   /// A world of its own, as this agent sees it, in which everybody behaves as `prediction` says: to be stepped, copied
@@ -118,17 +268,33 @@ class ObservedWorld {
   [[nodiscard]] auto const& record(std::uint32_t slot) const { return world_->frame().agents[slot]; }
   [[nodiscard]] std::span<TrafficEntry const> objects_on_lanes() const { return world_->roster().object_entries; }
 
-  [[nodiscard]] decltype(auto) observed(std::uint32_t slot) const {
+  [[nodiscard]] decltype(auto) observed(std::uint32_t slot) const { return detail::seen_state(*world_, slot_, slot); }
+
+  /// The place as it is, not as the observer shows it.
+  [[nodiscard]] BesidePlace truth(BesidePlace place) const {
+    if constexpr (!perfect) place.s -= shift(slot_);
+    return place;
+  }
+
+  template <class Place>
+  [[nodiscard]] auto query(Place const& at) const {
+    TrafficQuery const query{slot_, at.s, shape().front, shape().rear, at.piece};
+    if constexpr (detail::hides<World> || detail::hides_objects<World>) {
+      auto const sees = [world = world_, own = slot_](std::uint32_t slot) {
+        return detail::is_seen(*world, own, slot);
+      };
+      auto const sees_object = [world = world_, own = slot_](std::uint32_t object) {
+        return detail::is_object_seen(*world, own, object);
+      };
+      return SightedQuery<decltype(sees), decltype(sees_object)>{query, sees, sees_object};
+    } else {
+      return query;
+    }
+  }
+
+  [[nodiscard]] ObservedAgent<State> observed_agent(std::uint32_t slot) const {
     auto const& agent = world_->roster().agents[slot];
-    return own_->observer.observe(record(slot).state, slot == slot_, random(observation_purpose(agent.id)));
-  }
-
-  [[nodiscard]] TrafficQuery query(map::LanePosition const& at) const {
-    return {slot_, at.s, shape().front, shape().rear, at.piece};
-  }
-
-  [[nodiscard]] map::LanePosition beside(std::uint16_t number) const {
-    return detail::locate_beside(map(), road(), record_->lane, number, pose_of(record_->state));
+    return {agent.id, observed(slot), agent.shape, detail::seen_acceleration(*world_, slot_, slot)};
   }
 
   /// The neighbour ahead (`sign` 1) or behind (-1), as observed.
@@ -136,11 +302,12 @@ class ObservedWorld {
     if (!hit) return std::nullopt;
     auto const agent = hit->is_object ? none<AgentId> : static_cast<AgentId>(hit->id);
     auto const object = hit->is_object ? static_cast<ObjectId>(hit->id) : none<ObjectId>;
-    if constexpr (perfect) return Neighbor{agent, object, hit->gap, hit->speed};
+    if constexpr (perfect) return Neighbor{agent, object, hit->gap, hit->speed, hit->length, hit->slot};
     double gap = hit->gap - sign * shift(slot_);
-    if (hit->is_object) return Neighbor{agent, object, gap, 0.0};
+    if (hit->is_object) return Neighbor{agent, object, gap, 0.0, hit->length, hit->slot};
     gap += sign * shift(hit->slot);
-    return Neighbor{agent, object, gap, observed(hit->slot).speed * std::cos(record(hit->slot).lane.heading_error)};
+    double const speed = observed(hit->slot).speed * std::cos(record(hit->slot).lane.heading_error);
+    return Neighbor{agent, object, gap, speed, hit->length, hit->slot};
   }
 
   /// How far the observer moves an agent along its lane [m].

@@ -2,10 +2,12 @@
 
 #include <concepts>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "cambium/behavior/behavior_set.hpp"
 #include "cambium/core/random.hpp"
@@ -13,6 +15,7 @@
 #include "cambium/map/lane_position.hpp"
 #include "cambium/observer/perfect.hpp"
 #include "cambium/world/detail/entering.hpp"
+#include "cambium/world/detail/seen.hpp"
 #include "cambium/world/frame.hpp"
 
 namespace cambium {
@@ -27,10 +30,8 @@ struct Prediction {
   std::optional<std::uint64_t> seed{};
 };
 
-/// The stream purpose for observing `agent`: apart from those that behaviours use.
-[[nodiscard]] constexpr std::uint32_t observation_purpose(AgentId agent) {
-  return 0x80000000u | static_cast<std::uint32_t>(agent);
-}
+/// The stream purpose of execution models: that for observing no agent.
+inline constexpr std::uint32_t execution_purpose = observation_purpose(none<AgentId>);
 
 /// The agent behaves as `ego`, the others as `others`: behaviours of `Set`.
 template <class Set, class Ego, class Others>
@@ -47,9 +48,31 @@ template <class Set, class Behavior>
   return predict_as<Set>(behavior, behavior);
 }
 
+namespace detail {
+
+/// Takes over the static objects that agent number `slot` of `world` sees.
+template <class World, class Roster>
+void take_seen_objects(World const& world, std::uint32_t slot, Roster& assumed) {
+  auto const& roster = world.roster();
+  constexpr auto unseen = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> places(roster.objects.size(), unseen);
+  for (std::uint32_t i = 0; i < roster.objects.size(); ++i) {
+    if (!is_object_seen(world, slot, i)) continue;
+    places[i] = static_cast<std::uint32_t>(assumed.objects.size());
+    assumed.objects.push_back(roster.objects[i]);
+  }
+  for (auto entry : roster.object_entries) {
+    entry.slot = places[entry.slot];
+    if (entry.slot != unseen) assumed.object_entries.push_back(entry);  // still sorted: the order is kept
+  }
+}
+
+}  // namespace detail
+
 /// The world that agent number `slot` of `world` expects: states as it observes them, behaviours as `prediction` says.
-/// The others keep their routes, as if they signalled them, but not their goals. Agents that are not in traffic are
-/// left out. Throws `ParameterError` where a parameter of an assumed behaviour is out of its range.
+/// The others keep their routes, as if they signalled them, but not their goals. Agents that are not in traffic, or not
+/// seen, are left out; what is seen late counts as the present. Throws `ParameterError` where a parameter of an assumed
+/// behaviour is out of its range.
 template <class Set, class World>
 [[nodiscard]] typename World::template WithBehaviors<Set> predicted_world(World const& world, std::uint32_t slot,
                                                                           Prediction<Set> const& prediction) {
@@ -71,23 +94,35 @@ template <class Set, class World>
   assumed->seed = prediction.seed ? *prediction.seed : stream(seed_purpose)();
   assumed->next_agent_id = roster.next_agent_id;
   assumed->next_object_id = roster.next_object_id;
-  assumed->objects = roster.objects;
-  assumed->object_entries = roster.object_entries;
+  assumed->has_sequences = roster.has_sequences;
+  detail::take_seen_objects(world, slot, *assumed);
+  assumed->free_roads = roster.free_roads;
+  assumed->lights = roster.lights;
   typename Predicted::FrameType seen{frame.time, frame.step, {}};
   for (std::uint32_t i = 0; i < roster.agents.size(); ++i) {
     auto const& agent = roster.agents[i];
     auto const& record = frame.agents[i];
-    if (record.status != AgentStatus::driving) continue;
+    if (record.status != AgentStatus::driving || !detail::is_seen(world, slot, i)) continue;
     auto const& behavior = i == slot ? prediction.ego : prediction.others;
     assumed->agents.push_back(
         {agent.id, agent.shape, agent.road, behavior, agent.execution, agent.dynamics, PerfectObserver{}});
     assumed->goals.push_back(i == slot ? roster.goals[i] : Goal{});
-    auto const random = stream(observation_purpose(agent.id));
-    auto const& state = observer.observer.observe(record.state, i == slot, random);
+    typename World::State state = detail::seen_state(world, slot, i);
+    state.time = frame.time;
     auto lane = record.lane;
     if constexpr (!World::Observer::perfect)
       lane = map::locate(*agent.road, lane.corridor, {state.x, state.y, state.heading}, lane);
-    seen.agents.push_back({state, lane, record.action, Set::initial_memory(behavior), AgentStatus::driving});
+    Action action = record.action;
+    action.acceleration = detail::seen_acceleration(world, slot, i);
+    seen.agents.push_back({state,
+                           lane,
+                           action,
+                           Set::initial_memory(behavior),
+                           AgentStatus::driving,
+                           i == slot ? record.goals_passed : std::uint8_t{0},
+                           {},
+                           {}});
+    if (i == slot) seen.agents.back().execution = record.execution;
   }
   return Predicted(world.shared_map(), std::move(assumed), std::move(seen));
 }

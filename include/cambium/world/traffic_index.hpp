@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -34,6 +35,28 @@ struct TrafficQuery {
   double s{};
   double front{}, rear{};
   std::uint16_t piece{};
+  bool with_merging = true;  ///< who is in a lane that is still to merge counts
+  bool by_rule = false;      ///< leave out who is still to merge in a junction (see `Feeder::by_rule`)
+
+  /// Whether an entry, `distance` [m] away, is passed over: it is the asker's own.
+  [[nodiscard]] bool skips(TrafficEntry const& entry, double /*distance*/) const { return entry.slot == slot; }
+  /// The same of a static object.
+  [[nodiscard]] bool skips_object(TrafficEntry const&, double) const { return false; }
+};
+
+/// One who does not see everybody: `sees(slot)` says whom, `sees_object(slot)` which objects.
+template <class Sees, class SeesObject>
+struct SightedQuery : TrafficQuery {
+  Sees sees;
+  SeesObject sees_object;
+  double far = 400.0;  ///< who is farther ends the search, seen or not [m]
+
+  [[nodiscard]] bool skips(TrafficEntry const& entry, double distance) const {
+    return entry.slot == slot || (distance <= far && !sees(entry.slot));
+  }
+  [[nodiscard]] bool skips_object(TrafficEntry const& entry, double distance) const {
+    return distance <= far && !sees_object(entry.slot);
+  }
 };
 
 /// What was found: an agent, or an object.
@@ -43,6 +66,7 @@ struct TrafficHit {
   bool is_object = false;
   double gap = std::numeric_limits<double>::infinity();  ///< [m]
   double speed{};                                        ///< along its lane [m/s]
+  double length{};                                       ///< along its lane [m]
 };
 
 /// Who is where on the lanes, sorted, so that the next road user along a corridor is the next in the list.
@@ -57,13 +81,9 @@ class TrafficIndex {
   /// Farthest reference point that is a neighbour, along the corridor [m].
   static constexpr double horizon = 400.0;
 
-  /// Gap [m] between a follower's front end and its leader's rear end (corridor positions) where the two lanes are one
-  /// from `merge` on. Before that the two may be side by side: the follower is given half of its way to the merge on
-  /// top, so that a gap opens bit by bit, but never more than the way to whichever is farther, leader or merge.
+  /// See `map::gap_before_merge`.
   [[nodiscard]] static double gap_between(double follower_front, double leader_rear, double merge) {
-    double const gap = leader_rear - follower_front, to_merge = merge - follower_front;
-    if (to_merge <= 0.0) return gap;
-    return std::min(gap + 0.5 * to_merge, std::max(gap, to_merge));
+    return map::gap_before_merge(follower_front, leader_rear, merge);
   }
 
   /// Takes in `count` agents. `entry_of(slot, list)` gives each one's `TrafficEntry` (position +infinity: on no lane of
@@ -100,10 +120,47 @@ class TrafficIndex {
 
   /// Next ahead of the asker on `corridor`. `own`: the asker's own entry lies on this corridor's piece (saves a
   /// search).
-  [[nodiscard]] std::optional<TrafficHit> front(map::LaneCorridor const& corridor, TrafficQuery const& query,
+  template <class Query>
+  [[nodiscard]] std::optional<TrafficHit> front(map::LaneCorridor const& corridor, Query const& query,
                                                 std::span<TrafficEntry const> objects, bool own) const {
+    return front_from(own ? rank_[query.slot] + 1 : upper(agents_, key(corridor, query), query.slot), corridor, query,
+                      objects);
+  }
+
+  /// Next behind the asker on `corridor`.
+  template <class Query>
+  [[nodiscard]] std::optional<TrafficHit> rear(map::LaneCorridor const& corridor, Query const& query,
+                                               std::span<TrafficEntry const> objects, bool own) const {
+    return rear_from(own ? rank_[query.slot] : lower(agents_, key(corridor, query), query.slot), corridor, query,
+                     objects);
+  }
+
+  /// Where in the list of agents the asker's place is: one search for `front_from` and `rear_from`. O(log n).
+  [[nodiscard]] std::size_t find(map::LaneCorridor const& corridor, TrafficQuery const& query) const {
+    return lower(agents_, key(corridor, query), query.slot);
+  }
+
+  /// Calls `f(entry, is_object)` for all that reach into lane coordinates `begin` to `end` of one lane; agents in the
+  /// order of their positions, those that reach in from another lane after them, objects last. O(log n) and those near.
+  template <class F>
+  void for_each_in(double begin, double end, std::span<TrafficEntry const> objects, F&& f) const {
+    auto const visit = [&](List list, bool is_object) {
+      if (list.empty()) return;
+      // Objects are entered in parts of 10 m at most.
+      double const longest = is_object ? 10.0 : std::max(longest_front_, longest_rear_);
+      for (auto i = first_at(list, begin - longest); i < list.size() && list[i].position <= end + longest; ++i)
+        if (list[i].position + list[i].front >= begin && list[i].position - list[i].rear <= end) f(list[i], is_object);
+    };
+    visit(agents_, false);
+    visit(straddling_, false);
+    visit(objects, true);
+  }
+
+  /// Next ahead; among the agents, entry `start` is the first candidate on the asker's piece.
+  template <class Query>
+  [[nodiscard]] std::optional<TrafficHit> front_from(std::size_t start, map::LaneCorridor const& corridor,
+                                                     Query const& query, std::span<TrafficEntry const> objects) const {
     TrafficHit best;
-    std::size_t const start = own ? rank_[query.slot] + 1 : upper(agents_, key(corridor, query), query.slot);
     front_on_corridor(agents_, false, corridor, query, start, best);
     if (!straddling_.empty())
       front_on_corridor(straddling_, false, corridor, query, upper(straddling_, key(corridor, query), query.slot),
@@ -114,7 +171,7 @@ class TrafficIndex {
       if (feeder.begin > query.s + std::min(horizon, best.gap + query.front + longest_rear_) && objects.empty())
         break;  // nobody there is closer
       if (feeder.begin > query.s + horizon) break;
-      if (feeder.end < query.s) continue;
+      if (feeder.end < query.s || (!query.with_merging && feeder.is_still_to_merge())) continue;
       front_on_feeder(agents_, false, feeder, query, best);
       if (!straddling_.empty()) front_on_feeder(straddling_, false, feeder, query, best);
       if (!objects.empty()) front_on_feeder(objects, true, feeder, query, best);
@@ -122,11 +179,11 @@ class TrafficIndex {
     return found(best);
   }
 
-  /// Next behind the asker on `corridor`.
-  [[nodiscard]] std::optional<TrafficHit> rear(map::LaneCorridor const& corridor, TrafficQuery const& query,
-                                               std::span<TrafficEntry const> objects, bool own) const {
+  /// Next behind; among the agents, candidates lie before entry `start`.
+  template <class Query>
+  [[nodiscard]] std::optional<TrafficHit> rear_from(std::size_t start, map::LaneCorridor const& corridor,
+                                                    Query const& query, std::span<TrafficEntry const> objects) const {
     TrafficHit best;
-    std::size_t const start = own ? rank_[query.slot] : lower(agents_, key(corridor, query), query.slot);
     rear_on_corridor(agents_, false, corridor, query, start, best);
     if (!straddling_.empty())
       rear_on_corridor(straddling_, false, corridor, query, lower(straddling_, key(corridor, query), query.slot), best);
@@ -136,12 +193,34 @@ class TrafficIndex {
       if (feeder.begin > query.s) break;
       if (feeder.end < query.s - std::min(horizon, best.gap + query.rear + longest_front_) && objects.empty())
         continue;  // nobody there is closer
-      if (feeder.end < query.s - horizon) continue;
+      if (feeder.end < query.s - horizon || (!query.with_merging && feeder.is_still_to_merge())) continue;
       rear_on_feeder(agents_, false, feeder, query, best);
       if (!straddling_.empty()) rear_on_feeder(straddling_, false, feeder, query, best);
       if (!objects.empty()) rear_on_feeder(objects, true, feeder, query, best);
     }
     return found(best);
+  }
+
+  /// Of the agents in lanes that are still to merge into `corridor` at `merge`, the one with the foremost image on the
+  /// corridor not beyond `behind`: its entry, with the image as position. Whom `query` skips is passed over.
+  /// O(feeders), plus a search in each.
+  template <class Query>
+  [[nodiscard]] std::optional<TrafficEntry> merging(map::LaneCorridor const& corridor, double merge, double behind,
+                                                    Query const& query) const {
+    std::optional<TrafficEntry> best;
+    for (auto const& feeder : corridor.feeders) {
+      if (feeder.free_until != merge || !feeder.is_still_to_merge() || feeder.begin > behind) continue;
+      double const to = behind >= feeder.end ? feeder.index_end : feeder.index_at(behind);
+      for (auto i = upper(agents_, to, std::numeric_limits<std::uint32_t>::max());
+           i > 0 && agents_[i - 1].position >= feeder.index_begin; --i) {
+        auto entry = agents_[i - 1];
+        entry.position = feeder.image(entry.position);
+        if (query.skips(entry, std::abs(entry.position - query.s))) continue;
+        if (!best || entry.position > best->position) best = entry;
+        break;
+      }
+    }
+    return best;
   }
 
  private:
@@ -152,19 +231,28 @@ class TrafficIndex {
     return best;
   }
 
-  [[nodiscard]] static double key(map::LaneCorridor const& corridor, TrafficQuery const& query) {
+  template <class Query>
+  [[nodiscard]] static bool skips(Query const& query, TrafficEntry const& entry, bool is_object, double distance) {
+    return is_object ? query.skips_object(entry, distance) : query.skips(entry, distance);
+  }
+
+  template <class Query>
+  [[nodiscard]] static double key(map::LaneCorridor const& corridor, Query const& query) {
     auto const& piece = corridor.pieces[query.piece];  // beyond the corridor's ends other lanes' coordinates begin
     return std::min(std::max(query.s, piece.begin - 1.0), piece.end + 1.0) + piece.index_offset;
   }
 
-  /// First entry behind which (position, slot) sorts.
+  /// First entry that sorts behind (position, slot).
   [[nodiscard]] static std::size_t upper(List list, double position, std::uint32_t slot) {
-    return static_cast<std::size_t>(
-        std::upper_bound(list.begin(), list.end(), TrafficEntry{position, 0, 0, 0, slot, 0}) - list.begin());
+    auto i = first_at(list, position);
+    while (i < list.size() && list[i].position == position && list[i].slot <= slot) ++i;
+    return i;
   }
+  /// First entry that does not sort before (position, slot).
   [[nodiscard]] static std::size_t lower(List list, double position, std::uint32_t slot) {
-    return static_cast<std::size_t>(
-        std::lower_bound(list.begin(), list.end(), TrafficEntry{position, 0, 0, 0, slot, 0}) - list.begin());
+    auto i = first_at(list, position);
+    while (i < list.size() && list[i].position == position && list[i].slot < slot) ++i;
+    return i;
   }
 
   /// First entry at `position` or beyond: a binary search without branches to mispredict.
@@ -181,14 +269,15 @@ class TrafficIndex {
   }
 
   static void offer(TrafficHit& best, TrafficEntry const& entry, bool is_object, double gap) {
-    if (gap < best.gap) best = {entry.slot, entry.id, is_object, gap, entry.speed};
+    if (gap < best.gap) best = {entry.slot, entry.id, is_object, gap, entry.speed, entry.front + entry.rear};
   }
 
-  static void front_on_corridor(List list, bool is_object, map::LaneCorridor const& corridor, TrafficQuery const& query,
+  template <class Query>
+  static void front_on_corridor(List list, bool is_object, map::LaneCorridor const& corridor, Query const& query,
                                 std::size_t start, TrafficHit& best) {
     auto const& pieces = corridor.pieces;
     for (std::size_t p = query.piece, i = start;;) {
-      while (i < list.size() && list[i].slot == query.slot && !is_object)
+      while (i < list.size() && skips(query, list[i], is_object, list[i].position - pieces[p].index_offset - query.s))
         ++i;  // the asker's own, reached over from another lane
       if (i < list.size() && list[i].position <= pieces[p].end + 1.0 + pieces[p].index_offset) {
         double const s = list[i].position - pieces[p].index_offset;
@@ -200,11 +289,13 @@ class TrafficIndex {
     }
   }
 
-  static void rear_on_corridor(List list, bool is_object, map::LaneCorridor const& corridor, TrafficQuery const& query,
+  template <class Query>
+  static void rear_on_corridor(List list, bool is_object, map::LaneCorridor const& corridor, Query const& query,
                                std::size_t start, TrafficHit& best) {
     auto const& pieces = corridor.pieces;
     for (std::size_t p = query.piece, i = start;;) {  // candidates lie before i
-      while (i > 0 && list[i - 1].slot == query.slot && !is_object) --i;
+      while (i > 0 && skips(query, list[i - 1], is_object, query.s - (list[i - 1].position - pieces[p].index_offset)))
+        --i;
       if (i > 0 && list[i - 1].position >= pieces[p].begin - 1.0 + pieces[p].index_offset) {
         auto const& entry = list[i - 1];
         double const s = entry.position - pieces[p].index_offset;
@@ -216,14 +307,17 @@ class TrafficIndex {
     }
   }
 
-  static void front_on_feeder(List list, bool is_object, map::Feeder const& feeder, TrafficQuery const& query,
+  template <class Query>
+  static void front_on_feeder(List list, bool is_object, map::Feeder const& feeder, Query const& query,
                               TrafficHit& best) {
     double const from = query.s <= feeder.begin ? feeder.index_begin : feeder.index_at(query.s);
     // Rounding of the mapping must not lose an entry: start early, then go on to the first that is ahead.
     for (auto i = first_at(list, from - 1e-6); i < list.size() && list[i].position <= feeder.index_end; ++i) {
       auto const& entry = list[i];
-      if (entry.position < feeder.index_begin || (entry.slot == query.slot && !is_object)) continue;
+      if (entry.position < feeder.index_begin) continue;
       double const s = feeder.image(entry.position);
+      if (skips(query, entry, is_object, s - query.s)) continue;
+      if (query.by_rule && feeder.by_rule && s + entry.front < feeder.free_until) continue;
       bool const ahead = s > query.s || (s == query.s && entry.slot > query.slot);
       if (!ahead) continue;
       if (s - query.s <= horizon)
@@ -232,14 +326,16 @@ class TrafficIndex {
     }
   }
 
-  static void rear_on_feeder(List list, bool is_object, map::Feeder const& feeder, TrafficQuery const& query,
+  template <class Query>
+  static void rear_on_feeder(List list, bool is_object, map::Feeder const& feeder, Query const& query,
                              TrafficHit& best) {
     double const to = query.s >= feeder.end ? feeder.index_end : feeder.index_at(query.s);
     for (auto i = upper(list, to + 1e-6, std::numeric_limits<std::uint32_t>::max());
          i > 0 && list[i - 1].position >= feeder.index_begin; --i) {
       auto const& entry = list[i - 1];
-      if (entry.position > feeder.index_end || (entry.slot == query.slot && !is_object)) continue;
+      if (entry.position > feeder.index_end) continue;
       double const s = feeder.image(entry.position);
+      if (skips(query, entry, is_object, query.s - s)) continue;
       bool const behind = s < query.s || (s == query.s && entry.slot < query.slot);
       if (!behind) continue;
       if (query.s - s <= horizon)

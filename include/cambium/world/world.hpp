@@ -9,6 +9,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -61,7 +62,8 @@ class World {
   using Dynamics = DynamicModelType;
   using Observer = ObserverType;
   using State = typename Dynamics::State;
-  using FrameType = Frame<State, typename Set::Memory>;
+  using FrameType =
+      Frame<State, typename Set::Memory, ExecutionMemoryOf<Execution, State>, detail::PastOf<State, Observer>>;
   using Record = typename FrameType::Record;
   using RosterType = Roster<Behavior, Execution, Dynamics, Observer>;
   using View = ObservedWorld<World>;
@@ -78,7 +80,8 @@ class World {
     geometry::Shape shape{};                                             ///< a car where not given
     Behavior behavior{};
     Goal goal{};
-    std::optional<map::Route> route{};  ///< else the shortest to the goal; without a goal straight on
+    std::optional<map::Route> route{};                ///< else the shortest to the goal; without a goal straight on
+    std::shared_ptr<map::RoadCorridor const> road{};  ///< instead of a route: see `map::build_free_corridor`
     Execution execution{};
     Dynamics dynamics{};
     Observer observer{};
@@ -140,77 +143,55 @@ class World {
   /// its lane, its route or its parameters are no good. O(agents), plus routing.
   AgentId add(AgentSpec const& spec) {
     AgentId const id = spec.id.value_or(static_cast<AgentId>(roster_->next_agent_id));
-    std::string const where = "agent " + to_string(id);
-    if (!is_valid(id))
-      throw WorldError(where, "there is no such id, or no further one is free", "give an id that nobody has");
-    if (roster_->slot_of(id))
-      throw WorldError(where, "the world has an agent of that id already", "leave the id out to get a free one");
-    detail::check_entering(spec, where);
-    LaneId const lane = spec.route ? detail::entering_lane(*map_, spec.position, spec.heading, *spec.route, where)
-                                   : detail::entering_lane(*map_, spec.position, spec.heading, where);
-    auto const route = detail::entering_route(*map_, lane, spec.route, spec.goal, where);
-    auto const known = roster_->corridors.find(route.lanes);
-    auto const road = known != roster_->corridors.end() ? known->second : map::build_road_corridor(*map_, route);
-    Record record;
-    record.lane = detail::entering_position(*map_, spec, *road, lane, where);
-    auto const& center = road->corridors[record.lane.corridor].center;
-    record.state.time = frame_.time;
-    record.state.x = spec.position.x();
-    record.state.y = spec.position.y();
-    record.state.heading = spec.heading.value_or(center.pose(record.lane.s).heading);
-    record.state.speed = spec.speed;
-    record.memory = Set::initial_memory(spec.behavior);
-
+    auto entrant = detail::entrant<World>(*map_, *roster_, spec, id, frame_.time);
     auto& roster = writable_roster();
-    auto const slot = static_cast<std::ptrdiff_t>(std::lower_bound(roster.agents.begin(), roster.agents.end(), id,
-                                                                   [](auto const& a, AgentId b) { return a.id < b; }) -
-                                                  roster.agents.begin());
-    roster.corridors.emplace(route.lanes, road);
-    roster.next_agent_id = std::max(roster.next_agent_id, static_cast<std::uint32_t>(id) + 1);
-    roster.agents.insert(roster.agents.begin() + slot,
-                         {id, spec.shape, road, spec.behavior, spec.execution, spec.dynamics, spec.observer});
-    roster.goals.insert(roster.goals.begin() + slot, spec.goal);
-    frame_.agents.insert(frame_.agents.begin() + slot, record);
+    if (spec.road) detail::enter_free_road(roster, spec.road, entrant.agent.road);
+    auto const slot = roster.insert(std::move(entrant.agent), std::move(entrant.goal), entrant.lanes);
+    frame_.agents.insert(frame_.agents.begin() + static_cast<std::ptrdiff_t>(slot), entrant.record);
+    pass_goals(slot, frame_.agents[slot]);
     scratch_.forget();
     return id;
   }
 
   /// Removes an agent. Throws `WorldError` if there is no such agent. O(agents).
   void remove(AgentId id) {
-    auto const slot = static_cast<std::ptrdiff_t>(slot_of(id));
-    auto& roster = writable_roster();
-    roster.agents.erase(roster.agents.begin() + slot);
-    roster.goals.erase(roster.goals.begin() + slot);
-    frame_.agents.erase(frame_.agents.begin() + slot);
+    auto const slot = slot_of(id);
+    writable_roster().erase(slot);
+    frame_.agents.erase(frame_.agents.begin() + static_cast<std::ptrdiff_t>(slot));
     scratch_.forget();
   }
 
   /// Removes the agents that no longer take part in traffic; returns how many. They stay until then, with their last
   /// state. O(agents).
   std::size_t remove_departed() {
-    auto const departed = [this](std::size_t slot) {
-      auto const status = frame_.agents[slot].status;
-      return status != AgentStatus::driving && status != AgentStatus::not_started;
-    };
     std::vector<std::size_t> staying;
     for (std::size_t slot = 0; slot < size(); ++slot)
-      if (!departed(slot)) staying.push_back(slot);
-    auto const count = size() - staying.size();
-    if (count == 0) return 0;
-    auto& roster = writable_roster();
-    for (std::size_t to = 0; to < staying.size(); ++to) {
-      if (to == staying[to]) continue;
-      roster.agents[to] = std::move(roster.agents[staying[to]]);
-      roster.goals[to] = std::move(roster.goals[staying[to]]);
-      frame_.agents[to] = frame_.agents[staying[to]];
-    }
-    auto const gone = static_cast<std::ptrdiff_t>(staying.size());
-    roster.agents.erase(roster.agents.begin() + gone, roster.agents.end());
-    roster.goals.erase(roster.goals.begin() + gone, roster.goals.end());
-    frame_.agents.erase(frame_.agents.begin() + gone, frame_.agents.end());
-    std::erase_if(roster.corridors, [](auto const& entry) { return entry.second.use_count() == 1; });
+      if (auto const status = frame_.agents[slot].status;
+          status == AgentStatus::driving || status == AgentStatus::not_started)
+        staying.push_back(slot);
+    auto const departed = size() - staying.size();
+    if (departed == 0) return 0;
+    writable_roster().keep(staying);
+    for (std::size_t to = 0; to < staying.size(); ++to) frame_.agents[to] = frame_.agents[staying[to]];
+    frame_.agents.erase(frame_.agents.end() - static_cast<std::ptrdiff_t>(departed), frame_.agents.end());
     scratch_.forget();
-    return count;
+    return departed;
+  }
+
+  /// Sets the phases of a traffic light of the map; until then it is off. Throws `WorldError` for a light that the map
+  /// does not have and for numbers that are no plan. O(lights).
+  void set_light(LightId id, map::LightPlan const& plan) {
+    std::string const where = "light " + to_string(id);
+    if (index_of(id) >= map_->lights().size())
+      throw WorldError(where, "the map has no such traffic light", "see Map::lights for those it has");
+    bool const is_plan = plan.cycle >= 0.0 && plan.cycle <= 86'400.0 && plan.yellow >= 0.0 &&
+                         std::abs(plan.green_begin) <= 86'400.0 && plan.green_end >= plan.green_begin;
+    if (!is_plan || !std::isfinite(plan.yellow + plan.green_end))
+      throw WorldError(where, "its plan has a negative phase, or one of more than a day",
+                       "give green_begin <= green_end within the cycle");
+    auto& lights = writable_roster().lights;
+    lights.resize(std::max(lights.size(), index_of(id) + 1));
+    lights[index_of(id)] = plan;
   }
 
   /// Puts a static object in the way; returns its id. Throws `WorldError` for one of more than 10 km around.
@@ -219,15 +200,10 @@ class World {
     double around = 0.0;
     for (std::size_t i = 0; i < outline.size(); ++i) around += (outline.edge(i).second - outline.edge(i).first).norm();
     if (around > 10'000.0) throw WorldError("object", "its outline is longer than 10 km", "give coordinates in metres");
-    auto& roster = writable_roster();
-    StaticObject object{static_cast<ObjectId>(roster.next_object_id), std::move(outline)};
-    auto const entries = detail::object_entries(*map_, object, static_cast<std::uint32_t>(roster.objects.size()));
-    roster.object_entries.reserve(roster.object_entries.size() + entries.size());
-    roster.objects.push_back(std::move(object));
-    for (auto const& entry : entries)
-      roster.object_entries.insert(std::upper_bound(roster.object_entries.begin(), roster.object_entries.end(), entry),
-                                   entry);
-    return static_cast<ObjectId>(roster.next_object_id++);
+    StaticObject object{static_cast<ObjectId>(roster_->next_object_id), std::move(outline)};
+    auto const lanes =
+        detail::object_entries(*map_, roster_->free_roads, object, static_cast<std::uint32_t>(roster_->objects.size()));
+    return writable_roster().insert(std::move(object), lanes);
   }
 
   /// Takes it away. Throws `WorldError` if there is no such object. O(objects).
@@ -235,12 +211,7 @@ class World {
     auto const& objects = roster_->objects;
     auto const at = std::find_if(objects.begin(), objects.end(), [id](StaticObject const& o) { return o.id == id; });
     if (at == objects.end()) throw WorldError("object " + to_string(id), "the world has no such object");
-    auto const place = at - objects.begin();
-    auto& roster = writable_roster();
-    roster.objects.erase(roster.objects.begin() + place);
-    auto const slot = static_cast<std::uint32_t>(place);
-    std::erase_if(roster.object_entries, [slot](TrafficEntry const& entry) { return entry.slot == slot; });
-    for (auto& entry : roster.object_entries) entry.slot -= entry.slot > slot;
+    writable_roster().erase_object(static_cast<std::size_t>(at - objects.begin()));
   }
 
   /// The agent's place in roster and frame. Throws `WorldError` if there is no such agent. O(log agents).
@@ -256,13 +227,7 @@ class World {
   /// The agent's situation as goals ask it. Throws as `slot_of`.
   [[nodiscard]] GoalSituation situation(AgentId id) const {
     auto const slot = slot_of(id);
-    auto const& [state, lane, action, memory, status] = frame_.agents[slot];
-    auto const& agent = roster_->agents[slot];
-    auto const& piece = agent.road->corridors[lane.corridor].pieces[lane.piece];
-    return {{state.x, state.y, state.heading},
-            agent.shape,
-            piece.lane,
-            lane.s + piece.index_offset - map_->lane(piece.lane).index_begin};
+    return situation(slot, frame_.agents[slot]);
   }
 
   /// The lane that the agent is in, by its lane corridor. Throws as `slot_of`.
@@ -297,8 +262,11 @@ class World {
     auto& record = frame_.agents[slot];
     record.state = state;
     record.action = {};
+    record.execution = {};
+    if (record.status != AgentStatus::driving) detail::forget_past(record);
     record.status = AgentStatus::driving;
     record.lane = detail::relocate(*roster_->agents[slot].road, record.lane, {state.x, state.y, state.heading});
+    pass_goals(slot, record);
     scratch_.fresh = false;
   }
 
@@ -320,6 +288,9 @@ class World {
 
   /// The traffic index; views use it. Up to date after `observe` and within a step.
   [[nodiscard]] TrafficIndex const& traffic() const { return scratch_.traffic; }
+
+  /// The index of the plane, likewise; only where behaviours look around.
+  [[nodiscard]] PlaneIndex const& plane() const { return scratch_.plane; }
 
   /// The largest time that a world may begin at [s]: steps are exact to well below a microsecond there.
   static constexpr double latest_time = 1e9;
@@ -344,8 +315,15 @@ class World {
         auto const* const segment = road_under(slot + 6);
         CAMBIUM_PREFETCH(segment);
         CAMBIUM_PREFETCH(segment + 1);
+        if constexpr (Set::looks_beside) {
+          CAMBIUM_PREFETCH(road_beside(slot + 6, true));
+          CAMBIUM_PREFETCH(road_beside(slot + 6, false));
+        }
       }
-      advance(slot, dt, end, next[slot], result);
+      if constexpr (Observer::perfect)
+        advance_inlined(slot, dt, end, next[slot], result);
+      else
+        advance(slot, dt, end, next[slot], result);
     }
     scratch_.remember(frame_);
     frame_.agents.swap(next);
@@ -376,6 +354,31 @@ class World {
   }
 
  private:
+  [[nodiscard]] GoalSituation situation(std::size_t slot, Record const& record) const {
+    auto const& [state, lane] = std::tie(record.state, record.lane);
+    auto const& agent = roster_->agents[slot];
+    auto const& piece = agent.road->corridors[lane.corridor].pieces[lane.piece];
+    return {
+        {state.x, state.y, state.heading},
+        agent.shape,
+        piece.lane,
+        lane.s + piece.index_offset - (is_valid(piece.lane) ? map_->lane(piece.lane).index_begin : piece.index_offset),
+        state.speed,
+        lane.lateral,
+        lane.heading_error,
+        agent.road.get(),
+        lane.corridor,
+        lane.s,
+        record.goals_passed};
+  }
+
+  /// Notes which parts of a sequence of goals an agent in traffic has reached.
+  void pass_goals(std::size_t slot, Record& record) const {
+    auto const* const sequence = std::get_if<GoalSequence>(&roster_->goals[slot]);
+    if (sequence && record.status != AgentStatus::not_started)
+      record.goals_passed = static_cast<std::uint8_t>(sequence->pass(situation(slot, record)));
+  }
+
   void check_fits(FrameType const& frame) const {
     if (frame.agents.size() != roster_->agents.size())
       throw WorldError("World",
@@ -395,31 +398,57 @@ class World {
   void refresh_traffic() {
     if (scratch_.fresh) return;
     detail::refresh_traffic(scratch_.traffic, *map_, *roster_, frame_);
+    if constexpr (Set::looks_around) detail::refresh_plane(scratch_.plane, *roster_, frame_);
     scratch_.fresh = true;
   }
 
   /// Where on its road an agent is whose turn comes soon: loaded ahead, where a world does not fit into the cache.
+  /// (Compilers drop calls to functions that do nothing but prefetch.)
   [[nodiscard]] geometry::Line::Segment const* road_under(std::size_t slot) const {
     auto const& at = frame_.agents[slot].lane;
     return roster_->agents[slot].road->corridors[at.corridor].center.segments().data() + at.segment;
   }
 
-  CAMBIUM_FLATTEN void advance(std::uint32_t slot, double dt, double end, Record& next, StepResult& result) const {
+  /// The same on the lane to the left (right) of it; where there is none, its own place.
+  [[nodiscard]] geometry::Line::Segment const* road_beside(std::size_t slot, bool left) const {
+    auto const& at = frame_.agents[slot].lane;
+    auto const& road = *roster_->agents[slot].road;
+    auto const& piece = road.corridors[at.corridor].pieces[at.piece];
+    auto const side = left ? piece.left : piece.right;
+    if (side == map::no_corridor) return road_under(slot);
+    return road.corridors[side].center.segments().data() + detail::hint_beside(road, at, piece, side).segment;
+  }
+
+  /// All in one function; with observers that would take minutes to compile.
+  CAMBIUM_FLATTEN void advance_inlined(std::uint32_t slot, double dt, double end, Record& next,
+                                       StepResult& result) const {
+    advance(slot, dt, end, next, result);
+  }
+
+  void advance(std::uint32_t slot, double dt, double end, Record& next, StepResult& result) const {
     Record const& now = frame_.agents[slot];
     next = now;
     if (now.status != AgentStatus::driving && now.status != AgentStatus::not_started) return;
     auto const& agent = roster_->agents[slot];
     auto const plan = Set::plan(agent.behavior, View(*this, slot), next.memory, dt);
     if (plan.status != PlanStatus::valid) return stop_planning(plan.status, agent.id, next, result, end);
-    auto const executed = agent.execution.execute(plan, now.state, agent.dynamics, end);
+    auto const executed = execute(agent.execution, plan, now.state, agent.dynamics, end, next.execution,
+                                  [&] { return execution_stream(agent.id); });
     if (!executed.valid) return fail(StepProblem::no_execution, agent.id, next, result);
     if (!is_finite(executed.state) || !std::isfinite(plan.action.acceleration + plan.action.steering))
       return fail(StepProblem::not_finite, agent.id, next, result);
+    if constexpr (past_steps_of < Observer >> 0) next.past.push(now.state, now.action.acceleration);
     next.status = AgentStatus::driving;
     next.state = executed.state;
     next.action = plan.action;
+    if (now.status != AgentStatus::driving) detail::forget_past(next);
     detail::move_on_lane(*map_, *agent.road, 0.5 * (now.state.speed + next.state.speed) * dt, next);
     if (next.status != AgentStatus::driving) ++result.left;
+    if (roster_->has_sequences) pass_goals(slot, next);
+  }
+
+  [[nodiscard]] RandomStream execution_stream(AgentId id) const {
+    return {roster_->seed, static_cast<std::uint32_t>(id), static_cast<std::uint32_t>(frame_.step), execution_purpose};
   }
 
   static void stop_planning(PlanStatus status, AgentId id, Record& next, StepResult& result, double end) {

@@ -126,7 +126,7 @@ class LaneMarker {
   LaneMarker(std::vector<RecordedLane> const& lanes, std::vector<LaneArea> const& areas)
       : lanes_(lanes), areas_(areas) {
     for (std::size_t i = 0; i < areas.size(); ++i) {
-      if (areas[i].empty()) continue;
+      if (areas[i].empty() || lanes[i].kind == RecordedLaneKind::way) continue;
       add_border(i, areas[i].left, areas[i].right, 1.0);
       add_border(i, areas[i].right, areas[i].left, -1.0);
     }
@@ -251,7 +251,8 @@ class LaneMarker {
     }
     for (std::size_t lane = 0; lane < areas_.size(); ++lane) {
       bool const candidate = lane != piece.lane && std::count(touching.begin(), touching.end(), lane) == 0;
-      if (candidate && areas_[lane].contains(middle)) return MarkStyle::hidden;
+      if (candidate && lanes_[lane].kind != RecordedLaneKind::way && areas_[lane].contains(middle))
+        return MarkStyle::hidden;
     }
     return style;
   }

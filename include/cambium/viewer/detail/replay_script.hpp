@@ -14,7 +14,7 @@ const canvas = element('view'), context = canvas.getContext('2d');
 const count = data.times.length, agents = data.agents.map(([id, kind, label, front, rear, left, right]) =>
   ({id, kind, label, front, rear, left, right, length: front + rear, width: left + right}));
 const ego = [4, 1].map(kind => agents.findIndex(agent => agent.kind === kind)).find(i => i >= 0) ?? -1;
-const kinds = ['other', 'ego', 'merging', 'static', 'collided'], surfaces = ['asphalt', 'verge', 'crossing'];
+const kinds = ['other', 'ego', 'merging', 'static', 'collided'], surfaces = ['asphalt', 'verge', 'crossing', 'verge'];
 const state = {at: 0, playing: false, follow: false, selected: -1, hovered: -1, lane: null, ids: false};
 const camera = {x: 0, y: 0, scale: 1};   // middle of the view [m], pixels per metre
 let width = 1, height = 1, ratio = 1, colour = {};
@@ -30,7 +30,7 @@ const lanes = data.lanes.map(([kind, label, points]) => {
   path.closePath();
   return {kind, label, path};
 });
-const surfacePaths = [1, 0, 2].map(kind => {
+const surfacePaths = [3, 1, 0, 2].map(kind => {
   const path = new Path2D();
   for (const lane of lanes) if (lane.kind === kind) path.addPath(lane.path);
   return [surfaces[kind], path];
@@ -160,14 +160,19 @@ function drawAgent(i) {
   const pose = poseOf(i, state.at), agent = agents[i];
   if (!pose) return;
   const {length, width: breadth, front, rear, right} = agent, px = 1 / camera.scale;
+  const fixed = agent.kind === 3, walks = !fixed && Math.max(length, breadth) < 1.2;
+  const rides = !fixed && !walks && breadth < 1 && length < 3;
   // Vehicles are to scale, but no smaller than can be seen from afar.
-  const along = Math.max(1, 10 * px / Math.max(length, .5)), across = Math.max(1, 5 * px / Math.max(breadth, .5));
+  const along = walks ? Math.max(1, 7 * px / Math.max(length, breadth)) : Math.max(1, 10 * px / Math.max(length, .5));
+  const across = walks || rides ? along : Math.max(1, 5 * px / Math.max(breadth, .5));
   context.save();
   context.translate(pose.x, pose.y);
   context.rotate(pose.heading);
   context.scale(along, across);
-  const body = new Path2D(), fixed = agent.kind === 3;
-  body.roundRect(-rear, -right, length, breadth, fixed ? .05 : Math.min(.28 * breadth, .12 * length));
+  const body = new Path2D(), x = (front - rear) / 2, y = (agent.left - right) / 2;
+  if (rides) drawWheels(agent, px / across);
+  if (walks || rides) body.ellipse(x, y, walks ? .33 * length : .16 * length, .5 * breadth, 0, 0, 7);   // shoulders
+  else body.roundRect(-rear, -right, length, breadth, fixed ? .05 : Math.min(.28 * breadth, .12 * length));
   if (i === state.selected || i === state.hovered || [1, 4].includes(agent.kind)) {
     context.strokeStyle = colour.ring;
     context.lineWidth = (i === state.selected ? 6 : 4) * px / across;
@@ -178,13 +183,36 @@ function drawAgent(i) {
   context.strokeStyle = colour.outline;
   context.lineWidth = (along > 1 ? .6 : 1.1) * px / across;
   context.stroke(body);
-  if (!fixed && along === 1) drawFace(agent, pose);
+  if (walks || rides) {   // the head, a little ahead of the shoulders
+    context.beginPath();
+    context.arc(x + .08 * length, y, .24 * breadth, 0, 7);
+    context.fillStyle = colour.glass;
+    context.fill();
+  } else if (!fixed && along === 1) drawFace(agent, pose);
   else if (!fixed && pose.acceleration < -2) {
     context.fillStyle = colour.brake;
     context.fillRect(-rear, -right, .3 * length, breadth);
   }
   context.restore();
   if (state.ids && camera.scale > 1.5) drawNumber(agent, pose);
+}
+// Two wheels, the frame between them, and a handlebar.
+function drawWheels({length, width: breadth, front, rear, left, right}, px) {
+  const y = (left - right) / 2, bar = front - .3 * length, wheel = .36 * length;
+  const line = (x0, y0, x1, y1, thick) => {
+    context.lineWidth = Math.max(thick, px);
+    context.beginPath();
+    context.moveTo(x0, y0);
+    context.lineTo(x1, y1);
+    context.stroke();
+  };
+  context.strokeStyle = colour.outline;
+  context.lineCap = 'round';
+  line(-rear, y, front, y, .05);
+  line(-rear + .05, y, -rear + wheel, y, .11);
+  line(front - wheel, y, front - .05, y, .11);
+  line(bar, y - .5 * breadth, bar, y + .5 * breadth, .07);
+  context.lineCap = 'butt';
 }
 // Windscreen and rear window say where the front is; the tail lights up when the vehicle brakes.
 function drawFace({length, width: breadth, front, rear, left, right}, pose) {

@@ -3,9 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <limits>
-#include <optional>
+#include <memory>
+#include <span>
 #include <string>
+#include <tuple>
 #include <variant>
 #include <vector>
 
@@ -16,92 +17,17 @@
 #include "cambium/map/build_corridor.hpp"
 #include "cambium/map/lane_position.hpp"
 #include "cambium/map/map.hpp"
+#include "cambium/world/detail/check_described.hpp"
+#include "cambium/world/detail/entering_route.hpp"
+#include "cambium/world/detail/objects_on_lanes.hpp"
 #include "cambium/world/detail/on_lanes.hpp"
+#include "cambium/world/detail/seen.hpp"
+#include "cambium/world/frame.hpp"
 
 namespace cambium::detail {
 
-/// Farthest that an agent may enter from the nearest lane [m].
-inline constexpr double entering_radius = 5.0;
-/// Farthest that an agent with a route may enter from the path of one of its lanes [m].
-inline constexpr double path_radius = 2.5;
-
-/// The lane of `route` whose path comes nearest to `position`, a radian off `heading` counting as 3 m: a path that
-/// swings over to its neighbour counts as its own lane there. Throws `WorldError` where none comes near, or only
-/// against it.
-[[nodiscard]] inline LaneId entering_lane(Map const& map, geometry::Point const& position,
-                                          std::optional<double> heading, map::Route const& route,
-                                          std::string const& where) {
-  if (route.lanes.empty()) throw WorldError(where, "its route is empty", "leave the route out to get the shortest");
-  LaneId best = none<LaneId>;
-  double smallest = std::numeric_limits<double>::infinity();
-  for (auto const id : route.lanes) {
-    if (index_of(id) >= map.lanes().size())
-      throw WorldError(where, "its route names a lane that the map does not have", "use Map::find_lane");
-    auto const& lane = map.lane(id);
-    auto const foot = lane.path.project(position);
-    double const distance = std::hypot(foot.lateral, std::max({-foot.s, foot.s - lane.length(), 0.0}));
-    double const along = lane.path.pose(foot.s).heading;
-    double const turn = heading ? std::abs(geometry::angle_difference(*heading, along)) : 0.0;
-    if (distance > path_radius || turn > geometry::pi / 2 || distance + 3.0 * turn >= smallest) continue;
-    smallest = distance + 3.0 * turn;
-    best = id;
-  }
-  if (!is_valid(best))
-    throw WorldError(where, "no lane of its route comes within 2.5 m of its position, in its direction",
-                     "begin the route there");
-  return best;
-}
-
-/// The drivable lane at `position`; without a heading the nearest one. Throws `WorldError` where there is none.
-[[nodiscard]] inline LaneId entering_lane(Map const& map, geometry::Point const& position,
-                                          std::optional<double> heading, std::string const& where) {
-  if (heading) {
-    if (auto const hit = map.nearest_lane({position.x(), position.y(), *heading}, entering_radius)) return hit->lane;
-  } else {
-    for (auto const& hit : map.lanes_near(position, entering_radius))
-      if (map.lane(hit.lane).drivable()) return hit.lane;
-  }
-  throw WorldError(
-      where, "no drivable lane within " + std::to_string(static_cast<int>(entering_radius)) + " m of its position",
-      "enter on a lane and along its direction");
-}
-
-/// The lanes where a goal's route may end; none for goals without a place.
-[[nodiscard]] inline std::vector<LaneId> destinations(Map const& map, Goal const& goal, std::string const& where) {
-  std::vector<LaneId> lanes;
-  if (auto const* lane = std::get_if<ReachLane>(&goal)) {
-    if (index_of(lane->lane) >= map.lanes().size())
-      throw WorldError(where, "its goal names lane " + to_string(lane->lane) + ", which the map does not have",
-                       "use Map::find_lane");
-    if (!(lane->from <= lane->to))
-      throw WorldError(where, "its goal's stretch of lane ends before it begins", "give from <= to");
-    lanes.push_back(lane->lane);
-  }
-  if (auto const* polygon = std::get_if<ReachPolygon>(&goal)) {
-    auto points = points_around(polygon->area, 1.0);
-    points.insert(points.begin(), polygon->area.bounding_box().center());
-    for (auto const& p : points)
-      for (auto const& hit : map.lanes_near(p, entering_radius))
-        if (map.lane(hit.lane).drivable() && std::find(lanes.begin(), lanes.end(), hit.lane) == lanes.end())
-          lanes.push_back(hit.lane);
-    if (lanes.empty())
-      throw WorldError(where, "its goal, a polygon, is not near a drivable lane",
-                       "give the route too, or a goal on a lane");
-  }
-  return lanes;
-}
-
-/// The route from `start`: as given, else to the goal, else straight on. Throws `WorldError` where there is none.
-[[nodiscard]] inline map::Route entering_route(Map const& map, LaneId start, std::optional<map::Route> const& given,
-                                               Goal const& goal, std::string const& where) {
-  if (given) return *given;
-  auto const ends = destinations(map, goal, where);
-  if (ends.empty()) return map::straight_route(map, start);
-  for (auto const end : ends)
-    if (auto route = map.shortest_route(start, end)) return *route;
-  throw WorldError(where, "there is no route from " + map.describe(start) + " to " + map.describe(ends.front()),
-                   "choose a goal that the lane leads to");
-}
+/// Times no farther apart are the same [s].
+inline constexpr double same_time = 1e-9;
 
 /// Where on `road` an agent of `spec` enters, in lane `lane`: in the main corridor if that holds the lane.
 template <class Spec>
@@ -128,18 +54,41 @@ template <class Spec>
   return at;
 }
 
+/// The free corridor `given` as a world of `map` has it, which has met `known` before: with lane coordinates of its
+/// own. Throws `WorldError` where it has lanes.
+[[nodiscard]] inline std::shared_ptr<map::RoadCorridor const> numbered_road(
+    Map const& map, std::span<FreeRoad const> known, std::shared_ptr<map::RoadCorridor const> const& given,
+    std::string const& where) {
+  constexpr double apart = 10.0;  // [m]
+  double begin = lane_coordinate_end(map);
+  for (auto const& road : known) {
+    if (road.given == given || road.numbered == given) return road.numbered;
+    auto const& way = road.numbered->corridors.front();
+    begin = std::max(begin, way.pieces.front().index_offset + std::ceil(way.length() + apart));
+  }
+  if (given->corridors.size() != 1 || given->corridors.front().pieces.size() != 1 ||
+      is_valid(given->corridors.front().pieces.front().lane))
+    throw WorldError(where, "its road is no free corridor", "give the route, or what build_free_corridor returned");
+  auto road = std::make_shared<map::RoadCorridor>(*given);
+  road->corridors.front().pieces.front().index_offset = begin;
+  return road;
+}
+
+/// Where on the free corridor `road` an agent of `spec` enters. Throws `WorldError` where that is far.
+template <class Spec>
+[[nodiscard]] map::LanePosition entering_free(Spec const& spec, map::RoadCorridor const& road,
+                                              std::string const& where) {
+  auto at = map::locate(road, 0, {spec.position.x(), spec.position.y(), spec.heading.value_or(0.0)});
+  auto const& way = road.corridors.front();
+  double const beyond = std::max({-at.s, at.s - way.length(), 0.0});
+  if (!(std::hypot(at.lateral, beyond) <= entering_radius + 0.5 * way.width_at(at.s)))
+    throw WorldError(where, "its position is more than 5 m from its road", "enter on it");
+  if (!spec.heading) at.heading_error = 0.0;
+  return at;
+}
+
 /// Speeds beyond this are no vehicle's [m/s].
 inline constexpr double fastest = 1000.0;
-
-/// Throws `ParameterError` where a parameter of a described struct is out of its range.
-template <class Parameters>
-void check_if_described(Parameters const& parameters, std::string const& where) {
-  if constexpr (Described<Parameters>) check_parameters(parameters, where);
-}
-template <class... Alternatives>
-void check_if_described(std::variant<Alternatives...> const& any, std::string const& where) {
-  std::visit([&where](auto const& parameters) { check_if_described(parameters, where); }, any);
-}
 
 /// Throws `WorldError` or `ParameterError` where a number of `spec` is no good.
 template <class Spec>
@@ -152,9 +101,82 @@ void check_entering(Spec const& spec, std::string const& where) {
   check_if_described(spec.shape, where);
   check_if_described(spec.execution, where);
   check_if_described(spec.dynamics, where);
-  check_if_described(spec.observer, where);
+  check_observer(spec.observer, where);
   if (!(spec.shape.length() > 0 && spec.shape.width() > 0))
     throw WorldError(where, "its shape has no length or no width", "leave the shape out to get a car");
+}
+
+/// Where an agent enters. `lanes`, its route, is empty on a free corridor.
+struct Entrance {
+  std::shared_ptr<map::RoadCorridor const> road;
+  std::vector<LaneId> lanes;
+  LaneId lane = none<LaneId>;
+  map::LanePosition place;
+};
+
+/// Where an agent of `spec` enters. Throws `WorldError` where its lane, its route or its road is no good.
+template <class Roster, class Spec>
+[[nodiscard]] Entrance entrance(Map const& map, Roster const& roster, Spec const& spec, std::string const& where) {
+  if (spec.road) {
+    auto const road = numbered_road(map, roster.free_roads, spec.road, where);
+    return {road, {}, none<LaneId>, entering_free(spec, *road, where)};
+  }
+  LaneId const lane = spec.route ? entering_lane(map, spec.position, spec.heading, *spec.route, where)
+                                 : entering_lane(map, spec.position, spec.heading, where);
+  auto const route = entering_route(map, lane, spec.route, spec.goal, where);
+  auto const known = roster.corridors.find(route.lanes);
+  auto const road = known != roster.corridors.end() ? known->second : map::build_road_corridor(map, route);
+  return {road, route.lanes, lane, entering_position(map, spec, *road, lane, where)};
+}
+
+/// Notes a free corridor that nobody has entered on before, and which objects stand on it.
+template <class Roster>
+void enter_free_road(Roster& roster, std::shared_ptr<map::RoadCorridor const> const& given,
+                     std::shared_ptr<map::RoadCorridor const> const& numbered) {
+  for (auto const& known : roster.free_roads)
+    if (known.numbered == numbered) return;
+  roster.free_roads.push_back({given, numbered});
+  for (std::uint32_t i = 0; i < roster.objects.size(); ++i)
+    enter_object(numbered->corridors.front(), roster.objects[i], i, roster.object_entries);
+  std::sort(roster.object_entries.begin(), roster.object_entries.end());
+}
+
+/// An agent about to enter: all that a world takes in of it. `lanes`: its route.
+template <class World>
+struct Entrant {
+  typename World::RosterType::Agent agent;
+  Goal goal;
+  std::vector<LaneId> lanes;
+  typename World::Record record;
+};
+
+/// The agent of `spec`, of identity `id`, that enters at `time` [s]. Throws `WorldError` or `ParameterError` where its
+/// numbers, its id, its lane, its route or its parameters are no good. O(agents), plus routing.
+template <class World>
+[[nodiscard]] Entrant<World> entrant(Map const& map, typename World::RosterType const& roster,
+                                     typename World::AgentSpec const& spec, AgentId id, double time) {
+  using Set = typename World::Behaviors;
+  std::string const where = "agent " + to_string(id);
+  if (!is_valid(id))
+    throw WorldError(where, "there is no such id, or no further one is free", "give an id that nobody has");
+  if (roster.slot_of(id))
+    throw WorldError(where, "the world has an agent of that id already", "leave the id out to get a free one");
+  check_entering(spec, where);
+  auto const [road, lanes, lane, place] = entrance(map, roster, spec, where);
+  typename World::Record record;
+  record.lane = place;
+  record.state.time = time;
+  record.state.x = spec.position.x();
+  record.state.y = spec.position.y();
+  record.state.heading = spec.heading.value_or(road->corridors[place.corridor].center.pose(place.s).heading);
+  record.state.speed = spec.speed;
+  record.memory = Set::initial_memory(spec.behavior);
+  if (Set::start_time(spec.behavior) > time + same_time) record.status = AgentStatus::not_started;
+  forget_past(record);
+  return {{id, spec.shape, road, spec.behavior, spec.execution, spec.dynamics, spec.observer},
+          entering_goal(spec.goal, lane, where),
+          lanes,
+          record};
 }
 
 }  // namespace cambium::detail

@@ -5,29 +5,52 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <map>
 #include <vector>
 
+#include "cambium/behavior/view.hpp"
 #include "cambium/map/lane_position.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/world/frame.hpp"
-#include "cambium/world/static_object.hpp"
+#include "cambium/world/plane_index.hpp"
 #include "cambium/world/traffic_index.hpp"
 
 namespace cambium::detail {
 
+/// The square that holds all places within `distance` [m] of an agent, however it is turned.
+template <class State>
+[[nodiscard]] geometry::Box box_around(geometry::Shape const& shape, State const& state, double distance) {
+  double const reach = distance + std::max(shape.front, shape.rear) + std::max(shape.left, shape.right);
+  return {state.x - reach, state.y - reach, state.x + reach, state.y + reach};
+}
+
 /// An agent this close to its path follows it, whatever the borders do: the path of an ending lane crosses one [m].
 inline constexpr double on_path = 0.3;
 
+/// Where beside `at` a lane corridor that is next is about, `piece` being the piece of it that is beside: lanes of one
+/// section are mostly sampled at the same stations.
+[[nodiscard]] inline map::LanePosition hint_beside(map::RoadCorridor const& road, map::LanePosition const& at,
+                                                   map::CorridorPiece const& from, std::uint16_t number) {
+  map::LanePosition hint;
+  hint.piece = number == from.left ? from.left_piece : from.right_piece;
+  auto const& to = road.corridors[number].pieces[hint.piece];
+  auto const passed = at.segment > from.first_segment ? at.segment - from.first_segment : 0;
+  hint.segment =
+      to.first_segment + (to.segments == from.segments ? passed : passed * to.segments / std::max(from.segments, 1u));
+  return hint;
+}
+
 /// The place beside `at` on lane corridor `number` of the same road, for an agent at `pose`: found from the lanes
-/// beside, for a corridor may come by the same place twice. O(lanes of the corridor).
+/// beside, for a corridor may come by the same place twice. O(1) for a corridor that is next, else O(lanes of the
+/// corridor).
 [[nodiscard]] inline map::LanePosition locate_beside(Map const& map, map::RoadCorridor const& road,
                                                      map::LanePosition const& at, std::uint16_t number,
                                                      geometry::Pose const& pose) {
   auto const& from = road.corridors[at.corridor].pieces[at.piece];
   auto const& corridor = road.corridors[number];
-  double const share = (at.s - from.begin) / (from.end - from.begin);
   map::LanePosition hint;
+  if (number == from.left || number == from.right)
+    return map::locate(road, number, pose, hint_beside(road, at, from, number));
+  double const share = (at.s - from.begin) / (from.end - from.begin);
   for (bool const leftwards : {true, false})
     for (LaneId lane = from.lane; is_valid(lane);
          lane = leftwards ? map.lane(lane).left_neighbor : map.lane(lane).right_neighbor)
@@ -39,6 +62,21 @@ inline constexpr double on_path = 0.3;
         return map::locate(road, number, pose, hint);
       }
   return map::locate(road, number, pose);
+}
+
+/// As `locate_beside`, but only what neighbours are found with.
+[[nodiscard]] inline BesidePlace place_beside(Map const& map, map::RoadCorridor const& road,
+                                              map::LanePosition const& at, std::uint16_t number,
+                                              geometry::Pose const& pose) {
+  auto const& from = road.corridors[at.corridor].pieces[at.piece];
+  if (number != from.left && number != from.right) {
+    auto const place = locate_beside(map, road, at, number, pose);
+    return {place.s, place.segment, number, place.piece, 0};
+  }
+  auto const& corridor = road.corridors[number];
+  auto const hint = hint_beside(road, at, from, number);
+  auto const foot = corridor.center.project(pose.position(), hint.segment);
+  return {foot.s, foot.segment, number, corridor.piece_at(foot.s, hint.piece), 0};
 }
 
 /// Finds the new place of an agent that has driven `distance` [m] on its road: in its lane corridor, or in the next one
@@ -111,6 +149,36 @@ template <class Agent, class Record>
   return entry;
 }
 
+/// The first lane coordinate that no lane has: there those of free corridors begin. [m]
+[[nodiscard]] inline double lane_coordinate_end(Map const& map) {
+  if (map.lanes().empty()) return 0.0;
+  auto const& last = map.lanes().back();
+  return last.index_begin + std::ceil(last.length() + 10.0);  // agents beyond its end still count as in it
+}
+
+/// Adds an entry to the list for each drivable lane that the agent reaches into, whatever its own is.
+template <class Agent, class Record>
+void enter_touched(Map const& map, Agent const& agent, Record const& record, TrafficEntry const& entry,
+                   std::vector<TrafficEntry>& list) {
+  auto const& shape = agent.shape;
+  geometry::Point const at{record.state.x, record.state.y};
+  double const radius = std::max(shape.front, shape.rear) + std::max(shape.left, shape.right);
+  auto const first = static_cast<std::ptrdiff_t>(list.size());
+  map.for_each_drivable_near(at, radius, [&](map::LaneHit const& hit) {
+    auto const& lane = map.lane(hit.lane);
+    auto const found = entry_in(lane, hit.s, agent, record, entry);
+    double const turn = record.state.heading - lane.path.pose(hit.s).heading;
+    auto const aside = geometry::extent_along(shape, std::sin(turn), -std::cos(turn));
+    auto const widths = lane.widths_at(std::clamp(hit.s, 0.0, lane.length()), hit.segment);
+    bool const is_beside = hit.lateral - aside.negative > widths.left || hit.lateral + aside.positive < -widths.right;
+    if (is_beside || hit.s + found.front < 0.0 || hit.s - found.rear > lane.length()) return;
+    auto const is_there = [&](TrafficEntry const& other) {  // by another foot point
+      return other.position >= lane.index_begin && other.position <= lane.index_begin + lane.length();
+    };
+    if (std::none_of(list.begin() + first, list.end(), is_there)) list.push_back(found);
+  });
+}
+
 /// Adds an entry to the list for each lane that the agent reaches into: the lanes beside, or where there is none of its
 /// direction, a lane of oncoming traffic. Returns false where it has left its own lane: then for the drivable lane that
 /// it is in, if there is one.
@@ -119,6 +187,10 @@ bool straddle(Map const& map, Agent const& agent, Record const& record, TrafficE
               std::vector<TrafficEntry>& list) {
   auto const& at = record.lane;
   auto const& corridor = agent.road->corridors[at.corridor];
+  if (!is_drivable(corridor.pieces[at.piece].type)) {
+    enter_touched(map, agent, record, entry, list);
+    return true;
+  }
   auto const& lane = map.lane(corridor.pieces[at.piece].lane);
   double const sin = std::sin(at.heading_error), cos = std::cos(at.heading_error);
   auto const reach = geometry::extent_along(agent.shape, sin, -cos);
@@ -155,6 +227,7 @@ bool straddle(Map const& map, Agent const& agent, Record const& record, TrafficE
 template <class Roster, class Frame>
 void refresh_traffic(TrafficIndex& index, Map const& map, Roster const& roster, Frame const& frame) {
   constexpr double nowhere = std::numeric_limits<double>::infinity();
+  double const lanes_end = lane_coordinate_end(map);
   auto const add = [&](std::uint32_t slot, std::vector<TrafficEntry>& straddling) {
     auto const& record = frame.agents[slot];
     auto const& agent = roster.agents[slot];
@@ -167,59 +240,21 @@ void refresh_traffic(TrafficIndex& index, Map const& map, Roster const& roster, 
     }
     bool const is_usual = std::max(agent.shape.left, agent.shape.right) <= usual_half_width &&
                           std::abs(record.lane.heading_error) <= usual_heading_error;
-    if (is_usual && std::abs(record.lane.lateral) <= on_path) return entry;
+    if (is_usual && std::abs(record.lane.lateral) <= on_path && record.lane.index < lanes_end) return entry;
     if (!straddle(map, agent, record, entry, straddling)) entry.position = nowhere;
     return entry;
   };
   index.refresh(frame.agents.size(), add);
 }
 
-/// A polygon's corners and points between them, at most `spacing` [m] apart.
-[[nodiscard]] inline std::vector<geometry::Point> points_around(geometry::Polygon const& outline, double spacing) {
-  std::vector<geometry::Point> points;
-  for (std::size_t i = 0; i < outline.size(); ++i) {
-    auto const [a, b] = outline.edge(i);
-    int const parts = std::max(1, static_cast<int>(std::ceil((b - a).norm() / spacing)));
-    for (int k = 0; k < parts; ++k) points.emplace_back(a + (b - a) * (static_cast<double>(k) / parts));
-  }
-  return points;
-}
-
-/// Index entries of a static object in each drivable lane whose borders it reaches across. `slot`: its place in
-/// the list of objects.
-[[nodiscard]] inline std::vector<TrafficEntry> object_entries(Map const& map, StaticObject const& object,
-                                                              std::uint32_t slot) {
-  struct Stretch {
-    double begin = std::numeric_limits<double>::infinity(), end = -std::numeric_limits<double>::infinity();
-  };
-  std::map<LaneId, Stretch> stretches;
-  for (auto const& p : points_around(object.outline, 0.1))
-    for (auto const& hit : map.lanes_near(p, 0.0)) {
-      if (!map.lane(hit.lane).drivable()) continue;
-      auto& stretch = stretches[hit.lane];
-      stretch.begin = std::min(stretch.begin, hit.s);
-      stretch.end = std::max(stretch.end, hit.s);
-    }
-  for (auto const& lane : map.lanes()) {  // ends of lanes within the outline
-    if (!lane.drivable()) continue;
-    for (double const s : {0.0, lane.length()}) {
-      if (!object.outline.contains(lane.path.pose(s).position())) continue;
-      auto& stretch = stretches[lane.id];
-      stretch.begin = std::min(stretch.begin, s);
-      stretch.end = std::max(stretch.end, s);
-    }
-  }
-  std::vector<TrafficEntry> entries;
-  for (auto const& [lane, stretch] : stretches) {
-    // In parts of at most 10 m: of road users the one counts whose middle is next.
-    int const parts = std::max(1, static_cast<int>(std::ceil((stretch.end - stretch.begin) / 10.0)));
-    double const half = (stretch.end - stretch.begin) / (2 * parts);
-    for (int k = 0; k < parts; ++k) {
-      double const position = map.lane(lane).index_begin + stretch.begin + (2 * k + 1) * half;
-      entries.push_back({position, half, half, 0.0, slot, static_cast<std::uint32_t>(object.id)});
-    }
-  }
-  return entries;
+/// Brings the index of the plane up to date with the agents of a frame.
+template <class Roster, class Frame>
+void refresh_plane(PlaneIndex& index, Roster const& roster, Frame const& frame) {
+  index.refresh(frame.agents.size(), [&](std::uint32_t slot) {
+    auto const& record = frame.agents[slot];
+    if (record.status != AgentStatus::driving) return geometry::Box{};
+    return box_around(roster.agents[slot].shape, record.state, 0.0);
+  });
 }
 
 }  // namespace cambium::detail

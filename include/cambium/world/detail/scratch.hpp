@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "cambium/world/plane_index.hpp"
 #include "cambium/world/traffic_index.hpp"
 
 namespace cambium::detail {
@@ -12,6 +13,7 @@ namespace cambium::detail {
 template <class Frame>
 struct Scratch {
   TrafficIndex traffic;
+  PlaneIndex plane;    ///< only where behaviours look around
   bool fresh = false;  ///< the traffic index is that of the current frame
   std::vector<typename Frame::Record> next;
   std::vector<Frame> history;  ///< ring of frames

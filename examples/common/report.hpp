@@ -11,13 +11,14 @@
 
 #include "roll_out.hpp"
 
-namespace merging {
+namespace examples {
 
 struct Totals {
   std::uint64_t success = 0, collision = 0, time_out = 0, off_road = 0, agents = 0, agent_steps = 0, hard_brakings = 0,
                 steps = 0;
   double speed_sum = 0.0;
   std::uint64_t most_interesting = 0;
+  std::vector<std::uint64_t> counts;
 };
 
 [[nodiscard]] inline Totals total(std::vector<Outcome> const& outcomes) {
@@ -33,13 +34,25 @@ struct Totals {
     t.hard_brakings += o.hard_brakings;
     t.steps += o.steps;
     t.speed_sum += o.speed_sum;
+    t.counts.resize(o.counts.size());
+    for (std::size_t k = 0; k < o.counts.size(); ++k) t.counts[k] += o.counts[k];
     if (o.interest() > outcomes[t.most_interesting].interest()) t.most_interesting = i;
   }
   return t;
 }
 
-[[nodiscard]] inline nlohmann::ordered_json summary(Settings const& settings, Site const& site,
-                                                    std::vector<Outcome> const& outcomes, Totals const& t) {
+/// "lane changes" as a key: "lane_changes".
+[[nodiscard]] inline std::string in_one_word(std::string text) {
+  std::replace(text.begin(), text.end(), ' ', '_');
+  return text;
+}
+
+/// The figures as a file keeps them; `counts` names what the scenarios count. `add_facts(site, json)` beside the site
+/// adds what there is to say about it.
+template <class Site>
+[[nodiscard]] nlohmann::ordered_json summary(Settings const& settings, Site const& site,
+                                             std::vector<Outcome> const& outcomes, Totals const& t,
+                                             std::vector<std::string> const& counts) {
   auto const n = static_cast<double>(settings.scenarios);
   nlohmann::ordered_json json;
   json["map"] = std::filesystem::path(settings.map_file).filename().string();
@@ -47,7 +60,7 @@ struct Totals {
   json["seed"] = settings.seed;
   json["steps"] = settings.steps;
   json["dt"] = dt;
-  json["entrances"] = site.entrances.size();
+  add_facts(site, json);
   json["success"] = static_cast<double>(t.success) / n;
   json["collision"] = static_cast<double>(t.collision) / n;
   json["time_out"] = static_cast<double>(t.time_out) / n;
@@ -55,6 +68,7 @@ struct Totals {
   json["mean_speed"] = t.agent_steps > 0 ? t.speed_sum / static_cast<double>(t.agent_steps) : 0.0;
   json["mean_steps"] = static_cast<double>(t.steps) / n;
   json["hard_brakings"] = t.hard_brakings;
+  for (std::size_t k = 0; k < t.counts.size(); ++k) json[in_one_word(counts[k])] = t.counts[k];
   json["agents"] = t.agents;
   json["agent_steps"] = t.agent_steps;
   json["replayed_scenario"] = t.most_interesting;
@@ -68,7 +82,8 @@ struct Totals {
   return json;
 }
 
-inline void print_table(Settings const& settings, Totals const& t, double seconds) {
+inline void print_table(Settings const& settings, Totals const& t, double seconds,
+                        std::vector<std::string> const& counts) {
   auto const n = static_cast<double>(settings.scenarios);
   auto const percent = [n](std::uint64_t count) { return 100.0 * static_cast<double>(count) / n; };
   auto const steps = static_cast<double>(t.agent_steps);
@@ -82,9 +97,11 @@ inline void print_table(Settings const& settings, Totals const& t, double second
       percent(t.success), percent(t.collision), percent(t.time_out), percent(t.off_road));
   std::printf("  mean speed       %6.2f m/s\n  hard brakings    %6.2f per scenario (harder than %.0f m/s^2)\n",
               t.speed_sum / std::max(1.0, steps), static_cast<double>(t.hard_brakings) / n, -hard_braking);
+  for (std::size_t k = 0; k < t.counts.size(); ++k)
+    std::printf("  %-16s %6.2f per scenario\n", counts[k].c_str(), static_cast<double>(t.counts[k]) / n);
   std::printf("  agent-steps      %.3g in %.2f s: %.3g per second on %llu thread%s, sampling and judging included\n\n",
               steps, seconds, steps / seconds, static_cast<unsigned long long>(settings.threads),
               settings.threads == 1 ? "" : "s");
 }
 
-}  // namespace merging
+}  // namespace examples

@@ -18,19 +18,17 @@
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/evaluation/drivable_area.hpp"
 #include "cambium/evaluation/evaluators.hpp"
-#include "cambium/evaluation/goal_reached.hpp"
 #include "cambium/viewer/record_world.hpp"
+#include "cambium/world/frame.hpp"
 
-#include "scenario.hpp"
-
-namespace merging {
+namespace examples {
 
 inline constexpr double dt = 0.2;             // [s]
 inline constexpr double hard_braking = -4.0;  // [m/s^2]; one hard braking lasts while an agent brakes harder than this
 
+/// What a user sets on the command line.
 struct Settings {
-  std::string map_file = CAMBIUM_SOURCE_DIR "/maps/merging.xodr";
-  std::string out = "out/merging";
+  std::string map_file, out;
   std::uint64_t scenarios = 100, seed = 1, steps = 300, trajectories = 10;
   std::uint64_t threads = std::max(1u, std::thread::hardware_concurrency());
 };
@@ -43,7 +41,8 @@ struct Outcome {
   cambium::AgentId collided_first = cambium::none<cambium::AgentId>, collided_second = collided_first;
   std::uint64_t steps = 0, agent_steps = 0, hard_brakings = 0;
   double speed_sum = 0.0;
-  std::string trajectory;  // CSV rows, where asked for
+  std::vector<std::uint64_t> counts;  // what the scenario counts, see `Words::counts`
+  std::string trajectory;             // CSV rows, where asked for
 
   /// How much there is to see.
   [[nodiscard]] double interest() const {
@@ -57,7 +56,8 @@ struct Outcome {
 inline constexpr char const* trajectory_columns =
     "scenario,time,agent,x,y,heading,speed,acceleration,front,rear,width\n";
 
-inline void append_rows(std::string& rows, std::uint64_t scenario, Simulation const& world) {
+template <class World>
+void append_rows(std::string& rows, std::uint64_t scenario, World const& world) {
   char line[200];
   for (std::size_t i = 0; i < world.size(); ++i) {
     auto const& r = world.frame().agents[i];
@@ -73,7 +73,8 @@ inline void append_rows(std::string& rows, std::uint64_t scenario, Simulation co
 }
 
 /// Adds the last step's agent-steps, speeds and hard brakings; `braking` remembers who brakes hard.
-inline void count_agents(Simulation const& world, std::vector<bool>& braking, Outcome& outcome) {
+template <class World>
+void count_agents(World const& world, std::vector<bool>& braking, Outcome& outcome) {
   for (std::size_t i = 0; i < world.size(); ++i) {
     auto const& r = world.frame().agents[i];
     if (r.status != cambium::AgentStatus::driving) continue;
@@ -88,12 +89,16 @@ inline void count_agents(Simulation const& world, std::vector<bool>& braking, Ou
 /// What there was to see of a scenario, as a recording for the viewers.
 class Film {
  public:
+  template <class Scenario>
   explicit Film(Scenario const& scenario) : recorder_(scenario.world) {
-    for (auto const id : scenario.merging) recorder_.show_as(id, cambium::RecordedAgentKind::merging);
+    for (auto const id : scenario.marked) recorder_.show_as(id, cambium::RecordedAgentKind::merging);
     recorder_.show_as(scenario.ego, cambium::RecordedAgentKind::ego, "ego");
   }
 
-  void record(Simulation const& world) { recorder_.record(world); }
+  template <class World>
+  void record(World const& world) {
+    recorder_.record(world);
+  }
 
   [[nodiscard]] cambium::Recording develop(Outcome const& outcome) {
     for (auto const id : {outcome.collided_first, outcome.collided_second})
@@ -105,17 +110,22 @@ class Film {
   cambium::WorldRecorder recorder_;
 };
 
-/// Rolls one scenario forward until its ego is at its goal, something collides, or time is up; fills `recording` if
-/// there is one.
-[[nodiscard]] inline Outcome run_scenario(Site const& site, Settings const& settings, std::uint64_t number,
-                                          cambium::Recording* recording) {
+/// Rolls one scenario forward until it is done, something collides, or time is up; fills `recording` if there is one.
+///
+/// A `Site` is what an example's scenarios have in common; beside it stand `sample_scenario(site, seed, number)`, whose
+/// result has a `world`, an `ego` and `marked`, the agents that the replay shows in a colour of their own, and
+/// `is_done(scenario)`, which says after each step whether what was to be done is done. A scenario may have `counts`,
+/// which `is_done` keeps up to date.
+template <class Site>
+[[nodiscard]] Outcome run_scenario(Site const& site, Settings const& settings, std::uint64_t number,
+                                   cambium::Recording* recording) {
   auto scenario = sample_scenario(site, settings.seed, static_cast<std::uint32_t>(number));
   auto& world = scenario.world;
   Outcome outcome;
   outcome.agents = static_cast<std::uint32_t>(world.size());
   bool const keep = number < settings.trajectories || recording != nullptr;
-  cambium::Evaluators const judge(cambium::CollisionAny{}, cambium::GoalReached{scenario.ego},
-                                  cambium::DrivableArea{scenario.ego}, cambium::StepCount{settings.steps});
+  cambium::Evaluators const judge(cambium::CollisionAny{}, cambium::DrivableArea{scenario.ego},
+                                  cambium::StepCount{settings.steps});
   std::optional<Film> film;
   if (recording != nullptr) film.emplace(scenario);
   std::vector<bool> braking(world.size(), false);
@@ -133,12 +143,14 @@ class Film {
     outcome.off_road = outcome.off_road || verdict.off_road;
     outcome.collided_first = verdict.collision_first;
     outcome.collided_second = verdict.collision_second;
+    bool const done = is_done(scenario);
     if (verdict.any_collision)
       outcome.kind = Outcome::Kind::collision;
-    else if (verdict.goal_reached)
+    else if (done)
       outcome.kind = Outcome::Kind::success;
-    is_over = verdict.any_collision || verdict.goal_reached || verdict.timed_out;
+    is_over = verdict.any_collision || done || verdict.timed_out;
   }
+  if constexpr (requires { scenario.counts; }) outcome.counts = scenario.counts;
   if (film) *recording = film->develop(outcome);
   return outcome;
 }
@@ -171,7 +183,8 @@ class Progress {
 };
 
 /// Runs all scenarios; each thread takes the next one that nobody has. The outcomes do not depend on the threads.
-[[nodiscard]] inline std::vector<Outcome> run_all(Site const& site, Settings const& settings) {
+template <class Site>
+[[nodiscard]] std::vector<Outcome> run_all(Site const& site, Settings const& settings) {
   std::vector<Outcome> outcomes(settings.scenarios);
   std::atomic<std::uint64_t> next{0};
   std::exception_ptr problem;
@@ -197,4 +210,4 @@ class Progress {
   return outcomes;
 }
 
-}  // namespace merging
+}  // namespace examples

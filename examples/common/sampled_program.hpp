@@ -1,0 +1,117 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+#include <iostream>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "cambium/core/error.hpp"
+#include "cambium/core/write_file.hpp"
+#include "cambium/viewer/html_replay.hpp"
+
+#include "command_line.hpp"
+#include "report.hpp"
+#include "roll_out.hpp"
+
+namespace examples {
+
+/// What a program of sampled scenarios calls things.
+struct Words {
+  std::string title;                  ///< of the replay: "Merging"
+  std::string success;                ///< "the ego merged"
+  std::vector<std::string> counts{};  ///< what its scenarios count: "lane changes"
+};
+
+/// "1 vehicle", "2 vehicles".
+[[nodiscard]] inline std::string counted(std::uint64_t count, std::string const& thing) {
+  return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
+}
+
+[[nodiscard]] inline std::string in_words(Outcome const& outcome, Words const& words) {
+  if (outcome.kind == Outcome::Kind::success) return words.success;
+  if (outcome.kind == Outcome::Kind::time_out) return "time ran out";
+  return "agents " + to_string(outcome.collided_first) + " and " + to_string(outcome.collided_second) + " collide";
+}
+
+/// The options that all of these programs have. `map_sentence` says what map it takes.
+inline void add_options(CLI::App& program, Settings& settings, std::string const& map_sentence) {
+  auto const number = [&](char const* name, std::uint64_t& target, std::uint64_t low, std::uint64_t high,
+                          char const* sentence) {
+    program.add_option(name, target, sentence)->type_name("N")->check(whole_number(low, high))->capture_default_str();
+  };
+  number("--scenarios", settings.scenarios, 1, 10'000'000, "situations to sample");
+  number("--seed", settings.seed, 0, ~std::uint64_t{0}, "of everything random");
+  number("--threads", settings.threads, 1, 1024, "to run them on; the results do not depend on it");
+  number("--steps", settings.steps, 1, 1'000'000, "of 0.2 s, after which a scenario is timed out");
+  number("--trajectories", settings.trajectories, 0, 10'000'000,
+         "scenarios whose trajectories are written, besides the replayed one");
+  program.add_option("--map", settings.map_file, map_sentence)->type_name("FILE")->capture_default_str();
+  program.add_option("--out", settings.out, "folder for summary.json, trajectories.csv and replay.html")
+      ->type_name("DIR")
+      ->capture_default_str();
+}
+
+/// Makes the folder and finds out now, not after the work, whether it takes files. Older results stay until there are
+/// new ones.
+inline void prepare(std::filesystem::path const& folder) {
+  std::error_code problem;
+  std::filesystem::create_directories(folder, problem);
+  if (problem)
+    throw cambium::Error(folder.string(), "the folder cannot be made (" + problem.message() + ")",
+                         "choose another --out");
+  auto const probe = folder / ".probe";
+  cambium::write_file(probe, "");
+  std::filesystem::remove(probe, problem);
+}
+
+template <class Site>
+void write_results(std::filesystem::path const& folder, Site const& site, Settings const& settings, Words const& words,
+                   std::vector<Outcome> const& outcomes, Totals const& totals) {
+  auto const shown = totals.most_interesting;
+  cambium::Recording recording;
+  auto const replayed = run_scenario(site, settings, shown, &recording);
+  recording.title = words.title + " on " + std::filesystem::path(settings.map_file).filename().string() +
+                    ", scenario " + std::to_string(shown);
+  recording.notes = {"Outcome: " + in_words(replayed, words) + "; " + counted(replayed.agents, "vehicle") + ", " +
+                     counted(replayed.hard_brakings, "hard braking") + ", seed " + std::to_string(settings.seed)};
+  std::string rows = trajectory_columns;
+  for (std::uint64_t i = 0; i < outcomes.size(); ++i) rows += i == shown ? replayed.trajectory : outcomes[i].trajectory;
+  auto const figures = summary(settings, site, outcomes, totals, words.counts);
+  cambium::write_file(folder / "trajectories.csv", rows);
+  cambium::write_file(folder / "summary.json",
+                      figures.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
+  cambium::write_html_replay(folder / "replay.html", recording);
+}
+
+/// Runs all scenarios of a site (see `run_scenario`), prints the table and writes the files. What goes wrong in a
+/// scenario is a matter of the map: `MapError`.
+template <class Site>
+void sample_and_report(Site const& site, Settings const& settings, Words const& words) {
+  std::filesystem::path const folder(settings.out);
+  prepare(folder);
+  auto const begin = std::chrono::steady_clock::now();
+  auto const outcomes = [&] {
+    try {
+      return run_all(site, settings);
+    } catch (cambium::WorldError const& problem) {
+      throw cambium::MapError(settings.map_file, problem.what(), "look at it with examples/run map --picture");
+    }
+  }();
+  double const seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  auto const totals = total(outcomes);
+
+  write_results(folder, site, settings, words, outcomes, totals);
+  print_table(settings, totals, seconds, words.counts);
+  std::cout << "  " << (folder / "replay.html").string() << "       plays scenario " << totals.most_interesting
+            << " in a browser\n  " << (folder / "summary.json").string()
+            << "      these figures and each scenario's outcome\n  " << (folder / "trajectories.csv").string()
+            << "  paths of the first scenarios' vehicles and of the replayed one's\n";
+}
+
+}  // namespace examples

@@ -1,0 +1,145 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "cambium/behavior/behavior_set.hpp"
+#include "cambium/behavior/intersection.hpp"
+#include "cambium/core/distributions.hpp"
+#include "cambium/core/random.hpp"
+#include "cambium/dynamics/single_track.hpp"
+#include "cambium/execution/interpolate.hpp"
+#include "cambium/map/build_corridor.hpp"
+#include "cambium/map/map.hpp"
+#include "cambium/world/world.hpp"
+
+namespace intersection {
+
+using Simulation =
+    cambium::World<cambium::BehaviorSet<cambium::Intersection>, cambium::InterpolateExecution, cambium::SingleTrack>;
+
+/// What the scenarios on a map have in common.
+struct Site {
+  std::shared_ptr<cambium::Map const> map;
+  std::vector<cambium::LaneId> entrances;  ///< lanes where traffic starts
+};
+
+[[nodiscard]] inline bool in_junction(cambium::Map const& map, cambium::LaneId lane) {
+  return is_valid(map.road(map.lane(lane).road).junction);
+}
+
+/// Finds where traffic may start: lanes outside of junctions that begin the map, else all. Throws `MapError` where no
+/// ways cross in a junction.
+[[nodiscard]] inline Site find_site(std::shared_ptr<cambium::Map const> map, std::string const& file) {
+  Site site{std::move(map), {}};
+  std::vector<cambium::LaneId> all;
+  bool crosses = false;
+  for (auto const& lane : site.map->lanes()) {
+    if (!lane.drivable()) continue;
+    if (in_junction(*site.map, lane.id)) {
+      for (auto const& overlap : lane.overlaps)
+        crosses = crosses || overlap.kind == cambium::map::OverlapKind::crossing ||
+                  (overlap.kind == cambium::map::OverlapKind::merge && in_junction(*site.map, overlap.other));
+    } else if (lane.length() >= 15.0) {
+      all.push_back(lane.id);
+      if (lane.predecessors.empty()) site.entrances.push_back(lane.id);
+    }
+  }
+  if (site.entrances.size() < 2) site.entrances = std::move(all);
+  if (!crosses || site.entrances.empty())
+    throw cambium::MapError(file, "no ways cross or merge in a junction of this map",
+                            "give a map with an intersection, such as maps/intersection_4way.xodr");
+  return site;
+}
+
+/// A way at random until it ends, comes round or is 400 m long.
+[[nodiscard]] inline cambium::map::Route random_route(cambium::Map const& map, cambium::LaneId from,
+                                                      cambium::RandomStream& random) {
+  cambium::map::Route route{{from}, map.lane(from).length()};
+  while (route.length < 400.0) {
+    std::vector<cambium::LaneId> next;
+    for (auto const lane : map.lane(route.lanes.back()).successors)
+      if (map.lane(lane).drivable() && std::find(route.lanes.begin(), route.lanes.end(), lane) == route.lanes.end())
+        next.push_back(lane);
+    if (next.empty()) break;
+    route.lanes.push_back(next[cambium::uniform_index(random, static_cast<std::uint32_t>(next.size()))]);
+    route.length += map.lane(route.lanes.back()).length();
+  }
+  return route;
+}
+
+/// A sampled situation: the world as it begins, and who is followed.
+struct Scenario {
+  Simulation world;
+  cambium::AgentId ego = cambium::none<cambium::AgentId>;
+  std::vector<cambium::AgentId> marked;
+};
+
+/// Puts a vehicle on its way to a junction before which it can still stop, unless another one is near.
+inline void try_to_add(Scenario& scenario, cambium::LaneId from, cambium::RandomStream& random) {
+  auto const& map = scenario.world.map();
+  auto const route = random_route(map, from, random);
+  double junction = 0.0;
+  std::size_t lanes = 0;
+  while (lanes < route.lanes.size() && !in_junction(map, route.lanes[lanes]))
+    junction += map.lane(route.lanes[lanes++]).length();
+  double const last = std::min(map.lane(from).length(), junction - 6.0);
+  if (lanes == route.lanes.size() || last < 5.0) return;
+  double const s = 4.0 + cambium::uniform01(random) * (last - 4.0);
+  auto const pose = map.lane(from).path.pose(s);
+  for (auto const& agent : scenario.world.frame().agents)
+    if (std::hypot(agent.state.x - pose.x, agent.state.y - pose.y) < 18.0) return;
+  auto const shape = cambium::uniform01(random) < 0.15 ? cambium::geometry::van() : cambium::geometry::car();
+  double const room = std::max(0.0, junction - s - shape.front - 1.0);
+  double const speed = std::min(3.0 + 9.0 * cambium::uniform01(random), std::sqrt(2.0 * 1.5 * room));
+  auto const id = scenario.world.add(
+      {.position = pose.position(),
+       .heading = pose.heading,
+       .speed = speed,
+       .shape = shape,
+       .behavior = cambium::Intersection{.idm = {.desired_speed = 8.0 + 7.0 * cambium::uniform01(random)}},
+       .route = route});
+  if (!is_valid(scenario.ego)) scenario.ego = id;
+}
+
+/// Four to twelve vehicles from everywhere. Throws `WorldError` where the map has no room before its junctions.
+[[nodiscard]] inline Scenario sample_scenario(Site const& site, std::uint64_t seed, std::uint32_t number) {
+  Scenario scenario{Simulation(site.map, {.seed = seed}), cambium::none<cambium::AgentId>, {}};
+  cambium::RandomStream random(seed, number, 0);
+  auto const wanted = 4 + cambium::uniform_index(random, 9);
+  auto const entrances = static_cast<std::uint32_t>(site.entrances.size());
+  for (std::uint32_t i = 0; i < 400 && scenario.world.size() < wanted; ++i)
+    if (i < 8 * wanted || scenario.world.size() < 2)
+      try_to_add(scenario, site.entrances[cambium::uniform_index(random, entrances)], random);
+  if (scenario.world.size() < 2)
+    throw cambium::WorldError("scenario " + std::to_string(number), "no traffic fits on the map before its junctions",
+                              "give a map with longer lanes there");
+  return scenario;
+}
+
+/// Whether everybody has its last junction behind it, or has left the map.
+[[nodiscard]] inline bool is_done(Scenario const& scenario) {
+  auto const& world = scenario.world;
+  for (std::size_t i = 0; i < world.size(); ++i) {
+    auto const& record = world.frame().agents[i];
+    if (record.status != cambium::AgentStatus::driving) continue;
+    auto const& conflicts = world.roster().agents[i].road->corridors[record.lane.corridor].conflicts;
+    double const rear = record.lane.s - world.roster().agents[i].shape.rear;
+    if (std::any_of(conflicts.begin(), conflicts.end(), [rear](auto const& conflict) { return conflict.end > rear; }))
+      return false;
+  }
+  return true;
+}
+
+/// What the summary says of the site.
+inline void add_facts(Site const& site, nlohmann::ordered_json& json) { json["entrances"] = site.entrances.size(); }
+
+}  // namespace intersection

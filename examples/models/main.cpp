@@ -1,0 +1,138 @@
+// Which models there are: their laws, sources and parameters, as Markdown, from the descriptions in the code itself.
+// README's tables are this program's output.
+
+#include <cstdio>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "cambium/cambium.hpp"
+
+#include "../common/command_line.hpp"
+#include "tables.hpp"
+
+namespace models {
+namespace {
+
+struct Model {
+  std::string type, name, row, page;
+};
+
+template <class M>
+Model model(std::string const& type) {
+  return {type, M::name, row_of<M>(type), page_of<M>(type)};
+}
+
+struct Room {
+  std::string title;
+  std::vector<Model> models;
+};
+
+std::vector<Model> behaviors() {
+  return {model<cb::IdmClassic>("IdmClassic"),
+          model<cb::IdmLaneTracking>("IdmLaneTracking"),
+          model<cb::AdaptiveCruiseControl>("AdaptiveCruiseControl"),
+          model<cb::IdmStochastic>("IdmStochastic"),
+          model<cb::Mobil>("Mobil"),
+          model<cb::LaneChangeRuleBased>("LaneChangeRuleBased"),
+          model<cb::ZipMerge>("ZipMerge"),
+          model<cb::Intersection>("Intersection"),
+          model<cb::RssConformant<cb::IdmClassic>>("RssConformant<Nominal>"),
+          model<cb::Pedestrian>("Pedestrian"),
+          model<cb::Safety>("Safety"),
+          model<cb::ConstantAcceleration>("ConstantAcceleration"),
+          model<cb::StaticTrajectory>("StaticTrajectory"),
+          model<cb::ExternalInput>("ExternalInput"),
+          model<cb::MotionPrimitives>("MotionPrimitives"),
+          model<cb::MacroActions>("MacroActions"),
+          model<cb::RandomMacroActions>("RandomMacroActions")};
+}
+
+std::vector<Room> rooms() {
+  return {
+      {"Behaviours", behaviors()},
+      {"Conditions of a lane change, for `BasicMobil<Filters...>`",
+       {model<cb::FreeSpace>("FreeSpace"), model<cb::RemainingLength>("RemainingLength"),
+        model<cb::SpeedLimitAtLeast>("SpeedLimitAtLeast")}},
+      {"Vehicle models",
+       {model<cb::SingleTrack>("SingleTrack"), model<cb::SingleTrackSteering>("SingleTrackSteering"),
+        model<cb::TripleIntegrator>("TripleIntegrator"), model<cb::KinematicPoint>("KinematicPoint")}},
+      {"Execution of plans",
+       {model<cb::InterpolateExecution>("InterpolateExecution"), model<cb::StanleyExecution>("StanleyExecution"),
+        model<cb::LqrExecution>("LqrExecution")}},
+      {"Observers",
+       {model<cb::PerfectObserver>("PerfectObserver"), model<cb::ParametricObserver>("ParametricObserver"),
+        model<cb::OccludedObserver>("OccludedObserver"), model<cb::DelayedObserver<1>>("DelayedObserver<Longest>"),
+        model<cb::ObserverChain<>>("ObserverChain<Observers...>")}},
+      {"Goals",
+       {model<cb::NoGoal>("NoGoal"), model<cb::ReachPolygon>("ReachPolygon"), model<cb::ReachLane>("ReachLane"),
+        model<cb::StateLimits>("StateLimits"), model<cb::LaneLimits>("LaneLimits"),
+        model<cb::ReachLaneEnd>("ReachLaneEnd"), model<cb::ReachLaneBeside>("ReachLaneBeside"),
+        model<cb::AllGoals>("AllGoals"), model<cb::AnyGoal>("AnyGoal"), model<cb::GoalSequence>("GoalSequence")}},
+      {"Parts of these",
+       {model<cb::IdmParameters>("IdmParameters"), model<cb::RoadRules>("RoadRules"),
+        model<cb::LaneChanging>("LaneChanging"), model<cb::LaneChangeCourse>("LaneChangeCourse"),
+        model<cb::Yielding<cb::Uniform>>("Yielding<Distribution>"), model<cb::RssParameters>("RssParameters"),
+        model<cb::SocialForceParameters>("SocialForceParameters"), model<cb::CrossingParameters>("CrossingParameters"),
+        model<cb::Actuation>("Actuation"), model<cb::ObservationNoise>("ObservationNoise"),
+        model<cb::Uniform>("Uniform"), model<cb::Normal>("Normal")}}};
+}
+
+void print_presets() {
+  std::cout << "| driver, in `presets` | source | IDM |\n|---|---|---|\n";
+  for (auto const& preset : cb::presets::all)
+    std::cout << "| `" << preset.name << "` | " << preset.source << " | " << values_of(preset.parameters) << " |\n";
+}
+
+void print_shapes() {
+  using namespace cb::geometry;
+  struct Named {
+    char const* name;
+    Shape shape;
+  };
+  std::cout
+      << "| shape, in `geometry` | length, width [m] | of that ahead of the reference point [m] |\n|---|---|---|\n";
+  for (auto const& [name, shape] :
+       {Named{"car", car()}, Named{"van", van()}, Named{"truck", truck()},
+        Named{"articulated_truck", articulated_truck()}, Named{"bus", bus()}, Named{"motorcycle", motorcycle()},
+        Named{"bicycle", bicycle()}, Named{"pedestrian", pedestrian()}}) {
+    char numbers[80];
+    std::snprintf(numbers, sizeof numbers, "%.3g, %.3g | %.3g", shape.length(), shape.width(), shape.front);
+    std::cout << "| `" << name << "` | " << numbers << " |\n";
+  }
+}
+
+void print_all() {
+  for (auto const& room : rooms()) {
+    std::cout << "| " << room.title << " | law | source | parameters and defaults |\n|---|---|---|---|\n";
+    for (auto const& model : room.models) std::cout << model.row;
+    std::cout << "\n";
+  }
+  print_presets();
+  std::cout << "\n";
+  print_shapes();
+}
+
+void print_one(std::string const& name) {
+  std::string known;
+  for (auto const& room : rooms())
+    for (auto const& model : room.models) {
+      if (model.name == name || model.type.substr(0, model.type.find('<')) == name) {
+        std::cout << model.page;
+        return;
+      }
+      known += " " + model.name;
+    }
+  throw cb::Error(name, "there is no such model", "there are:" + known);
+}
+
+}  // namespace
+}  // namespace models
+
+int main(int argc, char** argv) {
+  std::string name;
+  CLI::App program("Prints which models there are, with law, source and parameters, as Markdown.", "models");
+  program.add_option("NAME", name, "a model, for all of its parameters with ranges and meanings; none: all models");
+  return examples::run_program(program, argc, argv,
+                               [&] { name.empty() ? models::print_all() : models::print_one(name); });
+}

@@ -1,0 +1,99 @@
+#pragma once
+
+#include <cstdio>
+#include <string>
+#include <type_traits>
+
+#include "cambium/core/parameters.hpp"
+
+/// Models as Markdown, from the descriptions in their code.
+namespace models {
+
+namespace cb = cambium;
+
+/// A model's source; "-" where it does not say one.
+template <class M>
+[[nodiscard]] std::string source_of() {
+  if constexpr (requires { M::source; })
+    return M::source;
+  else
+    return "-";
+}
+
+/// "33.33 m/s": numbers to four digits.
+template <class Value>
+[[nodiscard]] std::string value_text(Value const& value, char const* unit) {
+  if constexpr (std::is_floating_point_v<Value>) {
+    char number[32];
+    std::snprintf(number, sizeof number, "%.4g", value);
+    return cb::detail::with_unit(number, unit);
+  } else {
+    return cb::detail::with_unit(cb::detail::number_text(value), unit);
+  }
+}
+
+/// As Markdown shows it: a star is a star.
+[[nodiscard]] inline std::string markdown(std::string const& text) {
+  std::string result;
+  for (char const c : text) result += c == '*' ? std::string("\\*") : std::string(1, c);
+  return result;
+}
+
+/// "*idm*", or "*idm* with desired_speed 23 m/s": the struct and what differs from its own defaults.
+template <class Part>
+[[nodiscard]] std::string part_text(Part const& part) {
+  std::string others;
+  Part const defaults{};
+  cb::for_each_parameter<Part>([&](auto const& entry) {
+    auto const& value = part.*entry.field;
+    if constexpr (cb::Described<std::remove_cvref_t<decltype(value)>>) {
+      if (!cb::equal_parameters(value, defaults.*entry.field))
+        others += (others.empty() ? "" : ", ") + std::string(entry.name) + " " + part_text(value);
+    } else if (!(value == defaults.*entry.field)) {
+      others += (others.empty() ? "" : ", ") + std::string(entry.name) + " " + value_text(value, entry.unit);
+    }
+  });
+  return "*" + std::string(cb::detail::struct_name<Part>()) + "*" + (others.empty() ? "" : " with " + others);
+}
+
+/// "`time_headway` 1.5 s, `rules` *road_rules*": all parameters with values and units.
+template <cb::Described M>
+[[nodiscard]] std::string values_of(M const& model) {
+  std::string text;
+  cb::for_each_parameter<M>([&](auto const& entry) {
+    auto const& value = model.*entry.field;
+    text += (text.empty() ? "`" : ", `") + std::string(entry.name) + "` ";
+    if constexpr (cb::Described<std::remove_cvref_t<decltype(value)>>) {
+      std::string const unit(entry.unit);
+      text += (unit == "-" ? "" : "[" + unit + "] ") + part_text(value);
+    } else {
+      text += value_text(value, entry.unit);
+    }
+  });
+  return text.empty() ? "-" : text;
+}
+
+template <class M>
+[[nodiscard]] std::string defaults_of() {
+  if constexpr (cb::Described<M>)
+    return values_of(M{});
+  else
+    return "-";
+}
+
+/// All that can be said of one model: its law, its source and the table of its parameters with ranges and meanings.
+template <class M>
+[[nodiscard]] std::string page_of(std::string const& type) {
+  std::string text =
+      "### " + type + " (" + M::name + ")\n\n" + markdown(M::summary) + "\n\nSource: " + source_of<M>() + "\n\n";
+  if constexpr (cb::Described<M>) text += cb::describe_parameters<M>();
+  return text;
+}
+
+/// A row of a room's table.
+template <class M>
+[[nodiscard]] std::string row_of(std::string const& type) {
+  return "| `" + type + "` | " + markdown(M::summary) + " | " + source_of<M>() + " | " + defaults_of<M>() + " |\n";
+}
+
+}  // namespace models

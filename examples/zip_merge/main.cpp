@@ -1,0 +1,32 @@
+// Zip merge: the dense situations of the example merging, at a lane drop, with drivers who let one vehicle of the other
+// lane in before them; counts how often two of one lane go one after the other, and writes figures, trajectories and a
+// replay that plays in a browser.
+
+#include <iostream>
+
+#include "../common/map_file.hpp"
+#include "../common/sampled_program.hpp"
+#include "scenario.hpp"
+
+namespace {
+
+void run(examples::Settings const& settings) {
+  auto const site = zip_merge::Site{merging::find_site(examples::load_map(settings.map_file), settings.map_file)};
+  if (site.crossings > 0)
+    std::cerr << "zip_merge: " << settings.map_file << ": " << examples::counted(site.crossings, "place")
+              << " where the traffic's routes cross; nobody gives way there, so expect collisions\n";
+  examples::sample_and_report(site, settings, {"Zip merge", "the ego merged", {"pairs at merge", "of one lane"}});
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  examples::Settings settings;
+  settings.map_file = CAMBIUM_SOURCE_DIR "/maps/lane_drop.xodr";
+  settings.out = "out/zip_merge";
+  CLI::App program(
+      "Samples dense situations before a merge where drivers let one another in, simulates and judges them.",
+      "zip_merge");
+  examples::add_options(program, settings, "OpenDRIVE map with a merge");
+  return examples::run_program(program, argc, argv, [&] { run(settings); });
+}

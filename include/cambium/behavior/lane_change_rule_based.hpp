@@ -1,0 +1,93 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <tuple>
+
+#include "cambium/behavior/behavior_model.hpp"
+#include "cambium/behavior/corridor_filters.hpp"
+#include "cambium/behavior/idm.hpp"
+#include "cambium/behavior/lane_changing.hpp"
+
+namespace cambium {
+
+/// Changes to the lane with the most free space ahead (BARK's rule-based lane change): where a lane beside has
+/// `advantage` more of it than the own one, `space` behind and ahead, and is safe. Of what is farther than `horizon`
+/// nobody takes notice. Where the own lane ends, changes towards one that goes on, whatever the space. Car following by
+/// IDM; how a change is carried out: see `LaneChanging`.
+struct LaneChangeRuleBased {
+  IdmParameters idm{};
+  LaneChanging changing{};
+  FreeSpace space{};
+  double minimum_remaining = 60.0;
+  double advantage = 10.0;
+  double horizon = 150.0;
+  double route_horizon = 300.0;
+  double tolerance = 1e-4;
+
+  using Memory = LaneChanging::Memory;
+  static constexpr bool looks_beside = true;
+
+  static constexpr char const* name = "lane_change_rule_based";
+  static constexpr char const* summary = "IDM; changes to the lane with the most free space ahead, where that is safe";
+  static constexpr char const* source = "rule: BARK; safety: Kesting, Treiber, Helbing 2007";
+  static constexpr auto parameters() {
+    using P = LaneChangeRuleBased;
+    return std::make_tuple(
+        parameter("idm", &P::idm, "-", {}, "the driver's own car following"),
+        parameter("changing", &P::changing, "-", {}, "how it changes lanes, and what it assumes of others"),
+        parameter("space", &P::space, "-", {}, "what must be free in the new lane"),
+        parameter("minimum_remaining", &P::minimum_remaining, "m", Range{0, 10'000},
+                  "no change, but for the route, into a lane with less than this left when it could be left again"),
+        parameter("advantage", &P::advantage, "m", Range{0, 1000}, "of free space that makes a change worth it"),
+        parameter("horizon", &P::horizon, "m", Range{0, 400}, "as far as space counts"),
+        parameter("route_horizon", &P::route_horizon, "m", Range{1, 10'000},
+                  "from how far before a lane's end it counts, for each lane to be crossed"),
+        parameter("tolerance", &P::tolerance, "m/s^2", Range{1e-12, 1},
+                  "error of the exact integration, as speed per second"));
+  }
+
+  template <class View>
+  [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
+    return changing.drive(view, memory, idm, tolerance, dt, [this](LaneKeeping<View> const& now) {
+      return now.may_change ? roomiest_side(now) : map::no_corridor;
+    });
+  }
+
+ private:
+  [[nodiscard]] double space_ahead(std::optional<Neighbor> const& front) const {
+    return front ? std::min(front->gap, horizon) : horizon;
+  }
+
+  template <class View>
+  [[nodiscard]] std::uint16_t roomiest_side(LaneKeeping<View> const& now) const {
+    auto const& view = now.view;
+    auto const& piece = view.corridor().pieces[view.lane_position().piece];
+    if (piece.left == map::no_corridor && piece.right == map::no_corridor) return map::no_corridor;
+    auto const urgency = lane_urgency(view, route_horizon);
+    double best = space_ahead(now.leader) + advantage;
+    auto target = map::no_corridor;
+    for (bool const left : {true, false}) {
+      auto const side = left ? piece.left : piece.right;
+      if (side == map::no_corridor || !changing.marks_permit(view, left)) continue;
+      double const urge = left ? urgency.left : urgency.right;
+      LaneOption option{view.beside(side), left, {}, {}};
+      double const remaining = lane_end(view, side, option.place.piece) - option.place.s;
+      if (urge < 0.0 || (urge == 0.0 && remaining < minimum_remaining + changing.there_and_back(now.speed))) continue;
+      option.front = view.front(option.place);
+      double const ahead = urge > 0.0 ? std::numeric_limits<double>::infinity() : space_ahead(option.front);
+      if (!(ahead > best)) continue;
+      option.rear = view.rear(option.place);
+      if (!space(view, option) || !changing.is_safe(view, now.law, now.speed, option, changing.safe_deceleration))
+        continue;
+      best = ahead;
+      target = side;
+    }
+    return target;
+  }
+};
+static_assert(BehaviorModel<LaneChangeRuleBased>);
+
+}  // namespace cambium

@@ -1,0 +1,279 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <tuple>
+
+#include "cambium/behavior/idm.hpp"
+#include "cambium/behavior/idm_law.hpp"
+#include "cambium/behavior/lane_change.hpp"
+#include "cambium/behavior/lane_ends.hpp"
+#include "cambium/core/distributions.hpp"
+
+namespace cambium {
+
+/// A lane beside that a change may lead to.
+struct LaneOption {
+  BesidePlace place;
+  bool left = false;                    ///< on the left, else on the right
+  std::optional<Neighbor> front, rear;  ///< who would be the leader and the follower
+};
+
+/// A driver that keeps its lane, as its rule for changing lanes sees it.
+template <class View>
+struct LaneKeeping {
+  View const& view;
+  detail::IdmLaw const& law;              ///< its car following
+  double speed;                           ///< [m/s]
+  std::optional<Neighbor> const& leader;  ///< next ahead
+  double lane_end;                        ///< see there
+  bool may_change;                        ///< not in the time of rest
+  detail::Restriction& ahead;             ///< what it follows; a rule may add to it
+};
+
+/// How a driver changes lanes once it has decided to: what it assumes of others, what it finds safe, when it gives up.
+/// A change takes time and follows a smooth course. It is aborted where it has become unsafe, or where somebody comes
+/// into the same gap from the other side, while the way back does not leave the old lane. Meanwhile the leaders in all
+/// lanes that the vehicle is in count. Before objects and before the end of a lane that must be left it stops with
+/// enough room to change. Other drivers are taken to have the parameters `others` (long vehicles: `trucks`), and at
+/// least the desired speed that they show.
+struct LaneChanging {
+  IdmParameters others{};
+  IdmParameters trucks{.desired_speed = 23.0, .time_headway = 1.7, .maximum_acceleration = 0.9};
+  double truck_length = 7.5;
+  double safe_deceleration = 4.0;
+  double abort_deceleration = 4.5;
+  double safe_gap = 1.0;
+  double rest = 3.0;
+  bool heed_marks = true;
+  LaneChangeCourse course{};
+
+  static constexpr char const* name = "lane_changing";
+  static constexpr char const* summary =
+      "a change along a smooth course, with rest between changes; aborted where it becomes unsafe";
+  static constexpr char const* source = "own";
+  static constexpr auto parameters() {
+    using P = LaneChanging;
+    return std::make_tuple(
+        parameter("others", &P::others, "-", {}, "what it assumes of other drivers"),
+        parameter("trucks", &P::trucks, "-", {}, "what it assumes of drivers of long vehicles"),
+        parameter("truck_length", &P::truck_length, "m", Range{0, 100}, "vehicles longer than this are trucks"),
+        parameter("safe_deceleration", &P::safe_deceleration, "m/s^2", Range{0, 20}, "nobody is made to brake harder"),
+        parameter("abort_deceleration", &P::abort_deceleration, "m/s^2", Range{0, 20},
+                  "a change is aborted where somebody would have to brake harder"),
+        parameter("safe_gap", &P::safe_gap, "m", Range{0, 100}, "no change into smaller gaps, whatever the speeds"),
+        parameter("rest", &P::rest, "s", Range{0, 600}, "no further change within this time of the last"),
+        parameter("heed_marks", &P::heed_marks, "-", Range{0, 1}, "change only where the road marks permit it"),
+        parameter("course", &P::course, "-", {}, "how long a change takes"));
+  }
+
+  /// What the driver remembers.
+  struct Memory {
+    LaneChange change{};
+    float rest{};  ///< [s] until the next change may begin
+
+    friend bool operator==(Memory const&, Memory const&) = default;
+  };
+
+  /// The plan of a driver who follows by IDM and changes lanes where `choose(LaneKeeping)` says so: it returns the side
+  /// to change to, as the number of its lane corridor, or none. Not called during a change.
+  template <class View, class Choose>
+  [[nodiscard]] Plan<View> drive(View const& view, Memory& memory, IdmParameters const& idm, double tolerance,
+                                 double dt, Choose const& choose) const {
+    double const speed = std::max(0.0, view.state().speed);
+    detail::IdmLaw const law(idm);
+    auto const leader = view.front();
+    auto const home = view.lane_position().corridor;
+    memory.rest = std::max(0.0f, memory.rest - static_cast<float>(dt));
+    if (memory.change.active()) {
+      if (memory.change.target != home && !may_go_on(view, law, speed, memory.change)) abort(view, speed, memory);
+      auto const ahead = ahead_while_changing(view, law, speed, leader, memory.change);
+      return plan_lane_change(view, memory.change, idm_motion(idm, speed, ahead.gap, ahead.speed, dt, tolerance), dt);
+    }
+    double const end = lane_end(view, home, view.lane_position().piece);
+    auto ahead = ahead_in_lane(view, law, speed, leader, end);
+    bool const may_change = memory.rest == 0.0f;
+    auto const target = choose(LaneKeeping<View>{view, law, speed, leader, end, may_change, ahead});
+    if (may_change && target != map::no_corridor && is_wide_enough(view, target, 0.5 * speed * course.duration)) {
+      memory.change = course.begin(target, speed, room(view, leader));
+      memory.rest = static_cast<float>(rest + course.duration);
+      ahead = ahead_while_changing(view, law, speed, leader, memory.change);
+    }
+    return plan_lane_change(view, memory.change, idm_motion(idm, speed, ahead.gap, ahead.speed, dt, tolerance), dt);
+  }
+
+  /// How a follower drives, as this driver assumes it.
+  [[nodiscard]] detail::IdmLaw law_of(Neighbor const& who) const {
+    auto const& assumed = who.length > truck_length ? trucks : others;
+    return detail::IdmLaw(assumed, std::max(assumed.desired_speed, who.speed));
+  }
+
+  /// Acceleration of a follower as this driver assumes it [m/s^2]. Objects stand: they neither gain nor lose.
+  [[nodiscard]] double follower(std::optional<Neighbor> const& who, double gap, double leader_speed) const {
+    return who && is_valid(who->agent) ? law_of(*who)(std::max(0.0, who->speed), gap, leader_speed) : 0.0;
+  }
+
+  /// Whether nobody has to brake harder than `deceleration` [m/s^2], gaps are left, and nobody comes into the same gap
+  /// from the lane beyond for whom that would not hold.
+  template <class View>
+  [[nodiscard]] bool is_safe(View const& view, detail::IdmLaw const& law, double speed, LaneOption const& option,
+                             double deceleration) const {
+    auto const front_is_safe = [&](Neighbor const& n) {
+      return n.gap > safe_gap && law(speed, n.gap, n.speed) >= -deceleration;
+    };
+    auto const rear_is_safe = [&](Neighbor const& n) {
+      return n.gap > safe_gap && follower(n, n.gap, speed) >= -deceleration;
+    };
+    if (option.front && !front_is_safe(*option.front)) return false;
+    if (option.rear && !rear_is_safe(*option.rear)) return false;
+    auto const& there = view.road().corridors[option.place.corridor].pieces[option.place.piece];
+    auto const beyond = option.left ? there.left : there.right;
+    if (beyond == map::no_corridor || beyond == view.lane_position().corridor) return true;
+    auto const others_there = view.beside(beyond);
+    auto const front = view.front(others_there), rear = view.rear(others_there);
+    if (front && comes(view, *front, option, true) && !front_is_safe(*front)) return false;
+    return !(rear && comes(view, *rear, option, false) && !rear_is_safe(*rear));
+  }
+
+  /// The way of two changes at `speed` [m/s] and the rest between them [m].
+  [[nodiscard]] double there_and_back(double speed) const { return speed * (2.0 * course.duration + rest); }
+
+  /// Whether the road marks permit a change, or do not count.
+  template <class View>
+  [[nodiscard]] bool marks_permit(View const& view, bool left) const {
+    if (!heed_marks) return true;
+    auto const& at = view.lane_position();
+    auto const& piece = view.corridor().pieces[at.piece];
+    auto const& lane = view.map().lane(piece.lane);
+    double const s = at.s + piece.lane_offset;
+    return left ? lane.may_change_left(s) : lane.may_change_right(s);
+  }
+
+ private:
+  static constexpr double infinite = std::numeric_limits<double>::infinity();
+  /// Part of a change's length after which the vehicle has left its old lane.
+  static constexpr double out_of_lane = 0.7;
+  /// Lateral speed that shows the intention to change [m/s].
+  static constexpr double drift = 0.12;
+
+  [[nodiscard]] static bool is_object(Neighbor const& n) { return is_valid(n.object); }
+
+  /// Whether a neighbour in the lane beyond `option`'s comes into it.
+  template <class View>
+  [[nodiscard]] static bool comes(View const& view, Neighbor const& who, LaneOption const& option, bool ahead) {
+    if (!is_valid(who.agent)) return false;
+    auto const other = view.agent(who);
+    double const distance =
+        ahead ? view.shape().front + who.gap + other.shape.rear : -(view.shape().rear + who.gap + other.shape.front);
+    auto segment = option.place.segment;
+    double const along =
+        view.road().corridors[option.place.corridor].center.pose(option.place.s + distance, segment).heading;
+    double const leftwards = other.state.speed * std::sin(other.state.heading - along);
+    return (option.left ? -leftwards : leftwards) > drift;
+  }
+
+  template <class View>
+  [[nodiscard]] bool may_go_on(View const& view, detail::IdmLaw const& law, double speed,
+                               LaneChange const& change) const {
+    auto const& at = view.lane_position();
+    auto const& piece = view.corridor().pieces[at.piece];
+    LaneOption option{view.beside(change.target), change.target == piece.left, {}, {}};
+    if (!option.left && change.target != piece.right) return true;  // no longer beside: it has merged
+    option.front = view.front(option.place);
+    option.rear = view.rear(option.place);
+    return is_safe(view, law, speed, option, abort_deceleration);
+  }
+
+  /// Turns back, if that is still possible. How long it then rests is drawn: who has met somebody in the same gap does
+  /// not meet him there again.
+  template <class View>
+  void abort(View const& view, double speed, Memory& memory) const {
+    constexpr std::uint32_t purpose = 0x4c43u;
+    auto const back = course.back(view.lane_position().corridor, speed, memory.change.bend);
+    if (!stays_within_lane(view, back)) return;
+    auto random = view.random(purpose);
+    memory.change = back;
+    memory.rest = static_cast<float>(course.shortest_duration + rest * (0.5 + uniform01(random)));
+  }
+
+  /// Whether the vehicle fits into the lane `beside` where it comes in, `ahead` [m]: lanes may open slowly.
+  template <class View>
+  [[nodiscard]] static bool is_wide_enough(View const& view, std::uint16_t beside, double ahead) {
+    auto const& lane = view.road().corridors[beside];
+    double const s = std::min(view.lane_position(beside).s + ahead, lane.length());
+    return lane.width_at(s) > view.shape().width();
+  }
+
+  /// How long a change may be: it must lead around a standing object, and to before the end of the lane [m].
+  template <class View>
+  [[nodiscard]] double room(View const& view, std::optional<Neighbor> const& leader) const {
+    auto const& at = view.lane_position();
+    double const end = lane_end(view, at.corridor, at.piece);
+    double const until_end = end < infinite && is_dead_end(view.corridor(), end) ? end - at.s : infinite;
+    double const beside_object = (1.0 - out_of_lane) * course.minimum_length;
+    return leader && is_object(*leader) ? std::min(until_end, leader->gap + beside_object) : until_end;
+  }
+
+  /// Adds a leader in a lane that the vehicle stays in: before an object it leaves room to change.
+  void add_leader(detail::Restriction& ahead, detail::IdmLaw const& law, double speed,
+                  std::optional<Neighbor> const& leader, bool has_side) const {
+    if (!leader) return;
+    double const room = is_object(*leader) && has_side ? out_of_lane * course.minimum_length : 0.0;
+    ahead.add(law, speed, leader->gap - room, leader->speed);
+  }
+
+  template <class View>
+  [[nodiscard]] detail::Restriction ahead_in_lane(View const& view, detail::IdmLaw const& law, double speed,
+                                                  std::optional<Neighbor> const& leader, double end) const {
+    auto const& at = view.lane_position();
+    auto const& piece = view.corridor().pieces[at.piece];
+    detail::Restriction ahead{infinite, 0.0, law.free(speed)};
+    add_leader(ahead, law, speed, leader, piece.left != map::no_corridor || piece.right != map::no_corridor);
+    if (end < infinite && is_dead_end(view.corridor(), end))
+      ahead.add(law, speed, end - at.s - view.shape().front - course.minimum_length, 0.0);
+    return ahead;
+  }
+
+  template <class View>
+  [[nodiscard]] detail::Restriction ahead_while_changing(View const& view, detail::IdmLaw const& law, double speed,
+                                                         std::optional<Neighbor> const& leader,
+                                                         LaneChange const& change) const {
+    auto const& at = view.lane_position();
+    auto const& corridor = view.corridor();
+    auto const& piece = corridor.pieces[at.piece];
+    double const left = change.left, around = (1.0 - out_of_lane) * course.minimum_length;
+    auto const is_passed = [&](Neighbor const& n, double until) {  // the course leads around it
+      return n.speed < 0.5 && n.gap > until;
+    };
+    detail::Restriction ahead{infinite, 0.0, law.free(speed)};
+    if (change.target == at.corridor) {
+      add_leader(ahead, law, speed, leader, true);
+      // While it reaches over the border, the leader there counts, too.
+      auto const sides = corridor.widths_at(at.s, at.segment);
+      auto const beside = at.lateral + view.shape().left > sides.left     ? piece.left
+                          : view.shape().right - at.lateral > sides.right ? piece.right
+                                                                          : map::no_corridor;
+      if (beside == map::no_corridor) return ahead;
+      auto const other = view.front(view.beside(beside));
+      if (other && other->gap > 0.0 && !is_passed(*other, left - 0.5 * course.minimum_length))
+        ahead.add(law, speed, other->gap, other->speed);
+      return ahead;
+    }
+    if (leader && !is_passed(*leader, left - around)) ahead.add(law, speed, leader->gap, leader->speed);
+    double const end = lane_end(view, at.corridor, at.piece);
+    if (end < infinite && is_dead_end(corridor, end) && end - at.s < 0.6 * left)
+      ahead.add(law, speed, end - at.s - view.shape().front, 0.0);
+    auto const there = view.beside(change.target);
+    add_leader(ahead, law, speed, view.front(there), true);
+    auto const& target = view.road().corridors[change.target];
+    double const target_end = lane_end(view, change.target, there.piece);
+    if (target_end < infinite && is_dead_end(target, target_end))
+      ahead.add(law, speed, target_end - there.s - view.shape().front - course.minimum_length, 0.0);
+    return ahead;
+  }
+};
+
+}  // namespace cambium

@@ -1,0 +1,90 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+
+#include "cambium/behavior/view.hpp"
+
+namespace cambium {
+
+/// Corridor position by which a vehicle on `number`, in its piece `piece`, must have changed lanes, or at least should
+/// have, for there its lane begins to merge; infinite where it may stay [m]. O(1).
+template <class View>
+[[nodiscard]] double lane_end(View const& view, std::uint16_t number, std::uint16_t piece) {
+  auto const& corridor = view.road().corridors[number];
+  double const end = corridor.pieces[piece].lane_end;
+  return corridor.reaches_destination || !view.has_goal() ? end : std::min(end, corridor.length());
+}
+
+/// Whether a vehicle that has come to `end`, a finite `lane_end` of the corridor, must stop: a merge it may drive over.
+[[nodiscard]] inline bool is_dead_end(map::LaneCorridor const& corridor, double end) {
+  return end >= corridor.length();
+}
+
+/// In which direction the lanes lie that go further than the own one, and how urgent a change to there is.
+struct LaneUrgency {
+  double left{}, right{};  ///< of a change to that side, from -1 to 1; negative: leads away, or to where a lane ends
+};
+
+namespace detail {
+
+/// What is left of a lane corridor's lane `along` [m] behind the begin of one of its pieces [m].
+template <class View>
+[[nodiscard]] double remaining_from(View const& view, std::uint16_t number, std::uint16_t piece, double along) {
+  return lane_end(view, number, piece) - view.road().corridors[number].pieces[piece].begin - along;
+}
+
+/// How many lanes to the left (right) of a piece of the own corridor the next one is that goes further than `remaining`
+/// [m] from the place `along` [m] behind its begin; 0: there is none.
+template <class View>
+[[nodiscard]] int lanes_to_go(View const& view, std::uint16_t piece, double along, double remaining, bool left) {
+  auto number = view.lane_position().corridor;
+  constexpr int most = 16;
+  for (int lanes = 1; lanes <= most; ++lanes) {
+    auto const& at = view.road().corridors[number].pieces[piece];
+    number = left ? at.left : at.right;
+    piece = left ? at.left_piece : at.right_piece;
+    if (number == map::no_corridor) return 0;
+    if (remaining_from(view, number, piece, along) > remaining + 1.0) return lanes;
+  }
+  return 0;
+}
+
+}  // namespace detail
+
+/// How the ends of lanes, dead or merging, and the lane that the goal needs pull to a side: from `horizon` [m] before
+/// them for each lane to be crossed, increasingly. O(1) where no end is ahead, else O(lanes
+/// beside), at most at each piece up to the end.
+template <class View>
+[[nodiscard]] LaneUrgency lane_urgency(View const& view, double horizon) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  auto const& at = view.lane_position();
+  auto const& piece = view.corridor().pieces[at.piece];
+  double const remaining = lane_end(view, at.corridor, at.piece) - at.s;
+  auto const closeness = [&](double length, int lanes) {
+    return std::clamp(1.0 - length / (lanes * horizon), 0.0, 1.0);
+  };
+  if (remaining == infinite) {
+    auto const away = [&](std::uint16_t number, std::uint16_t there) {
+      if (number == map::no_corridor) return 0.0;
+      double const left = detail::remaining_from(view, number, there, at.s - piece.begin);
+      return left == infinite ? 0.0 : -closeness(left, 1);
+    };
+    return {away(piece.left, piece.left_piece), away(piece.right, piece.right_piece)};
+  }
+  for (auto p = at.piece; p < view.corridor().pieces.size(); ++p) {  // the lane that goes further may begin later
+    double const begin = view.corridor().pieces[p].begin, along = p == at.piece ? at.s - begin : 0.0;
+    double const there = remaining + at.s - begin - along;
+    if (!(there > 0.0)) break;
+    int const to_the_left = detail::lanes_to_go(view, p, along, there, true);
+    int const to_the_right = detail::lanes_to_go(view, p, along, there, false);
+    if (to_the_left == 0 && to_the_right == 0) continue;
+    bool const left = to_the_right == 0 || (to_the_left != 0 && to_the_left <= to_the_right);
+    double const urgency = closeness(remaining, left ? to_the_left : to_the_right);
+    return left ? LaneUrgency{urgency, -urgency} : LaneUrgency{-urgency, urgency};
+  }
+  return {};
+}
+
+}  // namespace cambium

@@ -1,0 +1,177 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <limits>
+#include <optional>
+#include <string>
+#include <tuple>
+
+#include "cambium/behavior/behavior_model.hpp"
+#include "cambium/behavior/constant_acceleration.hpp"
+#include "cambium/behavior/idm.hpp"
+#include "cambium/behavior/idm_law.hpp"
+#include "cambium/behavior/lane_change.hpp"
+#include "cambium/behavior/lane_ends.hpp"
+#include "cambium/core/error.hpp"
+
+namespace cambium {
+
+/// What a driver may decide to do.
+struct MacroAction {
+  enum class Kind : std::uint8_t {
+    stay,          ///< keeps the lane at `acceleration`
+    change_left,   ///< changes to the lane on the left at `acceleration`
+    change_right,  ///< to the right
+    keep_gap,      ///< keeps the lane and a gap by IDM; `acceleration` does not count
+  };
+
+  Kind kind = Kind::stay;
+  double acceleration = 0.0;  ///< [m/s^2]
+
+  friend bool operator==(MacroAction const&, MacroAction const&) = default;
+};
+
+/// As in messages and tables.
+[[nodiscard]] constexpr char const* to_string(MacroAction::Kind kind) {
+  switch (kind) {
+    case MacroAction::Kind::stay:
+      return "stay";
+    case MacroAction::Kind::change_left:
+      return "change_left";
+    case MacroAction::Kind::change_right:
+      return "change_right";
+    case MacroAction::Kind::keep_gap:
+      return "keep_gap";
+  }
+  return "unknown";
+}
+
+/// Drives by one of a few manoeuvres along its lanes. A search or a learner chooses in the agent's memory
+/// (`World::memory<MacroActions>(id).choose(number)`); the manoeuvre goes on until the next is chosen. A lane change
+/// that has begun is finished, whatever is chosen meanwhile, but for a change back. One that is not `available` when
+/// chosen is not begun: the vehicle keeps its lane at the action's acceleration.
+struct MacroActions {
+  using Kind = MacroAction::Kind;
+  static constexpr std::size_t capacity = 16;
+
+  struct Memory {
+    LaneChange change{};      ///< leads to the target corridor
+    std::uint8_t chosen = 0;  ///< number of the action
+    bool is_new = true;       ///< it has not begun yet
+
+    void choose(std::size_t number) {
+      chosen = static_cast<std::uint8_t>(number);
+      is_new = true;
+    }
+
+    friend bool operator==(Memory const&, Memory const&) = default;
+  };
+
+  std::array<MacroAction, capacity> actions{{{Kind::keep_gap},
+                                             {Kind::stay, 0.0},
+                                             {Kind::stay, 1.5},
+                                             {Kind::stay, -2.0},
+                                             {Kind::stay, -5.0},
+                                             {Kind::change_left},
+                                             {Kind::change_right}}};
+  int count = 7;
+  double highest_speed = 50.0;
+  double minimum_remaining = 20.0;
+  IdmParameters idm{};
+  LaneChangeCourse course{};
+  double tolerance = 1e-4;
+
+  static constexpr char const* name = "macro_actions";
+  static constexpr char const* summary =
+      "carries out what a search chooses: stay with an acceleration, change left or right, keep the gap by IDM; each "
+      "where its precondition holds";
+  static constexpr char const* source = "after BARK";
+  static constexpr auto parameters() {
+    using P = MacroActions;
+    return std::make_tuple(
+        parameter("count", &P::count, "-", Range{1, capacity}, "how many of the actions there are"),
+        parameter("highest_speed", &P::highest_speed, "m/s", Range{0, 200}, "not exceeded by accelerating"),
+        parameter("minimum_remaining", &P::minimum_remaining, "m", Range{0, 10'000},
+                  "no change into a lane that ends, or begins to merge into its neighbour, sooner"),
+        parameter("idm", &P::idm, "-", {}, "how gaps are kept"),
+        parameter("course", &P::course, "-", {}, "how long a change takes"),
+        parameter("tolerance", &P::tolerance, "m/s^2", Range{1e-12, 1},
+                  "error of IDM's exact integration, as speed per second"));
+  }
+
+  /// Throws `ParameterError` where an acceleration is none that a vehicle has.
+  void check(std::string const& where) const {
+    for (auto const& action : actions)
+      if (!(std::abs(action.acceleration) <= 50.0))
+        throw ParameterError(where, "has an action beyond 50 m/s^2", "give what a vehicle can do");
+  }
+
+  /// With these actions. Throws `ParameterError` for none, or more than `capacity`.
+  [[nodiscard]] static MacroActions of(std::initializer_list<MacroAction> list) {
+    if (list.size() == 0 || list.size() > capacity)
+      throw ParameterError(name, "has " + std::to_string(list.size()) + " actions", "give 1 to 16");
+    MacroActions result;
+    std::copy(list.begin(), list.end(), result.actions.begin());
+    result.count = static_cast<int>(list.size());
+    return result;
+  }
+
+  [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(count); }
+
+  /// Whether action `number` could begin now: a change needs a lane of the road on that side, long enough. O(1).
+  template <class View>
+  [[nodiscard]] bool available(View const& view, std::size_t number) const {
+    return number < size() && (!is_change(actions[number].kind) || side_of(view, actions[number].kind) != none);
+  }
+
+  template <class View>
+  [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
+    auto const action = memory.chosen < size() ? actions[memory.chosen] : MacroAction{};
+    double const speed = std::max(0.0, view.state().speed);
+    if (memory.is_new && is_change(action.kind)) {
+      auto const side = side_of(view, action.kind);
+      if (side != none && side != memory.change.target) memory.change = course.begin(side, speed);
+    }
+    memory.is_new = false;
+    return plan_lane_change(view, memory.change, motion(view, memory.change, action, speed, dt), dt);
+  }
+
+ private:
+  static constexpr auto none = map::no_corridor;
+
+  [[nodiscard]] static bool is_change(Kind kind) { return kind == Kind::change_left || kind == Kind::change_right; }
+
+  /// The lane corridor that a change leads to.
+  template <class View>
+  [[nodiscard]] std::uint16_t side_of(View const& view, Kind kind) const {
+    auto const& at = view.lane_position();
+    auto const& piece = view.corridor().pieces[at.piece];
+    auto const side = kind == Kind::change_left ? piece.left : piece.right;
+    if (side == none) return none;
+    auto const there = view.lane_position(side);
+    return lane_end(view, side, there.piece) - there.s < minimum_remaining ? none : side;
+  }
+
+  template <class View>
+  [[nodiscard]] LongitudinalMotion<double> motion(View const& view, LaneChange const& change, MacroAction const& action,
+                                                  double speed, double dt) const {
+    if (action.kind != Kind::keep_gap)
+      return ConstantAcceleration{action.acceleration, highest_speed}.motion(speed, dt);
+    detail::IdmLaw const law(idm);
+    detail::Restriction ahead{std::numeric_limits<double>::infinity(), 0.0, law.free(speed)};
+    auto const heed = [&](std::optional<Neighbor> const& leader) {
+      if (leader) ahead.add(law, speed, leader->gap, leader->speed);
+    };
+    heed(view.front());
+    if (change.active() && change.target != view.lane_position().corridor) heed(view.front(view.beside(change.target)));
+    return idm_motion(idm, speed, ahead.gap, ahead.speed, dt, tolerance);
+  }
+};
+static_assert(BehaviorModel<MacroActions>);
+
+}  // namespace cambium

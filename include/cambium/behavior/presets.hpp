@@ -1,0 +1,114 @@
+#pragma once
+
+#include "cambium/behavior/idm.hpp"
+#include "cambium/dynamics/kinematic_point.hpp"
+#include "cambium/dynamics/single_track.hpp"
+
+/// Drivers from the literature, as parameters of the car-following models, and vehicle models of the weak. Vehicle
+/// shapes: geometry/shape.hpp.
+namespace cambium::presets {
+
+/// Treiber, Hennecke, Helbing 2000, "Congested traffic states in empirical observations and microscopic simulations",
+/// table I: 120 km/h, 1.6 s, 0.73 m/s^2, 1.67 m/s^2, 2 m. String unstable in dense traffic, as the paper means it.
+[[nodiscard]] constexpr IdmParameters treiber_2000() {
+  return {.desired_speed = 120 / 3.6,
+          .time_headway = 1.6,
+          .minimum_gap = 2.0,
+          .maximum_acceleration = 0.73,
+          .comfortable_deceleration = 1.67,
+          .lowest_acceleration = -8.0};
+}
+
+/// Car of Kesting, Treiber, Helbing 2010, "Enhanced intelligent driver model to access the impact of driving strategies
+/// on traffic capacity", table 1: 120 km/h, 1.5 s, 1.4 m/s^2, 2 m/s^2, 2 m; for the ACC model, coolness 0.99.
+[[nodiscard]] constexpr IdmParameters kesting_2010_car() {
+  return {.desired_speed = 120 / 3.6,
+          .time_headway = 1.5,
+          .minimum_gap = 2.0,
+          .maximum_acceleration = 1.4,
+          .comfortable_deceleration = 2.0,
+          .lowest_acceleration = -8.0};
+}
+
+/// Truck of the same table: 85 km/h, 2 s, 0.7 m/s^2, 2 m/s^2, 4 m.
+[[nodiscard]] constexpr IdmParameters kesting_2010_truck() {
+  return {.desired_speed = 85 / 3.6,
+          .time_headway = 2.0,
+          .minimum_gap = 4.0,
+          .maximum_acceleration = 0.7,
+          .comfortable_deceleration = 2.0,
+          .lowest_acceleration = -6.0};
+}
+
+/// One who is in a hurry. Treiber and Kesting 2013, "Traffic Flow Dynamics", section 11.3.1 say which way the
+/// parameters go (short headway, high acceleration, late and hard braking); the numbers are chosen here, about those of
+/// `kesting_2010_car`.
+[[nodiscard]] constexpr IdmParameters aggressive() {
+  return {.desired_speed = 140 / 3.6,
+          .time_headway = 0.9,
+          .minimum_gap = 1.5,
+          .maximum_acceleration = 2.2,
+          .comfortable_deceleration = 3.0,
+          .lowest_acceleration = -8.0};
+}
+
+/// One who is careful; chosen as `aggressive` is.
+[[nodiscard]] constexpr IdmParameters timid() {
+  return {.desired_speed = 100 / 3.6,
+          .time_headway = 2.1,
+          .minimum_gap = 3.0,
+          .maximum_acceleration = 1.0,
+          .comfortable_deceleration = 1.3,
+          .lowest_acceleration = -8.0};
+}
+
+/// Cyclist, as a driver of `bicycle_dynamics`. The numbers are chosen here: 18 km/h, a little below the highest speed
+/// that SUMO gives bicycles by default (20 km/h), started and stopped gently, with short gaps.
+[[nodiscard]] constexpr IdmParameters cyclist() {
+  return {.desired_speed = 18 / 3.6,
+          .time_headway = 1.0,
+          .minimum_gap = 1.0,
+          .maximum_acceleration = 0.8,
+          .comfortable_deceleration = 1.5,
+          .lowest_acceleration = -5.0};
+}
+
+/// Vehicle model of a bicycle (`geometry::bicycle`): it steers and cannot turn on the spot, so that it is a single
+/// track, not a point. It brakes by 5 m/s^2 before its rear wheel lifts off (a centre of mass 1.1 m high, 0.6 m behind
+/// the front axle), and leans by 27 degrees at most.
+[[nodiscard]] constexpr SingleTrack bicycle_dynamics() {
+  return {.wheel_base = 1.1,
+          .steering_limit = 0.8,
+          .lowest_acceleration = -5.0,
+          .highest_acceleration = 1.5,
+          .lateral_acceleration_limit = 5.0};
+}
+
+/// Vehicle model of one who walks, where plans are executed through the dynamics: fast enough for 1.3 times the desired
+/// speed of Helbing and Molnár 1995, and able to do what social forces ask for.
+[[nodiscard]] constexpr KinematicPoint pedestrian_dynamics() {
+  return {.wheel_base = 0.5,
+          .yaw_rate_limit = 10.0,
+          .lowest_acceleration = -10.0,
+          .highest_acceleration = 10.0,
+          .lateral_acceleration_limit = 10.0,
+          .highest_speed = 3.0};
+}
+
+/// A driver with its name and where its numbers are from.
+struct Preset {
+  char const* name;
+  char const* source;
+  IdmParameters parameters;
+};
+
+/// All of them.
+inline constexpr Preset all[] = {
+    {"treiber_2000", "Treiber, Hennecke, Helbing 2000, table I", treiber_2000()},
+    {"kesting_2010_car", "Kesting, Treiber, Helbing 2010, table 1", kesting_2010_car()},
+    {"kesting_2010_truck", "Kesting, Treiber, Helbing 2010, table 1", kesting_2010_truck()},
+    {"aggressive", "own numbers; which way they go: Treiber, Kesting 2013, section 11.3.1", aggressive()},
+    {"timid", "own numbers, likewise", timid()},
+    {"cyclist", "own numbers, about SUMO's default speed of bicycles", cyclist()}};
+
+}  // namespace cambium::presets

@@ -1,0 +1,163 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <tuple>
+
+#include "cambium/behavior/behavior_model.hpp"
+#include "cambium/behavior/constant_acceleration.hpp"
+#include "cambium/behavior/follow_lane.hpp"
+#include "cambium/behavior/rss.hpp"
+#include "cambium/core/macros.hpp"
+#include "cambium/geometry/angle.hpp"
+#include "cambium/geometry/shape.hpp"
+
+namespace cambium {
+
+/// Any behaviour, but for dangerous situations by Responsibility-Sensitive Safety (see rss.hpp) with those who are in
+/// the own lane and those beside: there it brakes, or comes no closer to a side, as the proper response asks. It also
+/// keeps its accelerations within what others count on. Plans may turn in sideways harder than `lateral_acceleration`:
+/// that a plan does not make a situation dangerous is asked of where it leads, as if the other did the same. A plan
+/// that is not followed is forgotten: the nominal behaviour decides again from what it remembered before. Steps must
+/// not be longer than `response_time`. O(agents within some hundred metres).
+template <BehaviorModel Nominal>
+struct RssConformant {
+  Nominal nominal{};
+  RssParameters rss{};
+
+  static constexpr char const* name = "rss_conformant";
+  static constexpr char const* summary =
+      "any behaviour; below the safe distances along and across it brakes, or comes no closer, as the proper response "
+      "asks";
+  static constexpr char const* source = "Shalev-Shwartz, Shammah, Shashua 2017";
+  static constexpr auto parameters() {
+    return std::make_tuple(
+        parameter("nominal", &RssConformant::nominal, "-", {}, "the behaviour where nothing is dangerous"),
+        parameter("rss", &RssConformant::rss, "-", {}, "what is dangerous, and the response"));
+  }
+
+  using Memory = MemoryOf<Nominal>;
+
+  template <class View>
+  [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
+    auto remembered = memory;
+    auto plan = nominal.plan(view, remembered, dt);
+    if (plan.status != PlanStatus::valid || plan.trajectory.empty()) return plan;
+    auto const& end = plan.trajectory.back();
+    auto const must = response(view, end, dt);
+    double const speed = std::max(0.0, view.state().speed), wanted = (end.speed - speed) / dt;
+    double const most = must.brake ? -rss.minimum_deceleration : rss.maximum_acceleration;
+    double const acceleration = std::clamp(wanted, -rss.maximum_deceleration, most);
+    if (std::abs(acceleration - wanted) <= rounding && !must.keep_off_left && !must.keep_off_right) {
+      memory = remembered;
+      return plan;
+    }
+    return plan_along_lane(view, ConstantAcceleration{.acceleration = acceleration}.motion(speed, dt), dt);
+  }
+
+  /// The proper response to all that is near, where the vehicle means to be in the state `end` after `dt` [s]: `brake`
+  /// where the situation is dangerous as it is, a side to keep off from where it would be, for coming closer.
+  template <class View>
+  CAMBIUM_NOINLINE [[nodiscard]] RssResponse response(View const& view, typename View::State const& end,
+                                                      double dt) const {
+    RssResponse all;
+    auto const now = across(view, view.state(), view.shape()), then = across(view, end, view.shape());
+    double const speed = std::max(0.0, view.state().speed);
+    auto const visit = [&](auto const& other) {
+      if (may_matter(view, other, speed)) respond(view, other, now, then, dt, all);
+    };
+    auto const& at = view.lane_position();
+    auto const too_close = [&](std::uint16_t corridor) {
+      auto const objects = view.for_each_near(corridor, farthest, visit);
+      return objects.front && objects.front->gap < rss_same_direction(rss, speed, 0.0);
+    };
+    all.brake = too_close(at.corridor) || all.brake;
+    for (bool const left : {true, false}) {
+      auto const side = next_to(view, at.corridor, at.piece, left);
+      if (side.corridor == map::no_corridor) continue;
+      bool const closer = left ? then.left > now.left : then.right < now.right;
+      auto& keep_off = left ? all.keep_off_left : all.keep_off_right;
+      keep_off = (too_close(side.corridor) && closer) || keep_off;
+      auto const next = next_to(view, side.corridor, side.piece, left);
+      if (next.corridor != map::no_corridor) view.for_each_near(next.corridor, farthest, visit);
+    }
+    return all;
+  }
+
+ private:
+  static constexpr double rounding = 1e-9;
+  static constexpr double farthest = 400.0;  // [m]
+
+  struct Place {
+    std::uint16_t corridor, piece;
+  };
+
+  template <class View>
+  [[nodiscard]] static Place next_to(View const& view, std::uint16_t corridor, std::uint16_t number, bool left) {
+    auto const& piece = view.road().corridors[corridor].pieces[number];
+    return left ? Place{piece.left, piece.left_piece} : Place{piece.right, piece.right_piece};
+  }
+
+  /// False for who is too far away, whatever they are going to do.
+  template <class View, class Other>
+  [[nodiscard]] bool may_matter(View const& view, Other const& other, double speed) const {
+    auto const& own = view.state();
+    double const fast = std::max(speed, std::abs(other.state.speed));
+    bool const same = std::cos(other.state.heading - own.heading) > 0.2 && other.state.speed >= 0.0;
+    double const far = same ? rss_same_direction(rss, fast, 0.0) : rss_opposite_direction(rss, fast, fast);
+    double const apart = std::hypot(other.state.x - own.x, other.state.y - own.y);
+    return apart <= far + 2.0 * (view.shape().radius() + other.shape.radius());
+  }
+
+  /// What a road user takes up across the own lane corridor, and how it moves there.
+  struct Across {
+    double s{}, front{}, rear{};       ///< along the corridor, and how far it reaches [m]
+    double middle{}, left{}, right{};  ///< of the reference point and the sides, left positive [m]
+    double along{}, aside{};           ///< speeds [m/s]
+  };
+
+  template <class View>
+  [[nodiscard]] static Across across(View const& view, typename View::State const& state,
+                                     geometry::Shape const& shape) {
+    auto const& center = view.corridor().center;
+    auto const foot = center.project({state.x, state.y}, view.lane_position().segment);
+    auto const& segment = center.segments()[foot.segment];
+    double const inside = std::clamp(foot.s - segment.s, 0.0, segment.length);
+    auto const [sin, cos] = geometry::sin_cos(state.heading - (segment.heading + segment.curvature * inside));
+    auto const lengthwise = geometry::extent_along(shape, cos, sin),
+               sideways = geometry::extent_along(shape, sin, -cos);
+    return {foot.s,
+            lengthwise.positive,
+            lengthwise.negative,
+            foot.lateral,
+            foot.lateral + sideways.positive,
+            foot.lateral - sideways.negative,
+            state.speed * cos,
+            state.speed * sin};
+  }
+
+  template <class View, class Other>
+  void respond(View const& view, Other const& other, Across const& now, Across const& then, double dt,
+               RssResponse& all) const {
+    auto const its = across(view, other.state, other.shape);
+    RssSituation at{.speed = now.along, .other_speed = its.along, .other_lateral_speed = its.aside};
+    at.is_ahead = its.s >= now.s;
+    at.is_left = its.middle > now.middle;
+    at.gap = at.is_ahead ? its.s - its.rear - (now.s + now.front) : now.s - now.rear - (its.s + its.front);
+    at.side_gap = at.is_left ? its.right - now.left : now.right - its.left;
+    all.brake = all.brake || rss_response(rss, at).brake;
+    if (!(at.side_gap > 0.0)) return;
+    double const closing = std::max(0.0, at.is_left ? then.left - now.left : now.right - then.right);
+    if (!(closing > rounding)) return;
+    // As it will be, if the other comes closer by as much.
+    double const toward = std::max(closing / dt, at.is_left ? then.aside : -then.aside);
+    at.lateral_speed = at.is_left ? toward : -toward;
+    at.side_gap = std::max(at.side_gap - 2.0 * closing, rounding);
+    auto const one = rss_response(rss, at);
+    all.keep_off_left = all.keep_off_left || one.keep_off_left;
+    all.keep_off_right = all.keep_off_right || one.keep_off_right;
+  }
+};
+
+}  // namespace cambium

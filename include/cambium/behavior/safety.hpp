@@ -1,0 +1,42 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "cambium/behavior/behavior_model.hpp"
+#include "cambium/behavior/constant_acceleration.hpp"
+#include "cambium/behavior/lane_change.hpp"
+
+namespace cambium {
+
+/// Brakes to standstill, and steers to the middle of the lane that it is in.
+struct Safety {
+  double deceleration = 4.0;
+  LaneChangeCourse course{};
+
+  static constexpr char const* name = "safety";
+  static constexpr char const* summary = "brakes to standstill in the middle of its lane";
+  static constexpr char const* source = "own";
+  static constexpr auto parameters() {
+    return std::make_tuple(parameter("deceleration", &Safety::deceleration, "m/s^2", Range{0.01, 50}, "of the braking"),
+                           parameter("course", &Safety::course, "-", {}, "how it comes to the middle of its lane"));
+  }
+
+  using Memory = LaneChange;
+
+  template <class View>
+  [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
+    double const speed = std::max(0.0, view.state().speed);
+    auto const lane = view.lane_position().corridor;
+    if (memory.active() ? memory.target != lane : std::abs(view.lane_position().lateral) > off_middle)
+      memory = course.begin(lane, speed);
+    return plan_lane_change(view, memory, ConstantAcceleration{.acceleration = -deceleration}.motion(speed, dt), dt);
+  }
+
+ private:
+  static constexpr double off_middle = 0.05;  // [m]
+};
+static_assert(BehaviorModel<Safety>);
+
+}  // namespace cambium

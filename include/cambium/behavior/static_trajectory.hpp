@@ -1,0 +1,90 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <memory>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "cambium/behavior/behavior_model.hpp"
+#include "cambium/core/error.hpp"
+#include "cambium/geometry/angle.hpp"
+
+namespace cambium {
+
+/// Replays a recorded trajectory, shared by all copies: at each step's end the recorded state of that time, or between
+/// two of them linearly, the heading the shorter way round. Not in traffic before the first recorded time; expires in
+/// the step that would lead beyond the last. Heeds nobody.
+struct StaticTrajectory {
+  std::shared_ptr<std::vector<State> const> states;  ///< in order of time, at least one
+
+  StaticTrajectory() = default;
+  explicit StaticTrajectory(std::vector<State> recorded)
+      : states(std::make_shared<std::vector<State> const>(std::move(recorded))) {}
+
+  static constexpr char const* name = "static_trajectory";
+  static constexpr char const* summary =
+      "replays recorded states, between two of them linearly; enters and leaves traffic with its recording";
+  static constexpr char const* source = "interpolation";
+  static constexpr auto parameters() { return std::make_tuple(); }
+
+  /// Throws `ParameterError` where there are no states, one is not finite, or their times do not ascend.
+  void check(std::string const& where) const {
+    if (!states || states->empty()) throw ParameterError(where, "has no recorded states", "give at least one");
+    for (std::size_t i = 0; i < states->size(); ++i)
+      if (!is_finite((*states)[i]) || (i > 0 && !((*states)[i - 1].time < (*states)[i].time)))
+        throw ParameterError(where + " state " + std::to_string(i), "is not finite, or not later than the one before",
+                             "sort the recording by time");
+  }
+
+  /// The first recorded time [s].
+  [[nodiscard]] double start_time() const {
+    return states && !states->empty() ? states->front().time : std::numeric_limits<double>::infinity();
+  }
+
+  /// The recorded state at `time` [s], that of the nearer end beyond the ends. There must be states. O(log states).
+  [[nodiscard]] State at(double time) const {
+    auto const after = std::lower_bound(states->begin(), states->end(), time - same_time,
+                                        [](State const& state, double t) { return state.time < t; });
+    if (after == states->end()) return states->back();
+    if (after == states->begin() || after->time <= time + same_time) return *after;
+    State const &a = *(after - 1), &b = *after;
+    double const u = (time - a.time) / (b.time - a.time);
+    return {time, a.x + u * (b.x - a.x), a.y + u * (b.y - a.y),
+            a.heading + u * geometry::angle_difference(b.heading, a.heading), a.speed + u * (b.speed - a.speed)};
+  }
+
+  template <class View>
+  [[nodiscard]] Plan<View> plan(View const& view, NoMemory&, double dt) const {
+    Plan<View> plan;
+    double const end = view.time() + dt;
+    if (!states || states->empty() || end > states->back().time + same_time) {
+      plan.status = PlanStatus::expired;
+      return plan;
+    }
+    if (end < states->front().time - same_time) {
+      plan.status = PlanStatus::not_started;
+      return plan;
+    }
+    State const recorded = at(end);
+    auto next = view.state();
+    next.time = end;
+    next.x = recorded.x;
+    next.y = recorded.y;
+    next.heading = recorded.heading;
+    next.speed = recorded.speed;
+    plan.trajectory.push_back(next);
+    plan.action.acceleration = (recorded.speed - at(view.time()).speed) / dt;
+    return plan;
+  }
+
+ private:
+  static constexpr double same_time = 1e-9;  // [s]
+};
+static_assert(BehaviorModel<StaticTrajectory>);
+
+}  // namespace cambium

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <concepts>
+#include <cstddef>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+#include "cambium/dynamics/dynamic_model.hpp"
+
+namespace cambium {
+
+/// One of a closed set of vehicle models with the same state, so that trucks and pedestrians are in one world: each
+/// agent has the one that it is given, as in `DynamicSet<SingleTrack, KinematicPoint>(KinematicPoint{})`. Its input is
+/// the driver's action.
+template <class First, class... Others>
+class DynamicSet {
+  static_assert(DynamicModel<First> && (DynamicModel<Others> && ...),
+                "cambium::DynamicSet<Models...>: each must be a vehicle model (see DynamicModel)");
+  static_assert((std::is_same_v<typename First::State, typename Others::State> && ...),
+                "cambium::DynamicSet<Models...>: the models must have the same State");
+
+ public:
+  using State = typename First::State;
+  using Input = Action;
+  using Any = std::variant<First, Others...>;
+
+  /// The first of the models with its defaults.
+  DynamicSet() = default;
+
+  template <class Model>
+  requires(std::same_as<Model, First> || (std::same_as<Model, Others> || ...)) DynamicSet(Model const& model)
+      : any_(model) {}  // NOLINT: any of the models is a set's value
+
+  [[nodiscard]] Any const& any() const { return any_; }
+
+  [[nodiscard]] State derivative(State const& x, Action const& u) const {
+    return visit([&](auto const& model) { return model.derivative(x, model.input(u, x)); });
+  }
+  [[nodiscard]] Action limited(Action const& u, State const& x) const {
+    return visit([&](auto const& model) { return action_of(model.input(u, x), u); });
+  }
+  [[nodiscard]] Action input(Action const& action, State const& x) const { return limited(action, x); }
+  [[nodiscard]] State stopped(State x) const {
+    return visit([&](auto const& model) {
+      if constexpr (requires { model.stopped(x); }) return model.stopped(x);
+      return x;
+    });
+  }
+  [[nodiscard]] double wheel_base() const {
+    return visit([](auto const& model) { return wheel_base_of(model); });
+  }
+
+ private:
+  /// As std::visit, without its table of functions and its exception.
+  template <std::size_t i = 0, class F>
+  [[nodiscard]] auto visit(F const& f) const -> decltype(f(std::declval<First const&>())) {
+    if constexpr (i < sizeof...(Others))
+      if (any_.index() != i) return visit<i + 1>(f);
+    return f(*std::get_if<i>(&any_));
+  }
+
+  Any any_;
+};
+
+}  // namespace cambium

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <type_traits>
+
+#include "cambium/core/parameters.hpp"
+#include "cambium/dynamics/single_track.hpp"
+
+namespace cambium {
+
+template <class Scalar>
+struct KinematicPointInput {
+  Scalar acceleration{};  ///< along the heading [m/s^2]
+  Scalar yaw_rate{};      ///< counter-clockwise [rad/s]
+};
+
+/// A point that faces where it goes (a pedestrian, a simple planner's vehicle): x' = v cos(heading), y' = v
+/// sin(heading), heading' = yaw rate, v' = acceleration. It turns on the spot. Forces in the plane move it by `toward`;
+/// a driver's steering angle turns it as that of a vehicle of `wheel_base` would.
+struct KinematicPoint {
+  using State = cambium::State;
+  using Input = KinematicPointInput<double>;
+
+  double wheel_base = 0.5;
+  double yaw_rate_limit = 3.0;
+  double lowest_acceleration = -5.0;
+  double highest_acceleration = 3.0;
+  double lateral_acceleration_limit = 5.0;
+  double highest_speed = 3.0;
+
+  static constexpr char const* name = "kinematic_point";
+  static constexpr char const* summary =
+      "x' = v cos(heading), y' = v sin(heading), heading' = yaw rate, v' = a; turns on the spot";
+  static constexpr char const* source = "kinematics";
+  static constexpr auto parameters() {
+    using Self = KinematicPoint;
+    return std::make_tuple(
+        parameter("wheel_base", &Self::wheel_base, "m", Range{0.1, 20}, "of the vehicle that steers the same course"),
+        parameter("yaw_rate_limit", &Self::yaw_rate_limit, "rad/s", Range{0, 100}, "how fast it turns at most"),
+        parameter("lowest_acceleration", &Self::lowest_acceleration, "m/s^2", Range{-50, 0}, "hardest braking"),
+        parameter("highest_acceleration", &Self::highest_acceleration, "m/s^2", Range{0, 50}, "fastest start"),
+        parameter("lateral_acceleration_limit", &Self::lateral_acceleration_limit, "m/s^2", Range{0.1, 1000},
+                  "speed times yaw rate"),
+        parameter("highest_speed", &Self::highest_speed, "m/s", Range{0.1, 200}, "it accelerates no further"));
+  }
+
+  template <class Scalar>
+  [[nodiscard]] BasicState<Scalar> derivative(BasicState<Scalar> const& x,
+                                              KinematicPointInput<std::type_identity_t<Scalar>> const& u) const {
+    auto const along = direction_of(x.heading);
+    return {Scalar(1), x.speed * along.cos, x.speed * along.sin, u.yaw_rate, u.acceleration};
+  }
+
+  [[nodiscard]] Input limited(Input const& u, State const& x) const {
+    double const turn = std::min(yaw_rate_limit, lateral_acceleration_limit / std::max(1e-9, std::abs(x.speed)));
+    double const most = x.speed >= highest_speed ? 0.0 : highest_acceleration;
+    return {std::clamp(u.acceleration, lowest_acceleration, most), std::clamp(u.yaw_rate, -turn, turn)};
+  }
+
+  [[nodiscard]] Input input(Action const& action, State const& x) const {
+    return limited({action.acceleration, x.speed * std::tan(std::clamp(action.steering, -1.5, 1.5)) / wheel_base}, x);
+  }
+
+  /// The input that a force per mass (ax, ay) [m/s^2] in the map frame makes. Below 0.1 m/s it turns towards the force.
+  [[nodiscard]] Input toward(double ax, double ay, State const& x) const {
+    auto const [sin, cos] = geometry::sin_cos(x.heading);
+    double const along = ax * cos + ay * sin, across = ay * cos - ax * sin;
+    if (x.speed >= 0.1) return limited({along, across / x.speed}, x);
+    return limited({std::max(0.0, along), 10.0 * std::atan2(across, along)}, x);
+  }
+};
+static_assert(DynamicModel<KinematicPoint>);
+
+}  // namespace cambium

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <type_traits>
+
+#include "cambium/core/parameters.hpp"
+#include "cambium/dynamics/single_track.hpp"
+
+namespace cambium {
+
+/// A motion state with the angle that the front wheels have.
+template <class Scalar>
+struct BasicSteeringState {
+  Scalar time{}, x{}, y{}, heading{}, speed{};  ///< as of `BasicState`
+  Scalar steering{};                            ///< angle of the front axle, left positive [rad]
+
+  friend bool operator==(BasicSteeringState const&, BasicSteeringState const&) = default;
+};
+
+template <class Scalar>
+[[nodiscard]] BasicSteeringState<Scalar> add_scaled(BasicSteeringState<Scalar> const& a,
+                                                    BasicSteeringState<Scalar> const& derivative, double h) {
+  auto const s = Scalar(h);
+  return {a.time + s * derivative.time,       a.x + s * derivative.x,         a.y + s * derivative.y,
+          a.heading + s * derivative.heading, a.speed + s * derivative.speed, a.steering + s * derivative.steering};
+}
+
+template <class Scalar>
+struct SteeringRateInput {
+  Scalar acceleration{};   ///< [m/s^2]
+  Scalar steering_rate{};  ///< [rad/s]
+};
+
+/// The kinematic single-track model whose wheels turn at a limited rate: `SingleTrack` with the steering angle as a
+/// state. A driver's steering angle is reached as a first-order lag of `response_time` reaches it, no faster than the
+/// rate's limit; integrate in steps no longer than that.
+struct SingleTrackSteering {
+  using State = BasicSteeringState<double>;
+  using Input = SteeringRateInput<double>;
+
+  double wheel_base = 2.7;
+  double steering_limit = 0.6;
+  double steering_rate_limit = 0.8;
+  double response_time = 0.1;
+  double lowest_acceleration = -8.0;
+  double highest_acceleration = 4.0;
+  double lateral_acceleration_limit = 8.0;
+
+  static constexpr char const* name = "single_track_steering";
+  static constexpr char const* summary = "single track whose steering angle is a state, with a limited rate and a lag";
+  static constexpr char const* source = "Rajamani 2012, section 2.2; lag: own";
+  static constexpr auto parameters() {
+    using Self = SingleTrackSteering;
+    return std::make_tuple(
+        parameter("wheel_base", &Self::wheel_base, "m", Range{0.1, 20}, "distance between the axles"),
+        parameter("steering_limit", &Self::steering_limit, "rad", Range{0, 1.5},
+                  "largest steering angle to either side"),
+        parameter("steering_rate_limit", &Self::steering_rate_limit, "rad/s", Range{0.01, 100},
+                  "how fast the steering angle changes at most"),
+        parameter("response_time", &Self::response_time, "s", Range{0.01, 10},
+                  "of the steering to what the driver asks for"),
+        parameter("lowest_acceleration", &Self::lowest_acceleration, "m/s^2", Range{-50, 0}, "hardest braking"),
+        parameter("highest_acceleration", &Self::highest_acceleration, "m/s^2", Range{0, 50}, "fullest throttle"),
+        parameter("lateral_acceleration_limit", &Self::lateral_acceleration_limit, "m/s^2", Range{0.1, 1000},
+                  "speed^2 times curvature that a driver's action is kept within"));
+  }
+
+  template <class Scalar>
+  [[nodiscard]] BasicSteeringState<Scalar> derivative(BasicSteeringState<Scalar> const& x,
+                                                      SteeringRateInput<std::type_identity_t<Scalar>> const& u) const {
+    auto const along = direction_of(x.heading);
+    return {Scalar(1),           x.speed * along.cos,
+            x.speed * along.sin, x.speed * steering_curvature(x.steering, wheel_base),
+            u.acceleration,      u.steering_rate};
+  }
+
+  /// At the limit of the angle the wheels turn no further.
+  [[nodiscard]] Input limited(Input const& u, State const& x) const {
+    double rate = std::clamp(u.steering_rate, -steering_rate_limit, steering_rate_limit);
+    if (std::abs(x.steering) >= steering_limit && rate * x.steering > 0.0) rate = 0.0;
+    return {std::clamp(u.acceleration, lowest_acceleration, highest_acceleration), rate};
+  }
+
+  [[nodiscard]] Input input(Action const& action, State const& x) const {
+    double const largest = steering_within_grip(std::min(std::abs(action.steering), steering_limit),
+                                                lateral_acceleration_limit, wheel_base, x.speed);
+    double const wanted = std::copysign(largest, action.steering);
+    return limited({action.acceleration, (wanted - x.steering) / response_time}, x);
+  }
+};
+static_assert(DynamicModel<SingleTrackSteering>);
+
+}  // namespace cambium

@@ -1,0 +1,56 @@
+#pragma once
+
+#include <cmath>
+#include <tuple>
+
+#include "cambium/execution/steering.hpp"
+#include "cambium/execution/tracking.hpp"
+
+namespace cambium {
+
+/// Follows the plan by a controller: Stanley's law for the steering (Hoffmann et al. 2007), a PI controller for the
+/// speed, whose integral is the way that the vehicle lags behind. Plans are met with an error, and late.
+struct StanleyExecution {
+  double cross_track_gain = 2.0;
+  double softening_speed = 1.0;
+  double speed_gain = 1.5;
+  double lag_gain = 1.0;
+  Actuation actuation{};
+
+  static constexpr char const* name = "stanley";
+  static constexpr char const* summary =
+      "steering = curvature and heading error - atan(k e / (v + v_soft)) at the front axle; acceleration by PI on "
+      "speed and lag";
+  static constexpr char const* source = "Hoffmann, Tomlin, Montemerlo, Thrun 2007";
+  static constexpr auto parameters() {
+    using Self = StanleyExecution;
+    return std::make_tuple(
+        parameter("cross_track_gain", &Self::cross_track_gain, "1/s", Range{0, 20},
+                  "how fast an offset from the plan decays"),
+        parameter("softening_speed", &Self::softening_speed, "m/s", Range{0, 20}, "calms the steering at low speed"),
+        parameter("speed_gain", &Self::speed_gain, "1/s", Range{0, 20}, "acceleration per error of the speed"),
+        parameter("lag_gain", &Self::lag_gain, "1/s^2", Range{0, 20},
+                  "acceleration per way that the vehicle lags behind"),
+        parameter("actuation", &Self::actuation, "-", {}, "how commands are carried out"));
+  }
+
+  template <MotionState S>
+  using Memory = TrackingMemory<S>;
+
+  template <MotionState S, class Dynamics>
+  [[nodiscard]] Executed<S> execute(BasicPlan<S> const& plan, S const& now, Dynamics const& dynamics, double time,
+                                    TrackingMemory<S>& memory, RandomStream& random) const {
+    double const wheel_base = wheel_base_of(dynamics);
+    auto const law = [&](Reference const& reference, TrackingError const& error, S const& x, double h) -> Action {
+      // Rigidly ahead of the reference its front axle is to be: there is no error where the vehicle is on its course.
+      double const front = error.left + wheel_base * std::sin(error.heading);
+      double const feedback = stanley_steering(-error.heading, front, x.speed, cross_track_gain, softening_speed);
+      return {reference.acceleration - speed_gain * error.speed - lag_gain * error.along,
+              std::atan(reference.curvature * wheel_base) + feedback * held_feedback(x.speed * h, wheel_base)};
+    };
+    return track(actuation, law, plan, now, dynamics, time, memory, random);
+  }
+};
+static_assert(ExecutionModel<StanleyExecution>);
+
+}  // namespace cambium

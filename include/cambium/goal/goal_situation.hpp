@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "cambium/core/ids.hpp"
+#include "cambium/geometry/pose.hpp"
+#include "cambium/geometry/shape.hpp"
+#include "cambium/map/corridor.hpp"
+
+namespace cambium {
+
+/// Where an agent is, as goals ask it.
+struct GoalSituation {
+  geometry::Pose pose;
+  geometry::Shape shape;
+  LaneId lane = none<LaneId>;                 ///< of its lane corridor
+  double lane_position{};                     ///< along that lane's path [m]
+  double speed{};                             ///< [m/s]
+  double lateral{};                           ///< from the lane corridor's centre line, left positive [m]
+  double heading_error{};                     ///< from the lane corridor's direction [rad]
+  map::RoadCorridor const* road = nullptr;    ///< the lanes of its route
+  std::uint16_t corridor = map::no_corridor;  ///< number of its lane corridor there
+  double s{};                                 ///< along that [m]
+  std::size_t passed{};                       ///< parts of its `GoalSequence` that it has reached
+};
+
+}  // namespace cambium

@@ -1,0 +1,177 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <tuple>
+
+#include "cambium/core/ids.hpp"
+#include "cambium/core/parameters.hpp"
+#include "cambium/geometry/angle.hpp"
+#include "cambium/geometry/collision.hpp"
+#include "cambium/geometry/oriented_box.hpp"
+#include "cambium/geometry/polygon.hpp"
+#include "cambium/goal/goal_situation.hpp"
+
+namespace cambium {
+
+namespace detail {
+/// Every number, and infinity.
+inline constexpr Range any_number{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+}  // namespace detail
+
+/// Drives straight on: without a route of its own for 2 km (see `map::straight_route`), or until a lane would come
+/// again.
+struct NoGoal {
+  static constexpr char const* name = "no_goal";
+  static constexpr char const* summary = "never reached; the route goes straight on";
+  [[nodiscard]] bool at_goal(GoalSituation const&) const { return false; }
+};
+
+/// Reached with the whole shape inside of `area` (map frame).
+struct ReachPolygon {
+  static constexpr char const* name = "reach_polygon";
+  static constexpr char const* summary = "the whole shape is within a polygon";
+  geometry::Polygon area;
+  [[nodiscard]] bool at_goal(GoalSituation const& at) const {
+    return geometry::contains(area, geometry::box_of(at.shape, at.pose));
+  }
+};
+
+/// Reached with the reference point in `lane`, between `from` and `to` [m] along its path.
+struct ReachLane {
+  LaneId lane = none<LaneId>;
+  double from = 0.0;
+  double to = std::numeric_limits<double>::infinity();
+
+  static constexpr char const* name = "reach_lane";
+  static constexpr char const* summary = "the reference point is in a lane, between two positions along its path";
+  static constexpr auto parameters() {
+    return std::make_tuple(parameter("from", &ReachLane::from, "m", detail::any_number, "along the path of the lane"),
+                           parameter("to", &ReachLane::to, "m", detail::any_number, "likewise, not below from"));
+  }
+
+  [[nodiscard]] bool at_goal(GoalSituation const& at) const {
+    return at.lane == lane && at.lane_position >= from && at.lane_position <= to;
+  }
+};
+
+/// Reached with heading and speed within limits, ends included; names no place. Headings are turned through counter-
+/// clockwise from the first to the second, over the wrap where need be; a turn of 2 pi or more leaves them free.
+struct StateLimits {
+  double heading_from = -geometry::pi;                             ///< [rad], any turn
+  double heading_to = geometry::pi;                                ///< [rad], not below `heading_from`, or a turn less
+  double lowest_speed = -std::numeric_limits<double>::infinity();  ///< [m/s]
+  double highest_speed = std::numeric_limits<double>::infinity();  ///< [m/s]
+
+  static constexpr char const* name = "state_limits";
+  static constexpr char const* summary = "heading (over the wrap where need be) and speed within limits";
+  static constexpr auto parameters() {
+    using P = StateLimits;
+    return std::make_tuple(
+        parameter("heading_from", &P::heading_from, "rad", any_finite, "counter-clockwise from here"),
+        parameter("heading_to", &P::heading_to, "rad", any_finite, "to here; a turn of 2 pi leaves headings free"),
+        parameter("lowest_speed", &P::lowest_speed, "m/s", detail::any_number, "of the speed"),
+        parameter("highest_speed", &P::highest_speed, "m/s", detail::any_number, "of the speed"));
+  }
+
+  [[nodiscard]] bool at_goal(GoalSituation const& at) const {
+    return has_heading(at.pose.heading) && at.speed >= lowest_speed && at.speed <= highest_speed;
+  }
+
+ private:
+  [[nodiscard]] bool has_heading(double heading) const {
+    constexpr double turn = 2 * geometry::pi, rounding = 1e-12;
+    double const wide = heading_to - heading_from;
+    if (wide >= turn) return true;
+    double const half = 0.5 * (wide < 0.0 ? wide + turn : wide);
+    return std::abs(geometry::angle_difference(heading, heading_from + half)) <= half + rounding;
+  }
+};
+
+/// Reached when driving along a lane within limits of its Frenet frame, ends included. `lane`: none for whichever the
+/// agent is in.
+struct LaneLimits {
+  LaneId lane = none<LaneId>;
+  double from = 0.0;                                               ///< along the lane's path [m]
+  double to = std::numeric_limits<double>::infinity();             ///< [m]
+  double left = std::numeric_limits<double>::infinity();           ///< farthest to the left of the path [m]
+  double right = std::numeric_limits<double>::infinity();          ///< and to its right [m]
+  double heading_error = geometry::pi;                             ///< largest angle to the path, either way [rad]
+  double lowest_speed = -std::numeric_limits<double>::infinity();  ///< [m/s]
+  double highest_speed = std::numeric_limits<double>::infinity();  ///< [m/s]
+
+  static constexpr char const* name = "lane_limits";
+  static constexpr char const* summary = "within limits of the Frenet frame of a lane, or of whichever the agent is in";
+  static constexpr auto parameters() {
+    using P = LaneLimits;
+    return std::make_tuple(
+        parameter("from", &P::from, "m", detail::any_number, "along the path of the lane"),
+        parameter("to", &P::to, "m", detail::any_number, "likewise, not below from"),
+        parameter("left", &P::left, "m", detail::any_number, "farthest to the left of the path"),
+        parameter("right", &P::right, "m", detail::any_number, "and to its right"),
+        parameter("heading_error", &P::heading_error, "rad", non_negative, "largest angle to the path, either way"),
+        parameter("lowest_speed", &P::lowest_speed, "m/s", detail::any_number, "of the speed"),
+        parameter("highest_speed", &P::highest_speed, "m/s", detail::any_number, "of the speed"));
+  }
+
+  [[nodiscard]] bool at_goal(GoalSituation const& at) const {
+    return (!is_valid(lane) || at.lane == lane) && at.lane_position >= from && at.lane_position <= to &&
+           at.lateral <= left && at.lateral >= -right && std::abs(at.heading_error) <= heading_error &&
+           at.speed >= lowest_speed && at.speed <= highest_speed;
+  }
+};
+
+/// Reached within `distance` [m] of the end of the lane corridor that the agent is in: where its lane, with all that
+/// goes on from it on the route, ends.
+struct ReachLaneEnd {
+  double distance = 10.0;
+
+  static constexpr char const* name = "reach_lane_end";
+  static constexpr char const* summary = "near the end of the lane corridor";
+  static constexpr auto parameters() {
+    return std::make_tuple(
+        parameter("distance", &ReachLaneEnd::distance, "m", non_negative, "to the end of the lane corridor"));
+  }
+
+  [[nodiscard]] bool at_goal(GoalSituation const& at) const {
+    return at.road != nullptr && at.road->corridors[at.corridor].length_until_end(at.s) <= distance;
+  }
+};
+
+/// Reached in the lane corridor beside that of lane `from`, on its left or right, and within `tolerance` [m] of its
+/// centre line. `from`: none for the lane that the agent enters in, which `World::add` fills in.
+struct ReachLaneBeside {
+  enum class Side : std::uint8_t { left, right };
+
+  Side side = Side::left;
+  LaneId from = none<LaneId>;
+  double tolerance = 0.5;
+
+  static constexpr char const* name = "reach_lane_beside";
+  static constexpr char const* summary =
+      "in the lane corridor to the left or right of the one that it entered in: a lane change";
+  static constexpr auto parameters() {
+    using P = ReachLaneBeside;
+    return std::make_tuple(
+        parameter("side", &P::side, "-", Range{0, 1}, "0 left, 1 right"),
+        parameter("tolerance", &P::tolerance, "m", non_negative, "from the centre line of that corridor"));
+  }
+
+  [[nodiscard]] bool at_goal(GoalSituation const& at) const {
+    if (at.road == nullptr || !is_valid(from) || std::abs(at.lateral) > tolerance) return false;
+    auto const holds = [&](std::uint16_t corridor) {
+      auto const& pieces = at.road->corridors[corridor].pieces;
+      return std::any_of(pieces.begin(), pieces.end(), [&](auto const& piece) { return piece.lane == from; });
+    };
+    if (holds(at.corridor)) return false;
+    for (auto const& piece : at.road->corridors[at.corridor].pieces) {
+      auto const back = side == Side::left ? piece.right : piece.left;
+      if (back != map::no_corridor && holds(back)) return true;
+    }
+    return false;
+  }
+};
+
+}  // namespace cambium

@@ -1,0 +1,239 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <optional>
+#include <set>
+#include <tuple>
+#include <vector>
+
+#include "cambium/core/ids.hpp"
+#include "cambium/geometry/collision.hpp"
+#include "cambium/geometry/oriented_box.hpp"
+#include "cambium/map/corridor.hpp"
+#include "cambium/map/map.hpp"
+#include "cambium/map/right_of_way.hpp"
+
+namespace cambium::map::detail {
+
+/// Adds the lanes behind `lane`, back to way position `until` [m], each once by its shortest way.
+inline void add_ways_behind(Map const& map, Lane const& lane, double until, std::vector<ConflictWay>& ways) {
+  struct Way {
+    LaneId lane;
+    double begin;  // [m]
+  };
+  std::set<LaneId> seen;
+  std::vector<Way> open{{lane.id, 0.0}};
+  for (std::size_t i = 0; i < open.size(); ++i) {
+    auto const way = open[i];
+    if (way.begin <= until) continue;
+    for (auto const before : map.lane(way.lane).predecessors) {
+      auto const& previous = map.lane(before);
+      if (!previous.drivable() || before == lane.id || !seen.insert(before).second) continue;
+      double const begin = way.begin - previous.length(), from = std::max(0.0, until - begin);
+      ways.push_back({previous.index_begin + from, previous.index_begin + previous.length(), begin + from});
+      open.push_back({before, begin});
+    }
+  }
+}
+
+/// The ways by which traffic comes to, and leaves, positions `from` to `to` [m] of `lane`, see `Conflict::ways`.
+[[nodiscard]] inline std::vector<ConflictWay> ways_through(Map const& map, Lane const& lane, double from, double to) {
+  double const begin = std::max(0.0, from);
+  std::vector<ConflictWay> ways{{lane.index_begin + begin, lane.index_begin + lane.length(), begin}};
+  for (auto const id : lane.successors) {
+    auto const& next = map.lane(id);
+    if (to > lane.length())
+      ways.push_back({next.index_begin, next.index_begin + std::min(next.length(), to - lane.length()), lane.length()});
+  }
+  add_ways_behind(map, lane, from, ways);
+  return ways;
+}
+
+/// Finds the conflicts of a lane corridor whose centre line and pieces are there already, see `Conflict`.
+class ConflictFinder {
+ public:
+  ConflictFinder(Map const& map, LaneCorridor const& corridor)
+      : map_(map), corridor_(corridor), body_(map.options().conflict_shape) {}
+
+  [[nodiscard]] std::vector<Conflict> find() const {
+    std::vector<Conflict> conflicts;
+    for (std::size_t i = 0; i < corridor_.pieces.size(); ++i) {
+      auto const& lane = map_.lane(corridor_.pieces[i].lane);
+      for (auto const& overlap : lane.overlaps)
+        if (auto conflict = conflict_at(i, overlap)) conflicts.push_back(std::move(*conflict));
+      for (auto const& overlap : passings(lane))
+        if (auto conflict = conflict_at(i, overlap)) conflicts.push_back(std::move(*conflict));
+    }
+    std::sort(conflicts.begin(), conflicts.end(), [](Conflict const& a, Conflict const& b) {
+      return std::tie(a.begin, a.other, a.other_begin) < std::tie(b.begin, b.other, b.other_begin);
+    });
+    return conflicts;
+  }
+
+ private:
+  static constexpr double step = 0.5;      // [m] between two places of a body
+  static constexpr double shortest = 1.0;  // [m] of a lane on which a body swings out
+  /// How far before and behind an overlap of paths the bodies may touch [m].
+  [[nodiscard]] double before() const { return body_.length() + 8.0; }
+  [[nodiscard]] double behind() const { return body_.rear + 8.0; }
+
+  [[nodiscard]] std::optional<Conflict> conflict_at(std::size_t number, Overlap const& overlap) const {
+    auto const& piece = corridor_.pieces[number];
+    bool const in_junction = is_valid(junction_of(piece.lane));
+    if (overlap.kind == OverlapKind::merge && !in_junction) return std::nullopt;
+    auto const position = [&](double s) { return std::clamp(s - piece.lane_offset, piece.begin, piece.end); };
+    Conflict conflict;
+    conflict.other = overlap.other;
+    conflict.kind = kind_of(map_.lane(piece.lane), overlap);
+    conflict.right_of_way = right_of_way(map_, piece.lane, overlap);
+    double const begin = position(overlap.begin), end = position(overlap.end);
+    conflict.shift = conflict.kind == OverlapKind::split ? begin - overlap.other_begin : end - overlap.other_end;
+    if (overlap.kind == OverlapKind::merge) conflict.meet = begin;
+    if (!find_touching(overlap, begin, end, conflict)) return std::nullopt;
+    conflict.line = std::min(conflict.begin + body_.front, junction_begin(number));
+    conflict.other_line = std::min(conflict.other_begin + body_.front, junction_begin(overlap.other));
+    conflict.other_light = signs_before(map_, map_.lane(overlap.other)).light;
+    add_ways(conflict);
+    return conflict;
+  }
+
+  /// The lanes outside of a lane's junction from which one comes to it (`ahead`: to which it leads); outside of
+  /// junctions those next to it.
+  [[nodiscard]] std::vector<LaneId> ends_of(Lane const& lane, bool ahead) const {
+    auto const junction = junction_of(lane.id);
+    std::vector<LaneId> ends, open{lane.id};
+    for (std::size_t i = 0; i < open.size() && i < 64; ++i)
+      for (auto const id : ahead ? map_.lane(open[i]).successors : map_.lane(open[i]).predecessors) {
+        bool const outside = !is_valid(junction) || junction_of(id) != junction;
+        auto& list = outside ? ends : open;
+        if (std::find(list.begin(), list.end(), id) == list.end()) list.push_back(id);
+      }
+    return ends;
+  }
+  [[nodiscard]] bool share_ends(Lane const& a, Lane const& b, bool ahead) const {
+    auto const of_a = ends_of(a, ahead), of_b = ends_of(b, ahead);
+    return std::any_of(of_a.begin(), of_a.end(),
+                       [&](LaneId id) { return std::find(of_b.begin(), of_b.end(), id) != of_b.end(); });
+  }
+
+  /// Lanes that come from, or lead into, lanes side by side are near each other there too, and may cross.
+  [[nodiscard]] OverlapKind kind_of(Lane const& lane, Overlap const& overlap) const {
+    auto const& other = map_.lane(overlap.other);
+    if (overlap.kind == OverlapKind::merge && share_ends(lane, other, true)) return OverlapKind::merge;
+    if (overlap.kind == OverlapKind::split && share_ends(lane, other, false)) return OverlapKind::split;
+    return OverlapKind::crossing;
+  }
+
+  /// Whether bodies on the two paths may touch, by circles around the paths.
+  [[nodiscard]] bool is_near(Lane const& a, Lane const& b) const {
+    auto const p = a.path.pose(0.5 * a.length()), q = b.path.pose(0.5 * b.length());
+    return std::hypot(p.x - q.x, p.y - q.y) < 0.5 * (a.length() + b.length()) + before();
+  }
+
+  /// The lanes of its junction whose paths keep apart from the lane's: bodies that swing out in bends may touch there.
+  [[nodiscard]] std::vector<Overlap> passings(Lane const& lane) const {
+    std::vector<Overlap> list;
+    auto const junction = junction_of(lane.id);
+    if (!is_valid(junction) || lane.length() <= shortest) return list;
+    for (auto const id : map_.junction(junction).lanes) {
+      auto const& other = map_.lane(id);
+      bool const overlaps = std::any_of(lane.overlaps.begin(), lane.overlaps.end(),
+                                        [id](Overlap const& overlap) { return overlap.other == id; });
+      if (other.drivable() && other.length() > shortest && !overlaps && is_near(lane, other) &&
+          !share_ends(lane, other, false) && !share_ends(lane, other, true))
+        list.push_back({id, OverlapKind::crossing, 0.0, lane.length(), 0.0, other.length()});
+    }
+    return list;
+  }
+
+  [[nodiscard]] JunctionId junction_of(LaneId lane) const { return map_.road(map_.lane(lane).road).junction; }
+
+  /// Where the corridor enters the junction in which piece `number` lies; infinite where that lies in none.
+  [[nodiscard]] double junction_begin(std::size_t number) const {
+    auto const junction = junction_of(corridor_.pieces[number].lane);
+    if (!is_valid(junction)) return std::numeric_limits<double>::infinity();
+    while (number > 0 && junction_of(corridor_.pieces[number - 1].lane) == junction) --number;
+    return corridor_.pieces[number].begin;
+  }
+  [[nodiscard]] double junction_begin(LaneId lane) const {
+    auto const junction = junction_of(lane);
+    if (!is_valid(junction)) return std::numeric_limits<double>::infinity();
+    double begin = 0.0;
+    for (int lanes = 0; lanes < 8; ++lanes) {
+      auto const& predecessors = map_.lane(lane).predecessors;
+      if (predecessors.empty() || junction_of(predecessors.front()) != junction) break;
+      lane = predecessors.front();
+      begin -= map_.lane(lane).length();
+    }
+    return begin;
+  }
+
+  /// The other's path, straight on beyond its ends where no lane goes on there.
+  [[nodiscard]] geometry::Pose pose_on_way(LaneId id, double s) const {
+    auto const* lane = &map_.lane(id);
+    for (int lanes = 0; lanes < 16 && s < 0.0 && !lane->predecessors.empty(); ++lanes) {
+      lane = &map_.lane(lane->predecessors.front());
+      s += lane->length();
+    }
+    for (int lanes = 0; lanes < 16 && s > lane->length() && !lane->successors.empty(); ++lanes) {
+      s -= lane->length();
+      lane = &map_.lane(lane->successors.front());
+    }
+    double const on_path = std::clamp(s, 0.0, lane->length());
+    auto const pose = lane->path.pose(on_path);
+    return {pose.x + (s - on_path) * std::cos(pose.heading), pose.y + (s - on_path) * std::sin(pose.heading),
+            pose.heading};
+  }
+
+  /// Sets the stretches on which bodies touch; false where they do not. Where lanes merge these end, and where they
+  /// part these begin, with the overlap: there the two are one lane. O(places on one times places on the other).
+  [[nodiscard]] bool find_touching(Overlap const& overlap, double begin, double end, Conflict& conflict) const {
+    bool const merges = conflict.kind == OverlapKind::merge, splits = conflict.kind == OverlapKind::split;
+    double const own_from = splits ? begin : std::max(0.0, begin - before()),
+                 own_to = merges ? end : std::min(corridor_.length(), end + behind());
+    double const other_from = splits ? overlap.other_begin : overlap.other_begin - before(),
+                 other_to = merges ? overlap.other_end : overlap.other_end + behind();
+    std::vector<geometry::OrientedBox> others;
+    for (double s = other_from; s <= other_to; s += step)
+      others.push_back(geometry::box_of(body_, pose_on_way(overlap.other, s)));
+    double first = std::numeric_limits<double>::infinity(), last = -first;
+    std::size_t first_other = others.size(), last_other = 0;
+    double const radius = body_.radius();
+    for (double s = own_from; s <= own_to; s += step) {
+      auto const body = geometry::box_of(body_, corridor_.center.pose(s));
+      for (std::size_t k = 0; k < others.size();) {
+        double const dx = others[k].x - body.x, dy = others[k].y - body.y;
+        double const apart = std::sqrt(dx * dx + dy * dy) - 2.0 * radius;
+        if (apart > 2.0 * step) {  // none of the next ones is near, for bodies go no more than 2 m along 1 m of path
+          k += static_cast<std::size_t>(apart / (2.0 * step));
+          continue;
+        }
+        std::size_t const at = k++;
+        if (!geometry::intersects(body, others[at])) continue;
+        first = std::min(first, s);
+        last = s;
+        first_other = std::min(first_other, at);
+        last_other = std::max(last_other, at);
+      }
+    }
+    conflict.begin = splits ? begin : first - step;
+    conflict.end = merges ? end : last + step;
+    conflict.other_begin = splits ? overlap.other_begin : other_from + (static_cast<double>(first_other) - 1.0) * step;
+    conflict.other_end = merges ? overlap.other_end : other_from + (static_cast<double>(last_other) + 1.0) * step;
+    return last >= first;
+  }
+
+  void add_ways(Conflict& conflict) const {
+    double const view = conflict.kind == OverlapKind::split ? 0.0 : map_.options().merge_view;
+    conflict.ways = ways_through(map_, map_.lane(conflict.other), conflict.other_begin - view, conflict.other_end);
+  }
+
+  Map const& map_;
+  LaneCorridor const& corridor_;
+  geometry::Shape body_;
+};
+
+}  // namespace cambium::map::detail

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+#include "cambium/core/ids.hpp"
+
+namespace cambium::map {
+
+/// What a sign or light at the road tells the traffic of a lane.
+enum class SignalKind : std::uint8_t {
+  priority,  ///< it goes before traffic without that sign: 301, 306 of the German catalogue, which OpenDRIVE files use
+  give_way,  ///< it lets the other's traffic go first: 205
+  stop,      ///< so it does, and stops before: 206
+  light,     ///< a traffic light: 1000001
+};
+
+/// A sign or light for one lane.
+struct LaneSignal {
+  double s{};  ///< on the lane's path [m]
+  SignalKind kind = SignalKind::priority;
+  LightId light = none<LightId>;  ///< only of a light
+
+  friend bool operator==(LaneSignal const&, LaneSignal const&) = default;
+};
+
+/// Traffic lights that are switched together: a controller of the file, or a single light that no controller switches.
+struct TrafficLight {
+  LightId id = none<LightId>;
+  std::string name;  ///< the file's id of the controller; of a single light "signal " and its id
+};
+
+/// What a light shows. One that is out of order is `off`: the signs beside it count.
+enum class LightColor : std::uint8_t { off, green, yellow, red };
+
+/// A light's phases, which repeat: green from `green_begin` to `green_end`, then yellow, else red. A cycle of 0 s: off.
+struct LightPlan {
+  double cycle = 0.0;        ///< [s]
+  double green_begin = 0.0;  ///< in the cycle [s]
+  double green_end = 0.0;    ///< [s], may lie beyond the cycle's end
+  double yellow = 3.0;       ///< [s]
+
+  friend bool operator==(LightPlan const&, LightPlan const&) = default;
+
+  /// What it shows at `time` [s]. O(1).
+  [[nodiscard]] LightColor at(double time) const {
+    if (!(cycle > 0.0)) return LightColor::off;
+    double const since = time - green_begin, passed = since - std::floor(since / cycle) * cycle;
+    double const green = std::min(cycle, green_end - green_begin);
+    if (passed < green) return LightColor::green;
+    return passed < green + yellow ? LightColor::yellow : LightColor::red;
+  }
+};
+
+}  // namespace cambium::map

@@ -1,0 +1,176 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "cambium/core/error.hpp"
+#include "cambium/geometry/angle.hpp"
+#include "cambium/goal/goal.hpp"
+#include "cambium/map/map.hpp"
+#include "cambium/map/route.hpp"
+#include "cambium/world/detail/check_described.hpp"
+#include "cambium/world/detail/objects_on_lanes.hpp"
+
+namespace cambium::detail {
+
+/// Farthest that an agent may enter from the nearest lane [m].
+inline constexpr double entering_radius = 5.0;
+/// Farthest that an agent with a route may enter from the path of one of its lanes [m].
+inline constexpr double path_radius = 2.5;
+
+/// The lane of `route` whose path comes nearest to `position`, a radian off `heading` counting as 3 m: a path that
+/// swings over to its neighbour counts as its own lane there. Throws `WorldError` where none comes near, or only
+/// against it.
+[[nodiscard]] inline LaneId entering_lane(Map const& map, geometry::Point const& position,
+                                          std::optional<double> heading, map::Route const& route,
+                                          std::string const& where) {
+  if (route.lanes.empty()) throw WorldError(where, "its route is empty", "leave the route out to get the shortest");
+  LaneId best = none<LaneId>;
+  double smallest = std::numeric_limits<double>::infinity();
+  for (auto const id : route.lanes) {
+    if (index_of(id) >= map.lanes().size())
+      throw WorldError(where, "its route names a lane that the map does not have", "use Map::find_lane");
+    auto const& lane = map.lane(id);
+    auto const foot = lane.path.project(position);
+    double const distance = std::hypot(foot.lateral, std::max({-foot.s, foot.s - lane.length(), 0.0}));
+    double const along = lane.path.pose(foot.s).heading;
+    double const turn = heading ? std::abs(geometry::angle_difference(*heading, along)) : 0.0;
+    if (distance > path_radius || turn > geometry::pi / 2 || distance + 3.0 * turn >= smallest) continue;
+    smallest = distance + 3.0 * turn;
+    best = id;
+  }
+  if (!is_valid(best))
+    throw WorldError(where, "no lane of its route comes within 2.5 m of its position, in its direction",
+                     "begin the route there");
+  return best;
+}
+
+/// The drivable lane at `position`; without a heading the nearest one. Throws `WorldError` where there is none.
+[[nodiscard]] inline LaneId entering_lane(Map const& map, geometry::Point const& position,
+                                          std::optional<double> heading, std::string const& where) {
+  if (heading) {
+    if (auto const hit = map.nearest_lane({position.x(), position.y(), *heading}, entering_radius)) return hit->lane;
+  } else {
+    for (auto const& hit : map.lanes_near(position, entering_radius))
+      if (map.lane(hit.lane).drivable()) return hit.lane;
+  }
+  throw WorldError(
+      where, "no drivable lane within " + std::to_string(static_cast<int>(entering_radius)) + " m of its position",
+      "enter on a lane and along its direction");
+}
+
+/// The agent's goal, complete: lanes beside count from the one that it enters in. Throws `WorldError` for a sequence
+/// that is too long, or within another goal, and `ParameterError` for a number out of its range.
+[[nodiscard]] inline Goal entering_goal(Goal goal, LaneId lane, std::string const& where, bool is_outer = true) {
+  check_if_described(goal, where);
+  if (auto* const beside = std::get_if<ReachLaneBeside>(&goal); beside && !is_valid(beside->from)) beside->from = lane;
+  auto const complete = [&](std::vector<Goal>& parts) {
+    for (auto& part : parts) part = entering_goal(std::move(part), lane, where, false);
+  };
+  if (auto* const all = std::get_if<AllGoals>(&goal)) complete(all->parts);
+  if (auto* const any = std::get_if<AnyGoal>(&goal)) complete(any->parts);
+  if (auto* const sequence = std::get_if<GoalSequence>(&goal)) {
+    if (!is_outer) throw WorldError(where, "its goal has a sequence within another goal", "put the sequence outside");
+    if (sequence->parts.size() > 255)
+      throw WorldError(where, "its goal is a sequence of more than 255 parts", "leave some out");
+    complete(sequence->parts);
+  }
+  return goal;
+}
+
+/// Lanes where a goal's route may end, collected from its parts.
+class Destinations {
+ public:
+  Destinations(Map const& map, std::string const& where) : map_(&map), where_(&where) {}
+
+  [[nodiscard]] std::vector<LaneId> of(Goal const& goal) const {
+    return std::visit([this](auto const& g) { return lanes(g); }, goal);
+  }
+
+ private:
+  template <class G>
+  [[nodiscard]] std::vector<LaneId> lanes(G const&) const {
+    return {};
+  }
+
+  [[nodiscard]] std::vector<LaneId> lanes(ReachLane const& goal) const { return lane(goal.lane, goal.from, goal.to); }
+  [[nodiscard]] std::vector<LaneId> lanes(LaneLimits const& goal) const {
+    return is_valid(goal.lane) ? lane(goal.lane, goal.from, goal.to) : std::vector<LaneId>{};
+  }
+
+  /// Of goals to be reached at once the first place counts.
+  [[nodiscard]] std::vector<LaneId> lanes(AllGoals const& goal) const {
+    std::vector<LaneId> first;
+    for (auto const& part : goal.parts)
+      if (auto found = of(part); first.empty()) first = std::move(found);
+    return first;
+  }
+  [[nodiscard]] std::vector<LaneId> lanes(AnyGoal const& goal) const {
+    std::vector<LaneId> all;
+    for (auto const& part : goal.parts)
+      for (auto const lane : of(part)) all.push_back(lane);
+    return all;
+  }
+
+  [[nodiscard]] std::vector<LaneId> lanes(ReachPolygon const& goal) const {
+    std::vector<LaneId> lanes;
+    auto points = points_around(goal.area, 1.0);
+    points.insert(points.begin(), goal.area.bounding_box().center());
+    for (auto const& p : points)
+      for (auto const& hit : map_->lanes_near(p, entering_radius))
+        if (map_->lane(hit.lane).drivable() && std::find(lanes.begin(), lanes.end(), hit.lane) == lanes.end())
+          lanes.push_back(hit.lane);
+    if (lanes.empty())
+      throw WorldError(*where_, "its goal, a polygon, is not near a drivable lane",
+                       "give the route too, or a goal on a lane");
+    return lanes;
+  }
+
+  [[nodiscard]] std::vector<LaneId> lane(LaneId lane, double from, double to) const {
+    if (index_of(lane) >= map_->lanes().size())
+      throw WorldError(*where_, "its goal names lane " + to_string(lane) + ", which the map does not have",
+                       "use Map::find_lane");
+    if (!(from <= to)) throw WorldError(*where_, "its goal's stretch of lane ends before it begins", "give from <= to");
+    return {lane};
+  }
+
+  Map const* map_;
+  std::string const* where_;
+};
+
+/// The way from `start` to the first of `ends` that it leads to. Throws `WorldError` where there is none.
+[[nodiscard]] inline map::Route route_to_one(Map const& map, LaneId start, std::vector<LaneId> const& ends,
+                                             std::string const& where) {
+  for (auto const end : ends)
+    if (auto route = map.shortest_route(start, end)) return *route;
+  throw WorldError(where, "there is no route from " + map.describe(start) + " to " + map.describe(ends.front()),
+                   "choose a goal that the lane leads to");
+}
+
+/// The route from `start`: as given, else to the goal, by way of all places of a sequence, else straight on. Throws
+/// `WorldError` where there is none.
+[[nodiscard]] inline map::Route entering_route(Map const& map, LaneId start, std::optional<map::Route> const& given,
+                                               Goal const& goal, std::string const& where) {
+  if (given) return *given;
+  Destinations const destinations(map, where);
+  auto const* const sequence = std::get_if<GoalSequence>(&goal);
+  std::size_t const stages = sequence ? sequence->parts.size() : 1;
+  map::Route route;
+  for (std::size_t i = 0; i < stages; ++i) {
+    auto const ends = destinations.of(sequence ? sequence->parts[i] : goal);
+    if (ends.empty()) continue;
+    auto const part = route_to_one(map, route.lanes.empty() ? start : route.lanes.back(), ends, where);
+    route.lanes.insert(route.lanes.end(), part.lanes.begin() + (route.lanes.empty() ? 0 : 1), part.lanes.end());
+    route.length += part.length;
+    route.cost += part.cost;
+  }
+  return route.lanes.empty() ? map::straight_route(map, start) : route;
+}
+
+}  // namespace cambium::detail

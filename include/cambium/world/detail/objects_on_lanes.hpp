@@ -1,0 +1,87 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <span>
+#include <vector>
+
+#include "cambium/geometry/polygon.hpp"
+#include "cambium/map/corridor.hpp"
+#include "cambium/map/map.hpp"
+#include "cambium/world/roster.hpp"
+#include "cambium/world/static_object.hpp"
+#include "cambium/world/traffic_index.hpp"
+
+namespace cambium::detail {
+
+/// A polygon's corners and points between them, at most `spacing` [m] apart.
+[[nodiscard]] inline std::vector<geometry::Point> points_around(geometry::Polygon const& outline, double spacing) {
+  std::vector<geometry::Point> points;
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    auto const [a, b] = outline.edge(i);
+    int const parts = std::max(1, static_cast<int>(std::ceil((b - a).norm() / spacing)));
+    for (int k = 0; k < parts; ++k) points.emplace_back(a + (b - a) * (static_cast<double>(k) / parts));
+  }
+  return points;
+}
+
+/// A stretch of a lane that an object is in [m].
+struct ObjectStretch {
+  double begin = std::numeric_limits<double>::infinity(), end = -std::numeric_limits<double>::infinity();
+
+  void add(double s) {
+    begin = std::min(begin, s);
+    end = std::max(end, s);
+  }
+
+  /// Adds its entries, where the lane's coordinate begins at `index`: in parts of at most 10 m, for of road users the
+  /// one counts whose middle is next.
+  void enter(double index, StaticObject const& object, std::uint32_t slot, std::vector<TrafficEntry>& entries) const {
+    if (!(begin <= end)) return;
+    int const parts = std::max(1, static_cast<int>(std::ceil((end - begin) / 10.0)));
+    double const half = (end - begin) / (2 * parts);
+    for (int k = 0; k < parts; ++k)
+      entries.push_back(
+          {index + begin + (2 * k + 1) * half, half, half, 0.0, slot, static_cast<std::uint32_t>(object.id)});
+  }
+};
+
+/// Adds the index entries of a static object on a free corridor that it stands in. `slot`: its place in the list of
+/// objects.
+inline void enter_object(map::LaneCorridor const& way, StaticObject const& object, std::uint32_t slot,
+                         std::vector<TrafficEntry>& entries) {
+  ObjectStretch stretch;
+  for (auto const& p : points_around(object.outline, 0.1)) {
+    auto const foot = way.center.project(p);
+    auto const sides = way.widths_at(foot.s, foot.segment);
+    if (foot.lateral <= sides.left && -foot.lateral <= sides.right && foot.s >= 0.0 && foot.s <= way.length())
+      stretch.add(foot.s);
+  }
+  for (double s = 0.0; s <= way.length(); s += 0.5)  // where the outline is wider than the way
+    if (object.outline.contains(way.center.pose(s).position())) stretch.add(s);
+  stretch.enter(way.pieces.front().index_offset, object, slot, entries);
+}
+
+/// Index entries of a static object in each lane, and each free corridor, whose borders it reaches across. `slot`: its
+/// place in the list of objects.
+[[nodiscard]] inline std::vector<TrafficEntry> object_entries(Map const& map, std::span<FreeRoad const> free_roads,
+                                                              StaticObject const& object, std::uint32_t slot) {
+  std::map<LaneId, ObjectStretch> stretches;
+  for (auto const& p : points_around(object.outline, 0.1))
+    for (auto const& hit : map.lanes_near(p, 0.0)) stretches[hit.lane].add(hit.s);
+  for (auto const& lane : map.lanes()) {  // ends of lanes within the outline
+    if (lane.path.empty()) continue;
+    for (double const s : {0.0, lane.length()})
+      if (object.outline.contains(lane.path.pose(s).position())) stretches[lane.id].add(s);
+  }
+  std::vector<TrafficEntry> entries;
+  for (auto const& [lane, stretch] : stretches) stretch.enter(map.lane(lane).index_begin, object, slot, entries);
+  for (auto const& road : free_roads) enter_object(road.numbered->corridors.front(), object, slot, entries);
+  return entries;
+}
+
+}  // namespace cambium::detail

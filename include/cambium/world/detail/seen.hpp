@@ -1,0 +1,121 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "cambium/core/random.hpp"
+#include "cambium/geometry/oriented_box.hpp"
+#include "cambium/observer/observer_model.hpp"
+#include "cambium/world/frame.hpp"
+#include "cambium/world/static_object.hpp"
+
+namespace cambium {
+
+/// The stream purpose for observing `agent`: apart from those that behaviours use.
+[[nodiscard]] constexpr std::uint32_t observation_purpose(AgentId agent) {
+  return 0x80000000u | static_cast<std::uint32_t>(agent);
+}
+
+/// What observers that do not see everybody ask of a world, agents by slot.
+template <class World>
+class ObserverScene {
+ public:
+  explicit ObserverScene(World const& world) : world_(&world) {}
+
+  [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(world_->size()); }
+  [[nodiscard]] bool in_traffic(std::uint32_t slot) const {
+    return world_->frame().agents[slot].status == AgentStatus::driving;
+  }
+  [[nodiscard]] typename World::State const& state(std::uint32_t slot) const {
+    return world_->frame().agents[slot].state;
+  }
+  [[nodiscard]] geometry::Shape const& shape(std::uint32_t slot) const { return world_->roster().agents[slot].shape; }
+  [[nodiscard]] std::span<StaticObject const> objects() const { return world_->roster().objects; }
+
+ private:
+  World const* world_;
+};
+
+namespace detail {
+
+/// What records keep for observers of type `Observer`.
+template <class State, class Observer>
+struct PastFor {
+  using type = NoPast;
+};
+template <class State, class Observer>
+requires(past_steps_of<Observer> > 0) struct PastFor<State, Observer> {
+  using type = PastStates<State, past_steps_of<Observer>>;
+};
+template <class State, class Observer>
+using PastOf = typename PastFor<State, Observer>::type;
+
+/// An agent appears: it has always been there.
+template <class Record>
+void forget_past(Record& record) {
+  if constexpr (requires { record.past.fill(record.state); }) record.past.fill(record.state);
+}
+
+/// Whether agents may be hidden from the observers of `World`.
+template <class World>
+inline constexpr bool hides = requires(typename World::Observer const observer, ObserverScene<World> const scene,
+                                       std::uint32_t slot) {
+  observer.sees(scene, slot, slot);
+};
+
+/// Whether the agent in slot `own` perceives that in slot `other`.
+template <class World>
+[[nodiscard]] bool is_seen(World const& world, std::uint32_t own, std::uint32_t other) {
+  if constexpr (hides<World>)
+    return own == other || world.roster().agents[own].observer.sees(ObserverScene<World>(world), own, other);
+  else
+    return true;
+}
+
+/// Whether static objects may be hidden from the observers of `World`.
+template <class World>
+inline constexpr bool hides_objects = LimitedSightOfObjects<typename World::Observer, ObserverScene<World>>;
+
+/// Whether the agent in slot `own` perceives the static object in place `object`.
+template <class World>
+[[nodiscard]] bool is_object_seen(World const& world, std::uint32_t own, std::uint32_t object) {
+  if constexpr (hides_objects<World>)
+    return world.roster().agents[own].observer.sees_object(ObserverScene<World>(world), own, object);
+  else
+    return true;
+}
+
+/// The state that the agent in slot `own` believes that in slot `other` to have. A perfect observer's is the truth
+/// itself.
+template <class World>
+[[nodiscard]] decltype(auto) seen_state(World const& world, std::uint32_t own, std::uint32_t other) {
+  auto const& observer = world.roster().agents[own].observer;
+  auto const& record = world.frame().agents[other];
+  auto const random = [&] {
+    return RandomStream(world.roster().seed, static_cast<std::uint32_t>(world.roster().agents[own].id),
+                        static_cast<std::uint32_t>(world.frame().step),
+                        observation_purpose(world.roster().agents[other].id));
+  };
+  if constexpr (past_steps_of < typename World::Observer >> 0) {
+    auto const back = steps_back(observer, own == other);
+    return observer.observe(back > 0 ? record.past.states[back - 1] : record.state, own == other, random());
+  } else {
+    return observer.observe(record.state, own == other, random());
+  }
+}
+
+/// And the acceleration [m/s^2].
+template <class World>
+[[nodiscard]] double seen_acceleration(World const& world, std::uint32_t own, std::uint32_t other) {
+  auto const& record = world.frame().agents[other];
+  if constexpr (past_steps_of < typename World::Observer >> 0) {
+    auto const back = steps_back(world.roster().agents[own].observer, own == other);
+    if (back > 0) return record.past.accelerations[back - 1];
+  }
+  return record.action.acceleration;
+}
+
+}  // namespace detail
+
+}  // namespace cambium

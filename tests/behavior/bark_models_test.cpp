@@ -1,0 +1,274 @@
+// BARK's lane tracking, ACC model and traffic on an arc: each row of its tables predicts the next one.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "../support/corpus.hpp"
+#include "cambium/behavior/adaptive_cruise_control.hpp"
+#include "cambium/behavior/idm_classic.hpp"
+#include "cambium/behavior/idm_lane_tracking.hpp"
+#include "cambium/execution/interpolate.hpp"
+
+namespace cb = cambium;
+
+namespace {
+
+struct Row {
+  int step, agent;
+  cb::State state;
+  double acceleration, steering;
+  int corridor, front;
+  double front_gap, front_speed;
+};
+
+std::vector<Row> read_rows(std::string const& name) {
+  std::vector<Row> rows;
+  auto const file = corpus::find("oracle/bark/" + name);
+  if (!file) return rows;
+  auto const number = [](std::string const& text) { return text.empty() ? 0.0 : std::stod(text); };
+  for (auto const& c : corpus::table(*file))
+    rows.push_back({std::stoi(c[0]),
+                    std::stoi(c[2]),
+                    {number(c[1]), number(c[4]), number(c[5]), number(c[6]), number(c[7])},
+                    number(c[8]),
+                    number(c[9]),
+                    std::stoi(c[10]),
+                    std::stoi(c[11]),
+                    number(c[12]),
+                    number(c[13])});
+  return rows;
+}
+
+/// The centre lines that BARK has built on its roads, as it drives along them.
+std::vector<cb::map::LaneCorridor> straight_corridors() {
+  std::vector<cb::map::LaneCorridor> corridors(2);
+  for (int i = 0; i < 2; ++i) {
+    std::vector<cb::geometry::Point> const points{{0, -1.75 - 3.5 * i}, {1000, -1.75 - 3.5 * i}};
+    corridors[static_cast<std::size_t>(i)].center = cb::geometry::Line::from_points(points);
+  }
+  return corridors;
+}
+std::vector<cb::map::LaneCorridor> arc_corridors(std::string const& line) {
+  std::vector<cb::map::LaneCorridor> corridors(2);
+  std::vector<std::vector<cb::geometry::Point>> points(2);
+  for (auto const& c : corpus::table(*corpus::find("oracle/bark/bark_arc_centerlines.csv")))
+    if (c[1] == line) points[static_cast<std::size_t>(std::stoi(c[0]))].emplace_back(std::stod(c[3]), std::stod(c[4]));
+  for (std::size_t i = 0; i < 2; ++i) corridors[i].center = cb::geometry::Line::from_points(points[i]);
+  return corridors;
+}
+
+/// What an agent of a table sees in one row.
+struct RowView {
+  using State = cb::State;
+  using Dynamics = cb::SingleTrack;
+
+  Row const* row;
+  Row const* leader;
+  cb::map::LaneCorridor const* lane;
+  cb::SingleTrack model{.steering_limit = 0.2, .lateral_acceleration_limit = 1000.0};
+  cb::geometry::Shape box{1.75, 2.25, 1.0, 1.0};
+  cb::map::LanePosition at{};
+
+  RowView(Row const& seen, Row const* next, cb::map::LaneCorridor const& corridor_of_row)
+      : row(&seen), leader(next), lane(&corridor_of_row) {
+    cb::geometry::Point const p{seen.state.x, seen.state.y};
+    auto const foot = lane->center.project(p);
+    at.s = foot.s;
+    at.lateral = foot.lateral;
+    at.segment = foot.segment;
+  }
+  [[nodiscard]] double time() const { return row->state.time; }
+  [[nodiscard]] State const& state() const { return row->state; }
+  [[nodiscard]] cb::geometry::Shape const& shape() const { return box; }
+  [[nodiscard]] Dynamics const& dynamics() const { return model; }
+  [[nodiscard]] cb::map::LaneCorridor const& corridor() const { return *lane; }
+  [[nodiscard]] cb::map::LanePosition const& lane_position() const { return at; }
+  [[nodiscard]] std::optional<cb::Neighbor> front() const {
+    if (leader == nullptr) return std::nullopt;
+    return cb::Neighbor{cb::AgentId{1}, cb::none<cb::ObjectId>, row->front_gap, row->front_speed, 4.0, 0};
+  }
+  [[nodiscard]] cb::ObservedAgent<State> agent(cb::Neighbor const&) const {
+    return {cb::AgentId{1}, leader->state, box, leader->acceleration};
+  }
+};
+
+struct Worst {
+  double place = 0, heading = 0, speed = 0, action = 0;
+  int compared = 0, at_kinks = 0;
+};
+
+/// Largest differences of one step each; `behavior_of(agent)`.
+template <class BehaviorOf>
+Worst compare(std::string const& file, std::vector<cb::map::LaneCorridor> const& corridors,
+              BehaviorOf const& behavior_of, int first_step = 0) {
+  auto const rows = read_rows(file);
+  std::map<std::pair<int, int>, Row const*> by;
+  for (auto const& row : rows) by[{row.step, row.agent}] = &row;
+  Worst worst;
+  for (auto const& row : rows) {
+    auto const next = by.find({row.step + 1, row.agent});
+    if (next == by.end() || row.step < first_step) continue;
+    auto const* const leader = row.front < 0 ? nullptr : by.at({row.step, row.front});
+    RowView const view(row, leader, corridors[static_cast<std::size_t>(row.corridor)]);
+    auto const behavior = behavior_of(row.agent);
+    cb::MemoryOf<std::remove_cvref_t<decltype(behavior)>> memory;
+    auto const plan = behavior.plan(view, memory, 0.2);
+    auto const end = cb::InterpolateExecution{}.execute(plan, row.state, view.model, row.state.time + 0.2);
+    auto const& expected = *next->second;
+    worst.place = std::max(worst.place, std::hypot(end.state.x - expected.state.x, end.state.y - expected.state.y));
+    double const turn = std::abs(cb::geometry::angle_difference(end.state.heading, expected.state.heading));
+    if (turn > 1e-5)
+      ++worst.at_kinks;  // a foot point on a vertex, where the line has two directions
+    else
+      worst.heading = std::max(worst.heading, turn);
+    worst.speed = std::max(worst.speed, std::abs(end.state.speed - expected.state.speed));
+    worst.action = std::max({worst.action, std::abs(plan.action.acceleration - expected.acceleration)});
+    ++worst.compared;
+  }
+  MESSAGE(file << ": " << worst.compared << " transitions, largest differences: place " << worst.place << " m, heading "
+               << worst.heading << " rad, speed " << worst.speed << " m/s, acceleration " << worst.action << " m/s^2");
+  return worst;
+}
+
+/// Largest distance from BARK's agents over all 50 steps, each rolled out from its first row on by its own plans,
+/// behind the leader that BARK's table has [m].
+template <class BehaviorOf>
+double roll_out(std::string const& file, std::vector<cb::map::LaneCorridor> const& corridors,
+                BehaviorOf const& behavior_of) {
+  auto const rows = read_rows(file);
+  std::map<std::pair<int, int>, Row const*> by;
+  int steps = 0;
+  for (auto const& row : rows) {
+    by[{row.step, row.agent}] = &row;
+    steps = std::max(steps, row.step);
+  }
+  double worst = 0.0;
+  for (auto const& first : rows) {
+    if (first.step != 0 || first.agent > 5) continue;  // agent 6 only stands
+    auto const behavior = behavior_of(first.agent);
+    cb::MemoryOf<std::remove_cvref_t<decltype(behavior)>> memory;
+    auto state = first.state;
+    for (int k = 0; k < steps; ++k) {
+      Row row = *by.at({k, first.agent});
+      row.front_gap += row.state.x - state.x;  // of a lane along +x
+      row.state = state;
+      auto const* const leader = row.front < 0 ? nullptr : by.at({k, row.front});
+      RowView const view(row, leader, corridors[static_cast<std::size_t>(row.corridor)]);
+      auto const plan = behavior.plan(view, memory, 0.2);
+      state = cb::InterpolateExecution{}.execute(plan, state, view.model, row.state.time + 0.2).state;
+      auto const& expected = by.at({k + 1, first.agent})->state;
+      worst = std::max(worst, std::hypot(state.x - expected.x, state.y - expected.y));
+    }
+  }
+  MESSAGE(file << ": after up to " << steps << " steps no farther off than " << worst << " m");
+  return worst;
+}
+
+cb::IdmParameters bark_idm(double desired_speed) {
+  cb::IdmParameters p{.desired_speed = desired_speed};
+  p.comfortable_deceleration = 1.67f;  // BARK keeps it as a float
+  return p;
+}
+
+cb::IdmLaneTracking lane_tracking(double desired_speed) {
+  return {.idm = bark_idm(desired_speed), .integration = cb::IdmLaneTracking::Integration::bark_substeps};
+}
+
+}  // namespace
+
+TEST_CASE("the ACC model with BARK's sub-steps is BARK's, to 1e-9") {
+  if (!corpus::root()) return;
+  auto const worst = compare("bark_idm_coolness_highway.csv", straight_corridors(), [](int agent) {
+    cb::AdaptiveCruiseControl driver{.idm = bark_idm(agent == 1 ? 15 : agent == 2 ? 12 : 8)};
+    driver.integration = cb::AdaptiveCruiseControl::Integration::bark_substeps;
+    return driver;
+  });
+  CHECK(worst.compared == 150);
+  CHECK(worst.place < 1e-9);
+  CHECK(worst.speed < 1e-9);
+  CHECK(worst.action < 1e-9);
+}
+
+TEST_CASE("lane tracking with BARK's sub-steps is BARK's, but for BARK's angles of single precision") {
+  if (!corpus::root()) return;
+  auto const worst = compare("bark_lanetracking_straight.csv", straight_corridors(), [](int agent) {
+    return lane_tracking(agent == 1 ? 15 : agent == 2 ? 12 : 10);
+  });
+  CHECK(worst.compared == 150);
+  CHECK(worst.place < 1e-6);
+  CHECK(worst.heading < 5e-7);
+  CHECK(worst.speed < 1e-9);
+  CHECK(worst.action < 1e-7);
+}
+
+TEST_CASE("rolled out over 50 steps the models are where BARK's are, within its tables' tolerances") {
+  if (!corpus::root()) return;
+  auto const idm = [](int agent) {
+    double const desired[] = {15, 12, 8, 18, 10};
+    cb::IdmClassic driver{.desired_speed = desired[agent - 1]};
+    driver.comfortable_deceleration = 1.67f;
+    driver.integration = cb::IdmClassic::Integration::bark_substeps;
+    return driver;
+  };
+  CHECK(roll_out("bark_idm_highway.csv", straight_corridors(), idm) < 1e-9);
+  auto const acc = [](int agent) {
+    cb::AdaptiveCruiseControl driver{.idm = bark_idm(agent == 1 ? 15 : agent == 2 ? 12 : 8)};
+    driver.integration = cb::AdaptiveCruiseControl::Integration::bark_substeps;
+    return driver;
+  };
+  CHECK(roll_out("bark_idm_coolness_highway.csv", straight_corridors(), acc) < 1e-9);
+  auto const tracking = [](int agent) { return lane_tracking(agent == 1 ? 15 : agent == 2 ? 12 : 10); };
+  CHECK(roll_out("bark_lanetracking_straight.csv", straight_corridors(), tracking) < 1e-4);
+}
+
+TEST_CASE("on an arc lane tracking is BARK's along BARK's coarse line; the true arc is another one") {
+  if (!corpus::root()) return;
+  auto const driver = [](int agent) { return lane_tracking(agent == 1 ? 15 : agent == 2 ? 9 : 12); };
+  auto const worst = compare("bark_lanetracking_arc.csv", arc_corridors("center"), driver);
+  CHECK(worst.compared == 150);
+  CHECK(worst.at_kinks <= 1);
+  CHECK(worst.place < 1e-6);
+  CHECK(worst.heading < 5e-7);
+  CHECK(worst.speed < 1e-9);
+}
+
+TEST_CASE("on an arc IDM is BARK's along BARK's coarse line; BARK moves an agent onto it first, we keep its offset") {
+  if (!corpus::root()) return;
+  auto const driver_of = [](int agent) {
+    cb::IdmClassic driver{.desired_speed = agent == 1 ? 15.0 : agent == 2 ? 9.0 : 12.0};
+    driver.comfortable_deceleration = 1.67f;
+    driver.integration = cb::IdmClassic::Integration::bark_substeps;
+    return driver;
+  };
+  auto const all = compare("bark_idm_arc.csv", arc_corridors("center"), driver_of);
+  CHECK(all.place > 0.1);  // the lateral jump in BARK's first step: its line is that far from the true arc
+  auto const worst = compare("bark_idm_arc.csv", arc_corridors("center"), driver_of, 1);
+  CHECK(worst.compared == 147);
+  CHECK(worst.at_kinks == 0);
+  CHECK(worst.place < 1e-6);
+  CHECK(worst.heading < 5e-7);
+  CHECK(worst.speed < 1e-9);
+}
+
+TEST_CASE("where BARK is wrong: a standing vehicle creeps back, and a faster leader makes its follower brake") {
+  cb::IdmParameters const p;
+  cb::map::LaneCorridor lane = straight_corridors()[0];
+  Row self{0, 1, {0, 100, -1.75, 0, 0}, 0, 0, 0, 2, 1.0, 0.0};
+  RowView const view(self, &self, lane);
+  cb::Leader const near{1.0, 0.0, 0.0};
+  auto const theirs = cb::bark::plan_along_lane(view, p, 0.0, near, 0.2).trajectory.back();
+  cb::NoMemory memory;
+  auto const ours = cb::IdmClassic{}.plan(view, memory, 0.2).trajectory.back();
+  MESSAGE("standing 1 m behind another, after 0.2 s: BARK " << theirs.x - 100 << " m, here " << ours.x - 100 << " m");
+  CHECK(theirs.x < 100.0);
+  CHECK(ours.x == 100.0);
+  cb::Leader const away{10.0, 25.0, 0.0};
+  double const bark = cb::bark::acceleration(p, 0.0, 10.0, away), law = cb::idm_acceleration(p, 10.0, 10.0, 25.0);
+  MESSAGE("at 10 m/s, 10 m behind a leader of 25 m/s: BARK " << bark << " m/s^2, here " << law << " m/s^2");
+  CHECK(bark == p.lowest_acceleration);
+  CHECK(law > 0.5);
+}

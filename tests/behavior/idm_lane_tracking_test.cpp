@@ -1,0 +1,185 @@
+#include "cambium/behavior/idm_lane_tracking.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <array>
+
+#include "../support/allocations.hpp"
+#include "../world/fixtures.hpp"
+#include "cambium/core/distributions.hpp"
+#include "cambium/dynamics/dynamic_set.hpp"
+#include "cambium/dynamics/kinematic_point.hpp"
+#include "cambium/dynamics/single_track_steering.hpp"
+#include "cambium/evaluation/collision.hpp"
+
+using namespace fixtures;
+using cb::IdmLaneTracking;
+
+namespace {
+
+template <class Dynamics>
+using World = cb::World<cb::BehaviorSet<IdmLaneTracking, cb::ConstantAcceleration>, cb::InterpolateExecution, Dynamics>;
+
+double between(double low, double high, cb::RandomStream& random) { return low + (high - low) * cb::uniform01(random); }
+
+/// One vehicle beside the middle lane of a road of that curvature, with its heading off.
+template <class Dynamics>
+World<Dynamics> beside_lane(double curvature, double lateral, double turn, double speed, Dynamics const& dynamics = {},
+                            IdmLaneTracking const& driver = {}) {
+  double const length = curvature == 0.0 ? 1000.0 : std::min(1000.0, 5.5 / std::abs(curvature));
+  World<Dynamics> world(straight_road(3, length, curvature));
+  auto const& lane = world.map().lane(world.map().roads()[0].sections[0].lanes[1].id);
+  auto const pose = lane.path.pose(5.0);
+  world.add({.position = {pose.x - std::sin(pose.heading) * lateral, pose.y + std::cos(pose.heading) * lateral},
+             .heading = pose.heading + turn,
+             .speed = speed,
+             .behavior = driver,
+             .dynamics = dynamics});
+  return world;
+}
+
+}  // namespace
+
+TEST_CASE("from any reasonable start the front axle comes to the centre line, on curves too, for any step") {
+  double worst = 0.0;
+  int arrived = 0;
+  for (std::uint32_t seed = 0; seed < 150; ++seed) {
+    cb::RandomStream random(seed, 0, 0);
+    double const curvature = seed % 3 == 0 ? 0.0 : between(-0.05, 0.05, random);
+    double const lateral = between(-1.2, 1.2, random), turn = between(-0.3, 0.3, random);
+    double const fastest = std::min(20.0, std::sqrt(3.0 / std::max(1e-3, std::abs(curvature))));
+    double const dt = std::array{0.05, 0.1, 0.2, 0.5}[cb::uniform_index(random, 4)];
+    auto world = beside_lane<cb::SingleTrack>(curvature, lateral, turn, between(1.0, fastest, random));
+    CAPTURE(seed);
+    CAPTURE(curvature);
+    CAPTURE(dt);
+    double driven = 0.0, time = 0.0;
+    while (world.frame().agents[0].status == cb::AgentStatus::driving && driven < 150.0) {
+      time += dt;
+      REQUIRE(world.step(dt));
+      auto const& record = world.frame().agents[0];
+      driven += record.state.speed * dt;
+      if (record.status != cb::AgentStatus::driving || driven < 60.0 || time < 6.0) continue;
+      std::uint32_t segment = record.lane.segment;
+      auto const& road = *world.roster().agents[0].road;
+      auto const& corridor = road.corridors[record.lane.corridor];
+      if (corridor.length_until_end(record.lane.s) < 5.0) continue;  // beyond its end the line is straight
+      auto const at = cb::front_axle(corridor.center, record.state, 2.7, segment);
+      CHECK(std::abs(at.offset) < 0.06);
+      worst = std::max(worst, std::abs(at.offset));
+    }
+    arrived += driven >= 60.0;
+  }
+  MESSAGE("largest offset of the front axle after 60 m and 6 s: " << worst << " m, in " << arrived << " starts");
+  CHECK(arrived > 120);
+}
+
+TEST_CASE_TEMPLATE("any vehicle model is kept on its lane", Model, cb::SingleTrack, cb::SingleTrackSteering,
+                   cb::KinematicPoint, cb::DynamicSet<cb::SingleTrack, cb::KinematicPoint>) {
+  Model model{};
+  if constexpr (std::is_same_v<Model, cb::KinematicPoint>) model.highest_speed = 50;
+  for (double const curvature : {0.0, 0.01, -0.02}) {
+    auto world = beside_lane<Model>(curvature, 0.5, 0.1, 8.0, model);
+    for (int i = 0; i < 60; ++i) REQUIRE(world.step(0.2));
+    auto const& record = world.frame().agents[0];
+    CHECK(std::abs(record.lane.lateral) < 0.15);
+    CHECK(record.state.speed > 8.0);
+  }
+}
+
+TEST_CASE("at speeds at which a held Stanley law would oscillate the vehicle stays calm") {
+  for (double const dt : {0.1, 0.2}) {
+    IdmLaneTracking const driver{.idm = {.desired_speed = 60.0}, .longest_substep = dt};
+    auto world = beside_lane<cb::SingleTrack>(0.0, 0.5, 0.0, 50.0, {}, driver);
+    double previous = 0.6;
+    for (int i = 0; i < 15 && world.frame().agents[0].status == cb::AgentStatus::driving; ++i) {
+      REQUIRE(world.step(dt));
+      double const lateral = world.frame().agents[0].lane.lateral;
+      CHECK(lateral > -0.05);
+      CHECK(lateral < previous + 1e-3);
+      previous = lateral;
+    }
+  }
+}
+
+TEST_CASE("it slows down for a curve in time, and not without being asked to") {
+  double const curvature = 1.0 / 30.0;
+  double const allowed = std::sqrt(4.0 * 30.0);
+  IdmLaneTracking driver;
+  auto world = beside_lane<cb::SingleTrack>(curvature, 0.0, 0.0, 8.0, {}, driver);
+  driver.slow_for_curves = false;
+  auto other = beside_lane<cb::SingleTrack>(curvature, 0.0, 0.0, 8.0, {}, driver);
+  double fastest = 0.0, other_fastest = 0.0;
+  for (int i = 0; i < 60; ++i) {
+    world.step(0.2);
+    other.step(0.2);
+    fastest = std::max(fastest, world.frame().agents[0].state.speed);
+    other_fastest = std::max(other_fastest, other.frame().agents[0].state.speed);
+  }
+  CHECK(fastest < 1.1 * allowed);
+  CHECK(other_fastest > 1.1 * allowed);
+}
+
+TEST_CASE("before a bend it brakes comfortably, and enters it no faster than the tyres allow, nor much slower") {
+  for (double const radius : {15.0, 20.0, 40.0})
+    for (double const dt : {0.05, 0.2, 0.4}) {
+      auto const map = support::map_of({.id = "1",
+                                        .line = cb::map::lay_from({}, {{200.0}, {60.0, 1 / radius, 1 / radius}}),
+                                        .sections = {{.right = cb::map::equal_lanes(1)}}});
+      cb::World<cb::BehaviorSet<IdmLaneTracking>, cb::InterpolateExecution, cb::SingleTrack> world(map);
+      auto const id = world.add({.position = {10, -1.75}, .speed = 15.0});
+      double const allowed = std::sqrt(4.0 * (radius + 1.75));
+      double hardest = 0.0, entered = 0.0, fastest = 0.0;
+      while (world.state(id).x < 240 && world.record(id).lane.s < 245) {
+        REQUIRE(world.step(dt));
+        hardest = std::min(hardest, world.record(id).action.acceleration);
+        if (world.record(id).lane.s < 200) continue;
+        if (entered == 0.0) entered = world.state(id).speed;
+        fastest = std::max(fastest, world.state(id).speed);
+      }
+      CAPTURE(radius);
+      CAPTURE(dt);
+      CHECK(fastest < allowed);
+      CHECK(entered > 0.7 * allowed);
+      CHECK(hardest > -1.3 * cb::IdmParameters{}.comfortable_deceleration);
+    }
+}
+
+TEST_CASE("steering stays within the vehicle's limit and the driver's lateral acceleration") {
+  IdmLaneTracking const driver;
+  cb::RandomStream random(5, 0, 0);
+  for (int i = 0; i < 20000; ++i) {
+    double const v = between(0, 50, random), h = between(0.01, 1.0, random);
+    cb::FrontAxle const at{between(-5, 5, random), between(-3.1, 3.1, random), between(-0.2, 0.2, random)};
+    double const angle = driver.steering(at, v, 2.7, h);
+    REQUIRE(std::isfinite(angle));
+    CHECK(v * v * std::abs(std::tan(angle)) <= driver.lateral_acceleration_limit * 2.7 * (1 + 1e-9) + 1e-9);
+  }
+  CHECK(driver.steering({}, 0.0, 2.7, 0.2) == 0.0);
+}
+
+TEST_CASE("dense traffic on a curve neither collides nor allocates, and its copies do the same") {
+  World<cb::SingleTrack> world(straight_road(3, 600, 0.005));
+  cb::RandomStream random(6, 0, 0);
+  auto const& section = world.map().roads()[0].sections[0];
+  for (int i = 0; i < 30; ++i) {
+    auto const& lane = world.map().lane(section.lanes[static_cast<std::size_t>(i % 3)].id);
+    auto const pose = lane.path.pose(10.0 + 25.0 * (i / 3) + 3.0 * cb::uniform01(random));
+    world.add({.position = pose.position(),
+               .heading = pose.heading,
+               .speed = 8.0,
+               .behavior = IdmLaneTracking{.idm = {.desired_speed = between(10, 20, random)},
+                                           .coolness = i % 2 == 0 ? 0.0 : 0.99}});
+  }
+  auto copy = world;
+  for (int i = 0; i < 10; ++i) world.step(0.2);
+  auto const before = support::allocations();
+  for (int i = 0; i < 60; ++i) REQUIRE(world.step(0.2));
+  CHECK(support::allocations() == before);
+  for (int i = 0; i < 70; ++i) {
+    copy.step(0.2);
+    CHECK_FALSE(cb::CollisionAny{}.evaluate(copy).any_collision);
+  }
+  CHECK(copy.frame() == world.frame());
+}

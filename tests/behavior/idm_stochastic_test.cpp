@@ -1,0 +1,147 @@
+#include "cambium/behavior/idm_stochastic.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <set>
+#include <vector>
+
+#include "../world/fixtures.hpp"
+#include "cambium/behavior/leader.hpp"
+
+using namespace fixtures;
+using cb::IdmStochastic;
+
+namespace {
+
+using World =
+    cb::World<cb::BehaviorSet<IdmStochastic, cb::ConstantAcceleration>, cb::InterpolateExecution, cb::SingleTrack>;
+
+World free_drivers(IdmStochastic const& driver, int agents, std::uint64_t seed) {
+  World world(straight_road(8, 3000), {.seed = seed});
+  for (int i = 0; i < agents; ++i)
+    world.add({.position = {20.0 + 150.0 * (i / 8), -1.75 - 3.5 * (i % 8)}, .speed = 14, .behavior = driver});
+  return world;
+}
+
+}  // namespace
+
+TEST_CASE("draws are within their distributions, uniform, and within IDM's own ranges") {
+  IdmStochastic const driver;
+  double sum = 0.0, low = 1e9, high = 0.0;
+  for (std::uint32_t i = 0; i < 20000; ++i) {
+    cb::RandomStream random(i, 0, 0);
+    auto const p = driver.draw(random);
+    sum += p.time_headway;
+    low = std::min(low, p.time_headway);
+    high = std::max(high, p.time_headway);
+    REQUIRE_NOTHROW(cb::check_parameters(p));
+  }
+  CHECK(sum / 20000 == doctest::Approx(1.5).epsilon(0.01));
+  CHECK(low < 1.001);
+  CHECK(low >= 1.0);
+  CHECK(high > 1.999);
+  cb::BasicIdmStochastic<cb::Normal> normal;
+  normal.desired_speed = {10.0, 1000.0};
+  normal.maximum_acceleration = {0.0, 5.0};
+  for (std::uint32_t i = 0; i < 2000; ++i) {
+    cb::RandomStream random(i, 0, 0);
+    CHECK_NOTHROW(cb::check_parameters(normal.draw(random)));
+  }
+}
+
+TEST_CASE("drawn once, an agent keeps its parameters: on a free road all come to speeds of their own") {
+  auto world = free_drivers({}, 40, 3);
+  for (int i = 0; i < 150; ++i) REQUIRE(world.step(0.2));
+  std::set<double> speeds;
+  for (auto const& record : world.frame().agents) {
+    if (record.status != cb::AgentStatus::driving) continue;
+    CHECK(record.state.speed < 18.1);
+    speeds.insert(record.state.speed);
+    CHECK(std::abs(record.action.acceleration) < 0.5);
+  }
+  CHECK(speeds.size() > 30);
+  CHECK(*speeds.rbegin() - *speeds.begin() > 2.0);
+}
+
+TEST_CASE("drawn in every step, the acceleration is noise about that of the mean driver") {
+  IdmStochastic driver;
+  driver.drawn = IdmStochastic::Drawn::per_step;
+  auto world = free_drivers(driver, 8, 3);
+  double changes = 0.0;
+  for (int i = 0; i < 100; ++i) {
+    double const before = world.frame().agents[0].action.acceleration;
+    REQUIRE(world.step(0.2));
+    if (i > 50) changes += std::abs(world.frame().agents[0].action.acceleration - before);
+  }
+  CHECK(changes > 5.0);
+}
+
+TEST_CASE("the same seed gives the same traffic, another seed another, and copies go on alike") {
+  IdmStochastic driver;
+  driver.yielding.enabled = true;
+  auto a = free_drivers(driver, 24, 3), b = free_drivers(driver, 24, 3), c = free_drivers(driver, 24, 4);
+  for (int i = 0; i < 50; ++i) {
+    a.step(0.2);
+    b.step(0.2);
+    c.step(0.2);
+  }
+  CHECK(a.frame() == b.frame());
+  CHECK(!(a.frame() == c.frame()));
+  auto copy = a;
+  a.step(0.2);
+  copy.step(0.2);
+  CHECK(a.frame() == copy.frame());
+}
+
+TEST_CASE("intentions to yield alternate, with durations of their distributions") {
+  IdmStochastic driver;
+  driver.yielding = {.enabled = true, .yields = {2.0, 4.0}, .insists = {6.0, 8.0}};
+  auto world = free_drivers(driver, 16, 5);
+  double yielding = 0.0, all = 0.0;
+  int changes = 0;
+  std::vector<bool> before(16, false);
+  for (int i = 0; i < 900; ++i) {
+    world.step(0.1);
+    for (std::uint32_t k = 0; k < 16; ++k) {
+      if (world.frame().agents[k].status != cb::AgentStatus::driving) continue;
+      bool const now = world.memory<IdmStochastic>(static_cast<cb::AgentId>(k)).yields;
+      changes += now != before[k];
+      before[k] = now;
+      yielding += now;
+      all += 1.0;
+    }
+  }
+  CHECK(yielding / all == doctest::Approx(0.3).epsilon(0.1));
+  CHECK(all * 0.1 / changes == doctest::Approx(5.0).epsilon(0.1));
+}
+
+TEST_CASE("while it yields, a driver leaves room for a vehicle in the neighbouring lane that ends, else not") {
+  auto const map = own_map("lane_drop.xodr");
+  // The lane beside the one that leads into a lane with the same successor as its neighbour.
+  for (auto const& lane : map->lanes()) {
+    if (!lane.drivable() || !cb::is_valid(lane.left_neighbor) || lane.successors.empty()) continue;
+    auto const& through = map->lane(lane.left_neighbor);
+    auto const &narrow = map->lane(lane.successors[0]), &beside = map->lane(through.successors[0]);
+    if (narrow.id == beside.id || narrow.successors.empty() || narrow.successors != beside.successors) continue;
+    auto const rolling = [&](bool yields) {
+      World world(map, {.seed = 3});
+      IdmStochastic driver;
+      driver.yielding.enabled = yields;
+      driver.yielding.yields = {100.0, 100.0};
+      driver.yielding.insists = {100.0, 100.0};
+      auto const pose = through.path.pose(through.length() - 80.0), ahead = lane.path.pose(lane.length() - 10.0);
+      auto const id =
+          world.add({.position = pose.position(), .heading = pose.heading, .speed = 12, .behavior = driver});
+      world.add(
+          {.position = ahead.position(), .heading = ahead.heading, .speed = 9, .behavior = cb::ConstantAcceleration{}});
+      for (int i = 0; i < 15; ++i) REQUIRE(world.step(0.2));
+      return world.state(id).speed;
+    };
+    double const yielding = rolling(true), insisting = rolling(false);
+    MESSAGE("after 3 s: " << yielding << " m/s while it yields, else " << insisting << " m/s");
+    CHECK(yielding < insisting - 0.3);
+    return;
+  }
+  FAIL("the map has no lane that ends");
+}

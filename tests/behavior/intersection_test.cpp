@@ -1,0 +1,311 @@
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../support/allocations.hpp"
+#include "../support/corpus.hpp"
+#include "../support/maps.hpp"
+#include "cambium/behavior/behavior_set.hpp"
+#include "cambium/behavior/idm_classic.hpp"
+#include "cambium/behavior/intersection.hpp"
+#include "cambium/core/distributions.hpp"
+#include "cambium/core/random.hpp"
+#include "cambium/evaluation/collision.hpp"
+#include "cambium/execution/interpolate.hpp"
+#include "cambium/map/opendrive_document.hpp"
+#include "cambium/world/world.hpp"
+
+using namespace cambium;
+
+namespace {
+
+using Set = BehaviorSet<Intersection, IdmClassic>;
+using Sim = World<Set, InterpolateExecution, SingleTrack>;
+
+/// Of the four-way crossing: arms 1 (east), 2 (north), 3 (west), 4 (south), driven against their road in; the ways
+/// through are 110 + 10 (arm - 1), plus 0 straight on, 1 to the right, 2 to the left.
+struct Crossing {
+  std::shared_ptr<Map const> map = support::own_map("intersection_4way.xodr");
+
+  [[nodiscard]] map::Route route(int arm, int turn) const {
+    auto const way = std::to_string(100 + 10 * arm + turn);
+    auto const in = map->find_lane(std::to_string(arm), 50.0, turn == 2 ? -1 : -2);
+    map::Route route{{in}, map->lane(in).length()};
+    for (int i = 0; i < 8; ++i) {
+      auto const& ahead = map->lane(route.lanes.back()).successors;
+      auto const next = std::find_if(ahead.begin(), ahead.end(), [&](LaneId lane) {
+        auto const& name = map->road(map->lane(lane).road).name;
+        return i > 0 || name == way;
+      });
+      if (next == ahead.end()) break;
+      route.lanes.push_back(*next);
+      route.length += map->lane(*next).length();
+    }
+    REQUIRE(route.lanes.size() > 2);
+    return route;
+  }
+};
+
+/// Adds a car `distance` [m] before the first junction of the route.
+AgentId add_before(Sim& world, map::Route const& route, double distance, double speed) {
+  auto const& map = world.map();
+  std::size_t last = 0;
+  while (!is_valid(map.road(map.lane(route.lanes[last + 1]).road).junction)) ++last;
+  double s = map.lane(route.lanes[last]).length() - distance;
+  while (s < 0.0 && last > 0) s += map.lane(route.lanes[--last]).length();
+  auto const pose = map.lane(route.lanes[last]).path.pose(s);
+  return world.add({.position = pose.position(),
+                    .heading = pose.heading,
+                    .speed = speed,
+                    .behavior = Intersection{.idm = {.desired_speed = 10.0}},
+                    .route = route});
+}
+
+/// When each agent, by its place in `ids`, has left the junction's lanes [s]; nothing for those who never do. Checks
+/// that nobody collides.
+std::vector<std::optional<double>> times_through(Sim& world, std::vector<AgentId> const& ids, double seconds = 90.0) {
+  std::vector<std::optional<double>> times(ids.size());
+  CollisionAny const collision;
+  while (world.time() < seconds) {
+    world.step(0.2);
+    REQUIRE(!collision.evaluate(world).any_collision);
+    for (std::size_t i = 0; i < ids.size(); ++i) {
+      auto const lane = world.lane_of(ids[i]);
+      auto const& road = world.roster().agents[world.slot_of(ids[i])].road->route;
+      bool const through = std::find(road.begin() + 2, road.end(), lane) != road.end();
+      if (through && !times[i]) times[i] = world.time();
+    }
+  }
+  return times;
+}
+
+/// The crossing with signals beside the arms' ends: `type` for each arm, none where empty.
+std::shared_ptr<Map const> crossing_with(std::vector<std::pair<std::string, std::string>> const& signals) {
+  std::vector<Diagnostic> diagnostics;
+  auto document = support::load_opendrive_document(CAMBIUM_SOURCE_DIR "/maps/intersection_4way.xodr", diagnostics);
+  for (auto& road : document.roads)
+    for (auto const& [arm, type] : signals)
+      if (road.id == arm) {
+        map::opendrive::Signal signal;
+        signal.id = "s" + arm + type;
+        signal.s = 95.0;
+        signal.orientation = map::opendrive::Orientation::along;
+        signal.type = type;
+        road.signals.push_back(signal);
+      }
+  return support::build_map(document, {}, "text", diagnostics);
+}
+
+}  // namespace
+
+TEST_CASE("who brakes for a line comes to stand before it, at any step and speed, and no sooner than it must") {
+  RandomStream random(3, 0, 0);
+  for (int run = 0; run < 500; ++run) {
+    double const dt = 0.05 + 0.45 * uniform01(random), braking = 1.0 + 3.0 * uniform01(random);
+    double speed = 20.0 * uniform01(random), left = 1.0 + 80.0 * uniform01(random);
+    if (speed * speed > 2.0 * 8.0 * left) continue;
+    double hardest = std::max(braking, speed * speed / (2.0 * left));
+    for (int k = 0; k < 2000 && left > 0.05; ++k) {
+      auto const motion = motion_before_stop(speed, left, braking, 8.0, dt);
+      double const end = std::min(motion.speed, speed + 2.0 * dt);  // it gains no more than 2 m/s^2
+      double const way = std::min(motion.distance, (speed + end) / 2.0 * dt);
+      CHECK((speed - end) / dt < hardest + 1e-6);
+      left -= way;
+      speed = end;
+      REQUIRE(left > -1e-9);
+    }
+    CHECK(left < 0.06);
+  }
+}
+
+TEST_CASE("whoever comes from the right goes first, whatever their ids and who was nearer") {
+  Crossing const crossing;
+  for (bool const right_first_added : {true, false})
+    for (double const ahead : {0.0, -6.0, -12.0}) {
+      Sim world(crossing.map);
+      auto const east = crossing.route(1, 0),
+                 north = crossing.route(2, 0);  // the one from the north comes from the right
+      auto const first =
+          add_before(world, right_first_added ? north : east, right_first_added ? 40.0 : 40.0 + ahead, 8);
+      auto const second =
+          add_before(world, right_first_added ? east : north, right_first_added ? 40.0 + ahead : 40.0, 8);
+      auto const times = times_through(world, {first, second}, 40.0);
+      REQUIRE(times[0]);
+      REQUIRE(times[1]);
+      CHECK((*times[0] < *times[1]) == right_first_added);
+    }
+}
+
+TEST_CASE("four cars that come to a crossing at once get through it one after the other") {
+  Crossing const crossing;
+  for (int const turn : {0, 2}) {
+    Sim world(crossing.map);
+    std::vector<AgentId> ids;
+    for (int arm = 1; arm <= 4; ++arm) ids.push_back(add_before(world, crossing.route(arm, turn), 30.0, 6.0));
+    auto const times = times_through(world, ids);
+    for (auto const& time : times) CHECK(time);
+  }
+}
+
+TEST_CASE("on the crossing of the corpus, where each has another on its right, so do they") {
+  auto const map = support::corpus_map("4way_intersection.xodr");
+  if (!map) return;
+  Sim world(map);
+  std::vector<AgentId> ids;
+  for (auto const& lane : map->lanes()) {
+    if (!lane.drivable() || !lane.predecessors.empty() || lane.length() < 20.0) continue;
+    auto const route = map::straight_route(*map, lane.id);
+    if (route.lanes.size() > 2) ids.push_back(add_before(world, route, 18.0, 4.0));
+  }
+  REQUIRE(ids.size() == 4);
+  for (auto const& time : times_through(world, ids)) CHECK(time);
+}
+
+TEST_CASE("a junction's priorities go before right before left") {
+  auto const map = support::own_map("intersection_3way.xodr");
+  Sim world(map);
+  auto const route = [&](char const* road, char const* way) {
+    map::Route found;
+    for (auto const& lane : map->lanes())
+      if (lane.drivable() && lane.predecessors.empty() && map->road(lane.road).name == road)
+        for (auto const& option : map->routes(lane.id, map->find_lane(way, 5.0, -1), {.max_routes = 1})) found = option;
+    REQUIRE(!found.lanes.empty());
+    auto const& ahead = map->lane(found.lanes.back()).successors;
+    if (!ahead.empty()) found.lanes.push_back(ahead.front());
+    return found;
+  };
+  // Who turns left from the side road lets both directions of the main road go first.
+  auto const side = route("3", "31"), main = route("2", "20");
+  auto const left = add_before(world, side, 20.0, 6.0);
+  auto const straight = add_before(world, main, 30.0, 10.0);
+  auto const view = world.observe(left);
+  bool waits = false;
+  for (auto const& conflict : view.corridor().conflicts)
+    waits = waits || conflict.right_of_way == map::RightOfWay::yields;
+  CHECK(waits);
+  double left_in = 0.0, straight_in = 0.0;
+  CollisionAny const collision;
+  for (int k = 0; k < 200; ++k) {
+    world.step(0.2);
+    REQUIRE(!collision.evaluate(world).any_collision);
+    auto const in = [&](AgentId id) { return is_valid(map->road(map->lane(world.lane_of(id)).road).junction); };
+    if (left_in == 0.0 && in(left)) left_in = world.time();
+    if (straight_in == 0.0 && in(straight)) straight_in = world.time();
+  }
+  CHECK(straight_in > 0.0);
+  CHECK(left_in > straight_in);
+}
+
+TEST_CASE("signs go before right before left, and who has a stop sign stands before it goes on") {
+  // The east comes from the left of the north: with these signs it goes first all the same.
+  for (char const* type : {"205", "206"}) {
+    CAPTURE(type);
+    Crossing crossing{crossing_with({{"1", "306"}, {"2", type}, {"3", "306"}, {"4", type}})};
+    Sim world(crossing.map);
+    auto const east = add_before(world, crossing.route(1, 0), 40.0, 8.0);
+    auto const north = add_before(world, crossing.route(2, 0), 40.0, 8.0);
+    auto const times = times_through(world, {east, north}, 40.0);
+    REQUIRE(times[0]);
+    REQUIRE(times[1]);
+    CHECK(*times[0] < *times[1]);
+
+    Sim empty(crossing.map);
+    auto const alone = add_before(empty, crossing.route(2, 0), 40.0, 8.0);
+    double slowest = 8.0;
+    for (int k = 0; k < 100 && empty.status(alone) == AgentStatus::driving; ++k) {
+      empty.step(0.2);
+      slowest = std::min(slowest, empty.state(alone).speed);
+    }
+    CHECK((slowest < 0.1) == (std::string(type) == "206"));
+    CHECK(empty.state(alone).y < -30.0);  // it has come through
+  }
+}
+
+TEST_CASE("a red light stops, a green one lets through, and one without a plan leaves it to the signs") {
+  Crossing crossing{crossing_with({{"1", "1000001"}, {"2", "1000001"}})};
+  REQUIRE(crossing.map->lights().size() == 2);
+  auto const east_light = crossing.map->find_light("signal s11000001"),
+             north_light = crossing.map->find_light("signal s21000001");
+  auto const run = [&](bool has_plan) {
+    Sim world(crossing.map);
+    if (has_plan) {  // green for the east at once, for the north after 20 s
+      world.set_light(east_light, {.cycle = 40.0, .green_begin = 0.0, .green_end = 15.0});
+      world.set_light(north_light, {.cycle = 40.0, .green_begin = 20.0, .green_end = 35.0});
+    }
+    auto const east = add_before(world, crossing.route(1, 0), 40.0, 8.0);
+    auto const north = add_before(world, crossing.route(2, 0), 40.0, 8.0);
+    auto const future = world.observe(east).predict(predict_all_as<Set>(Intersection{}));
+    CHECK(future.roster().lights == world.roster().lights);
+    return times_through(world, {east, north}, 60.0);
+  };
+  auto const off = run(false), on = run(true);
+  CHECK(*off[1] < *off[0]);  // right before left
+  CHECK(*on[0] < *off[0]);   // the east does not slow down
+  CHECK(*on[1] > 20.0);
+}
+
+TEST_CASE("a light's plan repeats; wrong plans and lights are errors") {
+  map::LightPlan const plan{.cycle = 60.0, .green_begin = 50.0, .green_end = 70.0, .yellow = 3.0};
+  using map::LightColor;
+  CHECK(plan.at(49.9) == LightColor::red);
+  CHECK(plan.at(50.0) == LightColor::green);
+  CHECK(plan.at(69.9) == LightColor::green);
+  CHECK(plan.at(9.9) == LightColor::green);
+  CHECK(plan.at(10.1) == LightColor::yellow);
+  CHECK(plan.at(13.1) == LightColor::red);
+  CHECK(plan.at(-50.1) == LightColor::green);  // as 9.9
+  CHECK(map::LightPlan{}.at(5.0) == LightColor::off);
+  Crossing crossing{crossing_with({{"1", "1000001"}})};
+  Sim world(crossing.map);
+  CHECK_THROWS_AS(world.set_light(static_cast<LightId>(7), plan), WorldError);
+  CHECK_THROWS_AS(world.set_light(static_cast<LightId>(0), {.cycle = -1.0}), WorldError);
+  CHECK_THROWS_AS(world.set_light(static_cast<LightId>(0), {.cycle = 10.0, .green_end = std::nan("")}), WorldError);
+}
+
+TEST_CASE("who has just split off and stands with its rear in the way is seen") {
+  // One that goes straight on follows one that turns right and has stopped as soon as its middle had left the lane.
+  Crossing const crossing;
+  Sim world(crossing.map);
+  auto const turning = crossing.route(1, 1), straight = crossing.route(1, 0);
+  auto const& way = crossing.map->lane(turning.lanes[1]);
+  for (double s = 1.0; s < 12.0; s += 1.0) {
+    Sim at(crossing.map);
+    auto const pose = way.path.pose(s);
+    at.add({.position = pose.position(),
+            .heading = pose.heading,
+            .speed = 0.0,
+            .behavior = IdmClassic{.desired_speed = 0.1, .maximum_acceleration = 0.01, .highest_acceleration = 0.0},
+            .route = turning});
+    add_before(at, straight, 30.0, 8.0);
+    CollisionAny const collision;
+    for (int k = 0; k < 100; ++k) {
+      at.step(0.2);
+      REQUIRE(!collision.evaluate(at).any_collision);
+    }
+  }
+}
+
+TEST_CASE("crossing a junction allocates nothing, in the world and in a prediction, and repeats") {
+  Crossing const crossing;
+  Sim world(crossing.map, {.seed = 4});
+  for (int arm = 1; arm <= 4; ++arm)
+    for (int turn : {0, 1, 2})
+      add_before(world, crossing.route(arm, turn), 30.0 + 9.0 * turn * (turn == 2 ? 0 : 1), 6.0);
+  auto future = world.observe(static_cast<AgentId>(0)).predict(predict_all_as<Set>(Intersection{}));
+  for (auto* each : {&world, &future}) {
+    Sim copy = *each;
+    for (int k = 0; k < 3; ++k) each->step(0.2), copy.step(0.2);
+    auto const before = support::allocations();
+    for (int k = 0; k < 100; ++k) each->step(0.2);
+    CHECK(support::allocations() == before);
+    for (int k = 0; k < 100; ++k) copy.step(0.2);
+    for (std::size_t i = 0; i < copy.size(); ++i)
+      CHECK(copy.frame().agents[i].state.x == each->frame().agents[i].state.x);
+  }
+}

@@ -1,0 +1,94 @@
+#include "cambium/behavior/lane_change_rule_based.hpp"
+
+#include <doctest/doctest.h>
+
+#include <tuple>
+#include <vector>
+
+#include "lane_traffic_fixtures.hpp"
+
+using namespace lane_traffic;
+
+namespace {
+
+using Sim = Traffic<cb::LaneChangeRuleBased, cb::ConstantAcceleration, cb::BasicMobil<cb::FreeSpace>>;
+
+cb::LaneChangeRuleBased roomy(double desired_speed) { return {.idm = {.desired_speed = desired_speed}}; }
+
+/// A user's own condition: never to the left.
+struct NeverLeft {
+  static constexpr char const* name = "never_left";
+  static constexpr auto parameters() { return std::make_tuple(); }
+
+  template <class View>
+  [[nodiscard]] bool operator()(View const&, cb::LaneOption const& option) const {
+    return !option.left;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("changes to the lane with the most space, of three") {
+  for (bool const left_is_free : {true, false}) {
+    Sim world(support::straight_road(3, 2000.0));
+    add(world, 2, 250.0, 10.0, cb::ConstantAcceleration{});
+    add(world, left_is_free ? 3 : 1, 280.0, 10.0, cb::ConstantAcceleration{});
+    auto const driver = add(world, 2, 200.0, 14.0, roomy(20.0));
+    for (int k = 0; k < 60; ++k) world.step(0.2);
+    CHECK(world.record(driver).lane.corridor == (left_is_free ? 0 : 2));
+  }
+}
+
+TEST_CASE("a little more space is not worth a change") {
+  for (double const more : {5.0, 20.0}) {
+    Sim world(support::straight_road(2, 2000.0));
+    add(world, 1, 240.0, 14.0, cb::ConstantAcceleration{});
+    add(world, 2, 240.0 + more, 14.0, cb::ConstantAcceleration{});
+    auto const driver = add(world, 1, 200.0, 14.0, roomy(14.0));
+    world.step(0.2);
+    CHECK(world.memory<cb::LaneChangeRuleBased>(driver).change.active() == (more > 10.0));
+  }
+}
+
+TEST_CASE("nobody collides in dense traffic of rule-based drivers, and they do change") {
+  int changes = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    Sim world(support::straight_road(3, 1500.0, seed % 3 == 0 ? 0.002 : 0.0), {.seed = seed});
+    fill(world, 3, 5.0, 500.0, 1.0 + static_cast<double>(seed % 3), seed, [](double v) { return roomy(v); });
+    for (int k = 0; k < 250; ++k) {
+      auto const before = lanes(world);
+      world.step(0.2);
+      auto const after = lanes(world);
+      for (std::size_t i = 0; i < world.size(); ++i) changes += before[i] != after[i];
+      CAPTURE(seed);
+      CHECK(collisions(world) == 0);
+    }
+  }
+  CHECK(changes > 50);
+}
+
+TEST_CASE("MOBIL changes only where its filters let it, the library's and a user's own") {
+  auto const changes = [](auto driver, int lane) {
+    using Driver = decltype(driver);
+    Traffic<Driver, cb::ConstantAcceleration> world(support::straight_road(3, 2000.0));
+    driver.idm.desired_speed = 20.0;
+    add(world, lane, 250.0, 8.0, cb::ConstantAcceleration{});
+    auto const id = add(world, lane, 200.0, 14.0, driver);
+    auto const free_lane = lane == 1 ? 2 : lane - 1;
+    add(world, free_lane, 180.0, 14.0, cb::ConstantAcceleration{});
+    if (lane == 2) add(world, 3, 205.0, 14.0, cb::ConstantAcceleration{});
+    world.step(0.2);
+    return world.template memory<Driver>(id).change.active();
+  };
+  CHECK(changes(cb::Mobil{}, 1));
+  CHECK(changes(cb::BasicMobil<cb::FreeSpace>{}, 1));
+  cb::BasicMobil<cb::FreeSpace> wary;
+  wary.filters.first.rear = 20.0;
+  CHECK(!changes(wary, 1));
+  CHECK(changes(cb::Mobil{}, 2));
+  CHECK(!changes(cb::BasicMobil<cb::FreeSpace, NeverLeft>{}, 2));
+  CHECK(changes(cb::BasicMobil<cb::RemainingLength, NeverLeft>{}, 1));
+  CHECK_NOTHROW(cb::check_parameters(wary));
+  wary.filters.first.rear = -1.0;
+  CHECK_THROWS_AS(cb::check_parameters(wary), cb::ParameterError);
+}

@@ -1,0 +1,235 @@
+#include "cambium/behavior/macro_actions.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <set>
+#include <string>
+
+#include "../world/fixtures.hpp"
+#include "cambium/behavior/motion_primitives.hpp"
+#include "cambium/behavior/random_macro_actions.hpp"
+#include "cambium/behavior/safety.hpp"
+#include "cambium/core/error.hpp"
+#include "cambium/dynamics/integration.hpp"
+
+using namespace fixtures;
+using Kind = cb::MacroAction::Kind;
+
+namespace {
+
+using Behaviors =
+    cb::BehaviorSet<cb::MacroActions, cb::RandomMacroActions, cb::MotionPrimitives, cb::Safety, cb::IdmClassic>;
+using World = cb::World<Behaviors, cb::InterpolateExecution, cb::SingleTrack>;
+
+/// Three lanes at -1.75, -5.25 and -8.75; one agent in the middle at 100 m and 10 m/s.
+struct Highway {
+  World world{straight_road(3, 2000.0)};
+  cb::AgentId id;
+
+  explicit Highway(cb::MacroActions const& macro = {}, double y = -5.25)
+      : id(world.add({.position = {100, y}, .speed = 10, .behavior = macro})) {}
+
+  void choose(std::size_t number) { world.memory<cb::MacroActions>(id).choose(number); }
+  void drive(int steps) {
+    for (int i = 0; i < steps; ++i) CHECK(world.step(0.25));
+  }
+  [[nodiscard]] double y() const { return world.state(id).y; }
+};
+
+std::size_t number_of(Kind kind, double acceleration = 0.0) {
+  cb::MacroActions const macro;
+  for (std::size_t i = 0; i < macro.size(); ++i)
+    if (macro.actions[i] == cb::MacroAction{kind, acceleration}) return i;
+  FAIL("no such action");
+  return 0;
+}
+
+}  // namespace
+
+TEST_CASE("actions can be counted and named") {
+  cb::MacroActions const macro;
+  CHECK(macro.size() == 7);
+  std::set<std::string> names;
+  for (std::size_t i = 0; i < macro.size(); ++i) names.insert(cb::to_string(macro.actions[i].kind));
+  CHECK(names == std::set<std::string>{"stay", "change_left", "change_right", "keep_gap"});
+  auto const two = cb::MacroActions::of({{Kind::stay, -3.0}, {Kind::change_left}});
+  CHECK(two.size() == 2);
+  CHECK_THROWS_AS((void)cb::MacroActions::of({}), cb::ParameterError);
+  auto wrong = two;
+  wrong.actions[1].acceleration = std::nan("");
+  CHECK_THROWS_AS(Highway{wrong}, cb::ParameterError);
+}
+
+TEST_CASE("staying keeps the acceleration until another one is chosen, and stops rather than reverses") {
+  Highway at;
+  at.choose(number_of(Kind::stay, 1.5));
+  at.drive(8);
+  CHECK(at.world.state(at.id).speed == doctest::Approx(13));
+  CHECK(at.world.state(at.id).x == doctest::Approx(100 + 10 * 2 + 0.75 * 4));
+  CHECK(at.y() == -5.25);
+  at.choose(number_of(Kind::stay, -5.0));
+  at.drive(16);
+  CHECK(at.world.state(at.id).speed == 0.0);
+}
+
+TEST_CASE("a change goes to the lane on its side, once, and is finished whatever is chosen meanwhile") {
+  for (bool const left : {true, false}) {
+    Highway at;
+    at.choose(number_of(left ? Kind::change_left : Kind::change_right));
+    at.drive(4);
+    CHECK(at.y() != -5.25);
+    at.choose(number_of(Kind::stay, 1.5));
+    at.drive(20);
+    CHECK(at.y() == doctest::Approx(left ? -1.75 : -8.75).epsilon(1e-6));
+    CHECK(at.world.state(at.id).speed > 15);
+    at.choose(number_of(left ? Kind::change_left : Kind::change_right));  // no further lane
+    at.drive(20);
+    CHECK(at.y() == doctest::Approx(left ? -1.75 : -8.75).epsilon(1e-6));
+  }
+}
+
+TEST_CASE("a change that is chosen again on its way goes on; one to the other side leads back") {
+  Highway at, twice, back;
+  at.choose(number_of(Kind::change_left));
+  twice.choose(number_of(Kind::change_left));
+  back.choose(number_of(Kind::change_left));
+  at.drive(4);
+  twice.drive(4);
+  back.drive(10);  // in the left lane by now
+  CHECK(back.y() > -3.5);
+  twice.choose(number_of(Kind::change_left));
+  back.choose(number_of(Kind::change_right));
+  at.drive(4);
+  twice.drive(4);
+  CHECK(at.y() == twice.y());
+  back.drive(20);
+  CHECK(back.y() == doctest::Approx(-5.25).epsilon(1e-6));
+}
+
+TEST_CASE("what is chosen, and the change under way, go along with copies") {
+  Highway at;
+  at.choose(number_of(Kind::change_right));
+  at.drive(5);
+  auto copy = at.world;
+  at.drive(20);
+  for (int i = 0; i < 20; ++i) copy.step(0.25);
+  CHECK(copy.frame() == at.world.frame());
+  CHECK(at.y() == doctest::Approx(-8.75).epsilon(1e-6));
+}
+
+TEST_CASE("changes are available where there is a lane on that side") {
+  auto const available = [](double y, Kind kind) {
+    Highway at({}, y);
+    return cb::MacroActions{}.available(at.world.observe(at.id), number_of(kind));
+  };
+  CHECK(available(-5.25, Kind::change_left));
+  CHECK(available(-5.25, Kind::change_right));
+  CHECK_FALSE(available(-1.75, Kind::change_left));
+  CHECK(available(-1.75, Kind::change_right));
+  CHECK_FALSE(available(-8.75, Kind::change_right));
+  CHECK(available(-8.75, Kind::stay));
+  Highway at;
+  CHECK_FALSE(cb::MacroActions{}.available(at.world.observe(at.id), 7));
+}
+
+TEST_CASE("a change into a lane that ends too soon is not available, and not begun") {
+  World world(support::own_map("lane_drop.xodr"));
+  auto const& road = world.map().roads()[0];
+  auto const number = number_of(Kind::change_right);
+  auto const at = [&](double s) {
+    for (auto const& entry : road.sections[0].lanes)
+      if (entry.number == -2) {
+        auto const pose = world.map().lane(entry.id).path.pose(s);
+        return world.add({.position = pose.position(),
+                          .heading = pose.heading,
+                          .speed = 10,
+                          .behavior = cb::MacroActions{.minimum_remaining = 150.0}});
+      }
+    return cb::none<cb::AgentId>;
+  };
+  auto const far = at(200.0), near = at(390.0);
+  CHECK(cb::MacroActions{.minimum_remaining = 150.0}.available(world.observe(far), number));
+  CHECK_FALSE(cb::MacroActions{.minimum_remaining = 150.0}.available(world.observe(near), number));
+  for (auto const id : {far, near}) world.memory<cb::MacroActions>(id).choose(number);
+  world.step(0.25);
+  CHECK(world.memory<cb::MacroActions>(far).change.active());
+  CHECK_FALSE(world.memory<cb::MacroActions>(near).change.active());
+}
+
+TEST_CASE("keeping the gap is IDM") {
+  World world(straight_road(1, 2000.0));
+  world.add({.position = {100, -1.75}, .speed = 10, .behavior = cb::MacroActions{}});
+  world.add({.position = {140, -1.75}, .speed = 6, .behavior = cb::IdmClassic{.desired_speed = 6}});
+  World other(world.shared_map());
+  other.add({.position = {100, -1.75}, .speed = 10, .behavior = cb::IdmClassic{}});
+  other.add({.position = {140, -1.75}, .speed = 6, .behavior = cb::IdmClassic{.desired_speed = 6}});
+  for (int i = 0; i < 40; ++i) {
+    world.step(0.25);
+    other.step(0.25);
+    CHECK(world.state(cb::AgentId{0}).x == doctest::Approx(other.state(cb::AgentId{0}).x).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("random actions are the same in every run and copy, others for another seed, and all of them come up") {
+  auto const run = [](std::uint64_t seed, bool with_copies) {
+    World world(straight_road(3, 2000.0), {.seed = seed});
+    for (int i = 0; i < 5; ++i)
+      world.add({.position = {100 + 60.0 * i, -5.25}, .speed = 10, .behavior = cb::RandomMacroActions{}});
+    for (int i = 0; i < 80; ++i) {
+      if (with_copies) world = World(world);
+      CHECK(world.step(0.25));
+    }
+    return world.frame();
+  };
+  CHECK(run(1, false) == run(1, true));
+  CHECK(run(1, false) != run(2, false));
+  World world(straight_road(3, 2000.0));
+  auto const id =
+      world.add({.position = {100, -5.25}, .speed = 10, .behavior = cb::RandomMacroActions{.interval = 0.5}});
+  std::set<int> chosen;
+  int switches = 0, last = -1;
+  for (int i = 0; i < 240; ++i) {
+    world.step(0.25);
+    if (world.status(id) != cb::AgentStatus::driving) break;
+    int const now = world.memory<cb::RandomMacroActions>(id).macro.chosen;
+    switches += now != last;
+    CHECK((i % 2 == 0 || now == last));  // every half second
+    last = now;
+    chosen.insert(now);
+  }
+  CHECK(chosen.size() == 7);
+  CHECK(switches > 50);
+}
+
+TEST_CASE("motion primitives are carried out by the vehicle model, as chosen") {
+  World world(straight_road(3, 2000.0));
+  cb::MotionPrimitives const primitives = cb::MotionPrimitives::of({{1.0, 0.05}, {-2.0, 0.0}});
+  CHECK(primitives.size() == 2);
+  auto const id = world.add({.position = {100, -5.25}, .speed = 10, .behavior = primitives});
+  cb::SingleTrack const model;
+  auto expected = cb::rk4_step(model, cb::rk4_step(model, world.state(id), {1.0, 0.05}, 0.1), {1.0, 0.05}, 0.1);
+  world.step(0.2);
+  CHECK(world.state(id).x == doctest::Approx(expected.x).epsilon(1e-14));
+  CHECK(world.state(id).heading == doctest::Approx(expected.heading).epsilon(1e-14));
+  world.memory<cb::MotionPrimitives>(id).chosen = 1;
+  double const speed = world.state(id).speed;
+  world.step(0.2);
+  CHECK(world.state(id).speed == doctest::Approx(speed - 0.4));
+  CHECK(world.record(id).action.acceleration == doctest::Approx(-2.0));
+  world.memory<cb::MotionPrimitives>(id).chosen = 9;  // there is none: coasts
+  auto const before = world.state(id);
+  world.step(0.2);
+  CHECK(world.state(id).speed == before.speed);
+  CHECK(world.state(id).heading == before.heading);
+  CHECK_THROWS_AS((void)cb::MotionPrimitives::of({}), cb::ParameterError);
+}
+
+TEST_CASE("safety brakes to standstill, and comes to the middle of its lane on the way") {
+  World world(straight_road(2, 1000.0));
+  auto const id = world.add({.position = {100, -1.0}, .speed = 30, .behavior = cb::Safety{}});
+  for (int i = 0; i < 40; ++i) CHECK(world.step(0.25));
+  CHECK(world.state(id).speed == 0.0);
+  CHECK(world.state(id).x == doctest::Approx(100 + 900 / 8.0).epsilon(0.01));
+  CHECK(world.state(id).y == doctest::Approx(-1.75).epsilon(0.01));
+}

@@ -1,0 +1,157 @@
+// BARK's rule-based MOBIL: where its decision is fair, and where it is wrong, both numbers.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "../support/corpus.hpp"
+#include "lane_traffic_fixtures.hpp"
+
+using namespace lane_traffic;
+
+namespace {
+
+/// BARK asks for free space on top of the safety criterion.
+using Driver = cb::BasicMobil<cb::FreeSpace>;
+using Sim = Traffic<Driver, cb::ConstantAcceleration>;
+
+constexpr cb::geometry::Shape bark_car{1.75, 2.25, 1.0, 1.0};
+
+/// BARK's defaults: politeness 0.2, threshold 0.2, safe deceleration 4, everybody drives like the driver itself.
+Driver bark_driver(double desired_speed) {
+  Driver driver;
+  driver.idm.desired_speed = driver.changing.others.desired_speed = desired_speed;
+  driver.minimum_remaining = 60.0;
+  driver.route_bias = 0.0;
+  return driver;
+}
+
+double const desired[] = {0.0, 20.0, 8.0, 14.0, 12.0};  // by agent
+
+/// The agents of one step of the file, as a world.
+Sim world_at(std::vector<std::vector<std::string>> const& rows, int step) {
+  Sim world(support::straight_road(2, 1000.0));
+  for (auto const& row : rows) {
+    if (std::stoi(row[0]) != step) continue;
+    int const agent = std::stoi(row[2]);
+    world.add({.position = {std::stod(row[4]), std::stod(row[5])},
+               .speed = std::stod(row[7]),
+               .shape = bark_car,
+               .behavior = bark_driver(desired[agent]),
+               .id = static_cast<cb::AgentId>(agent)});
+  }
+  return world;
+}
+
+}  // namespace
+
+TEST_CASE("MOBIL decides as BARK's where BARK sees who is behind, and as published where it does not") {
+  auto const file = corpus::find("oracle/bark/bark_mobil_highway.csv");
+  if (!file) return;
+  auto const rows = corpus::table(*file);
+  auto const wants = [&](int step, int agent) {
+    auto world = world_at(rows, step);
+    world.step(0.2);
+    return world.memory<Driver>(static_cast<cb::AgentId>(agent)).change.active();
+  };
+  auto const bark_moves = [&](int step, int agent) {
+    std::optional<double> now, next;
+    for (auto const& row : rows) {
+      if (std::stoi(row[2]) != agent) continue;
+      if (std::stoi(row[0]) == step) now = std::stod(row[5]);
+      if (std::stoi(row[0]) == step + 1) next = std::stod(row[5]);
+    }
+    return std::abs(*next - *now) > 0.01;
+  };
+  std::string ours, theirs;
+  for (int step = 0; step <= 3; ++step) {
+    ours += wants(step, 1) ? '1' : '0';
+    theirs += bark_moves(step, 1) ? '1' : '0';
+    CHECK(!wants(step, 4));
+    CHECK(!bark_moves(step, 4));
+    // Agent 1 closes up behind agent 2, which is polite; BARK leaves the old follower out.
+    CHECK(wants(step, 2));
+    CHECK(!bark_moves(step, 2));
+  }
+  CHECK(theirs == "0001");
+  CHECK(ours == theirs);
+}
+
+TEST_CASE("in BARK's traffic our drivers change, with hysteresis, and do not change back and forth") {
+  auto const file = corpus::find("oracle/bark/bark_mobil_highway.csv");
+  if (!file) return;
+  auto const rows = corpus::table(*file);
+  auto world = world_at(rows, 0);
+  std::vector<int> ours(5), theirs(5);
+  for (int k = 0; k < 50; ++k) {
+    auto const before = lanes(world);
+    world.step(0.2);
+    for (std::size_t i = 0; i < 4; ++i) ours[i + 1] += world.frame().agents[i].lane.corridor != before[i];
+    CHECK(collisions(world) == 0);
+  }
+  std::vector<std::string> last(5);
+  for (auto const& row : rows) {
+    auto const agent = static_cast<std::size_t>(std::stoi(row[2]));
+    theirs[agent] += !last[agent].empty() && last[agent] != row[10];
+    last[agent] = row[10];
+  }
+  MESSAGE("lane changes of agents 1 to 4: ours " << ours[1] << ours[2] << ours[3] << ours[4] << ", BARK " << theirs[1]
+                                                 << theirs[2] << theirs[3] << theirs[4]);
+  CHECK(theirs[4] == 2);  // over and back, for want of hysteresis
+  CHECK(ours[4] <= 1);
+}
+
+TEST_CASE("the old follower counts, which BARK's formula leaves out") {
+  // Own and old follower drive behind one slow leader; the follower wants to go faster by far.
+  cb::MobilSituation const at{.own = -0.10,
+                              .own_after = 0.05,
+                              .new_follower = 0.0,
+                              .new_follower_after = -0.1,
+                              .old_follower = -2.0,
+                              .old_follower_after = 0.5};
+  struct {
+    double politeness = 0.2, threshold = 0.2, safe_deceleration = 4.0;
+  } const p;
+  double const bark = at.own_after - at.own + p.politeness * (at.new_follower_after - at.new_follower) - p.threshold;
+  CHECK(bark == doctest::Approx(-0.07));
+  CHECK(cb::mobil_incentive(p, at) == doctest::Approx(0.43));
+}
+
+TEST_CASE("a new follower is judged by what it is, not by the driver's own parameters as in BARK") {
+  Sim world(support::straight_road(2, 1000.0));
+  add(world, 1, 250.0, 9.0, cb::ConstantAcceleration{});
+  auto driver = bark_driver(15.0);
+  auto const ego = add(world, 1, 200.0, 14.0, driver);
+  add(world, 2, 120.0, 20.0, cb::ConstantAcceleration{});  // faster than the driver's own desired speed
+  auto const view = world.observe(ego);
+  auto const rear = view.neighbors(1).rear;
+  REQUIRE(rear);
+  double const bark =
+      cb::idm_acceleration(driver.idm, rear->speed, rear->gap, 14.0);  // at 20 of 15 m/s it brakes anyway
+  double const ours = driver.changing.follower(rear, rear->gap, 14.0);
+  auto own = driver.changing.others;
+  own.desired_speed = 20.0;
+  CHECK(ours == doctest::Approx(cb::idm_acceleration(own, rear->speed, rear->gap, 14.0)));
+  CHECK(bark < ours - 1e-6);
+}
+
+TEST_CASE("the nearest follower counts, BARK takes the farthest") {
+  Sim world(support::straight_road(2, 1000.0));
+  add(world, 1, 230.0, 5.0, cb::ConstantAcceleration{});
+  auto const ego = add(world, 1, 200.0, 14.0, bark_driver(20.0));
+  auto const near = add(world, 2, 190.0, 16.0, cb::ConstantAcceleration{});
+  add(world, 2, 60.0, 16.0, cb::ConstantAcceleration{});
+  auto const view = world.observe(ego);
+  auto const rear = view.neighbors(1).rear;
+  REQUIRE(rear);
+  CHECK(rear->agent == near);
+  // To the farther one (BARK's) the change is safe, to the nearer one it is not.
+  Driver const driver = bark_driver(20.0);
+  CHECK(driver.changing.follower(rear, 140.0 - 4.5, 14.0) > -4.0);
+  CHECK(driver.changing.follower(rear, rear->gap, 14.0) < -4.0);
+  world.step(0.2);
+  CHECK(!world.memory<Driver>(ego).change.active());
+}

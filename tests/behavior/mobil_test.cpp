@@ -1,0 +1,456 @@
+#include "cambium/behavior/mobil.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+#include <vector>
+
+#include "lane_traffic_fixtures.hpp"
+
+using namespace lane_traffic;
+
+namespace {
+
+using Sim = Traffic<cb::Mobil, cb::IdmClassic, cb::ConstantAcceleration>;
+
+cb::Mobil mobil(double desired_speed) { return {.idm = {.desired_speed = desired_speed}}; }
+
+/// Steps that an agent spent in each state of a change, and what came of it.
+struct Counts {
+  int begun = 0, done = 0, aborted = 0, collisions = 0;
+};
+
+/// Steps `world` and counts.
+template <class World>
+Counts run(World& world, int steps, double dt) {
+  Counts counts;
+  std::vector<std::uint16_t> home(world.size(), cb::map::no_corridor);  // where a change in progress began
+  auto const memory = [&](std::size_t i) { return std::get<0>(world.frame().agents[i].memory); };
+  for (int k = 0; k < steps; ++k) {
+    auto const before = world.frame();
+    world.step(dt);
+    for (std::size_t i = 0; i < world.size(); ++i) {
+      if (world.roster().agents[i].behavior.index() != 0) continue;
+      auto const& was = std::get<0>(before.agents[i].memory).change;
+      auto const now = memory(i).change;
+      if (!was.active() && now.active()) {
+        ++counts.begun;
+        home[i] = before.agents[i].lane.corridor;
+      }
+      if (was.active() && now.active() && now.target == home[i] && was.target != home[i]) ++counts.aborted;
+      if (was.active() && !now.active()) ++counts.done;
+    }
+    counts.collisions += collisions(world);
+  }
+  return counts;
+}
+
+}  // namespace
+
+TEST_CASE("nobody collides in dense traffic of MOBIL drivers, on straight and curved roads") {
+  Counts all;
+  for (std::uint64_t seed = 1; seed <= 24; ++seed) {
+    auto const map = support::straight_road(seed % 2 == 0 ? 3 : 4, 1500.0, seed % 3 == 0 ? 0.002 : 0.0);
+    Sim world(map, {.seed = seed});
+    fill(world, seed % 2 == 0 ? 3 : 4, 5.0, 600.0, 1.0 + static_cast<double>(seed % 4), seed,
+         [](double v) { return mobil(v); });
+    auto const counts = run(world, 300, seed % 2 == 0 ? 0.2 : 0.1);
+    CAPTURE(seed);
+    CHECK(counts.collisions == 0);
+    all.begun += counts.begun;
+    all.done += counts.done;
+    all.aborted += counts.aborted;
+  }
+  MESSAGE(all.begun << " changes, " << all.aborted << " aborted");
+  CHECK(all.begun > 200);
+  CHECK(all.done > 9 * (all.begun - all.aborted) / 10);
+}
+
+TEST_CASE("of two who change into the same gap from both sides in the same step, at most one goes on") {
+  int both_began = 0, aborted = 0, collided = 0;
+  for (std::uint64_t seed = 1; seed <= 200; ++seed) {
+    cb::RandomStream random(seed, 1, 0);
+    auto const between = [&random](double low, double high) { return low + (high - low) * cb::uniform01(random); };
+    Sim world(support::straight_road(3, 1500.0, seed % 2 == 0 ? 0.0 : 0.001), {.seed = seed});
+    double const v = between(8, 20), gap = between(8, 14);
+    // Slow leaders in the outer lanes, the middle lane free.
+    add(world, 1, 212 + gap, 0.6 * v, cb::ConstantAcceleration{});
+    add(world, 3, 212 + gap + between(-3, 3), 0.6 * v, cb::ConstantAcceleration{});
+    double const apart = seed % 4 == 0 ? 0.0 : between(-12, 12);
+    auto const a = add(world, 1, 190, v, mobil(1.3 * v)),
+               b = add(world, 3, 190 + apart, v * between(0.97, 1.03), mobil(1.3 * v));
+    for (int k = 0; k < 100; ++k) {
+      auto const before = world.frame();
+      world.step(seed % 3 == 0 ? 0.1 : 0.2);
+      auto const began = [&](cb::AgentId id) {
+        auto const slot = world.slot_of(id);
+        return !std::get<0>(before.agents[slot].memory).change.active() &&
+               std::get<0>(world.frame().agents[slot].memory).change.active();
+      };
+      both_began += began(a) && began(b);
+      for (auto const id : {a, b}) {
+        auto const slot = world.slot_of(id);
+        auto const &was = std::get<0>(before.agents[slot].memory).change,
+                   &now = std::get<0>(world.frame().agents[slot].memory).change;
+        aborted += was.active() && now.active() && was.target != now.target;
+      }
+      collided += collisions(world);
+    }
+  }
+  MESSAGE(both_began << " times both began in the same step; " << aborted << " aborted");
+  CHECK(both_began > 100);
+  CHECK(aborted > 30);
+  CHECK(collided == 0);
+}
+
+TEST_CASE("no change begins into an unsafe gap: by brute force over all vehicles") {
+  int begun = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    Sim world(support::straight_road(3, 1500.0), {.seed = seed});
+    fill(world, 3, 5.0, 600.0, 2.0, seed, [](double v) { return mobil(v); });
+    for (int k = 0; k < 200; ++k) {
+      auto const before = world.frame();
+      world.step(0.2);
+      for (std::size_t i = 0; i < world.size(); ++i) {
+        auto const now = std::get<0>(world.frame().agents[i].memory).change;
+        if (std::get<0>(before.agents[i].memory).change.active() || !now.active()) continue;
+        ++begun;
+        auto const& me = before.agents[i];
+        auto const& shape = world.roster().agents[i].shape;
+        auto const& driver = std::get<0>(world.roster().agents[i].behavior);
+        double const center = -3.5 * (now.target + 0.5);
+        for (std::size_t j = 0; j < world.size(); ++j) {
+          auto const& other = before.agents[j];
+          auto const& its = world.roster().agents[j].shape;
+          if (j == i || std::abs(other.state.y - center) > 1.75 - 0.9) continue;
+          bool const ahead = other.state.x > me.state.x;
+          double const gap = ahead ? other.state.x - its.rear - me.state.x - shape.front
+                                   : me.state.x - shape.rear - other.state.x - its.front;
+          REQUIRE(gap > 0.0);
+          auto follower = its.length() > driver.changing.truck_length ? driver.changing.trucks : driver.changing.others;
+          follower.desired_speed = std::max(follower.desired_speed, other.state.speed);
+          double const a = ahead ? cb::idm_acceleration(driver.idm, me.state.speed, gap, other.state.speed)
+                                 : cb::idm_acceleration(follower, other.state.speed, gap, me.state.speed);
+          CHECK(a >= -driver.changing.safe_deceleration - 1e-3);
+        }
+      }
+    }
+  }
+  MESSAGE(begun << " changes");
+  CHECK(begun > 100);
+}
+
+TEST_CASE("mirrored traffic changes lanes as the mirror image") {
+  int changes = 0;
+  for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+    auto const map = support::straight_road(3, 1500.0);
+    Sim world(map, {.seed = seed}), mirrored(map, {.seed = seed});
+    fill(world, 3, 5.0, 400.0, 2.0, seed, [](double v) { return mobil(v); });
+    for (std::size_t i = 0; i < world.size(); ++i) {
+      auto const& record = world.frame().agents[i];
+      add(mirrored, 3 - record.lane.corridor, record.state.x, record.state.speed, world.roster().agents[i].behavior, {},
+          world.roster().agents[i].shape);
+    }
+    double worst = 0.0;
+    for (int k = 0; k < 150; ++k) {
+      auto const before = lanes(world);
+      world.step(0.2);
+      mirrored.step(0.2);
+      auto const after = lanes(world);
+      for (std::size_t i = 0; i < world.size(); ++i) {
+        auto const &a = world.frame().agents[i].state, &b = mirrored.frame().agents[i].state;
+        worst = std::max({worst, std::abs(a.x - b.x), std::abs(a.y + b.y + 10.5)});
+        changes += before[i] != after[i];
+      }
+    }
+    CAPTURE(seed);
+    CHECK(worst < 1e-6);
+  }
+  CHECK(changes > 50);
+}
+
+TEST_CASE("the more polite drivers are, the less deceleration they impose on others") {
+  std::vector<double> imposed;
+  for (double const politeness : {0.0, 0.5, 2.0}) {
+    double total = 0.0;
+    for (std::uint64_t seed = 1; seed <= 16; ++seed) {
+      Sim world(support::straight_road(3, 2500.0), {.seed = seed});
+      fill(world, 3, 5.0, 900.0, 2.0, seed, [&](double v) {
+        auto driver = mobil(v);
+        driver.politeness = politeness;
+        return driver;
+      });
+      for (int k = 0; k < 150; ++k) {
+        auto const before = world.frame();
+        Sim here = world;
+        world.step(0.2);
+        for (std::size_t i = 0; i < world.size(); ++i) {
+          auto const now = std::get<0>(world.frame().agents[i].memory).change;
+          if (std::get<0>(before.agents[i].memory).change.active() || !now.active()) continue;
+          auto const view = here.observe(world.roster().agents[i].id);
+          auto const there = view.neighbors(now.target);
+          if (!there.rear) continue;
+          auto const& driver = std::get<0>(world.roster().agents[i].behavior);
+          double const alone = there.front ? there.rear->gap + view.shape().length() + there.front->gap : 1e9;
+          double const loss = driver.changing.follower(there.rear, alone, there.front ? there.front->speed : 0.0) -
+                              driver.changing.follower(there.rear, there.rear->gap, view.state().speed);
+          total += std::max(0.0, loss);
+        }
+      }
+    }
+    imposed.push_back(total);
+  }
+  MESSAGE("imposed at politeness 0, 0.5, 2: " << imposed[0] << ", " << imposed[1] << ", " << imposed[2] << " m/s^2");
+  CHECK(imposed[1] < 0.8 * imposed[0]);
+  CHECK(imposed[2] < 0.8 * imposed[1]);
+}
+
+TEST_CASE("with the rule to keep right traffic drives on the right, and nobody is passed on the right") {
+  int on_right[2] = {0, 0}, total = 0;
+  for (int const rule : {0, 1}) {
+    for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+      Sim world(support::straight_road(3, 4000.0), {.seed = seed});
+      fill(world, 3, 5.0, 1500.0, 0.05, seed, [&](double v) {
+        auto driver = mobil(20.0 + 0.2 * v);
+        driver.keep_right = rule == 1;
+        driver.bias = rule == 1 ? 0.3 : 0.0;
+        return driver;
+      });
+      for (int k = 0; k < 300; ++k) world.step(0.2);
+      for (auto const& record : world.frame().agents) on_right[rule] += record.lane.corridor == 2;
+      if (rule == 1) total += static_cast<int>(world.size());
+    }
+  }
+  MESSAGE("of " << total << ", " << on_right[0] << " on the right without the rule, " << on_right[1] << " with it");
+  CHECK(on_right[1] > 0.6 * total);
+  CHECK(on_right[0] < 0.45 * total);
+}
+
+TEST_CASE("a fast driver does not pass a slower one on the right under the rule to keep right") {
+  for (bool const rule : {false, true}) {
+    Sim world(support::straight_road(2, 2000.0));
+    auto const slow = add(world, 1, 150.0, 20.0, cb::ConstantAcceleration{});
+    cb::Mobil driver = mobil(30.0);
+    driver.keep_right = rule;
+    driver.threshold = 5.0;  // stays on the right
+    auto const fast = add(world, 2, 50.0, 28.0, driver);
+    for (int k = 0; k < 150; ++k) world.step(0.2);
+    CHECK((world.state(fast).x > world.state(slow).x) == !rule);
+  }
+}
+
+namespace {
+
+/// In dense traffic, how many changes lead to another lane, and how many of them back to the one left within 12 s.
+std::pair<int, int> changes_and_returns(double threshold, double rest) {
+  int changes = 0, returns = 0;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    Sim world(support::straight_road(3, 3000.0), {.seed = seed});
+    fill(world, 3, 5.0, 700.0, 2.0, seed, [&](double v) {
+      auto driver = mobil(v);
+      driver.threshold = threshold;
+      driver.changing.rest = rest;
+      return driver;
+    });
+    struct Last {
+      std::uint16_t from = cb::map::no_corridor;
+      double time = -1e9;
+    };
+    std::vector<Last> last(world.size());
+    for (int k = 0; k < 300; ++k) {
+      auto const before = lanes(world);
+      world.step(0.2);
+      auto const after = lanes(world);
+      for (std::size_t i = 0; i < world.size(); ++i) {
+        if (before[i] == after[i]) continue;
+        ++changes;
+        returns += after[i] == last[i].from && world.time() - last[i].time < 12.0;
+        last[i] = {before[i], world.time()};
+      }
+    }
+  }
+  return {changes, returns};
+}
+
+}  // namespace
+
+TEST_CASE("the threshold and the rest after a change keep drivers from changing back and forth") {
+  auto const [changes, returns] = changes_and_returns(0.2, 3.0);
+  auto const [restless_changes, restless_returns] = changes_and_returns(0.0, 0.0);
+  MESSAGE(returns << " of " << changes << " lead back; without threshold and rest " << restless_returns << " of "
+                  << restless_changes);
+  CHECK(changes > 100);
+  CHECK(returns * 12 < changes);
+  CHECK(restless_returns > 3 * returns);
+}
+
+TEST_CASE("a follower is judged by what is assumed of vehicles as long as it, and by the speed that it shows") {
+  for (bool const is_truck : {false, true})
+    for (bool const truck_is_hindered : {false, true}) {
+      Sim world(support::straight_road(2, 2000.0));
+      add(world, 1, 230.0, 8.0, cb::ConstantAcceleration{});
+      cb::Mobil driver = mobil(20.0);
+      auto& wary = truck_is_hindered ? driver.changing.trucks : driver.changing.others;
+      wary.time_headway = 8.0;
+      auto const id = add(world, 1, 200.0, 14.0, driver);
+      auto const shape = is_truck ? cb::geometry::truck() : cb::geometry::car();
+      add(world, 2, 160.0 - shape.front, 14.0, cb::ConstantAcceleration{}, {}, shape);
+      world.step(0.2);
+      CHECK(world.memory<cb::Mobil>(id).change.active() == (is_truck != truck_is_hindered));
+    }
+  cb::LaneChanging const changing;
+  CHECK(changing.law_of({.speed = 40.0, .length = 4.5}).free(40.0) == doctest::Approx(0.0));
+  CHECK(changing.law_of({.speed = 10.0, .length = 4.5}).free(10.0) >
+        changing.law_of({.speed = 10.0, .length = 12.0}).free(10.0));
+}
+
+TEST_CASE("a change is aborted when somebody comes up in the new lane") {
+  int aborted = 0;
+  for (double const at : {60.0, 70.0, 80.0, 90.0, 100.0}) {
+    Sim world(support::straight_road(2, 2000.0));
+    add(world, 1, 175.0, 8.0, cb::ConstantAcceleration{});
+    auto const driver = add(world, 1, 130.0, 15.0, mobil(20.0));
+    add(world, 2, at, 15.0, cb::ConstantAcceleration{.acceleration = 7.0});  // nobody expects that
+    bool began = false;
+    for (int k = 0; k < 60; ++k) {
+      auto const was = world.memory<cb::Mobil>(driver).change;
+      auto const home = world.record(driver).lane.corridor;
+      world.step(0.2);
+      auto const now = world.memory<cb::Mobil>(driver).change;
+      began = began || now.active();
+      aborted += was.active() && was.target == 1 && now.active() && now.target == 0 && home == 0;
+      CHECK(collisions(world) == 0);
+    }
+    CHECK(began);
+  }
+  CHECK(aborted >= 2);
+}
+
+TEST_CASE(
+    "who leaves its lane for the next one hides who drives ahead there, but not for so long that somebody collides") {
+  int hidden = 0;
+  for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+    cb::RandomStream random(seed, 1, 0);
+    auto const between = [&random](double low, double high) { return low + (high - low) * cb::uniform01(random); };
+    Sim world(support::straight_road(2, 2500.0, seed % 3 == 0 ? 0.002 : 0.0), {.seed = seed});
+    double const v = between(6, 22), slow = seed % 5 == 0 ? 0.0 : v * between(0.0, 0.8);
+    cb::IdmClassic const idm{.desired_speed = 1.2 * v};
+    auto const follower = add(world, 1, 100.0, v, seed % 2 == 0 ? Sim::Behavior(mobil(1.2 * v)) : Sim::Behavior(idm));
+    for (double const behind : {10.0, 30.0}) add(world, 2, 100.0 - behind, v, cb::IdmClassic{.desired_speed = v});
+    double const at = 104.5 + cb::idm_equilibrium_gap(idm, v) * between(0.7, 1.2);
+    auto const leaving = add(world, 1, at, v, mobil(1.5 * v));
+    double const way_to_brake = 6.5 + 1.5 * v + v * (v - slow) / 4;
+    auto const ahead = add(world, 1, at + way_to_brake * between(0.7, 1.5), slow, cb::ConstantAcceleration{});
+    for (int k = 0; k < 150; ++k) {
+      world.step(0.2);
+      CAPTURE(seed);
+      REQUIRE(collisions(world) == 0);
+      auto const leader = world.observe(follower).front();
+      if (!leader || leader->agent != leaving || world.record(leaving).lane.corridor == 0) continue;
+      auto const& own = world.record(follower);
+      double const gap = world.record(ahead).lane.s - own.lane.s - 4.5;
+      hidden += own.lane.corridor == 0 && cb::idm_acceleration(idm, own.state.speed, gap, slow) <
+                                              cb::idm_acceleration(idm, own.state.speed, leader->gap, leader->speed);
+    }
+  }
+  CHECK(hidden > 50);
+}
+
+TEST_CASE("who is off its lane's middle or direction comes back smoothly, however it came there") {
+  for (double const curvature : {0.0, 0.003})
+    for (double const turn : {-0.3, 0.0, 0.15})
+      for (double const speed : {0.5, 8.0, 30.0}) {
+        Sim world(support::straight_road(1, 1500.0, curvature));
+        auto const& lane = *std::find_if(world.map().lanes().begin(), world.map().lanes().end(),
+                                         [](auto const& candidate) { return candidate.drivable(); });
+        auto const pose = lane.path.pose(100.0);
+        auto const id = world.add({.position = cb::geometry::to_map(pose, {0.0, 0.6}),
+                                   .heading = pose.heading + turn,
+                                   .speed = speed,
+                                   .behavior = mobil(speed)});
+        double before = turn;
+        for (int k = 0; k < 400 && world.status(id) == cb::AgentStatus::driving; ++k) {
+          world.step(0.1);
+          auto const& at = world.record(id).lane;
+          CAPTURE(curvature);
+          CAPTURE(turn);
+          CAPTURE(speed);
+          CAPTURE(k);
+          CHECK(std::abs(at.heading_error - before) < 0.1);
+          before = at.heading_error;
+        }
+        if (speed > 1.0) CHECK(std::abs(world.record(id).lane.lateral) < 0.01);
+      }
+}
+
+TEST_CASE("drivers go around a standing object, and wait before it while the other lane is busy") {
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    cb::RandomStream random(seed, 0, 0);
+    Sim world(support::straight_road(2, 2500.0, seed % 2 == 0 ? 0.001 : 0.0), {.seed = seed});
+    auto const& lane = world.map().lanes()[world.map().lanes().size() - 1];
+    auto const pose = lane.path.pose(400.0);
+    int const number = -lane.number;
+    auto const corner = [&](double dx, double dy) {
+      return cb::geometry::Point{pose.x + dx * std::cos(pose.heading) - dy * std::sin(pose.heading),
+                                 pose.y + dx * std::sin(pose.heading) + dy * std::cos(pose.heading)};
+    };
+    std::vector<cb::geometry::Point> const corners{corner(-2, -1), corner(2, -1), corner(2, 1), corner(-2, 1)};
+    world.add_object(cb::geometry::Polygon(corners));
+    auto const driver =
+        add(world, number, 150.0 + 100.0 * cb::uniform01(random), 8 + 10 * cb::uniform01(random), mobil(18.0));
+    for (double s = 60.0; s < 440.0; s += 16.0 + 6.0 * cb::uniform01(random))
+      add(world, 3 - number, s, 10.0, cb::IdmClassic{.desired_speed = 10.0});
+    bool waited = false;
+    for (int k = 0; k < 700; ++k) {
+      world.step(0.2);
+      REQUIRE(collisions(world) == 0);
+      waited = waited || world.state(driver).speed < 1.0;
+    }
+    CAPTURE(seed);
+    CAPTURE(waited);
+    CHECK(world.state(driver).x > pose.x + 50.0);
+  }
+}
+
+TEST_CASE("a driver stops before the end of a lane that its goal is not in, and changes once it can") {
+  for (double const spacing : {9.0, 14.0, 60.0}) {
+    auto const map = support::straight_road(2, 600.0);
+    auto const& section = map->roads()[0].sections[0];
+    cb::LaneId goal = cb::none<cb::LaneId>;
+    for (auto const& entry : section.lanes)
+      if (map->lane(entry.id).number == -1) goal = entry.id;
+    Sim world(map);
+    auto const driver = add(world, 2, 60.0, 15.0, mobil(15.0), cb::ReachLane{goal, 560.0});
+    for (double s = 20.0; s < 590.0; s += spacing) add(world, 1, s, 6.0, cb::IdmClassic{.desired_speed = 6.0});
+    bool reached = false;
+    for (int k = 0; k < 1600 && !reached; ++k) {
+      world.step(0.2);
+      REQUIRE(collisions(world) == 0);
+      auto const status = world.status(driver);
+      REQUIRE((status == cb::AgentStatus::driving || status == cb::AgentStatus::arrived));
+      reached = world.reached_goal(driver);
+    }
+    CAPTURE(spacing);
+    CHECK(reached);
+  }
+}
+
+TEST_CASE("on a lane drop and at a fork MOBIL drivers leave the lane that ends, or reach the exit") {
+  auto const drop = support::own_map("lane_drop.xodr");
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    Sim world(drop, {.seed = seed});
+    fill(world, 3, 5.0, 250.0, 1.5, seed, [](double v) { return mobil(v); });
+    int in_drop = 0;
+    for (int k = 0; k < 500; ++k) {
+      world.step(0.2);
+      CAPTURE(seed);
+      CAPTURE(k);
+      CHECK(collisions(world) == 0);
+    }
+    for (auto const& record : world.frame().agents) in_drop += record.status == cb::AgentStatus::off_route;
+    CHECK(in_drop == 0);
+  }
+}

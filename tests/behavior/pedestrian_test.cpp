@@ -1,0 +1,386 @@
+#include "cambium/behavior/pedestrian.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "cambium/behavior/constant_acceleration.hpp"
+#include "cambium/behavior/idm_classic.hpp"
+#include "cambium/core/distributions.hpp"
+#include "cambium/map/free_corridor.hpp"
+
+#include "../support/allocations.hpp"
+#include "lane_traffic_fixtures.hpp"
+
+using namespace lane_traffic;
+using cb::geometry::Point;
+
+namespace {
+
+using Sim = Traffic<cb::Pedestrian, cb::IdmClassic, cb::ConstantAcceleration>;
+using Way = std::shared_ptr<cb::map::RoadCorridor const>;
+
+auto const road = support::straight_road(2, 600.0);  // from y = 0 to y = -7, along +x
+
+Way way(std::vector<Point> const& points, double width = 2.0) {
+  return cb::map::build_free_corridor(*road, points, {.width = width});
+}
+
+cb::AgentId walk(Sim& world, Way const& on, Point const& from, cb::Pedestrian const& behavior = {}, double speed = 0.0,
+                 std::optional<double> heading = {}) {
+  return world.add({.position = from,
+                    .heading = heading,
+                    .speed = speed,
+                    .shape = cb::geometry::pedestrian(),
+                    .behavior = behavior,
+                    .road = on});
+}
+
+double between(cb::RandomStream& random, double low, double high) { return cb::Uniform{low, high}(random); }
+
+bool drives(Sim const& world, cb::AgentId id) { return world.status(id) == cb::AgentStatus::driving; }
+
+/// Of the two bodies, as circles [m].
+double apart(Sim const& world, cb::AgentId a, cb::AgentId b) {
+  return std::hypot(world.state(a).x - world.state(b).x, world.state(a).y - world.state(b).y) - 0.6;
+}
+
+}  // namespace
+
+TEST_CASE("alone on its way a pedestrian comes to its desired speed with tau, and arrives") {
+  Sim world(road);
+  auto const id = walk(world, way({{0, 50}, {60, 50}}), {1, 50}, {.fluctuation = 0.0});
+  for (int i = 1; i <= 20; ++i) {
+    world.step(0.1);
+    CHECK(world.state(id).speed == doctest::Approx(1.34 * (1 - std::exp(-0.1 * i / 0.5))).epsilon(1e-6));
+    CHECK(world.state(id).y == doctest::Approx(50.0));
+  }
+  for (int i = 0; i < 450; ++i) world.step(0.1);
+  CHECK(world.status(id) == cb::AgentStatus::arrived);
+}
+
+TEST_CASE("round bends of its way a pedestrian stays on it") {
+  Sim world(road);
+  auto const bent = way({{0, 50}, {10, 50}, {10, 60}, {20, 60}, {12, 70}});
+  auto const id = walk(world, bent, {0, 50});
+  double farthest = 0.0;
+  for (int i = 0; i < 600 && drives(world, id); ++i) {
+    world.step(0.1);
+    farthest = std::max(farthest, std::abs(world.record(id).lane.lateral));
+  }
+  CHECK(world.status(id) == cb::AgentStatus::arrived);
+  CHECK(farthest < 1.5);
+}
+
+TEST_CASE("two who head at each other evade, whatever way they come") {
+  double smallest = 1e9;
+  int arrived = 0;
+  for (std::uint32_t seed = 0; seed < 100; ++seed) {
+    cb::RandomStream random(seed, 0, 0);
+    Sim world(road, {.seed = seed});
+    auto const there = way({{0, 50}, {20, 50}}, 3.0), back = way({{20, 50}, {0, 50}}, 3.0);
+    double const v = between(random, 0.8, 1.8), w = between(random, 0.8, 1.8);
+    auto const a = walk(world, there, {0, 50 + between(random, -0.3, 0.3)}, {.social = {.desired_speed = v}}, v);
+    auto const b = walk(world, back, {20, 50 + between(random, -0.3, 0.3)}, {.social = {.desired_speed = w}}, w);
+    for (int i = 0; i < 400 && drives(world, a) && drives(world, b); ++i) {
+      world.step(0.1);
+      smallest = std::min(smallest, apart(world, a, b));
+    }
+    arrived += world.status(a) == cb::AgentStatus::arrived || world.status(b) == cb::AgentStatus::arrived;
+  }
+  CHECK(smallest > 0.0);
+  CHECK(arrived == 100);
+}
+
+TEST_CASE("two ways that cross: nobody runs into another") {
+  double smallest = 1e9;
+  for (std::uint32_t seed = 0; seed < 60; ++seed) {
+    cb::RandomStream random(seed, 1, 0);
+    Sim world(road, {.seed = seed});
+    auto const along = way({{0, 50}, {20, 50}}), across = way({{10, 40}, {10, 60}});
+    auto const a = walk(world, along, {0, 50}, {}, 1.34);
+    auto const b = walk(world, across, {10, 40 + between(random, -1.0, 1.0)}, {}, 1.34);
+    for (int i = 0; i < 250; ++i) {
+      world.step(0.1);
+      if (drives(world, a) && drives(world, b)) smallest = std::min(smallest, apart(world, a, b));
+    }
+    CHECK(world.status(a) == cb::AgentStatus::arrived);
+    CHECK(world.status(b) == cb::AgentStatus::arrived);
+  }
+  CHECK(smallest > 0.0);
+}
+
+namespace {
+
+/// Vehicles at constant speed, or IDM drivers, on both lanes.
+template <class Driver>
+void add_vehicles(Sim& world, cb::RandomStream& random, double mean_gap, double least, double most,
+                  Driver const& driver) {
+  for (double const y : {-1.75, -5.25}) {
+    double const speed = between(random, least, most);  // one for a lane: they do not follow each other
+    for (double x = between(random, 5.0, 60.0); x < 300.0; x += 6.0 + between(random, 0.0, 2.0) * mean_gap * speed)
+      world.add({.position = {x, y}, .speed = speed, .behavior = driver(speed)});
+  }
+}
+
+/// The least time [s] until a vehicle of a lane that the body has just stepped into arrives at it, if it drives on.
+double time_left(Sim const& world, cb::AgentId walker) {
+  auto const& own = world.state(walker);
+  double least = 1e9;
+  for (std::size_t i = 0; i < world.size(); ++i) {
+    auto const& agent = world.roster().agents[i];
+    auto const& state = world.frame().agents[i].state;
+    if (agent.shape.length() < 1.0 || std::abs(state.y - own.y) > 1.75 + 0.3) continue;
+    double const way = own.x - 0.3 - (state.x + agent.shape.front);
+    if (way > -5.1) least = std::min(least, std::max(0.0, way) / std::max(0.1, state.speed));
+  }
+  return least;
+}
+
+}  // namespace
+
+TEST_CASE("a pedestrian crosses in gaps, and is never run over by those who do not look") {
+  int crossed = 0, waited = 0;
+  double least = 1e9;
+  for (std::uint32_t seed = 0; seed < 80; ++seed) {
+    CAPTURE(seed);
+    cb::RandomStream random(seed, 2, 0);
+    Sim world(road, {.seed = seed});
+    bool const back = seed % 2 == 1;
+    auto const across = back ? way({{320, -14}, {320, 8}}) : way({{320, 8}, {320, -14}});
+    auto const id =
+        walk(world, across, {320, back ? -14.0 : 8.0},
+             {.social = {.desired_speed = between(random, 0.9, 1.8)}, .crossing = {.assumed_acceleration = 0}});
+    add_vehicles(world, random, between(random, 1.0, 10.0), 8.0, 20.0,
+                 [](double) { return cb::ConstantAcceleration{}; });
+    double entered = 1e9;
+    for (int i = 0; i < 500 && drives(world, id); ++i) {
+      bool const was_beside = world.state(id).y > 0.3 || world.state(id).y < -7.3;
+      world.step(0.1);
+      REQUIRE(collisions(world) == 0);
+      bool const is_in = world.state(id).y < 0.3 && world.state(id).y > -7.3;
+      if (was_beside && is_in) entered = world.time(), least = std::min(least, time_left(world, id));
+    }
+    crossed += !drives(world, id);
+    waited += entered > 12.0;
+  }
+  CHECK(crossed == 80);
+  CHECK(waited > 20);
+  CHECK(least > 3.0);
+}
+
+TEST_CASE("among drivers who brake for it a pedestrian who demands that gets across, and unhurt") {
+  int crossed = 0;
+  for (std::uint32_t seed = 0; seed < 40; ++seed) {
+    CAPTURE(seed);
+    cb::RandomStream random(seed, 3, 0);
+    Sim world(road, {.seed = seed});
+    auto const across = way({{320, 6}, {320, -12}}, 4.0);
+    std::vector<cb::AgentId> walkers;
+    for (int i = 0; i < 3; ++i)
+      walkers.push_back(walk(world, across, {319.0 + i, 6.0 + between(random, 0.0, 1.0)},
+                             {.crossing = {.demanded_deceleration = 2.0}}));
+    add_vehicles(world, random, 1.5, 8.0, 14.0, [](double speed) { return cb::IdmClassic{.desired_speed = speed}; });
+    for (int i = 0; i < 900; ++i) {
+      world.step(0.1);
+      REQUIRE(collisions(world) == 0);
+    }
+    for (auto const id : walkers) crossed += world.status(id) == cb::AgentStatus::arrived;
+  }
+  CHECK(crossed == 120);
+}
+
+namespace {
+
+/// How much those within 6 m in one's own stripe, 1 m wide, go the same way (after Rex and Löwen 2007): the mean of
+/// (same - other) / (same + other) over those between x = 15 and 45.
+double order(Sim const& world) {
+  double sum = 0.0;
+  int count = 0;
+  for (std::size_t i = 0; i < world.size(); ++i) {
+    auto const& one = world.frame().agents[i].state;
+    if (one.x < 15 || one.x > 45) continue;
+    int same = 0, other = 0;
+    for (std::size_t k = 0; k < world.size(); ++k) {
+      auto const& two = world.frame().agents[k].state;
+      if (k == i || std::abs(two.y - one.y) > 0.5 || std::abs(two.x - one.x) > 6.0) continue;
+      ++(world.roster().agents[k].road == world.roster().agents[i].road ? same : other);
+    }
+    if (same + other == 0) continue;
+    sum += static_cast<double>(same - other) / (same + other);
+    ++count;
+  }
+  return sum / std::max(1, count);
+}
+
+/// The order of a crowd, mixed at the beginning, that walks both ways for 40 s; who comes to the end begins anew.
+double order_of_crowd(std::uint32_t seed, cb::Pedestrian behavior) {
+  cb::RandomStream random(seed, 4, 0);
+  Sim world(road, {.seed = seed});
+  auto const there = way({{0, 50}, {60, 50}}, 5.0), back = way({{60, 50}, {0, 50}}, 5.0);
+  for (int i = 0; i < 60; ++i) {
+    behavior.social.desired_speed = std::max(0.6, cb::Normal{1.34, 0.26}(random));
+    bool const goes = i % 2 == 0;
+    walk(world, goes ? there : back, {between(random, 10, 50), between(random, 48.1, 51.9)}, behavior, 1.0,
+         goes ? 0.0 : cb::geometry::pi);
+  }
+  for (int i = 0; i < 400; ++i) {
+    world.step(0.1);
+    for (std::size_t k = 0; k < world.size(); ++k) {
+      auto state = world.frame().agents[k].state;
+      double const shift = k % 2 == 0 && state.x > 50 ? -40.0 : k % 2 == 1 && state.x < 10 ? 40.0 : 0.0;
+      state.x += shift;
+      if (shift != 0.0) world.set_state(world.roster().agents[k].id, state);
+    }
+  }
+  return order(world);
+}
+
+}  // namespace
+
+TEST_CASE("lanes of one direction form where many meet, but not by forces of 1995, nor without any") {
+  double formed = 0.0, mixed = 0.0, published = 0.0;
+  for (std::uint32_t seed = 0; seed < 3; ++seed) {
+    formed += order_of_crowd(seed, {}) / 3;
+    mixed += order_of_crowd(seed, {.social = {.repulsion = 0.0, .contact_acceleration = 0.0}}) / 3;
+    published += order_of_crowd(seed, {.social = {.relative_stride = false}}) / 3;
+  }
+  CHECK(std::abs(mixed) < 0.2);
+  CHECK(std::abs(published) < 0.2);
+  CHECK(formed > 0.5);
+}
+
+TEST_CASE("pedestrians stop before a static object, or go round it") {
+  for (std::uint32_t seed = 0; seed < 30; ++seed) {
+    CAPTURE(seed);
+    cb::RandomStream random(seed, 5, 0);
+    Sim world(road, {.seed = seed});
+    auto const along = way({{0, 50}, {30, 50}}, 4.0);
+    double const x = between(random, 10, 20), y = 50 + between(random, -1.5, 1.5), half = between(random, 0.1, 1.0);
+    world.add_object(cb::geometry::Polygon({{x, y - half}, {x + 0.6, y - half}, {x + 0.6, y + half}, {x, y + half}}));
+    auto const id = walk(world, along, {1, 50}, {}, 1.34);
+    for (int i = 0; i < 300 && drives(world, id); ++i) {
+      world.step(0.1);
+      REQUIRE(collisions(world) == 0);
+    }
+    if (std::abs(y - 50) > half + 0.4) CHECK(world.status(id) == cb::AgentStatus::arrived);
+  }
+}
+
+TEST_CASE("a step, a copy and the order of entering do not change a bit; no step allocates") {
+  auto const across = way({{320, 6}, {320, -12}}, 4.0), along = way({{310, 3}, {330, 3}}, 3.0);
+  auto const fill = [&](bool turned) {
+    Sim world(road, {.seed = 5});
+    for (int k = 0; k < 12; ++k) {
+      int const i = turned ? 11 - k : k;
+      auto const id = static_cast<cb::AgentId>(i);
+      if (i % 3 == 2)
+        world.add({.position = {200.0 + 10 * i, -1.75}, .speed = 8, .behavior = cb::IdmClassic{}, .id = id});
+      else
+        world.add({.position = i % 3 ? Point{311.0 + i, 3.0 + 0.1 * i} : Point{320 + 0.2 * i, 5.0},
+                   .shape = cb::geometry::pedestrian(),
+                   .behavior = cb::Pedestrian{},
+                   .road = i % 3 ? along : across,
+                   .id = id});
+    }
+    return world;
+  };
+  auto a = fill(false), b = fill(true);
+  for (int i = 0; i < 40; ++i) a.step(0.1);
+  auto c = fill(true);
+  for (int i = 0; i < 40; ++i) {
+    c = b;
+    b.step(0.1);
+    c.step(0.1);
+    REQUIRE(b.frame() == c.frame());
+  }
+  auto const same = [](Sim const& l, Sim const& r) {
+    for (std::size_t i = 0; i < l.size(); ++i)
+      if (!(l.frame().agents[i].state == r.frame().agents[i].state)) return false;
+    return true;
+  };
+  CHECK(same(a, b));
+  auto const before = support::allocations();
+  for (int i = 0; i < 100; ++i) b.step(0.1);
+  CHECK(support::allocations() == before);
+}
+
+TEST_CASE("a prediction walks too, and a car that brakes for one who stands in its lane is predicted to stop") {
+  Sim world(road);
+  auto const across = way({{320, 6}, {320, -12}});
+  auto const walker = walk(world, across, {320, 1.0}, {.social = {.desired_speed = 0.1}});
+  auto const car = world.add({.position = {270, -1.75}, .speed = 10, .behavior = cb::IdmClassic{}});
+  using Set = cb::BehaviorSet<cb::Pedestrian, cb::IdmClassic>;
+  auto future = world.observe(car).predict(cb::predict_as<Set>(cb::IdmClassic{}, cb::Pedestrian{}));
+  for (int i = 0; i < 150; ++i) future.step(0.1);
+  CHECK(future.status(walker) == cb::AgentStatus::arrived);
+  CHECK(future.state(car).x > 320.0);
+
+  world.set_state(walker, {.x = 320, .y = -1.75, .heading = -1.57, .speed = 0.0});
+  auto stopping = world.observe(car).predict(
+      cb::predict_as<Set>(cb::IdmClassic{}, cb::Pedestrian{.social = {.desired_speed = 0.1}}));
+  auto const front = world.observe(car).front();
+  REQUIRE(front);
+  CHECK(front->agent == walker);
+  CHECK(front->gap == doctest::Approx(50 - 3.6 - 0.3).epsilon(0.01));
+  for (int i = 0; i < 110; ++i) stopping.step(0.1);
+  CHECK(stopping.state(car).speed < 0.5);
+  CHECK(stopping.state(car).x + 3.6 < 319.7);
+}
+
+TEST_CASE("no input makes a pedestrian's state anything but finite") {
+  auto const along = way({{0, 50}, {30, 50}});
+  for (double const dt : {1e-6, 0.2, 7.0, 3600.0}) {
+    Sim world(road, {.seed = 1});
+    for (int i = 0; i < 6; ++i)  // several in one place
+      walk(world, along, {1.0 + 0.2 * (i / 2), 50.0},
+           {.social = {.desired_speed = 20,
+                       .relaxation_time = 0.01,
+                       .repulsion = 1000,
+                       .repulsion_range = 0.01,
+                       .border_repulsion = 1000,
+                       .border_range = 0.01,
+                       .contact_range = 0.001},
+            .range = 50,
+            .fluctuation = 10,
+            .longest_substep = 10},
+           100.0, 1.0 * i);
+    for (int i = 0; i < 20; ++i) {
+      CHECK(world.step(dt).failed == 0);
+      for (auto const& record : world.frame().agents) CHECK(cb::is_finite(record.state));
+    }
+  }
+}
+
+TEST_CASE("who is around is who is near, whatever lane it is on, as by looking at everybody") {
+  Sim world(road, {.seed = 3});
+  cb::RandomStream random(3, 6, 0);
+  auto const along = way({{300, 3}, {340, 3}}, 20.0);
+  std::vector<cb::AgentId> ids;
+  for (int i = 0; i < 30; ++i) ids.push_back(walk(world, along, {between(random, 300, 340), between(random, -8, 12)}));
+  for (int i = 0; i < 4; ++i)
+    ids.push_back(world.add({.position = {300.0 + 12 * i, -1.75},
+                             .shape = i % 2 ? cb::geometry::articulated_truck() : cb::geometry::car(),
+                             .behavior = cb::IdmClassic{}}));
+  int found = 0;
+  for (auto const id : ids) {
+    auto const view = world.observe(id);
+    for (double const distance : {0.0, 1.0, 5.0, 30.0}) {
+      std::vector<cb::AgentId> near, expected;
+      view.for_each_around(distance, [&](auto const& other) { near.push_back(other.id); });
+      view.for_each_other([&](auto const& other) {
+        double const reach =
+            distance + std::max(other.shape.front, other.shape.rear) + std::max(other.shape.left, other.shape.right);
+        if (std::hypot(other.state.x - view.state().x, other.state.y - view.state().y) <= reach)
+          expected.push_back(other.id);
+      });
+      std::sort(near.begin(), near.end());
+      CHECK(near == expected);
+      found += static_cast<int>(near.size());
+    }
+  }
+  CHECK(found > 1000);
+}

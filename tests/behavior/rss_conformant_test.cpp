@@ -1,0 +1,152 @@
+// RSS-conformant agents among their like never collide, however recklessly they would drive by themselves: a property.
+#include "cambium/behavior/rss_conformant.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "../world/fixtures.hpp"
+#include "cambium/behavior/idm_classic.hpp"
+#include "cambium/behavior/mobil.hpp"
+#include "cambium/behavior/random_macro_actions.hpp"
+#include "cambium/core/distributions.hpp"
+#include "cambium/evaluation/collision.hpp"
+
+using namespace fixtures;
+
+namespace {
+
+template <class Nominal>
+using Safe = cb::RssConformant<Nominal>;
+using Behaviors = cb::BehaviorSet<cb::RandomMacroActions, cb::Mobil, cb::ConstantAcceleration, cb::IdmClassic,
+                                  Safe<cb::RandomMacroActions>, Safe<cb::Mobil>, Safe<cb::ConstantAcceleration>,
+                                  Safe<cb::IdmClassic>>;
+using World = cb::World<Behaviors, cb::InterpolateExecution, cb::SingleTrack>;
+
+double between(double low, double high, cb::RandomStream& random) { return cb::Uniform{low, high}(random); }
+
+/// `nominal`, or `nominal` made safe.
+template <class Nominal>
+Behaviors::Any driver(Nominal const& nominal, cb::RssParameters const& rss, bool safe) {
+  if (safe) return Safe<Nominal>{nominal, rss};
+  return nominal;
+}
+
+/// Somebody who heeds nobody, or changes lanes like mad, or brakes as hard as anybody may, or drives as usual.
+Behaviors::Any sample_driver(cb::RssParameters const& rss, bool safe, cb::RandomStream& random) {
+  switch (cb::uniform_index(random, 5)) {
+    case 0:
+    case 1:
+      return driver(cb::RandomMacroActions{.interval = 2.0}, rss, safe);
+    case 2:
+      return driver(cb::Mobil{.idm = {.desired_speed = between(10, 35, random)}, .politeness = 0.0}, rss, safe);
+    case 3:
+      return driver(cb::ConstantAcceleration{.acceleration = between(-rss.maximum_deceleration, 3, random)}, rss, safe);
+    default:
+      return driver(cb::IdmClassic{.desired_speed = between(10, 35, random)}, rss, safe);
+  }
+}
+
+struct Tally {
+  int scenarios = 0, collisions = 0, vehicles = 0, lane_changes = 0, standing = 0;
+};
+
+/// Nine vehicles on three lanes, each at its safe distance from the one ahead, some at just that.
+World sample(World const& empty, bool safe, cb::RandomStream& random) {
+  World world = empty;
+  cb::RssParameters rss;
+  if (cb::uniform_index(random, 2) == 0)  // as BARK's
+    rss = {.response_time = 0.5, .maximum_acceleration = 1.7, .maximum_deceleration = 5.0, .minimum_deceleration = 4.0};
+  for (int lane = 0; lane < 3; ++lane) {
+    double rear = between(300, 400, random), speed = between(5, 30, random);
+    for (int i = 0; i < 3; ++i) {
+      bool const is_truck = cb::uniform_index(random, 5) == 0;
+      auto const shape = is_truck ? cb::geometry::truck() : cb::geometry::car();
+      double const ahead = speed;
+      speed = std::clamp(ahead + between(-5, 5, random), 0.0, 30.0);
+      double const spare = cb::uniform_index(random, 2) == 0 ? 1e-6 : between(0, 30, random);
+      double const x = i == 0 ? rear : rear - shape.front - cb::rss_same_direction(rss, speed, ahead) - spare;
+      if (x < 10) break;
+      world.add({.position = {x, -1.75 - 3.5 * lane},
+                 .heading = 0.0,
+                 .speed = speed,
+                 .shape = shape,
+                 .behavior = sample_driver(rss, safe, random)});
+      rear = x - shape.rear;
+    }
+  }
+  return world;
+}
+
+Tally drive(bool safe, std::uint32_t scenarios, std::uint64_t seed) {
+  World empty(straight_road(3, 1500.0));
+  for (int lane = 0; lane < 3; ++lane) empty.remove(empty.add({.position = {10, -1.75 - 3.5 * lane}}));
+  Tally tally;
+  World world = empty;
+  for (std::uint32_t number = 0; number < scenarios; ++number) {
+    cb::RandomStream random(seed, number, 0);
+    double const dt = 0.1 * (2 + cb::uniform_index(random, 4));
+    world = sample(empty, safe, random);
+    auto const lane_of = [&](std::size_t i) { return world.frame().agents[i].lane.corridor; };
+    std::vector<std::uint16_t> lanes(world.size());
+    for (std::size_t i = 0; i < lanes.size(); ++i) lanes[i] = lane_of(i);
+    bool collided = false;
+    for (double t = 0; t < 8.0 && !collided; t += dt) {
+      CAPTURE(number);
+      CAPTURE(t);
+      if (!world.step(dt)) FAIL_CHECK("a step failed");
+      collided = cb::CollisionAny{}.evaluate(world).any_collision;
+      if (safe && collided) FAIL_CHECK("a collision");
+      for (std::size_t i = 0; i < lanes.size(); ++i) {
+        tally.lane_changes += lane_of(i) != lanes[i];
+        lanes[i] = lane_of(i);
+      }
+    }
+    ++tally.scenarios;
+    tally.vehicles += static_cast<int>(world.size());
+    tally.collisions += collided;
+    for (auto const& record : world.frame().agents) tally.standing += record.state.speed < 0.1;
+  }
+  MESSAGE(tally.scenarios << " scenarios, " << tally.vehicles << " vehicles, " << tally.lane_changes
+                          << " lane changes, " << tally.standing << " stand at the end, " << tally.collisions
+                          << " scenarios with a collision");
+  return tally;
+}
+
+}  // namespace
+
+TEST_CASE("RSS-conformant agents among RSS-conformant agents never collide") {
+  auto const tally = drive(true, 10'000, 1);
+  CHECK(tally.collisions == 0);
+  CHECK(tally.lane_changes > 2000);
+  CHECK(tally.vehicles > 60'000);
+}
+
+TEST_CASE("the same agents without it do collide") { CHECK(drive(false, 300, 1).collisions > 30); }
+
+TEST_CASE("where nothing is dangerous the nominal behaviour drives, to the bit") {
+  World safe(straight_road(3, 1500.0)), nominal(safe.shared_map());
+  cb::Mobil const mobil{.idm = {.desired_speed = 20}};
+  for (int i = 0; i < 3; ++i) {
+    double const x = 100 + 300.0 * i;
+    safe.add({.position = {x, -5.25}, .speed = 20, .behavior = Safe<cb::Mobil>{mobil, {}}});
+    nominal.add({.position = {x, -5.25}, .speed = 20, .behavior = mobil});
+  }
+  for (int i = 0; i < 20; ++i) {
+    safe.step(0.2);
+    nominal.step(0.2);
+    for (std::size_t a = 0; a < 3; ++a) CHECK(safe.frame().agents[a].state == nominal.frame().agents[a].state);
+  }
+}
+
+TEST_CASE("an object in the lane is stopped for") {
+  World world(straight_road(2, 1500.0));
+  auto const blind = world.add({.position = {100, -1.75}, .speed = 20, .behavior = Safe<cb::ConstantAcceleration>{}});
+  world.add_object(cb::geometry::Polygon({{250, -3}, {251, -3}, {251, -0.5}, {250, -0.5}}));
+  for (int i = 0; i < 60; ++i) CHECK(world.step(0.25));
+  CHECK(world.state(blind).speed == 0.0);
+  CHECK(world.state(blind).x < 250 - 3.6);
+  CHECK(world.state(blind).x > 200);
+}

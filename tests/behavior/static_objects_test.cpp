@@ -1,0 +1,200 @@
+// Static objects, and those who walk, are in the way of every behaviour that heeds what is ahead.
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cambium/behavior/adaptive_cruise_control.hpp"
+#include "cambium/behavior/idm_lane_tracking.hpp"
+#include "cambium/behavior/idm_stochastic.hpp"
+#include "cambium/behavior/intersection.hpp"
+#include "cambium/behavior/macro_actions.hpp"
+#include "cambium/behavior/pedestrian.hpp"
+#include "cambium/behavior/rss_conformant.hpp"
+#include "cambium/behavior/zip_merge.hpp"
+#include "cambium/map/free_corridor.hpp"
+
+#include "lane_traffic_fixtures.hpp"
+
+using namespace lane_traffic;
+
+namespace {
+
+using Rss = cb::RssConformant<cb::ConstantAcceleration>;
+using Sim = Traffic<cb::IdmClassic, cb::IdmLaneTracking, cb::IdmStochastic, cb::AdaptiveCruiseControl, cb::Mobil,
+                    cb::LaneChangeRuleBased, cb::ZipMerge, Rss, cb::MacroActions, cb::Intersection, cb::Pedestrian>;
+
+std::vector<std::pair<std::string, Sim::Behavior>> drivers() {
+  auto const keep_gap = cb::MacroActions::of({{.kind = cb::MacroAction::Kind::keep_gap}});
+  return {{"idm_classic", cb::IdmClassic{}},
+          {"idm_lane_tracking", cb::IdmLaneTracking{}},
+          {"idm_stochastic", cb::IdmStochastic{}},
+          {"acc", cb::AdaptiveCruiseControl{}},
+          {"mobil", cb::Mobil{}},
+          {"rule based", cb::LaneChangeRuleBased{}},
+          {"zip merge", cb::ZipMerge{}},
+          {"rss", Rss{}},
+          {"macro actions", keep_gap},
+          {"intersection", cb::Intersection{}}};
+}
+
+double between(cb::RandomStream& random, double low, double high) { return cb::Uniform{low, high}(random); }
+
+void put_box(Sim& world, double x, double right, double left) {
+  world.add_object(cb::geometry::Polygon({{x, right}, {x + 2.0, right}, {x + 2.0, left}, {x, left}}));
+}
+
+}  // namespace
+
+TEST_CASE("every driver stops before a static object in its lane, also where it only reaches in") {
+  auto const road = support::straight_road(1, 600.0);  // y from 0 to -3.5
+  for (auto const& [name, driver] : drivers())
+    for (std::uint32_t seed = 0; seed < 12; ++seed) {
+      CAPTURE(name);
+      CAPTURE(seed);
+      cb::RandomStream random(seed, 1, 0);
+      Sim world(road, {.seed = seed});
+      double const x = between(random, 120, 220), speed = between(random, 3, 16);
+      auto const id = add(world, 1, between(random, 5, 20), speed, driver);
+      int const kind = static_cast<int>(seed % 3);  // all of it, from the right, from the left
+      put_box(world, x, kind == 2 ? -1.0 : -4.5, kind == 1 ? -2.5 : 1.0);
+      for (int i = 0; i < 300; ++i) {
+        world.step(0.2);
+        REQUIRE(collisions(world) == 0);
+      }
+      CHECK(world.state(id).speed < 0.2);
+      CHECK(world.state(id).x + 3.6 > x - 15.0);
+      CHECK(world.state(id).x + 3.6 < x);
+    }
+}
+
+TEST_CASE("every driver stops for one who walks slowly in its lane, and drives on behind") {
+  auto const road = support::straight_road(1, 600.0);
+  for (auto const& [name, driver] : drivers())
+    for (std::uint32_t seed = 0; seed < 12; ++seed) {
+      CAPTURE(name);
+      CAPTURE(seed);
+      cb::RandomStream random(seed, 2, 0);
+      Sim world(road, {.seed = seed});
+      double const x = between(random, 120, 220), speed = between(random, 5, 16);
+      auto const id = add(world, 1, between(random, 5, 20), speed, driver);
+      std::vector<cb::geometry::Point> const points{{x, 2.0}, {x, -9.0}};
+      world.add({.position = {x, between(random, -2.0, -0.2)},
+                 .shape = cb::geometry::pedestrian(),
+                 .behavior = cb::Pedestrian{.social = {.desired_speed = 0.1}},
+                 .road = cb::map::build_free_corridor(*road, points)});
+      bool has_stood = false;
+      for (int i = 0; i < 600; ++i) {
+        world.step(0.2);
+        REQUIRE(collisions(world) == 0);
+        has_stood = has_stood || world.state(id).speed < 0.5;
+      }
+      if (name == "rss") continue;  // what it is put around keeps its speed, whatever that is
+      CHECK(has_stood);
+      CHECK(world.state(id).x > x + 5.0);
+    }
+}
+
+TEST_CASE("who may change lanes passes a static object in its own") {
+  auto const road = support::straight_road(2, 900.0);
+  for (auto const& driver : {Sim::Behavior(cb::Mobil{}), Sim::Behavior(cb::LaneChangeRuleBased{})})
+    for (std::uint32_t seed = 0; seed < 10; ++seed) {
+      CAPTURE(seed);
+      cb::RandomStream random(seed, 3, 0);
+      Sim world(road, {.seed = seed});
+      int const lane = 1 + static_cast<int>(seed % 2);
+      double const x = between(random, 200, 300), y = lane == 1 ? 0.0 : -3.5;
+      auto const id = add(world, lane, 10.0, between(random, 8, 14), driver);
+      put_box(world, x, y - 3.0, y - 0.5);
+      for (int i = 0; i < 300; ++i) {
+        world.step(0.2);
+        REQUIRE(collisions(world) == 0);
+      }
+      CHECK((world.status(id) != cb::AgentStatus::driving || world.state(id).x > x + 10.0));
+    }
+}
+
+TEST_CASE("an object in a lane's neighbour query is there for cyclists and on free ways, too") {
+  auto const road = support::map_of({.id = "1",
+                                     .line = cb::map::lay_from({}, {{300.0}}),
+                                     .sections = {{.right = {{}, {.type = cb::map::LaneType::biking, .width = 2.0}}}}});
+  Sim world(road);
+  cb::LaneId biking = cb::none<cb::LaneId>;
+  for (auto const& lane : road->lanes())
+    if (lane.type == cb::map::LaneType::biking) biking = lane.id;
+  auto const start = road->lane(biking).path.pose(10.0).position();
+  auto const cyclist = world.add({.position = start,
+                                  .speed = 4,
+                                  .shape = cb::geometry::bicycle(),
+                                  .behavior = cb::IdmClassic{.desired_speed = 5},
+                                  .route = cb::map::straight_route(*road, biking)});
+  std::vector<cb::geometry::Point> const points{{0, 20}, {100, 20}};
+  auto const way = cb::map::build_free_corridor(*road, points);
+  auto const behind = world.add({.position = {10, 20}, .speed = 1, .behavior = cb::IdmClassic{}, .road = way});
+  auto const ahead = world.add({.position = {30, 19.9}, .speed = 1, .behavior = cb::IdmClassic{}, .road = way});
+  CHECK(world.observe(behind).front()->agent == ahead);
+  CHECK(world.observe(ahead).rear()->agent == behind);
+  CHECK_FALSE(world.observe(cyclist).front());
+  auto const on_bike_lane = world.add_object(cb::geometry::Polygon({{80, -5.0}, {82, -5.0}, {82, -4.0}, {80, -4.0}}));
+  auto const on_way = world.add_object(cb::geometry::Polygon({{60, 15}, {62, 15}, {62, 25}, {60, 25}}));
+  REQUIRE(world.observe(cyclist).front());
+  CHECK(world.observe(cyclist).front()->object == on_bike_lane);
+  CHECK(world.observe(ahead).front()->object == on_way);
+  CHECK(world.observe(ahead).front()->gap == doctest::Approx(30 - 3.6).epsilon(0.01));
+  std::vector<cb::geometry::Point> const other{{0, 22}, {100, 22}};  // entered on after the object was there
+  auto const late = world.add(
+      {.position = {10, 22}, .behavior = cb::IdmClassic{}, .road = cb::map::build_free_corridor(*road, other)});
+  REQUIRE(world.observe(late).front());
+  CHECK(world.observe(late).front()->object == on_way);
+  for (int i = 0; i < 300; ++i) {
+    world.step(0.2);
+    REQUIRE(collisions(world) == 0);
+  }
+  CHECK(world.state(cyclist).speed < 0.1);
+  CHECK(world.state(ahead).speed < 0.1);
+}
+
+TEST_CASE("a cyclist that reaches out of its lane is in the way of those in the next one") {
+  auto const road = support::map_of({.id = "1",
+                                     .line = cb::map::lay_from({}, {{300.0}}),
+                                     .sections = {{.right = {{}, {.type = cb::map::LaneType::biking, .width = 2.0}}}}});
+  Sim world(road);
+  auto const biking = std::find_if(road->lanes().begin(), road->lanes().end(),
+                                   [](auto const& lane) { return lane.type == cb::map::LaneType::biking; });
+  auto const cyclist = world.add({.position = {60, -4.5},
+                                  .speed = 4,
+                                  .shape = cb::geometry::bicycle(),
+                                  .behavior = cb::IdmClassic{},
+                                  .route = cb::map::straight_route(*road, biking->id)});
+  auto const car = world.add({.position = {20, -1.75}, .speed = 4, .behavior = cb::IdmClassic{}});
+  CHECK_FALSE(world.observe(car).front());
+  world.set_state(cyclist, {.x = 60, .y = -3.7, .speed = 4});
+  REQUIRE(world.observe(car).front());
+  CHECK(world.observe(car).front()->agent == cyclist);
+  CHECK(world.observe(car).front()->gap == doctest::Approx(40 - 3.6 - 0.35));
+  CHECK(world.observe(car).front()->speed == doctest::Approx(4.0));
+  CHECK_FALSE(world.observe(cyclist).rear());  // nobody is in its own lane
+}
+
+TEST_CASE("ways that are none are refused, and goals on free ways work") {
+  auto const road = support::straight_road(1, 600.0);
+  Sim world(road);
+  std::vector<cb::geometry::Point> const points{{0, 20}, {100, 20}};
+  auto const way = cb::map::build_free_corridor(*road, points);
+  CHECK_THROWS_AS(world.add({.position = {50, 60}, .behavior = cb::IdmClassic{}, .road = way}), cb::WorldError);
+  auto const lanes = cb::map::build_road_corridor(*road, cb::map::straight_route(*road, road->lanes()[0].id));
+  CHECK_THROWS_AS(world.add({.position = {50, 20}, .behavior = cb::IdmClassic{}, .road = lanes}), cb::WorldError);
+  auto const id = world.add({.position = {10, 20},
+                             .speed = 5,
+                             .behavior = cb::IdmClassic{},
+                             .goal = cb::ReachPolygon{cb::geometry::Polygon({{40, 10}, {60, 10}, {60, 30}, {40, 30}})},
+                             .road = way});
+  CHECK_FALSE(world.reached_goal(id));
+  for (int i = 0; i < 40 && !world.reached_goal(id); ++i) world.step(0.2);
+  CHECK(world.reached_goal(id));
+  CHECK_FALSE(cb::is_valid(world.lane_of(id)));
+  CHECK(world.situation(id).lane_position == doctest::Approx(world.state(id).x));
+}

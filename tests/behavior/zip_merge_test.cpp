@@ -1,0 +1,151 @@
+#include "cambium/behavior/zip_merge.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "lane_traffic_fixtures.hpp"
+
+using namespace lane_traffic;
+
+namespace {
+
+using Sim = Traffic<cb::ZipMerge, cb::IdmClassic>;
+
+/// Two queues before the lane drop; `block` vehicles of one lane come in a row, then as many of the other, `spacing`
+/// [m] from one to the next.
+template <class Driver>
+std::map<cb::AgentId, int> queues(Sim& world, std::uint64_t seed, int block, double spacing, Driver const& driver) {
+  cb::RandomStream random(seed, 0, 0);
+  auto const between = [&random](double low, double high) { return low + (high - low) * cb::uniform01(random); };
+  std::map<cb::AgentId, int> from;
+  double s = 380.0;
+  for (int i = 0; i < 40 && s > 5.0; ++i) {
+    int const lane = (i / block + static_cast<int>(seed)) % 2 == 0 ? 2 : 3;
+    from[add(world, lane, s, 4.0, driver(between(12, 16)))] = lane;
+    s -= spacing + between(0.0, 1.0);
+  }
+  return from;
+}
+
+cb::ZipMerge zip(double desired_speed) { return {.idm = {.desired_speed = desired_speed}}; }
+
+/// The lanes, by number, from which vehicles came past position x, in the order in which they did.
+struct Passed {
+  std::vector<int> lanes;
+  int collisions = 0;
+
+  /// How often two from one lane came one after the other.
+  [[nodiscard]] int same() const {
+    int count = 0;
+    for (std::size_t i = 1; i < lanes.size(); ++i) count += lanes[i] == lanes[i - 1];
+    return count;
+  }
+};
+
+Passed run(Sim& world, std::map<cb::AgentId, int> const& from, double x, int steps) {
+  Passed passed;
+  for (int k = 0; k < steps; ++k) {
+    auto const before = world.frame();
+    world.step(0.2);
+    std::vector<std::pair<double, int>> now;  // in one step the one ahead was first
+    for (std::size_t i = 0; i < world.size(); ++i) {
+      auto const at = from.find(world.roster().agents[i].id);
+      if (at == from.end()) continue;
+      double const was = before.agents[i].state.x, is = world.frame().agents[i].state.x;
+      if (was < x && is >= x) now.emplace_back(-is, at->second);
+    }
+    std::sort(now.begin(), now.end());
+    for (auto const& [place, lane] : now) passed.lanes.push_back(lane);
+    passed.collisions += collisions(world);
+  }
+  return passed;
+}
+
+}  // namespace
+
+TEST_CASE("on a saturated lane drop vehicles go in alternate order, one from each lane, and nobody collides") {
+  auto const map = support::own_map("lane_drop.xodr");
+  int pairs = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    Sim world(map, {.seed = seed});
+    auto const from = queues(world, seed, seed % 2 == 0 ? 2 : 1, seed % 2 == 0 ? 10.0 : 7.0, zip);
+    auto const passed = run(world, from, 640.0, 700);
+    std::string order;
+    for (int const lane : passed.lanes) order += std::to_string(lane);
+    CAPTURE(seed);
+    CAPTURE(order);
+    CHECK(passed.collisions == 0);
+    CHECK(passed.lanes.size() == from.size());
+    // The last ones have nobody left to alternate with.
+    CHECK(passed.same() <= (seed % 2 == 0 ? 1 : 0));
+    pairs += static_cast<int>(passed.lanes.size()) - 1;
+  }
+  CHECK(pairs > 400);
+}
+
+TEST_CASE("IDM drivers merge as they come, not in alternate order") {
+  auto const map = support::own_map("lane_drop.xodr");
+  int same = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    Sim world(map, {.seed = seed});
+    auto const from = queues(world, seed, 2, 10.0, [](double v) { return cb::IdmClassic{.desired_speed = v}; });
+    auto const passed = run(world, from, 640.0, 700);
+    CHECK(passed.lanes.size() == from.size());
+    same += passed.same();
+  }
+  CHECK(same >= 12);
+}
+
+TEST_CASE("where one lane is sparser, all pass, none collides, and nobody waits for those far behind") {
+  auto const map = support::own_map("lane_drop.xodr");
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    Sim world(map, {.seed = seed});
+    auto const from = queues(world, seed, 5, 9.0, zip);
+    auto const passed = run(world, from, 640.0, 700);
+    CAPTURE(seed);
+    CHECK(passed.collisions == 0);
+    CHECK(passed.lanes.size() == from.size());
+  }
+}
+
+TEST_CASE("at a ramp that merges in a junction ramp and main road alternate, and nobody collides") {
+  auto const map = support::own_map("merging.xodr");
+  auto const road = [&map](std::string const& name) -> cb::map::Road const& {
+    for (auto const& candidate : map->roads())
+      if (candidate.name == name) return candidate;
+    FAIL("no road " << name);
+    return map->roads()[0];
+  };
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    cb::RandomStream random(seed, 0, 0);
+    Sim world(map, {.seed = seed});
+    std::map<cb::AgentId, int> from;
+    for (int const number : {1, 2}) {
+      for (auto const& entry : road(std::to_string(number)).sections[0].lanes) {
+        auto const& lane = map->lane(entry.id);
+        if (!lane.drivable() || (number == 1 && entry.number != -2)) continue;
+        for (double s = lane.length() - 10.0 * cb::uniform01(random); s > 5.0;
+             s -= 12.0 + 6.0 * cb::uniform01(random)) {
+          auto const pose = lane.path.pose(s);
+          from[world.add({.position = pose.position(), .heading = pose.heading, .speed = 5.0, .behavior = zip(14.0)})] =
+              number;
+        }
+      }
+    }
+    auto const passed = run(world, from, 800.0, 900);
+    CAPTURE(seed);
+    std::string order;
+    for (int const lane : passed.lanes) order += std::to_string(lane);
+    CAPTURE(order);
+    CHECK(passed.collisions == 0);
+    // But for the first two, who began at the merge, and those with nobody left to alternate with.
+    auto const last = std::min(order.rfind('1'), order.rfind('2'));
+    for (std::size_t i = 2; i <= last; ++i) CHECK(order[i] != order[i - 1]);
+    CHECK(last > 15);
+    CHECK(passed.lanes.size() + 2 >= from.size());
+  }
+}

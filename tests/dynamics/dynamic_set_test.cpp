@@ -1,0 +1,122 @@
+#include "cambium/dynamics/dynamic_set.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "../world/fixtures.hpp"
+#include "cambium/core/distributions.hpp"
+#include "cambium/dynamics/kinematic_point.hpp"
+#include "cambium/dynamics/single_track_steering.hpp"
+#include "cambium/dynamics/triple_integrator.hpp"
+
+using namespace fixtures;
+
+namespace {
+
+/// A user's own model: a tracked vehicle that turns at a rate of its own and has no name, parameters or wheel base.
+struct Tank {
+  using State = cb::State;
+  struct Input {
+    double acceleration, turn;
+  };
+  State derivative(State const& x, Input const& u) const {
+    return {1.0, x.speed * std::cos(x.heading), x.speed * std::sin(x.heading), u.turn, u.acceleration};
+  }
+  Input limited(Input const& u, State const&) const {
+    return {std::clamp(u.acceleration, -3.0, 1.0), std::clamp(u.turn, -0.5, 0.5)};
+  }
+  Input input(cb::Action const& action, State const& x) const {
+    return limited({action.acceleration, 2.0 * action.steering}, x);
+  }
+};
+static_assert(cb::DynamicModel<Tank>);
+
+template <class Dynamics>
+using World = cb::World<cb::BehaviorSet<cb::ExternalInput>, cb::InterpolateExecution, Dynamics>;
+
+template <class Dynamics>
+cb::AgentId enter(World<Dynamics>& world, double speed, Dynamics const& dynamics, double y = -100) {
+  return world.add({.position = {150, y}, .heading = 0.0, .speed = speed, .dynamics = dynamics});
+}
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("a driver brakes, stands, starts and turns left with any vehicle model", Model, cb::SingleTrack,
+                   cb::SingleTrackSteering, cb::TripleIntegrator, cb::KinematicPoint, Tank) {
+  World<Model> world(straight_road(60, 400));
+  auto const id = enter(world, 2.5, Model{});
+  auto& memory = world.template memory<cb::ExternalInput>(id);
+  memory = {0.0, 0.2};
+  for (int i = 0; i < 10; ++i) REQUIRE(world.step(0.1));
+  CHECK(world.state(id).heading > 0.1);
+  CHECK(world.state(id).y > -100);
+  world.template memory<cb::ExternalInput>(id) = {-3.0, 0.0};
+  for (int i = 0; i < 30; ++i) {
+    REQUIRE(world.step(0.1));
+    CHECK(world.state(id).speed >= 0.0);
+  }
+  CHECK(world.state(id).speed == 0.0);
+  world.template memory<cb::ExternalInput>(id) = {1.0, 0.0};
+  for (int i = 0; i < 20; ++i) REQUIRE(world.step(0.1));
+  CHECK(world.state(id).speed > 1.0);
+}
+
+TEST_CASE_TEMPLATE("no sequence of actions makes a vehicle reverse, or its state no number", Model, cb::SingleTrack,
+                   cb::SingleTrackSteering, cb::TripleIntegrator, cb::KinematicPoint, Tank) {
+  cb::RandomStream random(4, 0, 0);
+  Model const model;
+  typename Model::State x{};
+  x.speed = 3.0;
+  for (int i = 0; i < 20000; ++i) {
+    cb::Action const action{0.5 * (static_cast<double>(cb::uniform_index(random, 33)) - 16.0),
+                            2.0 * cb::uniform01(random) - 1.0};
+    x = cb::drive(model, x, action, 0.01 + 0.2 * cb::uniform01(random));
+    REQUIRE(cb::is_finite(x));
+    REQUIRE(x.speed >= 0.0);
+    if (x.speed > 40.0) x.speed = 0.0;
+  }
+}
+
+TEST_CASE("a truck, a pedestrian and a user's own vehicle move in one world, each as it does alone") {
+  using Set = cb::DynamicSet<cb::SingleTrack, cb::KinematicPoint, Tank>;
+  World<Set> mixed(straight_road(60, 400));
+  cb::SingleTrack const truck{.wheel_base = 5.8, .highest_acceleration = 1.0};
+  cb::KinematicPoint const pedestrian;
+  auto const t = enter<Set>(mixed, 8.0, truck, -30), p = enter<Set>(mixed, 1.0, pedestrian, -60),
+             own = enter<Set>(mixed, 3.0, Tank{}, -90);
+  World<cb::SingleTrack> trucks(straight_road(60, 400));
+  World<cb::KinematicPoint> pedestrians(straight_road(60, 400));
+  World<Tank> tanks(straight_road(60, 400));
+  auto const t1 = enter(trucks, 8.0, truck, -30);
+  auto const p1 = enter(pedestrians, 1.0, pedestrian, -60);
+  auto const own1 = enter(tanks, 3.0, Tank{}, -90);
+  cb::ExternalInput::Memory const input{1.2, 0.1};
+  for (auto const id : {t, p, own}) mixed.memory<cb::ExternalInput>(id) = input;
+  trucks.memory<cb::ExternalInput>(t1) = input;
+  pedestrians.memory<cb::ExternalInput>(p1) = input;
+  tanks.memory<cb::ExternalInput>(own1) = input;
+  for (int i = 0; i < 10; ++i) {
+    REQUIRE(mixed.step(0.1));
+    trucks.step(0.1);
+    pedestrians.step(0.1);
+    tanks.step(0.1);
+  }
+  auto const near = [](cb::State const& a, cb::State const& b, double tolerance = 1e-9) {
+    return std::hypot(a.x - b.x, a.y - b.y) + std::abs(a.heading - b.heading) + std::abs(a.speed - b.speed) < tolerance;
+  };
+  CHECK(near(mixed.state(t), trucks.state(t1)));
+  // A set holds the action over a step, where the point alone holds the yaw rate that it means at the step's begin.
+  CHECK(near(mixed.state(p), pedestrians.state(p1), 0.1));
+  CHECK(near(mixed.state(own), tanks.state(own1)));
+  CHECK(mixed.roster().agents[0].dynamics.wheel_base() == 5.8);
+  CHECK(mixed.record(t).action.acceleration == 1.0);
+}
+
+TEST_CASE("a parameter out of range of a set's model is refused by name") {
+  using Set = cb::DynamicSet<cb::SingleTrack, cb::KinematicPoint>;
+  World<Set> world(straight_road(60, 400));
+  CHECK_THROWS_WITH_AS(enter<Set>(world, 1.0, cb::KinematicPoint{.yaw_rate_limit = -1}),
+                       doctest::Contains("yaw_rate_limit"), cb::ParameterError);
+}

@@ -1,0 +1,92 @@
+// README's tables of the models are what the program prints, and no model is missing there.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <filesystem>
+#include <regex>
+#include <string>
+
+#include "program.hpp"
+
+namespace {
+
+namespace fs = std::filesystem;
+using program::content_of;
+using program::Program;
+
+std::string readme() { return content_of(CAMBIUM_SOURCE_DIR "/README.md"); }
+
+/// What README has between the marks, without the lines of those.
+std::string tables() {
+  auto const text = readme();
+  std::string const begin = "<!-- models -->\n", end = "<!-- end of models -->";
+  auto const from = text.find(begin), to = text.find(end);
+  REQUIRE(from != std::string::npos);
+  REQUIRE(to != std::string::npos);
+  return text.substr(from + begin.size(), to - from - begin.size());
+}
+
+}  // namespace
+
+TEST_CASE("README's tables of the models are the program's output") {
+  Program const program("models");
+  if (!program.is_there()) return;
+  auto const run = program.run({});
+  REQUIRE(run.code == 0);
+  bool const same = tables() == run.out;
+  CHECK_MESSAGE(same, "replace what stands between the marks by the output of examples/run models");
+}
+
+TEST_CASE("every model, goal, driver and shape in the headers is in README's tables") {
+  struct Kind {
+    std::string folder;
+    std::regex declaration;
+    int least;
+  };
+  auto const kind = [](char const* folder, char const* declaration, int least) {
+    return Kind{CAMBIUM_SOURCE_DIR "/include/cambium/" + std::string(folder), std::regex(declaration), least};
+  };
+  auto const text = tables();
+  for (auto const& one : {kind("behavior", "\nstatic_assert\\((?:BehaviorModel|CorridorFilter)<(\\w+)[<>]", 17),
+                          kind("dynamics", "\nstatic_assert\\(DynamicModel<(\\w+)[<>]", 4),
+                          kind("execution", "\nstatic_assert\\(ExecutionModel<(\\w+)[<>]", 3),
+                          kind("observer", "\nstatic_assert\\(ObserverModel<(\\w+)[<>]", 4),
+                          kind("goal", "\nstruct ((?!GoalSituation)\\w+) \\{", 10),
+                          kind("behavior", "constexpr IdmParameters (\\w+)\\(\\)", 5),
+                          kind("geometry", "constexpr Shape (\\w+)\\(\\)", 8)}) {
+    int found = 0;
+    for (auto const& file : fs::directory_iterator(one.folder)) {
+      auto const header = content_of(file.path());
+      for (std::sregex_iterator match(header.begin(), header.end(), one.declaration), end; match != end; ++match) {
+        auto const name = (*match)[1].str();
+        CAPTURE(name);
+        CHECK(text.find("| `" + name) != std::string::npos);
+        ++found;
+      }
+    }
+    CAPTURE(one.folder);
+    CHECK(found >= one.least);
+  }
+}
+
+TEST_CASE("the program shows one model with all of its parameters, and names those it knows where there is none") {
+  Program const program("models");
+  if (!program.is_there()) return;
+  auto const one = program.run({"IdmClassic"});
+  CHECK(one.code == 0);
+  CHECK(one.out.find("| time_headway | 1.5 | s | [0, 20] | time gap kept to the leader |") != std::string::npos);
+  CHECK(program.run({"idm_classic"}).out == one.out);
+  auto const none = program.run({"idm_modern"});
+  CHECK(none.code == 2);
+  CHECK(none.err.find("idm_classic") != std::string::npos);
+}
+
+TEST_CASE("a model of one's own takes README 25 lines, with all that uses it") {
+  auto const text = readme();
+  auto const model = text.find("struct OptimalVelocity");
+  REQUIRE(model != std::string::npos);
+  auto const begin = text.rfind("```cpp\n", model) + 7, end = text.find("```", model);
+  CHECK(std::count(text.begin() + static_cast<std::ptrdiff_t>(begin), text.begin() + static_cast<std::ptrdiff_t>(end),
+                   '\n') <= 25);
+}

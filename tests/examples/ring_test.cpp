@@ -1,0 +1,41 @@
+// The ring example as a user meets it.
+#include <doctest/doctest.h>
+
+#include <string>
+
+#include "program.hpp"
+
+using program::content_of;
+using program::Program;
+
+TEST_CASE("the ring example writes its table, figures, picture and replay, the same in every run") {
+  Program const program("ring");
+  if (!program.is_there()) return;
+  browser::TemporaryFolder const folder;
+  auto const run = [&](char const* name) {
+    return program.run(
+        {"--length", "800", "--minutes", "3", "--density", "50", "--out", (folder.path() / name).string()});
+  };
+  auto const first = run("a");
+  CHECK(first.code == 0);
+  CHECK(first.err.empty());
+  CHECK(first.out.find("string") != std::string::npos);
+  CHECK(first.out.find("failed") == std::string::npos);
+  REQUIRE(run("b").code == 0);
+  for (char const* file : {"summary.json", "ring.svg", "replay.html"}) {
+    CAPTURE(file);
+    auto const text = content_of(folder.path() / "a" / file);
+    CHECK(text.size() > 1000);
+    CHECK(text == content_of(folder.path() / "b" / file));
+  }
+}
+
+TEST_CASE("the ring example names what is wrong with its options") {
+  Program const program("ring");
+  if (!program.is_there()) return;
+  for (auto const& words : {std::vector<std::string>{"--driver", "nobody"}, {"--length", "1"}, {"--density", "x"}}) {
+    auto const run = program.run(words);
+    CHECK(run.code == 2);
+    CHECK(run.err.find(words[0]) != std::string::npos);
+  }
+}

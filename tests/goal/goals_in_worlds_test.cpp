@@ -1,0 +1,176 @@
+#include <doctest/doctest.h>
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "../world/fixtures.hpp"
+#include "cambium/core/error.hpp"
+
+using namespace fixtures;
+
+namespace {
+
+cb::geometry::Polygon gate(double x) { return cb::geometry::Polygon({{x, -8}, {x + 20, -8}, {x + 20, 1}, {x, 1}}); }
+
+Sim::AgentSpec driver(double x, cb::Goal goal, double speed = 10.0) {
+  return {.position = {x, -1.75}, .speed = speed, .behavior = cb::ConstantAcceleration{}, .goal = std::move(goal)};
+}
+
+/// Moves an agent sideways, as a planner does.
+void put(Sim& world, cb::AgentId id, double x, double y) {
+  auto state = world.state(id);
+  state.x = x;
+  state.y = y;
+  world.set_state(id, state);
+}
+
+}  // namespace
+
+TEST_CASE("a sequence is reached once its parts have been passed in their order, and stays so") {
+  Sim world(straight_road(2, 1000.0));
+  cb::Goal const goal = cb::GoalSequence{{cb::ReachPolygon{gate(120)}, cb::ReachPolygon{gate(200)}}};
+  auto const id = world.add(driver(100, goal));
+  auto const backwards =
+      world.add(driver(60, cb::GoalSequence{{cb::ReachPolygon{gate(200)}, cb::ReachPolygon{gate(120)}}}));
+  std::vector<int> passed;
+  for (int i = 0; i < 30; ++i) {
+    CHECK(world.reached_goal(id) == (world.record(id).goals_passed == 2));
+    passed.push_back(world.record(id).goals_passed);
+    world.step(0.5);
+  }
+  CHECK(passed.front() == 0);
+  CHECK(passed[10] == 1);
+  CHECK(world.reached_goal(id));
+  CHECK(world.state(id).x > 240);  // beyond both by now
+  CHECK_FALSE(world.reached_goal(backwards));
+}
+
+TEST_CASE("what an agent has passed of a sequence goes along with copies, frames and predictions, each with its own") {
+  Sim world(straight_road(2, 1000.0));
+  cb::Goal const goal = cb::GoalSequence{{cb::ReachPolygon{gate(105)}, cb::ReachPolygon{gate(200)}}};
+  auto const id = world.add(driver(100, goal));
+  auto const start = world.frame();
+  for (int i = 0; i < 4; ++i) world.step(0.5);
+  CHECK(world.record(id).goals_passed == 1);
+  Sim copy = world;
+  for (int i = 0; i < 20; ++i) copy.step(0.5);
+  CHECK(copy.reached_goal(id));
+  CHECK_FALSE(world.reached_goal(id));
+  auto future = world.observe(id).predict(cb::predict_all_as<Sim::Behaviors>(cb::ConstantAcceleration{}));
+  CHECK(future.record(id).goals_passed == 1);
+  for (int i = 0; i < 20; ++i) future.step(0.5);
+  CHECK(future.reached_goal(id));
+  copy.restore(start);
+  CHECK(copy.record(id).goals_passed == 0);
+}
+
+TEST_CASE("parts of a sequence that are reached where the agent enters, or where it is put, count") {
+  Sim world(straight_road(2, 1000.0));
+  auto const id = world.add(driver(110, cb::GoalSequence{{cb::ReachPolygon{gate(100)}, cb::ReachPolygon{gate(300)}}}));
+  CHECK(world.record(id).goals_passed == 1);
+  put(world, id, 310, -1.75);
+  CHECK(world.reached_goal(id));
+}
+
+TEST_CASE("a sequence that is too long, or within another goal, is refused") {
+  Sim world(straight_road(2, 1000.0));
+  cb::GoalSequence const two{{cb::ReachPolygon{gate(120)}, cb::ReachPolygon{gate(200)}}};
+  CHECK_THROWS_AS(world.add(driver(100, cb::AllGoals{{two}})), cb::WorldError);
+  CHECK_THROWS_AS(world.add(driver(100, cb::GoalSequence{{two}})), cb::WorldError);
+  CHECK_THROWS_AS(world.add(driver(100, cb::GoalSequence{std::vector<cb::Goal>(256, cb::NoGoal{})})), cb::WorldError);
+  CHECK(world.size() == 0);
+}
+
+TEST_CASE("a lane change to the left is reached in the left lane, near its middle; to the right likewise") {
+  Sim world(straight_road(3, 1000.0));  // lanes at -1.75, -5.25, -8.75
+  using Side = cb::ReachLaneBeside::Side;
+  auto const left = world.add({.position = {100, -5.25}, .goal = cb::ReachLaneBeside{}});
+  auto const right = world.add({.position = {200, -5.25}, .goal = cb::ReachLaneBeside{.side = Side::right}});
+  auto const reach = [&](cb::AgentId id, double y) {
+    put(world, id, world.state(id).x, y);
+    return world.reached_goal(id);
+  };
+  for (auto const id : {left, right}) {
+    CHECK(reach(id, -1.75) == (id == left));
+    CHECK(reach(id, -2.2) == (id == left));
+    CHECK_FALSE(reach(id, -2.4));
+    CHECK_FALSE(reach(id, -5.25));
+    CHECK(reach(id, -8.75) == (id == right));
+  }
+  auto const two = world.add({.position = {300, -1.75}, .goal = cb::ReachLaneBeside{.side = Side::right}});
+  CHECK(reach(two, -5.25));
+  CHECK_FALSE(reach(two, -8.75));  // two lanes on
+}
+
+TEST_CASE("the end of its lane is reached near the end of the road") {
+  Sim world(straight_road(1, 300.0));
+  auto const id = world.add(driver(250, cb::ReachLaneEnd{20.0}));
+  CHECK_FALSE(world.reached_goal(id));
+  for (int i = 0; i < 3; ++i) world.step(1.0);
+  CHECK(world.state(id).x == doctest::Approx(280));
+  CHECK(world.reached_goal(id));
+}
+
+TEST_CASE("limits along the lane ask for the world's own offsets and speeds") {
+  Sim world(straight_road(1, 300.0));
+  auto const id = world.add(driver(50, cb::LaneLimits{.from = 60, .left = 0.3, .right = 0.3, .lowest_speed = 9}));
+  CHECK_FALSE(world.reached_goal(id));
+  world.step(2.0);
+  CHECK(world.reached_goal(id));
+  put(world, id, 80, -1.4);
+  CHECK_FALSE(world.reached_goal(id));
+}
+
+TEST_CASE("routes lead to the places that goals name, a sequence's by way of all of them") {
+  auto const map = own_map("intersection_4way.xodr");
+  Sim world(map);
+  // Some lane that leads into the junction, and where it can go on to.
+  for (auto const& start : map->lanes()) {
+    if (!start.drivable() || start.length() < 20.0) continue;
+    auto const reached = map->reachable({start.id, 5.0}, 400.0);
+    for (auto const& end : reached) {
+      if (end.lane == start.id || !map->lane(end.lane).drivable()) continue;
+      auto const route = map->shortest_route(start.id, end.lane);
+      REQUIRE(route);
+      auto const pose = start.path.pose(5.0);
+      cb::LaneId const middle = route->lanes[route->lanes.size() / 2];
+      auto const route_of = [&](cb::Goal const& goal) {
+        auto const id = world.add({.position = pose.position(), .heading = pose.heading, .goal = goal});
+        auto const lanes = world.roster().agents[world.slot_of(id)].road->route;
+        world.remove(id);
+        return lanes;
+      };
+      cb::Goal const at_end = cb::ReachLane{end.lane};
+      auto const lanes = route_of(at_end);
+      CHECK(lanes.back() == end.lane);
+      CHECK(route_of(cb::AllGoals{{cb::StateLimits{}, at_end}}) == lanes);
+      CHECK(route_of(cb::AnyGoal{{at_end}}) == lanes);
+      CHECK(route_of(cb::LaneLimits{.lane = end.lane, .left = 1.0}) == lanes);
+      CHECK(route_of(cb::GoalSequence{{cb::ReachLane{middle}, cb::StateLimits{}, at_end}}) == lanes);
+    }
+    if (world.roster().corridors.size() > 12) break;
+  }
+  CHECK(world.roster().corridors.size() > 5);
+}
+
+TEST_CASE("a goal with a number that is none, or out of its range, is refused by name, also within another goal") {
+  Sim world(straight_road(2, 1000.0));
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN();
+  auto const lane = world.map().find_lane("1", 300.0, -1);
+  for (cb::Goal const& goal :
+       {cb::Goal{cb::LaneLimits{.left = nan}}, cb::Goal{cb::StateLimits{.heading_to = nan}},
+        cb::Goal{cb::ReachLaneEnd{-1.0}}, cb::Goal{cb::ReachLaneBeside{.tolerance = nan}},
+        cb::Goal{cb::AllGoals{{cb::ReachLane{lane}, cb::LaneLimits{.lowest_speed = nan}}}},
+        cb::Goal{cb::GoalSequence{{cb::ReachLane{lane}, cb::LaneLimits{.heading_error = -0.1}}}}}) {
+    CAPTURE(goal.index());
+    CHECK_THROWS_AS(world.add(driver(100, goal)), cb::ParameterError);
+  }
+  CHECK(world.size() == 0);
+  try {
+    world.add(driver(100, cb::ReachLaneEnd{-1.0}));
+  } catch (cb::ParameterError const& error) {
+    CHECK(std::string(error.what()).find("agent 0: reach_lane_end.distance: is -1 m") != std::string::npos);
+  }
+  CHECK_NOTHROW(world.add(driver(100, cb::LaneLimits{})));  // infinite limits are none
+}

@@ -1,0 +1,171 @@
+#include "cambium/observer/delayed.hpp"
+
+#include <doctest/doctest.h>
+
+#include <map>
+#include <thread>
+#include <vector>
+
+#include "../world/fixtures.hpp"
+#include "cambium/observer/observer_chain.hpp"
+#include "cambium/observer/observer_set.hpp"
+#include "cambium/observer/occluded.hpp"
+#include "cambium/observer/parametric.hpp"
+
+using namespace fixtures;
+
+namespace {
+
+using Behaviors = cb::BehaviorSet<cb::IdmClassic, cb::ConstantAcceleration>;
+template <class Observer>
+using World = cb::World<Behaviors, cb::InterpolateExecution, cb::SingleTrack, Observer>;
+
+using Everything = cb::ObserverChain<cb::DelayedObserver<3>, cb::OccludedObserver, cb::ParametricObserver>;
+Everything const everything{
+    {cb::DelayedObserver<3>{.others = 2, .own = 1}, cb::OccludedObserver{.range = 80.0},
+     cb::ParametricObserver{.own = {.along = 0.2}, .others = {.along = 0.5, .speed = 0.3}, .lasting = 4}}};
+
+template <class Observer>
+World<Observer> traffic(Observer const& observer, std::uint64_t seed = 1) {
+  World<Observer> world(straight_road(2, 1000.0), {.seed = seed});
+  for (int i = 0; i < 8; ++i)
+    world.add({.position = {100 + 25.0 * i, i % 2 == 0 ? -1.75 : -5.25}, .speed = 8 + 0.5 * i, .observer = observer});
+  return world;
+}
+
+template <class World>
+std::map<cb::AgentId, cb::State> seen_by(World& world, cb::AgentId id) {
+  std::map<cb::AgentId, cb::State> seen;
+  world.observe(id).for_each_other([&](auto const& other) { seen[other.id] = other.state; });
+  return seen;
+}
+
+}  // namespace
+
+TEST_CASE("worlds that need no past keep none") {
+  CHECK(sizeof(World<cb::PerfectObserver>::Record) == sizeof(World<cb::ParametricObserver>::Record));
+  CHECK(sizeof(World<cb::PerfectObserver>::Record) == sizeof(World<cb::OccludedObserver>::Record));
+  CHECK(sizeof(World<cb::DelayedObserver<2>>::Record) == sizeof(World<cb::PerfectObserver>::Record) + 96);
+}
+
+TEST_CASE("others are seen exactly as they were some steps ago, and the agent itself likewise where asked for") {
+  auto world = traffic(cb::DelayedObserver<5>{.others = 3, .own = 1});
+  world.keep_history(10);
+  cb::AgentId const ego{2};
+  for (std::size_t k = 0; k < 8; ++k) {
+    std::size_t const late = std::min<std::size_t>(k, 3), own_late = std::min<std::size_t>(k, 1);
+    auto const& then = late > 0 ? world.history(late) : world.frame();
+    auto const& own_then = own_late > 0 ? world.history(own_late) : world.frame();
+    auto const seen = seen_by(world, ego);
+    CHECK(seen.size() == 7);
+    for (auto const& [id, state] : seen) CHECK(state == then.agents[world.slot_of(id)].state);
+    CHECK(world.observe(ego).state() == own_then.agents[2].state);
+    world.observe(ego).for_each_other([&](auto const& other) {
+      CHECK(other.acceleration == then.agents[world.slot_of(other.id)].action.acceleration);
+    });
+    auto const front = world.observe(ego).front();
+    REQUIRE(front);
+    auto const& leader = then.agents[front->slot].state;
+    CHECK(front->gap == doctest::Approx(leader.x - own_then.agents[2].state.x - 4.5));
+    CHECK(front->speed == doctest::Approx(leader.speed));
+    CHECK(world.step(0.2));
+  }
+}
+
+TEST_CASE("who has just entered, or come back, is seen as it entered") {
+  auto world = traffic(cb::DelayedObserver<3>{});
+  for (int i = 0; i < 5; ++i) world.step(0.2);
+  auto const late = world.add({.position = {400, -1.75}, .speed = 3});
+  cb::AgentId const ego{2};
+  CHECK(seen_by(world, ego).at(late) == world.state(late));
+  auto const entered = world.state(late);
+  world.step(0.2);
+  CHECK(seen_by(world, ego).at(late) == entered);
+}
+
+TEST_CASE("a prediction takes what is seen late for the present") {
+  auto world = traffic(cb::DelayedObserver<3>{});
+  for (int i = 0; i < 5; ++i) world.step(0.2);
+  auto const seen = seen_by(world, cb::AgentId{2});
+  auto future = world.observe(cb::AgentId{2}).predict(cb::predict_all_as<Behaviors>(cb::ConstantAcceleration{}));
+  for (auto const& [id, state] : seen) {
+    CHECK(future.state(id).x == state.x);
+    CHECK(future.state(id).time == world.time());
+  }
+  CHECK(future.step(0.2));
+}
+
+TEST_CASE("copies, and worlds stepped on other threads, of late, blurred and short-sighted eyes are equal to the bit") {
+  auto world = traffic(everything);
+  for (int i = 0; i < 5; ++i) world.step(0.2);
+  auto copy = world;
+  auto assigned = traffic(everything, 7);
+  assigned = world;
+  CHECK(copy.frame() == world.frame());
+  std::vector<World<Everything>> others(4, world);
+  std::vector<std::thread> threads;
+  for (auto& other : others)
+    threads.emplace_back([&other] {
+      for (int i = 0; i < 50; ++i) other.step(0.2);
+    });
+  for (auto& thread : threads) thread.join();
+  for (int i = 0; i < 50; ++i) {
+    CHECK(world.step(0.2));
+    copy.step(0.2);
+    assigned.step(0.2);
+  }
+  CHECK(copy.frame() == world.frame());
+  CHECK(assigned.frame() == world.frame());
+  for (auto const& other : others) CHECK(other.frame() == world.frame());
+  CHECK(seen_by(copy, cb::AgentId{3}) == seen_by(world, cb::AgentId{3}));
+  auto other_seed = traffic(everything, 2);
+  CHECK(seen_by(other_seed, cb::AgentId{3}) != seen_by(copy, cb::AgentId{3}));
+}
+
+TEST_CASE("a chain perceives one after the other, each stage with numbers of its own") {
+  using Noise = cb::ParametricObserver;
+  Noise const noise{.others = {.along = 1.0}};
+  cb::ObserverChain<Noise, Noise> const twice{{noise, noise}};
+  cb::RandomStream const random(1, 2, 3);
+  cb::State const truth{0, 0, 0, 0, 10};
+  double const first = noise.observe(truth, false, random.part(0)).x,
+               second = noise.observe(truth, false, random.part(1)).x;
+  CHECK(first != second);
+  CHECK(twice.observe(truth, false, random).x == doctest::Approx(first + second));
+  static_assert(cb::ObserverChain<cb::PerfectObserver, cb::PerfectObserver>::perfect);
+  static_assert(Everything::past_steps == 3 && !Everything::perfect);
+}
+
+TEST_CASE("agents of one world perceive by observers of their own kinds") {
+  using Set = cb::ObserverSet<cb::PerfectObserver, cb::DelayedObserver<2>, cb::OccludedObserver>;
+  World<Set> world(straight_road(1, 1000.0));
+  auto const sharp = world.add({.position = {100, -1.75}, .speed = 10});
+  auto const late = world.add({.position = {150, -1.75}, .speed = 10, .observer = {cb::DelayedObserver<2>{}}});
+  auto const near =
+      world.add({.position = {250, -1.75}, .speed = 10, .observer = {cb::OccludedObserver{.range = 50.0}}});
+  for (int i = 0; i < 5; ++i) world.step(0.2);
+  CHECK(seen_by(world, sharp).at(late) == world.state(late));
+  CHECK(seen_by(world, late).at(sharp) != world.state(sharp));
+  CHECK(seen_by(world, near).empty());
+  CHECK_THROWS_AS(world.add({.position = {300, -1.75}, .observer = {cb::OccludedObserver{.range = -1.0}}}),
+                  cb::ParameterError);
+}
+
+TEST_CASE("a chain that changes nothing shows the truth itself, and is no other than a perfect observer") {
+  World<cb::ObserverChain<cb::PerfectObserver, cb::PerfectObserver>> world(straight_road(2, 1000.0));
+  auto const ego = world.add({.position = {100, -1.75}, .speed = 10});
+  world.add({.position = {130, -1.75}, .speed = 8});
+  auto const view = world.observe(ego);
+  CHECK(&view.state() == &world.state(ego));
+  CHECK(view.front()->gap == 30 - 4.5);
+  World<cb::ObserverChain<cb::ParametricObserver, cb::DelayedObserver<2>>> blind(world.shared_map());
+  blind.add({.position = {100, -1.75},
+             .speed = 10,
+             .observer = {{cb::ParametricObserver{}, cb::DelayedObserver<2>{.others = 0}}}});
+  blind.add({.position = {130, -1.75}, .speed = 8});
+  for (int i = 0; i < 20; ++i) {  // neither noise nor delay, but not known at compile time
+    world.step(0.2);
+    blind.step(0.2);
+    CHECK(blind.state(ego) == world.state(ego));
+  }
+}

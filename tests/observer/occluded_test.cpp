@@ -1,0 +1,309 @@
+#include "cambium/observer/occluded.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+#include <set>
+#include <vector>
+
+#include "../world/fixtures.hpp"
+#include "cambium/core/distributions.hpp"
+
+using namespace fixtures;
+using cb::geometry::Point;
+
+namespace {
+
+constexpr double pi = cb::geometry::pi;
+
+/// Vehicles and objects anywhere on a plane.
+struct Plane {
+  std::vector<cb::State> states;
+  std::vector<cb::geometry::Shape> shapes;
+  std::vector<cb::StaticObject> things;
+
+  [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(states.size()); }
+  [[nodiscard]] bool in_traffic(std::uint32_t) const { return true; }
+  [[nodiscard]] cb::State const& state(std::uint32_t i) const { return states[i]; }
+  [[nodiscard]] cb::geometry::Shape const& shape(std::uint32_t i) const { return shapes[i]; }
+  [[nodiscard]] std::vector<cb::StaticObject> const& objects() const { return things; }
+  [[nodiscard]] cb::geometry::OrientedBox box(std::uint32_t i) const {
+    return cb::geometry::box_of(shapes[i], states[i]);
+  }
+
+  [[nodiscard]] bool is_free(cb::geometry::OrientedBox const& place) const {
+    for (std::uint32_t i = 0; i < size(); ++i)
+      if (cb::geometry::intersects(box(i), place)) return false;
+    for (auto const& object : things)
+      if (cb::geometry::intersects(place, object.outline)) return false;
+    return true;
+  }
+};
+
+double between(double low, double high, cb::RandomStream& random) { return cb::Uniform{low, high}(random); }
+
+Plane sample(std::uint32_t number, std::size_t object_count = 2) {
+  cb::RandomStream random(17, number, 0);
+  Plane plane;
+  std::vector<cb::geometry::Shape> const kinds{cb::geometry::car(), cb::geometry::truck(), cb::geometry::pedestrian()};
+  while (plane.size() < 9) {
+    cb::State const state{0, between(-30, 30, random), between(-30, 30, random), between(-7, 7, random), 0};
+    auto const& shape = kinds[cb::uniform_index(random, 3)];
+    if (!plane.is_free(cb::geometry::box_of(shape, state))) continue;
+    plane.states.push_back(state);
+    plane.shapes.push_back(shape);
+  }
+  while (plane.things.size() < object_count) {  // an L, not convex
+    double const x = between(-30, 30, random), y = between(-30, 30, random);
+    cb::geometry::Polygon const outline(
+        {{x, y}, {x + 8, y}, {x + 8, y + 1}, {x + 1, y + 1}, {x + 1, y + 6}, {x, y + 6}});
+    bool free = true;
+    for (std::uint32_t i = 0; i < plane.size(); ++i) free = free && !cb::geometry::intersects(plane.box(i), outline);
+    for (auto const& thing : plane.things) free = free && !cb::geometry::intersects(thing.outline, outline);
+    if (free) plane.things.push_back({static_cast<cb::ObjectId>(plane.things.size()), outline});
+  }
+  return plane;
+}
+
+/// How far `edge` is along a ray; infinite where it does not meet it.
+double hit(Point const& eye, Point const& ray, Point const& a, Point const& b) {
+  Point const e = b - a, d = a - eye;
+  double const det = e.x() * ray.y() - e.y() * ray.x();
+  if (std::abs(det) < 1e-12) return std::numeric_limits<double>::infinity();
+  double const t = (e.x() * d.y() - e.y() * d.x()) / det, u = (ray.x() * d.y() - ray.y() * d.x()) / det;
+  return t >= 0 && u >= 0 && u <= 1 ? t : std::numeric_limits<double>::infinity();
+}
+
+/// By rays all around: how wide the widest clear stretch of each vehicle appears from vehicle 0 [rad].
+std::vector<double> widths_by_rays(Plane const& plane, cb::OccludedObserver const& observer, int rays) {
+  auto const eye = plane.box(0).center();
+  std::vector<double> widest(plane.size(), 0.0), run(plane.size(), 0.0);
+  for (int k = 0; k < 2 * rays; ++k) {  // twice around, for stretches across the end
+    double const angle = 2 * pi * k / rays;
+    Point const ray{std::cos(angle), std::sin(angle)};
+    double nearest = std::numeric_limits<double>::infinity();
+    std::uint32_t who = 0;
+    std::vector<std::pair<double, std::uint32_t>> hits;
+    for (std::uint32_t i = 1; i < plane.size(); ++i) {
+      auto const corners = plane.box(i).corners();
+      double first = std::numeric_limits<double>::infinity();
+      for (std::size_t c = 0; c < 4; ++c) first = std::min(first, hit(eye, ray, corners[c], corners[(c + 1) % 4]));
+      hits.emplace_back(first, i);
+      if (first < nearest) nearest = first, who = i;
+    }
+    double wall = std::numeric_limits<double>::infinity();
+    for (auto const& object : plane.things)
+      for (std::size_t i = 0; i < object.outline.size(); ++i)
+        wall = std::min(wall, hit(eye, ray, object.outline.edge(i).first, object.outline.edge(i).second));
+    bool const in_field =
+        std::abs(std::remainder(angle - plane.states[0].heading, 2 * pi)) <= 0.5 * observer.field_of_view;
+    for (auto const& [first, i] : hits) {
+      bool const clear = in_field && first < std::numeric_limits<double>::infinity() &&
+                         (observer.behind_vehicles || i == who) && (observer.behind_objects || first < wall);
+      run[i] = clear ? run[i] + 2 * pi / rays : 0.0;
+      widest[i] = std::max(widest[i], run[i]);
+    }
+  }
+  return widest;
+}
+
+struct Counts {
+  int seen = 0, hidden = 0;
+};
+
+Counts compare(cb::OccludedObserver const& observer) {
+  constexpr int rays = 3600;
+  constexpr double step = 2 * pi / rays;
+  Counts counts;
+  for (std::uint32_t number = 0; number < 60; ++number) {
+    auto const plane = sample(number);
+    auto const widths = widths_by_rays(plane, observer, rays);
+    for (std::uint32_t i = 1; i < plane.size(); ++i) {
+      CAPTURE(number);
+      CAPTURE(i);
+      bool const sees = observer.sees(plane, 0, i);
+      double const distance = cb::geometry::distance(plane.box(i), plane.box(0).center());
+      if (widths[i] > observer.resolution + 2 * step) CHECK(sees == (distance <= observer.range));
+      if (widths[i] < observer.resolution - 2 * step) CHECK_FALSE(sees);
+      ++(sees ? counts.seen : counts.hidden);
+    }
+  }
+  return counts;
+}
+
+/// By rays all around: how wide the widest clear stretch of each static object appears from vehicle 0 [rad].
+std::vector<double> object_widths_by_rays(Plane const& plane, cb::OccludedObserver const& observer, int rays) {
+  auto const eye = plane.box(0).center();
+  std::vector<double> widest(plane.things.size(), 0.0), run(plane.things.size(), 0.0), first(plane.things.size());
+  for (int k = 0; k < 2 * rays; ++k) {
+    double const angle = 2 * pi * k / rays, infinite = std::numeric_limits<double>::infinity();
+    Point const ray{std::cos(angle), std::sin(angle)};
+    double vehicle = infinite, nearest = infinite;
+    for (std::uint32_t i = 1; i < plane.size() && !observer.behind_vehicles; ++i) {
+      auto const corners = plane.box(i).corners();
+      for (std::size_t c = 0; c < 4; ++c) vehicle = std::min(vehicle, hit(eye, ray, corners[c], corners[(c + 1) % 4]));
+    }
+    for (std::size_t o = 0; o < plane.things.size(); ++o) {
+      auto const& outline = plane.things[o].outline;
+      first[o] = infinite;
+      for (std::size_t i = 0; i < outline.size(); ++i)
+        first[o] = std::min(first[o], hit(eye, ray, outline.edge(i).first, outline.edge(i).second));
+      nearest = std::min(nearest, first[o]);
+    }
+    bool const in_field =
+        std::abs(std::remainder(angle - plane.states[0].heading, 2 * pi)) <= 0.5 * observer.field_of_view;
+    for (std::size_t o = 0; o < first.size(); ++o) {
+      bool const clear =
+          in_field && first[o] < vehicle && (observer.behind_objects || first[o] == nearest) && first[o] < infinite;
+      run[o] = clear ? run[o] + 2 * pi / rays : 0.0;
+      widest[o] = std::max(widest[o], run[o]);
+    }
+  }
+  return widest;
+}
+
+Counts compare_objects(cb::OccludedObserver const& observer) {
+  constexpr int rays = 3600;
+  constexpr double step = 2 * pi / rays;
+  Counts counts;
+  for (std::uint32_t number = 0; number < 30; ++number) {
+    auto const plane = sample(number, 4);
+    auto const widths = object_widths_by_rays(plane, observer, rays);
+    for (std::uint32_t o = 0; o < plane.things.size(); ++o) {
+      CAPTURE(number);
+      CAPTURE(o);
+      bool const sees = observer.sees_object(plane, 0, o);
+      double const distance = cb::geometry::distance(plane.things[o].outline, plane.box(0).center());
+      if (widths[o] > observer.resolution + 2 * step) CHECK(sees == (distance <= observer.range));
+      if (widths[o] < observer.resolution - 2 * step) CHECK_FALSE(sees);
+      ++(sees ? counts.seen : counts.hidden);
+    }
+  }
+  return counts;
+}
+
+/// Agents of odd numbers are invisible to it.
+struct SeesEven {
+  static constexpr bool perfect = false;
+  template <cb::MotionState S>
+  [[nodiscard]] S const& observe(S const& truth, bool, cb::RandomStream const&) const {
+    return truth;
+  }
+  template <class Scene>
+  [[nodiscard]] bool sees(Scene const&, std::uint32_t, std::uint32_t other) const {
+    return other % 2 == 0;
+  }
+};
+
+template <class Observer>
+using World = cb::World<cb::BehaviorSet<cb::IdmClassic>, cb::InterpolateExecution, cb::SingleTrack, Observer>;
+
+}  // namespace
+
+TEST_CASE("who is hidden is the same by intervals and by rays") {
+  auto const usual = compare({.resolution = 0.02});
+  CHECK(usual.seen > 100);
+  CHECK(usual.hidden > 100);
+  compare({.resolution = 0.005, .behind_vehicles = true});
+  compare({.resolution = 0.005, .behind_objects = true});
+  auto const narrow = compare({.field_of_view = 2.0, .resolution = 0.01});
+  CHECK(narrow.seen < usual.seen);
+  CHECK(narrow.seen > 30);
+  auto const wide = compare({.field_of_view = 5.5, .resolution = 0.01});
+  CHECK(wide.seen > narrow.seen);
+  CHECK(compare({.range = 20.0, .resolution = 0.01}).seen < usual.seen);
+}
+
+TEST_CASE("behind a truck nobody is seen, and the next one who is seen is the neighbour") {
+  World<cb::OccludedObserver> world(straight_road(2, 1000.0));
+  auto const ego = world.add({.position = {100, -1.75}, .speed = 10});
+  auto const truck = world.add({.position = {120, -1.75}, .speed = 10, .shape = cb::geometry::truck()});
+  auto const hidden = world.add({.position = {140, -1.75}, .speed = 10});
+  auto const beside = world.add({.position = {135, -5.25}, .speed = 10});
+  auto const seen = [&](cb::AgentId id) {
+    std::set<cb::AgentId> others;
+    world.observe(id).for_each_other([&](auto const& other) { others.insert(other.id); });
+    return others;
+  };
+  CHECK(seen(ego) == std::set{truck, beside});
+  CHECK(seen(hidden) == std::set{truck, beside});
+  CHECK(world.observe(ego).front()->agent == truck);
+  CHECK(world.observe(truck).front()->agent == hidden);
+  auto const prediction =
+      world.observe(ego).predict(cb::predict_all_as<cb::BehaviorSet<cb::IdmClassic>>(cb::IdmClassic{}));
+  CHECK(prediction.size() == 3);
+  CHECK_FALSE(prediction.roster().slot_of(hidden));
+
+  // A wall between the lanes ahead hides the one beside, so that there is no neighbour there.
+  auto const side = static_cast<std::uint16_t>(1 - world.observe(ego).lane_position().corridor);
+  CHECK(world.observe(ego).neighbors(side).front->agent == beside);
+  world.add_object(cb::geometry::Polygon({{105, -3.6}, {160, -3.6}, {160, -3.4}, {105, -3.4}}));
+  CHECK(seen(ego) == std::set{truck});
+  auto const front = world.observe(ego).neighbors(side).front;
+  CHECK((!front || !cb::is_valid(front->agent)));
+}
+
+TEST_CASE(
+    "beyond its range an agent drives as if nobody were there; the next one in range is found behind a hidden one") {
+  World<cb::OccludedObserver> world(straight_road(1, 1000.0));
+  auto const ego = world.add({.position = {100, -1.75}, .observer = {.range = 30.0, .field_of_view = 3.0}});
+  world.add({.position = {140, -1.75}});
+  CHECK_FALSE(world.observe(ego).front());
+  world.add({.position = {90, -1.75}});
+  CHECK_FALSE(world.observe(ego).rear());  // out of its field of view
+}
+
+TEST_CASE("a neighbour behind one that is not seen is found") {
+  World<SeesEven> world(straight_road(2, 1000.0));
+  for (int i = 0; i < 8; ++i) world.add({.position = {100 + 20.0 * i, -1.75}});
+  auto const straddling = world.add({.position = {205, -3.3}});  // id 8
+  auto const at = [&](std::uint32_t id) { return world.observe(static_cast<cb::AgentId>(id)); };
+  CHECK(at(0).front()->agent == static_cast<cb::AgentId>(2));
+  CHECK(at(0).front()->gap == doctest::Approx(40 - 4.5));
+  CHECK(at(5).rear()->agent == static_cast<cb::AgentId>(4));
+  CHECK(at(4).rear()->agent == static_cast<cb::AgentId>(2));
+  CHECK(at(4).front()->agent == straddling);
+  CHECK_FALSE(at(0).rear());
+  auto const side = static_cast<std::uint16_t>(1 - at(3).lane_position().corridor);
+  CHECK(at(3).neighbors(side).front->agent == straddling);
+}
+
+TEST_CASE("which static objects are hidden is the same by intervals and by rays") {
+  auto const usual = compare_objects({.resolution = 0.02});
+  CHECK(usual.seen > 50);
+  CHECK(usual.hidden > 10);
+  CHECK(compare_objects({.resolution = 0.1}).hidden > usual.hidden);
+  CHECK(compare_objects({.resolution = 0.02, .behind_vehicles = true}).seen > usual.seen);
+  compare_objects({.resolution = 0.005, .behind_objects = true});
+  CHECK(compare_objects({.field_of_view = 2.0, .resolution = 0.02}).seen < usual.seen);
+  CHECK(compare_objects({.range = 15.0, .resolution = 0.02}).seen < usual.seen);
+  cb::OccludedObserver const knows{.range = 1.0, .objects_known = true};
+  CHECK(knows.sees_object(sample(0), 0, 1));
+}
+
+TEST_CASE("an object behind a truck is no neighbour, and in no prediction, until it is seen") {
+  World<cb::OccludedObserver> world(straight_road(1, 1000.0));
+  auto const ego = world.add({.position = {100, -1.75}, .speed = 10});
+  auto const truck = world.add({.position = {120, -1.75}, .speed = 10, .shape = cb::geometry::truck()});
+  auto const hidden = world.add_object(cb::geometry::Polygon({{150, -2.5}, {152, -2.5}, {152, -1.0}, {150, -1.0}}));
+  auto const farther = world.add_object(cb::geometry::Polygon({{170, -9.5}, {172, -9.5}, {172, 9.0}, {170, 9.0}}));
+  auto const seen = [&](auto view) {
+    std::vector<cb::ObjectId> ids;
+    view.for_each_object([&](cb::ObjectId id, cb::geometry::Polygon const&) { ids.push_back(id); });
+    return ids;
+  };
+  CHECK(seen(world.observe(ego)) == std::vector{farther});
+  CHECK(seen(world.observe(truck)) == std::vector{hidden, farther});
+  CHECK(world.observe(truck).front()->object == hidden);
+  auto const near = world.observe(ego).for_each_near(0, 200.0, [](auto const&) {});
+  REQUIRE(near.front);
+  CHECK(near.front->object == farther);
+  using Set = cb::BehaviorSet<cb::IdmClassic>;
+  auto prediction = world.observe(ego).predict(cb::predict_all_as<Set>(cb::IdmClassic{}));
+  REQUIRE(prediction.roster().objects.size() == 1);
+  CHECK(prediction.roster().objects[0].id == farther);
+  CHECK(prediction.observe(truck).front()->object == farther);
+  world.remove(truck);
+  CHECK(world.observe(ego).front()->object == hidden);
+}

@@ -1,0 +1,212 @@
+// Lane changes and zip merges of drivers who see with errors, late, or not everybody; and on real roads.
+// CAMBIUM_SAMPLES=100 takes that many times the seeds.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "../behavior/lane_traffic_fixtures.hpp"
+#include "../support/corpus.hpp"
+#include "cambium/behavior/zip_merge.hpp"
+#include "cambium/observer/delayed.hpp"
+#include "cambium/observer/observer_set.hpp"
+#include "cambium/observer/occluded.hpp"
+#include "cambium/observer/parametric.hpp"
+
+using namespace lane_traffic;
+
+namespace {
+
+using Observer =
+    cb::ObserverSet<cb::PerfectObserver, cb::ParametricObserver, cb::DelayedObserver<4>, cb::OccludedObserver>;
+using World = cb::World<cb::BehaviorSet<cb::Mobil, cb::LaneChangeRuleBased, cb::ZipMerge>, cb::InterpolateExecution,
+                        cb::SingleTrack, Observer>;
+
+std::uint64_t samples(std::uint64_t usual) {
+  char const* const factor = std::getenv("CAMBIUM_SAMPLES");
+  return usual * (factor == nullptr ? 1 : std::strtoull(factor, nullptr, 10));
+}
+
+struct Sight {
+  char const* name;
+  Observer observer;
+};
+
+/// How drivers may perceive.
+std::vector<Sight> sights() {
+  cb::ParametricObserver noisy;
+  noisy.others = {.along = 0.5, .across = 0.2, .heading = 0.01, .speed = 0.5};
+  auto lasting = noisy, lost = noisy;
+  lasting.lasting = 10;
+  lost.own = {.along = 0.1, .across = 0.05, .heading = 0.005, .speed = 0.1};
+  return {{"perfect", {cb::PerfectObserver{}}},
+          {"noise", {noisy}},
+          {"lasting noise", {lasting}},
+          {"noise about itself, too", {lost}},
+          {"0.2 s late", {cb::DelayedObserver<4>{.others = 1}}},
+          {"0.4 s late", {cb::DelayedObserver<4>{.others = 2}}},
+          {"line of sight", {cb::OccludedObserver{}}},
+          {"60 m", {cb::OccludedObserver{.range = 60.0}}}};
+}
+
+struct Drive {
+  int collisions = 0, problems = 0, changes = 0;
+  double worst_turn = 0.0;  ///< change of the heading against the lane's in one step [rad]
+};
+
+/// Steps until somebody collides.
+Drive drive(World& world, int steps) {
+  Drive result;
+  for (int k = 0; k < steps && result.collisions == 0; ++k) {
+    auto const before = world.frame();
+    result.problems += !world.step(0.2);
+    for (std::size_t i = 0; i < world.size(); ++i) {
+      auto const &was = before.agents[i], &now = world.frame().agents[i];
+      if (now.status != cb::AgentStatus::driving) continue;
+      result.changes += was.lane.corridor != now.lane.corridor;
+      result.worst_turn = std::max(result.worst_turn, std::abs(now.lane.heading_error - was.lane.heading_error));
+    }
+    result.collisions += collisions(world);
+  }
+  return result;
+}
+
+World::Behavior driver(bool by_rule, double desired_speed) {
+  if (by_rule) return cb::LaneChangeRuleBased{.idm = {.desired_speed = desired_speed}};
+  return cb::Mobil{.idm = {.desired_speed = desired_speed}};
+}
+
+/// Traffic on these lanes from their begin on: speeds, gaps and sizes drawn, gaps so that nobody need brake hard.
+void fill(World& world, std::vector<cb::LaneId> const& lanes, double end, std::uint64_t seed, bool by_rule,
+          Observer const& observer) {
+  cb::RandomStream random(seed, 0, 0);
+  auto const between = [&random](double low, double high) { return low + (high - low) * cb::uniform01(random); };
+  double const density = 1.0 + static_cast<double>(seed % 4);
+  for (auto const id : lanes) {
+    auto const& lane = world.map().lane(id);
+    auto const widths = lane.widths[lane.widths.size() / 2];
+    bool const is_wide = widths.left + widths.right > 3.3;  // in the bends of narrow lanes trucks swing out
+    double speed = between(6.0, 14.0);
+    for (double s = 5.0 + between(0.0, 30.0); s < std::min(end, lane.length() - 10.0);) {
+      bool const is_truck = cb::uniform01(random) < 0.1 && is_wide;
+      auto const shape = is_truck ? cb::geometry::truck() : cb::geometry::car();
+      auto const pose = lane.path.pose(s + shape.rear);
+      world.add({.position = pose.position(),
+                 .heading = pose.heading,
+                 .speed = speed,
+                 .shape = shape,
+                 .behavior = driver(by_rule, between(is_truck ? 8.0 : 9.0, is_truck ? 14.0 : 22.0)),
+                 .observer = observer});
+      double const next = between(6.0, 14.0);
+      s += shape.length() + 4.0 + (1.0 + 3.0 * cb::uniform01(random) / density) * speed +
+           std::max(0.0, speed - next) * 3.0;
+      speed = next;
+    }
+  }
+}
+
+/// The drivable lanes of a section in one direction, left to right or the other way round.
+std::vector<cb::LaneId> lanes_in_direction(cb::Map const& map, cb::map::RoadSection const& section, bool right) {
+  std::vector<cb::LaneId> result;
+  for (auto const& entry : section.lanes) {
+    if (!is_valid(entry.id)) continue;
+    auto const& lane = map.lane(entry.id);
+    auto const widths = lane.widths[lane.widths.size() / 2];
+    if (lane.drivable() && (lane.number < 0) == right && widths.left + widths.right > 2.5) result.push_back(entry.id);
+  }
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("drivers who see with errors, late or not everybody change lanes without collisions") {
+  for (bool const by_rule : {false, true})
+    for (auto const& sight : sights()) {
+      int changes = 0;
+      bool const is_slow = std::holds_alternative<cb::OccludedObserver>(sight.observer.any);
+      for (std::uint64_t seed = 1; seed <= samples(is_slow ? 1 : 4); ++seed) {
+        int const lanes = seed % 2 == 0 ? 3 : 4;
+        World world(support::straight_road(lanes, 1500.0, seed % 3 == 0 ? 0.002 : 0.0), {.seed = seed});
+        fill(world, lanes_in_direction(world.map(), world.map().roads()[0].sections[0], true), 400.0, seed, by_rule,
+             sight.observer);
+        auto const result = drive(world, 250);
+        CAPTURE(by_rule);
+        CAPTURE(std::string(sight.name));
+        CAPTURE(seed);
+        CHECK(result.collisions == 0);
+        CHECK(result.problems == 0);
+        CHECK(result.worst_turn < 0.15);
+        changes += result.changes;
+      }
+      CHECK(changes > 5);
+    }
+}
+
+TEST_CASE("nobody collides on the corpus' roads of several lanes, whatever they lead to") {
+  auto const root = corpus::root();
+  if (!root) return;
+  int roads = 0, changes = 0, agents = 0;
+  for (auto const& file : corpus::maps(*root / "opendrive")) {
+    std::shared_ptr<cb::Map const> map;
+    try {
+      map = support::load_opendrive(file.string()).map;
+    } catch (cb::Error const&) {
+      continue;  // files that are wrong on purpose
+    }
+    std::uint64_t seed = 0, most = samples(3);
+    for (auto const& road : map->roads())
+      for (auto const& section : road.sections)
+        for (bool const right : {true, false}) {
+          auto const lanes = lanes_in_direction(*map, section, right);
+          if (lanes.size() < 2 || map->lane(lanes[0]).length() < 60.0 || seed >= most) continue;
+          World world(map, {.seed = ++seed});
+          fill(world, lanes, 300.0, seed, seed % 2 == 0, sights()[seed % 3].observer);
+          auto const result = drive(world, 200);
+          CAPTURE(file.filename().string());
+          CAPTURE(seed);
+          CAPTURE(road.name);
+          CHECK(result.collisions == 0);
+          CHECK(result.problems == 0);
+          ++roads;
+          changes += result.changes;
+          agents += static_cast<int>(world.size());
+        }
+  }
+  MESSAGE(agents << " vehicles on " << roads << " roads changed lanes " << changes << " times");
+  CHECK(roads > 20);
+  CHECK(changes > 100);
+}
+
+TEST_CASE("zip merges come off without collisions where drivers see with errors, late or not everybody") {
+  auto const map = support::own_map("lane_drop.xodr");
+  std::vector<cb::LaneId> last(4);
+  for (auto const& entry : map->roads()[0].sections[0].lanes)
+    if (entry.number < 0) last[static_cast<std::size_t>(-entry.number)] = entry.id;
+  for (auto const& sight : sights())
+    for (std::uint64_t seed = 1; seed <= samples(2); ++seed) {
+      cb::RandomStream random(seed, 0, 0);
+      World world(map, {.seed = seed});
+      double s = 380.0;
+      for (int i = 0; i < 30; ++i) {
+        auto const pose = map->lane(last[i % 2 == 0 ? 2 : 3]).path.pose(s);
+        world.add({.position = pose.position(),
+                   .heading = pose.heading,
+                   .speed = 4.0,
+                   .behavior = cb::ZipMerge{.idm = {.desired_speed = 12.0 + 4.0 * cb::uniform01(random)}},
+                   .observer = sight.observer});
+        s -= 7.0 + cb::uniform01(random);
+      }
+      auto const result = drive(world, 600);
+      CAPTURE(std::string(sight.name));
+      CAPTURE(seed);
+      CHECK(result.collisions == 0);
+      CHECK(result.problems == 0);
+      int stuck = 0;
+      for (auto const& record : world.frame().agents)
+        stuck += record.status == cb::AgentStatus::driving && record.state.x < 600.0;
+      CHECK(stuck == 0);
+    }
+}
