@@ -38,6 +38,7 @@
 #include "cambium/map/routing.hpp"
 #include "../support/corpus.hpp"
 #include "lanes_by_hand.hpp"
+#include "road_text.hpp"
 #include "../support/maps.hpp"
 
 using namespace by_hand;
@@ -757,4 +758,42 @@ TEST_CASE("a list of roads may come to a road again") {
   }
   CHECK_THROWS_AS((void)build_road_corridor(*map, Names{"11", "12"}, forward), MapError);
   CHECK_THROWS_AS((void)build_road_corridor(*map, Names{"11", "11"}, forward), MapError);
+}
+
+TEST_CASE("centre lines do not go back where a lane is shorter than the file's rounding") {
+  using namespace road_text;
+  auto const linked = [](road_text::Road road, std::string const& before, std::string const& behind) {
+    road.before = before;
+    road.behind = behind;
+    road.sections[0].lanes[0].before = {-1};
+    road.sections[0].lanes[0].behind = {-1};
+    return road;
+  };
+  auto const map = load(file({linked({.id = "1"}, "", to_start("2")),
+                              linked({.id = "2", .x = 99.999, .length = 2e-5}, to_end("1"), to_start("3")),
+                              linked({.id = "3", .x = 100.0}, to_end("2"), "")}))
+                       .map;
+  auto const road = build_road_corridor(*map, straight_route(*map, map->find_lane("1", 50, -1)));
+  REQUIRE(road->corridors[0].pieces.size() == 3);
+  CHECK(road->corridors[0].length() == doctest::Approx(200.0));
+  for (auto const& segment : road->corridors[0].center.segments()) CHECK(segment.ux > 0.99);
+}
+
+TEST_CASE("centre lines on the corpus' maps go forward everywhere") {
+  auto const folder = corpus::find("opendrive");
+  if (!folder) return;
+  int segments = 0;
+  for (auto const& file : corpus::maps(*folder)) {
+    auto const map = support::load_opendrive(file.string()).map;
+    for (auto const& lane : map->lanes()) {
+      if (!lane.drivable()) continue;
+      auto const road = build_road_corridor(*map, straight_route(*map, lane.id));
+      for (auto const& segment : road->corridors[road->main].center.segments()) {
+        ++segments;
+        double const forward = segment.ux * std::cos(segment.heading) + segment.uy * std::sin(segment.heading);
+        if (forward <= 0.0) FAIL_CHECK(file.filename().string() << ": " << map->describe(lane.id));
+      }
+    }
+  }
+  CHECK(segments > 100'000);
 }

@@ -18,6 +18,14 @@ namespace cambium::geometry {
 /// A sample of a curve: where it passes [m] and its direction there [rad].
 using LineSample = Pose;
 
+/// Whether a line that is to be driven goes on from `last` to `next`: not to the same place, nor to one a little behind
+/// it, as lines beside a kink fold. Nobody gets past a line that goes back.
+[[nodiscard]] inline bool goes_on(LineSample const& last, LineSample const& next) {
+  constexpr double fold = 1.0;  // [m]
+  double const dx = next.x - last.x, dy = next.y - last.y, distance = std::hypot(dx, dy);
+  return distance >= fold || (distance >= 1e-6 && dx * std::cos(last.heading) + dy * std::sin(last.heading) > 0.0);
+}
+
 /// Where a point lies relative to a `Line`.
 struct Projection {
   double s{};        ///< arc length of the foot point [m]; below 0 or beyond the length on the extended end segments

@@ -76,9 +76,10 @@ class LaneJoiner {
       starts_.back() = {lane.id, center_.size() - 1, center_.size() - 1, 0.0};
   }
 
-  /// Adds a vertex unless it repeats the last one.
+  /// Adds a vertex if the line goes on to it; not so where a lane that is shorter than the file's rounding begins
+  /// before the last one ends.
   bool append(geometry::LineSample const& p, SideWidths const& widths) {
-    if (std::hypot(p.x - center_.back().x, p.y - center_.back().y) < 1e-6) return false;
+    if (!geometry::goes_on(center_.back(), p)) return false;
     center_.push_back(p);
     widths_.push_back(widths);
     return true;

@@ -30,6 +30,8 @@ template <class PathOf>
   std::vector<geometry::LineSample> path, left, right;
   std::vector<SideWidths> widths;
   std::vector<double> stations;
+  constexpr double kink = 1e-3;  // [m]
+  bool folded = false;
   auto const add_if_apart = [](std::vector<geometry::LineSample>& samples, geometry::LineSample const& p) {
     if (!samples.empty() && std::hypot(p.x - samples.back().x, p.y - samples.back().y) < 1e-6) return false;
     samples.push_back(p);
@@ -43,11 +45,20 @@ template <class PathOf>
       return p;
     };
     auto const &high = cross.borders[column], &low = cross.borders[column + 1];
-    if (add_if_apart(path, at(on_path))) {
+    auto p = at(on_path);
+    bool const is_new = path.empty() || std::hypot(p.x - path.back().x, p.y - path.back().y) >= 1e-6;
+    bool const folds = path.size() > 1 && is_new && !geometry::goes_on(path.back(), p);
+    if (folds && !folded) {  // beside a kink: it turns there, and goes on where it is ahead again
+      p.x = path.back().x + kink * std::cos(p.heading);
+      p.y = path.back().y + kink * std::sin(p.heading);
+    }
+    if (is_new && !(folds && folded)) {
+      path.push_back(p);
       double const above = high.t - on_path.t, below = on_path.t - low.t;
       widths.push_back(lane.along_road ? SideWidths{above, below} : SideWidths{below, above});
       stations.push_back(cross.s);
     }
+    folded = folds;
     add_if_apart(left, at(lane.along_road ? high : low));
     add_if_apart(right, at(lane.along_road ? low : high));
   };
