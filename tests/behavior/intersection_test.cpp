@@ -53,7 +53,8 @@ struct Crossing {
 };
 
 /// Adds a car `distance` [m] before the first junction of the route.
-AgentId add_before(Sim& world, map::Route const& route, double distance, double speed) {
+AgentId add_before(Sim& world, map::Route const& route, double distance, double speed,
+                   std::optional<AgentId> id = std::nullopt) {
   auto const& map = world.map();
   std::size_t last = 0;
   while (!is_valid(map.road(map.lane(route.lanes[last + 1]).road).junction)) ++last;
@@ -64,7 +65,8 @@ AgentId add_before(Sim& world, map::Route const& route, double distance, double 
                     .heading = pose.heading,
                     .speed = speed,
                     .behavior = Intersection{.idm = {.desired_speed = 10.0}},
-                    .route = route});
+                    .route = route,
+                    .id = id});
 }
 
 /// When each agent, by its place in `ids`, has left the junction's lanes [s]; nothing for those who never do. Checks
@@ -144,13 +146,17 @@ TEST_CASE("whoever comes from the right goes first, whatever their ids and who w
 
 TEST_CASE("four cars that come to a crossing at once get through it one after the other") {
   Crossing const crossing;
-  for (int const turn : {0, 2}) {
-    Sim world(crossing.map);
-    std::vector<AgentId> ids;
-    for (int arm = 1; arm <= 4; ++arm) ids.push_back(add_before(world, crossing.route(arm, turn), 30.0, 6.0));
-    auto const times = times_through(world, ids);
-    for (auto const& time : times) CHECK(time);
-  }
+  for (std::uint32_t const apart : {1u, 16u, 89u, 1000u})  // ids say who loses patience first
+    for (int const turn : {0, 2})
+      for (double const nearer : {0.0, 3.0}) {
+        Sim world(crossing.map);
+        std::vector<AgentId> ids;
+        for (int arm = 1; arm <= 4; ++arm)
+          ids.push_back(add_before(world, crossing.route(arm, turn), 30.0 - nearer * arm, 6.0,
+                                   AgentId{static_cast<std::uint32_t>(arm) * apart}));
+        CAPTURE(apart);
+        for (auto const& time : times_through(world, ids)) CHECK(time);
+      }
 }
 
 TEST_CASE("on the crossing of the corpus, where each has another on its right, so do they") {

@@ -127,3 +127,10 @@ TEST_CASE("the proper response: who is behind brakes, neither comes closer sidew
   at.gap = 100;
   CHECK_FALSE(cb::rss_response(p, at).any());
 }
+
+TEST_CASE("bounds of braking that contradict each other are refused") {
+  cambium::RssParameters rss;
+  rss.minimum_deceleration = rss.maximum_deceleration + 2.0;
+  CHECK_THROWS_WITH_AS(check_parameters(rss, "driver"), doctest::Contains("minimum_deceleration"),
+                       cambium::ParameterError);
+}

@@ -96,7 +96,7 @@ struct RemainingLength {
 };
 static_assert(CorridorFilter<RemainingLength>);
 
-/// No change into a lane whose type or speed limit is below what is asked for.
+/// No change into a lane whose speed limit is below what is asked for.
 struct SpeedLimitAtLeast {
   double speed = 0.0;
 

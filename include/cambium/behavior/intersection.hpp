@@ -48,8 +48,9 @@ namespace cambium {
 /// (`World::set_light`) and stop signs. Where each one waits for another, one after the other goes after some patience.
 /// Others are taken to come by the ways that they signal, with their speed, and faster where that is the worse.
 ///
-/// No two of them commit themselves to the same conflict: on the same frame each pair finds the same one to go first,
-/// and one who can still stop is never gone before by more than that one.
+/// Conflicts are those of bodies no larger than `MapOptions::conflict_shape`, a car by default: where longer vehicles
+/// cross, load the map with theirs. No two vehicles commit themselves to the same conflict: on the same frame each pair
+/// finds the same one to go first, and one who can still stop is never gone before by more than that one.
 struct Intersection {
   IdmParameters idm{};
   RoadRules rules{.obey_speed_limits = true};
@@ -72,7 +73,8 @@ struct Intersection {
     return std::make_tuple(
         parameter("idm", &P::idm, "-", {}, "car following"),
         parameter("rules", &P::rules, "-", {}, "what it heeds beside other road users"),
-        parameter("look_ahead", &P::look_ahead, "m", Range{0, 1000}, "conflicts nearer than this are heeded"),
+        parameter("look_ahead", &P::look_ahead, "m", Range{0, 1000},
+                  "conflicts nearer than this, or than the way to brake comfortably, are heeded"),
         parameter("time_margin", &P::time_margin, "s", Range{0, 20}, "between two vehicles in one place"),
         parameter("stop_margin", &P::stop_margin, "m", Range{0, 20}, "from the front end to the junction when waiting"),
         parameter("safe_deceleration", &P::safe_deceleration, "m/s^2", Range{0.1, 20},
@@ -97,6 +99,7 @@ struct Intersection {
     Own own;
     own.speed = std::max(0.0, view.state().speed);
     own.idm = within_limits(rules, idm, view, own.speed);
+    own.look_ahead = std::max(look_ahead, own.speed * own.speed / (2.0 * idm.comfortable_deceleration) + 20.0);
     own.s = view.lane_position().s;
     own.front = own.s + view.shape().front;
     own.reach = extra_reach(view, view.shape().front, view.shape().rear, view.shape().width());
@@ -129,6 +132,7 @@ struct Intersection {
   struct Own {
     IdmParameters idm;
     double s{}, front{}, speed{}, waited{};
+    double look_ahead{};  ///< [m]
     Reach reach;
     Leader leader;
     LongitudinalMotion<double> bound{infinite, infinite};  ///< goes no farther in this step
@@ -168,7 +172,7 @@ struct Intersection {
   template <class View>
   void heed_conflicts(View const& view, Own& own, double dt) const {
     for (auto const& conflict : view.corridor().conflicts) {
-      if (conflict.begin > own.front + look_ahead) break;
+      if (conflict.begin > own.front + own.look_ahead) break;
       if (conflict.end + own.reach.rear < own.s) continue;
       auto claim = claim_of(view, conflict, own);
       if (claim < Claim::yield && is_full_behind(view, conflict, own)) claim = Claim::yield;
@@ -181,7 +185,7 @@ struct Intersection {
   void heed_signals(View const& view, Own& own, Memory& memory, double dt) const {
     for (auto const& signal : view.corridor().signals) {
       double const to_line = signal.line - own.front;
-      if (to_line > look_ahead) break;
+      if (to_line > own.look_ahead) break;
       if (to_line < 0.0) continue;
       if (signal.kind == map::SignalKind::stop) {
         bool const stands_there = own.speed < standing && to_line < stop_margin + 1.0;
@@ -286,13 +290,16 @@ struct Intersection {
       return true;
     if (inside) return own_way != way ? own_way < way : view.id() < user.agent;
     bool const stands = user.speed < standing, own_stands = own.speed < standing;
-    // Ids part those who lose their patience together.
-    double const lost = patience + 0.5 * static_cast<double>(static_cast<std::uint32_t>(view.id()) % 16);
-    if (stands && own.waited >= lost) return true;
+    // Ids part those who lose their patience together: by the golden ratio few are close, and of these the smaller
+    // goes.
+    bool const is_smaller = view.id() < user.agent;
+    double const share = 0.6180339887498949 * static_cast<double>(static_cast<std::uint32_t>(view.id()));
+    double const turn = 8.0 * (share - std::floor(share)) + (is_smaller ? 0.0 : 1.0);  // [s]
+    if (stands && own.waited >= patience + turn) return true;
     if (own_stands && !stands && user.speed < starting && conflict.other_line - at - user.front < short_way)
       return false;
     if (conflict.right_of_way != map::RightOfWay::equal) return conflict.right_of_way == map::RightOfWay::first;
-    return std::abs(own_way - way) > 2.0 ? own_way < way : view.id() < user.agent;
+    return std::abs(own_way - way) > 2.0 ? own_way < way : is_smaller;
   }
 
   /// Whether there would be no room behind the conflict, as in a queue.

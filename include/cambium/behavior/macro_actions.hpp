@@ -65,7 +65,7 @@ struct MacroActions {
     bool is_new = true;       ///< it has not begun yet
 
     void choose(std::size_t number) {
-      chosen = static_cast<std::uint8_t>(number);
+      chosen = static_cast<std::uint8_t>(std::min<std::size_t>(number, 255));
       is_new = true;
     }
 

@@ -38,7 +38,7 @@ struct RandomMacroActions {
     constexpr float rounding = 1e-4f;
     if (!(memory.left > rounding)) {
       choose(view, memory.macro);
-      memory.left = static_cast<float>(interval);
+      memory.left = std::max(0.0f, memory.left + static_cast<float>(interval));
     }
     memory.left -= static_cast<float>(dt);
     return macro.plan(view, memory.macro, dt);

@@ -39,6 +39,11 @@ struct RssParameters {
         parameter("lateral_margin", &P::lateral_margin, "m", Range{0, 10},
                   "lateral distance that fluctuations take up (mu)"));
   }
+
+  void check(std::string const& where) const {
+    if (!(minimum_deceleration <= maximum_deceleration))
+      throw ParameterError(where, "minimum_deceleration is above maximum_deceleration", "swap them");
+  }
 };
 
 namespace detail {

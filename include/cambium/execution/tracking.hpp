@@ -27,7 +27,8 @@ struct Actuation {
   static constexpr auto parameters() {
     return std::make_tuple(
         parameter("period", &Actuation::period, "s", Range{1e-3, 1}, "the controller acts at least this often"),
-        parameter("delay", &Actuation::delay, "s", Range{0, 5}, "from a command to its effect; at first there is none"),
+        parameter("delay", &Actuation::delay, "s", Range{0, 5},
+                  "from a command to its effect; at first there is none; below 4 ms at once"),
         parameter("acceleration_noise", &Actuation::acceleration_noise, "m/s^2", {},
                   "added to the acceleration, drawn once a step"),
         parameter("steering_noise", &Actuation::steering_noise, "rad", {},
@@ -123,7 +124,10 @@ template <class Law, MotionState S, class Dynamics>
   S const start = goes_on ? memory.reference : now;
   auto const draw = [&random](Normal const& noise) { return noise.deviation > 0.0 ? noise(random) : noise.mean; };
   Action const noise{draw(actuation.acceleration_noise), draw(actuation.steering_noise)};
-  double const slot = actuation.delay / (TrackingMemory<S>::slots - 1);
+  constexpr double shortest = 1e-3;  // [s]
+  double const slot = actuation.delay / (TrackingMemory<S>::slots - 1) < shortest
+                          ? 0.0
+                          : actuation.delay / (TrackingMemory<S>::slots - 1);
   S x = now;
   x.speed = std::max(0.0, x.speed);
   double h = 0.0;
