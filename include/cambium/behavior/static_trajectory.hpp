@@ -78,6 +78,7 @@ struct StaticTrajectory {
     next.heading = recorded.heading;
     next.speed = recorded.speed;
     plan.trajectory.push_back(next);
+    plan.is_absolute = true;
     plan.action.acceleration = (recorded.speed - at(view.time()).speed) / dt;
     return plan;
   }

@@ -39,6 +39,9 @@ struct BasicPlan {
   Trajectory<S> trajectory;
   Action action;
   PlanStatus status = PlanStatus::valid;
+  /// The states are places on the map whatever the agent believes of itself, as recorded ones. Others go on from where
+  /// it believes to be: they are carried out from where it is.
+  bool is_absolute = false;
 };
 
 /// The plan type that goes with a view.

@@ -430,8 +430,11 @@ class World {
     next = now;
     if (now.status != AgentStatus::driving && now.status != AgentStatus::not_started) return;
     auto const& agent = roster_->agents[slot];
-    auto const plan = Set::plan(agent.behavior, View(*this, slot), next.memory, dt);
+    View const view(*this, slot);
+    auto plan = Set::plan(agent.behavior, view, next.memory, dt);
     if (plan.status != PlanStatus::valid) return stop_planning(plan.status, agent.id, next, result, end);
+    if constexpr (!Observer::perfect)
+      if (!plan.is_absolute) detail::carry_over(plan, view.state(), now.state);
     auto const executed = execute(agent.execution, plan, now.state, agent.dynamics, end, next.execution,
                                   [&] { return execution_stream(agent.id); });
     if (!executed.valid) return fail(StepProblem::no_execution, agent.id, next, result);

@@ -1,10 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
 #include "cambium/core/random.hpp"
+#include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/oriented_box.hpp"
 #include "cambium/observer/observer_model.hpp"
 #include "cambium/world/frame.hpp"
@@ -102,6 +104,24 @@ template <class World>
     return observer.observe(back > 0 ? record.past.states[back - 1] : record.state, own == other, random());
   } else {
     return observer.observe(record.state, own == other, random());
+  }
+}
+
+/// Moves a plan that goes on from the state that an agent believes to be in to the one that it is in: turned and
+/// shifted as a whole, and faster or slower by the error of its speed.
+template <class Plan, class State>
+void carry_over(Plan& plan, State const& believed, State const& truth) {
+  double const turn = truth.heading - believed.heading, faster = truth.speed - believed.speed;
+  auto const [sin, cos] = geometry::sin_cos(turn);
+  for (auto& state : plan.trajectory) {
+    double const dx = state.x - believed.x, dy = state.y - believed.y;
+    double const speed = std::max(0.0, state.speed + faster), gained = speed - state.speed;
+    double const further = 0.5 * (faster + gained) * (state.time - truth.time);
+    state.heading += turn;
+    auto const along = geometry::sin_cos(state.heading);
+    state.x = truth.x + cos * dx - sin * dy + further * along.cos;
+    state.y = truth.y + sin * dx + cos * dy + further * along.sin;
+    state.speed = speed;
   }
 }
 
