@@ -12,6 +12,7 @@
 #include "cambium/core/error.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/goal/goal.hpp"
+#include "cambium/map/build_corridor.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/route.hpp"
 #include "cambium/world/detail/check_described.hpp"
