@@ -45,6 +45,11 @@ TEST_CASE("who sees itself late, or elsewhere, drives as far as its speed takes 
       after_driving(cb::ParametricObserver{.own = {.along = 0.5, .across = 0.3}}, cb::ConstantAcceleration{}));
 }
 
+TEST_CASE("who sees itself as it is does what a perfect observer's agent does, to the bit") {
+  cb::IdmLaneTracking const driver{.idm = {.desired_speed = 12.0}};
+  CHECK(after_driving(cb::ParametricObserver{}, driver) == after_driving(cb::PerfectObserver{}, driver));
+}
+
 TEST_CASE("who misjudges its speed keeps its true one where it does not accelerate") {
   check_drove_on(after_driving(cb::ParametricObserver{.own = {.mean_speed = -2.0}}, cb::ConstantAcceleration{}));
 }

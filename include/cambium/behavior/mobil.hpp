@@ -22,19 +22,12 @@ struct MobilSituation {
   double old_follower{}, old_follower_after{};
 };
 
-/// MOBIL's parameters as fields of a parameter struct: what `mobil_incentive` and `mobil_is_safe` ask for.
+/// MOBIL's parameters as fields of a parameter struct: what `mobil_incentive` asks for.
 template <class P>
 concept HasMobilParameters = requires(P const p) {
   p.politeness;
   p.threshold;
-  p.safe_deceleration;
 };
-
-/// Safety criterion (Kesting, Treiber, Helbing 2007, eq. 2), for the changing vehicle too.
-template <HasMobilParameters P>
-[[nodiscard]] bool mobil_is_safe(P const& p, MobilSituation const& at) {
-  return at.new_follower_after >= -p.safe_deceleration && at.own_after >= -p.safe_deceleration;
-}
 
 /// How far the incentive exceeds the threshold (Kesting, Treiber, Helbing 2007, eq. 3) [m/s^2]: above 0, changing is
 /// worth it.
@@ -113,7 +106,7 @@ struct BasicMobil {
  private:
   /// What the incentive asks for.
   struct Weights {
-    double politeness, threshold, safe_deceleration;
+    double politeness, threshold;
   };
 
   /// The side that it pays most to change to, if one pays.
@@ -195,7 +188,7 @@ struct BasicMobil {
       else
         situation.new_follower = situation.new_follower_after = 0.0;
     }
-    return mobil_incentive(Weights{politeness, threshold, changing.safe_deceleration}, situation);
+    return mobil_incentive(Weights{politeness, threshold}, situation);
   }
 
   /// Eq. 5 for the own driving: who is faster than the leader in the inner lane follows that one, too.

@@ -91,8 +91,7 @@ struct Pedestrian {
   static constexpr char const* name = "pedestrian";
   static constexpr char const* summary =
       "walks along its way, a free corridor or lane, by social forces: off others, borders and objects; crosses lanes "
-      "in "
-      "gaps of their traffic";
+      "in gaps of their traffic";
   static constexpr char const* source = "Helbing, Molnár 1995";
   static constexpr auto parameters() {
     using P = Pedestrian;

@@ -358,18 +358,17 @@ class World {
     auto const& [state, lane] = std::tie(record.state, record.lane);
     auto const& agent = roster_->agents[slot];
     auto const& piece = agent.road->corridors[lane.corridor].pieces[lane.piece];
-    return {
-        {state.x, state.y, state.heading},
-        agent.shape,
-        piece.lane,
-        lane.s + piece.index_offset - (is_valid(piece.lane) ? map_->lane(piece.lane).index_begin : piece.index_offset),
-        state.speed,
-        lane.lateral,
-        lane.heading_error,
-        agent.road.get(),
-        lane.corridor,
-        lane.s,
-        record.goals_passed};
+    return {{state.x, state.y, state.heading},
+            agent.shape,
+            piece.lane,
+            lane.s + piece.lane_offset,
+            state.speed,
+            lane.lateral,
+            lane.heading_error,
+            agent.road.get(),
+            lane.corridor,
+            lane.s,
+            record.goals_passed};
   }
 
   /// Notes which parts of a sequence of goals an agent in traffic has reached.

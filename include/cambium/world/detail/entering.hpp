@@ -41,10 +41,10 @@ template <class Spec>
   // A corridor may come by the same place twice: the search begins in the lane.
   auto const& corridor = road.corridors[number];
   auto const piece = std::find_if(corridor.pieces.begin(), corridor.pieces.end(), holds);
-  double const in_lane = map.lane(lane).index_begin + map.lane(lane).path.project(spec.position).s;
+  double const in_lane = map.lane(lane).path.project(spec.position).s;
   map::LanePosition hint;
   hint.piece = static_cast<std::uint16_t>(piece - corridor.pieces.begin());
-  hint.segment = corridor.center.find(std::clamp(in_lane - piece->index_offset, piece->begin, piece->end));
+  hint.segment = corridor.center.find(std::clamp(in_lane - piece->lane_offset, piece->begin, piece->end));
   auto at = map::locate(road, number, {spec.position.x(), spec.position.y(), 0.0}, hint);
   double const along = corridor.center.pose(at.s).heading;
   at.heading_error = spec.heading ? geometry::angle_difference(*spec.heading, along) : 0.0;

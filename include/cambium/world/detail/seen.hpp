@@ -111,6 +111,7 @@ template <class World>
 /// shifted as a whole, and faster or slower by the error of its speed.
 template <class Plan, class State>
 void carry_over(Plan& plan, State const& believed, State const& truth) {
+  if (believed == truth) return;  // to the bit what a perfect observer's agent does
   double const turn = truth.heading - believed.heading, faster = truth.speed - believed.speed;
   auto const [sin, cos] = geometry::sin_cos(turn);
   for (auto& state : plan.trajectory) {
