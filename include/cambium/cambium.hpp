@@ -10,6 +10,7 @@
 #include "cambium/goal.hpp"
 #include "cambium/map.hpp"
 #include "cambium/observer.hpp"
+#include "cambium/planner.hpp"
 #include "cambium/scenario.hpp"
 #include "cambium/viewer.hpp"
 #include "cambium/world.hpp"

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <tuple>
+
+#include "cambium/core/distributions.hpp"
+#include "cambium/core/parameters.hpp"
+
+namespace cambium {
+
+/// How beliefs change with what is observed.
+struct BeliefParameters {
+  double forgetting = 0.02;
+  double floor = 1e-3;
+
+  static constexpr char const* name = "belief";
+  static constexpr auto parameters() {
+    using P = BeliefParameters;
+    return std::make_tuple(
+        parameter("forgetting", &P::forgetting, "-", Range{0, 1},
+                  "share that goes back to all hypotheses alike before each observation: intentions change"),
+        parameter("floor", &P::floor, "-", Range{0, 0.5}, "no hypothesis becomes less likely than this, by number"));
+  }
+};
+
+/// How likely each of up to 8 hypotheses about another agent is: Bayes' rule on the likelihoods of what was observed.
+/// A value, of fixed size.
+class Belief {
+ public:
+  static constexpr std::size_t capacity = 8;
+
+  Belief() = default;
+  /// All of `hypotheses`, 1 to `capacity`, are as likely.
+  explicit Belief(std::size_t hypotheses)
+      : size_(static_cast<std::uint8_t>(std::clamp<std::size_t>(hypotheses, 1, 8))) {
+    std::fill_n(weights_.begin(), size_, 1.0f / static_cast<float>(size_));
+  }
+
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] double probability(std::size_t hypothesis) const { return static_cast<double>(weights_[hypothesis]); }
+  [[nodiscard]] std::size_t most_likely() const {
+    return static_cast<std::size_t>(std::max_element(weights_.begin(), weights_.begin() + size_) - weights_.begin());
+  }
+
+  /// Takes in an observation: `likelihoods`, one per hypothesis, of it under each; any common factor cancels. Does
+  /// nothing where they are all zero, or one is no finite number: then the observation tells nothing.
+  void update(std::span<double const> likelihoods, BeliefParameters const& parameters = {}) {
+    std::array<double, capacity> posterior{};
+    double sum = 0.0;
+    for (std::size_t h = 0; h < size_; ++h) {
+      double const prior = (1.0 - parameters.forgetting) * probability(h) + parameters.forgetting / size_;
+      posterior[h] = prior * likelihoods[h];
+      sum += posterior[h];
+      if (!(likelihoods[h] >= 0.0)) return;
+    }
+    if (!(sum > 0.0 && std::isfinite(sum))) return;
+    double total = 0.0;
+    for (std::size_t h = 0; h < size_; ++h) {
+      posterior[h] = std::max(posterior[h] / sum, parameters.floor / size_);
+      total += posterior[h];
+    }
+    for (std::size_t h = 0; h < size_; ++h) weights_[h] = static_cast<float>(posterior[h] / total);
+  }
+
+  /// One of the hypotheses, as likely as it is.
+  template <BitStream Stream>
+  [[nodiscard]] std::size_t sample(Stream& stream) const {
+    double left = uniform01(stream);
+    std::size_t h = 0;
+    for (; h + 1u < size_; ++h) {
+      left -= probability(h);
+      if (left < 0.0) break;
+    }
+    return h;
+  }
+
+  friend bool operator==(Belief const&, Belief const&) = default;
+
+ private:
+  std::array<float, capacity> weights_{1.0f};
+  std::uint8_t size_ = 1;
+};
+
+}  // namespace cambium

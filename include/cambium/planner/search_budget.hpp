@@ -1,0 +1,65 @@
+#pragma once
+
+#include <chrono>
+#include <concepts>
+#include <cstddef>
+#include <tuple>
+
+#include "cambium/core/parameters.hpp"
+
+namespace cambium {
+
+/// How long a search goes on: `most()`, the iterations that it never exceeds; `start()`; `goes_on(done)`, whether there
+/// is to be another one after `done`; `shared_by(n)`: the part of each of `n` searches that go on at once.
+template <class B>
+concept SearchBudget = std::copyable<B> && requires(B budget, B const fixed, std::size_t done) {
+  { fixed.most() } -> std::same_as<std::size_t>;
+  budget.start();
+  { budget.goes_on(done) } -> std::same_as<bool>;
+  { fixed.shared_by(done) } -> std::same_as<B>;
+};
+
+/// So many iterations: the search is a pure function of state, parameters and seed.
+struct IterationBudget {
+  std::size_t iterations = 1000;
+
+  static constexpr char const* name = "iteration_budget";
+  static constexpr auto parameters() {
+    return std::make_tuple(
+        parameter("iterations", &IterationBudget::iterations, "-", Range{1, 1e9}, "how many there are"));
+  }
+
+  [[nodiscard]] std::size_t most() const { return iterations; }
+  void start() {}
+  [[nodiscard]] IterationBudget shared_by(std::size_t n) const { return {(iterations + n - 1) / n}; }
+  [[nodiscard]] bool goes_on(std::size_t done) const { return done < iterations; }
+};
+static_assert(SearchBudget<IterationBudget>);
+
+/// So much time of the wall clock, looked at every 64 iterations, so that there are 64 at least: results depend on the
+/// machine and its load.
+struct TimeBudget {
+  double duration = 0.01;
+  std::size_t iterations = 1'000'000;
+
+  static constexpr char const* name = "time_budget";
+  static constexpr auto parameters() {
+    return std::make_tuple(
+        parameter("duration", &TimeBudget::duration, "s", Range{1e-6, 86'400}, "time for one search"),
+        parameter("iterations", &TimeBudget::iterations, "-", Range{1, 1e9}, "never more than so many"));
+  }
+
+  [[nodiscard]] std::size_t most() const { return iterations; }
+  [[nodiscard]] TimeBudget shared_by(std::size_t n) const { return {duration, (iterations + n - 1) / n}; }
+  void start() { begin = std::chrono::steady_clock::now(); }
+  [[nodiscard]] bool goes_on(std::size_t done) const {
+    if (done == 0 || done % 64 != 0) return done < iterations;
+    std::chrono::duration<double> const spent = std::chrono::steady_clock::now() - begin;
+    return done < iterations && spent.count() < duration;
+  }
+
+  std::chrono::steady_clock::time_point begin{};  ///< of the search
+};
+static_assert(SearchBudget<TimeBudget>);
+
+}  // namespace cambium

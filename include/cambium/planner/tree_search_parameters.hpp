@@ -1,0 +1,73 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <tuple>
+
+#include "cambium/core/parameters.hpp"
+
+namespace cambium {
+
+/// How many children a node may have after N visits: coefficient N^exponent, one at least (progressive widening: Coulom
+/// 2007; of actions and of outcomes: Couetoux et al. 2011).
+struct Widening {
+  double coefficient = 1.0;
+  double exponent = 0.5;
+
+  static constexpr char const* name = "widening";
+  static constexpr auto parameters() {
+    return std::make_tuple(
+        parameter("coefficient", &Widening::coefficient, "-", Range{0, 1e4}, "children after the first visit"),
+        parameter("exponent", &Widening::exponent, "-", Range{0, 1}, "0: no growth; 1: one more with every visit"));
+  }
+};
+
+/// That the expected cost of the chosen course stays below a limit: a chance constraint, where costs are 1 for what
+/// must not happen. The search weighs costs by a Lagrange multiplier, which it learns (Lee et al. 2018, CC-POMCP).
+struct CostConstraint {
+  double limit = 1.0;
+  double step = 1.0;
+
+  static constexpr char const* name = "cost_constraint";
+  static constexpr auto parameters() {
+    return std::make_tuple(
+        parameter("limit", &CostConstraint::limit, "-", Range{0, 1}, "greatest expected cost; 1: costs do not count"),
+        parameter("step", &CostConstraint::step, "-", Range{0, 1e3},
+                  "how fast the multiplier is learnt, divided by the root of the iterations"));
+  }
+};
+
+/// Which of an agent's actions at the root is the best.
+enum class FinalMove : std::uint8_t {
+  most_visits,
+  best_return,
+  lower_bound,  ///< the greatest score less sqrt(ln N / n)
+};
+
+/// What every tree search goes by.
+struct TreeSearchParameters {
+  int horizon = 20;
+  double discount = 0.95;
+  std::size_t memory = 256u << 20;
+  FinalMove final_move = FinalMove::most_visits;
+  Widening action_widening{2.0, 0.4};
+  Widening outcome_widening{1.0, 0.25};
+  CostConstraint constraint{};
+
+  static constexpr char const* name = "tree_search";
+  static constexpr auto parameters() {
+    using P = TreeSearchParameters;
+    return std::make_tuple(
+        parameter("horizon", &P::horizon, "-", Range{1, 10'000}, "steps that a course has, in the tree and after it"),
+        parameter("discount", &P::discount, "-", Range{0, 1}, "what a reward one step later is worth"),
+        parameter("memory", &P::memory, "B", Range{4096, 1e12},
+                  "the tree grows no larger; then the search goes on without new nodes"),
+        parameter("final_move", &P::final_move, "-", Range{0, 2}, "0 most visits, 1 best return, 2 lower bound"),
+        parameter("action_widening", &P::action_widening, "-", {}, "how many of a continuum of actions are tried"),
+        parameter("outcome_widening", &P::outcome_widening, "-", {},
+                  "how many outcomes of the same actions become nodes, where steps are random"),
+        parameter("constraint", &P::constraint, "-", {}, "what the chosen course may cost"));
+  }
+};
+
+}  // namespace cambium

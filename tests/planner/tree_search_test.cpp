@@ -1,0 +1,388 @@
+#include "cambium/planner/tree_search.hpp"
+
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cambium/planner/belief.hpp"
+#include "cambium/planner/exp3.hpp"
+#include "cambium/planner/parallel_tree_search.hpp"
+#include "cambium/planner/puct.hpp"
+#include "cambium/planner/regret_matching.hpp"
+#include "cambium/planner/tree_export.hpp"
+#include "planner/games.hpp"
+#include "support/allocations.hpp"
+
+using namespace cambium;
+using namespace games;
+
+namespace {
+
+template <class Selection>
+auto solve(MatrixGame const& game, std::size_t iterations, std::uint64_t seed, Selection selection = {}) {
+  TreeSearch<MatrixGame, Selection, NoRollout> search(game, {.horizon = 1}, selection, {}, {iterations});
+  return search.run({}, seed);
+}
+
+}  // namespace
+
+TEST_CASE("regret matching and Exp3 play the mixed equilibria of matrix games") {
+  for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    auto const pennies = solve<RegretMatching>(matching_pennies, 20'000, seed);
+    CHECK(std::abs(pennies.of(0)[0].share - 0.5) < 0.05);
+    CHECK(std::abs(pennies.of(1)[0].share - 0.5) < 0.05);
+    auto const mixed = solve<RegretMatching>(uneven, 200'000, seed, RegretMatching{0.02});
+    CHECK(std::abs(mixed.of(0)[0].share - 0.4) < 0.05);
+    CHECK(std::abs(mixed.of(1)[0].share - 0.2) < 0.05);
+    auto const rock = solve<RegretMatching>(rock_paper_scissors, 50'000, seed);
+    for (auto const& arm : rock.of(0)) CHECK(std::abs(arm.share - 1.0 / 3) < 0.05);
+    auto const exp3 = solve<Exp3>(matching_pennies, 50'000, seed, Exp3{0.05});
+    CHECK(std::abs(exp3.of(0)[0].share - 0.5) < 0.08);
+  }
+}
+
+TEST_CASE_TEMPLATE("perfect play in noughts and crosses", Selection, Ucb1, Ucb1Tuned, Puct, RegretMatching) {
+  RandomStream random(3, 0, 0);
+  TicTacToe const game;
+  for (int position = 0; position < 30; ++position) {
+    TicTacToe::State state;
+    std::array<int, 9> moves{};
+    for (int i = 0; i < 2 + position % 5 && !game.is_terminal(state); ++i) {
+      auto const mover = static_cast<std::size_t>(state.moves % 2);
+      auto const count = game.actions(state, mover, moves);
+      std::array<int, 2> joint{-1, -1};
+      joint[mover] = moves[uniform_index(random, static_cast<std::uint32_t>(count))];
+      std::array<AgentOutcome, 2> outcomes{};
+      RandomStream none(0, 0, 0);
+      (void)game.step(state, joint, none, outcomes);
+    }
+    if (game.is_terminal(state)) continue;
+    TreeSearch<TicTacToe, Selection> search(game, {.horizon = 9, .discount = 1.0}, {}, {}, {20'000});
+    auto const mover = static_cast<std::size_t>(state.moves % 2);
+    auto next = state;
+    next.board[static_cast<std::size_t>(search.run(state, 1).choice(mover).action)] = mover == 0 ? 1 : -1;
+    ++next.moves;
+    CAPTURE(position);
+    CHECK(TicTacToe::solution(next) == TicTacToe::solution(state));
+  }
+}
+
+TEST_CASE("the values of a grid world are those of value iteration") {
+  for (GridWorld::State const from : {GridWorld::State{2, 2}, {2, 1}, {1, 2}, {2, 0}, {0, 2}}) {
+    TreeSearchParameters const parameters{.horizon = 60, .discount = 0.95, .outcome_widening = {100.0, 0.0}};
+    TreeSearch<GridWorld> search({}, parameters, {}, {}, {200'000});
+    auto const& result = search.run(from, 5);
+    double best = -1e9;
+    for (int a = 0; a < 4; ++a) best = std::max(best, GridWorld::solution(from, a, 0.95));
+    CAPTURE(from.x);
+    CAPTURE(from.y);
+    CHECK(GridWorld::solution(from, result.choice(0).action, 0.95) == doctest::Approx(best).epsilon(0.02));
+    CHECK(result.choice(0).mean_return == doctest::Approx(best).epsilon(0.1));
+  }
+}
+
+TEST_CASE("ego crosses where the others keep their gap") {
+  int reached = 0;
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Crossing const game{2};
+    TreeSearch<Crossing> search(game, {.horizon = 12, .discount = 0.9}, {}, {}, {2000});
+    Crossing::State state;
+    for (std::uint32_t step = 0; step < 30 && !state.over; ++step) {
+      Crossing::Action const action = search.run(state, seed).choice(0).action;
+      RandomStream random(seed, 1, step);
+      std::array<AgentOutcome, 1> outcome{};
+      (void)game.step(state, {&action, 1}, random, outcome);
+      reached += outcome[0].reward > 0.0;
+    }
+  }
+  CHECK(reached == 20);
+}
+
+TEST_CASE("a search is a function of state, parameters and seed, and allocates nothing once warm") {
+  Crossing const game{3};
+  TreeSearch<Crossing> search(game, {.horizon = 12}, {}, {}, {3000});
+  auto const first = search.run({}, 7);
+  auto const before = support::allocations();
+  auto const& again = search.run({}, 7);
+  CHECK(support::allocations() == before);
+  TreeSearch<Crossing> other(game, {.horizon = 12}, {}, {}, {3000});
+  for (auto const* result : {&again, &other.run({}, 7)}) {
+    CHECK(result->iterations == 3000);
+    CHECK(result->nodes == first.nodes);
+    CHECK(result->depths == first.depths);
+    CHECK(result->variation == first.variation);
+    for (std::size_t i = 0; i < first.arms.size(); ++i) {
+      CHECK(result->arms[i].visits == first.arms[i].visits);
+      CHECK(result->arms[i].mean_return == first.arms[i].mean_return);
+    }
+  }
+  CHECK(other.run({}, 8).depths != first.depths);
+}
+
+TEST_CASE("a tree that may not grow is searched on") {
+  Crossing const game{2};
+  TreeSearch<Crossing> small(game, {.horizon = 12, .memory = 20'000}, {}, {}, {5000});
+  TreeSearch<Crossing> large(game, {.horizon = 12}, {}, {}, {5000});
+  auto const& result = small.run({}, 1);
+  CHECK(result.is_full);
+  CHECK(result.iterations == 5000);
+  CHECK(result.nodes > 10);
+  CHECK(result.nodes * sizeof(Crossing::State) < 20'000);
+  CHECK(result.choice(0).action == large.run({}, 1).choice(0).action);
+  CHECK_FALSE(large.result().is_full);
+}
+
+TEST_CASE("a kept tree goes on where it holds, and is dropped where it does not") {
+  TicTacToe const game;
+  TreeSearch<TicTacToe> search(game, {.horizon = 9, .discount = 1.0}, {}, {}, {5000});
+  TicTacToe::State state;
+  auto const result = search.run(state, 1);
+  std::array<int, 2> const joint{result.choice(0).action, -1};
+  std::array<AgentOutcome, 2> outcomes{};
+  RandomStream random(0, 0, 0);
+  (void)game.step(state, joint, random, outcomes);
+  auto const visits = result.choice(0).visits;
+  REQUIRE(search.keep(joint));
+  auto const& next = search.run(state, 2);
+  CHECK(next.kept_nodes > 100);
+  CHECK(next.nodes > next.kept_nodes);
+  std::uint32_t sum = 0;
+  for (auto const& arm : next.of(1)) sum += arm.visits;
+  CHECK(sum == visits - 1 + 5000);  // the first visit made the node
+  // Every move leads on from there: the tree is the one of the position, not of the one before.
+  for (auto const& arm : next.of(1)) CHECK(state.board[static_cast<std::size_t>(arm.action)] == 0);
+  REQUIRE(search.keep(std::array<int, 2>{-1, next.choice(1).action}));
+  CHECK(search.run({}, 3).kept_nodes == 0);
+  CHECK_FALSE(search.keep(std::array<int, 2>{-1, -1}));
+  CHECK_FALSE(search.keep(std::array<int, 1>{0}));
+}
+
+TEST_CASE("warm searches with kept trees allocate nothing") {
+  TicTacToe const game;
+  TreeSearch<TicTacToe> search(game, {.horizon = 9}, {}, {}, {2000});
+  std::uint64_t counted = 0;
+  for (int round = 0; round < 3; ++round) {
+    auto const before = support::allocations();
+    TicTacToe::State state;
+    for (std::size_t move = 0; move < 4; ++move) {
+      std::array<int, 2> joint{-1, -1};
+      joint[move % 2] = search.run(state, move).choice(move % 2).action;
+      std::array<AgentOutcome, 2> outcomes{};
+      RandomStream random(0, 0, 0);
+      (void)game.step(state, joint, random, outcomes);
+      REQUIRE(search.keep(joint));
+    }
+    counted = support::allocations() - before;
+  }
+  CHECK(counted == 0);
+}
+
+TEST_CASE("trees grown at once are merged by visits, the same on every run") {
+  Crossing const game{2};
+  TreeSearch<Crossing> const search(game, {.horizon = 12}, {}, {}, {4000});
+  ParallelTreeSearch<TreeSearch<Crossing>> parallel(search, 3);
+  auto const first = parallel.run({}, 5);
+  CHECK(first.iterations == 3 * 1334);
+  std::array<std::uint32_t, 4> visits{};
+  double total = 0.0;
+  for (auto const& each : parallel.searches())
+    for (std::size_t i = 0; i < 4; ++i) {
+      visits[i] += each.result().of(0)[i].visits;
+      total += each.result().of(0)[i].visits * each.result().of(0)[i].mean_return;
+    }
+  double merged = 0.0;
+  for (std::size_t i = 0; i < 4; ++i) {
+    CHECK(first.of(0)[i].visits == visits[i]);
+    merged += first.of(0)[i].visits * first.of(0)[i].mean_return;
+  }
+  CHECK(merged == doctest::Approx(total));
+  CHECK(parallel.searches()[0].result().depths != parallel.searches()[1].result().depths);
+  auto const& again = parallel.run({}, 5);
+  for (std::size_t i = 0; i < 4; ++i) CHECK(again.of(0)[i].mean_return == first.of(0)[i].mean_return);
+  CHECK(first.choice(0).action == first.variation.front());
+  CHECK_THROWS_AS(ParallelTreeSearch(search, 0), ParameterError);
+}
+
+TEST_CASE("what is wrong with a search is said") {
+  struct Broken : Crossing {
+    int fault = 0;
+    std::size_t agents() const { return fault == 1 ? 0 : 1; }
+    std::size_t actions(State const& s, std::size_t k, std::span<Action> out) const {
+      return fault == 2 ? 0 : Crossing::actions(s, k, out);
+    }
+    bool step(State& s, std::span<Action const> a, RandomStream& r, std::span<AgentOutcome> out) const {
+      bool const over = Crossing::step(s, a, r, out);
+      if (fault == 3) out[0].reward = std::numeric_limits<double>::quiet_NaN();
+      if (fault == 4) out[0].cost = std::numeric_limits<double>::infinity();
+      return over;
+    }
+  };
+  auto const problem = [](int fault, Crossing::State const& state = {}) {
+    Broken game;
+    game.fault = fault;
+    TreeSearch<Broken> search(game, {.horizon = 5}, {}, {}, {100});
+    auto const& result = search.run(state, 1);
+    if (result.problem != SearchProblem::none) CHECK_THROWS_AS(throw_if(result.problem), SearchError);
+    return result.problem;
+  };
+  Crossing::State over;
+  over.over = true;
+  CHECK(problem(0) == SearchProblem::none);
+  CHECK(problem(0, over) == SearchProblem::terminal_root);
+  CHECK(problem(1) == SearchProblem::no_agents);
+  CHECK(problem(2) == SearchProblem::no_actions);
+  CHECK(problem(3) == SearchProblem::not_finite);
+  CHECK(problem(4) == SearchProblem::not_finite);
+  CHECK_THROWS_AS(TreeSearch<Crossing>(Crossing{}, {}, {}, {}, {0}), ParameterError);
+  CHECK_THROWS_AS(TreeSearch<Crossing>(Crossing{}, {.discount = std::nan("")}), ParameterError);
+  CHECK_THROWS_AS(TreeSearch<Crossing>(Crossing{}, {.horizon = 0}), ParameterError);
+  TreeSearch<Crossing> search({}, {}, {}, {}, {10});
+  search.budget().iterations = 0;
+  CHECK(search.run({}, 1).problem == SearchProblem::no_budget);
+}
+
+namespace {
+
+/// One throw at a target on [0, 1] x 3 steps; actions from a continuum.
+struct Target {
+  static constexpr bool is_deterministic = true;
+  struct State {
+    int throws = 0;
+    bool operator==(State const&) const = default;
+  };
+  using Action = double;
+  std::size_t agents() const { return 1; }
+  bool is_terminal(State const& s) const { return s.throws == 2; }
+  double sample_action(State const&, std::size_t, RandomStream& random) const { return uniform01(random); }
+  bool step(State& s, std::span<double const> a, RandomStream&, std::span<AgentOutcome> out) const {
+    out[0].reward = 1.0 - std::abs(a[0] - 0.3);
+    return ++s.throws == 2;
+  }
+};
+
+/// Left wins 1 if the coin that is drawn for each iteration shows heads (80 %), else loses 2; right wins 0.25.
+struct Coin {
+  static constexpr std::size_t max_actions = 2;
+  struct State {
+    bool heads = false, over = false;
+    bool operator==(State const&) const = default;
+  };
+  using Action = int;
+  double chance = 0.8;
+  std::size_t agents() const { return 1; }
+  bool is_terminal(State const& s) const { return s.over; }
+  void sample_root(State& s, RandomStream& random) const { s.heads = uniform01(random) < chance; }
+  std::size_t actions(State const&, std::size_t, std::span<int> out) const {
+    out[0] = 0, out[1] = 1;
+    return 2;
+  }
+  bool step(State& s, std::span<int const> a, RandomStream&, std::span<AgentOutcome> out) const {
+    out[0] = {a[0] == 1 ? 0.25 : s.heads ? 1.0 : -2.0, a[0] == 0 && !s.heads ? 1.0 : 0.0};
+    return s.over = true;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("actions of a continuum are tried out bit by bit") {
+  TreeSearch<Target> search({}, {.horizon = 2, .discount = 1.0, .action_widening = {1.0, 0.5}}, {0.2}, {}, {10'000});
+  auto const& result = search.run({}, 4);
+  CHECK(result.of(0).size() == 100);
+  CHECK(std::abs(result.choice(0).action - 0.3) < 0.05);
+  CHECK(result.choice(0).mean_return > 1.8);
+  // The trees of a parallel search try the same actions at the root.
+  ParallelTreeSearch parallel(search, 2);
+  auto const& merged = parallel.run({}, 4);
+  CHECK(merged.of(0).size() == parallel.searches()[0].result().of(0).size());
+}
+
+TEST_CASE("what is not known of the root is drawn anew for each iteration") {
+  TreeSearch<Coin> search({}, {.horizon = 1}, {}, {}, {20'000});
+  auto const& result = search.run({}, 1);
+  CHECK(result.of(0)[0].mean_return == doctest::Approx(0.4).epsilon(0.1));
+  CHECK(result.of(0)[0].mean_cost == doctest::Approx(0.2).epsilon(0.1));
+  CHECK(result.choice(0).action == 0);
+  CHECK_FALSE(search.keep(std::array<int, 1>{0}));
+}
+
+TEST_CASE("a constraint on costs rules out what pays but costs too much") {
+  for (double const limit : {0.1, 0.3}) {
+    TreeSearch<Coin> search({}, {.horizon = 1, .constraint = {.limit = limit}}, {}, {}, {5000});
+    auto const& result = search.run({}, 1);
+    CHECK(result.choice(0).action == (limit < 0.2 ? 1 : 0));
+    if (limit < 0.2) CHECK(search.scales()[0].multiplier > 0.1);
+    if (limit > 0.2) CHECK(search.scales()[0].multiplier == 0.0);
+  }
+}
+
+TEST_CASE("priors lead a search, and are checked") {
+  struct Guided : TicTacToe {
+    double weight = 50.0;
+    void priors(State const&, std::size_t, std::span<int const> actions, std::span<double> out) const {
+      for (std::size_t i = 0; i < actions.size(); ++i) out[i] = actions[i] == 1 ? weight : 1.0;
+    }
+  };
+  TreeSearch<Guided, Puct> search({}, {.horizon = 9}, {}, {}, {60});
+  auto const& result = search.run({}, 1);
+  std::uint32_t most = 0;
+  for (auto const& arm : result.of(0)) most = std::max(most, arm.visits);
+  CHECK(result.of(0)[1].visits == most);
+  search.domain().weight = -1.0;
+  CHECK(search.run({}, 1).problem == SearchProblem::bad_priors);
+}
+
+TEST_CASE("a wall-clock budget ends a search, after 64 iterations at the least") {
+  TreeSearch<Crossing, Ucb1, RandomRollout, TimeBudget> search({}, {.horizon = 12}, {}, {}, {1e-6, 100'000});
+  auto const& result = search.run({}, 1);
+  CHECK(result.iterations >= 64);
+  CHECK(result.iterations % 64 == 0);
+  CHECK(result.iterations < 100'000);
+}
+
+TEST_CASE("trees are written down") {
+  TreeSearch<TicTacToe> search({}, {.horizon = 9}, {}, {}, {50});
+  (void)search.run({}, 1);
+  auto const json = tree_as_json(search);
+  auto const count = [](std::string const& text, std::string const& what) {
+    std::size_t n = 0;
+    for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + 1)) ++n;
+    return n;
+  };
+  CHECK(count(json, "\"id\":") == search.tree().size());
+  CHECK(count(json, "\"parent\": null") == 1);
+  CHECK(count(json, "\"action\": \"-1\"") == search.tree().size() - 1);
+  CHECK(count(json, "{") == count(json, "}"));
+  auto const dot = tree_as_dot(search, 3);
+  CHECK(dot.find("digraph search {") == 0);
+  CHECK(count(dot, "->") < search.tree().size() - 1);
+  CHECK(count(dot, "->") + 1 == count(dot, "[label=\"") - count(dot, "->"));
+}
+
+TEST_CASE("beliefs follow Bayes' rule") {
+  Belief belief(3);
+  BeliefParameters const exact{0.0, 0.0};
+  std::array<double, 3> const likelihoods{0.5, 0.25, 0.25};
+  belief.update(likelihoods, exact);
+  CHECK(belief.probability(0) == doctest::Approx(0.5));
+  belief.update(likelihoods, exact);
+  CHECK(belief.probability(0) == doctest::Approx(2.0 / 3));
+  CHECK(belief.most_likely() == 0);
+  auto const before = belief;
+  belief.update(std::array<double, 3>{0, 0, 0}, exact);
+  belief.update(std::array<double, 3>{1, std::nan(""), 1}, exact);
+  CHECK(belief == before);
+  std::array<int, 3> counts{};
+  RandomStream random(1, 2, 3);
+  for (int i = 0; i < 30'000; ++i) ++counts[belief.sample(random)];
+  CHECK(counts[0] == doctest::Approx(20'000).epsilon(0.03));
+  for (int i = 0; i < 50; ++i) belief.update(std::array<double, 3>{0, 0, 1});
+  CHECK(belief.probability(0) > 1e-4);  // and can come back
+  for (int i = 0; i < 5; ++i) belief.update(std::array<double, 3>{1, 0, 0.01});
+  CHECK(belief.most_likely() == 0);
+}
