@@ -12,6 +12,7 @@
 #include "cambium/behavior/follow_lane.hpp"
 #include "cambium/behavior/idm.hpp"
 #include "cambium/behavior/idm_classic.hpp"
+#include "cambium/behavior/idm_hypotheses.hpp"
 #include "cambium/behavior/idm_lane_tracking.hpp"
 #include "cambium/behavior/idm_law.hpp"
 #include "cambium/behavior/idm_stochastic.hpp"

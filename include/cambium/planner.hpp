@@ -3,6 +3,7 @@
 
 #include "cambium/planner/belief.hpp"
 #include "cambium/planner/exp3.hpp"
+#include "cambium/planner/mcts.hpp"
 #include "cambium/planner/parallel_tree_search.hpp"
 #include "cambium/planner/puct.hpp"
 #include "cambium/planner/regret_matching.hpp"
@@ -11,6 +12,9 @@
 #include "cambium/planner/search_domain.hpp"
 #include "cambium/planner/search_result.hpp"
 #include "cambium/planner/selection_policy.hpp"
+#include "cambium/planner/traffic_actions.hpp"
+#include "cambium/planner/traffic_domain.hpp"
+#include "cambium/planner/traffic_reward.hpp"
 #include "cambium/planner/tree_export.hpp"
 #include "cambium/planner/tree_search.hpp"
 #include "cambium/planner/tree_search_parameters.hpp"

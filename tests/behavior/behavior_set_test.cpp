@@ -73,7 +73,8 @@ TEST_CASE("each member plans with its own parameters and its own memory") {
 TEST_CASE("a memory is kept from call to call, and apart from that of a twin") {
   Set::Any const behavior = Counter<2>{};
   auto memory = Set::initial_memory(behavior), other = memory;
-  for (int i = 0; i < 5; ++i) (void)Set::plan(behavior, View{}, memory, 0.1);
+  Set::Workspaces workspaces;
+  for (int i = 0; i < 5; ++i) (void)Set::plan(behavior, View{}, memory, 0.1, workspaces);
   CHECK(std::get<2>(memory).calls == 25);
   CHECK(std::get<2>(other).calls == 20);
 }

@@ -28,15 +28,40 @@ struct MemoryOf<B> {
 template <class B>
 using MemoryOf = typename detail::MemoryOf<B>::type;
 
+/// The workspace of a behaviour that needs none.
+struct NoWorkspace {};
+
+namespace detail {
+template <class B>
+struct WorkspaceOf {
+  using type = NoWorkspace;
+};
+template <class B>
+requires requires { typename B::Workspace; }
+struct WorkspaceOf<B> {
+  using type = typename B::Workspace;
+};
+}  // namespace detail
+
+/// What behaviour `B` works with: its `Workspace`, or `NoWorkspace`.
+template <class B>
+using WorkspaceOf = typename detail::WorkspaceOf<B>::type;
+
 /// A behaviour: a copyable struct of parameters with one function template
 ///   `template <class View> Plan<View> plan(View const& view, Memory& memory, double dt) const`
 /// that says what the agent does over the next `dt` [s]: pure but for `memory`, no allocation, no exception. A world
 /// calls it once a step, on a view of frame k; `memory` is the agent's own, lives in the frame and is copied with it.
 /// It may have `double start_time() const` [s]: an agent that is added before is in traffic from then on only.
+/// One that needs much memory to plan, as a search, names a default constructible `Workspace`, and takes a reference to
+/// one after `dt`: it belongs to the world, is used by agent after agent, is not copied, and what it holds must not
+/// change what is planned.
 template <class B>
-concept BehaviorModel = std::copyable<B> && std::copyable<MemoryOf<B>> && std::default_initializable<MemoryOf<B>> &&
+concept BehaviorModel = std::copyable<B> && std::copyable<MemoryOf<B>> && std::default_initializable<MemoryOf<B>> &&(
     requires(B const behavior, ViewArchetype const view, MemoryOf<B> memory, double dt) {
-  { behavior.plan(view, memory, dt) } -> std::same_as<Plan<ViewArchetype>>;
-};
+      { behavior.plan(view, memory, dt) } -> std::same_as<Plan<ViewArchetype>>;
+    } ||
+    requires(B const behavior, ViewArchetype const view, MemoryOf<B> memory, double dt, WorkspaceOf<B>& workspace) {
+      { behavior.plan(view, memory, dt, workspace) } -> std::same_as<Plan<ViewArchetype>>;
+    });
 
 }  // namespace cambium

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <limits>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -50,6 +51,9 @@ struct BehaviorSet {
   using Any = std::variant<Behaviors...>;
   using Memory = std::variant<MemoryOf<Behaviors>...>;
 
+  /// What planning works with, one for each behaviour.
+  using Workspaces = std::tuple<WorkspaceOf<Behaviors>...>;
+
   /// Whether `B` is one of the set.
   template <class B>
   static constexpr bool contains = (std::is_same_v<B, Behaviors> || ...);
@@ -88,8 +92,9 @@ struct BehaviorSet {
 
   /// Calls the agent's own behaviour with its own memory. One well-predicted branch per alternative, no virtual call.
   template <class View>
-  [[nodiscard]] static Plan<View> plan(Any const& behavior, View const& view, Memory& memory, double dt) {
-    return plan_from<0>(behavior, view, memory, dt);
+  [[nodiscard]] static Plan<View> plan(Any const& behavior, View const& view, Memory& memory, double dt,
+                                       Workspaces& workspaces) {
+    return plan_from<0>(behavior, view, memory, dt, workspaces);
   }
 
  private:
@@ -101,10 +106,15 @@ struct BehaviorSet {
   }
 
   template <std::size_t I, class View>
-  [[nodiscard]] static Plan<View> plan_from(Any const& behavior, View const& view, Memory& memory, double dt) {
+  [[nodiscard]] static Plan<View> plan_from(Any const& behavior, View const& view, Memory& memory, double dt,
+                                            Workspaces& workspaces) {
     if constexpr (I + 1 < sizeof...(Behaviors))
-      if (behavior.index() != I) return plan_from<I + 1>(behavior, view, memory, dt);
-    return std::get_if<I>(&behavior)->plan(view, *std::get_if<I>(&memory), dt);
+      if (behavior.index() != I) return plan_from<I + 1>(behavior, view, memory, dt, workspaces);
+    using Workspace = std::tuple_element_t<I, Workspaces>;
+    if constexpr (std::is_same_v<Workspace, NoWorkspace>)
+      return std::get_if<I>(&behavior)->plan(view, *std::get_if<I>(&memory), dt);
+    else
+      return std::get_if<I>(&behavior)->plan(view, *std::get_if<I>(&memory), dt, std::get<I>(workspaces));
   }
 };
 

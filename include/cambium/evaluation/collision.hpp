@@ -71,7 +71,12 @@ struct CollisionEgo {
 
   template <class World>
   [[nodiscard]] Result evaluate(World const& world) const {
-    auto const ego = static_cast<std::uint32_t>(world.slot_of(agent));
+    return at_slot(world, static_cast<std::uint32_t>(world.slot_of(agent)));
+  }
+
+  /// The same for the agent at `ego` of the roster.
+  template <class World>
+  [[nodiscard]] static Result at_slot(World const& world, std::uint32_t ego) {
     if (!detail::in_traffic(world, ego)) return {};
     auto const circle = detail::circle_of(world, ego);
     for (std::uint32_t i = 0; i < world.size(); ++i) {

@@ -46,10 +46,18 @@ class TreeSearch {
   explicit TreeSearch(Domain domain, TreeSearchParameters const& parameters = {}, Selection const& selection = {},
                       Rollout const& rollout = {}, Budget const& budget = {})
       : domain_(std::move(domain)), parameters_(parameters), selection_(selection), rollout_(rollout), budget_(budget) {
-    check_parameters(parameters_);
-    if constexpr (Described<Selection>) check_parameters(selection_);
-    if constexpr (Described<Rollout>) check_parameters(rollout_);
-    if constexpr (Described<Budget>) check_parameters(budget_);
+    check();
+  }
+
+  /// Searches by these parameters from now on; keeps its memory, but no tree. Throws as the constructor.
+  void set(TreeSearchParameters const& parameters, Selection const& selection, Rollout const& rollout,
+           Budget const& budget) {
+    parameters_ = parameters;
+    selection_ = selection;
+    rollout_ = rollout;
+    budget_ = budget;
+    kept_ = false;
+    check();
   }
 
   /// Searches from `root`. What is wrong with the domain or the state is said in `problem`; then the result is empty.
@@ -103,6 +111,13 @@ class TreeSearch {
   static constexpr bool lists = detail::ListsActions<Domain>;
   static constexpr std::uint32_t iteration_purpose = 0x75c7;
   static constexpr std::uint32_t root_purpose = 0x75c8;
+
+  void check() const {
+    check_parameters(parameters_);
+    if constexpr (Described<Selection>) check_parameters(selection_);
+    if constexpr (Described<Rollout>) check_parameters(rollout_);
+    if constexpr (Described<Budget>) check_parameters(budget_);
+  }
 
   void start(State const& root, std::uint64_t seed) {
     auto const agents = static_cast<std::size_t>(domain_.agents());

@@ -139,6 +139,23 @@ class World {
     scratch_.forget();
   }
 
+  /// Swaps the world's frame for one of the same roster, as `restore` without a copy. The frame must have as many
+  /// records as the world has agents (asserted). O(1).
+  void exchange(FrameType& frame) {
+    CAMBIUM_ASSERT(frame.agents.size() == size(), "World::exchange: the frame is not one of this roster's size");
+    std::swap(frame_, frame);
+    scratch_.forget();
+  }
+
+  /// From now on the agent behaves as `behavior`, remembering nothing: how a planner says what it assumes of somebody.
+  /// Throws `WorldError` or `ParameterError` (the world is unchanged) as `add`.
+  void set_behavior(AgentId id, Behavior const& behavior) {
+    auto const slot = slot_of(id);
+    detail::check_if_described(behavior, "agent " + to_string(id));
+    writable_roster().agents[slot].behavior = behavior;
+    frame_.agents[slot].memory = Set::initial_memory(behavior);
+  }
+
   /// Adds an agent; returns its id. Throws `WorldError` or `ParameterError` (the world is unchanged) where its numbers,
   /// its lane, its route or its parameters are no good. O(agents), plus routing.
   AgentId add(AgentSpec const& spec) {
@@ -419,18 +436,17 @@ class World {
   }
 
   /// All in one function; with observers that would take minutes to compile.
-  CAMBIUM_FLATTEN void advance_inlined(std::uint32_t slot, double dt, double end, Record& next,
-                                       StepResult& result) const {
+  CAMBIUM_FLATTEN void advance_inlined(std::uint32_t slot, double dt, double end, Record& next, StepResult& result) {
     advance(slot, dt, end, next, result);
   }
 
-  void advance(std::uint32_t slot, double dt, double end, Record& next, StepResult& result) const {
+  void advance(std::uint32_t slot, double dt, double end, Record& next, StepResult& result) {
     Record const& now = frame_.agents[slot];
     next = now;
     if (now.status != AgentStatus::driving && now.status != AgentStatus::not_started) return;
     auto const& agent = roster_->agents[slot];
     View const view(*this, slot);
-    auto plan = Set::plan(agent.behavior, view, next.memory, dt);
+    auto plan = Set::plan(agent.behavior, view, next.memory, dt, scratch_.workspaces);
     if (plan.status != PlanStatus::valid) return stop_planning(plan.status, agent.id, next, result, end);
     if constexpr (!Observer::perfect)
       if (!plan.is_absolute) detail::carry_over(plan, view.state(), now.state);
@@ -471,7 +487,7 @@ class World {
   std::shared_ptr<Map const> map_;
   std::shared_ptr<RosterType const> roster_;
   FrameType frame_;
-  detail::Scratch<FrameType> scratch_;
+  detail::Scratch<FrameType, typename Set::Workspaces> scratch_;
 };
 
 }  // namespace cambium

@@ -10,12 +10,13 @@
 namespace cambium::detail {
 
 /// A world's working memory: neither copied nor compared, and kept when the world is assigned to.
-template <class Frame>
+template <class Frame, class Workspaces>
 struct Scratch {
   TrafficIndex traffic;
   PlaneIndex plane;    ///< only where behaviours look around
   bool fresh = false;  ///< the traffic index is that of the current frame
   std::vector<typename Frame::Record> next;
+  Workspaces workspaces;  ///< of behaviours
   std::vector<Frame> history;  ///< ring of frames
   std::size_t kept = 0, newest = 0;
 

@@ -1,0 +1,218 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "cambium/behavior/behavior_model.hpp"
+#include "cambium/behavior/idm_classic.hpp"
+#include "cambium/planner/traffic_domain.hpp"
+#include "cambium/planner/tree_search.hpp"
+#include "cambium/world/prediction.hpp"
+
+namespace cambium {
+
+/// How a search of traffic goes about it.
+template <class Selection = Ucb1, class Rollout = RandomRollout>
+struct MctsOptions {
+  TreeSearchParameters search{.horizon = 30, .discount = 0.95};
+  IterationBudget budget{};
+  Selection selection{};
+  Rollout rollout{};
+  double step = 0.2;
+
+  static constexpr char const* name = "mcts";
+  static constexpr auto parameters() {
+    using P = MctsOptions;
+    return std::make_tuple(parameter("search", &P::search, "-", {}, "the tree"),
+                           parameter("budget", &P::budget, "-", {}, "how long it grows"),
+                           parameter("selection", &P::selection, "-", {}, "how agents choose at its nodes"),
+                           parameter("rollout", &P::rollout, "-", {}, "how courses go on from its leaves"),
+                           parameter("step", &P::step, "s", Range{0.01, 10}, "between decisions"));
+  }
+};
+
+/// What a search of traffic thought.
+template <class World, class Choice>
+struct MctsReport {
+  SearchResult<Choice> result;
+  std::vector<AgentId> choosing;                  ///< the agents of the result, ego first
+  std::vector<std::string> actions;               ///< ego's actions at the root, in words
+  std::vector<typename World::FrameType> course;  ///< the principal variation: all agents, now and step by step
+  std::vector<AgentId> agents;                    ///< of the frames' records
+};
+
+/// A search of traffic and its memory: what a planner works with.
+template <class DomainType, class Selection, class Rollout>
+class MctsWorkspace {
+ public:
+  using Domain = DomainType;
+  using World = typename Domain::World;
+  using Action = typename Domain::Action;
+  using Search = TreeSearch<Domain, Selection, Rollout>;
+  using Result = SearchResult<Action>;
+
+  /// Searches from the domain's world. Throws `ParameterError` where an option is out of its range.
+  Result const& run(Domain domain, MctsOptions<Selection, Rollout> const& options, std::uint64_t seed) {
+    auto root = domain.root();
+    if (search_) {
+      search_->domain() = std::move(domain);
+      search_->set(options.search, options.selection, options.rollout, options.budget);
+    } else {
+      search_.emplace(std::move(domain), options.search, options.selection, options.rollout, options.budget);
+    }
+    return search_->run(root, seed);
+  }
+
+  /// The search after a run.
+  [[nodiscard]] Search& search() { return *search_; }
+
+  /// Plays the principal variation until `end` [s], and beyond its end what agents do without any manoeuvre; calls
+  /// `f(frame)` after each step.
+  template <class F>
+  void play(double end, F&& f) {
+    auto& domain = search_->domain();
+    auto const& result = search_->result();
+    auto const agents = domain.agents();
+    state_ = domain.root();
+    joint_.resize(agents);
+    outcomes_.resize(agents);
+    RandomStream none(0, 0, 0);
+    for (std::size_t step = 0; state_.frame.time < end - 1e-9; ++step) {
+      for (std::size_t k = 0; k < agents; ++k)
+        joint_[k] = (step + 1) * agents <= result.variation.size() ? result.variation[step * agents + k]
+                                                                   : domain.policy_action(state_, k, none);
+      (void)domain.step(state_, joint_, none, outcomes_);
+      f(std::as_const(state_.frame));
+    }
+  }
+
+  /// What the last run thought.
+  [[nodiscard]] MctsReport<World, Action> report() {
+    auto& domain = search_->domain();
+    auto const& world = domain.world();
+    MctsReport<World, Action> report;
+    report.result = search_->result();
+    for (auto const slot : domain.slots()) report.choosing.push_back(world.roster().agents[slot].id);
+    for (auto const& agent : world.roster().agents) report.agents.push_back(agent.id);
+    if (report.result.problem != SearchProblem::none) return report;
+    using Set = detail::ActionSet<std::remove_cvref_t<decltype(domain.action_set())>>;
+    for (auto const& arm : report.result.of(0)) report.actions.push_back(Set::text(domain.action_set(), arm.action));
+    report.course.push_back(world.frame());
+    double const steps = static_cast<double>(report.result.variation.size() / domain.agents());
+    play(world.time() + steps * domain.dt(), [&](auto const& frame) { report.course.push_back(frame); });
+    return report;
+  }
+
+ private:
+  std::optional<Search> search_;
+  typename Domain::State state_;
+  std::vector<Action> joint_;
+  std::vector<AgentOutcome> outcomes_;
+};
+
+namespace detail {
+
+/// The purpose of the random numbers of a search in traffic.
+inline constexpr std::uint32_t search_purpose = 0x3c75;
+
+/// Whether a view can be asked for predictions: `ViewArchetype` cannot.
+template <class View, class Set, class Other>
+concept Predicts = requires(View const view, Prediction<Set> const prediction) {
+  view.predict(prediction);
+  typename Other::FrameType;
+};
+
+/// The world that is predicted where ego may choose; slot of ego there first in `slots`, or empty.
+template <class PredictionWorld, class Actions, class Others, class View>
+[[nodiscard]] PredictionWorld world_to_search(View const& view, Actions const& actions, Others const& others,
+                                              std::vector<std::uint32_t>& slots) {
+  using Set = typename PredictionWorld::Behaviors;
+  auto world = view.predict(predict_as<Set>(ActionSet<Actions>::behavior(actions), others));
+  static_assert(std::is_same_v<decltype(world), PredictionWorld>,
+                "cambium::Mcts...<PredictionWorld, ...>: PredictionWorld must be the world's own type with another "
+                "behaviour set: World::WithBehaviors<BehaviorSet<...>>");
+  slots.clear();
+  if (auto const slot = world.roster().slot_of(view.id())) slots.push_back(static_cast<std::uint32_t>(*slot));
+  return world;
+}
+
+/// The plan that the workspace's last run leads to, for the next `dt` [s].
+template <class View, class Workspace>
+[[nodiscard]] Plan<View> plan_of(View const& view, Workspace& workspace, double dt) {
+  Plan<View> plan;
+  auto const& domain = workspace.search().domain();
+  if (workspace.search().result().problem != SearchProblem::none) {
+    plan.status = PlanStatus::failed;
+    return plan;
+  }
+  auto const slot = domain.slots()[0];
+  workspace.play(view.time() + dt, [&](auto const& frame) {
+    if (plan.trajectory.empty()) plan.action = frame.agents[slot].action;
+    plan.trajectory.push_back(frame.agents[slot].state);
+  });
+  return plan;
+}
+
+}  // namespace detail
+
+/// Plans by Monte Carlo tree search over predicted worlds: ego chooses among `Actions`, the others follow `Others`.
+/// `PredictionWorld`: the world's own type with a behaviour set that holds both. A behaviour like any other, in
+/// simulation and, with a small budget, in predictions; or call `think` to be told what it thought.
+template <class PredictionWorld, class Actions = MacroActions, class Reward = TrafficReward, class Others = IdmClassic,
+          class Selection = Ucb1, class Rollout = RandomRollout>
+struct MctsSingleAgent {
+  using Domain = TrafficDomain<PredictionWorld, Actions, Reward>;
+  using Workspace = MctsWorkspace<Domain, Selection, Rollout>;
+
+  Actions actions{};
+  Others others{};
+  Reward reward{};
+  MctsOptions<Selection, Rollout> options{};
+
+  static constexpr char const* name = "mcts_single_agent";
+  static constexpr char const* summary =
+      "tree search (UCT) over its own actions in predicted worlds; the others follow a behaviour model";
+  static constexpr char const* source = "Kocsis, Szepesvari 2006; Bernhard 2020";
+  static constexpr auto parameters() {
+    using P = MctsSingleAgent;
+    return std::make_tuple(parameter("actions", &P::actions, "-", {}, "what ego may do"),
+                           parameter("others", &P::others, "-", {}, "how the others are expected to behave"),
+                           parameter("reward", &P::reward, "-", {}, "what ego wants"),
+                           parameter("options", &P::options, "-", {}, "how it is searched"));
+  }
+
+  template <class View>
+  [[nodiscard]] Plan<View> plan(View const& view, NoMemory, double dt, Workspace& workspace) const {
+    Plan<View> failed;
+    failed.status = PlanStatus::failed;
+    if constexpr (detail::Predicts<View, typename PredictionWorld::Behaviors, PredictionWorld>)
+      return search(view, workspace).problem == SearchProblem::none ? detail::plan_of(view, workspace, dt) : failed;
+    else
+      return failed;
+  }
+
+  /// What it thinks of what `view` shows. Throws `SearchError` where there is nothing to search.
+  template <class View>
+  [[nodiscard]] MctsReport<PredictionWorld, typename Domain::Action> think(View const& view,
+                                                                           Workspace& workspace) const {
+    throw_if(search(view, workspace).problem);
+    return workspace.report();
+  }
+
+ private:
+  template <class View>
+  [[nodiscard]] SearchResult<typename Domain::Action> const& search(View const& view, Workspace& workspace) const {
+    std::vector<std::uint32_t> slots;
+    auto world = detail::world_to_search<PredictionWorld>(view, actions, others, slots);
+    return workspace.run(Domain(std::move(world), slots, actions, reward, options.step), options,
+                         view.random(detail::search_purpose)());
+  }
+};
+
+}  // namespace cambium

@@ -1,0 +1,179 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "cambium/behavior/idm_hypotheses.hpp"
+#include "cambium/planner/belief.hpp"
+#include "cambium/planner/search_domain.hpp"
+#include "cambium/planner/traffic_actions.hpp"
+#include "cambium/planner/traffic_reward.hpp"
+
+namespace cambium {
+
+/// Traffic as a game: a predicted world in which some agents, ego first, choose actions for each step of `dt` [s],
+/// while the others behave as predicted. States are frames; the roster is shared by all. A course ends for all where it
+/// ends for one of those that choose.
+template <class PredictionWorld, class Actions, class Reward>
+class TrafficDomain {
+  using Set = detail::ActionSet<Actions>;
+  using Behavior = typename Set::Behavior;
+  static_assert(
+      PredictionWorld::Behaviors::template contains<Behavior>,
+      "cambium::TrafficDomain<World, Actions, Reward>: the behaviour set of World must contain the model that "
+      "carries out Actions (MacroActions, MotionPrimitives; ExternalInput for SampledInputs)");
+  static_assert(RewardModel<Reward, PredictionWorld>,
+                "cambium::TrafficDomain<World, Actions, Reward>: Reward must judge a world, as cambium::TrafficReward "
+                "does (see RewardModel)");
+
+ public:
+  using World = PredictionWorld;
+  using Action = typename Set::Choice;
+  /// World randomness is keyed by its seed, agent and step: the same actions lead to the same frame.
+  static constexpr bool is_deterministic = true;
+
+  struct State {
+    typename World::FrameType frame;
+    bool over = false;
+  };
+
+  /// Nobody chooses; to be assigned to.
+  explicit TrafficDomain(World world) : world_(std::move(world)) {}
+
+  /// `slots`: who chooses, ego first; they must have the behaviour that carries out `actions`. `cooperation`: what the
+  /// rewards of the others count to each of them (Lenz, Kessler, Knoll 2016), 0 to 1.
+  TrafficDomain(World world, std::span<std::uint32_t const> slots, Actions const& actions, Reward const& reward,
+                double dt, double cooperation = 0.0)
+      : world_(std::move(world)),
+        slots_(slots.begin(), slots.end()),
+        actions_(actions),
+        reward_(reward),
+        dt_(dt),
+        cooperation_(cooperation) {}
+
+  /// The world's own frame as a root.
+  [[nodiscard]] State root() const { return {world_.frame(), false}; }
+  [[nodiscard]] World const& world() const { return world_; }
+  [[nodiscard]] std::span<std::uint32_t const> slots() const { return slots_; }
+  [[nodiscard]] Actions const& action_set() const { return actions_; }
+  [[nodiscard]] double dt() const { return dt_; }
+
+  [[nodiscard]] std::size_t agents() const { return slots_.size(); }
+  [[nodiscard]] bool is_terminal(State const& state) { return state.over || !all_drive(state); }
+
+  static constexpr std::size_t max_actions = [] {
+    if constexpr (detail::ListsChoices<Actions>)
+      return Set::capacity;
+    else
+      return std::size_t{1};
+  }();
+
+  [[nodiscard]] std::size_t actions(State const& state, std::size_t agent,
+                                    std::span<Action> out) requires detail::ListsChoices<Actions> {
+    auto& frame = const_cast<State&>(state).frame;  // given back as it was
+    world_.exchange(frame);
+    auto const count = Set::list(actions_, typename World::View(world_, slots_[agent]), out);
+    world_.exchange(frame);
+    return count;
+  }
+
+  [[nodiscard]] Action sample_action(State const&, std::size_t,
+                                     RandomStream& random) requires(!detail::ListsChoices<Actions>) {
+    return Set::sample(actions_, random);
+  }
+
+  /// All drive on as they do without any manoeuvre.
+  [[nodiscard]] Action policy_action(State const&, std::size_t, RandomStream&) const { return Set::usual(actions_); }
+
+  bool step(State& state, std::span<Action const> joint, RandomStream&, std::span<AgentOutcome> outcomes) {
+    for (std::size_t k = 0; k < slots_.size(); ++k)
+      Set::set(*std::get_if<behavior_index>(&state.frame.agents[slots_[k]].memory), joint[k]);
+    world_.exchange(state.frame);
+    (void)world_.step(dt_);
+    double sum = 0.0;
+    for (std::size_t k = 0; k < slots_.size(); ++k) {
+      auto const judgement = reward_.judge(world_, slots_[k], dt_);
+      outcomes[k] = judgement.outcome;
+      sum += judgement.outcome.reward;
+      state.over = state.over || judgement.ends;
+    }
+    for (auto& outcome : outcomes) outcome.reward += cooperation_ * (sum - outcome.reward);
+    world_.exchange(state.frame);
+    return state.over;
+  }
+
+  /// Whether what was seen comes close to what was predicted: half a metre and half a metre per second, for everybody.
+  [[nodiscard]] bool same_state(State const& predicted, State const& seen) const {
+    return std::abs(predicted.frame.time - seen.frame.time) < 1e-6 &&
+           std::ranges::equal(predicted.frame.agents, seen.frame.agents, [](auto const& a, auto const& b) {
+             return a.status == b.status && a.lane.corridor == b.lane.corridor &&
+                    std::hypot(a.state.x - b.state.x, a.state.y - b.state.y) < 0.5 &&
+                    std::abs(a.state.speed - b.state.speed) < 0.5;
+           });
+  }
+
+  [[nodiscard]] std::size_t heap_bytes(State const& state) const {
+    return state.frame.agents.size() * sizeof(typename World::Record);
+  }
+
+ private:
+  static constexpr std::size_t behavior_index = World::Behaviors::template index<Behavior>;
+
+  [[nodiscard]] bool all_drive(State const& state) const {
+    return std::ranges::all_of(slots_, [&](std::uint32_t slot) {
+      return slot < state.frame.agents.size() && state.frame.agents[slot].status == AgentStatus::driving;
+    });
+  }
+
+  World world_;
+  std::vector<std::uint32_t> slots_;
+  Actions actions_{};
+  Reward reward_{};
+  double dt_ = 0.2;
+  double cooperation_ = 0.0;
+};
+
+/// The same where the others' time headways are drawn anew for each iteration, by what is believed of each: nodes stand
+/// for ego's actions whatever the others do.
+template <class PredictionWorld, class Actions, class Reward>
+class HypothesisDomain : public TrafficDomain<PredictionWorld, Actions, Reward> {
+  using Base = TrafficDomain<PredictionWorld, Actions, Reward>;
+
+ public:
+  using State = typename Base::State;
+  static constexpr bool is_deterministic = false;
+
+  using Base::Base;
+
+  /// What is believed of the agent at `slot`, whose behaviour must be `hypotheses`.
+  struct Unknown {
+    std::uint32_t slot;
+    Belief belief;
+  };
+
+  void set_unknowns(std::span<Unknown const> unknowns, IdmHypotheses const& hypotheses) {
+    unknowns_.assign(unknowns.begin(), unknowns.end());
+    hypotheses_ = hypotheses;
+  }
+
+  void sample_root(State& state, RandomStream& random) const {
+    constexpr auto index = PredictionWorld::Behaviors::template index<IdmHypotheses>;
+    for (auto const& unknown : unknowns_) {
+      auto const region = unknown.belief.sample(random);
+      std::get_if<index>(&state.frame.agents[unknown.slot].memory)->time_headway =
+          static_cast<float>(hypotheses_.headway(region, uniform01(random)));
+    }
+  }
+
+ private:
+  std::vector<Unknown> unknowns_;
+  IdmHypotheses hypotheses_{};
+};
+
+}  // namespace cambium
