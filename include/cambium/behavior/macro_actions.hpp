@@ -69,6 +69,8 @@ struct MacroActions {
       is_new = true;
     }
 
+    void fell_short(double way, bool left_course) { change.fell_short(way, left_course); }
+
     friend bool operator==(Memory const&, Memory const&) = default;
   };
 
@@ -133,6 +135,7 @@ struct MacroActions {
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
     auto const action = memory.chosen < size() ? actions[memory.chosen] : MacroAction{};
     double const speed = std::max(0.0, view.state().speed);
+    course.renew(memory.change, speed);
     if (memory.is_new && is_change(action.kind)) {
       auto const side = side_of(view, action.kind);
       if (side != none && side != memory.change.target) memory.change = course.begin(side, speed);

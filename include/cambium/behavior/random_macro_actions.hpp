@@ -30,6 +30,8 @@ struct RandomMacroActions {
     MacroActions::Memory macro{};
     float left{};  ///< [s] until the next choice
 
+    void fell_short(double way, bool left_course) { macro.fell_short(way, left_course); }
+
     friend bool operator==(Memory const&, Memory const&) = default;
   };
 
