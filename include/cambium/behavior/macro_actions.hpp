@@ -125,10 +125,12 @@ struct MacroActions {
 
   [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(count); }
 
-  /// Whether action `number` could begin now: a change needs a lane of the road on that side, long enough. O(1).
+  /// Whether action `number` could begin now, `change` being under way: a change needs a lane of the road on that side,
+  /// long enough; one back to the lane that it came from can always begin. O(1).
   template <class View>
-  [[nodiscard]] bool available(View const& view, std::size_t number) const {
-    return number < size() && (!is_change(actions[number].kind) || side_of(view, actions[number].kind) != none);
+  [[nodiscard]] bool available(View const& view, std::size_t number, LaneChange const& change = {}) const {
+    if (number >= size()) return false;
+    return !is_change(actions[number].kind) || side_of(view, actions[number].kind, change) != none;
   }
 
   template <class View>
@@ -137,8 +139,13 @@ struct MacroActions {
     double const speed = std::max(0.0, view.state().speed);
     course.renew(memory.change, speed);
     if (memory.is_new && is_change(action.kind)) {
-      auto const side = side_of(view, action.kind);
-      if (side != none && side != memory.change.target) memory.change = course.begin(side, speed);
+      auto const side = side_of(view, action.kind, memory.change);
+      if (side != none && side != memory.change.target) {
+        bool const is_back = side == view.lane_position().corridor;
+        float const bend = memory.change.bend;
+        memory.change = is_back ? course.back(side, speed, bend) : course.begin(side, speed);
+        memory.change.bend = bend;
+      }
     }
     memory.is_new = false;
     return plan_lane_change(view, memory.change, motion(view, memory.change, action, speed, dt), dt);
@@ -149,12 +156,14 @@ struct MacroActions {
 
   [[nodiscard]] static bool is_change(Kind kind) { return kind == Kind::change_left || kind == Kind::change_right; }
 
-  /// The lane corridor that a change leads to.
+  /// The lane corridor that a change leads to: the own one where a change to the other side is under way in it.
   template <class View>
-  [[nodiscard]] std::uint16_t side_of(View const& view, Kind kind) const {
+  [[nodiscard]] std::uint16_t side_of(View const& view, Kind kind, LaneChange const& change) const {
     auto const& at = view.lane_position();
     auto const& piece = view.corridor().pieces[at.piece];
-    auto const side = kind == Kind::change_left ? piece.left : piece.right;
+    auto const side = kind == Kind::change_left ? piece.left : piece.right,
+               other_side = kind == Kind::change_left ? piece.right : piece.left;
+    if (change.active() && change.target == other_side) return at.corridor;
     if (side == none) return none;
     auto const there = view.lane_position(side);
     return lane_end(view, side, there.piece) - there.s < minimum_remaining ? none : side;
