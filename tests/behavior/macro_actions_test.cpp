@@ -260,3 +260,19 @@ TEST_CASE("safety brakes to standstill, and comes to the middle of its lane on t
   CHECK(world.state(id).x == doctest::Approx(100 + 900 / 8.0).epsilon(0.01));
   CHECK(world.state(id).y == doctest::Approx(-1.75).epsilon(0.01));
 }
+
+TEST_CASE("the lists to choose from are parameters") {
+  auto const differ = [](auto const& one, auto const& other) {
+    return !cb::equal_parameters(one, other) && cb::hash_parameters(one) != cb::hash_parameters(other) &&
+           cb::to_string(one) != cb::to_string(other);
+  };
+  auto const one = cb::MacroActions::of({{Kind::stay, -3.0}, {Kind::change_left}});
+  CHECK(differ(one, cb::MacroActions::of({{Kind::stay, -2.0}, {Kind::change_left}})));
+  CHECK(differ(one, cb::MacroActions::of({{Kind::stay, -3.0}, {Kind::change_right}})));
+  CHECK(differ(one, cb::MacroActions::of({{Kind::stay, -3.0}})));
+  CHECK_FALSE(differ(one, cb::MacroActions::of({{Kind::stay, -3.0}, {Kind::change_left}})));
+  CHECK(differ(cb::MotionPrimitives::of({{1.0, 0.05}}), cb::MotionPrimitives::of({{1.0, 0.06}})));
+  CHECK_THROWS_WITH_AS(cb::check_parameters(cb::MotionPrimitives{.primitives = {{1.0, 0.0}, {0.0, 2.0}}}),
+                       "motion_primitives.primitives[1].steering: is 2 rad; give a value in [-1.5, 1.5] rad",
+                       cb::ParameterError);
+}
