@@ -73,6 +73,7 @@ std::vector<Room> rooms() {
        {model<cb::IdmParameters>("IdmParameters"), model<cb::RoadRules>("RoadRules"),
         model<cb::LaneChanging>("LaneChanging"), model<cb::LaneChangeCourse>("LaneChangeCourse"),
         model<cb::Yielding<cb::Uniform>>("Yielding<Distribution>"), model<cb::RssParameters>("RssParameters"),
+        model<cb::MotionPrimitive>("MotionPrimitive"), model<cb::MacroAction>("MacroAction"),
         model<cb::SocialForceParameters>("SocialForceParameters"), model<cb::CrossingParameters>("CrossingParameters"),
         model<cb::Actuation>("Actuation"), model<cb::ObservationNoise>("ObservationNoise"),
         model<cb::Uniform>("Uniform"), model<cb::Normal>("Normal")}}};

@@ -20,10 +20,19 @@ template <class M>
     return "-";
 }
 
-/// "33.33 m/s": numbers to four digits.
+/// "33.33 m/s": numbers to four digits; "3 *window*": how many there are in a list of structs; "1 m, 2 m".
 template <class Value>
 [[nodiscard]] std::string value_text(Value const& value, char const* unit) {
-  if constexpr (std::is_floating_point_v<Value>) {
+  if constexpr (cb::detail::ParameterList<Value>) {
+    auto const list = cb::detail::elements_of(value);
+    using Element = cb::detail::ElementOf<Value>;
+    if constexpr (cb::Described<Element>)
+      return std::to_string(list.size()) + " *" + cb::detail::struct_name<Element>() + "*";
+    std::string text;
+    if constexpr (!cb::Described<Element>)
+      for (auto const& element : list) text += (text.empty() ? "" : ", ") + value_text(element, unit);
+    return text;
+  } else if constexpr (std::is_floating_point_v<Value>) {
     char number[32];
     std::snprintf(number, sizeof number, "%.4g", value);
     return cb::detail::with_unit(number, unit);
@@ -49,7 +58,7 @@ template <class Part>
     if constexpr (cb::Described<std::remove_cvref_t<decltype(value)>>) {
       if (!cb::equal_parameters(value, defaults.*entry.field))
         others += (others.empty() ? "" : ", ") + std::string(entry.name) + " " + part_text(value);
-    } else if (!(value == defaults.*entry.field)) {
+    } else if (!cb::detail::equal_values(value, defaults.*entry.field)) {
       others += (others.empty() ? "" : ", ") + std::string(entry.name) + " " + value_text(value, entry.unit);
     }
   });

@@ -7,6 +7,7 @@
 #include "cambium/behavior/behavior_set.hpp"
 #include "cambium/behavior/constant_acceleration.hpp"
 #include "cambium/behavior/corridor_filters.hpp"
+#include "cambium/behavior/course.hpp"
 #include "cambium/behavior/crossing.hpp"
 #include "cambium/behavior/external_input.hpp"
 #include "cambium/behavior/follow_lane.hpp"

@@ -2,6 +2,7 @@
 /// version.
 #pragma once
 
+#include "cambium/core/described.hpp"
 #include "cambium/core/diagnostic.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/error.hpp"

@@ -63,7 +63,8 @@ TEST_CASE("each member plans with its own parameters and its own memory") {
   for (std::size_t i = 0; i < 4; ++i) {
     auto memory = Set::initial_memory(members[i]);
     REQUIRE(memory.index() == i);
-    auto const plan = Set::plan(members[i], View{}, memory, 0.5);
+    Set::Workspaces workspaces;
+    auto const plan = Set::plan(members[i], View{}, memory, 0.5, workspaces);
     CHECK(plan.action.acceleration == doctest::Approx(actions[i]));
     CHECK(memory.index() == i);
     CHECK((memory == Set::initial_memory(members[i])) == (i == 1));

@@ -11,6 +11,7 @@
 #include "cambium/dynamics/dynamic_set.hpp"
 #include "cambium/dynamics/kinematic_point.hpp"
 #include "cambium/dynamics/single_track_steering.hpp"
+#include "cambium/dynamics/triple_integrator.hpp"
 #include "cambium/evaluation/collision.hpp"
 
 using namespace fixtures;
@@ -76,7 +77,7 @@ TEST_CASE("from any reasonable start the front axle comes to the centre line, on
 }
 
 TEST_CASE_TEMPLATE("any vehicle model is kept on its lane", Model, cb::SingleTrack, cb::SingleTrackSteering,
-                   cb::KinematicPoint, cb::DynamicSet<cb::SingleTrack, cb::KinematicPoint>) {
+                   cb::TripleIntegrator, cb::KinematicPoint, cb::DynamicSet<cb::SingleTrack, cb::KinematicPoint>) {
   Model model{};
   if constexpr (std::is_same_v<Model, cb::KinematicPoint>) model.highest_speed = 50;
   for (double const curvature : {0.0, 0.01, -0.02}) {
@@ -144,6 +145,36 @@ TEST_CASE("before a bend it brakes comfortably, and enters it no faster than the
       CHECK(entered > 0.7 * allowed);
       CHECK(hardest > -1.3 * cb::IdmParameters{}.comfortable_deceleration);
     }
+}
+
+TEST_CASE("what is remembered of the road changes nothing, however the speed is set from outside") {
+  auto const map = support::map_of(
+      {.id = "1",
+       .line = cb::map::lay_from(
+           {}, {{100.0}, {40.0, 0.004, 0.004}, {60.0}, {40.0, -0.008, -0.008}, {80.0}, {40.0, 0.02, 0.02}, {500.0}}),
+       .sections = {{.right = cb::map::equal_lanes(1)}}});
+  using Single = cb::World<cb::BehaviorSet<IdmLaneTracking>, cb::InterpolateExecution, cb::SingleTrack>;
+  for (std::uint32_t seed = 0; seed < 20; ++seed) {
+    cb::RandomStream random(seed, 0, 0);
+    Single world(map);
+    // With this exponent it brakes gently from what is above its desired speed.
+    auto const id = world.add({.position = {5, -1.75},
+                               .speed = 8.0,
+                               .behavior = IdmLaneTracking{.idm = {.desired_speed = 12.0, .exponent = 1.0}}});
+    Single forgetful = world;
+    while (world.record(id).lane.s < 320.0) {
+      if (cb::uniform_index(random, 8) == 0) {
+        auto state = world.state(id);
+        state.speed = between(2.0, 30.0, random);
+        world.set_state(id, state);
+        forgetful.set_state(id, state);
+      }
+      forgetful.memory<IdmLaneTracking>(id) = {};
+      REQUIRE(world.step(0.2));
+      REQUIRE(forgetful.step(0.2));
+      REQUIRE(world.state(id) == forgetful.state(id));
+    }
+  }
 }
 
 TEST_CASE("steering stays within the vehicle's limit and the driver's lateral acceleration") {

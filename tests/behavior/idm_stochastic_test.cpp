@@ -116,6 +116,23 @@ TEST_CASE("intentions to yield alternate, with durations of their distributions"
   CHECK(all * 0.1 / changes == doctest::Approx(5.0).epsilon(0.1));
 }
 
+TEST_CASE("drivers yield at different times from the start: at each moment as many as the durations ask for") {
+  IdmStochastic driver;
+  driver.yielding = {.enabled = true, .yields = {4.0, 4.0}, .insists = {6.0, 6.0}};
+  constexpr std::uint32_t count = 40;
+  for (std::uint64_t const seed : {5u, 6u, 7u}) {
+    auto world = free_drivers(driver, count, seed);
+    for (int i = 0; i < 120; ++i) {
+      world.step(0.1);
+      int yielding = 0;
+      for (std::uint32_t k = 0; k < count; ++k)
+        yielding += world.memory<IdmStochastic>(static_cast<cb::AgentId>(k)).yields;
+      CHECK(yielding > 4);  // 16 are expected, 3.1 the standard deviation
+      CHECK(yielding < 28);
+    }
+  }
+}
+
 TEST_CASE("while it yields, a driver leaves room for a vehicle in the neighbouring lane that ends, else not") {
   auto const map = own_map("lane_drop.xodr");
   // The lane beside the one that leads into a lane with the same successor as its neighbour.
@@ -129,7 +146,7 @@ TEST_CASE("while it yields, a driver leaves room for a vehicle in the neighbouri
       IdmStochastic driver;
       driver.yielding.enabled = yields;
       driver.yielding.yields = {100.0, 100.0};
-      driver.yielding.insists = {100.0, 100.0};
+      driver.yielding.insists = {0.1, 0.1};
       auto const pose = through.path.pose(through.length() - 80.0), ahead = lane.path.pose(lane.length() - 10.0);
       auto const id =
           world.add({.position = pose.position(), .heading = pose.heading, .speed = 12, .behavior = driver});

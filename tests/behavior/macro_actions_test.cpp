@@ -107,6 +107,33 @@ TEST_CASE("a change that is chosen again on its way goes on; one to the other si
   CHECK(back.y() == doctest::Approx(-5.25).epsilon(1e-6));
 }
 
+TEST_CASE("one to the other side before the border is crossed leads back to the old lane, smoothly") {
+  for (bool const left : {true, false})
+    for (int const steps : {1, 4, 6}) {
+      // In the middle there is a lane farther on; at the edge there is none.
+      for (double const y : {-5.25, left ? -8.75 : -1.75}) {
+        Highway at({}, y);
+        at.choose(number_of(left ? Kind::change_left : Kind::change_right));
+        at.drive(steps);
+        CHECK(std::abs(at.y() - y) > 0.0);
+        CHECK(std::abs(at.y() - y) < 1.75);
+        auto const back = number_of(left ? Kind::change_right : Kind::change_left);
+        auto const view = at.world.observe(at.id);
+        CHECK(cb::MacroActions{}.available(view, back, at.world.memory<cb::MacroActions>(at.id).change));
+        at.choose(back);
+        double heading = at.world.state(at.id).heading, sharpest = 0.0;
+        for (int i = 0; i < 20; ++i) {
+          at.drive(1);
+          CHECK(std::abs(at.y() - y) < 2.2);
+          sharpest = std::max(sharpest, std::abs(at.world.state(at.id).heading - heading));
+          heading = at.world.state(at.id).heading;
+        }
+        CHECK(at.y() == doctest::Approx(y).epsilon(1e-6));
+        CHECK(sharpest < 0.12);
+      }
+    }
+}
+
 TEST_CASE("what is chosen, and the change under way, go along with copies") {
   Highway at;
   at.choose(number_of(Kind::change_right));
@@ -232,4 +259,20 @@ TEST_CASE("safety brakes to standstill, and comes to the middle of its lane on t
   CHECK(world.state(id).speed == 0.0);
   CHECK(world.state(id).x == doctest::Approx(100 + 900 / 8.0).epsilon(0.01));
   CHECK(world.state(id).y == doctest::Approx(-1.75).epsilon(0.01));
+}
+
+TEST_CASE("the lists to choose from are parameters") {
+  auto const differ = [](auto const& one, auto const& other) {
+    return !cb::equal_parameters(one, other) && cb::hash_parameters(one) != cb::hash_parameters(other) &&
+           cb::to_string(one) != cb::to_string(other);
+  };
+  auto const one = cb::MacroActions::of({{Kind::stay, -3.0}, {Kind::change_left}});
+  CHECK(differ(one, cb::MacroActions::of({{Kind::stay, -2.0}, {Kind::change_left}})));
+  CHECK(differ(one, cb::MacroActions::of({{Kind::stay, -3.0}, {Kind::change_right}})));
+  CHECK(differ(one, cb::MacroActions::of({{Kind::stay, -3.0}})));
+  CHECK_FALSE(differ(one, cb::MacroActions::of({{Kind::stay, -3.0}, {Kind::change_left}})));
+  CHECK(differ(cb::MotionPrimitives::of({{1.0, 0.05}}), cb::MotionPrimitives::of({{1.0, 0.06}})));
+  CHECK_THROWS_WITH_AS(cb::check_parameters(cb::MotionPrimitives{.primitives = {{1.0, 0.0}, {0.0, 2.0}}}),
+                       "motion_primitives.primitives[1].steering: is 2 rad; give a value in [-1.5, 1.5] rad",
+                       cb::ParameterError);
 }

@@ -9,6 +9,7 @@
 
 #include "../world/fixtures.hpp"
 #include "cambium/behavior/idm_classic.hpp"
+#include "cambium/behavior/idm_stochastic.hpp"
 #include "cambium/behavior/mobil.hpp"
 #include "cambium/behavior/random_macro_actions.hpp"
 #include "cambium/core/distributions.hpp"
@@ -20,9 +21,10 @@ namespace {
 
 template <class Nominal>
 using Safe = cb::RssConformant<Nominal>;
-using Behaviors = cb::BehaviorSet<cb::RandomMacroActions, cb::Mobil, cb::ConstantAcceleration, cb::IdmClassic,
-                                  Safe<cb::RandomMacroActions>, Safe<cb::Mobil>, Safe<cb::ConstantAcceleration>,
-                                  Safe<cb::IdmClassic>>;
+using Behaviors =
+    cb::BehaviorSet<cb::RandomMacroActions, cb::Mobil, cb::ConstantAcceleration, cb::IdmClassic,
+                    Safe<cb::RandomMacroActions>, Safe<cb::Mobil>, Safe<cb::ConstantAcceleration>, Safe<cb::IdmClassic>,
+                    cb::MacroActions, Safe<cb::MacroActions>, Safe<cb::IdmStochastic>>;
 using World = cb::World<Behaviors, cb::InterpolateExecution, cb::SingleTrack>;
 
 double between(double low, double high, cb::RandomStream& random) { return cb::Uniform{low, high}(random); }
@@ -149,4 +151,85 @@ TEST_CASE("an object in the lane is stopped for") {
   CHECK(world.state(blind).speed == 0.0);
   CHECK(world.state(blind).x < 250 - 3.6);
   CHECK(world.state(blind).x > 200);
+}
+
+namespace {
+
+constexpr std::size_t change_left = 5;  // of the default macro actions
+
+/// A box from `x` on, 4 m long, in the lane around `y`.
+cb::geometry::Polygon box_at(double x, double y) {
+  return cb::geometry::Polygon({{x, y - 1}, {x + 4, y - 1}, {x + 4, y + 1}, {x, y + 1}});
+}
+
+}  // namespace
+
+TEST_CASE("who has to brake in a lane change stays on its course, and keeps its heading") {
+  double const dt = 0.1;
+  World safe(straight_road(3, 1500.0)), nominal(safe.shared_map());
+  auto const one = safe.add({.position = {100, -5.25}, .speed = 20, .behavior = Safe<cb::MacroActions>{}});
+  auto const other = nominal.add({.position = {100, -5.25}, .speed = 20, .behavior = cb::MacroActions{}});
+  safe.memory<Safe<cb::MacroActions>>(one).choose(change_left);
+  nominal.memory<cb::MacroActions>(other).choose(change_left);
+  std::vector<cb::State> course;
+  for (int i = 0; i < 100; ++i) {
+    CHECK(nominal.step(dt));
+    course.push_back(nominal.state(other));
+  }
+  safe.add_object(box_at(175, -5.25));  // in the old lane: not to be hit, nor reached before the change is done
+  double slowest = 20.0, farthest_off = 0.0;
+  for (int i = 0; i < 100 && safe.state(one).y < -1.8; ++i) {
+    CHECK(safe.step(dt));
+    auto const at = safe.state(one);
+    auto const after =
+        std::find_if(course.begin() + 1, course.end(), [&](cb::State const& state) { return state.x >= at.x; });
+    REQUIRE(after != course.end());
+    auto const before = after - 1;
+    double const u = (at.x - before->x) / (after->x - before->x);
+    farthest_off = std::max(farthest_off, std::abs(at.y - (before->y + u * (after->y - before->y))));
+    CHECK(std::abs(at.heading - (before->heading + u * (after->heading - before->heading))) < 2e-3);
+    slowest = std::min(slowest, at.speed);
+  }
+  CHECK(slowest < 17.0);
+  CHECK(farthest_off < 0.02);
+  CHECK(safe.state(one).y > -1.8);
+}
+
+TEST_CASE("who has to keep off a side waits with its lane change, and then changes without a jump") {
+  World world(straight_road(2, 1500.0));
+  auto const one = world.add({.position = {100, -5.25}, .speed = 15, .behavior = Safe<cb::MacroActions>{}});
+  auto const beside =
+      world.add({.position = {100, -1.75}, .speed = 15, .behavior = cb::ConstantAcceleration{.acceleration = 0.0}});
+  world.memory<Safe<cb::MacroActions>>(one).choose(change_left);
+  for (int i = 0; i < 50; ++i) {
+    CHECK(world.step(0.2));
+    CHECK(world.state(one).y < -3.9);
+    CHECK(world.memory<Safe<cb::MacroActions>>(one).change.active());
+  }
+  CHECK(world.state(one).speed == 15.0);
+  world.remove(beside);
+  double farthest = 0.0;
+  for (int i = 0; i < 30; ++i) {
+    double const y = world.state(one).y;
+    CHECK(world.step(0.2));
+    farthest = std::max(farthest, world.state(one).y - y);
+  }
+  CHECK(world.state(one).y == doctest::Approx(-1.75).epsilon(1e-3));
+  CHECK(farthest < 0.4);  // 60 m for 3.5 m
+}
+
+TEST_CASE("what the nominal behaviour remembers goes on while it is not followed") {
+  World world(straight_road(2, 1500.0));
+  Safe<cb::IdmStochastic> const driver{
+      .nominal = {.desired_speed = {30, 40}, .time_headway = {0.1, 0.1}, .yielding = {.enabled = true}}};
+  auto const one = world.add({.position = {100, -1.75}, .speed = 20, .behavior = driver});
+  world.add_object(box_at(189, -1.75));  // closer than RSS permits
+  CHECK(world.step(0.1));
+  auto const first = world.memory<Safe<cb::IdmStochastic>>(one);
+  CHECK(world.record(one).action.acceleration == doctest::Approx(-4.0));
+  CHECK(first.person != 0);
+  CHECK(world.step(0.1));
+  auto const second = world.memory<Safe<cb::IdmStochastic>>(one);
+  CHECK(second.person == first.person);
+  CHECK(second.left == doctest::Approx(first.left - 0.1f));
 }

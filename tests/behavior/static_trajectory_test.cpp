@@ -139,3 +139,16 @@ TEST_CASE("recordings without states, with times that do not ascend, or with num
   bad(cb::StaticTrajectory({{1, 0, 0, 0, 0}, {1, 1, 0, 0, 0}}));
   bad(cb::StaticTrajectory({{1, 0, 0, 0, 0}, {2, std::nan(""), 0, 0, 0}}));
 }
+
+TEST_CASE("replays of different recordings are different parameters, whoever shares them") {
+  auto const states = recorded(0.0, 100.0, 5, 0.5);
+  auto other = states;
+  other.back().speed += 1e-9;
+  cb::StaticTrajectory const one(states), same(states), changed(other);
+  CHECK(cb::equal_parameters(one, same));
+  CHECK(cb::hash_parameters(one) == cb::hash_parameters(same));
+  CHECK_FALSE(cb::equal_parameters(one, changed));
+  CHECK(cb::hash_parameters(one) != cb::hash_parameters(changed));
+  CHECK(cb::to_string(one) != cb::to_string(changed));
+  CHECK_FALSE(cb::equal_parameters(one, cb::StaticTrajectory{}));
+}

@@ -1,8 +1,12 @@
 #include "cambium/core/parameters.hpp"
 
+#include <array>
 #include <cstring>
 #include <limits>
+#include <memory>
+#include <set>
 #include <string>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -41,6 +45,21 @@ struct Follower {
         parameter("stops", &Follower::stops, "-", {0, 1}, "Whether it stops at lights."),
         parameter("scheme", &Follower::scheme, "-", {0, 1}, "Integration scheme."),
         parameter("window", &Follower::window, "-", any_finite, "When it drives."));
+  }
+};
+
+struct Plan {
+  std::array<double, 2> weights{0.5, 2.0};
+  std::vector<Window> windows{{1.0, 2.0}, {3.0, 4.0}};
+  std::shared_ptr<std::vector<Window> const> shared{};
+  LaneId lane = none<LaneId>;
+
+  static constexpr char const* name = "plan";
+  static constexpr auto parameters() {
+    return std::make_tuple(parameter("weights", &Plan::weights, "kg", {0, 10}, "Of each half."),
+                           parameter("windows", &Plan::windows, "-", {}, "When it drives."),
+                           parameter("shared", &Plan::shared, "-", {}, "When others do."),
+                           parameter("lane", &Plan::lane, "-", {}, "Where."));
   }
 };
 
@@ -130,4 +149,54 @@ TEST_CASE("the table for the documentation has one row for each value") {
         "| scheme | 1 | - | [0, 1] | Integration scheme. |\n"
         "| window.from | 1 | s | [0, inf) | Begin. |\n"
         "| window.to | 2 | s | (0, inf) | End, not before the begin. |\n");
+}
+
+TEST_CASE("lists and ids are parameters like others: compared, hashed, shown and checked element by element") {
+  auto const shared = [](Window const& window) {
+    return std::make_shared<std::vector<Window> const>(std::vector<Window>{window});
+  };
+  std::vector<Plan> const different{{},
+                                    {.weights = {0.5, 2.5}},
+                                    {.weights = {2.0, 0.5}},
+                                    {.windows = {}},
+                                    {.windows = {{1.0, 2.0}}},
+                                    {.windows = {{1.0, 2.0}, {3.0, 4.0}, {3.0, 4.0}}},
+                                    {.windows = {{1.0, 2.0}, {3.0, 4.5}}},
+                                    {.windows = {{3.0, 4.0}, {1.0, 2.0}}},
+                                    {.shared = shared({5.0, 6.0})},
+                                    {.shared = shared({5.0, 7.0})},
+                                    {.lane = LaneId{0}},
+                                    {.lane = LaneId{7}}};
+  std::set<std::uint64_t> hashes;
+  std::set<std::string> lines;
+  for (auto const& one : different) {
+    for (auto const& other : different) CHECK(equal_parameters(one, other) == (&one == &other));
+    hashes.insert(hash_parameters(one));
+    lines.insert(to_string(one));
+  }
+  CHECK(hashes.size() == different.size());
+  CHECK(lines.size() == different.size());
+  Plan const one{.shared = shared({5.0, 6.0})}, same{.shared = shared({5.0, 6.0})};
+  CHECK(equal_parameters(one, same));
+  CHECK(hash_parameters(one) == hash_parameters(same));
+  CHECK(to_string(Plan{}) ==
+        "plan: weights[0]=0.5 kg, weights[1]=2 kg, windows[0].from=1 s, windows[0].to=2 s, windows[1].from=3 s, "
+        "windows[1].to=4 s, lane=none");
+  CHECK(to_string(different.back()).ends_with("lane=7"));
+  CHECK_NOTHROW(check_parameters(one));
+  CHECK_THROWS_WITH_AS(check_parameters(Plan{.weights = {1.0, 11.0}}),
+                       "plan.weights[1]: is 11 kg; give a value in [0, 10] kg", ParameterError);
+  CHECK_THROWS_WITH_AS(check_parameters(Plan{.windows = {{1.0, 2.0}, {-1.0, 2.0}}}),
+                       "plan.windows[1].from: is -1 s; give a value in [0, inf) s", ParameterError);
+  CHECK_THROWS_WITH_AS(check_parameters(Plan{.shared = shared({5.0, 4.0})}),
+                       "plan.shared[0]: ends before it begins; swap the two", ParameterError);
+  CHECK(describe_parameters<Plan>() ==
+        "| name | default | unit | range | meaning |\n"
+        "|---|---|---|---|---|\n"
+        "| weights[] | - | kg | [0, 10] | Of each half. |\n"
+        "| windows[].from | - | s | [0, inf) | Begin. |\n"
+        "| windows[].to | - | s | (0, inf) | End, not before the begin. |\n"
+        "| shared[].from | - | s | [0, inf) | Begin. |\n"
+        "| shared[].to | - | s | (0, inf) | End, not before the begin. |\n"
+        "| lane | none | - | - | Where. |\n");
 }

@@ -141,7 +141,7 @@ TEST_CASE("commands come into effect after the delay, to the period in which the
   for (double const delay : {0.0, 0.1, 0.2, 0.4, 0.6}) {
     cb::StanleyExecution execution;
     execution.lag_gain = 0.0;
-    execution.actuation = {.period = 0.02, .delay = delay};
+    execution.actuation = {.period = std::max(0.02, 0.25 * delay), .delay = delay};
     // Told to brake from the first moment on: the speed falls as soon as that comes into effect.
     cb::State x{.speed = 10.0};
     cb::TrackingMemory<cb::State> memory;
@@ -213,4 +213,49 @@ TEST_CASE_TEMPLATE("noise is the same for the same seed, another one for another
   CHECK(worst > 0.001);
   CHECK(worst < 0.5);
   for (auto const& s : straight_on(Execution{}, 200)) CHECK(std::abs(s.y) < 1e-12);
+}
+
+TEST_CASE(
+    "the regulator's gains are those for the interval that it acts at, whatever the step, the period and the delay") {
+  cb::LqrExecution lqr;
+  cb::SingleTrack const car;
+  cb::State const start{.y = 0.4, .heading = 0.02, .speed = 10.0};
+  for (double const delay : {0.0, 0.1})
+    for (double const step : {0.02, 0.05, 0.06, 0.2}) {
+      lqr.actuation = {.period = 0.05, .delay = delay};
+      double const interval = delay > 0.0 ? 0.25 * delay : step / std::ceil(step / 0.05 - 1e-9);
+      CHECK(lqr.actuation.interval(step) == doctest::Approx(interval));
+      cb::BasicPlan<cb::State> plan;
+      plan.trajectory.push_back({.speed = 10.0});
+      plan.trajectory.push_back({.time = step, .x = 10.0 * step, .speed = 10.0});
+      cb::TrackingMemory<cb::State> memory;
+      cb::RandomStream random(1, 1, 1);
+      auto const end = lqr.execute(plan, start, car, step, memory, random).state;
+      auto const gain = lqr.lateral_gain(10.0, car.wheel_base, interval);
+      if (delay > 0.0) {
+        auto const first =
+            cb::TrackingMemory<cb::State>::slots - static_cast<std::size_t>(std::ceil(step / interval - 1e-9));
+        if (step > delay) continue;
+        CHECK(static_cast<double>(memory.steering[first]) ==
+              doctest::Approx(-gain[0] * 0.4 - gain[1] * 0.02).epsilon(1e-6));
+        continue;
+      }
+      auto const along = lqr.longitudinal_gain(interval);
+      auto twin = start;
+      for (double t = 0.0; t < step - 1e-9; t += interval) {
+        double const lag = twin.x - 10.0 * t, faster = twin.speed - 10.0;
+        twin = cb::drive(car, twin, {-along[0] * lag - along[1] * faster, -gain[0] * twin.y - gain[1] * twin.heading},
+                         interval);
+      }
+      CHECK(end.y == doctest::Approx(twin.y).epsilon(1e-9));
+      CHECK(end.heading == doctest::Approx(twin.heading).epsilon(1e-9));
+    }
+}
+
+TEST_CASE("a delay of more than four periods is an error that says which period it takes") {
+  CHECK_NOTHROW(cb::check_parameters(cb::LqrExecution{.actuation = {.period = 0.05, .delay = 0.2}}));
+  CHECK_THROWS_WITH_AS(cb::check_parameters(cb::LqrExecution{.actuation = {.period = 0.05, .delay = 0.4}}),
+                       "lqr.actuation.delay: is longer than 4 periods: so many commands wait at most; give a period of "
+                       "at least 0.1 s",
+                       cb::ParameterError);
 }

@@ -124,3 +124,13 @@ TEST_CASE("all of several goals, or any of them, also within each other") {
   CHECK(cb::at_goal(original, at(0, 0)));
   CHECK_FALSE(cb::at_goal(copy, at(0, 0)));
 }
+
+TEST_CASE("goals of different lanes are different parameters") {
+  auto const differ = [](auto const& one, auto const& other) {
+    return !cb::equal_parameters(one, other) && cb::hash_parameters(one) != cb::hash_parameters(other) &&
+           cb::to_string(one) != cb::to_string(other);
+  };
+  CHECK(differ(cb::ReachLane{cb::LaneId{1}}, cb::ReachLane{cb::LaneId{2}}));
+  CHECK(differ(cb::LaneLimits{cb::LaneId{1}}, cb::LaneLimits{}));
+  CHECK(differ(cb::ReachLaneBeside{.from = cb::LaneId{1}}, cb::ReachLaneBeside{.from = cb::LaneId{2}}));
+}

@@ -51,17 +51,25 @@ using WorkspaceOf = typename detail::WorkspaceOf<B>::type;
 ///   `template <class View> Plan<View> plan(View const& view, Memory& memory, double dt) const`
 /// that says what the agent does over the next `dt` [s]: pure but for `memory`, no allocation, no exception. A world
 /// calls it once a step, on a view of frame k; `memory` is the agent's own, lives in the frame and is copied with it.
-/// It may have `double start_time() const` [s]: an agent that is added before is in traffic from then on only.
-/// One that needs much memory to plan, as a search, names a default constructible `Workspace`, and takes a reference to
+/// Where that holds how far the vehicle is on a course, `memory.fell_short(way, left_course)` puts it right: see
+/// `fell_short`. It may have `double start_time() const` [s]: an agent that is added before is in traffic from then on
+/// only. One that needs much memory to plan, as a search, names a default constructible `Workspace`, and takes a reference to
 /// one after `dt`: it belongs to the world, is used by agent after agent, is not copied, and what it holds must not
 /// change what is planned.
 template <class B>
-concept BehaviorModel = std::copyable<B> && std::copyable<MemoryOf<B>> && std::default_initializable<MemoryOf<B>> &&(
+concept BehaviorModel = std::copyable<B> && std::copyable<MemoryOf<B>> && std::default_initializable<MemoryOf<B>> && (
     requires(B const behavior, ViewArchetype const view, MemoryOf<B> memory, double dt) {
       { behavior.plan(view, memory, dt) } -> std::same_as<Plan<ViewArchetype>>;
     } ||
     requires(B const behavior, ViewArchetype const view, MemoryOf<B> memory, double dt, WorkspaceOf<B>& workspace) {
       { behavior.plan(view, memory, dt, workspace) } -> std::same_as<Plan<ViewArchetype>>;
     });
+
+/// Tells a behaviour's memory that the vehicle goes `way` [m] less along its last plan than that led, and whether it
+/// leaves the plan's course: what those who plan in another's stead call, see `RssConformant`.
+template <class Memory>
+void fell_short(Memory& memory, double way, bool left_course) {
+  if constexpr (requires { memory.fell_short(way, left_course); }) memory.fell_short(way, left_course);
+}
 
 }  // namespace cambium

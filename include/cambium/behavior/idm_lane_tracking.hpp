@@ -84,6 +84,7 @@ struct IdmLaneTracking {
   struct Memory {
     std::uint32_t from{}, straight_until{};  ///< segments of the centre line; the second one is not known
     float known_until{};                     ///< where that one begins [m]
+    float fastest{};                         ///< the speed at which it is none [m/s]
     std::uint16_t corridor = map::no_corridor;
 
     friend bool operator==(Memory const&, Memory const&) = default;
@@ -116,16 +117,17 @@ struct IdmLaneTracking {
   void slow_down(IdmParameters& p, View const& view, double speed, Memory& memory) const {
     auto const& at = view.lane_position();
     auto const segments = view.corridor().center.segments();
-    if (memory.corridor != at.corridor || at.segment < memory.from) memory = {at.segment, 0, 0.0f, at.corridor};
+    double const fastest = std::max(speed, idm.desired_speed), square = fastest * fastest;
+    auto const faster = static_cast<float>(fastest);
+    if (memory.corridor != at.corridor || at.segment < memory.from || faster > memory.fastest)
+      memory = {at.segment, 0, 0.0f, faster, at.corridor};
     memory.from = at.segment;
     double const twice_braking = 2.0 * p.comfortable_deceleration, reach = at.s + speed * (speed / twice_braking + 1.0);
     if (reach < static_cast<double>(memory.known_until)) return;
-    double const fastest = std::max(speed, idm.desired_speed), square = fastest * fastest;
     double const comfortable = 0.85 * lateral_acceleration_limit;  // the rest is for corrections
     auto i = static_cast<std::size_t>(std::max(at.segment, memory.straight_until));
-    while (i < segments.size() && segments[i].s < reach + 50.0 &&
-           std::abs(segments[i].curvature) * square <= comfortable)
-      ++i;
+    double const straight = comfortable / (static_cast<double>(memory.fastest) * static_cast<double>(memory.fastest));
+    while (i < segments.size() && segments[i].s < reach + 50.0 && std::abs(segments[i].curvature) <= straight) ++i;
     memory.straight_until = static_cast<std::uint32_t>(i);
     memory.known_until = i < segments.size() ? static_cast<float>(segments[i].s) : std::numeric_limits<float>::max();
     double lowest = square, way = 0.0;

@@ -16,7 +16,7 @@ namespace cambium {
 
 /// A driver who now and then lets others in: for a while it follows, beside its own leader, the next vehicle ahead in
 /// each neighbouring lane that ends soon or joins its own, where comfortable braking is enough; then for a while it
-/// does not.
+/// does not. Each one begins somewhere in between.
 template <class Distribution>
 struct Yielding {
   bool enabled = false;
@@ -103,7 +103,9 @@ struct BasicIdmStochastic {
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
     auto stream = view.random(purpose);
-    if (memory.person == 0) memory.person = static_cast<std::uint32_t>(stream() >> 32) | 1u;
+    bool const is_new = memory.person == 0;
+    if (is_new) memory.person = static_cast<std::uint32_t>(stream() >> 32) | 1u;
+    if (yielding.enabled && is_new) begin_somewhere(stream, memory);
     if (yielding.enabled) change_mind(stream, memory, dt);
     double const speed = std::max(0.0, view.state().speed);
     RandomStream own(memory.person, 0, 0, purpose);
@@ -117,13 +119,28 @@ struct BasicIdmStochastic {
  private:
   static constexpr std::uint32_t purpose = 0x1d5;
 
+  template <BitStream Stream>
+  [[nodiscard]] double duration(Stream& stream, bool yields) const {
+    return std::max(0.1, (yields ? yielding.yields : yielding.insists)(stream));
+  }
+
+  /// Enters somewhere between the begin of yielding and the end of insisting: drivers do not change their minds in
+  /// step.
+  template <BitStream Stream>
+  void begin_somewhere(Stream& stream, Memory& memory) const {
+    double const yields = duration(stream, true), insists = duration(stream, false);
+    double const left = uniform01(stream) * (yields + insists);  // of insisting, before that of yielding
+    memory.yields = left >= insists;
+    memory.left = static_cast<float>(memory.yields ? left - insists : left);
+  }
+
   /// Goes on with its intention, or has the other one from now on.
   template <BitStream Stream>
   void change_mind(Stream& stream, Memory& memory, double dt) const {
     memory.left -= static_cast<float>(dt);
     if (memory.left > 0.0f) return;
     memory.yields = !memory.yields;
-    memory.left = static_cast<float>(std::max(0.1, (memory.yields ? yielding.yields : yielding.insists)(stream)));
+    memory.left = static_cast<float>(duration(stream, memory.yields));
   }
 
   template <class View, class Law>

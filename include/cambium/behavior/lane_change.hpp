@@ -38,10 +38,18 @@ template <class Scalar>
 /// A lane change in progress: what a behaviour that changes lanes remembers of it.
 struct LaneChange {
   std::uint16_t target = map::no_corridor;  ///< number of the lane corridor that it leads to; none: keeps its lane
-  float left{};                             ///< of its length [m]
+  float left{};                             ///< of its length [m]; 0: it is to begin anew from where the vehicle is
   float bend{};                             ///< of its course at the vehicle [1/m]
 
   [[nodiscard]] bool active() const { return target != map::no_corridor; }
+
+  /// See `cambium::fell_short`.
+  void fell_short(double way, bool left_course) {
+    if (left_course)
+      left = bend = 0.0f;
+    else if (active())
+      left += static_cast<float>(way);
+  }
 
   friend bool operator==(LaneChange const&, LaneChange const&) = default;
 };
@@ -69,6 +77,11 @@ struct LaneChangeCourse {
                                  double room = std::numeric_limits<double>::infinity()) const {
     double const shortest = std::max(minimum_length, speed * std::min(shortest_duration, duration));
     return {target, static_cast<float>(std::max(shortest, std::min(speed * duration, room))), 0.0f};
+  }
+
+  /// Begins a change anew whose course the vehicle has been made to leave.
+  void renew(LaneChange& change, double speed) const {
+    if (change.active() && !(change.left > 0.0f)) change = begin(change.target, speed);
   }
 
   /// The way back to lane corridor `home` at `speed` [m/s]; `bend`: of the course until then, at the vehicle.
@@ -131,7 +144,8 @@ template <class View>
   if (!change.active()) return plan_to_center(view, change.bend, motion, dt);
   map::LanePosition const at = view.lane_position(change.target);
   auto const& corridor = view.road().corridors[change.target];
-  if (at.s >= corridor.length() || std::abs(at.heading_error) > detail::most_aslant) {  // it ends, or was left
+  bool const is_over = at.s >= corridor.length() || !(change.left > 0.0f);
+  if (is_over || std::abs(at.heading_error) > detail::most_aslant) {  // it ends, or was left
     change = {};
     return plan_to_center(view, change.bend, motion, dt);
   }

@@ -75,6 +75,8 @@ struct LaneChanging {
     LaneChange change{};
     float rest{};  ///< [s] until the next change may begin
 
+    void fell_short(double way, bool left_course) { change.fell_short(way, left_course); }
+
     friend bool operator==(Memory const&, Memory const&) = default;
   };
 
@@ -88,6 +90,7 @@ struct LaneChanging {
     auto const leader = view.front();
     auto const home = view.lane_position().corridor;
     memory.rest = std::max(0.0f, memory.rest - static_cast<float>(dt));
+    course.renew(memory.change, speed);
     if (memory.change.active()) {
       if (memory.change.target != home && !may_go_on(view, law, speed, memory.change)) abort(view, speed, memory);
       auto const ahead = ahead_while_changing(view, law, speed, leader, memory.change);

@@ -1,8 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
@@ -11,6 +9,8 @@
 #include <string>
 #include <tuple>
 
+#include <boost/container/static_vector.hpp>
+
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/constant_acceleration.hpp"
 #include "cambium/behavior/idm.hpp"
@@ -18,6 +18,7 @@
 #include "cambium/behavior/lane_change.hpp"
 #include "cambium/behavior/lane_ends.hpp"
 #include "cambium/core/error.hpp"
+#include "cambium/core/parameters.hpp"
 
 namespace cambium {
 
@@ -32,6 +33,15 @@ struct MacroAction {
 
   Kind kind = Kind::stay;
   double acceleration = 0.0;  ///< [m/s^2]
+
+  static constexpr char const* name = "macro_action";
+  static constexpr char const* summary = "one manoeuvre of `MacroActions`";
+  static constexpr auto parameters() {
+    using P = MacroAction;
+    return std::make_tuple(
+        parameter("kind", &P::kind, "-", Range{0, 3}, "0 stay, 1 change_left, 2 change_right, 3 keep_gap"),
+        parameter("acceleration", &P::acceleration, "m/s^2", Range{-50, 50}, "not of keep_gap"));
+  }
 
   friend bool operator==(MacroAction const&, MacroAction const&) = default;
 };
@@ -69,17 +79,15 @@ struct MacroActions {
       is_new = true;
     }
 
+    void fell_short(double way, bool left_course) { change.fell_short(way, left_course); }
+
     friend bool operator==(Memory const&, Memory const&) = default;
   };
 
-  std::array<MacroAction, capacity> actions{{{Kind::keep_gap},
-                                             {Kind::stay, 0.0},
-                                             {Kind::stay, 1.5},
-                                             {Kind::stay, -2.0},
-                                             {Kind::stay, -5.0},
-                                             {Kind::change_left},
-                                             {Kind::change_right}}};
-  int count = 7;
+  /// 1 to `capacity` of them.
+  boost::container::static_vector<MacroAction, capacity> actions{
+      {Kind::keep_gap},   {Kind::stay, 0.0},   {Kind::stay, 1.5},   {Kind::stay, -2.0},
+      {Kind::stay, -5.0}, {Kind::change_left}, {Kind::change_right}};
   double highest_speed = 50.0;
   double minimum_remaining = 20.0;
   IdmParameters idm{};
@@ -94,7 +102,7 @@ struct MacroActions {
   static constexpr auto parameters() {
     using P = MacroActions;
     return std::make_tuple(
-        parameter("count", &P::count, "-", Range{1, capacity}, "how many of the actions there are"),
+        parameter("actions", &P::actions, "-", {}, "what can be chosen, 1 to 16"),
         parameter("highest_speed", &P::highest_speed, "m/s", Range{0, 200}, "not exceeded by accelerating"),
         parameter("minimum_remaining", &P::minimum_remaining, "m", Range{0, 10'000},
                   "no change into a lane that ends, or begins to merge into its neighbour, sooner"),
@@ -104,38 +112,40 @@ struct MacroActions {
                   "error of IDM's exact integration, as speed per second"));
   }
 
-  /// Throws `ParameterError` where an acceleration is none that a vehicle has.
   void check(std::string const& where) const {
-    for (auto const& action : actions)
-      if (!(std::abs(action.acceleration) <= 50.0))
-        throw ParameterError(where, "has an action beyond 50 m/s^2", "give what a vehicle can do");
+    if (actions.empty()) throw ParameterError(where + ".actions", "has none", "give 1 to 16");
   }
 
   /// With these actions. Throws `ParameterError` for none, or more than `capacity`.
   [[nodiscard]] static MacroActions of(std::initializer_list<MacroAction> list) {
     if (list.size() == 0 || list.size() > capacity)
       throw ParameterError(name, "has " + std::to_string(list.size()) + " actions", "give 1 to 16");
-    MacroActions result;
-    std::copy(list.begin(), list.end(), result.actions.begin());
-    result.count = static_cast<int>(list.size());
-    return result;
+    return {.actions = list};
   }
 
-  [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(count); }
+  [[nodiscard]] std::size_t size() const { return actions.size(); }
 
-  /// Whether action `number` could begin now: a change needs a lane of the road on that side, long enough. O(1).
+  /// Whether action `number` could begin now, `change` being under way: a change needs a lane of the road on that side,
+  /// long enough; one back to the lane that it came from can always begin. O(1).
   template <class View>
-  [[nodiscard]] bool available(View const& view, std::size_t number) const {
-    return number < size() && (!is_change(actions[number].kind) || side_of(view, actions[number].kind) != none);
+  [[nodiscard]] bool available(View const& view, std::size_t number, LaneChange const& change = {}) const {
+    if (number >= size()) return false;
+    return !is_change(actions[number].kind) || side_of(view, actions[number].kind, change) != none;
   }
 
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
     auto const action = memory.chosen < size() ? actions[memory.chosen] : MacroAction{};
     double const speed = std::max(0.0, view.state().speed);
+    course.renew(memory.change, speed);
     if (memory.is_new && is_change(action.kind)) {
-      auto const side = side_of(view, action.kind);
-      if (side != none && side != memory.change.target) memory.change = course.begin(side, speed);
+      auto const side = side_of(view, action.kind, memory.change);
+      if (side != none && side != memory.change.target) {
+        bool const is_back = side == view.lane_position().corridor;
+        float const bend = memory.change.bend;
+        memory.change = is_back ? course.back(side, speed, bend) : course.begin(side, speed);
+        memory.change.bend = bend;
+      }
     }
     memory.is_new = false;
     return plan_lane_change(view, memory.change, motion(view, memory.change, action, speed, dt), dt);
@@ -146,12 +156,14 @@ struct MacroActions {
 
   [[nodiscard]] static bool is_change(Kind kind) { return kind == Kind::change_left || kind == Kind::change_right; }
 
-  /// The lane corridor that a change leads to.
+  /// The lane corridor that a change leads to: the own one where a change to the other side is under way in it.
   template <class View>
-  [[nodiscard]] std::uint16_t side_of(View const& view, Kind kind) const {
+  [[nodiscard]] std::uint16_t side_of(View const& view, Kind kind, LaneChange const& change) const {
     auto const& at = view.lane_position();
     auto const& piece = view.corridor().pieces[at.piece];
-    auto const side = kind == Kind::change_left ? piece.left : piece.right;
+    auto const side = kind == Kind::change_left ? piece.left : piece.right,
+               other_side = kind == Kind::change_left ? piece.right : piece.left;
+    if (change.active() && change.target == other_side) return at.corridor;
     if (side == none) return none;
     auto const there = view.lane_position(side);
     return lane_end(view, side, there.piece) - there.s < minimum_remaining ? none : side;

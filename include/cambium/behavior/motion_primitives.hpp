@@ -1,16 +1,17 @@
 #pragma once
 
-#include <algorithm>
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
 #include <string>
 #include <tuple>
 
+#include <boost/container/static_vector.hpp>
+
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/external_input.hpp"
 #include "cambium/core/error.hpp"
+#include "cambium/core/parameters.hpp"
 
 namespace cambium {
 
@@ -18,6 +19,15 @@ namespace cambium {
 struct MotionPrimitive {
   double acceleration = 0.0;  ///< [m/s^2]
   double steering = 0.0;      ///< steering angle, left positive [rad]
+
+  static constexpr char const* name = "motion_primitive";
+  static constexpr char const* summary = "one input of `MotionPrimitives`";
+  static constexpr auto parameters() {
+    using P = MotionPrimitive;
+    return std::make_tuple(
+        parameter("acceleration", &P::acceleration, "m/s^2", Range{-50, 50}, "along the heading"),
+        parameter("steering", &P::steering, "rad", Range{-1.5, 1.5}, "steering angle, left positive"));
+  }
 
   friend bool operator==(MotionPrimitive const&, MotionPrimitive const&) = default;
 };
@@ -33,8 +43,8 @@ struct MotionPrimitives {
     friend bool operator==(Memory, Memory) = default;
   };
 
-  std::array<MotionPrimitive, capacity> primitives{{{0, 0}, {2, 0}, {-3, 0}, {0, 0.1}, {0, -0.1}}};
-  int count = 5;
+  /// 1 to `capacity` of them.
+  boost::container::static_vector<MotionPrimitive, capacity> primitives{{0, 0}, {2, 0}, {-3, 0}, {0, 0.1}, {0, -0.1}};
   InputScheme scheme = InputScheme::rk4;
   double longest_substep = 0.1;
 
@@ -45,30 +55,24 @@ struct MotionPrimitives {
   static constexpr auto parameters() {
     using P = MotionPrimitives;
     return std::make_tuple(
-        parameter("count", &P::count, "-", Range{1, capacity}, "how many of the primitives there are"),
+        parameter("primitives", &P::primitives, "-", {}, "what can be chosen, 1 to 16"),
         parameter("scheme", &P::scheme, "-", Range{0, 1}, "integration of the vehicle model: 0 RK4, 1 Euler"),
         parameter("longest_substep", &P::longest_substep, "s", Range{1e-4, 10},
                   "a step is integrated in equal parts no longer than this"));
   }
 
-  /// Throws `ParameterError` where a primitive is no finite number.
   void check(std::string const& where) const {
-    for (auto const& p : primitives)
-      if (!(std::abs(p.acceleration) <= 50.0 && std::abs(p.steering) <= 1.5))
-        throw ParameterError(where, "has a primitive beyond 50 m/s^2 or 1.5 rad", "give what a vehicle can do");
+    if (primitives.empty()) throw ParameterError(where + ".primitives", "has none", "give 1 to 16");
   }
 
   /// With these primitives. Throws `ParameterError` for none, or more than `capacity`.
   [[nodiscard]] static MotionPrimitives of(std::initializer_list<MotionPrimitive> list) {
     if (list.size() == 0 || list.size() > capacity)
       throw ParameterError(name, "has " + std::to_string(list.size()) + " primitives", "give 1 to 16");
-    MotionPrimitives result;
-    std::copy(list.begin(), list.end(), result.primitives.begin());
-    result.count = static_cast<int>(list.size());
-    return result;
+    return {.primitives = list};
   }
 
-  [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(count); }
+  [[nodiscard]] std::size_t size() const { return primitives.size(); }
 
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory const& memory, double dt) const {

@@ -30,6 +30,8 @@ struct RandomMacroActions {
     MacroActions::Memory macro{};
     float left{};  ///< [s] until the next choice
 
+    void fell_short(double way, bool left_course) { macro.fell_short(way, left_course); }
+
     friend bool operator==(Memory const&, Memory const&) = default;
   };
 
@@ -48,12 +50,12 @@ struct RandomMacroActions {
   template <class View>
   void choose(View const& view, MacroActions::Memory& memory) const {
     std::uint32_t available = 0;
-    for (std::size_t i = 0; i < macro.size(); ++i) available += macro.available(view, i) ? 1 : 0;
+    for (std::size_t i = 0; i < macro.size(); ++i) available += macro.available(view, i, memory.change) ? 1 : 0;
     if (available == 0) return;
     auto random = view.random(0);
     auto nth = uniform_index(random, available);
     for (std::size_t i = 0; i < macro.size(); ++i)
-      if (macro.available(view, i) && nth-- == 0) return memory.choose(i);
+      if (macro.available(view, i, memory.change) && nth-- == 0) return memory.choose(i);
   }
 };
 static_assert(BehaviorModel<RandomMacroActions>);

@@ -7,9 +7,11 @@
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/constant_acceleration.hpp"
+#include "cambium/behavior/course.hpp"
 #include "cambium/behavior/follow_lane.hpp"
 #include "cambium/behavior/rss.hpp"
 #include "cambium/core/macros.hpp"
+#include "cambium/execution/interpolate.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/shape.hpp"
 
@@ -17,10 +19,11 @@ namespace cambium {
 
 /// Any behaviour, but for dangerous situations by Responsibility-Sensitive Safety (see rss.hpp) with those who are in
 /// the own lane and those beside: there it brakes, or comes no closer to a side, as the proper response asks. It also
-/// keeps its accelerations within what others count on. Plans may turn in sideways harder than `lateral_acceleration`:
-/// that a plan does not make a situation dangerous is asked of where it leads, as if the other did the same. A plan
-/// that is not followed is forgotten: the nominal behaviour decides again from what it remembered before. Steps must
-/// not be longer than `response_time`. O(agents within some hundred metres).
+/// keeps its accelerations within what others count on. Who has to brake stays on the course of the nominal behaviour;
+/// who has to keep off a side keeps its lateral place and drives on along the lane. The nominal behaviour plans in each
+/// step and remembers it, and is told how much of its course was not driven (`fell_short`). Plans may turn in sideways
+/// harder than `lateral_acceleration`: that a plan does not make a situation dangerous is asked of where it leads, as
+/// if the other did the same. Steps must not be longer than `response_time`. O(agents within some hundred metres).
 template <BehaviorModel Nominal>
 struct RssConformant {
   Nominal nominal{};
@@ -41,19 +44,25 @@ struct RssConformant {
 
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
-    auto remembered = memory;
-    auto plan = nominal.plan(view, remembered, dt);
-    if (plan.status != PlanStatus::valid || plan.trajectory.empty()) return plan;
-    auto const& end = plan.trajectory.back();
-    auto const must = response(view, end, dt);
-    double const speed = std::max(0.0, view.state().speed), wanted = (end.speed - speed) / dt;
+    auto plan = nominal.plan(view, memory, dt);
+    if (plan.status != PlanStatus::valid) return plan;
+    auto const end = InterpolateExecution{}.execute(plan, view.state(), view.dynamics(), view.time() + dt);
+    if (!end.valid) return plan;
+    auto const must = response(view, end.state, dt);
+    bool const keeps_off = must.keep_off_left || must.keep_off_right;
+    double const speed = std::max(0.0, view.state().speed), wanted = (end.state.speed - speed) / dt;
     double const most = must.brake ? -rss.minimum_deceleration : rss.maximum_acceleration;
     double const acceleration = std::clamp(wanted, -rss.maximum_deceleration, most);
-    if (std::abs(acceleration - wanted) <= rounding && !must.keep_off_left && !must.keep_off_right) {
-      memory = remembered;
-      return plan;
-    }
-    return plan_along_lane(view, ConstantAcceleration{.acceleration = acceleration}.motion(speed, dt), dt);
+    bool const as_wanted = std::abs(acceleration - wanted) <= rounding;
+    if (as_wanted && !keeps_off) return plan;
+    while (!plan.trajectory.empty() && plan.trajectory.back().time >= end.state.time) plan.trajectory.pop_back();
+    plan.trajectory.push_back(end.state);
+    double const way = course_length(plan, view.state());
+    LongitudinalMotion<double> motion{way, end.state.speed};
+    if (!as_wanted) motion = ConstantAcceleration{.acceleration = acceleration}.motion(speed, dt);
+    if (acceleration < wanted) motion.distance = std::min(motion.distance, way);
+    fell_short(memory, keeps_off ? way : way - motion.distance, keeps_off);
+    return keeps_off ? plan_along_lane(view, motion, dt) : plan_along_course(view, plan, motion, dt);
   }
 
   /// The proper response to all that is near, where the vehicle means to be in the state `end` after `dt` [s]: `brake`

@@ -31,6 +31,7 @@ struct Safety {
     auto const lane = view.lane_position().corridor;
     if (memory.active() ? memory.target != lane : std::abs(view.lane_position().lateral) > off_middle)
       memory = course.begin(lane, speed);
+    course.renew(memory, speed);
     return plan_lane_change(view, memory, ConstantAcceleration{.acceleration = -deceleration}.motion(speed, dt), dt);
   }
 

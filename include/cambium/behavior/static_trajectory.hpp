@@ -30,14 +30,16 @@ struct StaticTrajectory {
   static constexpr char const* summary =
       "replays recorded states, between two of them linearly; enters and leaves traffic with its recording";
   static constexpr char const* source = "interpolation";
-  static constexpr auto parameters() { return std::make_tuple(); }
+  static constexpr auto parameters() {
+    return std::make_tuple(parameter("states", &StaticTrajectory::states, "-", {}, "recorded, in order of time"));
+  }
 
-  /// Throws `ParameterError` where there are no states, one is not finite, or their times do not ascend.
+  /// Throws `ParameterError` where there are no states, or their times do not ascend.
   void check(std::string const& where) const {
     if (!states || states->empty()) throw ParameterError(where, "has no recorded states", "give at least one");
-    for (std::size_t i = 0; i < states->size(); ++i)
-      if (!is_finite((*states)[i]) || (i > 0 && !((*states)[i - 1].time < (*states)[i].time)))
-        throw ParameterError(where + " state " + std::to_string(i), "is not finite, or not later than the one before",
+    for (std::size_t i = 1; i < states->size(); ++i)
+      if (!((*states)[i - 1].time < (*states)[i].time))
+        throw ParameterError(where + ".states[" + std::to_string(i) + "]", "is not later than the one before",
                              "sort the recording by time");
   }
 

@@ -47,6 +47,10 @@ struct ZipMerge {
     float stood{};                  ///< how long it has been standing [s]
     float bend{};                   ///< see `plan_to_center`
 
+    void fell_short(double /*way*/, bool left_course) {
+      if (left_course) bend = 0.0f;
+    }
+
     friend bool operator==(Memory const&, Memory const&) = default;
   };
 

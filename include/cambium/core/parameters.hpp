@@ -1,108 +1,29 @@
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <charconv>
+#include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <string>
-#include <tuple>
 #include <type_traits>
 
+#include "cambium/core/described.hpp"
+#include "cambium/core/detail/parameter_values.hpp"
 #include "cambium/core/error.hpp"
+#include "cambium/core/ids.hpp"
 
 namespace cambium {
 
-/// Valid values of a parameter: `low` to `high`, both included. An infinite bound admits infinity as a value; use the
-/// ranges below where it must not.
-struct Range {
-  double low, high;
-};
-
-/// Every number, but neither infinity nor NaN.
-inline constexpr Range any_finite{std::numeric_limits<double>::lowest(), std::numeric_limits<double>::max()};
-/// Zero and every finite number above.
-inline constexpr Range non_negative{0.0, std::numeric_limits<double>::max()};
-/// Every finite number above zero.
-inline constexpr Range positive{std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::max()};
-
-/// One field of a parameter struct: its key, where it lives, its unit ("m/s", "-" for none), its valid range, and one
-/// sentence that says what it means. `Field`: `double`, `float`, an integer, `bool`, an enum (its number is checked),
-/// or another described struct (its own ranges count, and its keys appear as "outer.inner").
-template <class Owner, class Field>
-struct Parameter {
-  char const* name;
-  Field Owner::*field;
-  char const* unit;
-  Range range;
-  char const* sentence;
-};
-
-/// Describes one field; the elements of the tuple that `parameters()` returns.
-template <class Owner, class Field>
-[[nodiscard]] constexpr Parameter<Owner, Field> parameter(char const* name, Field Owner::*field, char const* unit,
-                                                          Range range, char const* sentence) {
-  return {name, field, unit, range, sentence};
-}
-
-/// A parameter struct that says once, in one place, what its fields are. It has
-///   `static constexpr char const* name = "idm_classic";`   (its own name in files and messages)
-///   `static constexpr auto parameters() { return std::make_tuple(parameter(...), ...); }`
-/// and, where fields depend on each other, `void check(std::string const& where) const`, which throws `ParameterError`;
-/// `where` is the full key of the struct ("traffic.json: source.spacing").
-/// Models say more of themselves: `summary`, their law in short, and `source`, where it was published.
-/// Checking, printing, comparing, hashing, every file format and the documentation follow from that.
-template <class T>
-concept Described = requires {
-  T::parameters();
-};
-
-/// Calls `f(parameter)` for each field of T, in the order of the description. Nested structs are one parameter.
-template <Described T, class F>
-constexpr void for_each_parameter(F&& f) {
-  std::apply([&f](auto const&... parameters) { (f(parameters), ...); }, T::parameters());
-}
-
 namespace detail {
 
-/// A key's path from the outermost struct, made into text only when somebody reads it.
-struct ParameterPath {
-  ParameterPath const* outer;
-  char const* name;
-
-  [[nodiscard]] std::string text() const { return outer != nullptr ? outer->text() + "." + name : std::string(name); }
-};
-
-template <Described T>
-[[nodiscard]] constexpr char const* struct_name() {
-  if constexpr (requires { T::name; }) {
-    return T::name;
-  } else {
-    return "parameters";
-  }
-}
-
-/// Calls `f(path, parameter, value)` for each field that is a plain value, nested structs included.
-template <Described T, class F>
-constexpr void visit_values(T const& object, ParameterPath const* outer, F&& f) {
-  for_each_parameter<T>([&](auto const& entry) {
-    auto const& value = object.*entry.field;
-    using Field = std::remove_cvref_t<decltype(value)>;
-    ParameterPath const path{outer, entry.name};
-    if constexpr (Described<Field>) {
-      visit_values(value, &path, f);
-    } else {
-      static_assert(std::is_arithmetic_v<Field> || std::is_enum_v<Field>,
-                    "cambium::parameter: a field must be a number, a bool, an enum or another described struct.");
-      f(path, entry, value);
-    }
-  });
-}
-
-/// Shortest text that reads back as the same number; enums as their number.
+/// Shortest text that reads back as the same number; enums as their number, the id of nothing as "none".
 template <class Value>
 [[nodiscard]] std::string number_text(Value value) {
   if constexpr (std::is_same_v<Value, bool>) {
     return value ? "true" : "false";
+  } else if constexpr (StrongId<Value>) {
+    return to_string(value);
   } else if constexpr (std::is_enum_v<Value>) {
     return std::to_string(static_cast<std::underlying_type_t<Value>>(value));
   } else {
@@ -125,9 +46,13 @@ template <class Value>
   return text + ", " + (range.high == any_finite.high ? "inf)" : number_text(range.high) + "]");
 }
 
+/// Whether values of the type have a range.
+template <class Value>
+inline constexpr bool has_range = !std::is_same_v<Value, bool> && !StrongId<Value>;
+
 template <class Value>
 [[nodiscard]] constexpr bool in_range(Value value, Range range) {
-  if constexpr (std::is_same_v<Value, bool>) {
+  if constexpr (!has_range<Value>) {
     return true;
   } else {
     auto const number = static_cast<double>(value);
@@ -142,15 +67,17 @@ template <class Value>
 }
 
 /// Calls the own checks of a struct and of the structs in it, where they have one, with the full key as `where`.
-template <Described T>
-void check_relations(T const& object, ParameterPath const& path, std::string const& where) {
-  for_each_parameter<T>([&](auto const& entry) {
-    if constexpr (Described<std::remove_cvref_t<decltype(object.*entry.field)>>) {
-      check_relations(object.*entry.field, ParameterPath{&path, entry.name}, where);
-    }
-  });
-  if constexpr (requires { object.check(where); }) {
-    object.check((where.empty() ? "" : where + ": ") + path.text());
+template <class Value>
+void check_relations(Value const& value, ParameterPath const& path, std::string const& where) {
+  if constexpr (Described<Value>) {
+    for_each_parameter<Value>([&](auto const& entry) {
+      check_relations(value.*entry.field, ParameterPath{&path, entry.name}, where);
+    });
+    if constexpr (requires { value.check(where); }) value.check((where.empty() ? "" : where + ": ") + path.text());
+  } else if constexpr (ParameterList<Value>) {
+    std::size_t i = 0;
+    for (auto const& element : elements_of(value))
+      check_relations(element, ParameterPath{path.outer, path.name, i++}, where);
   }
 }
 
@@ -162,7 +89,7 @@ void check_relations(T const& object, ParameterPath const& path, std::string con
 template <Described T>
 void check_parameters(T const& object, std::string const& where = {}) {
   detail::ParameterPath const root{nullptr, detail::struct_name<T>()};
-  detail::visit_values(object, &root, [&where](auto const& path, auto const& entry, auto value) {
+  detail::visit_values<true>(object, &root, [&where](auto const& path, auto const& entry, auto value) {
     if (!detail::in_range(value, entry.range)) {
       detail::throw_out_of_range(where, path.text(), detail::number_text(value), entry.range, entry.unit);
     }
@@ -170,37 +97,41 @@ void check_parameters(T const& object, std::string const& where = {}) {
   detail::check_relations(object, root, where);
 }
 
-/// True when all fields are equal by `==` (so 0 equals -0, and NaN equals nothing).
-template <Described T>
-[[nodiscard]] constexpr bool equal_parameters(T const& a, T const& b) {
-  bool equal = true;
-  for_each_parameter<T>([&](auto const& entry) {
-    if constexpr (Described<std::remove_cvref_t<decltype(a.*entry.field)>>) {
-      equal = equal && equal_parameters(a.*entry.field, b.*entry.field);
-    } else {
-      equal = equal && a.*entry.field == b.*entry.field;
-    }
-  });
-  return equal;
+namespace detail {
+
+template <class Value>
+[[nodiscard]] constexpr bool equal_values(Value const& a, Value const& b) {
+  if constexpr (Described<Value>) {
+    bool equal = true;
+    for_each_parameter<Value>(
+        [&](auto const& entry) { equal = equal && equal_values(a.*entry.field, b.*entry.field); });
+    return equal;
+  } else if constexpr (ParameterList<Value>) {
+    auto const of_a = elements_of(a), of_b = elements_of(b);
+    return std::equal(of_a.begin(), of_a.end(), of_b.begin(), of_b.end(),
+                      [](auto const& one, auto const& other) { return equal_values(one, other); });
+  } else {
+    return a == b;
+  }
 }
 
-/// The parameters of T as a Markdown table with header: name, default, unit, range, meaning.
+}  // namespace detail
+
+/// True when all fields are equal by `==` (so 0 equals -0, and NaN equals nothing), lists element by element.
+template <Described T>
+[[nodiscard]] constexpr bool equal_parameters(T const& a, T const& b) {
+  return detail::equal_values(a, b);
+}
+
+/// The parameters of T as a Markdown table with header: name, default, unit, range, meaning. For a list what each of
+/// its elements has.
 template <Described T>
 [[nodiscard]] std::string describe_parameters() {
   std::string table = "| name | default | unit | range | meaning |\n|---|---|---|---|---|\n";
-  for_each_parameter<T>([&](auto const& outer) {
-    T const defaults{};
-    auto const row = [&table](auto const& path, auto const& entry, auto value) {
-      bool const has_range = !std::is_same_v<decltype(value), bool>;
-      table += "| " + path.text() + " | " + detail::number_text(value) + " | " + entry.unit + " | " +
-               (has_range ? detail::range_text(entry.range) : "-") + " | " + entry.sentence + " |\n";
-    };
-    detail::ParameterPath const path{nullptr, outer.name};
-    if constexpr (Described<std::remove_cvref_t<decltype(defaults.*outer.field)>>) {
-      detail::visit_values(defaults.*outer.field, &path, row);
-    } else {
-      row(path, outer, defaults.*outer.field);
-    }
+  detail::visit_values<false>(T{}, nullptr, [&table](auto const& path, auto const& entry, auto value) {
+    table += "| " + path.text() + " | " + (path.is_any_element() ? "-" : detail::number_text(value)) + " | " +
+             entry.unit + " | " + (detail::has_range<decltype(value)> ? detail::range_text(entry.range) : "-") + " | " +
+             entry.sentence + " |\n";
   });
   return table;
 }
@@ -209,7 +140,7 @@ template <Described T>
 template <Described T>
 [[nodiscard]] std::string to_string(T const& object) {
   std::string line;
-  detail::visit_values(object, nullptr, [&line](auto const& path, auto const& entry, auto value) {
+  detail::visit_values<true>(object, nullptr, [&line](auto const& path, auto const& entry, auto value) {
     line += (line.empty() ? "" : ", ") + path.text() + "=" + detail::with_unit(detail::number_text(value), entry.unit);
   });
   return std::string(detail::struct_name<T>()) + ": " + line;
@@ -235,8 +166,11 @@ template <Described T>
     for (int shift = 0; shift < 64; shift += 8) add_byte((bits >> shift) & 0xffu);
   };
   add_name(detail::struct_name<T>());
-  detail::visit_values(object, nullptr, [&](auto const& path, auto const& entry, auto value) {
-    for (auto const* outer = path.outer; outer != nullptr; outer = outer->outer) add_name(outer->name);
+  detail::visit_values<true>(object, nullptr, [&](auto const& path, auto const& entry, auto value) {
+    for (auto const* key = &path; key != nullptr; key = key->outer) {
+      if (key != &path) add_name(key->name);
+      if (key->element != key->no_list) add_value(key->element);
+    }
     add_name(entry.name);
     add_value(value);
   });

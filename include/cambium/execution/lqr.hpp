@@ -65,7 +65,7 @@ struct LqrExecution {
   [[nodiscard]] Executed<S> execute(BasicPlan<S> const& plan, S const& now, Dynamics const& dynamics, double time,
                                     TrackingMemory<S>& memory, RandomStream& random) const {
     double const wheel_base = wheel_base_of(dynamics);
-    double const h = std::min(actuation.period, std::max(1e-3, time - now.time));
+    double const h = actuation.interval(std::max(1e-3, time - now.time));
     Gain const across = lateral_gain(now.speed, wheel_base, h), along = longitudinal_gain(h);
     auto const law = [&](Reference const& reference, TrackingError const& error, S const&, double) -> Action {
       return {reference.acceleration - along[0] * error.along - along[1] * error.speed,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <string>
 #include <tuple>
 
 #include "cambium/core/distributions.hpp"
@@ -14,8 +15,11 @@
 
 namespace cambium {
 
-/// How a vehicle carries out what its controller commands: late, and not quite.
+/// How a vehicle carries out what its controller commands: late, and not quite. A delay is one of at most four periods:
+/// so many commands wait.
 struct Actuation {
+  static constexpr int waiting = 4;
+
   double period = 0.05;
   double delay = 0.0;
   Normal acceleration_noise{0.0, 0.0};
@@ -28,11 +32,28 @@ struct Actuation {
     return std::make_tuple(
         parameter("period", &Actuation::period, "s", Range{1e-3, 1}, "the controller acts at least this often"),
         parameter("delay", &Actuation::delay, "s", Range{0, 5},
-                  "from a command to its effect; at first there is none; below 4 ms at once"),
+                  "from a command to its effect; at first there is none; below 4 ms at once; up to 4 periods"),
         parameter("acceleration_noise", &Actuation::acceleration_noise, "m/s^2", {},
                   "added to the acceleration, drawn once a step"),
         parameter("steering_noise", &Actuation::steering_noise, "rad", {},
                   "added to the steering angle, drawn once a step"));
+  }
+
+  void check(std::string const& where) const {
+    if (!(delay <= waiting * period * (1.0 + 1e-9)))
+      throw ParameterError(where + ".delay", "is longer than 4 periods: so many commands wait at most",
+                           "give a period of at least " + detail::with_unit(detail::number_text(delay / waiting), "s"));
+  }
+
+  /// How long each waiting command is in effect [s]; 0 where none waits.
+  [[nodiscard]] double slot() const {
+    constexpr double shortest = 1e-3;
+    return delay / waiting < shortest ? 0.0 : delay / waiting;
+  }
+
+  /// From one command to the next in a step of `duration` [s]: equal parts of it, or a waiting command's time [s].
+  [[nodiscard]] double interval(double duration) const {
+    return slot() > 0.0 ? slot() : duration / std::max(1.0, std::ceil(duration / period - 1e-9));
   }
 };
 
@@ -62,7 +83,7 @@ template <MotionState S>
 /// What a tracking controller remembers: where the last plan ended, and the commands on their way.
 template <MotionState S>
 struct TrackingMemory {
-  static constexpr std::size_t slots = 5;  ///< one in effect, the others waiting
+  static constexpr std::size_t slots = Actuation::waiting + 1;  ///< one in effect, the others waiting
 
   S reference{};
   float acceleration[slots]{}, steering[slots]{};
@@ -113,8 +134,9 @@ template <MotionState S>
 }  // namespace detail
 
 /// Tracks a plan through the vehicle model from `now` to `time` [s] by a controller
-/// `law(Reference, TrackingError, state, duration)` that returns an `Action`. The reference runs through the plan's
-/// states, from the end of the last plan on; a plan that does not reach `time` is invalid. O(control periods).
+/// `law(Reference, TrackingError, state, interval)` that returns an `Action` to be held for `interval` [s]. The
+/// reference runs through the plan's states, from the end of the last plan on; a plan that does not reach `time` is
+/// invalid. O(control periods).
 template <class Law, MotionState S, class Dynamics>
 [[nodiscard]] Executed<S> track(Actuation const& actuation, Law const& law, BasicPlan<S> const& plan, S const& now,
                                 Dynamics const& dynamics, double time, TrackingMemory<S>& memory,
@@ -124,21 +146,17 @@ template <class Law, MotionState S, class Dynamics>
   S const start = goes_on ? memory.reference : now;
   auto const draw = [&random](Normal const& noise) { return noise.deviation > 0.0 ? noise(random) : noise.mean; };
   Action const noise{draw(actuation.acceleration_noise), draw(actuation.steering_noise)};
-  constexpr double shortest = 1e-3;  // [s]
-  double const slot = actuation.delay / (TrackingMemory<S>::slots - 1) < shortest
-                          ? 0.0
-                          : actuation.delay / (TrackingMemory<S>::slots - 1);
+  double const slot = actuation.slot(), interval = actuation.interval(time - now.time);
   S x = now;
   x.speed = std::max(0.0, x.speed);
   double h = 0.0;
   for (double left = time - now.time; left > 1e-9; left -= h) {
-    h = left / std::ceil(left / actuation.period - 1e-9);
-    if (slot > 0.0) h = std::min(left, std::min(slot, actuation.period));
+    h = std::min(left, interval);
     bool const gives = slot == 0.0 || !memory.begun || memory.waited >= static_cast<float>(slot - 1e-6);
     Action command{};
     if (gives) {
       auto const reference = detail::reference_at(plan, start, time - left);
-      command = law(reference, tracking_error(reference, x), x, h);
+      command = law(reference, tracking_error(reference, x), x, interval);
       if (slot > 0.0) memory.give(command);
     }
     if (slot > 0.0) {

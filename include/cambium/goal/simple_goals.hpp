@@ -48,7 +48,8 @@ struct ReachLane {
   static constexpr char const* name = "reach_lane";
   static constexpr char const* summary = "the reference point is in a lane, between two positions along its path";
   static constexpr auto parameters() {
-    return std::make_tuple(parameter("from", &ReachLane::from, "m", detail::any_number, "along the path of the lane"),
+    return std::make_tuple(parameter("lane", &ReachLane::lane, "-", {}, "of the map"),
+                           parameter("from", &ReachLane::from, "m", detail::any_number, "along the path of the lane"),
                            parameter("to", &ReachLane::to, "m", detail::any_number, "likewise, not below from"));
   }
 
@@ -107,6 +108,7 @@ struct LaneLimits {
   static constexpr auto parameters() {
     using P = LaneLimits;
     return std::make_tuple(
+        parameter("lane", &P::lane, "-", {}, "of the map; none: whichever the agent is in"),
         parameter("from", &P::from, "m", detail::any_number, "along the path of the lane"),
         parameter("to", &P::to, "m", detail::any_number, "likewise, not below from"),
         parameter("left", &P::left, "m", detail::any_number, "farthest to the left of the path"),
@@ -156,6 +158,7 @@ struct ReachLaneBeside {
     using P = ReachLaneBeside;
     return std::make_tuple(
         parameter("side", &P::side, "-", Range{0, 1}, "0 left, 1 right"),
+        parameter("from", &P::from, "-", {}, "beside this lane of the map; none: the one that the agent enters in"),
         parameter("tolerance", &P::tolerance, "m", non_negative, "from the centre line of that corridor"));
   }
 

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "cambium/behavior/follow_lane.hpp"
+#include "cambium/geometry/angle.hpp"
+
+namespace cambium {
+
+namespace detail {
+
+/// Length [m] of the way from one state to another: of an arc that turns as much, to the second order of the turn.
+template <MotionState S>
+[[nodiscard]] double way_between(S const& a, S const& b) {
+  double const turn = geometry::angle_difference(b.heading, a.heading);
+  return std::hypot(b.x - a.x, b.y - a.y) * (1.0 + turn * turn / 24.0);
+}
+
+/// Place and heading at share `u` of the `way` [m] from `a` to `b`, put into `state`: on the cubic that leaves the one
+/// and comes to the other along their headings (Hermite).
+template <MotionState S>
+void place_between(S const& a, S const& b, double way, double u, S& state) {
+  auto const from = geometry::sin_cos(a.heading), to = geometry::sin_cos(b.heading);
+  double const dx = b.x - a.x, dy = b.y - a.y, w = u * u * (3.0 - 2.0 * u);
+  double const p = u * (1.0 - u) * (1.0 - u) * way, q = -u * u * (1.0 - u) * way;
+  state.x = a.x + w * dx + p * from.cos + q * to.cos;
+  state.y = a.y + w * dy + p * from.sin + q * to.sin;
+  double const slope = 6.0 * u * (1.0 - u), leave = (1.0 - u) * (1.0 - 3.0 * u) * way, come = u * (3.0 * u - 2.0) * way;
+  double const tangent_x = slope * dx + leave * from.cos + come * to.cos,
+               tangent_y = slope * dy + leave * from.sin + come * to.sin;
+  state.heading = a.heading + geometry::angle_difference(std::atan2(tangent_y, tangent_x), a.heading);
+}
+
+}  // namespace detail
+
+/// Length [m] of the course from `start` through the plan's states.
+template <MotionState S>
+[[nodiscard]] double course_length(BasicPlan<S> const& plan, S const& start) {
+  double length = 0.0;
+  S const* before = &start;
+  for (auto const& after : plan.trajectory) {
+    length += detail::way_between(*before, after);
+    before = &after;
+  }
+  return length;
+}
+
+/// The plan that leads along the course of `plan`, but by `motion` over `dt` [s]; straight on behind its end. Steers as
+/// that. The course is taken to leave and reach the plan's states along their headings. O(states).
+template <class View>
+[[nodiscard]] Plan<View> plan_along_course(View const& view, Plan<View> const& plan,
+                                           LongitudinalMotion<double> const& motion, double dt) {
+  using S = typename View::State;
+  constexpr double shortest = 1e-6;  // [m] a way with a direction
+  S const* before = &view.state();
+  double left = motion.distance;
+  S next = *before;
+  for (auto const& after : plan.trajectory) {
+    double const way = detail::way_between(*before, after);
+    next = after;
+    if (left < way && way > shortest) detail::place_between(*before, after, way, left / way, next);
+    left -= way;
+    before = &after;
+    if (left < 0.0) break;
+  }
+  if (left > 0.0) {
+    auto const along = geometry::sin_cos(next.heading);
+    next.x += left * along.cos;
+    next.y += left * along.sin;
+  }
+  next.time = view.time() + dt;
+  next.speed = motion.speed;
+  Plan<View> result;
+  result.trajectory.push_back(next);
+  result.action = {(motion.speed - view.state().speed) / dt, plan.action.steering};
+  result.is_absolute = plan.is_absolute;
+  return result;
+}
+
+}  // namespace cambium
