@@ -83,6 +83,12 @@ struct Scenario {
   std::vector<cambium::AgentId> marked;
 };
 
+/// Mostly cars, some vans, some trucks.
+[[nodiscard]] inline cambium::geometry::Shape random_shape(cambium::RandomStream& random) {
+  double const share = cambium::uniform01(random);
+  return share < 0.7 ? cambium::geometry::car() : share < 0.85 ? cambium::geometry::van() : cambium::geometry::truck();
+}
+
 /// Puts a vehicle on its way to a junction before which it can still stop, unless another one is near.
 inline void try_to_add(Scenario& scenario, cambium::LaneId from, cambium::RandomStream& random) {
   auto const& map = scenario.world.map();
@@ -97,7 +103,7 @@ inline void try_to_add(Scenario& scenario, cambium::LaneId from, cambium::Random
   auto const pose = map.lane(from).path.pose(s);
   for (auto const& agent : scenario.world.frame().agents)
     if (std::hypot(agent.state.x - pose.x, agent.state.y - pose.y) < 18.0) return;
-  auto const shape = cambium::uniform01(random) < 0.15 ? cambium::geometry::van() : cambium::geometry::car();
+  auto const shape = random_shape(random);
   double const room = std::max(0.0, junction - s - shape.front - 1.0);
   double const speed = std::min(3.0 + 9.0 * cambium::uniform01(random), std::sqrt(2.0 * 1.5 * room));
   auto const id = scenario.world.add(
@@ -133,7 +139,8 @@ inline void try_to_add(Scenario& scenario, cambium::LaneId from, cambium::Random
     if (record.status != cambium::AgentStatus::driving) continue;
     auto const& conflicts = world.roster().agents[i].road->corridors[record.lane.corridor].conflicts;
     double const rear = record.lane.s - world.roster().agents[i].shape.rear;
-    if (std::any_of(conflicts.begin(), conflicts.end(), [rear](auto const& conflict) { return conflict.end > rear; }))
+    if (std::any_of(conflicts.begin(), conflicts.end(),
+                    [rear](auto const& conflict) { return conflict.hull().end > rear; }))
       return false;
   }
   return true;
