@@ -98,7 +98,7 @@ struct Intersection {
  private:
   static constexpr double standing = 0.1;   // [m/s] slower than this
   static constexpr double starting = 2.5;   // [m/s] slower than this
-  static constexpr double short_way = 6.0;  // [m] from the conflict, to see who starts there
+  static constexpr double short_way = 15.0;  // [m] from the junction, to see who starts there
   static constexpr double air = 0.3;        // [m] before a conflict
   static constexpr double infinite = std::numeric_limits<double>::infinity();
 
@@ -188,7 +188,7 @@ struct Intersection {
       if (!zones[0].empty() && claims[0] < Claim::yield && is_full_behind(view, zones[0], own))
         claims[0] = Claim::yield;
       for (std::size_t other = 0; other < 2; ++other)
-        if (claims[other] != Claim::free) obey(claims[other], zones[other], own, dt);
+        if (claims[other] != Claim::free) obey(claims[other], zones[other], conflict.hold[own.is_large], own, dt);
     }
   }
 
@@ -221,10 +221,10 @@ struct Intersection {
   }
 
   /// Bounds the step's motion by what a conflict asks for.
-  void obey(Claim claim, map::ConflictZone const& zone, Own& own, double dt) const {
+  void obey(Claim claim, map::ConflictZone const& zone, double hold, Own& own, double dt) const {
     double const to_conflict = zone.begin - own.reach.front - air - own.s;
     if (to_conflict + air < 0.0) return;  // it is in there already
-    double const to_stop = distance_to_stop(claim, zone, own, to_conflict);
+    double const to_stop = distance_to_stop(claim, hold - own.front, own, to_conflict);
     if (claim == Claim::yield && !can_stop(own.speed, to_stop)) return;
     double const braking = claim == Claim::watch ? safe_deceleration : own.idm.comfortable_deceleration;
     bound(own, to_stop, braking, dt);
@@ -232,9 +232,8 @@ struct Intersection {
   }
 
   /// How far it goes to where it waits: before the line if it can still stop there, else before the conflict [m].
-  [[nodiscard]] double distance_to_stop(Claim claim, map::ConflictZone const& zone, Own const& own,
-                                        double to_conflict) const {
-    double const to_line = std::min(zone.line - own.front, to_conflict);
+  [[nodiscard]] double distance_to_stop(Claim claim, double to_hold, Own const& own, double to_conflict) const {
+    double const to_line = std::min(to_hold, to_conflict);
     if (to_line < 0.0 || !can_stop(own.speed, to_line)) return to_conflict;
     for (double const margin : {claim == Claim::watch ? air : stop_margin, air})
       if (can_stop(own.speed, to_line - margin)) return std::max(0.0, to_line - margin);
@@ -265,8 +264,8 @@ struct Intersection {
                                Other const& other, Own& own) const {
     auto const& [user, at, reach] = other;
     if (at > zone.other_end + reach.rear) return Claim::free;
-    if (at < 0.0 && !view.signals_way(user, conflict.other)) return Claim::free;
     double const way = zone.other_begin - reach.front - at;
+    if (at < 0.0 && way > 0.0 && !view.signals_way(user, conflict.other)) return Claim::free;
     double const own_way = zone.begin - own.reach.front - own.s;
     bool const is_in = way <= 0.0, own_is_in = own_way <= 0.0;
     if (conflict.kind != map::OverlapKind::crossing && (is_in || conflict.kind == map::OverlapKind::split)) {
@@ -280,25 +279,26 @@ struct Intersection {
       return out + 0.5 * time_margin < arrival(own, own_way) ? Claim::watch : Claim::blocked;
     }
     if (goes_first(view, conflict, zone, other, way, own_way, own)) return Claim::free;
-    return claim_in_time(zone, other, way, own_way, own);
+    return claim_in_time(conflict, zone, other, way, own_way, own);
   }
 
   /// The claim of one who goes first and comes to the zone in `way` [m].
-  [[nodiscard]] Claim claim_in_time(map::ConflictZone const& zone, Other const& other, double way, double own_way,
-                                    Own const& own) const {
+  [[nodiscard]] Claim claim_in_time(map::Conflict const& conflict, map::ConflictZone const& zone, Other const& other,
+                                    double way, double own_way, Own const& own) const {
     auto const& [user, at, reach] = other;
     Window const theirs{
         time_to_cover(way, user.speed, assumed_acceleration, std::max(user.speed, own.idm.desired_speed)),
         (way + zone.other_end - zone.other_begin + reach.front + reach.rear) / std::max(user.speed, standing)};
     Window const ours{arrival(own, own_way), arrival(own, zone.end + own.reach.rear - own.s)};
-    bool const is_in = is_inside(user, at, zone);
+    bool const is_in = is_inside(other, conflict, zone);
     if (theirs.end + time_margin < ours.begin) return is_in ? Claim::watch : Claim::free;
     return ours.end + time_margin < theirs.begin && !is_in ? Claim::free : Claim::yield;
   }
 
-  /// Whether one at position `at` of its way is in the junction already.
-  [[nodiscard]] static bool is_inside(LaneUser const& user, double at, map::ConflictZone const& zone) {
-    return at + user.front > zone.other_line;
+  /// Whether one is in the junction already.
+  [[nodiscard]] static bool is_inside(Other const& other, map::Conflict const& conflict,
+                                      map::ConflictZone const& zone) {
+    return other.at + other.user.front > zone.other_line && other.at < conflict.other_lane_end;
   }
 
   /// The earliest time [s] at which it has gone `distance` [m].
@@ -312,7 +312,8 @@ struct Intersection {
   [[nodiscard]] bool goes_first(View const& view, map::Conflict const& conflict, map::ConflictZone const& zone,
                                 Other const& other, double way, double own_way, Own const& own) const {
     auto const& [user, at, reach] = other;
-    bool const inside = is_inside(user, at, zone), own_inside = own.front > zone.line;
+    bool const inside = is_inside(other, conflict, zone),
+               own_inside = own.front > zone.line && own.s < conflict.lane_end;
     if (inside != own_inside) return own_inside;
     if (!inside && is_valid(conflict.other_light) && view.light(conflict.other_light) == map::LightColor::red)
       return true;

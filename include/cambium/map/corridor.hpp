@@ -83,7 +83,7 @@ struct ConflictWay {
 struct ConflictZone {
   double begin = std::numeric_limits<double>::infinity(), end = -begin;  ///< corridor position [m]
   double other_begin{}, other_end{};  ///< position along the other's way, as in `Conflict::ways` [m]
-  double line{};        ///< corridor position where front ends wait: where the junction begins, else the zone [m]
+  double line{};        ///< corridor position where front ends enter: where the junction begins, else the zone [m]
   double other_line{};  ///< likewise on the other's way [m]
 
   /// Whether they never touch.
@@ -98,6 +98,11 @@ struct Conflict {
   /// By the sizes of the corridor's vehicle and the other: 0 where it is no larger than `MapOptions::conflict_shape`, 1
   /// up to `MapOptions::large_conflict_shape`. The last holds all others and is not empty.
   std::array<std::array<ConflictZone, 2>, 2> zones;
+  /// Corridor position, by the size of the corridor's vehicle, where front ends wait: there it stands in no zone of the
+  /// junction [m].
+  std::array<double, 2> hold{};
+  double lane_end{}, other_lane_end{};  ///< where the two lanes end: corridor position, and on the other's way [m]
+
   [[nodiscard]] ConflictZone const& hull() const { return zones[1][1]; }
   LightId other_light = none<LightId>;  ///< that stops the other's traffic
   double shift{};  ///< where they merge or part: corridor position = position on the way + shift [m]

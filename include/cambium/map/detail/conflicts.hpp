@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <map>
 #include <optional>
 #include <set>
 #include <tuple>
@@ -68,6 +69,8 @@ class ConflictFinder {
       for (auto const& overlap : passings(lane))
         if (auto conflict = conflict_at(i, overlap)) conflicts.push_back(std::move(*conflict));
     }
+    for (auto& conflict : conflicts) unite(conflict, conflicts);
+    set_holds(conflicts);
     std::sort(conflicts.begin(), conflicts.end(), [](Conflict const& a, Conflict const& b) {
       return std::tie(a.hull().begin, a.other, a.hull().other_begin) <
              std::tie(b.hull().begin, b.other, b.hull().other_begin);
@@ -95,6 +98,9 @@ class ConflictFinder {
     conflict.shift = conflict.kind == OverlapKind::split ? begin - overlap.other_begin : end - overlap.other_end;
     if (overlap.kind == OverlapKind::merge) conflict.meet = begin;
     if (!find_zones(range_of(overlap, begin, end, conflict.kind), number, conflict)) return std::nullopt;
+    conflict.hold.fill(junction_begin(number));
+    conflict.lane_end = piece.end;
+    conflict.other_lane_end = map_.lane(overlap.other).length();
     conflict.other_light = signs_before(map_, map_.lane(overlap.other)).light;
     add_ways(conflict);
     return conflict;
@@ -211,6 +217,41 @@ class ConflictFinder {
         if (conflict.hull().empty()) return false;
       }
     return true;
+  }
+
+  /// Lanes of one road that cross the corridor's in one place, as of its sections, are one to it: who is in the zone of
+  /// one is in those of all. Else two may each be in a zone that the other waits for.
+  void unite(Conflict& conflict, std::vector<Conflict> const& all) const {
+    if (conflict.kind != OverlapKind::crossing) return;
+    auto const road = map_.lane(conflict.other).road;
+    for (auto const& next : all) {
+      if (next.kind != OverlapKind::crossing || map_.lane(next.other).road != road) continue;
+      for (int own = 0; own < 2; ++own)
+        for (int other = 0; other < 2; ++other) {
+          auto& zone = conflict.zones[own][other];
+          auto const& with = next.zones[own][other];
+          if (zone.empty() || with.empty() || with.begin > zone.end || with.end < zone.begin) continue;
+          zone.begin = std::min(zone.begin, with.begin);
+          zone.end = std::max(zone.end, with.end);
+        }
+    }
+  }
+
+  /// Sets the places to wait from where, as yet, the junctions begin: before the first zone of the same junction.
+  static void set_holds(std::vector<Conflict>& conflicts) {
+    std::map<double, std::array<double, 2>> holds;
+    auto const first_line = [](Conflict const& conflict, std::size_t own) {
+      return std::min(conflict.zones[own][0].line, conflict.zones[own][1].line);
+    };
+    for (auto const& conflict : conflicts)
+      for (std::size_t own : {0u, 1u}) {
+        auto& hold = holds.emplace(conflict.hold[own], conflict.hold).first->second[own];
+        hold = std::min(hold, first_line(conflict, own));
+      }
+    for (auto& conflict : conflicts)
+      for (std::size_t own : {0u, 1u})
+        conflict.hold[own] =
+            std::isfinite(conflict.hold[own]) ? holds.at(conflict.hold[own])[own] : first_line(conflict, own);
   }
 
   /// The part of `range` where two such bodies touch. Where lanes merge it ends, and where they part it begins, with
