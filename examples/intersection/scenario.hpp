@@ -83,6 +83,25 @@ struct Scenario {
   std::vector<cambium::AgentId> marked;
 };
 
+/// Whether a truck on the route, outside of junctions, keeps out of the lanes beside.
+[[nodiscard]] inline bool fits_truck(cambium::Map const& map, cambium::map::Route const& route) {
+  constexpr double sharpest = 1.0 / 30.0;  // [1/m]: it swings out by 0.9 m
+  return std::all_of(route.lanes.begin(), route.lanes.end(), [&](cambium::LaneId id) {
+    auto const segments = map.lane(id).path.segments();
+    return in_junction(map, id) || std::all_of(segments.begin(), segments.end(), [](auto const& segment) {
+             return std::abs(segment.curvature) < sharpest;
+           });
+  });
+}
+
+/// Mostly cars, some vans, and some trucks where these fit.
+[[nodiscard]] inline cambium::geometry::Shape random_shape(cambium::Map const& map, cambium::map::Route const& route,
+                                                           cambium::RandomStream& random) {
+  double const share = cambium::uniform01(random);
+  if (share < 0.15 && fits_truck(map, route)) return cambium::geometry::truck();
+  return share < 0.3 ? cambium::geometry::van() : cambium::geometry::car();
+}
+
 /// Puts a vehicle on its way to a junction before which it can still stop, unless another one is near.
 inline void try_to_add(Scenario& scenario, cambium::LaneId from, cambium::RandomStream& random) {
   auto const& map = scenario.world.map();
@@ -97,7 +116,7 @@ inline void try_to_add(Scenario& scenario, cambium::LaneId from, cambium::Random
   auto const pose = map.lane(from).path.pose(s);
   for (auto const& agent : scenario.world.frame().agents)
     if (std::hypot(agent.state.x - pose.x, agent.state.y - pose.y) < 18.0) return;
-  auto const shape = cambium::uniform01(random) < 0.15 ? cambium::geometry::van() : cambium::geometry::car();
+  auto const shape = random_shape(map, route, random);
   double const room = std::max(0.0, junction - s - shape.front - 1.0);
   double const speed = std::min(3.0 + 9.0 * cambium::uniform01(random), std::sqrt(2.0 * 1.5 * room));
   auto const id = scenario.world.add(
@@ -125,17 +144,20 @@ inline void try_to_add(Scenario& scenario, cambium::LaneId from, cambium::Random
   return scenario;
 }
 
-/// Whether everybody has its last junction behind it, or has left the map.
+/// Whether the agent in a slot of the world has its last junction behind it, or has left the map.
+[[nodiscard]] inline bool is_through(Simulation const& world, std::size_t slot) {
+  auto const& record = world.frame().agents[slot];
+  if (record.status != cambium::AgentStatus::driving) return true;
+  auto const& conflicts = world.roster().agents[slot].road->corridors[record.lane.corridor].conflicts;
+  double const rear = record.lane.s - world.roster().agents[slot].shape.rear;
+  return std::none_of(conflicts.begin(), conflicts.end(),
+                      [rear](auto const& conflict) { return conflict.hull().end > rear; });
+}
+
+/// Whether everybody is through.
 [[nodiscard]] inline bool is_done(Scenario const& scenario) {
-  auto const& world = scenario.world;
-  for (std::size_t i = 0; i < world.size(); ++i) {
-    auto const& record = world.frame().agents[i];
-    if (record.status != cambium::AgentStatus::driving) continue;
-    auto const& conflicts = world.roster().agents[i].road->corridors[record.lane.corridor].conflicts;
-    double const rear = record.lane.s - world.roster().agents[i].shape.rear;
-    if (std::any_of(conflicts.begin(), conflicts.end(), [rear](auto const& conflict) { return conflict.end > rear; }))
-      return false;
-  }
+  for (std::size_t i = 0; i < scenario.world.size(); ++i)
+    if (!is_through(scenario.world, i)) return false;
   return true;
 }
 

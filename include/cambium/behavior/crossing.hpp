@@ -5,8 +5,8 @@
 #include <limits>
 #include <tuple>
 
+#include "cambium/behavior/braking.hpp"
 #include "cambium/behavior/follow_lane.hpp"
-#include "cambium/behavior/intersection.hpp"
 #include "cambium/behavior/social_force.hpp"
 #include "cambium/behavior/view.hpp"
 #include "cambium/core/parameters.hpp"

@@ -58,6 +58,7 @@ struct LaneUser {
   double front{}, rear{};            ///< its reach from there along the lane [m]
   double speed{};                    ///< along the lane [m/s]
   std::uint32_t slot{};              ///< its place among the agents or the objects
+  geometry::Shape shape{};           ///< of an agent
 };
 
 /// Another agent as seen by an observer.

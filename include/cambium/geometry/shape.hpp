@@ -34,6 +34,11 @@ struct Shape {
   /// Radius [m] of the circle through the corners, about the rectangle's centre.
   [[nodiscard]] double radius() const { return 0.5 * std::sqrt(length() * length() + width() * width()); }
 
+  /// Whether `other` fits in, reference point on reference point.
+  [[nodiscard]] constexpr bool holds(Shape const& other) const {
+    return other.front <= front && other.rear <= rear && other.left <= left && other.right <= right;
+  }
+
   friend bool operator==(Shape const&, Shape const&) = default;
 };
 

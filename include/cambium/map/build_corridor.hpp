@@ -14,6 +14,7 @@
 #include "cambium/core/ids.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/map/corridor.hpp"
+#include "cambium/map/detail/bends.hpp"
 #include "cambium/map/detail/conflicts.hpp"
 #include "cambium/map/detail/corridor_signals.hpp"
 #include "cambium/map/detail/feeders.hpp"
@@ -38,6 +39,7 @@ class LaneJoiner {
     if (right_.size() > 1) corridor.right = geometry::Line::from_samples(right_);
     corridor.pieces = make_pieces(corridor.center);
     corridor.speed_limits = join_limits(corridor.pieces);
+    corridor.bends = bends_of(corridor.center);
     auto const& last = map_.lane(lanes.back());
     corridor.continues = std::any_of(last.successors.begin(), last.successors.end(),
                                      [&](LaneId next) { return may_enter(last, map_.lane(next)); });

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -78,22 +79,43 @@ struct ConflictWay {
   double begin{};  ///< of the way where the stretch begins: position on the other lane's path, negative before it [m]
 };
 
-/// Where a lane outside of the corridor crosses it, merges with it or parts from it. Stretches say where the reference
-/// points of two vehicles of `MapOptions::conflict_shape` may be when these touch.
+/// Where the reference points of two vehicles, of a size each, may be when these touch.
+struct ConflictZone {
+  double begin = std::numeric_limits<double>::infinity(), end = -begin;  ///< corridor position [m]
+  double other_begin{}, other_end{};  ///< position along the other's way, as in `Conflict::ways` [m]
+  double line{};        ///< corridor position where front ends enter: where the junction begins, else the zone [m]
+  double other_line{};  ///< likewise on the other's way [m]
+
+  /// Whether they never touch.
+  [[nodiscard]] bool empty() const { return begin > end; }
+};
+
+/// Where a lane outside of the corridor crosses it, merges with it or parts from it.
 struct Conflict {
   LaneId other = none<LaneId>;
   OverlapKind kind = OverlapKind::crossing;
   RightOfWay right_of_way = RightOfWay::equal;  ///< of this corridor's traffic
-  double begin{}, end{};                        ///< corridor position [m]
-  double other_begin{}, other_end{};            ///< position along the other's way, as in `ways` [m]
-  double line{};        ///< corridor position where front ends wait: where the junction begins, else the conflict [m]
-  double other_line{};  ///< likewise on the other's way [m]
+  /// By the sizes of the corridor's vehicle and the other: 0 where it is no larger than `MapOptions::conflict_shape`, 1
+  /// up to `MapOptions::large_conflict_shape`. The last holds all others and is not empty.
+  std::array<std::array<ConflictZone, 2>, 2> zones;
+  /// Corridor position, by the size of the corridor's vehicle, where front ends wait: there it stands in no zone of the
+  /// junction [m].
+  std::array<double, 2> hold{};
+  double lane_end{}, other_lane_end{};  ///< where the two lanes end: corridor position, and on the other's way [m]
+
+  [[nodiscard]] ConflictZone const& hull() const { return zones[1][1]; }
   LightId other_light = none<LightId>;  ///< that stops the other's traffic
   double shift{};  ///< where they merge or part: corridor position = position on the way + shift [m]
   double meet = std::numeric_limits<double>::infinity();  ///< where lanes that merge come together [m]
   /// The way: the other lane, those behind it back to `MapOptions::merge_view` before the conflict, and those that it
   /// leads into, as far as who is there may still reach back into the conflict.
   std::vector<ConflictWay> ways;
+};
+
+/// A stretch of a corridor on which it bends about evenly.
+struct Bend {
+  double begin{}, end{};  ///< corridor position [m]
+  double curvature{};     ///< the sharpest there, positive [1/m]
 };
 
 /// A drivable lane that a free corridor crosses, from border to border (see `build_free_corridor`).
@@ -111,7 +133,8 @@ struct LaneCorridor {
   geometry::Line left, right;           ///< borders
   std::vector<CorridorPiece> pieces;    ///< sorted by `begin`, gapless
   std::vector<Feeder> feeders;          ///< sorted by `begin`
-  std::vector<Conflict> conflicts;      ///< sorted by `begin`
+  std::vector<Conflict> conflicts;      ///< sorted by `hull().begin`
+  std::vector<Bend> bends;              ///< sharper than 1 km of radius, sorted by `begin`
   std::vector<CorridorSignal> signals;  ///< sorted by `line`
   std::vector<SpeedStep> speed_limits;  ///< along the corridor, sorted; empty where nothing limits the speed
   bool continues = false;               ///< the road goes on beyond the end: the corridor ends because the route does

@@ -41,9 +41,9 @@ struct MapOptions {
   double merge_view = 120.0;   ///< how far before an overlap merging lanes take each other's traffic into account [m]
   double merge_length = 60.0;  ///< longest stretch over which an ending lane swings onto its neighbour [m]
   bool infer_links = false;    ///< join lanes that one another's ends meet, where the file has forgotten the link
-  /// The body that conflicts at junctions are found for: a car with a hand's breadth of air all around. Where longer
-  /// vehicles drive, which swing out farther, give the largest one's.
-  geometry::Shape conflict_shape{3.8, 1.1, 1.05, 1.05};
+  /// The bodies that conflicts at junctions are found for, with a hand's breadth of air: the first holds cars and vans,
+  /// the second trucks and buses, which swing out farther. `World::add` refuses larger ones that heed conflicts.
+  geometry::Shape conflict_shape{4.8, 1.4, 1.1, 1.1}, large_conflict_shape{8.8, 3.6, 1.4, 1.4};
 
   static constexpr double turn_per_tolerance = 6.0;
   static constexpr char const* name = "map_options";
@@ -62,7 +62,8 @@ struct MapOptions {
                   "longest stretch over which an ending lane swings onto its neighbour"),
         parameter("infer_links", &P::infer_links, "-", Range{0, 1},
                   "join lanes whose ends meet where the file has forgotten the link"),
-        parameter("conflict_shape", &P::conflict_shape, "-", {}, "the body that conflicts at junctions are found for"));
+        parameter("conflict_shape", &P::conflict_shape, "-", {}, "the body that conflicts at junctions are found for"),
+        parameter("large_conflict_shape", &P::large_conflict_shape, "-", {}, "the same where larger vehicles drive"));
   }
 };
 

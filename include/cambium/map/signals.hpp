@@ -44,6 +44,13 @@ struct LightPlan {
 
   friend bool operator==(LightPlan const&, LightPlan const&) = default;
 
+  /// Whether it is one: phases that are not negative, within a day.
+  [[nodiscard]] bool is_possible() const {
+    constexpr double day = 86'400.0;
+    return cycle >= 0.0 && cycle <= day && yellow >= 0.0 && yellow <= day && std::abs(green_begin) <= day &&
+           green_end >= green_begin && green_end <= 2.0 * day;
+  }
+
   /// What it shows at `time` [s]. O(1).
   [[nodiscard]] LightColor at(double time) const {
     if (!(cycle > 0.0)) return LightColor::off;

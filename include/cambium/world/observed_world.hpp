@@ -179,7 +179,8 @@ class ObservedWorld {
                       entry.front,
                       entry.rear,
                       entry.speed,
-                      entry.slot};
+                      entry.slot,
+                      world_->roster().agents[entry.slot].shape};
         if constexpr (!perfect) {
           user.position += shift(entry.slot);
           user.speed += observed(entry.slot).speed - record(entry.slot).state.speed;

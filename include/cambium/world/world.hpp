@@ -201,9 +201,7 @@ class World {
     std::string const where = "light " + to_string(id);
     if (index_of(id) >= map_->lights().size())
       throw WorldError(where, "the map has no such traffic light", "see Map::lights for those it has");
-    bool const is_plan = plan.cycle >= 0.0 && plan.cycle <= 86'400.0 && plan.yellow >= 0.0 &&
-                         std::abs(plan.green_begin) <= 86'400.0 && plan.green_end >= plan.green_begin;
-    if (!is_plan || !std::isfinite(plan.yellow + plan.green_end))
+    if (!plan.is_possible())
       throw WorldError(where, "its plan has a negative phase, or one of more than a day",
                        "give green_begin <= green_end within the cycle");
     auto& lights = writable_roster().lights;

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <map>
 #include <optional>
 #include <set>
 #include <tuple>
@@ -56,7 +58,7 @@ inline void add_ways_behind(Map const& map, Lane const& lane, double until, std:
 class ConflictFinder {
  public:
   ConflictFinder(Map const& map, LaneCorridor const& corridor)
-      : map_(map), corridor_(corridor), body_(map.options().conflict_shape) {}
+      : map_(map), corridor_(corridor), body_(map.options().large_conflict_shape) {}
 
   [[nodiscard]] std::vector<Conflict> find() const {
     std::vector<Conflict> conflicts;
@@ -67,8 +69,11 @@ class ConflictFinder {
       for (auto const& overlap : passings(lane))
         if (auto conflict = conflict_at(i, overlap)) conflicts.push_back(std::move(*conflict));
     }
+    for (auto& conflict : conflicts) unite(conflict, conflicts);
+    set_holds(conflicts);
     std::sort(conflicts.begin(), conflicts.end(), [](Conflict const& a, Conflict const& b) {
-      return std::tie(a.begin, a.other, a.other_begin) < std::tie(b.begin, b.other, b.other_begin);
+      return std::tie(a.hull().begin, a.other, a.hull().other_begin) <
+             std::tie(b.hull().begin, b.other, b.hull().other_begin);
     });
     return conflicts;
   }
@@ -92,9 +97,10 @@ class ConflictFinder {
     double const begin = position(overlap.begin), end = position(overlap.end);
     conflict.shift = conflict.kind == OverlapKind::split ? begin - overlap.other_begin : end - overlap.other_end;
     if (overlap.kind == OverlapKind::merge) conflict.meet = begin;
-    if (!find_touching(overlap, begin, end, conflict)) return std::nullopt;
-    conflict.line = std::min(conflict.begin + body_.front, junction_begin(number));
-    conflict.other_line = std::min(conflict.other_begin + body_.front, junction_begin(overlap.other));
+    if (!find_zones(range_of(overlap, begin, end, conflict.kind), number, conflict)) return std::nullopt;
+    conflict.hold.fill(junction_begin(number));
+    conflict.lane_end = piece.end;
+    conflict.other_lane_end = map_.lane(overlap.other).length();
     conflict.other_light = signs_before(map_, map_.lane(overlap.other)).light;
     add_ways(conflict);
     return conflict;
@@ -188,47 +194,106 @@ class ConflictFinder {
             pose.heading};
   }
 
-  /// Sets the stretches on which bodies touch; false where they do not. Where lanes merge these end, and where they
-  /// part these begin, with the overlap: there the two are one lane. O(places on one times places on the other).
-  [[nodiscard]] bool find_touching(Overlap const& overlap, double begin, double end, Conflict& conflict) const {
+  /// Where bodies on the two lanes may touch at all.
+  [[nodiscard]] ConflictZone range_of(Overlap const& overlap, double begin, double end, OverlapKind kind) const {
+    bool const merges = kind == OverlapKind::merge, splits = kind == OverlapKind::split;
+    ConflictZone range;
+    range.begin = splits ? begin : std::max(0.0, begin - before());
+    range.end = merges ? end : std::min(corridor_.length(), end + behind());
+    range.other_begin = splits ? overlap.other_begin : overlap.other_begin - before();
+    range.other_end = merges ? overlap.other_end : overlap.other_end + behind();
+    return range;
+  }
+
+  /// Sets the zones of piece `number`'s lane; false where even the largest bodies do not touch.
+  [[nodiscard]] bool find_zones(ConflictZone const& range, std::size_t number, Conflict& conflict) const {
+    std::array const bodies{map_.options().conflict_shape, body_};
+    for (bool const own : {true, false})
+      for (bool const other : {true, false}) {
+        auto& zone = conflict.zones[own][other];
+        zone = zone_of(bodies[own], bodies[other], conflict, own && other ? range : conflict.hull());
+        zone.line = std::min(zone.begin + bodies[own].front, junction_begin(number));
+        zone.other_line = std::min(zone.other_begin + bodies[other].front, junction_begin(conflict.other));
+        if (conflict.hull().empty()) return false;
+      }
+    return true;
+  }
+
+  /// Lanes of one road that cross the corridor's in one place, as of its sections, are one to it: who is in the zone of
+  /// one is in those of all. Else two may each be in a zone that the other waits for.
+  void unite(Conflict& conflict, std::vector<Conflict> const& all) const {
+    if (conflict.kind != OverlapKind::crossing) return;
+    auto const road = map_.lane(conflict.other).road;
+    for (auto const& next : all) {
+      if (next.kind != OverlapKind::crossing || map_.lane(next.other).road != road) continue;
+      for (int own = 0; own < 2; ++own)
+        for (int other = 0; other < 2; ++other) {
+          auto& zone = conflict.zones[own][other];
+          auto const& with = next.zones[own][other];
+          if (zone.empty() || with.empty() || with.begin > zone.end || with.end < zone.begin) continue;
+          zone.begin = std::min(zone.begin, with.begin);
+          zone.end = std::max(zone.end, with.end);
+        }
+    }
+  }
+
+  /// Sets the places to wait from where, as yet, the junctions begin: before the first zone of the same junction.
+  static void set_holds(std::vector<Conflict>& conflicts) {
+    std::map<double, std::array<double, 2>> holds;
+    auto const first_line = [](Conflict const& conflict, std::size_t own) {
+      return std::min(conflict.zones[own][0].line, conflict.zones[own][1].line);
+    };
+    for (auto const& conflict : conflicts)
+      for (std::size_t own : {0u, 1u}) {
+        auto& hold = holds.emplace(conflict.hold[own], conflict.hold).first->second[own];
+        hold = std::min(hold, first_line(conflict, own));
+      }
+    for (auto& conflict : conflicts)
+      for (std::size_t own : {0u, 1u})
+        conflict.hold[own] =
+            std::isfinite(conflict.hold[own]) ? holds.at(conflict.hold[own])[own] : first_line(conflict, own);
+  }
+
+  /// The part of `range` where two such bodies touch. Where lanes merge it ends, and where they part it begins, with
+  /// the range: there the two are one lane. O(places on one times places on the other).
+  [[nodiscard]] ConflictZone zone_of(geometry::Shape const& shape, geometry::Shape const& other,
+                                     Conflict const& conflict, ConflictZone const& range) const {
     bool const merges = conflict.kind == OverlapKind::merge, splits = conflict.kind == OverlapKind::split;
-    double const own_from = splits ? begin : std::max(0.0, begin - before()),
-                 own_to = merges ? end : std::min(corridor_.length(), end + behind());
-    double const other_from = splits ? overlap.other_begin : overlap.other_begin - before(),
-                 other_to = merges ? overlap.other_end : overlap.other_end + behind();
     std::vector<geometry::OrientedBox> others;
-    for (double s = other_from; s <= other_to; s += step)
-      others.push_back(geometry::box_of(body_, pose_on_way(overlap.other, s)));
-    double first = std::numeric_limits<double>::infinity(), last = -first;
+    for (double s = range.other_begin; s <= range.other_end; s += step)
+      others.push_back(geometry::box_of(other, pose_on_way(conflict.other, s)));
+    ConflictZone zone;
     std::size_t first_other = others.size(), last_other = 0;
-    double const radius = body_.radius();
-    for (double s = own_from; s <= own_to; s += step) {
-      auto const body = geometry::box_of(body_, corridor_.center.pose(s));
+    double const radii = shape.radius() + other.radius();
+    for (double s = range.begin; s <= range.end; s += step) {
+      auto const body = geometry::box_of(shape, corridor_.center.pose(s));
       for (std::size_t k = 0; k < others.size();) {
         double const dx = others[k].x - body.x, dy = others[k].y - body.y;
-        double const apart = std::sqrt(dx * dx + dy * dy) - 2.0 * radius;
+        double const apart = std::sqrt(dx * dx + dy * dy) - radii;
         if (apart > 2.0 * step) {  // none of the next ones is near, for bodies go no more than 2 m along 1 m of path
           k += static_cast<std::size_t>(apart / (2.0 * step));
           continue;
         }
         std::size_t const at = k++;
         if (!geometry::intersects(body, others[at])) continue;
-        first = std::min(first, s);
-        last = s;
+        zone.begin = std::min(zone.begin, s - step);
+        zone.end = s + step;
         first_other = std::min(first_other, at);
         last_other = std::max(last_other, at);
       }
     }
-    conflict.begin = splits ? begin : first - step;
-    conflict.end = merges ? end : last + step;
-    conflict.other_begin = splits ? overlap.other_begin : other_from + (static_cast<double>(first_other) - 1.0) * step;
-    conflict.other_end = merges ? overlap.other_end : other_from + (static_cast<double>(last_other) + 1.0) * step;
-    return last >= first;
+    if (zone.empty()) return zone;
+    zone.other_begin = range.other_begin + (static_cast<double>(first_other) - 1.0) * step;
+    zone.other_end = range.other_begin + (static_cast<double>(last_other) + 1.0) * step;
+    if (splits) zone.begin = range.begin, zone.other_begin = range.other_begin;
+    if (merges) zone.end = range.end, zone.other_end = range.other_end;
+    return zone;
   }
 
   void add_ways(Conflict& conflict) const {
     double const view = conflict.kind == OverlapKind::split ? 0.0 : map_.options().merge_view;
-    conflict.ways = ways_through(map_, map_.lane(conflict.other), conflict.other_begin - view, conflict.other_end);
+    conflict.ways =
+        ways_through(map_, map_.lane(conflict.other), conflict.hull().other_begin - view, conflict.hull().other_end);
   }
 
   Map const& map_;

@@ -141,6 +141,23 @@ void enter_free_road(Roster& roster, std::shared_ptr<map::RoadCorridor const> co
   std::sort(roster.object_entries.begin(), roster.object_entries.end());
 }
 
+/// Throws `WorldError` for an agent that heeds the conflicts on its road and is larger than those they are found for.
+template <class Spec>
+void check_size(Map const& map, Spec const& spec, map::RoadCorridor const& road, std::string const& where) {
+  bool const heeds_conflicts = std::visit(
+      [](auto const& model) {
+        return requires { model.heeds_conflicts; };
+      },
+      spec.behavior);
+  bool const has_conflicts = std::any_of(road.corridors.begin(), road.corridors.end(),
+                                         [](auto const& corridor) { return !corridor.conflicts.empty(); });
+  auto const& options = map.options();
+  if (heeds_conflicts && has_conflicts && !options.conflict_shape.holds(spec.shape) &&
+      !options.large_conflict_shape.holds(spec.shape))
+    throw WorldError(where, "its shape is larger than the one that conflicts on its way are found for",
+                     "load the map with a MapOptions::large_conflict_shape that holds it");
+}
+
 /// An agent about to enter: all that a world takes in of it. `lanes`: its route.
 template <class World>
 struct Entrant {
@@ -163,6 +180,7 @@ template <class World>
     throw WorldError(where, "the world has an agent of that id already", "leave the id out to get a free one");
   check_entering(spec, where);
   auto const [road, lanes, lane, place] = entrance(map, roster, spec, where);
+  check_size(map, spec, *road, where);
   typename World::Record record;
   record.lane = place;
   record.state.time = time;
