@@ -5,6 +5,7 @@
 
 #include "cambium/behavior/acc.hpp"
 #include "cambium/behavior/follow_lane.hpp"
+#include "cambium/core/macros.hpp"
 
 /// The car following of BARK (fortiss, commit bc4d92c2) as its trajectories show it, for comparison with its results:
 /// 10 equal sub-steps, each one's acceleration taken at the speed of the step's start, a desired gap that may become
@@ -35,7 +36,8 @@ inline void advance(Leader& leader, double speed, double a, double h) {
 
 /// The plan along the lane over `dt` [s].
 template <class View, HasIdmParameters P>
-[[nodiscard]] Plan<View> plan_along_lane(View const& view, P const& p, double coolness, Leader leader, double dt) {
+CAMBIUM_NOINLINE [[nodiscard]] Plan<View> plan_along_lane(View const& view, P const& p, double coolness, Leader leader,
+                                                          double dt) {
   double const h = dt / substeps, start_speed = std::max(0.0, view.state().speed);
   Plan<View> plan;
   LongitudinalMotion<double> motion{0.0, start_speed};

@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "cambium/behavior/view.hpp"
+#include "cambium/core/macros.hpp"
 #include "cambium/core/parameters.hpp"
 
 namespace cambium {
@@ -82,8 +83,8 @@ template <bool heed_acceleration = false, class View, class F>
 /// The highest speed [m/s] at `s` of a corridor that lets a driver who brakes by `deceleration` [m/s^2] be at each
 /// limit ahead 3 s in time, as car following comes down to a desired speed slowly; infinite where there is none.
 /// O(limits within the way to brake).
-[[nodiscard]] inline double permitted_speed(map::LaneCorridor const& corridor, double s, double speed,
-                                            double deceleration) {
+CAMBIUM_NOINLINE [[nodiscard]] inline double permitted_speed(map::LaneCorridor const& corridor, double s, double speed,
+                                                             double deceleration) {
   double permitted = corridor.speed_limit_at(s);
   double const early = s + 3.0 * speed, reach = early + speed * speed / (2.0 * deceleration);
   for (auto const& step : corridor.speed_limits) {

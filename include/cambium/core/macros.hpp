@@ -12,8 +12,8 @@
 #define CAMBIUM_ASSERT(condition, sentence) assert((condition) && (sentence))
 #endif
 
-/// Asks the compiler to inline everything that a function calls: worth a quarter of the time of a step, and up to a
-/// minute of compiling where behaviours are large. Compile with `-DCAMBIUM_FLATTEN=` to do without.
+/// Asks the compiler to inline everything that a function calls: worth a quarter of the time of a step, for seconds of
+/// compiling where behaviours are large. Compile with `-DCAMBIUM_FLATTEN=` to do without.
 #ifndef CAMBIUM_FLATTEN
 #if defined(__GNUC__)
 #define CAMBIUM_FLATTEN [[gnu::flatten]]
@@ -22,7 +22,7 @@
 #endif
 #endif
 
-/// Keeps a large function out of those that call it, even where they are flattened.
+/// Keeps a large function that few steps need out of those that call it, even where they are flattened.
 #if defined(__GNUC__)
 #define CAMBIUM_NOINLINE [[gnu::noinline]]
 #else

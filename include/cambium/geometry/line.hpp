@@ -159,7 +159,7 @@ class Line {
   /// the line does not come near it twice. O(segments passed).
   [[nodiscard]] Projection project(Point const& p, std::uint32_t hint) const {
     CAMBIUM_ASSERT(!empty(), "a query on an empty line");
-    auto i = std::min(hint, last());
+    auto const i = std::min(hint, last());
     // Well inside a segment there is nothing to decide: the usual case for something that follows the line.
     for (auto const next : {i, i + 1}) {
       if (next > last()) break;
@@ -170,24 +170,7 @@ class Line {
       if (along < margin) break;
       if (along <= g.length - margin) return {g.s + along, across, next};
     }
-    double along = along_of(segments_[i], p);
-    // The bisector at a vertex parts the points nearer to the segment before it from those nearer to the one behind.
-    if (along > 0.5 * segments_[i].length) {
-      while (i < last()) {
-        double const next = along_of(segments_[i + 1], p);
-        if (along - segments_[i].length + next <= 0.0) break;
-        along = next;
-        ++i;
-      }
-    } else {
-      while (i > 0) {
-        double const previous = along_of(segments_[i - 1], p);
-        if (previous - segments_[i - 1].length + along > 0.0) break;
-        along = previous;
-        --i;
-      }
-    }
-    return foot(i, p);
+    return descend(p, i);
   }
 
  private:
@@ -215,6 +198,28 @@ class Line {
     // The foot point is an inner vertex: the offset is the distance to it.
     double const excess = before ? along : along - g.length;
     return {before ? g.s : g.s + g.length, std::copysign(std::hypot(across, excess), across), i};
+  }
+
+  /// The nearest local minimum of the distance to `p`, from segment `i` on.
+  CAMBIUM_NOINLINE [[nodiscard]] Projection descend(Point const& p, std::uint32_t i) const {
+    double along = along_of(segments_[i], p);
+    // The bisector at a vertex parts the points nearer to the segment before it from those nearer to the one behind.
+    if (along > 0.5 * segments_[i].length) {
+      while (i < last()) {
+        double const next = along_of(segments_[i + 1], p);
+        if (along - segments_[i].length + next <= 0.0) break;
+        along = next;
+        ++i;
+      }
+    } else {
+      while (i > 0) {
+        double const previous = along_of(segments_[i - 1], p);
+        if (previous - segments_[i - 1].length + along > 0.0) break;
+        along = previous;
+        --i;
+      }
+    }
+    return foot(i, p);
   }
 
   void reserve(std::size_t points) {

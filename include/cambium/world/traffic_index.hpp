@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "cambium/core/macros.hpp"
 #include "cambium/map/corridor.hpp"
 
 namespace cambium {
@@ -162,20 +163,8 @@ class TrafficIndex {
                                                      Query const& query, std::span<TrafficEntry const> objects) const {
     TrafficHit best;
     front_on_corridor(agents_, false, corridor, query, start, best);
-    if (!straddling_.empty())
-      front_on_corridor(straddling_, false, corridor, query, upper(straddling_, key(corridor, query), query.slot),
-                        best);
-    if (!objects.empty())
-      front_on_corridor(objects, true, corridor, query, upper(objects, key(corridor, query), 0), best);
-    for (auto const& feeder : corridor.feeders) {
-      if (feeder.begin > query.s + std::min(horizon, best.gap + query.front + longest_rear_) && objects.empty())
-        break;  // nobody there is closer
-      if (feeder.begin > query.s + horizon) break;
-      if (feeder.end < query.s || (!query.with_merging && feeder.is_still_to_merge())) continue;
-      front_on_feeder(agents_, false, feeder, query, best);
-      if (!straddling_.empty()) front_on_feeder(straddling_, false, feeder, query, best);
-      if (!objects.empty()) front_on_feeder(objects, true, feeder, query, best);
-    }
+    if (!straddling_.empty() || !objects.empty() || !corridor.feeders.empty())
+      front_of_others(corridor, query, objects, best);
     return found(best);
   }
 
@@ -185,19 +174,8 @@ class TrafficIndex {
                                                     Query const& query, std::span<TrafficEntry const> objects) const {
     TrafficHit best;
     rear_on_corridor(agents_, false, corridor, query, start, best);
-    if (!straddling_.empty())
-      rear_on_corridor(straddling_, false, corridor, query, lower(straddling_, key(corridor, query), query.slot), best);
-    if (!objects.empty())
-      rear_on_corridor(objects, true, corridor, query, lower(objects, key(corridor, query), 0), best);
-    for (auto const& feeder : corridor.feeders) {
-      if (feeder.begin > query.s) break;
-      if (feeder.end < query.s - std::min(horizon, best.gap + query.rear + longest_front_) && objects.empty())
-        continue;  // nobody there is closer
-      if (feeder.end < query.s - horizon || (!query.with_merging && feeder.is_still_to_merge())) continue;
-      rear_on_feeder(agents_, false, feeder, query, best);
-      if (!straddling_.empty()) rear_on_feeder(straddling_, false, feeder, query, best);
-      if (!objects.empty()) rear_on_feeder(objects, true, feeder, query, best);
-    }
+    if (!straddling_.empty() || !objects.empty() || !corridor.feeders.empty())
+      rear_of_others(corridor, query, objects, best);
     return found(best);
   }
 
@@ -304,6 +282,46 @@ class TrafficIndex {
       }
       if (p-- == 0 || query.s - pieces[p].end > horizon) return;
       i = upper(list, pieces[p].end + 1.0 + pieces[p].index_offset, std::numeric_limits<std::uint32_t>::max());
+    }
+  }
+
+  /// Next ahead among those that are not agents on the corridor's own lanes: who reaches in from other lanes, objects,
+  /// and all in lanes that merge. Out of line: few steps need it, and it is large.
+  template <class Query>
+  CAMBIUM_NOINLINE void front_of_others(map::LaneCorridor const& corridor, Query const& query, List objects,
+                                        TrafficHit& best) const {
+    if (!straddling_.empty())
+      front_on_corridor(straddling_, false, corridor, query, upper(straddling_, key(corridor, query), query.slot),
+                        best);
+    if (!objects.empty())
+      front_on_corridor(objects, true, corridor, query, upper(objects, key(corridor, query), 0), best);
+    for (auto const& feeder : corridor.feeders) {
+      if (feeder.begin > query.s + std::min(horizon, best.gap + query.front + longest_rear_) && objects.empty())
+        break;  // nobody there is closer
+      if (feeder.begin > query.s + horizon) break;
+      if (feeder.end < query.s || (!query.with_merging && feeder.is_still_to_merge())) continue;
+      front_on_feeder(agents_, false, feeder, query, best);
+      if (!straddling_.empty()) front_on_feeder(straddling_, false, feeder, query, best);
+      if (!objects.empty()) front_on_feeder(objects, true, feeder, query, best);
+    }
+  }
+
+  /// The same behind.
+  template <class Query>
+  CAMBIUM_NOINLINE void rear_of_others(map::LaneCorridor const& corridor, Query const& query, List objects,
+                                       TrafficHit& best) const {
+    if (!straddling_.empty())
+      rear_on_corridor(straddling_, false, corridor, query, lower(straddling_, key(corridor, query), query.slot), best);
+    if (!objects.empty())
+      rear_on_corridor(objects, true, corridor, query, lower(objects, key(corridor, query), 0), best);
+    for (auto const& feeder : corridor.feeders) {
+      if (feeder.begin > query.s) break;
+      if (feeder.end < query.s - std::min(horizon, best.gap + query.rear + longest_front_) && objects.empty())
+        continue;  // nobody there is closer
+      if (feeder.end < query.s - horizon || (!query.with_merging && feeder.is_still_to_merge())) continue;
+      rear_on_feeder(agents_, false, feeder, query, best);
+      if (!straddling_.empty()) rear_on_feeder(straddling_, false, feeder, query, best);
+      if (!objects.empty()) rear_on_feeder(objects, true, feeder, query, best);
     }
   }
 

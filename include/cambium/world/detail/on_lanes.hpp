@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cambium/behavior/view.hpp"
+#include "cambium/core/macros.hpp"
 #include "cambium/map/lane_position.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/world/frame.hpp"
@@ -42,9 +43,9 @@ inline constexpr double on_path = 0.3;
 /// The place beside `at` on lane corridor `number` of the same road, for an agent at `pose`: found from the lanes
 /// beside, for a corridor may come by the same place twice. O(1) for a corridor that is next, else O(lanes of the
 /// corridor).
-[[nodiscard]] inline map::LanePosition locate_beside(Map const& map, map::RoadCorridor const& road,
-                                                     map::LanePosition const& at, std::uint16_t number,
-                                                     geometry::Pose const& pose) {
+CAMBIUM_NOINLINE [[nodiscard]] inline map::LanePosition locate_beside(Map const& map, map::RoadCorridor const& road,
+                                                                      map::LanePosition const& at, std::uint16_t number,
+                                                                      geometry::Pose const& pose) {
   auto const& from = road.corridors[at.corridor].pieces[at.piece];
   auto const& corridor = road.corridors[number];
   map::LanePosition hint;
