@@ -3,7 +3,11 @@
 
 #include "cambium/planner/belief.hpp"
 #include "cambium/planner/exp3.hpp"
-#include "cambium/planner/mcts.hpp"
+#include "cambium/planner/mcts_cooperative.hpp"
+#include "cambium/planner/mcts_hypothesis.hpp"
+#include "cambium/planner/mcts_risk_constrained.hpp"
+#include "cambium/planner/mcts_single_agent.hpp"
+#include "cambium/planner/mcts_workspace.hpp"
 #include "cambium/planner/parallel_tree_search.hpp"
 #include "cambium/planner/puct.hpp"
 #include "cambium/planner/regret_matching.hpp"

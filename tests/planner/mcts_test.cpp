@@ -1,9 +1,13 @@
-#include "cambium/planner/mcts.hpp"
+#include "cambium/planner.hpp"
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <tuple>
+#include <vector>
 
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/world/world.hpp"
@@ -14,39 +18,189 @@ using namespace cambium;
 
 namespace {
 
-using PredictionSet = BehaviorSet<MacroActions, IdmClassic, ConstantAcceleration>;
+using PredictionSet = BehaviorSet<MacroActions, IdmClassic, IdmHypotheses>;
 using PredictionWorld = World<PredictionSet, InterpolateExecution, SingleTrack>;
-using Planner = MctsSingleAgent<PredictionWorld>;
-using Sim = World<BehaviorSet<Planner, IdmClassic, ConstantAcceleration>, InterpolateExecution, SingleTrack>;
+using Single = MctsSingleAgent<PredictionWorld>;
+using Cooperative = MctsCooperative<PredictionWorld>;
+using Hypothesis = MctsHypothesis<PredictionWorld>;
+using Risk = MctsRiskConstrained<PredictionWorld>;
+using Sim = World<BehaviorSet<Single, Cooperative, Hypothesis, Risk, IdmClassic>, InterpolateExecution, SingleTrack>;
+
+/// Ego, number 0, behind a slow vehicle in the right one of two lanes; its goal is the middle of the left one, where
+/// four others drive.
+Sim lane_change(std::uint64_t seed, Sim::Behavior const& planner) {
+  auto const map = support::straight_road(2, 600.0);
+  Sim world(map, {.seed = seed});
+  auto const left = map->nearest_lane({20, -1.75, 0})->lane;
+  world.add({.position = {60, -5.25},
+             .speed = 12,
+             .behavior = planner,
+             .goal = LaneLimits{.lane = left, .left = 0.5, .right = 0.5, .heading_error = 0.08}});
+  for (int i = 0; i < 4; ++i)
+    world.add({.position = {20.0 + 28.0 * i + 3.0 * static_cast<double>(seed), -1.75},
+               .speed = 12.5,
+               .behavior = IdmClassic{.desired_speed = 14.0}});
+  world.add({.position = {95.0, -5.25}, .speed = 9, .behavior = IdmClassic{.desired_speed = 9.0}});
+  return world;
+}
+
+/// Few iterations, random actions held for a second.
+template <class Planner>
+Planner quick(Planner planner, std::size_t iterations = 300) {
+  planner.options.budget.iterations = iterations;
+  planner.options.rollout.hold = 5;
+  return planner;
+}
+
+constexpr AgentId ego{0};
 
 }  // namespace
 
-TEST_CASE("a search in traffic changes into a gap in the other lane") {
-  int reached = 0, collisions = 0;
-  for (std::uint64_t seed = 0; seed < 5; ++seed) {
-    auto const map = support::straight_road(2, 600.0);
-    Sim world(map, {.seed = seed});
-    Planner planner;
-    planner.options.budget.iterations = 1000;
-    planner.options.rollout.hold = 5;
-    auto const left = map->nearest_lane({20, -1.75, 0})->lane;
-    auto const ego = world.add({.position = {60, -5.25},
-                                .speed = 12,
-                                .behavior = planner,
-                                .goal = LaneLimits{.lane = left, .left = 0.5, .right = 0.5, .heading_error = 0.08},
-                                .id = AgentId{0}});
-    for (int i = 0; i < 4; ++i)
-      world.add({.position = {20.0 + 28.0 * i + 3.0 * static_cast<double>(seed), -1.75},
-                 .speed = 12.5,
-                 .behavior = IdmClassic{.desired_speed = 14.0}});
-    world.add({.position = {95.0, -5.25}, .speed = 9, .behavior = IdmClassic{.desired_speed = 9.0}});
-    for (int step = 0; step < 60 && !world.reached_goal(ego); ++step) {
-      auto const result = world.step(0.2);
-      REQUIRE(result.failed == 0);
-      collisions += CollisionEgo{ego}.evaluate(world).ego_collision ? 1 : 0;
+TEST_CASE("searches in traffic change into a gap in the other lane") {
+  Cooperative cooperative = quick(Cooperative{}, 600);
+  cooperative.most_agents = 3;
+  cooperative.reward.speed_deviation = -0.1;
+  Sim::Behavior const planners[] = {quick(Single{}), cooperative, quick(Hypothesis{}), Risk{quick(Single{}), 0.1}};
+  for (auto const& planner : planners) {
+    CAPTURE(planner.index());
+    int reached = 0, collisions = 0;
+    for (std::uint64_t seed = 0; seed < 2; ++seed) {
+      auto world = lane_change(seed, planner);
+      for (int step = 0; step < 60 && !world.reached_goal(ego); ++step) {
+        auto const result = world.step(0.2);
+        REQUIRE(result.failed == 0);
+        collisions += CollisionEgo{ego}.evaluate(world).ego_collision ? 1 : 0;
+      }
+      reached += world.reached_goal(ego) ? 1 : 0;
     }
-    reached += world.reached_goal(ego) ? 1 : 0;
+    CHECK(reached == 2);
+    CHECK(collisions == 0);
   }
-  CHECK(reached == 5);
-  CHECK(collisions == 0);
+}
+
+TEST_CASE("a world with a planner in it goes the same way again, as a copy too") {
+  auto world = lane_change(1, quick(Hypothesis{}, 100));
+  for (int step = 0; step < 5; ++step) (void)world.step(0.2);
+  auto copy = world;
+  for (int step = 0; step < 5; ++step) {
+    (void)world.step(0.2);
+    (void)copy.step(0.2);
+  }
+  CHECK(world.frame() == copy.frame());
+  auto again = lane_change(1, quick(Hypothesis{}, 100));
+  for (int step = 0; step < 10; ++step) (void)again.step(0.2);
+  CHECK(world.frame() == again.frame());
+}
+
+TEST_CASE("a planner says what it thought") {
+  auto world = lane_change(0, quick(Single{}));
+  Single::Workspace workspace;
+  auto const report = quick(Single{}, 500).think(world.observe(ego), workspace);
+  CHECK(report.result.iterations == 500);
+  CHECK(report.choosing == std::vector<AgentId>{ego});
+  CHECK(report.actions.size() == report.result.of(0).size());
+  CHECK(report.agents.size() == 6);
+  REQUIRE(report.course.size() == report.result.variation.size() + 1);
+  CHECK(report.course.front().time == world.time());
+  CHECK(report.course[1].time == doctest::Approx(world.time() + 0.2));
+  // Played in the predicted world, the variation leads to the states that the report shows.
+  auto predicted = world.observe(ego).predict(predict_as<PredictionSet>(MacroActions{}, IdmClassic{}));
+  for (std::size_t i = 0; i < report.result.variation.size(); ++i) {
+    predicted.memory<MacroActions>(ego).choose(report.result.variation[i]);
+    (void)predicted.step(0.2);
+    CHECK(predicted.frame().agents == report.course[i + 1].agents);
+  }
+  // What it does is how that begins.
+  auto stepping = lane_change(0, quick(Single{}, 500));
+  (void)stepping.step(0.2);
+  CHECK(stepping.state(ego) == report.course[1].agents[0].state);
+}
+
+TEST_CASE("searches in a warm world allocate nothing") {
+  using Domain = TrafficDomain<PredictionWorld, MacroActions, TrafficReward>;
+  PredictionWorld world(support::straight_road(2, 600.0));
+  world.add({.position = {60, -5.25}, .speed = 12, .behavior = MacroActions{}});
+  for (int i = 0; i < 4; ++i) world.add({.position = {40.0 + 25.0 * i, -1.75}, .speed = 12, .behavior = IdmClassic{}});
+  std::uint32_t const slot = 0;
+  Domain domain(world, {&slot, 1}, MacroActions{}, {}, 0.2);
+  auto const root = domain.root();
+  TreeSearch<Domain> search(domain, {.horizon = 10}, {}, {}, {300});
+  (void)search.run(root, 1);
+  auto const before = support::allocations();
+  (void)search.run(root, 1);
+  CHECK(support::allocations() == before);
+  (void)search.run(root, 2);
+  CHECK(support::allocations() == before);
+}
+
+TEST_CASE("beliefs find the headway of the one behind whom it drives") {
+  for (double const headway : {0.8, 3.2}) {
+    auto const map = support::straight_road(1, 2000.0);
+    Sim world(map);
+    world.add({.position = {60, -1.75}, .speed = 12, .behavior = quick(Hypothesis{}, 50)});
+    world.add({.position = {90, -1.75}, .speed = 14, .behavior = IdmClassic{.time_headway = headway}});
+    world.add({.position = {115, -1.75}, .speed = 10, .behavior = IdmClassic{.desired_speed = 10}});
+    for (int step = 0; step < 15; ++step) (void)world.step(0.2);
+    auto const* belief = world.memory<Hypothesis>(ego).belief(AgentId{1});
+    REQUIRE(belief != nullptr);
+    CHECK(belief->most_likely() == (headway < 1.0 ? 0 : 3));
+    CHECK(belief->probability(belief->most_likely()) > 0.8);
+  }
+}
+
+namespace {
+
+/// Every metre counts; each step faster than 13 m/s risks something.
+struct Hurry {
+  template <class World>
+  [[nodiscard]] Judgement judge(World const& world, std::uint32_t slot, double dt) const {
+    double const speed = world.frame().agents[slot].state.speed;
+    return {{0.1 * speed * dt, speed > 13.0 ? 0.1 : 0.0}, false};
+  }
+  static constexpr char const* name = "hurry";
+  static constexpr auto parameters() { return std::make_tuple(); }
+};
+
+}  // namespace
+
+TEST_CASE("a constraint on risk gives up what the reward alone would do") {
+  using Hurried = MctsRiskConstrained<PredictionWorld, MacroActions, Hurry>;
+  using HurriedSim = World<BehaviorSet<Hurried>, InterpolateExecution, SingleTrack>;
+  auto const driven = [](double risk) {
+    Hurried planner{quick(Hurried::SingleAgent{}, 500), risk};
+    planner.planner.options.search.horizon = 15;
+    HurriedSim world(support::straight_road(1, 900.0));
+    world.add({.position = {60, -1.75}, .speed = 12, .behavior = planner});
+    double fastest = 0.0;
+    for (int step = 0; step < 30; ++step) {
+      (void)world.step(0.2);
+      fastest = std::max(fastest, world.state(ego).speed);
+    }
+    return fastest;
+  };
+  CHECK(driven(1.0) > 16.0);
+  double const careful = driven(0.05);
+  CHECK(careful < 13.6);
+  CHECK(careful > 10.0);
+}
+
+TEST_CASE("what cannot be planned is said") {
+  auto world = lane_change(0, quick(Single{}));
+  Single::Workspace workspace;
+  Single planner = quick(Single{});
+  planner.options.budget.iterations = 0;
+  CHECK_THROWS_AS(world.add({.position = {300, -1.75}, .speed = 12, .behavior = planner}), ParameterError);
+  CHECK_THROWS_AS((void)planner.think(world.observe(ego), workspace), ParameterError);
+  planner = quick(Single{});
+  planner.reward.progress = std::nan("");
+  CHECK_THROWS_AS(world.add({.position = {300, -1.75}, .speed = 12, .behavior = planner}), ParameterError);
+  CHECK_THROWS_AS((void)planner.think(world.observe(ego), workspace), SearchError);
+  CHECK_THROWS_AS((void)world.observe(AgentId{77}), WorldError);
+  // One that has left the map is not there to be planned for.
+  auto state = world.state(ego);
+  state.x = 595.0;
+  world.set_state(ego, state);
+  for (int step = 0; step < 5; ++step) (void)world.step(0.2);
+  REQUIRE(world.status(ego) != AgentStatus::driving);
+  CHECK_THROWS_AS((void)quick(Single{}).think(world.observe(ego), workspace), SearchError);
 }

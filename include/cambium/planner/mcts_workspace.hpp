@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "cambium/behavior/behavior_model.hpp"
-#include "cambium/behavior/idm_classic.hpp"
 #include "cambium/planner/traffic_domain.hpp"
 #include "cambium/planner/tree_search.hpp"
 #include "cambium/world/prediction.hpp"
@@ -142,77 +141,29 @@ template <class PredictionWorld, class Actions, class Others, class View>
   return world;
 }
 
-/// The plan that the workspace's last run leads to, for the next `dt` [s].
+/// What ego does over the next `dt` [s] by the principal variation.
 template <class View, class Workspace>
-[[nodiscard]] Plan<View> plan_of(View const& view, Workspace& workspace, double dt) {
-  Plan<View> plan;
-  auto const& domain = workspace.search().domain();
-  if (workspace.search().result().problem != SearchProblem::none) {
-    plan.status = PlanStatus::failed;
-    return plan;
-  }
-  auto const slot = domain.slots()[0];
+void take_course(View const& view, Workspace& workspace, double dt, Plan<View>& plan) {
+  auto const slot = workspace.search().domain().slots()[0];
   workspace.play(view.time() + dt, [&](auto const& frame) {
     if (plan.trajectory.empty()) plan.action = frame.agents[slot].action;
     plan.trajectory.push_back(frame.agents[slot].state);
   });
+}
+
+/// The plan that `search(workspace)`, which says what was found, leads to for the next `dt` [s].
+template <class PredictionWorld, class View, class Workspace, class Search>
+[[nodiscard]] Plan<View> plan_by_search(View const& view, Workspace& workspace, double dt, Search&& search) {
+  Plan<View> plan;
+  plan.status = PlanStatus::failed;
+  if constexpr (Predicts<View, typename PredictionWorld::Behaviors, PredictionWorld>) {
+    if (search(workspace).problem != SearchProblem::none) return plan;
+    plan.status = PlanStatus::valid;
+    take_course(view, workspace, dt, plan);
+  }
   return plan;
 }
 
 }  // namespace detail
-
-/// Plans by Monte Carlo tree search over predicted worlds: ego chooses among `Actions`, the others follow `Others`.
-/// `PredictionWorld`: the world's own type with a behaviour set that holds both. A behaviour like any other, in
-/// simulation and, with a small budget, in predictions; or call `think` to be told what it thought.
-template <class PredictionWorld, class Actions = MacroActions, class Reward = TrafficReward, class Others = IdmClassic,
-          class Selection = Ucb1, class Rollout = RandomRollout>
-struct MctsSingleAgent {
-  using Domain = TrafficDomain<PredictionWorld, Actions, Reward>;
-  using Workspace = MctsWorkspace<Domain, Selection, Rollout>;
-
-  Actions actions{};
-  Others others{};
-  Reward reward{};
-  MctsOptions<Selection, Rollout> options{};
-
-  static constexpr char const* name = "mcts_single_agent";
-  static constexpr char const* summary =
-      "tree search (UCT) over its own actions in predicted worlds; the others follow a behaviour model";
-  static constexpr char const* source = "Kocsis, Szepesvari 2006; Bernhard 2020";
-  static constexpr auto parameters() {
-    using P = MctsSingleAgent;
-    return std::make_tuple(parameter("actions", &P::actions, "-", {}, "what ego may do"),
-                           parameter("others", &P::others, "-", {}, "how the others are expected to behave"),
-                           parameter("reward", &P::reward, "-", {}, "what ego wants"),
-                           parameter("options", &P::options, "-", {}, "how it is searched"));
-  }
-
-  template <class View>
-  [[nodiscard]] Plan<View> plan(View const& view, NoMemory, double dt, Workspace& workspace) const {
-    Plan<View> failed;
-    failed.status = PlanStatus::failed;
-    if constexpr (detail::Predicts<View, typename PredictionWorld::Behaviors, PredictionWorld>)
-      return search(view, workspace).problem == SearchProblem::none ? detail::plan_of(view, workspace, dt) : failed;
-    else
-      return failed;
-  }
-
-  /// What it thinks of what `view` shows. Throws `SearchError` where there is nothing to search.
-  template <class View>
-  [[nodiscard]] MctsReport<PredictionWorld, typename Domain::Action> think(View const& view,
-                                                                           Workspace& workspace) const {
-    throw_if(search(view, workspace).problem);
-    return workspace.report();
-  }
-
- private:
-  template <class View>
-  [[nodiscard]] SearchResult<typename Domain::Action> const& search(View const& view, Workspace& workspace) const {
-    std::vector<std::uint32_t> slots;
-    auto world = detail::world_to_search<PredictionWorld>(view, actions, others, slots);
-    return workspace.run(Domain(std::move(world), slots, actions, reward, options.step), options,
-                         view.random(detail::search_purpose)());
-  }
-};
 
 }  // namespace cambium

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "cambium/behavior/behavior_model.hpp"
+#include "cambium/behavior/idm_classic.hpp"
+#include "cambium/planner/mcts_workspace.hpp"
+
+namespace cambium {
+
+namespace detail {
+
+/// The agents of `world` next to the one at `ego`, at most `count` of them within `range` [m], nearest first.
+template <class World>
+[[nodiscard]] std::vector<std::uint32_t> nearest_agents(World const& world, std::uint32_t ego, std::size_t count,
+                                                        double range) {
+  auto const& agents = world.frame().agents;
+  auto const distance = [&](std::uint32_t slot) {
+    return std::hypot(agents[slot].state.x - agents[ego].state.x, agents[slot].state.y - agents[ego].state.y);
+  };
+  std::vector<std::uint32_t> slots;
+  for (std::uint32_t slot = 0; slot < world.size(); ++slot)
+    if (slot != ego && agents[slot].status == AgentStatus::driving && distance(slot) <= range) slots.push_back(slot);
+  std::stable_sort(slots.begin(), slots.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return distance(a) < distance(b); });
+  slots.resize(std::min(slots.size(), count));
+  return slots;
+}
+
+}  // namespace detail
+
+/// Plans by tree search in which ego and those near it choose at once, each for itself and, by `cooperation`, for the
+/// others: reward = own + cooperation x the others' (Lenz, Kessler, Knoll 2016). Who is farther away follows `Others`.
+/// The others' goals are not known: let the reward say what everybody wants, as speed and no collision.
+template <class PredictionWorld, class Actions = MacroActions, class Reward = TrafficReward, class Others = IdmClassic,
+          class Selection = Ucb1, class Rollout = RandomRollout>
+struct MctsCooperative {
+  using Domain = TrafficDomain<PredictionWorld, Actions, Reward>;
+  using Workspace = MctsWorkspace<Domain, Selection, Rollout>;
+
+  Actions actions{};
+  Others others{};
+  Reward reward{};
+  MctsOptions<Selection, Rollout> options{};
+  double cooperation = 0.5;
+  int most_agents = 4;
+  double range = 50.0;
+
+  static constexpr char const* name = "mcts_cooperative";
+  static constexpr char const* summary =
+      "tree search (decoupled UCT) in which ego and those near it choose at once, for themselves and for each other";
+  static constexpr char const* source = "Lenz, Kessler, Knoll 2016; Tak, Lanctot, Winands 2014";
+  static constexpr auto parameters() {
+    using P = MctsCooperative;
+    return std::make_tuple(
+        parameter("actions", &P::actions, "-", {}, "what those who choose may do"),
+        parameter("others", &P::others, "-", {}, "how the rest is expected to behave"),
+        parameter("reward", &P::reward, "-", {}, "what each wants"),
+        parameter("options", &P::options, "-", {}, "how it is searched"),
+        parameter("cooperation", &P::cooperation, "-", Range{0, 1}, "weight of the others' rewards in one's own"),
+        parameter("most_agents", &P::most_agents, "-", Range{1, 32}, "who choose, ego among them"),
+        parameter("range", &P::range, "m", non_negative, "who is farther away does not choose"));
+  }
+
+  template <class View>
+  [[nodiscard]] Plan<View> plan(View const& view, NoMemory, double dt, Workspace& workspace) const {
+    return detail::plan_by_search<PredictionWorld>(
+        view, workspace, dt, [&](auto& w) -> auto const& { return search(view, w); });
+  }
+
+  /// What it thinks of what `view` shows. Throws `SearchError` where there is nothing to search.
+  template <class View>
+  [[nodiscard]] MctsReport<PredictionWorld, typename Domain::Action> think(View const& view,
+                                                                           Workspace& workspace) const {
+    throw_if(search(view, workspace).problem);
+    return workspace.report();
+  }
+
+ private:
+  template <class View>
+  [[nodiscard]] SearchResult<typename Domain::Action> const& search(View const& view, Workspace& workspace) const {
+    std::vector<std::uint32_t> slots;
+    auto world = detail::world_to_search<PredictionWorld>(view, actions, others, slots);
+    if (!slots.empty())
+      for (auto const slot :
+           detail::nearest_agents(world, slots[0], static_cast<std::size_t>(most_agents - 1), range)) {
+        world.set_behavior(world.roster().agents[slot].id, detail::ActionSet<Actions>::behavior(actions));
+        slots.push_back(slot);
+      }
+    return workspace.run(Domain(std::move(world), slots, actions, reward, options.step, cooperation), options,
+                         view.random(detail::search_purpose)());
+  }
+};
+
+}  // namespace cambium

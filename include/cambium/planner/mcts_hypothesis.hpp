@@ -1,0 +1,154 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "cambium/behavior/behavior_model.hpp"
+#include "cambium/behavior/idm_hypotheses.hpp"
+#include "cambium/planner/belief.hpp"
+#include "cambium/planner/mcts_cooperative.hpp"
+#include "cambium/planner/mcts_workspace.hpp"
+
+namespace cambium {
+
+/// Plans by tree search among others whose time headways are not known: it believes one of a few regions of each, with
+/// probabilities that follow what the others do (Bayes), and draws headways anew for each iteration (root sampling).
+/// `PredictionWorld` must have `IdmHypotheses` in its behaviour set. Nodes stand for ego's actions only.
+template <class PredictionWorld, class Actions = MacroActions, class Reward = TrafficReward, class Selection = Ucb1,
+          class Rollout = RandomRollout>
+struct MctsHypothesis {
+  using Domain = HypothesisDomain<PredictionWorld, Actions, Reward>;
+  using Workspace = MctsWorkspace<Domain, Selection, Rollout>;
+
+  /// Those about whom something is believed.
+  static constexpr std::size_t capacity = 6;
+
+  struct Tracked {
+    AgentId id = none<AgentId>;
+    Belief belief{};
+    std::array<float, IdmHypotheses::most_regions> expected{};  ///< speed at the next step, by region [m/s]
+
+    friend bool operator==(Tracked const&, Tracked const&) = default;
+  };
+  struct Memory {
+    std::array<Tracked, capacity> tracked{};
+    double expected_at = -1.0;  ///< when those speeds are expected [s]
+
+    /// What is believed of an agent; null where nothing is.
+    [[nodiscard]] Belief const* belief(AgentId id) const {
+      auto const at = std::ranges::find(tracked, id, &Tracked::id);
+      return is_valid(id) && at != tracked.end() ? &at->belief : nullptr;
+    }
+    friend bool operator==(Memory const&, Memory const&) = default;
+  };
+
+  Actions actions{};
+  IdmHypotheses others{};
+  Reward reward{};
+  MctsOptions<Selection, Rollout> options{};
+  BeliefParameters belief{};
+  double speed_deviation = 0.05;
+  double range = 60.0;
+
+  static constexpr char const* name = "mcts_hypothesis";
+  static constexpr char const* summary =
+      "tree search (UCT) among others whose time headways are drawn by what is believed of each, from what it did";
+  static constexpr char const* source = "Bernhard, Knoll 2020 (RSBG); Silver, Veness 2010 (root sampling)";
+  static constexpr auto parameters() {
+    using P = MctsHypothesis;
+    return std::make_tuple(parameter("actions", &P::actions, "-", {}, "what ego may do"),
+                           parameter("others", &P::others, "-", {}, "what the others may be like"),
+                           parameter("reward", &P::reward, "-", {}, "what ego wants"),
+                           parameter("options", &P::options, "-", {}, "how it is searched"),
+                           parameter("belief", &P::belief, "-", {}, "how it follows what is observed"),
+                           parameter("speed_deviation", &P::speed_deviation, "m/s", Range{1e-3, 10},
+                                     "standard deviation of a speed after a step, from what a headway predicts"),
+                           parameter("range", &P::range, "m", non_negative, "the 6 nearest within it are told apart"));
+  }
+
+  template <class View>
+  [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt, Workspace& workspace) const {
+    return detail::plan_by_search<PredictionWorld>(
+        view, workspace, dt, [&](auto& w) -> auto const& { return search(view, memory, dt, w); });
+  }
+
+  /// What it thinks of what `view` shows, having seen what `memory` says, in a world of steps of `dt` [s]. Throws
+  /// `SearchError` where there is nothing to search.
+  template <class View>
+  [[nodiscard]] MctsReport<PredictionWorld, typename Domain::Action> think(View const& view, Memory& memory, double dt,
+                                                                           Workspace& workspace) const {
+    throw_if(search(view, memory, dt, workspace).problem);
+    return workspace.report();
+  }
+
+ private:
+  template <class View>
+  [[nodiscard]] SearchResult<typename Domain::Action> const& search(View const& view, Memory& memory, double dt,
+                                                                    Workspace& workspace) const {
+    std::vector<std::uint32_t> slots;
+    auto world = detail::world_to_search<PredictionWorld>(view, actions, others, slots);
+    std::vector<typename Domain::Unknown> unknowns;
+    if (!slots.empty()) unknowns = update(world, slots[0], memory, dt);
+    Domain domain(std::move(world), slots, actions, reward, options.step);
+    domain.set_unknowns(unknowns, others);
+    return workspace.run(std::move(domain), options, view.random(detail::search_purpose)());
+  }
+
+  /// Takes in what the others did since the last step, and notes what they are expected to do in the next one.
+  [[nodiscard]] std::vector<typename Domain::Unknown> update(PredictionWorld const& world, std::uint32_t ego,
+                                                             Memory& memory, double dt) const {
+    auto const near = detail::nearest_agents(world, ego, capacity, range);
+    bool const was_expected = std::abs(memory.expected_at - world.time()) < 1e-6;
+    std::array<Tracked, capacity> tracked{};
+    std::vector<typename Domain::Unknown> unknowns;
+    for (std::size_t i = 0; i < near.size(); ++i) {
+      auto const id = world.roster().agents[near[i]].id;
+      auto const known = std::ranges::find(memory.tracked, id, &Tracked::id);
+      tracked[i] =
+          known != memory.tracked.end() ? *known : Tracked{id, Belief(static_cast<std::size_t>(others.regions)), {}};
+      if (known != memory.tracked.end() && was_expected) observe(tracked[i], world.frame().agents[near[i]].state.speed);
+      unknowns.push_back({near[i], tracked[i].belief});
+    }
+    memory.tracked = tracked;
+    expect(world, near, memory, dt);
+    return unknowns;
+  }
+
+  void observe(Tracked& other, double speed) const {
+    std::array<double, IdmHypotheses::most_regions> likelihoods{};
+    double nearest = 1e300;
+    auto const regions = static_cast<std::size_t>(others.regions);
+    for (std::size_t r = 0; r < regions; ++r) {
+      double const off = (speed - static_cast<double>(other.expected[r])) / speed_deviation;
+      likelihoods[r] = 0.5 * off * off;
+      nearest = std::min(nearest, likelihoods[r]);
+    }
+    // Relative to the best: what no headway explains tells little, but does not make all of them impossible.
+    for (std::size_t r = 0; r < regions; ++r) likelihoods[r] = std::exp(nearest - likelihoods[r]);
+    other.belief.update({likelihoods.data(), regions}, belief);
+  }
+
+  void expect(PredictionWorld const& world, std::span<std::uint32_t const> slots, Memory& memory, double dt) const {
+    constexpr auto index = PredictionWorld::Behaviors::template index<IdmHypotheses>;
+    PredictionWorld trial = world;
+    for (std::size_t r = 0; r < static_cast<std::size_t>(others.regions); ++r) {
+      auto frame = world.frame();
+      for (auto const slot : slots)
+        std::get_if<index>(&frame.agents[slot].memory)->time_headway = static_cast<float>(others.headway(r, 0.5));
+      trial.exchange(frame);
+      (void)trial.step(dt);
+      for (std::size_t i = 0; i < slots.size(); ++i)
+        memory.tracked[i].expected[r] = static_cast<float>(trial.frame().agents[slots[i]].state.speed);
+    }
+    memory.expected_at = world.time() + dt;
+  }
+};
+
+}  // namespace cambium

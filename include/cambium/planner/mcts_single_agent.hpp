@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "cambium/behavior/behavior_model.hpp"
+#include "cambium/behavior/idm_classic.hpp"
+#include "cambium/planner/mcts_workspace.hpp"
+
+namespace cambium {
+
+/// Plans by Monte Carlo tree search over predicted worlds: ego chooses among `Actions`, the others follow `Others`.
+/// `PredictionWorld`: the world's own type with a behaviour set that holds both. A behaviour like any other, in
+/// simulation and, with a small budget, in predictions; or call `think` to be told what it thought.
+template <class PredictionWorld, class Actions = MacroActions, class Reward = TrafficReward, class Others = IdmClassic,
+          class Selection = Ucb1, class Rollout = RandomRollout>
+struct MctsSingleAgent {
+  using Domain = TrafficDomain<PredictionWorld, Actions, Reward>;
+  using Workspace = MctsWorkspace<Domain, Selection, Rollout>;
+
+  Actions actions{};
+  Others others{};
+  Reward reward{};
+  MctsOptions<Selection, Rollout> options{};
+
+  static constexpr char const* name = "mcts_single_agent";
+  static constexpr char const* summary =
+      "tree search (UCT) over its own actions in predicted worlds; the others follow a behaviour model";
+  static constexpr char const* source = "Kocsis, Szepesvari 2006; Bernhard 2020";
+  static constexpr auto parameters() {
+    using P = MctsSingleAgent;
+    return std::make_tuple(parameter("actions", &P::actions, "-", {}, "what ego may do"),
+                           parameter("others", &P::others, "-", {}, "how the others are expected to behave"),
+                           parameter("reward", &P::reward, "-", {}, "what ego wants"),
+                           parameter("options", &P::options, "-", {}, "how it is searched"));
+  }
+
+  template <class View>
+  [[nodiscard]] Plan<View> plan(View const& view, NoMemory, double dt, Workspace& workspace) const {
+    return detail::plan_by_search<PredictionWorld>(
+        view, workspace, dt, [&](auto& w) -> auto const& { return search(view, w); });
+  }
+
+  /// What it thinks of what `view` shows. Throws `SearchError` where there is nothing to search.
+  template <class View>
+  [[nodiscard]] MctsReport<PredictionWorld, typename Domain::Action> think(View const& view,
+                                                                           Workspace& workspace) const {
+    throw_if(search(view, workspace).problem);
+    return workspace.report();
+  }
+
+ private:
+  template <class View>
+  [[nodiscard]] SearchResult<typename Domain::Action> const& search(View const& view, Workspace& workspace) const {
+    std::vector<std::uint32_t> slots;
+    auto world = detail::world_to_search<PredictionWorld>(view, actions, others, slots);
+    return workspace.run(Domain(std::move(world), slots, actions, reward, options.step), options,
+                         view.random(detail::search_purpose)());
+  }
+};
+
+}  // namespace cambium
