@@ -1,7 +1,7 @@
 # The fuzzer of the OpenDRIVE reader, where there is a clang with its fuzzing and sanitizer libraries. A target outside
 # `all`; its ctest builds it and runs it for a short while, with a fixed seed. Elsewhere the test is skipped.
 set(fuzz_source ${CMAKE_CURRENT_LIST_DIR})
-set(fuzz_flags -std=c++20 -O2 -g1 -fsanitize=fuzzer,address,undefined,float-cast-overflow -fno-sanitize-recover=all
+set(fuzz_flags -std=c++20 -O1 -g1 -fsanitize=fuzzer,address,undefined,float-cast-overflow -fno-sanitize-recover=all
   -fno-sanitize-coverage=trace-cmp)  # the mutator knows the words that comparisons would tell it
 
 find_program(CAMBIUM_FUZZ_COMPILER NAMES clang++-19 clang++-14 clang++)

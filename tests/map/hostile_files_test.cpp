@@ -101,9 +101,9 @@ TEST_CASE("a damaged file gives a map on which traffic runs, or a MapError, and 
   for (auto const* name : {"DR_DEU_Merging_MT_v01_shifted.xodr", "simple_3way_intersection_lht.xodr"})
     if (auto const file = corpus::find(std::string("opendrive/") + name)) files.push_back(*file);
   for (std::uint32_t i = 0; i < files.size(); ++i) {
-    auto const count = damage(files[i], i, 1000);
+    auto const count = damage(files[i], i, 200);
     MESSAGE(files[i].filename().string() << ": " << count.maps << " maps, " << count.errors << " errors");
-    CHECK(count.maps > 500);
-    CHECK(count.errors > 10);
+    CHECK(count.maps > 80);
+    CHECK(count.errors > 2);
   }
 }
