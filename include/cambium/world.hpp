@@ -9,4 +9,5 @@
 #include "cambium/world/static_object.hpp"
 #include "cambium/world/step_result.hpp"
 #include "cambium/world/traffic_index.hpp"
+#include "cambium/world/traffic_query.hpp"
 #include "cambium/world/world.hpp"
