@@ -118,8 +118,15 @@ class FullWorld {
   std::size_t step() {
     sort_neighbours();
     accelerate();
-    for (auto& vehicle : vehicles_) drive(vehicle);
-    return collisions();
+    return advance();
+  }
+
+  /// The same where vehicle 0 accelerates as told [m/s^2].
+  std::size_t step_with(double acceleration) {
+    sort_neighbours();
+    accelerate();
+    vehicles_[0].acceleration = std::max(acceleration, -vehicles_[0].speed / step_length);
+    return advance();
   }
 
   [[nodiscard]] std::vector<Vehicle> const& vehicles() const { return vehicles_; }
@@ -132,6 +139,11 @@ class FullWorld {
   }
 
  private:
+  std::size_t advance() {
+    for (auto& vehicle : vehicles_) drive(vehicle);
+    return collisions();
+  }
+
   struct Extent {
     double low;  // along x [m]
     double high;

@@ -75,13 +75,15 @@ class TableReporter : public benchmark::BenchmarkReporter {
   }
 
  private:
+  [[nodiscard]] static bool is_rate(std::string const& counter) { return counter == rate || counter == search_rate; }
+
   [[nodiscard]] static Result summary(std::vector<Run> const& runs) {
     Result result;
     std::vector<double> values;
     for (auto const& run : runs) {
       result.order = run.family_index;
       result.message = run.report_label;
-      for (char const* counter : {per_agent_step, per_copy, rate, milliseconds, per_query}) {
+      for (char const* counter : {per_agent_step, per_copy, rate, search_rate, milliseconds, per_query}) {
         auto const found = run.counters.find(counter);
         if (found == run.counters.end()) continue;
         result.counter = counter;
@@ -94,7 +96,7 @@ class TableReporter : public benchmark::BenchmarkReporter {
     std::sort(values.begin(), values.end());
     std::size_t const middle = values.size() / 2;
     result.median = values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
-    result.best = result.counter == rate ? values.back() : values.front();
+    result.best = is_rate(result.counter) ? values.back() : values.front();
     return result;
   }
 
@@ -103,7 +105,7 @@ class TableReporter : public benchmark::BenchmarkReporter {
       std::printf("%-28s failed %s\n", name.c_str(), result.message.c_str());
       return;
     }
-    int const digits = result.counter == rate ? 0 : 2;
+    int const digits = is_rate(result.counter) ? 0 : 2;
     std::printf("%-28s %14.*f %14.*f  %-18s %12.2f\n", name.c_str(), digits, result.best, digits, result.median,
                 result.counter.c_str(), result.allocations);
   }

@@ -18,6 +18,7 @@ namespace yardstick {
 inline constexpr char const* per_agent_step = "ns_per_agent_step";
 inline constexpr char const* per_copy = "ns_per_copy";
 inline constexpr char const* rate = "per_second";
+inline constexpr char const* search_rate = "iterations_per_second";
 inline constexpr char const* milliseconds = "ms";
 inline constexpr char const* per_query = "ns";
 inline constexpr char const* allocation_counter = "allocations";
@@ -87,6 +88,13 @@ template <class Action>
 void measure_rate(benchmark::State& state, Action&& action) {
   detail::run_counted(state, std::forward<Action>(action));
   state.counters[rate] = {static_cast<double>(state.iterations()), benchmark::Counter::kIsRate};
+}
+
+/// Measures `search`, which does `iterations`: counters iterations_per_second and allocations (per search).
+template <class Search>
+void measure_search(benchmark::State& state, std::size_t iterations, Search&& search) {
+  detail::run_counted(state, std::forward<Search>(search));
+  state.counters[search_rate] = {static_cast<double>(iterations * state.iterations()), benchmark::Counter::kIsRate};
 }
 
 }  // namespace yardstick
