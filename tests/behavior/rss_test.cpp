@@ -126,6 +126,15 @@ TEST_CASE("the proper response: who is behind brakes, neither comes closer sidew
   CHECK(cb::rss_response(p, at).brake);
   at.gap = 100;
   CHECK_FALSE(cb::rss_response(p, at).any());
+  at = {.gap = 5, .speed = 10, .other_speed = -10, .side_gap = 0.2, .is_ahead = false};
+  CHECK_FALSE(cb::rss_response(p, at).any());  // it has passed
+  // Who is in its own lane is counted on to brake less hard.
+  double const right = cb::rss_opposite_direction(p, 20.0, 10.0), wrong = cb::rss_opposite_direction(p, 10.0, 20.0);
+  CHECK(right > wrong + 5.0);
+  at = {.gap = 0.5 * (right + wrong), .speed = 20, .other_speed = -10, .side_gap = 0.0};
+  CHECK(cb::rss_response(p, at).brake);
+  at.in_own_lane = false;
+  CHECK_FALSE(cb::rss_response(p, at).any());
 }
 
 TEST_CASE("bounds of braking that contradict each other are refused") {

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "../support/allocations.hpp"
 #include "../world/fixtures.hpp"
 #include "cambium/core/distributions.hpp"
 
@@ -133,14 +134,26 @@ TEST_CASE("collisions are those of a brute-force twin, few agents or many, on ro
                         {"many on a horizontal road", {40, 4000, 8, 0.0}, 500},
                         {"many on a vertical road", {40, 4000, 8, up}, 500},
                         {"many on a slanting road", {40, 4000, 8, 0.8}, 500},
-                        {"more than fit without allocating", {100, 1200, 500, up}, 200},
-                        {"a crowd", {300, 20000, 100, 0.0}, 50}};
+                        {"a hundred", {100, 1200, 500, up}, 200},
+                        {"a crowd", {300, 20000, 100, 0.0}, 50},
+                        {"more than are swept at once", {1300, 60000, 600, 0.3}, 30}};
   for (auto const& [what, scene, frames] : cases) {
     int const collisions = compare(scene, frames);
     MESSAGE(what << ": " << collisions << " of " << frames << " frames with a collision");
     if (scene.agents == 0) continue;
     CHECK(collisions > static_cast<int>(frames / 10));
     CHECK(collisions < static_cast<int>(frames - frames / 10));
+  }
+}
+
+TEST_CASE("however many there are, nothing is allocated") {
+  auto const map = straight_road(1, 10);
+  for (std::size_t const agents : {10u, 100u, 1000u, 3000u}) {
+    auto const world = random_world(map, {agents, 1e7, 1e4, 0.2}, 3);
+    auto const before = support::allocations();
+    auto const found = cb::CollisionAny{}.evaluate(world);
+    CHECK(support::allocations() == before);
+    CHECK_FALSE(found.any_collision);
   }
 }
 

@@ -215,3 +215,32 @@ TEST_CASE("the rectangles of two cars on one lane collide when the gap is gone")
   CHECK(!intersects(box_of(car(), follower), at(4.5 + 1e-9)));
   CHECK(intersects(box_of(car(), follower), at(4.5 - 1e-9)));
 }
+
+TEST_CASE("nearest points are as far as the distance says, on the shape, and no sample of its border is nearer") {
+  RandomStream random(23, 0, 0);
+  auto const between = [&random](double low, double high) { return low + (high - low) * uniform01(random); };
+  for (int i = 0; i < 500; ++i) {
+    double const turn = between(-4, 4);
+    OrientedBox const box{between(-5, 5),  between(-5, 5), between(0.1, 4),
+                          between(0.1, 2), std::cos(turn), std::sin(turn)};
+    Polygon const star(
+        {{0.0, 0.0}, {4.0, 0.5}, {2.0, 1.0}, {between(1.5, 3), 4.0}, {1.0, between(1.2, 2)}, {-2.0, 2.0}});
+    Point const p{between(-8, 8), between(-8, 8)};
+    Point const in_box = nearest_point(box, p), on_border = nearest_border_point(star, p);
+    CHECK((in_box - p).norm() == doctest::Approx(distance(box, p)).epsilon(1e-9));
+    CHECK(distance(box, in_box) < 1e-12);
+    CHECK((on_border - p).norm() == doctest::Approx(star.distance_to_border(p)).epsilon(1e-9));
+    CHECK(star.distance_to_border(on_border) < 1e-12);
+    auto const corners = box.corners();
+    for (std::size_t k = 0; k < 4; ++k)
+      for (double u = 0.0; u < 1.0; u += 0.1) {
+        Point const sample = (1 - u) * corners[k] + u * corners[(k + 1) % 4];
+        CHECK((in_box - p).norm() <= (sample - p).norm() + 1e-12);
+      }
+    for (std::size_t k = 0; k < star.size(); ++k)
+      for (double u = 0.0; u < 1.0; u += 0.1) {
+        Point const sample = (1 - u) * star.edge(k).first + u * star.edge(k).second;
+        CHECK((on_border - p).norm() <= (sample - p).norm() + 1e-12);
+      }
+  }
+}

@@ -134,6 +134,23 @@ TEST_CASE("rooms include only upward, and the rooms of a step stay free of heavy
   for (auto const& breach : find_breaches(includes)) FAIL_CHECK(breach);
 }
 
+TEST_CASE(
+    "what a step calls for each agent is dispatched without std::visit: its table of functions and its exception") {
+  int read = 0;
+  for (std::string const room : {"dynamics", "execution", "observer"})
+    for (auto const& entry : std::filesystem::recursive_directory_iterator(std::filesystem::path(CAMBIUM_SOURCE_DIR) /
+                                                                           "include" / "cambium" / room)) {
+      if (!entry.is_regular_file()) continue;
+      std::ifstream file(entry.path());
+      for (std::string line; std::getline(file, line);) {
+        CAPTURE(entry.path().string());
+        CHECK(line.find("std::visit(") == std::string::npos);
+      }
+      ++read;
+    }
+  CHECK(read > 20);
+}
+
 TEST_CASE("an include is read in every way to write it") {
   CHECK(include_of("#include <cambium/map/lane.hpp>") == "cambium/map/lane.hpp");
   CHECK(include_of("  #  include \"a.hpp\"  // why") == "a.hpp");

@@ -21,26 +21,6 @@ namespace cambium {
 
 namespace detail {
 
-/// The point of the rectangle that is nearest to `p`.
-[[nodiscard]] inline geometry::Point nearest_point(geometry::OrientedBox const& box, geometry::Point const& p) {
-  double const dx = p.x() - box.x, dy = p.y() - box.y;
-  double const along = std::clamp(box.cos * dx + box.sin * dy, -box.half_length, box.half_length);
-  double const across = std::clamp(box.cos * dy - box.sin * dx, -box.half_width, box.half_width);
-  return {box.x + box.cos * along - box.sin * across, box.y + box.sin * along + box.cos * across};
-}
-
-/// The point of the polygon's border that is nearest to `p`.
-[[nodiscard]] inline geometry::Point nearest_point(geometry::Polygon const& polygon, geometry::Point const& p) {
-  geometry::Point best = polygon.points()[0];
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    auto const [a, b] = polygon.edge(i);
-    geometry::Point const side = b - a;
-    geometry::Point const q = a + std::clamp((p - a).dot(side) / side.squaredNorm(), 0.0, 1.0) * side;
-    if ((q - p).squaredNorm() < (best - p).squaredNorm()) best = q;
-  }
-  return best;
-}
-
 /// Who and what is around one who walks: no heap.
 struct Surroundings {
   static constexpr std::size_t most = 32;
@@ -206,7 +186,7 @@ struct Pedestrian {
     for (std::size_t i = 0; i < around.other_count; ++i) {
       auto const& other = around.others[i];
       bool const is_round = other.radius > 0.0 || other.box.contains(own);
-      geometry::Point const from = is_round ? other.box.center() : detail::nearest_point(other.box, own);
+      geometry::Point const from = is_round ? other.box.center() : geometry::nearest_point(other.box, own);
       Vector const apart{own.x() - from.x(), own.y() - from.y()};
       double const distance = apart.norm();
       if (!(distance > 1e-9)) continue;
@@ -215,7 +195,7 @@ struct Pedestrian {
       sum = sum + (contact_repulsion(social, distance - other.radius - body_radius) / distance) * apart;
     }
     for (std::size_t i = 0; i < around.object_count; ++i) {
-      geometry::Point const from = detail::nearest_point(*around.objects[i], own);
+      geometry::Point const from = geometry::nearest_border_point(*around.objects[i], own);
       bool const is_inside = around.objects[i]->contains(own);
       Vector const apart{own.x() - from.x(), own.y() - from.y()};
       double const distance = apart.norm();

@@ -110,14 +110,19 @@ struct RssSituation {
   double other_lateral_speed{};  ///< [m/s]
   bool is_ahead = true;          ///< else behind, by the reference points
   bool is_left = false;          ///< else on the right, by the reference points
+  bool in_own_lane = true;       ///< else in a lane for those who come towards it
 };
 
 /// The proper response to one road user: none unless the distances are unsafe both lengthwise and sideways. Who is
-/// behind brakes, unless they are beside each other; neither comes closer sideways where there is still room.
+/// behind brakes, both do who come towards each other, unless they are beside each other; neither comes closer sideways
+/// where there is still room.
 [[nodiscard]] inline RssResponse rss_response(RssParameters const& p, RssSituation const& at) {
   double const own = std::max(0.0, at.speed), other = std::max(0.0, at.other_speed);
   bool const oncoming = at.other_speed < 0.0;
-  double const needed = oncoming      ? rss_opposite_direction(p, own, -at.other_speed)
+  if (oncoming && !at.is_ahead && at.gap > 0.0) return {};  // it has passed
+  double const opposite = at.in_own_lane ? rss_opposite_direction(p, own, std::abs(at.other_speed))
+                                         : rss_opposite_direction(p, std::abs(at.other_speed), own);
+  double const needed = oncoming      ? opposite
                         : at.is_ahead ? rss_same_direction(p, own, other)
                                       : rss_same_direction(p, other, own);
   double const aside = at.is_left ? rss_lateral(p, at.other_lateral_speed, at.lateral_speed)

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <tuple>
 
-#include "cambium/behavior/behavior_model.hpp"
+#include "cambium/behavior/behavior_set.hpp"
 #include "cambium/behavior/constant_acceleration.hpp"
 #include "cambium/behavior/course.hpp"
 #include "cambium/behavior/follow_lane.hpp"
@@ -18,12 +18,13 @@
 namespace cambium {
 
 /// Any behaviour, but for dangerous situations by Responsibility-Sensitive Safety (see rss.hpp) with those who are in
-/// the own lane and those beside: there it brakes, or comes no closer to a side, as the proper response asks. It also
-/// keeps its accelerations within what others count on. Who has to brake stays on the course of the nominal behaviour;
-/// who has to keep off a side keeps its lateral place and drives on along the lane. The nominal behaviour plans in each
-/// step and remembers it, and is told how much of its course was not driven (`fell_short`). Plans may turn in sideways
-/// harder than `lateral_acceleration`: that a plan does not make a situation dangerous is asked of where it leads, as
-/// if the other did the same. Steps must not be longer than `response_time`. O(agents within some hundred metres).
+/// the own lane, those beside and those of the own road that are driven the other way: there it brakes, or comes no
+/// closer to a side, as the proper response asks. It also keeps its accelerations within what others count on. Who has
+/// to brake stays on the course of the nominal behaviour; who has to keep off a side keeps its lateral place and drives
+/// on along the lane. The nominal behaviour plans in each step and remembers it, and is told how much of its course was
+/// not driven (`fell_short`). Plans may turn in sideways harder than `lateral_acceleration`: that a plan does not make
+/// a situation dangerous is asked of where it leads, as if the other did the same. Steps must not be longer than
+/// `response_time`. O(agents within some hundred metres).
 template <BehaviorModel Nominal>
 struct RssConformant {
   Nominal nominal{};
@@ -41,6 +42,11 @@ struct RssConformant {
   }
 
   using Memory = MemoryOf<Nominal>;
+  static constexpr bool looks_beside = true;
+  static constexpr bool looks_around = detail::looks_around<Nominal>;
+
+  [[nodiscard]] double start_time() const requires requires(Nominal const behavior) { behavior.start_time(); }
+  { return nominal.start_time(); }
 
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
@@ -76,6 +82,7 @@ struct RssConformant {
     auto const visit = [&](auto const& other) {
       if (may_matter(view, other, speed)) respond(view, other, now, then, dt, all);
     };
+    for_each_oncoming(view, speed, visit);
     auto const& at = view.lane_position();
     auto const too_close = [&](std::uint16_t corridor) {
       auto const objects = view.for_each_near(corridor, farthest, visit);
@@ -119,6 +126,34 @@ struct RssConformant {
     return apart <= far + 2.0 * (view.shape().radius() + other.shape.radius());
   }
 
+  /// Calls `f(ObservedAgent)` for those in the lanes of the own road that are driven the other way, beside and ahead.
+  template <class View, class F>
+  void for_each_oncoming(View const& view, double speed, F const& f) const {
+    constexpr double fast = 50.0, beside = 20.0;  // [m/s], [m]
+    auto const& corridor = view.corridor();
+    auto const& at = view.lane_position();
+    double const from = at.s - beside, to = at.s + beside + rss_opposite_direction(rss, speed, fast);
+    for (std::size_t i = corridor.piece_at(from, at.piece); i < corridor.pieces.size(); ++i) {
+      auto const& piece = corridor.pieces[i];
+      if (piece.begin > to) return;
+      if (!is_valid(piece.lane)) continue;
+      auto const& lane = view.map().lane(piece.lane);
+      double const begin = lane.station_at(std::max(from, piece.begin) + piece.lane_offset),
+                   end = lane.station_at(std::min(to, piece.end) + piece.lane_offset);
+      for (auto const& entry : view.map().road(lane.road).sections[lane.section].lanes)
+        for (auto const id : {entry.id, entry.opposite}) {
+          if (!is_valid(id)) continue;
+          auto const& other = view.map().lane(id);
+          if (!other.drivable() || other.along_road == lane.along_road) continue;
+          auto const stretch = other.stretch_between(begin, end);
+          view.for_each_on_lane(other.index_begin + stretch.begin, other.index_begin + stretch.end,
+                                [&](LaneUser const& user) {
+                                  if (is_valid(user.agent)) f(view.agent({.agent = user.agent, .slot = user.slot}));
+                                });
+        }
+    }
+  }
+
   /// What a road user takes up across the own lane corridor, and how it moves there.
   struct Across {
     double s{}, front{}, rear{};       ///< along the corridor, and how far it reaches [m]
@@ -151,6 +186,10 @@ struct RssConformant {
                RssResponse& all) const {
     auto const its = across(view, other.state, other.shape);
     RssSituation at{.speed = now.along, .other_speed = its.along, .other_lateral_speed = its.aside};
+    if (its.along < 0.0) {
+      auto const sides = view.corridor().widths_at(now.s, view.lane_position().segment);
+      at.in_own_lane = -now.middle <= sides.right && now.middle <= sides.left;
+    }
     at.is_ahead = its.s >= now.s;
     at.is_left = its.middle > now.middle;
     at.gap = at.is_ahead ? its.s - its.rear - (now.s + now.front) : now.s - now.rear - (its.s + its.front);

@@ -1,11 +1,10 @@
 #pragma once
 
 #include <concepts>
-#include <cstddef>
 #include <type_traits>
-#include <utility>
 #include <variant>
 
+#include "cambium/core/detail/visit.hpp"
 #include "cambium/dynamics/dynamic_model.hpp"
 
 namespace cambium {
@@ -35,31 +34,25 @@ class DynamicSet {
   [[nodiscard]] Any const& any() const { return any_; }
 
   [[nodiscard]] State derivative(State const& x, Action const& u) const {
-    return visit([&](auto const& model) { return model.derivative(x, model.input(u, x)); });
+    return detail::visit([&](auto const& model) { return model.derivative(x, model.input(u, x)); }, any_);
   }
   [[nodiscard]] Action limited(Action const& u, State const& x) const {
-    return visit([&](auto const& model) { return action_of(model.input(u, x), u); });
+    return detail::visit([&](auto const& model) { return action_of(model.input(u, x), u); }, any_);
   }
   [[nodiscard]] Action input(Action const& action, State const& x) const { return limited(action, x); }
   [[nodiscard]] State stopped(State x) const {
-    return visit([&](auto const& model) {
-      if constexpr (requires { model.stopped(x); }) return model.stopped(x);
-      return x;
-    });
+    return detail::visit(
+        [&](auto const& model) {
+          if constexpr (requires { model.stopped(x); }) return model.stopped(x);
+          return x;
+        },
+        any_);
   }
   [[nodiscard]] double wheel_base() const {
-    return visit([](auto const& model) { return wheel_base_of(model); });
+    return detail::visit([](auto const& model) { return wheel_base_of(model); }, any_);
   }
 
  private:
-  /// As std::visit, without its table of functions and its exception.
-  template <std::size_t i = 0, class F>
-  [[nodiscard]] auto visit(F const& f) const -> decltype(f(std::declval<First const&>())) {
-    if constexpr (i < sizeof...(Others))
-      if (any_.index() != i) return visit<i + 1>(f);
-    return f(*std::get_if<i>(&any_));
-  }
-
   Any any_;
 };
 

@@ -17,8 +17,8 @@ struct KinematicPointInput {
 };
 
 /// A point that faces where it goes (a pedestrian, a simple planner's vehicle): x' = v cos(heading), y' = v
-/// sin(heading), heading' = yaw rate, v' = acceleration. It turns on the spot. Forces in the plane move it by `toward`;
-/// a driver's steering angle turns it as that of a vehicle of `wheel_base` would.
+/// sin(heading), heading' = yaw rate, v' = acceleration. It turns on the spot. A driver's steering
+/// angle turns it as that of a vehicle of `wheel_base` would.
 struct KinematicPoint {
   using State = cambium::State;
   using Input = KinematicPointInput<double>;
@@ -61,14 +61,6 @@ struct KinematicPoint {
 
   [[nodiscard]] Input input(Action const& action, State const& x) const {
     return limited({action.acceleration, x.speed * std::tan(std::clamp(action.steering, -1.5, 1.5)) / wheel_base}, x);
-  }
-
-  /// The input that a force per mass (ax, ay) [m/s^2] in the map frame makes. Below 0.1 m/s it turns towards the force.
-  [[nodiscard]] Input toward(double ax, double ay, State const& x) const {
-    auto const [sin, cos] = geometry::sin_cos(x.heading);
-    double const along = ax * cos + ay * sin, across = ay * cos - ax * sin;
-    if (x.speed >= 0.1) return limited({along, across / x.speed}, x);
-    return limited({std::max(0.0, along), 10.0 * std::atan2(across, along)}, x);
   }
 };
 static_assert(DynamicModel<KinematicPoint>);

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <optional>
 
-#include <boost/container/small_vector.hpp>
+#include <boost/container/static_vector.hpp>
 
 #include "cambium/core/ids.hpp"
 #include "cambium/geometry/collision.hpp"
@@ -88,8 +88,8 @@ struct CollisionEgo {
   }
 };
 
-/// Whether any two agents that take part in traffic, or one and a static object, touch. O(n log n); no allocation up to
-/// 64 agents.
+/// Whether any two agents that take part in traffic, or one and a static object, touch. O(n log n) up to 1000 agents,
+/// beyond O(n log 1000) for each 500 of them; no allocation.
 struct CollisionAny {
   struct Result {
     bool any_collision = false;
@@ -99,19 +99,28 @@ struct CollisionAny {
 
   template <class World>
   [[nodiscard]] Result evaluate(World const& world) const {
-    boost::container::small_vector<detail::Circle, 64> circles;
-    for (std::uint32_t i = 0; i < world.size(); ++i) {
-      if (!detail::in_traffic(world, i)) continue;
-      circles.push_back(detail::circle_of(world, i));
-      if (detail::touched_object(world, i)) return {true, world.roster().agents[i].id, none<AgentId>};
-    }
-    return sweep(world, circles);
+    auto const count = static_cast<std::uint32_t>(world.size());
+    for (std::uint32_t i = 0; i < count; ++i)
+      if (detail::in_traffic(world, i) && detail::touched_object(world, i))
+        return {true, world.roster().agents[i].id, none<AgentId>};
+    for (std::uint32_t first = 0; first == 0 || first + part < count; first += part)
+      for (std::uint32_t second = first + part; second == first + part || second < count; second += part)
+        if (auto const found = sweep(world, first, second); found.any_collision) return found;
+    return {};
   }
 
  private:
-  /// Sweep and prune along the longer axis of the scene; a few agents are simply compared with each other.
-  template <class World, class Circles>
-  [[nodiscard]] static Result sweep(World const& world, Circles& circles) {
+  /// Agents are swept in two parts of this many at a time, on the stack.
+  static constexpr std::uint32_t part = 512;
+
+  /// Those from slots `first` and `second` on: sweep and prune along the longer axis of the scene; a few agents are
+  /// simply compared with each other.
+  template <class World>
+  [[nodiscard]] static Result sweep(World const& world, std::uint32_t first, std::uint32_t second) {
+    boost::container::static_vector<detail::Circle, 2 * part> circles;
+    for (auto const begin : {first, second})
+      for (auto i = begin; i < std::min(begin + part, static_cast<std::uint32_t>(world.size())); ++i)
+        if (detail::in_traffic(world, i)) circles.push_back(detail::circle_of(world, i));
     constexpr std::size_t few = 16;
     bool const sorted = circles.size() > few;
     if (sorted) sort_along_longer_axis(circles);

@@ -99,6 +99,14 @@ template <bool closed>
   return std::sqrt(along * along + across * across);
 }
 
+/// The point of the rectangle that is nearest to `p`; `p` itself inside.
+[[nodiscard]] inline Point nearest_point(OrientedBox const& box, Point const& p) {
+  double const dx = p.x() - box.x, dy = p.y() - box.y;
+  double const along = std::clamp(box.cos * dx + box.sin * dy, -box.half_length, box.half_length);
+  double const across = std::clamp(box.cos * dy - box.sin * dx, -box.half_width, box.half_width);
+  return {box.x + box.cos * along - box.sin * across, box.y + box.sin * along + box.cos * across};
+}
+
 /// Distance [m] between two rectangles, 0 when they intersect.
 [[nodiscard]] inline double distance(OrientedBox const& a, OrientedBox const& b) {
   if (intersects(a, b)) return 0.0;
@@ -107,6 +115,19 @@ template <bool closed>
   for (auto const& corner : a.corners()) nearest = std::min(nearest, distance(b, corner));
   for (auto const& corner : b.corners()) nearest = std::min(nearest, distance(a, corner));
   return nearest;
+}
+
+/// The point of the polygon's border that is nearest to `p`, also from inside. O(n).
+[[nodiscard]] inline Point nearest_border_point(Polygon const& polygon, Point const& p) {
+  Point best = polygon.points()[0];
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    auto const [a, b] = polygon.edge(i);
+    Point const side = b - a;
+    double const squared = side.squaredNorm();
+    Point const q = a + (squared > 0.0 ? std::clamp((p - a).dot(side) / squared, 0.0, 1.0) : 0.0) * side;
+    if ((q - p).squaredNorm() < (best - p).squaredNorm()) best = q;
+  }
+  return best;
 }
 
 /// Distance [m] from `p` to the polygon, 0 inside. O(n).

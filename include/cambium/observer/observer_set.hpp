@@ -6,6 +6,7 @@
 #include <type_traits>
 #include <variant>
 
+#include "cambium/core/detail/visit.hpp"
 #include "cambium/observer/observer_model.hpp"
 
 namespace cambium {
@@ -19,13 +20,13 @@ struct ObserverSet {
   static constexpr std::size_t past_steps = std::max({std::size_t{0}, past_steps_of<Observers>...});
 
   [[nodiscard]] std::size_t steps_back(bool own) const {
-    return std::visit([own](auto const& one) { return cambium::steps_back(one, own); }, any);
+    return detail::visit([own](auto const& one) { return cambium::steps_back(one, own); }, any);
   }
 
   template <class Scene>
   [[nodiscard]] bool sees(Scene const& scene, std::uint32_t own, std::uint32_t other) const
       requires(LimitedSight<Observers, Scene> || ...) {
-    return std::visit(
+    return detail::visit(
         [&](auto const& one) {
           if constexpr (LimitedSight<std::remove_cvref_t<decltype(one)>, Scene>)
             return one.sees(scene, own, other);
@@ -38,7 +39,7 @@ struct ObserverSet {
   template <class Scene>
   [[nodiscard]] bool sees_object(Scene const& scene, std::uint32_t own, std::uint32_t object) const
       requires(LimitedSightOfObjects<Observers, Scene> || ...) {
-    return std::visit(
+    return detail::visit(
         [&](auto const& one) {
           if constexpr (LimitedSightOfObjects<std::remove_cvref_t<decltype(one)>, Scene>)
             return one.sees_object(scene, own, object);
@@ -50,7 +51,7 @@ struct ObserverSet {
 
   template <MotionState S>
   [[nodiscard]] S observe(S const& truth, bool own, RandomStream const& random) const {
-    return std::visit([&](auto const& one) { return S(one.observe(truth, own, random)); }, any);
+    return detail::visit([&](auto const& one) { return S(one.observe(truth, own, random)); }, any);
   }
 };
 

@@ -1,0 +1,136 @@
+// RSS-conformant agents that overtake on a two-way road never collide with those who come towards them: a property.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "../world/fixtures.hpp"
+#include "cambium/behavior/rss_conformant.hpp"
+#include "cambium/core/distributions.hpp"
+#include "cambium/evaluation/collision.hpp"
+
+using namespace fixtures;
+
+namespace {
+
+/// Drives heedlessly at its speed beside its lane, to the left, from one moment to another.
+struct Overtake {
+  double begin = 0.0, end = 0.0;  ///< [s]
+  double speed = 15.0;            ///< [m/s]
+
+  static constexpr auto parameters() {
+    return std::make_tuple(cb::parameter("begin", &Overtake::begin, "s", cb::any_finite, "of the time beside"),
+                           cb::parameter("end", &Overtake::end, "s", cb::any_finite, "of that"),
+                           cb::parameter("speed", &Overtake::speed, "m/s", cb::Range{0, 50}, "that it wants"));
+  }
+
+  template <class View>
+  cb::Plan<View> plan(View const& view, cb::NoMemory&, double dt) const {
+    constexpr double lateral_speed = 1.0;  // [m/s]
+    auto const& at = view.lane_position();
+    double const now = view.state().speed, a = std::clamp((speed - now) / dt, -3.0, 2.0);
+    double const target = view.time() >= begin && view.time() < end ? 3.5 : 0.0;
+    double const most = now > 2.0 ? lateral_speed * dt : 0.0, aside = std::clamp(target - at.lateral, -most, most);
+    double const along = (now + 0.5 * a * dt) * dt;
+    auto next = view.state();
+    next.time = view.time() + dt;
+    cb::place_on_lane(view.corridor(), at.s + along, at.lateral + aside, aside == 0.0 ? 0.0 : std::atan2(aside, along),
+                      at.segment, next);
+    next.speed = now + a * dt;
+    cb::Plan<View> plan;
+    plan.trajectory.push_back(next);
+    plan.action.acceleration = a;
+    return plan;
+  }
+};
+
+using Safe = cb::RssConformant<Overtake>;
+using Behaviors = cb::BehaviorSet<Overtake, Safe>;
+using World = cb::World<Behaviors, cb::InterpolateExecution, cb::SingleTrack>;
+
+Behaviors::Any driver(Overtake const& nominal, bool safe) {
+  if (safe) return Safe{nominal, {}};
+  return nominal;
+}
+
+struct Tally {
+  int collisions = 0, in_other_lane = 0, braked = 0, passed = 0;
+};
+
+Tally drive(bool safe, std::uint32_t scenarios) {
+  auto const map = support::map_of({.id = "1",
+                                    .line = cb::map::lay_from({}, {{2000.0}}),
+                                    .sections = {{.left = cb::map::equal_lanes(1), .right = cb::map::equal_lanes(1)}}});
+  Tally tally;
+  for (std::uint32_t number = 0; number < scenarios; ++number) {
+    cb::RandomStream random(7, number, 0);
+    auto const between = [&random](double low, double high) { return cb::Uniform{low, high}(random); };
+    double const dt = 0.1 * (2 + cb::uniform_index(random, 4)), speed = between(8, 25), slow = between(3, 8);
+    World world(map);
+    double const begin = between(0, 6);
+    // The one ahead drives slower, at a safe distance; those who come are far enough, or just, or not.
+    double const gap = cb::rss_same_direction(cb::RssParameters{}, speed, slow) + between(0, 20);
+    auto const one = world.add({.position = {300, -1.75},
+                                .heading = 0.0,
+                                .speed = speed,
+                                .behavior = driver({begin, begin + between(3, 15), speed}, safe)});
+    world.add({.position = {305 + gap, -1.75}, .heading = 0.0, .speed = slow, .behavior = driver({0, 0, slow}, safe)});
+    double x = 300 + between(40, 600);
+    for (int i = 0; i < 2; ++i) {
+      double const oncoming = between(5, 25);
+      bool const overtakes = cb::uniform_index(random, 4) == 0;
+      double const from = overtakes ? between(0, 6) : 0.0;
+      world.add({.position = {x, 1.75},
+                 .heading = 3.14159265358979323846,
+                 .speed = oncoming,
+                 .behavior = driver({from, overtakes ? from + 6.0 : 0.0, oncoming}, safe)});
+      x += cb::rss_same_direction(cb::RssParameters{}, 25.0, oncoming) + 10.0;
+    }
+    bool collided = false, was_left = false, braked = false;
+    for (double t = 0; t < 25.0 && !collided; t += dt) {
+      CAPTURE(number);
+      CAPTURE(t);
+      if (!world.step(dt)) FAIL_CHECK("a step failed");
+      collided = cb::CollisionAny{}.evaluate(world).any_collision;
+      if (safe && collided) FAIL_CHECK("a collision");
+      was_left = was_left || world.state(one).y > 0.0;
+      braked = braked || (world.state(one).y > 0.0 && world.record(one).action.acceleration < -3.9);
+    }
+    tally.collisions += collided;
+    tally.in_other_lane += was_left;
+    tally.braked += braked;
+    tally.passed += world.record(one).state.x > world.frame().agents[2].state.x;
+  }
+  MESSAGE(scenarios << " scenarios: in " << tally.in_other_lane << " the other lane is entered, in " << tally.braked
+                    << " braked in, in " << tally.passed << " the first one that comes is passed, in "
+                    << tally.collisions << " somebody collides");
+  return tally;
+}
+
+}  // namespace
+
+TEST_CASE("RSS-conformant agents who come towards each other never collide, whoever overtakes") {
+  auto const tally = drive(true, 3000);
+  CHECK(tally.collisions == 0);
+  CHECK(tally.in_other_lane > 300);
+  CHECK(tally.braked > 50);
+  CHECK(tally.passed > 1000);
+}
+
+TEST_CASE("the same agents without it do collide") { CHECK(drive(false, 300).collisions > 60); }
+
+TEST_CASE("nobody brakes for those who come in their own lane") {
+  auto const map = support::map_of({.id = "1",
+                                    .line = cb::map::lay_from({}, {{500.0, 0.004, 0.004}, {500.0, -0.004, -0.004}}),
+                                    .sections = {{.left = cb::map::equal_lanes(1), .right = cb::map::equal_lanes(1)}}});
+  World world(map);
+  for (auto const& lane : map->lanes())
+    for (double const s : {100.0, 300.0, 500.0}) {
+      auto const pose = lane.path.pose(s);
+      world.add({.position = pose.position(), .heading = pose.heading, .speed = 15.0, .behavior = Safe{}});
+    }
+  for (int i = 0; i < 80; ++i) {
+    REQUIRE(world.step(0.2));
+    for (auto const& record : world.frame().agents) CHECK(record.state.speed == doctest::Approx(15.0).epsilon(1e-3));
+  }
+}
