@@ -226,8 +226,8 @@ class ConflictFinder {
     auto const road = map_.lane(conflict.other).road;
     for (auto const& next : all) {
       if (next.kind != OverlapKind::crossing || map_.lane(next.other).road != road) continue;
-      for (int own = 0; own < 2; ++own)
-        for (int other = 0; other < 2; ++other) {
+      for (std::size_t own = 0; own < 2; ++own)
+        for (std::size_t other = 0; other < 2; ++other) {
           auto& zone = conflict.zones[own][other];
           auto const& with = next.zones[own][other];
           if (zone.empty() || with.empty() || with.begin > zone.end || with.end < zone.begin) continue;
