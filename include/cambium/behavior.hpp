@@ -5,6 +5,7 @@
 #include "cambium/behavior/bark.hpp"
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/behavior_set.hpp"
+#include "cambium/behavior/braking.hpp"
 #include "cambium/behavior/constant_acceleration.hpp"
 #include "cambium/behavior/corridor_filters.hpp"
 #include "cambium/behavior/course.hpp"
