@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 
 #include "cambium/core/ids.hpp"
 #include "cambium/geometry/oriented_box.hpp"
+#include "cambium/map/corridor.hpp"
 #include "cambium/world/frame.hpp"
 
 namespace cambium {
@@ -29,7 +31,7 @@ struct DrivableArea {
   template <class World>
   [[nodiscard]] static bool off_road(World const& world, std::size_t slot) {
     auto const& record = world.frame().agents[slot];
-    if (record.status != AgentStatus::driving || inside_own_lane(world, slot)) return false;
+    if (record.status != AgentStatus::driving || inside_lanes(world, slot)) return false;
     auto const& s = record.state;
     auto const box = geometry::box_of(world.roster().agents[slot].shape, {s.x, s.y, s.heading});
     auto const corners = box.corners();
@@ -42,12 +44,14 @@ struct DrivableArea {
   }
 
  private:
-  /// A box within the narrower of the lane's widths at its rear and front, and straight enough, is inside. [m, rad]
+  /// A box within the narrower of the widths at its rear, middle and front, and straight enough, is inside: of its own
+  /// lane, with those beside it where they go along with it all the way. [m, rad]
   template <class World>
-  [[nodiscard]] static bool inside_own_lane(World const& world, std::size_t slot) {
+  [[nodiscard]] static bool inside_lanes(World const& world, std::size_t slot) {
     auto const& agent = world.roster().agents[slot];
     auto const& at = world.frame().agents[slot].lane;
     auto const& corridor = agent.road->corridors[at.corridor];
+    auto const& piece = corridor.pieces[at.piece];
     auto const& shape = agent.shape;
     double const rear = at.s - shape.rear, front = at.s + shape.front;
     if (rear < 0 || front > corridor.length()) return false;
@@ -57,11 +61,27 @@ struct DrivableArea {
     for (auto i = corridor.center.find(rear); i < segments.size() && segments[i].s < front; ++i)
       bend += std::abs(segments[i].curvature) * segments[i].length;
     double const margin = (std::abs(at.heading_error) + bend) * reach + 0.1;
-    auto const fits = [&](double s) {
+    bool const has_beside = rear > piece.begin && front < piece.end;
+    for (double const s : {rear, at.s, front}) {
       auto const widths = corridor.widths_at(s, corridor.center.find(s));
-      return at.lateral + shape.left + margin < widths.left && at.lateral - shape.right - margin > -widths.right;
-    };
-    return fits(at.s) && fits(rear) && fits(front);
+      double left = widths.left, right = widths.right;
+      if (has_beside && at.lateral + shape.left + margin >= left)
+        left += width_beside(*agent.road, piece, piece.left, piece.left_piece, s);
+      if (has_beside && at.lateral - shape.right - margin <= -right)
+        right += width_beside(*agent.road, piece, piece.right, piece.right_piece, s);
+      if (at.lateral + shape.left + margin >= left || at.lateral - shape.right - margin <= -right) return false;
+    }
+    return true;
+  }
+
+  /// Of the lane beside a piece at the same share of its length; 0 where there is none to drive on.
+  [[nodiscard]] static double width_beside(map::RoadCorridor const& road, map::CorridorPiece const& from,
+                                           std::uint16_t number, std::uint16_t piece, double s) {
+    if (number == map::no_corridor) return 0.0;
+    auto const& beside = road.corridors[number];
+    auto const& to = beside.pieces[piece];
+    if (!map::is_drivable(to.type)) return 0.0;
+    return beside.width_at(to.begin + (s - from.begin) / (from.end - from.begin) * (to.end - to.begin));
   }
 
   /// In no lane; past the end of the agent's own road does not count: the map ends there, not the road.

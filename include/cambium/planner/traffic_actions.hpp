@@ -50,10 +50,11 @@ struct ActionSet<MacroActions> {
 
   static MacroActions const& behavior(MacroActions const& actions) { return actions; }
   template <class View>
-  static std::size_t list(MacroActions const& actions, View const& view, std::span<Choice> out) {
+  static std::size_t list(MacroActions const& actions, View const& view, MacroActions::Memory const& memory,
+                          std::span<Choice> out) {
     std::size_t count = 0;
     for (std::size_t i = 0; i < actions.size(); ++i)
-      if (actions.available(view, i)) out[count++] = static_cast<Choice>(i);
+      if (actions.available(view, i, memory.change)) out[count++] = static_cast<Choice>(i);
     return count;
   }
   static void set(MacroActions::Memory& memory, Choice choice) { memory.choose(choice); }
@@ -79,7 +80,8 @@ struct ActionSet<MotionPrimitives> {
 
   static MotionPrimitives const& behavior(MotionPrimitives const& actions) { return actions; }
   template <class View>
-  static std::size_t list(MotionPrimitives const& actions, View const&, std::span<Choice> out) {
+  static std::size_t list(MotionPrimitives const& actions, View const&, MotionPrimitives::Memory,
+                          std::span<Choice> out) {
     for (std::size_t i = 0; i < actions.size(); ++i) out[i] = static_cast<Choice>(i);
     return actions.size();
   }

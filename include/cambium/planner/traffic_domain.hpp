@@ -78,7 +78,8 @@ class TrafficDomain {
                                     std::span<Action> out) requires detail::ListsChoices<Actions> {
     auto& frame = const_cast<State&>(state).frame;  // given back as it was
     world_.exchange(frame);
-    auto const count = Set::list(actions_, typename World::View(world_, slots_[agent]), out);
+    auto const& memory = *std::get_if<behavior_index>(&world_.frame().agents[slots_[agent]].memory);
+    auto const count = Set::list(actions_, typename World::View(world_, slots_[agent]), memory, out);
     world_.exchange(frame);
     return count;
   }
