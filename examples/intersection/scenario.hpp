@@ -83,23 +83,26 @@ struct Scenario {
   std::vector<cambium::AgentId> marked;
 };
 
-/// Whether a truck on the route, outside of junctions, keeps out of the lanes beside.
-[[nodiscard]] inline bool fits_truck(cambium::Map const& map, cambium::map::Route const& route) {
-  constexpr double sharpest = 1.0 / 30.0;  // [1/m]: it swings out by 0.9 m
+/// Whether one of `shape` that follows the route keeps out of the lanes beside, outside of junctions: those who drive
+/// there do not look out for whom a bend swings into their way.
+[[nodiscard]] inline bool fits(cambium::Map const& map, cambium::map::Route const& route,
+                               cambium::geometry::Shape const& shape) {
+  double const sharpest = 0.9 / (0.5 * shape.front * shape.front);  // [1/m]: it swings out by 0.9 m
   return std::all_of(route.lanes.begin(), route.lanes.end(), [&](cambium::LaneId id) {
     auto const segments = map.lane(id).path.segments();
-    return in_junction(map, id) || std::all_of(segments.begin(), segments.end(), [](auto const& segment) {
+    return in_junction(map, id) || std::all_of(segments.begin(), segments.end(), [&](auto const& segment) {
              return std::abs(segment.curvature) < sharpest;
            });
   });
 }
 
-/// Mostly cars, some vans, and some trucks where these fit.
+/// Mostly cars, and some vans and trucks where these fit.
 [[nodiscard]] inline cambium::geometry::Shape random_shape(cambium::Map const& map, cambium::map::Route const& route,
                                                            cambium::RandomStream& random) {
+  using namespace cambium::geometry;
   double const share = cambium::uniform01(random);
-  if (share < 0.15 && fits_truck(map, route)) return cambium::geometry::truck();
-  return share < 0.3 ? cambium::geometry::van() : cambium::geometry::car();
+  auto const shape = share < 0.7 ? car() : share < 0.85 ? van() : truck();
+  return fits(map, route, shape) ? shape : car();
 }
 
 /// Puts a vehicle on its way to a junction before which it can still stop, unless another one is near.
