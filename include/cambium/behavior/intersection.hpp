@@ -318,9 +318,9 @@ struct Intersection {
     bool const is_smaller = view.id() < user.agent;
     double const share = 0.6180339887498949 * static_cast<double>(static_cast<std::uint32_t>(view.id()));
     double const turn = 8.0 * (share - std::floor(share)) + (is_smaller ? 0.0 : 1.0);  // [s]
-    if (stands && own.waited >= patience + turn) return true;
     bool const inside = is_inside(other, conflict, zone),
                own_inside = own.front > zone.line && own.s < conflict.lane_end;
+    if (stands && own.waited >= patience + turn + (inside != own_inside ? 20.0 : 0.0)) return true;
     if (inside != own_inside) return own_inside;
     if (!inside && is_valid(conflict.other_light) && view.light(conflict.other_light) == map::LightColor::red)
       return true;
