@@ -30,6 +30,7 @@ using Simulation =
 struct Site {
   std::shared_ptr<cambium::Map const> map;
   std::vector<cambium::LaneId> entrances;  ///< lanes where traffic starts
+  double trucks = 0.15;                    ///< share of trucks among the vehicles, where they fit
 };
 
 [[nodiscard]] inline bool in_junction(cambium::Map const& map, cambium::LaneId lane) {
@@ -39,7 +40,7 @@ struct Site {
 /// Finds where traffic may start: lanes outside of junctions that begin the map, else all. Throws `MapError` where no
 /// ways cross in a junction.
 [[nodiscard]] inline Site find_site(std::shared_ptr<cambium::Map const> map, std::string const& file) {
-  Site site{std::move(map), {}};
+  Site site{std::move(map), {}, 0.15};
   std::vector<cambium::LaneId> all;
   bool crosses = false;
   for (auto const& lane : site.map->lanes()) {
@@ -83,27 +84,30 @@ struct Scenario {
   std::vector<cambium::AgentId> marked;
 };
 
-/// Whether a truck on the route, outside of junctions, keeps out of the lanes beside.
-[[nodiscard]] inline bool fits_truck(cambium::Map const& map, cambium::map::Route const& route) {
-  constexpr double sharpest = 1.0 / 30.0;  // [1/m]: it swings out by 0.9 m
+/// Whether one of `shape` that follows the route keeps out of the lanes beside, outside of junctions: those who drive
+/// there do not look out for whom a bend swings into their way.
+[[nodiscard]] inline bool fits(cambium::Map const& map, cambium::map::Route const& route,
+                               cambium::geometry::Shape const& shape) {
+  double const sharpest = 0.9 / (0.5 * shape.front * shape.front);  // [1/m]: it swings out by 0.9 m
   return std::all_of(route.lanes.begin(), route.lanes.end(), [&](cambium::LaneId id) {
     auto const segments = map.lane(id).path.segments();
-    return in_junction(map, id) || std::all_of(segments.begin(), segments.end(), [](auto const& segment) {
+    return in_junction(map, id) || std::all_of(segments.begin(), segments.end(), [&](auto const& segment) {
              return std::abs(segment.curvature) < sharpest;
            });
   });
 }
 
-/// Mostly cars, some vans, and some trucks where these fit.
+/// Mostly cars, and some vans and trucks where these fit.
 [[nodiscard]] inline cambium::geometry::Shape random_shape(cambium::Map const& map, cambium::map::Route const& route,
-                                                           cambium::RandomStream& random) {
+                                                           double trucks, cambium::RandomStream& random) {
+  using namespace cambium::geometry;
   double const share = cambium::uniform01(random);
-  if (share < 0.15 && fits_truck(map, route)) return cambium::geometry::truck();
-  return share < 0.3 ? cambium::geometry::van() : cambium::geometry::car();
+  auto const shape = share < trucks ? truck() : share < trucks + 0.15 ? van() : car();
+  return fits(map, route, shape) ? shape : car();
 }
 
 /// Puts a vehicle on its way to a junction before which it can still stop, unless another one is near.
-inline void try_to_add(Scenario& scenario, cambium::LaneId from, cambium::RandomStream& random) {
+inline void try_to_add(Scenario& scenario, cambium::LaneId from, double trucks, cambium::RandomStream& random) {
   auto const& map = scenario.world.map();
   auto const route = random_route(map, from, random);
   double junction = 0.0;
@@ -116,7 +120,7 @@ inline void try_to_add(Scenario& scenario, cambium::LaneId from, cambium::Random
   auto const pose = map.lane(from).path.pose(s);
   for (auto const& agent : scenario.world.frame().agents)
     if (std::hypot(agent.state.x - pose.x, agent.state.y - pose.y) < 18.0) return;
-  auto const shape = random_shape(map, route, random);
+  auto const shape = random_shape(map, route, trucks, random);
   double const room = std::max(0.0, junction - s - shape.front - 1.0);
   double const speed = std::min(3.0 + 9.0 * cambium::uniform01(random), std::sqrt(2.0 * 1.5 * room));
   auto const id = scenario.world.add(
@@ -137,7 +141,7 @@ inline void try_to_add(Scenario& scenario, cambium::LaneId from, cambium::Random
   auto const entrances = static_cast<std::uint32_t>(site.entrances.size());
   for (std::uint32_t i = 0; i < 400 && scenario.world.size() < wanted; ++i)
     if (i < 8 * wanted || scenario.world.size() < 2)
-      try_to_add(scenario, site.entrances[cambium::uniform_index(random, entrances)], random);
+      try_to_add(scenario, site.entrances[cambium::uniform_index(random, entrances)], site.trucks, random);
   if (scenario.world.size() < 2)
     throw cambium::WorldError("scenario " + std::to_string(number), "no traffic fits on the map before its junctions",
                               "give a map with longer lanes there");

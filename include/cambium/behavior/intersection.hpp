@@ -96,10 +96,10 @@ struct Intersection {
   }
 
  private:
-  static constexpr double standing = 0.1;   // [m/s] slower than this
-  static constexpr double starting = 2.5;   // [m/s] slower than this
+  static constexpr double standing = 0.1;    // [m/s] slower than this
+  static constexpr double starting = 2.5;    // [m/s] slower than this
   static constexpr double short_way = 15.0;  // [m] from the junction, to see who starts there
-  static constexpr double air = 0.3;        // [m] before a conflict
+  static constexpr double air = 0.3;         // [m] before a conflict
   static constexpr double infinite = std::numeric_limits<double>::infinity();
 
   /// How far a body reaches beyond that which conflicts are found for, as of a small van or one aslant [m].
@@ -312,19 +312,19 @@ struct Intersection {
   [[nodiscard]] bool goes_first(View const& view, map::Conflict const& conflict, map::ConflictZone const& zone,
                                 Other const& other, double way, double own_way, Own const& own) const {
     auto const& [user, at, reach] = other;
-    bool const inside = is_inside(other, conflict, zone),
-               own_inside = own.front > zone.line && own.s < conflict.lane_end;
-    if (inside != own_inside) return own_inside;
-    if (!inside && is_valid(conflict.other_light) && view.light(conflict.other_light) == map::LightColor::red)
-      return true;
-    if (inside) return own_way != way ? own_way < way : view.id() < user.agent;
     bool const stands = user.speed < standing, own_stands = own.speed < standing;
     // Ids part those who lose their patience together: by the golden ratio few are close, and of these the smaller
     // goes.
     bool const is_smaller = view.id() < user.agent;
     double const share = 0.6180339887498949 * static_cast<double>(static_cast<std::uint32_t>(view.id()));
     double const turn = 8.0 * (share - std::floor(share)) + (is_smaller ? 0.0 : 1.0);  // [s]
-    if (stands && own.waited >= patience + turn) return true;
+    bool const inside = is_inside(other, conflict, zone),
+               own_inside = own.front > zone.line && own.s < conflict.lane_end;
+    if (stands && own.waited >= patience + turn + (inside != own_inside ? 20.0 : 0.0)) return true;
+    if (inside != own_inside) return own_inside;
+    if (!inside && is_valid(conflict.other_light) && view.light(conflict.other_light) == map::LightColor::red)
+      return true;
+    if (inside) return own_way != way ? own_way < way : view.id() < user.agent;
     if (own_stands && !stands && user.speed < starting && zone.other_line - at - user.front < short_way) return false;
     if (conflict.right_of_way != map::RightOfWay::equal) return conflict.right_of_way == map::RightOfWay::first;
     return std::abs(own_way - way) > 2.0 ? own_way < way : is_smaller;

@@ -99,7 +99,7 @@ struct Conflict {
   /// up to `MapOptions::large_conflict_shape`. The last holds all others and is not empty.
   std::array<std::array<ConflictZone, 2>, 2> zones;
   /// Corridor position, by the size of the corridor's vehicle, where front ends wait: there it stands in no zone of the
-  /// junction [m].
+  /// junction; cars in none that they have with each other [m].
   std::array<double, 2> hold{};
   double lane_end{}, other_lane_end{};  ///< where the two lanes end: corridor position, and on the other's way [m]
 

@@ -241,7 +241,7 @@ class ConflictFinder {
   static void set_holds(std::vector<Conflict>& conflicts) {
     std::map<double, std::array<double, 2>> holds;
     auto const first_line = [](Conflict const& conflict, std::size_t own) {
-      return std::min(conflict.zones[own][0].line, conflict.zones[own][1].line);
+      return own == 0 ? conflict.zones[0][0].line : std::min(conflict.zones[1][0].line, conflict.zones[1][1].line);
     };
     for (auto const& conflict : conflicts)
       for (std::size_t own : {0u, 1u}) {
