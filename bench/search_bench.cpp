@@ -60,7 +60,9 @@ struct LaneChange {
     for (std::size_t i = 1; i < agents; ++i) {
       bool const beside = i % 3 != 0;
       double const x = (beside ? 30.0 : 60.0) + 24.0 * static_cast<double>(i);
-      world.add({.position = {x, beside ? -1.75 : -5.25}, .speed = 12.0, .behavior = cb::IdmClassic{}});
+      auto const hit = map->nearest_lane({x, beside ? -1.75 : -5.25, 0.0});
+      auto const center = map->lane(hit->lane).path.pose(hit->s);
+      world.add({.position = center.position(), .speed = 12.0, .behavior = cb::IdmClassic{}});
     }
     return world;
   }
