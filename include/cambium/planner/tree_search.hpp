@@ -128,6 +128,9 @@ class TreeSearch {
     seed_ = seed;
     root_ = root;
     make_room(agents);
+    if constexpr (!lists) more_actions_.set(parameters_.action_widening, budget_.most());
+    if constexpr (!resimulates && !detail::is_deterministic<Domain>)
+      more_outcomes_.set(parameters_.outcome_widening, budget_.most());
     bool const builds_on = kept_ && still_holds(root);
     kept_ = false;
     auto const kept = builds_on ? tree_.size() : 0;
@@ -184,12 +187,7 @@ class TreeSearch {
     if constexpr (lists)
       return agents * Domain::max_actions;
     else
-      return agents * 2 * allowed(parameters_.action_widening, static_cast<std::uint32_t>(budget_.most()));
-  }
-
-  [[nodiscard]] static std::size_t allowed(Widening const& widening, std::uint32_t visits) {
-    double const count = widening.coefficient * std::pow(static_cast<double>(visits), widening.exponent);
-    return count < 1.0 ? 1 : static_cast<std::size_t>(std::min(count, 60'000.0));
+      return agents * 2 * (more_actions_.from.size() + 1);
   }
 
   void iterate(RandomStream& random) {
@@ -256,7 +254,7 @@ class TreeSearch {
 
   bool widen(std::uint32_t node, std::size_t agent, State const& state, std::uint32_t chosen_before) {
     auto const count = tree_.arms(node, agent).size();
-    if (count >= allowed(parameters_.action_widening, chosen_before + 1)) return true;
+    if (!more_actions_.allow(count, chosen_before + 1)) return true;
     if (!tree_.has_room_for_arms(std::max<std::size_t>(4, 2 * count))) return count > 0;
     // The same at the root of all trees that are merged.
     RandomStream random(seed_, static_cast<std::uint32_t>(agent), static_cast<std::uint32_t>(count),
@@ -321,7 +319,7 @@ class TreeSearch {
     std::uint32_t visits = 1;
     std::size_t count = 0;
     for (auto n = first; n != detail::no_node; n = tree_.node(n).next_outcome, ++count) visits += tree_.node(n).visits;
-    return count < allowed(parameters_.outcome_widening, visits);
+    return more_outcomes_.allow(count, visits);
   }
 
   /// One of those, as likely as steps led to it. (Not as often as it was visited: that would reinforce itself.)
@@ -393,6 +391,7 @@ class TreeSearch {
   bool kept_ = false;
   std::uint64_t seed_ = 0;
   State root_{}, work_{};
+  detail::WideningSchedule more_actions_, more_outcomes_;
   std::vector<ReturnScale> scales_;  ///< by agent, as what follows
   std::vector<std::uint16_t> chosen_;
   std::vector<Action> joint_, options_;

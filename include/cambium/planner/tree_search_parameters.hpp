@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <tuple>
+#include <vector>
 
 #include "cambium/core/parameters.hpp"
 
@@ -21,6 +23,32 @@ struct Widening {
         parameter("exponent", &Widening::exponent, "-", Range{0, 1}, "0: no growth; 1: one more with every visit"));
   }
 };
+
+namespace detail {
+
+/// From how many visits on a node may have how many children: a widening, worked out beforehand.
+struct WideningSchedule {
+  static constexpr std::size_t longest = 4096;  ///< no node has more children
+
+  std::vector<double> from;  ///< visits that the second child needs, the third, ...
+
+  void set(Widening const& widening, std::size_t most_visits) {
+    from.clear();
+    while (from.size() + 1 < longest) {
+      double const share = static_cast<double>(from.size() + 2) / widening.coefficient;
+      double const visits = share <= 1.0 ? 0.0 : std::pow(share, 1.0 / widening.exponent);
+      if (!(visits <= static_cast<double>(most_visits))) break;
+      from.push_back(visits);
+    }
+  }
+
+  /// Whether a node of `children` may have another one.
+  [[nodiscard]] bool allow(std::size_t children, std::uint32_t visits) const {
+    return children == 0 || (children <= from.size() && static_cast<double>(visits) >= from[children - 1]);
+  }
+};
+
+}  // namespace detail
 
 /// That the expected cost of the chosen course stays below a limit: a chance constraint, where costs are 1 for what
 /// must not happen. The search weighs costs by a Lagrange multiplier, which it learns (Lee et al. 2018, CC-POMCP).
