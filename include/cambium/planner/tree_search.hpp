@@ -143,7 +143,12 @@ class TreeSearch {
       return;
     }
     tree_.reset(limits);
-    std::fill(scales_.begin(), scales_.end(), ReturnScale{});
+    ReturnScale scale;
+    if (parameters_.lowest_return < parameters_.highest_return) {
+      scale.include(parameters_.lowest_return);
+      scale.include(parameters_.highest_return);
+    }
+    std::fill(scales_.begin(), scales_.end(), scale);
     tree_.add(detail::no_node, chosen_, outcomes_, false, root);
   }
 

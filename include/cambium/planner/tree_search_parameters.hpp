@@ -3,9 +3,11 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <tuple>
 #include <vector>
 
+#include "cambium/core/error.hpp"
 #include "cambium/core/parameters.hpp"
 
 namespace cambium {
@@ -76,6 +78,8 @@ enum class FinalMove : std::uint8_t {
 struct TreeSearchParameters {
   int horizon = 20;
   double discount = 0.95;
+  double lowest_return = 0.0;
+  double highest_return = 0.0;
   std::size_t memory = 256u << 20;
   FinalMove final_move = FinalMove::most_visits;
   Widening action_widening{2.0, 0.4};
@@ -88,6 +92,10 @@ struct TreeSearchParameters {
     return std::make_tuple(
         parameter("horizon", &P::horizon, "-", Range{1, 10'000}, "steps that a course has, in the tree and after it"),
         parameter("discount", &P::discount, "-", Range{0, 1}, "what a reward one step later is worth"),
+        parameter("lowest_return", &P::lowest_return, "-", any_finite,
+                  "counts as seen from the beginning, where returns are scaled by the bounds seen"),
+        parameter("highest_return", &P::highest_return, "-", any_finite,
+                  "likewise; equal to the lowest: only what is seen counts"),
         parameter("memory", &P::memory, "B", Range{4096, 1e12},
                   "the tree grows no larger; then the search goes on without new nodes"),
         parameter("final_move", &P::final_move, "-", Range{0, 2}, "0 most visits, 1 best return, 2 lower bound"),
@@ -95,6 +103,12 @@ struct TreeSearchParameters {
         parameter("outcome_widening", &P::outcome_widening, "-", {},
                   "how many outcomes of the same actions become nodes, where steps are random"),
         parameter("constraint", &P::constraint, "-", {}, "what the chosen course may cost"));
+  }
+
+  /// Throws `ParameterError` where the bounds of the returns are in the wrong order.
+  void check(std::string const& where) const {
+    if (!(lowest_return <= highest_return))
+      throw ParameterError(where, "has its highest return below the lowest", "swap the two");
   }
 };
 

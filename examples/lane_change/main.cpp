@@ -1,0 +1,172 @@
+// The experiment of BARK's paper (Bernhard et al. 2020, Fig. 5): ego changes lanes in dense traffic by tree search,
+// whose prediction of the others is wrong by some measure. Prints the table, writes a plot.
+
+#include <atomic>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <exception>
+#include <filesystem>
+#include <iostream>
+#include <mutex>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "cambium/core/write_file.hpp"
+#include "cambium/map/map_builder.hpp"
+
+#include "../common/command_line.hpp"
+#include "plot.hpp"
+#include "scenario.hpp"
+
+namespace {
+
+using lane_change::Cell;
+using lane_change::End;
+using lane_change::Outcome;
+
+struct Settings {
+  std::uint64_t scenarios = 600, seed = 2000;
+  std::uint64_t threads = std::max(1u, std::thread::hardware_concurrency());
+  std::vector<std::uint64_t> iterations{2000, 4000, 8000};
+  std::vector<double> variations{0.0, 0.2, 0.4, 0.8};
+  std::string preset = "cambium", json, out = "out/lane_change";
+};
+
+std::shared_ptr<cambium::Map const> two_lanes() {
+  namespace m = cambium::map;
+  m::MapBuilder builder;
+  builder.add_road(
+      {.id = "1", .line = m::lay_from({}, {{400.0, 0.0, 0.0}}), .sections = {{.right = m::equal_lanes(2)}}});
+  return builder.build();
+}
+
+/// All scenarios of a cell; the outcomes do not depend on the threads.
+std::vector<Outcome> run(std::shared_ptr<cambium::Map const> const& map, Cell const& cell, Settings const& settings) {
+  std::vector<Outcome> outcomes(settings.scenarios);
+  std::atomic<std::uint64_t> next{0};
+  std::exception_ptr problem;
+  std::mutex mutex;
+  auto const work = [&] {
+    try {
+      for (auto i = next++; i < settings.scenarios; i = next++)
+        outcomes[i] = play(sample(map, cell, settings.seed, static_cast<std::uint32_t>(i)));
+    } catch (...) {
+      std::lock_guard const lock(mutex);
+      if (!problem) problem = std::current_exception();
+      next = settings.scenarios;
+    }
+  };
+  std::vector<std::jthread> threads;
+  for (std::uint64_t t = 1; t < settings.threads; ++t) threads.emplace_back(work);
+  work();
+  threads.clear();
+  if (problem) std::rethrow_exception(problem);
+  return outcomes;
+}
+
+lane_change::Row judge(Cell const& cell, std::vector<Outcome> const& outcomes, double seconds, std::uint64_t threads) {
+  lane_change::Row row;
+  row.preset = cell.is_paper ? "paper" : "cambium";
+  row.iterations = cell.iterations;
+  row.variation = cell.variation;
+  row.scenarios = outcomes.size();
+  double steps = 0.0, all_steps = 0.0;
+  for (auto const& outcome : outcomes) {
+    row.success += outcome.end == End::success;
+    row.collision += outcome.end == End::collision;
+    row.timeout += outcome.end == End::time_out;
+    if (outcome.end == End::success) steps += outcome.steps;
+    all_steps += outcome.steps;
+  }
+  row.mean_steps = row.success > 0 ? steps / static_cast<double>(row.success) : std::nan("");
+  row.iterations_per_second = all_steps * static_cast<double>(cell.iterations) / seconds /
+                              static_cast<double>(std::min<std::uint64_t>(threads, outcomes.size()));
+  return row;
+}
+
+void print(lane_change::Row const& row) {
+  auto const share = [&](std::uint64_t count) {
+    auto const i = lane_change::wilson(count, row.scenarios);
+    char text[48];
+    std::snprintf(text, sizeof text, "%5.1f (%4.1f-%5.1f)",
+                  100.0 * static_cast<double>(count) / static_cast<double>(row.scenarios), 100 * i.low, 100 * i.high);
+    return std::string(text);
+  };
+  std::printf("%-8s %6zu  %4.0f %%   %s   %s   %s   %5.1f   %7.0f\n", row.preset.c_str(), row.iterations,
+              100 * row.variation, share(row.success).c_str(), share(row.collision).c_str(), share(row.timeout).c_str(),
+              row.mean_steps, row.iterations_per_second);
+  std::fflush(stdout);
+}
+
+void run_grid(Settings const& settings) {
+  std::filesystem::path const folder(settings.out);
+  std::filesystem::create_directories(folder);
+  if (!settings.json.empty()) cambium::write_file(settings.json, "[]\n");  // finds out now whether it can
+  auto const map = two_lanes();
+  std::printf(
+      "%llu scenarios a cell; shares in %% with their 95 %% intervals (Wilson)\n\n"
+      "%-8s %6s  %6s   %-19s   %-19s   %-19s   %5s   %s\n",
+      static_cast<unsigned long long>(settings.scenarios), "preset", "iter.", "var.", "success", "collision",
+      "time-out", "steps", "iterations/s");
+  std::vector<lane_change::Row> rows;
+  for (auto const variation : settings.variations)
+    for (auto const iterations : settings.iterations) {
+      Cell const cell{settings.preset == "paper", static_cast<std::size_t>(iterations), variation};
+      auto const begin = std::chrono::steady_clock::now();
+      auto const outcomes = run(map, cell, settings);
+      std::chrono::duration<double> const spent = std::chrono::steady_clock::now() - begin;
+      rows.push_back(judge(cell, outcomes, spent.count(), settings.threads));
+      print(rows.back());
+    }
+  auto const picture = folder / (settings.preset + ".svg");
+  cambium::write_file(picture, lane_change::plot(rows));
+  std::printf("\n%s  the same as a plot\n", picture.c_str());
+  if (settings.json.empty()) return;
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (auto const& row : rows) json.push_back(as_json(row));
+  cambium::write_file(settings.json, json.dump(1) + "\n");
+}
+
+void add_options(CLI::App& program, Settings& settings) {
+  auto const number = [&](char const* name, std::uint64_t& target, std::uint64_t low, std::uint64_t high,
+                          char const* sentence) {
+    program.add_option(name, target, sentence)
+        ->type_name("N")
+        ->check(examples::whole_number(low, high))
+        ->capture_default_str();
+  };
+  number("--scenarios", settings.scenarios, 1, 1'000'000, "of each cell");
+  number("--seed", settings.seed, 0, ~std::uint64_t{0} >> 1, "of everything random");
+  number("--threads", settings.threads, 1, 1024, "to run them on; outcomes do not depend on it");
+  program.add_option("--iterations", settings.iterations, "of a search, a column each")
+      ->delimiter(',')
+      ->type_name("N,...")
+      ->check(examples::whole_number(1, 100'000'000))
+      ->capture_default_str();
+  program.add_option("--variation", settings.variations, "by how much others keep shorter headways than predicted")
+      ->delimiter(',')
+      ->type_name("SHARE,...")
+      ->check(CLI::Range(0.0, 0.99))
+      ->capture_default_str();
+  program.add_option("--preset", settings.preset, "the paper's choices, or cambium's")
+      ->check(CLI::IsMember({"paper", "cambium"}))
+      ->capture_default_str();
+  program.add_option("--json", settings.json, "writes a row a cell")->type_name("FILE");
+  program.add_option("--out", settings.out, "folder for the plot")->type_name("DIR")->capture_default_str();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Settings settings;
+  CLI::App program("Repeats the lane change of BARK's paper: tree search with a prediction that is wrong.",
+                   "lane_change");
+  add_options(program, settings);
+  return examples::run_program(program, argc, argv, [&] { run_grid(settings); });
+}

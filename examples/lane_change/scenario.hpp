@@ -1,0 +1,185 @@
+#pragma once
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "cambium/behavior/behavior_set.hpp"
+#include "cambium/behavior/idm_classic.hpp"
+#include "cambium/behavior/macro_actions.hpp"
+#include "cambium/core/distributions.hpp"
+#include "cambium/dynamics/single_track.hpp"
+#include "cambium/execution/interpolate.hpp"
+#include "cambium/map/curve_layout.hpp"
+#include "cambium/planner/mcts_hypothesis.hpp"
+#include "cambium/planner/mcts_single_agent.hpp"
+#include "cambium/world/world.hpp"
+
+/// The lane change of Bernhard, Esterle, Hart, Kessler 2020 ("BARK: Open behavior benchmarking in multi-agent
+/// environments", section V-A), with the numbers of BARK's configuration where the paper gives none.
+namespace lane_change {
+
+namespace cb = cambium;
+
+using PredictionSet = cb::BehaviorSet<cb::MacroActions, cb::IdmClassic, cb::IdmHypotheses>;
+using Prediction = cb::World<PredictionSet, cb::InterpolateExecution, cb::SingleTrack>;
+
+/// As the planner of the paper rolls out: its "random" heuristic drew the same action in every step, because each draw
+/// began anew with one seed; with the paper's five actions that is number 3, the lane change.
+struct SameActionRollout {
+  static constexpr char const* name = "same_action_rollout";
+  static constexpr auto parameters() { return std::make_tuple(); }
+
+  template <class Run>
+  bool roll_out(Run& run) const {
+    return cb::detail::play(run, run.steps, [](std::size_t, int) { return std::uint8_t{3}; }) == 0.0;
+  }
+};
+
+using PaperPlanner =
+    cb::MctsSingleAgent<Prediction, cb::MacroActions, cb::TrafficReward, cb::IdmClassic, cb::Ucb1, SameActionRollout>;
+using OwnPlanner = cb::MctsHypothesis<Prediction>;
+using Sim =
+    cb::World<cb::BehaviorSet<PaperPlanner, OwnPlanner, cb::IdmClassic>, cb::InterpolateExecution, cb::SingleTrack>;
+
+inline constexpr double step = 0.2;     // [s]
+inline constexpr double way = 186.0;    // [m], of the paper's road; ours goes on, so that nobody vanishes
+inline constexpr double headway = 3.0;  // [s], of the others as the planner takes them to be
+inline constexpr int most_steps = 30;
+
+/// A cell of the grid.
+struct Cell {
+  bool is_paper = false;
+  std::size_t iterations = 2000;
+  double variation = 0.0;  ///< by how much the others' headways are shorter than the planner takes them to be
+};
+
+inline cb::IdmClassic driver(double time_headway) {
+  return {.desired_speed = 17.0,
+          .time_headway = time_headway,
+          .minimum_gap = 2.0,
+          .maximum_acceleration = 1.7,
+          .comfortable_deceleration = 1.67,
+          .lowest_acceleration = -15.0};
+}
+
+/// A brisk lane change: who takes 4 s has no time left to find a gap.
+inline constexpr cb::LaneChangeCourse course{.duration = 2.0, .shortest_duration = 1.5};
+
+using Kind = cb::MacroAction::Kind;
+
+inline cb::MacroActions paper_actions() {
+  auto actions = cb::MacroActions::of(
+      {{Kind::stay, 0.0}, {Kind::stay, 1.0}, {Kind::stay, -1.0}, {Kind::change_left}, {Kind::change_right}});
+  actions.course = course;
+  return actions;
+}
+
+/// With brakes: the others may brake hard where they are cut in upon.
+inline cb::MacroActions own_actions() {
+  auto actions = cb::MacroActions::of({{Kind::stay, 0.0},
+                                       {Kind::stay, 1.5},
+                                       {Kind::stay, -2.0},
+                                       {Kind::stay, -6.0},
+                                       {Kind::change_left, 0.0},
+                                       {Kind::change_left, -3.0},
+                                       {Kind::change_right, 0.0}});
+  actions.course = course;
+  return actions;
+}
+
+inline Sim::Behavior planner(Cell const& cell) {
+  if (cell.is_paper) {
+    PaperPlanner paper{.actions = paper_actions(), .others = driver(headway)};
+    paper.options.search = {.horizon = most_steps,
+                            .discount = 0.9,
+                            .lowest_return = -1000.0,
+                            .highest_return = 100.0,
+                            .final_move = cb::FinalMove::best_return};
+    paper.options.selection.exploration = 2.0 * 0.7 * std::sqrt(2.0);
+    paper.options.budget.iterations = cell.iterations;
+    return paper;
+  }
+  OwnPlanner own{.actions = own_actions()};
+  own.options.selection.exploration = 0.3;
+  own.others = {.driver = driver(headway), .shortest_headway = 0.5, .longest_headway = 3.5, .regions = 4};
+  own.options.search = {.horizon = most_steps, .discount = 0.95};
+  own.options.rollout.hold = 5;
+  own.options.budget.iterations = cell.iterations;
+  return own;
+}
+
+struct Scenario {
+  Sim world;
+  cb::AgentId ego;
+};
+
+/// Vehicles on one lane: gaps of 20 to 30 m, 11 to 17 m/s.
+inline std::vector<cb::AgentId> fill_lane(Sim& world, double begin, double end, double y, Cell const& cell,
+                                          cb::RandomStream& random) {
+  std::vector<cb::AgentId> ids;
+  cb::geometry::Shape const shape{.front = 3.85, .rear = 1.12, .left = 0.955, .right = 0.955};
+  for (double s = begin + cb::Uniform{0.0, 10.0}(random); s <= end;
+       s += shape.length() + cb::Uniform{20.0, 30.0}(random)) {
+    double const speed = cb::Uniform{11.0, 17.0}(random);
+    ids.push_back(world.add(
+        {.position = {s, y}, .speed = speed, .shape = shape, .behavior = driver(headway * (1.0 - cell.variation))}));
+  }
+  return ids;
+}
+
+/// Scenario `number`: the same traffic for all cells of one variation.
+inline Scenario sample(std::shared_ptr<cb::Map const> const& map, Cell const& cell, std::uint64_t seed,
+                       std::uint32_t number) {
+  cb::RandomStream random(seed, 0, number);
+  Scenario scenario{Sim(map, {.seed = seed + number}), {}};
+  auto& world = scenario.world;
+  fill_lane(world, 0.1 * way, 0.9 * way, -1.75, cell, random);
+  auto const right = fill_lane(world, 0.2 * way, 0.5 * way, -5.25, cell, random);
+  scenario.ego = right[cb::uniform_index(random, static_cast<std::uint32_t>(right.size()))];
+  auto const left = map->nearest_lane({0.5 * way, -1.75, 0.0})->lane;
+  // Ego enters once more, with its planner and its goal.
+  auto const state = world.state(scenario.ego);
+  auto const shape = world.roster().agents[world.slot_of(scenario.ego)].shape;
+  world.remove(scenario.ego);
+  world.add({.position = {state.x, state.y},
+             .speed = state.speed,
+             .shape = shape,
+             .behavior = planner(cell),
+             .goal = cb::LaneLimits{.lane = left,
+                                    .from = 0.2 * way,
+                                    .left = 0.5,
+                                    .right = 0.5,
+                                    .heading_error = 0.08,
+                                    .lowest_speed = 11.0,
+                                    .highest_speed = 17.0},
+             .id = scenario.ego});
+  return scenario;
+}
+
+enum class End { success, collision, time_out };
+
+struct Outcome {
+  End end = End::time_out;
+  int steps = 0;
+};
+
+/// Plays a scenario to its end. A collision of ego, or its leaving the road, counts before the goal.
+inline Outcome play(Scenario scenario) {
+  auto& world = scenario.world;
+  for (int k = 1; k <= most_steps; ++k) {
+    if (auto const result = world.step(step); !result)
+      throw cb::WorldError("step " + std::to_string(k), to_string(result.problem));
+    if (cb::CollisionEgo{scenario.ego}.evaluate(world).ego_collision ||
+        cb::DrivableArea{scenario.ego}.evaluate(world).off_road)
+      return {End::collision, k};
+    if (world.reached_goal(scenario.ego)) return {End::success, k};
+  }
+  return {End::time_out, most_steps};
+}
+
+}  // namespace lane_change
