@@ -123,9 +123,11 @@ add_executable(structure_headers_twice EXCLUDE_FROM_ALL ${structure_binary}/twic
 target_link_libraries(structure_headers_twice PRIVATE cambium_test_options)
 add_build_test(structure.headers_twice structure_headers_twice)
 
-# All headers at once, free of warnings under each compiler there is.
+# All headers at once, free of warnings under each compiler there is; g++ has just compiled them where it is the project's.
 foreach(name g++ clang++-14 clang++-19)
-  if(CAMBIUM_CHECK_${name})
+  if(name STREQUAL "g++" AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    add_build_test(structure.warnings.${name} structure_all_headers)
+  elseif(CAMBIUM_CHECK_${name})
     add_syntax_check(stamp ${name} ${CAMBIUM_CHECK_${name}} ${structure_binary}/all_headers.cpp -fsyntax-only)
     add_custom_target(structure_warnings_${name} DEPENDS ${stamp})
     add_build_test(structure.warnings.${name} structure_warnings_${name})
