@@ -224,7 +224,8 @@ struct Intersection {
   void obey(Claim claim, map::ConflictZone const& zone, double hold, Own& own, double dt) const {
     double const to_conflict = zone.begin - own.reach.front - air - own.s;
     if (to_conflict + air < 0.0) return;  // it is in there already
-    double const to_stop = distance_to_stop(claim, hold - own.front, own, to_conflict);
+    double const to_hold = std::min(zone.line - own.front, hold - own.reach.front - own.s);
+    double const to_stop = distance_to_stop(claim, to_hold, own, to_conflict);
     if (claim == Claim::yield && !can_stop(own.speed, to_stop)) return;
     double const braking = claim == Claim::watch ? safe_deceleration : own.idm.comfortable_deceleration;
     bound(own, to_stop, braking, dt);

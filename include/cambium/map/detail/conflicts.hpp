@@ -240,18 +240,18 @@ class ConflictFinder {
   /// Sets the places to wait from where, as yet, the junctions begin: before the first zone of the same junction.
   static void set_holds(std::vector<Conflict>& conflicts) {
     std::map<double, std::array<double, 2>> holds;
-    auto const first_line = [](Conflict const& conflict, std::size_t own) {
-      return own == 0 ? conflict.zones[0][0].line : std::min(conflict.zones[1][0].line, conflict.zones[1][1].line);
+    auto const first_zone = [](Conflict const& conflict, std::size_t own) {
+      return std::min(conflict.zones[own][0].begin, conflict.zones[own][1].begin);
     };
     for (auto const& conflict : conflicts)
       for (std::size_t own : {0u, 1u}) {
         auto& hold = holds.emplace(conflict.hold[own], conflict.hold).first->second[own];
-        hold = std::min(hold, first_line(conflict, own));
+        hold = std::min(hold, first_zone(conflict, own));
       }
     for (auto& conflict : conflicts)
       for (std::size_t own : {0u, 1u})
         conflict.hold[own] =
-            std::isfinite(conflict.hold[own]) ? holds.at(conflict.hold[own])[own] : first_line(conflict, own);
+            std::isfinite(conflict.hold[own]) ? holds.at(conflict.hold[own])[own] : first_zone(conflict, own);
   }
 
   /// The part of `range` where two such bodies touch. Where lanes merge it ends, and where they part it begins, with
