@@ -64,11 +64,11 @@ struct Site {
   return site;
 }
 
-/// A way at random until it ends, comes round or is 400 m long.
+/// A way at random until it ends, comes round or, behind a junction, is 400 m long.
 [[nodiscard]] inline cambium::map::Route random_route(cambium::Map const& map, cambium::LaneId from,
                                                       cambium::RandomStream& random) {
   cambium::map::Route route{{from}, map.lane(from).length()};
-  while (route.length < 400.0) {
+  while (route.length < 400.0 || in_junction(map, route.lanes.back())) {
     std::vector<cambium::LaneId> next;
     for (auto const lane : map.lane(route.lanes.back()).successors)
       if (map.lane(lane).drivable() && std::find(route.lanes.begin(), route.lanes.end(), lane) == route.lanes.end())
@@ -109,14 +109,17 @@ struct Scenario {
   return fits(map, route, shape) ? shape : car();
 }
 
-/// How far an agent may go before it is where bodies of those in the junction may reach [m].
-[[nodiscard]] inline double way_to_zones(Simulation const& world, cambium::AgentId id) {
+/// How far an agent may go before it is where bodies of those in the junction may reach [m]; negative where it is, or
+/// where its lane is too narrow for it, as where one opens.
+[[nodiscard]] inline double room_before_zones(Simulation const& world, cambium::AgentId id) {
   auto const slot = world.slot_of(id);
   auto const& agent = world.roster().agents[slot];
   auto const& at = world.frame().agents[slot].lane;
+  auto const& corridor = agent.road->corridors[at.corridor];
+  if (corridor.width_at(at.s - agent.shape.rear) < agent.shape.width()) return -1.0;
   bool const large = !world.map().options().conflict_shape.holds(agent.shape);
   double hold = std::numeric_limits<double>::infinity();
-  for (auto const& conflict : agent.road->corridors[at.corridor].conflicts) hold = std::min(hold, conflict.hold[large]);
+  for (auto const& conflict : corridor.conflicts) hold = std::min(hold, conflict.hold[large]);
   return hold - at.s;
 }
 
@@ -144,7 +147,7 @@ inline void try_to_add(Site const& site, Scenario& scenario, cambium::LaneId fro
                   .behavior = cambium::Intersection{.idm = {.desired_speed = 8.0 + 7.0 * cambium::uniform01(random)}},
                   .route = route,
                   .id = id});
-  double const room = std::min(junction - s - shape.front, way_to_zones(world, *id)) - 1.0;
+  double const room = std::min(junction - s - shape.front, room_before_zones(world, *id)) - 1.0;
   double const wanted = 3.0 + 9.0 * cambium::uniform01(random);
   if (room < 0.0) return world.remove(*id);
   auto state = world.state(*id);
