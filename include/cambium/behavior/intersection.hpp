@@ -266,7 +266,7 @@ struct Intersection {
     auto const& [user, at, reach] = other;
     if (at > zone.other_end + reach.rear) return Claim::free;
     double const way = zone.other_begin - reach.front - at;
-    if (at < 0.0 && way > 0.0 && !view.signals_way(user, conflict.other)) return Claim::free;
+    if (at < 0.0 && !view.signals_way(user, conflict.other)) return Claim::free;
     double const own_way = zone.begin - own.reach.front - own.s;
     bool const is_in = way <= 0.0, own_is_in = own_way <= 0.0;
     if (conflict.kind != map::OverlapKind::crossing && (is_in || conflict.kind == map::OverlapKind::split)) {
