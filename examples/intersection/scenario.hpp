@@ -34,6 +34,7 @@ struct Site {
   std::vector<cambium::LaneId> entrances;  ///< lanes where traffic starts
   double trucks = 0.15;                    ///< share of trucks among the vehicles, where they fit
   bool scattered_ids = false;              ///< instead of 0, 1, 2, ...
+  bool lights = false;                     ///< traffic lights are on: one after the other is green for 15 s
 };
 
 [[nodiscard]] inline bool in_junction(cambium::Map const& map, cambium::LaneId lane) {
@@ -43,7 +44,8 @@ struct Site {
 /// Finds where traffic may start: lanes outside of junctions that begin the map, else all. Throws `MapError` where no
 /// ways cross in a junction.
 [[nodiscard]] inline Site find_site(std::shared_ptr<cambium::Map const> map, std::string const& file) {
-  Site site{.map = std::move(map)};
+  Site site;
+  site.map = std::move(map);
   std::vector<cambium::LaneId> all;
   bool crosses = false;
   for (auto const& lane : site.map->lanes()) {
@@ -156,9 +158,22 @@ inline void try_to_add(Site const& site, Scenario& scenario, cambium::LaneId fro
   if (!is_valid(scenario.ego)) scenario.ego = *id;
 }
 
+/// Switches the map's traffic lights on.
+inline void switch_on_lights(Simulation& world) {
+  auto const lights = world.map().lights();
+  double const phase = 20.0;  // [s] 15 s green, 3 s yellow, and 2 s to clear the junction
+  for (auto const& light : lights) {
+    double const begin = phase * static_cast<double>(index_of(light.id));
+    world.set_light(
+        light.id,
+        {.cycle = phase * static_cast<double>(lights.size()), .green_begin = begin, .green_end = begin + 15.0});
+  }
+}
+
 /// Four to twelve vehicles from everywhere. Throws `WorldError` where the map has no room before its junctions.
 [[nodiscard]] inline Scenario sample_scenario(Site const& site, std::uint64_t seed, std::uint32_t number) {
   Scenario scenario{Simulation(site.map, {.seed = seed}), cambium::none<cambium::AgentId>, {}};
+  if (site.lights) switch_on_lights(scenario.world);
   cambium::RandomStream random(seed, number, 0);
   auto const wanted = 4 + cambium::uniform_index(random, 9);
   auto const entrances = static_cast<std::uint32_t>(site.entrances.size());
