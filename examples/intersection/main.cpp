@@ -12,8 +12,15 @@ int main(int argc, char** argv) {
   settings.steps = 600;
   CLI::App program("Samples traffic before junctions, simulates and judges it.", "intersection");
   examples::add_options(program, settings, "OpenDRIVE map with an intersection");
+  bool lights = false;
+  program.add_flag("--lights", lights,
+                   "switch the map's traffic lights on; else signs and who comes from the right count");
   return examples::run_program(program, argc, argv, [&] {
-    auto const site = intersection::find_site(examples::load_map(settings.map_file), settings.map_file);
+    auto site = intersection::find_site(examples::load_map(settings.map_file), settings.map_file);
+    site.lights = lights;
+    if (lights && site.map->lights().empty())
+      throw cambium::MapError(settings.map_file, "this map has no traffic lights",
+                              "leave out --lights or give a map with some, such as maps/intersection_4way.xodr");
     examples::sample_and_report(site, settings, {"Intersection", "everybody got through"});
   });
 }

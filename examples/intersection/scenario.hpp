@@ -4,7 +4,9 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -31,6 +33,8 @@ struct Site {
   std::shared_ptr<cambium::Map const> map;
   std::vector<cambium::LaneId> entrances;  ///< lanes where traffic starts
   double trucks = 0.15;                    ///< share of trucks among the vehicles, where they fit
+  bool scattered_ids = false;              ///< instead of 0, 1, 2, ...
+  bool lights = false;                     ///< traffic lights are on: one after the other is green for 15 s
 };
 
 [[nodiscard]] inline bool in_junction(cambium::Map const& map, cambium::LaneId lane) {
@@ -40,7 +44,8 @@ struct Site {
 /// Finds where traffic may start: lanes outside of junctions that begin the map, else all. Throws `MapError` where no
 /// ways cross in a junction.
 [[nodiscard]] inline Site find_site(std::shared_ptr<cambium::Map const> map, std::string const& file) {
-  Site site{std::move(map), {}, 0.15};
+  Site site;
+  site.map = std::move(map);
   std::vector<cambium::LaneId> all;
   bool crosses = false;
   for (auto const& lane : site.map->lanes()) {
@@ -61,11 +66,11 @@ struct Site {
   return site;
 }
 
-/// A way at random until it ends, comes round or is 400 m long.
+/// A way at random until it ends, comes round or, behind a junction, is 400 m long.
 [[nodiscard]] inline cambium::map::Route random_route(cambium::Map const& map, cambium::LaneId from,
                                                       cambium::RandomStream& random) {
   cambium::map::Route route{{from}, map.lane(from).length()};
-  while (route.length < 400.0) {
+  while (route.length < 400.0 || in_junction(map, route.lanes.back())) {
     std::vector<cambium::LaneId> next;
     for (auto const lane : map.lane(route.lanes.back()).successors)
       if (map.lane(lane).drivable() && std::find(route.lanes.begin(), route.lanes.end(), lane) == route.lanes.end())
@@ -106,8 +111,22 @@ struct Scenario {
   return fits(map, route, shape) ? shape : car();
 }
 
+/// How far an agent may go before it is where bodies of those in the junction may reach [m]; negative where it is, or
+/// where its lane is too narrow for it, as where one opens.
+[[nodiscard]] inline double room_before_zones(Simulation const& world, cambium::AgentId id) {
+  auto const slot = world.slot_of(id);
+  auto const& agent = world.roster().agents[slot];
+  auto const& at = world.frame().agents[slot].lane;
+  auto const& corridor = agent.road->corridors[at.corridor];
+  if (corridor.width_at(at.s - agent.shape.rear) < agent.shape.width()) return -1.0;
+  bool const large = !world.map().options().conflict_shape.holds(agent.shape);
+  double hold = std::numeric_limits<double>::infinity();
+  for (auto const& conflict : corridor.conflicts) hold = std::min(hold, conflict.hold[large]);
+  return hold - at.s;
+}
+
 /// Puts a vehicle on its way to a junction before which it can still stop, unless another one is near.
-inline void try_to_add(Scenario& scenario, cambium::LaneId from, double trucks, cambium::RandomStream& random) {
+inline void try_to_add(Site const& site, Scenario& scenario, cambium::LaneId from, cambium::RandomStream& random) {
   auto const& map = scenario.world.map();
   auto const route = random_route(map, from, random);
   double junction = 0.0;
@@ -120,28 +139,47 @@ inline void try_to_add(Scenario& scenario, cambium::LaneId from, double trucks, 
   auto const pose = map.lane(from).path.pose(s);
   for (auto const& agent : scenario.world.frame().agents)
     if (std::hypot(agent.state.x - pose.x, agent.state.y - pose.y) < 18.0) return;
-  auto const shape = random_shape(map, route, trucks, random);
-  double const room = std::max(0.0, junction - s - shape.front - 1.0);
-  double const speed = std::min(3.0 + 9.0 * cambium::uniform01(random), std::sqrt(2.0 * 1.5 * room));
-  auto const id = scenario.world.add(
-      {.position = pose.position(),
-       .heading = pose.heading,
-       .speed = speed,
-       .shape = shape,
-       .behavior = cambium::Intersection{.idm = {.desired_speed = 8.0 + 7.0 * cambium::uniform01(random)}},
-       .route = route});
-  if (!is_valid(scenario.ego)) scenario.ego = id;
+  auto const shape = random_shape(map, route, site.trucks, random);
+  auto& world = scenario.world;
+  std::optional<cambium::AgentId> id;
+  if (site.scattered_ids) id = static_cast<cambium::AgentId>(random() >> 33);
+  id = world.add({.position = pose.position(),
+                  .heading = pose.heading,
+                  .shape = shape,
+                  .behavior = cambium::Intersection{.idm = {.desired_speed = 8.0 + 7.0 * cambium::uniform01(random)}},
+                  .route = route,
+                  .id = id});
+  double const room = std::min(junction - s - shape.front, room_before_zones(world, *id)) - 1.0;
+  double const wanted = 3.0 + 9.0 * cambium::uniform01(random);
+  if (room < 0.0) return world.remove(*id);
+  auto state = world.state(*id);
+  state.speed = std::min(wanted, std::sqrt(2.0 * 1.5 * room));
+  world.set_state(*id, state);
+  if (!is_valid(scenario.ego)) scenario.ego = *id;
+}
+
+/// Switches the map's traffic lights on.
+inline void switch_on_lights(Simulation& world) {
+  auto const lights = world.map().lights();
+  double const phase = 20.0;  // [s] 15 s green, 3 s yellow, and 2 s to clear the junction
+  for (auto const& light : lights) {
+    double const begin = phase * static_cast<double>(index_of(light.id));
+    world.set_light(
+        light.id,
+        {.cycle = phase * static_cast<double>(lights.size()), .green_begin = begin, .green_end = begin + 15.0});
+  }
 }
 
 /// Four to twelve vehicles from everywhere. Throws `WorldError` where the map has no room before its junctions.
 [[nodiscard]] inline Scenario sample_scenario(Site const& site, std::uint64_t seed, std::uint32_t number) {
   Scenario scenario{Simulation(site.map, {.seed = seed}), cambium::none<cambium::AgentId>, {}};
+  if (site.lights) switch_on_lights(scenario.world);
   cambium::RandomStream random(seed, number, 0);
   auto const wanted = 4 + cambium::uniform_index(random, 9);
   auto const entrances = static_cast<std::uint32_t>(site.entrances.size());
   for (std::uint32_t i = 0; i < 400 && scenario.world.size() < wanted; ++i)
     if (i < 8 * wanted || scenario.world.size() < 2)
-      try_to_add(scenario, site.entrances[cambium::uniform_index(random, entrances)], site.trucks, random);
+      try_to_add(site, scenario, site.entrances[cambium::uniform_index(random, entrances)], random);
   if (scenario.world.size() < 2)
     throw cambium::WorldError("scenario " + std::to_string(number), "no traffic fits on the map before its junctions",
                               "give a map with longer lanes there");

@@ -54,6 +54,29 @@ MapBuilder intersection_4way() {
   return builder;
 }
 
+// Arms opposite to each other have green together.
+void add_lights(opendrive::Document& document) {
+  document.controllers.resize(2);
+  document.controllers[0].id = "east-west";
+  document.controllers[1].id = "north-south";
+  for (std::size_t i = 0; i < 4; ++i) {
+    auto& arm = document.roads[i];
+    opendrive::Signal light;
+    light.id = "light " + arm.id;
+    light.s = arm.length;
+    light.t = -7.5;
+    light.name = arm.name;
+    light.dynamic = true;
+    light.orientation = opendrive::Orientation::along;
+    light.z_offset = 2.5;
+    light.country = "OpenDRIVE";
+    light.type = "1000001";
+    light.subtype = "-1";
+    arm.signals.push_back(light);
+    document.controllers[i % 2].controls.push_back({.signal_id = light.id, .type = {}});
+  }
+}
+
 // The main road comes from east (1) and west (2), the side road from the south (3). From the east there is a lane of
 // its own to turn left; in the west an island keeps its width free.
 MapBuilder intersection_3way() {

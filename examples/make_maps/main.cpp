@@ -13,6 +13,7 @@
 #include <limits>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include "cambium/core/write_file.hpp"
 #include "cambium/map/opendrive_writer.hpp"
@@ -59,7 +60,9 @@ void write_all(std::filesystem::path const& folder) {
        {Entry{"highway.xodr", highway}, Entry{"lane_drop.xodr", lane_drop}, Entry{"merging.xodr", merging},
         Entry{"highway_exit.xodr", highway_exit}, Entry{"intersection_3way.xodr", intersection_3way},
         Entry{"intersection_4way.xodr", intersection_4way}, Entry{"roundabout.xodr", roundabout}}) {
-    auto const text = text_of(make().document());
+    auto document = make().document();
+    if (make == intersection_4way) add_lights(document);
+    auto const text = text_of(std::move(document));
     cambium::write_file(folder / name, text);
     std::cout << (folder / name).string() << ": " << text.size() << " bytes\n";
   }

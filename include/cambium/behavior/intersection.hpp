@@ -224,7 +224,8 @@ struct Intersection {
   void obey(Claim claim, map::ConflictZone const& zone, double hold, Own& own, double dt) const {
     double const to_conflict = zone.begin - own.reach.front - air - own.s;
     if (to_conflict + air < 0.0) return;  // it is in there already
-    double const to_stop = distance_to_stop(claim, hold - own.front, own, to_conflict);
+    double const to_hold = std::min(zone.line - own.front, hold - own.reach.front - own.s);
+    double const to_stop = distance_to_stop(claim, to_hold, own, to_conflict);
     if (claim == Claim::yield && !can_stop(own.speed, to_stop)) return;
     double const braking = claim == Claim::watch ? safe_deceleration : own.idm.comfortable_deceleration;
     bound(own, to_stop, braking, dt);
@@ -265,7 +266,7 @@ struct Intersection {
     auto const& [user, at, reach] = other;
     if (at > zone.other_end + reach.rear) return Claim::free;
     double const way = zone.other_begin - reach.front - at;
-    if (at < 0.0 && way > 0.0 && !view.signals_way(user, conflict.other)) return Claim::free;
+    if (at < 0.0 && !view.signals_way(user, conflict.other)) return Claim::free;
     double const own_way = zone.begin - own.reach.front - own.s;
     bool const is_in = way <= 0.0, own_is_in = own_way <= 0.0;
     if (conflict.kind != map::OverlapKind::crossing && (is_in || conflict.kind == map::OverlapKind::split)) {

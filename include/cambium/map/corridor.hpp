@@ -98,8 +98,8 @@ struct Conflict {
   /// By the sizes of the corridor's vehicle and the other: 0 where it is no larger than `MapOptions::conflict_shape`, 1
   /// up to `MapOptions::large_conflict_shape`. The last holds all others and is not empty.
   std::array<std::array<ConflictZone, 2>, 2> zones;
-  /// Corridor position, by the size of the corridor's vehicle, where front ends wait: there it stands in no zone of the
-  /// junction; cars in none that they have with each other [m].
+  /// Corridor position, by the size of the corridor's vehicle, up to which reference points are in no zone of the
+  /// junction: there one waits [m].
   std::array<double, 2> hold{};
   double lane_end{}, other_lane_end{};  ///< where the two lanes end: corridor position, and on the other's way [m]
 

@@ -237,21 +237,29 @@ class ConflictFinder {
     }
   }
 
-  /// Sets the places to wait from where, as yet, the junctions begin: before the first zone of the same junction.
+  /// Sets the places to wait from where, as yet, the junctions begin: before the first zone of the same junction, or of
+  /// one before it that reaches so far.
   static void set_holds(std::vector<Conflict>& conflicts) {
+    constexpr double near = 2.0;  // [m] one may wait so much earlier
     std::map<double, std::array<double, 2>> holds;
-    auto const first_line = [](Conflict const& conflict, std::size_t own) {
-      return own == 0 ? conflict.zones[0][0].line : std::min(conflict.zones[1][0].line, conflict.zones[1][1].line);
+    auto const first_zone = [](Conflict const& conflict, std::size_t own) {
+      return std::min(conflict.zones[own][0].begin, conflict.zones[own][1].begin);
     };
     for (auto const& conflict : conflicts)
       for (std::size_t own : {0u, 1u}) {
         auto& hold = holds.emplace(conflict.hold[own], conflict.hold).first->second[own];
-        hold = std::min(hold, first_line(conflict, own));
+        hold = std::min(hold, first_zone(conflict, own));
       }
+    for (auto& [begin, hold] : holds)
+      for (auto const& before : conflicts)
+        for (std::size_t own : {0u, 1u})
+          if (before.hold[own] < begin && before.kind == OverlapKind::crossing &&
+              std::max(before.zones[own][0].end, before.zones[own][1].end) > hold[own] - near)
+            hold[own] = std::min(hold[own], holds.at(before.hold[own])[own]);
     for (auto& conflict : conflicts)
       for (std::size_t own : {0u, 1u})
         conflict.hold[own] =
-            std::isfinite(conflict.hold[own]) ? holds.at(conflict.hold[own])[own] : first_line(conflict, own);
+            std::isfinite(conflict.hold[own]) ? holds.at(conflict.hold[own])[own] : first_zone(conflict, own);
   }
 
   /// The part of `range` where two such bodies touch. Where lanes merge it ends, and where they part it begins, with
