@@ -17,6 +17,7 @@
 #include "cambium/behavior/idm_hypotheses.hpp"
 #include "cambium/behavior/idm_lane_tracking.hpp"
 #include "cambium/behavior/idm_law.hpp"
+#include "cambium/behavior/idm_proposal.hpp"
 #include "cambium/behavior/idm_stochastic.hpp"
 #include "cambium/behavior/intersection.hpp"
 #include "cambium/behavior/lane_change.hpp"

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "cambium/behavior/behavior_model.hpp"
+#include "cambium/planner/detail/predicted.hpp"
 #include "cambium/planner/traffic_domain.hpp"
 #include "cambium/planner/tree_search.hpp"
-#include "cambium/world/prediction.hpp"
 
 namespace cambium {
 
@@ -120,24 +120,14 @@ namespace detail {
 /// The purpose of the random numbers of a search in traffic.
 inline constexpr std::uint32_t search_purpose = 0x3c75;
 
-/// Whether a view can be asked for predictions: `ViewArchetype` cannot.
-template <class View, class Set, class Other>
-concept Predicts = requires(View const view, Prediction<Set> const prediction) {
-  view.predict(prediction);
-  typename Other::FrameType;
-};
-
 /// The world that is predicted where ego may choose; slot of ego there first in `slots`, or empty.
 template <class PredictionWorld, class Actions, class Others, class View>
 [[nodiscard]] PredictionWorld world_to_search(View const& view, Actions const& actions, Others const& others,
                                               std::vector<std::uint32_t>& slots) {
-  using Set = typename PredictionWorld::Behaviors;
-  auto world = view.predict(predict_as<Set>(ActionSet<Actions>::behavior(actions), others));
-  static_assert(std::is_same_v<decltype(world), PredictionWorld>,
-                "cambium::Mcts...<PredictionWorld, ...>: PredictionWorld must be the world's own type with another "
-                "behaviour set: World::WithBehaviors<BehaviorSet<...>>");
+  std::optional<std::uint32_t> ego;
+  auto world = predicted_for<PredictionWorld>(view, ActionSet<Actions>::behavior(actions), others, ego);
   slots.clear();
-  if (auto const slot = world.roster().slot_of(view.id())) slots.push_back(static_cast<std::uint32_t>(*slot));
+  if (ego) slots.push_back(*ego);
   return world;
 }
 
