@@ -24,6 +24,7 @@
 #include "cambium/behavior/lane_change_rule_based.hpp"
 #include "cambium/behavior/lane_changing.hpp"
 #include "cambium/behavior/lane_ends.hpp"
+#include "cambium/behavior/lane_reach.hpp"
 #include "cambium/behavior/leader.hpp"
 #include "cambium/behavior/linear_stability.hpp"
 #include "cambium/behavior/macro_actions.hpp"
