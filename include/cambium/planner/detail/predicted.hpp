@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <type_traits>
+#include <vector>
 
 #include "cambium/core/plan.hpp"
 #include "cambium/evaluation/collision.hpp"
@@ -47,6 +49,23 @@ void drive_predicted(World& world, std::uint32_t slot, double dt, double step, B
     plan.trajectory.back().time = i + 1 == steps ? begin + dt : world.time();
   }
   plan.status = PlanStatus::valid;
+}
+
+/// The agents of `world` next to the one at `ego`, at most `count` of them within `range` [m], nearest first.
+template <class World>
+[[nodiscard]] std::vector<std::uint32_t> nearest_agents(World const& world, std::uint32_t ego, std::size_t count,
+                                                        double range) {
+  auto const& agents = world.frame().agents;
+  auto const distance = [&](std::uint32_t slot) {
+    return std::hypot(agents[slot].state.x - agents[ego].state.x, agents[slot].state.y - agents[ego].state.y);
+  };
+  std::vector<std::uint32_t> slots;
+  for (std::uint32_t slot = 0; slot < world.size(); ++slot)
+    if (slot != ego && agents[slot].status == AgentStatus::driving && distance(slot) <= range) slots.push_back(slot);
+  std::stable_sort(slots.begin(), slots.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return distance(a) < distance(b); });
+  slots.resize(std::min(slots.size(), count));
+  return slots;
 }
 
 /// How far `other` lies ahead of the reference point of `ego`, along ego's heading [m].
