@@ -6,7 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <set>
-#include <tuple>
+#include <vector>
 
 #include "cambium/behavior/idm_classic.hpp"
 #include "cambium/execution/interpolate.hpp"
@@ -164,21 +164,23 @@ TEST_CASE("one who comes into the lane is expected there, and let in") {
 }
 
 TEST_CASE("the weight of the worst case changes what is dared") {
-  // Behind a slow one, with a fast one coming up on the left.
+  // Behind a slow one, with a faster one coming up on the left.
   auto const best_changes = [](double not_yield, double worst_case) {
     auto world = road(2, 0, 10.0);
-    world.add({.position = {70, -5.25}, .speed = 6, .behavior = ConstantAcceleration{}});
-    world.add({.position = {24, -1.75}, .speed = 15, .behavior = ConstantAcceleration{}});
+    world.add({.position = {80, -5.25}, .speed = 6, .behavior = ConstantAcceleration{}});
+    world.add({.position = {26, -1.75}, .speed = 13, .behavior = ConstantAcceleration{}});
     Planner planner;
     planner.intentions.not_yield = not_yield;
     planner.weights.worst_case = worst_case;
+    planner.weights.reaction_time = 0.0;  // near is not unsafe, but collisions are
+    planner.weights.braking = 50.0;
     Planner::Workspace workspace;
     auto const report = planner.think(world.observe(ego), {}, workspace);
     return report.actions[report.branches[report.best].sequence.first].starts_with("change_left");
   };
   CHECK(best_changes(0.0, 0.0));
-  CHECK(best_changes(0.005, 0.0));
-  CHECK_FALSE(best_changes(0.005, 1.0));
+  CHECK(best_changes(0.0005, 0.0));
+  CHECK_FALSE(best_changes(0.0005, 1.0));
   CHECK_FALSE(best_changes(0.9, 0.0));
 }
 

@@ -214,7 +214,7 @@ struct ProposalPlanner {
       auto const& now = world.frame().agents[ego];
       proposal.progress += 0.5 * step * (before.state.speed + now.state.speed) *
                            std::cos(0.5 * (before.lane.heading_error + now.lane.heading_error));
-      auto const passage = detail::passage(world, ego);
+      auto const passage = detail::passage(world, ego, detail::is_at_fault(world, ego));
       if (passage == detail::Passage::is_over) break;
       proposal.collides = passage == detail::Passage::collides;
       proposal.leaves_road = passage == detail::Passage::leaves_road;

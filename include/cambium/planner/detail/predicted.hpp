@@ -108,9 +108,10 @@ template <class World>
 /// What became of a predicted course in a step.
 enum class Passage : std::uint8_t { goes_on, is_over, collides, leaves_road };
 
-/// The same for the agent at `slot`; over is what ends at its destination, or with the map.
+/// The same for the agent at `slot`, which `touches` somebody or something, or does not; over is what ends at its
+/// destination, or with the map.
 template <class World>
-[[nodiscard]] Passage passage(World const& world, std::uint32_t slot) {
+[[nodiscard]] Passage passage(World const& world, std::uint32_t slot, bool touches) {
   switch (world.frame().agents[slot].status) {
     case AgentStatus::driving:
       break;
@@ -120,7 +121,7 @@ template <class World>
     default:
       return Passage::is_over;
   }
-  if (is_at_fault(world, slot)) return Passage::collides;
+  if (touches) return Passage::collides;
   return DrivableArea::off_road(world, slot) ? Passage::leaves_road : Passage::goes_on;
 }
 
