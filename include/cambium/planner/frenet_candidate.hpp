@@ -23,6 +23,8 @@ struct FrenetCosts {
   double route = 40.0;
 
   static constexpr char const* name = "frenet_costs";
+  static constexpr char const* summary =
+      "of jerk, time, and deviations at the end, as Werling 2010; of lanes off the route";
   static constexpr auto parameters() {
     using P = FrenetCosts;
     return std::make_tuple(
@@ -44,6 +46,7 @@ struct FrenetLimits {
   double clearance = 0.3;
 
   static constexpr char const* name = "frenet_limits";
+  static constexpr char const* summary = "what a vehicle can do, or its passengers bear";
   static constexpr auto parameters() {
     using P = FrenetLimits;
     return std::make_tuple(

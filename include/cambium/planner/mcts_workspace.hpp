@@ -26,6 +26,7 @@ struct MctsOptions {
   double step = 0.2;
 
   static constexpr char const* name = "mcts";
+  static constexpr char const* summary = "how a search of traffic goes about it";
   static constexpr auto parameters() {
     using P = MctsOptions;
     return std::make_tuple(parameter("search", &P::search, "-", {}, "the tree"),
