@@ -45,38 +45,78 @@ std::vector<Model> behaviors() {
           model<cb::ExternalInput>("ExternalInput"),
           model<cb::MotionPrimitives>("MotionPrimitives"),
           model<cb::MacroActions>("MacroActions"),
-          model<cb::RandomMacroActions>("RandomMacroActions")};
+          model<cb::RandomMacroActions>("RandomMacroActions"),
+          model<cb::IdmHypotheses>("IdmHypotheses"),
+          model<cb::IdmProposal>("IdmProposal")};
+}
+
+/// Planners are behaviours too, on a world that they predict.
+std::vector<Model> planners() {
+  using Set =
+      cb::BehaviorSet<cb::MacroActions, cb::IdmClassic, cb::IdmHypotheses, cb::IdmProposal, cb::ConstantAcceleration>;
+  using World = cb::World<Set, cb::InterpolateExecution, cb::SingleTrack>;
+  return {model<cb::MctsSingleAgent<World>>("MctsSingleAgent<PredictionWorld>"),
+          model<cb::MctsCooperative<World>>("MctsCooperative<PredictionWorld>"),
+          model<cb::MctsHypothesis<World>>("MctsHypothesis<PredictionWorld>"),
+          model<cb::MctsRiskConstrained<World>>("MctsRiskConstrained<PredictionWorld>"),
+          model<cb::ProposalPlanner<World>>("ProposalPlanner<PredictionWorld>"),
+          model<cb::PolicyTreePlanner<World>>("PolicyTreePlanner<PredictionWorld>"),
+          model<cb::FrenetPlanner<World>>("FrenetPlanner<PredictionWorld>")};
+}
+
+std::vector<Model> parts() {
+  return {model<cb::IdmParameters>("IdmParameters"),
+          model<cb::RoadRules>("RoadRules"),
+          model<cb::LaneChanging>("LaneChanging"),
+          model<cb::LaneChangeCourse>("LaneChangeCourse"),
+          model<cb::Yielding<cb::Uniform>>("Yielding<Distribution>"),
+          model<cb::RssParameters>("RssParameters"),
+          model<cb::MotionPrimitive>("MotionPrimitive"),
+          model<cb::MacroAction>("MacroAction"),
+          model<cb::SocialForceParameters>("SocialForceParameters"),
+          model<cb::CrossingParameters>("CrossingParameters"),
+          model<cb::MctsOptions<>>("MctsOptions<>"),
+          model<cb::TreeSearchParameters>("TreeSearchParameters"),
+          model<cb::IterationBudget>("IterationBudget"),
+          model<cb::Widening>("Widening"),
+          model<cb::CostConstraint>("CostConstraint"),
+          model<cb::Ucb1>("Ucb1"),
+          model<cb::RandomRollout>("RandomRollout"),
+          model<cb::TrafficReward>("TrafficReward"),
+          model<cb::BeliefParameters>("BeliefParameters"),
+          model<cb::ProposalScoring>("ProposalScoring"),
+          model<cb::IntentionPrior>("IntentionPrior"),
+          model<cb::PolicyWeights>("PolicyWeights"),
+          model<cb::FrenetCosts>("FrenetCosts"),
+          model<cb::FrenetLimits>("FrenetLimits"),
+          model<cb::Actuation>("Actuation"),
+          model<cb::ObservationNoise>("ObservationNoise"),
+          model<cb::Uniform>("Uniform"),
+          model<cb::Normal>("Normal")};
 }
 
 std::vector<Room> rooms() {
-  return {
-      {"Behaviours", behaviors()},
-      {"Conditions of a lane change, for `BasicMobil<Filters...>`",
-       {model<cb::FreeSpace>("FreeSpace"), model<cb::RemainingLength>("RemainingLength"),
-        model<cb::SpeedLimitAtLeast>("SpeedLimitAtLeast")}},
-      {"Vehicle models",
-       {model<cb::SingleTrack>("SingleTrack"), model<cb::SingleTrackSteering>("SingleTrackSteering"),
-        model<cb::TripleIntegrator>("TripleIntegrator"), model<cb::KinematicPoint>("KinematicPoint")}},
-      {"Execution of plans",
-       {model<cb::InterpolateExecution>("InterpolateExecution"), model<cb::StanleyExecution>("StanleyExecution"),
-        model<cb::LqrExecution>("LqrExecution")}},
-      {"Observers",
-       {model<cb::PerfectObserver>("PerfectObserver"), model<cb::ParametricObserver>("ParametricObserver"),
-        model<cb::OccludedObserver>("OccludedObserver"), model<cb::DelayedObserver<1>>("DelayedObserver<Longest>"),
-        model<cb::ObserverChain<>>("ObserverChain<Observers...>")}},
-      {"Goals",
-       {model<cb::NoGoal>("NoGoal"), model<cb::ReachPolygon>("ReachPolygon"), model<cb::ReachLane>("ReachLane"),
-        model<cb::StateLimits>("StateLimits"), model<cb::LaneLimits>("LaneLimits"),
-        model<cb::ReachLaneEnd>("ReachLaneEnd"), model<cb::ReachLaneBeside>("ReachLaneBeside"),
-        model<cb::AllGoals>("AllGoals"), model<cb::AnyGoal>("AnyGoal"), model<cb::GoalSequence>("GoalSequence")}},
-      {"Parts of these",
-       {model<cb::IdmParameters>("IdmParameters"), model<cb::RoadRules>("RoadRules"),
-        model<cb::LaneChanging>("LaneChanging"), model<cb::LaneChangeCourse>("LaneChangeCourse"),
-        model<cb::Yielding<cb::Uniform>>("Yielding<Distribution>"), model<cb::RssParameters>("RssParameters"),
-        model<cb::MotionPrimitive>("MotionPrimitive"), model<cb::MacroAction>("MacroAction"),
-        model<cb::SocialForceParameters>("SocialForceParameters"), model<cb::CrossingParameters>("CrossingParameters"),
-        model<cb::Actuation>("Actuation"), model<cb::ObservationNoise>("ObservationNoise"),
-        model<cb::Uniform>("Uniform"), model<cb::Normal>("Normal")}}};
+  return {{"Behaviours", behaviors()},
+          {"Planners: behaviours that predict", planners()},
+          {"Conditions of a lane change, for `BasicMobil<Filters...>`",
+           {model<cb::FreeSpace>("FreeSpace"), model<cb::RemainingLength>("RemainingLength"),
+            model<cb::SpeedLimitAtLeast>("SpeedLimitAtLeast")}},
+          {"Vehicle models",
+           {model<cb::SingleTrack>("SingleTrack"), model<cb::SingleTrackSteering>("SingleTrackSteering"),
+            model<cb::TripleIntegrator>("TripleIntegrator"), model<cb::KinematicPoint>("KinematicPoint")}},
+          {"Execution of plans",
+           {model<cb::InterpolateExecution>("InterpolateExecution"), model<cb::StanleyExecution>("StanleyExecution"),
+            model<cb::LqrExecution>("LqrExecution")}},
+          {"Observers",
+           {model<cb::PerfectObserver>("PerfectObserver"), model<cb::ParametricObserver>("ParametricObserver"),
+            model<cb::OccludedObserver>("OccludedObserver"), model<cb::DelayedObserver<1>>("DelayedObserver<Longest>"),
+            model<cb::ObserverChain<>>("ObserverChain<Observers...>")}},
+          {"Goals",
+           {model<cb::NoGoal>("NoGoal"), model<cb::ReachPolygon>("ReachPolygon"), model<cb::ReachLane>("ReachLane"),
+            model<cb::StateLimits>("StateLimits"), model<cb::LaneLimits>("LaneLimits"),
+            model<cb::ReachLaneEnd>("ReachLaneEnd"), model<cb::ReachLaneBeside>("ReachLaneBeside"),
+            model<cb::AllGoals>("AllGoals"), model<cb::AnyGoal>("AnyGoal"), model<cb::GoalSequence>("GoalSequence")}},
+          {"Parts of these", parts()}};
 }
 
 void print_presets() {

@@ -1,15 +1,22 @@
-/// The room `planner`: tree search over copied worlds, and over any game.
+/// The room `planner`: tree search over copied worlds, and over any game; planners that simulate or sample courses.
 #pragma once
 
 #include "cambium/planner/belief.hpp"
 #include "cambium/planner/exp3.hpp"
+#include "cambium/planner/frenet_candidate.hpp"
+#include "cambium/planner/frenet_motion.hpp"
+#include "cambium/planner/frenet_planner.hpp"
 #include "cambium/planner/mcts_cooperative.hpp"
 #include "cambium/planner/mcts_hypothesis.hpp"
 #include "cambium/planner/mcts_risk_constrained.hpp"
 #include "cambium/planner/mcts_single_agent.hpp"
 #include "cambium/planner/mcts_workspace.hpp"
 #include "cambium/planner/parallel_tree_search.hpp"
+#include "cambium/planner/policy_tree.hpp"
+#include "cambium/planner/policy_tree_planner.hpp"
+#include "cambium/planner/proposal_planner.hpp"
 #include "cambium/planner/puct.hpp"
+#include "cambium/planner/quintic.hpp"
 #include "cambium/planner/regret_matching.hpp"
 #include "cambium/planner/rollout.hpp"
 #include "cambium/planner/search_budget.hpp"

@@ -276,3 +276,26 @@ TEST_CASE("the lists to choose from are parameters") {
                        "motion_primitives.primitives[1].steering: is 2 rad; give a value in [-1.5, 1.5] rad",
                        cb::ParameterError);
 }
+
+TEST_CASE("an action that keeps the gap is no faster than car following allows, in either lane of a change") {
+  using Action = cb::MacroAction;
+  auto const macro = cb::MacroActions::of({{Kind::stay, 1.0},
+                                           {Kind::stay, 1.0, true},
+                                           {Kind::keep_gap},
+                                           {Kind::change_left, 1.0, true},
+                                           {Kind::change_left, 1.0}});
+  auto const speed_after = [&](std::size_t action, double leader_y) {
+    Highway at(macro);
+    at.world.add({.position = {115, leader_y}, .speed = 4, .behavior = cb::IdmClassic{.desired_speed = 4}});
+    at.choose(action);
+    at.drive(4);
+    return at.world.state(at.id).speed;
+  };
+  CHECK(speed_after(0, -5.25) == doctest::Approx(11.0));
+  CHECK(speed_after(1, -5.25) == doctest::Approx(speed_after(2, -5.25)));
+  CHECK(speed_after(1, -5.25) < 9.0);
+  CHECK(speed_after(1, -1.75) == doctest::Approx(11.0).epsilon(1e-3));
+  CHECK(speed_after(3, -1.75) < 9.0);
+  CHECK(speed_after(4, -1.75) == doctest::Approx(11.0));
+  CHECK_FALSE(Action{Kind::stay, 1.0} == Action{Kind::stay, 1.0, true});
+}

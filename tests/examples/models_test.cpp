@@ -48,7 +48,8 @@ TEST_CASE("every model, goal, driver and shape in the headers is in README's tab
     return Kind{CAMBIUM_SOURCE_DIR "/include/cambium/" + std::string(folder), std::regex(declaration), least};
   };
   auto const text = tables();
-  for (auto const& one : {kind("behavior", "\nstatic_assert\\((?:BehaviorModel|CorridorFilter)<(\\w+)[<>]", 17),
+  for (auto const& one : {kind("behavior", "\nstatic_assert\\((?:BehaviorModel|CorridorFilter)<(\\w+)[<>]", 19),
+                          kind("planner", "\nstruct (Mcts(?!Options|Report)\\w+|\\w+Planner) \\{", 7),
                           kind("dynamics", "\nstatic_assert\\(DynamicModel<(\\w+)[<>]", 4),
                           kind("execution", "\nstatic_assert\\(ExecutionModel<(\\w+)[<>]", 3),
                           kind("observer", "\nstatic_assert\\(ObserverModel<(\\w+)[<>]", 4),

@@ -36,7 +36,7 @@ TEST_CASE_TEMPLATE("every behaviour can predict, allocates nothing once warm, an
                    cb::Mobil, cb::LaneChangeRuleBased, cb::ZipMerge, cb::Intersection,
                    cb::RssConformant<cb::IdmClassic>, cb::RssConformant<cb::Mobil>, cb::Safety,
                    cb::ConstantAcceleration, cb::ExternalInput, cb::MotionPrimitives, cb::MacroActions,
-                   cb::RandomMacroActions) {
+                   cb::RandomMacroActions, cb::IdmHypotheses, cb::IdmProposal) {
   auto world = traffic<Behavior>();
   using Set = cb::BehaviorSet<Behavior>;
   auto const begin = world.observe(static_cast<cb::AgentId>(1)).predict(cb::predict_all_as<Set>(Behavior{}));

@@ -92,18 +92,20 @@ struct LaneChangeCourse {
 
 namespace detail {
 
-/// The plan that drives `motion` from `at` along the course that `change` has to the centre line of `corridor`.
+/// The plan that drives `motion` from `at` along the course that `change` has to the line `offset` [m] to the left of
+/// the centre line of `corridor`.
 template <class View>
 [[nodiscard]] Plan<View> plan_course(View const& view, map::LaneCorridor const& corridor, map::LanePosition const& at,
-                                     LaneChange& change, LongitudinalMotion<double> const& motion, double dt) {
+                                     LaneChange& change, LongitudinalMotion<double> const& motion, double dt,
+                                     double offset = 0.0) {
   double const stretch = std::max(0.1, 1.0 - corridor.center.segments()[at.segment].curvature * at.lateral);
-  LateralCourse<double> const start{at.lateral, stretch * std::tan(at.heading_error), change.bend};
+  LateralCourse<double> const start{at.lateral - offset, stretch * std::tan(at.heading_error), change.bend};
   double const along = motion.distance * std::cos(at.heading_error) / stretch;
   auto const course = converge(start, static_cast<double>(change.left), along);
   Plan<View> plan;
   typename View::State next = view.state();
   next.time = view.time() + dt;
-  place_on_lane(corridor, at.s + along, course.offset, std::atan(course.slope / stretch), at.segment, next);
+  place_on_lane(corridor, at.s + along, offset + course.offset, std::atan(course.slope / stretch), at.segment, next);
   next.speed = motion.speed;
   plan.trajectory.push_back(next);
   plan.action.acceleration = (motion.speed - view.state().speed) / dt;
@@ -119,19 +121,19 @@ inline constexpr double most_aslant = 1.0;
 
 /// The plan that keeps the lane. Who is off its centre line or its direction, as after a change that was given up, or
 /// where observation errs, comes back smoothly, by a course that begins anew in each step; `bend` [1/m] is that of the
-/// course at the vehicle.
+/// course at the vehicle. `offset`: keeps so far to the left of the centre line [m].
 template <class View>
 [[nodiscard]] Plan<View> plan_to_center(View const& view, float& bend, LongitudinalMotion<double> const& motion,
-                                        double dt) {
+                                        double dt, double offset = 0.0) {
   constexpr double near = 1e-3, shortest = 15.0, duration = 3.0;  // [m or rad], [m], [s]
   auto const& at = view.lane_position();
   double const aslant = std::abs(at.heading_error);
-  if ((std::abs(at.lateral) < near && aslant < near) || aslant > detail::most_aslant) {
+  if ((std::abs(at.lateral - offset) < near && aslant < near) || aslant > detail::most_aslant) {
     bend = 0.0f;
     return plan_along_lane(view, motion, dt);
   }
   LaneChange back{at.corridor, static_cast<float>(std::max(shortest, duration * motion.speed)), bend};
-  auto const plan = detail::plan_course(view, view.corridor(), at, back, motion, dt);
+  auto const plan = detail::plan_course(view, view.corridor(), at, back, motion, dt, offset);
   bend = back.bend;
   return plan;
 }

@@ -33,6 +33,7 @@ struct MacroAction {
 
   Kind kind = Kind::stay;
   double acceleration = 0.0;  ///< [m/s^2]
+  bool keeps_gap = false;     ///< no faster than IDM allows; `keep_gap` never is
 
   static constexpr char const* name = "macro_action";
   static constexpr char const* summary = "one manoeuvre of `MacroActions`";
@@ -40,7 +41,8 @@ struct MacroAction {
     using P = MacroAction;
     return std::make_tuple(
         parameter("kind", &P::kind, "-", Range{0, 3}, "0 stay, 1 change_left, 2 change_right, 3 keep_gap"),
-        parameter("acceleration", &P::acceleration, "m/s^2", Range{-50, 50}, "not of keep_gap"));
+        parameter("acceleration", &P::acceleration, "m/s^2", Range{-50, 50}, "not of keep_gap"),
+        parameter("keeps_gap", &P::keeps_gap, "-", Range{0, 1}, "no faster than IDM allows"));
   }
 
   friend bool operator==(MacroAction const&, MacroAction const&) = default;
@@ -172,8 +174,8 @@ struct MacroActions {
   template <class View>
   [[nodiscard]] LongitudinalMotion<double> motion(View const& view, LaneChange const& change, MacroAction const& action,
                                                   double speed, double dt) const {
-    if (action.kind != Kind::keep_gap)
-      return ConstantAcceleration{action.acceleration, highest_speed}.motion(speed, dt);
+    auto const wanted = ConstantAcceleration{action.acceleration, highest_speed}.motion(speed, dt);
+    if (action.kind != Kind::keep_gap && !action.keeps_gap) return wanted;
     detail::IdmLaw const law(idm);
     detail::Restriction ahead{std::numeric_limits<double>::infinity(), 0.0, law.free(speed)};
     auto const heed = [&](std::optional<Neighbor> const& leader) {
@@ -181,7 +183,8 @@ struct MacroActions {
     };
     heed(view.front());
     if (change.active() && change.target != view.lane_position().corridor) heed(view.front(view.beside(change.target)));
-    return idm_motion(idm, speed, ahead.gap, ahead.speed, dt, tolerance);
+    auto const allowed = idm_motion(idm, speed, ahead.gap, ahead.speed, dt, tolerance);
+    return action.kind == Kind::keep_gap || allowed.speed < wanted.speed ? allowed : wanted;
   }
 };
 static_assert(BehaviorModel<MacroActions>);

@@ -19,6 +19,8 @@ struct BeliefParameters {
   double floor = 1e-3;
 
   static constexpr char const* name = "belief";
+  static constexpr char const* summary =
+      "how beliefs about others change with what is observed: Bayes' rule, and forgetting";
   static constexpr auto parameters() {
     using P = BeliefParameters;
     return std::make_tuple(

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <tuple>
@@ -13,27 +11,6 @@
 #include "cambium/planner/mcts_workspace.hpp"
 
 namespace cambium {
-
-namespace detail {
-
-/// The agents of `world` next to the one at `ego`, at most `count` of them within `range` [m], nearest first.
-template <class World>
-[[nodiscard]] std::vector<std::uint32_t> nearest_agents(World const& world, std::uint32_t ego, std::size_t count,
-                                                        double range) {
-  auto const& agents = world.frame().agents;
-  auto const distance = [&](std::uint32_t slot) {
-    return std::hypot(agents[slot].state.x - agents[ego].state.x, agents[slot].state.y - agents[ego].state.y);
-  };
-  std::vector<std::uint32_t> slots;
-  for (std::uint32_t slot = 0; slot < world.size(); ++slot)
-    if (slot != ego && agents[slot].status == AgentStatus::driving && distance(slot) <= range) slots.push_back(slot);
-  std::stable_sort(slots.begin(), slots.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return distance(a) < distance(b); });
-  slots.resize(std::min(slots.size(), count));
-  return slots;
-}
-
-}  // namespace detail
 
 /// Plans by tree search in which ego and those near it choose at once, each for itself and, by `cooperation`, for the
 /// others: reward = own + cooperation x the others' (Lenz, Kessler, Knoll 2016). Who is farther away follows `Others`.

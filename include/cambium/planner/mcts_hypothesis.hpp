@@ -13,7 +13,7 @@
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/idm_hypotheses.hpp"
 #include "cambium/planner/belief.hpp"
-#include "cambium/planner/mcts_cooperative.hpp"
+#include "cambium/planner/detail/predicted.hpp"
 #include "cambium/planner/mcts_workspace.hpp"
 
 namespace cambium {

@@ -11,9 +11,9 @@
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/core/macros.hpp"
+#include "cambium/planner/detail/predicted.hpp"
 #include "cambium/planner/traffic_domain.hpp"
 #include "cambium/planner/tree_search.hpp"
-#include "cambium/world/prediction.hpp"
 
 namespace cambium {
 
@@ -27,6 +27,7 @@ struct MctsOptions {
   double step = 0.2;
 
   static constexpr char const* name = "mcts";
+  static constexpr char const* summary = "how a search of traffic goes about it";
   static constexpr auto parameters() {
     using P = MctsOptions;
     return std::make_tuple(parameter("search", &P::search, "-", {}, "the tree"),
@@ -121,24 +122,14 @@ namespace detail {
 /// The purpose of the random numbers of a search in traffic.
 inline constexpr std::uint32_t search_purpose = 0x3c75;
 
-/// Whether a view can be asked for predictions: `ViewArchetype` cannot.
-template <class View, class Set, class Other>
-concept Predicts = requires(View const view, Prediction<Set> const prediction) {
-  view.predict(prediction);
-  typename Other::FrameType;
-};
-
 /// The world that is predicted where ego may choose; slot of ego there first in `slots`, or empty.
 template <class PredictionWorld, class Actions, class Others, class View>
 [[nodiscard]] PredictionWorld world_to_search(View const& view, Actions const& actions, Others const& others,
                                               std::vector<std::uint32_t>& slots) {
-  using Set = typename PredictionWorld::Behaviors;
-  auto world = view.predict(predict_as<Set>(ActionSet<Actions>::behavior(actions), others));
-  static_assert(std::is_same_v<decltype(world), PredictionWorld>,
-                "cambium::Mcts...<PredictionWorld, ...>: PredictionWorld must be the world's own type with another "
-                "behaviour set: World::WithBehaviors<BehaviorSet<...>>");
+  std::optional<std::uint32_t> ego;
+  auto world = predicted_for<PredictionWorld>(view, ActionSet<Actions>::behavior(actions), others, ego);
   slots.clear();
-  if (auto const slot = world.roster().slot_of(view.id())) slots.push_back(static_cast<std::uint32_t>(*slot));
+  if (ego) slots.push_back(*ego);
   return world;
 }
 

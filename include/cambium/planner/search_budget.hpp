@@ -24,6 +24,7 @@ struct IterationBudget {
   std::size_t iterations = 1000;
 
   static constexpr char const* name = "iteration_budget";
+  static constexpr char const* summary = "so many iterations";
   static constexpr auto parameters() {
     return std::make_tuple(
         parameter("iterations", &IterationBudget::iterations, "-", Range{1, 1e9}, "how many there are"));

@@ -19,6 +19,7 @@ struct Widening {
   double exponent = 0.5;
 
   static constexpr char const* name = "widening";
+  static constexpr char const* summary = "a node visited N times may have coefficient N^exponent children";
   static constexpr auto parameters() {
     return std::make_tuple(
         parameter("coefficient", &Widening::coefficient, "-", Range{0, 1e4}, "children after the first visit"),
@@ -59,6 +60,8 @@ struct CostConstraint {
   double step = 1.0;
 
   static constexpr char const* name = "cost_constraint";
+  static constexpr char const* summary =
+      "the expected cost of the chosen course stays below a limit, by a Lagrange multiplier";
   static constexpr auto parameters() {
     return std::make_tuple(
         parameter("limit", &CostConstraint::limit, "-", Range{0, 1}, "greatest expected cost; 1: costs do not count"),
@@ -87,6 +90,7 @@ struct TreeSearchParameters {
   CostConstraint constraint{};
 
   static constexpr char const* name = "tree_search";
+  static constexpr char const* summary = "what every tree search goes by";
   static constexpr auto parameters() {
     using P = TreeSearchParameters;
     return std::make_tuple(

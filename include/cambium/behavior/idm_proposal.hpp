@@ -1,0 +1,56 @@
+#pragma once
+
+#include <algorithm>
+#include <tuple>
+
+#include "cambium/behavior/behavior_model.hpp"
+#include "cambium/behavior/idm_classic.hpp"
+#include "cambium/behavior/lane_change.hpp"
+#include "cambium/behavior/lane_reach.hpp"
+
+namespace cambium {
+
+/// Follows the next vehicle in its way by IDM, at a share of its desired speed and an offset from the middle of its
+/// lane: both are its memory, to be set from outside, as a planner does that tries several (see `ProposalPlanner`).
+/// Passes who is in its lane but leaves it room.
+struct IdmProposal {
+  struct Memory {
+    float speed_share = 1.0f;  ///< of the driver's desired speed
+    float offset = 0.0f;       ///< from the middle of the lane, left positive [m]
+    float bend = 0.0f;         ///< of the course at the vehicle, see `plan_to_center` [1/m]
+
+    void fell_short(double, bool left_course) {
+      if (left_course) bend = 0.0f;
+    }
+    friend bool operator==(Memory const&, Memory const&) = default;
+  };
+
+  IdmClassic driver{};
+  double clearance = 0.2;
+
+  static constexpr char const* name = "idm_proposal";
+  static constexpr char const* summary =
+      "as idm_classic, at a share of the desired speed and an offset from the lane's middle that a planner sets; "
+      "passes "
+      "who leaves room beside";
+  static constexpr char const* source = "Treiber 2000; after Dauner et al. 2023";
+  static constexpr auto parameters() {
+    return std::make_tuple(
+        parameter("driver", &IdmProposal::driver, "-", {}, "its car following; integration is exact"),
+        parameter("clearance", &IdmProposal::clearance, "m", Range{0, 5}, "to each side of those that it passes"));
+  }
+
+  template <class View>
+  [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
+    double const speed = std::max(0.0, view.state().speed), offset = static_cast<double>(memory.offset);
+    auto p = within_limits(driver.rules, driver, view, speed);
+    p.desired_speed = std::max(0.1, static_cast<double>(memory.speed_share) * p.desired_speed);
+    auto const leader = leader_to_follow(driver.rules, view, detail::next_in_way(view, offset, clearance),
+                                         [&](Leader const& l) { return idm_acceleration(p, speed, l.gap, l.speed); });
+    auto const motion = idm_motion(p, speed, leader.gap, leader.speed, dt, driver.tolerance);
+    return plan_to_center(view, memory.bend, motion, dt, offset);
+  }
+};
+static_assert(BehaviorModel<IdmProposal>);
+
+}  // namespace cambium

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+#include "cambium/behavior/view.hpp"
+#include "cambium/geometry/frenet.hpp"
+#include "cambium/geometry/polygon.hpp"
+
+namespace cambium {
+
+namespace detail {
+
+/// What somebody occupies of a lane corridor: from where to where along it, and to its right and left. [m]
+struct LaneReach {
+  double begin, end, right, left;
+
+  [[nodiscard]] bool meets(double from_right, double to_left) const { return right < to_left && left > from_right; }
+};
+
+template <MotionState S>
+[[nodiscard]] LaneReach lane_reach(geometry::Line const& line, S const& state, geometry::Shape const& shape,
+                                   std::uint32_t hint) {
+  auto const at = geometry::to_frenet(line, state, hint);
+  auto const [sin, cos] = geometry::sin_cos(at.heading_error);
+  auto const along = geometry::extent_along(shape, cos, sin), across = geometry::extent_along(shape, sin, -cos);
+  return {at.s - along.negative, at.s + along.positive, at.lateral - across.negative, at.lateral + across.positive};
+}
+
+[[nodiscard]] inline LaneReach lane_reach(geometry::Line const& line, geometry::Polygon const& outline,
+                                          std::uint32_t hint) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  LaneReach reach{infinite, -infinite, infinite, -infinite};
+  for (auto const& corner : outline.points()) {
+    auto const foot = line.project(corner, hint);
+    reach = {std::min(reach.begin, foot.s), std::max(reach.end, foot.s), std::min(reach.right, foot.lateral),
+             std::max(reach.left, foot.lateral)};
+  }
+  return reach;
+}
+
+/// What `neighbor` occupies of lane corridor `number`. O(objects) for an object.
+template <class View>
+[[nodiscard]] std::optional<LaneReach> lane_reach(View const& view, std::uint16_t number, Neighbor const& neighbor,
+                                                  std::uint32_t hint) {
+  auto const& line = view.road().corridors[number].center;
+  std::optional<LaneReach> reach;
+  if (is_valid(neighbor.agent)) {
+    auto const other = view.agent(neighbor);
+    reach = lane_reach(line, other.state, other.shape, hint);
+  } else {
+    view.for_each_object([&](ObjectId id, geometry::Polygon const& outline) {
+      if (id == neighbor.object) reach = lane_reach(line, outline, hint);
+    });
+  }
+  return reach;
+}
+
+/// Whether `neighbor` is in lane corridor `number` but leaves room for a vehicle that drives `offset` [m] beside its
+/// middle, `clearance` [m] kept to both sides. Who is still to merge into the lane leaves none.
+template <class View>
+[[nodiscard]] bool leaves_room(View const& view, std::uint16_t number, Neighbor const& neighbor, double offset,
+                               double clearance) {
+  auto const at = view.lane_position(number);
+  auto const sides = view.road().corridors[number].widths_at(at.s, at.segment);
+  auto const reach = lane_reach(view, number, neighbor, at.segment);
+  return reach && reach->meets(-sides.right, sides.left) &&
+         !reach->meets(offset - view.shape().right - clearance, offset + view.shape().left + clearance);
+}
+
+/// The next one ahead that is in the way of a vehicle that drives `offset` [m] beside the middle of its lane,
+/// `clearance` [m] kept to both sides. Who is beside the way but in the lane is passed; who is still to merge into it
+/// is not. O(agents near) where somebody is passed.
+template <class View>
+[[nodiscard]] std::optional<Neighbor> next_in_way(View const& view, double offset, double clearance) {
+  auto next = view.front();
+  auto const& at = view.lane_position();
+  if (!next || !leaves_room(view, at.corridor, *next, offset, clearance)) return next;
+  auto const& line = view.corridor().center;
+  double const right = offset - view.shape().right - clearance, left = offset + view.shape().left + clearance,
+               front = at.s + view.shape().front;
+  next.reset();
+  auto const consider = [&](LaneReach const& reach, AgentId agent, ObjectId object, double speed) {
+    if (reach.end <= front || !reach.meets(right, left) || (next && next->gap <= reach.begin - front)) return;
+    next = Neighbor{agent, object, reach.begin - front, speed, reach.end - reach.begin, 0};
+  };
+  constexpr double farthest = 200.0;  // [m]
+  view.for_each_near(at.corridor, farthest, [&](auto const& other) {
+    auto const reach = lane_reach(line, other.state, other.shape, at.segment);
+    auto hint = at.segment;
+    consider(reach, other.id, none<ObjectId>, geometry::to_frenet(line, other.state, hint).longitudinal_speed);
+  });
+  view.for_each_object([&](ObjectId id, geometry::Polygon const& outline) {
+    auto const reach = lane_reach(line, outline, at.segment);
+    if (reach.begin < front + farthest) consider(reach, none<AgentId>, id, 0.0);
+  });
+  return next;
+}
+
+}  // namespace detail
+
+}  // namespace cambium

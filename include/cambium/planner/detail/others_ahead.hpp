@@ -1,0 +1,92 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "cambium/planner/detail/predicted.hpp"
+
+namespace cambium::detail {
+
+/// The others as predicted once, step by step, whatever ego does.
+template <class World>
+struct OthersAhead {
+  std::optional<World> world;
+  std::vector<typename World::FrameType> frames;  ///< now and after each step
+  std::vector<geometry::OrientedBox> boxes;       ///< of those who count, step by step
+  std::vector<std::uint32_t> counting;            ///< who these are
+  double step{};                                  ///< [s]
+
+  /// Predicts from `now` up to `horizon` [s]. Who follows behind in the strip that ego drives in has to keep clear
+  /// itself: it does not count.
+  void predict(World now, std::uint32_t ego, double horizon, double length) {
+    world = std::move(now);
+    step = length;
+    choose(ego);
+    auto const steps = static_cast<std::size_t>(std::max(1L, std::lround(horizon / step)));
+    frames.resize(steps + 1);
+    boxes.clear();
+    for (std::size_t k = 0; k <= steps; ++k) {
+      frames[k] = world->frame();
+      for (auto const i : counting) {
+        auto box = box_at(*world, i);
+        if (!in_traffic(*world, i)) box.half_length = -1e9;  // touches nobody
+        boxes.push_back(box);
+      }
+      (void)world->step(step);
+    }
+  }
+
+  /// Whether `box` touches one of those who count after step `k`, or an object. O(agents + objects).
+  [[nodiscard]] bool touched(geometry::OrientedBox const& box, std::size_t k) const {
+    for (std::size_t i = 0; i < counting.size(); ++i)
+      if (geometry::intersects(box, boxes[k * counting.size() + i])) return true;
+    return std::ranges::any_of(world->roster().objects,
+                               [&](auto const& object) { return geometry::intersects(box, object.outline); });
+  }
+
+  /// How far an agent has come after `time` [s], and its speed then; beyond the horizon it keeps that. O(steps).
+  [[nodiscard]] std::pair<double, double> way_of(std::size_t slot, double time) const {
+    double way = 0.0, speed = frames[0].agents[slot].state.speed, left = time;
+    for (std::size_t k = 1; k < frames.size() && left > 0.0; ++k, left -= step) {
+      double const next = frames[k].agents[slot].state.speed;
+      way += 0.5 * (speed + next) * std::min(step, left);
+      speed = next;
+    }
+    return {way + speed * std::max(0.0, left), speed};
+  }
+
+ private:
+  void choose(std::uint32_t ego) {
+    counting.clear();
+    auto const& state = world->frame().agents[ego].state;
+    double const rear = world->roster().agents[ego].shape.rear;
+    auto const own = box_at(*world, ego);
+    for (std::uint32_t i = 0; i < world->size(); ++i) {
+      auto const box = box_at(*world, i);
+      double const aside = own.cos * (box.y - own.y) - own.sin * (box.x - own.x);
+      bool const beside = std::abs(aside) > own.half_width + box.half_width;
+      if (i != ego && (beside || distance_ahead(state, box) > -rear)) counting.push_back(i);
+    }
+  }
+};
+
+/// Whether `box`, at corridor position `s` and `offset` [m], reaches beyond the lane and any other drivable one. Past
+/// the corridor's ends there is no saying.
+[[nodiscard]] inline bool leaves_road(Map const& map, map::LaneCorridor const& corridor, double s, double offset,
+                                      geometry::OrientedBox const& box) {
+  if (s < 0.0 || s > corridor.length()) return false;
+  auto const sides = corridor.widths_at(s);
+  double const reach = box.half_width + 0.1;  // [m], for headings a little off the lane's
+  if (offset + reach < sides.left && -offset + reach < sides.right) return false;
+  return std::ranges::any_of(box.corners(), [&](geometry::Point const& corner) {
+    double const at = corridor.center.project(corner, corridor.center.find(s)).s;
+    return at > 0.0 && at < corridor.length() && !map.on_drivable_lane(corner);
+  });
+}
+
+}  // namespace cambium::detail

@@ -1,0 +1,147 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <type_traits>
+#include <vector>
+
+#include "cambium/core/plan.hpp"
+#include "cambium/evaluation/collision.hpp"
+#include "cambium/evaluation/drivable_area.hpp"
+#include "cambium/world/prediction.hpp"
+
+namespace cambium::detail {
+
+/// Whether a view can be asked for predictions: `ViewArchetype` cannot.
+template <class View, class Set, class Other>
+concept Predicts = requires(View const view, Prediction<Set> const prediction) {
+  view.predict(prediction);
+  typename Other::FrameType;
+};
+
+/// The world that is predicted; the place of the agent itself there in `ego`, nothing where it is not in traffic.
+template <class PredictionWorld, class Ego, class Others, class View>
+[[nodiscard]] PredictionWorld predicted_for(View const& view, Ego const& behavior, Others const& others,
+                                            std::optional<std::uint32_t>& ego) {
+  auto world = view.predict(predict_as<typename PredictionWorld::Behaviors>(behavior, others));
+  static_assert(std::is_same_v<decltype(world), PredictionWorld>,
+                "cambium: the PredictionWorld of a planner must be the world's own type with another behaviour set: "
+                "World::WithBehaviors<BehaviorSet<...>>");
+  ego.reset();
+  if (auto const slot = world.roster().slot_of(view.id())) ego = static_cast<std::uint32_t>(*slot);
+  return world;
+}
+
+/// What the agent at `slot` does in `world` over the next `dt` [s], in equal steps of at most `step` [s], becomes its
+/// plan.
+template <class World, class S>
+void drive_predicted(World& world, std::uint32_t slot, double dt, double step, BasicPlan<S>& plan) {
+  auto const steps = std::max(1, static_cast<int>(std::ceil(dt / step - 1e-9)));
+  double const begin = world.time();
+  for (int i = 0; i < steps; ++i) {
+    (void)world.step(dt / steps);
+    auto const& record = world.frame().agents[slot];
+    if (i == 0) plan.action = record.action;
+    plan.trajectory.push_back(record.state);
+    plan.trajectory.back().time = i + 1 == steps ? begin + dt : world.time();
+  }
+  plan.status = PlanStatus::valid;
+}
+
+/// The agents of `world` next to the one at `ego`, at most `count` of them within `range` [m], nearest first.
+template <class World>
+[[nodiscard]] std::vector<std::uint32_t> nearest_agents(World const& world, std::uint32_t ego, std::size_t count,
+                                                        double range) {
+  auto const& agents = world.frame().agents;
+  auto const distance = [&](std::uint32_t slot) {
+    return std::hypot(agents[slot].state.x - agents[ego].state.x, agents[slot].state.y - agents[ego].state.y);
+  };
+  std::vector<std::uint32_t> slots;
+  for (std::uint32_t slot = 0; slot < world.size(); ++slot)
+    if (slot != ego && agents[slot].status == AgentStatus::driving && distance(slot) <= range) slots.push_back(slot);
+  std::stable_sort(slots.begin(), slots.end(),
+                   [&](std::uint32_t a, std::uint32_t b) { return distance(a) < distance(b); });
+  slots.resize(std::min(slots.size(), count));
+  return slots;
+}
+
+/// How far `other` lies ahead of the reference point of `ego`, along ego's heading [m].
+template <MotionState S>
+[[nodiscard]] double distance_ahead(S const& ego, geometry::OrientedBox const& other) {
+  return (other.x - ego.x) * std::cos(ego.heading) + (other.y - ego.y) * std::sin(ego.heading);
+}
+
+/// The box of the agent at `slot` after `time` [s] at constant velocity.
+template <class World>
+[[nodiscard]] geometry::OrientedBox box_after(World const& world, std::uint32_t slot, double time) {
+  auto box = box_at(world, slot);
+  double const way = world.frame().agents[slot].state.speed * time;
+  box.x += way * box.cos;
+  box.y += way * box.sin;
+  return box;
+}
+
+/// Whether the agent at `slot` touches an object, or another agent for which it is to blame: not one that drives into
+/// it while it stands, or from behind (after the at-fault collisions of Dauner et al. 2023). Asked `time` [s] ahead,
+/// with constant velocities, only those count who are ahead now. O(agents).
+template <class World>
+[[nodiscard]] bool is_at_fault(World const& world, std::uint32_t slot, double time = 0.0) {
+  constexpr double standing = 0.05;  // [m/s]
+  auto const& ego = world.frame().agents[slot].state;
+  auto const own = box_after(world, slot, time);
+  auto const around = own.bounding_box();
+  for (auto const& object : world.roster().objects)
+    if (around.intersects(object.outline.bounding_box()) && geometry::intersects(own, object.outline)) return true;
+  if (ego.speed < standing) return false;
+  double const behind = time > 0.0 ? 0.0 : -world.roster().agents[slot].shape.rear;
+  for (std::uint32_t i = 0; i < world.size(); ++i) {
+    if (i == slot || !in_traffic(world, i)) continue;
+    auto const other = box_after(world, i, time);
+    if (geometry::intersects(own, other) && distance_ahead(ego, box_at(world, i)) > behind) return true;
+  }
+  return false;
+}
+
+/// What became of a predicted course in a step.
+enum class Passage : std::uint8_t { goes_on, is_over, collides, leaves_road };
+
+/// The same for the agent at `slot`, which `touches` somebody or something, or does not; over is what ends at its
+/// destination, or with the map.
+template <class World>
+[[nodiscard]] Passage passage(World const& world, std::uint32_t slot, bool touches) {
+  switch (world.frame().agents[slot].status) {
+    case AgentStatus::driving:
+      break;
+    case AgentStatus::off_route:
+    case AgentStatus::failed:
+      return Passage::leaves_road;
+    default:
+      return Passage::is_over;
+  }
+  if (touches) return Passage::collides;
+  return DrivableArea::off_road(world, slot) ? Passage::leaves_road : Passage::goes_on;
+}
+
+/// How many lane changes it takes from `piece` of lane corridor `number` to one that the route ends in; 0 where none
+/// is beside. O(lanes).
+[[nodiscard]] inline int lanes_to_destination(map::RoadCorridor const& road, std::uint16_t number,
+                                              std::uint16_t piece) {
+  constexpr int most = 16;
+  if (road.corridors[number].reaches_destination) return 0;
+  for (bool const left : {true, false}) {
+    auto corridor = number, at = piece;
+    for (int lanes = 1; lanes <= most; ++lanes) {
+      auto const& here = road.corridors[corridor].pieces[at];
+      corridor = left ? here.left : here.right;
+      at = left ? here.left_piece : here.right_piece;
+      if (corridor == map::no_corridor) break;
+      if (road.corridors[corridor].reaches_destination) return lanes;
+    }
+  }
+  return 0;
+}
+
+}  // namespace cambium::detail

@@ -1,0 +1,199 @@
+#include "cambium/planner/frenet_planner.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+
+#include "cambium/behavior/idm_classic.hpp"
+#include "cambium/execution/interpolate.hpp"
+#include "cambium/world/world.hpp"
+#include "support/allocations.hpp"
+#include "support/maps.hpp"
+
+using namespace cambium;
+
+namespace {
+
+using PredictionWorld = World<BehaviorSet<ConstantAcceleration>, InterpolateExecution, SingleTrack>;
+using Planner = FrenetPlanner<PredictionWorld>;
+using Sim = World<BehaviorSet<Planner, IdmClassic, ConstantAcceleration>, InterpolateExecution, SingleTrack>;
+static_assert(BehaviorModel<Planner>);
+
+constexpr AgentId ego{0};
+
+/// Ego, number 0, in the right one of `lanes` lanes.
+Sim road(int lanes, std::uint64_t seed, double speed = 12.0, double curvature = 0.0, Planner const& planner = {}) {
+  Sim world(support::straight_road(lanes, 600.0, curvature), {.seed = seed});
+  double const radius = curvature == 0.0 ? 0.0 : 1.0 / curvature, y = -3.5 * lanes + 1.75, turn = 40.0 * curvature;
+  geometry::Point const start =
+      curvature == 0.0 ? geometry::Point(40, y)
+                       : geometry::Point((radius - y) * std::sin(turn), radius - (radius - y) * std::cos(turn));
+  world.add({.position = start, .speed = speed, .behavior = planner});
+  return world;
+}
+
+/// A rectangle in a lane whose middle is at `y`, from `right` to `left` of that.
+geometry::Polygon obstacle(double x, double y, double right, double left) {
+  return geometry::Polygon({{x, y + right}, {x + 4, y + right}, {x + 4, y + left}, {x, y + left}});
+}
+
+/// Steps it for a while: nobody may fail, ego may touch nobody, nor leave the road.
+void drive(Sim& world, int steps, double dt = 0.2) {
+  for (int i = 0; i < steps; ++i) {
+    auto const result = world.step(dt);
+    CHECK(result.failed == 0);
+    REQUIRE_FALSE(CollisionEgo{ego}.evaluate(world).ego_collision);
+    REQUIRE_FALSE(DrivableArea{ego}.evaluate(world).off_road);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("it follows a slower leader, and stands behind one that stands") {
+  for (std::uint64_t seed = 0; seed < 6; ++seed) {
+    CAPTURE(seed);
+    double const slow = 2.0 * static_cast<double>(seed);
+    auto world = road(1, seed, 10.0 + static_cast<double>(seed));
+    world.add({.position = {110, -1.75}, .speed = slow, .behavior = ConstantAcceleration{}});
+    drive(world, 150);
+    CHECK(std::abs(world.state(ego).speed - slow) < 0.3);
+    CHECK(world.state(AgentId{1}).x - world.state(ego).x < 40.0);
+  }
+}
+
+TEST_CASE("it stops before what blocks the road, and passes what leaves room") {
+  auto blocked = road(1, 0);
+  blocked.add_object(obstacle(140, -1.75, -1.75, 1.75));
+  drive(blocked, 150);
+  CHECK(blocked.state(ego).speed < 0.05);
+  CHECK(blocked.state(ego).x > 115.0);
+  for (double const side : {-1.0, 1.0}) {
+    CAPTURE(side);
+    auto world = road(1, 0);
+    world.add_object(side < 0.0 ? obstacle(140, -1.75, -1.75, -0.6) : obstacle(140, -1.75, 0.6, 1.75));
+    double farthest = 0.0;
+    for (int i = 0; i < 20; ++i) {
+      drive(world, 5);
+      farthest = std::max(farthest, -side * (world.state(ego).y + 1.75));
+    }
+    CHECK(world.state(ego).x > 180.0);
+    CHECK(farthest > 0.3);
+    CHECK(std::abs(world.state(ego).y + 1.75) < 0.2);
+  }
+}
+
+TEST_CASE("it overtakes whom it would have to follow, and changes to the lane of its goal among others") {
+  auto world = road(2, 0);
+  world.add({.position = {90, -5.25}, .speed = 5, .behavior = ConstantAcceleration{}});
+  drive(world, 100);
+  CHECK(world.state(ego).x > world.state(AgentId{1}).x + 20.0);
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    CAPTURE(seed);
+    auto const map = support::straight_road(2, 600.0);
+    Sim sim(map, {.seed = seed});
+    auto const left = map->nearest_lane({20, -1.75, 0})->lane;
+    sim.add({.position = {60, -5.25},
+             .speed = 12,
+             .behavior = Planner{},
+             .goal = LaneLimits{.lane = left, .left = 0.5, .right = 0.5, .heading_error = 0.08}});
+    for (int i = 0; i < 4; ++i)
+      sim.add({.position = {20.0 + 28.0 * i + 3.0 * static_cast<double>(seed), -1.75},
+               .speed = 12.5,
+               .behavior = IdmClassic{.desired_speed = 14.0}});
+    sim.add({.position = {95.0, -5.25}, .speed = 9, .behavior = IdmClassic{.desired_speed = 9.0}});
+    for (int i = 0; i < 120 && !sim.reached_goal(ego); ++i) drive(sim, 1);
+    CHECK(sim.reached_goal(ego));
+  }
+}
+
+TEST_CASE("what it drives is as smooth as its courses, in curves too") {
+  for (double const curvature : {0.0, 0.01, -0.01}) {
+    CAPTURE(curvature);
+    auto world = road(2, 0, 10.0, curvature);
+    double last_speed = 10.0, last_acceleration = 0.0, last_heading = world.state(ego).heading;
+    for (int i = 0; i < 100; ++i) {
+      drive(world, 1, 0.1);
+      auto const& now = world.state(ego);
+      double const acceleration = (now.speed - last_speed) / 0.1;
+      CHECK(std::abs(acceleration - last_acceleration) < 0.5);
+      CHECK(std::abs(now.heading - last_heading) / 0.1 * now.speed < 4.1);
+      last_speed = now.speed;
+      last_acceleration = acceleration;
+      last_heading = now.heading;
+    }
+    CHECK(last_speed == doctest::Approx(15.0).epsilon(0.05));
+    CHECK(std::abs(world.record(ego).lane.lateral) < 0.1);
+  }
+}
+
+TEST_CASE("all courses are judged, cheapest first; the first valid one is driven") {
+  auto world = road(2, 3);
+  world.add({.position = {75, -5.25}, .speed = 4, .behavior = ConstantAcceleration{}});
+  Planner::Workspace workspace;
+  auto const report = Planner{}.think(world.observe(ego), {}, workspace);
+  CHECK(report.candidates.size() == 2 * 4 * 6 * 3 + 4 * 3);
+  REQUIRE(report.best);
+  for (std::size_t i = 0; i < report.candidates.size(); ++i) {
+    auto const& c = report.candidates[i];
+    CHECK(c.verdict != FrenetVerdict::unchecked);
+    if (i > 0) CHECK(c.cost >= report.candidates[i - 1].cost);
+    CHECK((i < *report.best ? c.verdict != FrenetVerdict::valid : true));
+    CHECK(c.at(c.duration).offset == doctest::Approx(c.offset).epsilon(1e-6).scale(c.by_way ? 10.0 : 1.0));
+  }
+  CHECK(report.candidates[*report.best].verdict == FrenetVerdict::valid);
+  CHECK(report.prediction.size() == 26);
+  REQUIRE(report.course.size() == 26);
+  CHECK(report.course[0].x == doctest::Approx(world.state(ego).x));
+  (void)world.step(0.2);
+  CHECK(world.state(ego) == report.course[1]);
+}
+
+TEST_CASE("where no course is valid it brakes as hard as it may") {
+  auto world = road(1, 0, 20.0);
+  world.add_object(obstacle(70, -1.75, -1.75, 1.75));
+  Planner::Workspace workspace;
+  CHECK_FALSE(Planner{}.think(world.observe(ego), {}, workspace).best);
+  (void)world.step(0.2);
+  CHECK(world.record(ego).action.acceleration == doctest::Approx(-6.0));
+}
+
+TEST_CASE("it goes the same way again, as a copy too; once warm only the prediction allocates") {
+  auto const scene = [] {
+    auto world = road(2, 5);
+    world.add({.position = {80, -5.25}, .speed = 7, .behavior = IdmClassic{.desired_speed = 8}});
+    world.add({.position = {60, -1.75}, .speed = 12, .behavior = IdmClassic{}});
+    return world;
+  };
+  auto world = scene(), again = scene();
+  for (int i = 0; i < 8; ++i) (void)world.step(0.2);
+  auto copy = world;
+  for (int i = 0; i < 8; ++i) {
+    (void)world.step(0.2);
+    (void)copy.step(0.2);
+  }
+  for (int i = 0; i < 16; ++i) (void)again.step(0.2);
+  CHECK(world.frame() == copy.frame());
+  CHECK(world.frame() == again.frame());
+  auto const before = support::allocations();
+  (void)world.step(0.2);
+  CHECK(support::allocations() - before < 20);
+}
+
+TEST_CASE("what cannot be sampled is said") {
+  auto world = road(1, 0);
+  Planner planner;
+  planner.durations.clear();
+  CHECK_THROWS_AS(world.add({.position = {300, -1.75}, .behavior = planner}), ParameterError);
+  planner = {};
+  planner.costs.jerk = std::nan("");
+  Planner::Workspace workspace;
+  CHECK_THROWS_AS((void)planner.think(world.observe(ego), {}, workspace), ParameterError);
+  auto state = world.state(ego);
+  state.x = 599.0;
+  world.set_state(ego, state);
+  for (int i = 0; i < 3; ++i) CHECK(world.step(0.5).failed == 0);
+  REQUIRE(world.status(ego) != AgentStatus::driving);
+  CHECK_THROWS_AS((void)Planner{}.think(world.observe(ego), {}, workspace), SearchError);
+}

@@ -1,0 +1,227 @@
+#include "cambium/planner/policy_tree_planner.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <set>
+#include <vector>
+
+#include "cambium/behavior/idm_classic.hpp"
+#include "cambium/execution/interpolate.hpp"
+#include "cambium/world/world.hpp"
+#include "support/allocations.hpp"
+#include "support/maps.hpp"
+
+using namespace cambium;
+
+namespace {
+
+using PredictionWorld = World<BehaviorSet<MacroActions>, InterpolateExecution, SingleTrack>;
+using Planner = PolicyTreePlanner<PredictionWorld>;
+using Sim = World<BehaviorSet<Planner, IdmClassic, ConstantAcceleration>, InterpolateExecution, SingleTrack>;
+static_assert(BehaviorModel<Planner>);
+
+constexpr AgentId ego{0};
+
+/// Ego, number 0, in the right one of `lanes` lanes.
+Sim road(int lanes, std::uint64_t seed, double speed = 12.0, Planner const& planner = {}) {
+  Sim world(support::straight_road(lanes, 600.0), {.seed = seed});
+  world.add({.position = {40, -3.5 * lanes + 1.75}, .speed = speed, .behavior = planner});
+  return world;
+}
+
+/// Steps it for a while: nobody may fail, ego may touch nobody, nor leave the road.
+void drive(Sim& world, int steps, double dt = 0.2) {
+  for (int i = 0; i < steps; ++i) {
+    auto const result = world.step(dt);
+    CHECK(result.failed == 0);
+    REQUIRE_FALSE(CollisionEgo{ego}.evaluate(world).ego_collision);
+    REQUIRE_FALSE(DrivableArea{ego}.evaluate(world).off_road);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("the tree has each sequence with one change at most, once") {
+  for (std::size_t const actions : {1, 2, 9})
+    for (std::size_t const layers : {1, 2, 5})
+      for (std::size_t ongoing = 0; ongoing < actions; ++ongoing) {
+        auto const sequences = policy_sequences(actions, ongoing, layers);
+        CHECK(sequences.size() == (actions - 1) * layers + 1);
+        std::set<std::vector<std::size_t>> spelled;
+        for (auto const& s : sequences) {
+          std::vector<std::size_t> word;
+          for (std::size_t layer = 0; layer < layers; ++layer)
+            word.push_back(layer < s.layers_of_first ? s.first : s.then);
+          CHECK((word[0] == ongoing || std::ranges::count(word, word[0]) == static_cast<std::ptrdiff_t>(layers)));
+          spelled.insert(word);
+        }
+        CHECK(spelled.size() == sequences.size());
+        CHECK(sequences[0].first == ongoing);
+      }
+}
+
+TEST_CASE("a lateral speed tells a lane change by Bayes' rule") {
+  IntentionPrior const prior;
+  auto const still = change_probabilities(prior, 0.0);
+  CHECK(still.left == still.right);
+  CHECK(still.left < prior.change);
+  CHECK(change_probabilities(prior, 0.8).left > 0.5);
+  CHECK(change_probabilities(prior, 0.8).right < 1e-6);
+  CHECK(change_probabilities(prior, 100.0).left == doctest::Approx(1.0));
+  for (double v = -2.0; v < 2.0; v += 0.1) {
+    auto const p = change_probabilities(prior, v), mirrored = change_probabilities(prior, -v);
+    CHECK(p.left == mirrored.right);
+    CHECK(p.left + p.right <= 1.0);
+    CHECK(change_probabilities(prior, v + 0.05).left >= p.left);
+  }
+}
+
+TEST_CASE("it follows a slower leader, and stands behind one that stands") {
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    CAPTURE(seed);
+    double const slow = 2.5 * static_cast<double>(seed);
+    auto world = road(1, seed, 10.0 + static_cast<double>(seed));
+    world.add({.position = {110, -1.75}, .speed = slow, .behavior = ConstantAcceleration{}});
+    drive(world, 150);
+    CHECK(std::abs(world.state(ego).speed - slow) < 0.7);
+    CHECK(world.state(AgentId{1}).x - world.state(ego).x < 60.0);
+  }
+}
+
+TEST_CASE("it stops before what blocks the road, and changes lanes before what blocks its own") {
+  for (int const lanes : {1, 2}) {
+    auto world = road(lanes, 0);
+    double const y = -3.5 * lanes + 1.75;
+    world.add_object(geometry::Polygon({{150, y - 1.7}, {154, y - 1.7}, {154, y + 1.7}, {150, y + 1.7}}));
+    drive(world, 120);
+    CAPTURE(lanes);
+    CHECK((world.state(ego).x > 160.0) == (lanes == 2));
+    if (lanes == 1) CHECK(world.state(ego).speed < 0.1);
+    if (lanes == 1) CHECK(world.state(ego).x > 100.0);
+  }
+}
+
+TEST_CASE("it changes to the lane of its goal among others") {
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    CAPTURE(seed);
+    auto const map = support::straight_road(2, 600.0);
+    Sim sim(map, {.seed = seed});
+    auto const left = map->nearest_lane({20, -1.75, 0})->lane;
+    sim.add({.position = {60, -5.25},
+             .speed = 12,
+             .behavior = Planner{},
+             .goal = LaneLimits{.lane = left, .left = 0.5, .right = 0.5, .heading_error = 0.08}});
+    for (int i = 0; i < 4; ++i)
+      sim.add({.position = {20.0 + 28.0 * i + 3.0 * static_cast<double>(seed), -1.75},
+               .speed = 12.5,
+               .behavior = IdmClassic{.desired_speed = 14.0}});
+    sim.add({.position = {95.0, -5.25}, .speed = 9, .behavior = IdmClassic{.desired_speed = 9.0}});
+    for (int i = 0; i < 120 && !sim.reached_goal(ego); ++i) drive(sim, 1);
+    CHECK(sim.reached_goal(ego));
+  }
+}
+
+TEST_CASE("branches are simulated under the intentions that matter to them") {
+  auto world = road(2, 0);
+  world.add({.position = {52, -1.75}, .speed = 11, .behavior = ConstantAcceleration{}});  // may come in
+  world.add({.position = {28, -1.75}, .speed = 13, .behavior = ConstantAcceleration{}});  // may not yield
+  Planner::Workspace workspace;
+  auto const report = Planner{}.think(world.observe(ego), {}, workspace);
+  REQUIRE(report.intentions.size() == 2);
+  CHECK(report.intentions[0].intention == Intention::change_right);
+  CHECK(report.intentions[1].intention == Intention::not_yield);
+  auto const changes_left = [&](std::size_t action) { return report.actions[action].starts_with("change_left"); };
+  int changes = 0;
+  for (auto const& branch : report.branches) {
+    bool const left = changes_left(branch.sequence.first) || changes_left(branch.sequence.then);
+    changes += left ? 1 : 0;
+    CHECK(branch.scenarios == (left ? 3 : 2));
+    CHECK(branch.worst >= branch.expected);
+    CHECK(branch.cost >= branch.expected);
+    CHECK(branch.cost >= report.branches[report.best].cost);
+    CHECK_FALSE(report.actions[branch.sequence.first].starts_with("change_right"));  // there is no lane
+  }
+  CHECK(changes > 10);
+  CHECK(report.course.size() == 26);
+  (void)world.step(0.2);
+  CHECK(world.state(ego) == report.course[1].agents[0].state);
+}
+
+TEST_CASE("one who comes into the lane is expected there, and let in") {
+  auto const speed_beside = [](double heading) {
+    auto world = road(2, 0);
+    world.add({.position = {54, -2.6}, .heading = heading, .speed = 9, .behavior = ConstantAcceleration{}});
+    Planner::Workspace workspace;
+    auto const report = Planner{}.think(world.observe(ego), {}, workspace);
+    REQUIRE(report.intentions.size() == 1);
+    CHECK((report.intentions[0].probability > 0.5) == (heading < 0.0));
+    return report.course[10].agents[0].state.speed;
+  };
+  CHECK(speed_beside(-0.09) < speed_beside(0.0) - 0.5);
+}
+
+TEST_CASE("the weight of the worst case changes what is dared") {
+  // Behind a slow one, with a faster one coming up on the left.
+  auto const best_changes = [](double not_yield, double worst_case) {
+    auto world = road(2, 0, 10.0);
+    world.add({.position = {80, -5.25}, .speed = 6, .behavior = ConstantAcceleration{}});
+    world.add({.position = {26, -1.75}, .speed = 13, .behavior = ConstantAcceleration{}});
+    Planner planner;
+    planner.intentions.not_yield = not_yield;
+    planner.weights.worst_case = worst_case;
+    planner.weights.reaction_time = 0.0;  // near is not unsafe, but collisions are
+    planner.weights.braking = 50.0;
+    Planner::Workspace workspace;
+    auto const report = planner.think(world.observe(ego), {}, workspace);
+    return report.actions[report.branches[report.best].sequence.first].starts_with("change_left");
+  };
+  CHECK(best_changes(0.0, 0.0));
+  CHECK(best_changes(0.0005, 0.0));
+  CHECK_FALSE(best_changes(0.0005, 1.0));
+  CHECK_FALSE(best_changes(0.9, 0.0));
+}
+
+TEST_CASE("it goes the same way again, as a copy too; once warm it allocates little") {
+  auto const scene = [] {
+    auto world = road(2, 5);
+    world.add({.position = {80, -5.25}, .speed = 7, .behavior = IdmClassic{.desired_speed = 8}});
+    world.add({.position = {60, -1.75}, .speed = 12, .behavior = IdmClassic{}});
+    return world;
+  };
+  auto world = scene(), again = scene();
+  for (int i = 0; i < 8; ++i) (void)world.step(0.2);
+  auto copy = world;
+  for (int i = 0; i < 8; ++i) {
+    (void)world.step(0.2);
+    (void)copy.step(0.2);
+  }
+  for (int i = 0; i < 16; ++i) (void)again.step(0.2);
+  CHECK(world.frame() == copy.frame());
+  CHECK(world.frame() == again.frame());
+  auto const before = support::allocations();
+  (void)world.step(0.2);
+  CHECK(support::allocations() - before < 40);  // some 30 sequences of 25 steps, each more than once
+}
+
+TEST_CASE("what cannot be planned is said") {
+  auto world = road(1, 0);
+  Planner planner;
+  planner.actions.actions.clear();
+  CHECK_THROWS_AS(world.add({.position = {300, -1.75}, .behavior = planner}), ParameterError);
+  planner = {};
+  planner.weights.safety = std::nan("");
+  Planner::Workspace workspace;
+  CHECK_THROWS_AS((void)planner.think(world.observe(ego), {}, workspace), ParameterError);
+  planner = {};
+  planner.actions = MacroActions::of({{MacroAction::Kind::change_left, 0.0, true}});
+  CHECK_THROWS_AS((void)planner.think(world.observe(ego), {}, workspace), SearchError);
+  auto state = world.state(ego);
+  state.x = 599.0;
+  world.set_state(ego, state);
+  for (int i = 0; i < 3; ++i) CHECK(world.step(0.5).failed == 0);
+  REQUIRE(world.status(ego) != AgentStatus::driving);
+  CHECK_THROWS_AS((void)Planner{}.think(world.observe(ego), {}, workspace), SearchError);
+}

@@ -1,0 +1,166 @@
+#include "cambium/planner/proposal_planner.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+#include "cambium/execution/interpolate.hpp"
+#include "cambium/world/world.hpp"
+#include "support/allocations.hpp"
+#include "support/maps.hpp"
+
+using namespace cambium;
+
+namespace {
+
+using PredictionWorld =
+    World<BehaviorSet<IdmProposal, ConstantAcceleration, IdmClassic>, InterpolateExecution, SingleTrack>;
+using Planner = ProposalPlanner<PredictionWorld>;
+using Sim = World<BehaviorSet<Planner, IdmClassic, ConstantAcceleration>, InterpolateExecution, SingleTrack>;
+static_assert(BehaviorModel<Planner>);
+
+constexpr AgentId ego{0};
+
+/// Ego, number 0, in the right one of two lanes.
+Sim two_lanes(std::uint64_t seed, double speed = 12.0, Planner const& planner = {}) {
+  Sim world(support::straight_road(2, 600.0), {.seed = seed});
+  world.add({.position = {40, -5.25}, .speed = speed, .behavior = planner});
+  return world;
+}
+
+/// A rectangle across the right lane, from `right` to `left` of its middle.
+geometry::Polygon obstacle(double x, double right, double left) {
+  return geometry::Polygon({{x, -5.25 + right}, {x + 4, -5.25 + right}, {x + 4, -5.25 + left}, {x, -5.25 + left}});
+}
+
+/// Steps it for a while: nobody may fail, ego may touch nobody.
+void drive(Sim& world, int steps, double dt = 0.2) {
+  for (int i = 0; i < steps; ++i) {
+    auto const result = world.step(dt);
+    CHECK(result.failed == 0);
+    REQUIRE_FALSE(CollisionEgo{ego}.evaluate(world).ego_collision);
+  }
+}
+
+}  // namespace
+
+TEST_CASE("it follows a slower leader, and stands behind one that stands") {
+  for (std::uint64_t seed = 0; seed < 6; ++seed) {
+    CAPTURE(seed);
+    double const slow = 2.0 * static_cast<double>(seed);
+    auto world = two_lanes(seed, 10.0 + static_cast<double>(seed));
+    world.add({.position = {100, -5.25}, .speed = slow, .behavior = ConstantAcceleration{}});
+    drive(world, 150);
+    CHECK(world.state(ego).speed == doctest::Approx(slow).epsilon(0.05).scale(1.0));
+    CHECK(world.state(AgentId{1}).x - world.state(ego).x < 60.0);
+    CHECK(std::abs(world.state(ego).y + 5.25) < 0.1);
+  }
+}
+
+TEST_CASE("it stops before what blocks its lane, and passes what leaves room") {
+  auto blocked = two_lanes(0);
+  blocked.add_object(obstacle(120, -1.75, 1.75));
+  drive(blocked, 150);
+  CHECK(blocked.state(ego).speed < 0.05);
+  CHECK(blocked.state(ego).x > 100.0);
+  Planner planner;
+  planner.offsets = {0.0, -0.8, 0.8};  // farther to the right it would leave the road
+  for (double const side : {-1.0, 1.0}) {
+    CAPTURE(side);
+    auto world = two_lanes(0, 12.0, planner);
+    world.add_object(side < 0.0 ? obstacle(140, -1.75, -0.6) : obstacle(140, 0.6, 1.75));
+    double farthest = 0.0;
+    for (int i = 0; i < 12; ++i) {
+      drive(world, 10);
+      farthest = std::max(farthest, -side * (world.state(ego).y + 5.25));
+    }
+    CHECK(world.state(ego).x > 200.0);
+    CHECK(farthest > 0.3);
+    CHECK(std::abs(world.state(ego).y + 5.25) < 0.2);  // and comes back
+  }
+}
+
+TEST_CASE("a scored proposal says what came of it; the best is driven") {
+  auto world = two_lanes(3);
+  world.add({.position = {75, -5.25}, .speed = 4, .behavior = ConstantAcceleration{}});
+  world.add_object(obstacle(90, -3.5, -1.0));
+  Planner::Workspace workspace;
+  auto const report = Planner{}.think(world.observe(ego), {}, workspace);
+  REQUIRE(report.proposals.size() == 15);
+  auto const& best = report.proposals[report.best];
+  for (auto const& p : report.proposals) {
+    CHECK(p.score <= best.score + Planner{}.scoring.indifference);
+    CHECK((p.score == 0.0) == (p.collides || p.leaves_road));
+    CHECK(std::isfinite(p.time_to_infraction) == (p.collides || p.leaves_road));
+    CHECK(p.score <= 1.0);
+  }
+  CHECK(best.score > 0.0);
+  CHECK_FALSE(report.brakes);
+  CHECK(report.agents.size() == 2);
+  REQUIRE(report.course.size() == 41);
+  CHECK(report.course[0].time == world.time());
+  (void)world.step(0.1);
+  CHECK(world.state(ego) == report.course[1].agents[0].state);
+}
+
+TEST_CASE("at an offset that leads off the road a proposal scores nothing") {
+  auto world = two_lanes(0);
+  Planner planner;
+  planner.offsets = {0.0, -2.0};
+  Planner::Workspace workspace;
+  for (auto const& p : planner.think(world.observe(ego), {}, workspace).proposals) {
+    CHECK(p.leaves_road == (p.offset < 0.0));
+    CHECK_FALSE(p.collides);
+  }
+}
+
+TEST_CASE("it brakes as hard as it may where all proposals soon collide") {
+  auto world = two_lanes(0, 20.0);
+  world.add_object(obstacle(65, -1.75, 5.25));
+  Planner::Workspace workspace;
+  CHECK(Planner{}.think(world.observe(ego), {}, workspace).brakes);
+  (void)world.step(0.2);
+  CHECK(world.record(ego).action.acceleration == doctest::Approx(-6.0));
+}
+
+TEST_CASE("it goes the same way again, as a copy too, and plans without allocating but for the prediction") {
+  auto const scene = [] {
+    auto world = two_lanes(5);
+    world.add({.position = {80, -5.25}, .speed = 7, .behavior = IdmClassic{.desired_speed = 8}});
+    world.add({.position = {60, -1.75}, .speed = 12, .behavior = IdmClassic{}});
+    return world;
+  };
+  auto world = scene(), again = scene();
+  for (int i = 0; i < 8; ++i) (void)world.step(0.2);
+  auto copy = world;
+  for (int i = 0; i < 8; ++i) {
+    (void)world.step(0.2);
+    (void)copy.step(0.2);
+  }
+  for (int i = 0; i < 16; ++i) (void)again.step(0.2);
+  CHECK(world.frame() == copy.frame());
+  CHECK(world.frame() == again.frame());
+  auto const before = support::allocations();
+  (void)world.step(0.2);
+  CHECK(support::allocations() - before < 20);  // 15 simulations of 40 steps
+}
+
+TEST_CASE("what cannot be proposed is said") {
+  auto world = two_lanes(0);
+  Planner planner;
+  planner.offsets.clear();
+  CHECK_THROWS_AS(world.add({.position = {300, -1.75}, .behavior = planner}), ParameterError);
+  planner = {};
+  planner.scoring.progress = std::nan("");
+  Planner::Workspace workspace;
+  CHECK_THROWS_AS((void)planner.think(world.observe(ego), {}, workspace), ParameterError);
+  auto state = world.state(ego);
+  state.x = 599.0;
+  world.set_state(ego, state);
+  for (int i = 0; i < 3; ++i) CHECK(world.step(0.5).failed == 0);
+  REQUIRE(world.status(ego) != AgentStatus::driving);
+  CHECK_THROWS_AS((void)Planner{}.think(world.observe(ego), {}, workspace), SearchError);
+}
