@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "cambium/behavior/behavior_model.hpp"
+#include "cambium/core/macros.hpp"
 
 namespace cambium {
 
@@ -32,6 +33,12 @@ inline constexpr bool looks_around = [] {
   else
     return false;
 }();
+/// Plans by a behaviour that has a workspace: not part of a flattened step, which would take in a whole search.
+template <class B, class View>
+CAMBIUM_NOINLINE [[nodiscard]] Plan<View> plan_apart(B const& behavior, View const& view, MemoryOf<B>& memory,
+                                                     double dt, WorkspaceOf<B>& workspace) {
+  return behavior.plan(view, memory, dt, workspace);
+}
 }  // namespace detail
 
 /// The closed set of behaviours that the agents of a world may have. An agent has one of them with parameters of its
@@ -114,7 +121,8 @@ struct BehaviorSet {
     if constexpr (std::is_same_v<Workspace, NoWorkspace>)
       return std::get_if<I>(&behavior)->plan(view, *std::get_if<I>(&memory), dt);
     else
-      return std::get_if<I>(&behavior)->plan(view, *std::get_if<I>(&memory), dt, std::get<I>(workspaces));
+      return detail::plan_apart(*std::get_if<I>(&behavior), view, *std::get_if<I>(&memory), dt,
+                                std::get<I>(workspaces));
   }
 };
 

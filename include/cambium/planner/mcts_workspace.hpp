@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "cambium/behavior/behavior_model.hpp"
-#include "cambium/core/macros.hpp"
 #include "cambium/planner/detail/predicted.hpp"
 #include "cambium/planner/traffic_domain.hpp"
 #include "cambium/planner/tree_search.hpp"
@@ -145,7 +144,7 @@ void take_course(View const& view, Workspace& workspace, double dt, Plan<View>& 
 
 /// The plan that `search(workspace)`, which says what was found, leads to for the next `dt` [s].
 template <class PredictionWorld, class View, class Workspace, class Search>
-CAMBIUM_NOINLINE [[nodiscard]] Plan<View> plan_by_search(View const& view, Workspace& workspace, double dt, Search&& search) {
+[[nodiscard]] Plan<View> plan_by_search(View const& view, Workspace& workspace, double dt, Search&& search) {
   Plan<View> plan;
   plan.status = PlanStatus::failed;
   if constexpr (Predicts<View, typename PredictionWorld::Behaviors, PredictionWorld>) {
