@@ -34,9 +34,9 @@ inline constexpr bool looks_around = [] {
     return false;
 }();
 /// Plans by a behaviour that has a workspace: not part of a flattened step, which would take in a whole search.
-template <class B, class View>
-CAMBIUM_NOINLINE [[nodiscard]] Plan<View> plan_apart(B const& behavior, View const& view, MemoryOf<B>& memory,
-                                                     double dt, WorkspaceOf<B>& workspace) {
+template <class B, class View, class Memory, class Workspace>
+CAMBIUM_NOINLINE [[nodiscard]] Plan<View> plan_apart(B const& behavior, View const& view, Memory& memory, double dt,
+                                                     Workspace& workspace) {
   return behavior.plan(view, memory, dt, workspace);
 }
 }  // namespace detail
