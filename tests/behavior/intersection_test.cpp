@@ -91,7 +91,8 @@ std::vector<std::optional<double>> times_through(Sim& world, std::vector<AgentId
 std::shared_ptr<Map const> crossing_with(std::vector<std::pair<std::string, std::string>> const& signals) {
   std::vector<Diagnostic> diagnostics;
   auto document = support::load_opendrive_document(CAMBIUM_SOURCE_DIR "/maps/intersection_4way.xodr", diagnostics);
-  for (auto& road : document.roads)
+  for (auto& road : document.roads) {
+    road.signals.clear();
     for (auto const& [arm, type] : signals)
       if (road.id == arm) {
         map::opendrive::Signal signal;
@@ -101,6 +102,7 @@ std::shared_ptr<Map const> crossing_with(std::vector<std::pair<std::string, std:
         signal.type = type;
         road.signals.push_back(signal);
       }
+  }
   return support::build_map(document, {}, "text", diagnostics);
 }
 
