@@ -150,6 +150,25 @@ TEST_CASE("all courses are judged, cheapest first; the first valid one is driven
   CHECK(world.state(ego) == report.course[1]);
 }
 
+TEST_CASE("courses into who drives beside are not valid") {
+  for (bool const beside : {false, true}) {
+    auto world = road(2, 0);
+    if (beside) world.add({.position = {37, -1.75}, .speed = 12, .behavior = ConstantAcceleration{}});
+    Planner planner;
+    planner.speed_shares = {0.8};  // as fast as the other
+    Planner::Workspace workspace;
+    auto const view = world.observe(ego);
+    auto const report = planner.think(view, {}, workspace);
+    int collisions = 0, changes = 0;
+    for (auto const& c : report.candidates) {
+      collisions += c.verdict == FrenetVerdict::collision ? 1 : 0;
+      changes += c.verdict == FrenetVerdict::valid && c.corridor != view.lane_position().corridor ? 1 : 0;
+    }
+    CHECK((collisions > 0) == beside);
+    CHECK((changes > 0) == !beside);
+  }
+}
+
 TEST_CASE("where no course is valid it brakes as hard as it may") {
   auto world = road(1, 0, 20.0);
   world.add_object(obstacle(70, -1.75, -1.75, 1.75));

@@ -106,6 +106,18 @@ TEST_CASE("a scored proposal says what came of it; the best is driven") {
   CHECK(world.state(ego) == report.course[1].agents[0].state);
 }
 
+TEST_CASE(
+    "an offset towards who drives beside collides, by its own fault; who drives into it from behind does not count") {
+  auto world = two_lanes(0);
+  world.add({.position = {41, -3.4}, .speed = 12, .behavior = ConstantAcceleration{}});
+  Planner::Workspace workspace;
+  for (auto const& p : Planner{}.think(world.observe(ego), {}, workspace).proposals)
+    if (p.speed_share == 1.0) CHECK(p.collides == (p.offset > 0.0));
+  auto pushed = two_lanes(0, 5.0);
+  pushed.add({.position = {25, -5.25}, .speed = 20, .behavior = ConstantAcceleration{}});
+  for (auto const& p : Planner{}.think(pushed.observe(ego), {}, workspace).proposals) CHECK_FALSE(p.collides);
+}
+
 TEST_CASE("at an offset that leads off the road a proposal scores nothing") {
   auto world = two_lanes(0);
   Planner planner;

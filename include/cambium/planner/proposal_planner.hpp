@@ -96,6 +96,7 @@ struct ProposalPlanner {
     std::optional<PredictionWorld> world;
     typename PredictionWorld::FrameType start;
     std::uint32_t ego{};
+    std::vector<std::uint32_t> counting;  ///< whom it has to look out for
     std::vector<ProposalScore> proposals;
     std::size_t best{};
   };
@@ -180,6 +181,7 @@ struct ProposalPlanner {
     if (!ego) return SearchProblem::not_in_world;
     workspace.ego = *ego;
     workspace.start = workspace.world->frame();
+    detail::choose_counting(*workspace.world, *ego, workspace.counting);
     workspace.proposals.clear();
     for (double const offset : offsets)
       for (double const share : speed_shares) {
@@ -214,7 +216,7 @@ struct ProposalPlanner {
       auto const& now = world.frame().agents[ego];
       proposal.progress += 0.5 * step * (before.state.speed + now.state.speed) *
                            std::cos(0.5 * (before.lane.heading_error + now.lane.heading_error));
-      auto const passage = detail::passage(world, ego, detail::is_at_fault(world, ego));
+      auto const passage = detail::passage(world, ego, detail::is_at_fault(world, ego, workspace.counting));
       if (passage == detail::Passage::is_over) break;
       proposal.collides = passage == detail::Passage::collides;
       proposal.leaves_road = passage == detail::Passage::leaves_road;
@@ -222,7 +224,7 @@ struct ProposalPlanner {
         proposal.time_to_infraction = (driven + 1) * step;
         break;
       }
-      judge(world, ego, before.state, last_acceleration, proposal);
+      judge(workspace, before.state, last_acceleration, proposal);
       auto const& corridor = world.roster().agents[ego].road->corridors[now.lane.corridor];
       too_fast += now.state.speed > corridor.speed_limit_at(now.lane.s) + 1e-3 ? 1 : 0;
     }
@@ -231,11 +233,13 @@ struct ProposalPlanner {
 
   /// Time to collision and comfort of a step from `before`.
   template <class State>
-  void judge(PredictionWorld const& world, std::uint32_t ego, State const& before, double& last_acceleration,
+  void judge(Workspace const& workspace, State const& before, double& last_acceleration,
              ProposalScore& proposal) const {
+    auto const& world = *workspace.world;
+    auto const ego = workspace.ego;
     auto const& now = world.frame().agents[ego].state;
     for (double const part : {1.0 / 3, 2.0 / 3, 1.0})
-      if (now.speed > 0.05 && detail::is_at_fault(world, ego, part * scoring.look_ahead))
+      if (now.speed > 0.05 && detail::is_at_fault(world, ego, workspace.counting, part * scoring.look_ahead))
         proposal.time_to_collision = 0.0;
     double const along = (now.speed - before.speed) / step;
     double const across = now.speed * geometry::angle_difference(now.heading, before.heading) / step;

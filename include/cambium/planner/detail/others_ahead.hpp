@@ -21,12 +21,11 @@ struct OthersAhead {
   std::vector<std::uint32_t> counting;            ///< who these are
   double step{};                                  ///< [s]
 
-  /// Predicts from `now` up to `horizon` [s]. Who follows behind in the strip that ego drives in has to keep clear
-  /// itself: it does not count.
+  /// Predicts from `now` up to `horizon` [s].
   void predict(World now, std::uint32_t ego, double horizon, double length) {
     world = std::move(now);
     step = length;
-    choose(ego);
+    choose_counting(*world, ego, counting);
     auto const steps = static_cast<std::size_t>(std::max(1L, std::lround(horizon / step)));
     frames.resize(steps + 1);
     boxes.clear();
@@ -58,20 +57,6 @@ struct OthersAhead {
       speed = next;
     }
     return {way + speed * std::max(0.0, left), speed};
-  }
-
- private:
-  void choose(std::uint32_t ego) {
-    counting.clear();
-    auto const& state = world->frame().agents[ego].state;
-    double const rear = world->roster().agents[ego].shape.rear;
-    auto const own = box_at(*world, ego);
-    for (std::uint32_t i = 0; i < world->size(); ++i) {
-      auto const box = box_at(*world, i);
-      double const aside = own.cos * (box.y - own.y) - own.sin * (box.x - own.x);
-      bool const beside = std::abs(aside) > own.half_width + box.half_width;
-      if (i != ego && (beside || distance_ahead(state, box) > -rear)) counting.push_back(i);
-    }
   }
 };
 

@@ -84,11 +84,28 @@ template <class World>
   return box;
 }
 
-/// Whether the agent at `slot` touches an object, or another agent for which it is to blame: not one that drives into
-/// it while it stands, or from behind (after the at-fault collisions of Dauner et al. 2023). Asked `time` [s] ahead,
-/// with constant velocities, only those count who are ahead now. O(agents).
+/// The others that the agent at `ego` has to look out for: not those who follow behind in the strip that it drives in,
+/// who have to keep clear themselves. O(agents).
 template <class World>
-[[nodiscard]] bool is_at_fault(World const& world, std::uint32_t slot, double time = 0.0) {
+void choose_counting(World const& world, std::uint32_t ego, std::vector<std::uint32_t>& counting) {
+  counting.clear();
+  auto const& state = world.frame().agents[ego].state;
+  double const rear = world.roster().agents[ego].shape.rear;
+  auto const own = box_at(world, ego);
+  for (std::uint32_t i = 0; i < world.size(); ++i) {
+    auto const box = box_at(world, i);
+    double const aside = own.cos * (box.y - own.y) - own.sin * (box.x - own.x);
+    bool const beside = std::abs(aside) > own.half_width + box.half_width;
+    if (i != ego && (beside || distance_ahead(state, box) > -rear)) counting.push_back(i);
+  }
+}
+
+/// Whether the agent at `slot` touches an object, or one of the agents `counting` for which it is to blame: not one
+/// that drives into it while it stands, or from behind (after the at-fault collisions of Dauner et al. 2023). Asked
+/// `time` [s] ahead, with constant velocities, only those count who are ahead now. O(agents).
+template <class World>
+[[nodiscard]] bool is_at_fault(World const& world, std::uint32_t slot, std::vector<std::uint32_t> const& counting,
+                               double time = 0.0) {
   constexpr double standing = 0.05;  // [m/s]
   auto const& ego = world.frame().agents[slot].state;
   auto const own = box_after(world, slot, time);
@@ -97,12 +114,10 @@ template <class World>
     if (around.intersects(object.outline.bounding_box()) && geometry::intersects(own, object.outline)) return true;
   if (ego.speed < standing) return false;
   double const behind = time > 0.0 ? 0.0 : -world.roster().agents[slot].shape.rear;
-  for (std::uint32_t i = 0; i < world.size(); ++i) {
-    if (i == slot || !in_traffic(world, i)) continue;
-    auto const other = box_after(world, i, time);
-    if (geometry::intersects(own, other) && distance_ahead(ego, box_at(world, i)) > behind) return true;
-  }
-  return false;
+  return std::ranges::any_of(counting, [&](std::uint32_t i) {
+    return in_traffic(world, i) && geometry::intersects(own, box_after(world, i, time)) &&
+           distance_ahead(ego, box_at(world, i)) > behind;
+  });
 }
 
 /// What became of a predicted course in a step.
