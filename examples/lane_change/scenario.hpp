@@ -84,7 +84,7 @@ inline cb::MacroActions own_actions() {
   auto actions = cb::MacroActions::of({{Kind::stay, 0.0},
                                        {Kind::stay, 1.5},
                                        {Kind::stay, -2.0},
-                                       {Kind::stay, -6.0},
+                                       {Kind::stay, -4.0},
                                        {Kind::change_left, 0.0},
                                        {Kind::change_left, -3.0},
                                        {Kind::change_right, 0.0}});
@@ -106,6 +106,8 @@ inline Sim::Behavior planner(Cell const& cell) {
   }
   OwnPlanner own{.actions = own_actions()};
   own.options.selection.exploration = 0.3;
+  own.reward.desired_speed = 14.0;  // the goal counts at 11 to 17 m/s only
+  own.reward.speed_deviation = -5.0;
   own.others = {.driver = driver(headway), .shortest_headway = 0.5, .longest_headway = 3.5, .regions = 4};
   own.options.search = {.horizon = most_steps, .discount = 0.95};
   own.options.rollout.hold = 5;

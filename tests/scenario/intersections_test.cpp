@@ -130,7 +130,8 @@ TEST_CASE("so it is under traffic lights, and nobody crosses a stop line on red"
 // where vehicles that lost their patience together wait for each other. Not libopendrive_test: there 2 of 60 got stuck.
 TEST_CASE("so it is at the junctions of the corpus") {
   for (std::string const name : {"simple_3way_intersection_lht", "multi_intersections", "route_strategy_test_road",
-                                 "parking_demo", "4way_intersection", "threeway_intersection", "fabriksgatan"})
+                                 "parking_demo", "4way_intersection", "threeway_intersection", "fabriksgatan",
+                                 "libopendrive_test"})
     if (auto const map = support::corpus_map(name + ".xodr")) check_all_pass(map, name, runs(60));
 }
 

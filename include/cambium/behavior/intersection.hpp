@@ -314,11 +314,11 @@ struct Intersection {
                                 Other const& other, double way, double own_way, Own const& own) const {
     auto const& [user, at, reach] = other;
     bool const stands = user.speed < standing, own_stands = own.speed < standing;
-    // Ids part those who lose their patience together: by the golden ratio few are close, and of these the smaller
-    // goes.
+    // Ids part those who lose their patience together: of two who wait for each other the smaller goes long before the
+    // other would; those of a ring are spread by the golden ratio.
     bool const is_smaller = view.id() < user.agent;
     double const share = 0.6180339887498949 * static_cast<double>(static_cast<std::uint32_t>(view.id()));
-    double const turn = 8.0 * (share - std::floor(share)) + (is_smaller ? 0.0 : 1.0);  // [s]
+    double const turn = 8.0 * (share - std::floor(share)) + (is_smaller ? 0.0 : 20.0);  // [s]
     bool const inside = is_inside(other, conflict, zone),
                own_inside = own.front > zone.line && own.s < conflict.lane_end;
     if (stands && own.waited >= patience + turn + (inside != own_inside ? 20.0 : 0.0)) return true;
