@@ -1,0 +1,82 @@
+// The examples lane_change and embed_in_planner as a user meets them.
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "program.hpp"
+
+using program::content_of;
+using program::Program;
+
+TEST_CASE("the lane change example writes a row a cell, the same on any number of threads") {
+  Program const program("lane_change");
+  if (!program.is_there()) return;
+  browser::TemporaryFolder const folder;
+  auto const rows = [&](char const* preset, char const* threads) {
+    auto const file = folder.path() / (std::string(preset) + threads + ".json");
+    auto const run =
+        program.run({"--preset", preset, "--threads", threads, "--scenarios", "4", "--iterations", "50,100",
+                     "--variation", "0,0.8", "--json", file.string(), "--out", folder.path().string()});
+    CHECK(run.code == 0);
+    CHECK(run.err.empty());
+    auto json = nlohmann::json::parse(content_of(file));
+    for (auto& row : json) {
+      CHECK(row["iterations_per_second"].get<double>() > 0.0);
+      row.erase("iterations_per_second");
+    }
+    return json;
+  };
+  for (char const* preset : {"paper", "cambium"}) {
+    auto const one = rows(preset, "1");
+    REQUIRE(one.size() == 4);
+    CHECK(one == rows(preset, "2"));
+    for (auto const& row : one) {
+      CHECK(row["preset"] == preset);
+      CHECK(row["scenarios"] == 4);
+      CHECK(row["success"].get<double>() + row["collision"].get<double>() + row["timeout"].get<double>() == 1.0);
+    }
+    CHECK(one[1]["iterations"] == 100);
+    CHECK(one[2]["variation"] == 0.8);
+    CHECK(content_of(folder.path() / (std::string(preset) + ".svg")).find("collision") != std::string::npos);
+  }
+}
+
+TEST_CASE("the lane change example names what is wrong with its options") {
+  Program const program("lane_change");
+  if (!program.is_there()) return;
+  for (auto const& words : {std::vector<std::string>{"--preset", "mine"},
+                            {"--iterations", "0"},
+                            {"--iterations", "100,x"},
+                            {"--variation", "1.5"},
+                            {"--scenarios", "-1"},
+                            {"--json", "/proc/none/x.json"}}) {
+    CAPTURE(words.back());
+    auto const run = program.run(words);
+    CHECK(run.code == 2);
+    CHECK(run.err.find(words[0] == "--json" ? words[1] : words[0]) != std::string::npos);
+  }
+}
+
+TEST_CASE("a stack's own objects and polylines fill a world in at most 40 lines") {
+  std::ifstream source(std::filesystem::path(CAMBIUM_SOURCE_DIR) / "examples/embed_in_planner.cpp");
+  int lines = -1;
+  bool inside = false;
+  for (std::string line; std::getline(source, line);) {
+    inside = (inside || line == "// [embed") && line != "// embed]";
+    lines += inside ? 1 : 0;
+  }
+  CHECK(lines > 20);
+  CHECK(lines <= 40);
+  Program const program("embed_in_planner");
+  if (!program.is_there()) return;
+  auto const run = program.run({});
+  CHECK(run.code == 0);
+  CHECK(run.err.empty());
+  CHECK(run.out.find("change_left 0   <- chosen") != std::string::npos);
+  CHECK(run.out.find("agent 12") != std::string::npos);
+}
