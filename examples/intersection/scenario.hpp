@@ -204,6 +204,9 @@ inline void switch_on_lights(Simulation& world) {
 }
 
 /// What the summary says of the site.
-inline void add_facts(Site const& site, nlohmann::ordered_json& json) { json["entrances"] = site.entrances.size(); }
+inline void add_facts(Site const& site, nlohmann::ordered_json& json) {
+  json["entrances"] = site.entrances.size();
+  json["lights"] = site.lights;
+}
 
 }  // namespace intersection
