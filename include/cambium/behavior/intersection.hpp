@@ -86,7 +86,7 @@ struct Intersection {
     follow(own, leader_of<false>(view, view.front_by_rule()));
     heed_conflicts(view, own, dt);
     heed_signals(view, own, memory, dt);
-    if (own.speed > starting || (own.speed >= standing && own.at_line))
+    if (own.at_light || own.speed > starting || (own.speed >= standing && own.at_line))
       memory.waited = 0.0f;
     else if (own.at_line)
       memory.waited += static_cast<float>(dt);
@@ -118,6 +118,7 @@ struct Intersection {
     Leader leader;
     LongitudinalMotion<double> bound{infinite, infinite};  ///< goes no farther in this step
     bool at_line = false;                                  ///< has come to where it waits
+    bool at_light = false;                                 ///< waits for a light, which costs nobody's patience
   };
 
   /// Another one at position `at` [m] of its way to a conflict.
@@ -207,6 +208,7 @@ struct Intersection {
         auto const color = view.light(signal.light);
         if (color == map::LightColor::off || color == map::LightColor::green) continue;
         if (color == map::LightColor::yellow && !can_stop(own.speed, to_line)) continue;
+        own.at_light = true;
       }
       double const margin = can_stop(own.speed, to_line - stop_margin) ? stop_margin : 0.0;
       bound(own, std::max(0.0, to_line - margin), own.idm.comfortable_deceleration, dt);
