@@ -136,7 +136,7 @@ TEST_CASE("collisions are those of a brute-force twin, few agents or many, on ro
                         {"many on a slanting road", {40, 4000, 8, 0.8}, 500},
                         {"a hundred", {100, 1200, 500, up}, 200},
                         {"a crowd", {300, 20000, 100, 0.0}, 50},
-                        {"more than are swept at once", {1300, 60000, 600, 0.3}, 30}};
+                        {"more than fit on the stack", {1300, 60000, 600, 0.3}, 30}};
   for (auto const& [what, scene, frames] : cases) {
     int const collisions = compare(scene, frames);
     MESSAGE(what << ": " << collisions << " of " << frames << " frames with a collision");
@@ -146,13 +146,13 @@ TEST_CASE("collisions are those of a brute-force twin, few agents or many, on ro
   }
 }
 
-TEST_CASE("however many there are, nothing is allocated") {
+TEST_CASE("up to 1024 agents nothing is allocated, beyond one block") {
   auto const map = straight_road(1, 10);
-  for (std::size_t const agents : {10u, 100u, 1000u, 3000u}) {
+  for (std::size_t const agents : {10u, 100u, 1024u, 1025u, 3000u}) {
     auto const world = random_world(map, {agents, 1e7, 1e4, 0.2}, 3);
     auto const before = support::allocations();
     auto const found = cb::CollisionAny{}.evaluate(world);
-    CHECK(support::allocations() == before);
+    CHECK(support::allocations() - before == (agents > 1024 ? 1 : 0));
     CHECK_FALSE(found.any_collision);
   }
 }

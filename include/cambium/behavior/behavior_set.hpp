@@ -33,6 +33,15 @@ inline constexpr bool looks_around = [] {
   else
     return false;
 }();
+/// Whether a behaviour must not be larger than those that conflicts are found for: `static constexpr bool
+/// heeds_conflicts`.
+template <class B>
+inline constexpr bool heeds_conflicts = [] {
+  if constexpr (requires { B::heeds_conflicts; })
+    return B::heeds_conflicts;
+  else
+    return false;
+}();
 /// Plans by a behaviour that has a workspace: not part of a flattened step, which would take in a whole search.
 template <class B, class View, class Memory, class Workspace>
 CAMBIUM_NOINLINE [[nodiscard]] Plan<View> plan_apart(B const& behavior, View const& view, Memory& memory, double dt,

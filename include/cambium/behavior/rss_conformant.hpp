@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <tuple>
+#include <type_traits>
 
 #include "cambium/behavior/behavior_set.hpp"
 #include "cambium/behavior/constant_acceleration.hpp"
@@ -22,9 +23,10 @@ namespace cambium {
 /// closer to a side, as the proper response asks. It also keeps its accelerations within what others count on. Who has
 /// to brake stays on the course of the nominal behaviour; who has to keep off a side keeps its lateral place and drives
 /// on along the lane. The nominal behaviour plans in each step and remembers it, and is told how much of its course was
-/// not driven (`fell_short`). Plans may turn in sideways harder than `lateral_acceleration`: that a plan does not make
-/// a situation dangerous is asked of where it leads, as if the other did the same. Steps must not be longer than
-/// `response_time`. O(agents within some hundred metres).
+/// not driven (`fell_short`). A plan that leads farther than its acceleration, as a recording that went on while its
+/// vehicle had to wait, is driven along its course by that acceleration. Plans may turn in sideways harder than
+/// `lateral_acceleration`: that a plan does not make a situation dangerous is asked of where it leads, as if the other
+/// did the same. Steps must not be longer than `response_time`. O(agents within some hundred metres).
 template <BehaviorModel Nominal>
 struct RssConformant {
   Nominal nominal{};
@@ -42,33 +44,23 @@ struct RssConformant {
   }
 
   using Memory = MemoryOf<Nominal>;
+  using Workspace = WorkspaceOf<Nominal>;
   static constexpr bool looks_beside = true;
   static constexpr bool looks_around = detail::looks_around<Nominal>;
+  static constexpr bool heeds_conflicts = detail::heeds_conflicts<Nominal>;
 
   [[nodiscard]] double start_time() const requires requires(Nominal const behavior) { behavior.start_time(); }
   { return nominal.start_time(); }
 
   template <class View>
-  [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
-    auto plan = nominal.plan(view, memory, dt);
-    if (plan.status != PlanStatus::valid) return plan;
-    auto const end = InterpolateExecution{}.execute(plan, view.state(), view.dynamics(), view.time() + dt);
-    if (!end.valid) return plan;
-    auto const must = response(view, end.state, dt);
-    bool const keeps_off = must.keep_off_left || must.keep_off_right;
-    double const speed = std::max(0.0, view.state().speed), wanted = (end.state.speed - speed) / dt;
-    double const most = must.brake ? -rss.minimum_deceleration : rss.maximum_acceleration;
-    double const acceleration = std::clamp(wanted, -rss.maximum_deceleration, most);
-    bool const as_wanted = std::abs(acceleration - wanted) <= rounding;
-    if (as_wanted && !keeps_off) return plan;
-    while (!plan.trajectory.empty() && plan.trajectory.back().time >= end.state.time) plan.trajectory.pop_back();
-    plan.trajectory.push_back(end.state);
-    double const way = course_length(plan, view.state());
-    LongitudinalMotion<double> motion{way, end.state.speed};
-    if (!as_wanted) motion = ConstantAcceleration{.acceleration = acceleration}.motion(speed, dt);
-    if (acceleration < wanted) motion.distance = std::min(motion.distance, way);
-    fell_short(memory, keeps_off ? way : way - motion.distance, keeps_off);
-    return keeps_off ? plan_along_lane(view, motion, dt) : plan_along_course(view, plan, motion, dt);
+  [[nodiscard]] Plan<View> plan(View const& view, Memory& memory,
+                                double dt) const requires std::is_same_v<Workspace, NoWorkspace> {
+    return conform(view, nominal.plan(view, memory, dt), memory, dt);
+  }
+
+  template <class View>
+  [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt, Workspace& workspace) const {
+    return conform(view, nominal.plan(view, memory, dt, workspace), memory, dt);
   }
 
   /// The proper response to all that is near, where the vehicle means to be in the state `end` after `dt` [s]: `brake`
@@ -104,6 +96,44 @@ struct RssConformant {
  private:
   static constexpr double rounding = 1e-9;
   static constexpr double farthest = 400.0;  // [m]
+
+  /// The nominal behaviour's `plan`, or what is driven instead.
+  template <class View>
+  [[nodiscard]] Plan<View> conform(View const& view, Plan<View> plan, Memory& memory, double dt) const {
+    if (plan.status != PlanStatus::valid) return plan;
+    auto const end = InterpolateExecution{}.execute(plan, view.state(), view.dynamics(), view.time() + dt);
+    if (!end.valid) return plan;
+    auto const must = response(view, end.state, dt);
+    bool const keeps_off = must.keep_off_left || must.keep_off_right;
+    double const speed = std::max(0.0, view.state().speed), wanted = (end.state.speed - speed) / dt;
+    double const most = must.brake ? -rss.minimum_deceleration : rss.maximum_acceleration;
+    double const acceleration = std::clamp(wanted, -rss.maximum_deceleration, most);
+    auto const driven = ConstantAcceleration{.acceleration = acceleration}.motion(speed, dt);
+    auto const reach = reach_of(view.state(), end.state, driven.distance);
+    bool const as_wanted = reach == Reach::within && std::abs(acceleration - wanted) <= rounding;
+    if (as_wanted && !keeps_off) return plan;
+    while (!plan.trajectory.empty() && plan.trajectory.back().time >= end.state.time) plan.trajectory.pop_back();
+    plan.trajectory.push_back(end.state);
+    double const way = course_length(plan, view.state());
+    auto motion = as_wanted ? LongitudinalMotion<double>{way, end.state.speed} : driven;
+    if (acceleration < wanted) motion.distance = std::min(motion.distance, way);
+    fell_short(memory, keeps_off ? way : way - motion.distance, keeps_off);
+    bool const along_lane = keeps_off || reach == Reach::behind;
+    return along_lane ? plan_along_lane(view, motion, dt) : plan_along_course(view, plan, motion, dt);
+  }
+
+  /// Where a plan leads, seen from what can be driven in the step. A recording goes on while its vehicle waits.
+  enum class Reach : std::uint8_t { within, beyond, behind };
+
+  /// That of a plan from `now` to `end` where `distance` [m] is driven. A way aside or outside in a bend is a bit
+  /// longer.
+  template <MotionState S>
+  [[nodiscard]] static Reach reach_of(S const& now, S const& end, double distance) {
+    constexpr double share = 0.05, apart = 0.1;  // [-], [m]
+    auto const ahead = geometry::sin_cos(now.heading);
+    if ((end.x - now.x) * ahead.cos + (end.y - now.y) * ahead.sin < -apart) return Reach::behind;
+    return detail::way_between(now, end) <= (1.0 + share) * distance + apart ? Reach::within : Reach::beyond;
+  }
 
   struct Place {
     std::uint16_t corridor, piece;

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <optional>
 
-#include <boost/container/static_vector.hpp>
+#include <boost/container/small_vector.hpp>
 
 #include "cambium/core/ids.hpp"
 #include "cambium/geometry/collision.hpp"
@@ -88,8 +88,8 @@ struct CollisionEgo {
   }
 };
 
-/// Whether any two agents that take part in traffic, or one and a static object, touch. O(n log n) up to 1000 agents,
-/// beyond O(n log 1000) for each 500 of them; no allocation.
+/// Whether any two agents that take part in traffic, or one and a static object, touch. O(n log n); allocates only for
+/// more than 1024 agents.
 struct CollisionAny {
   struct Result {
     bool any_collision = false;
@@ -103,24 +103,17 @@ struct CollisionAny {
     for (std::uint32_t i = 0; i < count; ++i)
       if (detail::in_traffic(world, i) && detail::touched_object(world, i))
         return {true, world.roster().agents[i].id, none<AgentId>};
-    for (std::uint32_t first = 0; first == 0 || first + part < count; first += part)
-      for (std::uint32_t second = first + part; second == first + part || second < count; second += part)
-        if (auto const found = sweep(world, first, second); found.any_collision) return found;
-    return {};
+    boost::container::small_vector<detail::Circle, 1024> circles;
+    circles.reserve(count);
+    for (std::uint32_t i = 0; i < count; ++i)
+      if (detail::in_traffic(world, i)) circles.push_back(detail::circle_of(world, i));
+    return sweep(world, circles);
   }
 
  private:
-  /// Agents are swept in two parts of this many at a time, on the stack.
-  static constexpr std::uint32_t part = 512;
-
-  /// Those from slots `first` and `second` on: sweep and prune along the longer axis of the scene; a few agents are
-  /// simply compared with each other.
-  template <class World>
-  [[nodiscard]] static Result sweep(World const& world, std::uint32_t first, std::uint32_t second) {
-    boost::container::static_vector<detail::Circle, 2 * part> circles;
-    for (auto const begin : {first, second})
-      for (auto i = begin; i < std::min(begin + part, static_cast<std::uint32_t>(world.size())); ++i)
-        if (detail::in_traffic(world, i)) circles.push_back(detail::circle_of(world, i));
+  /// Sweep and prune along the longer axis of the scene; a few agents are simply compared with each other.
+  template <class World, class Circles>
+  [[nodiscard]] static Result sweep(World const& world, Circles& circles) {
     constexpr std::size_t few = 16;
     bool const sorted = circles.size() > few;
     if (sorted) sort_along_longer_axis(circles);

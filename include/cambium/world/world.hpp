@@ -151,7 +151,10 @@ class World {
   /// Throws `WorldError` or `ParameterError` (the world is unchanged) as `add`.
   void set_behavior(AgentId id, Behavior const& behavior) {
     auto const slot = slot_of(id);
-    detail::check_if_described(behavior, "agent " + to_string(id));
+    std::string const where = "agent " + to_string(id);
+    detail::check_if_described(behavior, where);
+    auto const& agent = roster_->agents[slot];
+    detail::check_size(*map_, behavior, agent.shape, *agent.road, where);
     writable_roster().agents[slot].behavior = behavior;
     frame_.agents[slot].memory = Set::initial_memory(behavior);
   }

@@ -7,12 +7,15 @@
 #include <span>
 #include <string>
 #include <tuple>
+#include <type_traits>
 #include <variant>
 #include <vector>
 
+#include "cambium/behavior/behavior_set.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/geometry/angle.hpp"
+#include "cambium/geometry/shape.hpp"
 #include "cambium/goal/goal.hpp"
 #include "cambium/map/build_corridor.hpp"
 #include "cambium/map/lane_position.hpp"
@@ -141,19 +144,17 @@ void enter_free_road(Roster& roster, std::shared_ptr<map::RoadCorridor const> co
   std::sort(roster.object_entries.begin(), roster.object_entries.end());
 }
 
-/// Throws `WorldError` for an agent that heeds the conflicts on its road and is larger than those they are found for.
-template <class Spec>
-void check_size(Map const& map, Spec const& spec, map::RoadCorridor const& road, std::string const& where) {
-  bool const heeds_conflicts = std::visit(
-      [](auto const& model) {
-        return requires { model.heeds_conflicts; };
-      },
-      spec.behavior);
+/// Throws `WorldError` where `behavior` heeds the conflicts on its road and `shape` is larger than those they are found
+/// for.
+template <class Behavior>
+void check_size(Map const& map, Behavior const& behavior, geometry::Shape const& shape, map::RoadCorridor const& road,
+                std::string const& where) {
+  bool const heeds =
+      std::visit([](auto const& model) { return heeds_conflicts<std::decay_t<decltype(model)>>; }, behavior);
   bool const has_conflicts = std::any_of(road.corridors.begin(), road.corridors.end(),
                                          [](auto const& corridor) { return !corridor.conflicts.empty(); });
   auto const& options = map.options();
-  if (heeds_conflicts && has_conflicts && !options.conflict_shape.holds(spec.shape) &&
-      !options.large_conflict_shape.holds(spec.shape))
+  if (heeds && has_conflicts && !options.conflict_shape.holds(shape) && !options.large_conflict_shape.holds(shape))
     throw WorldError(where, "its shape is larger than the one that conflicts on its way are found for",
                      "load the map with a MapOptions::large_conflict_shape that holds it");
 }
@@ -180,7 +181,7 @@ template <class World>
     throw WorldError(where, "the world has an agent of that id already", "leave the id out to get a free one");
   check_entering(spec, where);
   auto const [road, lanes, lane, place] = entrance(map, roster, spec, where);
-  check_size(map, spec, *road, where);
+  check_size(map, spec.behavior, spec.shape, *road, where);
   typename World::Record record;
   record.lane = place;
   record.state.time = time;
