@@ -20,7 +20,7 @@ using cambium::map::NetworkFault;
 using cambium::map::NetworkFinding;
 using cambium::map::RoadDirection;
 
-int count(std::vector<NetworkFinding> const& findings, NetworkFault fault) {
+int faults(std::vector<NetworkFinding> const& findings, NetworkFault fault) {
   return static_cast<int>(
       std::count_if(findings.begin(), findings.end(), [fault](auto const& f) { return f.fault == fault; }));
 }
@@ -61,7 +61,7 @@ TEST_CASE("lanes made in code are checked: links from one side, to nowhere, gaps
   lanes[index_of(d)].successors.push_back(e);
   lanes[index_of(e)].successors.push_back(static_cast<cambium::LaneId>(99));
   auto const findings = check_lane_network(lanes);
-  CHECK(count(findings, NetworkFault::gap) == 1);
+  CHECK(faults(findings, NetworkFault::gap) == 1);
   CHECK(first(findings, NetworkFault::gap).lane == a);
   CHECK(first(findings, NetworkFault::gap).other == b);
   CHECK(first(findings, NetworkFault::gap).size == doctest::Approx(0.02));
@@ -71,10 +71,10 @@ TEST_CASE("lanes made in code are checked: links from one side, to nowhere, gaps
   CHECK(first(findings, NetworkFault::dangling).lane == e);
   CHECK(first(findings, NetworkFault::border_step).lane == d);
   CHECK(first(findings, NetworkFault::border_step).size == doctest::Approx(0.5));
-  CHECK(count(findings, NetworkFault::dead_end) == 1);
+  CHECK(faults(findings, NetworkFault::dead_end) == 1);
   CHECK(first(findings, NetworkFault::dead_end).lane == c);
-  CHECK(count(findings, NetworkFault::no_way_in) == 3);  // a, d and e, which d does not know as its predecessor
-  CHECK(count(findings, NetworkFault::possible_link) == 0);
+  CHECK(faults(findings, NetworkFault::no_way_in) == 3);  // a, d and e, which d does not know as its predecessor
+  CHECK(faults(findings, NetworkFault::possible_link) == 0);
 }
 
 TEST_CASE("a possible link is the nearest begin within reach, as a search over all pairs finds it") {
@@ -250,7 +250,7 @@ TEST_CASE("a road that closes upon itself can be driven round and round") {
   REQUIRE(loaded.map->lanes().size() == 2);
   CHECK(leads(loaded, {"1", 10, -1}, {"1", 300, -1}));
   CHECK(leads(loaded, {"1", 300, -1}, {"1", 10, -1}));
-  CHECK(count(check_lane_network(*loaded.map), NetworkFault::gap) == 0);
+  CHECK(faults(check_lane_network(*loaded.map), NetworkFault::gap) == 0);
 }
 
 TEST_CASE("a lane for both directions is two lanes, oncoming to each other, and linked each in its own") {
@@ -366,5 +366,5 @@ TEST_CASE("a lane that is linked to what its neighbour goes on as, beside its ow
   auto const& lane = lane_at(loaded, {"1", 10, -2});
   CHECK(leads(loaded, {"1", 10, -2}, {"1", 60, -1}));
   CHECK(lane.merges_into == lane_at(loaded, {"1", 10, -1}).id);
-  CHECK(count(check_lane_network(*loaded.map), NetworkFault::gap) == 0);
+  CHECK(faults(check_lane_network(*loaded.map), NetworkFault::gap) == 0);
 }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <optional>
 #include <tuple>
@@ -12,6 +11,7 @@
 #include "cambium/geometry/box.hpp"
 #include "cambium/geometry/convex_hull.hpp"
 #include "cambium/geometry/polygon.hpp"
+#include "cambium/map/detail/stable_sort.hpp"
 #include "cambium/map/lane.hpp"
 #include "cambium/map/lane_area.hpp"
 #include "cambium/map/map.hpp"
@@ -116,9 +116,7 @@ inline void check_junction(Map const& map, JunctionId id) {
       conflict.area = detail::common_ground(map.lane(first), conflict.on_first, other, conflict.on_second);
       conflicts.push_back(std::move(conflict));
     }
-  std::sort(conflicts.begin(), conflicts.end(), [](ConflictArea const& a, ConflictArea const& b) {
-    return std::tie(a.first, a.second, a.on_first.begin) < std::tie(b.first, b.second, b.on_first.begin);
-  });
+  detail::stable_sort(conflicts, [](ConflictArea const& c) { return std::tuple(c.first, c.second, c.on_first.begin); });
   return conflicts;
 }
 
