@@ -438,6 +438,55 @@ TEST_CASE("a driver stops before the end of a lane that its goal is not in, and 
   }
 }
 
+namespace {
+
+/// The goal that lies on the last metres of a straight road's lane, counted from the left.
+cb::Goal last_metres_of(cb::Map const& map, int number) {
+  for (auto const& entry : map.roads()[0].sections[0].lanes)
+    if (map.lane(entry.id).number == -number) return cb::ReachLane{entry.id, 590.0};
+  return {};
+}
+
+}  // namespace
+
+TEST_CASE("from rest, on an empty road, who needs another lane at the end comes there from every lane") {
+  for (int const goal : {1, 4})
+    for (int lane = 1; lane <= 4; ++lane) {
+      double const shortest = 15.0 * (std::abs(goal - lane) + 0.5) + 7.0;
+      for (double const before : {300.0, 150.0, 80.0, shortest}) {
+        auto const map = support::straight_road(4, 600.0);
+        Sim world(map);
+        auto const driver = add(world, lane, 600.0 - before, 0.0, mobil(30.0), last_metres_of(*map, goal));
+        for (int k = 0; k < 600 && !world.reached_goal(driver); ++k) world.step(0.2);
+        CAPTURE(goal);
+        CAPTURE(lane);
+        CAPTURE(before);
+        CHECK(world.reached_goal(driver));
+      }
+    }
+}
+
+TEST_CASE("two who stand side by side and need each other's lanes both come there") {
+  for (double const apart : {-3.0, 0.0, 3.0})
+    for (double const at : {300.0, 450.0, 530.0, 560.0}) {
+      auto const map = support::straight_road(2, 600.0);
+      Sim world(map);
+      auto const a = add(world, 1, at, 0.0, mobil(15.0), last_metres_of(*map, 2)),
+                 b = add(world, 2, at + apart, 0.0, mobil(15.0), last_metres_of(*map, 1));
+      bool reached_a = false, reached_b = false;
+      for (int k = 0; k < 900 && !(reached_a && reached_b); ++k) {
+        world.step(0.2);
+        REQUIRE(collisions(world) == 0);
+        reached_a = reached_a || world.reached_goal(a);
+        reached_b = reached_b || world.reached_goal(b);
+      }
+      CAPTURE(apart);
+      CAPTURE(at);
+      CHECK(reached_a);
+      CHECK(reached_b);
+    }
+}
+
 TEST_CASE("on a lane drop and at a fork MOBIL drivers leave the lane that ends, or reach the exit") {
   auto const drop = support::own_map("lane_drop.xodr");
   for (std::uint64_t seed = 1; seed <= 6; ++seed) {

@@ -45,6 +45,8 @@ class IdmLaw {
     return leader ? (*this)(speed, leader->gap, leader->speed) : free(speed);
   }
 
+  [[nodiscard]] double minimum_gap() const { return minimum_gap_; }  ///< [m]
+
  private:
   [[nodiscard]] double bounded(double a) const { return std::min(std::max(a, low_), high_); }
 

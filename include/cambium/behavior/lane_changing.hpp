@@ -91,17 +91,20 @@ struct LaneChanging {
     auto const home = view.lane_position().corridor;
     memory.rest = std::max(0.0f, memory.rest - static_cast<float>(dt));
     course.renew(memory.change, speed);
+    if (memory.change.target == home && speed < standing &&
+        way_to_stop(view, view.lane_position()) < idm.minimum_gap + 1)
+      memory.change = {};  // it must leave this lane, too: no way is left to come to its middle before
     if (memory.change.active()) {
       if (memory.change.target != home && !may_go_on(view, law, speed, memory.change)) abort(view, speed, memory);
       auto const ahead = ahead_while_changing(view, law, speed, leader, memory.change);
       return plan_lane_change(view, memory.change, idm_motion(idm, speed, ahead.gap, ahead.speed, dt, tolerance), dt);
     }
     double const end = lane_end(view, home, view.lane_position().piece);
-    auto ahead = ahead_in_lane(view, law, speed, leader, end);
+    auto ahead = ahead_in_lane(view, law, speed, leader);
     bool const may_change = memory.rest == 0.0f;
     auto const target = choose(LaneKeeping<View>{view, law, speed, leader, end, may_change, ahead});
     if (may_change && target != map::no_corridor && is_wide_enough(view, target, 0.5 * speed * course.duration)) {
-      memory.change = course.begin(target, speed, room(view, leader));
+      memory.change = course.begin(target, speed, room(view, leader, target));
       memory.rest = static_cast<float>(rest + course.duration);
       ahead = ahead_while_changing(view, law, speed, leader, memory.change);
     }
@@ -159,6 +162,7 @@ struct LaneChanging {
   static constexpr double infinite = std::numeric_limits<double>::infinity();
   /// Part of a change's length after which the vehicle has left its old lane.
   static constexpr double out_of_lane = 0.7;
+  static constexpr double standing = 0.1;  ///< who is slower stands [m/s]: the law only creeps up to its stop
   /// Lateral speed that shows the intention to change [m/s].
   static constexpr double drift = 0.12;
 
@@ -210,12 +214,25 @@ struct LaneChanging {
     return lane.width_at(s) > view.shape().width();
   }
 
-  /// How long a change may be: it must lead around a standing object, and to before the end of the lane [m].
+  /// How far the vehicle's front may go on from `at`, on a lane corridor whose lane must be left; infinite where it
+  /// need not be [m]. For each lane to be crossed there has to be room for the shortest change. Who goes to the left
+  /// stops earlier: two who need each other's lanes do not come to stand side by side.
+  template <class View, class Place>
+  [[nodiscard]] double way_to_stop(View const& view, Place const& at) const {
+    double const until_end = dead_end(view, at.corridor, at.piece) - at.s;
+    if (until_end == infinite) return infinite;
+    auto const lanes = lanes_to_cross(view, at.corridor, at.piece, at.s);
+    double const changes = lanes.left > 0 ? lanes.left + 0.5 : std::max(1, lanes.right);
+    return until_end - view.shape().front - changes * course.minimum_length;
+  }
+
+  /// How long a change may be: it must lead around a standing object, to before the end of the lane, and to where the
+  /// next change can begin [m].
   template <class View>
-  [[nodiscard]] double room(View const& view, std::optional<Neighbor> const& leader) const {
+  [[nodiscard]] double room(View const& view, std::optional<Neighbor> const& leader, std::uint16_t target) const {
     auto const& at = view.lane_position();
-    double const end = lane_end(view, at.corridor, at.piece);
-    double const until_end = end < infinite && is_dead_end(view.corridor(), end) ? end - at.s : infinite;
+    double const until_end =
+        std::min(dead_end(view, at.corridor, at.piece) - at.s, way_to_stop(view, view.beside(target)));
     double const beside_object = (1.0 - out_of_lane) * course.minimum_length;
     return leader && is_object(*leader) ? std::min(until_end, leader->gap + beside_object) : until_end;
   }
@@ -228,15 +245,18 @@ struct LaneChanging {
     ahead.add(law, speed, leader->gap - room, leader->speed);
   }
 
+  static void add_stop(detail::Restriction& ahead, detail::IdmLaw const& law, double speed, double way) {
+    if (way < infinite) ahead.add(law, speed, way, 0.0);
+  }
+
   template <class View>
   [[nodiscard]] detail::Restriction ahead_in_lane(View const& view, detail::IdmLaw const& law, double speed,
-                                                  std::optional<Neighbor> const& leader, double end) const {
+                                                  std::optional<Neighbor> const& leader) const {
     auto const& at = view.lane_position();
     auto const& piece = view.corridor().pieces[at.piece];
     detail::Restriction ahead{infinite, 0.0, law.free(speed)};
     add_leader(ahead, law, speed, leader, piece.left != map::no_corridor || piece.right != map::no_corridor);
-    if (end < infinite && is_dead_end(view.corridor(), end))
-      ahead.add(law, speed, end - at.s - view.shape().front - course.minimum_length, 0.0);
+    add_stop(ahead, law, speed, way_to_stop(view, at));
     return ahead;
   }
 
@@ -254,6 +274,7 @@ struct LaneChanging {
     detail::Restriction ahead{infinite, 0.0, law.free(speed)};
     if (change.target == at.corridor) {
       add_leader(ahead, law, speed, leader, true);
+      add_stop(ahead, law, speed, way_to_stop(view, at));
       // While it reaches over the border, the leader there counts, too.
       auto const sides = corridor.widths_at(at.s, at.segment);
       auto const beside = at.lateral + view.shape().left > sides.left     ? piece.left
@@ -266,15 +287,12 @@ struct LaneChanging {
       return ahead;
     }
     if (leader && !is_passed(*leader, left - around)) ahead.add(law, speed, leader->gap, leader->speed);
-    double const end = lane_end(view, at.corridor, at.piece);
-    if (end < infinite && is_dead_end(corridor, end) && end - at.s < 0.6 * left)
-      ahead.add(law, speed, end - at.s - view.shape().front, 0.0);
+    double const until_end = dead_end(view, at.corridor, at.piece) - at.s;
+    if (until_end < 0.6 * left) ahead.add(law, speed, until_end - view.shape().front, 0.0);
     auto const there = view.beside(change.target);
     add_leader(ahead, law, speed, view.front(there), true);
-    auto const& target = view.road().corridors[change.target];
-    double const target_end = lane_end(view, change.target, there.piece);
-    if (target_end < infinite && is_dead_end(target, target_end))
-      ahead.add(law, speed, target_end - there.s - view.shape().front - course.minimum_length, 0.0);
+    // Into the lane beside it may go on, even if that ends soon.
+    add_stop(ahead, law, speed, std::max(way_to_stop(view, there), 0.6 * left + law.minimum_gap() + 1.0));
     return ahead;
   }
 };

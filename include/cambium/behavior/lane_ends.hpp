@@ -22,6 +22,13 @@ template <class View>
   return end >= corridor.length();
 }
 
+/// As `lane_end`, but infinite for a merge that may be driven over [m].
+template <class View>
+[[nodiscard]] double dead_end(View const& view, std::uint16_t number, std::uint16_t piece) {
+  double const end = lane_end(view, number, piece);
+  return is_dead_end(view.road().corridors[number], end) ? end : std::numeric_limits<double>::infinity();
+}
+
 /// In which direction the lanes lie that go further than the own one, and how urgent a change to there is.
 struct LaneUrgency {
   double left{}, right{};  ///< of a change to that side, from -1 to 1; negative: leads away, or to where a lane ends
@@ -35,11 +42,11 @@ template <class View>
   return lane_end(view, number, piece) - view.road().corridors[number].pieces[piece].begin - along;
 }
 
-/// How many lanes to the left (right) of a piece of the own corridor the next one is that goes further than `remaining`
+/// How many lanes to the left (right) of a piece of a lane corridor the next one is that goes further than `remaining`
 /// [m] from the place `along` [m] behind its begin; 0: there is none.
 template <class View>
-[[nodiscard]] int lanes_to_go(View const& view, std::uint16_t piece, double along, double remaining, bool left) {
-  auto number = view.lane_position().corridor;
+[[nodiscard]] int lanes_to_go(View const& view, std::uint16_t number, std::uint16_t piece, double along,
+                              double remaining, bool left) {
   constexpr int most = 16;
   for (int lanes = 1; lanes <= most; ++lanes) {
     auto const& at = view.road().corridors[number].pieces[piece];
@@ -52,6 +59,29 @@ template <class View>
 }
 
 }  // namespace detail
+
+/// How many lanes have to be crossed to one that goes further; both 0: there is none.
+struct LanesToCross {
+  int left{}, right{};  ///< to that side; only the nearer one counts, the other is 0
+};
+
+/// From the place `s` [m] on a lane corridor, in its piece `piece`, with a finite `lane_end`. The lane that goes
+/// further may begin later. O(lanes beside), at most at each piece up to the end.
+template <class View>
+[[nodiscard]] LanesToCross lanes_to_cross(View const& view, std::uint16_t number, std::uint16_t piece, double s) {
+  auto const& pieces = view.road().corridors[number].pieces;
+  double const end = lane_end(view, number, piece);
+  for (auto p = piece; p < pieces.size(); ++p) {
+    double const along = p == piece ? s - pieces[p].begin : 0.0, remaining = end - pieces[p].begin - along;
+    if (!(remaining > 0.0)) break;
+    int const left = detail::lanes_to_go(view, number, p, along, remaining, true);
+    int const right = detail::lanes_to_go(view, number, p, along, remaining, false);
+    if (left == 0 && right == 0) continue;
+    bool const is_left = right == 0 || (left != 0 && left <= right);
+    return is_left ? LanesToCross{left, 0} : LanesToCross{0, right};
+  }
+  return {};
+}
 
 /// How the ends of lanes, dead or merging, and the lane that the goal needs pull to a side: from `horizon` [m] before
 /// them for each lane to be crossed, increasingly. O(1) where no end is ahead, else O(lanes
@@ -73,18 +103,10 @@ template <class View>
     };
     return {away(piece.left, piece.left_piece), away(piece.right, piece.right_piece)};
   }
-  for (auto p = at.piece; p < view.corridor().pieces.size(); ++p) {  // the lane that goes further may begin later
-    double const begin = view.corridor().pieces[p].begin, along = p == at.piece ? at.s - begin : 0.0;
-    double const there = remaining + at.s - begin - along;
-    if (!(there > 0.0)) break;
-    int const to_the_left = detail::lanes_to_go(view, p, along, there, true);
-    int const to_the_right = detail::lanes_to_go(view, p, along, there, false);
-    if (to_the_left == 0 && to_the_right == 0) continue;
-    bool const left = to_the_right == 0 || (to_the_left != 0 && to_the_left <= to_the_right);
-    double const urgency = closeness(remaining, left ? to_the_left : to_the_right);
-    return left ? LaneUrgency{urgency, -urgency} : LaneUrgency{-urgency, urgency};
-  }
-  return {};
+  auto const lanes = lanes_to_cross(view, at.corridor, at.piece, at.s);
+  if (lanes.left == 0 && lanes.right == 0) return {};
+  double const urgency = closeness(remaining, lanes.left + lanes.right);
+  return lanes.left > 0 ? LaneUrgency{urgency, -urgency} : LaneUrgency{-urgency, urgency};
 }
 
 }  // namespace cambium

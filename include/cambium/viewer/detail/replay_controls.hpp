@@ -238,7 +238,7 @@ function start() {
     element('nothing').textContent = count ? 'This recording has no vehicles.' : 'This recording has no frames.';
     element('nothing').hidden = false;
   }
-  const names = {other: 'Traffic', ego: 'Ego', merging: 'Merging', static: 'Obstacle', collided: 'Collided', brake: 'Braking'};
+  const names = {other: 'Traffic', ego: 'Ego', merging: 'Joining or leaving', static: 'Obstacle', collided: 'Collided', brake: 'Braking'};
   const shown = kinds.filter((_, k) => agents.some(agent => agent.kind === k));
   if (data.frames.some(poses => poses.some(pose => pose && pose[4] < -2))) shown.push('brake');
   element('legend').replaceChildren(...(count ? shown : []).map(kind => {
