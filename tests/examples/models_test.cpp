@@ -58,6 +58,7 @@ TEST_CASE("every model, goal, driver and shape in the headers is in README's tab
                           kind("geometry", "constexpr Shape (\\w+)\\(\\)", 8)}) {
     int found = 0;
     for (auto const& file : fs::directory_iterator(one.folder)) {
+      if (!file.is_regular_file()) continue;
       auto const header = content_of(file.path());
       for (std::sregex_iterator match(header.begin(), header.end(), one.declaration), end; match != end; ++match) {
         auto const name = (*match)[1].str();
