@@ -138,6 +138,23 @@ TEST_CASE("a tree that may not grow is searched on") {
   CHECK_FALSE(large.result().is_full);
 }
 
+TEST_CASE("a tree has its root with all arms, however little memory it is given") {
+  for (std::size_t memory = 4096; memory < 9000; memory += 64) {
+    TreeSearch<TicTacToe> search({}, {.horizon = 9, .memory = memory}, {}, {}, {300});
+    auto const& result = search.run({}, 1);
+    CHECK(result.iterations == 300);
+    CHECK(result.of(0).size() == 9);
+    CHECK(result.variation.size() >= 2);
+    CHECK(result.variation.size() % 2 == 0);
+  }
+  struct Large : Crossing {
+    std::size_t heap_bytes(State const&) const { return 100'000; }
+  };
+  TreeSearch<Large> search({}, {.horizon = 5, .memory = 4096}, {}, {}, {50});
+  CHECK(search.run({}, 1).of(0).size() == 4);
+  CHECK(search.result().nodes == 1);
+}
+
 TEST_CASE("a kept tree goes on where it holds, and is dropped where it does not") {
   TicTacToe const game;
   TreeSearch<TicTacToe> search(game, {.horizon = 9, .discount = 1.0}, {}, {}, {5000});

@@ -90,15 +90,15 @@ class SearchTree {
     return {arms_.data() + block.first, block.count};
   }
 
-  /// The node's agents have their arms.
-  [[nodiscard]] bool has_arms(std::uint32_t n) const { return blocks_[n * agents_].count > 0; }
+  /// The node's agents have their arms: they get them in order, and memory may run out on the way.
+  [[nodiscard]] bool has_arms(std::uint32_t n) const { return blocks_[n * agents_ + agents_ - 1].count > 0; }
 
-  /// Whether a node, or `count` arms, still fit.
+  /// Whether a node, or `count` arms, still fit. A root alone always gets its arms.
   [[nodiscard]] bool has_room() const {
     return nodes_.size() < limits_.nodes && used() + node_bytes() <= limits_.bytes;
   }
   [[nodiscard]] bool has_room_for_arms(std::size_t count) const {
-    return used() + count * sizeof(Arm) <= limits_.bytes;
+    return nodes_.size() == 1 || used() + count * sizeof(Arm) <= limits_.bytes;
   }
 
   /// Adds a node; the first is the root. Only where there is room.
