@@ -86,6 +86,7 @@ inline cb::MacroActions own_actions() {
                                        {Kind::stay, -2.0},
                                        {Kind::stay, -4.0},
                                        {Kind::change_left, 0.0},
+                                       {Kind::change_left, 1.5},
                                        {Kind::change_left, -3.0},
                                        {Kind::change_right, 0.0}});
   actions.course = course;
@@ -109,8 +110,10 @@ inline Sim::Behavior planner(Cell const& cell) {
   own.reward.desired_speed = 14.0;  // the goal counts at 11 to 17 m/s only
   own.reward.speed_deviation = -5.0;
   own.others = {.driver = driver(headway), .shortest_headway = 0.5, .longest_headway = 3.5, .regions = 4};
-  own.options.search = {.horizon = most_steps, .discount = 0.95};
-  own.options.rollout.hold = 5;
+  // Decisions twice as long as a step of the world: the same 6 s, with half the depth.
+  own.options.step = 2.0 * step;
+  own.options.search = {.horizon = most_steps / 2, .discount = 0.9};
+  own.options.rollout.hold = 3;
   own.options.budget.iterations = cell.iterations;
   return own;
 }
