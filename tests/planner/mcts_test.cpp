@@ -6,10 +6,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <tuple>
 #include <vector>
 
 #include "cambium/execution/interpolate.hpp"
+#include "cambium/map/map_builder.hpp"
+#include "cambium/map/polyline_roads.hpp"
 #include "cambium/world/world.hpp"
 #include "support/allocations.hpp"
 #include "support/maps.hpp"
@@ -54,6 +57,37 @@ Planner quick(Planner planner, std::size_t iterations = 300) {
 
 constexpr AgentId ego{0};
 
+/// Two opposite lanes from x = -80 to 80 m that share their place where |x| < 10 m.
+std::shared_ptr<Map const> narrowing() {
+  map::MapBuilder builder;
+  for (double const direction : {1.0, -1.0}) {
+    std::vector<std::vector<geometry::Point>> borders;
+    for (double const offset : {1.75, -1.75}) {
+      borders.emplace_back();
+      for (double x = -80.0; x <= 80.0; x += 5.0) {
+        double const u = std::clamp((std::abs(x) - 10.0) / 20.0, 0.0, 1.0);
+        borders.back().push_back({direction * x, direction * (offset - 2.5 * u * u * (3.0 - 2.0 * u))});
+      }
+    }
+    builder.add_road(map::lanes_between(borders));
+  }
+  return builder.build();
+}
+
+/// Who drives on, speeds up or brakes.
+template <class Planner>
+Planner through_the_narrowing() {
+  auto planner = quick(Planner{}, 1000);
+  planner.actions = MacroActions::of(
+      {{MacroAction::Kind::stay, 0.0}, {MacroAction::Kind::stay, 1.5}, {MacroAction::Kind::stay, -3.0}});
+  planner.others.desired_speed = 9.0;
+  planner.reward = {.goal = 0.0, .collision = -100.0, .off_road = -100.0, .progress = 1.0};
+  planner.options.step = 0.4;
+  planner.options.search.horizon = 25;
+  planner.options.rollout.hold = 8;
+  return planner;
+}
+
 }  // namespace
 
 TEST_CASE("searches in traffic change into a gap in the other lane") {
@@ -75,6 +109,28 @@ TEST_CASE("searches in traffic change into a gap in the other lane") {
     }
     CHECK(reached == 2);
     CHECK(collisions == 0);
+  }
+}
+
+TEST_CASE("a narrowing where each waits for the other is solved by searching for both") {
+  auto const map = narrowing();
+  auto cooperative = through_the_narrowing<Cooperative>();
+  cooperative.cooperation = 1.0;
+  cooperative.range = 100.0;
+  auto const solved = [&](Sim::Behavior const& planner, std::uint64_t seed) {
+    Sim world(map, {.seed = seed});
+    world.add({.position = {-41.0, -2.5}, .speed = 8, .behavior = planner});
+    world.add({.position = {45.0, 2.5}, .heading = geometry::pi, .speed = 8, .behavior = planner});
+    for (int step = 0; step < 75; ++step) {
+      REQUIRE(world.step(0.4).failed == 0);
+      REQUIRE_FALSE(CollisionEgo{ego}.evaluate(world).ego_collision);
+      if (world.state(ego).x > 20.0 && world.state(AgentId{1}).x < -20.0) return true;
+    }
+    return false;
+  };
+  for (std::uint64_t seed = 0; seed < 2; ++seed) {
+    CHECK(solved(cooperative, seed));
+    CHECK_FALSE(solved(through_the_narrowing<Single>(), seed));  // the other is expected to drive on
   }
 }
 
