@@ -134,6 +134,23 @@ TEST_CASE("a narrowing where each waits for the other is solved by searching for
   }
 }
 
+TEST_CASE("in a bend it keeps to its lane, however long the steps of the search are") {
+  for (double const step : {0.1, 0.25, 0.4}) {
+    CAPTURE(step);
+    auto planner = quick(Single{}, 50);
+    planner.actions = MacroActions::of({{MacroAction::Kind::stay, 0.0}});
+    planner.options.step = step;
+    Sim world(support::straight_road(1, 300.0, 0.05), {.seed = 1});
+    auto const& lane = world.map().lanes().front();
+    auto const start = lane.path.pose(5.0);
+    world.add({.position = {start.x, start.y}, .heading = start.heading, .speed = 8, .behavior = planner});
+    for (int k = 0; k < 20; ++k) {
+      REQUIRE(world.step(0.2).failed == 0);
+      CHECK(std::abs(world.frame().agents[0].lane.lateral) < 0.01);
+    }
+  }
+}
+
 TEST_CASE("a world with a planner in it goes the same way again, as a copy too") {
   auto world = lane_change(1, quick(Hypothesis{}, 100));
   for (int step = 0; step < 5; ++step) (void)world.step(0.2);

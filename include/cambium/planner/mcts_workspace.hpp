@@ -73,7 +73,7 @@ class MctsWorkspace {
   [[nodiscard]] Search& search() { return *search_; }
 
   /// Plays the principal variation until `end` [s], and beyond its end what agents do without any manoeuvre; calls
-  /// `f(frame)` after each step.
+  /// `f(frame)` after each step of the search, and at `end`.
   template <class F>
   void play(double end, F&& f) {
     auto& domain = search_->domain();
@@ -81,13 +81,14 @@ class MctsWorkspace {
     auto const agents = domain.agents();
     state_ = domain.root();
     joint_.resize(agents);
-    outcomes_.resize(agents);
     RandomStream none(0, 0, 0);
     for (std::size_t step = 0; state_.frame.time < end - 1e-9; ++step) {
       for (std::size_t k = 0; k < agents; ++k)
         joint_[k] = (step + 1) * agents <= result.variation.size() ? result.variation[step * agents + k]
                                                                    : domain.policy_action(state_, k, none);
-      (void)domain.step(state_, joint_, none, outcomes_);
+      // A plan ends where it is asked for: between two steps of the search the course need not be straight.
+      double const left = end - state_.frame.time;
+      domain.advance(state_, joint_, left < domain.dt() - 1e-9 ? left : domain.dt());
       f(std::as_const(state_.frame));
     }
   }
@@ -113,7 +114,6 @@ class MctsWorkspace {
   std::optional<Search> search_;
   typename Domain::State state_;
   std::vector<Action> joint_;
-  std::vector<AgentOutcome> outcomes_;
 };
 
 namespace detail {

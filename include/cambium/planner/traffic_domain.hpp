@@ -93,10 +93,7 @@ class TrafficDomain {
   [[nodiscard]] Action policy_action(State const&, std::size_t, RandomStream&) const { return Set::usual(actions_); }
 
   bool step(State& state, std::span<Action const> joint, RandomStream&, std::span<AgentOutcome> outcomes) {
-    for (std::size_t k = 0; k < slots_.size(); ++k)
-      Set::set(*std::get_if<behavior_index>(&state.frame.agents[slots_[k]].memory), joint[k]);
-    world_.exchange(state.frame);
-    (void)world_.step(dt_);
+    enter(state, joint, dt_);
     double sum = 0.0;
     for (std::size_t k = 0; k < slots_.size(); ++k) {
       auto const judgement = reward_.judge(world_, slots_[k], dt_);
@@ -107,6 +104,12 @@ class TrafficDomain {
     for (auto& outcome : outcomes) outcome.reward += cooperation_ * (sum - outcome.reward);
     world_.exchange(state.frame);
     return state.over;
+  }
+
+  /// All drive on for `duration` [s], at most `dt`, and nobody judges it.
+  void advance(State& state, std::span<Action const> joint, double duration) {
+    enter(state, joint, duration);
+    world_.exchange(state.frame);
   }
 
   /// Whether what was seen comes close to what was predicted: half a metre and half a metre per second, for everybody.
@@ -125,6 +128,14 @@ class TrafficDomain {
 
  private:
   static constexpr std::size_t behavior_index = World::Behaviors::template index<Behavior>;
+
+  /// Steps the world from `state`, and leaves it there.
+  void enter(State& state, std::span<Action const> joint, double duration) {
+    for (std::size_t k = 0; k < slots_.size(); ++k)
+      Set::set(*std::get_if<behavior_index>(&state.frame.agents[slots_[k]].memory), joint[k]);
+    world_.exchange(state.frame);
+    (void)world_.step(duration);
+  }
 
   [[nodiscard]] bool all_drive(State const& state) const {
     return std::ranges::all_of(slots_, [&](std::uint32_t slot) {
