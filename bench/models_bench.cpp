@@ -6,14 +6,18 @@
 #include <utility>
 #include <vector>
 
+#include "cambium/behavior/adaptive_cruise_control.hpp"
 #include "cambium/behavior/behavior_set.hpp"
 #include "cambium/behavior/idm_classic.hpp"
 #include "cambium/behavior/idm_lane_tracking.hpp"
+#include "cambium/behavior/idm_stochastic.hpp"
 #include "cambium/behavior/intersection.hpp"
+#include "cambium/behavior/lane_change_rule_based.hpp"
 #include "cambium/behavior/mobil.hpp"
 #include "cambium/behavior/pedestrian.hpp"
 #include "cambium/behavior/random_macro_actions.hpp"
 #include "cambium/behavior/rss_conformant.hpp"
+#include "cambium/behavior/zip_merge.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/dynamics/single_track.hpp"
@@ -55,6 +59,23 @@ World highway(std::size_t agents, Driver const& driver) {
                .speed = 10.0 + 6.0 * cb::uniform01(random),
                .behavior = driver(11.0 + 11.0 * cb::uniform01(random))});
   }
+  return world;
+}
+
+/// Vehicles on the lanes before the project's lane drop, the first ones 60 m before it.
+Sim<cb::ZipMerge> lane_drop(std::size_t agents) {
+  Sim<cb::ZipMerge> world(support::load_map(CAMBIUM_SOURCE_DIR "/maps/lane_drop.xodr"), {.seed = 1});
+  cb::RandomStream random(7, 0, 0);
+  for (double s = 380.0; world.size() < agents; s -= 25.0)
+    for (auto const& entry : world.map().roads()[0].sections[0].lanes) {
+      auto const& lane = world.map().lane(entry.id);
+      if (!lane.drivable() || world.size() == agents) continue;
+      auto const pose = lane.path.pose(s - 8.0 * cb::uniform01(random));
+      world.add({.position = pose.position(),
+                 .heading = pose.heading,
+                 .speed = 10.0 + 4.0 * cb::uniform01(random),
+                 .behavior = cb::ZipMerge{.idm = {.desired_speed = 11.0 + 11.0 * cb::uniform01(random)}}});
+    }
   return world;
 }
 
@@ -142,7 +163,7 @@ void print_ratios(yardstick::Results const& results) {
   row("models/idm_lane_tracking/20", "yardstick/full/20", "(target 1.5)");
   row("models/intersection/10", "yardstick/full/10", "");
   for (std::string const name :
-       {"idm_classic", "mobil", "rss_conformant", "random_macro_actions", "idm_lane_tracking", "social_force"})
+       {"idm_classic", "mobil", "rss_conformant", "random_macro_actions", "idm_lane_tracking", "pedestrian"})
     row(("models/" + name + "/10000").c_str(), ("models/" + name + "/100").c_str(), "(linear: about 1)");
 }
 
@@ -155,6 +176,17 @@ int main(int argc, char** argv) {
     });
     register_steps<Sim<cb::Mobil>>("mobil", n, [](std::size_t agents) {
       return highway<Sim<cb::Mobil>>(agents, [](double v) { return cb::Mobil{.idm = {.desired_speed = v}}; });
+    });
+    using Acc = cb::AdaptiveCruiseControl;
+    register_steps<Sim<Acc>>("adaptive_cruise_control", n, [](std::size_t agents) {
+      return highway<Sim<Acc>>(agents, [](double v) { return Acc{.idm = {.desired_speed = v}}; });
+    });
+    register_steps<Sim<cb::IdmStochastic>>("idm_stochastic", n, [](std::size_t agents) {
+      return highway<Sim<cb::IdmStochastic>>(agents, [](double) { return cb::IdmStochastic{}; });
+    });
+    using RuleBased = cb::LaneChangeRuleBased;
+    register_steps<Sim<RuleBased>>("lane_change_rule_based", n, [](std::size_t agents) {
+      return highway<Sim<RuleBased>>(agents, [](double v) { return RuleBased{.idm = {.desired_speed = v}}; });
     });
     using Rss = cb::RssConformant<cb::IdmClassic>;
     register_steps<Sim<Rss>>("rss_conformant", n, [](std::size_t agents) {
@@ -172,7 +204,8 @@ int main(int argc, char** argv) {
     register_steps<World>("idm_lane_tracking", n, make, cb::CollisionAny{});
   }
   for (std::size_t const n : {std::size_t{20}, std::size_t{100}, std::size_t{10000}})
-    register_steps<Sim<cb::Pedestrian>>("social_force", n, [](std::size_t agents) { return crowd(agents); });
+    register_steps<Sim<cb::Pedestrian>>("pedestrian", n, [](std::size_t agents) { return crowd(agents); });
+  register_steps<Sim<cb::ZipMerge>>("zip_merge", 20, lane_drop);
   register_steps<Sim<cb::Intersection>>("intersection", 10, crossing);
   yardstick::register_yardsticks();
   return yardstick::run_benchmarks(argc, argv, "What each behaviour costs, beside kernels.", print_ratios);

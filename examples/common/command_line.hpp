@@ -22,6 +22,15 @@ namespace examples {
   return CLI::Validator(check, "");
 }
 
+/// Accepts any text but none.
+[[nodiscard]] inline CLI::Validator not_empty() {
+  return CLI::Validator(
+      [](std::string const& word) {
+        return word.empty() ? std::string("needs a name, not an empty text") : std::string();
+      },
+      "");
+}
+
 /// 0, or 2 with a line on the error stream where the standard output did not take all that was printed.
 [[nodiscard]] inline int finish_output(std::string const& program) {
   if (std::fflush(stdout) == 0 && std::cout.flush()) return 0;

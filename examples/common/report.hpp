@@ -82,8 +82,16 @@ template <class Site>
   return json;
 }
 
+/// What the words of the table mean; `success` is what there is to be done.
+[[nodiscard]] inline std::string explained(std::string const& success) {
+  return "  success: " + success +
+         " before time was out, and nobody collided\n"
+         "  off-road: a part of the ego was beyond the lanes to drive on, as that of a truck may be in a tight bend,\n"
+         "    where its rear axle keeps to the lane\n";
+}
+
 inline void print_table(Settings const& settings, Totals const& t, double seconds,
-                        std::vector<std::string> const& counts) {
+                        std::vector<std::string> const& counts, std::string const& success) {
   auto const n = static_cast<double>(settings.scenarios);
   auto const percent = [n](std::uint64_t count) { return 100.0 * static_cast<double>(count) / n; };
   auto const steps = static_cast<double>(t.agent_steps);
@@ -99,9 +107,10 @@ inline void print_table(Settings const& settings, Totals const& t, double second
               t.speed_sum / std::max(1.0, steps), static_cast<double>(t.hard_brakings) / n, -hard_braking);
   for (std::size_t k = 0; k < t.counts.size(); ++k)
     std::printf("  %-16s %6.2f per scenario\n", counts[k].c_str(), static_cast<double>(t.counts[k]) / n);
-  std::printf("  agent-steps      %.3g in %.2f s: %.3g per second on %llu thread%s, sampling and judging included\n\n",
+  std::printf("  agent-steps      %.3g in %.2f s: %.3g per second on %llu thread%s, sampling and judging included\n",
               steps, seconds, steps / seconds, static_cast<unsigned long long>(settings.threads),
               settings.threads == 1 ? "" : "s");
+  std::printf("%s\n", explained(success).c_str());
 }
 
 }  // namespace examples

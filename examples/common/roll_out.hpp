@@ -44,7 +44,7 @@ struct Outcome {
   std::vector<std::uint64_t> counts;  // what the scenario counts, see `Words::counts`
   std::string trajectory;             // CSV rows, where asked for
 
-  /// How much there is to see.
+  /// How much there is to see; `why_interesting` says it in words.
   [[nodiscard]] double interest() const {
     return (kind == Kind::collision ? 1e6 : 0.0) + (off_road ? 1e5 : 0.0) + static_cast<double>(hard_brakings) +
            0.01 * agents;
@@ -52,22 +52,22 @@ struct Outcome {
 };
 
 /// Columns of the trajectories: x, y [m] are of the reference point (centre of the rear axle), front and rear [m] how
-/// far the vehicle reaches from there.
+/// far the vehicle reaches from there; ego is 1 for the ego, else 0.
 inline constexpr char const* trajectory_columns =
-    "scenario,time,agent,x,y,heading,speed,acceleration,front,rear,width\n";
+    "scenario,time,agent,x,y,heading,speed,acceleration,front,rear,width,ego\n";
 
 template <class World>
-void append_rows(std::string& rows, std::uint64_t scenario, World const& world) {
+void append_rows(std::string& rows, std::uint64_t scenario, World const& world, cambium::AgentId ego) {
   char line[200];
   for (std::size_t i = 0; i < world.size(); ++i) {
     auto const& r = world.frame().agents[i];
     if (r.status != cambium::AgentStatus::driving) continue;
     auto const& shape = world.roster().agents[i].shape;
-    std::snprintf(line, sizeof line, "%llu,%.1f,%s,%.4f,%.4f,%.6f,%.4f,%.4f,%.2f,%.2f,%.2f\n",
+    std::snprintf(line, sizeof line, "%llu,%.1f,%s,%.4f,%.4f,%.6f,%.4f,%.4f,%.2f,%.2f,%.2f,%d\n",
                   static_cast<unsigned long long>(scenario), world.time(),
                   cambium::to_string(world.roster().agents[i].id).c_str(), r.state.x, r.state.y,
                   std::remainder(r.state.heading, 2 * cambium::geometry::pi), r.state.speed, r.action.acceleration,
-                  shape.front, shape.rear, shape.width());
+                  shape.front, shape.rear, shape.width(), world.roster().agents[i].id == ego);
     rows += line;
   }
 }
@@ -129,14 +129,14 @@ template <class Site>
   std::optional<Film> film;
   if (recording != nullptr) film.emplace(scenario);
   std::vector<bool> braking(world.size(), false);
-  if (keep) append_rows(outcome.trajectory, number, world);
+  if (keep) append_rows(outcome.trajectory, number, world, scenario.ego);
   for (bool is_over = false; !is_over;) {
     auto const result = world.step(dt);
     if (!result)
       throw cambium::WorldError("scenario " + std::to_string(number) + ", agent " + to_string(result.agent),
                                 to_string(result.problem));
     count_agents(world, braking, outcome);
-    if (keep) append_rows(outcome.trajectory, number, world);
+    if (keep) append_rows(outcome.trajectory, number, world, scenario.ego);
     if (film) film->record(world);
     auto const verdict = judge.evaluate(world);
     outcome.steps = verdict.steps;

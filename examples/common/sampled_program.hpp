@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cerrno>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <string>
 #include <system_error>
@@ -33,6 +35,13 @@ struct Words {
   return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
 }
 
+/// Why of all scenarios this one is replayed.
+[[nodiscard]] inline char const* why_interesting(Outcome const& outcome) {
+  if (outcome.kind == Outcome::Kind::collision) return "a collision";
+  if (outcome.off_road) return "the ego is off-road";
+  return "the most hard brakings";
+}
+
 [[nodiscard]] inline std::string in_words(Outcome const& outcome, Words const& words) {
   if (outcome.kind == Outcome::Kind::success) return words.success;
   if (outcome.kind == Outcome::Kind::time_out) return "time ran out";
@@ -51,10 +60,15 @@ inline void add_options(CLI::App& program, Settings& settings, std::string const
   number("--steps", settings.steps, 1, 1'000'000, "of 0.2 s, after which a scenario is timed out");
   number("--trajectories", settings.trajectories, 0, 10'000'000,
          "scenarios whose trajectories are written, besides the replayed one");
-  program.add_option("--map", settings.map_file, map_sentence)->type_name("FILE")->capture_default_str();
+  program.add_option("--map", settings.map_file, map_sentence)
+      ->type_name("FILE")
+      ->check(not_empty())
+      ->capture_default_str();
   program.add_option("--out", settings.out, "folder for summary.json, trajectories.csv and replay.html")
       ->type_name("DIR")
+      ->check(not_empty())
       ->capture_default_str();
+  program.footer("What it prints:\n" + explained("the ego, or everybody, did what there was to do"));
 }
 
 /// Makes the folder and finds out now, not after the work, whether it takes files. Older results stay until there are
@@ -63,10 +77,14 @@ inline void prepare(std::filesystem::path const& folder) {
   std::error_code problem;
   std::filesystem::create_directories(folder, problem);
   if (problem)
-    throw cambium::Error(folder.string(), "the folder cannot be made (" + problem.message() + ")",
+    throw cambium::Error(folder.string(), "this folder cannot be made (" + problem.message() + ")",
                          "choose another --out");
   auto const probe = folder / ".probe";
-  cambium::write_file(probe, "");
+  errno = 0;
+  if (!std::ofstream(probe))
+    throw cambium::Error(folder.string(),
+                         "no files can be written into this folder (" + std::generic_category().message(errno) + ")",
+                         "choose another --out");
   std::filesystem::remove(probe, problem);
 }
 
@@ -107,10 +125,11 @@ void sample_and_report(Site const& site, Settings const& settings, Words const& 
   auto const totals = total(outcomes);
 
   write_results(folder, site, settings, words, outcomes, totals);
-  print_table(settings, totals, seconds, words.counts);
-  std::cout << "  " << (folder / "replay.html").string() << "       plays scenario " << totals.most_interesting
-            << " in a browser\n  " << (folder / "summary.json").string()
-            << "      these figures and each scenario's outcome\n  " << (folder / "trajectories.csv").string()
+  print_table(settings, totals, seconds, words.counts, words.success);
+  std::cout << "  " << (folder / "replay.html").string() << "       plays scenario " << totals.most_interesting << " ("
+            << why_interesting(outcomes[totals.most_interesting]) << ") in a browser\n  "
+            << (folder / "summary.json").string() << "      these figures and each scenario's outcome\n  "
+            << (folder / "trajectories.csv").string()
             << "  paths of the first scenarios' vehicles and of the replayed one's\n";
 }
 

@@ -214,3 +214,28 @@ TEST_CASE("dense traffic on a curve neither collides nor allocates, and its copi
   }
   CHECK(copy.frame() == world.frame());
 }
+
+TEST_CASE("whose speed rises beyond the desired one remembers the curves ahead, and drives as if it looked anew") {
+  World<cb::SingleTrack> world(own_map("highway.xodr"));
+  auto const& lane = world.map().lane(world.map().roads()[0].sections[0].lanes[1].id);
+  auto const pose = lane.path.pose(20.0);
+  auto const id = world.add({.position = pose.position(),
+                             .heading = pose.heading,
+                             .speed = 15.0,
+                             .behavior = IdmLaneTracking{.idm = {.desired_speed = 14.0}}});
+  int looked = 0, steps = 0;
+  for (; steps < 200; ++steps) {
+    auto state = world.state(id);
+    state.speed = 15.0 + 0.1 * steps;
+    world.set_state(id, state);
+    auto forgetful = world;
+    forgetful.memory<IdmLaneTracking>(id) = {};
+    auto const fastest = world.memory<IdmLaneTracking>(id).fastest;
+    world.step(0.2);
+    forgetful.step(0.2);
+    REQUIRE(world.state(id) == forgetful.state(id));
+    looked += world.memory<IdmLaneTracking>(id).fastest != fastest;
+  }
+  CHECK(looked > 2);
+  CHECK(looked < 20);
+}

@@ -112,6 +112,24 @@ TEST_CASE("where one lane is sparser, all pass, none collides, and nobody waits 
   }
 }
 
+TEST_CASE("beside a fast lane nobody brakes to a standstill for those who pass by themselves") {
+  auto const map = support::own_map("lane_drop.xodr");
+  for (double gap = 40.0; gap < 85.0; gap += 5.0) {
+    CAPTURE(gap);
+    Sim world(map, {.seed = 1});
+    std::vector<cb::AgentId> slow;
+    for (double s = 400.0; s > 300.0; s -= 36.0) slow.push_back(add(world, 3, s, 13.8, zip(30.0)));
+    for (double s = 410.0; s > 100.0; s -= gap) add(world, 2, s, 26.0, zip(30.0));
+    double slowest = 100.0;
+    for (int k = 0; k < 150; ++k) {
+      world.step(0.2);
+      for (auto const id : slow) slowest = std::min(slowest, world.state(id).speed);
+      CHECK(collisions(world) == 0);
+    }
+    CHECK(slowest > 3.0);
+  }
+}
+
 TEST_CASE("at a ramp that merges in a junction ramp and main road alternate, and nobody collides") {
   auto const map = support::own_map("merging.xodr");
   auto const road = [&map](std::string const& name) -> cb::map::Road const& {

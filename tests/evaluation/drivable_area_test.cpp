@@ -98,6 +98,21 @@ TEST_CASE("off the road is who reaches beyond the drivable lanes, as a brute-for
   }
 }
 
+TEST_CASE("beside a lane whose width changes, along bends to both sides, the road ends where that lane does") {
+  cb::map::LanePlan const own{}, opens{.width = 1.0, .end_width = 4.0}, closes{.width = 4.0, .end_width = 1.0};
+  for (double const curvature : {-0.02, 0.0, 0.02})
+    for (auto const& beside : {opens, closes}) {
+      CAPTURE(curvature);
+      CAPTURE(beside.width);
+      auto const map = support::map_of({.id = "1",
+                                        .line = cb::map::lay_from({}, {{150.0, curvature, curvature}}),
+                                        .sections = {{.left = {own, beside}, .right = {own, beside}}}});
+      auto const count = compare(map, 600, 0.15);
+      CHECK(count.off > 400);
+      CHECK(count.on > 400);
+    }
+}
+
 TEST_CASE("on a narrow bend the border of the road is met where it is") {
   auto const map = straight_road(1, 60, 0.05);
   auto const count = compare(map, 2000, 0.15);

@@ -25,8 +25,8 @@ inline void check_help(program::Program const& program) {
   auto const help = program.run({"--help"});
   CHECK(help.code == 0);
   CHECK(help.err.empty());
-  for (char const* option :
-       {"--scenarios", "--seed", "--threads", "--steps", "--trajectories", "--map", "--out", "--help"}) {
+  for (char const* option : {"--scenarios", "--seed", "--threads", "--steps", "--trajectories", "--map", "--out",
+                             "--help", "success:", "off-road:"}) {
     CAPTURE(std::string(option));
     CHECK(help.out.find(option) != std::string::npos);
   }
@@ -45,6 +45,8 @@ inline void check_wrong_use(program::Program const& program, std::string const& 
                         {{"--scenarios", "0"}, "--scenarios"},
                         {{"--steps", "2.5"}, "--steps"},
                         {{"--map", "nowhere.xodr"}, "nowhere.xodr"},
+                        {{"--map", ""}, "--map"},
+                        {{"--out", ""}, "--out"},
                         {{"--map", file}, file},
                         {{"--map", unfit}, unfit},
                         {{"--scenarios", "1", "--out", file + "/below"}, file + "/below"}};
@@ -79,6 +81,9 @@ inline void check_same_on_any_threads(program::Program const& program, std::vect
     CHECK(one == program::content_of(folder.path() / "2" / name));
     CHECK(one != program::content_of(folder.path() / "other" / name));
   }
+  auto const trajectories = program::content_of(folder.path() / "1" / "trajectories.csv");
+  CHECK(trajectories.substr(0, trajectories.find('\n')).ends_with(",ego"));
+  CHECK(trajectories.find(",1\n") != std::string::npos);
   CHECK(program::content_of(folder.path() / "1" / "replay.html").find("</html>") != std::string::npos);
   CHECK(value_of(program::content_of(folder.path() / "1" / "summary.json"), "scenarios") == 12.0);
 }

@@ -4,12 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
+#include <cstdint>
 #include <string>
 #include <vector>
 
 #include "../behavior/lane_traffic_fixtures.hpp"
 #include "../support/corpus.hpp"
+#include "../support/samples.hpp"
 #include "cambium/behavior/zip_merge.hpp"
 #include "cambium/observer/delayed.hpp"
 #include "cambium/observer/observer_set.hpp"
@@ -25,10 +26,7 @@ using Observer =
 using World = cb::World<cb::BehaviorSet<cb::Mobil, cb::LaneChangeRuleBased, cb::ZipMerge>, cb::InterpolateExecution,
                         cb::SingleTrack, Observer>;
 
-std::uint64_t samples(std::uint64_t usual) {
-  char const* const factor = std::getenv("CAMBIUM_SAMPLES");
-  return usual * (factor == nullptr ? 1 : std::strtoull(factor, nullptr, 10));
-}
+std::uint64_t samples(std::uint64_t usual) { return usual * support::sample_factor(); }
 
 struct Sight {
   char const* name;

@@ -4,7 +4,9 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <sstream>
 #include <string>
+#include <vector>
 
 #include <doctest/doctest.h>
 
@@ -169,6 +171,42 @@ TEST_CASE("a browser draws the page, plays it, and shows each vehicle where it i
   CHECK(at_first[3] == asphalt);
   CHECK(at_last == std::vector<std::string>{at_last[0], obstacle, asphalt, ego});
   CHECK(at_last[0] != ego);  // only its trail is left there
+}
+
+TEST_CASE("traffic lights are kept where they change, and shown as they are") {
+  Recording recording = sample_recording();
+  recording.stop_lines = {{{100.0, 1.75}, {100.0, -1.75}, LightId{1}}, {{50.0, 1.75}, {50.0, -1.75}}};
+  using map::LightColor;
+  for (std::size_t k = 0; k < recording.frames.size(); ++k)
+    recording.frames[k].lights = {LightColor::off, k < 10 ? LightColor::green : LightColor::red};
+  std::string const data = data_of(html_replay(recording));
+  CHECK(is_balanced(data));
+  CHECK(data.find("\"stops\":[[[100,1.75,100,-1.75],1],\n[[50,1.75,50,-1.75],-1]]") != std::string::npos);
+  CHECK(data.find("\"lights\":[[0,\"01\"],\n[10,\"03\"]]") != std::string::npos);
+  auto const chromium = browser::find();
+  if (!chromium) {
+    MESSAGE("skipped: no chromium, chromium-browser or google-chrome in PATH");
+    return;
+  }
+  browser::TemporaryFolder const folder;
+  write_html_replay(folder.path() / "lights.html", recording);
+  auto const seen = [&](char const* frame) {
+    auto const page =
+        browser::document(*chromium, folder.path() / "lights.html",
+                          std::string("follow=0&frame=") + frame + "&probe=100,0;101.2,0;50,0;51.2,0;80,0");
+    std::istringstream text(browser::attribute(page, "<body", "data-pixel"));
+    std::vector<std::string> list;
+    for (std::string colour; std::getline(text, colour, ';');) list.push_back(colour);
+    list.resize(5);
+    return list;
+  };
+  auto const before = seen("9"), after = seen("10");
+  std::string const asphalt = before[4];
+  CHECK(before[0] == "255,255,255");
+  CHECK(before[1] == "47,208,95");  // green
+  CHECK(after[1] == "255,59,48");   // red
+  CHECK(before[2] == "255,255,255");
+  CHECK(before[3] == asphalt);  // a sign has no lamp
 }
 
 TEST_CASE("the replay runs by itself and stops at its end") {

@@ -1,8 +1,14 @@
 #include "cambium/viewer/detail/lane_marks.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <string>
 #include <vector>
 
 #include <doctest/doctest.h>
+
+#include "cambium/viewer/record_world.hpp"
+#include "support/maps.hpp"
 
 using namespace cambium;
 using detail::MarkStyle;
@@ -96,6 +102,45 @@ TEST_CASE("where a lane tapers out, the road has a solid line all along") {
       if (mark.style == MarkStyle::edge) nearest = std::min(nearest, detail::distance_to_line(border, mark.points));
     CHECK(nearest < 0.5);
   }
+}
+
+TEST_CASE("where ways cross in a junction nothing is painted, and its rim is") {
+  for (std::string const name : {"intersection_4way.xodr", "intersection_3way.xodr", "roundabout.xodr"}) {
+    CAPTURE(name);
+    auto const lanes = recorded_lanes(*support::own_map(name));
+    std::vector<detail::LaneArea> const areas(lanes.begin(), lanes.end());
+    auto const ways = [&](geometry::Point const& p) {
+      std::size_t count = 0;
+      for (std::size_t i = 0; i < lanes.size(); ++i)
+        count += lanes[i].kind == RecordedLaneKind::junction && areas[i].contains(p);
+      return count;
+    };
+    std::size_t within = 0, at_rim = 0;
+    for (auto const& mark : detail::LaneMarker(lanes, areas).marks())
+      for (int k = 0; k < 1000; ++k) {
+        auto const p = detail::point_at(mark.points, 0.001 * k);
+        std::size_t fewest = 1000, most = 0;
+        for (int i = 0; i < 8; ++i) {
+          double const direction = i * geometry::pi / 4;
+          auto const there = ways(p + 0.75 * geometry::Point(std::cos(direction), std::sin(direction)));
+          fewest = std::min(fewest, there);
+          most = std::max(most, there);
+        }
+        within += fewest > 0;
+        at_rim += fewest == 0 && most > 0;
+      }
+    CHECK(within == 0);
+    CHECK(at_rim > 100);
+  }
+}
+
+TEST_CASE("lines between lanes go on through a junction where no way crosses them") {
+  auto const lanes = recorded_lanes(*support::own_map("merging.xodr"));
+  std::vector<detail::LaneArea> const areas(lanes.begin(), lanes.end());
+  double longest = 0.0;
+  for (auto const& mark : detail::LaneMarker(lanes, areas).marks())
+    if (mark.style == MarkStyle::divider) longest = std::max(longest, mark.points.back().x() - mark.points.front().x());
+  CHECK(longest > 900.0);  // all along the carriageway of two lanes
 }
 
 TEST_CASE("lanes without two points on a side are skipped") {

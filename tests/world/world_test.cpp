@@ -324,6 +324,28 @@ TEST_CASE("a frame is put back, as a search does, and only one that fits") {
   CHECK(says(error_of([&] { Sim bad(nullptr, world.shared_roster(), root); }), "no map"));
 }
 
+TEST_CASE("frames are exchanged: each world goes on where the other's frame was, as if it had been put there") {
+  Sim world(straight_road(1, 500), {.seed = 3});
+  world.add({.position = {10, -1.75}, .speed = 10});
+  world.add({.position = {40, -1.75}, .speed = 4});
+  auto const root = world.frame();
+  for (int i = 0; i < 5; ++i) world.step(0.2);
+  auto const later = world.frame();
+  auto frame = root;
+  world.exchange(frame);
+  CHECK(frame == later);
+  CHECK(world.frame() == root);
+  auto const leader = world.observe(world.roster().agents[0].id).front();  // of the frame that is there now
+  REQUIRE(leader);
+  CHECK(leader->gap ==
+        doctest::Approx(30.0 - world.roster().agents[0].shape.front - world.roster().agents[1].shape.rear));
+  for (int i = 0; i < 5; ++i) world.step(0.2);
+  CHECK(world.frame() == later);
+  world.exchange(frame);
+  CHECK(world.frame() == later);
+  CHECK(frame == later);
+}
+
 TEST_CASE("an agent on the wrong lane at a fork leaves its route; one that passes its end has arrived") {
   auto const map = own_map("merging.xodr");
   Sim world(map);

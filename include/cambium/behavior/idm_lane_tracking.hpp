@@ -119,8 +119,10 @@ struct IdmLaneTracking {
     auto const segments = view.corridor().center.segments();
     double const fastest = std::max(speed, idm.desired_speed), square = fastest * fastest;
     auto const faster = static_cast<float>(fastest);
+    // Whose speed rises beyond the desired one does not look anew in every step.
+    float const room_to_rise = speed > idm.desired_speed ? 1.1f : 1.0f;
     if (memory.corridor != at.corridor || at.segment < memory.from || faster > memory.fastest)
-      memory = {at.segment, 0, 0.0f, faster, at.corridor};
+      memory = {at.segment, 0, 0.0f, room_to_rise * faster, at.corridor};
     memory.from = at.segment;
     double const twice_braking = 2.0 * p.comfortable_deceleration, reach = at.s + speed * (speed / twice_braking + 1.0);
     if (reach < static_cast<double>(memory.known_until)) return;

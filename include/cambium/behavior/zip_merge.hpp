@@ -66,7 +66,8 @@ struct ZipMerge {
     if (merge < infinite) {
       if (auto const other = let_in(view, memory, leader, merge)) {
         double const front = view.lane_position().s + view.shape().front;
-        ahead.add(law, speed, gap_to_open(merge - front, other->s - other->rear - front), other->speed);
+        double const gap = gap_to_open(merge - front, other->s - other->rear - front, speed, other->speed);
+        ahead.add(law, speed, gap, other->speed);
       }
     } else if (leader) {
       memory.ahead = leader->agent;
@@ -80,10 +81,13 @@ struct ZipMerge {
   static constexpr double comfortable = 2.0;
 
   /// The gap [m] to follow one in the other lane by, `gap` being the one that there is: more of it the farther the
-  /// merge is, so that it opens bit by bit, but never more than the way to whichever is farther.
-  [[nodiscard]] static double gap_to_open(double to_merge, double gap) {
-    constexpr double share = 0.3;
-    return to_merge > 0.0 ? std::min(gap + share * to_merge, std::max(gap, to_merge)) : gap;
+  /// merge is, so that it opens bit by bit, or most of what opens by itself until then where the other is faster; but
+  /// never more than the way to whichever is farther.
+  [[nodiscard]] static double gap_to_open(double to_merge, double gap, double speed, double other_speed) {
+    constexpr double share = 0.3, trust = 0.7;
+    if (!(to_merge > 0.0)) return gap;
+    double const opening = trust * (other_speed - speed) * to_merge / std::max(speed, 1.0);
+    return std::min(gap + std::max(share * to_merge, opening), std::max(gap, to_merge));
   }
 
   /// Counts how long the vehicle has been standing. Who has lost patience and goes has none again before it drives.

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <initializer_list>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cambium/core/write_file.hpp"
@@ -45,11 +46,15 @@ class ReplayData {
     each(lane_arrows(recording_.lanes, areas_, 50.0), [this](LaneArrow const& arrow) {
       list({arrow.at.x() - origin_.x(), arrow.at.y() - origin_.y(), arrow.heading}, 2);
     });
+    out_ += ",\n\"stops\":";
+    each(recording_.stop_lines, [this](RecordedStopLine const& line) { stop(line); });
     agents();
     out_ += ",\n\"times\":";
     each(recording_.frames, [this](RecordedFrame const& frame) { append_number(out_, frame.time, 3); });
     out_ += ",\n\"frames\":";
     each(recording_.frames, [this](RecordedFrame const& frame) { poses(frame); });
+    out_ += ",\n\"lights\":";
+    lights();
     return out_ + "}";
   }
 
@@ -90,6 +95,24 @@ class ReplayData {
       points(area.outline);
       out_ += ']';
     });
+  }
+
+  void stop(RecordedStopLine const& line) {
+    out_ += '[';
+    points({line.left, line.right});
+    out_ += ',' + (is_valid(line.light) ? to_string(line.light) : "-1") + ']';
+  }
+
+  // One digit for each light, and only in frames where one has changed: [frame, "0123"].
+  void lights() {
+    std::vector<std::pair<std::size_t, std::string>> changes;
+    for (std::size_t k = 0; k < recording_.frames.size(); ++k) {
+      std::string digits;
+      for (auto const color : recording_.frames[k].lights) digits += static_cast<char>('0' + static_cast<int>(color));
+      if (changes.empty() || changes.back().second != digits) changes.emplace_back(k, digits);
+    }
+    each(changes,
+         [this](auto const& change) { out_ += '[' + std::to_string(change.first) + ",\"" + change.second + "\"]"; });
   }
 
   void agents() {

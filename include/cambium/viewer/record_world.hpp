@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "cambium/map/build_corridor.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/viewer/recording.hpp"
 #include "cambium/world/frame.hpp"
@@ -28,6 +29,28 @@ namespace cambium {
           {lane.left.points(), lane.right.points(), road.name + ":" + std::to_string(lane.number), kind, true});
     }
   return lanes;
+}
+
+/// The stop lines of a map, where lane corridors have them (see `map::CorridorSignal`), each once.
+[[nodiscard]] inline std::vector<RecordedStopLine> recorded_stop_lines(Map const& map) {
+  constexpr double reach = 40.0;  // [m] behind a signal to the junction where it counts
+  std::vector<RecordedStopLine> lines;
+  for (auto const& lane : map.lanes()) {
+    if (lane.signals.empty()) continue;
+    auto corridor = map::detail::LaneJoiner(map).join(map::straight_route(map, lane.id, lane.length() + reach).lanes);
+    for (auto const& signal : map::detail::corridor_signals(map, corridor)) {
+      auto const at = corridor.center.pose(signal.line);
+      auto const widths = corridor.widths_at(signal.line);
+      geometry::Point const aside(-std::sin(at.heading), std::cos(at.heading));
+      RecordedStopLine const line{at.position() + widths.left * aside, at.position() - widths.right * aside,
+                                  signal.light};
+      bool const is_known = std::any_of(lines.begin(), lines.end(), [&line](RecordedStopLine const& known) {
+        return known.light == line.light && (known.left - line.left).norm() + (known.right - line.right).norm() < 0.2;
+      });
+      if (!is_known) lines.push_back(line);
+    }
+  }
+  return lines;
 }
 
 /// A free corridor as a recording shows it: beside the lanes; where it crosses them they are drawn over it.
@@ -64,8 +87,8 @@ namespace cambium {
           {center.x(), center.y(), std::atan2(along.y(), along.x()), 0.0, 0.0, true}};
 }
 
-/// Writes a world's course into a recording: lanes, agents and objects as they are now; then a frame for each call of
-/// `record`. Agents that enter later are not shown.
+/// Writes a world's course into a recording: lanes, stop lines, agents and objects as they are now; then a frame for
+/// each call of `record`. Agents that enter later are not shown.
 class WorldRecorder {
  public:
   template <class World>
@@ -74,6 +97,7 @@ class WorldRecorder {
     for (auto const& road : world.roster().free_roads)
       recording_.lanes.push_back(recorded_way(road.numbered->corridors.front()));
     for (auto& lane : recorded_lanes(world.map())) recording_.lanes.push_back(std::move(lane));
+    recording_.stop_lines = recorded_stop_lines(world.map());
     for (auto const& agent : world.roster().agents)
       recording_.agents.push_back({agent.id, agent.shape, "", RecordedAgentKind::other});
     agents_ = recording_.agents.size();
@@ -98,6 +122,7 @@ class WorldRecorder {
   template <class World>
   void record(World const& world) {
     RecordedFrame frame{world.time(), std::vector<RecordedPose>(agents_)};
+    for (auto const& light : world.roster().lights) frame.lights.push_back(light.at(frame.time));
     auto const& agents = world.roster().agents;
     std::size_t slot = 0;
     for (std::size_t i = 0; i < agents_; ++i) {  // both are in order of the ids

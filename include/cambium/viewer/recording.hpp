@@ -10,6 +10,7 @@
 #include "cambium/core/ids.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/geometry/shape.hpp"
+#include "cambium/map/signals.hpp"
 
 namespace cambium {
 
@@ -50,8 +51,9 @@ struct RecordedPose {
 
 /// One instant of a recording.
 struct RecordedFrame {
-  double time = 0.0;                  ///< [s]
-  std::vector<RecordedPose> poses{};  ///< one for each of `Recording::agents`, in their order
+  double time = 0.0;                      ///< [s]
+  std::vector<RecordedPose> poses{};      ///< one for each of `Recording::agents`, in their order
+  std::vector<map::LightColor> lights{};  ///< what each traffic light shows, by `LightId`; off beyond its end
 };
 
 /// One lane as the area between two borders. Left and right are as seen along the order of the points.
@@ -63,11 +65,19 @@ struct RecordedLane {
   bool forward = true;                                ///< traffic runs in the order of the points (false: against it)
 };
 
+/// Where the traffic of a lane stops: at a stop sign, or at a traffic light.
+struct RecordedStopLine {
+  geometry::Point left{0.0, 0.0};   ///< [m], as seen by those who come to it
+  geometry::Point right{0.0, 0.0};  ///< [m]
+  LightId light = none<LightId>;    ///< the light above it; none: a sign
+};
+
 /// What a viewer shows: lanes, agents, and where the agents were over time. Plain data that knows no world, so that any
 /// program can fill it.
 struct Recording {
   std::string title{};
   std::vector<RecordedLane> lanes{};
+  std::vector<RecordedStopLine> stop_lines{};
   std::vector<RecordedAgent> agents{};
   std::vector<RecordedFrame> frames{};
   std::vector<std::string> notes{};  ///< one line each, shown below the title

@@ -12,7 +12,7 @@ inline constexpr std::string_view replay_style = R"css(
   --page: #f4f6f8; --panel: #ffffff; --line: #d9dfe5; --text: #16202b; --soft: #5b6a79; --accent: #1273eb;
   --ground: #e6ebe4; --asphalt: #6d747d; --verge: #8d949c; --crossing: #676e77; --paint: #ffffff; --centre: #ffd54a;
   --other: #eef1f4; --ego: #1e90ff; --merging: #ffab1f; --static: #b79bff; --collided: #e0218a; --outline: #1b2430; --glass: #33404e;
-  --brake: #ff2222; --ring: #ffffff;
+  --brake: #ff2222; --ring: #ffffff; --go: #2fd05f; --caution: #ffd21f; --halt: #ff3b30;
 }
 @media (prefers-color-scheme: dark) {
   :root {

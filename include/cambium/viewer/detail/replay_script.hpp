@@ -15,6 +15,7 @@ const count = data.times.length, agents = data.agents.map(([id, kind, label, fro
   ({id, kind, label, front, rear, left, right, length: front + rear, width: left + right}));
 const ego = [4, 1].map(kind => agents.findIndex(agent => agent.kind === kind)).find(i => i >= 0) ?? -1;
 const kinds = ['other', 'ego', 'merging', 'static', 'collided'], surfaces = ['asphalt', 'verge', 'crossing', 'verge'];
+const lamps = ['', 'go', 'caution', 'halt'];   // a light's colours: off, green, yellow, red
 const state = {at: 0, playing: false, follow: false, selected: -1, hovered: -1, lane: null, ids: false};
 const camera = {x: 0, y: 0, scale: 1};   // middle of the view [m], pixels per metre
 let width = 1, height = 1, ratio = 1, colour = {};
@@ -60,6 +61,8 @@ const timeAt = at => {
   const k = Math.min(Math.floor(at), count - 1), u = at - k;
   return k + 1 < count ? data.times[k] + (data.times[k + 1] - data.times[k]) * u : data.times[k];
 };
+// What the traffic lights show, a digit each.
+const lightsAt = at => (data.lights.findLast(([first]) => first <= at) || [0, ''])[1];
 const toScreen = (x, y) => [(x - camera.x) * camera.scale + width / 2, (camera.y - y) * camera.scale + height / 2];
 const toMap = (x, y) => [(x - width / 2) / camera.scale + camera.x, camera.y - (y - height / 2) / camera.scale];
 const middleOf = (agent, pose) => {
@@ -105,7 +108,7 @@ function resize() {
 function readColours() {
   const style = getComputedStyle(document.documentElement);
   const names = ['ground', ...surfaces, 'paint', 'centre', ...kinds, 'outline', 'glass', 'brake', 'ring', 'text',
-    'panel'];
+    'panel', ...lamps.slice(1)];
   for (const name of names) colour[name] = style.getPropertyValue('--' + name).trim();
 }
 
@@ -135,6 +138,27 @@ function drawMap() {
   context.strokeStyle = colour.centre;
   context.stroke(markPaths[2]);
   context.globalAlpha = 1;
+  drawStops();
+}
+// Stop lines, and behind each the lamp of its light where that is on.
+function drawStops() {
+  const shown = lightsAt(state.at), px = 1 / camera.scale, radius = Math.max(.6, 4 * px);
+  const disc = (x, y, r, name) => {
+    context.fillStyle = colour[name];
+    context.beginPath();
+    context.arc(x, y, r, 0, 7);
+    context.fill();
+  };
+  context.strokeStyle = colour.paint;
+  context.lineWidth = Math.max(.4, 1.5 * px);
+  for (const [[x0, y0, x1, y1], light] of data.stops) {
+    context.beginPath();
+    trace(context, [x0, y0, x1, y1]);
+    context.stroke();
+    const lamp = lamps[shown[light]], away = (.4 + 1.3 * radius) / (Math.hypot(x1 - x0, y1 - y0) || 1);
+    const x = (x0 + x1) / 2 + (y0 - y1) * away, y = (y0 + y1) / 2 + (x1 - x0) * away;
+    if (lamp) disc(x, y, 1.3 * radius, 'outline'), disc(x, y, radius, lamp);
+  }
 }
 function drawTrail(i) {
   if (i < 0) return;

@@ -1,0 +1,63 @@
+#include "cambium/behavior/course.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "../world/fixtures.hpp"
+
+using namespace fixtures;
+
+namespace {
+
+/// A course by an arc of six states, `step` rad each, from the agent of `view` on.
+template <class View>
+cb::Plan<View> arc_from(View const& view, double radius, double step) {
+  cb::Plan<View> plan;
+  auto const begin = view.state();
+  for (int k = 1; k <= 6; ++k) {
+    double const turn = k * step;
+    auto at = begin;
+    at.x += radius * (std::sin(begin.heading + turn) - std::sin(begin.heading));
+    at.y -= radius * (std::cos(begin.heading + turn) - std::cos(begin.heading));
+    at.heading += turn;
+    plan.trajectory.push_back(at);
+  }
+  plan.action = {1.0, 0.1};
+  return plan;
+}
+
+}  // namespace
+
+TEST_CASE("the length of a course is that of the arcs between its states") {
+  Sim world(straight_road(1, 500));
+  auto const id = world.add({.position = {10, -1.75}, .speed = 10});
+  auto const view = world.observe(id);
+  CHECK(course_length(cb::Plan<decltype(view)>{}, view.state()) == 0.0);
+  for (double const radius : {15.0, -15.0, 80.0}) {
+    auto const plan = arc_from(view, radius, std::copysign(0.1, radius));
+    CHECK(course_length(plan, view.state()) == doctest::Approx(0.6 * std::abs(radius)).epsilon(1e-5));
+  }
+}
+
+TEST_CASE("by any motion one stays on the course, as far along it as the motion goes, and straight on behind its end") {
+  Sim world(straight_road(1, 500));
+  auto const id = world.add({.position = {10, -1.75}, .speed = 10});
+  auto const view = world.observe(id);
+  auto const begin = view.state();
+  double const radius = 30.0, angle = 0.6, length = radius * angle;
+  auto const plan = arc_from(view, radius, angle / 6);
+  for (double way = 0.0; way < 1.5 * length; way += 0.37) {
+    CAPTURE(way);
+    auto const result = plan_along_course(view, plan, {.distance = way, .speed = 7.0}, 0.4);
+    REQUIRE(result.trajectory.size() == 1);
+    auto const& at = result.trajectory.front();
+    double const turn = std::min(way / radius, angle), beyond = std::max(0.0, way - length);
+    CHECK(at.x == doctest::Approx(begin.x + radius * std::sin(turn) + beyond * std::cos(turn)).epsilon(1e-4));
+    CHECK(at.y == doctest::Approx(begin.y + radius * (1.0 - std::cos(turn)) + beyond * std::sin(turn)).epsilon(1e-4));
+    CHECK(at.heading == doctest::Approx(turn).epsilon(1e-3));
+    CHECK(at.speed == 7.0);
+    CHECK(at.time == doctest::Approx(view.time() + 0.4));
+    CHECK(result.action.steering == plan.action.steering);
+  }
+}
