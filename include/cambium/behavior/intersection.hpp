@@ -100,6 +100,7 @@ struct Intersection {
   static constexpr double starting = 2.5;    // [m/s] slower than this
   static constexpr double short_way = 15.0;  // [m] from the junction, to see who starts there
   static constexpr double air = 0.3;         // [m] before a conflict
+  static constexpr double over_line = 0.1;   // [m] who stands at its line is not over it, whatever the rounding
   static constexpr double infinite = std::numeric_limits<double>::infinity();
 
   /// How far a body reaches beyond that which conflicts are found for, as of a small van or one aslant [m].
@@ -301,7 +302,7 @@ struct Intersection {
   /// Whether one is in the junction already.
   [[nodiscard]] static bool is_inside(Other const& other, map::Conflict const& conflict,
                                       map::ConflictZone const& zone) {
-    return other.at + other.user.front > zone.other_line && other.at < conflict.other_lane_end;
+    return other.at + other.user.front > zone.other_line + over_line && other.at < conflict.other_lane_end;
   }
 
   /// The earliest time [s] at which it has gone `distance` [m].
@@ -322,7 +323,7 @@ struct Intersection {
     double const share = 0.6180339887498949 * static_cast<double>(static_cast<std::uint32_t>(view.id()));
     double const turn = 8.0 * (share - std::floor(share)) + (is_smaller ? 0.0 : 20.0);  // [s]
     bool const inside = is_inside(other, conflict, zone),
-               own_inside = own.front > zone.line && own.s < conflict.lane_end;
+               own_inside = own.front > zone.line + over_line && own.s < conflict.lane_end;
     if (stands && own.waited >= patience + turn + (inside != own_inside ? 20.0 : 0.0)) return true;
     if (inside != own_inside) return own_inside;
     if (!inside && is_valid(conflict.other_light) && view.light(conflict.other_light) == map::LightColor::red)
