@@ -39,10 +39,7 @@ class ConflictFinder {
       conflicts.push_back(std::move(conflict));
     }
     set_holds(conflicts);
-    std::sort(conflicts.begin(), conflicts.end(), [](Conflict const& a, Conflict const& b) {
-      return std::tie(a.hull().begin, a.other, a.hull().other_begin) <
-             std::tie(b.hull().begin, b.other, b.hull().other_begin);
-    });
+    sort(conflicts);
     return conflicts;
   }
 
@@ -74,22 +71,23 @@ class ConflictFinder {
     conflict.lane_end = piece.end;
     conflict.other_lane_end = map_.lane(overlap.other).length();
     conflict.other_light = signs_before(map_, map_.lane(overlap.other)).light;
-    auto const range = range_of(overlap, begin, end, conflict.kind);
-    for (auto const& hull : zones_in(range, conflict, true, true)) {
-      std::array<std::array<std::vector<ConflictZone>, 2>, 2> zones;
-      std::size_t count = 1;
-      for (auto const& [own, other] : {std::pair(0, 0), {0, 1}, {1, 0}}) {
-        zones[own][other] = zones_in(hull, conflict, own, other);
-        count = std::max(count, zones[own][other].size());
-      }
-      zones[1][1].assign(count, hull);
-      for (std::size_t i = 0; i < count; ++i) {
-        for (std::size_t own : {0u, 1u})
-          for (std::size_t other : {0u, 1u})
-            conflict.zones[own][other] = i < zones[own][other].size() ? zones[own][other][i] : ConflictZone{};
+    for (auto const& hull : zones_in(range_of(overlap, begin, end, conflict.kind), conflict, true, true))
+      for (auto const& zones : zones_by_size(hull, conflict)) {
+        conflict.zones = zones;
         found.push_back({number, conflict});
       }
+  }
+
+  /// The zones within that of the largest bodies; again with that one where those of smaller bodies lie apart in it.
+  [[nodiscard]] std::vector<ConflictZones> zones_by_size(ConflictZone const& hull, Conflict const& conflict) const {
+    std::vector<ConflictZones> all(1);
+    for (auto const& [own, other] : {std::pair(0u, 0u), {0u, 1u}, {1u, 0u}}) {
+      auto const zones = zones_in(hull, conflict, own != 0, other != 0);
+      all.resize(std::max(all.size(), zones.size()));
+      for (std::size_t i = 0; i < zones.size(); ++i) all[i][own][other] = zones[i];
     }
+    for (auto& zones : all) zones[1][1] = hull;
+    return all;
   }
 
   /// The lanes outside of a lane's junction from which one comes to it (`ahead`: to which it leads); outside of
@@ -251,6 +249,17 @@ class ConflictFinder {
     double const view = conflict.kind == OverlapKind::split ? 0.0 : map_.options().merge_view;
     conflict.ways =
         ways_through(map_, map_.lane(conflict.other), conflict.hull().other_begin - view, conflict.hull().other_end);
+  }
+
+  static void sort(std::vector<Conflict>& conflicts) {
+    auto const key = [](Conflict const& c) {
+      return std::tuple(c.hold[1], c.hull().begin, c.other, c.hull().other_begin, c.lane_end, c.zones[0][0].begin,
+                        c.zones[0][1].begin, c.zones[1][0].begin);
+    };
+    std::sort(conflicts.begin(), conflicts.end(),
+              [&key](Conflict const& a, Conflict const& b) { return key(a) < key(b); });
+    double end = -std::numeric_limits<double>::infinity();
+    for (auto& conflict : conflicts) conflict.farthest_end = end = std::max(end, conflict.hull().end);
   }
 
   /// Sets the places to wait from where, as yet, the junctions begin: before the first zone of the same junction, or of
