@@ -15,6 +15,7 @@
 
 #include "cambium/behavior/behavior_set.hpp"
 #include "cambium/behavior/intersection.hpp"
+#include "cambium/behavior/presets.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/dynamics/single_track.hpp"
@@ -33,6 +34,7 @@ struct Site {
   std::shared_ptr<cambium::Map const> map;
   std::vector<cambium::LaneId> entrances;  ///< lanes where traffic starts
   double trucks = 0.15;                    ///< share of trucks among the vehicles, where they fit
+  double bicycles = 0.0;                   ///< share of bicycles
   bool scattered_ids = false;              ///< instead of 0, 1, 2, ...
   bool lights = false;                     ///< traffic lights are on: one after the other is green for 15 s
 };
@@ -103,12 +105,13 @@ struct Scenario {
 }
 
 /// Mostly cars, and some vans and trucks where these fit.
-[[nodiscard]] inline cambium::geometry::Shape random_shape(cambium::Map const& map, cambium::map::Route const& route,
-                                                           double trucks, cambium::RandomStream& random) {
+[[nodiscard]] inline cambium::geometry::Shape random_shape(Site const& site, cambium::map::Route const& route,
+                                                           cambium::RandomStream& random) {
   using namespace cambium::geometry;
   double const share = cambium::uniform01(random);
-  auto const shape = share < trucks ? truck() : share < trucks + 0.15 ? van() : car();
-  return fits(map, route, shape) ? shape : car();
+  if (share >= 1.0 - site.bicycles) return bicycle();
+  auto const shape = share < site.trucks ? truck() : share < site.trucks + 0.15 ? van() : car();
+  return fits(*site.map, route, shape) ? shape : car();
 }
 
 /// How far an agent may go before it is where bodies of those in the junction may reach [m]; negative where it is, or
@@ -139,21 +142,25 @@ inline void try_to_add(Site const& site, Scenario& scenario, cambium::LaneId fro
   auto const pose = map.lane(from).path.pose(s);
   for (auto const& agent : scenario.world.frame().agents)
     if (std::hypot(agent.state.x - pose.x, agent.state.y - pose.y) < 18.0) return;
-  auto const shape = random_shape(map, route, site.trucks, random);
+  auto const shape = random_shape(site, route, random);
+  bool const cycles = shape == cambium::geometry::bicycle();
   auto& world = scenario.world;
   std::optional<cambium::AgentId> id;
   if (site.scattered_ids) id = static_cast<cambium::AgentId>(random() >> 33);
+  double const desired = 8.0 + 7.0 * cambium::uniform01(random);
+  auto const idm = cycles ? cambium::presets::cyclist() : cambium::IdmParameters{.desired_speed = desired};
   id = world.add({.position = pose.position(),
                   .heading = pose.heading,
                   .shape = shape,
-                  .behavior = cambium::Intersection{.idm = {.desired_speed = 8.0 + 7.0 * cambium::uniform01(random)}},
+                  .behavior = cambium::Intersection{.idm = idm},
                   .route = route,
+                  .dynamics = cycles ? cambium::presets::bicycle_dynamics() : cambium::SingleTrack{},
                   .id = id});
   double const room = std::min(junction - s - shape.front, room_before_zones(world, *id)) - 1.0;
   double const wanted = 3.0 + 9.0 * cambium::uniform01(random);
   if (room < 0.0) return world.remove(*id);
   auto state = world.state(*id);
-  state.speed = std::min(wanted, std::sqrt(2.0 * 1.5 * room));
+  state.speed = std::min(cycles ? idm.desired_speed : wanted, std::sqrt(2.0 * 1.5 * room));
   world.set_state(*id, state);
   if (!is_valid(scenario.ego)) scenario.ego = *id;
 }

@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "cambium/behavior/idm_lane_tracking.hpp"
+#include "cambium/behavior/intersection.hpp"
 #include "cambium/behavior/pedestrian.hpp"
 #include "cambium/behavior/presets.hpp"
 #include "cambium/dynamics/dynamic_set.hpp"
@@ -85,4 +88,35 @@ TEST_CASE("cars, cyclists and those on foot go their ways through dynamics of th
   CHECK(farthest < 0.1);
   CHECK(world.record(walker).lane.s == doctest::Approx(10.0 + 1.34 * 24.5).epsilon(0.06));
   CHECK(std::abs(world.record(walker).lane.lateral) < 1.2);
+}
+
+TEST_CASE("in one lane with cars bicycles are followed, not touched, and everybody gets on") {
+  auto const road = support::straight_road(1, 2000.0);
+  using Queue = cb::World<cb::BehaviorSet<cb::Intersection>, cb::InterpolateExecution, cb::SingleTrack>;
+  for (std::uint32_t seed = 0; seed < 40; ++seed) {
+    CAPTURE(seed);
+    cb::RandomStream random(seed, 3, 0);
+    Queue world(road, {.seed = seed});
+    std::vector<double> begins;
+    double s = 10.0;
+    for (int i = 0; i < 10; ++i) {
+      bool const cycles = cb::uniform01(random) < 0.4;
+      double const most = cycles ? cb::presets::cyclist().desired_speed : 14.0, speed = most * cb::uniform01(random);
+      auto const idm = cycles ? cb::presets::cyclist() : cb::IdmParameters{.desired_speed = 14.0};
+      world.add({.position = {s, -1.75},
+                 .speed = speed,
+                 .shape = cycles ? cb::geometry::bicycle() : cb::geometry::car(),
+                 .behavior = cb::Intersection{.idm = idm},
+                 .dynamics = cycles ? cb::presets::bicycle_dynamics() : cb::SingleTrack{}});
+      begins.push_back(s);
+      s += 8.0 + 40.0 * cb::uniform01(random);
+      if (speed > 6.0) s += 20.0;
+    }
+    for (int k = 0; k < 400; ++k) {
+      CHECK(world.step(0.2).failed == 0);
+      REQUIRE(collisions(world) == 0);
+    }
+    for (std::size_t i = 0; i < world.size(); ++i)
+      CHECK(world.frame().agents[i].lane.s > begins[i] + 300.0);  // 80 s at 18 km/h are 400 m
+  }
 }

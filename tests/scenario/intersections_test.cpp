@@ -10,12 +10,15 @@
 #include <cstdlib>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "../../examples/intersection/scenario.hpp"
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"
+#include "cambium/behavior/constant_acceleration.hpp"
 #include "cambium/evaluation/collision.hpp"
+#include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/collision.hpp"
 
 using namespace cambium;
@@ -96,10 +99,16 @@ void run(intersection::Site const& site, std::uint32_t number, Tally& tally) {
     tally.first = "run " + std::to_string(number) + " at " + std::to_string(world.time()) + " s";
 }
 
+struct Kind {
+  bool lights = false;
+  double bicycles = 0.0;
+};
+
 void check_all_pass(std::shared_ptr<Map const> const& map, std::string const& name, std::uint32_t count,
-                    bool lights = false) {
+                    Kind const& kind = {}) {
   auto site = intersection::find_site(map, name);
-  site.lights = lights;
+  site.lights = kind.lights;
+  site.bicycles = kind.bicycles;
   site.scattered_ids = true;
   Tally tally;
   for (std::uint32_t number = 0; number < count; ++number) run(site, number, tally);
@@ -123,16 +132,21 @@ TEST_CASE("nobody collides and nobody waits forever in sampled traffic of cars, 
 TEST_CASE("so it is under traffic lights, and nobody crosses a stop line on red") {
   auto const map = support::own_map("intersection_4way.xodr");
   REQUIRE(map->lights().size() == 2);
-  check_all_pass(map, "intersection_4way.xodr with lights", runs(200), true);
+  check_all_pass(map, "intersection_4way.xodr with lights", runs(200), {.lights = true});
 }
 
-// Of 1000 situations each (CAMBIUM_INTERSECTION_RUNS=1000) all came through without a collision but one of
-// route_strategy_test_road, where a truck's body swings into the lane beside. Not here: libopendrive_test, where 9 of
-// 1000 got stuck, two vehicles waiting each where the other's way counts as taken; and Town04.
+TEST_CASE("so it is among bicycles, which ride as cars drive, in sampled traffic") {
+  for (char const* name : {"intersection_3way.xodr", "intersection_4way.xodr", "roundabout.xodr"})
+    check_all_pass(support::own_map(name), name + std::string(" with bicycles"), runs(60), {.bicycles = 0.3});
+}
+
+// Not here: Town04, where bridges cross roads and 3 of 300 got stuck.
 TEST_CASE("so it is at the junctions of the corpus") {
   for (std::string const name : {"simple_3way_intersection_lht", "multi_intersections", "route_strategy_test_road",
                                  "parking_demo", "4way_intersection", "threeway_intersection", "fabriksgatan"})
     if (auto const map = support::corpus_map(name + ".xodr")) check_all_pass(map, name, runs(60));
+  if (auto const map = support::corpus_map("libopendrive_test.xodr"))
+    check_all_pass(map, "libopendrive_test", runs(20));
 }
 
 TEST_CASE("a vehicle larger than those that conflicts are found for is refused with a sentence") {
@@ -149,26 +163,38 @@ TEST_CASE("a vehicle larger than those that conflicts are found for is refused w
   };
   CHECK_NOTHROW(add(geometry::bus()));
   CHECK_THROWS_WITH_AS(add(geometry::articulated_truck()), doctest::Contains("large_conflict_shape"), WorldError);
+
+  // Who heeds no conflicts may be larger, but not in a prediction in which it does.
+  using Set = BehaviorSet<Intersection, ConstantAcceleration>;
+  World<Set, InterpolateExecution, SingleTrack> world(site.map);
+  auto const large = world.add({.position = pose.position(),
+                                .shape = geometry::articulated_truck(),
+                                .behavior = ConstantAcceleration{},
+                                .route = intersection::random_route(*site.map, site.entrances[0], random)});
+  CHECK_NOTHROW(static_cast<void>(world.observe(large).predict(predict_all_as<Set>(ConstantAcceleration{}))));
+  CHECK_THROWS_WITH_AS(static_cast<void>(world.observe(large).predict(predict_all_as<Set>(Intersection{}))),
+                       doctest::Contains("large_conflict_shape"), WorldError);
 }
 
 TEST_CASE("nobody drives through a bend with more than the lateral acceleration it is given") {
   auto const site = intersection::find_site(support::own_map("intersection_4way.xodr"), "map");
+  double const dt = 0.2;
   double fastest = 0.0;
   for (std::uint32_t number = 0; number < 20; ++number) {
     auto scenario = intersection::sample_scenario(site, 3, number);
     auto& world = scenario.world;
     for (int step = 0; step < 300; ++step) {
-      world.step(0.2);
-      for (std::size_t i = 0; i < world.size(); ++i) {
-        auto const& record = world.frame().agents[i];
-        auto const& corridor = world.roster().agents[i].road->corridors[record.lane.corridor];
-        for (auto const& bend : corridor.bends)
-          if (record.lane.s > bend.begin && record.lane.s < bend.end && step > 25)
-            fastest = std::max(fastest, record.state.speed * record.state.speed * bend.curvature);
+      std::vector<std::pair<AgentId, double>> before;
+      for (std::size_t i = 0; i < world.size(); ++i)
+        before.emplace_back(world.roster().agents[i].id, world.frame().agents[i].state.heading);
+      world.step(dt);
+      for (auto const& [id, heading] : before) {
+        double const turn = geometry::angle_difference(world.state(id).heading, heading);
+        if (step > 25) fastest = std::max(fastest, std::abs(turn) / dt * world.state(id).speed);
       }
       world.remove_departed();
     }
   }
-  CHECK(fastest <= 2.5 + 1e-6);
+  CHECK(fastest <= 2.5 * 1.05);  // a step may be in two pieces of a bend
   CHECK(fastest > 2.0);
 }

@@ -9,6 +9,15 @@
 
 namespace cambium {
 
+/// Who is slower than this stands [m/s].
+inline constexpr double standing_speed = 0.1;
+
+/// Whether a vehicle of `speed` [m/s] stops within `distance` [m] by braking with `deceleration` [m/s^2]: who stands
+/// always does.
+[[nodiscard]] inline bool can_stop(double speed, double distance, double deceleration) {
+  return speed * speed <= 2.0 * deceleration * std::max(0.0, distance) || speed < standing_speed;
+}
+
 /// The time [s] in which a vehicle of `speed` [m/s] that accelerates by `acceleration` up to `highest` [m/s] covers
 /// `distance` [m]; 0 for what lies behind it, infinite where it never gets there.
 [[nodiscard]] inline double time_to_cover(double distance, double speed, double acceleration, double highest) {

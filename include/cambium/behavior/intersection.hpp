@@ -4,26 +4,29 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
 #include <tuple>
 
 #include "cambium/behavior/behavior_model.hpp"
+#include "cambium/behavior/bends_ahead.hpp"
 #include "cambium/behavior/braking.hpp"
 #include "cambium/behavior/idm.hpp"
 #include "cambium/behavior/leader.hpp"
+#include "cambium/behavior/signals_ahead.hpp"
 
 namespace cambium {
 
 /// Crosses junctions by the rules of the road, else follows its lane by IDM. Before a junction it lets those go first
 /// who have the right of way (`map::right_of_way`), if they would come into its way; enters when all conflicts there
-/// are its own, and only if there is room behind them; then it goes first before all who are still outside. Whoever
-/// cannot stop any more before a conflict, or is in it, is never driven into. It stops at red lights
-/// (`World::set_light`) and stop signs. Where each one waits for another, one after the other goes after some patience.
-/// Others are taken to come by the ways that they signal, with their speed, and faster where that is the worse.
+/// are its own, and only if there is room behind them; then it goes first before all who are still outside. It stops
+/// at red lights (`World::set_light`) and stop signs, and slows down for bends. Where each one waits for another, one
+/// after the other goes after some patience. Others are taken to come by the ways that they signal, with their speed,
+/// and faster where that is the worse. Static objects are heeded where they reach into the own lane, as by
+/// `IdmClassic`.
 ///
-/// It slows down for bends. Conflicts are those of the two vehicles' sizes, see `MapOptions::conflict_shape`. No two
-/// vehicles commit themselves to the same conflict: on the same frame each pair finds the same one to go first, and one
-/// who can still stop is never gone before by more than that one.
+/// Conflicts are those of the two vehicles' sizes, see `MapOptions::conflict_shape`. As long as it can stop before one,
+/// it does not drive into it while another one is in there or cannot stop any more, and of two who can both stop the
+/// same one goes first by both their rules. So vehicles that all behave so keep out of each other's way; those who
+/// change lanes in a junction, do not heed its rules or are seen where they are not may still be run into.
 struct Intersection {
   IdmParameters idm{};
   RoadRules rules{.obey_speed_limits = true};
@@ -58,7 +61,9 @@ struct Intersection {
                   "who would have to brake harder does not stop any more"),
         parameter("assumed_acceleration", &P::assumed_acceleration, "m/s^2", Range{0, 20},
                   "of others on their way to the conflict"),
-        parameter("patience", &P::patience, "s", Range{0, 600}, "standing time before a deadlock is resolved"),
+        parameter("patience", &P::patience, "s", Range{0, 600},
+                  "who has stood so long, and up to 48 s more by its id, goes before one who stands too, whatever the "
+                  "rules"),
         parameter("keep_clear", &P::keep_clear, "-", Range{0, 1}, "do not stop within the junction"),
         parameter("tolerance", &P::tolerance, "m/s^2", Range{1e-12, 1},
                   "error of the exact integration, as speed per second"));
@@ -80,13 +85,17 @@ struct Intersection {
     own.s = view.lane_position().s;
     own.front = own.s + view.shape().front;
     own.is_large = is_large(view, view.shape());
-    own.reach = extra_reach(view, own.is_large, view.shape().front, view.shape().rear);
-    heed_bends(view, own, dt);
+    auto const bends = bends_ahead(view.corridor(), own.s, own.speed, own.idm.desired_speed, lateral_acceleration,
+                                   own.idm.comfortable_deceleration, hardest(own), dt);
+    own.highest = bends.highest;
+    own.bound = bends.bound;
     own.waited = memory.waited;
     follow(own, leader_of<false>(view, view.front_by_rule()));
     heed_conflicts(view, own, dt);
-    heed_signals(view, own, memory, dt);
-    if (own.at_light || own.speed > starting || (own.speed >= standing && own.at_line))
+    auto const signals =
+        stop_at_signals(view, own.front, own.speed, own.look_ahead, stop_margin, safe_deceleration, memory.stopped_at);
+    if (std::isfinite(signals.distance)) bound(own, signals.distance, own.idm.comfortable_deceleration, dt);
+    if (signals.is_light || own.speed > starting || (own.speed >= standing && own.at_line))
       memory.waited = 0.0f;
     else if (own.at_line)
       memory.waited += static_cast<float>(dt);
@@ -96,13 +105,15 @@ struct Intersection {
   }
 
  private:
-  static constexpr double standing = 0.1;    // [m/s] slower than this
+  static constexpr double standing = standing_speed;
   static constexpr double starting = 2.5;    // [m/s] slower than this
   static constexpr double short_way = 15.0;  // [m] from the junction, to see who starts there
   static constexpr double air = 0.3;         // [m] before a conflict
-  static constexpr double infinite = std::numeric_limits<double>::infinity();
+  static constexpr double over_line = 0.1;   // [m] who stands at its line is not over it, whatever the rounding
+  static constexpr double spread = 8.0;      // [s] over which ids spread those who lose their patience
+  static constexpr double later = 20.0;      // [s] the larger id of two, and where only one is in the junction
 
-  /// How far a body reaches beyond that which conflicts are found for, as of a small van or one aslant [m].
+  /// How far a body reaches beyond that which conflicts are found for, as of one aslant or a larger one [m].
   struct Reach {
     double front{}, rear{};
   };
@@ -114,11 +125,9 @@ struct Intersection {
     double look_ahead{};  ///< [m]
     double highest{};     ///< speed up to the place that it looks ahead to [m/s]
     bool is_large = false;
-    Reach reach;
     Leader leader;
-    LongitudinalMotion<double> bound{infinite, infinite};  ///< goes no farther in this step
-    bool at_line = false;                                  ///< has come to where it waits
-    bool at_light = false;                                 ///< waits for a light, which costs nobody's patience
+    LongitudinalMotion<double> bound;  ///< goes no farther in this step
+    bool at_line = false;              ///< has come to where it waits
   };
 
   /// Another one at position `at` [m] of its way to a conflict.
@@ -159,59 +168,24 @@ struct Intersection {
   }
 
   [[nodiscard]] bool can_stop(double speed, double distance) const {
-    return speed * speed <= 2.0 * safe_deceleration * std::max(0.0, distance) || speed < standing;
-  }
-
-  /// Keeps the speed in the bends within reach so that the lateral acceleration is in bounds.
-  template <class View>
-  void heed_bends(View const& view, Own& own, double dt) const {
-    own.highest = own.idm.desired_speed;
-    double const braking = own.idm.comfortable_deceleration;
-    double const reach = own.s + own.speed * (dt + own.speed / (2.0 * braking));
-    for (auto const& bend : view.corridor().bends) {
-      if (bend.begin > reach) break;
-      if (bend.end < own.s) continue;
-      double const highest = std::sqrt(lateral_acceleration / bend.curvature);
-      own.highest = std::min(own.highest, highest);
-      auto const motion = motion_before_bend(own.speed, bend.begin - own.s, highest, braking, hardest(own), dt);
-      if (motion.distance < own.bound.distance) own.bound = motion;
-    }
+    return cambium::can_stop(speed, distance, safe_deceleration);
   }
 
   /// Others count in the zone of the two sizes.
   template <class View>
   void heed_conflicts(View const& view, Own& own, double dt) const {
-    for (auto const& conflict : view.corridor().conflicts) {
-      if (conflict.hull().begin > own.front + own.look_ahead) break;
-      if (conflict.hull().end + own.reach.rear < own.s) continue;
+    auto const& conflicts = view.corridor().conflicts;
+    auto const is_behind = [&](map::Conflict const& c) { return c.farthest_end < own.s; };
+    for (auto at = std::partition_point(conflicts.begin(), conflicts.end(), is_behind); at != conflicts.end(); ++at) {
+      auto const& conflict = *at;
+      if (conflict.hold[1] > own.front + own.look_ahead) break;
+      if (conflict.hull().end < own.s) continue;
       auto const& zones = conflict.zones[own.is_large];
       auto claims = claims_of(view, conflict, own);
       if (!zones[0].empty() && claims[0] < Claim::yield && is_full_behind(view, zones[0], own))
         claims[0] = Claim::yield;
       for (std::size_t other = 0; other < 2; ++other)
         if (claims[other] != Claim::free) obey(claims[other], zones[other], conflict.hold[own.is_large], own, dt);
-    }
-  }
-
-  /// Stops at stop signs, and at lights that are red, or yellow as long as it can.
-  template <class View>
-  void heed_signals(View const& view, Own& own, Memory& memory, double dt) const {
-    for (auto const& signal : view.corridor().signals) {
-      double const to_line = signal.line - own.front;
-      if (to_line > own.look_ahead) break;
-      if (to_line < 0.0) continue;
-      if (signal.kind == map::SignalKind::stop) {
-        bool const stands_there = own.speed < standing && to_line < stop_margin + 1.0;
-        if (stands_there) memory.stopped_at = static_cast<float>(signal.line);
-        if (std::abs(static_cast<double>(memory.stopped_at) - signal.line) < 0.1) continue;
-      } else {
-        auto const color = view.light(signal.light);
-        if (color == map::LightColor::off || color == map::LightColor::green) continue;
-        if (color == map::LightColor::yellow && !can_stop(own.speed, to_line)) continue;
-        own.at_light = true;
-      }
-      double const margin = can_stop(own.speed, to_line - stop_margin) ? stop_margin : 0.0;
-      bound(own, std::max(0.0, to_line - margin), own.idm.comfortable_deceleration, dt);
     }
   }
 
@@ -224,9 +198,9 @@ struct Intersection {
 
   /// Bounds the step's motion by what a conflict asks for.
   void obey(Claim claim, map::ConflictZone const& zone, double hold, Own& own, double dt) const {
-    double const to_conflict = zone.begin - own.reach.front - air - own.s;
+    double const to_conflict = zone.begin - air - own.s;
     if (to_conflict + air < 0.0) return;  // it is in there already
-    double const to_hold = std::min(zone.line - own.front, hold - own.reach.front - own.s);
+    double const to_hold = std::min(zone.line - own.front, hold - own.s);
     double const to_stop = distance_to_stop(claim, to_hold, own, to_conflict);
     if (claim == Claim::yield && !can_stop(own.speed, to_stop)) return;
     double const braking = claim == Claim::watch ? safe_deceleration : own.idm.comfortable_deceleration;
@@ -269,7 +243,7 @@ struct Intersection {
     if (at > zone.other_end + reach.rear) return Claim::free;
     double const way = zone.other_begin - reach.front - at;
     if (at < 0.0 && !view.signals_way(user, conflict.other)) return Claim::free;
-    double const own_way = zone.begin - own.reach.front - own.s;
+    double const own_way = zone.begin - own.s;
     bool const is_in = way <= 0.0, own_is_in = own_way <= 0.0;
     if (conflict.kind != map::OverlapKind::crossing && (is_in || conflict.kind == map::OverlapKind::split)) {
       double const place = at + conflict.shift, gap = place - user.rear - own.front;
@@ -292,7 +266,7 @@ struct Intersection {
     Window const theirs{
         time_to_cover(way, user.speed, assumed_acceleration, std::max(user.speed, own.idm.desired_speed)),
         (way + zone.other_end - zone.other_begin + reach.front + reach.rear) / std::max(user.speed, standing)};
-    Window const ours{arrival(own, own_way), arrival(own, zone.end + own.reach.rear - own.s)};
+    Window const ours{arrival(own, own_way), arrival(own, zone.end - own.s)};
     bool const is_in = is_inside(other, conflict, zone);
     if (theirs.end + time_margin < ours.begin) return is_in ? Claim::watch : Claim::free;
     return ours.end + time_margin < theirs.begin && !is_in ? Claim::free : Claim::yield;
@@ -301,7 +275,7 @@ struct Intersection {
   /// Whether one is in the junction already.
   [[nodiscard]] static bool is_inside(Other const& other, map::Conflict const& conflict,
                                       map::ConflictZone const& zone) {
-    return other.at + other.user.front > zone.other_line && other.at < conflict.other_lane_end;
+    return other.at + other.user.front > zone.other_line + over_line && other.at < conflict.other_lane_end;
   }
 
   /// The earliest time [s] at which it has gone `distance` [m].
@@ -320,10 +294,10 @@ struct Intersection {
     // other would; those of a ring are spread by the golden ratio.
     bool const is_smaller = view.id() < user.agent;
     double const share = 0.6180339887498949 * static_cast<double>(static_cast<std::uint32_t>(view.id()));
-    double const turn = 8.0 * (share - std::floor(share)) + (is_smaller ? 0.0 : 20.0);  // [s]
+    double const turn = spread * (share - std::floor(share)) + (is_smaller ? 0.0 : later);  // [s]
     bool const inside = is_inside(other, conflict, zone),
-               own_inside = own.front > zone.line && own.s < conflict.lane_end;
-    if (stands && own.waited >= patience + turn + (inside != own_inside ? 20.0 : 0.0)) return true;
+               own_inside = own.front > zone.line + over_line && own.s < conflict.lane_end;
+    if (stands && own.waited >= patience + turn + (inside != own_inside ? later : 0.0)) return true;
     if (inside != own_inside) return own_inside;
     if (!inside && is_valid(conflict.other_light) && view.light(conflict.other_light) == map::LightColor::red)
       return true;
@@ -337,7 +311,7 @@ struct Intersection {
   template <class View>
   [[nodiscard]] bool is_full_behind(View const& view, map::ConflictZone const& zone, Own const& own) const {
     if (!keep_clear || own.leader.speed > starting) return false;
-    double const end = zone.end + own.reach.rear - view.shape().rear;  // of the conflict, for rear ends
+    double const end = zone.end - view.shape().rear;  // of the conflict, for rear ends
     double const room = own.front + own.leader.gap - end;
     return room < view.shape().length() + own.idm.minimum_gap;
   }

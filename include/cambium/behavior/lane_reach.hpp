@@ -73,7 +73,8 @@ template <class View>
 
 /// The next one ahead that is in the way of a vehicle that drives `offset` [m] beside the middle of its lane,
 /// `clearance` [m] kept to both sides. Who is beside the way but in the lane is passed; who is still to merge into it
-/// is not. O(agents near) where somebody is passed.
+/// is not. Behind one that is passed only those count who are in the lane already: who merges there counts once that
+/// one is behind. O(agents near) where somebody is passed.
 template <class View>
 [[nodiscard]] std::optional<Neighbor> next_in_way(View const& view, double offset, double clearance) {
   auto next = view.front();

@@ -15,8 +15,9 @@
 
 namespace cambium {
 
-/// How a vehicle carries out what its controller commands: late, and not quite. A delay is one of at most four periods:
-/// so many commands wait.
+/// How a vehicle carries out what its controller commands: late, and not quite. Where there is a delay, the controller
+/// acts four times in its course, and each command takes effect when the fourth after it is given. As it acts at least
+/// once a period, a delay may be four periods long.
 struct Actuation {
   static constexpr int waiting = 4;
 

@@ -90,20 +90,23 @@ struct ConflictZone {
   [[nodiscard]] bool empty() const { return begin > end; }
 };
 
+/// Zones by the sizes of the own vehicle and the other: 0 where it is no larger than `MapOptions::conflict_shape`, 1 up
+/// to `MapOptions::large_conflict_shape`.
+using ConflictZones = std::array<std::array<ConflictZone, 2>, 2>;
+
 /// Where a lane outside of the corridor crosses it, merges with it or parts from it.
 struct Conflict {
   LaneId other = none<LaneId>;
   OverlapKind kind = OverlapKind::crossing;
   RightOfWay right_of_way = RightOfWay::equal;  ///< of this corridor's traffic
-  /// By the sizes of the corridor's vehicle and the other: 0 where it is no larger than `MapOptions::conflict_shape`, 1
-  /// up to `MapOptions::large_conflict_shape`. The last holds all others and is not empty.
-  std::array<std::array<ConflictZone, 2>, 2> zones;
+  ConflictZones zones;                          ///< that of two large ones holds all others and is not empty
   /// Corridor position, by the size of the corridor's vehicle, up to which reference points are in no zone of the
-  /// junction: there one waits [m].
+  /// junction: there one waits. No farther for large ones [m].
   std::array<double, 2> hold{};
   double lane_end{}, other_lane_end{};  ///< where the two lanes end: corridor position, and on the other's way [m]
 
   [[nodiscard]] ConflictZone const& hull() const { return zones[1][1]; }
+  double farthest_end{};                ///< of the hulls of this one and those before it in the corridor [m]
   LightId other_light = none<LightId>;  ///< that stops the other's traffic
   double shift{};  ///< where they merge or part: corridor position = position on the way + shift [m]
   double meet = std::numeric_limits<double>::infinity();  ///< where lanes that merge come together [m]
@@ -133,7 +136,7 @@ struct LaneCorridor {
   geometry::Line left, right;           ///< borders
   std::vector<CorridorPiece> pieces;    ///< sorted by `begin`, gapless
   std::vector<Feeder> feeders;          ///< sorted by `begin`
-  std::vector<Conflict> conflicts;      ///< sorted by `hull().begin`
+  std::vector<Conflict> conflicts;      ///< sorted by `hold[1]`
   std::vector<Bend> bends;              ///< sharper than 1 km of radius, sorted by `begin`
   std::vector<CorridorSignal> signals;  ///< sorted by `line`
   std::vector<SpeedStep> speed_limits;  ///< along the corridor, sorted; empty where nothing limits the speed

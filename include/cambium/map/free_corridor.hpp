@@ -14,7 +14,7 @@
 #include "cambium/core/ids.hpp"
 #include "cambium/geometry/line.hpp"
 #include "cambium/map/corridor.hpp"
-#include "cambium/map/detail/conflicts.hpp"
+#include "cambium/map/detail/conflict_ways.hpp"
 #include "cambium/map/map.hpp"
 
 namespace cambium::map {

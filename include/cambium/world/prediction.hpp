@@ -72,7 +72,8 @@ void take_seen_objects(World const& world, std::uint32_t slot, Roster& assumed) 
 /// The world that agent number `slot` of `world` expects: states as it observes them, behaviours as `prediction` says.
 /// The others keep their routes, as if they signalled them, but not their goals. Agents that are not in traffic, or not
 /// seen, are left out; what is seen late counts as the present. Throws `ParameterError` where a parameter of an assumed
-/// behaviour is out of its range.
+/// behaviour is out of its range, and `WorldError` where one heeds conflicts and the agent is too large for them, as
+/// `World::add`.
 template <class Set, class World>
 [[nodiscard]] typename World::template WithBehaviors<Set> predicted_world(World const& world, std::uint32_t slot,
                                                                           Prediction<Set> const& prediction) {
@@ -104,6 +105,8 @@ template <class Set, class World>
     auto const& record = frame.agents[i];
     if (record.status != AgentStatus::driving || !detail::is_seen(world, slot, i)) continue;
     auto const& behavior = i == slot ? prediction.ego : prediction.others;
+    if (detail::is_too_large(world.map(), behavior, agent.shape, *agent.road))
+      throw detail::too_large("prediction: agent " + to_string(agent.id));
     assumed->agents.push_back(
         {agent.id, agent.shape, agent.road, behavior, agent.execution, agent.dynamics, PerfectObserver{}});
     assumed->goals.push_back(i == slot ? roster.goals[i] : Goal{});

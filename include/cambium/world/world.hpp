@@ -154,7 +154,7 @@ class World {
     std::string const where = "agent " + to_string(id);
     detail::check_if_described(behavior, where);
     auto const& agent = roster_->agents[slot];
-    detail::check_size(*map_, behavior, agent.shape, *agent.road, where);
+    if (detail::is_too_large(*map_, behavior, agent.shape, *agent.road)) throw detail::too_large(where);
     writable_roster().agents[slot].behavior = behavior;
     frame_.agents[slot].memory = Set::initial_memory(behavior);
   }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "cambium/geometry/line.hpp"
@@ -14,18 +15,21 @@ namespace cambium::map::detail {
 [[nodiscard]] inline std::vector<Bend> bends_of(geometry::Line const& center) {
   constexpr double step = 1.0, half = 2.0, least = 1e-3;  // [m], [m], [1/m]
   std::vector<Bend> bends;
+  double gentlest = 0.0;  // of the last one
   std::uint32_t behind = 0, ahead = 0;
   for (double s = 0.0; s < center.length(); s += step) {
     double const from = std::max(0.0, s - half), to = std::min(center.length(), s + half);
     double const turn = center.pose(to, ahead).heading - center.pose(from, behind).heading;
     double const curvature = std::abs(turn) / std::max(to - from, half);
     if (curvature < least) continue;
-    bool const goes_on = !bends.empty() && s - bends.back().end < 1.5 * step &&
-                         std::abs(curvature - bends.back().curvature) < 0.1 * bends.back().curvature;
-    if (goes_on)
-      bends.back() = {bends.back().begin, s, std::max(curvature, bends.back().curvature)};
-    else
+    double const low = std::min(curvature, gentlest), high = bends.empty() ? 0.0 : bends.back().curvature;
+    if (!bends.empty() && s - bends.back().end < 1.5 * step && low > 0.9 * std::max(curvature, high)) {
+      bends.back() = {bends.back().begin, s, std::max(curvature, high)};
+      gentlest = low;
+    } else {
       bends.push_back({s, s, curvature});
+      gentlest = curvature;
+    }
   }
   for (auto& bend : bends) bend = {bend.begin - 0.5 * step, bend.end + 0.5 * step, bend.curvature};
   return bends;

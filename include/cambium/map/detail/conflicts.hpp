@@ -6,89 +6,60 @@
 #include <cstddef>
 #include <limits>
 #include <map>
-#include <optional>
-#include <set>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "cambium/core/ids.hpp"
-#include "cambium/geometry/collision.hpp"
-#include "cambium/geometry/oriented_box.hpp"
+#include "cambium/geometry/shape.hpp"
 #include "cambium/map/corridor.hpp"
+#include "cambium/map/detail/conflict_ways.hpp"
+#include "cambium/map/detail/conflict_zones.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/right_of_way.hpp"
 
 namespace cambium::map::detail {
 
-/// Adds the lanes behind `lane`, back to way position `until` [m], each once by its shortest way.
-inline void add_ways_behind(Map const& map, Lane const& lane, double until, std::vector<ConflictWay>& ways) {
-  struct Way {
-    LaneId lane;
-    double begin;  // [m]
-  };
-  std::set<LaneId> seen;
-  std::vector<Way> open{{lane.id, 0.0}};
-  for (std::size_t i = 0; i < open.size(); ++i) {
-    auto const way = open[i];
-    if (way.begin <= until) continue;
-    for (auto const before : map.lane(way.lane).predecessors) {
-      auto const& previous = map.lane(before);
-      if (!previous.drivable() || before == lane.id || !seen.insert(before).second) continue;
-      double const begin = way.begin - previous.length(), from = std::max(0.0, until - begin);
-      ways.push_back({previous.index_begin + from, previous.index_begin + previous.length(), begin + from});
-      open.push_back({before, begin});
-    }
-  }
-}
-
-/// The ways by which traffic comes to, and leaves, positions `from` to `to` [m] of `lane`, see `Conflict::ways`.
-[[nodiscard]] inline std::vector<ConflictWay> ways_through(Map const& map, Lane const& lane, double from, double to) {
-  double const begin = std::max(0.0, from);
-  std::vector<ConflictWay> ways{{lane.index_begin + begin, lane.index_begin + lane.length(), begin}};
-  for (auto const id : lane.successors) {
-    auto const& next = map.lane(id);
-    if (to > lane.length())
-      ways.push_back({next.index_begin, next.index_begin + std::min(next.length(), to - lane.length()), lane.length()});
-  }
-  add_ways_behind(map, lane, from, ways);
-  return ways;
-}
-
 /// Finds the conflicts of a lane corridor whose centre line and pieces are there already, see `Conflict`.
 class ConflictFinder {
  public:
-  ConflictFinder(Map const& map, LaneCorridor const& corridor)
-      : map_(map), corridor_(corridor), body_(map.options().large_conflict_shape) {}
+  ConflictFinder(Map const& map, LaneCorridor const& corridor) : map_(map), corridor_(corridor) {}
 
   [[nodiscard]] std::vector<Conflict> find() const {
-    std::vector<Conflict> conflicts;
+    std::vector<Found> found;
     for (std::size_t i = 0; i < corridor_.pieces.size(); ++i) {
       auto const& lane = map_.lane(corridor_.pieces[i].lane);
-      for (auto const& overlap : lane.overlaps)
-        if (auto conflict = conflict_at(i, overlap)) conflicts.push_back(std::move(*conflict));
-      for (auto const& overlap : passings(lane))
-        if (auto conflict = conflict_at(i, overlap)) conflicts.push_back(std::move(*conflict));
+      for (auto const& overlap : lane.overlaps) find_at(i, overlap, found);
+      for (auto const& overlap : passings(lane)) find_at(i, overlap, found);
     }
-    for (auto& conflict : conflicts) unite(conflict, conflicts);
+    unite(found);
+    std::vector<Conflict> conflicts;
+    for (auto& [number, conflict] : found) {
+      set_lines(number, conflict);
+      conflicts.push_back(std::move(conflict));
+    }
     set_holds(conflicts);
-    std::sort(conflicts.begin(), conflicts.end(), [](Conflict const& a, Conflict const& b) {
-      return std::tie(a.hull().begin, a.other, a.hull().other_begin) <
-             std::tie(b.hull().begin, b.other, b.hull().other_begin);
-    });
+    sort(conflicts);
     return conflicts;
   }
 
  private:
-  static constexpr double step = 0.5;      // [m] between two places of a body
+  /// A conflict and the number of the piece that it lies on.
+  struct Found {
+    std::size_t number;
+    Conflict conflict;
+  };
+
   static constexpr double shortest = 1.0;  // [m] of a lane on which a body swings out
   /// How far before and behind an overlap of paths the bodies may touch [m].
-  [[nodiscard]] double before() const { return body_.length() + 8.0; }
-  [[nodiscard]] double behind() const { return body_.rear + 8.0; }
+  [[nodiscard]] double before() const { return body(true).length() + 8.0; }
+  [[nodiscard]] double behind() const { return body(true).rear + 8.0; }
 
-  [[nodiscard]] std::optional<Conflict> conflict_at(std::size_t number, Overlap const& overlap) const {
+  /// Adds the conflicts of piece `number` where its lane overlaps another: mostly one, more where there is room
+  /// between.
+  void find_at(std::size_t number, Overlap const& overlap, std::vector<Found>& found) const {
     auto const& piece = corridor_.pieces[number];
-    bool const in_junction = is_valid(junction_of(piece.lane));
-    if (overlap.kind == OverlapKind::merge && !in_junction) return std::nullopt;
+    if (overlap.kind == OverlapKind::merge && !is_valid(junction_of(piece.lane))) return;
     auto const position = [&](double s) { return std::clamp(s - piece.lane_offset, piece.begin, piece.end); };
     Conflict conflict;
     conflict.other = overlap.other;
@@ -97,13 +68,26 @@ class ConflictFinder {
     double const begin = position(overlap.begin), end = position(overlap.end);
     conflict.shift = conflict.kind == OverlapKind::split ? begin - overlap.other_begin : end - overlap.other_end;
     if (overlap.kind == OverlapKind::merge) conflict.meet = begin;
-    if (!find_zones(range_of(overlap, begin, end, conflict.kind), number, conflict)) return std::nullopt;
-    conflict.hold.fill(junction_begin(number));
     conflict.lane_end = piece.end;
     conflict.other_lane_end = map_.lane(overlap.other).length();
     conflict.other_light = signs_before(map_, map_.lane(overlap.other)).light;
-    add_ways(conflict);
-    return conflict;
+    for (auto const& hull : zones_in(range_of(overlap, begin, end, conflict.kind), conflict, true, true))
+      for (auto const& zones : zones_by_size(hull, conflict)) {
+        conflict.zones = zones;
+        found.push_back({number, conflict});
+      }
+  }
+
+  /// The zones within that of the largest bodies; again with that one where those of smaller bodies lie apart in it.
+  [[nodiscard]] std::vector<ConflictZones> zones_by_size(ConflictZone const& hull, Conflict const& conflict) const {
+    std::vector<ConflictZones> all(1);
+    for (auto const& [own, other] : {std::pair(0u, 0u), {0u, 1u}, {1u, 0u}}) {
+      auto const zones = zones_in(hull, conflict, own != 0, other != 0);
+      all.resize(std::max(all.size(), zones.size()));
+      for (std::size_t i = 0; i < zones.size(); ++i) all[i][own][other] = zones[i];
+    }
+    for (auto& zones : all) zones[1][1] = hull;
+    return all;
   }
 
   /// The lanes outside of a lane's junction from which one comes to it (`ahead`: to which it leads); outside of
@@ -177,23 +161,6 @@ class ConflictFinder {
     return begin;
   }
 
-  /// The other's path, straight on beyond its ends where no lane goes on there.
-  [[nodiscard]] geometry::Pose pose_on_way(LaneId id, double s) const {
-    auto const* lane = &map_.lane(id);
-    for (int lanes = 0; lanes < 16 && s < 0.0 && !lane->predecessors.empty(); ++lanes) {
-      lane = &map_.lane(lane->predecessors.front());
-      s += lane->length();
-    }
-    for (int lanes = 0; lanes < 16 && s > lane->length() && !lane->successors.empty(); ++lanes) {
-      s -= lane->length();
-      lane = &map_.lane(lane->successors.front());
-    }
-    double const on_path = std::clamp(s, 0.0, lane->length());
-    auto const pose = lane->path.pose(on_path);
-    return {pose.x + (s - on_path) * std::cos(pose.heading), pose.y + (s - on_path) * std::sin(pose.heading),
-            pose.heading};
-  }
-
   /// Where bodies on the two lanes may touch at all.
   [[nodiscard]] ConflictZone range_of(Overlap const& overlap, double begin, double end, OverlapKind kind) const {
     bool const merges = kind == OverlapKind::merge, splits = kind == OverlapKind::split;
@@ -205,36 +172,94 @@ class ConflictFinder {
     return range;
   }
 
-  /// Sets the zones of piece `number`'s lane; false where even the largest bodies do not touch.
-  [[nodiscard]] bool find_zones(ConflictZone const& range, std::size_t number, Conflict& conflict) const {
-    std::array const bodies{map_.options().conflict_shape, body_};
-    for (bool const own : {true, false})
-      for (bool const other : {true, false}) {
-        auto& zone = conflict.zones[own][other];
-        zone = zone_of(bodies[own], bodies[other], conflict, own && other ? range : conflict.hull());
-        zone.line = std::min(zone.begin + bodies[own].front, junction_begin(number));
-        zone.other_line = std::min(zone.other_begin + bodies[other].front, junction_begin(conflict.other));
-        if (conflict.hull().empty()) return false;
-      }
-    return true;
+  /// The parts of `range` where two bodies of such sizes touch. Where lanes merge the only one ends, and where they
+  /// part it begins, with the range: there the two are one lane.
+  [[nodiscard]] std::vector<ConflictZone> zones_in(ConflictZone const& range, Conflict const& conflict, bool own,
+                                                   bool other) const {
+    TouchingBodies const bodies{map_, corridor_.center, conflict.other, body(own), body(other)};
+    auto zones = bodies.zones(range);
+    if (conflict.kind == OverlapKind::crossing || zones.empty()) return zones;
+    ConflictZone zone;
+    for (auto const& part : zones) zone = joined(zone, part);
+    if (conflict.kind == OverlapKind::split) zone.begin = range.begin, zone.other_begin = range.other_begin;
+    if (conflict.kind == OverlapKind::merge) zone.end = range.end, zone.other_end = range.other_end;
+    return {zone};
   }
 
-  /// Lanes of one road that cross the corridor's in one place, as of its sections, are one to it: who is in the zone of
-  /// one is in those of all. Else two may each be in a zone that the other waits for.
-  void unite(Conflict& conflict, std::vector<Conflict> const& all) const {
-    if (conflict.kind != OverlapKind::crossing) return;
-    auto const road = map_.lane(conflict.other).road;
-    for (auto const& next : all) {
-      if (next.kind != OverlapKind::crossing || map_.lane(next.other).road != road) continue;
-      for (std::size_t own = 0; own < 2; ++own)
-        for (std::size_t other = 0; other < 2; ++other) {
-          auto& zone = conflict.zones[own][other];
-          auto const& with = next.zones[own][other];
-          if (zone.empty() || with.empty() || with.begin > zone.end || with.end < zone.begin) continue;
-          zone.begin = std::min(zone.begin, with.begin);
-          zone.end = std::max(zone.end, with.end);
-        }
+  /// A road's lane from section to section: the first of its lanes, and the way from there to one of them [m].
+  struct Chain {
+    LaneId first;
+    double way;
+  };
+  [[nodiscard]] Chain chain_of(LaneId lane) const {
+    Chain chain{lane, 0.0};
+    for (int lanes = 0; lanes < 64; ++lanes) {
+      auto const& before = map_.lane(chain.first).predecessors;
+      auto const same = std::find_if(before.begin(), before.end(),
+                                     [&](LaneId id) { return map_.lane(id).road == map_.lane(lane).road; });
+      if (same == before.end() || *same == lane) break;
+      chain.first = *same;
+      chain.way += map_.lane(chain.first).length();
     }
+    return chain;
+  }
+
+  /// Makes zones of two roads' lanes one where `add_zone` would, over the borders of lane sections. Both corridors come
+  /// to the same zones so.
+  void unite(std::vector<Found>& found) const {
+    struct Member {
+      Conflict* conflict;
+      double way;
+    };
+    std::map<std::pair<LaneId, LaneId>, std::vector<Member>> roads;
+    for (auto& [number, conflict] : found) {
+      if (conflict.kind != OverlapKind::crossing) continue;
+      auto const chain = chain_of(conflict.other);
+      roads[{chain_of(corridor_.pieces[number].lane).first, chain.first}].push_back({&conflict, chain.way});
+    }
+    for (auto const& [chains, members] : roads)
+      for (std::size_t sizes = 0; sizes < 4; ++sizes) {
+        std::vector<ConflictZone> zones;
+        auto const zone_of = [sizes](Member const& member) -> ConflictZone& {
+          return member.conflict->zones[sizes / 2][sizes % 2];
+        };
+        for (auto const& member : members)
+          if (auto const& zone = zone_of(member); !zone.empty()) add_zone(zones, moved(zone, member.way));
+        for (auto const& member : members)
+          for (auto const& whole : zones)
+            if (auto& zone = zone_of(member); !zone.empty() && zone.begin >= whole.begin && zone.end <= whole.end)
+              zone = moved(whole, -member.way);
+      }
+  }
+  [[nodiscard]] static ConflictZone moved(ConflictZone zone, double way) {
+    zone.other_begin += way;
+    zone.other_end += way;
+    return zone;
+  }
+
+  void set_lines(std::size_t number, Conflict& conflict) const {
+    double const begin = junction_begin(number), other_begin = junction_begin(conflict.other);
+    for (std::size_t own : {0u, 1u})
+      for (std::size_t other : {0u, 1u}) {
+        auto& zone = conflict.zones[own][other];
+        zone.line = std::min(zone.begin + body(own).front, begin);
+        zone.other_line = std::min(zone.other_begin + body(other).front, other_begin);
+      }
+    conflict.hold.fill(begin);
+    double const view = conflict.kind == OverlapKind::split ? 0.0 : map_.options().merge_view;
+    conflict.ways =
+        ways_through(map_, map_.lane(conflict.other), conflict.hull().other_begin - view, conflict.hull().other_end);
+  }
+
+  static void sort(std::vector<Conflict>& conflicts) {
+    auto const key = [](Conflict const& c) {
+      return std::tuple(c.hold[1], c.hull().begin, c.other, c.hull().other_begin, c.lane_end, c.zones[0][0].begin,
+                        c.zones[0][1].begin, c.zones[1][0].begin);
+    };
+    std::sort(conflicts.begin(), conflicts.end(),
+              [&key](Conflict const& a, Conflict const& b) { return key(a) < key(b); });
+    double end = -std::numeric_limits<double>::infinity();
+    for (auto& conflict : conflicts) conflict.farthest_end = end = std::max(end, conflict.hull().end);
   }
 
   /// Sets the places to wait from where, as yet, the junctions begin: before the first zone of the same junction, or of
@@ -262,51 +287,11 @@ class ConflictFinder {
             std::isfinite(conflict.hold[own]) ? holds.at(conflict.hold[own])[own] : first_zone(conflict, own);
   }
 
-  /// The part of `range` where two such bodies touch. Where lanes merge it ends, and where they part it begins, with
-  /// the range: there the two are one lane. O(places on one times places on the other).
-  [[nodiscard]] ConflictZone zone_of(geometry::Shape const& shape, geometry::Shape const& other,
-                                     Conflict const& conflict, ConflictZone const& range) const {
-    bool const merges = conflict.kind == OverlapKind::merge, splits = conflict.kind == OverlapKind::split;
-    std::vector<geometry::OrientedBox> others;
-    for (double s = range.other_begin; s <= range.other_end; s += step)
-      others.push_back(geometry::box_of(other, pose_on_way(conflict.other, s)));
-    ConflictZone zone;
-    std::size_t first_other = others.size(), last_other = 0;
-    double const radii = shape.radius() + other.radius();
-    for (double s = range.begin; s <= range.end; s += step) {
-      auto const body = geometry::box_of(shape, corridor_.center.pose(s));
-      for (std::size_t k = 0; k < others.size();) {
-        double const dx = others[k].x - body.x, dy = others[k].y - body.y;
-        double const apart = std::sqrt(dx * dx + dy * dy) - radii;
-        if (apart > 2.0 * step) {  // none of the next ones is near, for bodies go no more than 2 m along 1 m of path
-          k += static_cast<std::size_t>(apart / (2.0 * step));
-          continue;
-        }
-        std::size_t const at = k++;
-        if (!geometry::intersects(body, others[at])) continue;
-        zone.begin = std::min(zone.begin, s - step);
-        zone.end = s + step;
-        first_other = std::min(first_other, at);
-        last_other = std::max(last_other, at);
-      }
-    }
-    if (zone.empty()) return zone;
-    zone.other_begin = range.other_begin + (static_cast<double>(first_other) - 1.0) * step;
-    zone.other_end = range.other_begin + (static_cast<double>(last_other) + 1.0) * step;
-    if (splits) zone.begin = range.begin, zone.other_begin = range.other_begin;
-    if (merges) zone.end = range.end, zone.other_end = range.other_end;
-    return zone;
-  }
-
-  void add_ways(Conflict& conflict) const {
-    double const view = conflict.kind == OverlapKind::split ? 0.0 : map_.options().merge_view;
-    conflict.ways =
-        ways_through(map_, map_.lane(conflict.other), conflict.hull().other_begin - view, conflict.hull().other_end);
-  }
-
   Map const& map_;
   LaneCorridor const& corridor_;
-  geometry::Shape body_;
+  [[nodiscard]] geometry::Shape const& body(bool is_large) const {
+    return is_large ? map_.options().large_conflict_shape : map_.options().conflict_shape;
+  }
 };
 
 }  // namespace cambium::map::detail

@@ -144,19 +144,21 @@ void enter_free_road(Roster& roster, std::shared_ptr<map::RoadCorridor const> co
   std::sort(roster.object_entries.begin(), roster.object_entries.end());
 }
 
-/// Throws `WorldError` where `behavior` heeds the conflicts on its road and `shape` is larger than those they are found
-/// for.
+/// Whether `behavior` heeds the conflicts on its road and `shape` is larger than those they are found for.
 template <class Behavior>
-void check_size(Map const& map, Behavior const& behavior, geometry::Shape const& shape, map::RoadCorridor const& road,
-                std::string const& where) {
+[[nodiscard]] bool is_too_large(Map const& map, Behavior const& behavior, geometry::Shape const& shape,
+                                map::RoadCorridor const& road) {
   bool const heeds =
       std::visit([](auto const& model) { return heeds_conflicts<std::decay_t<decltype(model)>>; }, behavior);
-  bool const has_conflicts = std::any_of(road.corridors.begin(), road.corridors.end(),
-                                         [](auto const& corridor) { return !corridor.conflicts.empty(); });
   auto const& options = map.options();
-  if (heeds && has_conflicts && !options.conflict_shape.holds(shape) && !options.large_conflict_shape.holds(shape))
-    throw WorldError(where, "its shape is larger than the one that conflicts on its way are found for",
-                     "load the map with a MapOptions::large_conflict_shape that holds it");
+  return heeds && !options.conflict_shape.holds(shape) && !options.large_conflict_shape.holds(shape) &&
+         std::any_of(road.corridors.begin(), road.corridors.end(),
+                     [](auto const& corridor) { return !corridor.conflicts.empty(); });
+}
+
+[[nodiscard]] inline WorldError too_large(std::string const& where) {
+  return {where, "its shape is larger than the one that conflicts on its way are found for",
+          "load the map with a MapOptions::large_conflict_shape that holds it"};
 }
 
 /// An agent about to enter: all that a world takes in of it. `lanes`: its route.
@@ -181,7 +183,7 @@ template <class World>
     throw WorldError(where, "the world has an agent of that id already", "leave the id out to get a free one");
   check_entering(spec, where);
   auto const [road, lanes, lane, place] = entrance(map, roster, spec, where);
-  check_size(map, spec.behavior, spec.shape, *road, where);
+  if (is_too_large(map, spec.behavior, spec.shape, *road)) throw too_large(where);
   typename World::Record record;
   record.lane = place;
   record.state.time = time;

@@ -1,0 +1,159 @@
+// Laws of what corridors say of conflicts, on all junctions of some maps.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "../support/corpus.hpp"
+#include "../support/maps.hpp"
+#include "cambium/core/distributions.hpp"
+#include "cambium/core/random.hpp"
+#include "cambium/geometry/collision.hpp"
+#include "cambium/map/build_corridor.hpp"
+#include "cambium/map/map.hpp"
+
+using namespace cambium;
+
+namespace {
+
+std::vector<std::pair<std::string, std::shared_ptr<Map const>>> junction_maps() {
+  std::vector<std::pair<std::string, std::shared_ptr<Map const>>> maps;
+  for (std::string const name : {"intersection_3way", "intersection_4way", "roundabout"})
+    maps.emplace_back(name, support::own_map(name + ".xodr"));
+  for (std::string const name : {"4way_intersection", "fabriksgatan", "multi_intersections", "route_strategy_test_road",
+                                 "simple_3way_intersection_lht", "threeway_intersection"})
+    if (auto map = support::corpus_map(name + ".xodr")) maps.emplace_back(name, std::move(map));
+  return maps;
+}
+
+/// A junction's lane within a corridor straight through the junction.
+struct Passage {
+  std::shared_ptr<map::RoadCorridor const> road;
+  map::LaneCorridor const* corridor = nullptr;
+  map::CorridorPiece const* piece = nullptr;
+
+  /// The conflicts of the lane.
+  [[nodiscard]] std::vector<map::Conflict const*> conflicts() const {
+    std::vector<map::Conflict const*> found;
+    for (auto const& conflict : corridor->conflicts)
+      if (conflict.lane_end == piece->end && conflict.kind == map::OverlapKind::crossing) found.push_back(&conflict);
+    return found;
+  }
+};
+
+std::map<LaneId, Passage> passages(Map const& map) {
+  std::map<LaneId, Passage> all;
+  for (auto const& lane : map.lanes()) {
+    if (!lane.drivable() || !is_valid(map.road(lane.road).junction)) continue;
+    map::Route route{{lane.id}, lane.length()};
+    for (double back = 0.0; back < 60.0 && !map.lane(route.lanes.front()).predecessors.empty();) {
+      auto const before = map.lane(route.lanes.front()).predecessors.front();
+      if (std::find(route.lanes.begin(), route.lanes.end(), before) != route.lanes.end()) break;
+      route.lanes.insert(route.lanes.begin(), before);
+      back += map.lane(before).length();
+    }
+    auto const ahead = map::straight_route(map, lane.id, lane.length() + 60.0);
+    for (std::size_t i = 1; i < ahead.lanes.size(); ++i) {
+      if (std::find(route.lanes.begin(), route.lanes.end(), ahead.lanes[i]) != route.lanes.end()) break;
+      route.lanes.push_back(ahead.lanes[i]);
+    }
+    Passage passage{map::build_road_corridor(map, route)};
+    for (auto const& corridor : passage.road->corridors)
+      for (auto const& piece : corridor.pieces)
+        if (piece.lane == lane.id) passage.corridor = &corridor, passage.piece = &piece;
+    REQUIRE(passage.piece);
+    all.emplace(lane.id, std::move(passage));
+  }
+  return all;
+}
+
+/// How far two vehicles' ideas of one zone are apart: `zone` of a corridor in which the lane begins at `begin`, and
+/// `theirs` of the other's, in which theirs begins at `their_begin` [m].
+double apart(map::ConflictZone const& zone, double begin, map::ConflictZone const& theirs, double their_begin) {
+  return std::max({std::abs(zone.begin - begin - theirs.other_begin), std::abs(zone.end - begin - theirs.other_end),
+                   std::abs(zone.other_begin - (theirs.begin - their_begin)),
+                   std::abs(zone.other_end - (theirs.end - their_begin))});
+}
+
+}  // namespace
+
+TEST_CASE("two vehicles whose ways cross know of the same zones") {
+  for (auto const& [name, map] : junction_maps()) {
+    CAPTURE(name);
+    auto const all = passages(*map);
+    std::size_t zones = 0;
+    for (auto const& [lane, passage] : all)
+      for (auto const* conflict : passage.conflicts()) {
+        auto const other = all.find(conflict->other);
+        if (other == all.end()) continue;  // outside of junctions
+        auto const theirs = other->second.conflicts();
+        for (std::size_t sizes = 0; sizes < 4; ++sizes) {
+          auto const& zone = conflict->zones[sizes / 2][sizes % 2];
+          if (zone.empty()) continue;
+          double best = std::numeric_limits<double>::infinity();
+          for (auto const* candidate : theirs)
+            if (candidate->other == lane)
+              best = std::min(best, apart(zone, -passage.piece->lane_offset, candidate->zones[sizes % 2][sizes / 2],
+                                          -other->second.piece->lane_offset));
+          CAPTURE(index_of(lane));
+          CAPTURE(index_of(conflict->other));
+          CHECK(best < 1.1);  // they are found in steps of 0.5 m
+          ++zones;
+        }
+      }
+    if (name != "roundabout") CHECK(zones > 20);
+  }
+}
+
+TEST_CASE("where two bodies touch there is a zone, and outside of all zones none do") {
+  RandomStream random(5, 0, 0);
+  for (auto const& [name, map] : junction_maps()) {
+    CAPTURE(name);
+    auto const all = passages(*map);
+    int touching = 0;
+    for (auto const& [lane, passage] : all) {
+      auto const conflicts = passage.conflicts();
+      for (auto const* conflict : conflicts)
+        for (int i = 0; i < 60; ++i) {
+          bool const large = i % 2 == 1, other_large = i % 4 > 1;
+          auto const shape = large ? geometry::truck() : geometry::car(),
+                     other_shape = other_large ? geometry::bus() : geometry::van();
+          auto const& other = map->lane(conflict->other);
+          double const s = passage.piece->begin + uniform01(random) * (passage.piece->end - passage.piece->begin);
+          double const at = uniform01(random) * other.length();
+          if (!geometry::intersects(geometry::box_of(shape, passage.corridor->center.pose(s)),
+                                    geometry::box_of(other_shape, other.path.pose(at))))
+            continue;
+          ++touching;
+          CHECK(std::any_of(conflicts.begin(), conflicts.end(), [&](map::Conflict const* c) {
+            auto const& zone = c->zones[large][other_large];
+            return c->other == other.id && s >= zone.begin && s <= zone.end && at >= zone.other_begin &&
+                   at <= zone.other_end;
+          }));
+        }
+    }
+    if (name != "roundabout") CHECK(touching > 50);
+  }
+}
+
+TEST_CASE("conflicts are in the order in which one has to wait for them, and know how far those before reach") {
+  for (auto const& [name, map] : junction_maps())
+    for (auto const& [lane, passage] : passages(*map)) {
+      double hold = -std::numeric_limits<double>::infinity(), end = hold;
+      for (auto const& conflict : passage.corridor->conflicts) {
+        end = std::max(end, conflict.hull().end);
+        CHECK(conflict.hold[1] >= hold);
+        CHECK(conflict.hold[1] <= conflict.hold[0]);
+        CHECK(conflict.hold[1] <= conflict.hull().begin);
+        CHECK(conflict.farthest_end == end);
+        hold = conflict.hold[1];
+      }
+    }
+}
