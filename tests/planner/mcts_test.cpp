@@ -267,7 +267,7 @@ TEST_CASE("what cannot be planned is said") {
   planner = quick(Single{});
   planner.reward.progress = std::nan("");
   CHECK_THROWS_AS(world.add({.position = {300, -1.75}, .speed = 12, .behavior = planner}), ParameterError);
-  CHECK_THROWS_AS((void)planner.think(world.observe(ego), workspace), SearchError);
+  CHECK_THROWS_AS((void)planner.think(world.observe(ego), workspace), ParameterError);
   CHECK_THROWS_AS((void)world.observe(AgentId{77}), WorldError);
   // One that has left the map is not there to be planned for.
   auto state = world.state(ego);
@@ -275,5 +275,54 @@ TEST_CASE("what cannot be planned is said") {
   world.set_state(ego, state);
   for (int step = 0; step < 5; ++step) (void)world.step(0.2);
   REQUIRE(world.status(ego) != AgentStatus::driving);
-  CHECK_THROWS_AS((void)quick(Single{}).think(world.observe(ego), workspace), SearchError);
+  CHECK_THROWS_WITH_AS((void)quick(Single{}).think(world.observe(ego), workspace),
+                       "search: the agent that is to plan is not in the predicted world, or not in traffic; ask for an "
+                       "agent that drives",
+                       SearchError);
+}
+
+TEST_CASE("think checks the planner's own parameters, and whether the course is over") {
+  auto world = lane_change(0, quick(Single{}));
+  Single::Workspace workspace;
+  Cooperative::Workspace cooperative_workspace;
+  auto planner = quick(Single{});
+  planner.options.step = 0.0;
+  CHECK_THROWS_AS((void)planner.think(world.observe(ego), workspace), ParameterError);
+  auto cooperative = quick(Cooperative{});
+  cooperative.most_agents = 0;
+  CHECK_THROWS_AS((void)cooperative.think(world.observe(ego), cooperative_workspace), ParameterError);
+  // In the lane of its goal already.
+  auto state = world.state(ego);
+  state.y = -1.75;
+  world.set_state(ego, state);
+  CHECK_THROWS_WITH_AS((void)quick(Single{}).think(world.observe(ego), workspace),
+                       "agent 0: its course is over: it touches something, is off the road, or is at its goal; ask the "
+                       "evaluators before you plan",
+                       SearchError);
+  // No lane on the left of it.
+  planner = quick(Single{});
+  planner.actions = MacroActions::of({{MacroAction::Kind::change_left}});
+  planner.reward.goal = 0.0;
+  CHECK_THROWS_AS((void)planner.think(world.observe(ego), workspace), SearchError);
+}
+
+TEST_CASE("a lane change goes on from search to search, and the lane is kept behind the goal") {
+  auto const map = support::straight_road(2, 600.0);
+  auto planner = quick(Single{});
+  planner.actions.course = {.duration = 2.0, .shortest_duration = 1.5};
+  Sim world(map, {.seed = 3});
+  world.add({.position = {60, -5.25},
+             .speed = 12,
+             .behavior = planner,
+             .goal = LaneLimits{.lane = map->nearest_lane({20, -1.75, 0})->lane, .left = 0.5, .right = 0.5}});
+  double first = 0.0, farthest = -5.25;
+  for (int step = 1; step <= 40; ++step) {
+    REQUIRE(world.step(0.2).failed == 0);
+    if (first == 0.0 && world.reached_goal(ego)) first = 0.2 * step;
+    farthest = std::max(farthest, world.state(ego).y);
+  }
+  CHECK(first > 0.0);
+  CHECK(first < 3.0);
+  CHECK(farthest < -1.75 + 0.1);
+  CHECK(std::abs(world.state(ego).y + 1.75) < 0.1);
 }

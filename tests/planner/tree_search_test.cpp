@@ -44,6 +44,9 @@ TEST_CASE("regret matching and Exp3 play the mixed equilibria of matrix games") 
     for (auto const& arm : rock.of(0)) CHECK(std::abs(arm.share - 1.0 / 3) < 0.05);
     auto const exp3 = solve<Exp3>(matching_pennies, 50'000, seed, Exp3{0.05});
     CHECK(std::abs(exp3.of(0)[0].share - 0.5) < 0.08);
+    auto const learned = solve<Exp3>(uneven, 200'000, seed, Exp3{0.05});
+    CHECK(std::abs(learned.of(0)[0].share - 0.4) < 0.08);
+    CHECK(std::abs(learned.of(1)[0].share - 0.2) < 0.08);
   }
 }
 
@@ -178,6 +181,16 @@ TEST_CASE("a kept tree goes on where it holds, and is dropped where it does not"
   CHECK(search.run({}, 3).kept_nodes == 0);
   CHECK_FALSE(search.keep(std::array<int, 2>{-1, -1}));
   CHECK_FALSE(search.keep(std::array<int, 1>{0}));
+}
+
+TEST_CASE("a kept tree with several outcomes of the same actions may grow") {
+  TreeSearch<Crossing> search(Crossing{2}, {.horizon = 12}, {}, {}, {1900});
+  auto const action = search.run({}, 1).choice(0).action;
+  REQUIRE(search.keep(std::array{action}));
+  auto const state = search.tree().state(0);
+  auto const& next = search.run(state, 2);
+  CHECK(next.kept_nodes > 100);
+  CHECK(next.iterations == 1900);
 }
 
 TEST_CASE("warm searches with kept trees allocate nothing") {
@@ -352,6 +365,60 @@ TEST_CASE("priors lead a search, and are checked") {
   CHECK(result.of(0)[1].visits == most);
   search.domain().weight = -1.0;
   CHECK(search.run({}, 1).problem == SearchProblem::bad_priors);
+}
+
+namespace {
+
+/// A walk to the right; `listed` actions from 5 on, where there is room for 2.
+struct Walk {
+  using State = int;
+  using Action = int;
+  static constexpr bool is_deterministic = true;
+  static constexpr std::size_t max_actions = 2;
+  int listed = 2;
+
+  std::size_t agents() const { return 1; }
+  bool is_terminal(int) const { return false; }
+  int actions(int x, std::size_t, std::span<int> out) const {
+    out[0] = 0;
+    out[1] = 1;
+    return x < 5 ? 2 : listed;
+  }
+  bool step(int& x, std::span<int const> a, RandomStream&, std::span<AgentOutcome> out) const {
+    x += 1;
+    out[0].reward = a[0];
+    return false;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("actions that are none or too many are found in roll-outs too, and a result with a problem has no choice") {
+  for (int const listed : {0, 3, -1}) {
+    TreeSearch<Walk> search(Walk{listed}, {.horizon = 10}, {}, {}, {1});
+    auto const& result = search.run(0, 1);
+    CHECK(result.problem == SearchProblem::no_actions);
+    CHECK_THROWS_AS((void)result.choice(0), SearchError);
+    CHECK_THROWS_AS((void)result.of(0), SearchError);
+  }
+  TreeSearch<Walk> search(Walk{}, {.horizon = 10}, {}, {}, {20});
+  CHECK(search.run(0, 1).choice(0).action == 1);
+  CHECK_THROWS_WITH_AS((void)search.result().of(1), "search result: has no agent 1; ask for one of 0 to 0",
+                       SearchError);
+  // A run that fails leaves no tree of the one before.
+  TreeSearch<TicTacToe> game({}, {.horizon = 9}, {}, {}, {50});
+  (void)game.run({}, 1);
+  TicTacToe::State won;
+  won.board = {1, 1, 1, -1, -1, 0, 0, 0, 0};
+  won.moves = 5;
+  CHECK(game.run(won, 1).problem == SearchProblem::terminal_root);
+  CHECK(game.tree().size() == 0);
+  CHECK(tree_as_json(game).find("\"id\"") == std::string::npos);
+}
+
+TEST_CASE("under a constraint who was hardly tried is not taken to be safe") {
+  std::array<RootArm<int>, 2> const arms{{{0, 97, 1.0, 0.06, 0.97}, {1, 3, -10.0, 0.0, 0.03}}};
+  CHECK(detail::final_choice<int>(arms, ReturnScale{}, FinalMove::most_visits, 0.05) == 0);
 }
 
 TEST_CASE("a wall-clock budget ends a search, after 64 iterations at the least") {

@@ -20,6 +20,7 @@ template <class PredictionWorld, class Actions = MacroActions, class Reward = Tr
 struct MctsCooperative {
   using Domain = TrafficDomain<PredictionWorld, Actions, Reward>;
   using Workspace = MctsWorkspace<Domain, Selection, Rollout>;
+  using Memory = detail::ActionMemory<Actions>;
 
   Actions actions{};
   Others others{};
@@ -46,24 +47,27 @@ struct MctsCooperative {
   }
 
   template <class View>
-  [[nodiscard]] Plan<View> plan(View const& view, NoMemory, double dt, Workspace& workspace) const {
+  [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt, Workspace& workspace) const {
     return detail::plan_by_search<PredictionWorld>(
-        view, workspace, dt, [&](auto& w) -> auto const& { return search(view, w); });
+        view, memory, workspace, dt, [&](auto& w) -> auto const& { return search(view, memory, w); });
   }
 
-  /// What it thinks of what `view` shows. Throws `SearchError` where there is nothing to search.
+  /// What it thinks of what `view` shows, in the middle of what `memory` says: after a step of the search that is the
+  /// one in `report.course`. Throws `SearchError` where there is nothing to search.
   template <class View>
-  [[nodiscard]] MctsReport<PredictionWorld, typename Domain::Action> think(View const& view,
-                                                                           Workspace& workspace) const {
-    throw_if(search(view, workspace).problem);
+  [[nodiscard]] MctsReport<PredictionWorld, typename Domain::Action> think(View const& view, Workspace& workspace,
+                                                                           Memory const& memory = {}) const {
+    check_parameters(*this);
+    detail::throw_if(search(view, memory, workspace).problem, view.id());
     return workspace.report();
   }
 
  private:
   template <class View>
-  [[nodiscard]] SearchResult<typename Domain::Action> const& search(View const& view, Workspace& workspace) const {
+  [[nodiscard]] SearchResult<typename Domain::Action> const& search(View const& view, Memory const& memory,
+                                                                    Workspace& workspace) const {
     std::vector<std::uint32_t> slots;
-    auto world = detail::world_to_search<PredictionWorld>(view, actions, others, slots);
+    auto world = detail::world_to_search<PredictionWorld>(view, actions, memory, others, slots);
     if (!slots.empty())
       for (auto const slot :
            detail::nearest_agents(world, slots[0], static_cast<std::size_t>(most_agents - 1), range)) {

@@ -40,6 +40,7 @@ struct MctsHypothesis {
   struct Memory {
     std::array<Tracked, capacity> tracked{};
     double expected_at = -1.0;  ///< when those speeds are expected [s]
+    detail::ActionMemory<Actions> course{};
 
     /// What is believed of an agent; null where nothing is.
     [[nodiscard]] Belief const* belief(AgentId id) const {
@@ -76,7 +77,7 @@ struct MctsHypothesis {
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt, Workspace& workspace) const {
     return detail::plan_by_search<PredictionWorld>(
-        view, workspace, dt, [&](auto& w) -> auto const& { return search(view, memory, dt, w); });
+        view, memory.course, workspace, dt, [&](auto& w) -> auto const& { return search(view, memory, dt, w); });
   }
 
   /// What it thinks of what `view` shows, having seen what `memory` says, in a world of steps of `dt` [s]. Throws
@@ -84,7 +85,8 @@ struct MctsHypothesis {
   template <class View>
   [[nodiscard]] MctsReport<PredictionWorld, typename Domain::Action> think(View const& view, Memory& memory, double dt,
                                                                            Workspace& workspace) const {
-    throw_if(search(view, memory, dt, workspace).problem);
+    check_parameters(*this);
+    detail::throw_if(search(view, memory, dt, workspace).problem, view.id());
     return workspace.report();
   }
 
@@ -93,7 +95,7 @@ struct MctsHypothesis {
   [[nodiscard]] SearchResult<typename Domain::Action> const& search(View const& view, Memory& memory, double dt,
                                                                     Workspace& workspace) const {
     std::vector<std::uint32_t> slots;
-    auto world = detail::world_to_search<PredictionWorld>(view, actions, others, slots);
+    auto world = detail::world_to_search<PredictionWorld>(view, actions, memory.course, others, slots);
     std::vector<typename Domain::Unknown> unknowns;
     if (!slots.empty()) unknowns = update(world, slots[0], memory, dt);
     Domain domain(std::move(world), slots, actions, reward, options.step);

@@ -14,6 +14,7 @@ template <class PredictionWorld, class Actions = MacroActions, class Reward = Tr
 struct MctsRiskConstrained {
   using SingleAgent = MctsSingleAgent<PredictionWorld, Actions, Reward, Others, Selection, Rollout>;
   using Workspace = typename SingleAgent::Workspace;
+  using Memory = typename SingleAgent::Memory;
 
   SingleAgent planner{};
   double risk = 0.05;
@@ -30,14 +31,15 @@ struct MctsRiskConstrained {
   }
 
   template <class View>
-  [[nodiscard]] Plan<View> plan(View const& view, NoMemory memory, double dt, Workspace& workspace) const {
+  [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt, Workspace& workspace) const {
     return constrained().plan(view, memory, dt, workspace);
   }
 
   /// What it thinks of what `view` shows. Throws `SearchError` where there is nothing to search.
   template <class View>
-  [[nodiscard]] auto think(View const& view, Workspace& workspace) const {
-    return constrained().think(view, workspace);
+  [[nodiscard]] auto think(View const& view, Workspace& workspace, Memory const& memory = {}) const {
+    check_parameters(*this);
+    return constrained().think(view, workspace, memory);
   }
 
  private:

@@ -7,6 +7,7 @@
 #include <string>
 #include <tuple>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "cambium/behavior/behavior_model.hpp"
@@ -121,36 +122,63 @@ namespace detail {
 /// The purpose of the random numbers of a search in traffic.
 inline constexpr std::uint32_t search_purpose = 0x3c75;
 
-/// The world that is predicted where ego may choose; slot of ego there first in `slots`, or empty.
+/// What carries out the actions: its memory, as of a lane change under way, lasts from one search to the next.
+template <class Actions>
+using ActionMemory = typename ActionSet<Actions>::Behavior::Memory;
+
+/// The world that is predicted where ego may choose, in the middle of what `memory` says; slot of ego there first in
+/// `slots`, or empty.
 template <class PredictionWorld, class Actions, class Others, class View>
-[[nodiscard]] PredictionWorld world_to_search(View const& view, Actions const& actions, Others const& others,
+[[nodiscard]] PredictionWorld world_to_search(View const& view, Actions const& actions,
+                                              ActionMemory<Actions> const& memory, Others const& others,
                                               std::vector<std::uint32_t>& slots) {
+  using Behavior = typename ActionSet<Actions>::Behavior;
   std::optional<std::uint32_t> ego;
   auto world = predicted_for<PredictionWorld>(view, ActionSet<Actions>::behavior(actions), others, ego);
   slots.clear();
-  if (ego) slots.push_back(*ego);
+  if (!ego) return world;
+  slots.push_back(*ego);
+  world.template memory<Behavior>(view.id()) = memory;
   return world;
 }
 
-/// What ego does over the next `dt` [s] by the principal variation.
-template <class View, class Workspace>
-void take_course(View const& view, Workspace& workspace, double dt, Plan<View>& plan) {
+/// What ego does over the next `dt` [s] by the principal variation, and what it remembers then.
+template <class View, class Workspace, class Memory>
+void take_course(View const& view, Workspace& workspace, double dt, Plan<View>& plan, Memory& memory) {
   auto const slot = workspace.search().domain().slots()[0];
   workspace.play(view.time() + dt, [&](auto const& frame) {
-    if (plan.trajectory.empty()) plan.action = frame.agents[slot].action;
-    plan.trajectory.push_back(frame.agents[slot].state);
+    auto const& ego = frame.agents[slot];
+    if (plan.trajectory.empty()) plan.action = ego.action;
+    plan.trajectory.push_back(ego.state);
+    if (auto const* at_end = std::get_if<Workspace::Domain::behavior_index>(&ego.memory)) memory = *at_end;
   });
 }
 
-/// The plan that `search(workspace)`, which says what was found, leads to for the next `dt` [s].
-template <class PredictionWorld, class View, class Workspace, class Search>
-[[nodiscard]] Plan<View> plan_by_search(View const& view, Workspace& workspace, double dt, Search&& search) {
+/// Throws `SearchError`, in words of traffic, where `ego` cannot be planned for.
+inline void throw_if(SearchProblem problem, AgentId ego) {
+  auto const where = "agent " + to_string(ego);
+  if (problem == SearchProblem::no_agents) cambium::throw_if(SearchProblem::not_in_world);
+  if (problem == SearchProblem::no_actions)
+    throw SearchError(where, "none of its actions is available in a state that the search came to",
+                      "give it one that always is, such as keep_gap or stay");
+  if (problem == SearchProblem::terminal_root)
+    throw SearchError(where, "its course is over: it touches something, is off the road, or is at its goal",
+                      "ask the evaluators before you plan");
+  cambium::throw_if(problem);
+}
+
+/// The plan that `search(workspace)`, which says what was found, leads to for the next `dt` [s]. Where ego's course is
+/// over already, at its goal as after a collision, it drives on without any manoeuvre.
+template <class PredictionWorld, class View, class Memory, class Workspace, class Search>
+[[nodiscard]] Plan<View> plan_by_search(View const& view, Memory& memory, Workspace& workspace, double dt,
+                                        Search&& search) {
   Plan<View> plan;
   plan.status = PlanStatus::failed;
   if constexpr (Predicts<View, typename PredictionWorld::Behaviors, PredictionWorld>) {
-    if (search(workspace).problem != SearchProblem::none) return plan;
+    auto const problem = search(workspace).problem;
+    if (problem != SearchProblem::none && problem != SearchProblem::terminal_root) return plan;
     plan.status = PlanStatus::valid;
-    take_course(view, workspace, dt, plan);
+    take_course(view, workspace, dt, plan, memory);
   }
   return plan;
 }

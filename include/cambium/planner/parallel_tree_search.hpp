@@ -44,10 +44,11 @@ class ParallelTreeSearch {
         errors[i] = std::current_exception();
       }
     };
-    std::vector<std::thread> threads;
-    for (std::size_t i = 1; i < searches_.size(); ++i) threads.emplace_back(grow, i);
-    grow(0);
-    for (auto& thread : threads) thread.join();
+    {
+      Crew crew;
+      for (std::size_t i = 1; i < searches_.size(); ++i) crew.threads.emplace_back(grow, i);
+      grow(0);
+    }
     for (auto const& error : errors)
       if (error) std::rethrow_exception(error);
     merge();
@@ -58,6 +59,14 @@ class ParallelTreeSearch {
   [[nodiscard]] std::vector<Search> const& searches() const { return searches_; }
 
  private:
+  /// Waits for its threads, also where not all could be started.
+  struct Crew {
+    std::vector<std::thread> threads;
+    ~Crew() {
+      for (auto& thread : threads) thread.join();
+    }
+  };
+
   void merge() {
     result_ = searches_[0].result();
     std::vector<ReturnScale> scales(searches_[0].scales().begin(), searches_[0].scales().end());

@@ -27,6 +27,7 @@ struct RolloutRun {
   std::span<typename Domain::Action> joint;    ///< working memory, one per agent
   std::span<AgentOutcome> outcomes;            ///< likewise
   std::span<typename Domain::Action> options;  ///< likewise, `max_actions`
+  bool lacks_actions = false;                  ///< out: an agent had none, or more than there may be
 };
 
 /// How a course is judged from where the tree ends: a copyable struct of parameters with `roll_out(run)`, which fills
@@ -45,6 +46,7 @@ template <class Run, class Choose>
   double weight = 1.0;
   for (int step = 0; step < steps; ++step) {
     for (std::size_t k = 0; k < run.joint.size(); ++k) run.joint[k] = choose(k, step);
+    if (run.lacks_actions) return 0.0;
     std::fill(run.outcomes.begin(), run.outcomes.end(), AgentOutcome{});
     bool const over = run.domain.step(run.state, run.joint, run.random, run.outcomes);
     for (std::size_t k = 0; k < run.joint.size(); ++k) {
@@ -61,9 +63,9 @@ template <class Run, class Choose>
 template <class Run>
 [[nodiscard]] auto random_action(Run& run, std::size_t agent) {
   if constexpr (ListsActions<std::remove_reference_t<decltype(run.domain)>>) {
-    auto const count = run.domain.actions(run.state, agent, run.options);
-    // A state without actions is found by the search as soon as it gets there.
-    return count > 0 ? run.options[uniform_index(run.random, static_cast<std::uint32_t>(count))] : run.options[0];
+    auto const count = static_cast<std::size_t>(run.domain.actions(run.state, agent, run.options));
+    run.lacks_actions = run.lacks_actions || count == 0 || count > run.options.size();
+    return run.options[run.lacks_actions ? 0 : uniform_index(run.random, static_cast<std::uint32_t>(count))];
   } else {
     return run.domain.sample_action(run.state, agent, run.random);
   }

@@ -22,7 +22,7 @@ namespace detail {
 template <class D>
 concept ListsActions = requires(D domain, typename D::State const state, std::span<typename D::Action> out) {
   { D::max_actions } -> std::convertible_to<std::size_t>;
-  { domain.actions(state, std::size_t{}, out) } -> std::same_as<std::size_t>;
+  { domain.actions(state, std::size_t{}, out) } -> std::convertible_to<std::size_t>;
 };
 
 template <class D>
@@ -51,6 +51,14 @@ concept HasPolicy = requires(D domain, typename D::State const state, RandomStre
   { domain.policy_action(state, std::size_t{}, random) } -> std::same_as<typename D::Action>;
 };
 
+template <class D, std::size_t limit>
+inline constexpr bool fewer_actions_than = [] {
+  if constexpr (ListsActions<D>)
+    return D::max_actions > 0 && static_cast<std::size_t>(D::max_actions) < limit;
+  else
+    return true;
+}();
+
 /// Whether the same actions in the same state always lead to the same state, as far as the domain says so.
 template <class D>
 inline constexpr bool is_deterministic = [] {
@@ -65,7 +73,7 @@ inline constexpr bool is_deterministic = [] {
 /// A game that can be searched: agents that choose at once, a state, and a joint step.
 ///   `State`, copyable: what a node stores. `Action`, copyable, with ==.
 ///   `agents()`: how many agents choose, at least one, the same in all states.
-///   `is_terminal(state)`: whether the game is over.
+///   `is_terminal(state)`: whether the game is over; asked of the root only.
 ///   `step(state, actions, random, outcomes)`: all agents act at once, one action each; changes the state, adds to the
 ///     outcomes (one per agent, zero at first), and says whether the game is over. All that is random in it comes from
 ///     `random`.

@@ -42,8 +42,8 @@ inline void throw_if(SearchProblem problem) {
     case SearchProblem::no_agents:
       throw SearchError("search", "no agent chooses", "let SearchDomain::agents be at least 1");
     case SearchProblem::no_actions:
-      throw SearchError("search", "an agent has no action, or more than max_actions, in a state that is not terminal",
-                        "list at least one, such as doing nothing, or call the state terminal");
+      throw SearchError("search", "an agent has no action, or more than max_actions, in a state where the game goes on",
+                        "list at least one, such as doing nothing, or let step say that the game is over");
     case SearchProblem::no_budget:
       throw SearchError("search", "its budget is 0 iterations", "give it at least 1");
     case SearchProblem::terminal_root:
@@ -88,11 +88,15 @@ struct SearchResult {
   std::vector<std::uint32_t> variation_nodes;  ///< where it leads, step by step; a prefix of it, at the end of the tree
   std::vector<std::uint32_t> depths;           ///< by steps: how many iterations left the tree there
 
-  /// The agent's actions at the root.
+  /// The agent's actions at the root. Throws `SearchError` where there is a problem, or no such agent.
   [[nodiscard]] std::span<RootArm<Action> const> of(std::size_t agent) const {
+    throw_if(problem);
+    if (agent >= agents)
+      throw SearchError("search result", "has no agent " + std::to_string(agent),
+                        "ask for one of 0 to " + std::to_string(agents - 1));
     return {arms.data() + first_arm[agent], first_arm[agent + 1] - first_arm[agent]};
   }
-  /// What the agent is to do, and what is expected of it.
+  /// What the agent is to do, and what is expected of it. Throws as `of`.
   [[nodiscard]] RootArm<Action> const& choice(std::size_t agent) const { return of(agent)[best[agent]]; }
 
   /// Empties it, but keeps its memory.
@@ -113,13 +117,15 @@ struct SearchResult {
 namespace detail {
 
 /// Which of `arms` to take: of those that cost no more than they may, the best by `final_move`; else the cheapest.
+/// Costs are estimated by Laplace's rule of succession: who was hardly tried is not taken to be safe.
 template <class Action>
 [[nodiscard]] std::size_t final_choice(std::span<RootArm<Action> const> arms, ReturnScale scale, FinalMove final_move,
                                        double cost_limit) {
+  auto const cost = [](RootArm<Action> const& arm) { return (arm.mean_cost * arm.visits + 1.0) / (arm.visits + 2.0); };
   double visits = 0.0, cheapest = 1.0;
   for (auto const& arm : arms) {
     visits += arm.visits;
-    if (arm.visits > 0) cheapest = std::min(cheapest, arm.mean_cost);
+    if (arm.visits > 0) cheapest = std::min(cheapest, cost(arm));
   }
   double const log_visits = portable_log(std::max(1.0, visits));
   double const limit = std::max(cheapest, cost_limit);
@@ -130,7 +136,7 @@ template <class Action>
     return final_move == FinalMove::best_return ? score : score - std::sqrt(log_visits / arm.visits);
   };
   return best_arm(arms, [&](RootArm<Action> const& arm) {
-    return arm.visits > 0 && arm.mean_cost <= limit ? merit(arm) : -std::numeric_limits<double>::infinity();
+    return arm.visits > 0 && cost(arm) <= limit ? merit(arm) : -std::numeric_limits<double>::infinity();
   });
 }
 

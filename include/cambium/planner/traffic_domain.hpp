@@ -35,6 +35,7 @@ class TrafficDomain {
  public:
   using World = PredictionWorld;
   using Action = typename Set::Choice;
+  static constexpr std::size_t behavior_index = World::Behaviors::template index<Behavior>;  ///< of who chooses
   /// World randomness is keyed by its seed, agent and step: the same actions lead to the same frame.
   static constexpr bool is_deterministic = true;
 
@@ -57,8 +58,11 @@ class TrafficDomain {
         dt_(dt),
         cooperation_(cooperation) {}
 
-  /// The world's own frame as a root.
-  [[nodiscard]] State root() const { return {world_.frame(), false}; }
+  /// The world's own frame as a root; over where the reward says that a course ends there.
+  [[nodiscard]] State root() const {
+    return {world_.frame(),
+            std::ranges::any_of(slots_, [&](auto slot) { return reward_.judge(world_, slot, dt_).ends; })};
+  }
   [[nodiscard]] World const& world() const { return world_; }
   [[nodiscard]] std::span<std::uint32_t const> slots() const { return slots_; }
   [[nodiscard]] Actions const& action_set() const { return actions_; }
@@ -103,6 +107,7 @@ class TrafficDomain {
     }
     for (auto& outcome : outcomes) outcome.reward += cooperation_ * (sum - outcome.reward);
     world_.exchange(state.frame);
+    state.over = state.over || !all_drive(state);
     return state.over;
   }
 
@@ -127,8 +132,6 @@ class TrafficDomain {
   }
 
  private:
-  static constexpr std::size_t behavior_index = World::Behaviors::template index<Behavior>;
-
   /// Steps the world from `state`, and leaves it there.
   void enter(State& state, std::span<Action const> joint, double duration) {
     for (std::size_t k = 0; k < slots_.size(); ++k)

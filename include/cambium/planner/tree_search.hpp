@@ -34,6 +34,8 @@ class TreeSearch {
   static_assert(RolloutPolicy<Rollout, Domain>,
                 "cambium::TreeSearch<Domain, Selection, Rollout>: Rollout must be a roll-out policy such as "
                 "cambium::RandomRollout (see RolloutPolicy)");
+  static_assert(detail::fewer_actions_than<Domain, 65536>,
+                "cambium::TreeSearch<Domain>: Domain::max_actions must be 1 to 65535");
 
  public:
   using State = typename Domain::State;
@@ -63,8 +65,8 @@ class TreeSearch {
   /// Searches from `root`. What is wrong with the domain or the state is said in `problem`; then the result is empty.
   /// `tree` tells apart searches of one seed that are to be merged. The result is the search's own, until its next run.
   Result const& run(State const& root, std::uint64_t seed, std::uint32_t tree = 0) {
-    start(root, seed);
     budget_.start();
+    start(root, seed);
     while (result_.problem == SearchProblem::none && budget_.goes_on(result_.iterations)) {
       RandomStream random(seed, tree, static_cast<std::uint32_t>(result_.iterations), iteration_purpose);
       iterate(random);
@@ -122,6 +124,8 @@ class TreeSearch {
   void start(State const& root, std::uint64_t seed) {
     auto const agents = static_cast<std::size_t>(domain_.agents());
     result_.clear(seed, static_cast<std::size_t>(parameters_.horizon));
+    bool const may_build_on = std::exchange(kept_, false);
+    if (!may_build_on) tree_.clear();
     if (agents == 0) return stop(SearchProblem::no_agents);
     if (budget_.most() == 0) return stop(SearchProblem::no_budget);
     if (domain_.is_terminal(root)) return stop(SearchProblem::terminal_root);
@@ -131,8 +135,7 @@ class TreeSearch {
     if constexpr (!lists) more_actions_.set(parameters_.action_widening, budget_.most());
     if constexpr (!resimulates && !detail::is_deterministic<Domain>)
       more_outcomes_.set(parameters_.outcome_widening, budget_.most());
-    bool const builds_on = kept_ && still_holds(root);
-    kept_ = false;
+    bool const builds_on = may_build_on && still_holds(root);
     auto const kept = builds_on ? tree_.size() : 0;
     typename Tree::Limits const limits{agents, budget_.most() + 1 + kept, parameters_.memory, arms_per_node(agents),
                                        resimulates ? 0 : sizeof(State) + heap_bytes(root)};
@@ -246,7 +249,7 @@ class TreeSearch {
   }
 
   bool list_arms(std::uint32_t node, std::size_t agent, State const& state) {
-    auto const count = domain_.actions(state, agent, options_);
+    auto const count = static_cast<std::size_t>(domain_.actions(state, agent, options_));
     if (count == 0 || count > options_.size()) {
       stop(SearchProblem::no_actions);
       return false;
@@ -341,6 +344,7 @@ class TreeSearch {
     RolloutRun<Domain> run{domain_,  work_,  random, steps,     parameters_.discount,
                            returns_, costs_, joint_, outcomes_, options_};
     rollout_.roll_out(run);
+    if (run.lacks_actions) stop(SearchProblem::no_actions);
     for (std::size_t k = 0; k < returns_.size(); ++k)
       if (!std::isfinite(returns_[k]) || !std::isfinite(costs_[k])) stop(SearchProblem::not_finite);
   }

@@ -38,14 +38,19 @@ class SearchTree {
 
   /// Forgets all nodes.
   void reset(Limits const& limits) {
-    nodes_.clear();
-    arms_.clear();
+    clear();
     reserve(limits);
     ++epoch_;
     if (epoch_ == 0) {  // entries of 2^32 searches ago would count as new
       std::fill(table_.begin(), table_.end(), Entry{});
       epoch_ = 1;
     }
+  }
+
+  /// Has no nodes any more.
+  void clear() {
+    nodes_.clear();
+    arms_.clear();
   }
 
   /// Makes room, keeping the nodes that there are; `limits.agents` as before.
@@ -154,7 +159,6 @@ class SearchTree {
       moved_to_[n] = kept;
       move_node(n, kept);
       nodes_[kept].parent = is_root ? no_node : moved_to_[nodes_[kept].parent];
-      nodes_[kept].next_outcome = no_node;
       ++kept;
     }
     nodes_.resize(kept);
@@ -200,6 +204,7 @@ class SearchTree {
   void rehash(std::size_t entries) {
     table_.assign(entries, Entry{});
     epoch_ = 1;
+    for (auto& node : nodes_) node.next_outcome = no_node;
     for (std::uint32_t n = 1; n < nodes_.size(); ++n) link(n);
   }
 
