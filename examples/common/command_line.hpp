@@ -1,13 +1,18 @@
 #pragma once
 
+#include <cerrno>
 #include <cstdint>
 #include <cstdio>
 #include <exception>
+#include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <string>
+#include <system_error>
 
 #include <CLI/CLI.hpp>
 
+#include "cambium/core/error.hpp"
 #include "cambium/core/text.hpp"
 
 namespace examples {
@@ -22,6 +27,17 @@ namespace examples {
   return CLI::Validator(check, "");
 }
 
+/// Accepts numbers from `low` to `high`.
+[[nodiscard]] inline CLI::Validator number(double low, double high) {
+  auto const check = [low, high](std::string const& word) -> std::string {
+    auto const value = cambium::detail::parse_number<double>(word);
+    if (value && *value >= low && *value <= high) return {};
+    return "needs a number from " + cambium::detail::rounded_text(low) + " to " + cambium::detail::rounded_text(high) +
+           ", not '" + word + "'";
+  };
+  return CLI::Validator(check, "");
+}
+
 /// Accepts any text but none.
 [[nodiscard]] inline CLI::Validator not_empty() {
   return CLI::Validator(
@@ -29,6 +45,23 @@ namespace examples {
         return word.empty() ? std::string("needs a name, not an empty text") : std::string();
       },
       "");
+}
+
+/// Makes the folder and finds out now, not after the work, whether it takes files. Older results stay until there are
+/// new ones.
+inline void prepare_folder(std::filesystem::path const& folder) {
+  std::error_code problem;
+  std::filesystem::create_directories(folder, problem);
+  if (problem)
+    throw cambium::Error(folder.string(), "this folder cannot be made (" + problem.message() + ")",
+                         "choose another --out");
+  auto const probe = folder / ".probe";
+  errno = 0;
+  if (!std::ofstream(probe))
+    throw cambium::Error(folder.string(),
+                         "no files can be written into this folder (" + std::generic_category().message(errno) + ")",
+                         "choose another --out");
+  std::filesystem::remove(probe, problem);
 }
 
 /// 0, or 2 with a line on the error stream where the standard output did not take all that was printed.

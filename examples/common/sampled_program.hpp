@@ -1,10 +1,8 @@
 #pragma once
 
-#include <cerrno>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <string>
 #include <system_error>
@@ -71,23 +69,6 @@ inline void add_options(CLI::App& program, Settings& settings, std::string const
   program.footer("What it prints:\n" + explained("the ego, or everybody, did what there was to do"));
 }
 
-/// Makes the folder and finds out now, not after the work, whether it takes files. Older results stay until there are
-/// new ones.
-inline void prepare(std::filesystem::path const& folder) {
-  std::error_code problem;
-  std::filesystem::create_directories(folder, problem);
-  if (problem)
-    throw cambium::Error(folder.string(), "this folder cannot be made (" + problem.message() + ")",
-                         "choose another --out");
-  auto const probe = folder / ".probe";
-  errno = 0;
-  if (!std::ofstream(probe))
-    throw cambium::Error(folder.string(),
-                         "no files can be written into this folder (" + std::generic_category().message(errno) + ")",
-                         "choose another --out");
-  std::filesystem::remove(probe, problem);
-}
-
 template <class Site>
 void write_results(std::filesystem::path const& folder, Site const& site, Settings const& settings, Words const& words,
                    std::vector<Outcome> const& outcomes, Totals const& totals) {
@@ -112,7 +93,7 @@ void write_results(std::filesystem::path const& folder, Site const& site, Settin
 template <class Site>
 void sample_and_report(Site const& site, Settings const& settings, Words const& words) {
   std::filesystem::path const folder(settings.out);
-  prepare(folder);
+  prepare_folder(folder);
   auto const begin = std::chrono::steady_clock::now();
   auto const outcomes = [&] {
     try {

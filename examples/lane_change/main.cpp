@@ -98,19 +98,22 @@ void print(lane_change::Row const& row) {
                   100.0 * static_cast<double>(count) / static_cast<double>(row.scenarios), 100 * i.low, 100 * i.high);
     return std::string(text);
   };
-  std::printf("%-8s %6zu  %4.0f %%   %s   %s   %s   %5.1f   %7.0f\n", row.preset.c_str(), row.iterations,
+  char steps[16];
+  std::snprintf(steps, sizeof steps, "%.1f", row.mean_steps);
+  std::printf("%-8s %6zu  %4.0f %%   %s   %s   %s   %5s   %7.0f\n", row.preset.c_str(), row.iterations,
               100 * row.variation, share(row.success).c_str(), share(row.collision).c_str(), share(row.timeout).c_str(),
-              row.mean_steps, row.iterations_per_second);
+              row.success > 0 ? steps : "-", row.iterations_per_second);
   std::fflush(stdout);
 }
 
 void run_grid(Settings const& settings) {
   std::filesystem::path const folder(settings.out);
-  std::filesystem::create_directories(folder);
+  examples::prepare_folder(folder);
   if (!settings.json.empty()) cambium::write_file(settings.json, "[]\n");  // finds out now whether it can
   auto const map = two_lanes();
   std::printf(
-      "%llu scenarios a cell; shares in %% with their 95 %% intervals (Wilson)\n\n"
+      "%llu scenarios a cell; shares in %% with their 95 %% intervals (Wilson); steps: mean of the successes;\n"
+      "iterations/s: of one thread\n\n"
       "%-8s %6s  %6s   %-19s   %-19s   %-19s   %5s   %s\n",
       static_cast<unsigned long long>(settings.scenarios), "preset", "iter.", "var.", "success", "collision",
       "time-out", "steps", "iterations/s");
@@ -152,13 +155,16 @@ void add_options(CLI::App& program, Settings& settings) {
   program.add_option("--variation", settings.variations, "by how much others keep shorter headways than predicted")
       ->delimiter(',')
       ->type_name("SHARE,...")
-      ->check(CLI::Range(0.0, 0.99))
+      ->check(examples::number(0.0, 0.99))
       ->capture_default_str();
   program.add_option("--preset", settings.preset, "the paper's choices, or cambium's")
       ->check(CLI::IsMember({"paper", "cambium"}))
       ->capture_default_str();
   program.add_option("--json", settings.json, "writes a row a cell")->type_name("FILE");
-  program.add_option("--out", settings.out, "folder for the plot")->type_name("DIR")->capture_default_str();
+  program.add_option("--out", settings.out, "folder for the plot")
+      ->type_name("DIR")
+      ->capture_default_str()
+      ->check(examples::not_empty());
 }
 
 }  // namespace

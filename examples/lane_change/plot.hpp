@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -52,47 +53,77 @@ inline nlohmann::ordered_json as_json(Row const& row) {
   return json;
 }
 
+/// Where the bar of each cell stands: those of one variation beside each other.
+struct Slots {
+  std::vector<double> begin;
+  double width = 0.0, end = 0.0;
+};
+
+inline Slots slots_of(std::vector<Row> const& rows, double left) {
+  Slots slots;
+  slots.width = std::clamp(620.0 / static_cast<double>(rows.size()), 34.0, 60.0);
+  double x = left;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    if (i > 0 && rows[i - 1].variation != rows[i].variation) x += 0.5 * slots.width;
+    slots.begin.push_back(x);
+    x += slots.width;
+  }
+  slots.end = x;
+  return slots;
+}
+
+inline std::string text(double x, double y, std::string const& words, std::string const& more) {
+  return "<text x=\"" + svg_number(x) + "\" y=\"" + svg_number(y) + "\" " + more + ">" + words + "</text>\n";
+}
+
 /// Bars of one share over all cells, grouped by variation, with their intervals.
 inline std::string panel(std::vector<Row> const& rows, double top, std::string const& title, std::string const& color,
                          std::uint64_t Row::*count) {
-  constexpr double left = 60, width = 620, height = 150;
-  std::string svg;
-  auto const text = [&](double x, double y, std::string const& words, std::string const& more) {
-    svg += "<text x=\"" + svg_number(x) + "\" y=\"" + svg_number(y) + "\" " + more + ">" + words + "</text>\n";
-  };
+  constexpr double left = 70, height = 150;
+  auto const slots = slots_of(rows, left);
   auto const y_of = [&](double share) { return top + height * (1.0 - share); };
-  text(left, top - 8, title, "font-weight=\"bold\"");
+  std::string svg = text(left, top - 8, title, "font-weight=\"bold\"") +
+                    text(left - 6, top + height + 14, "iterations", "text-anchor=\"end\" font-size=\"10\"") +
+                    text(left - 6, top + height + 28, "variation", "text-anchor=\"end\" font-size=\"10\"");
   for (int tick = 0; tick <= 100; tick += 25) {
     double const y = y_of(tick / 100.0);
-    svg += "<path d=\"M" + svg_number(left) + " " + svg_number(y) + "h" + svg_number(width) + "\" stroke=\"#ddd\"/>\n";
-    text(left - 6, y + 4, std::to_string(tick), "text-anchor=\"end\" fill=\"#666\"");
+    svg +=
+        "<path d=\"M" + svg_number(left) + " " + svg_number(y) + "H" + svg_number(slots.end) + "\" stroke=\"#ddd\"/>\n";
+    svg += text(left - 6, y + 4, std::to_string(tick), "text-anchor=\"end\" fill=\"#666\"");
   }
-  double const slot = width / static_cast<double>(rows.size());
+  double group = slots.begin.front();
   for (std::size_t i = 0; i < rows.size(); ++i) {
     auto const& row = rows[i];
-    double const x = left + slot * (static_cast<double>(i) + 0.2);
+    double const x = slots.begin[i], middle = x + 0.5 * slots.width;
     auto const n = row.*count;
     double const share = static_cast<double>(n) / static_cast<double>(row.scenarios);
     auto const bounds = wilson(n, row.scenarios);
-    svg += "<rect x=\"" + svg_number(x) + "\" y=\"" + svg_number(y_of(share)) + "\" width=\"" + svg_number(0.6 * slot) +
-           "\" height=\"" + svg_number(height * share) + "\" fill=\"" + color + "\"/>\n";
-    svg += "<path d=\"M" + svg_number(x + 0.3 * slot) + " " + svg_number(y_of(bounds.low)) + "V" +
+    svg += "<rect x=\"" + svg_number(x + 0.15 * slots.width) + "\" y=\"" + svg_number(y_of(share)) + "\" width=\"" +
+           svg_number(0.7 * slots.width) + "\" height=\"" + svg_number(height * share) + "\" fill=\"" + color +
+           "\"/>\n";
+    svg += "<path d=\"M" + svg_number(middle) + " " + svg_number(y_of(bounds.low)) + "V" +
            svg_number(y_of(bounds.high)) + "\" stroke=\"#222\"/>\n";
-    text(x + 0.3 * slot, top + height + 14, std::to_string(row.iterations), "text-anchor=\"middle\" font-size=\"10\"");
-    if (i == 0 || rows[i - 1].variation != row.variation)
-      text(x, top + height + 28, svg_number(100 * row.variation, 0) + " % variation", "font-size=\"10\"");
+    svg += text(middle, top + height + 14, std::to_string(row.iterations), "text-anchor=\"middle\" font-size=\"10\"");
+    if (i > 0 && rows[i - 1].variation != row.variation) group = x;
+    if (i + 1 == rows.size() || rows[i + 1].variation != row.variation)
+      svg += text(0.5 * (group + x + slots.width), top + height + 28, svg_number(100 * row.variation, 0) + " %",
+                  "text-anchor=\"middle\" font-size=\"10\"");
   }
   return svg;
 }
 
 /// All three shares, one below the other, as SVG text.
 inline std::string plot(std::vector<Row> const& rows) {
-  return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 700 620\" font-family=\"sans-serif\" "
-         "font-size=\"12\" fill=\"#222\">\n<rect width=\"700\" height=\"620\" fill=\"#fff\"/>\n" +
-         panel(rows, 30, "success [%], preset " + rows.front().preset + ", by iterations and variation", "#2e7d32",
-               &Row::success) +
-         panel(rows, 235, "collision [%]", "#c62828", &Row::collision) +
-         panel(rows, 440, "time-out [%]", "#1565c0", &Row::timeout) + "</svg>\n";
+  auto const width = svg_number(std::max(500.0, slots_of(rows, 70).end + 20));
+  return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + width +
+         " 650\" font-family=\"sans-serif\" font-size=\"12\" fill=\"#222\">\n<rect width=\"" + width +
+         "\" height=\"650\" fill=\"#fff\"/>\n" +
+         panel(rows, 30, "success [%], preset " + rows.front().preset, "#2e7d32", &Row::success) +
+         panel(rows, 240, "collision [%]", "#c62828", &Row::collision) +
+         panel(rows, 450, "time-out [%]", "#1565c0", &Row::timeout) +
+         text(70, 642, std::to_string(rows.front().scenarios) + " scenarios a cell; black: 95 % intervals (Wilson)",
+              "font-size=\"10\" fill=\"#666\"") +
+         "</svg>\n";
 }
 
 }  // namespace lane_change

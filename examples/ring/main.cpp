@@ -138,10 +138,7 @@ void print_table(Settings const& settings, cb::RingRoad const& road, std::vector
 void run(Settings const& settings) {
   auto const driver = driver_of(settings.driver);
   std::filesystem::path const folder(settings.out);
-  std::error_code problem;
-  std::filesystem::create_directories(folder, problem);
-  if (problem)
-    throw cb::Error(folder.string(), "the folder cannot be made (" + problem.message() + ")", "choose another --out");
+  examples::prepare_folder(folder);
   double const duration = 60.0 * static_cast<double>(settings.minutes), length = static_cast<double>(settings.length);
   auto const road = cb::make_ring_road(length, 2 + static_cast<int>(driver.desired_speed * duration / length));
   auto const rows = sweep(road, driver, duration);

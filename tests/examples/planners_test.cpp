@@ -53,6 +53,9 @@ TEST_CASE("the lane change example names what is wrong with its options") {
                             {"--iterations", "0"},
                             {"--iterations", "100,x"},
                             {"--variation", "1.5"},
+                            {"--variation", "nan"},
+                            {"--out", "/proc/none"},
+                            {"--out", ""},
                             {"--scenarios", "-1"},
                             {"--json", "/proc/none/x.json"}}) {
     CAPTURE(words.back());
