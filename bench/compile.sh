@@ -25,5 +25,5 @@ g++ --version | head -n 1
 measure geometry 2 '#include <cambium/geometry.hpp>'
 measure map 3 '#include <cambium/map.hpp>'
 measure world 6 "$(cat "$(dirname "${BASH_SOURCE[0]}")/compile_world.cpp")"
-measure planner 8 "$(cat "$(dirname "${BASH_SOURCE[0]}")/compile_planner.cpp")"
+measure planner 6 "$(cat "$(dirname "${BASH_SOURCE[0]}")/compile_planner.cpp")"
 measure umbrella 6 '#include <cambium/cambium.hpp>'
