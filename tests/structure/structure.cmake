@@ -28,7 +28,8 @@ endif()
 function(add_build_test name target)
   add_test(NAME ${name}
     COMMAND ${CMAKE_COMMAND} --build ${PROJECT_BINARY_DIR} --target ${target} --parallel 2 ${keep_going})
-  set_tests_properties(${name} PROPERTIES RESOURCE_LOCK cambium_build_tree)
+  # Compiling hundreds of headers may take a slow machine longer than the 10 minutes that a test has elsewhere.
+  set_tests_properties(${name} PROPERTIES RESOURCE_LOCK cambium_build_tree TIMEOUT 2400)
 endfunction()
 
 # add_syntax_check(STAMP_VARIABLE FOLDER COMPILER SOURCE OPTION... [DEPENDS FILE...]): warning-free under COMPILER;
