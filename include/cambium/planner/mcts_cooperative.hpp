@@ -52,8 +52,9 @@ struct MctsCooperative {
         view, memory, workspace, dt, [&](auto& w) -> auto const& { return search(view, memory, w); });
   }
 
-  /// What it thinks of what `view` shows, in the middle of what `memory` says: after a step of the search that is the
-  /// one in `report.course`. Throws `SearchError` where there is nothing to search.
+  /// What it thinks of what `view` shows. `memory`: the manoeuvre under way, as ego's record in a frame of the last
+  /// report's `course` has it; none by default. Throws `SearchError` where there is nothing to search, `ParameterError`
+  /// where a parameter is out of its range.
   template <class View>
   [[nodiscard]] MctsReport<PredictionWorld, typename Domain::Action> think(View const& view, Workspace& workspace,
                                                                            Memory const& memory = {}) const {
