@@ -39,7 +39,7 @@ struct MctsHypothesis {
   };
   struct Memory {
     std::array<Tracked, capacity> tracked{};
-    double expected_at = -1.0;  ///< when those speeds are expected [s]
+    double expected_at = -1.0;               ///< when those speeds are expected [s]
     detail::ActionMemory<Actions> course{};  ///< the manoeuvre under way
 
     /// What is believed of an agent; null where nothing is.
