@@ -166,7 +166,7 @@ class Line {
       auto const& g = segments_[next];
       double const dx = p.x() - g.x, dy = p.y() - g.y;
       double const along = dx * g.ux + dy * g.uy, across = g.ux * dy - g.uy * dx;
-      double const margin = 0.5 * std::abs(across);  // enough for turns of up to 50 degrees at its ends
+      double const margin = sharpest_ * std::abs(across);  // where the bisectors at its ends may be
       if (along < margin) break;
       if (along <= g.length - margin) return {g.s + along, across, next};
     }
@@ -174,7 +174,7 @@ class Line {
   }
 
  private:
-  [[nodiscard]] std::uint32_t last() const { return static_cast<std::uint32_t>(segments_.size() - 1); }
+  [[nodiscard]] std::uint32_t last() const { return last_; }
 
   [[nodiscard]] static Point end_of(Segment const& g) { return {g.x + g.ux * g.length, g.y + g.uy * g.length}; }
 
@@ -248,9 +248,16 @@ class Line {
     return true;
   }
 
-  void finish() const {
+  void finish() {
     if (segments_.empty())
       throw MapError("line", "fewer than two distinct points", "give at least two points apart from each other");
+    last_ = static_cast<std::uint32_t>(segments_.size() - 1);
+    for (std::uint32_t i = 0; i < last_; ++i) {
+      auto const &a = segments_[i], &b = segments_[i + 1];
+      double const cos = a.ux * b.ux + a.uy * b.uy, sin = a.ux * b.uy - a.uy * b.ux;
+      sharpest_ = std::max(sharpest_, std::abs(sin) / std::max(1.0 + cos, 1e-12));
+    }
+    sharpest_ += 1e-9;
   }
 
   void set_headings(std::span<double const> headings) {
@@ -264,6 +271,8 @@ class Line {
   }
 
   std::vector<Segment> segments_;
+  std::uint32_t last_ = 0;  ///< segment
+  double sharpest_ = 0.0;   ///< tangent of half the sharpest turn at a vertex
   double length_ = 0.0;
   double end_x_ = 0.0, end_y_ = 0.0;
   bool has_first_ = false;

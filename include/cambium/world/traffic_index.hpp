@@ -109,7 +109,7 @@ class TrafficIndex {
     TrafficHit best;
     front_on_corridor(agents_, false, corridor, query, start, best);
     if (!straddling_.empty() || !objects.empty() || !corridor.feeders.empty())
-      front_of_others(corridor, query, objects, best);
+      best = front_of_others(corridor, Query(query), objects, TrafficHit(best));
     return found(best);
   }
 
@@ -120,7 +120,7 @@ class TrafficIndex {
     TrafficHit best;
     rear_on_corridor(agents_, false, corridor, query, start, best);
     if (!straddling_.empty() || !objects.empty() || !corridor.feeders.empty())
-      rear_of_others(corridor, query, objects, best);
+      best = rear_of_others(corridor, Query(query), objects, TrafficHit(best));
     return found(best);
   }
 
@@ -233,8 +233,8 @@ class TrafficIndex {
   /// Next ahead among those that are not agents on the corridor's own lanes: who reaches in from other lanes, objects,
   /// and all in lanes that merge. Out of line: few steps need it, and it is large.
   template <class Query>
-  CAMBIUM_NOINLINE void front_of_others(map::LaneCorridor const& corridor, Query const& query, List objects,
-                                        TrafficHit& best) const {
+  CAMBIUM_NOINLINE TrafficHit front_of_others(map::LaneCorridor const& corridor, Query const& query, List objects,
+                                              TrafficHit best) const {
     if (!straddling_.empty())
       front_on_corridor(straddling_, false, corridor, query, upper(straddling_, key(corridor, query), query.slot),
                         best);
@@ -249,12 +249,13 @@ class TrafficIndex {
       if (!straddling_.empty()) front_on_feeder(straddling_, false, feeder, query, best);
       if (!objects.empty()) front_on_feeder(objects, true, feeder, query, best);
     }
+    return best;
   }
 
   /// The same behind.
   template <class Query>
-  CAMBIUM_NOINLINE void rear_of_others(map::LaneCorridor const& corridor, Query const& query, List objects,
-                                       TrafficHit& best) const {
+  CAMBIUM_NOINLINE TrafficHit rear_of_others(map::LaneCorridor const& corridor, Query const& query, List objects,
+                                             TrafficHit best) const {
     if (!straddling_.empty())
       rear_on_corridor(straddling_, false, corridor, query, lower(straddling_, key(corridor, query), query.slot), best);
     if (!objects.empty())
@@ -268,6 +269,7 @@ class TrafficIndex {
       if (!straddling_.empty()) rear_on_feeder(straddling_, false, feeder, query, best);
       if (!objects.empty()) rear_on_feeder(objects, true, feeder, query, best);
     }
+    return best;
   }
 
   template <class Query>
