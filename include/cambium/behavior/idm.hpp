@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "cambium/behavior/follow_lane.hpp"
+#include "cambium/core/macros.hpp"
 #include "cambium/core/parameters.hpp"
 
 namespace cambium {
@@ -171,6 +172,74 @@ class IdmStep {
   double exponent_;
 };
 
+/// What a step of the scheme below came to.
+template <class Scalar>
+struct IdmTrial {
+  Scalar distance, speed;
+  bool accurate;
+};
+
+/// One step over `step` [s], from a speed and a gap at which the model responds with `now`.
+template <HasIdmParameters P, class Scalar>
+[[nodiscard]] IdmTrial<Scalar> try_idm_step(P const& p, IdmStep<Scalar> const& response,
+                                            IdmResponse<Scalar> const& now, Scalar v, Scalar gap, Scalar leader_speed,
+                                            double step, double tolerance) {
+  using std::abs;
+  using std::min;
+  auto const square = [](Scalar x) { return x * x; };
+  auto const largest_square = Scalar(4.0 * tolerance);  // of the third-order term
+  auto const highest = min(Scalar(p.maximum_acceleration), Scalar(p.highest_acceleration));
+  auto const [a1, j1, bounded1] = now;
+  bool const stands = v <= Scalar(0) && a1 <= Scalar(0);
+  auto const h = Scalar(step), half = Scalar(step / 2), third_part = Scalar(step / 3), sixth = Scalar(step / 6),
+             eighth = Scalar(step * step / 8);
+  Scalar const middle_speed = v + half * a1 + eighth * j1;
+  Scalar const middle_gap = gap + half * (leader_speed - v) - eighth * a1;
+  auto const [a2, j2, bounded2] =
+      response(stands ? Scalar(0) : middle_speed, stands ? gap + half * leader_speed : middle_gap);
+  Scalar const third = third_part * (j2 - j1);
+  Scalar next_speed = min(Scalar(v + h * (a1 + half * j1 + third)), Scalar(v + h * highest));
+  Scalar distance = min(Scalar(h * (v + sixth * (a1 + Scalar(2) * a2))), Scalar(h * (v + half * highest)));
+  bool const stops = stands || next_speed < Scalar(0) || middle_speed < Scalar(0);
+  if (stops) {  // constant deceleration until it stands
+    distance = stands ? Scalar(0) : min(Scalar(h * v), Scalar(v * v / (Scalar(2) * abs(a1))));
+    next_speed = Scalar(0);
+  }
+  bool accurate = stops ? v <= Scalar(tolerance) && a2 <= Scalar(0) : square(third) <= largest_square;
+  Scalar const expected = a1 + h * j2;  // at the end, with a jerk that changes evenly
+  if (accurate && (bounded1 || bounded2 || expected < Scalar(p.lowest_acceleration)))
+    accurate =
+        square(response(next_speed, gap + h * leader_speed - distance).acceleration - expected) <= largest_square;
+  return {distance, next_speed, accurate};
+}
+
+/// The steps of `idm_motion`: [s], shorter is never needed, longer might step over something.
+inline constexpr double shortest_idm_step = 1e-3, longest_idm_step = 0.25;
+
+/// `idm_motion` where one step is not enough.
+template <HasIdmParameters P, class Scalar>
+CAMBIUM_NOINLINE [[nodiscard]] LongitudinalMotion<Scalar> idm_motion_in_steps(P const& p, Scalar speed, Scalar gap,
+                                                                              Scalar leader_speed, double dt,
+                                                                              double tolerance) {
+  IdmStep<Scalar> const response(p, leader_speed);
+  LongitudinalMotion<Scalar> motion{Scalar(0), speed};
+  double left = dt, step = std::min(dt, longest_idm_step);
+  while (true) {
+    auto const now = response(motion.speed, gap);
+    auto trial = try_idm_step(p, response, now, motion.speed, gap, leader_speed, step, tolerance);
+    while (!trial.accurate && step > shortest_idm_step) {
+      step /= 2;
+      trial = try_idm_step(p, response, now, motion.speed, gap, leader_speed, step, tolerance);
+    }
+    motion.distance += trial.distance;
+    motion.speed = trial.speed;
+    gap += Scalar(step) * leader_speed - trial.distance;
+    left -= step;
+    if (left <= dt * 1e-12) return motion;
+    step = std::min({2 * step, longest_idm_step, left});
+  }
+}
+
 }  // namespace detail
 
 /// Motion over `dt` [s] of an IDM follower behind a leader that keeps its speed: the model's differential equation,
@@ -182,53 +251,13 @@ class IdmStep {
 template <HasIdmParameters P, class Scalar>
 [[nodiscard]] LongitudinalMotion<Scalar> idm_motion(P const& p, Scalar speed, Scalar gap, Scalar leader_speed,
                                                     double dt, double tolerance) {
-  using std::abs;
-  using std::min;
-  // [s] of a step: shorter is never needed, longer might step over something.
-  constexpr double shortest = 1e-3, longest = 0.25;
-  auto const largest_square = Scalar(4.0 * tolerance);  // of the third-order term
-  auto const highest = min(Scalar(p.maximum_acceleration), Scalar(p.highest_acceleration));
-  auto const square = [](Scalar x) { return x * x; };
-  detail::IdmStep<Scalar> const response(p, leader_speed);
-  LongitudinalMotion<Scalar> motion{Scalar(0), speed};
-  double left = dt, step = dt < longest ? dt : longest;
-  while (true) {
-    Scalar const v = motion.speed;
-    auto const [a1, j1, bounded1] = response(v, gap);
-    bool const stands = v <= Scalar(0) && a1 <= Scalar(0);
-    while (true) {
-      auto const h = Scalar(step), half = Scalar(step / 2), third_part = Scalar(step / 3), sixth = Scalar(step / 6),
-                 eighth = Scalar(step * step / 8);
-      Scalar const middle_speed = v + half * a1 + eighth * j1;
-      Scalar const middle_gap = gap + half * (leader_speed - v) - eighth * a1;
-      auto const [a2, j2, bounded2] =
-          response(stands ? Scalar(0) : middle_speed, stands ? gap + half * leader_speed : middle_gap);
-      Scalar const third = third_part * (j2 - j1);
-      Scalar next_speed = min(Scalar(v + h * (a1 + half * j1 + third)), Scalar(v + h * highest));
-      Scalar distance = min(Scalar(h * (v + sixth * (a1 + Scalar(2) * a2))), Scalar(h * (v + half * highest)));
-      bool const stops = stands || next_speed < Scalar(0) || middle_speed < Scalar(0);
-      if (stops) {  // constant deceleration until it stands
-        distance = stands ? Scalar(0) : min(Scalar(h * v), Scalar(v * v / (Scalar(2) * abs(a1))));
-        next_speed = Scalar(0);
-      }
-      bool accurate = stops ? v <= Scalar(tolerance) && a2 <= Scalar(0) : square(third) <= largest_square;
-      Scalar const expected = a1 + h * j2;  // at the end, with a jerk that changes evenly
-      if (accurate && (bounded1 || bounded2 || expected < Scalar(p.lowest_acceleration)))
-        accurate =
-            square(response(next_speed, gap + h * leader_speed - distance).acceleration - expected) <= largest_square;
-      if (!accurate && step > shortest) {
-        step /= 2;
-        continue;
-      }
-      motion.distance += distance;
-      motion.speed = next_speed;
-      gap += h * leader_speed - distance;
-      left -= step;
-      break;
-    }
-    if (left <= dt * 1e-12) return motion;
-    step = std::min({2 * step, longest, left});
+  if (dt <= detail::longest_idm_step) {
+    detail::IdmStep<Scalar> const response(p, leader_speed);
+    auto const trial =
+        detail::try_idm_step(p, response, response(speed, gap), speed, gap, leader_speed, dt, tolerance);
+    if (trial.accurate) return {trial.distance, trial.speed};
   }
+  return detail::idm_motion_in_steps(p, speed, gap, leader_speed, dt, tolerance);
 }
 
 }  // namespace cambium

@@ -51,8 +51,8 @@ template <class Scalar>
 template <class Scalar>
 [[nodiscard]] Scalar steering_curvature(Scalar const& steering, double wheel_base) {
   if constexpr (std::is_same_v<Scalar, double>) {
-    // Without a branch: where an input is held, the compiler finds that its tangent is needed once.
-    auto const [s, c] = geometry::sin_cos_bounded(steering);
+    auto const [s, c] = std::abs(steering) <= geometry::pi / 4 ? geometry::sin_cos_small(steering)
+                                                               : geometry::sin_cos_bounded(steering);
     return s / (c * wheel_base);
   } else {
     using std::tan;
@@ -110,25 +110,24 @@ struct SingleTrack {
 };
 static_assert(DynamicModel<SingleTrack>);
 
-/// The Runge-Kutta step of the single track: the general one's result, but for rounding, with less work: the headings
-/// of all stages are known beforehand, and their sines can be taken side by side.
+/// The Runge-Kutta step of the single track: the general one's result, but for rounding, with less work. The headings
+/// of all stages are known beforehand: small turns from the first one.
 [[nodiscard]] inline State rk4_step(SingleTrack const& model, State const& x, SingleTrackInput<double> const& u,
                                     double dt) {
   double const half = dt / 2, sixth = dt / 6;
   double const middle = x.speed + half * u.acceleration, end = x.speed + dt * u.acceleration;
   double const curvature = steering_curvature(u.steering, model.wheel_base);
-  double const turn = std::abs(x.heading) <= 1e5 ? x.heading : geometry::normalize_angle(x.heading);
-  double const headings[] = {turn, turn + half * x.speed * curvature, turn + half * middle * curvature,
-                             turn + dt * middle * curvature};
-  double const speeds[] = {x.speed, 2.0 * middle, 2.0 * middle, end};
-  double dx[4], dy[4];
-  for (int i = 0; i < 4; ++i) {
-    auto const [sin, cos] = geometry::sin_cos_bounded(headings[i]);
-    dx[i] = speeds[i] * cos;
-    dy[i] = speeds[i] * sin;
-  }
-  return {x.time + dt, x.x + sixth * ((dx[0] + dx[1]) + (dx[2] + dx[3])),
-          x.y + sixth * ((dy[0] + dy[1]) + (dy[2] + dy[3])),
+  double const turn_2 = half * x.speed * curvature, turn_3 = half * middle * curvature;
+  bool const small = std::max(std::abs(turn_2), std::abs(turn_3)) <= geometry::pi / 4;
+  auto const first = geometry::sin_cos(x.heading);
+  auto const second = small ? geometry::sin_cos_small(turn_2) : geometry::sin_cos(turn_2);
+  auto const third = small ? geometry::sin_cos_small(turn_3) : geometry::sin_cos(turn_3);
+  double const sin_4 = 2.0 * third.sin * third.cos, cos_4 = 1.0 - 2.0 * third.sin * third.sin;  // twice the third turn
+  // In the frame of the first heading.
+  double const along = x.speed + 2.0 * middle * (second.cos + third.cos) + end * cos_4;
+  double const across = 2.0 * middle * (second.sin + third.sin) + end * sin_4;
+  return {x.time + dt, x.x + sixth * (first.cos * along - first.sin * across),
+          x.y + sixth * (first.sin * along + first.cos * across),
           x.heading + sixth * curvature * (x.speed + 4.0 * middle + end), end};
 }
 

@@ -4,11 +4,13 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include <boost/container/small_vector.hpp>
 
 #include "cambium/core/ids.hpp"
+#include "cambium/geometry/box.hpp"
 #include "cambium/geometry/collision.hpp"
 #include "cambium/geometry/oriented_box.hpp"
 #include "cambium/world/frame.hpp"
@@ -20,6 +22,7 @@ namespace detail {
 /// An agent in traffic as the broad phase sees it: a circle about its reference point.
 struct Circle {
   double x, y, radius;
+  double low;  ///< where it begins, once sorted
   std::uint32_t slot;
 
   [[nodiscard]] bool meets(Circle const& other) const {
@@ -33,7 +36,7 @@ template <class World>
   auto const& shape = world.roster().agents[slot].shape;
   auto const& state = world.frame().agents[slot].state;
   double const along = std::max(shape.front, shape.rear), across = std::max(shape.left, shape.right);
-  return {state.x, state.y, along + across, slot};  // the sum of the legs: no root, and never too small
+  return {state.x, state.y, along + across, 0.0, slot};  // the sum of the legs: no root, and never too small
 }
 
 template <class World>
@@ -100,47 +103,51 @@ struct CollisionAny {
   template <class World>
   [[nodiscard]] Result evaluate(World const& world) const {
     auto const count = static_cast<std::uint32_t>(world.size());
-    for (std::uint32_t i = 0; i < count; ++i)
-      if (detail::in_traffic(world, i) && detail::touched_object(world, i))
-        return {true, world.roster().agents[i].id, none<AgentId>};
+    if (!world.roster().objects.empty())
+      for (std::uint32_t i = 0; i < count; ++i)
+        if (detail::in_traffic(world, i) && detail::touched_object(world, i))
+          return {true, world.roster().agents[i].id, none<AgentId>};
     boost::container::small_vector<detail::Circle, 1024> circles;
     circles.reserve(count);
-    for (std::uint32_t i = 0; i < count; ++i)
-      if (detail::in_traffic(world, i)) circles.push_back(detail::circle_of(world, i));
-    return sweep(world, circles);
+    geometry::Box scene;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      if (!detail::in_traffic(world, i)) continue;
+      auto const& circle = circles.emplace_back(detail::circle_of(world, i));
+      scene.add(circle.x, circle.y);
+    }
+    constexpr std::size_t few = 16;
+    bool const sorted = circles.size() > few;
+    if (sorted) sort_along(circles, scene.max_y - scene.min_y > scene.max_x - scene.min_x);
+    return sweep(world, circles, sorted);
   }
 
  private:
-  /// Sweep and prune along the longer axis of the scene; a few agents are simply compared with each other.
+  /// The first pair that touches; a few agents are simply compared with each other.
   template <class World, class Circles>
-  [[nodiscard]] static Result sweep(World const& world, Circles& circles) {
-    constexpr std::size_t few = 16;
-    bool const sorted = circles.size() > few;
-    if (sorted) sort_along_longer_axis(circles);
-    for (std::size_t i = 0; i < circles.size(); ++i)
-      for (std::size_t j = i + 1; j < circles.size(); ++j) {
-        auto const &a = circles[i], &b = circles[j];
-        if (sorted && b.x - b.radius > a.x + a.radius) break;
+  [[nodiscard]] static Result sweep(World const& world, Circles const& circles, bool sorted) {
+    for (std::size_t i = 0; i < circles.size(); ++i) {
+      auto const& a = circles[i];
+      double const end = sorted ? a.x + a.radius : std::numeric_limits<double>::infinity();
+      for (std::size_t j = i + 1; j < circles.size() && circles[j].low <= end; ++j) {
+        auto const& b = circles[j];
         if (!a.meets(b)) continue;
         if (!geometry::intersects(detail::box_at(world, a.slot), detail::box_at(world, b.slot))) continue;
         auto const& agents = world.roster().agents;
         return {true, agents[std::min(a.slot, b.slot)].id, agents[std::max(a.slot, b.slot)].id};
       }
+    }
     return {};
   }
 
+  /// Sorts by where circles begin along x, or y, which then becomes x: distances do not mind.
   template <class Circles>
-  static void sort_along_longer_axis(Circles& circles) {
-    auto const by_x = [](auto const& a, auto const& b) { return a.x < b.x; };
-    auto const by_y = [](auto const& a, auto const& b) { return a.y < b.y; };
-    auto const [left, right] = std::minmax_element(circles.begin(), circles.end(), by_x);
-    auto const [low, high] = std::minmax_element(circles.begin(), circles.end(), by_y);
-    if (high->y - low->y > right->x - left->x)
-      for (auto& c : circles) std::swap(c.x, c.y);  // distances do not mind
-    std::sort(circles.begin(), circles.end(), [](auto const& a, auto const& b) {
-      double const la = a.x - a.radius, lb = b.x - b.radius;
-      return la < lb || (la == lb && a.slot < b.slot);
-    });
+  static void sort_along(Circles& circles, bool y) {
+    for (auto& c : circles) {
+      if (y) std::swap(c.x, c.y);
+      c.low = c.x - c.radius;
+    }
+    std::sort(circles.begin(), circles.end(),
+              [](auto const& a, auto const& b) { return a.low < b.low || (a.low == b.low && a.slot < b.slot); });
   }
 };
 

@@ -53,17 +53,21 @@ template <class... Rest>
 
 }  // namespace detail
 
-/// As `sin_cos`, for |x| <= 1e5 only: without a branch or a library call, so that a loop over it becomes SIMD code.
-[[nodiscard]] inline SinCos sin_cos_bounded(double x) {
+/// As `sin_cos`, for |x| <= pi/4 only: without a branch or a library call.
+[[nodiscard]] inline SinCos sin_cos_small(double x) {
   // Taylor series from the third term on: the first one left out is below 5e-17 on [-pi/4, pi/4].
-  auto const [r, count] = detail::reduce_by_quarter_turns(x);
-  double const q = r * r;
+  double const q = x * x;
   double const sine_series = detail::polynomial(q, -1.0 / 6, 1.0 / 120, -1.0 / 5040, 1.0 / 362880, -1.0 / 39916800,
                                                 1.0 / 6227020800, -1.0 / 1307674368000);
   double const cosine_series = detail::polynomial(q, 1.0 / 24, -1.0 / 720, 1.0 / 40320, -1.0 / 3628800, 1.0 / 479001600,
                                                   -1.0 / 87178291200, 1.0 / 20922789888000);
-  double const sine = r + r * (q * sine_series);
-  double const cosine = 1.0 - (0.5 * q - q * q * cosine_series);
+  return {x + x * (q * sine_series), 1.0 - (0.5 * q - q * q * cosine_series)};
+}
+
+/// As `sin_cos`, for |x| <= 1e5 only: without a branch or a library call, so that a loop over it becomes SIMD code.
+[[nodiscard]] inline SinCos sin_cos_bounded(double x) {
+  auto const [rest, count] = detail::reduce_by_quarter_turns(x);
+  auto const [sine, cosine] = sin_cos_small(rest);
   // Quarter turn 1 maps (sin, cos) to (cos, -sin), 2 to (-sin, -cos), 3 to (-cos, sin).
   // By masks: the quadrant of a random angle is no branch to predict.
   auto const sine_bits = std::bit_cast<std::uint64_t>(sine), cosine_bits = std::bit_cast<std::uint64_t>(cosine);
