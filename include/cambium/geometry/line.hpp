@@ -107,11 +107,12 @@ class Line {
   /// The segment that holds `s`, searched from `cursor` and kept there. The line must not be empty.
   Segment const& segment_at(double s, std::uint32_t& cursor) const {
     CAMBIUM_ASSERT(!empty(), "a query on an empty line");
-    auto i = std::min(cursor, last());
-    while (i < last() && s >= segments_[i + 1].s) ++i;
-    while (i > 0 && s < segments_[i].s) --i;
-    cursor = i;
-    return segments_[i];
+    auto const* const first = segments_.data();
+    auto const* at = first + std::min(cursor, last_);
+    for (auto const* const end = first + last_; at < end && s >= at[1].s;) ++at;
+    while (at > first && s < at->s) --at;
+    cursor = static_cast<std::uint32_t>(at - first);
+    return *at;
   }
 
   /// Position and heading at arc length `s`; the heading is continuous along the line and not wrapped.
