@@ -51,6 +51,10 @@ class ConflictFinder {
   };
 
   static constexpr double shortest = 1.0;  // [m] of a lane on which a body swings out
+
+  [[nodiscard]] geometry::Shape const& body(bool is_large) const {
+    return is_large ? map_.options().large_conflict_shape : map_.options().conflict_shape;
+  }
   /// How far before and behind an overlap of paths the bodies may touch [m].
   [[nodiscard]] double before() const { return body(true).length() + 8.0; }
   [[nodiscard]] double behind() const { return body(true).rear + 8.0; }
@@ -290,9 +294,6 @@ class ConflictFinder {
 
   Map const& map_;
   LaneCorridor const& corridor_;
-  [[nodiscard]] geometry::Shape const& body(bool is_large) const {
-    return is_large ? map_.options().large_conflict_shape : map_.options().conflict_shape;
-  }
 };
 
 }  // namespace cambium::map::detail
