@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "cambium/behavior/view.hpp"
+#include "cambium/core/macros.hpp"
 #include "cambium/geometry/frenet.hpp"
 #include "cambium/geometry/polygon.hpp"
 #include "cambium/map/corridor.hpp"
@@ -75,7 +76,7 @@ template <class View>
 /// Calls `f(Neighbor)` for those ahead in lanes that merge into the own corridor, or have just split off it, of which
 /// the begin is less than `distance` [m] ahead. Gaps as those of `front`. O(feeders) and those there.
 template <class View, class F>
-void for_each_on_feeders(View const& view, double distance, F const& f) {
+CAMBIUM_NOINLINE void for_each_on_feeders(View const& view, double distance, F const& f) {
   double const s = view.lane_position().s, front = s + view.shape().front;
   for (auto const& feeder : view.corridor().feeders) {
     if (feeder.begin > s + distance) break;
