@@ -1,11 +1,9 @@
 #pragma once
 
-#include <cerrno>
 #include <cstdint>
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <string>
 #include <system_error>
@@ -14,6 +12,7 @@
 
 #include "cambium/core/error.hpp"
 #include "cambium/core/text.hpp"
+#include "cambium/core/write_file.hpp"
 
 namespace examples {
 
@@ -56,11 +55,7 @@ inline void prepare_folder(std::filesystem::path const& folder) {
     throw cambium::Error(folder.string(), "this folder cannot be made (" + problem.message() + ")",
                          "choose another --out");
   auto const probe = folder / ".probe";
-  errno = 0;
-  if (!std::ofstream(probe))
-    throw cambium::Error(folder.string(),
-                         "no files can be written into this folder (" + std::generic_category().message(errno) + ")",
-                         "choose another --out");
+  cambium::write_file(probe, "a file");
   std::filesystem::remove(probe, problem);
 }
 

@@ -7,6 +7,7 @@
 #include "cambium/behavior/behavior_set.hpp"
 #include "cambium/behavior/bends_ahead.hpp"
 #include "cambium/behavior/braking.hpp"
+#include "cambium/behavior/conflict_order.hpp"
 #include "cambium/behavior/constant_acceleration.hpp"
 #include "cambium/behavior/corridor_filters.hpp"
 #include "cambium/behavior/course.hpp"

@@ -4,6 +4,7 @@
 
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/box.hpp"
+#include "cambium/geometry/box_tree.hpp"
 #include "cambium/geometry/collision.hpp"
 #include "cambium/geometry/convex_hull.hpp"
 #include "cambium/geometry/frenet.hpp"

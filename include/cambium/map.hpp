@@ -32,3 +32,4 @@
 #include "cambium/map/route.hpp"
 #include "cambium/map/signals.hpp"
 #include "cambium/map/station_offset.hpp"
+#include "cambium/map/stop_lines.hpp"

@@ -1,6 +1,7 @@
 /// The room `world`: the world and its frames, what an agent sees of it, neighbours, predictions, static objects.
 #pragma once
 
+#include "cambium/world/agent_spec.hpp"
 #include "cambium/world/frame.hpp"
 #include "cambium/world/observed_world.hpp"
 #include "cambium/world/plane_index.hpp"

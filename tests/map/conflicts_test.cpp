@@ -27,8 +27,8 @@ std::vector<std::pair<std::string, std::shared_ptr<Map const>>> junction_maps() 
   std::vector<std::pair<std::string, std::shared_ptr<Map const>>> maps;
   for (std::string const name : {"intersection_3way", "intersection_4way", "roundabout"})
     maps.emplace_back(name, support::own_map(name + ".xodr"));
-  for (std::string const name : {"4way_intersection", "fabriksgatan", "multi_intersections", "route_strategy_test_road",
-                                 "simple_3way_intersection_lht", "threeway_intersection"})
+  for (std::string const name : {"4way_intersection", "fabriksgatan", "multi_intersections", "parking_demo",
+                                 "route_strategy_test_road", "simple_3way_intersection_lht", "threeway_intersection"})
     if (auto map = support::corpus_map(name + ".xodr")) maps.emplace_back(name, std::move(map));
   return maps;
 }

@@ -52,35 +52,6 @@ std::vector<LaneHit> near_by_brute_force(std::vector<Lane> const& lanes, Point c
 
 }  // namespace
 
-TEST_CASE("a box tree finds exactly the boxes that meet the query, up to the rounding of float") {
-  Numbers random{3};
-  for (int count : {0, 1, 7, 8, 9, 64, 65, 1000}) {
-    std::vector<cambium::geometry::Box> boxes;
-    for (int i = 0; i < count; ++i) {
-      double const x = random(1e6, 1e6 + 500), y = random(-500, 0), size = random(0, 20);
-      boxes.push_back({x, y, x + size, y + random(0, 20)});
-    }
-    cambium::map::detail::BoxTree const tree(boxes);
-    for (int k = 0; k < 200; ++k) {
-      double const x = random(1e6, 1e6 + 500), y = random(-500, 0), size = random(0, 30);
-      cambium::geometry::Box const query{x, y, x + size, y + size};
-      std::vector<bool> found(boxes.size());
-      CHECK_FALSE(tree.visit(query, [&](std::uint32_t i) {
-        CHECK_FALSE(found[i]);  // once each
-        found[i] = true;
-        return false;
-      }));
-      auto const meets = [&query](cambium::geometry::Box const& b) {
-        return b.min_x <= query.max_x && b.max_x >= query.min_x && b.min_y <= query.max_y && b.max_y >= query.min_y;
-      };
-      for (std::size_t i = 0; i < boxes.size(); ++i) {
-        if (meets(boxes[i])) CHECK(found[i]);
-        if (found[i]) CHECK(meets(boxes[i].grown(1e-3)));
-      }
-    }
-  }
-}
-
 TEST_CASE("the tree finds the lanes near a point that a look at every lane finds, nearest first") {
   std::size_t found = 0;
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {

@@ -140,13 +140,12 @@ TEST_CASE("so it is among bicycles, which ride as cars drive, in sampled traffic
     check_all_pass(support::own_map(name), name + std::string(" with bicycles"), runs(60), {.bicycles = 0.3});
 }
 
-// Not here: Town04, where bridges cross roads and 3 of 300 got stuck.
 TEST_CASE("so it is at the junctions of the corpus") {
   for (std::string const name : {"simple_3way_intersection_lht", "multi_intersections", "route_strategy_test_road",
                                  "parking_demo", "4way_intersection", "threeway_intersection", "fabriksgatan"})
     if (auto const map = support::corpus_map(name + ".xodr")) check_all_pass(map, name, runs(60));
-  if (auto const map = support::corpus_map("libopendrive_test.xodr"))
-    check_all_pass(map, "libopendrive_test", runs(20));
+  for (std::string const name : {"libopendrive_test", "Town04"})
+    if (auto const map = support::corpus_map(name + ".xodr")) check_all_pass(map, name, runs(20));
 }
 
 TEST_CASE("a vehicle larger than those that conflicts are found for is refused with a sentence") {

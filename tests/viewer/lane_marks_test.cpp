@@ -7,6 +7,8 @@
 
 #include <doctest/doctest.h>
 
+#include "cambium/core/distributions.hpp"
+#include "cambium/core/random.hpp"
 #include "cambium/viewer/record_world.hpp"
 #include "support/maps.hpp"
 
@@ -166,4 +168,28 @@ TEST_CASE("arrows run with the traffic") {
   REQUIRE(arrows.size() == 3);
   CHECK(arrows[1].at.x() == doctest::Approx(45.0));
   CHECK(std::abs(arrows[1].heading) == doctest::Approx(3.14159265));
+}
+
+TEST_CASE("a lane's area holds the points on its inner side of every border, as a look at all edges says") {
+  RecordedLane lane;  // a winding lane of some hundred points
+  for (int i = 0; i <= 200; ++i) {
+    double const x = i, y = 20.0 * std::sin(0.1 * x) + 5.0 * std::sin(1.3 * x);
+    lane.left.emplace_back(x, y + 3.0);
+    lane.right.emplace_back(x, y - 3.0);
+  }
+  detail::LaneArea const area(lane);
+  RandomStream random(1, 0, 0);
+  int inside = 0;
+  for (int k = 0; k < 4000; ++k) {
+    geometry::Point const p(-5.0 + 210.0 * uniform01(random), -30.0 + 60.0 * uniform01(random));
+    bool expected = false;
+    for (std::size_t i = 0; i < area.outline.size(); ++i) {
+      auto const &a = area.outline[i], &b = area.outline[(i + 1) % area.outline.size()];
+      if ((a.y() > p.y()) != (b.y() > p.y()) && (p.x() - a.x()) < (p.y() - a.y()) * (b.x() - a.x()) / (b.y() - a.y()))
+        expected = !expected;
+    }
+    CHECK(area.contains(p) == expected);
+    inside += expected;
+  }
+  CHECK(inside > 200);
 }

@@ -332,6 +332,7 @@ TEST_CASE("frames are exchanged: each world goes on where the other's frame was,
   for (int i = 0; i < 5; ++i) world.step(0.2);
   auto const later = world.frame();
   auto frame = root;
+  static_cast<void>(world.observe(world.roster().agents[0].id));  // the index is of this frame
   world.exchange(frame);
   CHECK(frame == later);
   CHECK(world.frame() == root);

@@ -16,7 +16,7 @@ namespace cambium {
 
 /// When one who walks goes across the lanes of others. A gap is accepted when it holds the time to cross and
 /// `time_margin`: as the Highway Capacity Manual 2000 (eq. 18-17) has it, where start-up and clearance are 3 s
-/// together.
+/// together; as others quote it, not compared with the manual.
 struct CrossingParameters {
   double time_margin = 3.0;
   double margin_behind = 0.5;
@@ -28,7 +28,8 @@ struct CrossingParameters {
   static constexpr char const* name = "crossing";
   static constexpr char const* summary =
       "crosses a lane when no vehicle comes before it is across and a margin is over, or when who comes can still stop";
-  static constexpr char const* source = "critical gap: Highway Capacity Manual 2000, eq. 18-17; the rest: own";
+  static constexpr char const* source =
+      "critical gap: Highway Capacity Manual 2000, eq. 18-17 (second-hand); the rest: own";
   static constexpr auto parameters() {
     using P = CrossingParameters;
     return std::make_tuple(

@@ -9,6 +9,7 @@
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/bends_ahead.hpp"
 #include "cambium/behavior/braking.hpp"
+#include "cambium/behavior/conflict_order.hpp"
 #include "cambium/behavior/idm.hpp"
 #include "cambium/behavior/leader.hpp"
 #include "cambium/behavior/signals_ahead.hpp"
@@ -84,7 +85,7 @@ struct Intersection {
     own.look_ahead = std::max(look_ahead, own.speed * own.speed / (2.0 * idm.comfortable_deceleration) + 20.0);
     own.s = view.lane_position().s;
     own.front = own.s + view.shape().front;
-    own.is_large = is_large(view, view.shape());
+    own.is_large = detail::is_large(view, view.shape());
     auto const bends = bends_ahead(view.corridor(), own.s, own.speed, own.idm.desired_speed, lateral_acceleration,
                                    own.idm.comfortable_deceleration, hardest(own), dt);
     own.highest = bends.highest;
@@ -105,18 +106,11 @@ struct Intersection {
   }
 
  private:
-  static constexpr double standing = standing_speed;
-  static constexpr double starting = 2.5;    // [m/s] slower than this
-  static constexpr double short_way = 15.0;  // [m] from the junction, to see who starts there
-  static constexpr double air = 0.3;         // [m] before a conflict
-  static constexpr double over_line = 0.1;   // [m] who stands at its line is not over it, whatever the rounding
-  static constexpr double spread = 8.0;      // [s] over which ids spread those who lose their patience
-  static constexpr double later = 20.0;      // [s] the larger id of two, and where only one is in the junction
+  using Other = detail::ConflictUser;
 
-  /// How far a body reaches beyond that which conflicts are found for, as of one aslant or a larger one [m].
-  struct Reach {
-    double front{}, rear{};
-  };
+  static constexpr double standing = standing_speed;
+  static constexpr double starting = starting_speed;
+  static constexpr double air = 0.3;  // [m] before a conflict
 
   /// Where one is, what it has seen, and what it may do.
   struct Own {
@@ -128,13 +122,6 @@ struct Intersection {
     Leader leader;
     LongitudinalMotion<double> bound;  ///< goes no farther in this step
     bool at_line = false;              ///< has come to where it waits
-  };
-
-  /// Another one at position `at` [m] of its way to a conflict.
-  struct Other {
-    LaneUser const& user;
-    double at;
-    Reach reach;
   };
 
   /// What a conflict asks for, the strongest last.
@@ -149,17 +136,6 @@ struct Intersection {
   struct Window {
     double begin, end;
   };
-
-  template <class View>
-  [[nodiscard]] static bool is_large(View const& view, geometry::Shape const& shape) {
-    return !view.map().options().conflict_shape.holds(shape);
-  }
-  template <class View>
-  [[nodiscard]] static Reach extra_reach(View const& view, bool large, double front, double rear) {
-    auto const& options = view.map().options();
-    auto const& known = large ? options.large_conflict_shape : options.conflict_shape;
-    return {std::max(0.0, front - known.front), std::max(0.0, rear - known.rear)};
-  }
 
   static void follow(Own& own, Leader const& leader) {
     if (idm_acceleration(own.idm, own.speed, leader.gap, leader.speed) <
@@ -225,11 +201,11 @@ struct Intersection {
     for (auto const& way : conflict.ways)
       view.for_each_on_lane(way.index_begin, way.index_end, [&](LaneUser const& user) {
         if (user.position < way.index_begin || user.position > way.index_end || !is_valid(user.agent)) return;
-        bool const large = is_large(view, user.shape);
+        bool const large = detail::is_large(view, user.shape);
         auto const& zone = conflict.zones[own.is_large][large];
         if (zone.empty()) return;
         Other const other{user, way.begin + user.position - way.index_begin,
-                          extra_reach(view, large, user.front, user.rear)};
+                          detail::extra_reach(view, large, user.front, user.rear)};
         claims[large] = std::max(claims[large], claim_of(view, conflict, zone, other, own));
       });
     return claims;
@@ -255,7 +231,8 @@ struct Intersection {
       double const out = (zone.other_end + reach.rear - at) / std::max(user.speed, standing);
       return out + 0.5 * time_margin < arrival(own, own_way) ? Claim::watch : Claim::blocked;
     }
-    if (goes_first(view, conflict, zone, other, way, own_way, own)) return Claim::free;
+    detail::ConflictAsker const asker{own.s, own.front, own.speed, own.waited, patience};
+    if (detail::goes_first(view, conflict, zone, other, way, own_way, asker)) return Claim::free;
     return claim_in_time(conflict, zone, other, way, own_way, own);
   }
 
@@ -267,44 +244,14 @@ struct Intersection {
         time_to_cover(way, user.speed, assumed_acceleration, std::max(user.speed, own.idm.desired_speed)),
         (way + zone.other_end - zone.other_begin + reach.front + reach.rear) / std::max(user.speed, standing)};
     Window const ours{arrival(own, own_way), arrival(own, zone.end - own.s)};
-    bool const is_in = is_inside(other, conflict, zone);
+    bool const is_in = other.is_inside(conflict, zone);
     if (theirs.end + time_margin < ours.begin) return is_in ? Claim::watch : Claim::free;
     return ours.end + time_margin < theirs.begin && !is_in ? Claim::free : Claim::yield;
-  }
-
-  /// Whether one is in the junction already.
-  [[nodiscard]] static bool is_inside(Other const& other, map::Conflict const& conflict,
-                                      map::ConflictZone const& zone) {
-    return other.at + other.user.front > zone.other_line + over_line && other.at < conflict.other_lane_end;
   }
 
   /// The earliest time [s] at which it has gone `distance` [m].
   [[nodiscard]] static double arrival(Own const& own, double distance) {
     return time_to_cover(distance, own.speed, own.idm.maximum_acceleration, std::max(own.speed, own.highest));
-  }
-
-  /// Whether this vehicle, rather than `user`, goes first where both could still stop. Both find the same, as long as
-  /// neither has lost its patience.
-  template <class View>
-  [[nodiscard]] bool goes_first(View const& view, map::Conflict const& conflict, map::ConflictZone const& zone,
-                                Other const& other, double way, double own_way, Own const& own) const {
-    auto const& [user, at, reach] = other;
-    bool const stands = user.speed < standing, own_stands = own.speed < standing;
-    // Ids part those who lose their patience together: of two who wait for each other the smaller goes long before the
-    // other would; those of a ring are spread by the golden ratio.
-    bool const is_smaller = view.id() < user.agent;
-    double const share = 0.6180339887498949 * static_cast<double>(static_cast<std::uint32_t>(view.id()));
-    double const turn = spread * (share - std::floor(share)) + (is_smaller ? 0.0 : later);  // [s]
-    bool const inside = is_inside(other, conflict, zone),
-               own_inside = own.front > zone.line + over_line && own.s < conflict.lane_end;
-    if (stands && own.waited >= patience + turn + (inside != own_inside ? later : 0.0)) return true;
-    if (inside != own_inside) return own_inside;
-    if (!inside && is_valid(conflict.other_light) && view.light(conflict.other_light) == map::LightColor::red)
-      return true;
-    if (inside) return own_way != way ? own_way < way : view.id() < user.agent;
-    if (own_stands && !stands && user.speed < starting && zone.other_line - at - user.front < short_way) return false;
-    if (conflict.right_of_way != map::RightOfWay::equal) return conflict.right_of_way == map::RightOfWay::first;
-    return std::abs(own_way - way) > 2.0 ? own_way < way : is_smaller;
   }
 
   /// Whether there would be no room behind the conflict, as in a queue.

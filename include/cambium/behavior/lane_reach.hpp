@@ -7,8 +7,10 @@
 #include <optional>
 
 #include "cambium/behavior/view.hpp"
+#include "cambium/core/macros.hpp"
 #include "cambium/geometry/frenet.hpp"
 #include "cambium/geometry/polygon.hpp"
+#include "cambium/map/corridor.hpp"
 
 namespace cambium {
 
@@ -71,10 +73,27 @@ template <class View>
          !reach->meets(offset - view.shape().right - clearance, offset + view.shape().left + clearance);
 }
 
+/// Calls `f(Neighbor)` for those ahead in lanes that merge into the own corridor, or have just split off it, of which
+/// the begin is less than `distance` [m] ahead. Gaps as those of `front`. O(feeders) and those there.
+template <class View, class F>
+CAMBIUM_NOINLINE void for_each_on_feeders(View const& view, double distance, F const& f) {
+  double const s = view.lane_position().s, front = s + view.shape().front;
+  for (auto const& feeder : view.corridor().feeders) {
+    if (feeder.begin > s + distance) break;
+    if (feeder.end < s) continue;
+    double const from = s <= feeder.begin ? feeder.index_begin : feeder.index_at(s);
+    view.for_each_on_lane(from, feeder.index_end, [&](LaneUser const& user) {
+      double const position = feeder.image(user.position);
+      if (position <= s || user.position > feeder.index_end) return;
+      double const gap = map::gap_before_merge(front, position - user.rear, feeder.free_until);
+      f(Neighbor{user.agent, user.object, gap, user.speed, user.front + user.rear, user.slot});
+    });
+  }
+}
+
 /// The next one ahead that is in the way of a vehicle that drives `offset` [m] beside the middle of its lane,
 /// `clearance` [m] kept to both sides. Who is beside the way but in the lane is passed; who is still to merge into it
-/// is not. Behind one that is passed only those count who are in the lane already: who merges there counts once that
-/// one is behind. O(agents near) where somebody is passed.
+/// is not. O(agents near) where somebody is passed.
 template <class View>
 [[nodiscard]] std::optional<Neighbor> next_in_way(View const& view, double offset, double clearance) {
   auto next = view.front();
@@ -97,6 +116,9 @@ template <class View>
   view.for_each_object([&](ObjectId id, geometry::Polygon const& outline) {
     auto const reach = lane_reach(line, outline, at.segment);
     if (reach.begin < front + farthest) consider(reach, none<AgentId>, id, 0.0);
+  });
+  for_each_on_feeders(view, farthest, [&](Neighbor const& other) {
+    if ((!next || other.gap < next->gap) && !leaves_room(view, at.corridor, other, offset, clearance)) next = other;
   });
   return next;
 }

@@ -5,7 +5,8 @@
 #include "cambium/dynamics/single_track.hpp"
 
 /// Drivers from the literature, as parameters of the car-following models, and vehicle models of the weak. Vehicle
-/// shapes: geometry/shape.hpp.
+/// shapes: geometry/shape.hpp. Papers' numbers are as others quote them, not compared with the papers' tables; the
+/// bounds of acceleration, which the papers do not have, are chosen here.
 namespace cambium::presets {
 
 /// Treiber, Hennecke, Helbing 2000, "Congested traffic states in empirical observations and microscopic simulations",
@@ -104,9 +105,12 @@ struct Preset {
 
 /// All of them.
 inline constexpr Preset all[] = {
-    {"treiber_2000", "Treiber, Hennecke, Helbing 2000, table I", treiber_2000()},
-    {"kesting_2010_car", "Kesting, Treiber, Helbing 2010, table 1", kesting_2010_car()},
-    {"kesting_2010_truck", "Kesting, Treiber, Helbing 2010, table 1", kesting_2010_truck()},
+    {"treiber_2000", "Treiber, Hennecke, Helbing 2000, table I (second-hand); bounds of acceleration: own",
+     treiber_2000()},
+    {"kesting_2010_car", "Kesting, Treiber, Helbing 2010, table 1 (second-hand); bounds of acceleration: own",
+     kesting_2010_car()},
+    {"kesting_2010_truck", "Kesting, Treiber, Helbing 2010, table 1 (second-hand); bounds of acceleration: own",
+     kesting_2010_truck()},
     {"aggressive", "own numbers; which way they go: Treiber, Kesting 2013, section 11.3.1", aggressive()},
     {"timid", "own numbers, likewise", timid()},
     {"cyclist", "own numbers, about SUMO's default speed of bicycles", cyclist()}};

@@ -9,7 +9,8 @@
 #include <vector>
 
 #include "cambium/geometry/angle.hpp"
-#include "cambium/map/detail/box_tree.hpp"
+#include "cambium/geometry/box.hpp"
+#include "cambium/geometry/box_tree.hpp"
 #include "cambium/map/lane.hpp"
 #include "cambium/map/map.hpp"
 
@@ -135,13 +136,13 @@ class NetworkCheck {
   }
 
   void collect_begins() {
-    std::vector<detail::Box> places;
+    std::vector<geometry::Box> places;
     for (auto const& lane : lanes_) {
       if (!lane.drivable() || lane.path.empty() || !lane.predecessors.empty()) continue;
       begins_.push_back(lane.id);
       places.emplace_back().add(begin_of(lane.path).x, begin_of(lane.path).y);
     }
-    begin_tree_ = BoxTree(places);
+    begin_tree_ = geometry::BoxTree(places);
   }
 
   /// The nearest begin within the tolerances; of equal ones the first lane's.
@@ -169,7 +170,7 @@ class NetworkCheck {
   std::span<Lane const> lanes_;
   NetworkTolerances const& tolerances_;
   std::vector<LaneId> begins_;            ///< lanes without predecessor
-  BoxTree begin_tree_;                    ///< of the points where these begin
+  geometry::BoxTree begin_tree_;          ///< of the points where these begin
   std::vector<NetworkFinding> possible_;  ///< by lane
   std::vector<LaneId> entered_;           ///< the others of those, sorted
   std::vector<NetworkFinding> findings_;

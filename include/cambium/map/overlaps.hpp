@@ -12,7 +12,8 @@
 
 #include "cambium/core/ids.hpp"
 #include "cambium/geometry/angle.hpp"
-#include "cambium/map/detail/box_tree.hpp"
+#include "cambium/geometry/box.hpp"
+#include "cambium/geometry/box_tree.hpp"
 #include "cambium/map/detail/lane_chords.hpp"
 #include "cambium/map/detail/overlap_ends.hpp"
 #include "cambium/map/lane.hpp"
@@ -138,14 +139,14 @@ class OverlapFinder {
     std::vector<LaneChord> chords;
     for (auto const& lane : lanes_)
       if (lane.drivable()) add_chords(lane, tolerance, longest, chords);
-    std::vector<Box> boxes(chords.size());
+    std::vector<geometry::Box> boxes(chords.size());
     for (std::size_t i = 0; i < chords.size(); ++i) {
       auto const& c = chords[i];
       boxes[i].add(c.x, c.y);
       boxes[i].add(c.x + c.ux * c.length, c.y + c.uy * c.length);
     }
     last_contact_.assign(lanes_.size(), 0);
-    BoxTree const tree(boxes);
+    geometry::BoxTree const tree(boxes);
     for (std::size_t i = 0; i < chords.size(); ++i) {
       tree.visit(boxes[i].grown(clearance_), [&](std::uint32_t j) {
         if (std::tie(chords[i].lane, i) < std::tuple<std::uint32_t, std::size_t>(chords[j].lane, j))

@@ -7,8 +7,9 @@
 #include <utility>
 #include <vector>
 
-#include "cambium/map/build_corridor.hpp"
+#include "cambium/map/corridor.hpp"
 #include "cambium/map/map.hpp"
+#include "cambium/map/stop_lines.hpp"
 #include "cambium/viewer/recording.hpp"
 #include "cambium/world/frame.hpp"
 #include "cambium/world/static_object.hpp"
@@ -31,25 +32,10 @@ namespace cambium {
   return lanes;
 }
 
-/// The stop lines of a map, where lane corridors have them (see `map::CorridorSignal`), each once.
+/// The stop lines of a map (see `map::stop_lines`) as a recording shows them.
 [[nodiscard]] inline std::vector<RecordedStopLine> recorded_stop_lines(Map const& map) {
-  constexpr double reach = 40.0;  // [m] behind a signal to the junction where it counts
   std::vector<RecordedStopLine> lines;
-  for (auto const& lane : map.lanes()) {
-    if (lane.signals.empty()) continue;
-    auto corridor = map::detail::LaneJoiner(map).join(map::straight_route(map, lane.id, lane.length() + reach).lanes);
-    for (auto const& signal : map::detail::corridor_signals(map, corridor)) {
-      auto const at = corridor.center.pose(signal.line);
-      auto const widths = corridor.widths_at(signal.line);
-      geometry::Point const aside(-std::sin(at.heading), std::cos(at.heading));
-      RecordedStopLine const line{at.position() + widths.left * aside, at.position() - widths.right * aside,
-                                  signal.light};
-      bool const is_known = std::any_of(lines.begin(), lines.end(), [&line](RecordedStopLine const& known) {
-        return known.light == line.light && (known.left - line.left).norm() + (known.right - line.right).norm() < 0.2;
-      });
-      if (!is_known) lines.push_back(line);
-    }
-  }
+  for (auto const& line : map::stop_lines(map)) lines.push_back({line.left, line.right, line.light});
   return lines;
 }
 

@@ -222,7 +222,7 @@ class SvgPicture {
     out_ += "</g>";
     if (options_.labels && !far) lane_labels(panel);
     out_ += "</g>\n";
-    if (options_.labels) scale_bar(panel);
+    if (options_.labels) out_ += svg_scale_bar(panel);
   }
 
   /// Each label stands on its lane, as near to the left of the panel as the lane gets.
@@ -240,17 +240,6 @@ class SvgPicture {
               "paint-order=\"stroke\">" +
               escape_markup(recording_.lanes[i].label) + "</text>";
     }
-  }
-
-  void scale_bar(SvgPanel const& panel) {
-    double const most = 150.0 / panel.scale, power = std::pow(10.0, std::floor(std::log10(most)));
-    double const metres = power * (most >= 5 * power ? 5.0 : most >= 2 * power ? 2.0 : 1.0);
-    double const right = panel.left + panel.width - 14.0, left = right - metres * panel.scale;
-    double const y = panel.top + panel.height - 12.0;
-    out_ += "<path d=\"M" + svg_number(left) + ' ' + svg_number(y - 5) + "V" + svg_number(y) + "H" + svg_number(right) +
-            "V" + svg_number(y - 5) + "\" fill=\"none\" stroke=\"#16202b\" stroke-width=\"1.5\"/><text x=\"" +
-            svg_number((left + right) / 2) + "\" y=\"" + svg_number(y - 6) +
-            "\" font-size=\"12\" text-anchor=\"middle\" fill=\"#16202b\">" + svg_number(metres) + " m</text>\n";
   }
 
   void outline_close_up(SvgPanel const& overview, SvgPanel const& close) {

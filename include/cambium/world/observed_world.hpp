@@ -1,17 +1,16 @@
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <tuple>
 #include <type_traits>
 #include <variant>
 
 #include "cambium/behavior/view.hpp"
 #include "cambium/goal/goal.hpp"
 #include "cambium/map/map.hpp"
+#include "cambium/world/detail/look_around.hpp"
 #include "cambium/world/detail/on_lanes.hpp"
 #include "cambium/world/detail/seen.hpp"
 #include "cambium/world/frame.hpp"
@@ -55,8 +54,7 @@ class ObservedWorld {
   [[nodiscard]] map::LaneCorridor const& corridor() const { return road().corridors[lane_position().corridor]; }
 
   /// Numbers of the agent's own for this step: the same whatever the order of agents, threads or copies. `purpose`
-  /// below
-  /// 2^31 - 1.
+  /// below 2^31 - 1.
   [[nodiscard]] RandomStream random(std::uint32_t purpose) const {
     return {world_->roster().seed, static_cast<std::uint32_t>(id()), static_cast<std::uint32_t>(world_->frame().step),
             purpose};
@@ -212,10 +210,7 @@ class ObservedWorld {
   /// Calls `f(ObservedAgent)` for every other agent in traffic, in the order of their ids.
   template <class F>
   void for_each_other(F&& f) const {
-    auto const& agents = world_->roster().agents;
-    for (std::uint32_t i = 0; i < agents.size(); ++i)
-      if (i != slot_ && record(i).status == AgentStatus::driving && detail::is_seen(*world_, slot_, i))
-        f(observed_agent(i));
+    detail::for_each_other(*world_, slot_, [&](std::uint32_t slot) { f(observed_agent(slot)); });
   }
 
   /// Calls `f(ObservedAgent)` for every other agent in traffic of which a circle about its reference point that holds
@@ -223,29 +218,14 @@ class ObservedWorld {
   /// looks around O(agents found), in an order that does not depend on the lanes; else O(agents).
   template <class F>
   void for_each_around(double distance, F&& f) const {
-    auto const& own = record_->state;
-    auto const visit = [&](std::uint32_t slot) {
-      auto const& [shape, state] = std::tie(world_->roster().agents[slot].shape, record(slot).state);
-      double const reach = distance + std::max(shape.front, shape.rear) + std::max(shape.left, shape.right);
-      double const dx = state.x - own.x, dy = state.y - own.y;
-      if (slot == slot_ || !(dx * dx + dy * dy <= reach * reach) || !detail::is_seen(*world_, slot_, slot)) return;
-      f(observed_agent(slot));
-    };
-    if constexpr (World::Behaviors::looks_around) {
-      world_->plane().for_each_near({own.x - distance, own.y - distance, own.x + distance, own.y + distance}, visit);
-    } else {
-      for (std::uint32_t i = 0; i < world_->size(); ++i)
-        if (record(i).status == AgentStatus::driving) visit(i);
-    }
+    detail::for_each_around(*world_, slot_, distance, [&](std::uint32_t slot) { f(observed_agent(slot)); });
   }
 
   /// Calls `f(id, outline)`, an `ObjectId` and a `geometry::Polygon`, for the static objects that are seen, in the
   /// order of their ids.
   template <class F>
   void for_each_object(F&& f) const {
-    auto const& objects = world_->roster().objects;
-    for (std::uint32_t i = 0; i < objects.size(); ++i)
-      if (detail::is_object_seen(*world_, slot_, i)) f(objects[i].id, objects[i].outline);
+    detail::for_each_object(*world_, slot_, f);
   }
 
   /// A world of its own, as this agent sees it, in which everybody behaves as `prediction` says: to be stepped, copied

@@ -9,7 +9,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <variant>
@@ -23,9 +22,13 @@
 #include "cambium/execution/execution_model.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/observer/perfect.hpp"
+#include "cambium/world/agent_spec.hpp"
 #include "cambium/world/detail/entering.hpp"
 #include "cambium/world/detail/on_lanes.hpp"
+#include "cambium/world/detail/refusals.hpp"
 #include "cambium/world/detail/scratch.hpp"
+#include "cambium/world/detail/situation.hpp"
+#include "cambium/world/detail/upcoming.hpp"
 #include "cambium/world/frame.hpp"
 #include "cambium/world/observed_world.hpp"
 #include "cambium/world/prediction.hpp"
@@ -72,21 +75,7 @@ class World {
   using WithBehaviors = World<OtherSet, Execution, Dynamics, PerfectObserver>;
 
   /// An agent that is to enter.
-  struct AgentSpec {
-    geometry::Point position{std::numeric_limits<double>::quiet_NaN(),
-                             std::numeric_limits<double>::quiet_NaN()};  ///< of the reference point [m]
-    std::optional<double> heading{};                                     ///< [rad]; along the lane where not given
-    double speed = 0.0;                                                  ///< [m/s]
-    geometry::Shape shape{};                                             ///< a car where not given
-    Behavior behavior{};
-    Goal goal{};
-    std::optional<map::Route> route{};                ///< else the shortest to the goal; without a goal straight on
-    std::shared_ptr<map::RoadCorridor const> road{};  ///< instead of a route: see `map::build_free_corridor`
-    Execution execution{};
-    Dynamics dynamics{};
-    Observer observer{};
-    std::optional<AgentId> id{};  ///< else the next free one
-  };
+  using AgentSpec = AgentSpecOf<Behavior, Execution, Dynamics, Observer>;
 
   /// An empty world on `map`. Throws `WorldError` without a map.
   explicit World(std::shared_ptr<Map const> map, WorldOptions const& options = {}) : map_(std::move(map)) {
@@ -104,7 +93,7 @@ class World {
   World(std::shared_ptr<Map const> map, std::shared_ptr<RosterType const> roster, FrameType frame)
       : map_(std::move(map)), roster_(std::move(roster)) {
     if (!map_ || !roster_) throw WorldError("World", "there is no map or no roster", "take them from another world");
-    check_fits(frame);
+    detail::require_same_size(frame.agents.size(), roster_->agents.size());
     frame_ = std::move(frame);
   }
 
@@ -134,7 +123,7 @@ class World {
   /// Puts a frame of this world, or of a copy with the same roster, (back) into place: what a search does at its nodes.
   /// Throws `WorldError` (the world is unchanged) where it is not one of this roster's size. No allocation once warm.
   void restore(FrameType const& frame) {
-    check_fits(frame);
+    detail::require_same_size(frame.agents.size(), roster_->agents.size());
     frame_ = frame;
     scratch_.forget();
   }
@@ -201,12 +190,7 @@ class World {
   /// Sets the phases of a traffic light of the map; until then it is off. Throws `WorldError` for a light that the map
   /// does not have and for numbers that are no plan. O(lights).
   void set_light(LightId id, map::LightPlan const& plan) {
-    std::string const where = "light " + to_string(id);
-    if (index_of(id) >= map_->lights().size())
-      throw WorldError(where, "the map has no such traffic light", "see Map::lights for those it has");
-    if (!plan.is_possible())
-      throw WorldError(where, "its plan has a negative phase, or one of more than a day",
-                       "give green_begin <= green_end within the cycle");
+    detail::require_light_plan(*map_, id, plan);
     auto& lights = writable_roster().lights;
     lights.resize(std::max(lights.size(), index_of(id) + 1));
     lights[index_of(id)] = plan;
@@ -245,7 +229,7 @@ class World {
   /// The agent's situation as goals ask it. Throws as `slot_of`.
   [[nodiscard]] GoalSituation situation(AgentId id) const {
     auto const slot = slot_of(id);
-    return situation(slot, frame_.agents[slot]);
+    return detail::situation_of(roster_->agents[slot], frame_.agents[slot]);
   }
 
   /// The lane that the agent is in, by its lane corridor. Throws as `slot_of`.
@@ -330,12 +314,12 @@ class World {
     double const end = frame_.time + dt;
     for (std::uint32_t slot = 0; slot < next.size(); ++slot) {
       if (next.size() > 256 && slot + 6 < next.size()) {
-        auto const* const segment = road_under(slot + 6);
+        auto const* const segment = detail::road_under(*roster_, frame_, slot + 6);
         CAMBIUM_PREFETCH(segment);
         CAMBIUM_PREFETCH(segment + 1);
         if constexpr (Set::looks_beside) {
-          CAMBIUM_PREFETCH(road_beside(slot + 6, true));
-          CAMBIUM_PREFETCH(road_beside(slot + 6, false));
+          CAMBIUM_PREFETCH(detail::road_beside(*roster_, frame_, slot + 6, true));
+          CAMBIUM_PREFETCH(detail::road_beside(*roster_, frame_, slot + 6, false));
         }
       }
       if constexpr (Observer::perfect)
@@ -352,8 +336,7 @@ class World {
   }
 
   /// Keeps the last `frames` frames from now on (0: none, as at the beginning). Copies and predictions do not take them
-  /// along; they end where an agent enters or leaves.
-  /// Throws `WorldError` for more than a million.
+  /// along; they end where an agent enters or leaves. Throws `WorldError` for more than a million.
   void keep_history(std::size_t frames) {
     if (frames > 1'000'000) throw WorldError("history", "a million frames are kept at most", "record what you need");
     scratch_.keep(frames);
@@ -365,43 +348,17 @@ class World {
   /// The frame `steps_back` steps ago, 1 being the last one; its records hold the actions too. At most
   /// `history_size()`.
   [[nodiscard]] FrameType const& history(std::size_t steps_back) const {
-    if (steps_back == 0 || steps_back > scratch_.kept)
-      throw WorldError("history", "there is no frame " + std::to_string(steps_back) + " steps back",
-                       "call keep_history before stepping");
+    detail::require_kept(steps_back, scratch_.kept);
     return scratch_.back(steps_back);
   }
 
  private:
-  [[nodiscard]] GoalSituation situation(std::size_t slot, Record const& record) const {
-    auto const& [state, lane] = std::tie(record.state, record.lane);
-    auto const& agent = roster_->agents[slot];
-    auto const& piece = agent.road->corridors[lane.corridor].pieces[lane.piece];
-    return {{state.x, state.y, state.heading},
-            agent.shape,
-            piece.lane,
-            lane.s + piece.lane_offset,
-            state.speed,
-            lane.lateral,
-            lane.heading_error,
-            agent.road.get(),
-            lane.corridor,
-            lane.s,
-            record.goals_passed};
-  }
-
   /// Notes which parts of a sequence of goals an agent in traffic has reached.
   void pass_goals(std::size_t slot, Record& record) const {
     auto const* const sequence = std::get_if<GoalSequence>(&roster_->goals[slot]);
     if (sequence && record.status != AgentStatus::not_started)
-      record.goals_passed = static_cast<std::uint8_t>(sequence->pass(situation(slot, record)));
-  }
-
-  void check_fits(FrameType const& frame) const {
-    if (frame.agents.size() != roster_->agents.size())
-      throw WorldError("World",
-                       "the frame has " + std::to_string(frame.agents.size()) + " records, the roster " +
-                           std::to_string(roster_->agents.size()) + " agents",
-                       "restore frames of this world from since the last agent entered or left");
+      record.goals_passed =
+          static_cast<std::uint8_t>(sequence->pass(detail::situation_of(roster_->agents[slot], record)));
   }
 
   [[nodiscard]] RosterType& writable_roster() {
@@ -417,23 +374,6 @@ class World {
     detail::refresh_traffic(scratch_.traffic, *map_, *roster_, frame_);
     if constexpr (Set::looks_around) detail::refresh_plane(scratch_.plane, *roster_, frame_);
     scratch_.fresh = true;
-  }
-
-  /// Where on its road an agent is whose turn comes soon: loaded ahead, where a world does not fit into the cache.
-  /// (Compilers drop calls to functions that do nothing but prefetch.)
-  [[nodiscard]] geometry::Line::Segment const* road_under(std::size_t slot) const {
-    auto const& at = frame_.agents[slot].lane;
-    return roster_->agents[slot].road->corridors[at.corridor].center.segments().data() + at.segment;
-  }
-
-  /// The same on the lane to the left (right) of it; where there is none, its own place.
-  [[nodiscard]] geometry::Line::Segment const* road_beside(std::size_t slot, bool left) const {
-    auto const& at = frame_.agents[slot].lane;
-    auto const& road = *roster_->agents[slot].road;
-    auto const& piece = road.corridors[at.corridor].pieces[at.piece];
-    auto const side = left ? piece.left : piece.right;
-    if (side == map::no_corridor) return road_under(slot);
-    return road.corridors[side].center.segments().data() + detail::hint_beside(road, at, piece, side).segment;
   }
 
   /// All in one function; with observers that would take minutes to compile.

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "cambium/core/ids.hpp"
 #include "cambium/geometry/collision.hpp"
-#include "cambium/geometry/line.hpp"
 #include "cambium/geometry/oriented_box.hpp"
 #include "cambium/geometry/shape.hpp"
 #include "cambium/map/corridor.hpp"
@@ -15,17 +15,32 @@
 
 namespace cambium::map::detail {
 
-/// The place at `s` [m] of a lane's path, along the lanes before and behind it where it lies beyond the ends, and
-/// straight on where no lane goes on there.
-[[nodiscard]] inline geometry::Pose pose_on_way(Map const& map, LaneId id, double s) {
+/// Adds to `ways` those on from the end of lane `at` (`ahead`; else back from its begin), over `reach` [m] or to where
+/// no lane goes on. `way` is the one so far.
+inline void add_ways_on(Map const& map, LaneId at, bool ahead, double reach, std::vector<LaneId>& way,
+                        std::vector<std::vector<LaneId>>& ways) {
+  constexpr std::size_t most = 16;
+  if (ways.size() == most) return;
+  auto const& next = ahead ? map.lane(at).successors : map.lane(at).predecessors;
+  if (reach <= 0.0 || next.empty() || way.size() == most) return ways.push_back(way);
+  for (auto const id : next) {
+    way.push_back(id);
+    add_ways_on(map, id, ahead, reach - map.lane(id).length(), way, ways);
+    way.pop_back();
+  }
+}
+
+/// The place at `s` [m] of a lane's path, along the lanes of `way` where it lies beyond an end, and straight on where
+/// these end.
+[[nodiscard]] inline geometry::Pose pose_on_way(Map const& map, LaneId id, std::vector<LaneId> const& way, double s) {
   auto const* lane = &map.lane(id);
-  for (int lanes = 0; lanes < 16 && s < 0.0 && !lane->predecessors.empty(); ++lanes) {
-    lane = &map.lane(lane->predecessors.front());
+  for (std::size_t i = 0; i < way.size() && s < 0.0; ++i) {
+    lane = &map.lane(way[i]);
     s += lane->length();
   }
-  for (int lanes = 0; lanes < 16 && s > lane->length() && !lane->successors.empty(); ++lanes) {
+  for (std::size_t i = 0; i < way.size() && s > lane->length(); ++i) {
     s -= lane->length();
-    lane = &map.lane(lane->successors.front());
+    lane = &map.lane(way[i]);
   }
   double const on_path = std::clamp(s, 0.0, lane->length());
   auto const pose = lane->path.pose(on_path);
@@ -59,33 +74,31 @@ inline void add_zone(std::vector<ConflictZone>& zones, ConflictZone zone) {
   zones.push_back(zone);
 }
 
-/// Two bodies, one on a line and one on a lane and its way, of which is asked where they touch.
+/// Two bodies on lanes and the ways through them, of which is asked where they touch. Where ways part beyond a lane's
+/// ends all count, for both bodies: so both sides of a conflict find the same zones.
 struct TouchingBodies {
   Map const& map;
-  geometry::Line const& line;
+  LaneCorridor const& corridor;  ///< of the first body
+  CorridorPiece const& piece;    ///< its lane there
   LaneId other;
   geometry::Shape shape, other_shape;
 
   /// The parts of `range` where they touch, apart as in `add_zone`. O(places on one times places on the other).
   [[nodiscard]] std::vector<ConflictZone> zones(ConflictZone const& range) const {
-    std::vector<geometry::OrientedBox> others;
-    for (double s = range.other_begin; s <= range.other_end; s += step)
-      others.push_back(geometry::box_of(other_shape, pose_on_way(map, other, s)));
+    auto const others = tracks(other, other_shape, range.other_begin, range.other_end);
+    auto const branches = tracks(piece.lane, shape, range.begin + piece.lane_offset, range.end + piece.lane_offset);
     std::vector<ConflictZone> zones;
-    for (double s = range.begin; s <= range.end; s += step) {
-      auto const body = geometry::box_of(shape, line.pose(s));
+    std::size_t const count = places(range.begin, range.end);
+    for (std::size_t i = 0; i < count; ++i) {
+      double const s = range.begin + static_cast<double>(i) * step;
       ConflictZone touched;
-      for (std::size_t k = 0; k < others.size();) {
-        if (std::size_t const far = places_apart(body, others[k])) {
-          k += far;
-          continue;
-        }
-        if (geometry::intersects(body, others[k])) {
-          double const at = range.other_begin + static_cast<double>(k) * step;
-          touched = joined(touched, {s - step, s + step, at - step, at + step});
-        }
-        ++k;
-      }
+      auto const add = [&](geometry::OrientedBox const& body) {
+        for (auto const& track : others) add_touched(body, s, track, range.other_begin, touched);
+      };
+      add(geometry::box_of(shape, corridor.center.pose(s)));
+      for (auto const& track : branches)
+        if (track.is_branch && i >= track.first && i < track.first + track.bodies.size())
+          add(track.bodies[i - track.first]);
       if (!touched.empty()) add_zone(zones, touched);
     }
     return zones;
@@ -93,6 +106,61 @@ struct TouchingBodies {
 
  private:
   static constexpr double step = 0.5;  // [m] between two places of a body
+
+  /// A body at the places `first`, `first` + 1, ... of a range, along one way.
+  struct Track {
+    std::size_t first;
+    bool is_branch;  ///< beyond the lane's end, where there are other ways too
+    std::vector<geometry::OrientedBox> bodies;
+  };
+
+  [[nodiscard]] static std::size_t places(double begin, double end) {
+    return end < begin ? 0 : static_cast<std::size_t>((end - begin) / step) + 1;
+  }
+
+  /// A body's places from path position `begin` to `end` of a lane: on the lane, and on all ways beyond it.
+  [[nodiscard]] std::vector<Track> tracks(LaneId lane, geometry::Shape const& body, double begin, double end) const {
+    double const length = map.lane(lane).length();
+    std::size_t const count = places(begin, end);
+    auto const place = [begin](std::size_t i) { return begin + static_cast<double>(i) * step; };
+    std::size_t entered = 0;
+    while (entered < count && place(entered) < 0.0) ++entered;
+    std::size_t left = entered;
+    while (left < count && place(left) <= length) ++left;
+    std::vector<Track> tracks;
+    auto const add = [&](std::vector<LaneId> const& way, std::size_t from, std::size_t to, bool is_branch) {
+      Track track{from, is_branch, {}};
+      for (auto i = from; i < to; ++i)
+        track.bodies.push_back(geometry::box_of(body, pose_on_way(map, lane, way, place(i))));
+      if (!track.bodies.empty()) tracks.push_back(std::move(track));
+    };
+    add({}, entered, left, false);
+    for (bool const ahead : {false, true}) {
+      std::vector<std::vector<LaneId>> ways;
+      std::vector<LaneId> way;
+      add_ways_on(map, lane, ahead, ahead ? end - length : -begin, way, ways);
+      for (auto const& on : ways) add(on, ahead ? left : 0, ahead ? count : entered, ways.size() > 1);
+    }
+    return tracks;
+  }
+
+  /// Grows `touched` by where `body`, at `s` [m] of its corridor, touches one of the track: from the first to the last.
+  void add_touched(geometry::OrientedBox const& body, double s, Track const& track, double begin,
+                   ConflictZone& touched) const {
+    auto const& others = track.bodies;
+    // 0 where they touch, else how many places on they may do so at the earliest.
+    auto const skip_at = [&](std::size_t i) -> std::size_t {
+      if (std::size_t const apart = places_apart(body, others[i])) return apart;
+      return geometry::intersects(body, others[i]) ? 0 : 1;
+    };
+    std::size_t first = 0;
+    for (std::size_t skip = 1; first < others.size() && skip > 0; first += skip) skip = skip_at(first);
+    if (first >= others.size()) return;
+    std::size_t last = others.size() - 1;
+    for (std::size_t skip = 1; last > first && skip > 0; last -= std::min(skip, last - first)) skip = skip_at(last);
+    auto const at = [&](std::size_t i) { return begin + static_cast<double>(track.first + i) * step; };
+    touched = joined(touched, {s - step, s + step, at(first) - step, at(last) + step});
+  }
 
   /// How many of the next places are too far to touch: bodies go no more than 2 m along 1 m of path.
   [[nodiscard]] std::size_t places_apart(geometry::OrientedBox const& a, geometry::OrientedBox const& b) const {

@@ -51,6 +51,10 @@ class ConflictFinder {
   };
 
   static constexpr double shortest = 1.0;  // [m] of a lane on which a body swings out
+
+  [[nodiscard]] geometry::Shape const& body(bool is_large) const {
+    return is_large ? map_.options().large_conflict_shape : map_.options().conflict_shape;
+  }
   /// How far before and behind an overlap of paths the bodies may touch [m].
   [[nodiscard]] double before() const { return body(true).length() + 8.0; }
   [[nodiscard]] double behind() const { return body(true).rear + 8.0; }
@@ -71,18 +75,19 @@ class ConflictFinder {
     conflict.lane_end = piece.end;
     conflict.other_lane_end = map_.lane(overlap.other).length();
     conflict.other_light = signs_before(map_, map_.lane(overlap.other)).light;
-    for (auto const& hull : zones_in(range_of(overlap, begin, end, conflict.kind), conflict, true, true))
-      for (auto const& zones : zones_by_size(hull, conflict)) {
+    for (auto const& hull : zones_in(number, range_of(overlap, begin, end, conflict.kind), conflict, true, true))
+      for (auto const& zones : zones_by_size(number, hull, conflict)) {
         conflict.zones = zones;
         found.push_back({number, conflict});
       }
   }
 
   /// The zones within that of the largest bodies; again with that one where those of smaller bodies lie apart in it.
-  [[nodiscard]] std::vector<ConflictZones> zones_by_size(ConflictZone const& hull, Conflict const& conflict) const {
+  [[nodiscard]] std::vector<ConflictZones> zones_by_size(std::size_t number, ConflictZone const& hull,
+                                                         Conflict const& conflict) const {
     std::vector<ConflictZones> all(1);
     for (auto const& [own, other] : {std::pair(0u, 0u), {0u, 1u}, {1u, 0u}}) {
-      auto const zones = zones_in(hull, conflict, own != 0, other != 0);
+      auto const zones = zones_in(number, hull, conflict, own != 0, other != 0);
       all.resize(std::max(all.size(), zones.size()));
       for (std::size_t i = 0; i < zones.size(); ++i) all[i][own][other] = zones[i];
     }
@@ -174,9 +179,9 @@ class ConflictFinder {
 
   /// The parts of `range` where two bodies of such sizes touch. Where lanes merge the only one ends, and where they
   /// part it begins, with the range: there the two are one lane.
-  [[nodiscard]] std::vector<ConflictZone> zones_in(ConflictZone const& range, Conflict const& conflict, bool own,
-                                                   bool other) const {
-    TouchingBodies const bodies{map_, corridor_.center, conflict.other, body(own), body(other)};
+  [[nodiscard]] std::vector<ConflictZone> zones_in(std::size_t number, ConflictZone const& range,
+                                                   Conflict const& conflict, bool own, bool other) const {
+    TouchingBodies const bodies{map_, corridor_, corridor_.pieces[number], conflict.other, body(own), body(other)};
     auto zones = bodies.zones(range);
     if (conflict.kind == OverlapKind::crossing || zones.empty()) return zones;
     ConflictZone zone;
@@ -289,9 +294,6 @@ class ConflictFinder {
 
   Map const& map_;
   LaneCorridor const& corridor_;
-  [[nodiscard]] geometry::Shape const& body(bool is_large) const {
-    return is_large ? map_.options().large_conflict_shape : map_.options().conflict_shape;
-  }
 };
 
 }  // namespace cambium::map::detail

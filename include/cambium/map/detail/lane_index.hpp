@@ -10,8 +10,8 @@
 #include "cambium/core/ids.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/geometry/box.hpp"
+#include "cambium/geometry/box_tree.hpp"
 #include "cambium/geometry/pose.hpp"
-#include "cambium/map/detail/box_tree.hpp"
 #include "cambium/map/lane.hpp"
 
 namespace cambium::map {
@@ -26,6 +26,8 @@ struct LaneHit {
 };
 
 namespace detail {
+
+using geometry::Box;
 
 /// A packed R-tree over stretches of lanes' paths with the borders beside them; see `LaneTree`.
 class LaneIndex {
@@ -47,7 +49,7 @@ class LaneIndex {
 
   void finish() {
     stretches_.push_back({0, 0, 0, 0, 0, 0, {}, {}, none<LaneId>, 0});  // so that the last one has a next one
-    tree_ = BoxTree(boxes_);
+    tree_ = geometry::BoxTree(boxes_);
     boxes_ = {};
   }
 
@@ -198,7 +200,7 @@ class LaneIndex {
   std::vector<Stretch> stretches_;  ///< in the lanes' order, and one more that is in none
   std::vector<Run> runs_;           ///< of stretches, by box
   std::vector<Box> boxes_;          ///< until the tree is made
-  BoxTree tree_;
+  geometry::BoxTree tree_;
 };
 
 }  // namespace detail

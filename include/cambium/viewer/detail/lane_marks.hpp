@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "cambium/geometry/box.hpp"
+#include "cambium/geometry/box_tree.hpp"
 #include "cambium/viewer/detail/lane_area.hpp"
 #include "cambium/viewer/recording.hpp"
 
@@ -73,6 +75,7 @@ class LaneMarker {
       add_border(i, areas[i].left, areas[i].right, 1.0);
       add_border(i, areas[i].right, areas[i].left, -1.0);
     }
+    index_areas();
   }
 
   [[nodiscard]] std::vector<LaneMark> marks() const {
@@ -170,14 +173,24 @@ class LaneMarker {
     return covered ? MarkStyle::covered : style;
   }
 
+  void index_areas() {
+    std::vector<geometry::Box> boxes;
+    for (std::size_t i = 0; i < areas_.size(); ++i) {
+      auto const& area = areas_[i];
+      if (area.empty() || lanes_[i].kind == RecordedLaneKind::way) continue;
+      coverers_.push_back(i);
+      boxes.push_back({area.low.x(), area.low.y(), area.high.x(), area.high.y()});
+    }
+    coverer_tree_ = geometry::BoxTree(boxes);
+  }
+
   /// Whether a point lies in a lane other than `own` and those `beside` it.
   [[nodiscard]] bool is_covered(geometry::Point const& p, std::size_t own,
                                 std::vector<std::size_t> const& beside) const {
-    for (std::size_t lane = 0; lane < areas_.size(); ++lane) {
-      bool const may_cover = lane != own && lanes_[lane].kind != RecordedLaneKind::way;
-      if (may_cover && areas_[lane].contains(p) && std::count(beside.begin(), beside.end(), lane) == 0) return true;
-    }
-    return false;
+    return coverer_tree_.visit({p.x(), p.y(), p.x(), p.y()}, [&](std::uint32_t i) {
+      auto const lane = coverers_[i];
+      return lane != own && areas_[lane].contains(p) && std::count(beside.begin(), beside.end(), lane) == 0;
+    });
   }
 
   /// Whether a point lies beside the piece, no farther off than `distance` [m].
@@ -209,6 +222,8 @@ class LaneMarker {
   std::vector<Piece> pieces_;
   std::unordered_map<std::uint64_t, std::vector<std::size_t>> grid_;
   std::size_t borders_ = 0;
+  std::vector<std::size_t> coverers_;  ///< lanes that others' borders may lie in
+  geometry::BoxTree coverer_tree_;     ///< of their areas
 };
 
 }  // namespace cambium::detail

@@ -41,4 +41,16 @@ struct SvgPanel {
   }
 };
 
+/// A bar of a round length in the panel's lower right corner, and that length.
+inline std::string svg_scale_bar(SvgPanel const& panel) {
+  double const most = 150.0 / panel.scale, power = std::pow(10.0, std::floor(std::log10(most)));
+  double const metres = power * (most >= 5 * power ? 5.0 : most >= 2 * power ? 2.0 : 1.0);
+  double const right = panel.left + panel.width - 14.0, left = right - metres * panel.scale;
+  double const y = panel.top + panel.height - 12.0;
+  return "<path d=\"M" + svg_number(left) + ' ' + svg_number(y - 5) + "V" + svg_number(y) + "H" + svg_number(right) +
+         "V" + svg_number(y - 5) + "\" fill=\"none\" stroke=\"#16202b\" stroke-width=\"1.5\"/><text x=\"" +
+         svg_number((left + right) / 2) + "\" y=\"" + svg_number(y - 6) +
+         "\" font-size=\"12\" text-anchor=\"middle\" fill=\"#16202b\">" + svg_number(metres) + " m</text>\n";
+}
+
 }  // namespace cambium::detail

@@ -12,9 +12,9 @@
 
 #include "cambium/geometry/box.hpp"
 
-namespace cambium::map::detail {
+namespace cambium::geometry {
 
-using geometry::Box;
+namespace detail {
 
 /// Place of the cell (x, y), each below 2^16, on Hilbert's curve: cells near to each other are mostly near on the
 /// curve.
@@ -32,6 +32,8 @@ using geometry::Box;
   }
   return index;
 }
+
+}  // namespace detail
 
 /// A static R-tree in flat arrays: boxes in the order of Hilbert's curve, eight to a node, nodes of 128 B level by
 /// level (Kamel, Faloutsos 1993). Corners are kept in float, rounded outwards: a query may visit a box that it misses
@@ -120,7 +122,7 @@ class BoxTree {
     std::vector<std::uint64_t> keys(boxes.size());
     for (std::size_t i = 0; i < boxes.size(); ++i) {
       auto const& b = boxes[i];
-      auto const place = hilbert_index(cell(b.min_x, b.max_x, all.min_x), cell(b.min_y, b.max_y, all.min_y));
+      auto const place = detail::hilbert_index(cell(b.min_x, b.max_x, all.min_x), cell(b.min_y, b.max_y, all.min_y));
       keys[i] = std::uint64_t{place} << 32 | i;
     }
     std::sort(keys.begin(), keys.end());
@@ -162,4 +164,4 @@ class BoxTree {
   double origin_x_ = 0.0, origin_y_ = 0.0;
 };
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::geometry

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+
+#include "cambium/geometry/line.hpp"
+#include "cambium/map/corridor.hpp"
+#include "cambium/world/detail/on_lanes.hpp"
+
+namespace cambium::detail {
+
+/// Where on its road an agent is whose turn comes soon: loaded ahead, where a world does not fit into the cache.
+/// (Compilers drop calls to functions that do nothing but prefetch.)
+template <class Roster, class Frame>
+[[nodiscard]] geometry::Line::Segment const* road_under(Roster const& roster, Frame const& frame, std::size_t slot) {
+  auto const& at = frame.agents[slot].lane;
+  return roster.agents[slot].road->corridors[at.corridor].center.segments().data() + at.segment;
+}
+
+/// The same on the lane to the left (right) of it; where there is none, its own place.
+template <class Roster, class Frame>
+[[nodiscard]] geometry::Line::Segment const* road_beside(Roster const& roster, Frame const& frame, std::size_t slot,
+                                                         bool left) {
+  auto const& at = frame.agents[slot].lane;
+  auto const& road = *roster.agents[slot].road;
+  auto const& piece = road.corridors[at.corridor].pieces[at.piece];
+  auto const side = left ? piece.left : piece.right;
+  if (side == map::no_corridor) return road_under(roster, frame, slot);
+  return road.corridors[side].center.segments().data() + hint_beside(road, at, piece, side).segment;
+}
+
+}  // namespace cambium::detail
