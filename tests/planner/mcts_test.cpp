@@ -189,6 +189,91 @@ TEST_CASE("a planner says what it thought") {
   CHECK(stepping.state(ego) == report.course[1].agents[0].state);
 }
 
+TEST_CASE("a search goes on from what it knows where the world came out as it was predicted") {
+  for (int const threads : {1, 2}) {
+    CAPTURE(threads);
+    auto planner = quick(Single{}, 600);
+    planner.options.threads = threads;
+    for (bool const surprised : {false, true}) {
+      // The stack's own world: ego is moved as planned, the others do as predicted, or one does not.
+      auto world = lane_change(0, IdmClassic{});
+      for (auto const& agent : world.roster().agents)
+        if (agent.id != ego) world.set_behavior(agent.id, IdmClassic{});
+      Single::Workspace workspace;
+      CHECK_FALSE(workspace.keep());
+      auto report = planner.think(world.observe(ego), workspace);
+      for (int step = 0; step < 8; ++step) {
+        REQUIRE(workspace.keep());
+        CHECK(report.memory == *std::get_if<MacroActions::Memory>(&report.course[1].agents[0].memory));
+        REQUIRE(world.step(planner.options.step));
+        world.set_state(ego, report.course[1].agents[0].state);
+        if (surprised) {
+          auto state = world.state(AgentId{3});
+          state.x += 3.0;
+          world.set_state(AgentId{3}, state);
+        }
+        report = planner.think(world.observe(ego), workspace, report.memory);
+        CHECK((report.result.kept_nodes > 0) == !surprised);
+        CHECK(report.result.iterations == 600);
+        CHECK(report.result.nodes > report.result.kept_nodes);
+      }
+    }
+  }
+}
+
+TEST_CASE("nothing is kept for other agents, another manoeuvre, or without being asked") {
+  auto const kept_nodes = [](bool keep, bool forgets_manoeuvre, bool other_actions, bool other_agents) {
+    auto world = lane_change(0, IdmClassic{});
+    for (auto const& agent : world.roster().agents)
+      if (agent.id != ego) world.set_behavior(agent.id, IdmClassic{});
+    auto planner = quick(Cooperative{}, 600);
+    planner.actions = MacroActions::of({{MacroAction::Kind::change_left, 0.0}, {MacroAction::Kind::stay, 0.0}});
+    planner.most_agents = 1;
+    Cooperative::Workspace workspace;
+    auto const report = planner.think(world.observe(ego), workspace);
+    REQUIRE(report.memory.change.active());
+    if (keep) CHECK(workspace.keep());
+    REQUIRE(world.step(planner.options.step));
+    world.set_state(ego, report.course[1].agents[0].state);
+    if (other_actions) planner.actions.actions[0].acceleration = 1.0;
+    if (other_agents) planner.most_agents = 2;
+    return planner.think(world.observe(ego), workspace, forgets_manoeuvre ? MacroActions::Memory{} : report.memory)
+        .result.kept_nodes;
+  };
+  CHECK(kept_nodes(true, false, false, false) > 0);
+  CHECK(kept_nodes(false, false, false, false) == 0);
+  CHECK(kept_nodes(true, true, false, false) == 0);
+  CHECK(kept_nodes(true, false, true, false) == 0);
+  CHECK(kept_nodes(true, false, false, true) == 0);
+}
+
+TEST_CASE("with threads a planner does the same again, as a behaviour too") {
+  auto planner = quick(Single{}, 301);
+  planner.options.threads = 3;
+  auto world = lane_change(0, planner), again = lane_change(0, planner);
+  Single::Workspace workspace, other;
+  auto const report = planner.think(world.observe(ego), workspace);
+  CHECK(report.result.iterations == 301);
+  CHECK(report.result.choice(0).action == report.result.variation[0]);
+  auto const same = planner.think(world.observe(ego), other);
+  REQUIRE(same.result.arms.size() == report.result.arms.size());
+  for (std::size_t i = 0; i < same.result.arms.size(); ++i) {
+    CHECK(same.result.arms[i].visits == report.result.arms[i].visits);
+    CHECK(same.result.arms[i].mean_return == report.result.arms[i].mean_return);
+  }
+  // From three threads to one, and back, in the same workspace.
+  planner.options.threads = 1;
+  CHECK(planner.think(world.observe(ego), other).result.iterations == 301);
+  planner.options.threads = 3;
+  CHECK(planner.think(world.observe(ego), other).result.variation == report.result.variation);
+  (void)world.step(0.2);
+  (void)again.step(0.2);
+  CHECK(world.frame() == again.frame());
+  CHECK(world.state(ego) == report.course[1].agents[0].state);
+  planner.options.threads = 65;
+  CHECK_THROWS_AS((void)planner.think(world.observe(ego), other), ParameterError);
+}
+
 TEST_CASE("searches in a warm world allocate nothing") {
   using Domain = TrafficDomain<PredictionWorld, MacroActions, TrafficReward>;
   PredictionWorld world(support::straight_road(2, 600.0));
@@ -204,6 +289,12 @@ TEST_CASE("searches in a warm world allocate nothing") {
   CHECK(support::allocations() == before);
   (void)search.run(root, 2);
   CHECK(support::allocations() == before);
+  MctsWorkspace<Domain, MctsOptions<>> workspace;
+  (void)workspace.run(domain, {.budget = {300}}, 1);
+  auto copy = domain;
+  auto const copied = support::allocations();
+  (void)workspace.run(std::move(copy), {.budget = {300}}, 1);
+  CHECK(support::allocations() - copied < 8);  // a root, and what the new domain's world works with
 }
 
 TEST_CASE("beliefs find the headway of the one behind whom it drives") {

@@ -21,11 +21,11 @@ namespace cambium {
 /// Plans by tree search among others whose time headways are not known: it believes one of a few regions of each, with
 /// probabilities that follow what the others do (Bayes), and draws headways anew for each iteration (root sampling).
 /// `PredictionWorld` must have `IdmHypotheses` in its behaviour set. Nodes stand for ego's actions only.
-template <class PredictionWorld, class Actions = MacroActions, class Reward = TrafficReward, class Selection = Ucb1,
-          class Rollout = RandomRollout>
+template <class PredictionWorld, class Actions = MacroActions, class Reward = TrafficReward,
+          class Options = MctsOptions<>>
 struct MctsHypothesis {
   using Domain = HypothesisDomain<PredictionWorld, Actions, Reward>;
-  using Workspace = MctsWorkspace<Domain, Selection, Rollout>;
+  using Workspace = MctsWorkspace<Domain, Options>;
 
   /// Those about whom something is believed.
   static constexpr std::size_t capacity = 6;
@@ -53,7 +53,7 @@ struct MctsHypothesis {
   Actions actions{};
   IdmHypotheses others{};
   Reward reward{};
-  MctsOptions<Selection, Rollout> options{};
+  Options options{};
   BeliefParameters belief{};
   double speed_deviation = 0.05;
   double range = 60.0;
@@ -80,13 +80,13 @@ struct MctsHypothesis {
         view, memory.course, workspace, dt, [&](auto& w) -> auto const& { return search(view, memory, dt, w); });
   }
 
-  /// What it thinks of what `view` shows, having seen what `memory` says, in a world of steps of `dt` [s]. Throws
-  /// `SearchError` where there is nothing to search.
+  /// What it thinks of what `view` shows, having seen what `memory` says, in a world of steps of `dt` [s]; notes there
+  /// what it sees, and leaves `memory.course`, the manoeuvre under way, to be set to the report's `memory`. Throws
+  /// `SearchError` where there is nothing to search, `ParameterError` where a parameter is out of its range.
   template <class View>
-  [[nodiscard]] MctsReport<PredictionWorld, typename Domain::Action> think(View const& view, Memory& memory, double dt,
-                                                                           Workspace& workspace) const {
+  [[nodiscard]] MctsReport<Domain> think(View const& view, Memory& memory, double dt, Workspace& workspace) const {
     check_parameters(*this);
-    detail::throw_if(search(view, memory, dt, workspace).problem, view.id());
+    detail::throw_if(search(view, memory, dt, workspace), view.id());
     return workspace.report();
   }
 
