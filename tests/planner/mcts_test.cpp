@@ -312,6 +312,36 @@ TEST_CASE("beliefs find the headway of the one behind whom it drives") {
   }
 }
 
+TEST_CASE("of whom nothing is known any headway is drawn") {
+  Sim world(support::straight_road(1, 2000.0));
+  world.add({.position = {60, -1.75}, .speed = 12, .behavior = IdmClassic{}});
+  for (int i = 1; i <= 9; ++i)  // six near, three far away
+    world.add({.position = {60.0 + (i > 6 ? 100.0 : 9.0) * i, -1.75}, .speed = 12, .behavior = IdmClassic{}});
+  auto const planner = quick(Hypothesis{}, 20);
+  Hypothesis::Workspace workspace;
+  Hypothesis::Memory memory;
+  (void)planner.think(world.observe(ego), memory, 0.2, workspace);
+  CHECK(memory.belief(AgentId{6}) != nullptr);
+  CHECK(memory.belief(AgentId{7}) == nullptr);
+  RandomStream random(1, 0, 0);
+  int const draws = 4000;
+  std::vector<double> sums(10), squares(10);
+  for (int i = 0; i < draws; ++i) {
+    auto state = workspace.domain().root();
+    workspace.domain().sample_root(state, random);
+    for (std::size_t k = 1; k < 10; ++k) {
+      double const headway = std::get_if<IdmHypotheses::Memory>(&state.frame.agents[k].memory)->time_headway;
+      sums[k] += headway;
+      squares[k] += headway * headway;
+    }
+  }
+  for (std::size_t k = 1; k < 10; ++k) {
+    double const mean = sums[k] / draws;
+    CHECK(mean == doctest::Approx(2.0).epsilon(0.05));
+    CHECK(squares[k] / draws - mean * mean == doctest::Approx(9.0 / 12).epsilon(0.1));  // uniform over 3 s
+  }
+}
+
 namespace {
 
 /// Every metre counts; each step faster than 13 m/s risks something.

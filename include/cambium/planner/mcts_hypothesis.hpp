@@ -12,6 +12,7 @@
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/idm_hypotheses.hpp"
+#include "cambium/core/distributions.hpp"
 #include "cambium/planner/belief.hpp"
 #include "cambium/planner/detail/predicted.hpp"
 #include "cambium/planner/mcts_workspace.hpp"
@@ -19,7 +20,7 @@
 namespace cambium {
 
 /// Plans by tree search among others whose time headways are not known: it believes one of a few regions of each, with
-/// probabilities that follow what the others do (Bayes), and draws headways anew for each iteration (root sampling).
+/// probabilities that follow what the nearest do (Bayes), and draws headways anew for each iteration (root sampling).
 /// `PredictionWorld` must have `IdmHypotheses` in its behaviour set. Nodes stand for ego's actions only.
 template <class PredictionWorld, class Actions = MacroActions, class Reward = TrafficReward,
           class Options = MctsOptions<>>
@@ -71,7 +72,8 @@ struct MctsHypothesis {
                            parameter("belief", &P::belief, "-", {}, "how it follows what is observed"),
                            parameter("speed_deviation", &P::speed_deviation, "m/s", Range{1e-3, 10},
                                      "standard deviation of a speed after a step, from what a headway predicts"),
-                           parameter("range", &P::range, "m", non_negative, "the 6 nearest within it are told apart"));
+                           parameter("range", &P::range, "m", non_negative,
+                                     "the 6 nearest within it are told apart; of the rest all is as likely"));
   }
 
   template <class View>
@@ -91,6 +93,8 @@ struct MctsHypothesis {
   }
 
  private:
+  static constexpr auto index = PredictionWorld::Behaviors::template index<IdmHypotheses>;
+
   template <class View>
   [[nodiscard]] SearchResult<typename Domain::Action> const& search(View const& view, Memory& memory, double dt,
                                                                     Workspace& workspace) const {
@@ -118,6 +122,11 @@ struct MctsHypothesis {
       if (known != memory.tracked.end() && was_expected) observe(tracked[i], world.frame().agents[near[i]].state.speed);
       unknowns.push_back({near[i], tracked[i].belief});
     }
+    // Of the rest nothing is known.
+    for (std::uint32_t slot = 0; slot < world.size(); ++slot)
+      if (std::get_if<index>(&world.frame().agents[slot].memory) != nullptr &&
+          std::ranges::find(near, slot) == near.end())
+        unknowns.push_back({slot, Belief(static_cast<std::size_t>(others.regions))});
     memory.tracked = tracked;
     expect(world, near, memory, dt);
     return unknowns;
@@ -133,12 +142,11 @@ struct MctsHypothesis {
       nearest = std::min(nearest, likelihoods[r]);
     }
     // Relative to the best: what no headway explains tells little, but does not make all of them impossible.
-    for (std::size_t r = 0; r < regions; ++r) likelihoods[r] = std::exp(nearest - likelihoods[r]);
+    for (std::size_t r = 0; r < regions; ++r) likelihoods[r] = detail::portable_exp(nearest - likelihoods[r]);
     other.belief.update({likelihoods.data(), regions}, belief);
   }
 
   void expect(PredictionWorld const& world, std::span<std::uint32_t const> slots, Memory& memory, double dt) const {
-    constexpr auto index = PredictionWorld::Behaviors::template index<IdmHypotheses>;
     PredictionWorld trial = world;
     for (std::size_t r = 0; r < static_cast<std::size_t>(others.regions); ++r) {
       auto frame = world.frame();

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <span>
@@ -139,7 +138,7 @@ struct TruncatedRollout {
                   "`double value(State const&, std::size_t agent)`");
     int const steps = std::min(run.steps, base.steps);
     if (base.roll_out(run)) return true;
-    double const weight = std::pow(run.discount, steps);
+    double const weight = detail::integer_power(run.discount, static_cast<unsigned>(steps));
     for (std::size_t k = 0; k < run.joint.size(); ++k) run.returns[k] += weight * run.domain.value(run.state, k);
     return false;
   }
