@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <tuple>
 #include <vector>
 
@@ -395,7 +396,8 @@ TEST_CASE("what cannot be planned is said") {
   state.x = 595.0;
   world.set_state(ego, state);
   for (int step = 0; step < 5; ++step) (void)world.step(0.2);
-  REQUIRE(world.status(ego) != AgentStatus::driving);
+  REQUIRE(world.status(ego) == AgentStatus::left_map);
+  CHECK(std::string(to_string(world.status(ego))) == "left the map");
   CHECK_THROWS_WITH_AS((void)quick(Single{}).think(world.observe(ego), workspace),
                        "search: the agent that is to plan is not in the predicted world, or not in traffic; ask for an "
                        "agent that drives",

@@ -106,7 +106,7 @@ struct PolicySequence {
   return sequences;
 }
 
-/// Another's intention that differs from the most likely one, as far as it matters to ego.
+/// Another's intention, other than to keep its lane and yield, as far as it matters to ego.
 struct IntentionBranch {
   std::uint32_t slot{};
   Intention intention{};
