@@ -184,7 +184,8 @@ void take_course(View const& view, Workspace& workspace, double dt, Plan<View>& 
 template <class Action>
 void throw_if(SearchResult<Action> const& result, AgentId ego) {
   auto const problem = result.problem;
-  auto const where = "agent " + to_string(ego);
+  auto const where = "agent " + to_string(ego) +
+                     (result.problem_steps > 0 ? ", at step " + std::to_string(result.problem_steps) : std::string());
   if (problem == SearchProblem::no_agents) cambium::throw_if(SearchProblem::not_in_world);
   if (problem == SearchProblem::no_actions)
     throw SearchError(where, "none of its actions is available in a state that the search came to",
