@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <cstdio>
 #include <exception>
@@ -7,6 +8,7 @@
 #include <iostream>
 #include <string>
 #include <system_error>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -35,6 +37,40 @@ namespace examples {
            ", not '" + word + "'";
   };
   return CLI::Validator(check, "");
+}
+
+/// An option that takes a list, as 1,2,3, of what `each` accepts; what is named twice counts once.
+template <class Number>
+CLI::Option* add_list(CLI::App& program, std::string const& name, std::vector<Number>& target, CLI::Validator each,
+                      std::string const& sentence) {
+  auto const words = [](std::string const& list) {
+    std::vector<std::string> result(1);
+    for (char const c : list) {
+      if (c == ',')
+        result.emplace_back();
+      else
+        result.back() += c;
+    }
+    return result;
+  };
+  auto const check = [words, each](std::string const& list) {
+    std::string problem;
+    for (auto const& word : words(list))
+      if (problem.empty()) problem = each(word);
+    return problem;
+  };
+  auto const take = [words, &target](std::string const& list) {
+    target.clear();
+    for (auto const& word : words(list))
+      if (auto const value = *cambium::detail::parse_number<Number>(word);
+          std::find(target.begin(), target.end(), value) == target.end())
+        target.push_back(value);
+  };
+  std::string usual;
+  for (auto const value : target) usual += (usual.empty() ? "" : ",") + cambium::detail::rounded_text(double(value));
+  return program.add_option_function<std::string>(name, take, sentence)
+      ->check(CLI::Validator(check, ""))
+      ->default_str(usual);
 }
 
 /// Accepts any text but none.

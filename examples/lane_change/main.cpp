@@ -147,16 +147,12 @@ void add_options(CLI::App& program, Settings& settings) {
   number("--scenarios", settings.scenarios, 1, 1'000'000, "of each cell");
   number("--seed", settings.seed, 0, ~std::uint64_t{0} >> 1, "of everything random");
   number("--threads", settings.threads, 1, 1024, "to run them on; outcomes do not depend on it");
-  program.add_option("--iterations", settings.iterations, "of a search, a column each")
-      ->delimiter(',')
-      ->type_name("N,...")
-      ->check(examples::whole_number(1, 100'000'000))
-      ->capture_default_str();
-  program.add_option("--variation", settings.variations, "by how much others keep shorter headways than predicted")
-      ->delimiter(',')
-      ->type_name("SHARE,...")
-      ->check(examples::number(0.0, 0.99))
-      ->capture_default_str();
+  examples::add_list(program, "--iterations", settings.iterations, examples::whole_number(1, 100'000'000),
+                     "of a search, a column each")
+      ->type_name("N,...");
+  examples::add_list(program, "--variation", settings.variations, examples::number(0.0, 0.99),
+                     "by how much others keep shorter headways than predicted")
+      ->type_name("SHARE,...");
   program.add_option("--preset", settings.preset, "the paper's choices, or cambium's")
       ->check(CLI::IsMember({"paper", "cambium"}))
       ->capture_default_str();

@@ -40,8 +40,8 @@ struct SameActionRollout {
   }
 };
 
-using PaperPlanner =
-    cb::MctsSingleAgent<Prediction, cb::MacroActions, cb::TrafficReward, cb::IdmClassic, cb::Ucb1, SameActionRollout>;
+using PaperPlanner = cb::MctsSingleAgent<Prediction, cb::MacroActions, cb::TrafficReward, cb::IdmClassic,
+                                         cb::MctsOptions<cb::Ucb1, SameActionRollout>>;
 using OwnPlanner = cb::MctsHypothesis<Prediction>;
 using Sim =
     cb::World<cb::BehaviorSet<PaperPlanner, OwnPlanner, cb::IdmClassic>, cb::InterpolateExecution, cb::SingleTrack>;

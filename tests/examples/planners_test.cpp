@@ -31,6 +31,10 @@ TEST_CASE("the lane change example writes a row a cell, the same on any number o
     }
     return json;
   };
+  auto const twice = program.run({"--scenarios", "1", "--iterations", "20,30,20", "--variation", "0.5,0.50", "--json",
+                                  (folder.path() / "twice.json").string(), "--out", folder.path().string()});
+  CHECK(twice.code == 0);
+  CHECK(nlohmann::json::parse(content_of(folder.path() / "twice.json")).size() == 2);
   for (char const* preset : {"paper", "cambium"}) {
     auto const one = rows(preset, "1");
     REQUIRE(one.size() == 4);
@@ -52,6 +56,9 @@ TEST_CASE("the lane change example names what is wrong with its options") {
   for (auto const& words : {std::vector<std::string>{"--preset", "mine"},
                             {"--iterations", "0"},
                             {"--iterations", "100,x"},
+                            {"--iterations", "100,,200"},
+                            {"--iterations", "100,"},
+                            {"--variation", ""},
                             {"--variation", "1.5"},
                             {"--variation", "nan"},
                             {"--out", "/proc/none"},

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <string>
 
 #include "cambium/behavior/idm_classic.hpp"
 #include "cambium/execution/interpolate.hpp"
@@ -167,6 +168,23 @@ TEST_CASE("courses into who drives beside are not valid") {
     CHECK((collisions > 0) == beside);
     CHECK((changes > 0) == !beside);
   }
+}
+
+TEST_CASE("a course that is not finite is not valid; another one is driven") {
+  Planner planner;
+  planner.costs.jerk = 1e308;  // whoever changes speed or offset costs more than there are numbers
+  planner.desired_speed = 12.0;
+  auto world = road(1, 0, 12.0, 0.0, planner);
+  Planner::Workspace workspace;
+  auto const report = planner.think(world.observe(ego), {}, workspace);
+  int not_finite = 0;
+  for (auto const& c : report.candidates) not_finite += c.verdict == FrenetVerdict::not_finite ? 1 : 0;
+  CHECK(not_finite > 10);
+  REQUIRE(report.best);
+  CHECK(std::string(to_string(report.candidates.back().verdict)) == "not finite");
+  drive(world, 10);
+  CHECK(world.state(ego).speed == doctest::Approx(12.0));
+  CHECK(drivable(planner.limits, {0.0, std::nan(""), 10.0, 0.0}, {}, 20.0) == FrenetVerdict::not_finite);
 }
 
 TEST_CASE("where no course is valid it brakes as hard as it may") {

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <string>
 #include <tuple>
 #include <vector>
 
@@ -189,6 +190,91 @@ TEST_CASE("a planner says what it thought") {
   CHECK(stepping.state(ego) == report.course[1].agents[0].state);
 }
 
+TEST_CASE("a search goes on from what it knows where the world came out as it was predicted") {
+  for (int const threads : {1, 2}) {
+    CAPTURE(threads);
+    auto planner = quick(Single{}, 600);
+    planner.options.threads = threads;
+    for (bool const surprised : {false, true}) {
+      // The stack's own world: ego is moved as planned, the others do as predicted, or one does not.
+      auto world = lane_change(0, IdmClassic{});
+      for (auto const& agent : world.roster().agents)
+        if (agent.id != ego) world.set_behavior(agent.id, IdmClassic{});
+      Single::Workspace workspace;
+      CHECK_FALSE(workspace.keep());
+      auto report = planner.think(world.observe(ego), workspace);
+      for (int step = 0; step < 8; ++step) {
+        REQUIRE(workspace.keep());
+        CHECK(report.memory == *std::get_if<MacroActions::Memory>(&report.course[1].agents[0].memory));
+        REQUIRE(world.step(planner.options.step));
+        world.set_state(ego, report.course[1].agents[0].state);
+        if (surprised) {
+          auto state = world.state(AgentId{3});
+          state.x += 3.0;
+          world.set_state(AgentId{3}, state);
+        }
+        report = planner.think(world.observe(ego), workspace, report.memory);
+        CHECK((report.result.kept_nodes > 0) == !surprised);
+        CHECK(report.result.iterations == 600);
+        CHECK(report.result.nodes > report.result.kept_nodes);
+      }
+    }
+  }
+}
+
+TEST_CASE("nothing is kept for other agents, another manoeuvre, or without being asked") {
+  auto const kept_nodes = [](bool keep, bool forgets_manoeuvre, bool other_actions, bool other_agents) {
+    auto world = lane_change(0, IdmClassic{});
+    for (auto const& agent : world.roster().agents)
+      if (agent.id != ego) world.set_behavior(agent.id, IdmClassic{});
+    auto planner = quick(Cooperative{}, 600);
+    planner.actions = MacroActions::of({{MacroAction::Kind::change_left, 0.0}, {MacroAction::Kind::stay, 0.0}});
+    planner.most_agents = 1;
+    Cooperative::Workspace workspace;
+    auto const report = planner.think(world.observe(ego), workspace);
+    REQUIRE(report.memory.change.active());
+    if (keep) CHECK(workspace.keep());
+    REQUIRE(world.step(planner.options.step));
+    world.set_state(ego, report.course[1].agents[0].state);
+    if (other_actions) planner.actions.actions[0].acceleration = 1.0;
+    if (other_agents) planner.most_agents = 2;
+    return planner.think(world.observe(ego), workspace, forgets_manoeuvre ? MacroActions::Memory{} : report.memory)
+        .result.kept_nodes;
+  };
+  CHECK(kept_nodes(true, false, false, false) > 0);
+  CHECK(kept_nodes(false, false, false, false) == 0);
+  CHECK(kept_nodes(true, true, false, false) == 0);
+  CHECK(kept_nodes(true, false, true, false) == 0);
+  CHECK(kept_nodes(true, false, false, true) == 0);
+}
+
+TEST_CASE("with threads a planner does the same again, as a behaviour too") {
+  auto planner = quick(Single{}, 301);
+  planner.options.threads = 3;
+  auto world = lane_change(0, planner), again = lane_change(0, planner);
+  Single::Workspace workspace, other;
+  auto const report = planner.think(world.observe(ego), workspace);
+  CHECK(report.result.iterations == 301);
+  CHECK(report.result.choice(0).action == report.result.variation[0]);
+  auto const same = planner.think(world.observe(ego), other);
+  REQUIRE(same.result.arms.size() == report.result.arms.size());
+  for (std::size_t i = 0; i < same.result.arms.size(); ++i) {
+    CHECK(same.result.arms[i].visits == report.result.arms[i].visits);
+    CHECK(same.result.arms[i].mean_return == report.result.arms[i].mean_return);
+  }
+  // From three threads to one, and back, in the same workspace.
+  planner.options.threads = 1;
+  CHECK(planner.think(world.observe(ego), other).result.iterations == 301);
+  planner.options.threads = 3;
+  CHECK(planner.think(world.observe(ego), other).result.variation == report.result.variation);
+  (void)world.step(0.2);
+  (void)again.step(0.2);
+  CHECK(world.frame() == again.frame());
+  CHECK(world.state(ego) == report.course[1].agents[0].state);
+  planner.options.threads = 65;
+  CHECK_THROWS_AS((void)planner.think(world.observe(ego), other), ParameterError);
+}
+
 TEST_CASE("searches in a warm world allocate nothing") {
   using Domain = TrafficDomain<PredictionWorld, MacroActions, TrafficReward>;
   PredictionWorld world(support::straight_road(2, 600.0));
@@ -204,6 +290,12 @@ TEST_CASE("searches in a warm world allocate nothing") {
   CHECK(support::allocations() == before);
   (void)search.run(root, 2);
   CHECK(support::allocations() == before);
+  MctsWorkspace<Domain, MctsOptions<>> workspace;
+  (void)workspace.run(domain, {.budget = {300}}, 1);
+  auto copy = domain;
+  auto const copied = support::allocations();
+  (void)workspace.run(std::move(copy), {.budget = {300}}, 1);
+  CHECK(support::allocations() - copied < 8);  // a root, and what the new domain's world works with
 }
 
 TEST_CASE("beliefs find the headway of the one behind whom it drives") {
@@ -218,6 +310,36 @@ TEST_CASE("beliefs find the headway of the one behind whom it drives") {
     REQUIRE(belief != nullptr);
     CHECK(belief->most_likely() == (headway < 1.0 ? 0 : 3));
     CHECK(belief->probability(belief->most_likely()) > 0.8);
+  }
+}
+
+TEST_CASE("of whom nothing is known any headway is drawn") {
+  Sim world(support::straight_road(1, 2000.0));
+  world.add({.position = {60, -1.75}, .speed = 12, .behavior = IdmClassic{}});
+  for (int i = 1; i <= 9; ++i)  // six near, three far away
+    world.add({.position = {60.0 + (i > 6 ? 100.0 : 9.0) * i, -1.75}, .speed = 12, .behavior = IdmClassic{}});
+  auto const planner = quick(Hypothesis{}, 20);
+  Hypothesis::Workspace workspace;
+  Hypothesis::Memory memory;
+  (void)planner.think(world.observe(ego), memory, 0.2, workspace);
+  CHECK(memory.belief(AgentId{6}) != nullptr);
+  CHECK(memory.belief(AgentId{7}) == nullptr);
+  RandomStream random(1, 0, 0);
+  int const draws = 4000;
+  std::vector<double> sums(10), squares(10);
+  for (int i = 0; i < draws; ++i) {
+    auto state = workspace.domain().root();
+    workspace.domain().sample_root(state, random);
+    for (std::size_t k = 1; k < 10; ++k) {
+      double const headway = std::get_if<IdmHypotheses::Memory>(&state.frame.agents[k].memory)->time_headway;
+      sums[k] += headway;
+      squares[k] += headway * headway;
+    }
+  }
+  for (std::size_t k = 1; k < 10; ++k) {
+    double const mean = sums[k] / draws;
+    CHECK(mean == doctest::Approx(2.0).epsilon(0.05));
+    CHECK(squares[k] / draws - mean * mean == doctest::Approx(9.0 / 12).epsilon(0.1));  // uniform over 3 s
   }
 }
 
@@ -274,7 +396,8 @@ TEST_CASE("what cannot be planned is said") {
   state.x = 595.0;
   world.set_state(ego, state);
   for (int step = 0; step < 5; ++step) (void)world.step(0.2);
-  REQUIRE(world.status(ego) != AgentStatus::driving);
+  REQUIRE(world.status(ego) == AgentStatus::left_map);
+  CHECK(std::string(to_string(world.status(ego))) == "left the map");
   CHECK_THROWS_WITH_AS((void)quick(Single{}).think(world.observe(ego), workspace),
                        "search: the agent that is to plan is not in the predicted world, or not in traffic; ask for an "
                        "agent that drives",

@@ -118,6 +118,19 @@ TEST_CASE(
   for (auto const& p : Planner{}.think(pushed.observe(ego), {}, workspace).proposals) CHECK_FALSE(p.collides);
 }
 
+TEST_CASE("however indifferent it is, it does not drive into somebody where it need not") {
+  auto world = two_lanes(0);
+  world.add({.position = {41, -3.4}, .speed = 12, .behavior = ConstantAcceleration{}});
+  Planner planner;
+  planner.scoring.indifference = 1.0;
+  planner.offsets = {1.0, 0.0};  // towards the other one first
+  Planner::Workspace workspace;
+  auto const report = planner.think(world.observe(ego), {}, workspace);
+  CHECK(report.proposals[0].collides);
+  CHECK_FALSE(report.proposals[report.best].collides);
+  CHECK(report.proposals[report.best].offset == 0.0);
+}
+
 TEST_CASE("at an offset that leads off the road a proposal scores nothing") {
   auto world = two_lanes(0);
   Planner planner;

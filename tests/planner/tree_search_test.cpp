@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -183,14 +184,63 @@ TEST_CASE("a kept tree goes on where it holds, and is dropped where it does not"
   CHECK_FALSE(search.keep(std::array<int, 1>{0}));
 }
 
-TEST_CASE("a kept tree with several outcomes of the same actions may grow") {
+TEST_CASE("of several outcomes of the same actions the one that came is kept, and may grow") {
   TreeSearch<Crossing> search(Crossing{2}, {.horizon = 12}, {}, {}, {1900});
-  auto const action = search.run({}, 1).choice(0).action;
-  REQUIRE(search.keep(std::array{action}));
-  auto const state = search.tree().state(0);
-  auto const& next = search.run(state, 2);
-  CHECK(next.kept_nodes > 100);
-  CHECK(next.iterations == 1900);
+  int most_visited = 0;
+  for (std::size_t outcome = 0;; ++outcome) {
+    auto const action = search.run({}, 1).choice(0).action;
+    auto const& tree = search.tree();
+    auto const arm = static_cast<std::uint16_t>(search.result().best[0]);
+    std::vector<std::uint32_t> nodes;
+    for (auto n = tree.find(0, {&arm, 1}); n != detail::no_node; n = tree.node(n).next_outcome) nodes.push_back(n);
+    REQUIRE(nodes.size() > 2);
+    if (outcome == nodes.size()) break;
+    auto const visits = tree.node(nodes[outcome]).visits;
+    auto const state = tree.state(nodes[outcome]);
+    most_visited += std::ranges::all_of(nodes, [&](auto n) { return tree.node(n).visits <= visits; }) ? 1 : 0;
+    REQUIRE(search.keep(std::array{action}));
+    auto const& next = search.run(state, 2);
+    CHECK(next.kept_nodes > 10);
+    CHECK(next.iterations == 1900);
+    CHECK(search.tree().state(0) == state);
+    std::uint32_t sum = 0;
+    for (auto const& a : next.of(0)) sum += a.visits;
+    CHECK(sum == visits - 1 + 1900);
+  }
+  CHECK(most_visited == 1);
+  REQUIRE(search.keep(std::array{search.result().choice(0).action}));
+  Crossing::State other;
+  other.ego.x = 9;
+  CHECK(search.run(other, 2).kept_nodes == 0);
+}
+
+TEST_CASE("trees grown at once keep each its own") {
+  ParallelTreeSearch parallel(TreeSearch<TicTacToe>({}, {.horizon = 9}, {}, {}, {3000}), 3);
+  TicTacToe::State state;
+  auto const move = parallel.run(state, 1).choice(0).action;
+  REQUIRE(parallel.keep(std::array{move, -1}));
+  state.board[static_cast<std::size_t>(move)] = 1;
+  state.moves = 1;
+  auto const kept = parallel.run(state, 2).kept_nodes;
+  CHECK(kept > 100);
+  std::size_t sum = 0;
+  for (auto const& each : parallel.searches()) {
+    CHECK(each.result().kept_nodes > 0);
+    sum += each.result().kept_nodes;
+  }
+  CHECK(sum == kept);
+}
+
+TEST_CASE("all that a tree reserves stays within its memory") {
+  for (std::size_t const memory : {std::size_t{1} << 16, std::size_t{1} << 20, std::size_t{5} << 20}) {
+    CAPTURE(memory);
+    TreeSearch<TicTacToe> search({}, {.horizon = 9, .memory = memory}, {}, {}, {200'000});
+    auto const before = support::allocated_bytes();
+    auto const& result = search.run({}, 1);
+    CHECK(support::allocated_bytes() - before <= memory + 4096);  // and what a run works with, whatever the tree
+    CHECK(result.is_full);
+    CHECK(result.nodes > memory / 1500);
+  }
 }
 
 TEST_CASE("warm searches with kept trees allocate nothing") {
@@ -218,7 +268,7 @@ TEST_CASE("trees grown at once are merged by visits, the same on every run") {
   TreeSearch<Crossing> const search(game, {.horizon = 12}, {}, {}, {4000});
   ParallelTreeSearch<TreeSearch<Crossing>> parallel(search, 3);
   auto const first = parallel.run({}, 5);
-  CHECK(first.iterations == 3 * 1334);
+  CHECK(first.iterations == 4000);  // shared, whatever the number of trees
   std::array<std::uint32_t, 4> visits{};
   double total = 0.0;
   for (auto const& each : parallel.searches())
@@ -237,6 +287,9 @@ TEST_CASE("trees grown at once are merged by visits, the same on every run") {
   for (std::size_t i = 0; i < 4; ++i) CHECK(again.of(0)[i].mean_return == first.of(0)[i].mean_return);
   CHECK(first.choice(0).action == first.variation.front());
   CHECK_THROWS_AS(ParallelTreeSearch(search, 0), ParameterError);
+  CHECK_THROWS_AS(ParallelTreeSearch(search, 1025), ParameterError);
+  ParallelTreeSearch few(TreeSearch<Crossing>(game, {.horizon = 12}, {}, {}, {2}), 5);
+  CHECK(few.run({}, 5).iterations == 2);
 }
 
 TEST_CASE("what is wrong with a search is said") {
@@ -250,6 +303,8 @@ TEST_CASE("what is wrong with a search is said") {
       bool const over = Crossing::step(s, a, r, out);
       if (fault == 3) out[0].reward = std::numeric_limits<double>::quiet_NaN();
       if (fault == 4) out[0].cost = std::numeric_limits<double>::infinity();
+      if (fault == 5) out[0].cost = 1.5;
+      if (fault == 6) out[0].cost = -0.1;
       return over;
     }
   };
@@ -269,6 +324,8 @@ TEST_CASE("what is wrong with a search is said") {
   CHECK(problem(2) == SearchProblem::no_actions);
   CHECK(problem(3) == SearchProblem::not_finite);
   CHECK(problem(4) == SearchProblem::not_finite);
+  CHECK(problem(5) == SearchProblem::cost_out_of_range);
+  CHECK(problem(6) == SearchProblem::cost_out_of_range);
   CHECK_THROWS_AS(TreeSearch<Crossing>(Crossing{}, {}, {}, {}, {0}), ParameterError);
   CHECK_THROWS_AS(TreeSearch<Crossing>(Crossing{}, {.discount = std::nan("")}), ParameterError);
   CHECK_THROWS_AS(TreeSearch<Crossing>(Crossing{}, {.horizon = 0}), ParameterError);
@@ -369,13 +426,14 @@ TEST_CASE("priors lead a search, and are checked") {
 
 namespace {
 
-/// A walk to the right; `listed` actions from 5 on, where there is room for 2.
+/// A walk to the right; `listed` actions from 5 on, where there is room for 2, at `cost`.
 struct Walk {
   using State = int;
   using Action = int;
   static constexpr bool is_deterministic = true;
   static constexpr std::size_t max_actions = 2;
   int listed = 2;
+  double cost = 0.0;
 
   std::size_t agents() const { return 1; }
   bool is_terminal(int) const { return false; }
@@ -386,7 +444,7 @@ struct Walk {
   }
   bool step(int& x, std::span<int const> a, RandomStream&, std::span<AgentOutcome> out) const {
     x += 1;
-    out[0].reward = a[0];
+    out[0] = {static_cast<double>(a[0]), x > 5 ? cost : 0.0};
     return false;
   }
 };
@@ -400,6 +458,18 @@ TEST_CASE("actions that are none or too many are found in roll-outs too, and a r
     CHECK(result.problem == SearchProblem::no_actions);
     CHECK_THROWS_AS((void)result.choice(0), SearchError);
     CHECK_THROWS_AS((void)result.of(0), SearchError);
+  }
+  for (double const cost : {1.5, -0.5}) {
+    for (std::size_t const iterations : {1, 3000}) {  // in the roll-out, in the tree
+      TreeSearch<Walk> costly(Walk{2, cost}, {.horizon = 10}, {}, {}, {iterations});
+      CHECK(costly.run(iterations == 1 ? 0 : 5, 1).problem == SearchProblem::cost_out_of_range);
+      CHECK_THROWS_WITH_AS((void)costly.result().choice(0),
+                           iterations == 1 ? "search, at step 6: a cost is not within 0 to 1; give the "
+                                             "probability of what must not happen, 1 where it happened"
+                                           : "search, at step 1: a cost is not within 0 to 1; give the "
+                                             "probability of what must not happen, 1 where it happened",
+                           SearchError);
+    }
   }
   TreeSearch<Walk> search(Walk{}, {.horizon = 10}, {}, {}, {20});
   CHECK(search.run(0, 1).choice(0).action == 1);

@@ -6,13 +6,15 @@
 #include <new>
 
 namespace {
-thread_local std::uint64_t count = 0;
+thread_local std::uint64_t count = 0, bytes = 0;
 }
 
 std::uint64_t support::allocations() { return count; }
+std::uint64_t support::allocated_bytes() { return bytes; }
 
 void* operator new(std::size_t size) {
   ++count;
+  bytes += size;
   if (void* p = std::malloc(size == 0 ? 1 : size)) return p;
   throw std::bad_alloc();
 }

@@ -80,6 +80,40 @@ template <class... Rest>
   return std::fma(exponent, ln2_high, std::fma(exponent, ln2_low, log_m));
 }
 
+/// e^x, the same bits everywhere; error below 2 units in the last place, or one subnormal step. x = k ln 2 + r with r
+/// in
+/// [-ln(2)/2, ln(2)/2]; e^r as its power series.
+[[nodiscard]] inline double portable_exp(double x) {
+  constexpr double ln2_high = 0x1.62e42fefa3800p-1, ln2_low = 0x1.ef35793c76730p-45;
+  if (!(x > -746.0)) return x <= -746.0 ? 0.0 : x;  // NaN
+  if (x > 710.0) return std::numeric_limits<double>::infinity();
+  double const k = std::floor(std::fma(x, 0x1.71547652b82fep+0, 0.5));
+  double const r = std::fma(-k, ln2_low, std::fma(-k, ln2_high, x));
+  double const series =
+      fused_polynomial(r, 1.0 / 2, 1.0 / 6, 1.0 / 24, 1.0 / 120, 1.0 / 720, 1.0 / 5040, 1.0 / 40320, 1.0 / 362880,
+                       1.0 / 3628800, 1.0 / 39916800, 1.0 / 479001600, 1.0 / 6227020800);
+  double const exp_r = 1.0 + std::fma(r * r, series, r);
+  auto const power_of_2 = [](std::int64_t n) { return std::bit_cast<double>((n + 1023) << 52); };
+  auto const exponent = static_cast<std::int64_t>(k), half = exponent / 2;  // two factors: 2^k may be subnormal
+  return exp_r * power_of_2(half) * power_of_2(exponent - half);
+}
+
+/// x^n for n >= 0, by O(log n) multiplications.
+[[nodiscard]] constexpr double integer_power(double x, unsigned n) {
+  double result = 1.0;
+  for (; n > 0; n /= 2, x *= x)
+    if (n % 2 == 1) result *= x;
+  return result;
+}
+
+/// x^y for normal x > 0, the same bits everywhere; the whole part of y >= 0 by multiplication.
+[[nodiscard]] inline double portable_power(double x, double y) {
+  if (!(y >= 0.0 && y < 4096.0)) return portable_exp(y * portable_log(x));
+  auto const whole = static_cast<unsigned>(y);
+  double const rest = y - whole;
+  return integer_power(x, whole) * (rest > 0.0 ? portable_exp(rest * portable_log(x)) : 1.0);
+}
+
 /// The two tails of `normal_quantile`, near (to 1e-11) and far.
 [[nodiscard]] inline double normal_quantile_near(double r) {
   return fused_polynomial(r, 1.42343711074968357734e0, 4.63033784615654529590e0, 5.76949722146069140550e0,

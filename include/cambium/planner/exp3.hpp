@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <tuple>
@@ -63,7 +62,7 @@ struct Exp3 {
   /// Relative to the best arm's: never overflows.
   template <class Arm>
   [[nodiscard]] double weight(Arm const& arm, double best, std::size_t arms) const {
-    return std::exp(exploration * (arm.statistics.gain - best) / static_cast<double>(arms));
+    return detail::portable_exp(exploration * (arm.statistics.gain - best) / static_cast<double>(arms));
   }
 
   template <class Arms>

@@ -63,6 +63,7 @@ struct FrenetLimits {
 enum class FrenetVerdict : std::uint8_t {
   unchecked,
   valid,
+  not_finite,  ///< its cost, or how it is to be driven, is no number
   reverses,
   speed,
   acceleration,
@@ -73,8 +74,8 @@ enum class FrenetVerdict : std::uint8_t {
 };
 
 [[nodiscard]] constexpr char const* to_string(FrenetVerdict verdict) {
-  constexpr char const* names[] = {"unchecked", "valid", "reverses", "too fast", "acceleration",
-                                   "curvature", "gap",   "off road", "collision"};
+  constexpr char const* names[] = {"unchecked",    "valid",     "not finite", "reverses", "too fast",
+                                   "acceleration", "curvature", "gap",        "off road", "collision"};
   return names[static_cast<std::size_t>(verdict)];
 }
 
@@ -157,6 +158,8 @@ struct FrenetTarget {
 [[nodiscard]] inline FrenetVerdict drivable(FrenetLimits const& limits, CourseMotion<double> const& course,
                                             FrenetMotion<double> const& frenet, double fastest) {
   constexpr double standing = -0.02;  // [m/s], for rounding
+  if (!std::isfinite(course.speed) || !std::isfinite(course.acceleration) || !std::isfinite(course.curvature))
+    return FrenetVerdict::not_finite;
   if (frenet.speed < standing) return FrenetVerdict::reverses;
   if (course.speed > fastest) return FrenetVerdict::speed;
   double const across = course.speed * course.speed * std::abs(course.curvature);

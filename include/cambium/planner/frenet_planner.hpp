@@ -18,6 +18,7 @@
 #include "cambium/behavior/lane_change.hpp"
 #include "cambium/behavior/lane_ends.hpp"
 #include "cambium/behavior/lane_reach.hpp"
+#include "cambium/map/detail/stable_sort.hpp"
 #include "cambium/planner/detail/others_ahead.hpp"
 #include "cambium/planner/detail/predicted.hpp"
 #include "cambium/planner/frenet_candidate.hpp"
@@ -155,10 +156,9 @@ struct FrenetPlanner {
     auto const& piece = view.corridor().pieces[at.piece];
     for (auto const number : {at.corridor, piece.left, piece.right})
       if (number != map::no_corridor) sample_lane(view, number, memory, workspace);
-    for (auto const& candidate : workspace.candidates)
-      if (!std::isfinite(candidate.cost)) return SearchProblem::not_finite;
-    std::stable_sort(workspace.candidates.begin(), workspace.candidates.end(),
-                     [](auto const& a, auto const& b) { return a.cost < b.cost; });
+    for (auto& candidate : workspace.candidates)
+      if (std::isnan(candidate.cost)) candidate.cost = std::numeric_limits<double>::infinity();
+    map::detail::stable_sort(workspace.candidates, &FrenetCandidate::cost);
     return SearchProblem::none;
   }
 
@@ -230,6 +230,7 @@ struct FrenetPlanner {
   [[nodiscard]] FrenetVerdict verdict(View const& view, FrenetCandidate const& candidate,
                                       Workspace const& workspace) const {
     auto const& ahead = workspace.others;
+    if (!std::isfinite(candidate.cost)) return FrenetVerdict::not_finite;
     if (candidate.kind == FrenetCandidate::Kind::keep_speed && comes_too_near(view, candidate, ahead))
       return FrenetVerdict::gap;
     auto const& corridor = view.road().corridors[candidate.corridor];

@@ -16,16 +16,16 @@ namespace cambium {
 /// others: reward = own + cooperation x the others' (Lenz, Kessler, Knoll 2016). Who is farther away follows `Others`.
 /// The others' goals are not known: let the reward say what everybody wants, as speed and no collision.
 template <class PredictionWorld, class Actions = MacroActions, class Reward = TrafficReward, class Others = IdmClassic,
-          class Selection = Ucb1, class Rollout = RandomRollout>
+          class Options = MctsOptions<>>
 struct MctsCooperative {
   using Domain = TrafficDomain<PredictionWorld, Actions, Reward>;
-  using Workspace = MctsWorkspace<Domain, Selection, Rollout>;
+  using Workspace = MctsWorkspace<Domain, Options>;
   using Memory = detail::ActionMemory<Actions>;
 
   Actions actions{};
   Others others{};
   Reward reward{};
-  MctsOptions<Selection, Rollout> options{};
+  Options options{};
   double cooperation = 0.5;
   int most_agents = 4;
   double range = 50.0;
@@ -52,14 +52,13 @@ struct MctsCooperative {
         view, memory, workspace, dt, [&](auto& w) -> auto const& { return search(view, memory, w); });
   }
 
-  /// What it thinks of what `view` shows. `memory`: the manoeuvre under way, as ego's record in a frame of the last
-  /// report's `course` has it; none by default. Throws `SearchError` where there is nothing to search, `ParameterError`
-  /// where a parameter is out of its range.
+  /// What it thinks of what `view` shows. `memory`: the manoeuvre under way, as the last report's `memory`, or ego's
+  /// record in a frame of its `course`, has it; none by default. `workspace.keep()` before it: see there. Throws
+  /// `SearchError` where there is nothing to search, `ParameterError` where a parameter is out of its range.
   template <class View>
-  [[nodiscard]] MctsReport<PredictionWorld, typename Domain::Action> think(View const& view, Workspace& workspace,
-                                                                           Memory const& memory = {}) const {
+  [[nodiscard]] MctsReport<Domain> think(View const& view, Workspace& workspace, Memory const& memory = {}) const {
     check_parameters(*this);
-    detail::throw_if(search(view, memory, workspace).problem, view.id());
+    detail::throw_if(search(view, memory, workspace), view.id());
     return workspace.report();
   }
 

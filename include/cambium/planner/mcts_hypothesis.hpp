@@ -12,6 +12,7 @@
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/idm_hypotheses.hpp"
+#include "cambium/core/distributions.hpp"
 #include "cambium/planner/belief.hpp"
 #include "cambium/planner/detail/predicted.hpp"
 #include "cambium/planner/mcts_workspace.hpp"
@@ -19,13 +20,17 @@
 namespace cambium {
 
 /// Plans by tree search among others whose time headways are not known: it believes one of a few regions of each, with
-/// probabilities that follow what the others do (Bayes), and draws headways anew for each iteration (root sampling).
+/// probabilities that follow what the nearest do (Bayes), and draws headways anew for each iteration (root sampling).
 /// `PredictionWorld` must have `IdmHypotheses` in its behaviour set. Nodes stand for ego's actions only.
-template <class PredictionWorld, class Actions = MacroActions, class Reward = TrafficReward, class Selection = Ucb1,
-          class Rollout = RandomRollout>
+template <class PredictionWorld, class Actions = MacroActions, class Reward = TrafficReward,
+          class Options = MctsOptions<>>
 struct MctsHypothesis {
+  static_assert(PredictionWorld::Behaviors::template contains<IdmHypotheses>,
+                "cambium::MctsHypothesis<PredictionWorld>: the behaviour set of PredictionWorld must contain "
+                "cambium::IdmHypotheses, as which the others are predicted");
+
   using Domain = HypothesisDomain<PredictionWorld, Actions, Reward>;
-  using Workspace = MctsWorkspace<Domain, Selection, Rollout>;
+  using Workspace = MctsWorkspace<Domain, Options>;
 
   /// Those about whom something is believed.
   static constexpr std::size_t capacity = 6;
@@ -53,7 +58,7 @@ struct MctsHypothesis {
   Actions actions{};
   IdmHypotheses others{};
   Reward reward{};
-  MctsOptions<Selection, Rollout> options{};
+  Options options{};
   BeliefParameters belief{};
   double speed_deviation = 0.05;
   double range = 60.0;
@@ -71,7 +76,8 @@ struct MctsHypothesis {
                            parameter("belief", &P::belief, "-", {}, "how it follows what is observed"),
                            parameter("speed_deviation", &P::speed_deviation, "m/s", Range{1e-3, 10},
                                      "standard deviation of a speed after a step, from what a headway predicts"),
-                           parameter("range", &P::range, "m", non_negative, "the 6 nearest within it are told apart"));
+                           parameter("range", &P::range, "m", non_negative,
+                                     "the 6 nearest within it are told apart; of the rest all is as likely"));
   }
 
   template <class View>
@@ -80,17 +86,19 @@ struct MctsHypothesis {
         view, memory.course, workspace, dt, [&](auto& w) -> auto const& { return search(view, memory, dt, w); });
   }
 
-  /// What it thinks of what `view` shows, having seen what `memory` says, in a world of steps of `dt` [s]. Throws
-  /// `SearchError` where there is nothing to search.
+  /// What it thinks of what `view` shows, having seen what `memory` says, in a world of steps of `dt` [s]; notes there
+  /// what it sees, and leaves `memory.course`, the manoeuvre under way, to be set to the report's `memory`. Throws
+  /// `SearchError` where there is nothing to search, `ParameterError` where a parameter is out of its range.
   template <class View>
-  [[nodiscard]] MctsReport<PredictionWorld, typename Domain::Action> think(View const& view, Memory& memory, double dt,
-                                                                           Workspace& workspace) const {
+  [[nodiscard]] MctsReport<Domain> think(View const& view, Memory& memory, double dt, Workspace& workspace) const {
     check_parameters(*this);
-    detail::throw_if(search(view, memory, dt, workspace).problem, view.id());
+    detail::throw_if(search(view, memory, dt, workspace), view.id());
     return workspace.report();
   }
 
  private:
+  static constexpr auto index = PredictionWorld::Behaviors::template index<IdmHypotheses>;
+
   template <class View>
   [[nodiscard]] SearchResult<typename Domain::Action> const& search(View const& view, Memory& memory, double dt,
                                                                     Workspace& workspace) const {
@@ -118,6 +126,11 @@ struct MctsHypothesis {
       if (known != memory.tracked.end() && was_expected) observe(tracked[i], world.frame().agents[near[i]].state.speed);
       unknowns.push_back({near[i], tracked[i].belief});
     }
+    // Of the rest nothing is known.
+    for (std::uint32_t slot = 0; slot < world.size(); ++slot)
+      if (std::get_if<index>(&world.frame().agents[slot].memory) != nullptr &&
+          std::ranges::find(near, slot) == near.end())
+        unknowns.push_back({slot, Belief(static_cast<std::size_t>(others.regions))});
     memory.tracked = tracked;
     expect(world, near, memory, dt);
     return unknowns;
@@ -133,12 +146,11 @@ struct MctsHypothesis {
       nearest = std::min(nearest, likelihoods[r]);
     }
     // Relative to the best: what no headway explains tells little, but does not make all of them impossible.
-    for (std::size_t r = 0; r < regions; ++r) likelihoods[r] = std::exp(nearest - likelihoods[r]);
+    for (std::size_t r = 0; r < regions; ++r) likelihoods[r] = detail::portable_exp(nearest - likelihoods[r]);
     other.belief.update({likelihoods.data(), regions}, belief);
   }
 
   void expect(PredictionWorld const& world, std::span<std::uint32_t const> slots, Memory& memory, double dt) const {
-    constexpr auto index = PredictionWorld::Behaviors::template index<IdmHypotheses>;
     PredictionWorld trial = world;
     for (std::size_t r = 0; r < static_cast<std::size_t>(others.regions); ++r) {
       auto frame = world.frame();

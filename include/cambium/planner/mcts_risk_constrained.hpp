@@ -10,9 +10,9 @@ namespace cambium {
 /// can tell, is at most `risk`, the one of the best reward; where there is none, the one of the least risk. The search
 /// learns what a collision weighs (Lagrange multiplier), so the reward need not.
 template <class PredictionWorld, class Actions = MacroActions, class Reward = TrafficReward, class Others = IdmClassic,
-          class Selection = Ucb1, class Rollout = RandomRollout>
+          class Options = MctsOptions<>>
 struct MctsRiskConstrained {
-  using SingleAgent = MctsSingleAgent<PredictionWorld, Actions, Reward, Others, Selection, Rollout>;
+  using SingleAgent = MctsSingleAgent<PredictionWorld, Actions, Reward, Others, Options>;
   using Workspace = typename SingleAgent::Workspace;
   using Memory = typename SingleAgent::Memory;
 

@@ -13,18 +13,19 @@ namespace cambium {
 
 /// Plans by Monte Carlo tree search over predicted worlds: ego chooses among `Actions`, the others follow `Others`.
 /// `PredictionWorld`: the world's own type with a behaviour set that holds both. A behaviour like any other, in
-/// simulation and, with a small budget, in predictions; or call `think` to be told what it thought.
+/// simulation and, with a small budget, in predictions; or call `think` to be told what it thought. As a behaviour it
+/// searches anew at each step: a copied world has no tree.
 template <class PredictionWorld, class Actions = MacroActions, class Reward = TrafficReward, class Others = IdmClassic,
-          class Selection = Ucb1, class Rollout = RandomRollout>
+          class Options = MctsOptions<>>
 struct MctsSingleAgent {
   using Domain = TrafficDomain<PredictionWorld, Actions, Reward>;
-  using Workspace = MctsWorkspace<Domain, Selection, Rollout>;
+  using Workspace = MctsWorkspace<Domain, Options>;
   using Memory = detail::ActionMemory<Actions>;
 
   Actions actions{};
   Others others{};
   Reward reward{};
-  MctsOptions<Selection, Rollout> options{};
+  Options options{};
 
   static constexpr char const* name = "mcts_single_agent";
   static constexpr char const* summary =
@@ -44,14 +45,13 @@ struct MctsSingleAgent {
         view, memory, workspace, dt, [&](auto& w) -> auto const& { return search(view, memory, w); });
   }
 
-  /// What it thinks of what `view` shows. `memory`: the manoeuvre under way, as ego's record in a frame of the last
-  /// report's `course` has it; none by default. Throws `SearchError` where there is nothing to search, `ParameterError`
-  /// where a parameter is out of its range.
+  /// What it thinks of what `view` shows. `memory`: the manoeuvre under way, as the last report's `memory`, or ego's
+  /// record in a frame of its `course`, has it; none by default. `workspace.keep()` before it: see there. Throws
+  /// `SearchError` where there is nothing to search, `ParameterError` where a parameter is out of its range.
   template <class View>
-  [[nodiscard]] MctsReport<PredictionWorld, typename Domain::Action> think(View const& view, Workspace& workspace,
-                                                                           Memory const& memory = {}) const {
+  [[nodiscard]] MctsReport<Domain> think(View const& view, Workspace& workspace, Memory const& memory = {}) const {
     check_parameters(*this);
-    detail::throw_if(search(view, memory, workspace).problem, view.id());
+    detail::throw_if(search(view, memory, workspace), view.id());
     return workspace.report();
   }
 

@@ -12,19 +12,26 @@
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/planner/detail/predicted.hpp"
+#include "cambium/planner/parallel_tree_search.hpp"
 #include "cambium/planner/traffic_domain.hpp"
 #include "cambium/planner/tree_search.hpp"
 
 namespace cambium {
 
-/// How a search of traffic goes about it.
-template <class Selection = Ucb1, class Rollout = RandomRollout>
+/// How a search of traffic goes about it. Under a `TimeBudget` what comes out depends on the machine and its load.
+template <SelectionPolicy SelectionType = Ucb1, class RolloutType = RandomRollout,
+          SearchBudget BudgetType = IterationBudget>
 struct MctsOptions {
+  using Selection = SelectionType;
+  using Rollout = RolloutType;
+  using Budget = BudgetType;
+
   TreeSearchParameters search{.horizon = 30, .discount = 0.95};
-  IterationBudget budget{};
+  Budget budget{};
   Selection selection{};
   Rollout rollout{};
   double step = 0.2;
+  int threads = 1;
 
   static constexpr char const* name = "mcts";
   static constexpr char const* summary = "how a search of traffic goes about it";
@@ -34,51 +41,69 @@ struct MctsOptions {
                            parameter("budget", &P::budget, "-", {}, "how long it grows"),
                            parameter("selection", &P::selection, "-", {}, "how agents choose at its nodes"),
                            parameter("rollout", &P::rollout, "-", {}, "how courses go on from its leaves"),
-                           parameter("step", &P::step, "s", Range{0.01, 10}, "between decisions"));
+                           parameter("step", &P::step, "s", Range{0.01, 10}, "between decisions"),
+                           parameter("threads", &P::threads, "-", Range{1, 64},
+                                     "trees that share the budget, each grown by a thread of its own, and are merged"));
   }
 };
 
 /// What a search of traffic thought.
-template <class World, class Choice>
+template <class Domain>
 struct MctsReport {
-  SearchResult<Choice> result;
+  using World = typename Domain::World;
+
+  SearchResult<typename Domain::Action> result;
   std::vector<AgentId> choosing;                  ///< the agents of the result, ego first
   std::vector<std::string> actions;               ///< ego's actions at the root, in words
   std::vector<typename World::FrameType> course;  ///< the principal variation: all agents, now and step by step
   std::vector<AgentId> agents;                    ///< of the frames' records
+  typename Domain::Memory memory{};  ///< ego's after one step of the search: for the next `think`, where that is done
 };
 
 /// A search of traffic and its memory: what a planner works with.
-template <class DomainType, class Selection, class Rollout>
+template <class DomainType, class Options>
 class MctsWorkspace {
+  static_assert(
+      requires { MctsOptions<typename Options::Selection, typename Options::Rollout, typename Options::Budget>{}; },
+      "cambium::MctsWorkspace<Domain, Options>: Options must be cambium::MctsOptions<Selection, Rollout, "
+      "Budget>, as the last argument of the planner");
+
  public:
   using Domain = DomainType;
   using World = typename Domain::World;
   using Action = typename Domain::Action;
-  using Search = TreeSearch<Domain, Selection, Rollout>;
+  using Search = TreeSearch<Domain, typename Options::Selection, typename Options::Rollout, typename Options::Budget>;
   using Result = SearchResult<Action>;
 
   /// Searches from the domain's world. Throws `ParameterError` where an option is out of its range.
-  Result const& run(Domain domain, MctsOptions<Selection, Rollout> const& options, std::uint64_t seed) {
-    auto root = domain.root();
-    if (search_) {
-      search_->domain() = std::move(domain);
-      search_->set(options.search, options.selection, options.rollout, options.budget);
-    } else {
-      search_.emplace(std::move(domain), options.search, options.selection, options.rollout, options.budget);
-    }
-    return search_->run(root, seed);
+  Result const& run(Domain domain, Options const& options, std::uint64_t seed) {
+    if (!trees_.searches().empty() && !domain.is_same_choice(this->domain())) trees_.forget();
+    auto const root = domain.root();
+    trees_.set(std::move(domain), options.search, options.selection, options.rollout, options.budget,
+               static_cast<std::size_t>(options.threads));
+    return trees_.run(root, seed);
   }
 
-  /// The search after a run.
-  [[nodiscard]] Search& search() { return *search_; }
+  /// Keeps, for the next `think`, what is known of where the best actions lead; returns whether there is anything. To
+  /// be asked when the world is about to go on for one step of the search (`MctsOptions::step`). The next `think`, of a
+  /// planner with the same parameters and with the last report's `memory`, builds on it where the world came out as
+  /// predicted (`TrafficDomain::same_state`) and the same agents choose; `result.kept_nodes` says whether it did. Not
+  /// where hypotheses are drawn for each iteration: there nodes have no states.
+  bool keep() {
+    auto const& result = trees_.result();
+    return !result.variation.empty() && trees_.keep({result.variation.data(), result.agents});
+  }
+
+  /// The search after a run; with threads the first one.
+  [[nodiscard]] Search& search() { return trees_.searches()[0]; }
+  [[nodiscard]] Domain& domain() { return search().domain(); }
 
   /// Plays the principal variation until `end` [s], and beyond its end what agents do without any manoeuvre; calls
   /// `f(frame)` after each step of the search, and at `end`.
   template <class F>
   void play(double end, F&& f) {
-    auto& domain = search_->domain();
-    auto const& result = search_->result();
+    auto& domain = this->domain();
+    auto const& result = trees_.result();
     auto const agents = domain.agents();
     state_ = domain.root();
     joint_.resize(agents);
@@ -95,11 +120,11 @@ class MctsWorkspace {
   }
 
   /// What the last run thought.
-  [[nodiscard]] MctsReport<World, Action> report() {
-    auto& domain = search_->domain();
+  [[nodiscard]] MctsReport<Domain> report() {
+    auto& domain = this->domain();
     auto const& world = domain.world();
-    MctsReport<World, Action> report;
-    report.result = search_->result();
+    MctsReport<Domain> report;
+    report.result = trees_.result();
     for (auto const slot : domain.slots()) report.choosing.push_back(world.roster().agents[slot].id);
     for (auto const& agent : world.roster().agents) report.agents.push_back(agent.id);
     if (report.result.problem != SearchProblem::none) return report;
@@ -108,11 +133,12 @@ class MctsWorkspace {
     report.course.push_back(world.frame());
     double const steps = static_cast<double>(report.result.variation.size() / domain.agents());
     play(world.time() + steps * domain.dt(), [&](auto const& frame) { report.course.push_back(frame); });
+    report.memory = *std::get_if<Domain::behavior_index>(&report.course[1].agents[domain.slots()[0]].memory);
     return report;
   }
 
  private:
-  std::optional<Search> search_;
+  ParallelTreeSearch<Search> trees_;
   typename Domain::State state_;
   std::vector<Action> joint_;
 };
@@ -145,7 +171,7 @@ template <class PredictionWorld, class Actions, class Others, class View>
 /// What ego does over the next `dt` [s] by the principal variation, and what it remembers then.
 template <class View, class Workspace, class Memory>
 void take_course(View const& view, Workspace& workspace, double dt, Plan<View>& plan, Memory& memory) {
-  auto const slot = workspace.search().domain().slots()[0];
+  auto const slot = workspace.domain().slots()[0];
   workspace.play(view.time() + dt, [&](auto const& frame) {
     auto const& ego = frame.agents[slot];
     if (plan.trajectory.empty()) plan.action = ego.action;
@@ -155,8 +181,11 @@ void take_course(View const& view, Workspace& workspace, double dt, Plan<View>& 
 }
 
 /// Throws `SearchError`, in words of traffic, where `ego` cannot be planned for.
-inline void throw_if(SearchProblem problem, AgentId ego) {
-  auto const where = "agent " + to_string(ego);
+template <class Action>
+void throw_if(SearchResult<Action> const& result, AgentId ego) {
+  auto const problem = result.problem;
+  auto const where = "agent " + to_string(ego) +
+                     (result.problem_steps > 0 ? ", at step " + std::to_string(result.problem_steps) : std::string());
   if (problem == SearchProblem::no_agents) cambium::throw_if(SearchProblem::not_in_world);
   if (problem == SearchProblem::no_actions)
     throw SearchError(where, "none of its actions is available in a state that the search came to",
@@ -164,11 +193,12 @@ inline void throw_if(SearchProblem problem, AgentId ego) {
   if (problem == SearchProblem::terminal_root)
     throw SearchError(where, "its course is over: it touches something, is off the road, or is at its goal",
                       "ask the evaluators before you plan");
-  cambium::throw_if(problem);
+  cambium::throw_if(problem, result.problem_steps);
 }
 
 /// The plan that `search(workspace)`, which says what was found, leads to for the next `dt` [s]. Where ego's course is
-/// over already, at its goal as after a collision, it drives on without any manoeuvre.
+/// over already, at its goal as after a collision, it drives on without any manoeuvre. Nothing is kept for the next
+/// one: a copy of the world would not have it.
 template <class PredictionWorld, class View, class Memory, class Workspace, class Search>
 [[nodiscard]] Plan<View> plan_by_search(View const& view, Memory& memory, Workspace& workspace, double dt,
                                         Search&& search) {

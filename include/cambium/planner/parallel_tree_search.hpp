@@ -4,38 +4,78 @@
 #include <cstddef>
 #include <cstdint>
 #include <exception>
+#include <span>
 #include <string>
 #include <thread>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
 #include "cambium/core/error.hpp"
 #include "cambium/planner/search_result.hpp"
+#include "cambium/planner/tree_search_parameters.hpp"
 
 namespace cambium {
 
 /// Several trees of one search, grown at once on threads of their own, and merged at the root: visits and returns of
-/// the same action are added (root parallelisation: Chaslot, Winands, van den Herik 2008). The trees share the budget.
-/// The result is a pure function of state, parameters, seed and number of trees. Each run starts its threads anew.
+/// the same action are added (root parallelisation: Chaslot, Winands, van den Herik 2008). The trees share the budget
+/// and the memory. The result is a pure function of state, parameters, seed and number of trees. Each run starts its
+/// threads anew; one tree alone needs none, and is as the search itself.
 template <class Search>
 class ParallelTreeSearch {
  public:
   using State = typename Search::State;
   using Action = typename Search::Action;
   using Result = typename Search::Result;
+  using Domain = std::remove_cvref_t<decltype(std::declval<Search&>().domain())>;
 
-  /// `trees` copies of `search`. Throws `ParameterError` for none, or more than 1024.
+  /// No tree: first `set`, then `run`.
+  ParallelTreeSearch() = default;
+
+  /// As `search`, by `trees` trees. Throws as `set`.
   ParallelTreeSearch(Search const& search, std::size_t trees) {
+    set(search.domain(), search.parameters(), search.selection(), search.rollout(), search.budget(), trees);
+  }
+
+  /// Searches `domain` by these parameters from now on, by `trees` trees, but no more than there are iterations; keeps
+  /// their memory, and what `keep` has kept. Throws `ParameterError` for no tree, more than 1024, or where a parameter
+  /// is out of its range.
+  template <class Selection, class Rollout, class Budget>
+  void set(Domain domain, TreeSearchParameters parameters, Selection const& selection, Rollout const& rollout,
+           Budget const& budget, std::size_t trees) {
     if (trees == 0 || trees > 1024)
       throw ParameterError("ParallelTreeSearch", "has " + std::to_string(trees) + " trees",
                            "give 1 to 1024, no more than there are cores");
-    searches_.assign(trees, search);
-    for (auto& each : searches_) each.budget() = each.budget().shared_by(trees);
+    auto const count = std::min(trees, std::max<std::size_t>(1, budget.most()));
+    if (count > 1) parameters.memory = std::max<std::size_t>(4096, parameters.memory / count);
+    searches_.reserve(count);
+    while (searches_.size() > count) searches_.pop_back();
+    for (std::size_t i = 0; i < count; ++i) {
+      bool const is_last = i + 1 == count;
+      if (i == searches_.size())
+        searches_.emplace_back(is_last ? std::move(domain) : domain, parameters, selection, rollout,
+                               budget.part(i, count));
+      else {
+        searches_[i].domain() = is_last ? std::move(domain) : domain;
+        searches_[i].set(parameters, selection, rollout, budget.part(i, count));
+      }
+    }
+  }
+
+  /// As `TreeSearch::keep` and `forget`, each tree its own.
+  bool keep(std::span<Action const> joint) {
+    bool any = false;
+    for (auto& search : searches_) any = search.keep(joint) || any;
+    return any;
+  }
+  void forget() {
+    for (auto& search : searches_) search.forget();
   }
 
   /// As `TreeSearch::run`. The principal variation is that of the tree that knows most about the best actions. Passes
   /// on what a domain throws.
   Result const& run(State const& root, std::uint64_t seed) {
+    if (searches_.size() == 1) return searches_[0].run(root, seed);
     std::vector<std::exception_ptr> errors(searches_.size());
     auto const grow = [&](std::size_t i) {
       try {
@@ -55,7 +95,8 @@ class ParallelTreeSearch {
     return result_;
   }
 
-  [[nodiscard]] Result const& result() const { return result_; }
+  [[nodiscard]] Result const& result() const { return searches_.size() == 1 ? searches_[0].result() : result_; }
+  [[nodiscard]] std::vector<Search>& searches() { return searches_; }
   [[nodiscard]] std::vector<Search> const& searches() const { return searches_; }
 
  private:
@@ -72,10 +113,14 @@ class ParallelTreeSearch {
     std::vector<ReturnScale> scales(searches_[0].scales().begin(), searches_[0].scales().end());
     for (std::size_t i = 1; i < searches_.size(); ++i) {
       auto const& other = searches_[i].result();
-      if (other.problem != SearchProblem::none) result_.problem = other.problem;
+      if (other.problem != SearchProblem::none) {
+        result_.problem = other.problem;
+        result_.problem_steps = other.problem_steps;
+      }
       if (result_.problem != SearchProblem::none) return;
       result_.iterations += other.iterations;
       result_.nodes += other.nodes;
+      result_.kept_nodes += other.kept_nodes;
       result_.is_full = result_.is_full || other.is_full;
       for (std::size_t d = 0; d < result_.depths.size(); ++d) result_.depths[d] += other.depths[d];
       for (std::size_t k = 0; k < scales.size(); ++k) {

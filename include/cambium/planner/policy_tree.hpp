@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <tuple>
 #include <vector>
 
 #include "cambium/behavior/macro_actions.hpp"
+#include "cambium/core/distributions.hpp"
 #include "cambium/core/parameters.hpp"
 
 namespace cambium {
@@ -78,8 +78,9 @@ struct ChangeProbabilities {
   };
   double const keep = exponent(0.0), left = exponent(prior.lateral_speed), right = exponent(-prior.lateral_speed);
   double const nearest = std::min({keep, left, right});
-  double const l = prior.change * std::exp(nearest - left), r = prior.change * std::exp(nearest - right),
-               k = (1.0 - 2.0 * prior.change) * std::exp(nearest - keep);
+  using detail::portable_exp;
+  double const l = prior.change * portable_exp(nearest - left), r = prior.change * portable_exp(nearest - right),
+               k = (1.0 - 2.0 * prior.change) * portable_exp(nearest - keep);
   return {l / (l + r + k), r / (l + r + k)};
 }
 
@@ -105,7 +106,7 @@ struct PolicySequence {
   return sequences;
 }
 
-/// Another's intention that differs from the most likely one, as far as it matters to ego.
+/// Another's intention, other than to keep its lane and yield, as far as it matters to ego.
 struct IntentionBranch {
   std::uint32_t slot{};
   Intention intention{};

@@ -34,16 +34,21 @@ struct PolicyTreeReport {
   std::size_t best{};
   std::vector<std::string> actions;               ///< ego's, in words
   std::vector<IntentionBranch> intentions;        ///< of the others, that were asked for
-  std::vector<typename World::FrameType> course;  ///< of the best where the others do what is likely: all agents
+  std::vector<typename World::FrameType> course;  ///< of the best where all others keep their lanes: all agents
   std::vector<AgentId> agents;                    ///< of the frames' records
 };
 
 /// Plans by a tree of sequences of semantic actions with one change at most, each simulated closed loop under what the
-/// others near it may intend: scenarios in which one of them does what is less likely, where that matters to the
-/// sequence. EUDM (Ding, Zhang, Chen, Shen 2020, "Efficient uncertainty-aware decision-making for automated driving
-/// using guided branching"). `PredictionWorld` must have `MacroActions` in its behaviour set.
+/// others near it may intend: all keep their lanes, or one of them does otherwise, where that matters to the sequence;
+/// the scenarios are weighed by how likely they are. EUDM (Ding, Zhang, Chen, Shen 2020, "Efficient uncertainty-aware
+/// decision-making for automated driving using guided branching"). `PredictionWorld` must have `MacroActions` in its
+/// behaviour set.
 template <class PredictionWorld>
 struct PolicyTreePlanner {
+  static_assert(PredictionWorld::Behaviors::template contains<MacroActions>,
+                "cambium::PolicyTreePlanner<PredictionWorld>: the behaviour set of PredictionWorld must contain "
+                "cambium::MacroActions, which carries out ego's actions and the others' intentions");
+
   using Memory = MacroActions::Memory;  ///< the ongoing action
 
   struct Workspace {
@@ -183,7 +188,7 @@ struct PolicyTreePlanner {
     }
   }
 
-  /// Simulates a branch in the likely scenario and in those in which one of the others deviates.
+  /// Simulates a branch where all others keep their lanes, and where one of them deviates, weighed by the odds.
   void weigh(Workspace& workspace, Memory const& memory, PolicyBranch& branch) const {
     auto const& sequence = branch.sequence;
     auto const matters = [&](IntentionBranch const& other) {

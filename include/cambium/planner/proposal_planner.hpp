@@ -90,6 +90,10 @@ struct ProposalReport {
 /// infraction too soon. `PredictionWorld` must have `IdmProposal` and `Others` in its behaviour set. Keeps its lane.
 template <class PredictionWorld, class Others = ConstantAcceleration>
 struct ProposalPlanner {
+  static_assert(PredictionWorld::Behaviors::template contains<IdmProposal>,
+                "cambium::ProposalPlanner<PredictionWorld>: the behaviour set of PredictionWorld must contain "
+                "cambium::IdmProposal, who is simulated");
+
   using Memory = IdmProposal::Memory;  ///< the proposal that is driven
 
   struct Workspace {
@@ -266,8 +270,9 @@ struct ProposalPlanner {
       p.score = p.collides || p.leaves_road ? 0.0 : sum / weights;
       if (!std::isfinite(p.score)) return SearchProblem::not_finite;
       auto const& best = proposals[workspace.best];
-      bool const later = p.time_to_infraction > best.time_to_infraction;
-      if (p.score > best.score + scoring.indifference || (p.score == 0.0 && best.score == 0.0 && later))
+      // Without an infraction first, or with the latest; then by the score.
+      bool const both_free = std::isinf(p.time_to_infraction) && std::isinf(best.time_to_infraction);
+      if (both_free ? p.score > best.score + scoring.indifference : p.time_to_infraction > best.time_to_infraction)
         workspace.best = i;
     }
     return SearchProblem::none;

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <span>
@@ -20,14 +19,15 @@ struct RolloutRun {
   Domain& domain;
   typename Domain::State& state;  ///< moved along
   RandomStream& random;
-  int steps;                                   ///< at most, to the search's horizon
-  double discount;                             ///< per step
-  std::span<double> returns;                   ///< out: per agent, from `state` on
-  std::span<double> costs;                     ///< out
-  std::span<typename Domain::Action> joint;    ///< working memory, one per agent
-  std::span<AgentOutcome> outcomes;            ///< likewise
-  std::span<typename Domain::Action> options;  ///< likewise, `max_actions`
-  bool lacks_actions = false;                  ///< out: an agent had none, or more than there may be
+  int steps;                                    ///< at most, to the search's horizon
+  double discount;                              ///< per step
+  std::span<double> returns;                    ///< out: per agent, from `state` on
+  std::span<double> costs;                      ///< out
+  std::span<typename Domain::Action> joint;     ///< working memory, one per agent
+  std::span<AgentOutcome> outcomes;             ///< likewise
+  std::span<typename Domain::Action> options;   ///< likewise, `max_actions`
+  int played = 0;                               ///< out: how many steps there were
+  SearchProblem problem = SearchProblem::none;  ///< out: of the last one
 };
 
 /// How a course is judged from where the tree ends: a copyable struct of parameters with `roll_out(run)`, which fills
@@ -46,9 +46,12 @@ template <class Run, class Choose>
   double weight = 1.0;
   for (int step = 0; step < steps; ++step) {
     for (std::size_t k = 0; k < run.joint.size(); ++k) run.joint[k] = choose(k, step);
-    if (run.lacks_actions) return 0.0;
+    if (run.problem != SearchProblem::none) return 0.0;
     std::fill(run.outcomes.begin(), run.outcomes.end(), AgentOutcome{});
     bool const over = run.domain.step(run.state, run.joint, run.random, run.outcomes);
+    ++run.played;
+    run.problem = problem_of(run.outcomes);
+    if (run.problem != SearchProblem::none) return 0.0;
     for (std::size_t k = 0; k < run.joint.size(); ++k) {
       run.returns[k] += weight * run.outcomes[k].reward;
       run.costs[k] += run.outcomes[k].cost;
@@ -64,8 +67,9 @@ template <class Run>
 [[nodiscard]] auto random_action(Run& run, std::size_t agent) {
   if constexpr (ListsActions<std::remove_reference_t<decltype(run.domain)>>) {
     auto const count = static_cast<std::size_t>(run.domain.actions(run.state, agent, run.options));
-    run.lacks_actions = run.lacks_actions || count == 0 || count > run.options.size();
-    return run.options[run.lacks_actions ? 0 : uniform_index(run.random, static_cast<std::uint32_t>(count))];
+    bool const is_wrong = count == 0 || count > run.options.size();
+    if (is_wrong) run.problem = SearchProblem::no_actions;
+    return run.options[is_wrong ? 0 : uniform_index(run.random, static_cast<std::uint32_t>(count))];
   } else {
     return run.domain.sample_action(run.state, agent, run.random);
   }
@@ -134,7 +138,7 @@ struct TruncatedRollout {
                   "`double value(State const&, std::size_t agent)`");
     int const steps = std::min(run.steps, base.steps);
     if (base.roll_out(run)) return true;
-    double const weight = std::pow(run.discount, steps);
+    double const weight = detail::integer_power(run.discount, static_cast<unsigned>(steps));
     for (std::size_t k = 0; k < run.joint.size(); ++k) run.returns[k] += weight * run.domain.value(run.state, k);
     return false;
   }

@@ -9,14 +9,23 @@
 
 namespace cambium {
 
+namespace detail {
+
+/// The `i`th part of `whole` things dealt out to `n`.
+[[nodiscard]] constexpr std::size_t part_of(std::size_t whole, std::size_t i, std::size_t n) {
+  return whole / n + (i < whole % n ? 1 : 0);
+}
+
+}  // namespace detail
+
 /// How long a search goes on: `most()`, the iterations that it never exceeds; `start()`; `goes_on(done)`, whether there
-/// is to be another one after `done`; `shared_by(n)`: the part of each of `n` searches that go on at once.
+/// is to be another one after `done`; `part(i, n)`: what the `i`th of `n` searches that share it gets.
 template <class B>
 concept SearchBudget = std::copyable<B> && requires(B budget, B const fixed, std::size_t done) {
   { fixed.most() } -> std::same_as<std::size_t>;
   budget.start();
   { budget.goes_on(done) } -> std::same_as<bool>;
-  { fixed.shared_by(done) } -> std::same_as<B>;
+  { fixed.part(done, done) } -> std::same_as<B>;
 };
 
 /// So many iterations: the search is a pure function of state, parameters and seed.
@@ -32,7 +41,7 @@ struct IterationBudget {
 
   [[nodiscard]] std::size_t most() const { return iterations; }
   void start() {}
-  [[nodiscard]] IterationBudget shared_by(std::size_t n) const { return {(iterations + n - 1) / n}; }
+  [[nodiscard]] IterationBudget part(std::size_t i, std::size_t n) const { return {detail::part_of(iterations, i, n)}; }
   [[nodiscard]] bool goes_on(std::size_t done) const { return done < iterations; }
 };
 static_assert(SearchBudget<IterationBudget>);
@@ -51,7 +60,9 @@ struct TimeBudget {
   }
 
   [[nodiscard]] std::size_t most() const { return iterations; }
-  [[nodiscard]] TimeBudget shared_by(std::size_t n) const { return {duration, (iterations + n - 1) / n}; }
+  [[nodiscard]] TimeBudget part(std::size_t i, std::size_t n) const {
+    return {duration, detail::part_of(iterations, i, n)};
+  }
   void start() { begin = std::chrono::steady_clock::now(); }
   [[nodiscard]] bool goes_on(std::size_t done) const {
     if (done == 0 || done % 64 != 0) return done < iterations;

@@ -1,15 +1,31 @@
 #pragma once
 
+#include <cmath>
 #include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 #include "cambium/core/random.hpp"
 
 namespace cambium {
 
-/// What a joint step brought one agent. `reward`: any finite number, to be maximised. `cost`: of the second channel, as
-/// the probability, or the fact, of a collision; the costs along one course are summed without discount, up to 1.
+/// What is wrong with a search.
+enum class SearchProblem : std::uint8_t {
+  none,
+  no_agents,
+  no_actions,
+  no_budget,
+  terminal_root,
+  not_finite,
+  cost_out_of_range,
+  bad_priors,
+  not_in_world,
+};
+
+/// What a joint step brought one agent. `reward`: any finite number, to be maximised. `cost`, 0 to 1: of the second
+/// channel, as the probability, or the fact, of a collision; the costs along one course are summed without discount, up
+/// to 1.
 struct AgentOutcome {
   double reward = 0.0;
   double cost = 0.0;
@@ -18,6 +34,14 @@ struct AgentOutcome {
 };
 
 namespace detail {
+
+[[nodiscard]] inline SearchProblem problem_of(std::span<AgentOutcome const> outcomes) {
+  for (auto const& outcome : outcomes) {
+    if (!std::isfinite(outcome.reward) || !std::isfinite(outcome.cost)) return SearchProblem::not_finite;
+    if (!(outcome.cost >= 0.0 && outcome.cost <= 1.0)) return SearchProblem::cost_out_of_range;
+  }
+  return SearchProblem::none;
+}
 
 template <class D>
 concept ListsActions = requires(D domain, typename D::State const state, std::span<typename D::Action> out) {
@@ -87,9 +111,9 @@ inline constexpr bool is_deterministic = [] {
 ///     iteration; then nodes stand for sequences of actions, and every iteration steps from the root.
 ///   `priors(state, agent, actions, out)`: weights for `Puct`; `value(state, agent)`: the expected return from here,
 ///   for
-///     `TruncatedRollout`; `policy_action(state, agent, random)`: for `PolicyRollout`; `same_state(predicted,
-///     observed)`: whether a kept tree still holds, by default ==; `heap_bytes(state)`: what a state holds beyond its
-///     own size.
+///     `TruncatedRollout` and `NoRollout`; `policy_action(state, agent, random)`: for `PolicyRollout`;
+///     `same_state(predicted, observed)`: whether a kept tree still holds, by default ==; `heap_bytes(state)`: what a
+///     state holds beyond its own size.
 /// A search has a domain of its own, by value: it may keep working memory, but no answer may depend on that.
 template <class D>
 concept SearchDomain = std::copy_constructible<D> && std::copyable<typename D::State> &&

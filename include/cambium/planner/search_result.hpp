@@ -12,6 +12,7 @@
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/planner/detail/search_tree.hpp"
+#include "cambium/planner/search_domain.hpp"
 #include "cambium/planner/selection_policy.hpp"
 #include "cambium/planner/tree_search_parameters.hpp"
 
@@ -22,37 +23,29 @@ struct SearchError : Error {
   using Error::Error;
 };
 
-/// What is wrong with a search.
-enum class SearchProblem : std::uint8_t {
-  none,
-  no_agents,
-  no_actions,
-  no_budget,
-  terminal_root,
-  not_finite,
-  bad_priors,
-  not_in_world,
-};
-
-/// Throws `SearchError` unless `problem` is none.
-inline void throw_if(SearchProblem problem) {
+/// Throws `SearchError` unless `problem` is none; it arose `steps` steps from the root.
+inline void throw_if(SearchProblem problem, int steps = 0) {
+  auto const where = "search" + (steps > 0 ? ", at step " + std::to_string(steps) : std::string());
   switch (problem) {
     case SearchProblem::none:
       return;
     case SearchProblem::no_agents:
       throw SearchError("search", "no agent chooses", "let SearchDomain::agents be at least 1");
     case SearchProblem::no_actions:
-      throw SearchError("search", "an agent has no action, or more than max_actions, in a state where the game goes on",
+      throw SearchError(where, "an agent has no action, or more than max_actions, in a state where the game goes on",
                         "list at least one, such as doing nothing, or let step say that the game is over");
     case SearchProblem::no_budget:
       throw SearchError("search", "its budget is 0 iterations", "give it at least 1");
     case SearchProblem::terminal_root:
       throw SearchError("search", "the game is over at the root", "ask is_terminal before you search");
     case SearchProblem::not_finite:
-      throw SearchError("search", "a reward, a cost or a value is not a finite number",
+      throw SearchError(where, "a reward, a cost or a value is not a finite number",
                         "check what step, value and the evaluators give");
+    case SearchProblem::cost_out_of_range:
+      throw SearchError(where, "a cost is not within 0 to 1",
+                        "give the probability of what must not happen, 1 where it happened");
     case SearchProblem::bad_priors:
-      throw SearchError("search", "the priors of a node are negative, not finite or all zero",
+      throw SearchError(where, "the priors of a node are negative, not finite or all zero",
                         "give weights of at least 0, one of them positive");
     case SearchProblem::not_in_world:
       throw SearchError("search", "the agent that is to plan is not in the predicted world, or not in traffic",
@@ -74,6 +67,7 @@ struct RootArm {
 template <class Action>
 struct SearchResult {
   SearchProblem problem = SearchProblem::none;
+  int problem_steps = 0;  ///< from the root to where it arose
   std::uint64_t seed = 0;
   std::size_t iterations = 0;
   std::size_t nodes = 0;       ///< in the tree, with those that were kept
@@ -90,7 +84,7 @@ struct SearchResult {
 
   /// The agent's actions at the root. Throws `SearchError` where there is a problem, or no such agent.
   [[nodiscard]] std::span<RootArm<Action> const> of(std::size_t agent) const {
-    throw_if(problem);
+    throw_if(problem, problem_steps);
     if (agent >= agents)
       throw SearchError("search result", "has no agent " + std::to_string(agent),
                         "ask for one of 0 to " + std::to_string(agents - 1));
@@ -102,6 +96,7 @@ struct SearchResult {
   /// Empties it, but keeps its memory.
   void clear(std::uint64_t new_seed, std::size_t horizon) {
     problem = SearchProblem::none;
+    problem_steps = 0;
     seed = new_seed;
     iterations = nodes = kept_nodes = agents = 0;
     is_full = false;

@@ -38,7 +38,8 @@ struct SampledInputs {
 namespace detail {
 
 /// How a search gives an agent its actions: `Behavior`, what carries them out; `Choice`, what an action is; `list`, or
-/// `sample`; `set`, which writes one into the behaviour's memory.
+/// `sample`; `set`, which writes one into the behaviour's memory; `action`, what a choice stands for; `goes_on_alike`,
+/// whether the same manoeuvre is under way in two memories.
 template <class Actions>
 struct ActionSet;
 
@@ -58,6 +59,10 @@ struct ActionSet<MacroActions> {
     return count;
   }
   static void set(MacroActions::Memory& memory, Choice choice) { memory.choose(choice); }
+  static MacroAction const& action(MacroActions const& actions, Choice choice) { return actions.actions[choice]; }
+  static bool goes_on_alike(MacroActions::Memory const& a, MacroActions::Memory const& b) {
+    return a.change.target == b.change.target;
+  }
   /// What a driver does who does nothing in particular.
   static Choice usual(MacroActions const& actions) {
     for (std::size_t i = 0; i < actions.size(); ++i)
@@ -86,6 +91,10 @@ struct ActionSet<MotionPrimitives> {
     return actions.size();
   }
   static void set(MotionPrimitives::Memory& memory, Choice choice) { memory.chosen = choice; }
+  static MotionPrimitive const& action(MotionPrimitives const& actions, Choice choice) {
+    return actions.primitives[choice];
+  }
+  static bool goes_on_alike(MotionPrimitives::Memory, MotionPrimitives::Memory) { return true; }
   static Choice usual(MotionPrimitives const&) { return 0; }
   static std::string text(MotionPrimitives const& actions, Choice choice) {
     auto const& p = actions.primitives[choice];
@@ -106,6 +115,8 @@ struct ActionSet<SampledInputs> {
     return choice;
   }
   static void set(ExternalInput::Memory& memory, Choice const& choice) { memory = choice; }
+  static Choice const& action(SampledInputs const&, Choice const& choice) { return choice; }
+  static bool goes_on_alike(ExternalInput::Memory const&, ExternalInput::Memory const&) { return true; }
   static Choice usual(SampledInputs const&) { return {}; }
   static std::string text(SampledInputs const&, Choice const& choice) {
     return detail::rounded_text(choice.acceleration) + " m/s^2 " + detail::rounded_text(choice.steering) + " rad";

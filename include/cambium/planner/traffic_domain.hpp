@@ -35,6 +35,7 @@ class TrafficDomain {
  public:
   using World = PredictionWorld;
   using Action = typename Set::Choice;
+  using Memory = typename Behavior::Memory;                                                  ///< of who chooses
   static constexpr std::size_t behavior_index = World::Behaviors::template index<Behavior>;  ///< of who chooses
   /// World randomness is keyed by its seed, agent and step: the same actions lead to the same frame.
   static constexpr bool is_deterministic = true;
@@ -80,12 +81,10 @@ class TrafficDomain {
 
   [[nodiscard]] std::size_t actions(State const& state, std::size_t agent,
                                     std::span<Action> out) requires detail::ListsChoices<Actions> {
-    auto& frame = const_cast<State&>(state).frame;  // given back as it was
-    world_.exchange(frame);
-    auto const& memory = *std::get_if<behavior_index>(&world_.frame().agents[slots_[agent]].memory);
-    auto const count = Set::list(actions_, typename World::View(world_, slots_[agent]), memory, out);
-    world_.exchange(frame);
-    return count;
+    return in_world(state, [&] {
+      auto const& memory = *std::get_if<behavior_index>(&world_.frame().agents[slots_[agent]].memory);
+      return Set::list(actions_, typename World::View(world_, slots_[agent]), memory, out);
+    });
   }
 
   [[nodiscard]] Action sample_action(State const&, std::size_t,
@@ -111,20 +110,52 @@ class TrafficDomain {
     return state.over;
   }
 
+  /// What the reward says that the rest of a course is worth, the others' by the cooperation.
+  [[nodiscard]] double value(State const& state, std::size_t agent) requires detail::ValuesCourses<Reward, World> {
+    return in_world(state, [&] {
+      double sum = 0.0;
+      for (std::size_t k = 0; k < slots_.size(); ++k)
+        if (k == agent || cooperation_ != 0.0)
+          sum += (k == agent ? 1.0 : cooperation_) * reward_.value(std::as_const(world_), slots_[k], dt_);
+      return sum;
+    });
+  }
+
+  /// How much the reward expects of each action beforehand.
+  void priors(State const& state, std::size_t agent, std::span<Action const> actions,
+              std::span<double> out) requires detail::HasPrior<Reward, World, Set> {
+    in_world(state, [&] {
+      for (std::size_t i = 0; i < actions.size(); ++i)
+        out[i] = reward_.prior(std::as_const(world_), slots_[agent], Set::action(actions_, actions[i]));
+    });
+  }
+
   /// All drive on for `duration` [s], at most `dt`, and nobody judges it.
   void advance(State& state, std::span<Action const> joint, double duration) {
     enter(state, joint, duration);
     world_.exchange(state.frame);
   }
 
-  /// Whether what was seen comes close to what was predicted: half a metre and half a metre per second, for everybody.
+  /// Whether what was seen comes close to what was predicted: half a metre and half a metre per second, for everybody;
+  /// and whether those who choose are in the middle of the same manoeuvre.
   [[nodiscard]] bool same_state(State const& predicted, State const& seen) const {
+    auto const is_near = [](auto const& a, auto const& b) {
+      return a.status == b.status && a.lane.corridor == b.lane.corridor && std::abs(a.lane.s - b.lane.s) < 0.5 &&
+             std::hypot(a.state.x - b.state.x, a.state.y - b.state.y) < 0.5 &&
+             std::abs(a.state.speed - b.state.speed) < 0.5;
+    };
+    auto const goes_on_alike = [&](std::uint32_t slot) {
+      return Set::goes_on_alike(*std::get_if<behavior_index>(&predicted.frame.agents[slot].memory),
+                                *std::get_if<behavior_index>(&seen.frame.agents[slot].memory));
+    };
     return std::abs(predicted.frame.time - seen.frame.time) < 1e-6 &&
-           std::ranges::equal(predicted.frame.agents, seen.frame.agents, [](auto const& a, auto const& b) {
-             return a.status == b.status && a.lane.corridor == b.lane.corridor &&
-                    std::hypot(a.state.x - b.state.x, a.state.y - b.state.y) < 0.5 &&
-                    std::abs(a.state.speed - b.state.speed) < 0.5;
-           });
+           std::ranges::equal(predicted.frame.agents, seen.frame.agents, is_near) &&
+           std::ranges::all_of(slots_, goes_on_alike);
+  }
+
+  /// Whether the same agents choose among the same actions at the same times as in another one.
+  [[nodiscard]] bool is_same_choice(TrafficDomain const& other) const {
+    return std::ranges::equal(slots_, other.slots_) && equal_parameters(actions_, other.actions_) && dt_ == other.dt_;
   }
 
   [[nodiscard]] std::size_t heap_bytes(State const& state) const {
@@ -132,6 +163,19 @@ class TrafficDomain {
   }
 
  private:
+  /// What `f()` finds with the world in `state`, which is given back as it was.
+  template <class F>
+  decltype(auto) in_world(State const& state, F&& f) {
+    struct Visit {
+      World& world;
+      typename World::FrameType& frame;
+      Visit(World& w, typename World::FrameType& f) : world(w), frame(f) { world.exchange(frame); }
+      Visit(Visit const&) = delete;
+      ~Visit() { world.exchange(frame); }
+    } const visit(world_, const_cast<State&>(state).frame);
+    return f();
+  }
+
   /// Steps the world from `state`, and leaves it there.
   void enter(State& state, std::span<Action const> joint, double duration) {
     for (std::size_t k = 0; k < slots_.size(); ++k)

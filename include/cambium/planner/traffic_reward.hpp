@@ -19,12 +19,31 @@ struct Judgement {
 };
 
 /// Judges, for a search, where a step of `dt` [s] led the agent at `slot` of `world`: a copyable struct with
-///   `template <class World> Judgement judge(World const& world, std::uint32_t slot, double dt) const`.
+///   `template <class World> Judgement judge(World const& world, std::uint32_t slot, double dt) const`
+/// and, where it likes,
+///   `double value(World const& world, std::uint32_t slot, double dt) const`: what a course that is cut off there would
+///     still bring, for `TruncatedRollout` and `NoRollout`;
+///   `double prior(World const& world, std::uint32_t slot, MacroAction const& action) const`: how likely the action is
+///     the best, a weight of at least 0, for `Puct` (a `MotionPrimitive` or an `ExternalInput::Memory` likewise).
 /// Pure: what it judges is in the frame. No allocation.
 template <class R, class World>
 concept RewardModel = std::copyable<R> && requires(R const reward, World const world) {
   { reward.judge(world, std::uint32_t{}, double{}) } -> std::same_as<Judgement>;
 };
+
+namespace detail {
+
+template <class R, class World>
+concept ValuesCourses = requires(R const reward, World const world) {
+  { reward.value(world, std::uint32_t{}, double{}) } -> std::convertible_to<double>;
+};
+
+template <class R, class World, class Set>
+concept HasPrior = requires(R const reward, World const world, typename Set::Choice const choice) {
+  { reward.prior(world, std::uint32_t{}, Set::action({}, choice)) } -> std::convertible_to<double>;
+};
+
+}  // namespace detail
 
 /// Evaluators with weights: what ends a course (collision, leaving the road, goal), and what happens on the way. A
 /// collision costs 1 in the second channel too.
@@ -37,6 +56,7 @@ struct TrafficReward {
   double desired_speed = 15.0;
   double acceleration = 0.0;
   double lateral_offset = 0.0;
+  double lookahead = 2.0;
 
   static constexpr char const* name = "traffic_reward";
   static constexpr char const* summary = "goal, collision, leaving the road; progress, speed, comfort, lane centre";
@@ -54,7 +74,9 @@ struct TrafficReward {
         parameter("acceleration", &P::acceleration, "s^3/m^2", any_finite,
                   "for each second, times the square of the acceleration"),
         parameter("lateral_offset", &P::lateral_offset, "1/(m s)", any_finite,
-                  "for each second, times the distance from the lane's centre"));
+                  "for each second, times the distance from the lane's centre"),
+        parameter("lookahead", &P::lookahead, "s", Range{0, 1000},
+                  "for which a course that is cut off counts as going on as it is; of truncated roll-outs only"));
   }
 
   template <class World>
@@ -72,14 +94,26 @@ struct TrafficReward {
     }
     if (CollisionEgo::at_slot(world, slot).ego_collision) return {{collision, 1.0}, true};
     if (off_road != 0.0 && DrivableArea::off_road(world, slot)) return {{off_road, 0.0}, true};
+    bool const there = goal != 0.0 && world.reached_goal(world.roster().agents[slot].id);
+    return {{on_the_way(record, dt) + (there ? goal : 0.0), 0.0}, there};
+  }
+
+  /// What is on the way, for `lookahead`.
+  template <class World>
+  [[nodiscard]] double value(World const& world, std::uint32_t slot, double) const {
+    return on_the_way(world.frame().agents[slot], lookahead);
+  }
+
+ private:
+  template <class Record>
+  [[nodiscard]] double on_the_way(Record const& record, double duration) const {
     double const speed = record.state.speed;
     double reward = 0.0;
-    reward += progress * speed * std::cos(record.lane.heading_error) * dt;
-    reward += speed_deviation * std::abs(speed - desired_speed) * dt;
-    reward += acceleration * record.action.acceleration * record.action.acceleration * dt;
-    reward += lateral_offset * std::abs(record.lane.lateral) * dt;
-    bool const there = goal != 0.0 && world.reached_goal(world.roster().agents[slot].id);
-    return {{reward + (there ? goal : 0.0), 0.0}, there};
+    reward += progress * speed * std::cos(record.lane.heading_error) * duration;
+    reward += speed_deviation * std::abs(speed - desired_speed) * duration;
+    reward += acceleration * record.action.acceleration * record.action.acceleration * duration;
+    reward += lateral_offset * std::abs(record.lane.lateral) * duration;
+    return reward;
   }
 };
 

@@ -51,14 +51,13 @@ class TreeSearch {
     check();
   }
 
-  /// Searches by these parameters from now on; keeps its memory, but no tree. Throws as the constructor.
+  /// Searches by these parameters from now on; keeps its memory, and what `keep` has kept. Throws as the constructor.
   void set(TreeSearchParameters const& parameters, Selection const& selection, Rollout const& rollout,
            Budget const& budget) {
     parameters_ = parameters;
     selection_ = selection;
     rollout_ = rollout;
     budget_ = budget;
-    kept_ = false;
     check();
   }
 
@@ -76,11 +75,11 @@ class TreeSearch {
     return result_;
   }
 
-  /// Keeps, for the next run, what is known of the state that `joint`, one action per agent, leads to from the root;
-  /// returns whether there is any. The next run builds on it if the domain finds the state predicted there the same as
-  /// the one that it gets. Not where the domain draws its root anew for each iteration: there nodes have no states.
+  /// Keeps, for the next run, what is known of the states that `joint`, one action per agent, leads to from the root;
+  /// returns whether there is any. The next run builds on the one that the domain finds the same as the state that it
+  /// gets, if one is. Not where the domain draws its root anew for each iteration: there nodes have no states.
   bool keep(std::span<Action const> joint) {
-    kept_ = false;
+    forget();
     if (detail::SamplesRoot<Domain> || tree_.size() == 0 || joint.size() != tree_.agents()) return false;
     for (std::size_t k = 0; k < joint.size(); ++k) {
       auto const arms = tree_.arms(0, k);
@@ -88,14 +87,12 @@ class TreeSearch {
       if (at == arms.end()) return false;
       chosen_[k] = static_cast<std::uint16_t>(at - arms.begin());
     }
-    auto node = tree_.find(0, {chosen_.data(), joint.size()});
-    for (auto other = node; other != detail::no_node; other = tree_.node(other).next_outcome)
-      if (tree_.node(other).visits > tree_.node(node).visits) node = other;
-    if (node == detail::no_node) return false;
-    tree_.keep_below(node);
-    kept_ = true;
-    return true;
+    kept_ = tree_.find(0, {chosen_.data(), joint.size()});
+    return kept_ != detail::no_node;
   }
+
+  /// The next run begins anew.
+  void forget() { kept_ = detail::no_node; }
 
   [[nodiscard]] Result const& result() const { return result_; }
   /// The tree that the last run left.
@@ -103,6 +100,8 @@ class TreeSearch {
   [[nodiscard]] Domain& domain() { return domain_; }
   [[nodiscard]] Domain const& domain() const { return domain_; }
   [[nodiscard]] TreeSearchParameters const& parameters() const { return parameters_; }
+  [[nodiscard]] Selection const& selection() const { return selection_; }
+  [[nodiscard]] Rollout const& rollout() const { return rollout_; }
   [[nodiscard]] Budget& budget() { return budget_; }
   [[nodiscard]] Budget const& budget() const { return budget_; }
   /// By agent: the bounds of the returns, and the multipliers of the costs, that the last run ended with.
@@ -124,19 +123,28 @@ class TreeSearch {
   void start(State const& root, std::uint64_t seed) {
     auto const agents = static_cast<std::size_t>(domain_.agents());
     result_.clear(seed, static_cast<std::size_t>(parameters_.horizon));
-    bool const may_build_on = std::exchange(kept_, false);
-    if (!may_build_on) tree_.clear();
-    if (agents == 0) return stop(SearchProblem::no_agents);
-    if (budget_.most() == 0) return stop(SearchProblem::no_budget);
-    if (domain_.is_terminal(root)) return stop(SearchProblem::terminal_root);
+    depth_ = 0;
+    if (agents == 0)
+      stop(SearchProblem::no_agents);
+    else if (budget_.most() == 0)
+      stop(SearchProblem::no_budget);
+    else if (domain_.is_terminal(root))
+      stop(SearchProblem::terminal_root);
+    auto const from = result_.problem == SearchProblem::none ? kept_outcome(root) : detail::no_node;
+    bool const builds_on = from != detail::no_node;
+    forget();
+    if (builds_on)
+      tree_.keep_below(from);
+    else
+      tree_.clear();
+    if (result_.problem != SearchProblem::none) return;
     seed_ = seed;
     root_ = root;
     make_room(agents);
     if constexpr (!lists) more_actions_.set(parameters_.action_widening, budget_.most());
     if constexpr (!resimulates && !detail::is_deterministic<Domain>)
       more_outcomes_.set(parameters_.outcome_widening, budget_.most());
-    bool const builds_on = may_build_on && still_holds(root);
-    auto const kept = builds_on ? tree_.size() : 0;
+    auto const kept = tree_.size();
     typename Tree::Limits const limits{agents, budget_.most() + 1 + kept, parameters_.memory, arms_per_node(agents),
                                        resimulates ? 0 : sizeof(State) + heap_bytes(root)};
     if (builds_on) {
@@ -155,7 +163,10 @@ class TreeSearch {
     tree_.add(detail::no_node, chosen_, outcomes_, false, root);
   }
 
-  void stop(SearchProblem problem) { result_.problem = problem; }
+  void stop(SearchProblem problem) {
+    result_.problem = problem;
+    result_.problem_steps = depth_;
+  }
 
   void make_room(std::size_t agents) {
     auto const depth = static_cast<std::size_t>(parameters_.horizon);
@@ -174,12 +185,20 @@ class TreeSearch {
     }
   }
 
-  [[nodiscard]] bool still_holds(State const& root) {
-    if (tree_.node(0).terminal) return false;
-    if constexpr (requires { domain_.same_state(root, root); })
-      return domain_.same_state(tree_.state(0), root);
+  /// Of what was kept, the node of the state that came; none where it is another one.
+  [[nodiscard]] std::uint32_t kept_outcome(State const& root) {
+    if (kept_ != detail::no_node && tree_.agents() != static_cast<std::size_t>(domain_.agents())) forget();
+    auto node = kept_;
+    while (node != detail::no_node && (tree_.node(node).terminal || !is_same(tree_.state(node), root)))
+      node = tree_.node(node).next_outcome;
+    return node;
+  }
+
+  [[nodiscard]] bool is_same(State const& predicted, State const& seen) {
+    if constexpr (requires { domain_.same_state(predicted, seen); })
+      return domain_.same_state(predicted, seen);
     else if constexpr (std::equality_comparable<State>)
-      return tree_.state(0) == root;
+      return predicted == seen;
     else
       return false;
   }
@@ -208,6 +227,7 @@ class TreeSearch {
     }
     path_[0] = 0;
     while (depth < parameters_.horizon && !is_new && !over && node != detail::no_node) {
+      depth_ = depth;
       if (!choose(node, resimulates ? work_ : tree_.state(node), random)) break;
       node = descend(node, depth, over, is_new, random);
       if (result_.problem != SearchProblem::none) return;
@@ -219,7 +239,7 @@ class TreeSearch {
     std::fill(costs_.begin(), costs_.end(), 0.0);
     if (!over) {
       if (!resimulates && !is_new && node != detail::no_node) work_ = tree_.state(node);
-      roll_out(parameters_.horizon - depth, random);
+      roll_out(depth, random);
     }
     back_up(depth);
   }
@@ -305,8 +325,8 @@ class TreeSearch {
     if (!resimulates) work_ = tree_.state(node);
     std::fill(outcomes.begin(), outcomes.end(), AgentOutcome{});
     over = domain_.step(work_, joint_, random, outcomes);
-    for (auto const& outcome : outcomes)
-      if (!std::isfinite(outcome.reward) || !std::isfinite(outcome.cost)) stop(SearchProblem::not_finite);
+    depth_ = depth + 1;
+    if (auto const problem = detail::problem_of(outcomes); problem != SearchProblem::none) stop(problem);
     if (resimulates && child != detail::no_node) return child;
     if constexpr (!resimulates && !detail::is_deterministic<Domain> && std::equality_comparable<State>)
       for (auto other = child; other != detail::no_node; other = tree_.node(other).next_outcome)
@@ -340,11 +360,13 @@ class TreeSearch {
     return n;
   }
 
-  void roll_out(int steps, RandomStream& random) {
-    RolloutRun<Domain> run{domain_,  work_,  random, steps,     parameters_.discount,
-                           returns_, costs_, joint_, outcomes_, options_};
+  void roll_out(int depth, RandomStream& random) {
+    RolloutRun<Domain> run{
+        domain_, work_,     random,  parameters_.horizon - depth, parameters_.discount, returns_, costs_,
+        joint_,  outcomes_, options_};
     rollout_.roll_out(run);
-    if (run.lacks_actions) stop(SearchProblem::no_actions);
+    depth_ = depth + run.played;
+    if (run.problem != SearchProblem::none) return stop(run.problem);
     for (std::size_t k = 0; k < returns_.size(); ++k)
       if (!std::isfinite(returns_[k]) || !std::isfinite(costs_[k])) stop(SearchProblem::not_finite);
   }
@@ -397,7 +419,8 @@ class TreeSearch {
   Budget budget_;
   Tree tree_;
   Result result_;
-  bool kept_ = false;
+  std::uint32_t kept_ = detail::no_node;  ///< the first outcome of what is kept
+  int depth_ = 0;                         ///< of what an iteration has come to
   std::uint64_t seed_ = 0;
   State root_{}, work_{};
   detail::WideningSchedule more_actions_, more_outcomes_;

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <vector>
 
 #include "cambium/core/macros.hpp"
@@ -21,6 +23,14 @@ enum class AgentStatus : std::uint8_t {
   expired,      ///< its behaviour has nothing more to do
   failed,       ///< its behaviour or execution gave no valid next state; it keeps the last valid one
 };
+
+/// As in messages.
+[[nodiscard]] constexpr char const* to_string(AgentStatus status) {
+  constexpr char const* names[] = {"driving",      "not started", "arrived", "off its route",
+                                   "left the map", "expired",     "failed"};
+  auto const number = static_cast<std::size_t>(status);
+  return number < std::size(names) ? names[number] : "unknown";
+}
 
 /// What a step changes of one agent. `ExecutionMemory`: what its execution model remembers; `Past`: what observers that
 /// see late need of it.

@@ -62,8 +62,10 @@ template <class World>
   std::vector<std::uint32_t> slots;
   for (std::uint32_t slot = 0; slot < world.size(); ++slot)
     if (slot != ego && agents[slot].status == AgentStatus::driving && distance(slot) <= range) slots.push_back(slot);
-  std::stable_sort(slots.begin(), slots.end(),
-                   [&](std::uint32_t a, std::uint32_t b) { return distance(a) < distance(b); });
+  std::sort(slots.begin(), slots.end(), [&](std::uint32_t a, std::uint32_t b) {
+    double const to_a = distance(a), to_b = distance(b);
+    return to_a < to_b || (to_a == to_b && a < b);
+  });
   slots.resize(std::min(slots.size(), count));
   return slots;
 }

@@ -53,18 +53,21 @@ class SearchTree {
     arms_.clear();
   }
 
-  /// Makes room, keeping the nodes that there are; `limits.agents` as before.
+  /// Makes room, keeping the nodes that there are; `limits.agents` as before. All that it reserves stays within
+  /// `limits.bytes`, but for a root alone; where not all fits, arms get no more of it than nodes.
   void reserve(Limits const& limits) {
     limits_ = limits;
     agents_ = limits.agents;
     auto& most = limits_.nodes;
-    most = std::max<std::size_t>(1, std::min({most, limits.bytes / node_bytes(), std::size_t{no_node - 1}}));
+    auto const with_arms = node_bytes() + std::min(limits.arms_per_node * sizeof(Arm), node_bytes());
+    most = std::max<std::size_t>(1, std::min({most, limits.bytes / with_arms, std::size_t{no_node - 1}}));
+    most_arms_ = (limits.bytes - std::min(limits.bytes, most * node_bytes())) / sizeof(Arm);
     nodes_.reserve(most);
     joints_.resize(std::max(joints_.size(), most * agents_));
     outcomes_.resize(std::max(outcomes_.size(), most * agents_));
     blocks_.resize(std::max(blocks_.size(), most * agents_));
     if (stores_states()) states_.reserve(most);
-    arms_.reserve(std::min(most * limits.arms_per_node, limits.bytes / sizeof(Arm)));
+    arms_.reserve(std::min(most * limits.arms_per_node, most_arms_));
     std::size_t entries = 16;
     while (entries < 2 * most) entries *= 2;
     if (table_.size() < entries) rehash(entries);
@@ -99,11 +102,9 @@ class SearchTree {
   [[nodiscard]] bool has_arms(std::uint32_t n) const { return blocks_[n * agents_ + agents_ - 1].count > 0; }
 
   /// Whether a node, or `count` arms, still fit. A root alone always gets its arms.
-  [[nodiscard]] bool has_room() const {
-    return nodes_.size() < limits_.nodes && used() + node_bytes() <= limits_.bytes;
-  }
+  [[nodiscard]] bool has_room() const { return nodes_.size() < limits_.nodes; }
   [[nodiscard]] bool has_room_for_arms(std::size_t count) const {
-    return nodes_.size() == 1 || used() + count * sizeof(Arm) <= limits_.bytes;
+    return nodes_.size() == 1 || arms_.size() + count <= most_arms_;
   }
 
   /// Adds a node; the first is the root. Only where there is room.
@@ -130,6 +131,8 @@ class SearchTree {
     if (block.count == block.room) {  // a block that is full moves to the end, twice as large
       auto const room = std::max<std::size_t>(expected, 2u * block.room);
       auto const first = arms_.size();
+      if (auto const capacity = arms_.capacity(); first + room > capacity)
+        arms_.reserve(std::max(first + room, std::min(2 * capacity, most_arms_)));
       arms_.resize(first + room);
       std::copy_n(arms_.begin() + block.first, block.count, arms_.begin() + static_cast<std::ptrdiff_t>(first));
       block.first = static_cast<std::uint32_t>(first);
@@ -147,11 +150,9 @@ class SearchTree {
     return no_node;
   }
 
-  /// Makes node `root` the root and drops all that is not below it. O(nodes), no allocation once warm.
+  /// Makes node `root` the root and drops all that is not below it. O(n log n) in the nodes, no allocation once warm.
   void keep_below(std::uint32_t root) {
     moved_to_.assign(nodes_.size(), no_node);
-    kept_arms_.clear();
-    kept_arms_.reserve(arms_.capacity());
     std::uint32_t kept = 0;
     for (std::uint32_t n = root; n < nodes_.size(); ++n) {
       bool const is_root = n == root;
@@ -162,7 +163,7 @@ class SearchTree {
       ++kept;
     }
     nodes_.resize(kept);
-    std::swap(arms_, kept_arms_);
+    pack_arms();
     rehash(table_.size());
   }
 
@@ -178,9 +179,8 @@ class SearchTree {
 
   [[nodiscard]] std::size_t node_bytes() const {
     return sizeof(Node) + agents_ * (sizeof(std::uint16_t) + sizeof(AgentOutcome) + sizeof(Block)) +
-           limits_.state_bytes + 4 * sizeof(Entry);
+           limits_.state_bytes + 4 * sizeof(Entry) + (1 + agents_) * sizeof(std::uint32_t);
   }
-  [[nodiscard]] std::size_t used() const { return nodes_.size() * node_bytes() + arms_.size() * sizeof(Arm); }
 
   [[nodiscard]] static std::size_t hash(std::uint32_t parent, std::span<std::uint16_t const> joint) {
     std::uint64_t h = parent;
@@ -210,10 +210,7 @@ class SearchTree {
 
   void move_node(std::uint32_t from, std::uint32_t to) {
     for (std::size_t k = 0; k < agents_; ++k) {
-      auto block = blocks_[from * agents_ + k];
-      auto const first = kept_arms_.size();
-      kept_arms_.insert(kept_arms_.end(), arms_.begin() + block.first, arms_.begin() + block.first + block.count);
-      blocks_[to * agents_ + k] = {static_cast<std::uint32_t>(first), block.count, block.count};
+      blocks_[to * agents_ + k] = blocks_[from * agents_ + k];
       joints_[to * agents_ + k] = joints_[from * agents_ + k];
       outcomes_[to * agents_ + k] = outcomes_[from * agents_ + k];
     }
@@ -221,17 +218,35 @@ class SearchTree {
     if (stores_states() && from != to) std::swap(states_[to], states_[from]);
   }
 
+  /// Moves the arms of all nodes together.
+  void pack_arms() {
+    packed_.clear();
+    packed_.reserve(blocks_.size());
+    for (std::uint32_t b = 0; b < nodes_.size() * agents_; ++b) packed_.push_back(b);
+    std::sort(packed_.begin(), packed_.end(),
+              [&](std::uint32_t a, std::uint32_t b) { return blocks_[a].first < blocks_[b].first; });
+    std::size_t end = 0;
+    for (auto const b : packed_) {
+      auto& [first, count, room] = blocks_[b];
+      if (first != end) std::copy_n(arms_.begin() + first, count, arms_.begin() + static_cast<std::ptrdiff_t>(end));
+      first = static_cast<std::uint32_t>(end);
+      room = count;
+      end += count;
+    }
+    arms_.resize(end);
+  }
+
   Limits limits_;
-  std::size_t agents_ = 1;
+  std::size_t agents_ = 1, most_arms_ = 0;
   std::uint32_t epoch_ = 0;
   std::vector<Node> nodes_;
   std::vector<std::uint16_t> joints_;  ///< by node and agent, as the next two
   std::vector<AgentOutcome> outcomes_;
   std::vector<Block> blocks_;
   std::vector<State> states_;  ///< by node; behind them those of former searches
-  std::vector<Arm> arms_, kept_arms_;
+  std::vector<Arm> arms_;
   std::vector<Entry> table_;  ///< open addressing, at most half full
-  std::vector<std::uint32_t> moved_to_;
+  std::vector<std::uint32_t> moved_to_, packed_;
 };
 
 }  // namespace cambium::detail

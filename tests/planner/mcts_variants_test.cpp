@@ -1,0 +1,132 @@
+// Selections, roll-outs, budgets, final moves and actions of searches in traffic.
+#include <doctest/doctest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <tuple>
+
+#include "cambium/execution/interpolate.hpp"
+#include "cambium/planner/mcts_cooperative.hpp"
+#include "cambium/planner/mcts_single_agent.hpp"
+#include "cambium/planner/puct.hpp"
+#include "cambium/world/world.hpp"
+#include "support/maps.hpp"
+
+using namespace cambium;
+
+namespace {
+
+/// A user's own: what pays is as in `TrafficReward`; of the actions it expects the brakes.
+struct Expecting : TrafficReward {
+  double braking = 3.0;
+
+  template <class World>
+  [[nodiscard]] double prior(World const&, std::uint32_t, MacroAction const& action) const {
+    return action.kind == MacroAction::Kind::stay && action.acceleration < -1.0 ? braking : 1.0;
+  }
+};
+
+using PredictionWorld = World<BehaviorSet<MacroActions, IdmClassic, ExternalInput>, InterpolateExecution, SingleTrack>;
+template <class Options, class Reward = TrafficReward, class Actions = MacroActions>
+using Single = MctsSingleAgent<PredictionWorld, Actions, Reward, IdmClassic, Options>;
+
+using Plain = Single<MctsOptions<>>;
+using Truncated = Single<MctsOptions<Ucb1, TruncatedRollout<RandomRollout>>>;
+using Policy = Single<MctsOptions<Ucb1, PolicyRollout>>;
+using Timed = Single<MctsOptions<Ucb1, RandomRollout, TimeBudget>>;
+using Expected = Single<MctsOptions<Puct>, Expecting>;
+using Sampled = Single<MctsOptions<>, TrafficReward, SampledInputs>;
+using Sim = World<BehaviorSet<IdmClassic, Plain, Truncated, Policy, Timed, Expected, Sampled>, InterpolateExecution,
+                  SingleTrack>;
+
+constexpr AgentId ego{0};
+
+template <class Planner>
+Planner careful() {
+  Planner planner;
+  planner.others.desired_speed = 0.1;  // as who stands there
+  planner.reward.goal = 0.0;
+  planner.reward.progress = 1.0;
+  planner.options.budget.iterations = 300;
+  if constexpr (requires { planner.actions.actions; })
+    planner.actions = MacroActions::of({{MacroAction::Kind::keep_gap},
+                                        {MacroAction::Kind::stay, 0.0},
+                                        {MacroAction::Kind::stay, 1.5},
+                                        {MacroAction::Kind::stay, -2.0},
+                                        {MacroAction::Kind::stay, -5.0}});
+  if constexpr (requires { planner.options.rollout.hold; }) planner.options.rollout.hold = 5;
+  return planner;
+}
+
+}  // namespace
+
+TEST_CASE("however it is searched, ego stops behind who stands") {
+  auto lower_bound = careful<Plain>();
+  lower_bound.options.search.final_move = FinalMove::lower_bound;
+  auto truncated = careful<Truncated>();
+  truncated.options.rollout.base = {.hold = 5, .steps = 12};
+  auto timed = careful<Timed>();
+  timed.options.budget.duration = 60.0;  // ends by its iterations
+  auto sampled = careful<Sampled>();
+  sampled.actions.largest_steering = 0.0;
+  Sim::Behavior const planners[] = {lower_bound, truncated, careful<Policy>(), timed, careful<Expected>(), sampled};
+  for (auto const& planner : planners) {
+    CAPTURE(planner.index());
+    for (std::uint64_t seed = 0; seed < 2; ++seed) {
+      Sim world(support::straight_road(1, 300.0), {.seed = seed});
+      world.add({.position = {30, -1.75}, .speed = 12, .behavior = planner});
+      world.add({.position = {90, -1.75}, .speed = 0, .behavior = IdmClassic{.desired_speed = 0.1}});
+      for (int step = 0; step < 50; ++step) {
+        REQUIRE(world.step(0.2));
+        REQUIRE_FALSE(CollisionEgo{ego}.evaluate(world).ego_collision);
+      }
+      CHECK(world.state(ego).speed < 3.0);
+      CHECK(world.state(ego).x > 55.0);
+    }
+  }
+}
+
+TEST_CASE("a course that is cut off is worth what the reward says, the others' by the cooperation") {
+  Sim world(support::straight_road(1, 300.0));
+  world.add({.position = {30, -1.75}, .speed = 12, .behavior = IdmClassic{}});
+  world.add({.position = {60, -1.75}, .speed = 10, .behavior = IdmClassic{}});
+  for (double const lookahead : {2.0, 0.0}) {
+    using Cooperative =
+        MctsCooperative<PredictionWorld, MacroActions, TrafficReward, IdmClassic, MctsOptions<Ucb1, NoRollout>>;
+    Cooperative planner;
+    planner.actions = MacroActions::of({{MacroAction::Kind::stay, 0.0}});
+    planner.reward.progress = 1.0;
+    planner.reward.lookahead = lookahead;
+    planner.options.search = {.horizon = 1, .discount = 0.9};
+    Cooperative::Workspace workspace;
+    auto const report = planner.think(world.observe(ego), workspace);
+    double const own = 12.0 * (0.2 + 0.9 * lookahead), other = 10.0 * (0.2 + 0.9 * lookahead);
+    CHECK(report.result.choice(0).mean_return == doctest::Approx(own + 0.5 * other));
+    CHECK(report.result.choice(1).mean_return == doctest::Approx(other + 0.5 * own));
+  }
+  // And where a roll-out is: one step in the tree, 4 beyond it, then 2 s.
+  auto planner = careful<Truncated>();
+  planner.actions = MacroActions::of({{MacroAction::Kind::stay, 0.0}});
+  planner.options.search = {.horizon = 20, .discount = 1.0};
+  planner.options.budget.iterations = 1;
+  planner.options.rollout.base.steps = 4;
+  Truncated::Workspace workspace;
+  auto const report = planner.think(world.observe(ego), workspace);
+  CHECK(report.result.choice(0).mean_return == doctest::Approx(12.0 * (5 * 0.2 + 2.0)));
+}
+
+TEST_CASE("a user's prior leads the search of traffic, and is checked") {
+  Sim world(support::straight_road(1, 300.0));
+  world.add({.position = {30, -1.75}, .speed = 12, .behavior = IdmClassic{}});
+  auto planner = careful<Expected>();
+  planner.reward.progress = 0.0;
+  planner.reward.braking = 50.0;
+  planner.options.budget.iterations = 200;
+  Expected::Workspace workspace;
+  auto const report = planner.think(world.observe(ego), workspace);
+  CHECK(report.result.choice(0).share > 0.3);
+  CHECK(report.actions[report.result.best[0]].find("stay -") == 0);
+  planner.reward.braking = -1.0;
+  CHECK_THROWS_AS((void)planner.think(world.observe(ego), workspace), SearchError);
+}
