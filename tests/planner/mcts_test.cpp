@@ -222,8 +222,9 @@ TEST_CASE("a search goes on from what it knows where the world came out as it wa
   }
 }
 
-TEST_CASE("nothing is kept for other agents, another manoeuvre, or without being asked") {
-  auto const kept_nodes = [](bool keep, bool forgets_manoeuvre, bool other_actions, bool other_agents) {
+TEST_CASE("nothing is kept where anything has changed, or without being asked") {
+  using Memory = Cooperative::Memory;
+  auto const kept_nodes = [](bool keep, auto const& change) {
     auto world = lane_change(0, IdmClassic{});
     for (auto const& agent : world.roster().agents)
       if (agent.id != ego) world.set_behavior(agent.id, IdmClassic{});
@@ -231,21 +232,45 @@ TEST_CASE("nothing is kept for other agents, another manoeuvre, or without being
     planner.actions = MacroActions::of({{MacroAction::Kind::change_left, 0.0}, {MacroAction::Kind::stay, 0.0}});
     planner.most_agents = 1;
     Cooperative::Workspace workspace;
-    auto const report = planner.think(world.observe(ego), workspace);
+    auto report = planner.think(world.observe(ego), workspace);
     REQUIRE(report.memory.change.active());
     if (keep) CHECK(workspace.keep());
     REQUIRE(world.step(planner.options.step));
     world.set_state(ego, report.course[1].agents[0].state);
-    if (other_actions) planner.actions.actions[0].acceleration = 1.0;
-    if (other_agents) planner.most_agents = 2;
-    return planner.think(world.observe(ego), workspace, forgets_manoeuvre ? MacroActions::Memory{} : report.memory)
-        .result.kept_nodes;
+    change(world, planner, report.memory);
+    return planner.think(world.observe(ego), workspace, report.memory).result.kept_nodes;
   };
-  CHECK(kept_nodes(true, false, false, false) > 0);
-  CHECK(kept_nodes(false, false, false, false) == 0);
-  CHECK(kept_nodes(true, true, false, false) == 0);
-  CHECK(kept_nodes(true, false, true, false) == 0);
-  CHECK(kept_nodes(true, false, false, true) == 0);
+  auto const nothing = [](auto&, auto&, auto&) {};
+  CHECK(kept_nodes(true, nothing) > 0);
+  CHECK(kept_nodes(false, nothing) == 0);
+  CHECK(kept_nodes(true, [](auto&, auto&, Memory& memory) { memory = {}; }) == 0);
+  CHECK(kept_nodes(true, [](auto&, auto& planner, auto&) { planner.actions.actions[0].acceleration = 1.0; }) == 0);
+  CHECK(kept_nodes(true, [](auto&, auto& planner, auto&) { planner.most_agents = 2; }) == 0);
+  CHECK(kept_nodes(true, [](auto&, auto& planner, auto&) { planner.reward.progress -= 1.0; }) == 0);
+  CHECK(kept_nodes(true, [](auto&, auto& planner, auto&) { planner.others.time_headway = 0.5; }) == 0);
+  CHECK(kept_nodes(true, [](auto& world, auto&, auto&) {
+          auto const& at = world.state(ego);
+          geometry::Point const front{at.x + 40.0, at.y};
+          world.add_object(geometry::Polygon({front, {front.x() + 1.0, front.y()}, {front.x(), front.y() + 1.0}}));
+        }) == 0);
+  CHECK(kept_nodes(true, [](auto& world, auto&, auto&) {
+          auto state = world.state(ego);
+          state.heading += 0.1;
+          world.set_state(ego, state);
+        }) == 0);
+  CHECK(kept_nodes(true, [](auto& world, auto&, auto&) {  // another one in the same place
+          auto const state = world.state(AgentId{3});
+          auto const shape = world.roster().agents[3].shape;
+          world.remove(AgentId{3});
+          auto larger = shape;
+          larger.rear += 1.0;
+          world.add({.position = {state.x, state.y},
+                     .heading = state.heading,
+                     .speed = state.speed,
+                     .shape = larger,
+                     .behavior = IdmClassic{},
+                     .id = AgentId{3}});
+        }) == 0);
 }
 
 TEST_CASE("with threads a planner does the same again, as a behaviour too") {

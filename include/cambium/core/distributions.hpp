@@ -80,9 +80,9 @@ template <class... Rest>
   return std::fma(exponent, ln2_high, std::fma(exponent, ln2_low, log_m));
 }
 
-/// e^x, the same bits everywhere; error below 2 units in the last place, or one subnormal step. x = k ln 2 + r with r
-/// in
-/// [-ln(2)/2, ln(2)/2]; e^r as its power series.
+/// e^x, the same bits everywhere; error below 2 units in the last place, or one subnormal step.
+/// x = k ln 2 + r with r in [-ln(2)/2, ln(2)/2];
+/// e^r as its power series.
 [[nodiscard]] inline double portable_exp(double x) {
   constexpr double ln2_high = 0x1.62e42fefa3800p-1, ln2_low = 0x1.ef35793c76730p-45;
   if (!(x > -746.0)) return x <= -746.0 ? 0.0 : x;  // NaN

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "cambium/behavior/behavior_model.hpp"
+#include "cambium/core/macros.hpp"
 #include "cambium/planner/detail/predicted.hpp"
 #include "cambium/planner/parallel_tree_search.hpp"
 #include "cambium/planner/traffic_domain.hpp"
@@ -77,7 +78,7 @@ class MctsWorkspace {
 
   /// Searches from the domain's world. Throws `ParameterError` where an option is out of its range.
   Result const& run(Domain domain, Options const& options, std::uint64_t seed) {
-    if (!trees_.searches().empty() && !domain.is_same_choice(this->domain())) trees_.forget();
+    if (!trees_.searches().empty() && !domain.is_same_game(this->domain())) trees_.forget();
     auto const root = domain.root();
     trees_.set(std::move(domain), options.search, options.selection, options.rollout, options.budget,
                static_cast<std::size_t>(options.threads));
@@ -86,16 +87,21 @@ class MctsWorkspace {
 
   /// Keeps, for the next `think`, what is known of where the best actions lead; returns whether there is anything. To
   /// be asked when the world is about to go on for one step of the search (`MctsOptions::step`). The next `think`, of a
-  /// planner with the same parameters and with the last report's `memory`, builds on it where the world came out as
-  /// predicted (`TrafficDomain::same_state`) and the same agents choose; `result.kept_nodes` says whether it did. Not
-  /// where hypotheses are drawn for each iteration: there nodes have no states.
+  /// planner with the last report's `memory`, builds on it where the world came out as predicted, at the time that was
+  /// predicted (`TrafficDomain::same_state`), and nothing else has changed, in the world, the reward or the actions
+  /// (`TrafficDomain::is_same_game`); `result.kept_nodes` says whether it did. Who fills a new world for each think has
+  /// to set its time (`WorldOptions::time`). Not where hypotheses are drawn for each iteration: there nodes have no
+  /// states.
   bool keep() {
     auto const& result = trees_.result();
     return !result.variation.empty() && trees_.keep({result.variation.data(), result.agents});
   }
 
   /// The search after a run; with threads the first one.
-  [[nodiscard]] Search& search() { return trees_.searches()[0]; }
+  [[nodiscard]] Search& search() {
+    CAMBIUM_ASSERT(!trees_.searches().empty(), "MctsWorkspace: nothing has been searched yet");
+    return trees_.searches()[0];
+  }
   [[nodiscard]] Domain& domain() { return search().domain(); }
 
   /// Plays the principal variation until `end` [s], and beyond its end what agents do without any manoeuvre; calls

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "cambium/core/error.hpp"
+#include "cambium/core/macros.hpp"
 #include "cambium/planner/search_result.hpp"
 #include "cambium/planner/tree_search_parameters.hpp"
 
@@ -75,6 +76,7 @@ class ParallelTreeSearch {
   /// As `TreeSearch::run`. The principal variation is that of the tree that knows most about the best actions. Passes
   /// on what a domain throws.
   Result const& run(State const& root, std::uint64_t seed) {
+    CAMBIUM_ASSERT(!searches_.empty(), "ParallelTreeSearch: `set` comes before `run`");
     if (searches_.size() == 1) return searches_[0].run(root, seed);
     std::vector<std::exception_ptr> errors(searches_.size());
     auto const grow = [&](std::size_t i) {
@@ -109,15 +111,15 @@ class ParallelTreeSearch {
   };
 
   void merge() {
+    for (auto const& search : searches_)
+      if (search.result().problem != SearchProblem::none) {  // which makes it empty
+        result_ = search.result();
+        return;
+      }
     result_ = searches_[0].result();
     std::vector<ReturnScale> scales(searches_[0].scales().begin(), searches_[0].scales().end());
     for (std::size_t i = 1; i < searches_.size(); ++i) {
       auto const& other = searches_[i].result();
-      if (other.problem != SearchProblem::none) {
-        result_.problem = other.problem;
-        result_.problem_steps = other.problem_steps;
-      }
-      if (result_.problem != SearchProblem::none) return;
       result_.iterations += other.iterations;
       result_.nodes += other.nodes;
       result_.kept_nodes += other.kept_nodes;
@@ -129,7 +131,6 @@ class ParallelTreeSearch {
       }
       add_arms(other);
     }
-    if (result_.problem != SearchProblem::none) return;
     auto const& parameters = searches_[0].parameters();
     for (std::size_t k = 0; k < result_.agents; ++k)
       result_.best[k] =

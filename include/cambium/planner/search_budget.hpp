@@ -47,7 +47,7 @@ struct IterationBudget {
 static_assert(SearchBudget<IterationBudget>);
 
 /// So much time of the wall clock, looked at every 64 iterations, so that there are 64 at least: results depend on the
-/// machine and its load.
+/// machine and its load. The first search makes room for `iterations` nodes, within the time.
 struct TimeBudget {
   double duration = 0.01;
   std::size_t iterations = 1'000'000;

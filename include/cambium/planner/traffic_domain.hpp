@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "cambium/behavior/idm_hypotheses.hpp"
+#include "cambium/geometry/angle.hpp"
 #include "cambium/planner/belief.hpp"
+#include "cambium/planner/detail/same_scene.hpp"
 #include "cambium/planner/search_domain.hpp"
 #include "cambium/planner/traffic_actions.hpp"
 #include "cambium/planner/traffic_reward.hpp"
@@ -136,12 +138,13 @@ class TrafficDomain {
     world_.exchange(state.frame);
   }
 
-  /// Whether what was seen comes close to what was predicted: half a metre and half a metre per second, for everybody;
-  /// and whether those who choose are in the middle of the same manoeuvre.
+  /// Whether what was seen comes close to what was predicted: half a metre, half a metre per second and 0.05 rad, for
+  /// everybody; and whether those who choose are in the middle of the same manoeuvre.
   [[nodiscard]] bool same_state(State const& predicted, State const& seen) const {
     auto const is_near = [](auto const& a, auto const& b) {
       return a.status == b.status && a.lane.corridor == b.lane.corridor && std::abs(a.lane.s - b.lane.s) < 0.5 &&
              std::hypot(a.state.x - b.state.x, a.state.y - b.state.y) < 0.5 &&
+             std::abs(geometry::angle_difference(a.state.heading, b.state.heading)) < 0.05 &&
              std::abs(a.state.speed - b.state.speed) < 0.5;
     };
     auto const goes_on_alike = [&](std::uint32_t slot) {
@@ -153,9 +156,12 @@ class TrafficDomain {
            std::ranges::all_of(slots_, goes_on_alike);
   }
 
-  /// Whether the same agents choose among the same actions at the same times as in another one.
-  [[nodiscard]] bool is_same_choice(TrafficDomain const& other) const {
-    return std::ranges::equal(slots_, other.slots_) && equal_parameters(actions_, other.actions_) && dt_ == other.dt_;
+  /// Whether what is known of states of another one holds for this one: the same agents choose among the same actions
+  /// at the same times and for the same reward, and nothing differs in their worlds but the states.
+  [[nodiscard]] bool is_same_game(TrafficDomain const& other) const {
+    return std::ranges::equal(slots_, other.slots_) && equal_parameters(actions_, other.actions_) && dt_ == other.dt_ &&
+           cooperation_ == other.cooperation_ && detail::is_same_value(reward_, other.reward_) &&
+           detail::is_same_scene(world_, other.world_);
   }
 
   [[nodiscard]] std::size_t heap_bytes(State const& state) const {

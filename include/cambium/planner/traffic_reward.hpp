@@ -25,7 +25,8 @@ struct Judgement {
 ///     still bring, for `TruncatedRollout` and `NoRollout`;
 ///   `double prior(World const& world, std::uint32_t slot, MacroAction const& action) const`: how likely the action is
 ///     the best, a weight of at least 0, for `Puct` (a `MotionPrimitive` or an `ExternalInput::Memory` likewise).
-/// Pure: what it judges is in the frame. No allocation.
+/// Pure: what it judges is in the frame; neighbours are not (the traffic index is that of another frame). No
+/// allocation.
 template <class R, class World>
 concept RewardModel = std::copyable<R> && requires(R const reward, World const world) {
   { reward.judge(world, std::uint32_t{}, double{}) } -> std::same_as<Judgement>;
@@ -76,7 +77,7 @@ struct TrafficReward {
         parameter("lateral_offset", &P::lateral_offset, "1/(m s)", any_finite,
                   "for each second, times the distance from the lane's centre"),
         parameter("lookahead", &P::lookahead, "s", Range{0, 1000},
-                  "for which a course that is cut off counts as going on as it is; of truncated roll-outs only"));
+                  "for which a course that is cut off counts as going on as it is; of truncated roll-outs, or none"));
   }
 
   template <class World>

@@ -274,7 +274,10 @@ class TreeSearch {
       stop(SearchProblem::no_actions);
       return false;
     }
-    if (!tree_.has_room_for_arms(count)) return false;
+    if (!tree_.has_room_for_arms(count)) {
+      result_.is_full = true;
+      return false;
+    }
     for (std::size_t i = 0; i < count; ++i) tree_.add_arm(node, agent, count).action = options_[i];
     set_priors(node, agent, state);
     return true;
@@ -283,7 +286,10 @@ class TreeSearch {
   bool widen(std::uint32_t node, std::size_t agent, State const& state, std::uint32_t chosen_before) {
     auto const count = tree_.arms(node, agent).size();
     if (!more_actions_.allow(count, chosen_before + 1)) return true;
-    if (!tree_.has_room_for_arms(std::max<std::size_t>(4, 2 * count))) return count > 0;
+    if (!tree_.has_room_for_arms(std::max<std::size_t>(4, 2 * count))) {
+      result_.is_full = true;
+      return count > 0;
+    }
     // The same at the root of all trees that are merged.
     RandomStream random(seed_, static_cast<std::uint32_t>(agent), static_cast<std::uint32_t>(count),
                         root_purpose + node * 2);

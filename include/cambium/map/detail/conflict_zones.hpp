@@ -75,7 +75,7 @@ inline void add_zone(std::vector<ConflictZone>& zones, ConflictZone zone) {
 }
 
 /// Two bodies on lanes and the ways through them, of which is asked where they touch. Where ways part beyond a lane's
-/// ends all count, for both bodies: so both sides of a conflict find the same zones.
+/// ends all count, for both bodies: both sides find the same zones but for mere grazes.
 struct TouchingBodies {
   Map const& map;
   LaneCorridor const& corridor;  ///< of the first body

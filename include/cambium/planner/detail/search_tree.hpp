@@ -40,11 +40,7 @@ class SearchTree {
   void reset(Limits const& limits) {
     clear();
     reserve(limits);
-    ++epoch_;
-    if (epoch_ == 0) {  // entries of 2^32 searches ago would count as new
-      std::fill(table_.begin(), table_.end(), Entry{});
-      epoch_ = 1;
-    }
+    begin_epoch();
   }
 
   /// Has no nodes any more.
@@ -54,7 +50,8 @@ class SearchTree {
   }
 
   /// Makes room, keeping the nodes that there are; `limits.agents` as before. All that it reserves stays within
-  /// `limits.bytes`, but for a root alone; where not all fits, arms get no more of it than nodes.
+  /// `limits.bytes`, but for a root alone, nodes that are kept from a larger tree, and the moment of growing; where not
+  /// all fits, arms get no more of it than nodes.
   void reserve(Limits const& limits) {
     limits_ = limits;
     agents_ = limits.agents;
@@ -63,9 +60,9 @@ class SearchTree {
     most = std::max<std::size_t>(1, std::min({most, limits.bytes / with_arms, std::size_t{no_node - 1}}));
     most_arms_ = (limits.bytes - std::min(limits.bytes, most * node_bytes())) / sizeof(Arm);
     nodes_.reserve(most);
-    joints_.resize(std::max(joints_.size(), most * agents_));
-    outcomes_.resize(std::max(outcomes_.size(), most * agents_));
-    blocks_.resize(std::max(blocks_.size(), most * agents_));
+    grow(joints_, most * agents_);
+    grow(outcomes_, most * agents_);
+    grow(blocks_, most * agents_);
     if (stores_states()) states_.reserve(most);
     arms_.reserve(std::min(most * limits.arms_per_node, most_arms_));
     std::size_t entries = 16;
@@ -201,9 +198,28 @@ class SearchTree {
     table_[at] = {n, epoch_};
   }
 
-  void rehash(std::size_t entries) {
-    table_.assign(entries, Entry{});
+  /// To `size`, and no more.
+  template <class T>
+  static void grow(std::vector<T>& list, std::size_t size) {
+    if (size <= list.size()) return;
+    list.reserve(size);
+    list.resize(size);
+  }
+
+  /// The entries of former searches count no more.
+  void begin_epoch() {
+    if (++epoch_ != 0) return;
+    std::fill(table_.begin(), table_.end(), Entry{});  // those of 2^32 searches ago would count as new
     epoch_ = 1;
+  }
+
+  void rehash(std::size_t entries) {
+    if (entries == table_.size()) {
+      begin_epoch();
+    } else {
+      table_.assign(entries, Entry{});
+      epoch_ = 1;
+    }
     for (auto& node : nodes_) node.next_outcome = no_node;
     for (std::uint32_t n = 1; n < nodes_.size(); ++n) link(n);
   }

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <algorithm>
+#include <concepts>
+#include <type_traits>
+#include <variant>
+
+#include "cambium/core/parameters.hpp"
+#include "cambium/goal/goal.hpp"
+#include "cambium/world/static_object.hpp"
+
+namespace cambium::detail {
+
+/// Whether two values mean the same, as far as they tell: by description, by ==, or because there is nothing in them.
+template <class T>
+[[nodiscard]] bool is_same_value(T const& a, T const& b) {
+  if constexpr (Described<T>)
+    return equal_parameters(a, b);
+  else if constexpr (std::equality_comparable<T>)
+    return a == b;
+  else
+    return std::is_empty_v<T>;
+}
+
+/// The same of goals and of behaviours: variants.
+template <class Variant>
+[[nodiscard]] bool is_same_choice(Variant const& a, Variant const& b) {
+  auto const is_same_as_other = [&b]<class Model>(Model const& model) {
+    auto const& other = *std::get_if<Model>(&b);
+    if constexpr (requires { model.parts; })
+      return std::ranges::equal(model.parts, other.parts, is_same_choice<Variant>);
+    else if constexpr (requires { model.area; })
+      return model.area == other.area;
+    else
+      return is_same_value(model, other);
+  };
+  return a.index() == b.index() && std::visit(is_same_as_other, a);
+}
+
+/// Whether all that steps depend on, but the frame, is the same in two worlds: map, agents with their roads and
+/// behaviours, goals, lights and objects. O(agents, and the lanes of their routes).
+template <class World>
+[[nodiscard]] bool is_same_scene(World const& a, World const& b) {
+  auto const &p = a.roster(), &q = b.roster();
+  auto const is_same_agent = [](auto const& one, auto const& other) {
+    bool const is_same_road =
+        one.road == other.road || (!one.road->route.empty() && one.road->route == other.road->route);
+    return one.id == other.id && one.shape == other.shape && is_same_road &&
+           is_same_choice(one.behavior, other.behavior) && is_same_value(one.dynamics, other.dynamics);
+  };
+  auto const is_same_object = [](StaticObject const& one, StaticObject const& other) {
+    return one.id == other.id && one.outline == other.outline;
+  };
+  return &a.map() == &b.map() && std::ranges::equal(p.agents, q.agents, is_same_agent) &&
+         std::ranges::equal(p.goals, q.goals, is_same_choice<Goal>) && p.lights == q.lights &&
+         std::ranges::equal(p.objects, q.objects, is_same_object);
+}
+
+}  // namespace cambium::detail
