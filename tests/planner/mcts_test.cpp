@@ -377,7 +377,6 @@ struct Hurry {
     double const speed = world.frame().agents[slot].state.speed;
     return {{0.1 * speed * dt, speed > 13.0 ? 0.1 : 0.0}, false};
   }
-  static constexpr char const* name = "hurry";
   static constexpr auto parameters() { return std::make_tuple(); }
 };
 
