@@ -273,6 +273,20 @@ TEST_CASE("nothing is kept where anything has changed, or without being asked") 
         }) == 0);
 }
 
+TEST_CASE("one whose course is over does not choose, and does not keep ego from planning") {
+  auto world = lane_change(0, IdmClassic{});
+  auto const planner = quick(Cooperative{}, 100);
+  Cooperative::Workspace workspace;
+  auto const before = planner.think(world.observe(ego), workspace).choosing;
+  REQUIRE(before.size() > 1);
+  auto state = world.state(before[1]);
+  state.y += 15.0;
+  world.set_state(before[1], state);
+  auto const after = planner.think(world.observe(ego), workspace).choosing;
+  CHECK(after.front() == ego);
+  CHECK(std::ranges::count(after, before[1]) == 0);
+}
+
 TEST_CASE("with threads a planner does the same again, as a behaviour too") {
   auto planner = quick(Single{}, 301);
   planner.options.threads = 3;
@@ -423,8 +437,7 @@ TEST_CASE("what cannot be planned is said") {
   REQUIRE(world.status(ego) == AgentStatus::left_map);
   CHECK(std::string(to_string(world.status(ego))) == "left the map");
   CHECK_THROWS_WITH_AS((void)quick(Single{}).think(world.observe(ego), workspace),
-                       "search: the agent that is to plan is not in the predicted world, or not in traffic; ask for an "
-                       "agent that drives",
+                       "agent 0: it is not in the predicted world, or not in traffic; plan for agents that drive",
                        SearchError);
 }
 

@@ -18,6 +18,10 @@ namespace cambium {
 template <class PredictionWorld, class Actions = MacroActions, class Reward = TrafficReward, class Others = IdmClassic,
           class Options = MctsOptions<>>
 struct MctsCooperative {
+  static_assert(Described<Others>,
+                "cambium: a planner's Others must be a behaviour with described parameters, as cambium::IdmClassic; "
+                "where it has none: `static constexpr auto parameters() { return std::make_tuple(); }`");
+
   using Domain = TrafficDomain<PredictionWorld, Actions, Reward>;
   using Workspace = MctsWorkspace<Domain, Options>;
   using Memory = detail::ActionMemory<Actions>;
@@ -71,6 +75,7 @@ struct MctsCooperative {
     if (!slots.empty())
       for (auto const slot :
            detail::nearest_agents(world, slots[0], static_cast<std::size_t>(most_agents - 1), range)) {
+        if (reward.judge(std::as_const(world), slot, options.step).ends) continue;  // its course is over
         world.set_behavior(world.roster().agents[slot].id, detail::ActionSet<Actions>::behavior(actions));
         slots.push_back(slot);
       }

@@ -92,6 +92,8 @@ struct MctsHypothesis {
   template <class View>
   [[nodiscard]] MctsReport<Domain> think(View const& view, Memory& memory, double dt, Workspace& workspace) const {
     check_parameters(*this);
+    if (!(dt > 0.0 && dt <= PredictionWorld::longest_step))
+      throw ParameterError("mcts_hypothesis: dt", "is " + std::to_string(dt), "give the world's step, above 0 s");
     detail::throw_if(search(view, memory, dt, workspace), view.id());
     return workspace.report();
   }

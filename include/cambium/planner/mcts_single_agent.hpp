@@ -18,6 +18,10 @@ namespace cambium {
 template <class PredictionWorld, class Actions = MacroActions, class Reward = TrafficReward, class Others = IdmClassic,
           class Options = MctsOptions<>>
 struct MctsSingleAgent {
+  static_assert(Described<Others>,
+                "cambium: a planner's Others must be a behaviour with described parameters, as cambium::IdmClassic; "
+                "where it has none: `static constexpr auto parameters() { return std::make_tuple(); }`");
+
   using Domain = TrafficDomain<PredictionWorld, Actions, Reward>;
   using Workspace = MctsWorkspace<Domain, Options>;
   using Memory = detail::ActionMemory<Actions>;

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "cambium/behavior/behavior_model.hpp"
-#include "cambium/core/macros.hpp"
 #include "cambium/planner/detail/predicted.hpp"
 #include "cambium/planner/parallel_tree_search.hpp"
 #include "cambium/planner/traffic_domain.hpp"
@@ -69,6 +68,12 @@ class MctsWorkspace {
       "cambium::MctsWorkspace<Domain, Options>: Options must be cambium::MctsOptions<Selection, Rollout, "
       "Budget>, as the last argument of the planner");
 
+  static_assert(
+      detail::HasPriors<DomainType> ||
+          !requires(typename Options::Selection::Statistics statistics) { statistics.prior; },
+      "cambium::MctsWorkspace: a search by priors (cambium::Puct) needs a reward with `double prior(World const&, "
+      "std::uint32_t slot, cambium::MacroAction const&) const` (see RewardModel)");
+
  public:
   using Domain = DomainType;
   using World = typename Domain::World;
@@ -99,7 +104,8 @@ class MctsWorkspace {
 
   /// The search after a run; with threads the first one.
   [[nodiscard]] Search& search() {
-    CAMBIUM_ASSERT(!trees_.searches().empty(), "MctsWorkspace: nothing has been searched yet");
+    if (trees_.searches().empty())
+      throw SearchError("workspace", "nothing has been searched yet", "call `think` first");
     return trees_.searches()[0];
   }
   [[nodiscard]] Domain& domain() { return search().domain(); }
@@ -192,7 +198,11 @@ void throw_if(SearchResult<Action> const& result, AgentId ego) {
   auto const problem = result.problem;
   auto const where = "agent " + to_string(ego) +
                      (result.problem_steps > 0 ? ", at step " + std::to_string(result.problem_steps) : std::string());
-  if (problem == SearchProblem::no_agents) cambium::throw_if(SearchProblem::not_in_world);
+  if (problem == SearchProblem::no_agents || problem == SearchProblem::not_in_world)
+    throw SearchError(where, "it is not in the predicted world, or not in traffic", "plan for agents that drive");
+  if (problem == SearchProblem::not_finite)
+    throw SearchError(where, "its reward (`judge`), its cost or the value of a course is not a finite number",
+                      "check what the reward gives in such states");
   if (problem == SearchProblem::no_actions)
     throw SearchError(where, "none of its actions is available in a state that the search came to",
                       "give it one that always is, such as keep_gap or stay");

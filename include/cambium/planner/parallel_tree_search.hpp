@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "cambium/core/error.hpp"
-#include "cambium/core/macros.hpp"
 #include "cambium/planner/search_result.hpp"
 #include "cambium/planner/tree_search_parameters.hpp"
 
@@ -76,7 +75,7 @@ class ParallelTreeSearch {
   /// As `TreeSearch::run`. The principal variation is that of the tree that knows most about the best actions. Passes
   /// on what a domain throws.
   Result const& run(State const& root, std::uint64_t seed) {
-    CAMBIUM_ASSERT(!searches_.empty(), "ParallelTreeSearch: `set` comes before `run`");
+    if (searches_.empty()) throw SearchError("ParallelTreeSearch", "has no domain yet", "call `set` before `run`");
     if (searches_.size() == 1) return searches_[0].run(root, seed);
     std::vector<std::exception_ptr> errors(searches_.size());
     auto const grow = [&](std::size_t i) {

@@ -127,6 +127,7 @@ struct TruncatedRollout {
   Base base{};
 
   static constexpr char const* name = "truncated_rollout";
+  static constexpr char const* summary = "another roll-out's first steps, then the domain's value";
   static constexpr auto parameters() {
     return std::make_tuple(parameter("base", &TruncatedRollout::base, "-", {}, "what is done, and for how many steps"));
   }

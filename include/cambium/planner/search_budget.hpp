@@ -53,6 +53,7 @@ struct TimeBudget {
   std::size_t iterations = 1'000'000;
 
   static constexpr char const* name = "time_budget";
+  static constexpr char const* summary = "so much time of the wall clock";
   static constexpr auto parameters() {
     return std::make_tuple(
         parameter("duration", &TimeBudget::duration, "s", Range{1e-6, 86'400}, "time for one search"),

@@ -87,7 +87,7 @@ struct SearchResult {
     throw_if(problem, problem_steps);
     if (agent >= agents)
       throw SearchError("search result", "has no agent " + std::to_string(agent),
-                        "ask for one of 0 to " + std::to_string(agents - 1));
+                        agents == 0 ? "run the search first" : "it has " + std::to_string(agents));
     return {arms.data() + first_arm[agent], first_arm[agent + 1] - first_arm[agent]};
   }
   /// What the agent is to do, and what is expected of it. Throws as `of`.

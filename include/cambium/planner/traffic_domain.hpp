@@ -33,6 +33,10 @@ class TrafficDomain {
   static_assert(RewardModel<Reward, PredictionWorld>,
                 "cambium::TrafficDomain<World, Actions, Reward>: Reward must judge a world, as cambium::TrafficReward "
                 "does (see RewardModel)");
+  static_assert(
+      Described<Reward>,
+      "cambium::TrafficDomain<World, Actions, Reward>: describe Reward's parameters, as cambium::TrafficReward "
+      "does; where it has none: `static constexpr auto parameters() { return std::make_tuple(); }`");
 
  public:
   using World = PredictionWorld;

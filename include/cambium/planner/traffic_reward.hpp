@@ -18,7 +18,8 @@ struct Judgement {
   bool ends = false;
 };
 
-/// Judges, for a search, where a step of `dt` [s] led the agent at `slot` of `world`: a copyable struct with
+/// Judges, for a search, where a step of `dt` [s] led the agent at `slot` of `world`: a copyable, described struct
+/// (`static constexpr auto parameters()`, see `TrafficReward`) with
 ///   `template <class World> Judgement judge(World const& world, std::uint32_t slot, double dt) const`
 /// and, where it likes,
 ///   `double value(World const& world, std::uint32_t slot, double dt) const`: what a course that is cut off there would
