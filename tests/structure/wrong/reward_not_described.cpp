@@ -1,0 +1,14 @@
+// expect: describe Reward's parameters, as cambium::TrafficReward does
+#include <cambium/execution/interpolate.hpp>
+#include <cambium/planner/mcts_single_agent.hpp>
+#include <cambium/world/world.hpp>
+
+struct Fast {
+  template <class World>
+  cambium::Judgement judge(World const& world, std::uint32_t slot, double dt) const {
+    return {{world.frame().agents[slot].state.speed * dt, 0.0}, false};
+  }
+};
+using Predicted = cambium::World<cambium::BehaviorSet<cambium::MacroActions, cambium::IdmClassic>,
+                                 cambium::InterpolateExecution, cambium::SingleTrack>;
+cambium::MctsSingleAgent<Predicted, cambium::MacroActions, Fast>::Workspace workspace;
