@@ -473,8 +473,7 @@ TEST_CASE("actions that are none or too many are found in roll-outs too, and a r
   }
   TreeSearch<Walk> search(Walk{}, {.horizon = 10}, {}, {}, {20});
   CHECK(search.run(0, 1).choice(0).action == 1);
-  CHECK_THROWS_WITH_AS((void)search.result().of(1), "search result: has no agent 1; it has 1",
-                       SearchError);
+  CHECK_THROWS_WITH_AS((void)search.result().of(1), "search result: has no agent 1; it has 1", SearchError);
   // A run that fails leaves no tree of the one before.
   TreeSearch<TicTacToe> game({}, {.horizon = 9}, {}, {}, {50});
   (void)game.run({}, 1);

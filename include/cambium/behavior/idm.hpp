@@ -181,9 +181,8 @@ struct IdmTrial {
 
 /// One step over `step` [s], from a speed and a gap at which the model responds with `now`.
 template <HasIdmParameters P, class Scalar>
-[[nodiscard]] IdmTrial<Scalar> try_idm_step(P const& p, IdmStep<Scalar> const& response,
-                                            IdmResponse<Scalar> const& now, Scalar v, Scalar gap, Scalar leader_speed,
-                                            double step, double tolerance) {
+[[nodiscard]] IdmTrial<Scalar> try_idm_step(P const& p, IdmStep<Scalar> const& response, IdmResponse<Scalar> const& now,
+                                            Scalar v, Scalar gap, Scalar leader_speed, double step, double tolerance) {
   using std::abs;
   using std::min;
   auto const square = [](Scalar x) { return x * x; };
@@ -253,8 +252,7 @@ template <HasIdmParameters P, class Scalar>
                                                     double dt, double tolerance) {
   if (dt <= detail::longest_idm_step) {
     detail::IdmStep<Scalar> const response(p, leader_speed);
-    auto const trial =
-        detail::try_idm_step(p, response, response(speed, gap), speed, gap, leader_speed, dt, tolerance);
+    auto const trial = detail::try_idm_step(p, response, response(speed, gap), speed, gap, leader_speed, dt, tolerance);
     if (trial.accurate) return {trial.distance, trial.speed};
   }
   return detail::idm_motion_in_steps(p, speed, gap, leader_speed, dt, tolerance);
