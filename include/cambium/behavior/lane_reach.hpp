@@ -83,8 +83,9 @@ CAMBIUM_NOINLINE void for_each_on_feeders(View const& view, double distance, F c
     if (feeder.end < s) continue;
     double const from = s <= feeder.begin ? feeder.index_begin : feeder.index_at(s);
     view.for_each_on_lane(from, feeder.index_end, [&](LaneUser const& user) {
+      if (user.position < feeder.index_begin || user.position > feeder.index_end) return;  // it only reaches in
       double const position = feeder.image(user.position);
-      if (position <= s || user.position > feeder.index_end) return;
+      if (position <= s) return;
       double const gap = map::gap_before_merge(front, position - user.rear, feeder.free_until);
       f(Neighbor{user.agent, user.object, gap, user.speed, user.front + user.rear, user.slot});
     });

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "cambium/map/detail/stable_sort.hpp"
+#include "cambium/core/detail/stable_sort.hpp"
 
 namespace cambium::map {
 
@@ -63,7 +63,7 @@ class CubicProfile {
   /// Takes records in any order; those of equal start keep their order, so the later one wins.
   explicit CubicProfile(std::vector<CubicRecord> records, BeforeFirst before = BeforeFirst::zero)
       : records_(std::move(records)), before_(before) {
-    detail::stable_sort(records_, &CubicRecord::s);
+    cambium::detail::stable_sort(records_, &CubicRecord::s);
   }
 
   [[nodiscard]] double value(double s) const {

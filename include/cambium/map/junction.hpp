@@ -6,12 +6,12 @@
 #include <utility>
 #include <vector>
 
+#include "cambium/core/detail/stable_sort.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/geometry/box.hpp"
 #include "cambium/geometry/convex_hull.hpp"
 #include "cambium/geometry/polygon.hpp"
-#include "cambium/map/detail/stable_sort.hpp"
 #include "cambium/map/lane.hpp"
 #include "cambium/map/lane_area.hpp"
 #include "cambium/map/map.hpp"
@@ -116,7 +116,8 @@ inline void check_junction(Map const& map, JunctionId id) {
       conflict.area = detail::common_ground(map.lane(first), conflict.on_first, other, conflict.on_second);
       conflicts.push_back(std::move(conflict));
     }
-  detail::stable_sort(conflicts, [](ConflictArea const& c) { return std::tuple(c.first, c.second, c.on_first.begin); });
+  cambium::detail::stable_sort(conflicts,
+                               [](ConflictArea const& c) { return std::tuple(c.first, c.second, c.on_first.begin); });
   return conflicts;
 }
 

@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "cambium/core/detail/stable_sort.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/map/detail/quadrature.hpp"
-#include "cambium/map/detail/stable_sort.hpp"
 #include "cambium/map/parametric_cubic.hpp"
 
 namespace cambium::map {
@@ -159,7 +159,7 @@ class ReferenceLine {
   ReferenceLine() = default;
   /// Takes the geometries in any order and sorts them by `s`; small gaps between them stay as they are.
   explicit ReferenceLine(std::vector<Geometry> geometries) : geometries_(std::move(geometries)) {
-    detail::stable_sort(geometries_, &Geometry::s);
+    cambium::detail::stable_sort(geometries_, &Geometry::s);
   }
 
   /// The point at station `s` [m], at a joint that of the later geometry. O(log geometries); a spiral costs up to 20

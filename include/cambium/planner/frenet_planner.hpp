@@ -18,7 +18,7 @@
 #include "cambium/behavior/lane_change.hpp"
 #include "cambium/behavior/lane_ends.hpp"
 #include "cambium/behavior/lane_reach.hpp"
-#include "cambium/map/detail/stable_sort.hpp"
+#include "cambium/core/detail/stable_sort.hpp"
 #include "cambium/planner/detail/others_ahead.hpp"
 #include "cambium/planner/detail/predicted.hpp"
 #include "cambium/planner/frenet_candidate.hpp"
@@ -158,7 +158,7 @@ struct FrenetPlanner {
       if (number != map::no_corridor) sample_lane(view, number, memory, workspace);
     for (auto& candidate : workspace.candidates)
       if (std::isnan(candidate.cost)) candidate.cost = std::numeric_limits<double>::infinity();
-    map::detail::stable_sort(workspace.candidates, &FrenetCandidate::cost);
+    detail::stable_sort(workspace.candidates, &FrenetCandidate::cost);
     return SearchProblem::none;
   }
 

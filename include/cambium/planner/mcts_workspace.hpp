@@ -83,7 +83,7 @@ class MctsWorkspace {
 
   /// Searches from the domain's world. Throws `ParameterError` where an option is out of its range.
   Result const& run(Domain domain, Options const& options, std::uint64_t seed) {
-    if (!trees_.searches().empty() && !domain.is_same_game(this->domain())) trees_.forget();
+    if (std::exchange(keeps_, false) && !domain.is_same_game(this->domain())) trees_.forget();
     auto const root = domain.root();
     trees_.set(std::move(domain), options.search, options.selection, options.rollout, options.budget,
                static_cast<std::size_t>(options.threads));
@@ -99,7 +99,8 @@ class MctsWorkspace {
   /// states.
   bool keep() {
     auto const& result = trees_.result();
-    return !result.variation.empty() && trees_.keep({result.variation.data(), result.agents});
+    keeps_ = !result.variation.empty() && trees_.keep({result.variation.data(), result.agents});
+    return keeps_;
   }
 
   /// The search after a run; with threads the first one.
@@ -151,6 +152,7 @@ class MctsWorkspace {
 
  private:
   ParallelTreeSearch<Search> trees_;
+  bool keeps_ = false;  ///< the next run may build on what was found
   typename Domain::State state_;
   std::vector<Action> joint_;
 };

@@ -231,7 +231,8 @@ class TrafficIndex {
   }
 
   /// Next ahead among those that are not agents on the corridor's own lanes: who reaches in from other lanes, objects,
-  /// and all in lanes that merge. Out of line: few steps need it, and it is large.
+  /// and all in lanes that merge. Out of line: few steps need it, and it is large. It gets copies, so that what is
+  /// searched for elsewhere can stay in registers.
   template <class Query>
   CAMBIUM_NOINLINE TrafficHit front_of_others(map::LaneCorridor const& corridor, Query const& query, List objects,
                                               TrafficHit best) const {

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "cambium/core/detail/stable_sort.hpp"
 #include "cambium/map/detail/attribute_reader.hpp"
 #include "cambium/map/detail/move_records.hpp"
-#include "cambium/map/detail/stable_sort.hpp"
 #include "cambium/map/detail/xml_context.hpp"
 #include "cambium/map/opendrive_document.hpp"
 
@@ -20,7 +20,7 @@ namespace cambium::map::detail {
 /// Sorts by `key` (a member) and reports when the file's order was another one.
 template <class Record, class Key>
 void sort_records(XmlContext& context, pugi::xml_node parent, std::vector<Record>& records, Key key, char const* what) {
-  if (records.size() > 1 && stable_sort(records, key))
+  if (records.size() > 1 && cambium::detail::stable_sort(records, key))
     context.report(Severity::warning, parent, std::string(what) + " are not in the order of s; they were sorted");
 }
 
@@ -165,7 +165,7 @@ inline void check_lane_width(XmlContext& context, pugi::xml_node node, opendrive
 inline void order_lanes(XmlContext& context, pugi::xml_node node, opendrive::LaneSection& section) {
   std::vector<opendrive::Lane>& lanes = section.lanes;
   auto const from_left = [](opendrive::Lane const& lane) { return -static_cast<long long>(lane.id); };
-  stable_sort(lanes, from_left);
+  cambium::detail::stable_sort(lanes, from_left);
   auto const is_double = [&](opendrive::Lane const& before, opendrive::Lane const& lane) {
     if (before.id != lane.id) return false;
     context.report(Severity::warning, lane.line, "lane",
@@ -178,7 +178,7 @@ inline void order_lanes(XmlContext& context, pugi::xml_node node, opendrive::Lan
     opendrive::Lane centre;
     centre.line = section.line;
     lanes.push_back(std::move(centre));
-    stable_sort(lanes, from_left);
+    cambium::detail::stable_sort(lanes, from_left);
   }
   for (std::size_t i = 1; i < lanes.size(); ++i)
     if (from_left(lanes[i]) - from_left(lanes[i - 1]) > 1)
@@ -242,7 +242,8 @@ inline void complete_single_sides(std::vector<opendrive::LaneSection>& sections)
         section.lanes.push_back(std::move(lane));
       }
     }
-    stable_sort(section.lanes, [](opendrive::Lane const& lane) { return -static_cast<long long>(lane.id); });
+    cambium::detail::stable_sort(section.lanes,
+                                 [](opendrive::Lane const& lane) { return -static_cast<long long>(lane.id); });
   }
 }
 

@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "cambium/core/detail/stable_sort.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/map/detail/attribute_reader.hpp"
 #include "cambium/map/detail/geometry_fault.hpp"
-#include "cambium/map/detail/stable_sort.hpp"
 #include "cambium/map/reference_line.hpp"
 
 namespace cambium::map::detail {
@@ -141,7 +141,7 @@ struct ReadGeometry {
     context.report(Severity::warning, node ? node : road_node, "the road has no geometry");
     return false;
   }
-  if (stable_sort(all, [](ReadGeometry const& read) { return read.geometry.s; }))
+  if (cambium::detail::stable_sort(all, [](ReadGeometry const& read) { return read.geometry.s; }))
     context.report(Severity::warning, node, "geometries are not in the order of s; they were sorted");
   for (ReadGeometry& read : all) {
     if (!read.rest.attributes.empty() || !read.rest.elements.empty())

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace cambium::map::detail {
+namespace cambium::detail {
 
 /// Sorts by `key(element)`, elements of equal key keep their order; true when they were not sorted before. `key` gives
 /// a value. (std::stable_sort of libstdc++ 12 does not compile without warnings in clang 19.)
@@ -27,4 +27,4 @@ bool stable_sort(std::vector<Element>& elements, Key const& key) {
   return true;
 }
 
-}  // namespace cambium::map::detail
+}  // namespace cambium::detail
