@@ -69,6 +69,25 @@ TEST_CASE("sine and cosine agree with the long double library within 2.5e-16") {
   CHECK(worst_up_to(1e8, 1000) < 2.5e-16);
 }
 
+TEST_CASE("the short series agree with the long double library up to a slight angle") {
+  RandomStream stream(4, 0, 0);
+  double sine = 0.0, cosine = 0.0, tangent = 0.0, inverse = 0.0;
+  auto const error = [](double value, long double exact) { return static_cast<double>(std::abs(value - exact)); };
+  for (int i = 0; i < 300000; ++i) {
+    double const x = i == 0 ? slight_angle : Uniform{-slight_angle, slight_angle}(stream);
+    auto const exact = static_cast<long double>(x);
+    sine = std::max(sine, error(sin_cos_slight(x).sin, std::sin(exact)));
+    cosine = std::max(cosine, error(sin_cos_slight(x).cos, std::cos(exact)));
+    tangent = std::max(tangent, error(tangent_slight(x), std::tan(exact)));
+    inverse = std::max(inverse, error(arc_tangent(x), std::atan(exact)));
+  }
+  CHECK(sine < 3e-17);
+  CHECK(cosine < 2.5e-16);
+  CHECK(tangent < 3e-17);
+  CHECK(inverse < 5e-17);
+  for (double const t : {0.2, -1.0, 3.0, 1e9}) CHECK(arc_tangent(t) == doctest::Approx(std::atan(t)).epsilon(1e-15));
+}
+
 TEST_CASE("sine and cosine are exact at zero and right at the quarter turns") {
   CHECK(sin_cos(0.0).sin == 0.0);
   CHECK(sin_cos(0.0).cos == 1.0);

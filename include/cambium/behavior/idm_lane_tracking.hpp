@@ -124,8 +124,9 @@ struct IdmLaneTracking {
     if (memory.corridor != at.corridor || at.segment < memory.from || faster > memory.fastest)
       memory = {at.segment, 0, 0.0f, room_to_rise * faster, at.corridor};
     memory.from = at.segment;
-    double const twice_braking = 2.0 * p.comfortable_deceleration, reach = at.s + speed * (speed / twice_braking + 1.0);
-    if (reach < static_cast<double>(memory.known_until)) return;
+    double const twice_braking = 2.0 * p.comfortable_deceleration;
+    if (speed * (speed + twice_braking) < twice_braking * (static_cast<double>(memory.known_until) - at.s)) return;
+    double const reach = at.s + speed * (speed / twice_braking + 1.0);
     double const comfortable = 0.85 * lateral_acceleration_limit;  // the rest is for corrections
     auto i = static_cast<std::size_t>(std::max(at.segment, memory.straight_until));
     double const straight = comfortable / (static_cast<double>(memory.fastest) * static_cast<double>(memory.fastest));
@@ -153,8 +154,8 @@ struct IdmLaneTracking {
     auto const& model = view.dynamics();
     auto const& line = view.corridor().center;
     double const wheel_base = wheel_base_of(model);
-    int const steps = std::max(1, static_cast<int>(std::ceil(dt / longest_substep - 1e-9)));
-    double const h = dt / steps;
+    int const steps = dt <= longest_substep ? 1 : static_cast<int>(std::ceil(dt / longest_substep - 1e-9));
+    double const h = steps == 1 ? dt : dt / steps;
     auto segment = view.lane_position().segment;
     auto x = view.state();
     x.speed = std::max(0.0, x.speed);
@@ -179,8 +180,9 @@ struct IdmLaneTracking {
                          h);
   }
 
+  /// Out of line, with arguments by value: what others use is not kept in memory for it.
   template <class View>
-  [[nodiscard]] Plan<View> bark_plan(View const& view, IdmParameters const& p, Leader leader, double dt) const {
+  [[nodiscard]] CAMBIUM_NOINLINE Plan<View> bark_plan(View view, IdmParameters p, Leader leader, double dt) const {
     auto const& model = view.dynamics();
     double const wheel_base = wheel_base_of(model), h = dt / bark::substeps;
     auto segment = view.lane_position().segment;

@@ -9,6 +9,7 @@
 
 #include "cambium/behavior/follow_lane.hpp"
 #include "cambium/core/parameters.hpp"
+#include "cambium/geometry/angle.hpp"
 
 namespace cambium {
 
@@ -99,13 +100,15 @@ template <class View>
                                      LaneChange& change, LongitudinalMotion<double> const& motion, double dt,
                                      double offset = 0.0) {
   double const stretch = std::max(0.1, 1.0 - corridor.center.segments()[at.segment].curvature * at.lateral);
-  LateralCourse<double> const start{at.lateral - offset, stretch * std::tan(at.heading_error), change.bend};
-  double const along = motion.distance * std::cos(at.heading_error) / stretch;
+  auto const [sin, cos] = geometry::sin_cos(at.heading_error);
+  LateralCourse<double> const start{at.lateral - offset, stretch * (sin / cos), change.bend};
+  double const along = motion.distance * cos / stretch;
   auto const course = converge(start, static_cast<double>(change.left), along);
   Plan<View> plan;
   typename View::State next = view.state();
   next.time = view.time() + dt;
-  place_on_lane(corridor, at.s + along, offset + course.offset, std::atan(course.slope / stretch), at.segment, next);
+  place_on_lane(corridor, at.s + along, offset + course.offset, geometry::arc_tangent(course.slope / stretch),
+                at.segment, next);
   next.speed = motion.speed;
   plan.trajectory.push_back(next);
   plan.action.acceleration = (motion.speed - view.state().speed) / dt;

@@ -22,10 +22,10 @@ struct SingleTrackInput {
 /// stays within its limit [m/s^2].
 [[nodiscard]] inline double steering_within_grip(double limit, double lateral_acceleration_limit, double wheel_base,
                                                  double speed) {
-  double const tangent = lateral_acceleration_limit * wheel_base / (speed * speed);
-  // atan is concave: it lies above its chord, and without it most cases are decided.
-  if (limit <= 0.785 * std::min(1.0, tangent)) return limit;
-  return std::min(limit, std::atan(tangent));
+  // atan is concave: it lies above its chord, and without it, or a division, most cases are decided.
+  double const across = lateral_acceleration_limit * wheel_base, square = speed * speed;
+  if (limit * square <= 0.785 * std::min(square, across)) return limit;
+  return std::min(limit, std::atan(across / square));
 }
 
 /// Sine and cosine in any scalar.
@@ -51,8 +51,8 @@ template <class Scalar>
 template <class Scalar>
 [[nodiscard]] Scalar steering_curvature(Scalar const& steering, double wheel_base) {
   if constexpr (std::is_same_v<Scalar, double>) {
-    auto const [s, c] = std::abs(steering) <= geometry::pi / 4 ? geometry::sin_cos_small(steering)
-                                                               : geometry::sin_cos_bounded(steering);
+    if (std::abs(steering) <= geometry::slight_angle) return geometry::tangent_slight(steering) / wheel_base;
+    auto const [s, c] = geometry::sin_cos_bounded(steering);
     return s / (c * wheel_base);
   } else {
     using std::tan;
@@ -114,14 +114,14 @@ static_assert(DynamicModel<SingleTrack>);
 /// of all stages are known beforehand: small turns from the first one.
 [[nodiscard]] inline State rk4_step(SingleTrack const& model, State const& x, SingleTrackInput<double> const& u,
                                     double dt) {
-  double const half = dt / 2, sixth = dt / 6;
+  double const half = dt / 2, sixth = dt * (1.0 / 6);
   double const middle = x.speed + half * u.acceleration, end = x.speed + dt * u.acceleration;
   double const curvature = steering_curvature(u.steering, model.wheel_base);
   double const turn_2 = half * x.speed * curvature, turn_3 = half * middle * curvature;
-  bool const small = std::max(std::abs(turn_2), std::abs(turn_3)) <= geometry::pi / 4;
+  bool const slight = std::max(std::abs(turn_2), std::abs(turn_3)) <= geometry::slight_angle;
   auto const first = geometry::sin_cos(x.heading);
-  auto const second = small ? geometry::sin_cos_small(turn_2) : geometry::sin_cos(turn_2);
-  auto const third = small ? geometry::sin_cos_small(turn_3) : geometry::sin_cos(turn_3);
+  auto const second = slight ? geometry::sin_cos_slight(turn_2) : geometry::sin_cos(turn_2);
+  auto const third = slight ? geometry::sin_cos_slight(turn_3) : geometry::sin_cos(turn_3);
   double const sin_4 = 2.0 * third.sin * third.cos, cos_4 = 1.0 - 2.0 * third.sin * third.sin;  // twice the third turn
   // In the frame of the first heading.
   double const along = x.speed + 2.0 * middle * (second.cos + third.cos) + end * cos_4;

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <utility>
 
 #include "cambium/core/macros.hpp"
 #include "cambium/geometry/pose.hpp"
@@ -41,14 +44,25 @@ struct SinCos {
 
 namespace detail {
 
-/// c + d x + e x^2 + ... by Horner's rule.
+/// c[0] + c[1] x + c[2] x^2 + ... by pairs (Estrin 1960): few operations wait for each other.
+template <std::size_t n>
+[[nodiscard]] constexpr double polynomial(double x, std::array<double, n> const& c) {
+  if constexpr (n == 1) {
+    return c[0];
+  } else {
+    return [&]<std::size_t... i>(std::index_sequence<i...>) {
+      std::array<double, (n + 1) / 2> pairs{(c[2 * i] + c[2 * i + 1] * x)...};
+      if constexpr (n % 2 != 0) pairs.back() = c.back();
+      return polynomial(x * x, pairs);
+    }
+    (std::make_index_sequence<n / 2>{});
+  }
+}
+
+/// The same of coefficients c, d, e, ...
 template <class... Rest>
 [[nodiscard]] constexpr double polynomial(double x, double c, Rest... rest) {
-  if constexpr (sizeof...(rest) == 0) {
-    return c;
-  } else {
-    return polynomial(x, rest...) * x + c;
-  }
+  return polynomial(x, std::array{c, rest...});
 }
 
 }  // namespace detail
@@ -62,6 +76,31 @@ template <class... Rest>
   double const cosine_series = detail::polynomial(q, 1.0 / 24, -1.0 / 720, 1.0 / 40320, -1.0 / 3628800, 1.0 / 479001600,
                                                   -1.0 / 87178291200, 1.0 / 20922789888000);
   return {x + x * (q * sine_series), 1.0 - (0.5 * q - q * q * cosine_series)};
+}
+
+/// Angles up to this [rad] have shorter series.
+inline constexpr double slight_angle = 0.125;
+
+/// As `sin_cos`, for |x| <= `slight_angle` only.
+[[nodiscard]] inline SinCos sin_cos_slight(double x) {
+  double const q = x * x;
+  double const sine_series = detail::polynomial(q, -1.0 / 6, 1.0 / 120, -1.0 / 5040, 1.0 / 362880);
+  double const cosine_series = detail::polynomial(q, 1.0 / 24, -1.0 / 720, 1.0 / 40320, -1.0 / 3628800);
+  return {x + x * (q * sine_series), 1.0 - (0.5 * q - q * q * cosine_series)};
+}
+
+/// Tangent of x for |x| <= `slight_angle` only: the first term that is left out is below 1e-17 of it.
+[[nodiscard]] inline double tangent_slight(double x) {
+  double const q = x * x;
+  return x + x * (q * detail::polynomial(q, 1.0 / 3, 2.0 / 15, 17.0 / 315, 62.0 / 2835, 1382.0 / 155925,
+                                         21844.0 / 6081075, 929569.0 / 638512875));
+}
+
+/// Arc tangent: inline where it is small, as in steering it is.
+[[nodiscard]] inline double arc_tangent(double t) {
+  if (!(std::abs(t) <= 0.125)) return std::atan(t);
+  double const q = t * t;
+  return t * (1.0 - q * detail::polynomial(q, 1.0 / 3, -1.0 / 5, 1.0 / 7, -1.0 / 9, 1.0 / 11, -1.0 / 13, 1.0 / 15));
 }
 
 /// As `sin_cos`, for |x| <= 1e5 only: without a branch or a library call, so that a loop over it becomes SIMD code.

@@ -7,6 +7,7 @@
 #include "cambium/core/parameters.hpp"
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/evaluation/drivable_area.hpp"
+#include "cambium/geometry/angle.hpp"
 #include "cambium/planner/search_domain.hpp"
 #include "cambium/world/frame.hpp"
 
@@ -111,7 +112,7 @@ struct TrafficReward {
   [[nodiscard]] double on_the_way(Record const& record, double duration) const {
     double const speed = record.state.speed;
     double reward = 0.0;
-    reward += progress * speed * std::cos(record.lane.heading_error) * duration;
+    reward += progress * speed * geometry::sin_cos(record.lane.heading_error).cos * duration;
     reward += speed_deviation * std::abs(speed - desired_speed) * duration;
     reward += acceleration * record.action.acceleration * record.action.acceleration * duration;
     reward += lateral_offset * std::abs(record.lane.lateral) * duration;

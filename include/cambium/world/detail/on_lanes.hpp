@@ -9,6 +9,7 @@
 
 #include "cambium/behavior/view.hpp"
 #include "cambium/core/macros.hpp"
+#include "cambium/geometry/angle.hpp"
 #include "cambium/map/lane_position.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/world/frame.hpp"
@@ -125,12 +126,9 @@ void move_on_lane(Map const& map, map::RoadCorridor const& road, double distance
   return best;
 }
 
-/// Cosine of an angle that is mostly small, as between a vehicle and its lane: there four terms are as good as the
-/// function.
+/// Cosine of an angle that is mostly small, as between a vehicle and its lane.
 [[nodiscard]] inline double cosine_of_small(double angle) {
-  double const square = angle * angle;
-  if (square > 1e-3) return std::cos(angle);
-  return 1.0 - square / 2 * (1.0 - square / 12 * (1.0 - square / 30));
+  return std::abs(angle) <= geometry::slight_angle ? geometry::sin_cos_slight(angle).cos : geometry::sin_cos(angle).cos;
 }
 
 /// An agent that follows its path is within its lane when it is no wider than twice this and stands no more aslant than
@@ -142,11 +140,12 @@ template <class Agent, class Record>
 [[nodiscard]] TrafficEntry entry_in(map::Lane const& lane, double s, Agent const& agent, Record const& record,
                                     TrafficEntry entry) {
   double const turn = record.state.heading - lane.path.pose(s).heading;
-  auto const reach = geometry::extent_along(agent.shape, std::cos(turn), std::sin(turn));
+  auto const [sin, cos] = geometry::sin_cos(turn);
+  auto const reach = geometry::extent_along(agent.shape, cos, sin);
   entry.position = lane.index_begin + std::clamp(s, 0.0, lane.length());
   entry.front = reach.positive;
   entry.rear = reach.negative;
-  entry.speed = record.state.speed * std::cos(turn);
+  entry.speed = record.state.speed * cos;
   return entry;
 }
 
@@ -169,7 +168,8 @@ void enter_touched(Map const& map, Agent const& agent, Record const& record, Tra
     auto const& lane = map.lane(hit.lane);
     auto const found = entry_in(lane, hit.s, agent, record, entry);
     double const turn = record.state.heading - lane.path.pose(hit.s).heading;
-    auto const aside = geometry::extent_along(shape, std::sin(turn), -std::cos(turn));
+    auto const [sin, cos] = geometry::sin_cos(turn);
+    auto const aside = geometry::extent_along(shape, sin, -cos);
     auto const widths = lane.widths_at(std::clamp(hit.s, 0.0, lane.length()), hit.segment);
     bool const is_beside = hit.lateral - aside.negative > widths.left || hit.lateral + aside.positive < -widths.right;
     if (is_beside || hit.s + found.front < 0.0 || hit.s - found.rear > lane.length()) return;
@@ -193,7 +193,7 @@ bool straddle(Map const& map, Agent const& agent, Record const& record, TrafficE
     return true;
   }
   auto const& lane = map.lane(corridor.pieces[at.piece].lane);
-  double const sin = std::sin(at.heading_error), cos = std::cos(at.heading_error);
+  auto const [sin, cos] = geometry::sin_cos(at.heading_error);
   auto const reach = geometry::extent_along(agent.shape, sin, -cos);
   double const left = at.lateral + reach.positive, right = reach.negative - at.lateral;
   auto const widths = corridor.widths_at(at.s, at.segment);
