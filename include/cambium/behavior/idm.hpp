@@ -122,35 +122,51 @@ struct IdmResponse {
   bool bounded;         ///< the acceleration is at a bound
 };
 
-/// IDM over a step in which the leader keeps its speed, with all that does not change taken out.
+/// What depends on IDM's parameters alone.
+template <class Scalar>
+struct IdmTerms {
+  template <HasIdmParameters P>
+  explicit IdmTerms(P const& p) : IdmTerms(p, p.desired_speed) {}
+
+  template <HasIdmParameters P>
+  IdmTerms(P const& p, double desired_speed)
+      : inverse_desired_speed(Scalar(1.0 / desired_speed)),
+        headway(Scalar(p.time_headway)),
+        closing(Scalar(0.5 / std::sqrt(p.maximum_acceleration * p.comfortable_deceleration))),
+        minimum_gap(Scalar(p.minimum_gap)),
+        maximum(Scalar(p.maximum_acceleration)),
+        low(Scalar(p.lowest_acceleration)),
+        high(Scalar(p.highest_acceleration)),
+        exponent(p.exponent) {}
+
+  Scalar inverse_desired_speed, headway, closing, minimum_gap, maximum, low, high;
+  double exponent;
+};
+
+/// IDM over a step in which the leader keeps its speed.
 template <class Scalar>
 class IdmStep {
  public:
-  template <HasIdmParameters P>
-  IdmStep(P const& p, Scalar leader_speed)
-      : inverse_desired_speed_(Scalar(1.0 / p.desired_speed)),
-        headway_(Scalar(p.time_headway)),
-        closing_(Scalar(0.5 / std::sqrt(p.maximum_acceleration * p.comfortable_deceleration))),
-        minimum_gap_(Scalar(p.minimum_gap)),
-        maximum_(Scalar(p.maximum_acceleration)),
-        low_(Scalar(p.lowest_acceleration)),
-        high_(Scalar(p.highest_acceleration)),
-        leader_speed_(leader_speed),
-        exponent_(p.exponent) {}
+  IdmStep(IdmTerms<Scalar> const& terms, Scalar leader_speed) : terms_(terms), leader_speed_(leader_speed) {}
+
+  [[nodiscard]] IdmTerms<Scalar> const& terms() const { return terms_; }
+  [[nodiscard]] Scalar leader_speed() const { return leader_speed_; }
 
   [[nodiscard]] IdmResponse<Scalar> operator()(Scalar speed, Scalar gap) const {
     Scalar const inverse_gap = Scalar(1) / gap;
-    Scalar const dynamic = speed * (headway_ + (speed - leader_speed_) * closing_);
+    Scalar const dynamic = speed * (terms_.headway + (speed - leader_speed_) * terms_.closing);
     bool const interacts = dynamic > Scalar(0);
-    Scalar const closeness = (minimum_gap_ + (interacts ? dynamic : Scalar(0))) * inverse_gap;
-    auto const [free, free_slope] = free_road(speed * inverse_desired_speed_);
-    Scalar const wanted = maximum_ * ((Scalar(1) - free) - closeness * closeness);
-    if (!(gap > Scalar(0)) || !(wanted > low_)) return {low_, Scalar(0), true};
-    if (wanted >= high_) return {high_, Scalar(0), true};
-    Scalar const dynamic_slope = interacts ? headway_ + (Scalar(2) * speed - leader_speed_) * closing_ : Scalar(0);
-    Scalar const by_speed = free_slope * inverse_desired_speed_ + Scalar(2) * closeness * inverse_gap * dynamic_slope;
+    Scalar const closeness = (terms_.minimum_gap + (interacts ? dynamic : Scalar(0))) * inverse_gap;
+    auto const [free, free_slope] = free_road(speed * terms_.inverse_desired_speed);
+    Scalar const wanted = terms_.maximum * ((Scalar(1) - free) - closeness * closeness);
+    if (!(gap > Scalar(0)) || !(wanted > terms_.low)) return {terms_.low, Scalar(0), true};
+    if (wanted >= terms_.high) return {terms_.high, Scalar(0), true};
+    Scalar const dynamic_slope =
+        interacts ? terms_.headway + (Scalar(2) * speed - leader_speed_) * terms_.closing : Scalar(0);
+    Scalar const by_speed =
+        free_slope * terms_.inverse_desired_speed + Scalar(2) * closeness * inverse_gap * dynamic_slope;
     Scalar const by_gap = Scalar(2) * closeness * closeness * inverse_gap;
-    return {wanted, maximum_ * (by_gap * (leader_speed_ - speed) - by_speed * wanted), false};
+    return {wanted, terms_.maximum * (by_gap * (leader_speed_ - speed) - by_speed * wanted), false};
   }
 
  private:
@@ -160,16 +176,16 @@ class IdmStep {
 
   /// x^exponent and its derivative.
   [[nodiscard]] FreeRoad free_road(Scalar x) const {
-    if (exponent_ == 4.0) {
+    if (terms_.exponent == 4.0) {
       Scalar const square = x * x;
       return {square * square, Scalar(4) * square * x};
     }
-    Scalar const power = idm_power(x, exponent_);
-    return {power, x > Scalar(0) ? Scalar(exponent_) * power / x : Scalar(0)};
+    Scalar const power = idm_power(x, terms_.exponent);
+    return {power, x > Scalar(0) ? Scalar(terms_.exponent) * power / x : Scalar(0)};
   }
 
-  Scalar inverse_desired_speed_, headway_, closing_, minimum_gap_, maximum_, low_, high_, leader_speed_;
-  double exponent_;
+  IdmTerms<Scalar> const& terms_;
+  Scalar leader_speed_;
 };
 
 /// What a step of the scheme below came to.
@@ -180,18 +196,18 @@ struct IdmTrial {
 };
 
 /// One step over `step` [s], from a speed and a gap at which the model responds with `now`.
-template <HasIdmParameters P, class Scalar>
-[[nodiscard]] IdmTrial<Scalar> try_idm_step(P const& p, IdmStep<Scalar> const& response, IdmResponse<Scalar> const& now,
-                                            Scalar v, Scalar gap, Scalar leader_speed, double step, double tolerance) {
+template <class Scalar>
+[[nodiscard]] IdmTrial<Scalar> try_idm_step(IdmStep<Scalar> const& response, IdmResponse<Scalar> const& now, Scalar v,
+                                            Scalar gap, double step, double tolerance) {
   using std::abs;
   using std::min;
   auto const square = [](Scalar x) { return x * x; };
   auto const largest_square = Scalar(4.0 * tolerance);  // of the third-order term
-  auto const highest = min(Scalar(p.maximum_acceleration), Scalar(p.highest_acceleration));
+  Scalar const leader_speed = response.leader_speed(), highest = min(response.terms().maximum, response.terms().high);
   auto const [a1, j1, bounded1] = now;
   bool const stands = v <= Scalar(0) && a1 <= Scalar(0);
-  auto const h = Scalar(step), half = Scalar(step / 2), third_part = Scalar(step / 3), sixth = Scalar(step / 6),
-             eighth = Scalar(step * step / 8);
+  auto const h = Scalar(step), half = Scalar(step / 2), third_part = Scalar(step * (1.0 / 3)),
+             sixth = Scalar(step * (1.0 / 6)), eighth = Scalar(step * step / 8);
   Scalar const middle_speed = v + half * a1 + eighth * j1;
   Scalar const middle_gap = gap + half * (leader_speed - v) - eighth * a1;
   auto const [a2, j2, bounded2] =
@@ -206,7 +222,7 @@ template <HasIdmParameters P, class Scalar>
   }
   bool accurate = stops ? v <= Scalar(tolerance) && a2 <= Scalar(0) : square(third) <= largest_square;
   Scalar const expected = a1 + h * j2;  // at the end, with a jerk that changes evenly
-  if (accurate && (bounded1 || bounded2 || expected < Scalar(p.lowest_acceleration)))
+  if (accurate && (bounded1 || bounded2 || expected < response.terms().low))
     accurate =
         square(response(next_speed, gap + h * leader_speed - distance).acceleration - expected) <= largest_square;
   return {distance, next_speed, accurate};
@@ -215,28 +231,40 @@ template <HasIdmParameters P, class Scalar>
 /// The steps of `idm_motion`: [s], shorter is never needed, longer might step over something.
 inline constexpr double shortest_idm_step = 1e-3, longest_idm_step = 0.25;
 
-/// `idm_motion` where one step is not enough.
-template <HasIdmParameters P, class Scalar>
-CAMBIUM_NOINLINE [[nodiscard]] LongitudinalMotion<Scalar> idm_motion_in_steps(P const& p, Scalar speed, Scalar gap,
-                                                                              Scalar leader_speed, double dt,
-                                                                              double tolerance) {
-  IdmStep<Scalar> const response(p, leader_speed);
+/// `idm_motion` where one step is not enough. Gets a copy, so that what is used elsewhere can stay in registers.
+template <class Scalar>
+CAMBIUM_NOINLINE [[nodiscard]] LongitudinalMotion<Scalar> idm_motion_in_steps(IdmTerms<Scalar> terms, Scalar speed,
+                                                                              Scalar gap, Scalar leader_speed,
+                                                                              double dt, double tolerance) {
+  IdmStep<Scalar> const response(terms, leader_speed);
   LongitudinalMotion<Scalar> motion{Scalar(0), speed};
   double left = dt, step = std::min(dt, longest_idm_step);
   while (true) {
     auto const now = response(motion.speed, gap);
-    auto trial = try_idm_step(p, response, now, motion.speed, gap, leader_speed, step, tolerance);
+    auto trial = try_idm_step(response, now, motion.speed, gap, step, tolerance);
     while (!trial.accurate && step > shortest_idm_step) {
       step /= 2;
-      trial = try_idm_step(p, response, now, motion.speed, gap, leader_speed, step, tolerance);
+      trial = try_idm_step(response, now, motion.speed, gap, step, tolerance);
     }
     motion.distance += trial.distance;
     motion.speed = trial.speed;
-    gap += Scalar(step) * leader_speed - trial.distance;
+    gap += Scalar(step) * response.leader_speed() - trial.distance;
     left -= step;
     if (left <= dt * 1e-12) return motion;
     step = std::min({2 * step, longest_idm_step, left});
   }
+}
+
+/// See below.
+template <class Scalar>
+[[nodiscard]] LongitudinalMotion<Scalar> idm_motion(IdmTerms<Scalar> const& terms, Scalar speed, Scalar gap,
+                                                    Scalar leader_speed, double dt, double tolerance) {
+  IdmStep<Scalar> const response(terms, leader_speed);
+  if (dt <= longest_idm_step) {
+    auto const trial = try_idm_step(response, response(speed, gap), speed, gap, dt, tolerance);
+    if (trial.accurate) return {trial.distance, trial.speed};
+  }
+  return idm_motion_in_steps(IdmTerms<Scalar>(terms), speed, gap, leader_speed, dt, tolerance);
 }
 
 }  // namespace detail
@@ -250,12 +278,7 @@ CAMBIUM_NOINLINE [[nodiscard]] LongitudinalMotion<Scalar> idm_motion_in_steps(P 
 template <HasIdmParameters P, class Scalar>
 [[nodiscard]] LongitudinalMotion<Scalar> idm_motion(P const& p, Scalar speed, Scalar gap, Scalar leader_speed,
                                                     double dt, double tolerance) {
-  if (dt <= detail::longest_idm_step) {
-    detail::IdmStep<Scalar> const response(p, leader_speed);
-    auto const trial = detail::try_idm_step(p, response, response(speed, gap), speed, gap, leader_speed, dt, tolerance);
-    if (trial.accurate) return {trial.distance, trial.speed};
-  }
-  return detail::idm_motion_in_steps(p, speed, gap, leader_speed, dt, tolerance);
+  return detail::idm_motion(detail::IdmTerms<Scalar>(p), speed, gap, leader_speed, dt, tolerance);
 }
 
 }  // namespace cambium

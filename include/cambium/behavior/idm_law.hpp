@@ -10,47 +10,40 @@
 
 namespace cambium::detail {
 
-/// IDM with all that depends on its parameters alone taken out; agrees with `idm_acceleration` but for rounding.
+/// A driver's car following; agrees with `idm_acceleration` but for rounding.
 class IdmLaw {
  public:
   template <HasIdmParameters P>
-  explicit IdmLaw(P const& p) : IdmLaw(p, p.desired_speed) {}
+  explicit IdmLaw(P const& p) : terms_(p) {}
 
   template <HasIdmParameters P>
-  IdmLaw(P const& p, double desired_speed)
-      : inverse_desired_speed_(1.0 / desired_speed),
-        headway_(p.time_headway),
-        closing_(0.5 / std::sqrt(p.maximum_acceleration * p.comfortable_deceleration)),
-        minimum_gap_(p.minimum_gap),
-        maximum_(p.maximum_acceleration),
-        low_(p.lowest_acceleration),
-        high_(p.highest_acceleration),
-        exponent_(p.exponent) {}
+  IdmLaw(P const& p, double desired_speed) : terms_(p, desired_speed) {}
 
   /// [m/s^2], on a free road.
   [[nodiscard]] double free(double speed) const {
-    return bounded(maximum_ * (1.0 - idm_power(speed * inverse_desired_speed_, exponent_)));
+    return bounded(terms_.maximum * (1.0 - idm_power(speed * terms_.inverse_desired_speed, terms_.exponent)));
   }
 
   /// [m/s^2], behind a leader.
   [[nodiscard]] double operator()(double speed, double gap, double leader_speed) const {
-    if (!(gap > 0.0)) return low_;
-    double const dynamic = speed * (headway_ + (speed - leader_speed) * closing_);
-    double const closeness = (minimum_gap_ + std::max(0.0, dynamic)) / gap;
-    double const free = idm_power(speed * inverse_desired_speed_, exponent_);
-    return bounded(maximum_ * (1.0 - free - closeness * closeness));
+    if (!(gap > 0.0)) return terms_.low;
+    double const dynamic = speed * (terms_.headway + (speed - leader_speed) * terms_.closing);
+    double const closeness = (terms_.minimum_gap + std::max(0.0, dynamic)) / gap;
+    double const free = idm_power(speed * terms_.inverse_desired_speed, terms_.exponent);
+    return bounded(terms_.maximum * (1.0 - free - closeness * closeness));
   }
 
   [[nodiscard]] double operator()(double speed, std::optional<Neighbor> const& leader) const {
     return leader ? (*this)(speed, leader->gap, leader->speed) : free(speed);
   }
 
-  [[nodiscard]] double minimum_gap() const { return minimum_gap_; }  ///< [m]
+  [[nodiscard]] double minimum_gap() const { return terms_.minimum_gap; }  ///< [m]
+  [[nodiscard]] IdmTerms<double> const& terms() const { return terms_; }
 
  private:
-  [[nodiscard]] double bounded(double a) const { return std::min(std::max(a, low_), high_); }
+  [[nodiscard]] double bounded(double a) const { return std::min(std::max(a, terms_.low), terms_.high); }
 
-  double inverse_desired_speed_, headway_, closing_, minimum_gap_, maximum_, low_, high_, exponent_;
+  IdmTerms<double> terms_;
 };
 
 /// What a driver follows: of all that is ahead what asks for the least acceleration.

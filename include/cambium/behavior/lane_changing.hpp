@@ -97,7 +97,8 @@ struct LaneChanging {
     if (memory.change.active()) {
       if (memory.change.target != home && !may_go_on(view, law, speed, memory.change)) abort(view, speed, memory);
       auto const ahead = ahead_while_changing(view, law, speed, leader, memory.change);
-      return plan_lane_change(view, memory.change, idm_motion(idm, speed, ahead.gap, ahead.speed, dt, tolerance), dt);
+      return plan_lane_change(view, memory.change,
+                              detail::idm_motion(law.terms(), speed, ahead.gap, ahead.speed, dt, tolerance), dt);
     }
     double const end = lane_end(view, home, view.lane_position().piece);
     auto ahead = ahead_in_lane(view, law, speed, leader);
@@ -108,7 +109,8 @@ struct LaneChanging {
       memory.rest = static_cast<float>(rest + course.duration);
       ahead = ahead_while_changing(view, law, speed, leader, memory.change);
     }
-    return plan_lane_change(view, memory.change, idm_motion(idm, speed, ahead.gap, ahead.speed, dt, tolerance), dt);
+    return plan_lane_change(view, memory.change,
+                            detail::idm_motion(law.terms(), speed, ahead.gap, ahead.speed, dt, tolerance), dt);
   }
 
   /// How a follower drives, as this driver assumes it.

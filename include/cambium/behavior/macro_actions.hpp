@@ -183,7 +183,7 @@ struct MacroActions {
     };
     heed(view.front());
     if (change.active() && change.target != view.lane_position().corridor) heed(view.front(view.beside(change.target)));
-    auto const allowed = idm_motion(idm, speed, ahead.gap, ahead.speed, dt, tolerance);
+    auto const allowed = detail::idm_motion(law.terms(), speed, ahead.gap, ahead.speed, dt, tolerance);
     return action.kind == Kind::keep_gap || allowed.speed < wanted.speed ? allowed : wanted;
   }
 };

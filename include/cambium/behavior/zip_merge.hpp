@@ -72,7 +72,8 @@ struct ZipMerge {
     } else if (leader) {
       memory.ahead = leader->agent;
     }
-    return plan_to_center(view, memory.bend, idm_motion(idm, speed, ahead.gap, ahead.speed, dt, tolerance), dt);
+    return plan_to_center(view, memory.bend,
+                          detail::idm_motion(law.terms(), speed, ahead.gap, ahead.speed, dt, tolerance), dt);
   }
 
  private:
