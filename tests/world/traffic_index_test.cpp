@@ -142,14 +142,14 @@ class Twin {
 /// What the twin says of the neighbours on one side of the asker.
 struct Answer {
   double least = infinite;    ///< gap of whoever has the smallest
-  double nearest = infinite;  ///< smallest gap of those who are nearest by reference point, by rule and kind
+  double nearest = infinite;  ///< smallest gap of those who are nearest by reference point, objects apart, by rule
   std::vector<std::pair<Somebody const*, double>> gaps;
 };
 
 /// Everybody ahead of the asker (`sign` 1) or behind (-1).
 Answer look(Twin const& twin, Somebody const& asker, double s, std::vector<Somebody> const& all, int sign) {
   Answer answer;
-  std::map<std::tuple<Kind, int, LaneId>, std::pair<double, double>> nearest;  // distance and gap
+  std::map<std::tuple<bool, int, LaneId>, std::pair<double, double>> nearest;  // distance and gap
   for (auto const& other : all) {
     bool const is_object = other.kind == Kind::object;
     if (!is_object && other.slot == asker.slot) continue;
@@ -163,7 +163,7 @@ Answer look(Twin const& twin, Somebody const& asker, double s, std::vector<Someb
       answer.gaps.emplace_back(&other, gap);
       answer.least = std::min(answer.least, gap);
       auto const lane = image.rule == 0 ? cb::none<LaneId> : other.lane;
-      auto& best = nearest.try_emplace({other.kind, image.rule, lane}, infinite, infinite).first->second;
+      auto& best = nearest.try_emplace({is_object, image.rule, lane}, infinite, infinite).first->second;
       best = std::min(best, {ahead, gap});
     }
   }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -18,10 +19,10 @@ namespace cambium {
 /// Who is where on the lanes, sorted, so that the next road user along a corridor is the next in the list.
 ///
 /// Agents are kept in one list by lane coordinate; the order of the last step is repaired, not rebuilt (insertion sort;
-/// where it is far off, a full sort). Agents that reach over their lane's border appear in the neighbour's lane too;
-/// static objects are in a list of their own. On the corridor itself the nearest by reference point counts; from each
-/// feeder (a lane that merges in, or has just split off) likewise; of these the one with the smallest gap is the
-/// neighbour.
+/// where it is far off, a full sort). Agents that reach over their lane's border are in it once more, in the
+/// neighbour's lane; static objects are in a list of their own. On the corridor itself the nearest by reference point
+/// counts; from each feeder (a lane that merges in, or has just split off) likewise; of these the one with the smallest
+/// gap is the neighbour.
 class TrafficIndex {
  public:
   /// Farthest reference point that is a neighbour, along the corridor [m].
@@ -37,26 +38,26 @@ class TrafficIndex {
   /// little has changed.
   template <class EntryOf>
   void refresh(std::size_t count, EntryOf const& entry_of) {
-    if (agents_.size() != count) {
-      agents_.resize(count);
+    if (rank_.size() != count) {
       rank_.resize(count);
-      straddling_.reserve(2 * count);
-      for (std::uint32_t i = 0; i < count; ++i) agents_[i].slot = i;
+      agents_.reserve(3 * count);
+      reaching_.reserve(2 * count);
+      agents_.resize(count);
+      for (std::uint32_t i = 0; i < count; ++i) agents_[rank_[i] = i].slot = i;
     }
-    straddling_.clear();
+    reaching_.clear();
     longest_front_ = longest_rear_ = 0.0;
-    for (auto& entry : agents_) {
-      entry = entry_of(entry.slot, straddling_);
-      longest_front_ = std::max(longest_front_, entry.front);
-      longest_rear_ = std::max(longest_rear_, entry.rear);
+    std::size_t own = 0;
+    for (std::size_t i = 0; i < agents_.size(); ++i) {
+      if (!is_own(i)) continue;  // of the last time
+      agents_[own] = entry_of(agents_[i].slot, reaching_);
+      note_longest(agents_[own++]);
     }
-    for (auto const& entry : straddling_) {
-      longest_front_ = std::max(longest_front_, entry.front);
-      longest_rear_ = std::max(longest_rear_, entry.rear);
-    }
+    for (auto const& entry : reaching_) note_longest(entry);
+    agents_.resize(count);
     sort_nearly_sorted(agents_);
-    std::sort(straddling_.begin(), straddling_.end());
-    for (std::uint32_t i = 0; i < count; ++i) rank_[agents_[i].slot] = i;
+    std::sort(reaching_.begin(), reaching_.end());
+    merge_reaching(count);
   }
 
   /// Whether an agent is on a lane of its own.
@@ -69,7 +70,7 @@ class TrafficIndex {
   template <class Query>
   [[nodiscard]] std::optional<TrafficHit> front(map::LaneCorridor const& corridor, Query const& query,
                                                 std::span<TrafficEntry const> objects, bool own) const {
-    return front_from(own ? rank_[query.slot] + 1 : upper(agents_, key(corridor, query), query.slot), corridor, query,
+    return front_from(own ? rank_[query.slot] + 1 : upper(agents(), key(corridor, query), query.slot), corridor, query,
                       objects);
   }
 
@@ -77,17 +78,17 @@ class TrafficIndex {
   template <class Query>
   [[nodiscard]] std::optional<TrafficHit> rear(map::LaneCorridor const& corridor, Query const& query,
                                                std::span<TrafficEntry const> objects, bool own) const {
-    return rear_from(own ? rank_[query.slot] : lower(agents_, key(corridor, query), query.slot), corridor, query,
+    return rear_from(own ? rank_[query.slot] : lower(agents(), key(corridor, query), query.slot), corridor, query,
                      objects);
   }
 
   /// Where in the list of agents the asker's place is: one search for `front_from` and `rear_from`. O(log n).
   [[nodiscard]] std::size_t find(map::LaneCorridor const& corridor, TrafficQuery const& query) const {
-    return lower(agents_, key(corridor, query), query.slot);
+    return lower(agents(), key(corridor, query), query.slot);
   }
 
-  /// Calls `f(entry, is_object)` for all that reach into lane coordinates `begin` to `end` of one lane; agents in the
-  /// order of their positions, those that reach in from another lane after them, objects last. O(log n) and those near.
+  /// Calls `f(entry, is_object)` for all that reach into lane coordinates `begin` to `end` of one lane, also from
+  /// another one; agents in the order of their positions, objects last. O(log n) and those near.
   template <class F>
   void for_each_in(double begin, double end, std::span<TrafficEntry const> objects, F&& f) const {
     auto const visit = [&](List list, bool is_object) {
@@ -97,8 +98,7 @@ class TrafficIndex {
       for (auto i = first_at(list, begin - longest); i < list.size() && list[i].position <= end + longest; ++i)
         if (list[i].position + list[i].front >= begin && list[i].position - list[i].rear <= end) f(list[i], is_object);
     };
-    visit(agents_, false);
-    visit(straddling_, false);
+    visit(agents(), false);
     visit(objects, true);
   }
 
@@ -106,22 +106,20 @@ class TrafficIndex {
   template <class Query>
   [[nodiscard]] std::optional<TrafficHit> front_from(std::size_t start, map::LaneCorridor const& corridor,
                                                      Query const& query, std::span<TrafficEntry const> objects) const {
-    TrafficHit best;
-    front_on_corridor(agents_, false, corridor, query, start, best);
-    if (!straddling_.empty() || !objects.empty() || !corridor.feeders.empty())
-      best = front_of_others(corridor, Query(query), objects, TrafficHit(best));
-    return found(best);
+    Nearest best;
+    front_on_corridor(agents(), false, corridor, query, start, best);
+    if (!objects.empty() || !corridor.feeders.empty()) best = front_of_others(corridor, Query(query), objects, best);
+    return hit(best, objects);
   }
 
   /// Next behind; among the agents, candidates lie before entry `start`.
   template <class Query>
   [[nodiscard]] std::optional<TrafficHit> rear_from(std::size_t start, map::LaneCorridor const& corridor,
                                                     Query const& query, std::span<TrafficEntry const> objects) const {
-    TrafficHit best;
-    rear_on_corridor(agents_, false, corridor, query, start, best);
-    if (!straddling_.empty() || !objects.empty() || !corridor.feeders.empty())
-      best = rear_of_others(corridor, Query(query), objects, TrafficHit(best));
-    return found(best);
+    Nearest best;
+    rear_on_corridor(agents(), false, corridor, query, start, best);
+    if (!objects.empty() || !corridor.feeders.empty()) best = rear_of_others(corridor, Query(query), objects, best);
+    return hit(best, objects);
   }
 
   /// Of the agents in lanes that are still to merge into `corridor` at `merge`, the one with the foremost image on the
@@ -134,8 +132,9 @@ class TrafficIndex {
     for (auto const& feeder : corridor.feeders) {
       if (feeder.free_until != merge || !feeder.is_still_to_merge() || feeder.begin > behind) continue;
       double const to = behind >= feeder.end ? feeder.index_end : feeder.index_at(behind);
-      for (auto i = upper(agents_, to, std::numeric_limits<std::uint32_t>::max());
+      for (auto i = upper(agents(), to, std::numeric_limits<std::uint32_t>::max());
            i > 0 && agents_[i - 1].position >= feeder.index_begin; --i) {
+        if (!is_own(i - 1)) continue;
         auto entry = agents_[i - 1];
         entry.position = feeder.image(entry.position);
         if (query.skips(entry, std::abs(entry.position - query.s))) continue;
@@ -149,9 +148,24 @@ class TrafficIndex {
  private:
   using List = std::span<TrafficEntry const>;
 
-  [[nodiscard]] static std::optional<TrafficHit> found(TrafficHit const& best) {
-    if (best.gap == std::numeric_limits<double>::infinity()) return std::nullopt;
-    return best;
+  [[nodiscard]] List agents() const { return {agents_.data(), size_}; }
+
+  /// The nearest so far: small enough to be handed over in registers.
+  struct Nearest {
+    double gap = std::numeric_limits<double>::infinity();  ///< [m]
+    TrafficEntry const* entry = nullptr;
+
+    void offer(TrafficEntry const& other, double other_gap) {
+      if (other_gap < gap) *this = {other_gap, &other};
+    }
+  };
+
+  [[nodiscard]] static std::optional<TrafficHit> hit(Nearest const& best, List objects) {
+    if (!best.entry) return std::nullopt;
+    auto const& e = *best.entry;
+    bool const is_object = !objects.empty() && !std::less{}(best.entry, objects.data()) &&
+                           std::less{}(best.entry, objects.data() + objects.size());
+    return TrafficHit{e.slot, e.id, is_object, best.gap, e.speed, e.front + e.rear};
   }
 
   template <class Query>
@@ -191,20 +205,16 @@ class TrafficIndex {
     return static_cast<std::size_t>(base - list.data()) + (base->position < position ? 1 : 0);
   }
 
-  static void offer(TrafficHit& best, TrafficEntry const& entry, bool is_object, double gap) {
-    if (gap < best.gap) best = {entry.slot, entry.id, is_object, gap, entry.speed, entry.front + entry.rear};
-  }
-
   template <class Query>
   static void front_on_corridor(List list, bool is_object, map::LaneCorridor const& corridor, Query const& query,
-                                std::size_t start, TrafficHit& best) {
+                                std::size_t start, Nearest& best) {
     auto const& pieces = corridor.pieces;
     for (std::size_t p = query.piece, i = start;;) {
       while (i < list.size() && skips(query, list[i], is_object, list[i].position - pieces[p].index_offset - query.s))
         ++i;  // the asker's own, reached over from another lane
       if (i < list.size() && list[i].position <= pieces[p].end + 1.0 + pieces[p].index_offset) {
         double const s = list[i].position - pieces[p].index_offset;
-        if (s - query.s <= horizon) offer(best, list[i], is_object, s - list[i].rear - (query.s + query.front));
+        if (s - query.s <= horizon) best.offer(list[i], s - list[i].rear - (query.s + query.front));
         return;
       }
       if (++p == pieces.size() || pieces[p].begin - query.s > horizon) return;
@@ -214,7 +224,7 @@ class TrafficIndex {
 
   template <class Query>
   static void rear_on_corridor(List list, bool is_object, map::LaneCorridor const& corridor, Query const& query,
-                               std::size_t start, TrafficHit& best) {
+                               std::size_t start, Nearest& best) {
     auto const& pieces = corridor.pieces;
     for (std::size_t p = query.piece, i = start;;) {  // candidates lie before i
       while (i > 0 && skips(query, list[i - 1], is_object, query.s - (list[i - 1].position - pieces[p].index_offset)))
@@ -222,7 +232,7 @@ class TrafficIndex {
       if (i > 0 && list[i - 1].position >= pieces[p].begin - 1.0 + pieces[p].index_offset) {
         auto const& entry = list[i - 1];
         double const s = entry.position - pieces[p].index_offset;
-        if (query.s - s <= horizon) offer(best, entry, is_object, query.s - query.rear - (s + entry.front));
+        if (query.s - s <= horizon) best.offer(entry, query.s - query.rear - (s + entry.front));
         return;
       }
       if (p-- == 0 || query.s - pieces[p].end > horizon) return;
@@ -234,11 +244,8 @@ class TrafficIndex {
   /// and all in lanes that merge. Out of line: few steps need it, and it is large. It gets copies, so that what is
   /// searched for elsewhere can stay in registers.
   template <class Query>
-  CAMBIUM_NOINLINE TrafficHit front_of_others(map::LaneCorridor const& corridor, Query const& query, List objects,
-                                              TrafficHit best) const {
-    if (!straddling_.empty())
-      front_on_corridor(straddling_, false, corridor, query, upper(straddling_, key(corridor, query), query.slot),
-                        best);
+  CAMBIUM_NOINLINE Nearest front_of_others(map::LaneCorridor const& corridor, Query const& query, List objects,
+                                           Nearest best) const {
     if (!objects.empty())
       front_on_corridor(objects, true, corridor, query, upper(objects, key(corridor, query), 0), best);
     for (auto const& feeder : corridor.feeders) {
@@ -246,8 +253,7 @@ class TrafficIndex {
         break;  // nobody there is closer
       if (feeder.begin > query.s + horizon) break;
       if (feeder.end < query.s || (!query.with_merging && feeder.is_still_to_merge())) continue;
-      front_on_feeder(agents_, false, feeder, query, best);
-      if (!straddling_.empty()) front_on_feeder(straddling_, false, feeder, query, best);
+      front_on_feeder(agents(), false, feeder, query, best);
       if (!objects.empty()) front_on_feeder(objects, true, feeder, query, best);
     }
     return best;
@@ -255,10 +261,8 @@ class TrafficIndex {
 
   /// The same behind.
   template <class Query>
-  CAMBIUM_NOINLINE TrafficHit rear_of_others(map::LaneCorridor const& corridor, Query const& query, List objects,
-                                             TrafficHit best) const {
-    if (!straddling_.empty())
-      rear_on_corridor(straddling_, false, corridor, query, lower(straddling_, key(corridor, query), query.slot), best);
+  CAMBIUM_NOINLINE Nearest rear_of_others(map::LaneCorridor const& corridor, Query const& query, List objects,
+                                          Nearest best) const {
     if (!objects.empty())
       rear_on_corridor(objects, true, corridor, query, lower(objects, key(corridor, query), 0), best);
     for (auto const& feeder : corridor.feeders) {
@@ -266,16 +270,14 @@ class TrafficIndex {
       if (feeder.end < query.s - std::min(horizon, best.gap + query.rear + longest_front_) && objects.empty())
         continue;  // nobody there is closer
       if (feeder.end < query.s - horizon || (!query.with_merging && feeder.is_still_to_merge())) continue;
-      rear_on_feeder(agents_, false, feeder, query, best);
-      if (!straddling_.empty()) rear_on_feeder(straddling_, false, feeder, query, best);
+      rear_on_feeder(agents(), false, feeder, query, best);
       if (!objects.empty()) rear_on_feeder(objects, true, feeder, query, best);
     }
     return best;
   }
 
   template <class Query>
-  static void front_on_feeder(List list, bool is_object, map::Feeder const& feeder, Query const& query,
-                              TrafficHit& best) {
+  static void front_on_feeder(List list, bool is_object, map::Feeder const& feeder, Query const& query, Nearest& best) {
     double const from = query.s <= feeder.begin ? feeder.index_begin : feeder.index_at(query.s);
     // Rounding of the mapping must not lose an entry: start early, then go on to the first that is ahead.
     for (auto i = first_at(list, from - 1e-6); i < list.size() && list[i].position <= feeder.index_end; ++i) {
@@ -287,14 +289,13 @@ class TrafficIndex {
       bool const ahead = s > query.s || (s == query.s && entry.slot > query.slot);
       if (!ahead) continue;
       if (s - query.s <= horizon)
-        offer(best, entry, is_object, gap_between(query.s + query.front, s - entry.rear, feeder.free_until));
+        best.offer(entry, gap_between(query.s + query.front, s - entry.rear, feeder.free_until));
       return;
     }
   }
 
   template <class Query>
-  static void rear_on_feeder(List list, bool is_object, map::Feeder const& feeder, Query const& query,
-                             TrafficHit& best) {
+  static void rear_on_feeder(List list, bool is_object, map::Feeder const& feeder, Query const& query, Nearest& best) {
     double const to = query.s >= feeder.end ? feeder.index_end : feeder.index_at(query.s);
     for (auto i = upper(list, to + 1e-6, std::numeric_limits<std::uint32_t>::max());
          i > 0 && list[i - 1].position >= feeder.index_begin; --i) {
@@ -305,9 +306,31 @@ class TrafficIndex {
       bool const behind = s < query.s || (s == query.s && entry.slot < query.slot);
       if (!behind) continue;
       if (query.s - s <= horizon)
-        offer(best, entry, is_object, gap_between(s + entry.front, query.s - query.rear, feeder.free_until));
+        best.offer(entry, gap_between(s + entry.front, query.s - query.rear, feeder.free_until));
       return;
     }
+  }
+
+  void note_longest(TrafficEntry const& entry) {
+    longest_front_ = std::max(longest_front_, entry.front);
+    longest_rear_ = std::max(longest_rear_, entry.rear);
+  }
+
+  /// Whether an entry is the one in the agent's own lane, not in another that it reaches into.
+  [[nodiscard]] bool is_own(std::size_t i) const { return rank_[agents_[i].slot] == i; }
+
+  /// Sorts the entries in other lanes in among the first `count`, from behind; notes where everybody is.
+  void merge_reaching(std::size_t count) {
+    auto left = reaching_.size();
+    size_ = count + left;
+    agents_.resize(size_);
+    for (std::size_t i = count; i > 0; --i) {
+      auto const& entry = agents_[i - 1];
+      for (; left > 0 && !(reaching_[left - 1] < entry); --left) agents_[i - 1 + left] = reaching_[left - 1];
+      if (left > 0) agents_[i - 1 + left] = entry;
+      rank_[entry.slot] = static_cast<std::uint32_t>(i - 1 + left);
+    }
+    while (left-- > 0) agents_[left] = reaching_[left];
   }
 
   /// Insertion sort, linear when the order has hardly changed; gives up for a full sort where it has.
@@ -327,7 +350,8 @@ class TrafficIndex {
   }
 
   std::vector<TrafficEntry> agents_;
-  std::vector<TrafficEntry> straddling_;
+  std::size_t size_ = 0;  ///< of it: vectors divide to tell
+  std::vector<TrafficEntry> reaching_;
   std::vector<std::uint32_t> rank_;
   double longest_front_ = 0.0, longest_rear_ = 0.0;
 };
