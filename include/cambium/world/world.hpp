@@ -312,21 +312,11 @@ class World {
     auto& next = scratch_.next;
     next.resize(frame_.agents.size());
     double const end = frame_.time + dt;
-    for (std::uint32_t slot = 0; slot < next.size(); ++slot) {
-      if (next.size() > 256 && slot + 6 < next.size()) {
-        auto const* const segment = detail::road_under(*roster_, frame_, slot + 6);
-        CAMBIUM_PREFETCH(segment);
-        CAMBIUM_PREFETCH(segment + 1);
-        if constexpr (Set::looks_beside) {
-          CAMBIUM_PREFETCH(detail::road_beside(*roster_, frame_, slot + 6, true));
-          CAMBIUM_PREFETCH(detail::road_beside(*roster_, frame_, slot + 6, false));
-        }
-      }
-      if constexpr (Observer::perfect)
-        advance_inlined(slot, dt, end, next[slot], result);
-      else
-        advance(slot, dt, end, next[slot], result);
-    }
+    if constexpr (Observer::perfect)
+      advance_all_inlined(dt, end, next, result);
+    else
+      advance_all(dt, end, next, result);
+    place_all(dt, next, result);
     scratch_.remember(frame_);
     frame_.agents.swap(next);
     frame_.time = end;
@@ -377,17 +367,38 @@ class World {
   }
 
   /// All in one function; with observers that would take minutes to compile.
-  CAMBIUM_FLATTEN void advance_inlined(std::uint32_t slot, double dt, double end, Record& next, StepResult& result) {
-    advance(slot, dt, end, next, result);
+  CAMBIUM_FLATTEN void advance_all_inlined(double dt, double end, std::vector<Record>& next, StepResult& result) {
+    advance_all(dt, end, next, result);
   }
 
+  void advance_all(double dt, double end, std::vector<Record>& next, StepResult& result) {
+    for (std::uint32_t slot = 0; slot < next.size(); ++slot) {
+      if (next.size() > 256 && slot + 6 < next.size()) {
+        auto const* const segment = detail::road_under(*roster_, frame_, slot + 6);
+        CAMBIUM_PREFETCH(segment);
+        CAMBIUM_PREFETCH(segment + 1);
+        if constexpr (Set::looks_beside) {
+          CAMBIUM_PREFETCH(detail::road_beside(*roster_, frame_, slot + 6, true));
+          CAMBIUM_PREFETCH(detail::road_beside(*roster_, frame_, slot + 6, false));
+        }
+      }
+      advance(slot, dt, end, next[slot], result);
+    }
+  }
+
+  /// Plans and drives: all of the agent's next record but where on its road it has come to.
   void advance(std::uint32_t slot, double dt, double end, Record& next, StepResult& result) {
     Record const& now = frame_.agents[slot];
-    next = now;
-    if (now.status != AgentStatus::driving && now.status != AgentStatus::not_started) return;
+    if (now.status != AgentStatus::driving && now.status != AgentStatus::not_started) {
+      next = now;
+      return;
+    }
     auto const& agent = roster_->agents[slot];
     View const view(*this, slot);
-    auto plan = Set::plan(agent.behavior, view, next.memory, dt, scratch_.workspaces);
+    auto memory = now.memory;  // what is written to `next` would have to be read back from there
+    auto plan = Set::plan(agent.behavior, view, memory, dt, scratch_.workspaces);
+    next = now;
+    next.memory = memory;
     if (plan.status != PlanStatus::valid) return stop_planning(plan.status, agent.id, next, result, end);
     if constexpr (!Observer::perfect)
       if (!plan.is_absolute) detail::carry_over(plan, view.state(), now.state);
@@ -401,9 +412,19 @@ class World {
     next.state = executed.state;
     next.action = plan.action;
     if (now.status != AgentStatus::driving) detail::forget_past(next);
-    detail::move_on_lane(*map_, *agent.road, 0.5 * (now.state.speed + next.state.speed) * dt, next);
-    if (next.status != AgentStatus::driving) ++result.left;
-    if (roster_->has_sequences) pass_goals(slot, next);
+  }
+
+  /// Where those who drive have come to on their roads. In a loop of its own: a processor works on several agents at a
+  /// time where little is to be done for each.
+  CAMBIUM_FLATTEN void place_all(double dt, std::vector<Record>& next, StepResult& result) {
+    for (std::uint32_t slot = 0; slot < next.size(); ++slot) {
+      auto& record = next[slot];
+      if (record.status != AgentStatus::driving) continue;
+      double const mean_speed = 0.5 * (frame_.agents[slot].state.speed + record.state.speed);
+      detail::move_on_lane(*map_, *roster_->agents[slot].road, mean_speed * dt, record);
+      if (record.status != AgentStatus::driving) ++result.left;
+      if (roster_->has_sequences) pass_goals(slot, record);
+    }
   }
 
   [[nodiscard]] RandomStream execution_stream(AgentId id) const {
