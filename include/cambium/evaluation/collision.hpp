@@ -1,15 +1,16 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <optional>
 
 #include <boost/container/small_vector.hpp>
 
 #include "cambium/core/ids.hpp"
+#include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/box.hpp"
 #include "cambium/geometry/collision.hpp"
 #include "cambium/geometry/oriented_box.hpp"
@@ -52,7 +53,6 @@ template <class World>
 /// The first static object (in the order of their ids) that the agent touches.
 template <class World>
 [[nodiscard]] std::optional<ObjectId> touched_object(World const& world, std::uint32_t slot) {
-  if (world.roster().objects.empty()) return std::nullopt;
   auto const box = box_at(world, slot);
   auto const around = box.bounding_box();
   for (auto const& object : world.roster().objects)
@@ -87,7 +87,7 @@ struct CollisionEgo {
       if (geometry::intersects(detail::box_at(world, ego), detail::box_at(world, i)))
         return {true, world.roster().agents[i].id};
     }
-    return {detail::touched_object(world, ego).has_value(), none<AgentId>};
+    return {!world.roster().objects.empty() && detail::touched_object(world, ego).has_value(), none<AgentId>};
   }
 };
 
@@ -107,36 +107,85 @@ struct CollisionAny {
       for (std::uint32_t i = 0; i < count; ++i)
         if (detail::in_traffic(world, i) && detail::touched_object(world, i))
           return {true, world.roster().agents[i].id, none<AgentId>};
-    boost::container::small_vector<detail::Circle, 1024> circles;
-    circles.reserve(count);
-    geometry::Box scene;
-    for (std::uint32_t i = 0; i < count; ++i) {
-      if (!detail::in_traffic(world, i)) continue;
-      auto const& circle = circles.emplace_back(detail::circle_of(world, i));
-      scene.add(circle.x, circle.y);
-    }
-    constexpr std::size_t few = 16;
-    bool const sorted = circles.size() > few;
-    if (sorted) sort_along(circles, scene.max_y - scene.min_y > scene.max_x - scene.min_x);
-    return sweep(world, circles, sorted);
+    return count <= few ? compare_all(world) : sweep(world);
   }
 
  private:
-  /// The first pair that touches; a few agents are simply compared with each other.
-  template <class World, class Circles>
-  [[nodiscard]] static Result sweep(World const& world, Circles const& circles, bool sorted) {
-    for (std::size_t i = 0; i < circles.size(); ++i) {
-      auto const& a = circles[i];
-      double const end = sorted ? a.x + a.radius : std::numeric_limits<double>::infinity();
-      for (std::size_t j = i + 1; j < circles.size() && circles[j].low <= end; ++j) {
-        auto const& b = circles[j];
-        if (!a.meets(b)) continue;
-        if (!geometry::intersects(detail::box_at(world, a.slot), detail::box_at(world, b.slot))) continue;
-        auto const& agents = world.roster().agents;
-        return {true, agents[std::min(a.slot, b.slot)].id, agents[std::max(a.slot, b.slot)].id};
+  static constexpr std::uint32_t few = 32;
+
+  /// The first pair that touches, each compared with each: of so few less work than sorting them, in loops that become
+  /// SIMD code.
+  template <class World>
+  [[nodiscard]] static Result compare_all(World const& world) {
+    std::array<double, few> x, y, radius, heading, sin, cos;
+    std::array<std::uint32_t, few> slots;
+    std::size_t count = 0;
+    bool bounded = true;
+    for (std::uint32_t slot = 0; slot < world.size(); ++slot) {
+      if (!detail::in_traffic(world, slot)) continue;
+      auto const circle = detail::circle_of(world, slot);
+      x[count] = circle.x;
+      y[count] = circle.y;
+      radius[count] = circle.radius;
+      heading[count] = world.frame().agents[slot].state.heading;
+      bounded = bounded && std::abs(heading[count]) <= 1e5;  // see sin_cos_bounded
+      slots[count++] = slot;
+    }
+    if (!bounded) return sweep(world);
+    auto const meet = [&](std::size_t i, std::size_t j) {
+      double const dx = x[j] - x[i], dy = y[j] - y[i], reach = radius[j] + radius[i];
+      return dx * dx + dy * dy <= reach * reach;
+    };
+    auto const box = [&](std::size_t i) {
+      return geometry::box_of(world.roster().agents[slots[i]].shape, x[i], y[i], cos[i], sin[i]);
+    };
+    bool has_directions = false;
+    for (std::size_t i = 0; i < count; ++i) {
+      std::int64_t near = 0;
+      for (std::size_t j = i + 1; j < count; ++j) near += meet(i, j) ? 1 : 0;
+      if (near == 0) continue;
+      for (std::size_t k = has_directions ? count : 0; k < count; ++k) {
+        auto const direction = geometry::sin_cos_bounded(heading[k]);
+        sin[k] = direction.sin;
+        cos[k] = direction.cos;
       }
+      has_directions = true;
+      auto const own = box(i);
+      for (std::size_t j = i + 1; j < count; ++j)
+        if (meet(i, j) && geometry::intersects(own, box(j))) return pair(world, slots[i], slots[j]);
     }
     return {};
+  }
+
+  /// The first pair that touches, along the axis on which they are spread wider.
+  template <class World>
+  [[nodiscard]] static Result sweep(World const& world) {
+    boost::container::small_vector<detail::Circle, 1024> circles;
+    circles.reserve(world.size());
+    geometry::Box scene;
+    for (std::uint32_t slot = 0; slot < world.size(); ++slot) {
+      if (!detail::in_traffic(world, slot)) continue;
+      auto const& circle = circles.emplace_back(detail::circle_of(world, slot));
+      scene.add(circle.x, circle.y);
+    }
+    sort_along(circles, scene.max_y - scene.min_y > scene.max_x - scene.min_x);
+    for (std::size_t i = 0; i < circles.size(); ++i) {
+      auto const& a = circles[i];
+      for (std::size_t j = i + 1; j < circles.size() && circles[j].low <= a.x + a.radius; ++j)
+        if (a.meets(circles[j]) && touch(world, a.slot, circles[j].slot)) return pair(world, a.slot, circles[j].slot);
+    }
+    return {};
+  }
+
+  template <class World>
+  [[nodiscard]] static bool touch(World const& world, std::uint32_t a, std::uint32_t b) {
+    return geometry::intersects(detail::box_at(world, a), detail::box_at(world, b));
+  }
+
+  template <class World>
+  [[nodiscard]] static Result pair(World const& world, std::uint32_t a, std::uint32_t b) {
+    auto const& agents = world.roster().agents;
+    return {true, agents[std::min(a, b)].id, agents[std::max(a, b)].id};
   }
 
   /// Sorts by where circles begin along x, or y, which then becomes x: distances do not mind.

@@ -58,12 +58,16 @@ struct DrivableArea {
     double const reach = std::max(shape.front, shape.rear);
     double bend = 0.0;  // all turns between rear and front, to whichever side
     auto const segments = corridor.center.segments();
-    for (auto i = corridor.center.find(rear); i < segments.size() && segments[i].s < front; ++i)
+    auto at_rear = at.segment;
+    corridor.center.segment_at(rear, at_rear);
+    for (auto i = at_rear; i < segments.size() && segments[i].s < front; ++i)
       bend += std::abs(segments[i].curvature) * segments[i].length;
     double const margin = (std::abs(at.heading_error) + bend) * reach + 0.1;
     bool const has_beside = rear > piece.begin && front < piece.end;
+    auto segment = at_rear;
     for (double const s : {rear, at.s, front}) {
-      auto const widths = corridor.widths_at(s, corridor.center.find(s));
+      corridor.center.segment_at(s, segment);
+      auto const widths = corridor.widths_at(s, segment);
       double left = widths.left, right = widths.right;
       if (has_beside && at.lateral + shape.left + margin >= left)
         left += width_beside(*agent.road, piece, piece.left, piece.left_piece, s);
