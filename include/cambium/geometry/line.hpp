@@ -109,7 +109,9 @@ class Line {
     CAMBIUM_ASSERT(!empty(), "a query on an empty line");
     auto const* const first = segments_.data();
     auto const* at = first + std::min(cursor, last_);
-    for (auto const* const end = first + last_; at < end && s >= at[1].s;) ++at;
+    auto const* const end = first + last_;
+    at += at < end ? static_cast<std::ptrdiff_t>(s >= at[1].s) : 0;  // one on: as often as not, nothing to predict
+    while (at < end && s >= at[1].s) ++at;
     while (at > first && s < at->s) --at;
     cursor = static_cast<std::uint32_t>(at - first);
     return *at;
