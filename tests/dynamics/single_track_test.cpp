@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <type_traits>
@@ -156,4 +157,13 @@ TEST_CASE("with float and with dual numbers a step is that of double, and tells 
       CHECK(dual.y.d == doctest::Approx((high.y - low.y) / 2e-5).epsilon(1e-6));
       CHECK(dual.heading.d == doctest::Approx((high.heading - low.heading) / 2e-5).epsilon(1e-6));
     }
+}
+
+TEST_CASE("the steering within grip is the arc tangent's, at any speed") {
+  for (double const speed : {1e-3, 0.5, 3.0, 10.0, 30.0})
+    for (double const limit : {0.01, 0.3, 0.7, 1.2, 2.0}) {
+      double const grip = std::atan(4.0 * 2.7 / (speed * speed));
+      CHECK(cambium::steering_within_grip(limit, 4.0, 2.7, speed) == doctest::Approx(std::min(limit, grip)));
+    }
+  CHECK(cambium::steering_within_grip(2.0, 4.0, 2.7, 0.0) == doctest::Approx(cambium::geometry::pi / 2));
 }

@@ -149,6 +149,8 @@ class IdmStep {
  public:
   IdmStep(IdmTerms<Scalar> const& terms, Scalar leader_speed) : terms_(terms), leader_speed_(leader_speed) {}
 
+  IdmStep(IdmTerms<Scalar>&&, Scalar) = delete;
+
   [[nodiscard]] IdmTerms<Scalar> const& terms() const { return terms_; }
   [[nodiscard]] Scalar leader_speed() const { return leader_speed_; }
 
@@ -255,7 +257,7 @@ CAMBIUM_NOINLINE [[nodiscard]] LongitudinalMotion<Scalar> idm_motion_in_steps(Id
   }
 }
 
-/// See below.
+/// As `idm_motion` below, for terms that are computed already.
 template <class Scalar>
 [[nodiscard]] LongitudinalMotion<Scalar> idm_motion(IdmTerms<Scalar> const& terms, Scalar speed, Scalar gap,
                                                     Scalar leader_speed, double dt, double tolerance) {
@@ -264,7 +266,7 @@ template <class Scalar>
     auto const trial = try_idm_step(response, response(speed, gap), speed, gap, dt, tolerance);
     if (trial.accurate) return {trial.distance, trial.speed};
   }
-  return idm_motion_in_steps(IdmTerms<Scalar>(terms), speed, gap, leader_speed, dt, tolerance);
+  return idm_motion_in_steps(terms, speed, gap, leader_speed, dt, tolerance);
 }
 
 }  // namespace detail

@@ -24,7 +24,7 @@ struct SingleTrackInput {
                                                  double speed) {
   // atan is concave: it lies above its chord, and without it, or a division, most cases are decided.
   double const across = lateral_acceleration_limit * wheel_base, square = speed * speed;
-  if (limit * square <= 0.785 * std::min(square, across)) return limit;
+  if (limit <= 0.785 && limit * square <= 0.785 * across) return limit;
   return std::min(limit, std::atan(across / square));
 }
 

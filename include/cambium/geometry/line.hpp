@@ -110,7 +110,7 @@ class Line {
     auto const* const first = segments_.data();
     auto const* at = first + std::min(cursor, last_);
     auto const* const end = first + last_;
-    at += at < end ? static_cast<std::ptrdiff_t>(s >= at[1].s) : 0;  // one on: as often as not, nothing to predict
+    at += at < end ? static_cast<std::ptrdiff_t>(s >= at[1].s) : 0;  // often, and never predictably: added
     while (at < end && s >= at[1].s) ++at;
     while (at > first && s < at->s) --at;
     cursor = static_cast<std::uint32_t>(at - first);
