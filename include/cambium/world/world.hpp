@@ -389,16 +389,11 @@ class World {
   /// Plans and drives: all of the agent's next record but where on its road it has come to.
   void advance(std::uint32_t slot, double dt, double end, Record& next, StepResult& result) {
     Record const& now = frame_.agents[slot];
-    if (now.status != AgentStatus::driving && now.status != AgentStatus::not_started) {
-      next = now;
-      return;
-    }
+    next = now;
+    if (now.status != AgentStatus::driving && now.status != AgentStatus::not_started) return;
     auto const& agent = roster_->agents[slot];
     View const view(*this, slot);
-    auto memory = now.memory;  // what is written to `next` would have to be read back from there
-    auto plan = Set::plan(agent.behavior, view, memory, dt, scratch_.workspaces);
-    next = now;
-    next.memory = memory;
+    auto plan = Set::plan(agent.behavior, view, next.memory, dt, scratch_.workspaces);
     if (plan.status != PlanStatus::valid) return stop_planning(plan.status, agent.id, next, result, end);
     if constexpr (!Observer::perfect)
       if (!plan.is_absolute) detail::carry_over(plan, view.state(), now.state);
