@@ -142,14 +142,14 @@ class Twin {
 /// What the twin says of the neighbours on one side of the asker.
 struct Answer {
   double least = infinite;    ///< gap of whoever has the smallest
-  double nearest = infinite;  ///< smallest gap of those who are nearest by reference point, objects apart, by rule
+  double nearest = infinite;  ///< smallest gap of those who are nearest by reference point, by rule and kind
   std::vector<std::pair<Somebody const*, double>> gaps;
 };
 
 /// Everybody ahead of the asker (`sign` 1) or behind (-1).
 Answer look(Twin const& twin, Somebody const& asker, double s, std::vector<Somebody> const& all, int sign) {
   Answer answer;
-  std::map<std::tuple<bool, int, LaneId>, std::pair<double, double>> nearest;  // distance and gap
+  std::map<std::tuple<Kind, int, LaneId>, std::pair<double, double>> nearest;  // distance and gap
   for (auto const& other : all) {
     bool const is_object = other.kind == Kind::object;
     if (!is_object && other.slot == asker.slot) continue;
@@ -163,7 +163,7 @@ Answer look(Twin const& twin, Somebody const& asker, double s, std::vector<Someb
       answer.gaps.emplace_back(&other, gap);
       answer.least = std::min(answer.least, gap);
       auto const lane = image.rule == 0 ? cb::none<LaneId> : other.lane;
-      auto& best = nearest.try_emplace({is_object, image.rule, lane}, infinite, infinite).first->second;
+      auto& best = nearest.try_emplace({other.kind, image.rule, lane}, infinite, infinite).first->second;
       best = std::min(best, {ahead, gap});
     }
   }
@@ -517,4 +517,26 @@ TEST_CASE("the nearest neighbour is the one with the smallest gap when nobody st
   CHECK(world.observe(car).rear()->gap == doctest::Approx(30 - 0.9 - cb::geometry::truck().front));
   CHECK_FALSE(world.observe(car).front().has_value());
   CHECK_FALSE(world.observe(follower).rear().has_value());
+}
+
+TEST_CASE("who reaches over the border hides nobody who is nearer") {
+  auto const car = cb::geometry::car();
+  auto const bus = cb::geometry::bus();
+  REQUIRE(bus.rear > car.rear + 0.5);
+  // The middle lane's centre is at y = -5.25; the bus stands there, a car beside it reaches 5 cm into that lane.
+  double const beside = -3.5 + car.right - 0.05;
+  Sim world(straight_road(3, 400));
+  auto const ahead = world.add({.position = {100, -5.25}});
+  auto const large = world.add({.position = {203, -5.25}, .shape = bus});
+  world.add({.position = {202.9, beside}});
+  auto const behind = world.add({.position = {300, -5.25}});
+  auto const front = world.observe(ahead).front();
+  REQUIRE(front);
+  CHECK(front->agent == large);
+  CHECK(front->gap == doctest::Approx(203 - bus.rear - 100 - car.front));
+  world.set_state(world.roster().agents[2].id, {.x = 203.1, .y = beside});
+  auto const rear = world.observe(behind).rear();
+  REQUIRE(rear);
+  CHECK(rear->agent == large);
+  CHECK(rear->gap == doctest::Approx(300 - car.rear - 203 - bus.front));
 }

@@ -16,13 +16,30 @@
 
 namespace cambium {
 
+/// Entries of agents in lanes that they reach into.
+struct ReachingEntries {
+  std::vector<TrafficEntry> entries;
+  double to_lane_end = std::numeric_limits<double>::infinity();  ///< the least way from one to an end of its lane [m]
+
+  void clear() {
+    entries.clear();
+    to_lane_end = std::numeric_limits<double>::infinity();
+  }
+
+  /// `begin` and `end`: lane coordinates of its lane.
+  void add(TrafficEntry const& entry, double begin, double end) {
+    entries.push_back(entry);
+    to_lane_end = std::min({to_lane_end, entry.position - begin, end - entry.position});
+  }
+};
+
 /// Who is where on the lanes, sorted, so that the next road user along a corridor is the next in the list.
 ///
 /// Agents are kept in one list by lane coordinate; the order of the last step is repaired, not rebuilt (insertion sort;
 /// where it is far off, a full sort). Agents that reach over their lane's border are in it once more, in the
-/// neighbour's lane; static objects are in a list of their own. On the corridor itself the nearest by reference point
-/// counts; from each feeder (a lane that merges in, or has just split off) likewise; of these the one with the smallest
-/// gap is the neighbour.
+/// neighbour's lane; static objects are in a list of their own. Of all whose reference points lie ahead (behind), on
+/// the corridor or in a feeder (a lane that merges in, or has just split off), the one with the smallest gap is the
+/// neighbour.
 class TrafficIndex {
  public:
   /// Farthest reference point that is a neighbour, along the corridor [m].
@@ -41,7 +58,7 @@ class TrafficIndex {
     if (rank_.size() != count) {
       rank_.resize(count);
       agents_.reserve(3 * count);
-      reaching_.reserve(2 * count);
+      reaching_.entries.reserve(2 * count);
       agents_.resize(count);
       for (std::uint32_t i = 0; i < count; ++i) agents_[rank_[i] = i].slot = i;
     }
@@ -53,10 +70,10 @@ class TrafficIndex {
       agents_[own] = entry_of(agents_[i].slot, reaching_);
       note_longest(agents_[own++]);
     }
-    for (auto const& entry : reaching_) note_longest(entry);
+    for (auto const& entry : reaching_.entries) note_longest(entry);
     agents_.resize(count);
     sort_nearly_sorted(agents_);
-    std::sort(reaching_.begin(), reaching_.end());
+    std::sort(reaching_.entries.begin(), reaching_.entries.end());
     merge_reaching(count);
   }
 
@@ -93,8 +110,7 @@ class TrafficIndex {
   void for_each_in(double begin, double end, std::span<TrafficEntry const> objects, F&& f) const {
     auto const visit = [&](List list, bool is_object) {
       if (list.empty()) return;
-      // Objects are entered in parts of 10 m at most.
-      double const longest = is_object ? 10.0 : std::max(longest_front_, longest_rear_);
+      double const longest = is_object ? longest_object : std::max(longest_front_, longest_rear_);
       for (auto i = first_at(list, begin - longest); i < list.size() && list[i].position <= end + longest; ++i)
         if (list[i].position + list[i].front >= begin && list[i].position - list[i].rear <= end) f(list[i], is_object);
     };
@@ -108,7 +124,8 @@ class TrafficIndex {
                                                      Query const& query, std::span<TrafficEntry const> objects) const {
     Nearest best;
     front_on_corridor(agents(), false, corridor, query, start, best);
-    if (!objects.empty() || !corridor.feeders.empty()) best = front_of_others(corridor, Query(query), objects, best);
+    if (crowded_ || !objects.empty() || !corridor.feeders.empty())
+      best = front_of_others(start, corridor, Query(query), objects, best);
     return hit(best, objects);
   }
 
@@ -118,7 +135,8 @@ class TrafficIndex {
                                                     Query const& query, std::span<TrafficEntry const> objects) const {
     Nearest best;
     rear_on_corridor(agents(), false, corridor, query, start, best);
-    if (!objects.empty() || !corridor.feeders.empty()) best = rear_of_others(corridor, Query(query), objects, best);
+    if (crowded_ || !objects.empty() || !corridor.feeders.empty())
+      best = rear_of_others(start, corridor, Query(query), objects, best);
     return hit(best, objects);
   }
 
@@ -149,6 +167,9 @@ class TrafficIndex {
   using List = std::span<TrafficEntry const>;
 
   [[nodiscard]] List agents() const { return {agents_.data(), size_}; }
+
+  /// Objects are entered in parts no longer than this [m].
+  static constexpr double longest_object = 10.0;
 
   /// The nearest so far: small enough to be handed over in registers.
   struct Nearest {
@@ -240,12 +261,48 @@ class TrafficIndex {
     }
   }
 
-  /// Next ahead among those that are not agents on the corridor's own lanes: who reaches in from other lanes, objects,
-  /// and all in lanes that merge. Out of line: few steps need it, and it is large. It gets copies, so that what is
-  /// searched for elsewhere can stay in registers.
+  /// The nearest on the corridor also where somebody who is farther by reference point reaches nearer: looks on as far
+  /// as that can be.
   template <class Query>
-  CAMBIUM_NOINLINE Nearest front_of_others(map::LaneCorridor const& corridor, Query const& query, List objects,
-                                           Nearest best) const {
+  void front_in_crowd(map::LaneCorridor const& corridor, Query const& query, std::size_t start, Nearest& best) const {
+    if (!best.entry) return;
+    auto const& pieces = corridor.pieces;
+    double const own_front = query.s + query.front;
+    for (std::size_t p = query.piece, i = start; p < pieces.size(); ++p) {
+      double const offset = pieces[p].index_offset;
+      if (p > query.piece) i = first_at(agents(), pieces[p].begin - 1.0 + offset);
+      for (; i < size_ && agents_[i].position <= pieces[p].end + 1.0 + offset; ++i) {
+        double const s = agents_[i].position - offset;
+        if (s - longest_rear_ - own_front >= best.gap || s - query.s > horizon) return;
+        if (!query.skips(agents_[i], s - query.s)) best.offer(agents_[i], s - agents_[i].rear - own_front);
+      }
+    }
+  }
+
+  template <class Query>
+  void rear_in_crowd(map::LaneCorridor const& corridor, Query const& query, std::size_t start, Nearest& best) const {
+    if (!best.entry) return;
+    auto const& pieces = corridor.pieces;
+    double const own_rear = query.s - query.rear;
+    for (std::size_t p = query.piece + std::size_t{1}, i = start; p-- > 0;) {  // candidates lie before i
+      double const offset = pieces[p].index_offset;
+      if (p < query.piece) i = upper(agents(), pieces[p].end + 1.0 + offset, std::numeric_limits<std::uint32_t>::max());
+      for (; i > 0 && agents_[i - 1].position >= pieces[p].begin - 1.0 + offset; --i) {
+        auto const& entry = agents_[i - 1];
+        double const s = entry.position - offset;
+        if (own_rear - (s + longest_front_) >= best.gap || query.s - s > horizon) return;
+        if (!query.skips(entry, query.s - s)) best.offer(entry, own_rear - (s + entry.front));
+      }
+    }
+  }
+
+  /// Next ahead among static objects and all in lanes that merge; and, where it is crowded, among those who are farther
+  /// by reference point but may reach nearer. Out of line: few steps need it, and it is large. It
+  /// gets copies, so that what is searched for elsewhere can stay in registers.
+  template <class Query>
+  CAMBIUM_NOINLINE Nearest front_of_others(std::size_t start, map::LaneCorridor const& corridor, Query const& query,
+                                           List objects, Nearest best) const {
+    if (crowded_) front_in_crowd(corridor, query, start, best);
     if (!objects.empty())
       front_on_corridor(objects, true, corridor, query, upper(objects, key(corridor, query), 0), best);
     for (auto const& feeder : corridor.feeders) {
@@ -261,8 +318,9 @@ class TrafficIndex {
 
   /// The same behind.
   template <class Query>
-  CAMBIUM_NOINLINE Nearest rear_of_others(map::LaneCorridor const& corridor, Query const& query, List objects,
-                                          Nearest best) const {
+  CAMBIUM_NOINLINE Nearest rear_of_others(std::size_t start, map::LaneCorridor const& corridor, Query const& query,
+                                          List objects, Nearest best) const {
+    if (crowded_) rear_in_crowd(corridor, query, start, best);
     if (!objects.empty())
       rear_on_corridor(objects, true, corridor, query, lower(objects, key(corridor, query), 0), best);
     for (auto const& feeder : corridor.feeders) {
@@ -277,7 +335,8 @@ class TrafficIndex {
   }
 
   template <class Query>
-  static void front_on_feeder(List list, bool is_object, map::Feeder const& feeder, Query const& query, Nearest& best) {
+  void front_on_feeder(List list, bool is_object, map::Feeder const& feeder, Query const& query, Nearest& best) const {
+    double const longest = is_object ? longest_object : longest_rear_;
     double const from = query.s <= feeder.begin ? feeder.index_begin : feeder.index_at(query.s);
     // Rounding of the mapping must not lose an entry: start early, then go on to the first that is ahead.
     for (auto i = first_at(list, from - 1e-6); i < list.size() && list[i].position <= feeder.index_end; ++i) {
@@ -288,14 +347,15 @@ class TrafficIndex {
       if (query.by_rule && feeder.by_rule && s + entry.front < feeder.free_until) continue;
       bool const ahead = s > query.s || (s == query.s && entry.slot > query.slot);
       if (!ahead) continue;
-      if (s - query.s <= horizon)
-        best.offer(entry, gap_between(query.s + query.front, s - entry.rear, feeder.free_until));
-      return;
+      double const own_front = query.s + query.front;
+      if (s - query.s > horizon || gap_between(own_front, s - longest, feeder.free_until) >= best.gap) return;
+      best.offer(entry, gap_between(own_front, s - entry.rear, feeder.free_until));
     }
   }
 
   template <class Query>
-  static void rear_on_feeder(List list, bool is_object, map::Feeder const& feeder, Query const& query, Nearest& best) {
+  void rear_on_feeder(List list, bool is_object, map::Feeder const& feeder, Query const& query, Nearest& best) const {
+    double const longest = is_object ? longest_object : longest_front_;
     double const to = query.s >= feeder.end ? feeder.index_end : feeder.index_at(query.s);
     for (auto i = upper(list, to + 1e-6, std::numeric_limits<std::uint32_t>::max());
          i > 0 && list[i - 1].position >= feeder.index_begin; --i) {
@@ -305,9 +365,9 @@ class TrafficIndex {
       if (skips(query, entry, is_object, query.s - s)) continue;
       bool const behind = s < query.s || (s == query.s && entry.slot < query.slot);
       if (!behind) continue;
-      if (query.s - s <= horizon)
-        best.offer(entry, gap_between(s + entry.front, query.s - query.rear, feeder.free_until));
-      return;
+      double const own_rear = query.s - query.rear;
+      if (query.s - s > horizon || gap_between(s + longest, own_rear, feeder.free_until) >= best.gap) return;
+      best.offer(entry, gap_between(s + entry.front, own_rear, feeder.free_until));
     }
   }
 
@@ -319,18 +379,37 @@ class TrafficIndex {
   /// Whether an entry is the one in the agent's own lane, not in another that it reaches into.
   [[nodiscard]] bool is_own(std::size_t i) const { return rank_[agents_[i].slot] == i; }
 
+  /// Whether one of entry `i` and those beside it is farther by reference point than the other, but reaches nearer.
+  [[nodiscard]] bool hides(std::size_t i) const {
+    auto const& e = agents_[i];
+    auto const is_hidden = [](TrafficEntry const& behind, TrafficEntry const& ahead) {
+      return ahead.position - ahead.rear < behind.position - behind.rear ||
+             behind.position + behind.front > ahead.position + ahead.front;
+    };
+    double const reach = std::max(longest_front_, longest_rear_);
+    for (auto j = i; j-- > 0 && e.position - agents_[j].position <= reach;)
+      if (is_hidden(agents_[j], e)) return true;
+    for (auto j = i + 1; j < size_ && agents_[j].position - e.position <= reach; ++j)
+      if (is_hidden(e, agents_[j])) return true;
+    return false;
+  }
+
   /// Sorts the entries in other lanes in among the first `count`, from behind; notes where everybody is.
   void merge_reaching(std::size_t count) {
-    auto left = reaching_.size();
+    auto const& reaching = reaching_.entries;
+    auto left = reaching.size();
+    agents_.resize(count + left);
     size_ = count + left;
-    agents_.resize(size_);
     for (std::size_t i = count; i > 0; --i) {
       auto const& entry = agents_[i - 1];
-      for (; left > 0 && !(reaching_[left - 1] < entry); --left) agents_[i - 1 + left] = reaching_[left - 1];
+      for (; left > 0 && !(reaching[left - 1] < entry); --left) agents_[i - 1 + left] = reaching[left - 1];
       if (left > 0) agents_[i - 1 + left] = entry;
       rank_[entry.slot] = static_cast<std::uint32_t>(i - 1 + left);
     }
-    while (left-- > 0) agents_[left] = reaching_[left];
+    while (left-- > 0) agents_[left] = reaching[left];
+    crowded_ = reaching_.to_lane_end <= std::max(longest_front_, longest_rear_);  // whom it hides is in the next lane
+    if (reaching.empty()) return;
+    for (std::size_t i = 0; i < size_ && !crowded_; ++i) crowded_ = !is_own(i) && hides(i);
   }
 
   /// Insertion sort, linear when the order has hardly changed; gives up for a full sort where it has.
@@ -350,8 +429,9 @@ class TrafficIndex {
   }
 
   std::vector<TrafficEntry> agents_;
-  std::size_t size_ = 0;  ///< of it: vectors divide to tell
-  std::vector<TrafficEntry> reaching_;
+  std::size_t size_ = 0;  ///< of that list: vectors divide to tell
+  bool crowded_ = false;  ///< somebody who reaches over a border hides another who reaches nearer, or is hidden
+  ReachingEntries reaching_;
   std::vector<std::uint32_t> rank_;
   double longest_front_ = 0.0, longest_rear_ = 0.0;
 };

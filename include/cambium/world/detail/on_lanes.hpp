@@ -156,14 +156,18 @@ template <class Agent, class Record>
   return last.index_begin + std::ceil(last.length() + 10.0);  // agents beyond its end still count as in it
 }
 
+inline void add_in(map::Lane const& lane, TrafficEntry const& entry, ReachingEntries& list) {
+  list.add(entry, lane.index_begin, lane.index_begin + lane.length());
+}
+
 /// Adds an entry to the list for each drivable lane that the agent reaches into, whatever its own is.
 template <class Agent, class Record>
 void enter_touched(Map const& map, Agent const& agent, Record const& record, TrafficEntry const& entry,
-                   std::vector<TrafficEntry>& list) {
+                   ReachingEntries& list) {
   auto const& shape = agent.shape;
   geometry::Point const at{record.state.x, record.state.y};
   double const radius = std::max(shape.front, shape.rear) + std::max(shape.left, shape.right);
-  auto const first = static_cast<std::ptrdiff_t>(list.size());
+  auto const first = static_cast<std::ptrdiff_t>(list.entries.size());
   map.for_each_drivable_near(at, radius, [&](map::LaneHit const& hit) {
     auto const& lane = map.lane(hit.lane);
     auto const found = entry_in(lane, hit.s, agent, record, entry);
@@ -176,7 +180,7 @@ void enter_touched(Map const& map, Agent const& agent, Record const& record, Tra
     auto const is_there = [&](TrafficEntry const& other) {  // by another foot point
       return other.position >= lane.index_begin && other.position <= lane.index_begin + lane.length();
     };
-    if (std::none_of(list.begin() + first, list.end(), is_there)) list.push_back(found);
+    if (std::none_of(list.entries.begin() + first, list.entries.end(), is_there)) add_in(lane, found, list);
   });
 }
 
@@ -185,7 +189,7 @@ void enter_touched(Map const& map, Agent const& agent, Record const& record, Tra
 /// it is in, if there is one.
 template <class Agent, class Record>
 bool straddle(Map const& map, Agent const& agent, Record const& record, TrafficEntry const& entry,
-              std::vector<TrafficEntry>& list) {
+              ReachingEntries& list) {
   auto const& at = record.lane;
   auto const& corridor = agent.road->corridors[at.corridor];
   if (!is_drivable(corridor.pieces[at.piece].type)) {
@@ -200,7 +204,7 @@ bool straddle(Map const& map, Agent const& agent, Record const& record, TrafficE
   geometry::Pose const pose{record.state.x, record.state.y, record.state.heading};
   if (-left >= widths.right || -right >= widths.left) {
     if (auto const hit = map.nearest_lane(pose, 0.0))
-      list.push_back(entry_in(map.lane(hit->lane), hit->s, agent, record, entry));
+      add_in(map.lane(hit->lane), entry_in(map.lane(hit->lane), hit->s, agent, record, entry), list);
     return false;
   }
   double const share = (at.index - lane.index_begin) / lane.length();
@@ -208,7 +212,7 @@ bool straddle(Map const& map, Agent const& agent, Record const& record, TrafficE
     if (is_valid(beside)) {
       auto const& other = map.lane(beside);
       auto const foot = other.path.project(pose.position(), other.path.find(share * other.length()));
-      list.push_back(entry_in(other, foot.s, agent, record, entry));
+      add_in(other, entry_in(other, foot.s, agent, record, entry), list);
       return;
     }
     double const along = pose.heading - at.heading_error;
@@ -217,7 +221,7 @@ bool straddle(Map const& map, Agent const& agent, Record const& record, TrafficE
     if (!hit || hit->distance > 0.0) return;
     auto const& oncoming = map.lane(hit->lane);
     if (std::cos(oncoming.path.pose(hit->s).heading - along) < 0.0)
-      list.push_back(entry_in(oncoming, hit->s, agent, record, entry));
+      add_in(oncoming, entry_in(oncoming, hit->s, agent, record, entry), list);
   };
   if (left > widths.left) enter(lane.left_neighbor, reach.positive);
   if (right > widths.right) enter(lane.right_neighbor, -reach.negative);
@@ -229,7 +233,7 @@ template <class Roster, class Frame>
 void refresh_traffic(TrafficIndex& index, Map const& map, Roster const& roster, Frame const& frame) {
   constexpr double nowhere = std::numeric_limits<double>::infinity();
   double const lanes_end = lane_coordinate_end(map);
-  auto const add = [&](std::uint32_t slot, std::vector<TrafficEntry>& straddling) {
+  auto const add = [&](std::uint32_t slot, ReachingEntries& reaching) {
     auto const& record = frame.agents[slot];
     auto const& agent = roster.agents[slot];
     double const speed = record.state.speed * cosine_of_small(record.lane.heading_error);
@@ -242,7 +246,7 @@ void refresh_traffic(TrafficIndex& index, Map const& map, Roster const& roster, 
     bool const is_usual = std::max(agent.shape.left, agent.shape.right) <= usual_half_width &&
                           std::abs(record.lane.heading_error) <= usual_heading_error;
     if (is_usual && std::abs(record.lane.lateral) <= on_path && record.lane.index < lanes_end) return entry;
-    if (!straddle(map, agent, record, entry, straddling)) entry.position = nowhere;
+    if (!straddle(map, agent, record, entry, reaching)) entry.position = nowhere;
     return entry;
   };
   index.refresh(frame.agents.size(), add);
