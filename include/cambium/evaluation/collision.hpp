@@ -113,8 +113,8 @@ struct CollisionAny {
  private:
   static constexpr std::uint32_t few = 32;
 
-  /// The first pair that touches, in the order of the agents: each compared with each: of so few less work than sorting
-  /// them, in loops that become SIMD code.
+  /// The first pair that touches, in the order of the agents. Each is compared with each, in loops that become SIMD
+  /// code: less work than sorting so few.
   template <class World>
   [[nodiscard]] static Result compare_all(World const& world) {
     std::array<double, few> x, y, radius, heading, sin, cos;

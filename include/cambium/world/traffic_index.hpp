@@ -37,9 +37,10 @@ struct ReachingEntries {
 ///
 /// Agents are kept in one list by lane coordinate; the order of the last step is repaired, not rebuilt (insertion sort;
 /// where it is far off, a full sort). Agents that reach over their lane's border are in it once more, in the
-/// neighbour's lane; static objects are in a list of their own. Of all whose reference points lie ahead (behind), on
-/// the corridor or in a feeder (a lane that merges in, or has just split off), the one with the smallest gap is the
-/// neighbour.
+/// neighbour's lane; static objects are in a list of their own. On the corridor itself the nearest by reference point
+/// counts, and where anybody who reaches over a border stands beside another, whoever reaches nearer; from each feeder
+/// (a lane that merges in, or has just split off) whoever reaches nearest; of these the one with the smallest gap is
+/// the neighbour.
 class TrafficIndex {
  public:
   /// Farthest reference point that is a neighbour, along the corridor [m].
@@ -297,8 +298,8 @@ class TrafficIndex {
   }
 
   /// Next ahead among static objects and all in lanes that merge; and, where it is crowded, among those who are farther
-  /// by reference point but may reach nearer. Out of line: few steps need it, and it is large. It
-  /// gets copies, so that what is searched for elsewhere can stay in registers.
+  /// by reference point but may reach nearer. Out of line: few steps need it, and it is large. It gets copies, so that
+  /// what is searched for elsewhere can stay in registers.
   template <class Query>
   CAMBIUM_NOINLINE Nearest front_of_others(std::size_t start, map::LaneCorridor const& corridor, Query const& query,
                                            List objects, Nearest best) const {
@@ -429,8 +430,8 @@ class TrafficIndex {
   }
 
   std::vector<TrafficEntry> agents_;
-  std::size_t size_ = 0;  ///< of that list: vectors divide to tell
-  bool crowded_ = false;  ///< somebody who reaches over a border hides another who reaches nearer, or is hidden
+  std::size_t size_ = 0;  ///< of that list, for which a vector has to divide
+  bool crowded_ = false;  ///< somebody who reaches over a border may hide another who reaches nearer, or be hidden
   ReachingEntries reaching_;
   std::vector<std::uint32_t> rank_;
   double longest_front_ = 0.0, longest_rear_ = 0.0;
