@@ -192,6 +192,42 @@ inline void set_lane_ends(Map const& map, LaneCorridor& corridor, bool is_short)
   return static_cast<std::uint16_t>(best);
 }
 
+/// The road corridor along `route`, see `build_road_corridor`.
+[[nodiscard]] inline std::shared_ptr<RoadCorridor const> join_lanes(Map const& map, std::vector<LaneId> const& route) {
+  auto const stages = route_stages(map, route);
+  auto const chains = lane_chains(map, stages);
+  if (chains.size() >= no_corridor)
+    throw MapError("route", "it has more lane corridors than can be numbered", "give a shorter one");
+  auto road = std::make_shared<RoadCorridor>();
+  road->route = route;
+  road->main = main_chain(chains, route);
+  for (auto const& chain : chains) {
+    auto corridor = LaneJoiner(map).join(chain.lanes);
+    for (std::size_t i = 0; i < corridor.pieces.size(); ++i) {
+      auto& piece = corridor.pieces[i];
+      auto const stage = chain.begin + i;
+      auto const piece_of = [&](std::uint16_t number) {
+        return static_cast<std::uint16_t>(number == no_corridor ? 0 : stage - chains[number].begin);
+      };
+      piece.left = chain_of(map, chains, stage, map.lane(piece.lane).left_neighbor);
+      piece.right = chain_of(map, chains, stage, map.lane(piece.lane).right_neighbor);
+      piece.left_piece = piece_of(piece.left);
+      piece.right_piece = piece_of(piece.right);
+    }
+    set_lane_ends(map, corridor, chain.begin + chain.lanes.size() < stages.size());
+    corridor.reaches_destination = chain.has(route.back());
+    FeederFinder(map, corridor).find();
+    corridor.conflicts = ConflictFinder(map, corridor).find();
+    corridor.signals = corridor_signals(map, corridor);
+    for (auto& feeder : corridor.feeders)
+      feeder.by_rule = std::any_of(corridor.conflicts.begin(), corridor.conflicts.end(), [&](Conflict const& conflict) {
+        return std::abs(conflict.meet - feeder.free_until) < 1e-3;
+      });
+    road->corridors.push_back(std::move(corridor));
+  }
+  return road;
+}
+
 }  // namespace detail
 
 /// The way straight on from `from`: at forks the successor that turns least (within 50 m), of equal ones the smallest
@@ -228,39 +264,12 @@ inline void set_lane_ends(Map const& map, LaneCorridor& corridor, bool is_short)
 /// - lanes that lead to its begin: 100 m back, with negative images (of a ring, the corridor's own last lanes too).
 /// Lanes that cross it are none; those are its conflicts, with lanes that merge with it in a junction. No stretch of a
 /// lane has two images, except by different corridors.
+///
+/// The map remembers those that are in use, and the last hundred or so: their routes give the same object again, at
+/// once. To build one takes from 0.1 ms to, for 2 km through a town's junctions, 30 ms. Safe on many threads.
 [[nodiscard]] inline std::shared_ptr<RoadCorridor const> build_road_corridor(Map const& map, Route const& route) {
-  auto const stages = detail::route_stages(map, route.lanes);
-  auto const chains = detail::lane_chains(map, stages);
-  if (chains.size() >= no_corridor)
-    throw MapError("route", "it has more lane corridors than can be numbered", "give a shorter one");
-  auto road = std::make_shared<RoadCorridor>();
-  road->route = route.lanes;
-  road->main = detail::main_chain(chains, route.lanes);
-  for (auto const& chain : chains) {
-    auto corridor = detail::LaneJoiner(map).join(chain.lanes);
-    for (std::size_t i = 0; i < corridor.pieces.size(); ++i) {
-      auto& piece = corridor.pieces[i];
-      auto const stage = chain.begin + i;
-      auto const piece_of = [&](std::uint16_t number) {
-        return static_cast<std::uint16_t>(number == no_corridor ? 0 : stage - chains[number].begin);
-      };
-      piece.left = detail::chain_of(map, chains, stage, map.lane(piece.lane).left_neighbor);
-      piece.right = detail::chain_of(map, chains, stage, map.lane(piece.lane).right_neighbor);
-      piece.left_piece = piece_of(piece.left);
-      piece.right_piece = piece_of(piece.right);
-    }
-    detail::set_lane_ends(map, corridor, chain.begin + chain.lanes.size() < stages.size());
-    corridor.reaches_destination = chain.has(route.lanes.back());
-    detail::FeederFinder(map, corridor).find();
-    corridor.conflicts = detail::ConflictFinder(map, corridor).find();
-    corridor.signals = detail::corridor_signals(map, corridor);
-    for (auto& feeder : corridor.feeders)
-      feeder.by_rule = std::any_of(corridor.conflicts.begin(), corridor.conflicts.end(), [&](Conflict const& conflict) {
-        return std::abs(conflict.meet - feeder.free_until) < 1e-3;
-      });
-    road->corridors.push_back(std::move(corridor));
-  }
-  return road;
+  if (auto known = map.built_corridors().find(route.lanes)) return known;
+  return map.built_corridors().add(detail::join_lanes(map, route.lanes));
 }
 
 }  // namespace cambium::map

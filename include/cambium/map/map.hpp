@@ -22,6 +22,7 @@
 #include "cambium/geometry/shape.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/corridor.hpp"
+#include "cambium/map/detail/built_corridors.hpp"
 #include "cambium/map/detail/find_lane.hpp"
 #include "cambium/map/detail/follow_lane.hpp"
 #include "cambium/map/lane.hpp"
@@ -84,7 +85,8 @@ struct Junction {
   std::vector<RoadPriority> priorities;  ///< as written in the file
 };
 
-/// Roads, lanes and how they hang together. Immutable; made by `load_opendrive` or `build_map`, shared by worlds.
+/// Roads, lanes and how they hang together. Immutable, but that it remembers road corridors that were built
+/// (safe on many threads); made by `load_opendrive` or `build_map`, shared by worlds.
 class Map {
  public:
   struct Parts {
@@ -251,6 +253,9 @@ class Map {
     return reachable(LaneStation{from}, budget, options);
   }
 
+  /// What `build_road_corridor` has built.
+  [[nodiscard]] detail::BuiltCorridors& built_corridors() const { return built_corridors_; }
+
  private:
   [[nodiscard]] static LaneStation end_of(LaneId lane) { return {lane, std::numeric_limits<double>::infinity()}; }
 
@@ -265,6 +270,7 @@ class Map {
   Parts parts_;
   LaneTree tree_;
   geometry::Box bounds_;
+  mutable detail::BuiltCorridors built_corridors_;
 };
 
 }  // namespace cambium::map

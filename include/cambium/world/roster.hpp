@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -47,9 +46,7 @@ struct Roster {
   std::vector<map::LightPlan> lights;  ///< by `LightId`; off beyond its end
   std::vector<StaticObject> objects;
   std::vector<TrafficEntry> object_entries;  ///< objects on the lanes that they stand in; slot: place in `objects`
-  std::map<std::vector<LaneId>, std::shared_ptr<map::RoadCorridor const>> corridors;  ///< built so far, by route
-
-  std::vector<FreeRoad> free_roads;  ///< those that agents have entered on
+  std::vector<FreeRoad> free_roads;          ///< those that agents have entered on
 
   /// The agent's slot; nothing if there is no such agent. O(log n).
   [[nodiscard]] std::optional<std::size_t> slot_of(AgentId id) const {
@@ -59,12 +56,11 @@ struct Roster {
     return static_cast<std::size_t>(at - agents.begin());
   }
 
-  /// Takes in an agent whose id nobody has, on the route of `lanes`, none on a free corridor; returns its slot. O(n).
-  std::size_t insert(Agent agent, Goal goal, std::vector<LaneId> const& lanes) {
+  /// Takes in an agent whose id nobody has; returns its slot. O(n).
+  std::size_t insert(Agent agent, Goal goal) {
     auto const place =
         std::lower_bound(agents.begin(), agents.end(), agent.id, [](Agent const& a, AgentId b) { return a.id < b; });
     auto const slot = place - agents.begin();
-    if (!lanes.empty()) corridors.emplace(lanes, agent.road);
     next_agent_id = std::max(next_agent_id, static_cast<std::uint32_t>(agent.id) + 1);
     agents.insert(place, std::move(agent));
     has_sequences = has_sequences || std::holds_alternative<GoalSequence>(goal);
@@ -78,7 +74,7 @@ struct Roster {
     goals.erase(goals.begin() + static_cast<std::ptrdiff_t>(slot));
   }
 
-  /// Takes all out but those at `slots`, which ascend, and forgets roads that nobody is left on. O(n).
+  /// Takes all out but those at `slots`, which ascend. O(n).
   void keep(std::vector<std::size_t> const& slots) {
     for (std::size_t to = 0; to < slots.size(); ++to) {
       if (to == slots[to]) continue;
@@ -87,7 +83,6 @@ struct Roster {
     }
     agents.erase(agents.begin() + static_cast<std::ptrdiff_t>(slots.size()), agents.end());
     goals.erase(goals.begin() + static_cast<std::ptrdiff_t>(slots.size()), goals.end());
-    std::erase_if(corridors, [](auto const& entry) { return entry.second.use_count() == 1; });
   }
 
   /// Takes in a static object, with `entries` for the lanes that it stands in; returns its id. O(objects).

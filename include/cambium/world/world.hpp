@@ -155,7 +155,7 @@ class World {
     auto entrant = detail::entrant<World>(*map_, *roster_, spec, id, frame_.time);
     auto& roster = writable_roster();
     if (spec.road) detail::enter_free_road(roster, spec.road, entrant.agent.road);
-    auto const slot = roster.insert(std::move(entrant.agent), std::move(entrant.goal), entrant.lanes);
+    auto const slot = roster.insert(std::move(entrant.agent), std::move(entrant.goal));
     frame_.agents.insert(frame_.agents.begin() + static_cast<std::ptrdiff_t>(slot), entrant.record);
     pass_goals(slot, frame_.agents[slot]);
     scratch_.forget();

@@ -44,6 +44,7 @@ inline void add_ways_on(Map const& map, LaneId at, bool ahead, double reach, std
   }
   double const on_path = std::clamp(s, 0.0, lane->length());
   auto const pose = lane->path.pose(on_path);
+  if (s == on_path) return pose;
   return {pose.x + (s - on_path) * std::cos(pose.heading), pose.y + (s - on_path) * std::sin(pose.heading),
           pose.heading};
 }
@@ -82,6 +83,7 @@ struct TouchingBodies {
   CorridorPiece const& piece;    ///< its lane there
   LaneId other;
   geometry::Shape shape, other_shape;
+  double touching_distance = shape.radius() + other_shape.radius();  ///< of centres, at most [m]
 
   /// The parts of `range` where they touch, apart as in `add_zone`. O(places on one times places on the other).
   [[nodiscard]] std::vector<ConflictZone> zones(ConflictZone const& range) const {
@@ -93,7 +95,8 @@ struct TouchingBodies {
       double const s = range.begin + static_cast<double>(i) * step;
       ConflictZone touched;
       auto const add = [&](geometry::OrientedBox const& body) {
-        for (auto const& track : others) add_touched(body, s, track, range.other_begin, touched);
+        for (auto const& track : others)
+          if (track.around.contains(body.center())) add_touched(body, s, track, range.other_begin, touched);
       };
       add(geometry::box_of(shape, corridor.center.pose(s)));
       for (auto const& track : branches)
@@ -112,6 +115,7 @@ struct TouchingBodies {
     std::size_t first;
     bool is_branch;  ///< beyond the lane's end, where there are other ways too
     std::vector<geometry::OrientedBox> bodies;
+    geometry::Box around;  ///< holds the centre of any body that touches one of them
   };
 
   [[nodiscard]] static std::size_t places(double begin, double end) {
@@ -129,10 +133,15 @@ struct TouchingBodies {
     while (left < count && place(left) <= length) ++left;
     std::vector<Track> tracks;
     auto const add = [&](std::vector<LaneId> const& way, std::size_t from, std::size_t to, bool is_branch) {
-      Track track{from, is_branch, {}};
-      for (auto i = from; i < to; ++i)
+      if (from >= to) return;
+      Track track{from, is_branch, {}, {}};
+      track.bodies.reserve(to - from);
+      for (auto i = from; i < to; ++i) {
         track.bodies.push_back(geometry::box_of(body, pose_on_way(map, lane, way, place(i))));
-      if (!track.bodies.empty()) tracks.push_back(std::move(track));
+        track.around.add(track.bodies.back().x, track.bodies.back().y);
+      }
+      track.around = track.around.grown(touching_distance);
+      tracks.push_back(std::move(track));
     };
     add({}, entered, left, false);
     for (bool const ahead : {false, true}) {
@@ -148,11 +157,7 @@ struct TouchingBodies {
   void add_touched(geometry::OrientedBox const& body, double s, Track const& track, double begin,
                    ConflictZone& touched) const {
     auto const& others = track.bodies;
-    // 0 where they touch, else how many places on they may do so at the earliest.
-    auto const skip_at = [&](std::size_t i) -> std::size_t {
-      if (std::size_t const apart = places_apart(body, others[i])) return apart;
-      return geometry::intersects(body, others[i]) ? 0 : 1;
-    };
+    auto const skip_at = [&](std::size_t i) { return places_apart(body, others[i]); };
     std::size_t first = 0;
     for (std::size_t skip = 1; first < others.size() && skip > 0; first += skip) skip = skip_at(first);
     if (first >= others.size()) return;
@@ -162,11 +167,13 @@ struct TouchingBodies {
     touched = joined(touched, {s - step, s + step, at(first) - step, at(last) + step});
   }
 
-  /// How many of the next places are too far to touch: bodies go no more than 2 m along 1 m of path.
+  /// 0 where they touch, else how many places on they may do so at the earliest: bodies go no more than 2 m along 1 m
+  /// of path.
   [[nodiscard]] std::size_t places_apart(geometry::OrientedBox const& a, geometry::OrientedBox const& b) const {
-    double const dx = b.x - a.x, dy = b.y - a.y;
-    double const apart = std::sqrt(dx * dx + dy * dy) - shape.radius() - other_shape.radius();
-    return apart > 2.0 * step ? static_cast<std::size_t>(apart / (2.0 * step)) : 0;
+    double const dx = b.x - a.x, dy = b.y - a.y, squared = dx * dx + dy * dy;
+    double const near = touching_distance + 2.0 * step;
+    if (squared > near * near) return static_cast<std::size_t>((std::sqrt(squared) - touching_distance) / (2.0 * step));
+    return geometry::intersects(a, b) ? 0 : 1;
   }
 };
 

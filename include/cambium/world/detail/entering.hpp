@@ -109,10 +109,9 @@ void check_entering(Spec const& spec, std::string const& where) {
     throw WorldError(where, "its shape has no length or no width", "leave the shape out to get a car");
 }
 
-/// Where an agent enters. `lanes`, its route, is empty on a free corridor.
+/// Where an agent enters.
 struct Entrance {
   std::shared_ptr<map::RoadCorridor const> road;
-  std::vector<LaneId> lanes;
   LaneId lane = none<LaneId>;
   map::LanePosition place;
 };
@@ -122,14 +121,13 @@ template <class Roster, class Spec>
 [[nodiscard]] Entrance entrance(Map const& map, Roster const& roster, Spec const& spec, std::string const& where) {
   if (spec.road) {
     auto const road = numbered_road(map, roster.free_roads, spec.road, where);
-    return {road, {}, none<LaneId>, entering_free(spec, *road, where)};
+    return {road, none<LaneId>, entering_free(spec, *road, where)};
   }
   LaneId const lane = spec.route ? entering_lane(map, spec.position, spec.heading, *spec.route, where)
                                  : entering_lane(map, spec.position, spec.heading, where);
   auto const route = entering_route(map, lane, spec.route, spec.goal, where);
-  auto const known = roster.corridors.find(route.lanes);
-  auto const road = known != roster.corridors.end() ? known->second : map::build_road_corridor(map, route);
-  return {road, route.lanes, lane, entering_position(map, spec, *road, lane, where)};
+  auto const road = map::build_road_corridor(map, route);
+  return {road, lane, entering_position(map, spec, *road, lane, where)};
 }
 
 /// Notes a free corridor that nobody has entered on before, and which objects stand on it.
@@ -161,12 +159,11 @@ template <class Behavior>
           "load the map with a MapOptions::large_conflict_shape that holds it"};
 }
 
-/// An agent about to enter: all that a world takes in of it. `lanes`: its route.
+/// An agent about to enter: all that a world takes in of it.
 template <class World>
 struct Entrant {
   typename World::RosterType::Agent agent;
   Goal goal;
-  std::vector<LaneId> lanes;
   typename World::Record record;
 };
 
@@ -182,7 +179,7 @@ template <class World>
   if (roster.slot_of(id))
     throw WorldError(where, "the world has an agent of that id already", "leave the id out to get a free one");
   check_entering(spec, where);
-  auto const [road, lanes, lane, place] = entrance(map, roster, spec, where);
+  auto const [road, lane, place] = entrance(map, roster, spec, where);
   if (is_too_large(map, spec.behavior, spec.shape, *road)) throw too_large(where);
   typename World::Record record;
   record.lane = place;
@@ -196,7 +193,6 @@ template <class World>
   forget_past(record);
   return {{id, spec.shape, road, spec.behavior, spec.execution, spec.dynamics, spec.observer},
           entering_goal(spec.goal, lane, where),
-          lanes,
           record};
 }
 

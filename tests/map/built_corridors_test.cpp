@@ -1,0 +1,89 @@
+#include "cambium/map/detail/built_corridors.hpp"
+
+#include <cstddef>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include <doctest/doctest.h>
+
+#include "cambium/map/build_corridor.hpp"
+#include "lanes_by_hand.hpp"
+
+using namespace by_hand;
+
+namespace {
+
+using Shared = std::shared_ptr<RoadCorridor const>;
+
+/// A road of 40 lanes, one behind the other.
+std::shared_ptr<Map const> long_road() {
+  std::vector<Lane> lanes;
+  for (int i = 0; i < 40; ++i) add_straight(lanes, {10.0 * i, 0, 0}, 10.0);
+  for (std::size_t i = 1; i < lanes.size(); ++i) link(lanes, lanes[i - 1].id, lanes[i].id);
+  return make_map(lanes);
+}
+
+/// All ways along it of two lanes or more.
+std::vector<Route> routes_of(Map const& map) {
+  std::vector<Route> routes;
+  for (auto const& first : map.lanes()) {
+    auto lanes = straight_route(map, first.id).lanes;
+    for (; lanes.size() > 1; lanes.pop_back()) routes.push_back({lanes, 10.0 * static_cast<double>(lanes.size())});
+  }
+  return routes;
+}
+
+}  // namespace
+
+TEST_CASE("the same route gives the same road corridor, that built anew too, while the map has not forgotten it") {
+  auto const map = long_road();
+  auto const routes = routes_of(*map);
+  REQUIRE(routes.size() == 780);
+  auto const first = build_road_corridor(*map, routes[0]);
+  CHECK(build_road_corridor(*map, routes[0]) == first);
+  CHECK(first->route == routes[0].lanes);
+  auto const anew = cambium::map::detail::join_lanes(*map, routes[0].lanes);
+  CHECK(anew != first);
+  CHECK(anew->corridors[0].center.samples().size() == first->corridors[0].center.samples().size());
+  auto const* const unused = build_road_corridor(*map, routes[1]).get();
+  CHECK(build_road_corridor(*map, routes[1]).get() == unused);
+  CHECK(build_road_corridor(*long_road(), routes[0]) != first);  // another map has its own
+}
+
+TEST_CASE("road corridors in use are kept, of the others those that came last, about a hundred") {
+  auto const map = long_road();
+  auto const routes = routes_of(*map);
+  auto const in_use = build_road_corridor(*map, routes[0]);
+  std::vector<std::weak_ptr<RoadCorridor const>> seen;
+  std::size_t most = 0;
+  for (auto const& route : routes) {
+    seen.push_back(build_road_corridor(*map, route));
+    std::size_t kept = 0;
+    for (auto const& road : seen) kept += !road.expired();
+    most = std::max(most, kept);
+  }
+  CHECK(most >= 100);
+  CHECK(most <= 130);
+  CHECK(seen[1].expired());
+  CHECK_FALSE(seen[0].expired());
+  CHECK(build_road_corridor(*map, routes[0]) == in_use);
+  // However many are in use, none of them is built again.
+  std::vector<Shared> all;
+  for (auto const& route : routes) all.push_back(build_road_corridor(*map, route));
+  for (std::size_t i = 0; i < routes.size(); ++i) REQUIRE(build_road_corridor(*map, routes[i]) == all[i]);
+}
+
+TEST_CASE("threads that ask for the same roads at once get the same ones") {
+  auto const map = long_road();
+  auto const routes = routes_of(*map);
+  std::vector<std::vector<Shared>> found(4);
+  {
+    std::vector<std::jthread> threads;
+    for (auto& mine : found)
+      threads.emplace_back([&mine, &map, &routes] {
+        for (auto const& route : routes) mine.push_back(build_road_corridor(*map, route));
+      });
+  }
+  for (auto const& mine : found) REQUIRE(mine == found[0]);
+}
