@@ -112,6 +112,9 @@ int run_program(CLI::App& program, int argc, char** argv, Body const& body) {
   } catch (CLI::CallForHelp const&) {
     std::cout << program.help();
     return finish_output(program.get_name());
+  } catch (CLI::ParseError const& problem) {
+    std::cerr << program.get_name() << ": " << problem.what() << " (--help lists the options)\n";
+    return 2;
   } catch (std::exception const& problem) {
     std::cerr << program.get_name() << ": " << problem.what() << "\n";
     return 2;

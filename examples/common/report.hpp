@@ -41,18 +41,35 @@ struct Totals {
   return t;
 }
 
+/// Something that the scenarios count: "lane changes"; `meaning` may be left out.
+struct Count {
+  std::string name, meaning{};
+};
+
+/// What a program of sampled scenarios calls things.
+struct Words {
+  std::string title;    ///< of the replay: "Merging"
+  std::string success;  ///< "the ego merged"
+  std::vector<Count> counts{};
+};
+
+/// "1 vehicle", "2 vehicles".
+[[nodiscard]] inline std::string counted(std::uint64_t count, std::string const& thing) {
+  return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
+}
+
 /// "lane changes" as a key: "lane_changes".
 [[nodiscard]] inline std::string in_one_word(std::string text) {
   std::replace(text.begin(), text.end(), ' ', '_');
   return text;
 }
 
-/// The figures as a file keeps them; `counts` names what the scenarios count. `add_facts(site, json)` beside the site
+/// The figures as a file keeps them. `add_facts(site, json)` beside the site
 /// adds what there is to say about it.
 template <class Site>
 [[nodiscard]] nlohmann::ordered_json summary(Settings const& settings, Site const& site,
                                              std::vector<Outcome> const& outcomes, Totals const& t,
-                                             std::vector<std::string> const& counts) {
+                                             Words const& words) {
   auto const n = static_cast<double>(settings.scenarios);
   nlohmann::ordered_json json;
   json["map"] = std::filesystem::path(settings.map_file).filename().string();
@@ -68,7 +85,7 @@ template <class Site>
   json["mean_speed"] = t.agent_steps > 0 ? t.speed_sum / static_cast<double>(t.agent_steps) : 0.0;
   json["mean_steps"] = static_cast<double>(t.steps) / n;
   json["hard_brakings"] = t.hard_brakings;
-  for (std::size_t k = 0; k < t.counts.size(); ++k) json[in_one_word(counts[k])] = t.counts[k];
+  for (std::size_t k = 0; k < t.counts.size(); ++k) json[in_one_word(words.counts[k].name)] = t.counts[k];
   json["agents"] = t.agents;
   json["agent_steps"] = t.agent_steps;
   json["replayed_scenario"] = t.most_interesting;
@@ -82,35 +99,37 @@ template <class Site>
   return json;
 }
 
-/// What the words of the table mean; `success` is what there is to be done.
-[[nodiscard]] inline std::string explained(std::string const& success) {
-  return "  success: " + success +
-         " before time was out, and nobody collided\n"
-         "  off-road: a part of the ego was beyond the lanes to drive on, as that of a truck may be in a tight bend,\n"
-         "    where its rear axle keeps to the lane\n";
+/// What the words of the table mean.
+[[nodiscard]] inline std::string explained(Words const& words) {
+  std::string text =
+      "  success: " + words.success +
+      " before time was out, and nobody collided\n"
+      "  ego off-road: a part of the ego was beyond the lanes to drive on, as that of a truck may be in\n"
+      "    a tight bend, where its rear axle keeps to the lane\n";
+  for (auto const& count : words.counts)
+    if (!count.meaning.empty()) text += "  " + count.name + ": " + count.meaning + "\n";
+  return text;
 }
 
-inline void print_table(Settings const& settings, Totals const& t, double seconds,
-                        std::vector<std::string> const& counts, std::string const& success) {
+inline void print_table(Settings const& settings, Totals const& t, double seconds, Words const& words) {
   auto const n = static_cast<double>(settings.scenarios);
   auto const percent = [n](std::uint64_t count) { return 100.0 * static_cast<double>(count) / n; };
   auto const steps = static_cast<double>(t.agent_steps);
-  std::printf("\n  %llu scenarios on %s, %.1f agents each, seed %llu\n\n",
-              static_cast<unsigned long long>(settings.scenarios),
+  std::printf("\n  %s on %s, %.1f agents each, seed %llu\n\n", counted(settings.scenarios, "scenario").c_str(),
               std::filesystem::path(settings.map_file).filename().c_str(), static_cast<double>(t.agents) / n,
               static_cast<unsigned long long>(settings.seed));
   std::printf(
-      "  success          %6.1f %%\n  collision        %6.1f %%\n  time-out         %6.1f %%\n  off-road         %6.1f "
+      "  success          %6.1f %%\n  collision        %6.1f %%\n  time-out         %6.1f %%\n  ego off-road     %6.1f "
       "%%\n",
       percent(t.success), percent(t.collision), percent(t.time_out), percent(t.off_road));
   std::printf("  mean speed       %6.2f m/s\n  hard brakings    %6.2f per scenario (harder than %.0f m/s^2)\n",
               t.speed_sum / std::max(1.0, steps), static_cast<double>(t.hard_brakings) / n, -hard_braking);
   for (std::size_t k = 0; k < t.counts.size(); ++k)
-    std::printf("  %-16s %6.2f per scenario\n", counts[k].c_str(), static_cast<double>(t.counts[k]) / n);
+    std::printf("  %-16s %6.2f per scenario\n", words.counts[k].name.c_str(), static_cast<double>(t.counts[k]) / n);
   std::printf("  agent-steps      %.3g in %.2f s: %.3g per second on %llu thread%s, sampling and judging included\n",
               steps, seconds, steps / seconds, static_cast<unsigned long long>(settings.threads),
               settings.threads == 1 ? "" : "s");
-  std::printf("%s\n", explained(success).c_str());
+  std::printf("%s\n", explained(words).c_str());
 }
 
 }  // namespace examples

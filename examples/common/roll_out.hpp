@@ -203,7 +203,7 @@ template <class Site>
     }
   };
   std::vector<std::jthread> threads;
-  for (std::uint64_t t = 1; t < settings.threads; ++t) threads.emplace_back(work);
+  for (std::uint64_t t = 1; t < std::min(settings.threads, settings.scenarios); ++t) threads.emplace_back(work);
   work();
   for (auto& thread : threads) thread.join();
   if (problem) std::rethrow_exception(problem);

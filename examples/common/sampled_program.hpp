@@ -21,18 +21,6 @@
 
 namespace examples {
 
-/// What a program of sampled scenarios calls things.
-struct Words {
-  std::string title;                  ///< of the replay: "Merging"
-  std::string success;                ///< "the ego merged"
-  std::vector<std::string> counts{};  ///< what its scenarios count: "lane changes"
-};
-
-/// "1 vehicle", "2 vehicles".
-[[nodiscard]] inline std::string counted(std::uint64_t count, std::string const& thing) {
-  return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
-}
-
 /// Why of all scenarios this one is replayed.
 [[nodiscard]] inline char const* why_interesting(Outcome const& outcome) {
   if (outcome.kind == Outcome::Kind::collision) return "a collision";
@@ -66,7 +54,7 @@ inline void add_options(CLI::App& program, Settings& settings, std::string const
       ->type_name("DIR")
       ->check(not_empty())
       ->capture_default_str();
-  program.footer("What it prints:\n" + explained("the ego, or everybody, did what there was to do"));
+  program.footer("What it prints:\n" + explained({"", "the ego, or everybody, did what there was to do"}));
 }
 
 template <class Site>
@@ -81,7 +69,7 @@ void write_results(std::filesystem::path const& folder, Site const& site, Settin
                      counted(replayed.hard_brakings, "hard braking") + ", seed " + std::to_string(settings.seed)};
   std::string rows = trajectory_columns;
   for (std::uint64_t i = 0; i < outcomes.size(); ++i) rows += i == shown ? replayed.trajectory : outcomes[i].trajectory;
-  auto const figures = summary(settings, site, outcomes, totals, words.counts);
+  auto const figures = summary(settings, site, outcomes, totals, words);
   cambium::write_file(folder / "trajectories.csv", rows);
   cambium::write_file(folder / "summary.json",
                       figures.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
@@ -106,7 +94,7 @@ void sample_and_report(Site const& site, Settings const& settings, Words const& 
   auto const totals = total(outcomes);
 
   write_results(folder, site, settings, words, outcomes, totals);
-  print_table(settings, totals, seconds, words.counts, words.success);
+  print_table(settings, totals, seconds, words);
   std::cout << "  " << (folder / "replay.html").string() << "       plays scenario " << totals.most_interesting << " ("
             << why_interesting(outcomes[totals.most_interesting]) << ") in a browser\n  "
             << (folder / "summary.json").string() << "      these figures and each scenario's outcome\n  "

@@ -11,7 +11,7 @@ namespace {
 void run(examples::Settings const& settings) {
   auto const site = highway::find_site(examples::load_map(settings.map_file), settings.map_file);
   std::string const success = site.exits.empty() ? "the ego came to the end" : "the ego took its exit";
-  examples::sample_and_report(site, settings, {"Highway", success, {"lane changes"}});
+  examples::sample_and_report(site, settings, {"Highway", success, {{"lane changes"}}});
 }
 
 }  // namespace

@@ -63,7 +63,7 @@ std::vector<Outcome> run(std::shared_ptr<cambium::Map const> const& map, Cell co
     }
   };
   std::vector<std::jthread> threads;
-  for (std::uint64_t t = 1; t < settings.threads; ++t) threads.emplace_back(work);
+  for (std::uint64_t t = 1; t < std::min(settings.threads, settings.scenarios); ++t) threads.emplace_back(work);
   work();
   threads.clear();
   if (problem) std::rethrow_exception(problem);

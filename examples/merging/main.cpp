@@ -12,8 +12,9 @@ namespace {
 void run(examples::Settings const& settings) {
   auto const site = merging::find_site(examples::load_map(settings.map_file), settings.map_file);
   if (site.crossings > 0)
-    std::cerr << "merging: " << settings.map_file << ": " << examples::counted(site.crossings, "place")
-              << " where the traffic's routes cross; nobody gives way there, so expect collisions\n";
+    std::cerr
+        << "merging: " << settings.map_file << ": " << examples::counted(site.crossings, "place")
+        << " where the traffic's routes cross or meet at an angle; nobody gives way there, so expect collisions\n";
   examples::sample_and_report(site, settings, {"Merging", "the ego merged"});
 }
 

@@ -44,7 +44,7 @@ struct Site {
   std::shared_ptr<cambium::Map const> map;
   std::vector<Entrance> entrances;
   std::size_t ramp{};        ///< the entrance whose vehicles merge
-  std::size_t crossings{};   ///< places where routes cross
+  std::size_t crossings{};   ///< places where routes cross or meet at an angle
   double free_speed = 13.9;  ///< [m/s]: the speed limit there, else 50 km/h
 };
 
@@ -102,15 +102,20 @@ inline void find_merge(cambium::Map const& map, Entrance& entrance) {
   return ramp;
 }
 
-/// How often the entrances' routes cross each other.
+/// How often the entrances' routes cross each other, or meet like streets, not like lanes.
 [[nodiscard]] inline std::size_t count_crossings(cambium::Map const& map, std::vector<Entrance> const& entrances) {
   std::set<cambium::LaneId> used;
   for (auto const& entrance : entrances) used.insert(entrance.route.lanes.begin(), entrance.route.lanes.end());
+  auto const heading_at = [&map](cambium::LaneId lane, double s) { return map.lane(lane).path.pose(s).heading; };
+  auto const is_crossing = [&](cambium::LaneId id, cambium::map::Overlap const& overlap) {
+    if (overlap.kind != cambium::map::OverlapKind::merge) return overlap.kind == cambium::map::OverlapKind::crossing;
+    double const turn = heading_at(id, overlap.begin) - heading_at(overlap.other, overlap.other_begin);
+    return std::cos(turn) < std::cos(cambium::geometry::pi / 6);
+  };
   std::size_t count = 0;
   for (auto const id : used)
     for (auto const& overlap : map.lane(id).overlaps)
-      count +=
-          overlap.kind == cambium::map::OverlapKind::crossing && overlap.other > id && used.contains(overlap.other);
+      count += overlap.other > id && used.contains(overlap.other) && is_crossing(id, overlap);
   return count;
 }
 

@@ -13,9 +13,15 @@ namespace {
 void run(examples::Settings const& settings) {
   auto const site = zip_merge::Site{merging::find_site(examples::load_map(settings.map_file), settings.map_file)};
   if (site.crossings > 0)
-    std::cerr << "zip_merge: " << settings.map_file << ": " << examples::counted(site.crossings, "place")
-              << " where the traffic's routes cross; nobody gives way there, so expect collisions\n";
-  examples::sample_and_report(site, settings, {"Zip merge", "the ego merged", {"pairs at merge", "of one lane"}});
+    std::cerr
+        << "zip_merge: " << settings.map_file << ": " << examples::counted(site.crossings, "place")
+        << " where the traffic's routes cross or meet at an angle; nobody gives way there, so expect collisions\n";
+  examples::sample_and_report(
+      site, settings,
+      {"Zip merge",
+       "the ego merged",
+       {{"pairs at merge", "two who come to the merge one after the other, while others still come on both lanes"},
+        {"of one lane", "those of these pairs who came on the same lane; a perfect zip has none"}}});
 }
 
 }  // namespace

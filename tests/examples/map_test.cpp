@@ -233,7 +233,8 @@ TEST_CASE("what is wrong is said in one line, with exit code 2 and nothing writt
             {merging, "--picture", (folder.path() / "a.svg").string(), "--part", "1", "0", "0", "1"},
             "the part to show has no area"},
            {"x,y\n1,2\n", {table, "--links", table}, "it is read, or written twice"},
-           {"", {table}, "in.csv: it is empty or cannot be read"},
+           {"", {table}, "in.csv: it is empty; give a table"},
+           {"", {folder.path().string()}, ": it is a folder; give an OpenDRIVE file"},
            {"", {merging, "--links", "/nosuch/folder/links.csv"}, "cannot be written"}}) {
     write(wrong.text);
     auto const run = map.run(wrong.words);

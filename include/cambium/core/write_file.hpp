@@ -15,11 +15,15 @@ namespace cambium {
 /// leaves what was there; follows links, and writes straight into what is no regular file. Throws `Error` naming the
 /// path and the system's reason.
 inline void write_file(std::filesystem::path const& path, std::string_view text) {
-  auto const fail = [&path](std::string const& reason) {
-    throw Error(path.string(), "cannot be written (" + reason + ")",
-                "name a file in a folder that exists and that you may write to");
-  };
   std::error_code none;
+  auto const fail = [&path, &none](std::error_code const& reason) {
+    bool const is_full = reason == std::errc::no_space_on_device || reason == std::errc::file_too_large;
+    throw Error(path.string(), "cannot be written (" + reason.message() + ")",
+                is_full ? "make room there, or write elsewhere"
+                : std::filesystem::is_directory(path, none)
+                    ? "name a file, not a folder"
+                    : "name a file in a folder that exists and that you may write to");
+  };
   auto const target = std::filesystem::is_symlink(path, none) ? std::filesystem::weakly_canonical(path, none) : path;
   bool const is_special = std::filesystem::exists(target, none) && !std::filesystem::is_regular_file(target, none) &&
                           !std::filesystem::is_directory(target, none);
@@ -30,17 +34,20 @@ inline void write_file(std::filesystem::path const& path, std::string_view text)
   }
   errno = 0;
   std::ofstream file(part, std::ios::binary | std::ios::trunc);
-  if (!file) fail(errno == 0 ? "not opened" : std::generic_category().message(errno));
+  auto const reason = [] {
+    return errno == 0 ? std::make_error_code(std::errc::io_error) : std::error_code(errno, std::generic_category());
+  };
+  if (!file) fail(reason());
   file.write(text.data(), static_cast<std::streamsize>(text.size()));
   file.close();
   std::error_code problem;
   if (!file)
-    problem = errno == 0 ? std::make_error_code(std::errc::io_error) : std::error_code(errno, std::generic_category());
+    problem = reason();
   else if (!is_special)
     std::filesystem::rename(part, target, problem);
   if (!problem) return;
   if (!is_special) std::filesystem::remove(part, none);
-  fail(problem.message());
+  fail(problem);
 }
 
 }  // namespace cambium

@@ -4,9 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <fstream>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -16,6 +14,7 @@
 #include "cambium/core/text.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/pose.hpp"
+#include "cambium/map/detail/read_map_file.hpp"
 #include "cambium/map/lane.hpp"
 #include "cambium/map/lane_type.hpp"
 #include "cambium/map/polyline_roads.hpp"
@@ -166,12 +165,8 @@ class CenterLineReader {
 /// As `read_center_line_csv`, from a file. Throws `MapError` where it cannot be read, too.
 [[nodiscard]] inline CenterLine load_center_line_csv(std::string const& path,
                                                      geometry::Point const& origin = {0.0, 0.0}) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw MapError(path, "the file cannot be opened", "check the path");
-  std::ostringstream text;
-  if (!(text << file.rdbuf()))  // a folder opens, but cannot be read
-    throw MapError(path, "it is empty or cannot be read as a file", "give a table with the columns x and y");
-  return read_center_line_csv(text.str(), path, origin);
+  auto const text = detail::read_map_file(path, "give a table with the columns x and y");
+  return read_center_line_csv(text, path, origin);
 }
 
 /// A road with one lane to drive on, -1, whose path is the line, to 1 mm: as wide as its table says, else `lane_width`
