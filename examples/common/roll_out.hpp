@@ -1,14 +1,9 @@
 #pragma once
 
-#include <unistd.h>
-
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <exception>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
@@ -20,6 +15,8 @@
 #include "cambium/evaluation/evaluators.hpp"
 #include "cambium/viewer/record_world.hpp"
 #include "cambium/world/frame.hpp"
+
+#include "on_threads.hpp"
 
 namespace examples {
 
@@ -155,58 +152,12 @@ template <class Site>
   return outcome;
 }
 
-/// Draws a bar on a terminal; silent elsewhere.
-class Progress {
- public:
-  explicit Progress(std::uint64_t total) : total_(total), shown_(isatty(STDERR_FILENO) == 1) {}
-  void advance() {
-    auto const done = ++done_;
-    if (!shown_) return;
-    std::unique_lock lock(mutex_, std::defer_lock);
-    if (done == total_)
-      lock.lock();
-    else if (!lock.try_lock())
-      return;
-    constexpr std::uint64_t width = 40;
-    auto const filled = done * width / total_;
-    std::fprintf(stderr, "\r[%s%s] %llu/%llu%s", std::string(filled, '#').c_str(),
-                 std::string(width - filled, ' ').c_str(), static_cast<unsigned long long>(done),
-                 static_cast<unsigned long long>(total_), done == total_ ? "\r\033[K" : "");
-    std::fflush(stderr);
-  }
-
- private:
-  std::uint64_t total_;
-  std::atomic<std::uint64_t> done_{0};
-  std::mutex mutex_;
-  bool shown_;
-};
-
-/// Runs all scenarios; each thread takes the next one that nobody has. The outcomes do not depend on the threads.
+/// Runs all scenarios. The outcomes do not depend on the threads.
 template <class Site>
 [[nodiscard]] std::vector<Outcome> run_all(Site const& site, Settings const& settings) {
   std::vector<Outcome> outcomes(settings.scenarios);
-  std::atomic<std::uint64_t> next{0};
-  std::exception_ptr problem;
-  std::mutex mutex;
-  Progress progress(settings.scenarios);
-  auto const work = [&] {
-    try {
-      for (auto i = next++; i < settings.scenarios; i = next++) {
-        outcomes[i] = run_scenario(site, settings, i, nullptr);
-        progress.advance();
-      }
-    } catch (...) {
-      std::lock_guard const lock(mutex);
-      if (!problem) problem = std::current_exception();
-      next = settings.scenarios;
-    }
-  };
-  std::vector<std::jthread> threads;
-  for (std::uint64_t t = 1; t < std::min(settings.threads, settings.scenarios); ++t) threads.emplace_back(work);
-  work();
-  for (auto& thread : threads) thread.join();
-  if (problem) std::rethrow_exception(problem);
+  run_on_threads(settings.scenarios, settings.threads,
+                 [&](std::uint64_t i) { outcomes[i] = run_scenario(site, settings, i, nullptr); });
   return outcomes;
 }
 

@@ -1,15 +1,12 @@
 // The experiment of BARK's paper (Bernhard et al. 2020, Fig. 5): ego changes lanes in dense traffic by tree search,
 // whose prediction of the others is wrong by some measure. Prints the table, writes a plot.
 
-#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
-#include <exception>
 #include <filesystem>
 #include <iostream>
-#include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
@@ -21,6 +18,7 @@
 #include "cambium/map/map_builder.hpp"
 
 #include "../common/command_line.hpp"
+#include "../common/on_threads.hpp"
 #include "plot.hpp"
 #include "scenario.hpp"
 
@@ -49,24 +47,9 @@ std::shared_ptr<cambium::Map const> two_lanes() {
 /// All scenarios of a cell; the outcomes do not depend on the threads.
 std::vector<Outcome> run(std::shared_ptr<cambium::Map const> const& map, Cell const& cell, Settings const& settings) {
   std::vector<Outcome> outcomes(settings.scenarios);
-  std::atomic<std::uint64_t> next{0};
-  std::exception_ptr problem;
-  std::mutex mutex;
-  auto const work = [&] {
-    try {
-      for (auto i = next++; i < settings.scenarios; i = next++)
-        outcomes[i] = play(sample(map, cell, settings.seed, static_cast<std::uint32_t>(i)));
-    } catch (...) {
-      std::lock_guard const lock(mutex);
-      if (!problem) problem = std::current_exception();
-      next = settings.scenarios;
-    }
-  };
-  std::vector<std::jthread> threads;
-  for (std::uint64_t t = 1; t < std::min(settings.threads, settings.scenarios); ++t) threads.emplace_back(work);
-  work();
-  threads.clear();
-  if (problem) std::rethrow_exception(problem);
+  examples::run_on_threads(settings.scenarios, settings.threads, [&](std::uint64_t i) {
+    outcomes[i] = play(sample(map, cell, settings.seed, static_cast<std::uint32_t>(i)));
+  });
   return outcomes;
 }
 
@@ -156,7 +139,7 @@ void add_options(CLI::App& program, Settings& settings) {
   program.add_option("--preset", settings.preset, "the paper's choices, or cambium's")
       ->check(CLI::IsMember({"paper", "cambium"}))
       ->capture_default_str();
-  program.add_option("--json", settings.json, "writes a row a cell")->type_name("FILE");
+  program.add_option("--json", settings.json, "writes a row a cell")->type_name("FILE")->check(examples::not_empty());
   program.add_option("--out", settings.out, "folder for the plot")
       ->type_name("DIR")
       ->capture_default_str()

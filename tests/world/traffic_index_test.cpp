@@ -540,3 +540,29 @@ TEST_CASE("who reaches over the border hides nobody who is nearer") {
   CHECK(rear->agent == large);
   CHECK(rear->gap == doctest::Approx(300 - car.rear - 203 - bus.front));
 }
+
+TEST_CASE("who only reaches over into a lane that is still to merge is not one of those who merge") {
+  auto const map = own_map("lane_drop.xodr");
+  auto const place = [&map](int lane, double s, double right) {
+    auto const p = map->lane(map->find_lane("1", s, lane)).path.pose(s);
+    return cb::geometry::Pose{p.x + right * std::sin(p.heading), p.y - right * std::cos(p.heading), p.heading};
+  };
+  Sim world(map);
+  auto const enter = [&](cb::geometry::Pose const& pose) {
+    return world.add({.position = pose.position(), .heading = pose.heading});
+  };
+  auto const ego = enter(place(-2, 330, 0.0));
+  auto const view = world.observe(ego);
+  auto const& feeders = view.corridor().feeders;
+  REQUIRE_FALSE(feeders.empty());
+  double const merge = feeders.front().free_until;
+  auto const beside = enter(place(-2, 380, 1.2));  // its own lane's, 23 cm over the border
+  CHECK_FALSE(world.observe(ego).merging(merge, infinite));
+  auto const from_ramp = enter(place(-3, 350, 0.0));
+  auto const next = world.observe(ego).merging(merge, infinite);
+  REQUIRE(next);
+  CHECK(next->agent == from_ramp);
+  auto const ramp_view = world.observe(from_ramp);
+  REQUIRE(ramp_view.front());
+  CHECK(ramp_view.front()->agent == beside);  // whom those behind it in the ramp's lane follow
+}
