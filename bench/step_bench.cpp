@@ -146,6 +146,28 @@ void register_rollout() {
   });
 }
 
+/// What a planner does in each cycle: a world of its own objects, along routes of their own, on a map that has met
+/// them.
+void register_filling() {
+  yardstick::add("fill/20", [](benchmark::State& state) {
+    Sim const start = merging_world(20);
+    yardstick::measure_duration(state, [&] {
+      Sim world(start.shared_map(), {.seed = 1});
+      for (std::size_t i = 0; i < start.size(); ++i) {
+        auto const& agent = start.roster().agents[i];
+        auto const& now = start.frame().agents[i].state;
+        world.add({.position = {now.x, now.y},
+                   .heading = now.heading,
+                   .speed = now.speed,
+                   .shape = agent.shape,
+                   .behavior = agent.behavior,
+                   .route = cb::map::Route{.lanes = agent.road->route}});
+      }
+      benchmark::DoNotOptimize(world.frame().agents.data());
+    });
+  });
+}
+
 void register_load() {
   yardstick::add("load/merging", [](benchmark::State& state) {
     yardstick::measure_duration(
@@ -174,6 +196,7 @@ int main(int argc, char** argv) {
     register_steps("step/merging", n, merging_world);
   for (std::size_t const n : yardstick::world_sizes) register_copies(n);
   register_rollout();
+  register_filling();
   register_load();
   yardstick::register_yardsticks();
   return yardstick::run_benchmarks(argc, argv, "What steps, copies, roll-outs and loading cost, beside kernels.",
