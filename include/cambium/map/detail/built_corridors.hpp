@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -12,35 +13,55 @@
 
 namespace cambium::map::detail {
 
-/// Road corridors by their routes: those in use, and others while they are few. Any number of threads may ask.
+/// Road corridors by their routes: those in use, and those that were asked for last. Any number of threads may ask.
 class BuiltCorridors {
  public:
   using Shared = std::shared_ptr<RoadCorridor const>;
 
   /// The one along `route`; null if there is none.
-  [[nodiscard]] Shared find(std::vector<LaneId> const& route) const {
+  [[nodiscard]] Shared find(std::vector<LaneId> const& route) {
     std::lock_guard const lock(mutex_);
     auto const at = roads_.find(route);
-    return at == roads_.end() ? nullptr : at->second;
+    if (at == roads_.end()) return nullptr;
+    at->second.asked = ++asked_;
+    return at->second.road;
   }
 
   /// Takes `road` in and returns it, or the one that somebody else has built along its route in the meantime.
   Shared add(Shared const& road) {
     std::lock_guard const lock(mutex_);
-    Shared const kept = roads_.emplace(road->route, road).first->second;
-    if (roads_.size() > most_) {
-      std::erase_if(roads_, [](auto const& entry) { return entry.second.use_count() == 1; });
-      most_ = std::max(unused, 2 * roads_.size());
-    }
+    Shared const kept = roads_.try_emplace(road->route, Entry{road, ++asked_}).first->second.road;
+    if (roads_.size() > most_) forget_oldest();
     return kept;
   }
 
  private:
-  static constexpr std::size_t unused = 128;  // so many are kept at least before those that nobody uses are forgotten
+  struct Entry {
+    Shared road;
+    std::uint64_t asked;  ///< when it was asked for last
+  };
 
-  mutable std::mutex mutex_;
-  std::map<std::vector<LaneId>, Shared> roads_;
-  std::size_t most_ = unused;
+  static constexpr std::size_t unused_kept = 128;
+
+  /// Forgets those not in use but for the ones that were asked for last.
+  void forget_oldest() {
+    std::vector<std::uint64_t> unused;
+    for (auto const& [route, entry] : roads_)
+      if (entry.road.use_count() == 1) unused.push_back(entry.asked);
+    if (unused.size() > unused_kept) {
+      auto const oldest_kept = unused.end() - unused_kept;
+      std::nth_element(unused.begin(), oldest_kept, unused.end());
+      std::erase_if(roads_, [since = *oldest_kept](auto const& road) {
+        return road.second.road.use_count() == 1 && road.second.asked < since;
+      });
+    }
+    most_ = roads_.size() + unused_kept;
+  }
+
+  std::mutex mutex_;
+  std::map<std::vector<LaneId>, Entry> roads_;
+  std::uint64_t asked_ = 0;
+  std::size_t most_ = 2 * unused_kept;  ///< with more it is time to forget some
 };
 
 }  // namespace cambium::map::detail
