@@ -246,6 +246,7 @@ TEST_CASE("nothing is kept where anything has changed, or without being asked") 
   CHECK(kept_nodes(true, [](auto&, auto&, Memory& memory) { memory = {}; }) == 0);
   CHECK(kept_nodes(true, [](auto&, auto& planner, auto&) { planner.actions.actions[0].acceleration = 1.0; }) == 0);
   CHECK(kept_nodes(true, [](auto&, auto& planner, auto&) { planner.most_agents = 2; }) == 0);
+  CHECK(kept_nodes(true, [](auto&, auto& planner, auto&) { planner.options.search.discount = 0.0; }) == 0);
   CHECK(kept_nodes(true, [](auto&, auto& planner, auto&) { planner.reward.progress -= 1.0; }) == 0);
   CHECK(kept_nodes(true, [](auto&, auto& planner, auto&) { planner.others.time_headway = 0.5; }) == 0);
   CHECK(kept_nodes(true, [](auto& world, auto&, auto&) {
@@ -349,6 +350,54 @@ TEST_CASE("beliefs find the headway of the one behind whom it drives") {
     REQUIRE(belief != nullptr);
     CHECK(belief->most_likely() == (headway < 1.0 ? 0 : 3));
     CHECK(belief->probability(belief->most_likely()) > 0.8);
+  }
+}
+
+TEST_CASE("beliefs in another number of headways are begun anew") {
+  auto world = lane_change(0, IdmClassic{});
+  auto planner = quick(Hypothesis{}, 20);
+  planner.others.regions = 8;
+  Hypothesis::Workspace workspace;
+  Hypothesis::Memory memory;
+  (void)planner.think(world.observe(ego), memory, 0.2, workspace);
+  (void)world.step(0.2);
+  planner.others.regions = 2;
+  (void)planner.think(world.observe(ego), memory, 0.2, workspace);
+  for (std::uint32_t id = 1; id < 6; ++id) {
+    auto const* belief = memory.belief(AgentId{id});
+    REQUIRE(belief != nullptr);
+    CHECK(belief->size() == 2);
+  }
+}
+
+TEST_CASE("the end of the map is none that a search would brake for") {
+  auto const speed_before_end = [](double x) {
+    Sim world(support::straight_road(1, 600.0));
+    Single planner = quick(Single{});
+    planner.reward = TrafficReward{.progress = 1.0};
+    world.add({.position = {x, -1.75}, .speed = 15, .behavior = planner});
+    for (int i = 0; i < 5; ++i) (void)world.step(0.2);
+    return world.state(ego).speed;
+  };
+  CHECK(speed_before_end(540.0) > 14.0);
+  CHECK(speed_before_end(540.0) == doctest::Approx(speed_before_end(100.0)).epsilon(0.3));
+}
+
+TEST_CASE("at its goal ego does nothing in particular, whatever comes first among its actions") {
+  auto const map = support::straight_road(2, 600.0);
+  for (auto const first :
+       {MacroAction{MacroAction::Kind::change_left, 0.0}, MacroAction{MacroAction::Kind::stay, -5.0}}) {
+    Sim world(map);
+    Single planner = quick(Single{});
+    planner.actions = MacroActions::of({first, {MacroAction::Kind::stay, 0.0}});
+    world.add({.position = {60, -5.25},
+               .speed = 12,
+               .behavior = planner,
+               .goal = LaneLimits{.lane = map->nearest_lane({20, -5.25, 0})->lane}});
+    REQUIRE(world.reached_goal(ego));
+    for (int i = 0; i < 10; ++i) REQUIRE(world.step(0.2).failed == 0);
+    CHECK(world.state(ego).speed == doctest::Approx(12.0));
+    CHECK(world.state(ego).y == doctest::Approx(-5.25));
   }
 }
 

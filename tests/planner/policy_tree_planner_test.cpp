@@ -163,15 +163,54 @@ TEST_CASE("one who comes into the lane is expected there, and let in") {
   CHECK(speed_beside(-0.09) < speed_beside(0.0) - 0.5);
 }
 
+TEST_CASE("it overtakes whom it would have to follow, and does not dither") {
+  for (double const slow : {3.0, 5.0, 7.0}) {
+    auto world = road(2, 0);
+    auto const leader = world.add({.position = {90, -5.25}, .speed = slow, .behavior = ConstantAcceleration{}});
+    int turns = 0, last = 0;
+    for (int i = 0; i < 75; ++i) {
+      double const before = world.state(ego).y;
+      drive(world, 1);
+      double const aside = world.state(ego).y - before;
+      int const side = aside > 0.05 ? 1 : aside < -0.05 ? -1 : last;
+      turns += side != last;
+      last = side;
+    }
+    CAPTURE(slow);
+    CHECK(world.state(ego).x > world.state(leader).x + 10.0);
+    CHECK(turns <= 2);  // over, and perhaps back
+  }
+}
+
+TEST_CASE("a lane change into the outermost lane stays one of its choices until it is done") {
+  auto world = road(2, 0);
+  world.add({.position = {90, -5.25}, .speed = 5, .behavior = ConstantAcceleration{}});
+  Planner::Workspace workspace;
+  int crossing = 0;
+  for (int i = 0; i < 40; ++i) {
+    drive(world, 1);
+    auto const& memory = world.memory<Planner>(ego);
+    bool const has_crossed = world.state(ego).y > -3.5 && world.state(ego).y < -2.0;
+    if (!has_crossed || !memory.change.active() || memory.is_new) continue;
+    auto const report = Planner{}.think(world.observe(ego), memory, workspace);
+    auto const& first = report.branches.front().sequence;
+    CHECK(first.first == memory.chosen);
+    CHECK(first.then == memory.chosen);
+    ++crossing;
+  }
+  CHECK(crossing > 0);
+}
+
 TEST_CASE("the weight of the worst case changes what is dared") {
   // Behind a slow one, with a faster one coming up on the left.
-  auto const best_changes = [](double not_yield, double worst_case) {
+  auto const best_changes = [](double not_yield, double worst_case, double least_odds = 0.0) {
     auto world = road(2, 0, 10.0);
     world.add({.position = {80, -5.25}, .speed = 6, .behavior = ConstantAcceleration{}});
     world.add({.position = {26, -1.75}, .speed = 13, .behavior = ConstantAcceleration{}});
     Planner planner;
     planner.intentions.not_yield = not_yield;
     planner.weights.worst_case = worst_case;
+    planner.weights.least_odds = least_odds;
     planner.weights.reaction_time = 0.0;  // near is not unsafe, but collisions are
     planner.weights.braking = 50.0;
     Planner::Workspace workspace;
@@ -181,6 +220,7 @@ TEST_CASE("the weight of the worst case changes what is dared") {
   CHECK(best_changes(0.0, 0.0));
   CHECK(best_changes(0.0005, 0.0));
   CHECK_FALSE(best_changes(0.0005, 1.0));
+  CHECK(best_changes(0.0005, 1.0, 0.001));
   CHECK_FALSE(best_changes(0.9, 0.0));
 }
 

@@ -79,7 +79,7 @@ TEST_CASE_TEMPLATE("perfect play in noughts and crosses", Selection, Ucb1, Ucb1T
 
 TEST_CASE("the values of a grid world are those of value iteration") {
   for (GridWorld::State const from : {GridWorld::State{2, 2}, {2, 1}, {1, 2}, {2, 0}, {0, 2}}) {
-    TreeSearchParameters const parameters{.horizon = 60, .discount = 0.95, .outcome_widening = {100.0, 0.0}};
+    TreeSearchParameters const parameters{.horizon = 60, .discount = 0.95};
     TreeSearch<GridWorld> search({}, parameters, {}, {}, {200'000});
     auto const& result = search.run(from, 5);
     double best = -1e9;
@@ -89,6 +89,34 @@ TEST_CASE("the values of a grid world are those of value iteration") {
     CHECK(GridWorld::solution(from, result.choice(0).action, 0.95) == doctest::Approx(best).epsilon(0.02));
     CHECK(result.choice(0).mean_return == doctest::Approx(best).epsilon(0.1));
   }
+}
+
+namespace {
+
+/// A sure half, or 1 with a chance of 70 %.
+struct Gamble {
+  static constexpr std::size_t max_actions = 2;
+  using State = int;
+  using Action = int;
+  std::size_t agents() const { return 1; }
+  bool is_terminal(State) const { return false; }
+  std::size_t actions(State, std::size_t, std::span<int> out) const { return out[0] = 0, out[1] = 1, 2; }
+  bool step(State& s, std::span<int const> a, RandomStream& random, std::span<AgentOutcome> out) const {
+    s = uniform01(random) < 0.7;
+    out[0].reward = a[0] == 0 ? 0.5 : s;
+    return true;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("one unlucky outcome does not settle what an action is worth") {
+  int wrong = 0;
+  for (std::uint64_t seed = 0; seed < 200; ++seed) {
+    TreeSearch<Gamble> search({}, {.horizon = 1}, {}, {}, {1000});
+    wrong += search.run(0, seed).choice(0).action != 1;
+  }
+  CHECK(wrong <= 10);
 }
 
 TEST_CASE("ego crosses where the others keep their gap") {
@@ -336,6 +364,30 @@ TEST_CASE("what is wrong with a search is said") {
 
 namespace {
 
+struct Riches {
+  static constexpr bool is_deterministic = true;
+  static constexpr std::size_t max_actions = 1;
+  using State = int;
+  using Action = int;
+  std::size_t agents() const { return 1; }
+  bool is_terminal(State) const { return false; }
+  std::size_t actions(State, std::size_t, std::span<int> out) const { return out[0] = 0, 1; }
+  double value(State, std::size_t) const { return 0.0; }
+  bool step(State& s, std::span<int const>, RandomStream&, std::span<AgentOutcome> out) const {
+    out[0].reward = 1e308;
+    return ++s > 100;
+  }
+};
+
+}  // namespace
+
+TEST_CASE("rewards that add up to more than there are numbers for are a problem") {
+  TreeSearch<Riches, Ucb1, NoRollout> search({}, {.horizon = 5, .discount = 1.0}, {}, {}, {100});
+  CHECK(search.run(0, 1).problem == SearchProblem::not_finite);
+}
+
+namespace {
+
 /// One throw at a target on [0, 1] x 3 steps; actions from a continuum.
 struct Target {
   static constexpr bool is_deterministic = true;
@@ -498,6 +550,25 @@ TEST_CASE("a wall-clock budget ends a search, after 64 iterations at the least")
   CHECK(result.iterations < 100'000);
 }
 
+namespace {
+
+/// Ends by itself: no number of iterations is the most.
+struct Endless {
+  void start() {}
+  std::size_t most() const { return std::numeric_limits<std::size_t>::max(); }
+  bool goes_on(std::size_t iterations) const { return iterations < 500; }
+  Endless part(std::size_t, std::size_t) const { return *this; }
+};
+
+}  // namespace
+
+TEST_CASE("a budget without a limit lets the tree grow as far as its memory goes") {
+  TreeSearch<TicTacToe, Ucb1, RandomRollout, Endless> search({}, {.horizon = 9, .memory = 1u << 20});
+  auto const& result = search.run({}, 1);
+  CHECK(result.iterations == 500);
+  CHECK(result.nodes > 300);
+}
+
 TEST_CASE("trees are written down") {
   TreeSearch<TicTacToe> search({}, {.horizon = 9}, {}, {}, {50});
   (void)search.run({}, 1);
@@ -530,6 +601,9 @@ TEST_CASE("beliefs follow Bayes' rule") {
   belief.update(std::array<double, 3>{0, 0, 0}, exact);
   belief.update(std::array<double, 3>{1, std::nan(""), 1}, exact);
   CHECK(belief == before);
+  CHECK_THROWS_AS(belief.update(std::array<double, 2>{1, 1}, exact), ParameterError);
+  CHECK_THROWS_AS(Belief(0), ParameterError);
+  CHECK_THROWS_AS(Belief(9), ParameterError);
   std::array<int, 3> counts{};
   RandomStream random(1, 2, 3);
   for (int i = 0; i < 30'000; ++i) ++counts[belief.sample(random)];

@@ -6,9 +6,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <tuple>
 
 #include "cambium/core/distributions.hpp"
+#include "cambium/core/error.hpp"
 #include "cambium/core/parameters.hpp"
 
 namespace cambium {
@@ -37,9 +39,10 @@ class Belief {
   static constexpr std::size_t capacity = 8;
 
   Belief() = default;
-  /// All of `hypotheses`, 1 to `capacity`, are as likely.
-  explicit Belief(std::size_t hypotheses)
-      : size_(static_cast<std::uint8_t>(std::clamp<std::size_t>(hypotheses, 1, 8))) {
+  /// All of `hypotheses`, 1 to `capacity`, are as likely. Throws `ParameterError` for another number.
+  explicit Belief(std::size_t hypotheses) : size_(static_cast<std::uint8_t>(hypotheses)) {
+    if (hypotheses < 1 || hypotheses > capacity)
+      throw ParameterError("belief", "has " + std::to_string(hypotheses) + " hypotheses", "give 1 to 8");
     std::fill_n(weights_.begin(), size_, 1.0f / static_cast<float>(size_));
   }
 
@@ -50,8 +53,14 @@ class Belief {
   }
 
   /// Takes in an observation: `likelihoods`, one per hypothesis, of it under each; any common factor cancels. Does
-  /// nothing where they are all zero, or one is no finite number: then the observation tells nothing.
+  /// nothing where they are all zero, or one is no finite number: then the observation tells nothing. Throws
+  /// `ParameterError` for another number of them.
   void update(std::span<double const> likelihoods, BeliefParameters const& parameters = {}) {
+    if (likelihoods.size() != size_)
+      throw ParameterError("belief",
+                           "is given " + std::to_string(likelihoods.size()) + " likelihoods for " +
+                               std::to_string(size_) + " hypotheses",
+                           "give one for each");
     std::array<double, capacity> posterior{};
     double sum = 0.0;
     for (std::size_t h = 0; h < size_; ++h) {

@@ -117,22 +117,23 @@ struct MctsHypothesis {
   [[nodiscard]] std::vector<typename Domain::Unknown> update(PredictionWorld const& world, std::uint32_t ego,
                                                              Memory& memory, double dt) const {
     auto const near = detail::nearest_agents(world, ego, capacity, range);
+    auto const regions = static_cast<std::size_t>(others.regions);
     bool const was_expected = std::abs(memory.expected_at - world.time()) < 1e-6;
     std::array<Tracked, capacity> tracked{};
     std::vector<typename Domain::Unknown> unknowns;
     for (std::size_t i = 0; i < near.size(); ++i) {
       auto const id = world.roster().agents[near[i]].id;
       auto const known = std::ranges::find(memory.tracked, id, &Tracked::id);
-      tracked[i] =
-          known != memory.tracked.end() ? *known : Tracked{id, Belief(static_cast<std::size_t>(others.regions)), {}};
-      if (known != memory.tracked.end() && was_expected) observe(tracked[i], world.frame().agents[near[i]].state.speed);
+      bool const is_known = known != memory.tracked.end() && known->belief.size() == regions;
+      tracked[i] = is_known ? *known : Tracked{id, Belief(regions), {}};
+      if (is_known && was_expected) observe(tracked[i], world.frame().agents[near[i]].state.speed);
       unknowns.push_back({near[i], tracked[i].belief});
     }
     // Of the rest nothing is known.
     for (std::uint32_t slot = 0; slot < world.size(); ++slot)
       if (std::get_if<index>(&world.frame().agents[slot].memory) != nullptr &&
           std::ranges::find(near, slot) == near.end())
-        unknowns.push_back({slot, Belief(static_cast<std::size_t>(others.regions))});
+        unknowns.push_back({slot, Belief(regions)});
     memory.tracked = tracked;
     expect(world, near, memory, dt);
     return unknowns;
@@ -147,7 +148,7 @@ struct MctsHypothesis {
       likelihoods[r] = 0.5 * off * off;
       nearest = std::min(nearest, likelihoods[r]);
     }
-    // Relative to the best: what no headway explains tells little, but does not make all of them impossible.
+    // Relative to the best, lest all of them vanish where no headway explains what was seen.
     for (std::size_t r = 0; r < regions; ++r) likelihoods[r] = detail::portable_exp(nearest - likelihoods[r]);
     other.belief.update({likelihoods.data(), regions}, belief);
   }

@@ -173,7 +173,6 @@ class ParallelTreeSearch {
   void take_variation() {
     std::uint32_t most = 0;
     result_.variation.clear();
-    result_.variation_nodes.clear();
     for (auto const& search : searches_) {
       auto const& own = search.result();
       bool agrees = true;

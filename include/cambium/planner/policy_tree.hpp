@@ -129,6 +129,7 @@ struct PolicyWeights {
   double collision = 20.0;
   double change = 0.01;
   double worst_case = 0.2;
+  double least_odds = 0.05;
   double reaction_time = 0.5;
   double braking = 4.0;
   double minimum_gap = 1.0;
@@ -145,6 +146,8 @@ struct PolicyWeights {
         parameter("collision", &P::collision, "-", non_negative, "and of leaving the road, in units of safety"),
         parameter("change", &P::change, "-", non_negative, "of giving up the ongoing action now"),
         parameter("worst_case", &P::worst_case, "-", Range{0, 1}, "weight of the worst scenario against the mean"),
+        parameter("least_odds", &P::least_odds, "-", non_negative,
+                  "of another's intention against its keeping the lane: less likely ones count in the mean only"),
         parameter("reaction_time", &P::reaction_time, "s", Range{0, 10}, "of safe gaps"),
         parameter("braking", &P::braking, "m/s^2", Range{0.1, 50}, "of both at safe gaps"),
         parameter("minimum_gap", &P::minimum_gap, "m", Range{0, 100}, "of safe gaps"));

@@ -152,7 +152,8 @@ struct PolicyTreePlanner {
     workspace.best = 0;
     auto const now = ongoing(memory);
     for (auto const& sequence : policy_sequences(actions.size(), now, static_cast<std::size_t>(layers))) {
-      if (!actions.available(view, sequence.first, memory.change)) continue;
+      bool const is_under_way = sequence.first == now && !memory.is_new;
+      if (!is_under_way && !actions.available(view, sequence.first, memory.change)) continue;
       auto& branch = workspace.branches.emplace_back();
       branch.sequence = sequence;
       weigh(workspace, memory, branch);
@@ -199,7 +200,8 @@ struct PolicyTreePlanner {
     auto const add = [&](IntentionBranch const* deviation, double odds) {
       auto const cost = simulate(workspace, memory, sequence, deviation, [](auto const&) {});
       double const total = weights.total(cost);
-      branch.worst = branch.scenarios++ == 0 ? total : std::max(branch.worst, total);
+      if (branch.scenarios++ == 0) branch.worst = total;
+      if (odds >= weights.least_odds) branch.worst = std::max(branch.worst, total);
       branch.mean.efficiency += odds * cost.efficiency;
       branch.mean.safety += odds * cost.safety;
       branch.mean.navigation += odds * cost.navigation;
@@ -214,6 +216,7 @@ struct PolicyTreePlanner {
       }
     for (auto* part : {&branch.mean.efficiency, &branch.mean.safety, &branch.mean.navigation}) *part /= sum;
     branch.expected = weights.total(branch.mean);
+    branch.worst = std::max(branch.worst, branch.expected);
     branch.cost = (1.0 - weights.worst_case) * branch.expected + weights.worst_case * branch.worst;
   }
 

@@ -77,7 +77,8 @@ template <class Run>
 
 }  // namespace detail
 
-/// Random actions to the horizon, each held for `hold` steps.
+/// Random actions to the horizon, each held for `hold` steps; more than one is for games in which what may be done now
+/// may be done again.
 struct RandomRollout {
   int hold = 1;
   int steps = 1'000'000;

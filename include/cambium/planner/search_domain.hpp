@@ -108,7 +108,8 @@ inline constexpr bool is_deterministic = [] {
 ///   `static constexpr bool is_deterministic = true`: `step` does not use `random`; else the states that the same
 ///     actions lead to become several nodes, see `outcome_widening`.
 ///   `sample_root(state, random)`: draws what is not known of the root (the others' intentions) anew for each
-///     iteration; then nodes stand for sequences of actions, and every iteration steps from the root.
+///     iteration; then nodes stand for sequences of actions, and every iteration steps from the root. What actions
+///     there are may depend only on what is known, for a node has those of the first draw.
 ///   `priors(state, agent, actions, out)`: weights for `Puct`; `value(state, agent)`: the expected return from here,
 ///   for
 ///     `TruncatedRollout` and `NoRollout`; `policy_action(state, agent, random)`: for `PolicyRollout`;

@@ -75,12 +75,11 @@ struct SearchResult {
   bool is_full = false;        ///< memory ran out; the search went on without new nodes
 
   std::size_t agents = 0;
-  std::vector<RootArm<Action>> arms;           ///< of the first agent, then of the next, ...
-  std::vector<std::size_t> first_arm;          ///< per agent, and the end of `arms`
-  std::vector<std::size_t> best;               ///< per agent: the action to take, among its arms
-  std::vector<Action> variation;               ///< principal variation: all agents' actions, step by step
-  std::vector<std::uint32_t> variation_nodes;  ///< where it leads, step by step; a prefix of it, at the end of the tree
-  std::vector<std::uint32_t> depths;           ///< by steps: how many iterations left the tree there
+  std::vector<RootArm<Action>> arms;   ///< of the first agent, then of the next, ...
+  std::vector<std::size_t> first_arm;  ///< per agent, and the end of `arms`
+  std::vector<std::size_t> best;       ///< per agent: the action to take, among its arms
+  std::vector<Action> variation;       ///< principal variation: all agents' actions, step by step
+  std::vector<std::uint32_t> depths;   ///< by steps: how many iterations left the tree there
 
   /// The agent's actions at the root. Throws `SearchError` where there is a problem, or no such agent.
   [[nodiscard]] std::span<RootArm<Action> const> of(std::size_t agent) const {
@@ -104,7 +103,6 @@ struct SearchResult {
     first_arm.clear();
     best.clear();
     variation.clear();
-    variation_nodes.clear();
     depths.assign(horizon + 1, 0);
   }
 };
@@ -147,7 +145,6 @@ void fill_variation(Tree const& tree, std::span<std::uint16_t> joint, SearchResu
     auto const child = tree.find(node, joint);
     if (child == no_node && node != 0) break;  // their best actions need not have been tried together
     for (std::size_t k = 0; k < tree.agents(); ++k) result.variation.push_back(tree.arms(node, k)[joint[k]].action);
-    if (child != no_node) result.variation_nodes.push_back(child);
     node = child;
   }
 }

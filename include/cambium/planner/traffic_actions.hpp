@@ -1,8 +1,11 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <tuple>
@@ -67,7 +70,12 @@ struct ActionSet<MacroActions> {
   static Choice usual(MacroActions const& actions) {
     for (std::size_t i = 0; i < actions.size(); ++i)
       if (actions.actions[i].kind == MacroAction::Kind::keep_gap) return static_cast<Choice>(i);
-    return 0;
+    auto const effort = [](MacroAction const& action) {
+      bool const stays = action.kind == MacroAction::Kind::stay;
+      return stays ? std::abs(action.acceleration) : std::numeric_limits<double>::infinity();
+    };
+    auto const begin = actions.actions.begin();
+    return static_cast<Choice>(std::ranges::min_element(actions.actions, {}, effort) - begin);
   }
   static std::string text(MacroActions const& actions, Choice choice) {
     auto const& action = actions.actions[choice];
@@ -95,7 +103,13 @@ struct ActionSet<MotionPrimitives> {
     return actions.primitives[choice];
   }
   static bool goes_on_alike(MotionPrimitives::Memory, MotionPrimitives::Memory) { return true; }
-  static Choice usual(MotionPrimitives const&) { return 0; }
+  static Choice usual(MotionPrimitives const& actions) {
+    auto const effort = [](MotionPrimitive const& p) {
+      constexpr double per_steering = 10.0;  // [m/s^2] that 1 rad counts as much as
+      return std::hypot(p.acceleration, per_steering * p.steering);
+    };
+    return static_cast<Choice>(std::ranges::min_element(actions.primitives, {}, effort) - actions.primitives.begin());
+  }
   static std::string text(MotionPrimitives const& actions, Choice choice) {
     auto const& p = actions.primitives[choice];
     return detail::rounded_text(p.acceleration) + " m/s^2 " + detail::rounded_text(p.steering) + " rad";
@@ -121,12 +135,6 @@ struct ActionSet<SampledInputs> {
   static std::string text(SampledInputs const&, Choice const& choice) {
     return detail::rounded_text(choice.acceleration) + " m/s^2 " + detail::rounded_text(choice.steering) + " rad";
   }
-};
-
-template <class Actions>
-concept IsActionSet = requires(Actions const actions) {
-  typename ActionSet<Actions>::Choice;
-  ActionSet<Actions>::behavior(actions);
 };
 
 template <class Actions>

@@ -69,7 +69,8 @@ struct TrafficReward {
     return std::make_tuple(
         parameter("goal", &P::goal, "-", any_finite, "for reaching the goal, which ends the course"),
         parameter("collision", &P::collision, "-", any_finite, "for touching somebody or something, likewise"),
-        parameter("off_road", &P::off_road, "-", any_finite, "for leaving the road or the map, likewise"),
+        parameter("off_road", &P::off_road, "-", any_finite,
+                  "for leaving the road or the route, likewise; the map's end is none"),
         parameter("progress", &P::progress, "1/m", any_finite, "for each metre along the lane"),
         parameter("speed_deviation", &P::speed_deviation, "1/m", any_finite,
                   "for each second, times the deviation from the desired speed"),
@@ -89,7 +90,6 @@ struct TrafficReward {
       case AgentStatus::driving:
         break;
       case AgentStatus::off_route:
-      case AgentStatus::left_map:
       case AgentStatus::failed:
         return {{off_road, 0.0}, true};
       default:

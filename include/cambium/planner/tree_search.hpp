@@ -28,9 +28,14 @@ namespace cambium {
 /// Each iteration walks down from the root by `Selection`, adds a node, plays on by `Rollout` to the horizon and notes
 /// the returns on the way back, scaled to [0, 1] by the bounds seen. Under an `IterationBudget` the result is a pure
 /// function of state, parameters and seed. Once warm, a search allocates nothing. O(horizon) steps an iteration.
-template <SearchDomain Domain, SelectionPolicy Selection = Ucb1, class Rollout = RandomRollout,
+template <class Domain, SelectionPolicy Selection = Ucb1, class Rollout = RandomRollout,
           SearchBudget Budget = IterationBudget>
 class TreeSearch {
+  static_assert(
+      SearchDomain<Domain>,
+      "cambium::TreeSearch<Domain>: Domain must be a game: State, Action, agents(), is_terminal(state), actions "
+      "or sample_action, and `bool step(State&, std::span<Action const>, cambium::RandomStream&, "
+      "std::span<cambium::AgentOutcome>)` (see SearchDomain)");
   static_assert(RolloutPolicy<Rollout, Domain>,
                 "cambium::TreeSearch<Domain, Selection, Rollout>: Rollout must be a roll-out policy such as "
                 "cambium::RandomRollout (see RolloutPolicy)");
@@ -51,9 +56,11 @@ class TreeSearch {
     check();
   }
 
-  /// Searches by these parameters from now on; keeps its memory, and what `keep` has kept. Throws as the constructor.
+  /// Searches by these parameters from now on; keeps its memory, and what `keep` has kept where `parameters` are the
+  /// same. Throws as the constructor.
   void set(TreeSearchParameters const& parameters, Selection const& selection, Rollout const& rollout,
            Budget const& budget) {
+    if (!equal_parameters(parameters, parameters_)) forget();
     parameters_ = parameters;
     selection_ = selection;
     rollout_ = rollout;
@@ -145,7 +152,8 @@ class TreeSearch {
     if constexpr (!resimulates && !detail::is_deterministic<Domain>)
       more_outcomes_.set(parameters_.outcome_widening, budget_.most());
     auto const kept = tree_.size();
-    typename Tree::Limits const limits{agents, budget_.most() + 1 + kept, parameters_.memory, arms_per_node(agents),
+    auto const most = std::min<std::size_t>(budget_.most(), detail::no_node);
+    typename Tree::Limits const limits{agents, most + 1 + kept, parameters_.memory, arms_per_node(agents),
                                        resimulates ? 0 : sizeof(State) + heap_bytes(root)};
     if (builds_on) {
       tree_.reserve(limits);
@@ -396,6 +404,8 @@ class TreeSearch {
         arm.total_cost += costs_[k];
       }
     }
+    for (auto const value : returns_)
+      if (!std::isfinite(value)) return stop(SearchProblem::not_finite);
     ++tree_.node(0).visits;
     if (parameters_.constraint.limit < 1.0) update_multipliers();
   }
