@@ -9,6 +9,7 @@
 
 #include "cambium/behavior/idm_classic.hpp"
 #include "cambium/execution/interpolate.hpp"
+#include "cambium/map/map_builder.hpp"
 #include "cambium/world/world.hpp"
 #include "support/allocations.hpp"
 #include "support/maps.hpp"
@@ -149,6 +150,24 @@ TEST_CASE("all courses are judged, cheapest first; the first valid one is driven
   CHECK(report.course[0].x == doctest::Approx(world.state(ego).x));
   (void)world.step(0.2);
   CHECK(world.state(ego) == report.course[1]);
+}
+
+TEST_CASE("courses into a lane of oncoming traffic are not valid") {
+  map::MapBuilder builder;
+  map::SectionPlan const lanes{.left = map::equal_lanes(1), .right = map::equal_lanes(1)};
+  builder.add_road({.id = "1", .line = map::lay_from({}, {{600.0}}), .sections = {lanes}});
+  Sim world(builder.build());
+  world.add({.position = {40, -1.75}, .speed = 12, .behavior = IdmClassic{}});
+  Planner planner;
+  planner.offsets = {0.0, 3.5};
+  Planner::Workspace workspace;
+  int oncoming = 0;
+  for (auto const& c : planner.think(world.observe(ego), {}, workspace).candidates) {
+    if (c.offset == 0.0) continue;
+    CHECK(c.verdict != FrenetVerdict::valid);
+    oncoming += c.verdict == FrenetVerdict::road;
+  }
+  CHECK(oncoming > 5);
 }
 
 TEST_CASE("courses into who drives beside are not valid") {

@@ -8,6 +8,7 @@
 #include <string>
 
 #include "cambium/execution/interpolate.hpp"
+#include "cambium/map/map_builder.hpp"
 #include "cambium/world/world.hpp"
 #include "support/allocations.hpp"
 #include "support/maps.hpp"
@@ -140,6 +141,19 @@ TEST_CASE("at an offset that leads off the road a proposal scores nothing") {
     CHECK(p.leaves_road == (p.offset < 0.0));
     CHECK_FALSE(p.collides);
   }
+}
+
+TEST_CASE("an offset that leads into oncoming traffic's lane scores nothing") {
+  map::MapBuilder builder;
+  map::SectionPlan const lanes{.left = map::equal_lanes(1), .right = map::equal_lanes(1)};
+  builder.add_road({.id = "1", .line = map::lay_from({}, {{600.0}}), .sections = {lanes}});
+  Sim world(builder.build());
+  world.add({.position = {40, -1.75}, .speed = 12, .behavior = IdmClassic{}});
+  Planner planner;
+  planner.offsets = {0.0, 3.5};
+  Planner::Workspace workspace;
+  for (auto const& p : planner.think(world.observe(ego), {}, workspace).proposals)
+    if (p.speed_share == 1.0) CHECK((p.score == 0.0) == (p.offset > 0.0));
 }
 
 TEST_CASE("it brakes as hard as it may where all proposals soon collide") {

@@ -30,13 +30,13 @@ struct OthersAhead {
     frames.resize(steps + 1);
     boxes.clear();
     for (std::size_t k = 0; k <= steps; ++k) {
+      if (k > 0) (void)world->step(step);
       frames[k] = world->frame();
       for (auto const i : counting) {
         auto box = box_at(*world, i);
         if (!in_traffic(*world, i)) box.half_length = -1e9;  // touches nobody
         boxes.push_back(box);
       }
-      (void)world->step(step);
     }
   }
 
@@ -60,14 +60,15 @@ struct OthersAhead {
   }
 };
 
-/// Whether `box`, at corridor position `s` and `offset` [m], reaches beyond the lane and any other drivable one. Past
-/// the corridor's ends there is no saying.
+/// Whether `box`, at corridor position `s` and `offset` [m], reaches beyond the lane and any other drivable one, or is
+/// in one of oncoming traffic. Past the corridor's ends there is no saying.
 [[nodiscard]] inline bool leaves_road(Map const& map, map::LaneCorridor const& corridor, double s, double offset,
                                       geometry::OrientedBox const& box) {
   if (s < 0.0 || s > corridor.length()) return false;
   auto const sides = corridor.widths_at(s);
   double const reach = box.half_width + 0.1;  // [m], for headings a little off the lane's
   if (offset + reach < sides.left && -offset + reach < sides.right) return false;
+  if ((offset > sides.left || -offset > sides.right) && is_against_traffic(map, box)) return true;
   return std::ranges::any_of(box.corners(), [&](geometry::Point const& corner) {
     double const at = corridor.center.project(corner, corridor.center.find(s)).s;
     return at > 0.0 && at < corridor.length() && !map.on_drivable_lane(corner);

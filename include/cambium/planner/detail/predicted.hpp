@@ -122,11 +122,19 @@ template <class World>
   });
 }
 
+/// Whether the middle of `box` is in a lane that runs the other way, and in none that runs its way.
+[[nodiscard]] inline bool is_against_traffic(Map const& map, geometry::OrientedBox const& box) {
+  auto const hit = map.nearest_lane({box.x, box.y, std::atan2(box.sin, box.cos)}, 0.0);
+  if (!hit) return false;
+  auto const along = geometry::sin_cos(map.lane(hit->lane).path.pose(hit->s).heading);
+  return along.cos * box.cos + along.sin * box.sin < 0.0;
+}
+
 /// What became of a predicted course in a step.
 enum class Passage : std::uint8_t { goes_on, is_over, collides, leaves_road };
 
 /// The same for the agent at `slot`, which `touches` somebody or something, or does not; over is what ends at its
-/// destination, or with the map.
+/// destination, or with the map. Who drives in a lane of oncoming traffic has left the road.
 template <class World>
 [[nodiscard]] Passage passage(World const& world, std::uint32_t slot, bool touches) {
   switch (world.frame().agents[slot].status) {
@@ -139,7 +147,11 @@ template <class World>
       return Passage::is_over;
   }
   if (touches) return Passage::collides;
-  return DrivableArea::off_road(world, slot) ? Passage::leaves_road : Passage::goes_on;
+  if (DrivableArea::off_road(world, slot)) return Passage::leaves_road;
+  auto const& at = world.frame().agents[slot].lane;
+  auto const sides = world.roster().agents[slot].road->corridors[at.corridor].widths_at(at.s, at.segment);
+  bool const is_in_lane = at.lateral < sides.left && -at.lateral < sides.right;
+  return !is_in_lane && is_against_traffic(world.map(), box_at(world, slot)) ? Passage::leaves_road : Passage::goes_on;
 }
 
 /// How many lane changes it takes from `piece` of lane corridor `number` to one that the route ends in; 0 where none
