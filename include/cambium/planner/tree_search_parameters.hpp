@@ -86,7 +86,7 @@ struct TreeSearchParameters {
   std::size_t memory = 256u << 20;
   FinalMove final_move = FinalMove::most_visits;
   Widening action_widening{2.0, 0.4};
-  Widening outcome_widening{4.0, 0.25};
+  Widening outcome_widening{2.0, 0.25};
   CostConstraint constraint{};
 
   static constexpr char const* name = "tree_search";
