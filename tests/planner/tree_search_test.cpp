@@ -155,6 +155,9 @@ TEST_CASE("a search is a function of state, parameters and seed, and allocates n
     }
   }
   CHECK(other.run({}, 8).depths != first.depths);
+  auto const warm = support::allocations();
+  for (std::uint64_t seed = 9; seed < 60; ++seed) (void)other.run({}, seed);
+  CHECK(support::allocations() == warm);
 }
 
 TEST_CASE("a tree that may not grow is searched on") {

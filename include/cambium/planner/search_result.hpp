@@ -92,8 +92,8 @@ struct SearchResult {
   /// What the agent is to do, and what is expected of it. Throws as `of`.
   [[nodiscard]] RootArm<Action> const& choice(std::size_t agent) const { return of(agent)[best[agent]]; }
 
-  /// Empties it, but keeps its memory.
-  void clear(std::uint64_t new_seed, std::size_t horizon) {
+  /// Empties it, but keeps its memory; makes room for the longest variation.
+  void clear(std::uint64_t new_seed, std::size_t horizon, std::size_t choosing) {
     problem = SearchProblem::none;
     problem_steps = 0;
     seed = new_seed;
@@ -103,6 +103,7 @@ struct SearchResult {
     first_arm.clear();
     best.clear();
     variation.clear();
+    variation.reserve(horizon * choosing);
     depths.assign(horizon + 1, 0);
   }
 };

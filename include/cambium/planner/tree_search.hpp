@@ -129,7 +129,7 @@ class TreeSearch {
 
   void start(State const& root, std::uint64_t seed) {
     auto const agents = static_cast<std::size_t>(domain_.agents());
-    result_.clear(seed, static_cast<std::size_t>(parameters_.horizon));
+    result_.clear(seed, static_cast<std::size_t>(parameters_.horizon), agents);
     depth_ = 0;
     if (agents == 0)
       stop(SearchProblem::no_agents);
