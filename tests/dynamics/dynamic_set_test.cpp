@@ -75,8 +75,35 @@ TEST_CASE_TEMPLATE("no sequence of actions makes a vehicle reverse, or its state
     x = cb::drive(model, x, action, 0.01 + 0.2 * cb::uniform01(random));
     REQUIRE(cb::is_finite(x));
     REQUIRE(x.speed >= 0.0);
-    if (x.speed > 40.0) x.speed = 0.0;
+    REQUIRE(x.speed < 60.0);
   }
+}
+
+TEST_CASE_TEMPLATE("a vehicle that brakes becomes no faster, however it is steered, and stands in the end", Model,
+                   cb::SingleTrack, cb::SingleTrackSteering, cb::TripleIntegrator, cb::KinematicPoint,
+                   cb::DynamicSet<cb::TripleIntegrator>) {
+  Model const model{};
+  int growing = 0, standing = 0, runs = 0;
+  for (double const speed : {0.3, 1.0, 2.0, 3.0, 5.0, 10.0, 25.0})
+    for (double const steering : {0.0, 0.05, -0.25, 0.5, 1.2})
+      for (double const braking : {-0.2, -1.0, -2.0, -8.0})
+        for (double const dt : {0.01, 0.05, 0.2, 0.5}) {
+          typename Model::State x{};
+          x.speed = speed;
+          while (x.time < 1.0 - 1e-9) x = cb::drive(model, x, {0.0, steering}, dt);
+          double const long_enough = x.time + 2.0 * speed / -braking + 6.0;
+          bool grows = false;
+          while (x.time < long_enough) {
+            double const before = x.speed;
+            x = cb::drive(model, x, {braking, steering}, dt);
+            grows = grows || !(x.speed <= before + 1e-12);
+          }
+          ++runs;
+          growing += grows;
+          standing += x.speed == 0.0;
+        }
+  CHECK(growing == 0);
+  CHECK(standing == runs);
 }
 
 TEST_CASE_TEMPLATE("in a set every vehicle model does what it does alone, to the bit and whatever the step", Model,

@@ -37,6 +37,7 @@ namespace detail {
 template <bool euler, class Model>
 [[nodiscard]] typename Model::State drive_step(Model const& model, typename Model::State x, Action const& action,
                                                double dt) {
+  if constexpr (requires { model.driven(x, action, dt); }) return model.driven(x, action, dt);
   auto const u = model.input(action, x);
   double const end = x.time + dt, change = model.derivative(x, u).speed;
   if constexpr (requires { double{model.highest_speed}; }) {
@@ -65,8 +66,9 @@ template <bool euler, class Model>
 }  // namespace detail
 
 /// Where a vehicle is after `dt` [s] whose driver holds `action`, within the model's limits: one Runge-Kutta step, or
-/// Euler step; of models with a `response_time`, in equal steps no longer than that. It never reverses: one that brakes
-/// to standstill within the step stands from then on; one that reaches the model's `highest_speed` keeps it.
+/// Euler step; of models with a `response_time`, in equal steps no longer than that. A model that has `driven(state,
+/// action, dt)` moves by that instead. It never reverses: one that brakes to standstill within the step stands from
+/// then on; one that reaches the model's `highest_speed` keeps it.
 template <bool euler = false, DynamicModel Model>
 [[nodiscard]] typename Model::State drive(Model const& model, typename Model::State x, Action const& action,
                                           double dt) {
