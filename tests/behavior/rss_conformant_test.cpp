@@ -128,6 +128,46 @@ TEST_CASE("RSS-conformant agents among RSS-conformant agents never collide") {
 
 TEST_CASE("the same agents without it do collide") { CHECK(drive(false, 300, 1).collisions > 30); }
 
+TEST_CASE("steps longer than the response time are safe: what may happen in one is looked ahead to") {
+  int runs = 0, collided = 0;
+  for (double const response_time : {0.0, 0.1})
+    for (double const dt : {0.5, 1.0})
+      for (std::uint32_t number = 0; number < 30; ++number) {
+        cb::RandomStream random(7, number, 0);
+        cb::RssParameters const rss{.response_time = response_time};
+        World world(straight_road(2, 2000.0));
+        for (int lane = 0; lane < 2; ++lane) {
+          double speed = between(0, 25, random);
+          for (double x = 20; x < 700;) {
+            double const fast = between(3, 35, random);
+            bool const changes = cb::uniform_index(random, 3) == 0;
+            world.add(
+                {.position = {x, -1.75 - 3.5 * lane},
+                 .heading = 0.0,
+                 .speed = speed,
+                 .behavior =
+                     changes
+                         ? driver(cb::Mobil{.idm = {.desired_speed = fast, .time_headway = 0.05, .minimum_gap = 0.3}},
+                                  rss, true)
+                         : driver(cb::IdmClassic{.desired_speed = fast, .time_headway = 0.05, .minimum_gap = 0.3}, rss,
+                                  true)});
+            double const ahead = between(0, 25, random);
+            x += 4.6 + cb::rss_same_direction(rss, speed, ahead);
+            speed = ahead;
+          }
+        }
+        bool hit = false;
+        for (double t = 0; t < 40 && !hit; t += dt) {
+          REQUIRE(world.step(dt));
+          hit = cb::CollisionAny{}.evaluate(world).any_collision;
+        }
+        ++runs;
+        collided += hit;
+      }
+  MESSAGE(collided << " of " << runs << " runs collide");
+  CHECK(collided == 0);
+}
+
 TEST_CASE("where nothing is dangerous the nominal behaviour drives, to the bit") {
   World safe(straight_road(3, 1500.0)), nominal(safe.shared_map());
   cb::Mobil const mobil{.idm = {.desired_speed = 20}};

@@ -51,3 +51,25 @@ TEST_CASE("with dual numbers the point tells how it depends on its yaw rate") {
   cb::BasicState<float> const small{0.0f, 0.0f, 0.0f, 0.3f, 2.0f};
   CHECK(std::abs(cb::rk4_step(model, small, cb::KinematicPointInput<float>{0.5f, 0.4f}, 0.3).y - after(0.4).y) < 1e-6);
 }
+
+TEST_CASE("a driver reaches the highest speed and keeps it, whatever the step") {
+  cb::KinematicPoint const model;
+  for (double const dt : {0.05, 0.2, 1.0, 3.0}) {
+    CAPTURE(dt);
+    cb::State x{.speed = 2.99};
+    x = cb::drive(model, x, {3.0, 0.0}, dt);
+    CHECK(x.speed == 3.0);
+    CHECK(x.time == dt);
+    double const rising = 0.01 / 3.0;
+    CHECK(x.x == doctest::Approx(2.995 * rising + 3.0 * (dt - rising)));
+    CHECK(cb::drive(model, x, {3.0, 0.3}, dt).speed == 3.0);
+    CHECK(cb::drive<true>(model, {.speed = 2.99}, {3.0, 0.0}, dt).speed == 3.0);
+    cb::State from_rest{};
+    while (from_rest.time < 4.0) {
+      from_rest = cb::drive(model, from_rest, {2.0, 0.1}, dt);
+      CHECK(from_rest.speed <= 3.0);
+    }
+    CHECK(from_rest.speed == 3.0);
+  }
+  CHECK(cb::drive(model, {.speed = 5.0}, {3.0, 0.0}, 1.0).speed == 5.0);  // entered faster
+}

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "cambium/dynamics/integration.hpp"
@@ -69,6 +70,42 @@ TEST_CASE("the jerk is kept within its length, and a driver's action is reached"
   CHECK(x.acceleration <= 0.0);
   for (int i = 0; i < 100; ++i) x = cb::drive(model, x, {2.0, 0.0}, 0.02);
   CHECK(x.speed > 2.0);
+}
+
+TEST_CASE("a driver's turn stays within its limit, and depends little on the step, in braking too") {
+  cb::TripleIntegrator const model;
+  for (double const speed : {2.0, 5.0, 10.0})
+    for (double const steering : {0.05, 0.2, 0.5})
+      for (double const braking : {-1.0, -8.0}) {
+        CAPTURE(speed);
+        CAPTURE(steering);
+        CAPTURE(braking);
+        double lowest = 100.0, highest = -100.0;
+        for (double const dt : {0.01, 0.05, 0.2}) {
+          cb::TripleIntegrator::State x{.speed = speed};
+          while (x.time < 12.0) {
+            x = cb::drive(model, x, {x.time < 2.0 - 1e-9 ? 1.0 : braking, steering}, dt);
+            CHECK(std::abs(x.lateral_acceleration) <= model.lateral_acceleration_limit + 1e-9);
+          }
+          lowest = std::min(lowest, x.heading);
+          highest = std::max(highest, x.heading);
+        }
+        CHECK(highest - lowest < 0.1);
+      }
+}
+
+TEST_CASE("where its jerk suffices a driver's motion is the cubic that the jerk makes of it") {
+  cb::TripleIntegrator const model;
+  cb::TripleIntegrator::State x{.heading = 0.4, .speed = 9.0, .acceleration = 0.1, .lateral_acceleration = 1.2};
+  auto twin = x;
+  for (int i = 0; i < 300; ++i) {
+    cb::Action const action{0.2, 0.04};
+    twin = cb::rk4_step(model, twin, model.input(action, twin), 0.01);
+    x = cb::drive(model, x, action, 0.01);
+  }
+  CHECK(std::hypot(x.x - twin.x, x.y - twin.y) < 1e-3);
+  CHECK(x.heading == doctest::Approx(twin.heading).epsilon(1e-4));
+  CHECK(x.speed == doctest::Approx(twin.speed).epsilon(1e-5));
 }
 
 TEST_CASE("with dual numbers the triple integrator tells how it depends on its jerk") {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include "cambium/dynamics/single_track_steering.hpp"
+#include "cambium/dynamics/triple_integrator.hpp"
 #include "cambium/geometry/angle.hpp"
 
 namespace cb = cambium;
@@ -32,10 +34,7 @@ TEST_CASE("at a sample's time the state is the sample") {
   for (auto const& sample : plan.trajectory) {
     auto const executed = execute(plan, sample.time);
     REQUIRE(executed.valid);
-    CHECK(executed.state.time == sample.time);
-    CHECK(executed.state.x == doctest::Approx(sample.x).epsilon(1e-15));
-    CHECK(executed.state.heading == doctest::Approx(sample.heading).epsilon(1e-15));
-    CHECK(executed.state.speed == doctest::Approx(sample.speed).epsilon(1e-15));
+    CHECK(executed.state == sample);
   }
   CHECK(execute(plan, plan.trajectory.back().time).state == plan.trajectory.back());
 }
@@ -116,4 +115,29 @@ TEST_CASE("where BARK is wrong: it goes on along the first two samples, whatever
   CHECK(theirs == doctest::Approx(3.5));
   CHECK(at.valid);
   CHECK(at.state.x == doctest::Approx(12.5));
+}
+
+TEST_CASE("what a vehicle model adds to its state is interpolated too, and a sample asked for is that sample") {
+  using Steering = cb::SingleTrackSteering::State;
+  cb::BasicPlan<Steering> plan;
+  for (int i = 0; i < 5; ++i)
+    plan.trajectory.push_back(
+        {.time = 0.2 * i, .x = 0.1 * i * i, .heading = 3.1 * i, .speed = 7.0, .steering = 0.07 * i});
+  auto const at = [&](double time) {
+    return cb::InterpolateExecution{}.execute(plan, plan.trajectory.front(), cb::SingleTrackSteering{}, time);
+  };
+  for (auto const& sample : plan.trajectory) {
+    REQUIRE(at(sample.time).valid);
+    CHECK(at(sample.time).state == sample);
+  }
+  CHECK(at(0.5).state.steering == doctest::Approx(0.175));
+  CHECK(at(0.5).state.time == 0.5);
+  using Accelerated = cb::TripleIntegrator::State;
+  cb::BasicPlan<Accelerated> braking;
+  braking.trajectory.push_back({.time = 1.0, .speed = 4.0, .acceleration = -6.0, .lateral_acceleration = 1.0});
+  auto const executed =
+      cb::InterpolateExecution{}.execute(braking, Accelerated{.speed = 7.0}, cb::TripleIntegrator{}, 0.25);
+  REQUIRE(executed.valid);
+  CHECK(executed.state.acceleration == doctest::Approx(-1.5));
+  CHECK(executed.state.lateral_acceleration == doctest::Approx(0.25));
 }

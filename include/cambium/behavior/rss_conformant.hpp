@@ -26,7 +26,7 @@ namespace cambium {
 /// not driven (`fell_short`). A plan that leads farther than its acceleration, as a recording that went on while its
 /// vehicle had to wait, is driven along its course by that acceleration. Plans may turn in sideways harder than
 /// `lateral_acceleration`: that a plan does not make a situation dangerous is asked of where it leads, as if the other
-/// did the same. Steps must not be longer than `response_time`. O(agents within some hundred metres).
+/// did the same. Where a step is longer than `response_time`, its length counts. O(agents within some hundred metres).
 template <BehaviorModel Nominal>
 struct RssConformant {
   Nominal nominal{};
@@ -71,14 +71,15 @@ struct RssConformant {
     RssResponse all;
     auto const now = across(view, view.state(), view.shape()), then = across(view, end, view.shape());
     double const speed = std::max(0.0, view.state().speed);
+    auto const p = within_steps(dt);
     auto const visit = [&](auto const& other) {
-      if (may_matter(view, other, speed)) respond(view, other, now, then, dt, all);
+      if (may_matter(p, view, other, speed)) respond(p, view, other, now, then, dt, all);
     };
-    for_each_oncoming(view, speed, visit);
+    for_each_oncoming(p, view, speed, visit);
     auto const& at = view.lane_position();
     auto const too_close = [&](std::uint16_t corridor) {
       auto const objects = view.for_each_near(corridor, farthest, visit);
-      return objects.front && objects.front->gap < rss_same_direction(rss, speed, 0.0);
+      return objects.front && objects.front->gap < rss_same_direction(p, speed, 0.0);
     };
     all.brake = too_close(at.corridor) || all.brake;
     for (bool const left : {true, false}) {
@@ -96,6 +97,13 @@ struct RssConformant {
  private:
   static constexpr double rounding = 1e-9;
   static constexpr double farthest = 400.0;  // [m]
+
+  /// What is assumed where nobody responds before the next step.
+  [[nodiscard]] RssParameters within_steps(double dt) const {
+    auto p = rss;
+    p.response_time = std::max(p.response_time, dt);
+    return p;
+  }
 
   /// The nominal behaviour's `plan`, or what is driven instead.
   template <class View>
@@ -147,22 +155,22 @@ struct RssConformant {
 
   /// False for who is too far away, whatever they are going to do.
   template <class View, class Other>
-  [[nodiscard]] bool may_matter(View const& view, Other const& other, double speed) const {
+  [[nodiscard]] static bool may_matter(RssParameters const& p, View const& view, Other const& other, double speed) {
     auto const& own = view.state();
     double const fast = std::max(speed, std::abs(other.state.speed));
     bool const same = std::cos(other.state.heading - own.heading) > 0.2 && other.state.speed >= 0.0;
-    double const far = same ? rss_same_direction(rss, fast, 0.0) : rss_opposite_direction(rss, fast, fast);
+    double const far = same ? rss_same_direction(p, fast, 0.0) : rss_opposite_direction(p, fast, fast);
     double const apart = std::hypot(other.state.x - own.x, other.state.y - own.y);
     return apart <= far + 2.0 * (view.shape().radius() + other.shape.radius());
   }
 
   /// Calls `f(ObservedAgent)` for those in the lanes of the own road that are driven the other way, beside and ahead.
   template <class View, class F>
-  void for_each_oncoming(View const& view, double speed, F const& f) const {
+  static void for_each_oncoming(RssParameters const& p, View const& view, double speed, F const& f) {
     constexpr double fast = 50.0, beside = 20.0;  // [m/s], [m]
     auto const& corridor = view.corridor();
     auto const& at = view.lane_position();
-    double const from = at.s - beside, to = at.s + beside + rss_opposite_direction(rss, speed, fast);
+    double const from = at.s - beside, to = at.s + beside + rss_opposite_direction(p, speed, fast);
     for (std::size_t i = corridor.piece_at(from, at.piece); i < corridor.pieces.size(); ++i) {
       auto const& piece = corridor.pieces[i];
       if (piece.begin > to) return;
@@ -212,8 +220,8 @@ struct RssConformant {
   }
 
   template <class View, class Other>
-  void respond(View const& view, Other const& other, Across const& now, Across const& then, double dt,
-               RssResponse& all) const {
+  static void respond(RssParameters const& p, View const& view, Other const& other, Across const& now,
+                      Across const& then, double dt, RssResponse& all) {
     auto const its = across(view, other.state, other.shape);
     RssSituation at{.speed = now.along, .other_speed = its.along, .other_lateral_speed = its.aside};
     if (its.along < 0.0) {
@@ -224,7 +232,7 @@ struct RssConformant {
     at.is_left = its.middle > now.middle;
     at.gap = at.is_ahead ? its.s - its.rear - (now.s + now.front) : now.s - now.rear - (its.s + its.front);
     at.side_gap = at.is_left ? its.right - now.left : now.right - its.left;
-    all.brake = all.brake || rss_response(rss, at).brake;
+    all.brake = all.brake || rss_response(p, at).brake;
     if (!(at.side_gap > 0.0)) return;
     double const closing = std::max(0.0, at.is_left ? then.left - now.left : now.right - then.right);
     if (!(closing > rounding)) return;
@@ -232,7 +240,7 @@ struct RssConformant {
     double const toward = std::max(closing / dt, at.is_left ? then.aside : -then.aside);
     at.lateral_speed = at.is_left ? toward : -toward;
     at.side_gap = std::max(at.side_gap - 2.0 * closing, rounding);
-    auto const one = rss_response(rss, at);
+    auto const one = rss_response(p, at);
     all.keep_off_left = all.keep_off_left || one.keep_off_left;
     all.keep_off_right = all.keep_off_right || one.keep_off_right;
   }

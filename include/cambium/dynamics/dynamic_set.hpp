@@ -6,6 +6,7 @@
 
 #include "cambium/core/detail/visit.hpp"
 #include "cambium/dynamics/dynamic_model.hpp"
+#include "cambium/dynamics/integration.hpp"
 
 namespace cambium {
 
@@ -55,5 +56,13 @@ class DynamicSet {
  private:
   Any any_;
 };
+
+/// As above, of the model that the set holds: it moves as it does alone.
+template <bool euler = false, class... Models>
+[[nodiscard]] typename DynamicSet<Models...>::State drive(DynamicSet<Models...> const& set,
+                                                          typename DynamicSet<Models...>::State const& x,
+                                                          Action const& action, double dt) {
+  return detail::visit([&](auto const& model) { return cambium::drive<euler>(model, x, action, dt); }, set.any());
+}
 
 }  // namespace cambium

@@ -37,8 +37,20 @@ namespace detail {
 template <bool euler, class Model>
 [[nodiscard]] typename Model::State drive_step(Model const& model, typename Model::State x, Action const& action,
                                                double dt) {
+  if constexpr (requires { model.driven(x, action, dt); }) return model.driven(x, action, dt);
   auto const u = model.input(action, x);
   double const end = x.time + dt, change = model.derivative(x, u).speed;
+  if constexpr (requires { double{model.highest_speed}; }) {
+    double const room = model.highest_speed - x.speed;
+    if (room > 0.0 && change * dt > room) {
+      double const rising = room / change;
+      x = euler ? euler_step(model, x, u, rising) : rk4_step(model, x, u, rising);
+      x.speed = model.highest_speed;
+      x = drive_step<euler>(model, x, action, dt - rising);
+      x.time = end;
+      return x;
+    }
+  }
   double const moving = x.speed + change * dt < 0.0 ? x.speed / -change : dt;
   if (moving > 0.0) {
     if constexpr (euler)
@@ -54,8 +66,9 @@ template <bool euler, class Model>
 }  // namespace detail
 
 /// Where a vehicle is after `dt` [s] whose driver holds `action`, within the model's limits: one Runge-Kutta step, or
-/// Euler step; of models with a `response_time`, in equal steps no longer than that. It never reverses: one that brakes
-/// to standstill within the step stands from then on.
+/// Euler step; of models with a `response_time`, in equal steps no longer than that. A model that has `driven(state,
+/// action, dt)` moves by that instead. It never reverses: one that brakes to standstill within the step stands from
+/// then on; one that reaches the model's `highest_speed` keeps it.
 template <bool euler = false, DynamicModel Model>
 [[nodiscard]] typename Model::State drive(Model const& model, typename Model::State x, Action const& action,
                                           double dt) {

@@ -11,7 +11,8 @@
 namespace cambium {
 
 /// Perfect execution: the plan's own state at the time asked for; between its samples, or between now and the first of
-/// them, linearly. Never extrapolates: a plan that does not reach that time is invalid.
+/// them, every field linearly (by the `add_scaled` of the vehicle model), the heading the short way. Never
+/// extrapolates: a plan that does not reach that time is invalid.
 struct InterpolateExecution {
   static constexpr char const* name = "interpolate";
   static constexpr char const* summary =
@@ -26,8 +27,8 @@ struct InterpolateExecution {
     if (std::abs(states.back().time - time) <= exact) return at_time(states.back(), time);
     S const* before = &now;
     for (auto const& after : states) {
-      if (time >= before->time - exact && time <= after.time && before->time < after.time)
-        return between(*before, after, time);
+      if (time >= before->time - exact && time <= after.time + exact && before->time < after.time)
+        return after.time - time <= exact ? at_time(after, time) : between(*before, after, time);
       before = &after;
     }
     return {};
@@ -39,12 +40,9 @@ struct InterpolateExecution {
   template <MotionState S>
   [[nodiscard]] static Executed<S> between(S const& a, S const& b, double time) {
     double const u = (time - a.time) / (b.time - a.time);
-    S state = a;
-    state.x += u * (b.x - a.x);
-    state.y += u * (b.y - a.y);
-    state.heading += u * std::remainder(b.heading - a.heading, 2 * geometry::pi);
-    state.speed += u * (b.speed - a.speed);
-    return at_time(state, time);
+    S change = add_scaled(b, a, -1.0);
+    change.heading = std::remainder(change.heading, 2 * geometry::pi);
+    return at_time(add_scaled(a, change, u), time);
   }
 
   template <MotionState S>

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <string>
 #include <tuple>
 
+#include "cambium/core/error.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/geometry/angle.hpp"
@@ -19,6 +21,17 @@ namespace cambium {
 namespace detail {
 /// Every number, and infinity.
 inline constexpr Range any_number{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+/// Throws `ParameterError` where no place between `from` and `to` [m] is left.
+inline void check_stretch(double from, double to, std::string const& where) {
+  if (!(from <= to)) throw ParameterError(where, "its goal's stretch of lane ends before it begins", "give from <= to");
+}
+
+/// Likewise of speeds [m/s].
+inline void check_speeds(double lowest, double highest, std::string const& where) {
+  if (!(lowest <= highest))
+    throw ParameterError(where, "lowest_speed is above highest_speed: the goal is never reached", "swap them");
+}
+
 }  // namespace detail
 
 /// Drives straight on: without a route of its own for 2 km (see `map::straight_route`), or until a lane would come
@@ -52,6 +65,7 @@ struct ReachLane {
                            parameter("from", &ReachLane::from, "m", detail::any_number, "along the path of the lane"),
                            parameter("to", &ReachLane::to, "m", detail::any_number, "likewise, not below from"));
   }
+  void check(std::string const& where) const { detail::check_stretch(from, to, where); }
 
   [[nodiscard]] bool at_goal(GoalSituation const& at) const {
     return at.lane == lane && at.lane_position >= from && at.lane_position <= to;
@@ -76,6 +90,7 @@ struct StateLimits {
         parameter("lowest_speed", &P::lowest_speed, "m/s", detail::any_number, "of the speed"),
         parameter("highest_speed", &P::highest_speed, "m/s", detail::any_number, "of the speed"));
   }
+  void check(std::string const& where) const { detail::check_speeds(lowest_speed, highest_speed, where); }
 
   [[nodiscard]] bool at_goal(GoalSituation const& at) const {
     return has_heading(at.pose.heading) && at.speed >= lowest_speed && at.speed <= highest_speed;
@@ -116,6 +131,12 @@ struct LaneLimits {
         parameter("heading_error", &P::heading_error, "rad", non_negative, "largest angle to the path, either way"),
         parameter("lowest_speed", &P::lowest_speed, "m/s", detail::any_number, "of the speed"),
         parameter("highest_speed", &P::highest_speed, "m/s", detail::any_number, "of the speed"));
+  }
+  void check(std::string const& where) const {
+    detail::check_stretch(from, to, where);
+    detail::check_speeds(lowest_speed, highest_speed, where);
+    if (!(-right <= left))
+      throw ParameterError(where, "left and right leave no room: the goal is never reached", "give left >= -right");
   }
 
   [[nodiscard]] bool at_goal(GoalSituation const& at) const {

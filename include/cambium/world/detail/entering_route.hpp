@@ -67,11 +67,14 @@ inline constexpr double path_radius = 2.5;
 }
 
 /// The agent's goal, complete: lanes beside count from the one that it enters in. Throws `WorldError` for a sequence
-/// that is too long, or within another goal, and `ParameterError` for a number out of its range.
+/// that is too long, or within another goal, or for one without parts, and `ParameterError` for a number out of its
+/// range, or limits that leave nothing between them.
 [[nodiscard]] inline Goal entering_goal(Goal goal, LaneId lane, std::string const& where, bool is_outer = true) {
   check_if_described(goal, where);
   if (auto* const beside = std::get_if<ReachLaneBeside>(&goal); beside && !is_valid(beside->from)) beside->from = lane;
   auto const complete = [&](std::vector<Goal>& parts) {
+    if (parts.empty())
+      throw WorldError(where, "its goal is made of no parts: it is never reached", "give it parts, or NoGoal");
     for (auto& part : parts) part = entering_goal(std::move(part), lane, where, false);
   };
   if (auto* const all = std::get_if<AllGoals>(&goal)) complete(all->parts);
@@ -100,9 +103,9 @@ class Destinations {
     return {};
   }
 
-  [[nodiscard]] std::vector<LaneId> lanes(ReachLane const& goal) const { return lane(goal.lane, goal.from, goal.to); }
+  [[nodiscard]] std::vector<LaneId> lanes(ReachLane const& goal) const { return lane(goal.lane); }
   [[nodiscard]] std::vector<LaneId> lanes(LaneLimits const& goal) const {
-    return is_valid(goal.lane) ? lane(goal.lane, goal.from, goal.to) : std::vector<LaneId>{};
+    return is_valid(goal.lane) ? lane(goal.lane) : std::vector<LaneId>{};
   }
 
   /// Of goals to be reached at once the first place counts.
@@ -133,11 +136,10 @@ class Destinations {
     return lanes;
   }
 
-  [[nodiscard]] std::vector<LaneId> lane(LaneId lane, double from, double to) const {
+  [[nodiscard]] std::vector<LaneId> lane(LaneId lane) const {
     if (index_of(lane) >= map_->lanes().size())
       throw WorldError(*where_, "its goal names lane " + to_string(lane) + ", which the map does not have",
                        "use Map::find_lane");
-    if (!(from <= to)) throw WorldError(*where_, "its goal's stretch of lane ends before it begins", "give from <= to");
     return {lane};
   }
 
