@@ -91,9 +91,10 @@ Course drive(Sim world, double dt) {
 /// Drives `scenarios` of them on one road, and reports.
 void check_safe(double curvature, Ahead ahead, std::uint32_t scenarios, std::uint64_t seed) {
   Sim empty(straight_road(1, 1000.0, curvature));
-  empty.remove(
-      empty.add({.position = {0.5, -1.75}}));  // its road is known from now on, and need not be built for each scenario
-  auto const& road = *empty.roster().corridors.begin()->second;
+  auto const first = empty.add({.position = {0.5, -1.75}});
+  auto const shared = empty.roster().agents[0].road;
+  auto const& road = *shared;
+  empty.remove(first);
   int vehicles = 0;
   double standing = 0.0, hardest = 0.0;
   for (std::uint32_t number = 0; number < scenarios; ++number) {
