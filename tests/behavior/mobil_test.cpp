@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "cambium/behavior/presets.hpp"
 #include "lane_traffic_fixtures.hpp"
 
 using namespace lane_traffic;
@@ -67,6 +68,22 @@ TEST_CASE("nobody collides in dense traffic of MOBIL drivers, on straight and cu
   MESSAGE(all.begun << " changes, " << all.aborted << " aborted");
   CHECK(all.begun > 200);
   CHECK(all.done > 9 * (all.begun - all.aborted) / 10);
+}
+
+TEST_CASE("nobody collides in slow traffic of cars, trucks and buses that change lanes by MOBIL") {
+  int begun = 0;
+  for (std::uint64_t seed = 1; seed <= 36; ++seed) {
+    Sim world(support::straight_road(3, 1500.0, seed % 3 == 0 ? 0.002 : 0.0), {.seed = seed});
+    fill_slow(world, 3, seed, [](bool is_long) {
+      return cb::Mobil{.idm = is_long ? cb::presets::kesting_2010_truck() : cb::presets::kesting_2010_car()};
+    });
+    auto const counts = run(world, 450, 0.2);
+    CAPTURE(seed);
+    CHECK(counts.collisions == 0);
+    begun += counts.begun;
+  }
+  MESSAGE(begun << " changes");
+  CHECK(begun > 1000);
 }
 
 TEST_CASE("of two who change into the same gap from both sides in the same step, at most one goes on") {
