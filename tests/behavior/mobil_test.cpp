@@ -484,12 +484,12 @@ TEST_CASE("from rest, on an empty road, who needs another lane at the end comes 
 }
 
 TEST_CASE("two who stand side by side and need each other's lanes both come there") {
-  for (double const apart : {-3.0, 0.0, 3.0})
-    for (double const at : {300.0, 450.0, 530.0, 560.0}) {
+  auto const come_there = [](cb::geometry::Shape const& shape, double at) {
+    for (double const apart : {-3.0, 0.0, 3.0}) {
       auto const map = support::straight_road(2, 600.0);
       Sim world(map);
-      auto const a = add(world, 1, at, 0.0, mobil(15.0), last_metres_of(*map, 2)),
-                 b = add(world, 2, at + apart, 0.0, mobil(15.0), last_metres_of(*map, 1));
+      auto const a = add(world, 1, at, 0.0, mobil(15.0), last_metres_of(*map, 2), shape),
+                 b = add(world, 2, at + apart, 0.0, mobil(15.0), last_metres_of(*map, 1), shape);
       bool reached_a = false, reached_b = false;
       for (int k = 0; k < 900 && !(reached_a && reached_b); ++k) {
         world.step(0.2);
@@ -502,6 +502,9 @@ TEST_CASE("two who stand side by side and need each other's lanes both come ther
       CHECK(reached_a);
       CHECK(reached_b);
     }
+  };
+  for (double const at : {300.0, 450.0, 530.0, 560.0}) come_there(cb::geometry::car(), at);
+  for (double const at : {300.0, 450.0, 500.0}) come_there(cb::geometry::bus(), at);
 }
 
 TEST_CASE("on a lane drop and at a fork MOBIL drivers leave the lane that ends, or reach the exit") {
