@@ -59,9 +59,12 @@ struct LaneChange {
 namespace detail {
 
 /// How much longer a course has to be for each metre that a vehicle's front is farther from its rear axle than a car's,
-/// so that it does not swing out into the lane beyond, where lanes are 3.5 m wide [-]. Back into the own lane less: it
-/// is not so far, and to come back soon is worth 0.1 m beyond the border.
-inline constexpr double longer_by_front = 5.0, longer_by_front_back = 4.0;
+/// so that it does not swing out into the lane beyond, where lanes are 3.5 m wide [-].
+inline constexpr double longer_by_front = 5.0;
+
+/// The same of a course back to the middle of the own lane from `lateral` [m] beside it: less, for it is not so far,
+/// and to come back soon is worth 0.1 m beyond the border.
+[[nodiscard]] inline double longer_by_front_back(double lateral) { return 4.0 * std::min(1.0, std::abs(lateral)); }
 
 [[nodiscard]] constexpr double least_course_length(double of_car, geometry::Shape const& shape, double by_front) {
   return of_car + by_front * std::max(0.0, shape.front - geometry::car().front);
@@ -104,9 +107,11 @@ struct LaneChangeCourse {
     if (change.active() && !(change.left > 0.0f)) change = begin(change.target, shape, speed);
   }
 
-  /// The way back to lane corridor `home` at `speed` [m/s]; `bend`: of the course until then, at the vehicle.
-  [[nodiscard]] LaneChange back(std::uint16_t home, geometry::Shape const& shape, double speed, float bend) const {
-    double const least = detail::least_course_length(minimum_length, shape, detail::longer_by_front_back);
+  /// The way back to lane corridor `home`, from `lateral` [m] beside its middle, at `speed` [m/s]; `bend`: of the
+  /// course until then, at the vehicle.
+  [[nodiscard]] LaneChange back(std::uint16_t home, geometry::Shape const& shape, double speed, double lateral,
+                                float bend) const {
+    double const least = detail::least_course_length(minimum_length, shape, detail::longer_by_front_back(lateral));
     return {home, static_cast<float>(std::max(least, speed * std::min(shortest_duration, duration))), bend};
   }
 };
@@ -155,8 +160,9 @@ template <class View>
     bend = 0.0f;
     return plan_along_lane(view, motion, dt);
   }
-  double const length = std::max(detail::least_course_length(shortest, view.shape(), detail::longer_by_front_back),
-                                 duration * motion.speed);
+  double const length =
+      std::max(detail::least_course_length(shortest, view.shape(), detail::longer_by_front_back(at.lateral - offset)),
+               duration * motion.speed);
   LaneChange back{at.corridor, static_cast<float>(length), bend};
   auto const plan = detail::plan_course(view, view.corridor(), at, back, motion, dt, offset);
   bend = back.bend;

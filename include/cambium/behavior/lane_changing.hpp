@@ -201,7 +201,8 @@ struct LaneChanging {
   template <class View>
   void abort(View const& view, double speed, Memory& memory) const {
     constexpr std::uint32_t purpose = 0x4c43u;
-    auto const back = course.back(view.lane_position().corridor, view.shape(), speed, memory.change.bend);
+    auto const& at = view.lane_position();
+    auto const back = course.back(at.corridor, view.shape(), speed, at.lateral, memory.change.bend);
     if (!stays_within_lane(view, back)) return;
     auto random = view.random(purpose);
     memory.change = back;

@@ -147,8 +147,8 @@ struct MacroActions {
       if (side != none && side != memory.change.target) {
         bool const is_back = side == view.lane_position().corridor;
         float const bend = memory.change.bend;
-        memory.change =
-            is_back ? course.back(side, view.shape(), speed, bend) : course.begin(side, view.shape(), speed);
+        memory.change = is_back ? course.back(side, view.shape(), speed, view.lane_position().lateral, bend)
+                                : course.begin(side, view.shape(), speed);
         memory.change.bend = bend;
       }
     }
