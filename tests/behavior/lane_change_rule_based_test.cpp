@@ -67,6 +67,24 @@ TEST_CASE("nobody collides in dense traffic of rule-based drivers, and they do c
   CHECK(changes > 50);
 }
 
+TEST_CASE("nor in slow traffic of cars, trucks and buses") {
+  int changes = 0;
+  for (std::uint64_t seed = 1; seed <= 24; ++seed) {
+    Sim world(support::straight_road(3, 1500.0, seed % 3 == 0 ? 0.002 : 0.0), {.seed = seed});
+    fill_slow(world, 3, seed, [](bool is_long) { return roomy(is_long ? 20.0 : 30.0); });
+    for (int k = 0; k < 450; ++k) {
+      auto const before = lanes(world);
+      world.step(0.2);
+      auto const after = lanes(world);
+      for (std::size_t i = 0; i < world.size(); ++i) changes += before[i] != after[i];
+      CAPTURE(seed);
+      CHECK(collisions(world) == 0);
+    }
+  }
+  MESSAGE(changes << " changes");
+  CHECK(changes > 500);
+}
+
 TEST_CASE("MOBIL changes only where its filters let it, the library's and a user's own") {
   auto const changes = [](auto driver, int lane) {
     using Driver = decltype(driver);

@@ -90,6 +90,30 @@ void fill(World& world, int lanes, double begin, double end, double density, std
   }
 }
 
+/// Slow traffic on lanes 1 to `lanes` with many trucks and buses, behind somebody on each lane who stays slow.
+/// `driver(is_long)` makes a behaviour.
+template <class World, class Driver>
+void fill_slow(World& world, int lanes, std::uint64_t seed, Driver const& driver) {
+  cb::RandomStream random(seed, 26, 5);
+  auto const between = [&random](double low, double high) { return low + (high - low) * cb::uniform01(random); };
+  for (int lane = 1; lane <= lanes; ++lane) {
+    double speed = between(1.0, 6.0);
+    for (double s = 20.0 + between(0.0, 20.0); s < 400.0;) {
+      bool const is_long = cb::uniform01(random) < 0.25;
+      auto const shape = !is_long                      ? cb::geometry::car()
+                         : cb::uniform01(random) < 0.5 ? cb::geometry::bus()
+                                                       : cb::geometry::truck();
+      add(world, lane, s + shape.rear, speed, driver(is_long), {}, shape);
+      double const next = between(1.0, 6.0);
+      s += shape.length() + 4.0 + between(1.0, 3.0) * speed + 6.0 * std::max(0.0, speed - next);
+      speed = next;
+    }
+    auto slow = driver(false);
+    slow.idm.desired_speed = between(2.0, 5.0);
+    add(world, lane, 470.0 + 8.0 * lane, between(1.0, 4.0), slow);
+  }
+}
+
 /// Lane corridors that the agents are in, by slot.
 template <class World>
 std::vector<std::uint16_t> lanes(World const& world) {

@@ -134,6 +134,47 @@ TEST_CASE("one to the other side before the border is crossed leads back to the 
     }
 }
 
+TEST_CASE("whatever the shape and the speed, the body stays within the two lanes of a change") {
+  // The two in the middle of four lanes, from -10.5 to -3.5. Who gives up while it is aslant comes to lie a little
+  // farther on its way back.
+  double const left_border = -3.5, right_border = -10.5;
+  for (auto const& shape :
+       {cb::geometry::car(), cb::geometry::van(), cb::geometry::truck(), cb::geometry::articulated_truck(),
+        cb::geometry::bus(), cb::geometry::motorcycle(), cb::geometry::bicycle(), cb::geometry::pedestrian()})
+    for (int speed = 1; speed <= 30; ++speed)
+      for (bool const leftwards : {true, false})
+        for (double const given_up_after : {0.3, 1.0, 1.7, 2.5, 10.0}) {  // so far aside [m]
+          double const from = leftwards ? -8.75 : -5.25;
+          World world(straight_road(4, 1000.0));
+          auto const id = world.add(
+              {.position = {100, from}, .speed = double(speed), .shape = shape, .behavior = cb::MacroActions{}});
+          auto const change = number_of(leftwards ? Kind::change_left : Kind::change_right);
+          auto const back = number_of(leftwards ? Kind::change_right : Kind::change_left);
+          world.memory<cb::MacroActions>(id).choose(change);
+          double leftmost = -100.0, rightmost = 0.0;
+          bool goes_on = true;
+          do {
+            world.step(0.2);
+            auto const state = world.state(id);
+            auto const aside = cb::geometry::extent_along(shape, std::sin(state.heading), -std::cos(state.heading));
+            leftmost = std::max(leftmost, state.y + aside.positive);
+            rightmost = std::min(rightmost, state.y - aside.negative);
+            if (goes_on && std::abs(state.y - from) > given_up_after) {
+              world.memory<cb::MacroActions>(id).choose(back);
+              goes_on = false;
+            }
+          } while (world.memory<cb::MacroActions>(id).change.active());
+          CAPTURE(shape.length());
+          CAPTURE(speed);
+          CAPTURE(leftwards);
+          CAPTURE(given_up_after);
+          double const over = goes_on ? 0.0 : 0.1;
+          CHECK(leftmost < left_border + over);
+          CHECK(rightmost > right_border - over);
+          CHECK((std::abs(world.state(id).y - from) > 1.75) == goes_on);
+        }
+}
+
 TEST_CASE("what is chosen, and the change under way, go along with copies") {
   Highway at;
   at.choose(number_of(Kind::change_right));

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "cambium/behavior/presets.hpp"
 #include "lane_traffic_fixtures.hpp"
 
 using namespace lane_traffic;
@@ -67,6 +68,22 @@ TEST_CASE("nobody collides in dense traffic of MOBIL drivers, on straight and cu
   MESSAGE(all.begun << " changes, " << all.aborted << " aborted");
   CHECK(all.begun > 200);
   CHECK(all.done > 9 * (all.begun - all.aborted) / 10);
+}
+
+TEST_CASE("nobody collides in slow traffic of cars, trucks and buses that change lanes by MOBIL") {
+  int begun = 0;
+  for (std::uint64_t seed = 1; seed <= 36; ++seed) {
+    Sim world(support::straight_road(3, 1500.0, seed % 3 == 0 ? 0.002 : 0.0), {.seed = seed});
+    fill_slow(world, 3, seed, [](bool is_long) {
+      return cb::Mobil{.idm = is_long ? cb::presets::kesting_2010_truck() : cb::presets::kesting_2010_car()};
+    });
+    auto const counts = run(world, 450, 0.2);
+    CAPTURE(seed);
+    CHECK(counts.collisions == 0);
+    begun += counts.begun;
+  }
+  MESSAGE(begun << " changes");
+  CHECK(begun > 1000);
 }
 
 TEST_CASE("of two who change into the same gap from both sides in the same step, at most one goes on") {
@@ -467,12 +484,12 @@ TEST_CASE("from rest, on an empty road, who needs another lane at the end comes 
 }
 
 TEST_CASE("two who stand side by side and need each other's lanes both come there") {
-  for (double const apart : {-3.0, 0.0, 3.0})
-    for (double const at : {300.0, 450.0, 530.0, 560.0}) {
+  auto const come_there = [](cb::geometry::Shape const& shape, double at) {
+    for (double const apart : {-3.0, 0.0, 3.0}) {
       auto const map = support::straight_road(2, 600.0);
       Sim world(map);
-      auto const a = add(world, 1, at, 0.0, mobil(15.0), last_metres_of(*map, 2)),
-                 b = add(world, 2, at + apart, 0.0, mobil(15.0), last_metres_of(*map, 1));
+      auto const a = add(world, 1, at, 0.0, mobil(15.0), last_metres_of(*map, 2), shape),
+                 b = add(world, 2, at + apart, 0.0, mobil(15.0), last_metres_of(*map, 1), shape);
       bool reached_a = false, reached_b = false;
       for (int k = 0; k < 900 && !(reached_a && reached_b); ++k) {
         world.step(0.2);
@@ -485,6 +502,9 @@ TEST_CASE("two who stand side by side and need each other's lanes both come ther
       CHECK(reached_a);
       CHECK(reached_b);
     }
+  };
+  for (double const at : {300.0, 450.0, 530.0, 560.0}) come_there(cb::geometry::car(), at);
+  for (double const at : {300.0, 450.0, 500.0}) come_there(cb::geometry::bus(), at);
 }
 
 TEST_CASE("on a lane drop and at a fork MOBIL drivers leave the lane that ends, or reach the exit") {

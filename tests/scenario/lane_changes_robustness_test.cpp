@@ -11,6 +11,7 @@
 #include "../behavior/lane_traffic_fixtures.hpp"
 #include "../support/corpus.hpp"
 #include "../support/samples.hpp"
+#include "cambium/behavior/presets.hpp"
 #include "cambium/behavior/zip_merge.hpp"
 #include "cambium/observer/delayed.hpp"
 #include "cambium/observer/observer_set.hpp"
@@ -141,6 +142,29 @@ TEST_CASE("drivers who see with errors, late or not everybody change lanes witho
       }
       CHECK(changes > 5);
     }
+}
+
+TEST_CASE("nobody collides in slow traffic with many trucks and buses") {
+  auto const idm = [](bool is_long) {
+    return is_long ? cb::presets::kesting_2010_truck() : cb::presets::kesting_2010_car();
+  };
+  int changes = 0;
+  for (std::uint64_t seed = 1; seed <= samples(10); ++seed)
+    for (bool const by_rule : {false, true}) {
+      int const lanes = seed % 2 == 0 ? 3 : 4;
+      World world(support::straight_road(lanes, 1500.0, seed % 3 == 0 ? 0.002 : 0.0), {.seed = seed});
+      if (by_rule)
+        fill_slow(world, lanes, seed, [&](bool is_long) { return cb::LaneChangeRuleBased{.idm = idm(is_long)}; });
+      else
+        fill_slow(world, lanes, seed, [&](bool is_long) { return cb::Mobil{.idm = idm(is_long)}; });
+      auto const result = drive(world, 450);
+      CAPTURE(by_rule);
+      CAPTURE(seed);
+      CHECK(result.collisions == 0);
+      CHECK(result.problems == 0);
+      changes += result.changes;
+    }
+  CHECK(changes > 500);
 }
 
 TEST_CASE("nobody collides on the corpus' roads of several lanes, whatever they lead to") {

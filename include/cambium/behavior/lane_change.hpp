@@ -10,6 +10,7 @@
 #include "cambium/behavior/follow_lane.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/geometry/angle.hpp"
+#include "cambium/geometry/shape.hpp"
 
 namespace cambium {
 
@@ -55,6 +56,22 @@ struct LaneChange {
   friend bool operator==(LaneChange const&, LaneChange const&) = default;
 };
 
+namespace detail {
+
+/// How much longer a course has to be for each metre that a vehicle's front is farther from its rear axle than a car's,
+/// so that it does not swing out into the lane beyond, where lanes are 3.5 m wide [-].
+inline constexpr double longer_by_front = 5.0;
+
+/// The same of a course back to the middle of the own lane from `lateral` [m] beside it: less, for it is not so far,
+/// and to come back soon is worth 0.1 m beyond the border.
+[[nodiscard]] inline double longer_by_front_back(double lateral) { return 4.0 * std::min(1.0, std::abs(lateral)); }
+
+[[nodiscard]] constexpr double least_course_length(double of_car, geometry::Shape const& shape, double by_front) {
+  return of_car + by_front * std::max(0.0, shape.front - geometry::car().front);
+}
+
+}  // namespace detail
+
 /// How long a lane change takes.
 struct LaneChangeCourse {
   double duration = 4.0;
@@ -70,24 +87,32 @@ struct LaneChangeCourse {
         parameter("shortest_duration", &LaneChangeCourse::shortest_duration, "s", Range{0.5, 30},
                   "where less room is left, and for the way back of an aborted change"),
         parameter("minimum_length", &LaneChangeCourse::minimum_length, "m", Range{5, 200},
-                  "however slow the vehicle drives"));
+                  "however slow a car drives; 5 m more for each metre that a longer vehicle's front is farther ahead"));
+  }
+
+  /// The least length of a change, however slow a vehicle of this shape drives [m].
+  [[nodiscard]] double least_length(geometry::Shape const& shape) const {
+    return detail::least_course_length(minimum_length, shape, detail::longer_by_front);
   }
 
   /// The begin of a change to lane corridor `target` at `speed` [m/s], within `room` [m] where that can be done.
-  [[nodiscard]] LaneChange begin(std::uint16_t target, double speed,
+  [[nodiscard]] LaneChange begin(std::uint16_t target, geometry::Shape const& shape, double speed,
                                  double room = std::numeric_limits<double>::infinity()) const {
-    double const shortest = std::max(minimum_length, speed * std::min(shortest_duration, duration));
+    double const shortest = std::max(least_length(shape), speed * std::min(shortest_duration, duration));
     return {target, static_cast<float>(std::max(shortest, std::min(speed * duration, room))), 0.0f};
   }
 
   /// Begins a change anew whose course the vehicle has been made to leave.
-  void renew(LaneChange& change, double speed) const {
-    if (change.active() && !(change.left > 0.0f)) change = begin(change.target, speed);
+  void renew(LaneChange& change, geometry::Shape const& shape, double speed) const {
+    if (change.active() && !(change.left > 0.0f)) change = begin(change.target, shape, speed);
   }
 
-  /// The way back to lane corridor `home` at `speed` [m/s]; `bend`: of the course until then, at the vehicle.
-  [[nodiscard]] LaneChange back(std::uint16_t home, double speed, float bend) const {
-    return {home, static_cast<float>(std::max(minimum_length, speed * std::min(shortest_duration, duration))), bend};
+  /// The way back to lane corridor `home`, from `lateral` [m] beside its middle, at `speed` [m/s]; `bend`: of the
+  /// course until then, at the vehicle.
+  [[nodiscard]] LaneChange back(std::uint16_t home, geometry::Shape const& shape, double speed, double lateral,
+                                float bend) const {
+    double const least = detail::least_course_length(minimum_length, shape, detail::longer_by_front_back(lateral));
+    return {home, static_cast<float>(std::max(least, speed * std::min(shortest_duration, duration))), bend};
   }
 };
 
@@ -135,7 +160,10 @@ template <class View>
     bend = 0.0f;
     return plan_along_lane(view, motion, dt);
   }
-  LaneChange back{at.corridor, static_cast<float>(std::max(shortest, duration * motion.speed)), bend};
+  double const length =
+      std::max(detail::least_course_length(shortest, view.shape(), detail::longer_by_front_back(at.lateral - offset)),
+               duration * motion.speed);
+  LaneChange back{at.corridor, static_cast<float>(length), bend};
   auto const plan = detail::plan_course(view, view.corridor(), at, back, motion, dt, offset);
   bend = back.bend;
   return plan;

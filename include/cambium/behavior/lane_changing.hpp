@@ -90,7 +90,7 @@ struct LaneChanging {
     auto const leader = view.front();
     auto const home = view.lane_position().corridor;
     memory.rest = std::max(0.0f, memory.rest - static_cast<float>(dt));
-    course.renew(memory.change, speed);
+    course.renew(memory.change, view.shape(), speed);
     if (memory.change.target == home && speed < standing &&
         way_to_stop(view, view.lane_position()) < idm.minimum_gap + 1)
       memory.change = {};  // it must leave this lane, too: no way is left to come to its middle before
@@ -105,7 +105,7 @@ struct LaneChanging {
     bool const may_change = memory.rest == 0.0f;
     auto const target = choose(LaneKeeping<View>{view, law, speed, leader, end, may_change, ahead});
     if (may_change && target != map::no_corridor && is_wide_enough(view, target, 0.5 * speed * course.duration)) {
-      memory.change = course.begin(target, speed, room(view, leader, target));
+      memory.change = course.begin(target, view.shape(), speed, room(view, leader, target));
       memory.rest = static_cast<float>(rest + course.duration);
       ahead = ahead_while_changing(view, law, speed, leader, memory.change);
     }
@@ -201,7 +201,8 @@ struct LaneChanging {
   template <class View>
   void abort(View const& view, double speed, Memory& memory) const {
     constexpr std::uint32_t purpose = 0x4c43u;
-    auto const back = course.back(view.lane_position().corridor, speed, memory.change.bend);
+    auto const& at = view.lane_position();
+    auto const back = course.back(at.corridor, view.shape(), speed, at.lateral, memory.change.bend);
     if (!stays_within_lane(view, back)) return;
     auto random = view.random(purpose);
     memory.change = back;
@@ -225,7 +226,7 @@ struct LaneChanging {
     if (until_end == infinite) return infinite;
     auto const lanes = lanes_to_cross(view, at.corridor, at.piece, at.s);
     double const changes = lanes.left > 0 ? lanes.left + 0.5 : std::max(1, lanes.right);
-    return until_end - view.shape().front - changes * course.minimum_length;
+    return until_end - view.shape().front - changes * course.least_length(view.shape());
   }
 
   /// How long a change may be: it must lead around a standing object, to before the end of the lane, and to where the
@@ -235,15 +236,15 @@ struct LaneChanging {
     auto const& at = view.lane_position();
     double const until_end =
         std::min(dead_end(view, at.corridor, at.piece) - at.s, way_to_stop(view, view.beside(target)));
-    double const beside_object = (1.0 - out_of_lane) * course.minimum_length;
+    double const beside_object = (1.0 - out_of_lane) * course.least_length(view.shape());
     return leader && is_object(*leader) ? std::min(until_end, leader->gap + beside_object) : until_end;
   }
 
   /// Adds a leader in a lane that the vehicle stays in: before an object it leaves room to change.
-  void add_leader(detail::Restriction& ahead, detail::IdmLaw const& law, double speed,
+  void add_leader(detail::Restriction& ahead, detail::IdmLaw const& law, geometry::Shape const& shape, double speed,
                   std::optional<Neighbor> const& leader, bool has_side) const {
     if (!leader) return;
-    double const room = is_object(*leader) && has_side ? out_of_lane * course.minimum_length : 0.0;
+    double const room = is_object(*leader) && has_side ? out_of_lane * course.least_length(shape) : 0.0;
     ahead.add(law, speed, leader->gap - room, leader->speed);
   }
 
@@ -257,7 +258,8 @@ struct LaneChanging {
     auto const& at = view.lane_position();
     auto const& piece = view.corridor().pieces[at.piece];
     detail::Restriction ahead{infinite, 0.0, law.free(speed)};
-    add_leader(ahead, law, speed, leader, piece.left != map::no_corridor || piece.right != map::no_corridor);
+    add_leader(ahead, law, view.shape(), speed, leader,
+               piece.left != map::no_corridor || piece.right != map::no_corridor);
     add_stop(ahead, law, speed, way_to_stop(view, at));
     return ahead;
   }
@@ -269,13 +271,13 @@ struct LaneChanging {
     auto const& at = view.lane_position();
     auto const& corridor = view.corridor();
     auto const& piece = corridor.pieces[at.piece];
-    double const left = change.left, around = (1.0 - out_of_lane) * course.minimum_length;
+    double const left = change.left, around = (1.0 - out_of_lane) * course.least_length(view.shape());
     auto const is_passed = [&](Neighbor const& n, double until) {  // the course leads around it
       return n.speed < 0.5 && n.gap > until;
     };
     detail::Restriction ahead{infinite, 0.0, law.free(speed)};
     if (change.target == at.corridor) {
-      add_leader(ahead, law, speed, leader, true);
+      add_leader(ahead, law, view.shape(), speed, leader, true);
       add_stop(ahead, law, speed, way_to_stop(view, at));
       // While it reaches over the border, the leader there counts, too.
       auto const sides = corridor.widths_at(at.s, at.segment);
@@ -284,7 +286,7 @@ struct LaneChanging {
                                                                           : map::no_corridor;
       if (beside == map::no_corridor) return ahead;
       auto const other = view.front(view.beside(beside));
-      if (other && other->gap > 0.0 && !is_passed(*other, left - 0.5 * course.minimum_length))
+      if (other && other->gap > 0.0 && !is_passed(*other, left - 0.5 * course.least_length(view.shape())))
         ahead.add(law, speed, other->gap, other->speed);
       return ahead;
     }
@@ -292,7 +294,7 @@ struct LaneChanging {
     double const until_end = dead_end(view, at.corridor, at.piece) - at.s;
     if (until_end < 0.6 * left) ahead.add(law, speed, until_end - view.shape().front, 0.0);
     auto const there = view.beside(change.target);
-    add_leader(ahead, law, speed, view.front(there), true);
+    add_leader(ahead, law, view.shape(), speed, view.front(there), true);
     // Into the lane beside it may go on, even if that ends soon.
     add_stop(ahead, law, speed, std::max(way_to_stop(view, there), 0.6 * left + law.minimum_gap() + 1.0));
     return ahead;

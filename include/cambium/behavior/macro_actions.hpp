@@ -107,7 +107,9 @@ struct MacroActions {
         parameter("actions", &P::actions, "-", {}, "what can be chosen, 1 to 16"),
         parameter("highest_speed", &P::highest_speed, "m/s", Range{0, 200}, "not exceeded by accelerating"),
         parameter("minimum_remaining", &P::minimum_remaining, "m", Range{0, 10'000},
-                  "no change into a lane that ends, or begins to merge into its neighbour, sooner"),
+                  "no change into a lane that ends, or begins to merge into its neighbour, sooner; longer vehicles "
+                  "need more, as "
+                  "in their course"),
         parameter("idm", &P::idm, "-", {}, "how gaps are kept"),
         parameter("course", &P::course, "-", {}, "how long a change takes"),
         parameter("tolerance", &P::tolerance, "m/s^2", Range{1e-12, 1},
@@ -139,13 +141,14 @@ struct MacroActions {
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
     auto const action = memory.chosen < size() ? actions[memory.chosen] : MacroAction{};
     double const speed = std::max(0.0, view.state().speed);
-    course.renew(memory.change, speed);
+    course.renew(memory.change, view.shape(), speed);
     if (memory.is_new && is_change(action.kind)) {
       auto const side = side_of(view, action.kind, memory.change);
       if (side != none && side != memory.change.target) {
         bool const is_back = side == view.lane_position().corridor;
         float const bend = memory.change.bend;
-        memory.change = is_back ? course.back(side, speed, bend) : course.begin(side, speed);
+        memory.change = is_back ? course.back(side, view.shape(), speed, view.lane_position().lateral, bend)
+                                : course.begin(side, view.shape(), speed);
         memory.change.bend = bend;
       }
     }
@@ -168,7 +171,8 @@ struct MacroActions {
     if (change.active() && change.target == other_side) return at.corridor;
     if (side == none) return none;
     auto const there = view.lane_position(side);
-    return lane_end(view, side, there.piece) - there.s < minimum_remaining ? none : side;
+    double const least = detail::least_course_length(minimum_remaining, view.shape(), detail::longer_by_front);
+    return lane_end(view, side, there.piece) - there.s < least ? none : side;
   }
 
   template <class View>

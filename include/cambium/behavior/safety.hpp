@@ -30,8 +30,8 @@ struct Safety {
     double const speed = std::max(0.0, view.state().speed);
     auto const lane = view.lane_position().corridor;
     if (memory.active() ? memory.target != lane : std::abs(view.lane_position().lateral) > off_middle)
-      memory = course.begin(lane, speed);
-    course.renew(memory, speed);
+      memory = course.begin(lane, view.shape(), speed);
+    course.renew(memory, view.shape(), speed);
     return plan_lane_change(view, memory, ConstantAcceleration{.acceleration = -deceleration}.motion(speed, dt), dt);
   }
 

@@ -16,20 +16,25 @@
 
 namespace cambium {
 
+/// From where to where a lane goes, in lane coordinates [m].
+struct LaneStretch {
+  double begin = 0.0, end = 0.0;
+};
+
 /// Entries of agents in lanes that they reach into.
 struct ReachingEntries {
   std::vector<TrafficEntry> entries;
-  double to_lane_end = std::numeric_limits<double>::infinity();  ///< the least way from one to an end of its lane [m]
+  double over_begin = 0.0, over_end = 0.0;  ///< how far one reaches at most over the begin, the end of its lane [m]
 
   void clear() {
     entries.clear();
-    to_lane_end = std::numeric_limits<double>::infinity();
+    over_begin = over_end = 0.0;
   }
 
-  /// `begin` and `end`: lane coordinates of its lane.
-  void add(TrafficEntry const& entry, double begin, double end) {
+  void add(TrafficEntry const& entry, LaneStretch const& lane) {
     entries.push_back(entry);
-    to_lane_end = std::min({to_lane_end, entry.position - begin, end - entry.position});
+    over_begin = std::max(over_begin, lane.begin - (entry.position - entry.rear));
+    over_end = std::max(over_end, entry.position + entry.front - lane.end);
   }
 };
 
@@ -37,10 +42,10 @@ struct ReachingEntries {
 ///
 /// Agents are kept in one list by lane coordinate; the order of the last step is repaired, not rebuilt (insertion sort;
 /// where it is far off, a full sort). Agents that reach over their lane's border are in it once more, in the
-/// neighbour's lane; static objects are in a list of their own. On the corridor itself the nearest by reference point
-/// counts, and where anybody who reaches over a border stands beside another, whoever reaches nearer; from each feeder
-/// (a lane that merges in, or has just split off) whoever reaches nearest; of these the one with the smallest gap is
-/// the neighbour.
+/// neighbour's lane; static objects are in a list of their own, in parts. Of all whose reference points (of objects:
+/// whose parts' middles) are ahead of the asker's, or behind it, on the corridor itself or on its feeders (lanes that
+/// merge in, or have just split off), the one with the smallest gap is the neighbour. Mostly that is the next in the
+/// list; where somebody stands beside another, those farther on are looked at, too.
 class TrafficIndex {
  public:
   /// Farthest reference point that is a neighbour, along the corridor [m].
@@ -52,10 +57,10 @@ class TrafficIndex {
   }
 
   /// Takes in `count` agents. `entry_of(slot, list)` gives each one's `TrafficEntry` (position +infinity: on no lane of
-  /// its own) and appends entries in other lanes that it is in to the list. No allocation once warm. O(count) when
-  /// little has changed.
-  template <class EntryOf>
-  void refresh(std::size_t count, EntryOf const& entry_of) {
+  /// its own) and appends entries in other lanes that it is in to the list; `lane_of(slot)` gives its own
+  /// `LaneStretch`. No allocation once warm. O(count) when little has changed.
+  template <class EntryOf, class LaneOf>
+  void refresh(std::size_t count, EntryOf const& entry_of, LaneOf const& lane_of) {
     if (rank_.size() != count) {
       rank_.resize(count);
       agents_.reserve(3 * count);
@@ -64,18 +69,20 @@ class TrafficIndex {
       for (std::uint32_t i = 0; i < count; ++i) agents_[rank_[i] = i].slot = i;
     }
     reaching_.clear();
-    longest_front_ = longest_rear_ = 0.0;
+    Reach reach;
     std::size_t own = 0;
     for (std::size_t i = 0; i < agents_.size(); ++i) {
       if (!is_own(i)) continue;  // of the last time
       agents_[own] = entry_of(agents_[i].slot, reaching_);
-      note_longest(agents_[own++]);
+      reach.note(agents_[own++]);
     }
-    for (auto const& entry : reaching_.entries) note_longest(entry);
+    for (auto const& entry : reaching_.entries) reach.note(entry);
+    reach_ = reach;
     agents_.resize(count);
     sort_nearly_sorted(agents_);
     std::sort(reaching_.entries.begin(), reaching_.entries.end());
     merge_reaching(count);
+    crowded_ = !reach_.all_alike() && anybody_hides(lane_of);
   }
 
   /// Whether an agent is on a lane of its own.
@@ -111,7 +118,7 @@ class TrafficIndex {
   void for_each_in(double begin, double end, std::span<TrafficEntry const> objects, F&& f) const {
     auto const visit = [&](List list, bool is_object) {
       if (list.empty()) return;
-      double const longest = is_object ? longest_object : std::max(longest_front_, longest_rear_);
+      double const longest = is_object ? longest_object : std::max(reach_.longest_front, reach_.longest_rear);
       for (auto i = first_at(list, begin - longest); i < list.size() && list[i].position <= end + longest; ++i)
         if (list[i].position + list[i].front >= begin && list[i].position - list[i].rear <= end) f(list[i], is_object);
     };
@@ -124,7 +131,7 @@ class TrafficIndex {
   [[nodiscard]] std::optional<TrafficHit> front_from(std::size_t start, map::LaneCorridor const& corridor,
                                                      Query const& query, std::span<TrafficEntry const> objects) const {
     Nearest best;
-    front_on_corridor(agents(), false, corridor, query, start, best);
+    front_on_corridor(corridor, query, start, best);
     if (crowded_ || !objects.empty() || !corridor.feeders.empty())
       best = front_of_others(start, corridor, Query(query), objects, best);
     return hit(best, objects);
@@ -135,7 +142,7 @@ class TrafficIndex {
   [[nodiscard]] std::optional<TrafficHit> rear_from(std::size_t start, map::LaneCorridor const& corridor,
                                                     Query const& query, std::span<TrafficEntry const> objects) const {
     Nearest best;
-    rear_on_corridor(agents(), false, corridor, query, start, best);
+    rear_on_corridor(corridor, query, start, best);
     if (crowded_ || !objects.empty() || !corridor.feeders.empty())
       best = rear_of_others(start, corridor, Query(query), objects, best);
     return hit(best, objects);
@@ -171,6 +178,22 @@ class TrafficIndex {
 
   /// Objects are entered in parts no longer than this [m].
   static constexpr double longest_object = 10.0;
+
+  /// How far agents reach forward and back from their reference points [m].
+  struct Reach {
+    double longest_front = 0.0, longest_rear = 0.0;
+    double shortest_front = std::numeric_limits<double>::infinity();
+    double shortest_rear = std::numeric_limits<double>::infinity();
+
+    void note(TrafficEntry const& entry) {
+      longest_front = std::max(longest_front, entry.front);
+      longest_rear = std::max(longest_rear, entry.rear);
+      shortest_front = std::min(shortest_front, entry.front);
+      shortest_rear = std::min(shortest_rear, entry.rear);
+    }
+
+    [[nodiscard]] bool all_alike() const { return !(shortest_front < longest_front || shortest_rear < longest_rear); }
+  };
 
   /// The nearest so far: small enough to be handed over in registers.
   struct Nearest {
@@ -227,12 +250,14 @@ class TrafficIndex {
     return static_cast<std::size_t>(base - list.data()) + (base->position < position ? 1 : 0);
   }
 
+  /// Of the agents on the corridor the next ahead by reference point.
   template <class Query>
-  static void front_on_corridor(List list, bool is_object, map::LaneCorridor const& corridor, Query const& query,
-                                std::size_t start, Nearest& best) {
+  void front_on_corridor(map::LaneCorridor const& corridor, Query const& query, std::size_t start,
+                         Nearest& best) const {
+    auto const list = agents();
     auto const& pieces = corridor.pieces;
     for (std::size_t p = query.piece, i = start;;) {
-      while (i < list.size() && skips(query, list[i], is_object, list[i].position - pieces[p].index_offset - query.s))
+      while (i < list.size() && query.skips(list[i], list[i].position - pieces[p].index_offset - query.s))
         ++i;  // the asker's own, reached over from another lane
       if (i < list.size() && list[i].position <= pieces[p].end + 1.0 + pieces[p].index_offset) {
         double const s = list[i].position - pieces[p].index_offset;
@@ -245,12 +270,11 @@ class TrafficIndex {
   }
 
   template <class Query>
-  static void rear_on_corridor(List list, bool is_object, map::LaneCorridor const& corridor, Query const& query,
-                               std::size_t start, Nearest& best) {
+  void rear_on_corridor(map::LaneCorridor const& corridor, Query const& query, std::size_t start, Nearest& best) const {
+    auto const list = agents();
     auto const& pieces = corridor.pieces;
     for (std::size_t p = query.piece, i = start;;) {  // candidates lie before i
-      while (i > 0 && skips(query, list[i - 1], is_object, query.s - (list[i - 1].position - pieces[p].index_offset)))
-        --i;
+      while (i > 0 && query.skips(list[i - 1], query.s - (list[i - 1].position - pieces[p].index_offset))) --i;
       if (i > 0 && list[i - 1].position >= pieces[p].begin - 1.0 + pieces[p].index_offset) {
         auto const& entry = list[i - 1];
         double const s = entry.position - pieces[p].index_offset;
@@ -262,37 +286,44 @@ class TrafficIndex {
     }
   }
 
-  /// The nearest on the corridor also where somebody who is farther by reference point reaches nearer: looks on as far
-  /// as that can be.
+  /// Of those on the corridor who is nearest ahead, though another may be next by reference point: looks on as far as
+  /// anybody reaches back, `longest` [m] at most.
   template <class Query>
-  void front_in_crowd(map::LaneCorridor const& corridor, Query const& query, std::size_t start, Nearest& best) const {
-    if (!best.entry) return;
+  static void nearest_front(List list, bool is_object, double longest, map::LaneCorridor const& corridor,
+                            Query const& query, std::size_t start, Nearest& best) {
     auto const& pieces = corridor.pieces;
     double const own_front = query.s + query.front;
     for (std::size_t p = query.piece, i = start; p < pieces.size(); ++p) {
-      double const offset = pieces[p].index_offset;
-      if (p > query.piece) i = first_at(agents(), pieces[p].begin - 1.0 + offset);
-      for (; i < size_ && agents_[i].position <= pieces[p].end + 1.0 + offset; ++i) {
-        double const s = agents_[i].position - offset;
-        if (s - longest_rear_ - own_front >= best.gap || s - query.s > horizon) return;
-        if (!query.skips(agents_[i], s - query.s)) best.offer(agents_[i], s - agents_[i].rear - own_front);
+      double const offset = pieces[p].index_offset, from = pieces[p].begin - 1.0;
+      if (p > query.piece) {
+        if (from - longest - own_front >= best.gap || from - query.s > horizon) return;
+        i = first_at(list, from + offset);
+      }
+      for (; i < list.size() && list[i].position <= pieces[p].end + 1.0 + offset; ++i) {
+        double const s = list[i].position - offset;
+        if (s - longest - own_front >= best.gap || s - query.s > horizon) return;
+        if (!skips(query, list[i], is_object, s - query.s)) best.offer(list[i], s - list[i].rear - own_front);
       }
     }
   }
 
+  /// The same behind.
   template <class Query>
-  void rear_in_crowd(map::LaneCorridor const& corridor, Query const& query, std::size_t start, Nearest& best) const {
-    if (!best.entry) return;
+  static void nearest_rear(List list, bool is_object, double longest, map::LaneCorridor const& corridor,
+                           Query const& query, std::size_t start, Nearest& best) {
     auto const& pieces = corridor.pieces;
     double const own_rear = query.s - query.rear;
     for (std::size_t p = query.piece + std::size_t{1}, i = start; p-- > 0;) {  // candidates lie before i
-      double const offset = pieces[p].index_offset;
-      if (p < query.piece) i = upper(agents(), pieces[p].end + 1.0 + offset, std::numeric_limits<std::uint32_t>::max());
-      for (; i > 0 && agents_[i - 1].position >= pieces[p].begin - 1.0 + offset; --i) {
-        auto const& entry = agents_[i - 1];
+      double const offset = pieces[p].index_offset, to = pieces[p].end + 1.0;
+      if (p < query.piece) {
+        if (own_rear - (to + longest) >= best.gap || query.s - to > horizon) return;
+        i = upper(list, to + offset, std::numeric_limits<std::uint32_t>::max());
+      }
+      for (; i > 0 && list[i - 1].position >= pieces[p].begin - 1.0 + offset; --i) {
+        auto const& entry = list[i - 1];
         double const s = entry.position - offset;
-        if (own_rear - (s + longest_front_) >= best.gap || query.s - s > horizon) return;
-        if (!query.skips(entry, query.s - s)) best.offer(entry, own_rear - (s + entry.front));
+        if (own_rear - (s + longest) >= best.gap || query.s - s > horizon) return;
+        if (!skips(query, entry, is_object, query.s - s)) best.offer(entry, own_rear - (s + entry.front));
       }
     }
   }
@@ -303,11 +334,11 @@ class TrafficIndex {
   template <class Query>
   CAMBIUM_NOINLINE Nearest front_of_others(std::size_t start, map::LaneCorridor const& corridor, Query const& query,
                                            List objects, Nearest best) const {
-    if (crowded_) front_in_crowd(corridor, query, start, best);
+    if (crowded_ && best.entry) nearest_front(agents(), false, reach_.longest_rear, corridor, query, start, best);
     if (!objects.empty())
-      front_on_corridor(objects, true, corridor, query, upper(objects, key(corridor, query), 0), best);
+      nearest_front(objects, true, longest_object, corridor, query, upper(objects, key(corridor, query), 0), best);
     for (auto const& feeder : corridor.feeders) {
-      if (feeder.begin > query.s + std::min(horizon, best.gap + query.front + longest_rear_) && objects.empty())
+      if (feeder.begin > query.s + std::min(horizon, best.gap + query.front + reach_.longest_rear) && objects.empty())
         break;  // nobody there is closer
       if (feeder.begin > query.s + horizon) break;
       if (feeder.end < query.s || (!query.with_merging && feeder.is_still_to_merge())) continue;
@@ -321,12 +352,12 @@ class TrafficIndex {
   template <class Query>
   CAMBIUM_NOINLINE Nearest rear_of_others(std::size_t start, map::LaneCorridor const& corridor, Query const& query,
                                           List objects, Nearest best) const {
-    if (crowded_) rear_in_crowd(corridor, query, start, best);
+    if (crowded_ && best.entry) nearest_rear(agents(), false, reach_.longest_front, corridor, query, start, best);
     if (!objects.empty())
-      rear_on_corridor(objects, true, corridor, query, lower(objects, key(corridor, query), 0), best);
+      nearest_rear(objects, true, longest_object, corridor, query, lower(objects, key(corridor, query), 0), best);
     for (auto const& feeder : corridor.feeders) {
       if (feeder.begin > query.s) break;
-      if (feeder.end < query.s - std::min(horizon, best.gap + query.rear + longest_front_) && objects.empty())
+      if (feeder.end < query.s - std::min(horizon, best.gap + query.rear + reach_.longest_front) && objects.empty())
         continue;  // nobody there is closer
       if (feeder.end < query.s - horizon || (!query.with_merging && feeder.is_still_to_merge())) continue;
       rear_on_feeder(agents(), false, feeder, query, best);
@@ -337,7 +368,7 @@ class TrafficIndex {
 
   template <class Query>
   void front_on_feeder(List list, bool is_object, map::Feeder const& feeder, Query const& query, Nearest& best) const {
-    double const longest = is_object ? longest_object : longest_rear_;
+    double const longest = is_object ? longest_object : reach_.longest_rear;
     double const from = query.s <= feeder.begin ? feeder.index_begin : feeder.index_at(query.s);
     // Rounding of the mapping must not lose an entry: start early, then go on to the first that is ahead.
     for (auto i = first_at(list, from - 1e-6); i < list.size() && list[i].position <= feeder.index_end; ++i) {
@@ -356,7 +387,7 @@ class TrafficIndex {
 
   template <class Query>
   void rear_on_feeder(List list, bool is_object, map::Feeder const& feeder, Query const& query, Nearest& best) const {
-    double const longest = is_object ? longest_object : longest_front_;
+    double const longest = is_object ? longest_object : reach_.longest_front;
     double const to = query.s >= feeder.end ? feeder.index_end : feeder.index_at(query.s);
     for (auto i = upper(list, to + 1e-6, std::numeric_limits<std::uint32_t>::max());
          i > 0 && list[i - 1].position >= feeder.index_begin; --i) {
@@ -372,26 +403,27 @@ class TrafficIndex {
     }
   }
 
-  void note_longest(TrafficEntry const& entry) {
-    longest_front_ = std::max(longest_front_, entry.front);
-    longest_rear_ = std::max(longest_rear_, entry.rear);
-  }
-
   /// Whether an entry is the one in the agent's own lane, not in another that it reaches into.
   [[nodiscard]] bool is_own(std::size_t i) const { return rank_[agents_[i].slot] == i; }
 
-  /// Whether one of entry `i` and those beside it is farther by reference point than the other, but reaches nearer.
-  [[nodiscard]] bool hides(std::size_t i) const {
-    auto const& e = agents_[i];
-    auto const is_hidden = [](TrafficEntry const& behind, TrafficEntry const& ahead) {
+  /// Whether somebody may be farther by reference point than another, but reach nearer: then two who are next to each
+  /// other in the list are so, or one reaches over an end of its lane farther than the shortest would.
+  template <class LaneOf>
+  [[nodiscard]] bool anybody_hides(LaneOf const& lane_of) const {
+    auto const list = agents();
+    auto const hides = [](TrafficEntry const& behind, TrafficEntry const& ahead) {
       return ahead.position - ahead.rear < behind.position - behind.rear ||
-             behind.position + behind.front > ahead.position + ahead.front;
+             ahead.position + ahead.front < behind.position + behind.front;
     };
-    double const reach = std::max(longest_front_, longest_rear_);
-    for (auto j = i; j-- > 0 && e.position - agents_[j].position <= reach;)
-      if (is_hidden(agents_[j], e)) return true;
-    for (auto j = i + 1; j < size_ && agents_[j].position - e.position <= reach; ++j)
-      if (is_hidden(e, agents_[j])) return true;
+    if (std::adjacent_find(list.begin(), list.end(), hides) != list.end()) return true;
+    double const short_front = reach_.shortest_front, short_rear = reach_.shortest_rear;
+    if (reaching_.over_begin > short_rear || reaching_.over_end > short_front) return true;
+    for (std::size_t i = 0; i < size_; ++i) {
+      auto const& e = list[i];
+      if (!(e.front > short_front || e.rear > short_rear) || !is_own(i) || !has(e.slot)) continue;
+      auto const lane = lane_of(e.slot);
+      if (lane.begin - (e.position - e.rear) > short_rear || e.position + e.front - lane.end > short_front) return true;
+    }
     return false;
   }
 
@@ -408,9 +440,6 @@ class TrafficIndex {
       rank_[entry.slot] = static_cast<std::uint32_t>(i - 1 + left);
     }
     while (left-- > 0) agents_[left] = reaching[left];
-    crowded_ = reaching_.to_lane_end <= std::max(longest_front_, longest_rear_);  // whom it hides is in the next lane
-    if (reaching.empty()) return;
-    for (std::size_t i = 0; i < size_ && !crowded_; ++i) crowded_ = !is_own(i) && hides(i);
   }
 
   /// Insertion sort, linear when the order has hardly changed; gives up for a full sort where it has.
@@ -431,10 +460,10 @@ class TrafficIndex {
 
   std::vector<TrafficEntry> agents_;
   std::size_t size_ = 0;  ///< of that list, for which a vector has to divide
-  bool crowded_ = false;  ///< somebody who reaches over a border may hide another who reaches nearer, or be hidden
+  bool crowded_ = false;  ///< somebody may be farther by reference point than another, but reach nearer
   ReachingEntries reaching_;
   std::vector<std::uint32_t> rank_;
-  double longest_front_ = 0.0, longest_rear_ = 0.0;
+  Reach reach_;
 };
 
 }  // namespace cambium

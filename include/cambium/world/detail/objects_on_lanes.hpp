@@ -38,8 +38,8 @@ struct ObjectStretch {
     end = std::max(end, s);
   }
 
-  /// Adds its entries, where the lane's coordinate begins at `index`: in parts of at most 10 m, for of road users the
-  /// one counts whose middle is next.
+  /// Adds its entries, where the lane's coordinate begins at `index`: in parts of at most 10 m: each is ahead or
+  /// behind by its middle, and none may reach farther than those who look for it look on.
   void enter(double index, StaticObject const& object, std::uint32_t slot, std::vector<TrafficEntry>& entries) const {
     if (!(begin <= end)) return;
     int const parts = std::max(1, static_cast<int>(std::ceil((end - begin) / 10.0)));

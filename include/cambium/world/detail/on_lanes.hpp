@@ -157,7 +157,7 @@ template <class Agent, class Record>
 }
 
 inline void add_in(map::Lane const& lane, TrafficEntry const& entry, ReachingEntries& list) {
-  list.add(entry, lane.index_begin, lane.index_begin + lane.length());
+  list.add(entry, {lane.index_begin, lane.index_begin + lane.length()});
 }
 
 /// Adds an entry to the list for each drivable lane that the agent reaches into, whatever its own is.
@@ -249,7 +249,11 @@ void refresh_traffic(TrafficIndex& index, Map const& map, Roster const& roster, 
     if (!straddle(map, agent, record, entry, reaching)) entry.position = nowhere;
     return entry;
   };
-  index.refresh(frame.agents.size(), add);
+  index.refresh(frame.agents.size(), add, [&](std::uint32_t slot) {
+    auto const& at = frame.agents[slot].lane;
+    auto const& piece = roster.agents[slot].road->corridors[at.corridor].pieces[at.piece];
+    return LaneStretch{piece.begin + piece.index_offset, piece.end + piece.index_offset};
+  });
 }
 
 /// Brings the index of the plane up to date with the agents of a frame.
