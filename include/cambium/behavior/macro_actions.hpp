@@ -108,8 +108,7 @@ struct MacroActions {
         parameter("highest_speed", &P::highest_speed, "m/s", Range{0, 200}, "not exceeded by accelerating"),
         parameter("minimum_remaining", &P::minimum_remaining, "m", Range{0, 10'000},
                   "no change into a lane that ends, or begins to merge into its neighbour, sooner; longer vehicles "
-                  "need more, as "
-                  "in their course"),
+                  "need more, as in their course"),
         parameter("idm", &P::idm, "-", {}, "how gaps are kept"),
         parameter("course", &P::course, "-", {}, "how long a change takes"),
         parameter("tolerance", &P::tolerance, "m/s^2", Range{1e-12, 1},

@@ -11,7 +11,8 @@ namespace cambium {
 
 /// Follows the plan by the linear-quadratic regulators of its errors, across (offset and heading, by the steering) and
 /// along (lag and speed, by the acceleration), discrete in time, the one across for the speed that the step begins
-/// with. The weights are relative to those of the inputs.
+/// with, or 1 m/s where that is less: slower than that it comes to the path slowly. The weights are relative to those
+/// of the inputs.
 struct LqrExecution {
   double offset_weight = 1.0;
   double heading_weight = 1.0;

@@ -87,7 +87,8 @@ struct ProposalReport {
 /// Simulates IDM drivers at several speeds and offsets from the middle of its lane, closed loop, among others who
 /// behave as `Others`, scores them, and drives as the best: PDM-Closed (Dauner, Hallgarten, Geiger, Chitta 2023,
 /// "Parting with misconceptions about learning-based vehicle motion planning"). Brakes where that meets with an
-/// infraction too soon. `PredictionWorld` must have `IdmProposal` and `Others` in its behaviour set. Keeps its lane.
+/// infraction too soon. `PredictionWorld` must have `IdmProposal` and `Others` in its behaviour set. Keeps its lane; at
+/// its goal it drives on.
 template <class PredictionWorld, class Others = ConstantAcceleration>
 struct ProposalPlanner {
   static_assert(PredictionWorld::Behaviors::template contains<IdmProposal>,
