@@ -9,7 +9,6 @@
 
 #include "cambium/behavior/idm_classic.hpp"
 #include "cambium/execution/interpolate.hpp"
-#include "cambium/map/map_builder.hpp"
 #include "cambium/world/world.hpp"
 #include "support/allocations.hpp"
 #include "support/maps.hpp"
@@ -153,10 +152,7 @@ TEST_CASE("all courses are judged, cheapest first; the first valid one is driven
 }
 
 TEST_CASE("courses into a lane of oncoming traffic are not valid") {
-  map::MapBuilder builder;
-  map::SectionPlan const lanes{.left = map::equal_lanes(1), .right = map::equal_lanes(1)};
-  builder.add_road({.id = "1", .line = map::lay_from({}, {{600.0}}), .sections = {lanes}});
-  Sim world(builder.build());
+  Sim world(support::two_way_road(600.0));
   world.add({.position = {40, -1.75}, .speed = 12, .behavior = IdmClassic{}});
   Planner planner;
   planner.offsets = {0.0, 3.5};

@@ -8,7 +8,6 @@
 #include <string>
 
 #include "cambium/execution/interpolate.hpp"
-#include "cambium/map/map_builder.hpp"
 #include "cambium/world/world.hpp"
 #include "support/allocations.hpp"
 #include "support/maps.hpp"
@@ -144,10 +143,7 @@ TEST_CASE("at an offset that leads off the road a proposal scores nothing") {
 }
 
 TEST_CASE("an offset that leads into oncoming traffic's lane scores nothing") {
-  map::MapBuilder builder;
-  map::SectionPlan const lanes{.left = map::equal_lanes(1), .right = map::equal_lanes(1)};
-  builder.add_road({.id = "1", .line = map::lay_from({}, {{600.0}}), .sections = {lanes}});
-  Sim world(builder.build());
+  Sim world(support::two_way_road(600.0));
   world.add({.position = {40, -1.75}, .speed = 12, .behavior = IdmClassic{}});
   Planner planner;
   planner.offsets = {0.0, 3.5};

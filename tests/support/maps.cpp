@@ -21,6 +21,12 @@ std::shared_ptr<cambium::Map const> straight_road(int lanes, double length, doub
                  .sections = {{.right = cambium::map::equal_lanes(static_cast<std::size_t>(lanes))}}});
 }
 
+std::shared_ptr<cambium::Map const> two_way_road(double length) {
+  auto const lane = cambium::map::equal_lanes(1);
+  return map_of(
+      {.id = "1", .line = cambium::map::lay_from({}, {{length}}), .sections = {{.left = lane, .right = lane}}});
+}
+
 std::shared_ptr<cambium::Map const> own_map(std::string const& name) {
   return cambium::load_opendrive(CAMBIUM_SOURCE_DIR "/maps/" + name).map;
 }

@@ -17,6 +17,9 @@ namespace support {
 /// A road "1" from the origin along +x with `lanes` lanes of 3.5 m to the right of the reference line.
 std::shared_ptr<cambium::Map const> straight_road(int lanes = 2, double length = 1000.0, double curvature = 0.0);
 
+/// The same with one lane in each direction, the axis between them.
+std::shared_ptr<cambium::Map const> two_way_road(double length);
+
 /// The project's own map of that file name.
 std::shared_ptr<cambium::Map const> own_map(std::string const& name);
 
