@@ -56,10 +56,7 @@ TEST_CASE("nobody collides in dense traffic of rule-based drivers, and they do c
     Sim world(support::straight_road(3, 1500.0, seed % 3 == 0 ? 0.002 : 0.0), {.seed = seed});
     fill(world, 3, 5.0, 500.0, 1.0 + static_cast<double>(seed % 3), seed, [](double v) { return roomy(v); });
     for (int k = 0; k < 250; ++k) {
-      auto const before = lanes(world);
-      world.step(0.2);
-      auto const after = lanes(world);
-      for (std::size_t i = 0; i < world.size(); ++i) changes += before[i] != after[i];
+      changes += step_and_count_changes(world);
       CAPTURE(seed);
       CHECK(collisions(world) == 0);
     }
@@ -73,10 +70,7 @@ TEST_CASE("nor in slow traffic of cars, trucks and buses") {
     Sim world(support::straight_road(3, 1500.0, seed % 3 == 0 ? 0.002 : 0.0), {.seed = seed});
     fill_slow(world, 3, seed, [](bool is_long) { return roomy(is_long ? 20.0 : 30.0); });
     for (int k = 0; k < 450; ++k) {
-      auto const before = lanes(world);
-      world.step(0.2);
-      auto const after = lanes(world);
-      for (std::size_t i = 0; i < world.size(); ++i) changes += before[i] != after[i];
+      changes += step_and_count_changes(world);
       CAPTURE(seed);
       CHECK(collisions(world) == 0);
     }

@@ -122,4 +122,15 @@ std::vector<std::uint16_t> lanes(World const& world) {
   return result;
 }
 
+/// Steps; how many agents are in another lane than before.
+template <class World>
+int step_and_count_changes(World& world, double dt = 0.2) {
+  auto const before = lanes(world);
+  world.step(dt);
+  auto const after = lanes(world);
+  int changes = 0;
+  for (std::size_t i = 0; i < after.size(); ++i) changes += before[i] != after[i];
+  return changes;
+}
+
 }  // namespace lane_traffic

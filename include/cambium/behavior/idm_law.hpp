@@ -10,40 +10,46 @@
 
 namespace cambium::detail {
 
-/// A driver's car following; agrees with `idm_acceleration` but for rounding.
+/// A driver's car following at one speed [m/s]; agrees with `idm_acceleration` but for rounding.
 class IdmLaw {
  public:
   template <HasIdmParameters P>
-  explicit IdmLaw(P const& p) : terms_(p) {}
+  IdmLaw(P const& p, double speed) : IdmLaw(p, speed, p.desired_speed) {}
 
   template <HasIdmParameters P>
-  IdmLaw(P const& p, double desired_speed) : terms_(p, desired_speed) {}
+  IdmLaw(P const& p, double speed, double desired_speed)
+      : terms_(p, desired_speed),
+        speed_(speed),
+        rest_(1.0 - idm_power(speed * terms_.inverse_desired_speed, p.exponent)) {}
 
   /// [m/s^2], on a free road.
-  [[nodiscard]] double free(double speed) const {
-    return bounded(terms_.maximum * (1.0 - idm_power(speed * terms_.inverse_desired_speed, terms_.exponent)));
-  }
+  [[nodiscard]] double free() const { return bounded(terms_.maximum * rest_); }
 
   /// [m/s^2], behind a leader.
-  [[nodiscard]] double operator()(double speed, double gap, double leader_speed) const {
+  [[nodiscard]] double operator()(double gap, double leader_speed) const {
     if (!(gap > 0.0)) return terms_.low;
-    double const dynamic = speed * (terms_.headway + (speed - leader_speed) * terms_.closing);
+    double const dynamic = speed_ * (terms_.headway + (speed_ - leader_speed) * terms_.closing);
     double const closeness = (terms_.minimum_gap + std::max(0.0, dynamic)) / gap;
-    double const free = idm_power(speed * terms_.inverse_desired_speed, terms_.exponent);
-    return bounded(terms_.maximum * (1.0 - free - closeness * closeness));
+    return bounded(terms_.maximum * (rest_ - closeness * closeness));
   }
 
-  [[nodiscard]] double operator()(double speed, std::optional<Neighbor> const& leader) const {
-    return leader ? (*this)(speed, leader->gap, leader->speed) : free(speed);
+  [[nodiscard]] double operator()(std::optional<Neighbor> const& leader) const {
+    return leader ? (*this)(leader->gap, leader->speed) : free();
   }
 
+  [[nodiscard]] double speed() const { return speed_; }                    ///< [m/s]
   [[nodiscard]] double minimum_gap() const { return terms_.minimum_gap; }  ///< [m]
-  [[nodiscard]] IdmTerms<double> const& terms() const { return terms_; }
+
+  /// See `idm_motion`.
+  [[nodiscard]] LongitudinalMotion<double> motion(double gap, double leader_speed, double dt, double tolerance) const {
+    return idm_motion(terms_, speed_, gap, leader_speed, dt, tolerance);
+  }
 
  private:
   [[nodiscard]] double bounded(double a) const { return std::min(std::max(a, terms_.low), terms_.high); }
 
   IdmTerms<double> terms_;
+  double speed_, rest_;  ///< of the acceleration on a free road, as part of the maximum
 };
 
 /// What a driver follows: of all that is ahead what asks for the least acceleration.
@@ -52,8 +58,8 @@ struct Restriction {
   double speed{};                                        ///< of the leader [m/s]
   double acceleration{};                                 ///< that IDM answers with [m/s^2]
 
-  void add(IdmLaw const& law, double own_speed, double to_gap, double leader_speed) {
-    double const a = law(own_speed, to_gap, leader_speed);
+  void add(IdmLaw const& law, double to_gap, double leader_speed) {
+    double const a = law(to_gap, leader_speed);
     if (a < acceleration || (a == acceleration && to_gap < gap)) *this = {to_gap, leader_speed, a};
   }
 };

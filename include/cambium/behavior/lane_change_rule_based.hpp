@@ -80,8 +80,7 @@ struct LaneChangeRuleBased {
       double const ahead = urge > 0.0 ? std::numeric_limits<double>::infinity() : space_ahead(option.front);
       if (!(ahead > best)) continue;
       option.rear = view.rear(option.place);
-      if (!space(view, option) || !changing.is_safe(view, now.law, now.speed, option, changing.safe_deceleration))
-        continue;
+      if (!space(view, option) || !changing.is_safe(view, now.law, option, changing.safe_deceleration)) continue;
       best = ahead;
       target = side;
     }

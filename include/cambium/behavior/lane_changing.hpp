@@ -86,7 +86,7 @@ struct LaneChanging {
   [[nodiscard]] Plan<View> drive(View const& view, Memory& memory, IdmParameters const& idm, double tolerance,
                                  double dt, Choose const& choose) const {
     double const speed = std::max(0.0, view.state().speed);
-    detail::IdmLaw const law(idm);
+    detail::IdmLaw const law(idm, speed);
     auto const leader = view.front();
     auto const home = view.lane_position().corridor;
     memory.rest = std::max(0.0f, memory.rest - static_cast<float>(dt));
@@ -95,45 +95,43 @@ struct LaneChanging {
         way_to_stop(view, view.lane_position()) < idm.minimum_gap + 1)
       memory.change = {};  // it must leave this lane, too: no way is left to come to its middle before
     if (memory.change.active()) {
-      if (memory.change.target != home && !may_go_on(view, law, speed, memory.change)) abort(view, speed, memory);
-      auto const ahead = ahead_while_changing(view, law, speed, leader, memory.change);
-      return plan_lane_change(view, memory.change,
-                              detail::idm_motion(law.terms(), speed, ahead.gap, ahead.speed, dt, tolerance), dt);
+      if (memory.change.target != home && !may_go_on(view, law, memory.change)) abort(view, speed, memory);
+      auto const ahead = ahead_while_changing(view, law, leader, memory.change);
+      return plan_lane_change(view, memory.change, law.motion(ahead.gap, ahead.speed, dt, tolerance), dt);
     }
     double const end = lane_end(view, home, view.lane_position().piece);
-    auto ahead = ahead_in_lane(view, law, speed, leader);
+    auto ahead = ahead_in_lane(view, law, leader);
     bool const may_change = memory.rest == 0.0f;
     auto const target = choose(LaneKeeping<View>{view, law, speed, leader, end, may_change, ahead});
     if (may_change && target != map::no_corridor && is_wide_enough(view, target, 0.5 * speed * course.duration)) {
       memory.change = course.begin(target, view.shape(), speed, room(view, leader, target));
       memory.rest = static_cast<float>(rest + course.duration);
-      ahead = ahead_while_changing(view, law, speed, leader, memory.change);
+      ahead = ahead_while_changing(view, law, leader, memory.change);
     }
-    return plan_lane_change(view, memory.change,
-                            detail::idm_motion(law.terms(), speed, ahead.gap, ahead.speed, dt, tolerance), dt);
+    return plan_lane_change(view, memory.change, law.motion(ahead.gap, ahead.speed, dt, tolerance), dt);
   }
 
   /// How a follower drives, as this driver assumes it.
   [[nodiscard]] detail::IdmLaw law_of(Neighbor const& who) const {
     auto const& assumed = who.length > truck_length ? trucks : others;
-    return detail::IdmLaw(assumed, std::max(assumed.desired_speed, who.speed));
+    return detail::IdmLaw(assumed, std::max(0.0, who.speed), std::max(assumed.desired_speed, who.speed));
   }
 
   /// Acceleration of a follower as this driver assumes it [m/s^2]. Objects stand: they neither gain nor lose.
   [[nodiscard]] double follower(std::optional<Neighbor> const& who, double gap, double leader_speed) const {
-    return who && is_valid(who->agent) ? law_of(*who)(std::max(0.0, who->speed), gap, leader_speed) : 0.0;
+    return who && is_valid(who->agent) ? law_of(*who)(gap, leader_speed) : 0.0;
   }
 
   /// Whether nobody has to brake harder than `deceleration` [m/s^2], gaps are left, and nobody comes into the same gap
   /// from the lane beyond for whom that would not hold.
   template <class View>
-  [[nodiscard]] bool is_safe(View const& view, detail::IdmLaw const& law, double speed, LaneOption const& option,
+  [[nodiscard]] bool is_safe(View const& view, detail::IdmLaw const& law, LaneOption const& option,
                              double deceleration) const {
     auto const front_is_safe = [&](Neighbor const& n) {
-      return n.gap > safe_gap && law(speed, n.gap, n.speed) >= -deceleration;
+      return n.gap > safe_gap && law(n.gap, n.speed) >= -deceleration;
     };
     auto const rear_is_safe = [&](Neighbor const& n) {
-      return n.gap > safe_gap && follower(n, n.gap, speed) >= -deceleration;
+      return n.gap > safe_gap && follower(n, n.gap, law.speed()) >= -deceleration;
     };
     if (option.front && !front_is_safe(*option.front)) return false;
     if (option.rear && !rear_is_safe(*option.rear)) return false;
@@ -185,15 +183,14 @@ struct LaneChanging {
   }
 
   template <class View>
-  [[nodiscard]] bool may_go_on(View const& view, detail::IdmLaw const& law, double speed,
-                               LaneChange const& change) const {
+  [[nodiscard]] bool may_go_on(View const& view, detail::IdmLaw const& law, LaneChange const& change) const {
     auto const& at = view.lane_position();
     auto const& piece = view.corridor().pieces[at.piece];
     LaneOption option{view.beside(change.target), change.target == piece.left, {}, {}};
     if (!option.left && change.target != piece.right) return true;  // no longer beside: it has merged
     option.front = view.front(option.place);
     option.rear = view.rear(option.place);
-    return is_safe(view, law, speed, option, abort_deceleration);
+    return is_safe(view, law, option, abort_deceleration);
   }
 
   /// Turns back, if that is still possible. How long it then rests is drawn: who has met somebody in the same gap does
@@ -241,31 +238,30 @@ struct LaneChanging {
   }
 
   /// Adds a leader in a lane that the vehicle stays in: before an object it leaves room to change.
-  void add_leader(detail::Restriction& ahead, detail::IdmLaw const& law, geometry::Shape const& shape, double speed,
+  void add_leader(detail::Restriction& ahead, detail::IdmLaw const& law, geometry::Shape const& shape,
                   std::optional<Neighbor> const& leader, bool has_side) const {
     if (!leader) return;
     double const room = is_object(*leader) && has_side ? out_of_lane * course.least_length(shape) : 0.0;
-    ahead.add(law, speed, leader->gap - room, leader->speed);
+    ahead.add(law, leader->gap - room, leader->speed);
   }
 
-  static void add_stop(detail::Restriction& ahead, detail::IdmLaw const& law, double speed, double way) {
-    if (way < infinite) ahead.add(law, speed, way, 0.0);
+  static void add_stop(detail::Restriction& ahead, detail::IdmLaw const& law, double way) {
+    if (way < infinite) ahead.add(law, way, 0.0);
   }
 
   template <class View>
-  [[nodiscard]] detail::Restriction ahead_in_lane(View const& view, detail::IdmLaw const& law, double speed,
+  [[nodiscard]] detail::Restriction ahead_in_lane(View const& view, detail::IdmLaw const& law,
                                                   std::optional<Neighbor> const& leader) const {
     auto const& at = view.lane_position();
     auto const& piece = view.corridor().pieces[at.piece];
-    detail::Restriction ahead{infinite, 0.0, law.free(speed)};
-    add_leader(ahead, law, view.shape(), speed, leader,
-               piece.left != map::no_corridor || piece.right != map::no_corridor);
-    add_stop(ahead, law, speed, way_to_stop(view, at));
+    detail::Restriction ahead{infinite, 0.0, law.free()};
+    add_leader(ahead, law, view.shape(), leader, piece.left != map::no_corridor || piece.right != map::no_corridor);
+    add_stop(ahead, law, way_to_stop(view, at));
     return ahead;
   }
 
   template <class View>
-  [[nodiscard]] detail::Restriction ahead_while_changing(View const& view, detail::IdmLaw const& law, double speed,
+  [[nodiscard]] detail::Restriction ahead_while_changing(View const& view, detail::IdmLaw const& law,
                                                          std::optional<Neighbor> const& leader,
                                                          LaneChange const& change) const {
     auto const& at = view.lane_position();
@@ -275,10 +271,10 @@ struct LaneChanging {
     auto const is_passed = [&](Neighbor const& n, double until) {  // the course leads around it
       return n.speed < 0.5 && n.gap > until;
     };
-    detail::Restriction ahead{infinite, 0.0, law.free(speed)};
+    detail::Restriction ahead{infinite, 0.0, law.free()};
     if (change.target == at.corridor) {
-      add_leader(ahead, law, view.shape(), speed, leader, true);
-      add_stop(ahead, law, speed, way_to_stop(view, at));
+      add_leader(ahead, law, view.shape(), leader, true);
+      add_stop(ahead, law, way_to_stop(view, at));
       // While it reaches over the border, the leader there counts, too.
       auto const sides = corridor.widths_at(at.s, at.segment);
       auto const beside = at.lateral + view.shape().left > sides.left     ? piece.left
@@ -287,16 +283,16 @@ struct LaneChanging {
       if (beside == map::no_corridor) return ahead;
       auto const other = view.front(view.beside(beside));
       if (other && other->gap > 0.0 && !is_passed(*other, left - 0.5 * course.least_length(view.shape())))
-        ahead.add(law, speed, other->gap, other->speed);
+        ahead.add(law, other->gap, other->speed);
       return ahead;
     }
-    if (leader && !is_passed(*leader, left - around)) ahead.add(law, speed, leader->gap, leader->speed);
+    if (leader && !is_passed(*leader, left - around)) ahead.add(law, leader->gap, leader->speed);
     double const until_end = dead_end(view, at.corridor, at.piece) - at.s;
-    if (until_end < 0.6 * left) ahead.add(law, speed, until_end - view.shape().front, 0.0);
+    if (until_end < 0.6 * left) ahead.add(law, until_end - view.shape().front, 0.0);
     auto const there = view.beside(change.target);
-    add_leader(ahead, law, view.shape(), speed, view.front(there), true);
+    add_leader(ahead, law, view.shape(), view.front(there), true);
     // Into the lane beside it may go on, even if that ends soon.
-    add_stop(ahead, law, speed, std::max(way_to_stop(view, there), 0.6 * left + law.minimum_gap() + 1.0));
+    add_stop(ahead, law, std::max(way_to_stop(view, there), 0.6 * left + law.minimum_gap() + 1.0));
     return ahead;
   }
 };

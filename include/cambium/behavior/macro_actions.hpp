@@ -179,14 +179,14 @@ struct MacroActions {
                                                   double speed, double dt) const {
     auto const wanted = ConstantAcceleration{action.acceleration, highest_speed}.motion(speed, dt);
     if (action.kind != Kind::keep_gap && !action.keeps_gap) return wanted;
-    detail::IdmLaw const law(idm);
-    detail::Restriction ahead{std::numeric_limits<double>::infinity(), 0.0, law.free(speed)};
+    detail::IdmLaw const law(idm, speed);
+    detail::Restriction ahead{std::numeric_limits<double>::infinity(), 0.0, law.free()};
     auto const heed = [&](std::optional<Neighbor> const& leader) {
-      if (leader) ahead.add(law, speed, leader->gap, leader->speed);
+      if (leader) ahead.add(law, leader->gap, leader->speed);
     };
     heed(view.front());
     if (change.active() && change.target != view.lane_position().corridor) heed(view.front(view.beside(change.target)));
-    auto const allowed = detail::idm_motion(law.terms(), speed, ahead.gap, ahead.speed, dt, tolerance);
+    auto const allowed = law.motion(ahead.gap, ahead.speed, dt, tolerance);
     return action.kind == Kind::keep_gap || allowed.speed < wanted.speed ? allowed : wanted;
   }
 };

@@ -122,7 +122,7 @@ struct BasicMobil {
     double const others =
         politeness * (situation.old_follower_after - situation.old_follower) - situation.own - threshold;
     bool const goes_on = now.lane_end == free_road, is_prejudged = politeness >= 0.0 && !keep_right;
-    if (is_prejudged && goes_on && others + std::abs(bias) + now.law.free(now.speed) <= 0.0) return map::no_corridor;
+    if (is_prejudged && goes_on && others + std::abs(bias) + now.law.free() <= 0.0) return map::no_corridor;
     auto const urgency = goes_on ? LaneUrgency{} : lane_urgency(view, route_horizon);
     bool const inner_is_left = !keeps_left(view, piece.lane);
     double best = 0.0;
@@ -139,11 +139,11 @@ struct BasicMobil {
       double const pull = (inwards ? -bias : bias) + route_bias * urge;
       option.front = view.front(option.place);
       if (urge > 0.0 && !goes_on) adapt_to(now, option.front);
-      situation.own_after = now.law(now.speed, option.front);
+      situation.own_after = now.law(option.front);
       if (is_prejudged && others + situation.own_after + pull <= best) continue;
       option.rear = view.rear(option.place);
       double const worth = worth_of(now, situation, option, inwards) + pull;
-      if (!(worth > best) || !changing.is_safe(view, now.law, now.speed, option, changing.safe_deceleration) ||
+      if (!(worth > best) || !changing.is_safe(view, now.law, option, changing.safe_deceleration) ||
           !filters(view, option))
         continue;
       best = worth;
@@ -157,8 +157,7 @@ struct BasicMobil {
   template <class View>
   void adapt_to(LaneKeeping<View> const& now, std::optional<Neighbor> const& front) const {
     if (front && front->gap > 0.0 && front->speed < now.speed)
-      now.ahead.add(now.law, now.speed, std::max(front->gap, idm.minimum_gap + now.speed * idm.time_headway),
-                    front->speed);
+      now.ahead.add(now.law, std::max(front->gap, idm.minimum_gap + now.speed * idm.time_headway), front->speed);
   }
 
   /// Acceleration of a follower behind this vehicle, and behind `front`, who is next without it.
@@ -168,10 +167,9 @@ struct BasicMobil {
                                                          std::optional<Neighbor> const& front) const {
     if (!rear || !is_valid(rear->agent)) return {0.0, 0.0};
     auto const law = changing.law_of(*rear);
-    double const speed = std::max(0.0, rear->speed);
-    double const behind = law(speed, rear->gap, now.speed);
-    if (!front) return {behind, law.free(speed)};
-    return {behind, law(speed, rear->gap + now.view.shape().length() + front->gap, front->speed)};
+    double const behind = law(rear->gap, now.speed);
+    if (!front) return {behind, law.free()};
+    return {behind, law(rear->gap + now.view.shape().length() + front->gap, front->speed)};
   }
 
   template <class View>

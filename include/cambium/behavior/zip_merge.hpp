@@ -58,22 +58,21 @@ struct ZipMerge {
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
     double const speed = std::max(0.0, view.state().speed);
     wait(memory, speed, dt);
-    detail::IdmLaw const law(idm);
-    detail::Restriction ahead{infinite, 0.0, law.free(speed)};
+    detail::IdmLaw const law(idm, speed);
+    detail::Restriction ahead{infinite, 0.0, law.free()};
     double const merge = next_merge(view);
     auto const leader = merge < infinite ? view.front_in_lane() : view.front();
-    if (leader) ahead.add(law, speed, leader->gap, leader->speed);
+    if (leader) ahead.add(law, leader->gap, leader->speed);
     if (merge < infinite) {
       if (auto const other = let_in(view, memory, leader, merge)) {
         double const front = view.lane_position().s + view.shape().front;
         double const gap = gap_to_open(merge - front, other->s - other->rear - front, speed, other->speed);
-        ahead.add(law, speed, gap, other->speed);
+        ahead.add(law, gap, other->speed);
       }
     } else if (leader) {
       memory.ahead = leader->agent;
     }
-    return plan_to_center(view, memory.bend,
-                          detail::idm_motion(law.terms(), speed, ahead.gap, ahead.speed, dt, tolerance), dt);
+    return plan_to_center(view, memory.bend, law.motion(ahead.gap, ahead.speed, dt, tolerance), dt);
   }
 
  private:
