@@ -8,6 +8,8 @@
 #include <string>
 
 #include "cambium/execution/interpolate.hpp"
+#include "cambium/map/curve_layout.hpp"
+#include "cambium/map/road_plan.hpp"
 #include "cambium/world/world.hpp"
 #include "support/allocations.hpp"
 #include "support/maps.hpp"
@@ -57,6 +59,31 @@ TEST_CASE("it follows a slower leader, and stands behind one that stands") {
     CHECK(world.state(ego).speed == doctest::Approx(slow).epsilon(0.05).scale(1.0));
     CHECK(world.state(AgentId{1}).x - world.state(ego).x < 60.0);
     CHECK(std::abs(world.state(ego).y + 5.25) < 0.1);
+  }
+}
+
+TEST_CASE("it brakes in time for a bend, whatever the score has to say") {
+  auto const map = support::map_of({.id = "1",
+                                    .line = map::lay_from({}, {{150.0}, {30.0, 0.05, 0.05}, {150.0}}),
+                                    .sections = {{.right = map::equal_lanes(1)}}});
+  for (double const comfortable : {2.5, 50.0}) {
+    Planner planner;
+    planner.driver.lateral_acceleration = comfortable;
+    planner.scoring.comfort = 0.0;
+    Sim world(map);
+    world.add({.position = {20, -1.75}, .speed = 14, .behavior = planner});
+    double across = 0.0, hardest = 0.0;
+    for (int i = 0; i < 120; ++i) {
+      auto const before = world.state(ego);
+      drive(world, 1);
+      auto const& now = world.state(ego);
+      across = std::max(across, std::abs(geometry::angle_difference(now.heading, before.heading)) / 0.2 * now.speed);
+      hardest = std::max(hardest, (before.speed - now.speed) / 0.2);
+    }
+    CAPTURE(comfortable);
+    CHECK((across < 3.0) == (comfortable == 2.5));
+    CHECK(hardest < 3.0);
+    CHECK(world.state(ego).y > 20.0);
   }
 }
 

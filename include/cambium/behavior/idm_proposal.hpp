@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "cambium/behavior/behavior_model.hpp"
+#include "cambium/behavior/bends_ahead.hpp"
 #include "cambium/behavior/idm_classic.hpp"
 #include "cambium/behavior/lane_change.hpp"
 #include "cambium/behavior/lane_reach.hpp"
@@ -12,7 +13,7 @@ namespace cambium {
 
 /// Follows the next vehicle in its way by IDM, at a share of its desired speed and an offset from the middle of its
 /// lane: both are its memory, to be set from outside, as a planner does that tries several (see `ProposalPlanner`).
-/// Passes who is in its lane but leaves it room.
+/// Passes who is in its lane but leaves it room; brakes in time for bends.
 struct IdmProposal {
   struct Memory {
     float speed_share = 1.0f;  ///< of the driver's desired speed
@@ -27,17 +28,19 @@ struct IdmProposal {
 
   IdmClassic driver{};
   double clearance = 0.2;
+  double lateral_acceleration = 2.5;
 
   static constexpr char const* name = "idm_proposal";
   static constexpr char const* summary =
       "as idm_classic, at a share of the desired speed and an offset from the lane's middle that a planner sets; "
-      "passes "
-      "who leaves room beside";
+      "passes who leaves room beside; brakes for bends";
   static constexpr char const* source = "Treiber 2000; after Dauner et al. 2023";
   static constexpr auto parameters() {
     return std::make_tuple(
         parameter("driver", &IdmProposal::driver, "-", {}, "its car following; integration is exact"),
-        parameter("clearance", &IdmProposal::clearance, "m", Range{0, 5}, "to each side of those that it passes"));
+        parameter("clearance", &IdmProposal::clearance, "m", Range{0, 5}, "to each side of those that it passes"),
+        parameter("lateral_acceleration", &IdmProposal::lateral_acceleration, "m/s^2", Range{0.1, 50},
+                  "in bends of its lane, at most"));
   }
 
   template <class View>
@@ -47,7 +50,10 @@ struct IdmProposal {
     p.desired_speed = std::max(0.1, static_cast<double>(memory.speed_share) * p.desired_speed);
     auto const leader = leader_to_follow(driver.rules, view, detail::next_in_way(view, offset, clearance),
                                          [&](Leader const& l) { return idm_acceleration(p, speed, l.gap, l.speed); });
-    auto const motion = idm_motion(p, speed, leader.gap, leader.speed, dt, driver.tolerance);
+    auto motion = idm_motion(p, speed, leader.gap, leader.speed, dt, driver.tolerance);
+    auto const bends = bends_ahead(view.corridor(), view.lane_position().s, speed, p.desired_speed,
+                                   lateral_acceleration, p.comfortable_deceleration, -p.lowest_acceleration, dt);
+    if (bends.bound.distance < motion.distance) motion = bends.bound;
     return plan_to_center(view, memory.bend, motion, dt, offset);
   }
 };
