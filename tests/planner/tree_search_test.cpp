@@ -274,6 +274,30 @@ TEST_CASE("all that a tree reserves stays within its memory") {
   }
 }
 
+TEST_CASE("so does one that is kept from move to move") {
+  for (std::size_t const memory : {std::size_t{1} << 16, std::size_t{1} << 20}) {
+    CAPTURE(memory);
+    TicTacToe const game;
+    TreeSearch<TicTacToe> search(game, {.horizon = 9, .memory = memory}, {}, {}, {50'000});
+    TicTacToe::State state;
+    auto const before = support::allocated_bytes();
+    std::size_t kept = 0;
+    for (std::size_t move = 0; move < 3; ++move) {
+      auto const& result = search.run(state, move);
+      kept += result.kept_nodes;
+      if (memory < 100'000) CHECK(result.is_full);
+      std::array<int, 2> joint{-1, -1};
+      joint[move % 2] = result.choice(move % 2).action;
+      std::array<AgentOutcome, 2> outcomes{};
+      RandomStream random(0, 0, 0);
+      (void)game.step(state, joint, random, outcomes);
+      REQUIRE(search.keep(joint));
+    }
+    CHECK(kept > 10);
+    CHECK(support::allocated_bytes() - before <= memory + 4096);
+  }
+}
+
 TEST_CASE("warm searches with kept trees allocate nothing") {
   TicTacToe const game;
   TreeSearch<TicTacToe> search(game, {.horizon = 9}, {}, {}, {2000});
