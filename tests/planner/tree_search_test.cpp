@@ -173,6 +173,38 @@ TEST_CASE("a tree that may not grow is searched on") {
   CHECK_FALSE(large.result().is_full);
 }
 
+namespace {
+
+/// As `IterationBudget`, with little room at first.
+struct GrowingBudget : IterationBudget {
+  std::size_t expected() const { return 2; }
+  GrowingBudget part(std::size_t i, std::size_t n) const { return {IterationBudget::part(i, n)}; }
+};
+
+}  // namespace
+
+TEST_CASE("a tree that grows as it must is the one that had room from the start") {
+  Crossing const game{2};
+  TreeSearch<Crossing> ready(game, {.horizon = 12}, {}, {}, {5000});
+  TreeSearch<Crossing, Ucb1, RandomRollout, GrowingBudget> growing(game, {.horizon = 12}, {}, {}, {{5000}});
+  for (std::uint64_t seed = 1; seed < 4; ++seed) {
+    auto const &a = ready.run({}, seed), &b = growing.run({}, seed);
+    CHECK(a.nodes == b.nodes);
+    CHECK(a.depths == b.depths);
+    for (std::size_t i = 0; i < a.of(0).size(); ++i) {
+      CHECK(a.of(0)[i].visits == b.of(0)[i].visits);
+      CHECK(a.of(0)[i].mean_return == b.of(0)[i].mean_return);
+    }
+  }
+}
+
+TEST_CASE("a search that is given little time does not spend it on room for a million nodes") {
+  auto const before = support::allocated_bytes();
+  TreeSearch<TicTacToe, Ucb1, RandomRollout, TimeBudget> search({}, {.horizon = 9}, {}, {}, {.duration = 1e-6});
+  CHECK(search.run({}, 1).iterations == 64);
+  CHECK(support::allocated_bytes() - before < 1'000'000);
+}
+
 TEST_CASE("a tree has its root with all arms, however little memory it is given") {
   for (std::size_t memory = 4096; memory < 9000; memory += 64) {
     TreeSearch<TicTacToe> search({}, {.horizon = 9, .memory = memory}, {}, {}, {300});

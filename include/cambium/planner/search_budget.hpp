@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <concepts>
 #include <cstddef>
@@ -19,7 +20,8 @@ namespace detail {
 }  // namespace detail
 
 /// How long a search goes on: `most()`, the iterations that it never exceeds; `start()`; `goes_on(done)`, whether there
-/// is to be another one after `done`; `part(i, n)`: what the `i`th of `n` searches that share it gets.
+/// is to be another one after `done`; `part(i, n)`: what the `i`th of `n` searches that share it gets. It may have
+/// `expected()`, how many to make room for from the start: for `most()`, where it does not.
 template <class B>
 concept SearchBudget = std::copyable<B> && requires(B budget, B const fixed, std::size_t done) {
   { fixed.most() } -> std::same_as<std::size_t>;
@@ -47,7 +49,7 @@ struct IterationBudget {
 static_assert(SearchBudget<IterationBudget>);
 
 /// So much time of the wall clock, looked at every 64 iterations, so that there are 64 at least: results depend on the
-/// machine and its load. The first search makes room for `iterations` nodes, within the time.
+/// machine and its load. Trees grow as they must: a search allocates where none before it came as far.
 struct TimeBudget {
   double duration = 0.01;
   std::size_t iterations = 1'000'000;
@@ -61,6 +63,7 @@ struct TimeBudget {
   }
 
   [[nodiscard]] std::size_t most() const { return iterations; }
+  [[nodiscard]] std::size_t expected() const { return std::min<std::size_t>(iterations, 512); }
   [[nodiscard]] TimeBudget part(std::size_t i, std::size_t n) const {
     return {duration, detail::part_of(iterations, i, n)};
   }

@@ -153,8 +153,12 @@ class TreeSearch {
       more_outcomes_.set(parameters_.outcome_widening, budget_.most());
     auto const kept = tree_.size();
     auto const most = std::min<std::size_t>(budget_.most(), detail::no_node);
-    typename Tree::Limits const limits{agents, most + 1 + kept, parameters_.memory, arms_per_node(agents),
-                                       resimulates ? 0 : sizeof(State) + heap_bytes(root)};
+    typename Tree::Limits limits{.agents = agents,
+                                 .nodes = most + 1 + kept,
+                                 .bytes = parameters_.memory,
+                                 .arms_per_node = arms_per_node(agents),
+                                 .state_bytes = resimulates ? 0 : sizeof(State) + heap_bytes(root)};
+    if constexpr (requires { budget_.expected(); }) limits.first_nodes = budget_.expected() + 1 + kept;
     if (builds_on) {
       tree_.reserve(limits);
       tree_.state(0) = root;

@@ -32,8 +32,9 @@ class SearchTree {
   /// How large a tree may become.
   struct Limits {
     std::size_t agents = 1, nodes = 1, bytes = 0;
-    std::size_t arms_per_node = 1;  ///< about as many as there will be
-    std::size_t state_bytes = 0;    ///< of one node; 0: nodes have no states
+    std::size_t first_nodes = nodes;  ///< room for so many is made from the start
+    std::size_t arms_per_node = 1;    ///< about as many as there will be
+    std::size_t state_bytes = 0;      ///< of one node; 0: nodes have no states
   };
 
   /// Forgets all nodes.
@@ -59,15 +60,7 @@ class SearchTree {
     auto const with_arms = node_bytes() + std::min(limits.arms_per_node * sizeof(Arm), node_bytes());
     most = std::max<std::size_t>(1, std::min({most, limits.bytes / with_arms, std::size_t{no_node - 1}}));
     most_arms_ = (limits.bytes - std::min(limits.bytes, most * node_bytes())) / sizeof(Arm);
-    nodes_.reserve(most);
-    grow(joints_, most * agents_);
-    grow(outcomes_, most * agents_);
-    grow(blocks_, most * agents_);
-    if (stores_states()) states_.reserve(most);
-    arms_.reserve(std::min(most * limits.arms_per_node, most_arms_));
-    std::size_t entries = 16;
-    while (entries < 2 * most) entries *= 2;
-    if (table_.size() < entries) rehash(entries);
+    make_room(std::clamp<std::size_t>(limits.first_nodes, 1, most));
   }
 
   [[nodiscard]] std::size_t agents() const { return agents_; }
@@ -108,6 +101,7 @@ class SearchTree {
   std::uint32_t add(std::uint32_t parent, std::span<std::uint16_t const> joint, std::span<AgentOutcome const> outcomes,
                     bool terminal, State const& state) {
     auto const n = static_cast<std::uint32_t>(nodes_.size());
+    if (n == room_) make_room(std::min(2 * room_, limits_.nodes));
     nodes_.push_back({parent, no_node, 0, 1, terminal});
     std::copy(joint.begin(), joint.end(), joints_.begin() + static_cast<std::ptrdiff_t>(n * agents_));
     std::copy(outcomes.begin(), outcomes.end(), outcomes_.begin() + static_cast<std::ptrdiff_t>(n * agents_));
@@ -198,6 +192,20 @@ class SearchTree {
     table_[at] = {n, epoch_};
   }
 
+  /// For `nodes` nodes and their arms.
+  void make_room(std::size_t nodes) {
+    room_ = nodes;
+    nodes_.reserve(nodes);
+    grow(joints_, nodes * agents_);
+    grow(outcomes_, nodes * agents_);
+    grow(blocks_, nodes * agents_);
+    if (stores_states()) states_.reserve(nodes);
+    arms_.reserve(std::min(nodes * limits_.arms_per_node, most_arms_));
+    std::size_t entries = 16;
+    while (entries < 2 * nodes) entries *= 2;
+    if (table_.size() < entries) rehash(entries);
+  }
+
   /// To `size`, and no more.
   template <class T>
   static void grow(std::vector<T>& list, std::size_t size) {
@@ -253,7 +261,7 @@ class SearchTree {
   }
 
   Limits limits_;
-  std::size_t agents_ = 1, most_arms_ = 0;
+  std::size_t agents_ = 1, room_ = 0, most_arms_ = 0;
   std::uint32_t epoch_ = 0;
   std::vector<Node> nodes_;
   std::vector<std::uint16_t> joints_;  ///< by node and agent, as the next two
