@@ -69,33 +69,45 @@ struct Site {
   return exits;
 }
 
+/// How far traffic from the site's lanes goes straight on [m]: to where the first of them is merged into, or ends.
+[[nodiscard]] inline double usable_length(Site const& site) {
+  double length = site.length;
+  for (auto const id : site.lanes) {
+    auto const road = cambium::map::build_road_corridor(*site.map, cambium::map::straight_route(*site.map, id));
+    for (auto const& corridor : road->corridors)
+      for (auto const& feeder : corridor.feeders)
+        if (feeder.is_still_to_merge()) length = std::min(length, feeder.free_until);
+    length = std::min(length, road->corridors[road->main].pieces[0].lane_end);
+  }
+  return length;
+}
+
 /// Finds where a road of several lanes begins, at an edge of the map if there is one; of those the one with the most
-/// lanes, of these the longest. Throws `MapError` where there
-/// is none.
+/// lanes, of these the longest. Throws `MapError` where there is none.
 [[nodiscard]] inline Site find_site(std::shared_ptr<cambium::Map const> map, std::string const& file) {
-  Site best;
+  constexpr double shortest = 150.0;
+  std::vector<Site> sites;
   for (auto const& lane : map->lanes()) {
     if (!lane.drivable() || lane.length() < 50.0) continue;
     Site site{map, lanes_beside(*map, lane.id), {}, 1e9};
     for (auto const id : site.lanes) site.length = std::min(site.length, cambium::map::straight_route(*map, id).length);
+    if (site.lanes.size() >= 2 && site.lanes[0] == lane.id && site.length >= shortest) sites.push_back(std::move(site));
+  }
+  std::stable_sort(sites.begin(), sites.end(), [&](Site const& a, Site const& b) {
     auto const rank = [&](Site const& s) {
-      bool const begins_map = !s.lanes.empty() && map->lane(s.lanes[0]).predecessors.empty();
-      return std::tuple(begins_map, s.lanes.size(), s.length);
+      return std::tuple(map->lane(s.lanes[0]).predecessors.empty(), s.lanes.size(), s.length);
     };
-    if (site.lanes.size() >= 2 && site.length >= 150.0 && rank(site) > rank(best)) best = std::move(site);
+    return rank(a) > rank(b);
+  });
+  for (auto& site : sites) {
+    site.length = usable_length(site);  // traffic begins where the lanes are still apart
+    if (site.length < shortest) continue;
+    site.exits = find_exits(*map, site.lanes);
+    return site;
   }
-  for (auto const id : best.lanes) {  // traffic begins where the lanes are still apart
-    auto const road = cambium::map::build_road_corridor(*best.map, cambium::map::straight_route(*best.map, id));
-    for (auto const& corridor : road->corridors)
-      for (auto const& feeder : corridor.feeders)
-        if (feeder.is_still_to_merge()) best.length = std::min(best.length, feeder.free_until);
-    best.length = std::min(best.length, road->corridors[road->main].pieces[0].lane_end);
-  }
-  if (best.lanes.empty() || best.length < 150.0)
-    throw cambium::MapError(file, "nowhere on this map two lanes side by side go on for 150 m",
-                            "give a map with a highway, such as maps/highway_exit.xodr");
-  best.exits = find_exits(*map, best.lanes);
-  return best;
+  throw cambium::MapError(file,
+                          "nowhere on this map two lanes side by side go on for 150 m before a merge or their end",
+                          "give a map with a highway, such as maps/highway_exit.xodr");
 }
 
 /// A sampled situation.

@@ -6,6 +6,8 @@
 
 #include "cambium/behavior/braking.hpp"
 #include "cambium/behavior/follow_lane.hpp"
+#include "cambium/behavior/idm.hpp"
+#include "cambium/core/macros.hpp"
 #include "cambium/map/corridor.hpp"
 
 namespace cambium {
@@ -34,6 +36,26 @@ struct BendsAhead {
     if (motion.distance < ahead.bound.distance) ahead.bound = motion;
   }
   return ahead;
+}
+
+/// The speed [m/s] that an IDM driver is to desire at `s` [m], so that it comes to the bends within its way to brake by
+/// its comfortable deceleration no faster than `lateral_acceleration` [m/s^2] allows. Out of line: where
+/// `max(speed, desired)^2 sharpest_bend` is no more than that, it need not be asked. O(log bends) and those in reach.
+template <HasIdmParameters P>
+CAMBIUM_NOINLINE [[nodiscard]] double desired_speed_before_bends(P const& p, map::LaneCorridor const& corridor,
+                                                                 double s, double speed, double lateral_acceleration) {
+  double const twice_braking = 2.0 * p.comfortable_deceleration, reach = s + speed * (speed / twice_braking + 1.0);
+  double lowest = p.desired_speed * p.desired_speed, way = 0.0;
+  auto const& bends = corridor.bends;
+  auto bend = std::partition_point(bends.begin(), bends.end(), [s](map::Bend const& b) { return b.end < s; });
+  for (; bend != bends.end() && bend->begin <= reach; ++bend) {
+    double const ahead = std::max(0.0, bend->begin - s);
+    double const square = lateral_acceleration / bend->curvature + twice_braking * ahead;
+    if (square >= lowest) continue;
+    lowest = square;
+    way = ahead;
+  }
+  return std::min(p.desired_speed, std::sqrt(lowest) * idm_lead(p, speed, way));
 }
 
 }  // namespace cambium

@@ -112,6 +112,16 @@ template <HasIdmParameters P>
   return low;
 }
 
+/// By which part of a speed that is allowed now, and to become less `way` [m] on, an IDM driver has to desire: it
+/// brakes comfortably only where it is that much faster than it desires. Within the last half second of the way less
+/// so.
+template <HasIdmParameters P>
+[[nodiscard]] double idm_lead(P const& p, double speed, double way) {
+  double const ratio = 1.0 + p.comfortable_deceleration / p.maximum_acceleration;
+  double const lead = p.exponent == 4.0 ? 1.0 / std::sqrt(std::sqrt(ratio)) : std::pow(ratio, -1.0 / p.exponent);
+  return 1.0 + std::min(1.0, way / std::max(1.0, 0.5 * speed)) * (lead - 1.0);
+}
+
 namespace detail {
 
 /// The acceleration of a follower and how it changes along its motion.

@@ -142,11 +142,7 @@ struct IdmLaneTracking {
       way = ahead;
     }
     if (lowest >= square) return;
-    // IDM brakes comfortably only where it is that much faster than desired; within the last half second less so.
-    double const ratio = 1.0 + p.comfortable_deceleration / p.maximum_acceleration;
-    double const lead = p.exponent == 4.0 ? 1.0 / std::sqrt(std::sqrt(ratio)) : std::pow(ratio, -1.0 / p.exponent);
-    double const share = std::min(1.0, way / std::max(1.0, 0.5 * speed));
-    p.desired_speed = std::clamp(std::sqrt(lowest) * (1.0 + share * (lead - 1.0)), 0.1, p.desired_speed);
+    p.desired_speed = std::clamp(std::sqrt(lowest) * idm_lead(p, speed, way), 0.1, p.desired_speed);
   }
 
   template <class View>

@@ -7,10 +7,12 @@
 #include <optional>
 #include <tuple>
 
+#include "cambium/behavior/bends_ahead.hpp"
 #include "cambium/behavior/idm.hpp"
 #include "cambium/behavior/idm_law.hpp"
 #include "cambium/behavior/lane_change.hpp"
 #include "cambium/behavior/lane_ends.hpp"
+#include "cambium/behavior/leader.hpp"
 #include "cambium/core/distributions.hpp"
 
 namespace cambium {
@@ -34,7 +36,8 @@ struct LaneKeeping {
   detail::Restriction& ahead;             ///< what it follows; a rule may add to it
 };
 
-/// How a driver changes lanes once it has decided to: what it assumes of others, what it finds safe, when it gives up.
+/// How a driver goes along lanes that it may change, and changes them once it has decided to: what it assumes of
+/// others, what it finds safe, when it gives up. It slows for bends, and for limits where it obeys them.
 /// A change takes time and follows a smooth course. It is aborted where it has become unsafe, or where somebody comes
 /// into the same gap from the other side, while the way back does not leave the old lane. Meanwhile the leaders in all
 /// lanes that the vehicle is in count. Before objects and before the end of a lane that must be left it stops with
@@ -49,6 +52,8 @@ struct LaneChanging {
   double safe_gap = 1.0;
   double rest = 3.0;
   bool heed_marks = true;
+  bool obey_speed_limits = false;
+  double lateral_acceleration = 3.0;
   LaneChangeCourse course{};
 
   static constexpr char const* name = "lane_changing";
@@ -67,6 +72,9 @@ struct LaneChanging {
         parameter("safe_gap", &P::safe_gap, "m", Range{0, 100}, "no change into smaller gaps, whatever the speeds"),
         parameter("rest", &P::rest, "s", Range{0, 600}, "no further change within this time of the last"),
         parameter("heed_marks", &P::heed_marks, "-", Range{0, 1}, "change only where the road marks permit it"),
+        parameter("obey_speed_limits", &P::obey_speed_limits, "-", Range{0, 1},
+                  "desire no more than the limit, and be there in time for a lower one ahead"),
+        parameter("lateral_acceleration", &P::lateral_acceleration, "m/s^2", Range{0.1, 50}, "in bends, at most"),
         parameter("course", &P::course, "-", {}, "how long a change takes"));
   }
 
@@ -86,7 +94,7 @@ struct LaneChanging {
   [[nodiscard]] Plan<View> drive(View const& view, Memory& memory, IdmParameters const& idm, double tolerance,
                                  double dt, Choose const& choose) const {
     double const speed = std::max(0.0, view.state().speed);
-    detail::IdmLaw const law(idm, speed);
+    detail::IdmLaw const law(idm, speed, desired_speed(view, idm, speed));
     auto const leader = view.front();
     auto const home = view.lane_position().corridor;
     memory.rest = std::max(0.0f, memory.rest - static_cast<float>(dt));
@@ -165,6 +173,18 @@ struct LaneChanging {
   static constexpr double standing = 0.1;  ///< who is slower stands [m/s]: the law only creeps up to its stop
   /// Lateral speed that shows the intention to change [m/s].
   static constexpr double drift = 0.12;
+
+  /// What the driver desires within limits, if it obeys them, and before bends [m/s].
+  template <class View>
+  [[nodiscard]] double desired_speed(View const& view, IdmParameters const& idm, double speed) const {
+    auto const& corridor = view.corridor();
+    double desired = idm.desired_speed, fastest = std::max(speed, desired), s = view.lane_position().s;
+    if (fastest * fastest * corridor.sharpest_bend > lateral_acceleration) [[unlikely]]
+      desired = desired_speed_before_bends(idm, corridor, s, speed, lateral_acceleration);
+    if (obey_speed_limits) [[unlikely]]
+      desired = std::min(desired, permitted_speed(corridor, s, speed, idm.comfortable_deceleration));
+    return std::max(0.1, desired);
+  }
 
   [[nodiscard]] static bool is_object(Neighbor const& n) { return is_valid(n.object); }
 

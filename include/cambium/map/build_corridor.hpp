@@ -40,6 +40,7 @@ class LaneJoiner {
     corridor.pieces = make_pieces(corridor.center);
     corridor.speed_limits = join_limits(corridor.pieces);
     corridor.bends = bends_of(corridor.center);
+    for (auto const& bend : corridor.bends) corridor.sharpest_bend = std::max(corridor.sharpest_bend, bend.curvature);
     auto const& last = map_.lane(lanes.back());
     corridor.continues = std::any_of(last.successors.begin(), last.successors.end(),
                                      [&](LaneId next) { return may_enter(last, map_.lane(next)); });

@@ -138,6 +138,7 @@ struct LaneCorridor {
   std::vector<Feeder> feeders;          ///< sorted by `begin`
   std::vector<Conflict> conflicts;      ///< sorted by `hold[1]`
   std::vector<Bend> bends;              ///< sharper than 1 km of radius, sorted by `begin`
+  double sharpest_bend = 0.0;           ///< the curvature of the sharpest of them [1/m]
   std::vector<CorridorSignal> signals;  ///< sorted by `line`
   std::vector<SpeedStep> speed_limits;  ///< along the corridor, sorted; empty where nothing limits the speed
   bool continues = false;               ///< the road goes on beyond the end: the corridor ends because the route does
