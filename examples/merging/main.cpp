@@ -1,8 +1,6 @@
 // Traffic merges: samples dense situations at the on-ramp or lane drop of an OpenDRIVE map, rolls them forward with the
 // Intelligent Driver Model, judges each, and writes figures, trajectories and a replay that plays in a browser.
 
-#include <iostream>
-
 #include "../common/map_file.hpp"
 #include "../common/sampled_program.hpp"
 #include "scenario.hpp"
@@ -11,10 +9,7 @@ namespace {
 
 void run(examples::Settings const& settings) {
   auto const site = merging::find_site(examples::load_map(settings.map_file), settings.map_file);
-  if (site.crossings > 0)
-    std::cerr
-        << "merging: " << settings.map_file << ": " << examples::counted(site.crossings, "place")
-        << " where the traffic's routes cross or meet at an angle; nobody gives way there, so expect collisions\n";
+  merging::warn_of_crossings(site, "merging: " + settings.map_file);
   examples::sample_and_report(site, settings, {"Merging", "the ego merged"});
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <iostream>
 #include <memory>
 #include <optional>
 #include <set>
@@ -117,6 +118,14 @@ inline void find_merge(cambium::Map const& map, Entrance& entrance) {
     for (auto const& overlap : map.lane(id).overlaps)
       count += overlap.other > id && used.contains(overlap.other) && is_crossing(id, overlap);
   return count;
+}
+
+/// Says so where the traffic's routes cross or meet at an angle; `who`: the program and its map.
+inline void warn_of_crossings(Site const& site, std::string const& who) {
+  if (site.crossings > 0)
+    std::cerr
+        << who << ": " << site.crossings << (site.crossings == 1 ? " place" : " places")
+        << " where the traffic's routes cross or meet at an angle; nobody gives way there, so expect collisions\n";
 }
 
 /// Finds the merge of a map: the entrances, and which of them is the ramp. Throws `MapError` where nothing merges.

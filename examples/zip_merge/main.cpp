@@ -2,8 +2,6 @@
 // lane in before them; counts how often two of one lane go one after the other, and writes figures, trajectories and a
 // replay that plays in a browser.
 
-#include <iostream>
-
 #include "../common/map_file.hpp"
 #include "../common/sampled_program.hpp"
 #include "scenario.hpp"
@@ -12,10 +10,7 @@ namespace {
 
 void run(examples::Settings const& settings) {
   auto const site = zip_merge::Site{merging::find_site(examples::load_map(settings.map_file), settings.map_file)};
-  if (site.crossings > 0)
-    std::cerr
-        << "zip_merge: " << settings.map_file << ": " << examples::counted(site.crossings, "place")
-        << " where the traffic's routes cross or meet at an angle; nobody gives way there, so expect collisions\n";
+  merging::warn_of_crossings(site, "zip_merge: " + settings.map_file);
   examples::sample_and_report(
       site, settings,
       {"Zip merge",

@@ -61,6 +61,25 @@ TEST_CASE("actions can be counted and named") {
   CHECK_THROWS_AS(Highway{wrong}, cb::ParameterError);
 }
 
+TEST_CASE("a number that there is not fails; nothing can be chosen, too") {
+  for (std::size_t const number : {std::size_t{7}, std::size_t{254}, std::size_t{999}}) {
+    Highway at;
+    at.choose(number);
+    CHECK(at.world.step(0.25).failed == 1);
+  }
+  Highway at;
+  at.choose(cb::MacroActions::nothing);
+  at.drive(20);
+  CHECK(at.world.state(at.id).x == doctest::Approx(150.0));
+  World world(straight_road(1, 500.0));
+  auto const id = world.add({.position = {100, -1.75}, .speed = 10, .behavior = cb::MotionPrimitives{}});
+  world.memory<cb::MotionPrimitives>(id).chosen = cb::MotionPrimitives::nothing;
+  CHECK(world.step(0.25));
+  CHECK(world.state(id).x == doctest::Approx(102.5));
+  world.memory<cb::MotionPrimitives>(id).chosen = 77;
+  CHECK(world.step(0.25).failed == 1);
+}
+
 TEST_CASE("staying keeps the acceleration until another one is chosen, and stops rather than reverses") {
   Highway at;
   at.choose(number_of(Kind::stay, 1.5));

@@ -196,6 +196,11 @@ TEST_CASE("a goal that can never be reached is refused with what is wrong with i
   refuses(cb::LaneLimits{.lane = lane, .from = 50, .to = 20}, "ends before it begins");
   refuses(cb::LaneLimits{.left = -1.0, .right = 0.5}, "left and right leave no room");
   refuses(cb::ReachLane{lane, 50, 20}, "ends before it begins");
+  refuses(cb::StateLimits{.heading_from = 0, .heading_to = -7}, "more than a turn below heading_from");
+  refuses(cb::ReachLane{lane, 5000, 6000}, "which is 1000 m long");
+  refuses(cb::ReachLane{lane, -10, -5}, "which is 1000 m long");
+  refuses(cb::LaneLimits{.lane = lane, .from = 5000}, "which is 1000 m long");
+  refuses(cb::ReachLane{cb::LaneId{99}}, "which the map does not have");
   refuses(cb::AllGoals{}, "no parts");
   refuses(cb::AnyGoal{}, "no parts");
   CHECK_THROWS_WITH_AS(world.add(driver(100, cb::GoalSequence{})), doctest::Contains("no parts"), cb::WorldError);

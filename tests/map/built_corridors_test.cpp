@@ -44,7 +44,7 @@ TEST_CASE("the same route gives the same road corridor, that built anew too, whi
   auto const first = build_road_corridor(*map, routes[0]);
   CHECK(build_road_corridor(*map, routes[0]) == first);
   CHECK(first->route == routes[0].lanes);
-  auto const anew = cambium::map::detail::join_lanes(*map, routes[0].lanes);
+  auto const anew = cambium::map::detail::make_road_corridor(*map, routes[0].lanes);
   CHECK(anew != first);
   CHECK(anew->corridors[0].center.samples().size() == first->corridors[0].center.samples().size());
   auto const* const unused = build_road_corridor(*map, routes[1]).get();

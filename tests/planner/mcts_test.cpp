@@ -9,6 +9,7 @@
 #include <memory>
 #include <string>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "cambium/execution/interpolate.hpp"
@@ -408,11 +409,12 @@ TEST_CASE("the end of the map is none that a search would brake for") {
 
 TEST_CASE("at its goal ego does nothing in particular, whatever comes first among its actions") {
   auto const map = support::straight_road(2, 600.0);
-  for (auto const first :
-       {MacroAction{MacroAction::Kind::change_left, 0.0}, MacroAction{MacroAction::Kind::stay, -5.0}}) {
+  constexpr MacroAction left{MacroAction::Kind::change_left, 0.0}, right{MacroAction::Kind::change_right, 0.0},
+      on{MacroAction::Kind::stay, 0.0}, brake{MacroAction::Kind::stay, -5.0};
+  for (auto const& [first, second] : {std::pair{left, on}, {brake, on}, {left, brake}, {left, right}}) {
     Sim world(map);
     Single planner = quick(Single{});
-    planner.actions = MacroActions::of({first, {MacroAction::Kind::stay, 0.0}});
+    planner.actions = MacroActions::of({first, second});
     world.add({.position = {60, -5.25},
                .speed = 12,
                .behavior = planner,
@@ -527,15 +529,46 @@ TEST_CASE("think checks the planner's own parameters, and whether the course is 
   auto state = world.state(ego);
   state.y = -1.75;
   world.set_state(ego, state);
-  CHECK_THROWS_WITH_AS((void)quick(Single{}).think(world.observe(ego), workspace),
-                       "agent 0: its course is over: it touches something, is off the road, or is at its goal; ask the "
-                       "evaluators before you plan",
-                       SearchError);
+  CHECK_THROWS_WITH_AS(
+      (void)quick(Single{}).think(world.observe(ego), workspace),
+      "agent 0: the course is over already: agent 0 is at its goal; ask the evaluators before you plan", SearchError);
+  auto const says_why = [&](double x, double y, char const* why) {
+    auto moved = lane_change(0, quick(Single{}));
+    auto at = moved.state(ego);
+    at.x = x;
+    at.y = y;
+    moved.set_state(ego, at);
+    CHECK_THROWS_WITH_AS((void)quick(Single{}).think(moved.observe(ego), workspace), doctest::Contains(why),
+                         SearchError);
+  };
+  says_why(95.0, -5.25, "agent 0 touches agent 5");
+  says_why(60.0, -9.5, "agent 0 is off the road");
   // No lane on the left of it.
   planner = quick(Single{});
   planner.actions = MacroActions::of({{MacroAction::Kind::change_left}});
   planner.reward.goal = 0.0;
   CHECK_THROWS_AS((void)planner.think(world.observe(ego), workspace), SearchError);
+}
+
+TEST_CASE("a planner that leaves the map within a step, or steps for a moment, does not fail") {
+  for (double const dt : {20.0, 1e-6, 1e-9}) {
+    Sim world(support::straight_road(1, 200.0));
+    Single planner = quick(Single{}, 20);
+    planner.reward = {.progress = 1.0};
+    auto const id = world.add({.position = {60, -1.75}, .speed = 12, .behavior = planner});
+    CHECK(world.step(dt).failed == 0);
+    CHECK((world.record(id).status == AgentStatus::left_map) == (dt == 20.0));
+  }
+}
+
+TEST_CASE("who drives in a lane of oncoming traffic has left the road") {
+  PredictionWorld world(support::two_way_road(300.0));
+  TrafficReward const reward{.off_road = -10.0, .progress = 0.1};
+  world.add({.position = {60, -1.75}, .heading = 0.0, .speed = 10});
+  CHECK(reward.judge(world, 0, 0.2).outcome.reward == doctest::Approx(0.2));
+  world.set_state(ego, {.x = 60, .y = 1.75, .heading = 0.0, .speed = 10});
+  CHECK(reward.judge(world, 0, 0.2).outcome.reward == doctest::Approx(-10.0));
+  CHECK(reward.judge(world, 0, 0.2).ends);
 }
 
 TEST_CASE("a lane change goes on from search to search, and the lane is kept behind the goal") {

@@ -438,11 +438,45 @@ struct Riches {
   }
 };
 
+/// One choice between two rewards.
+struct TwoPrices {
+  static constexpr bool is_deterministic = true;
+  static constexpr std::size_t max_actions = 2;
+  using State = int;
+  using Action = int;
+  double first, second;
+  std::size_t agents() const { return 1; }
+  bool is_terminal(State s) const { return s > 0; }
+  std::size_t actions(State, std::size_t, std::span<int> out) const { return out[0] = 0, out[1] = 1, 2; }
+  bool step(State& s, std::span<int const> joint, RandomStream&, std::span<AgentOutcome> out) const {
+    out[0].reward = joint[0] == 0 ? first : second;
+    return ++s > 0;
+  }
+};
+
 }  // namespace
 
 TEST_CASE("rewards that add up to more than there are numbers for are a problem") {
   TreeSearch<Riches, Ucb1, NoRollout> search({}, {.horizon = 5, .discount = 1.0}, {}, {}, {100});
   CHECK(search.run(0, 1).problem == SearchProblem::not_finite);
+}
+
+TEST_CASE("so are those that would over the iterations, or are too far apart; nothing is kept of such a search") {
+  for (auto const& [low, high] : {std::pair{-1e308, 1e308}, {5e307, 1e308}, {-1e308, 0.0}}) {
+    TreeSearch<TwoPrices, Ucb1, NoRollout> search({low, high}, {.horizon = 1}, {}, {}, {100});
+    CHECK(search.run(0, 1).problem == SearchProblem::not_finite);
+    CHECK_FALSE(search.keep(std::array{1}));
+  }
+  TreeSearch<TwoPrices, Ucb1, NoRollout> search({-1e289, 1e289}, {.horizon = 1}, {}, {}, {100});
+  CHECK(search.run(0, 1).choice(0).action == 1);
+}
+
+TEST_CASE("parameters that are refused leave a search as it was") {
+  TreeSearch<TicTacToe> search({}, {.horizon = 9}, {}, {}, {300});
+  auto const nodes = search.run({}, 1).nodes;
+  CHECK_THROWS_AS(search.set({.horizon = -1}, {}, {}, {300}), ParameterError);
+  CHECK(search.parameters().horizon == 9);
+  CHECK(search.run({}, 1).nodes == nodes);
 }
 
 namespace {

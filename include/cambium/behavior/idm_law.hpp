@@ -49,7 +49,8 @@ class IdmLaw {
   [[nodiscard]] double bounded(double a) const { return std::min(std::max(a, terms_.low), terms_.high); }
 
   IdmTerms<double> terms_;
-  double speed_, rest_;  ///< of the acceleration on a free road, as part of the maximum
+  double speed_;
+  double rest_;  ///< the acceleration on a free road, unbounded, as part of the maximum
 };
 
 /// What a driver follows: of all that is ahead what asks for the least acceleration.

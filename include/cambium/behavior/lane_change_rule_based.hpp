@@ -75,7 +75,8 @@ struct LaneChangeRuleBased {
       double const urge = left ? urgency.left : urgency.right;
       LaneOption option{view.beside(side), left, {}, {}};
       double const remaining = lane_end(view, side, option.place.piece) - option.place.s;
-      if (urge < 0.0 || (urge == 0.0 && remaining < minimum_remaining + changing.there_and_back(now.speed))) continue;
+      if (urge < 0.0 || (urge == 0.0 && remaining < minimum_remaining + changing.there_and_back(now.law.speed())))
+        continue;
       option.front = view.front(option.place);
       double const ahead = urge > 0.0 ? std::numeric_limits<double>::infinity() : space_ahead(option.front);
       if (!(ahead > best)) continue;

@@ -28,8 +28,7 @@ struct LaneOption {
 template <class View>
 struct LaneKeeping {
   View const& view;
-  detail::IdmLaw const& law;              ///< its car following
-  double speed;                           ///< [m/s]
+  detail::IdmLaw const& law;              ///< its car following, at its speed
   std::optional<Neighbor> const& leader;  ///< next ahead
   double lane_end;                        ///< see there
   bool may_change;                        ///< not in the time of rest
@@ -110,7 +109,7 @@ struct LaneChanging {
     double const end = lane_end(view, home, view.lane_position().piece);
     auto ahead = ahead_in_lane(view, law, leader);
     bool const may_change = memory.rest == 0.0f;
-    auto const target = choose(LaneKeeping<View>{view, law, speed, leader, end, may_change, ahead});
+    auto const target = choose(LaneKeeping<View>{view, law, leader, end, may_change, ahead});
     if (may_change && target != map::no_corridor && is_wide_enough(view, target, 0.5 * speed * course.duration)) {
       memory.change = course.begin(target, view.shape(), speed, room(view, leader, target));
       memory.rest = static_cast<float>(rest + course.duration);

@@ -66,10 +66,11 @@ struct MacroAction {
 /// Drives by one of a few manoeuvres along its lanes. A search or a learner chooses in the agent's memory
 /// (`World::memory<MacroActions>(id).choose(number)`); the manoeuvre goes on until the next is chosen. A lane change
 /// that has begun is finished, whatever is chosen meanwhile, but for a change back. One that is not `available` when
-/// chosen is not begun: the vehicle keeps its lane at the action's acceleration.
+/// chosen is not begun: the vehicle keeps its lane at the action's acceleration. A number that there is not fails.
 struct MacroActions {
   using Kind = MacroAction::Kind;
   static constexpr std::size_t capacity = 16;
+  static constexpr std::uint8_t nothing = 255;  ///< chosen instead of an action: it keeps its lane and its speed
 
   struct Memory {
     LaneChange change{};      ///< leads to the target corridor
@@ -77,7 +78,7 @@ struct MacroActions {
     bool is_new = true;       ///< it has not begun yet
 
     void choose(std::size_t number) {
-      chosen = static_cast<std::uint8_t>(std::min<std::size_t>(number, 255));
+      chosen = static_cast<std::uint8_t>(number <= nothing ? number : nothing - 1);
       is_new = true;
     }
 
@@ -138,7 +139,12 @@ struct MacroActions {
 
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
-    auto const action = memory.chosen < size() ? actions[memory.chosen] : MacroAction{};
+    if (memory.chosen >= size() && memory.chosen != nothing) {
+      Plan<View> failed;
+      failed.status = PlanStatus::failed;
+      return failed;
+    }
+    auto const action = memory.chosen != nothing ? actions[memory.chosen] : MacroAction{};
     double const speed = std::max(0.0, view.state().speed);
     course.renew(memory.change, view.shape(), speed);
     if (memory.is_new && is_change(action.kind)) {

@@ -135,7 +135,7 @@ struct BasicMobil {
       double const remaining = lane_end(view, side, option.place.piece) - option.place.s;
       double const urge =
           !goes_on ? (left ? urgency.left : urgency.right) : -std::max(0.0, 1.0 - remaining / route_horizon);
-      if (urge <= 0.0 && remaining < minimum_remaining + changing.there_and_back(now.speed)) continue;
+      if (urge <= 0.0 && remaining < minimum_remaining + changing.there_and_back(now.law.speed())) continue;
       double const pull = (inwards ? -bias : bias) + route_bias * urge;
       option.front = view.front(option.place);
       if (urge > 0.0 && !goes_on) adapt_to(now, option.front);
@@ -156,8 +156,8 @@ struct BasicMobil {
   /// hard for that.
   template <class View>
   void adapt_to(LaneKeeping<View> const& now, std::optional<Neighbor> const& front) const {
-    if (front && front->gap > 0.0 && front->speed < now.speed)
-      now.ahead.add(now.law, std::max(front->gap, idm.minimum_gap + now.speed * idm.time_headway), front->speed);
+    if (front && front->gap > 0.0 && front->speed < now.law.speed())
+      now.ahead.add(now.law, std::max(front->gap, idm.minimum_gap + now.law.speed() * idm.time_headway), front->speed);
   }
 
   /// Acceleration of a follower behind this vehicle, and behind `front`, who is next without it.
@@ -167,7 +167,7 @@ struct BasicMobil {
                                                          std::optional<Neighbor> const& front) const {
     if (!rear || !is_valid(rear->agent)) return {0.0, 0.0};
     auto const law = changing.law_of(*rear);
-    double const behind = law(rear->gap, now.speed);
+    double const behind = law(rear->gap, now.law.speed());
     if (!front) return {behind, law.free()};
     return {behind, law(rear->gap + now.view.shape().length() + front->gap, front->speed)};
   }
@@ -179,7 +179,7 @@ struct BasicMobil {
     if (keep_right) {
       // Eq. 5 to 7: on the outer side nobody is passed, and only the follower in the inner lane counts.
       auto const& in_inner_lane = inwards ? option.front : now.leader;
-      if (in_inner_lane && now.speed > in_inner_lane->speed && in_inner_lane->speed > critical_speed)
+      if (in_inner_lane && now.law.speed() > in_inner_lane->speed && in_inner_lane->speed > critical_speed)
         (inwards ? situation.own : situation.own_after) = std::min(situation.own, situation.own_after);
       if (inwards)
         situation.old_follower = situation.old_follower_after = 0.0;

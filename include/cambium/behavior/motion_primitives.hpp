@@ -36,9 +36,10 @@ struct MotionPrimitive {
 /// which in the agent's memory (`World::memory`). Heeds neither lanes nor others. Never reverses.
 struct MotionPrimitives {
   static constexpr std::size_t capacity = 16;
+  static constexpr std::uint8_t nothing = 255;  ///< chosen instead of a primitive: it coasts straight on
 
   struct Memory {
-    std::uint8_t chosen = 0;  ///< place in the list; beyond its end: nothing, coasting straight on
+    std::uint8_t chosen = 0;  ///< place in the list, or `nothing`; another one fails
 
     friend bool operator==(Memory, Memory) = default;
   };
@@ -76,7 +77,12 @@ struct MotionPrimitives {
 
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory const& memory, double dt) const {
-    auto const chosen = memory.chosen < size() ? primitives[memory.chosen] : MotionPrimitive{};
+    if (memory.chosen >= size() && memory.chosen != nothing) {
+      Plan<View> failed;
+      failed.status = PlanStatus::failed;
+      return failed;
+    }
+    auto const chosen = memory.chosen != nothing ? primitives[memory.chosen] : MotionPrimitive{};
     return plan_with_input(view, {chosen.acceleration, chosen.steering}, dt, scheme, longest_substep);
   }
 };

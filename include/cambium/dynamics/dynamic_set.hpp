@@ -41,14 +41,6 @@ class DynamicSet {
     return detail::visit([&](auto const& model) { return action_of(model.input(u, x), u); }, any_);
   }
   [[nodiscard]] Action input(Action const& action, State const& x) const { return limited(action, x); }
-  [[nodiscard]] State stopped(State x) const {
-    return detail::visit(
-        [&](auto const& model) {
-          if constexpr (requires { model.stopped(x); }) return model.stopped(x);
-          return x;
-        },
-        any_);
-  }
   [[nodiscard]] double wheel_base() const {
     return detail::visit([](auto const& model) { return wheel_base_of(model); }, any_);
   }

@@ -24,41 +24,37 @@ template <class Model, class State = typename Model::State, class Input = typena
   return add_scaled(add_scaled(add_scaled(add_scaled(x, k1, dt / 6), k2, dt / 3), k3, dt / 3), k4, dt / 6);
 }
 
-/// The state of a vehicle that has come to a stop there: speed 0, and what the model's `stopped` says.
-template <class Model, class State = typename Model::State>
-[[nodiscard]] State stopped(Model const& model, State x) {
-  x.speed = 0.0;
-  if constexpr (requires { model.stopped(x); }) return model.stopped(x);
-  return x;
-}
-
 namespace detail {
 
 template <bool euler, class Model>
 [[nodiscard]] typename Model::State drive_step(Model const& model, typename Model::State x, Action const& action,
                                                double dt) {
   if constexpr (requires { model.driven(x, action, dt); }) return model.driven(x, action, dt);
-  auto const u = model.input(action, x);
-  double const end = x.time + dt, change = model.derivative(x, u).speed;
+  auto const go = [&](auto const& u, double duration) {
+    if (!(duration > 0.0)) return;
+    if constexpr (euler)
+      x = euler_step(model, x, u, duration);
+    else
+      x = rk4_step(model, x, u, duration);
+  };
+  auto u = model.input(action, x);
+  double const end = x.time + dt;
+  double change = model.derivative(x, u).speed;
   if constexpr (requires { double{model.highest_speed}; }) {
-    double const room = model.highest_speed - x.speed;
-    if (room > 0.0 && change * dt > room) {
-      double const rising = room / change;
-      x = euler ? euler_step(model, x, u, rising) : rk4_step(model, x, u, rising);
-      x.speed = model.highest_speed;
-      x = drive_step<euler>(model, x, action, dt - rising);
-      x.time = end;
-      return x;
+    double const room = std::max(0.0, model.highest_speed - x.speed);
+    if (change * dt > room) {
+      double const rising = room / change, top = std::max(x.speed, double{model.highest_speed});
+      go(u, rising);
+      x.speed = top;
+      u = model.input({std::min(0.0, action.acceleration), action.steering}, x);
+      change = model.derivative(x, u).speed;
+      dt -= rising;
     }
   }
   double const moving = x.speed + change * dt < 0.0 ? x.speed / -change : dt;
-  if (moving > 0.0) {
-    if constexpr (euler)
-      x = euler_step(model, x, u, moving);
-    else
-      x = rk4_step(model, x, u, moving);
-  }
-  if (moving < dt || x.speed < 0.0) x = cambium::stopped(model, x);
+  go(u, moving);
+  if (moving < dt) x.speed = 0.0;
+  x.speed = std::max(0.0, x.speed);
   x.time = end;
   return x;
 }
@@ -68,7 +64,7 @@ template <bool euler, class Model>
 /// Where a vehicle is after `dt` [s] whose driver holds `action`, within the model's limits: one Runge-Kutta step, or
 /// Euler step; of models with a `response_time`, in equal steps no longer than that. A model that has `driven(state,
 /// action, dt)` moves by that instead. It never reverses: one that brakes to standstill within the step stands from
-/// then on; one that reaches the model's `highest_speed` keeps it.
+/// then on; one that reaches the model's `highest_speed` holds no acceleration above 0 from then on.
 template <bool euler = false, DynamicModel Model>
 [[nodiscard]] typename Model::State drive(Model const& model, typename Model::State x, Action const& action,
                                           double dt) {

@@ -90,7 +90,12 @@ struct StateLimits {
         parameter("lowest_speed", &P::lowest_speed, "m/s", detail::any_number, "of the speed"),
         parameter("highest_speed", &P::highest_speed, "m/s", detail::any_number, "of the speed"));
   }
-  void check(std::string const& where) const { detail::check_speeds(lowest_speed, highest_speed, where); }
+  void check(std::string const& where) const {
+    detail::check_speeds(lowest_speed, highest_speed, where);
+    if (heading_to < heading_from - 2 * geometry::pi)
+      throw ParameterError(where, "heading_to is more than a turn below heading_from: the goal is never reached",
+                           "give the heading that follows counter-clockwise");
+  }
 
   [[nodiscard]] bool at_goal(GoalSituation const& at) const {
     return has_heading(at.pose.heading) && at.speed >= lowest_speed && at.speed <= highest_speed;

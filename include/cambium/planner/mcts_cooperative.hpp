@@ -62,7 +62,7 @@ struct MctsCooperative {
   template <class View>
   [[nodiscard]] MctsReport<Domain> think(View const& view, Workspace& workspace, Memory const& memory = {}) const {
     check_parameters(*this);
-    detail::throw_if(search(view, memory, workspace), view.id());
+    detail::throw_if(search(view, memory, workspace), workspace, view.id());
     return workspace.report();
   }
 

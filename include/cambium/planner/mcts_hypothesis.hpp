@@ -98,7 +98,7 @@ struct MctsHypothesis {
     check_parameters(*this);
     if (!(dt > 0.0 && dt <= PredictionWorld::longest_step))
       throw ParameterError("mcts_hypothesis: dt", "is " + std::to_string(dt), "give the world's step, above 0 s");
-    detail::throw_if(search(view, memory, dt, workspace), view.id());
+    detail::throw_if(search(view, memory, dt, workspace), workspace, view.id());
     return workspace.report();
   }
 

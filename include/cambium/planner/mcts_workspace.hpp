@@ -192,25 +192,46 @@ void take_course(View const& view, Workspace& workspace, double dt, Plan<View>& 
     plan.trajectory.push_back(ego.state);
     if (auto const* at_end = std::get_if<Workspace::Domain::behavior_index>(&ego.memory)) memory = *at_end;
   });
+  go_straight_on(view, view.time() + dt, plan);
 }
 
-/// Throws `SearchError`, in words of traffic, where `ego` cannot be planned for.
-template <class Action>
-void throw_if(SearchResult<Action> const& result, AgentId ego) {
+/// Why a course is over, of the first of `slots` whose is; nothing where only the reward says so.
+template <class World>
+[[nodiscard]] std::string what_is_over(World const& world, std::span<std::uint32_t const> slots) {
+  for (auto const slot : slots) {
+    auto const who = "agent " + to_string(world.roster().agents[slot].id) + " ";
+    auto const status = world.frame().agents[slot].status;
+    if (status != AgentStatus::driving) return who + "does not drive: its status is " + to_string(status);
+    auto const touched = CollisionEgo::at_slot(world, slot);
+    if (touched.ego_collision)
+      return who + "touches " +
+             (is_valid(touched.ego_collision_with) ? "agent " + to_string(touched.ego_collision_with) : "an object");
+    if (DrivableArea::off_road(world, slot)) return who + "is off the road";
+    if (drives_against_traffic(world, slot)) return who + "is in a lane of oncoming traffic";
+    if (world.reached_goal(world.roster().agents[slot].id)) return who + "is at its goal";
+  }
+  return "the reward (`judge`) says so";
+}
+
+/// Throws `SearchError`, in words of traffic, where `ego` could not be planned for.
+template <class Action, class Workspace>
+void throw_if(SearchResult<Action> const& result, Workspace& workspace, AgentId ego) {
   auto const problem = result.problem;
   auto const where = "agent " + to_string(ego) +
                      (result.problem_steps > 0 ? ", at step " + std::to_string(result.problem_steps) : std::string());
   if (problem == SearchProblem::no_agents || problem == SearchProblem::not_in_world)
     throw SearchError(where, "it is not in the predicted world, or not in traffic", "plan for agents that drive");
   if (problem == SearchProblem::not_finite)
-    throw SearchError(where, "its reward (`judge`), its cost or the value of a course is not a finite number",
+    throw SearchError(where,
+                      "its reward (`judge`), its cost or the value of a course is not a finite number, or beyond 1e290",
                       "check what the reward gives in such states");
   if (problem == SearchProblem::no_actions)
     throw SearchError(where, "none of its actions is available in a state that the search came to",
                       "give it one that always is, such as keep_gap or stay");
   if (problem == SearchProblem::terminal_root)
-    throw SearchError(where, "its course is over: it touches something, is off the road, or is at its goal",
-                      "ask the evaluators before you plan");
+    throw SearchError(
+        where, "the course is over already: " + what_is_over(workspace.domain().world(), workspace.domain().slots()),
+        "ask the evaluators before you plan");
   cambium::throw_if(problem, result.problem_steps);
 }
 

@@ -135,7 +135,8 @@ struct PolicyWeights {
   double minimum_gap = 1.0;
 
   static constexpr char const* name = "policy_weights";
-  static constexpr char const* summary = "cost of a sequence: (1 - worst_case) expected + worst_case largest";
+  static constexpr char const* summary =
+      "cost of a sequence: (1 - worst_case) expected + worst_case of the worst scenario that is not too unlikely";
   static constexpr char const* source = "after Ding et al. 2020";
   static constexpr auto parameters() {
     using P = PolicyWeights;
@@ -145,7 +146,8 @@ struct PolicyWeights {
         parameter("navigation", &P::navigation, "-", non_negative, "of not being in the lane that the route ends in"),
         parameter("collision", &P::collision, "-", non_negative, "and of leaving the road, in units of safety"),
         parameter("change", &P::change, "-", non_negative, "of giving up the ongoing action now"),
-        parameter("worst_case", &P::worst_case, "-", Range{0, 1}, "weight of the worst scenario against the mean"),
+        parameter("worst_case", &P::worst_case, "-", Range{0, 1},
+                  "weight of the worst of the scenarios with odds of least_odds, against the mean"),
         parameter("least_odds", &P::least_odds, "-", non_negative,
                   "of another's intention against its keeping the lane: less likely ones count in the mean only"),
         parameter("reaction_time", &P::reaction_time, "s", Range{0, 10}, "of safe gaps"),

@@ -23,7 +23,7 @@ struct PolicyBranch {
   std::size_t scenarios{};  ///< of the others' intentions that it was simulated in
   PolicyCost mean{};        ///< expected
   double expected{};        ///< in all
-  double worst{};           ///< of the scenarios
+  double worst{};           ///< of the scenarios that are not too unlikely, no less than the expected one
   double cost{};            ///< of both: what it is chosen by
 };
 

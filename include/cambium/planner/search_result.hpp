@@ -39,7 +39,7 @@ inline void throw_if(SearchProblem problem, int steps = 0) {
     case SearchProblem::terminal_root:
       throw SearchError("search", "the game is over at the root", "ask is_terminal before you search");
     case SearchProblem::not_finite:
-      throw SearchError(where, "a reward, a cost or a value is not a finite number",
+      throw SearchError(where, "a reward, a cost or a value is not a finite number, or a return is beyond 1e290",
                         "check what step, value and the evaluators give");
     case SearchProblem::cost_out_of_range:
       throw SearchError(where, "a cost is not within 0 to 1",

@@ -37,6 +37,9 @@ struct ReturnScale {
     high = std::max(high, value);
   }
 
+  /// Whether the sum of 2^32 such returns, and their differences, are finite.
+  [[nodiscard]] bool can_be_summed() const { return low >= -1e290 && high <= 1e290; }
+
   /// 0.5 as long as all returns are equal.
   [[nodiscard]] double score(double value, double cost) const {
     double const share = high > low ? (value - low) / (high - low) : 0.5;

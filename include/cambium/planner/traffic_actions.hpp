@@ -70,12 +70,7 @@ struct ActionSet<MacroActions> {
   static Choice usual(MacroActions const& actions) {
     for (std::size_t i = 0; i < actions.size(); ++i)
       if (actions.actions[i].kind == MacroAction::Kind::keep_gap) return static_cast<Choice>(i);
-    auto const effort = [](MacroAction const& action) {
-      bool const stays = action.kind == MacroAction::Kind::stay;
-      return stays ? std::abs(action.acceleration) : std::numeric_limits<double>::infinity();
-    };
-    auto const begin = actions.actions.begin();
-    return static_cast<Choice>(std::ranges::min_element(actions.actions, {}, effort) - begin);
+    return MacroActions::nothing;
   }
   static std::string text(MacroActions const& actions, Choice choice) {
     auto const& action = actions.actions[choice];
@@ -103,13 +98,7 @@ struct ActionSet<MotionPrimitives> {
     return actions.primitives[choice];
   }
   static bool goes_on_alike(MotionPrimitives::Memory, MotionPrimitives::Memory) { return true; }
-  static Choice usual(MotionPrimitives const& actions) {
-    auto const effort = [](MotionPrimitive const& p) {
-      constexpr double per_steering = 10.0;  // [m/s^2] that 1 rad counts as much as
-      return std::hypot(p.acceleration, per_steering * p.steering);
-    };
-    return static_cast<Choice>(std::ranges::min_element(actions.primitives, {}, effort) - actions.primitives.begin());
-  }
+  static Choice usual(MotionPrimitives const&) { return MotionPrimitives::nothing; }
   static std::string text(MotionPrimitives const& actions, Choice choice) {
     auto const& p = actions.primitives[choice];
     return detail::rounded_text(p.acceleration) + " m/s^2 " + detail::rounded_text(p.steering) + " rad";

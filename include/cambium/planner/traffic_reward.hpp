@@ -8,6 +8,7 @@
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/evaluation/drivable_area.hpp"
 #include "cambium/geometry/angle.hpp"
+#include "cambium/planner/detail/predicted.hpp"
 #include "cambium/planner/search_domain.hpp"
 #include "cambium/world/frame.hpp"
 
@@ -70,7 +71,7 @@ struct TrafficReward {
         parameter("goal", &P::goal, "-", any_finite, "for reaching the goal, which ends the course"),
         parameter("collision", &P::collision, "-", any_finite, "for touching somebody or something, likewise"),
         parameter("off_road", &P::off_road, "-", any_finite,
-                  "for leaving the road or the route, likewise; the map's end is none"),
+                  "for leaving the road or the route, or driving in an oncoming lane, likewise; the map's end is none"),
         parameter("progress", &P::progress, "1/m", any_finite, "for each metre along the lane"),
         parameter("speed_deviation", &P::speed_deviation, "1/m", any_finite,
                   "for each second, times the deviation from the desired speed"),
@@ -96,7 +97,8 @@ struct TrafficReward {
         return {{}, true};
     }
     if (CollisionEgo::at_slot(world, slot).ego_collision) return {{collision, 1.0}, true};
-    if (off_road != 0.0 && DrivableArea::off_road(world, slot)) return {{off_road, 0.0}, true};
+    if (off_road != 0.0 && (DrivableArea::off_road(world, slot) || detail::drives_against_traffic(world, slot)))
+      return {{off_road, 0.0}, true};
     bool const there = goal != 0.0 && world.reached_goal(world.roster().agents[slot].id);
     return {{on_the_way(record, dt) + (there ? goal : 0.0), 0.0}, there};
   }

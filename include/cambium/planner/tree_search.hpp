@@ -53,19 +53,19 @@ class TreeSearch {
   explicit TreeSearch(Domain domain, TreeSearchParameters const& parameters = {}, Selection const& selection = {},
                       Rollout const& rollout = {}, Budget const& budget = {})
       : domain_(std::move(domain)), parameters_(parameters), selection_(selection), rollout_(rollout), budget_(budget) {
-    check();
+    check(parameters, selection, rollout, budget);
   }
 
   /// Searches by these parameters from now on; keeps its memory, and what `keep` has kept where `parameters` are the
-  /// same. Throws as the constructor.
+  /// same. Throws as the constructor; then all is as before.
   void set(TreeSearchParameters const& parameters, Selection const& selection, Rollout const& rollout,
            Budget const& budget) {
+    check(parameters, selection, rollout, budget);
     if (!equal_parameters(parameters, parameters_)) forget();
     parameters_ = parameters;
     selection_ = selection;
     rollout_ = rollout;
     budget_ = budget;
-    check();
   }
 
   /// Searches from `root`. What is wrong with the domain or the state is said in `problem`; then the result is empty.
@@ -87,6 +87,7 @@ class TreeSearch {
   /// gets, if one is. Not where the domain draws its root anew for each iteration: there nodes have no states.
   bool keep(std::span<Action const> joint) {
     forget();
+    if (result_.problem != SearchProblem::none) return false;
     if (detail::SamplesRoot<Domain> || tree_.size() == 0 || joint.size() != tree_.agents()) return false;
     for (std::size_t k = 0; k < joint.size(); ++k) {
       auto const arms = tree_.arms(0, k);
@@ -120,11 +121,12 @@ class TreeSearch {
   static constexpr std::uint32_t iteration_purpose = 0x75c7;
   static constexpr std::uint32_t root_purpose = 0x75c8;
 
-  void check() const {
-    check_parameters(parameters_);
-    if constexpr (Described<Selection>) check_parameters(selection_);
-    if constexpr (Described<Rollout>) check_parameters(rollout_);
-    if constexpr (Described<Budget>) check_parameters(budget_);
+  static void check(TreeSearchParameters const& parameters, [[maybe_unused]] Selection const& selection,
+                    [[maybe_unused]] Rollout const& rollout, [[maybe_unused]] Budget const& budget) {
+    check_parameters(parameters);
+    if constexpr (Described<Selection>) check_parameters(selection);
+    if constexpr (Described<Rollout>) check_parameters(rollout);
+    if constexpr (Described<Budget>) check_parameters(budget);
   }
 
   void start(State const& root, std::uint64_t seed) {
@@ -408,8 +410,8 @@ class TreeSearch {
         arm.total_cost += costs_[k];
       }
     }
-    for (auto const value : returns_)
-      if (!std::isfinite(value)) return stop(SearchProblem::not_finite);
+    for (auto const& scale : scales_)  // it has all returns
+      if (!scale.can_be_summed()) return stop(SearchProblem::not_finite);
     ++tree_.node(0).visits;
     if (parameters_.constraint.limit < 1.0) update_multipliers();
   }

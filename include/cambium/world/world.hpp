@@ -254,20 +254,22 @@ class World {
 
   /// Sets the agent's state, as a planner does with what it perceives, and puts it (back) into traffic. A negative
   /// speed is one of reversing. Throws `WorldError` (the world is unchanged) where the agent is unknown, a number is
-  /// not finite or the speed beyond 1000 m/s. The agent stays on its route: where it was, if that fits, else in the
-  /// lane corridor that comes nearest.
+  /// not finite, the speed beyond 1000 m/s or the place farther than 100 m from the agent's road. The agent stays on
+  /// its route: where it was, if that fits, else in the lane corridor that comes nearest.
   void set_state(AgentId id, State state) {
     auto const slot = slot_of(id);
     state.time = frame_.time;
     if (!is_finite(state) || std::abs(state.speed) > detail::fastest)
       throw WorldError("agent " + to_string(id), "its state is not a finite number, or its speed beyond 1000 m/s");
     auto& record = frame_.agents[slot];
+    auto const place = detail::relocate(*roster_->agents[slot].road, record.lane, {state.x, state.y, state.heading});
+    detail::check_near_road(*roster_->agents[slot].road, place, "agent " + to_string(id));
     record.state = state;
     record.action = {};
     record.execution = {};
     if (record.status != AgentStatus::driving) detail::forget_past(record);
     record.status = AgentStatus::driving;
-    record.lane = detail::relocate(*roster_->agents[slot].road, record.lane, {state.x, state.y, state.heading});
+    record.lane = place;
     pass_goals(slot, record);
     scratch_.fresh = false;
   }

@@ -41,7 +41,7 @@ class BuiltCorridors {
     std::uint64_t asked;  ///< when it was asked for last
   };
 
-  static constexpr std::size_t unused_kept = 128;
+  static constexpr std::size_t unused_kept = 16;
 
   /// Forgets those not in use but for the ones that were asked for last.
   void forget_oldest() {

@@ -3,10 +3,8 @@
 #include <cerrno>
 #include <cstddef>
 #include <cstring>
-#include <filesystem>
 #include <fstream>
 #include <string>
-#include <system_error>
 
 #include "cambium/core/error.hpp"
 
@@ -19,7 +17,6 @@ namespace cambium::map::detail {
   std::ifstream file(path, std::ios::binary);
   if (!file)
     throw MapError(path, std::string("the file cannot be opened (") + std::strerror(errno) + ")", "check the path");
-  if (std::error_code none; std::filesystem::is_directory(path, none)) throw MapError(path, "it is a folder", expected);
   constexpr std::size_t largest = std::size_t{1} << 30, chunk = std::size_t{1} << 20;  // [B]: beyond any map
   std::string text;
   while (file) {
@@ -29,7 +26,7 @@ namespace cambium::map::detail {
     file.read(text.data() + before, static_cast<std::streamsize>(chunk));
     text.resize(before + static_cast<std::size_t>(file.gcount()));
   }
-  if (file.bad()) throw MapError(path, "it cannot be read to its end", expected);
+  if (file.bad()) throw MapError(path, errno == EISDIR ? "it is a folder" : "it cannot be read to its end", expected);
   if (text.empty()) throw MapError(path, "it is empty", expected);
   return text;
 }

@@ -35,6 +35,19 @@ template <class PredictionWorld, class Ego, class Others, class View>
   return world;
 }
 
+/// Where a plan ends before `end` [s], as one does that leaves the map, it goes on at its last speed and heading.
+template <class View>
+void go_straight_on(View const& view, double end, Plan<View>& plan) {
+  auto state = plan.trajectory.empty() ? view.state() : plan.trajectory.back();
+  double const left = end - state.time;
+  if (!plan.trajectory.empty() && left <= 1e-9) return;
+  auto const along = geometry::sin_cos(state.heading);
+  state.x += along.cos * state.speed * left;
+  state.y += along.sin * state.speed * left;
+  state.time = end;
+  plan.trajectory.push_back(state);
+}
+
 /// What the agent at `slot` does in `world` over the next `dt` [s], in equal steps of at most `step` [s], becomes its
 /// plan.
 template <class World, class S>
@@ -130,6 +143,15 @@ template <class World>
   return along.cos * box.cos + along.sin * box.sin < 0.0;
 }
 
+/// Whether the agent at `slot`, which is in no lane of its road, drives in a lane of oncoming traffic.
+template <class World>
+[[nodiscard]] bool drives_against_traffic(World const& world, std::uint32_t slot) {
+  auto const& at = world.frame().agents[slot].lane;
+  auto const sides = world.roster().agents[slot].road->corridors[at.corridor].widths_at(at.s, at.segment);
+  bool const is_in_lane = at.lateral < sides.left && -at.lateral < sides.right;
+  return !is_in_lane && is_against_traffic(world.map(), box_at(world, slot));
+}
+
 /// What became of a predicted course in a step.
 enum class Passage : std::uint8_t { goes_on, is_over, collides, leaves_road };
 
@@ -147,11 +169,8 @@ template <class World>
       return Passage::is_over;
   }
   if (touches) return Passage::collides;
-  if (DrivableArea::off_road(world, slot)) return Passage::leaves_road;
-  auto const& at = world.frame().agents[slot].lane;
-  auto const sides = world.roster().agents[slot].road->corridors[at.corridor].widths_at(at.s, at.segment);
-  bool const is_in_lane = at.lateral < sides.left && -at.lateral < sides.right;
-  return !is_in_lane && is_against_traffic(world.map(), box_at(world, slot)) ? Passage::leaves_road : Passage::goes_on;
+  bool const leaves = DrivableArea::off_road(world, slot) || drives_against_traffic(world, slot);
+  return leaves ? Passage::leaves_road : Passage::goes_on;
 }
 
 /// How many lane changes it takes from `piece` of lane corridor `number` to one that the route ends in; 0 where none

@@ -192,7 +192,7 @@ template <class World>
   if (Set::start_time(spec.behavior) > time + same_time) record.status = AgentStatus::not_started;
   forget_past(record);
   return {{id, spec.shape, road, spec.behavior, spec.execution, spec.dynamics, spec.observer},
-          entering_goal(spec.goal, lane, where),
+          entering_goal(map, spec.goal, lane, where),
           record};
 }
 

@@ -66,16 +66,33 @@ inline constexpr double path_radius = 2.5;
       "enter on a lane and along its direction");
 }
 
+/// Throws `WorldError` where the map has no lane of that id, or the lane is not between `from` and `to` [m].
+inline void check_stretch_of(Map const& map, LaneId lane, double from, double to, std::string const& where) {
+  if (index_of(lane) >= map.lanes().size())
+    throw WorldError(where, "its goal names lane " + to_string(lane) + ", which the map does not have",
+                     "use Map::find_lane");
+  if (double const length = map.lane(lane).length(); from > length || to < 0.0)
+    throw WorldError(where,
+                     "its goal's stretch of lane is not on lane " + to_string(lane) + ", which is " +
+                         rounded_text(length) + " m long",
+                     "give from and to along the lane's path");
+}
+
 /// The agent's goal, complete: lanes beside count from the one that it enters in. Throws `WorldError` for a sequence
 /// that is too long, or within another goal, or for one without parts, and `ParameterError` for a number out of its
-/// range, or limits that leave nothing between them.
-[[nodiscard]] inline Goal entering_goal(Goal goal, LaneId lane, std::string const& where, bool is_outer = true) {
+/// range, limits that leave nothing between them, or a lane or stretch that the map does not have.
+[[nodiscard]] inline Goal entering_goal(Map const& map, Goal goal, LaneId lane, std::string const& where,
+                                        bool is_outer = true) {
   check_if_described(goal, where);
+  if (auto const* const reach = std::get_if<ReachLane>(&goal))
+    check_stretch_of(map, reach->lane, reach->from, reach->to, where);
+  if (auto const* const limits = std::get_if<LaneLimits>(&goal); limits && is_valid(limits->lane))
+    check_stretch_of(map, limits->lane, limits->from, limits->to, where);
   if (auto* const beside = std::get_if<ReachLaneBeside>(&goal); beside && !is_valid(beside->from)) beside->from = lane;
   auto const complete = [&](std::vector<Goal>& parts) {
     if (parts.empty())
       throw WorldError(where, "its goal is made of no parts: it is never reached", "give it parts, or NoGoal");
-    for (auto& part : parts) part = entering_goal(std::move(part), lane, where, false);
+    for (auto& part : parts) part = entering_goal(map, std::move(part), lane, where, false);
   };
   if (auto* const all = std::get_if<AllGoals>(&goal)) complete(all->parts);
   if (auto* const any = std::get_if<AnyGoal>(&goal)) complete(any->parts);
@@ -103,9 +120,9 @@ class Destinations {
     return {};
   }
 
-  [[nodiscard]] std::vector<LaneId> lanes(ReachLane const& goal) const { return lane(goal.lane); }
+  [[nodiscard]] std::vector<LaneId> lanes(ReachLane const& goal) const { return {goal.lane}; }
   [[nodiscard]] std::vector<LaneId> lanes(LaneLimits const& goal) const {
-    return is_valid(goal.lane) ? lane(goal.lane) : std::vector<LaneId>{};
+    return is_valid(goal.lane) ? std::vector{goal.lane} : std::vector<LaneId>{};
   }
 
   /// Of goals to be reached at once the first place counts.
@@ -134,13 +151,6 @@ class Destinations {
       throw WorldError(*where_, "its goal, a polygon, is not near a drivable lane",
                        "give the route too, or a goal on a lane");
     return lanes;
-  }
-
-  [[nodiscard]] std::vector<LaneId> lane(LaneId lane) const {
-    if (index_of(lane) >= map_->lanes().size())
-      throw WorldError(*where_, "its goal names lane " + to_string(lane) + ", which the map does not have",
-                       "use Map::find_lane");
-    return {lane};
   }
 
   Map const* map_;
