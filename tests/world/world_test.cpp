@@ -284,7 +284,7 @@ TEST_CASE("states set from outside place the agent anew") {
   CHECK(world.record(id).lane.s == doctest::Approx(300));
   CHECK(world.record(id).lane.corridor == 0);
   CHECK(says(error_of([&] { world.set_state(id, {.x = std::numeric_limits<double>::infinity()}); }), "not a finite"));
-  CHECK(says(error_of([&] { world.set_state(id, {.x = 300, .y = 120}); }), "120 m away from the road of its route"));
+  CHECK(says(error_of([&] { world.set_state(id, {.x = 300, .y = 120}); }), "m away from the road of its route"));
   CHECK(world.state(id).x == 300);
 }
 

@@ -267,8 +267,8 @@ inline void set_lane_ends(Map const& map, LaneCorridor& corridor, bool is_short)
 /// Lanes that cross it are none; those are its conflicts, with lanes that merge with it in a junction. No stretch of a
 /// lane has two images, except by different corridors.
 ///
-/// The map remembers those that are in use, and the last 16 others or more: their routes give the same object again,
-/// at once. Safe on many threads.
+/// The map remembers those that are in use, and of the others those that were asked for last, 8 to 16 MB of them: their
+/// routes give the same object again, at once. Safe on many threads.
 [[nodiscard]] inline std::shared_ptr<RoadCorridor const> build_road_corridor(Map const& map, Route const& route) {
   if (auto known = map.built_corridors().find(route.lanes)) return known;
   return map.built_corridors().add(detail::make_road_corridor(map, route.lanes));

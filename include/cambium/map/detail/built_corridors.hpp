@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -13,10 +14,25 @@
 
 namespace cambium::map::detail {
 
+/// About how much memory a road corridor takes [B]: its lines, and what it has of lanes that cross it.
+[[nodiscard]] inline std::size_t bytes_of(RoadCorridor const& road) {
+  std::size_t bytes = sizeof(RoadCorridor);
+  for (auto const& corridor : road.corridors) {
+    bytes += sizeof(LaneCorridor) + corridor.widths.size() * sizeof(SideWidths) +
+             corridor.conflicts.size() * sizeof(Conflict) + corridor.feeders.size() * sizeof(Feeder);
+    for (auto const* line : {&corridor.center, &corridor.left, &corridor.right}) bytes += line->segments().size_bytes();
+    for (auto const& conflict : corridor.conflicts) bytes += conflict.ways.size() * sizeof(ConflictWay);
+  }
+  return bytes;
+}
+
 /// Road corridors by their routes: those in use, and those that were asked for last. Any number of threads may ask.
 class BuiltCorridors {
  public:
   using Shared = std::shared_ptr<RoadCorridor const>;
+
+  /// Those that are not in use may take `unused_bytes`, and as much again until it is time to forget some [B].
+  explicit BuiltCorridors(std::size_t unused_bytes = 8u << 20) : unused_bytes_(unused_bytes), most_(2 * unused_bytes) {}
 
   /// The one along `route`; null if there is none.
   [[nodiscard]] Shared find(std::vector<LaneId> const& route) {
@@ -29,39 +45,44 @@ class BuiltCorridors {
 
   /// Takes `road` in and returns it, or the one that somebody else has built along its route in the meantime.
   Shared add(Shared const& road) {
+    auto const bytes = bytes_of(*road);
     std::lock_guard const lock(mutex_);
-    Shared const kept = roads_.try_emplace(road->route, Entry{road, ++asked_}).first->second.road;
-    if (roads_.size() > most_) forget_oldest();
+    auto const [at, is_new] = roads_.try_emplace(road->route, Entry{road, bytes, ++asked_});
+    Shared const kept = at->second.road;
+    if (is_new) bytes_ += bytes;
+    if (bytes_ > most_) forget_oldest();
     return kept;
   }
 
  private:
   struct Entry {
     Shared road;
+    std::size_t bytes;
     std::uint64_t asked;  ///< when it was asked for last
   };
-
-  static constexpr std::size_t unused_kept = 16;
+  using Roads = std::map<std::vector<LaneId>, Entry>;
 
   /// Forgets those not in use but for the ones that were asked for last.
   void forget_oldest() {
-    std::vector<std::uint64_t> unused;
-    for (auto const& [route, entry] : roads_)
-      if (entry.road.use_count() == 1) unused.push_back(entry.asked);
-    if (unused.size() > unused_kept) {
-      auto const oldest_kept = unused.end() - unused_kept;
-      std::nth_element(unused.begin(), oldest_kept, unused.end());
-      std::erase_if(roads_, [since = *oldest_kept](auto const& road) {
-        return road.second.road.use_count() == 1 && road.second.asked < since;
-      });
+    std::vector<Roads::iterator> unused;
+    for (auto at = roads_.begin(); at != roads_.end(); ++at)
+      if (at->second.road.use_count() == 1) unused.push_back(at);
+    std::ranges::sort(unused, std::greater{}, [](auto const& at) { return at->second.asked; });
+    std::size_t kept = 0;
+    for (auto const& at : unused) {
+      kept += at->second.bytes;
+      if (kept <= unused_bytes_) continue;
+      bytes_ -= at->second.bytes;
+      roads_.erase(at);
     }
-    most_ = roads_.size() + unused_kept;
+    most_ = bytes_ + unused_bytes_;
   }
 
   std::mutex mutex_;
-  std::map<std::vector<LaneId>, Entry> roads_;
+  Roads roads_;
   std::uint64_t asked_ = 0;
-  std::size_t most_ = 2 * unused_kept;  ///< with more it is time to forget some
+  std::size_t unused_bytes_, bytes_ = 0;
+  std::size_t most_;  ///< with more bytes it is time to forget some
 };
 
 }  // namespace cambium::map::detail

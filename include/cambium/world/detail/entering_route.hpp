@@ -120,9 +120,14 @@ class Destinations {
     return {};
   }
 
-  [[nodiscard]] std::vector<LaneId> lanes(ReachLane const& goal) const { return {goal.lane}; }
+  [[nodiscard]] std::vector<LaneId> lanes(ReachLane const& goal) const {
+    check_stretch_of(*map_, goal.lane, goal.from, goal.to, *where_);
+    return {goal.lane};
+  }
   [[nodiscard]] std::vector<LaneId> lanes(LaneLimits const& goal) const {
-    return is_valid(goal.lane) ? std::vector{goal.lane} : std::vector<LaneId>{};
+    if (!is_valid(goal.lane)) return {};
+    check_stretch_of(*map_, goal.lane, goal.from, goal.to, *where_);
+    return {goal.lane};
   }
 
   /// Of goals to be reached at once the first place counts.
