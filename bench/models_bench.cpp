@@ -139,21 +139,10 @@ void register_steps(std::string const& name, std::size_t agents, Make make, Eval
   });
 }
 
-/// What the best of a row is beside its target [ns per agent-step].
-void print_targets(yardstick::Results const& results) {
-  std::printf("\ntargets [ns per agent-step]\n");
-  for (auto const& [name, target] : {std::pair{"models/mobil/20", 120.0},
-                                     {"models/idm_lane_tracking/20", 125.0},
-                                     {"models/intersection/10", 2000.0}}) {
-    auto const row = results.find(name);
-    if (row == results.end() || row->second.counter.empty()) continue;
-    std::printf("  %-26s %8.1f   target %6.0f   %s\n", name, row->second.best, target,
-                row->second.best <= target ? "kept" : "MISSED");
-  }
-}
-
 void print_ratios(yardstick::Results const& results) {
-  print_targets(results);
+  yardstick::print_targets(
+      results,
+      {{"models/mobil/20", 120.0}, {"models/idm_lane_tracking/20", 125.0}, {"models/intersection/10", 2000.0}});
   std::printf("\nratios of the best\n");
   auto const row = [&](char const* a, char const* b, char const* target) {
     if (auto const r = yardstick::ratio(results, a, b)) std::printf("  %-26s / %-22s %6.2f   %s\n", a, b, *r, target);

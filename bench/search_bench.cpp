@@ -137,7 +137,7 @@ void print_ratios(yardstick::Results const& results) {
   row("search/5x10", "yardstick/uct/5x10", "(at least 0.5)");
   row("search/10x30", "yardstick/uct/10x30", "");
   row("search/threads/2", "search/threads/1", "(at least 1.9 on an idle machine)");
-  std::printf("targets, iterations per second: search/5x10 200 k, search/10x30 80 k, search/crossing/2 2 M\n");
+  yardstick::print_targets(results, {{"search/5x10", 200e3}, {"search/10x30", 80e3}, {"search/crossing/2", 2e6}});
 }
 
 }  // namespace

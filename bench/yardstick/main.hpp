@@ -6,10 +6,13 @@
 #include <cstdio>
 #include <fstream>
 #include <functional>
+#include <initializer_list>
 #include <iterator>
 #include <map>
 #include <optional>
 #include <string>
+#include <tuple>
+#include <utility>
 #include <vector>
 
 #include <regex.h>
@@ -47,6 +50,22 @@ using Results = std::map<std::string, Result>;
   return above->second.best / below->second.best;
 }
 
+/// Whether more of it is better.
+[[nodiscard]] inline bool is_rate(std::string const& counter) { return counter == rate || counter == search_rate; }
+
+/// Prints what the best of each row is beside its target.
+inline void print_targets(Results const& results, std::initializer_list<std::pair<char const*, double>> targets) {
+  std::printf("\ntargets\n");
+  for (auto const& [name, target] : targets) {
+    auto const row = results.find(name);
+    if (row == results.end() || row->second.counter.empty()) continue;
+    auto const& [counter, best] = std::tie(row->second.counter, row->second.best);
+    bool const is_kept = is_rate(counter) ? best >= target : best <= target;
+    std::printf("  %-26s %12.1f   target %9.0f %-22s %s\n", name, best, target, counter.c_str(),
+                is_kept ? "kept" : "MISSED");
+  }
+}
+
 /// Collects the repetitions and prints a row for each benchmark at the end.
 class TableReporter : public benchmark::BenchmarkReporter {
  public:
@@ -75,8 +94,6 @@ class TableReporter : public benchmark::BenchmarkReporter {
   }
 
  private:
-  [[nodiscard]] static bool is_rate(std::string const& counter) { return counter == rate || counter == search_rate; }
-
   [[nodiscard]] static Result summary(std::vector<Run> const& runs) {
     Result result;
     std::vector<double> values;
