@@ -126,7 +126,7 @@ void check_all_pass(std::shared_ptr<Map const> const& map, std::string const& na
 
 TEST_CASE("nobody collides and nobody waits forever in sampled traffic of cars, vans and trucks") {
   for (char const* name : {"intersection_3way.xodr", "intersection_4way.xodr", "roundabout.xodr"})
-    check_all_pass(support::own_map(name), name, runs(200));
+    check_all_pass(support::own_map(name), name, runs(1000));
 }
 
 TEST_CASE("so it is under traffic lights, and nobody crosses a stop line on red") {
