@@ -132,12 +132,12 @@ TEST_CASE("nobody collides and nobody waits forever in sampled traffic of cars, 
 TEST_CASE("so it is under traffic lights, and nobody crosses a stop line on red") {
   auto const map = support::own_map("intersection_4way.xodr");
   REQUIRE(map->lights().size() == 2);
-  check_all_pass(map, "intersection_4way.xodr with lights", runs(200), {.lights = true});
+  check_all_pass(map, "intersection_4way.xodr with lights", runs(1000), {.lights = true});
 }
 
 TEST_CASE("so it is among bicycles, which ride as cars drive, in sampled traffic") {
   for (char const* name : {"intersection_3way.xodr", "intersection_4way.xodr", "roundabout.xodr"})
-    check_all_pass(support::own_map(name), name + std::string(" with bicycles"), runs(60), {.bicycles = 0.3});
+    check_all_pass(support::own_map(name), name + std::string(" with bicycles"), runs(1000), {.bicycles = 0.3});
 }
 
 TEST_CASE("so it is at the junctions of the corpus") {
