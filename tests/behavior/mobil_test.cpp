@@ -548,6 +548,22 @@ TEST_CASE("from rest, on an empty road, who needs another lane at the end comes 
     }
 }
 
+TEST_CASE("so do long vehicles close to the end of the lane, in what room is left") {
+  for (auto const& shape :
+       {cb::geometry::van(), cb::geometry::truck(), cb::geometry::bus(), cb::geometry::articulated_truck()})
+    for (int const lane : {1, 2})
+      for (double const before : {60.0, 50.0, 40.0, 35.0, 30.0}) {
+        auto const map = support::straight_road(2, 600.0);
+        Sim world(map);
+        auto const driver = add(world, lane, 600.0 - before, 0.0, mobil(30.0), last_metres_of(*map, 3 - lane), shape);
+        for (int k = 0; k < 600 && !world.reached_goal(driver); ++k) world.step(0.2);
+        CAPTURE(shape.front);
+        CAPTURE(lane);
+        CAPTURE(before);
+        CHECK(world.reached_goal(driver));
+      }
+}
+
 TEST_CASE("two who stand side by side and need each other's lanes both come there") {
   auto const come_there = [](cb::geometry::Shape const& shape, double at) {
     for (double const apart : {-3.0, 0.0, 3.0}) {

@@ -557,6 +557,35 @@ TEST_CASE("of two vehicles side by side within a lane, the one that reaches near
   }
 }
 
+TEST_CASE("so it is where the larger one has left its own lane for another one, and reaches over that one's end") {
+  auto const truck = cb::geometry::articulated_truck();
+  auto const motorcycle = cb::geometry::motorcycle();
+  auto const one_each_way = [](double s) {
+    return cb::map::SectionPlan{.s = s, .left = cb::map::equal_lanes(1), .right = cb::map::equal_lanes(1)};
+  };
+  auto const map =
+      support::map_of({.line = cb::map::lay_from({}, {{400.0}}), .sections = {one_each_way(0.0), one_each_way(200.0)}});
+  Count count;
+  for (double x = 180.0; x <= 206.0; x += 0.5)
+    for (double const ahead : {-2.5, -0.5, 0.5, 3.5}) {
+      Sim world(map);
+      auto const large = world.add({.position = {x, 1.75}, .heading = cb::geometry::pi, .shape = truck});
+      world.set_state(large, {.x = x, .y = -1.3});
+      world.add({.position = {x + ahead, -3.07}, .shape = motorcycle});
+      auto const behind = world.add({.position = {20, -1.75}}), before = world.add({.position = {30, -1.75}});
+      world.set_state(before, {.x = 300, .y = -1.75});  // on a corridor that both lanes are pieces of
+      CAPTURE(x);
+      CAPTURE(ahead);
+      compare(world, count);
+      REQUIRE(world.observe(behind).front());
+      CHECK(world.observe(behind).front()->agent == large);
+      REQUIRE(world.observe(before).rear());
+      CHECK(world.observe(before).rear()->agent == large);
+    }
+  CHECK(count.reaching > 200);
+  CHECK(count.hidden > 50);
+}
+
 TEST_CASE("who reaches over the border hides nobody who is nearer") {
   auto const car = cb::geometry::car();
   auto const bus = cb::geometry::bus();
