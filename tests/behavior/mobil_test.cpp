@@ -189,31 +189,38 @@ TEST_CASE("mirrored traffic changes lanes as the mirror image") {
 }
 
 TEST_CASE("drivers slow for bends, and for limits where they obey them") {
-  for (int const what : {0, 1, 2}) {  // straight on; a bend; a limit
-    auto const map = support::map_of({.id = "1",
-                                      .line = cb::map::lay_from({}, {{400.0}, {150.0, 0.01, 0.01}, {300.0}}),
-                                      .sections = {{.right = cb::map::equal_lanes(2)}},
-                                      .speed_limit = 20.0});
-    Sim world(map);
-    auto driver = mobil(30.0);
-    driver.changing.lateral_acceleration = what == 1 ? 3.0 : 50.0;
-    driver.changing.obey_speed_limits = what == 2;
-    auto const id = add(world, 2, 20.0, 28.0, driver);
-    double across = 0.0, hardest = 0.0, fastest = 0.0;
-    for (int k = 0; k < 120; ++k) {
-      auto const before = world.state(id);
-      world.step(0.2);
-      auto const& now = world.state(id);
-      across =
-          std::max(across, std::abs(cb::geometry::angle_difference(now.heading, before.heading)) / 0.2 * now.speed);
-      hardest = std::max(hardest, (before.speed - now.speed) / 0.2);
-      if (now.x > 200.0) fastest = std::max(fastest, now.speed);
-    }
-    CAPTURE(what);
-    CHECK((across < 3.2) == (what == 1));
-    CHECK((fastest < 20.5) == (what == 2));
-    if (what != 2) CHECK(hardest < 2.5);  // it begins beyond the limit
-  }
+  enum class What { neither, bends, limits };
+  for (auto const what : {What::neither, What::bends, What::limits})
+    for (double const radius : {10.0, 30.0, 100.0})
+      for (double const braking : {1.67, 3.0}) {
+        auto const map = support::map_of(
+            {.id = "1",
+             .line = cb::map::lay_from({}, {{400.0}, {1.5 * radius, 1.0 / radius, 1.0 / radius}, {300.0}}),
+             .sections = {{.right = cb::map::equal_lanes(1)}},
+             .speed_limit = 20.0});
+        Sim world(map);
+        auto driver = mobil(28.0);
+        driver.idm.comfortable_deceleration = braking;
+        driver.changing.lateral_acceleration = what == What::bends ? 3.0 : 50.0;
+        driver.changing.obey_speed_limits = what == What::limits;
+        auto const id = add(world, 1, 20.0, 28.0, driver);
+        double across = 0.0, hardest = 0.0, fastest = 0.0;
+        for (int k = 0; k < 200 && world.record(id).status == cb::AgentStatus::driving; ++k) {
+          auto const before = world.state(id);
+          world.step(0.2);
+          auto const& now = world.state(id);
+          double const turn = std::abs(cb::geometry::angle_difference(now.heading, before.heading));
+          across = std::max(across, turn / 0.2 * now.speed);
+          hardest = std::max(hardest, (before.speed - now.speed) / 0.2);
+          if (now.x > 200.0) fastest = std::max(fastest, now.speed);
+        }
+        CAPTURE(static_cast<int>(what));
+        CAPTURE(radius);
+        CAPTURE(braking);
+        CHECK((across < 3.1) == (what == What::bends));
+        if (what == What::limits) CHECK(fastest < 20.5);
+        if (what == What::bends) CHECK(hardest < 1.5 * braking);
+      }
 }
 
 TEST_CASE("the more polite drivers are, the less deceleration they impose on others") {

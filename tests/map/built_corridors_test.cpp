@@ -72,7 +72,7 @@ TEST_CASE("road corridors in use are kept, and of the others those that were ask
     std::size_t kept = 0;
     for (auto const& road : seen)
       if (auto const still = road.lock(); still && still != in_use) kept += bytes_of(*still);
-    REQUIRE(kept <= 2 * room + room / 20);  // the one that has just come is in use
+    REQUIRE(kept <= 2 * room + room / 10);  // those that have just come are in use
   }
   CHECK(seen[2].expired());
   CHECK_FALSE(seen[0].expired());

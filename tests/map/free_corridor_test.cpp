@@ -50,6 +50,16 @@ TEST_CASE("a way across a road knows the lanes that it crosses, and how far back
   CHECK(build(*map, {{320, 5}, {320, -10}, {330, -10}, {330, 5}})->corridors[0].crossings.size() == 4);
 }
 
+TEST_CASE("rounded corners are bends") {
+  auto const map = support::straight_road(1, 100.0);
+  auto const road = build(*map, {{0, 50}, {20, 50}, {20, 80}}, {.width = 9.0});  // rounded by 5 m
+  auto const& way = road->corridors[0];
+  REQUIRE(way.bends.size() >= 1);
+  CHECK(way.sharpest_bend == doctest::Approx(1.0 / 5.0).epsilon(0.15));
+  CHECK(way.bends.front().begin == doctest::Approx(15.0).epsilon(0.2));
+  CHECK(build(*map, {{0, 50}, {20, 50}})->corridors[0].sharpest_bend == 0.0);
+}
+
 TEST_CASE("corners are rounded, and the way stays near its points") {
   auto const map = support::straight_road(1, 100.0);
   for (double const turn : {0.1, 0.5, 1.5, 2.5, 3.0, -1.0, -2.9}) {

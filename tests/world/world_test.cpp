@@ -285,6 +285,7 @@ TEST_CASE("states set from outside place the agent anew") {
   CHECK(world.record(id).lane.corridor == 0);
   CHECK(says(error_of([&] { world.set_state(id, {.x = std::numeric_limits<double>::infinity()}); }), "not a finite"));
   CHECK(says(error_of([&] { world.set_state(id, {.x = 300, .y = 120}); }), "m away from the road of its route"));
+  CHECK(says(error_of([&] { world.set_state(id, {.x = -500, .y = -5.25}); }), "m away from the road of its route"));
   CHECK(world.state(id).x == 300);
 }
 

@@ -73,7 +73,8 @@ struct LaneChanging {
         parameter("heed_marks", &P::heed_marks, "-", Range{0, 1}, "change only where the road marks permit it"),
         parameter("obey_speed_limits", &P::obey_speed_limits, "-", Range{0, 1},
                   "desire no more than the limit, and be there in time for a lower one ahead"),
-        parameter("lateral_acceleration", &P::lateral_acceleration, "m/s^2", Range{0.1, 50}, "in bends, at most"),
+        parameter("lateral_acceleration", &P::lateral_acceleration, "m/s^2", Range{0.1, 50},
+                  "in bends, at most; it comes to them slower, for IDM brakes late"),
         parameter("course", &P::course, "-", {}, "how long a change takes"));
   }
 

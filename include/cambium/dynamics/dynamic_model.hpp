@@ -10,9 +10,9 @@ namespace cambium {
 /// A vehicle model: how inputs move a state. `derivative` is pure: no allocation, no hidden state. `State` has the
 /// fields of `BasicState` and may add more; `add_scaled(state, derivative, h)` must exist for it. `limited` brings an
 /// input within what the vehicle can do in that state. `input` is what a driver's action (acceleration, steering angle)
-/// means for this vehicle, within the same limits: with it behaviours and controllers drive any model. It may have, as
-/// fields or functions: `wheel_base` [m] (see `wheel_base_of`); and, see `drive`, `double highest_speed` [m/s], `double
-/// response_time` [s], `driven(state, action, dt)`.
+/// means for this vehicle, within the same limits: with it behaviours and controllers drive any model. It may have
+/// `wheel_base` [m], see `wheel_base_of`; and, see `drive`, the fields `double highest_speed` [m/s] and `double
+/// response_time` [s], above 0, or a function `driven(state, action, dt)`.
 template <class M>
 concept DynamicModel = std::copyable<M> && MotionState<typename M::State> && std::copyable<typename M::Input> &&
     requires(M const model, typename M::State const x, typename M::Input const u, Action const action, double h) {

@@ -39,8 +39,7 @@ class LaneJoiner {
     if (right_.size() > 1) corridor.right = geometry::Line::from_samples(right_);
     corridor.pieces = make_pieces(corridor.center);
     corridor.speed_limits = join_limits(corridor.pieces);
-    corridor.bends = bends_of(corridor.center);
-    for (auto const& bend : corridor.bends) corridor.sharpest_bend = std::max(corridor.sharpest_bend, bend.curvature);
+    find_bends(corridor);
     auto const& last = map_.lane(lanes.back());
     corridor.continues = std::any_of(last.successors.begin(), last.successors.end(),
                                      [&](LaneId next) { return may_enter(last, map_.lane(next)); });
@@ -267,8 +266,8 @@ inline void set_lane_ends(Map const& map, LaneCorridor& corridor, bool is_short)
 /// Lanes that cross it are none; those are its conflicts, with lanes that merge with it in a junction. No stretch of a
 /// lane has two images, except by different corridors.
 ///
-/// The map remembers those that are in use, and of the others those that were asked for last, 8 to 16 MB of them: their
-/// routes give the same object again, at once. Safe on many threads.
+/// The map remembers those that are in use, and others: their routes give the same object again, at once. Whenever 8 MB
+/// of new ones have come, it forgets those not in use but for the last 8 MB that were asked for. Safe on many threads.
 [[nodiscard]] inline std::shared_ptr<RoadCorridor const> build_road_corridor(Map const& map, Route const& route) {
   if (auto known = map.built_corridors().find(route.lanes)) return known;
   return map.built_corridors().add(detail::make_road_corridor(map, route.lanes));

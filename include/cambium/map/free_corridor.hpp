@@ -14,6 +14,7 @@
 #include "cambium/core/ids.hpp"
 #include "cambium/geometry/line.hpp"
 #include "cambium/map/corridor.hpp"
+#include "cambium/map/detail/bends.hpp"
 #include "cambium/map/detail/conflict_ways.hpp"
 #include "cambium/map/map.hpp"
 
@@ -129,6 +130,7 @@ class CrossingFinder {
   corridor.widths.assign(count + 1, {0.5 * options.width, 0.5 * options.width});
   corridor.pieces.push_back(
       {.end = corridor.length(), .type = options.type, .segments = static_cast<std::uint32_t>(count)});
+  detail::find_bends(corridor);
   corridor.crossings = detail::CrossingFinder(map, options).find(corridor.center);
   corridor.continues = corridor.reaches_destination = true;  // who comes to its end has arrived
   auto road = std::make_shared<RoadCorridor>();

@@ -61,7 +61,6 @@ struct MctsHypothesis {
   Options options{};
   BeliefParameters belief{};
   double speed_deviation = 0.05;
-  double outlier = 0.01;
   double range = 60.0;
 
   static constexpr char const* name = "mcts_hypothesis";
@@ -77,9 +76,6 @@ struct MctsHypothesis {
                            parameter("belief", &P::belief, "-", {}, "how it follows what is observed"),
                            parameter("speed_deviation", &P::speed_deviation, "m/s", Range{1e-3, 10},
                                      "standard deviation of a speed after a step, from what a headway predicts"),
-                           parameter("outlier", &P::outlier, "-", Range{0, 1},
-                                     "likelihood of any other speed, that of the predicted one being 1: what no "
-                                     "headway explains tells little"),
                            parameter("range", &P::range, "m", non_negative,
                                      "the 6 nearest within it are told apart; of the rest all is as likely"));
   }
@@ -145,11 +141,15 @@ struct MctsHypothesis {
 
   void observe(Tracked& other, double speed) const {
     std::array<double, IdmHypotheses::most_regions> likelihoods{};
+    double nearest = 1e300;
     auto const regions = static_cast<std::size_t>(others.regions);
     for (std::size_t r = 0; r < regions; ++r) {
       double const off = (speed - static_cast<double>(other.expected[r])) / speed_deviation;
-      likelihoods[r] = detail::portable_exp(-0.5 * off * off) + outlier;
+      likelihoods[r] = 0.5 * off * off;
+      nearest = std::min(nearest, likelihoods[r]);
     }
+    // Relative to the best, lest all of them vanish where no headway explains what was seen.
+    for (std::size_t r = 0; r < regions; ++r) likelihoods[r] = detail::portable_exp(nearest - likelihoods[r]);
     other.belief.update({likelihoods.data(), regions}, belief);
   }
 

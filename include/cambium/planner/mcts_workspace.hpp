@@ -189,7 +189,7 @@ void take_course(View const& view, Workspace& workspace, double dt, Plan<View>& 
   workspace.play(view.time() + dt, [&](auto const& frame) {
     auto const& ego = frame.agents[slot];
     if (plan.trajectory.empty()) plan.action = ego.action;
-    plan.trajectory.push_back(ego.state);
+    if (plan.trajectory.empty() || ego.state.time > plan.trajectory.back().time) plan.trajectory.push_back(ego.state);
     if (auto const* at_end = std::get_if<Workspace::Domain::behavior_index>(&ego.memory)) memory = *at_end;
   });
   go_straight_on(view, view.time() + dt, plan);
@@ -230,7 +230,8 @@ void throw_if(SearchResult<Action> const& result, Workspace& workspace, AgentId 
                       "give it one that always is, such as keep_gap or stay");
   if (problem == SearchProblem::terminal_root)
     throw SearchError(
-        where, "the course is over already: " + what_is_over(workspace.domain().world(), workspace.domain().slots()),
+        where,
+        "the course is over already (" + what_is_over(workspace.domain().world(), workspace.domain().slots()) + ")",
         "ask the evaluators before you plan");
   cambium::throw_if(problem, result.problem_steps);
 }

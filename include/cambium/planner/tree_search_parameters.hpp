@@ -96,12 +96,13 @@ struct TreeSearchParameters {
     return std::make_tuple(
         parameter("horizon", &P::horizon, "-", Range{1, 10'000}, "steps that a course has, in the tree and after it"),
         parameter("discount", &P::discount, "-", Range{0, 1}, "what a reward one step later is worth"),
-        parameter("lowest_return", &P::lowest_return, "-", any_finite,
+        parameter("lowest_return", &P::lowest_return, "-", Range{-1e290, 1e290},
                   "counts as seen from the beginning, where returns are scaled by the bounds seen"),
-        parameter("highest_return", &P::highest_return, "-", any_finite,
+        parameter("highest_return", &P::highest_return, "-", Range{-1e290, 1e290},
                   "likewise; equal to the lowest: only what is seen counts"),
         parameter("memory", &P::memory, "B", Range{4096, 1e12},
-                  "the tree grows no larger; then the search goes on without new nodes"),
+                  "the tree grows no larger, but half as much again for a moment where time is its budget; then the "
+                  "search goes on without new nodes"),
         parameter("final_move", &P::final_move, "-", Range{0, 2}, "0 most visits, 1 best return, 2 lower bound"),
         parameter("action_widening", &P::action_widening, "-", {}, "how many of a continuum of actions are tried"),
         parameter("outcome_widening", &P::outcome_widening, "-", {},

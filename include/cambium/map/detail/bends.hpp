@@ -35,4 +35,10 @@ namespace cambium::map::detail {
   return bends;
 }
 
+/// Notes the corridor's bends, by its centre line.
+inline void find_bends(LaneCorridor& corridor) {
+  corridor.bends = bends_of(corridor.center);
+  for (auto const& bend : corridor.bends) corridor.sharpest_bend = std::max(corridor.sharpest_bend, bend.curvature);
+}
+
 }  // namespace cambium::map::detail

@@ -31,8 +31,8 @@ class BuiltCorridors {
  public:
   using Shared = std::shared_ptr<RoadCorridor const>;
 
-  /// Those that are not in use may take `unused_bytes`, and as much again until it is time to forget some [B].
-  explicit BuiltCorridors(std::size_t unused_bytes = 8u << 20) : unused_bytes_(unused_bytes), most_(2 * unused_bytes) {}
+  /// Whenever `unused_bytes` [B] of new ones have come, as much is kept of those that are not in use.
+  explicit BuiltCorridors(std::size_t unused_bytes = 8u << 20) : unused_bytes_(unused_bytes) {}
 
   /// The one along `route`; null if there is none.
   [[nodiscard]] Shared find(std::vector<LaneId> const& route) {
@@ -49,8 +49,8 @@ class BuiltCorridors {
     std::lock_guard const lock(mutex_);
     auto const [at, is_new] = roads_.try_emplace(road->route, Entry{road, bytes, ++asked_});
     Shared const kept = at->second.road;
-    if (is_new) bytes_ += bytes;
-    if (bytes_ > most_) forget_oldest();
+    if (is_new) new_bytes_ += bytes;
+    if (new_bytes_ > unused_bytes_) forget_oldest();
     return kept;
   }
 
@@ -71,18 +71,15 @@ class BuiltCorridors {
     std::size_t kept = 0;
     for (auto const& at : unused) {
       kept += at->second.bytes;
-      if (kept <= unused_bytes_) continue;
-      bytes_ -= at->second.bytes;
-      roads_.erase(at);
+      if (kept > unused_bytes_) roads_.erase(at);
     }
-    most_ = bytes_ + unused_bytes_;
+    new_bytes_ = 0;
   }
 
   std::mutex mutex_;
   Roads roads_;
   std::uint64_t asked_ = 0;
-  std::size_t unused_bytes_, bytes_ = 0;
-  std::size_t most_;  ///< with more bytes it is time to forget some
+  std::size_t unused_bytes_, new_bytes_ = 0;
 };
 
 }  // namespace cambium::map::detail
