@@ -46,10 +46,12 @@ CAMBIUM_NOINLINE [[nodiscard]] double desired_speed_before_bends(P const& p, map
                                                                  double s, double speed, double lateral_acceleration) {
   constexpr double comfortable = 0.7;  // of the lateral acceleration: IDM comes down to a desired speed from above
   double const twice_braking = 2.0 * p.comfortable_deceleration, reach = s + speed * (speed / twice_braking + 1.0);
+  double const fastest = std::max(speed, p.desired_speed), fastest_square = fastest * fastest;
   double lowest = p.desired_speed * p.desired_speed, way = 0.0;
   auto const& bends = corridor.bends;
   auto bend = std::partition_point(bends.begin(), bends.end(), [s](map::Bend const& b) { return b.end < s; });
   for (; bend != bends.end() && bend->begin <= reach; ++bend) {
+    if (fastest_square * bend->curvature <= lateral_acceleration) continue;
     double const ahead = std::max(0.0, bend->begin - s);
     double const square = comfortable * lateral_acceleration / bend->curvature + twice_braking * ahead;
     if (square >= lowest) continue;

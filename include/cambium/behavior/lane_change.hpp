@@ -95,13 +95,10 @@ struct LaneChangeCourse {
     return detail::least_course_length(minimum_length, shape, detail::longer_by_front);
   }
 
-  /// The begin of a change to lane corridor `target` at `speed` [m/s], within `room` [m] where that can be done. In
-  /// less room than `least_length` a long vehicle swings out, rather than not to change at all; no change is shorter
-  /// than `minimum_length`.
+  /// The begin of a change to lane corridor `target` at `speed` [m/s], within `room` [m] where that can be done.
   [[nodiscard]] LaneChange begin(std::uint16_t target, geometry::Shape const& shape, double speed,
                                  double room = std::numeric_limits<double>::infinity()) const {
-    double const least = std::min(least_length(shape), std::max(minimum_length, room));
-    double const shortest = std::max(least, speed * std::min(shortest_duration, duration));
+    double const shortest = std::max(least_length(shape), speed * std::min(shortest_duration, duration));
     return {target, static_cast<float>(std::max(shortest, std::min(speed * duration, room))), 0.0f};
   }
 

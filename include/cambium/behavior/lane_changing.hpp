@@ -40,8 +40,9 @@ struct LaneKeeping {
 /// A change takes time and follows a smooth course. It is aborted where it has become unsafe, or where somebody comes
 /// into the same gap from the other side, while the way back does not leave the old lane. Meanwhile the leaders in all
 /// lanes that the vehicle is in count. Before objects and before the end of a lane that must be left it stops with
-/// enough room to change. Other drivers are taken to have the parameters `others` (long vehicles: `trucks`), and at
-/// least the desired speed that they show.
+/// enough room to change; a long vehicle that stands nearer to it than its least course is long stays there. Other
+/// drivers are taken to have the parameters `others` (long vehicles: `trucks`), and at least the desired speed that
+/// they show.
 struct LaneChanging {
   IdmParameters others{};
   IdmParameters trucks{.desired_speed = 23.0, .time_headway = 1.7, .maximum_acceleration = 0.9};
@@ -74,7 +75,7 @@ struct LaneChanging {
         parameter("obey_speed_limits", &P::obey_speed_limits, "-", Range{0, 1},
                   "desire no more than the limit, and be there in time for a lower one ahead"),
         parameter("lateral_acceleration", &P::lateral_acceleration, "m/s^2", Range{0.1, 50},
-                  "in bends, at most; it comes to them slower, for IDM brakes late"),
+                  "in bends, at most; where it has to slow for one it aims at 0.7 of it, for IDM brakes late"),
         parameter("course", &P::course, "-", {}, "how long a change takes"));
   }
 

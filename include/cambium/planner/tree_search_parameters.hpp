@@ -101,8 +101,8 @@ struct TreeSearchParameters {
         parameter("highest_return", &P::highest_return, "-", Range{-1e290, 1e290},
                   "likewise; equal to the lowest: only what is seen counts"),
         parameter("memory", &P::memory, "B", Range{4096, 1e12},
-                  "the tree grows no larger, but half as much again for a moment where time is its budget; then the "
-                  "search goes on without new nodes"),
+                  "the tree grows no larger, but for the moment in which its arrays move, where time is its budget; "
+                  "then the search goes on without new nodes"),
         parameter("final_move", &P::final_move, "-", Range{0, 2}, "0 most visits, 1 best return, 2 lower bound"),
         parameter("action_widening", &P::action_widening, "-", {}, "how many of a continuum of actions are tried"),
         parameter("outcome_widening", &P::outcome_widening, "-", {},
