@@ -179,7 +179,8 @@ struct LaneChanging {
   template <class View>
   [[nodiscard]] double desired_speed(View const& view, IdmParameters const& idm, double speed) const {
     auto const& corridor = view.corridor();
-    double desired = idm.desired_speed, fastest = std::max(speed, desired), s = view.lane_position().s;
+    double const s = view.lane_position().s, fastest = std::max(speed, idm.desired_speed);
+    double desired = idm.desired_speed;
     if (fastest * fastest * corridor.sharpest_bend > lateral_acceleration) [[unlikely]]
       desired = desired_speed_before_bends(idm, corridor, s, speed, lateral_acceleration);
     if (obey_speed_limits) [[unlikely]]

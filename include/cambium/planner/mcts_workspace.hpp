@@ -195,7 +195,7 @@ void take_course(View const& view, Workspace& workspace, double dt, Plan<View>& 
   go_straight_on(view, view.time() + dt, plan);
 }
 
-/// Why a course is over, of the first of `slots` whose is; nothing where only the reward says so.
+/// Why a course is over, of the first of `slots` whose is; else that the reward says so.
 template <class World>
 [[nodiscard]] std::string what_is_over(World const& world, std::span<std::uint32_t const> slots) {
   for (auto const slot : slots) {

@@ -108,14 +108,18 @@ void move_on_lane(Map const& map, map::RoadCorridor const& road, double distance
                                                : AgentStatus::off_route;
 }
 
+/// How far the place is from its lane corridor [m].
+[[nodiscard]] inline double distance_from(map::RoadCorridor const& road, map::LanePosition const& at) {
+  return std::hypot(at.lateral, std::max({-at.s, at.s - road.corridors[at.corridor].length(), 0.0}));
+}
+
 /// The place of `pose` on `road` for an agent that was last at `last`: there, if that fits, else where a lane corridor
 /// comes nearest, a radian off its direction counting as 3 m.
 [[nodiscard]] inline map::LanePosition relocate(map::RoadCorridor const& road, map::LanePosition const& last,
                                                 geometry::Pose const& pose) {
   constexpr double near = 2.0;  // [m]
   auto const measure = [&road](map::LanePosition const& at) {
-    double const beyond = std::max({-at.s, at.s - road.corridors[at.corridor].length(), 0.0});
-    return std::hypot(at.lateral, beyond) + 3.0 * std::abs(at.heading_error);
+    return distance_from(road, at) + 3.0 * std::abs(at.heading_error);
   };
   auto best = map::locate(road, last.corridor, pose, last);
   if (measure(best) < near) return best;
@@ -129,8 +133,7 @@ void move_on_lane(Map const& map, map::RoadCorridor const& road, double distance
 /// Throws `WorldError` where `at` is not that of a place near the road.
 inline void check_near_road(map::RoadCorridor const& road, map::LanePosition const& at, std::string const& where) {
   constexpr double far = 100.0;  // [m]
-  double const beyond = std::max({-at.s, at.s - road.corridors[at.corridor].length(), 0.0});
-  if (double const distance = std::hypot(at.lateral, beyond); distance > far)
+  if (double const distance = distance_from(road, at); distance > far)
     throw WorldError(where, "its position is " + rounded_text(distance) + " m away from the road of its route",
                      "check the frame of the position, or remove the agent and add it with another route");
 }
