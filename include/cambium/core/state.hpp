@@ -5,8 +5,6 @@
 #include <tuple>
 #include <type_traits>
 
-#include <Eigen/Core>
-
 #include "cambium/core/described.hpp"
 #include "cambium/core/macros.hpp"
 
@@ -47,18 +45,6 @@ concept MotionState = std::copyable<S> && std::is_trivially_copyable_v<S> && req
   s.speed;
 };
 static_assert(MotionState<State>);
-
-/// (time, x, y, heading, speed) as a fixed-size vector for numerics.
-template <class Scalar>
-[[nodiscard]] Eigen::Matrix<Scalar, 5, 1> to_vector(BasicState<Scalar> const& state) {
-  return {state.time, state.x, state.y, state.heading, state.speed};
-}
-
-/// Inverse of `to_vector`.
-template <class Scalar>
-[[nodiscard]] BasicState<Scalar> from_vector(Eigen::Matrix<Scalar, 5, 1> const& v) {
-  return {v[0], v[1], v[2], v[3], v[4]};
-}
 
 /// True when each of the fields of `BasicState` is a finite number.
 template <MotionState S>

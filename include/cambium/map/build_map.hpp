@@ -29,9 +29,9 @@
 #include "cambium/map/detail/unsampled_lane.hpp"
 #include "cambium/map/make_roads.hpp"
 #include "cambium/map/map.hpp"
+#include "cambium/map/map_impl.hpp"
 #include "cambium/map/opendrive_document.hpp"
 #include "cambium/map/overlaps.hpp"
-#include "cambium/map/routing.hpp"
 
 namespace cambium::map {
 
@@ -92,7 +92,6 @@ class MapBuild {
     find_overlaps(
         parts_.lanes, [this](Lane const& lane, double s) { return elevation(lane, s); },
         parts_.options.overlap_clearance, [&paths](Lane const& lane, double s) { return paths.at(lane, s); });
-    parts_.route_finder = make_route_finder();
     return std::make_shared<Map const>(std::move(parts_));
   }
 

@@ -116,7 +116,7 @@ class CenterLineReader {
       row[i] = *value;
     }
     geometry::Point const point = geometry::Point(row[x], row[y]) - origin_;
-    if (!(point.cwiseAbs().maxCoeff() <= 1e8)) fail("the point lies beyond 100 000 km", "give coordinates in m");
+    if (!(std::abs(point.x()) <= 1e8 && std::abs(point.y()) <= 1e8)) fail("the point lies beyond 100 000 km", "give coordinates in m");
     if (!result_.points.empty() && (point - result_.points.back()).norm() <= 1e-3) return;  // a joint written twice
     if (column_[heading] && !result_.points.empty())
       for (double const theta : {result_.headings.back(), row[heading]})

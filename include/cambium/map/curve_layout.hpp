@@ -192,7 +192,7 @@ inline void number_stations(std::vector<Geometry>& geometries) {
                    "give one heading a point, or none");
   std::vector<double> lengths, directions;
   for (std::size_t i = 0; i + 1 < n; ++i) {
-    auto const chord = (points[i + 1] - points[i]).eval();
+    auto const chord = (points[i + 1] - points[i]);
     if (!(chord.norm() > 1e-3) || !(chord.norm() < 1e6))
       throw MapError("polyline",
                      "points " + std::to_string(i) + " and " + std::to_string(i + 1) +
