@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <concepts>
-#include <tuple>
 #include <type_traits>
 
 #include "cambium/core/described.hpp"
@@ -22,11 +21,11 @@ struct BasicState {
   static constexpr char const* name = "state";
   static constexpr auto parameters() {
     using S = BasicState;
-    return std::make_tuple(parameter("time", &S::time, "s", any_finite, "of the state"),
-                           parameter("x", &S::x, "m", any_finite, "of the reference point, map frame"),
-                           parameter("y", &S::y, "m", any_finite, "likewise"),
-                           parameter("heading", &S::heading, "rad", any_finite, "counter-clockwise from +x"),
-                           parameter("speed", &S::speed, "m/s", any_finite, "along the heading"));
+    return parameter_list(parameter("time", &S::time, "s", any_finite, "of the state"),
+                          parameter("x", &S::x, "m", any_finite, "of the reference point, map frame"),
+                          parameter("y", &S::y, "m", any_finite, "likewise"),
+                          parameter("heading", &S::heading, "rad", any_finite, "counter-clockwise from +x"),
+                          parameter("speed", &S::speed, "m/s", any_finite, "along the heading"));
   }
 
   friend bool operator==(BasicState const&, BasicState const&) = default;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include "cambium/execution/lqr_gain.hpp"
 #include "cambium/execution/tracking.hpp"
@@ -30,7 +29,7 @@ struct LqrExecution {
   static constexpr auto parameters() {
     using Self = LqrExecution;
     constexpr Range weight{0, 1e6}, of_input{1e-6, 1e6};
-    return std::make_tuple(
+    return parameter_list(
         parameter("offset_weight", &Self::offset_weight, "1/m^2", weight, "of the offset from the plan, squared"),
         parameter("heading_weight", &Self::heading_weight, "1/rad^2", weight, "of the heading's error, squared"),
         parameter("steering_weight", &Self::steering_weight, "1/rad^2", of_input, "of the steering, squared"),

@@ -8,7 +8,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -49,7 +48,7 @@ struct MapOptions {
   static constexpr char const* name = "map_options";
   static constexpr auto parameters() {
     using P = MapOptions;
-    return std::make_tuple(
+    return parameter_list(
         parameter("position_tolerance", &P::position_tolerance, "m", Range{1e-5, 10},
                   "largest distance of a sampled lane from the exact one"),
         parameter("heading_tolerance", &P::heading_tolerance, "rad", Range{1e-4, 1},
