@@ -9,11 +9,9 @@
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/detail/lane_chords.hpp"
 #include "cambium/map/lane.hpp"
+#include "cambium/map/overlaps.hpp"
 
 namespace cambium::map {
-
-/// The place on a lane's exact path, with the direction of travel, beside path position `s` [m] of the sampled one.
-using LanePlace = std::function<geometry::Pose(Lane const&, double s)>;
 
 namespace detail {
 
