@@ -174,20 +174,49 @@ function(add_consumer name)
       --test-command ${CMAKE_CTEST_COMMAND} --output-on-failure)
 endfunction()
 add_consumer(subdirectory -DCONSUMER_SUBDIRECTORY=${PROJECT_SOURCE_DIR} "-DCONSUMER_TARGETS=geometry$<SEMICOLON>cambium")
+# Of a clang, which warns where Eigen is no system's.
+set(check_clang "")
+if(CAMBIUM_CHECK_clang++-14)
+  set(check_clang ${CAMBIUM_CHECK_clang++-14})
+elseif(CAMBIUM_CHECK_clang++-19)
+  set(check_clang ${CAMBIUM_CHECK_clang++-19})
+endif()
+set(no_pugixml -DCMAKE_DISABLE_FIND_PACKAGE_pugixml=ON)
+get_target_property(eigen_dir Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
+set(own_eigen -DCONSUMER_SUBDIRECTORY=${PROJECT_SOURCE_DIR} -DCONSUMER_TARGETS=cambium -DCONSUMER_EIGEN=${eigen_dir})
+if(check_clang)
+  list(APPEND own_eigen -DCMAKE_CXX_COMPILER=${check_clang})
+endif()
+add_consumer(subdirectory_with_own_eigen ${own_eigen})
+add_consumer(subdirectory_without_pugixml ${no_pugixml} -DCONSUMER_SUBDIRECTORY=${PROJECT_SOURCE_DIR}
+  -DCONSUMER_TARGETS=cambium)
+add_consumer(subdirectory_links_opendrive_without_pugixml ${no_pugixml} -DCONSUMER_SUBDIRECTORY=${PROJECT_SOURCE_DIR}
+  -DCONSUMER_TARGETS=opendrive)
+set(needs_pugixml "which[ \n]+cambium::opendrive[ \n]+needs[ \n]+and[ \n]+CMake[ \n]+did[ \n]+not[ \n]+find:[ \n]+install")
+set_tests_properties(structure.consumer.subdirectory_links_opendrive_without_pugixml PROPERTIES
+  PASS_REGULAR_EXPRESSION "${needs_pugixml}")
 if(CAMBIUM_INSTALL)
   set(install_tree ${structure_binary}/install)
   add_test(NAME structure.install
     COMMAND ${CMAKE_COMMAND} --install ${PROJECT_BINARY_DIR} --config $<CONFIG> --prefix ${install_tree})
-  set_tests_properties(structure.install PROPERTIES FIXTURES_SETUP cambium_install)
+  add_test(NAME structure.install_anew COMMAND ${CMAKE_COMMAND} -E rm -rf ${install_tree})
+  set_tests_properties(structure.install_anew PROPERTIES FIXTURES_SETUP cambium_install)
+  set_tests_properties(structure.install PROPERTIES FIXTURES_SETUP cambium_install DEPENDS structure.install_anew)
   set(package -DCMAKE_PREFIX_PATH=${install_tree})
-  set(no_pugixml -DCMAKE_DISABLE_FIND_PACKAGE_pugixml=ON)
   add_consumer(package ${package} -DCONSUMER_COMPONENTS=opendrive "-DCONSUMER_TARGETS=geometry$<SEMICOLON>opendrive")
   add_consumer(package_without_pugixml ${package} ${no_pugixml} -DCONSUMER_TARGETS=cambium)
   add_consumer(package_lacks_opendrive ${package} ${no_pugixml} -DCONSUMER_COMPONENTS=opendrive)
+  add_consumer(package_links_opendrive_without_pugixml ${package} ${no_pugixml} -DCONSUMER_TARGETS=opendrive)
+  add_test(NAME structure.installed_files COMMAND bash ${structure_source}/installed.sh ${PROJECT_SOURCE_DIR} ${install_tree}
+    ${CMAKE_CXX_COMPILER} ${check_clang})
+  set_tests_properties(structure.installed_files PROPERTIES SKIP_REGULAR_EXPRESSION "skipped:")
   set_tests_properties(structure.consumer.package structure.consumer.package_without_pugixml
-    structure.consumer.package_lacks_opendrive PROPERTIES FIXTURES_REQUIRED cambium_install)
+    structure.consumer.package_lacks_opendrive structure.consumer.package_links_opendrive_without_pugixml
+    structure.installed_files PROPERTIES FIXTURES_REQUIRED cambium_install)
   set_tests_properties(structure.consumer.package_lacks_opendrive PROPERTIES
-    PASS_REGULAR_EXPRESSION "opendrive[ \n]+\\(needs[ \n]+pugixml\\)")
+    PASS_REGULAR_EXPRESSION "component[ \n]+opendrive[ \n]+needs[ \n]+pugixml,[ \n]+which[ \n]+CMake[ \n]+did[ \n]+not[ \n]+find")
+  set_tests_properties(structure.consumer.package_links_opendrive_without_pugixml PROPERTIES
+    PASS_REGULAR_EXPRESSION "${needs_pugixml}")
 endif()
 
 # The programs in the README (the ```cpp blocks after the lines `<!-- runs -->`) compile and run as they stand; each prints
