@@ -26,4 +26,5 @@ namespace cambium::map {
 
 #ifndef CAMBIUM_COMPILED
 #include "cambium/map/build_map_impl.hpp"
+#include "cambium/map/map_impl.hpp"
 #endif

@@ -31,7 +31,6 @@
 #include "cambium/map/detail/unsampled_lane.hpp"
 #include "cambium/map/make_roads.hpp"
 #include "cambium/map/map.hpp"
-#include "cambium/map/map_impl.hpp"
 #include "cambium/map/opendrive_document.hpp"
 #include "cambium/map/overlaps.hpp"
 

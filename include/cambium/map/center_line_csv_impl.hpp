@@ -21,6 +21,7 @@
 #include "cambium/map/lane_type.hpp"
 #include "cambium/map/polyline_roads.hpp"
 #include "cambium/map/road_plan.hpp"
+#include "cambium/map/detail/polyline_profiles.hpp"
 
 namespace cambium::map {
 

@@ -15,14 +15,6 @@
 
 namespace cambium::map {
 
-/// One end of a road.
-struct RoadEnd {
-  std::string road;
-  opendrive::ContactPoint end = opendrive::ContactPoint::end;
-
-  friend bool operator==(RoadEnd const&, RoadEnd const&) = default;
-};
-
 /// A way through a junction to be made, see `MapBuilder::add_turn`.
 struct TurnPlan {
   std::string id{};  ///< the connecting road's; empty: the next free number

@@ -22,9 +22,9 @@
 #include "cambium/map/opendrive_check.hpp"
 #include "cambium/map/opendrive_document.hpp"
 #include "cambium/map/road_plan.hpp"
-#include "cambium/map/road_plan_impl.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/map/map_builder.hpp"
+#include "cambium/map/detail/road_maker.hpp"
 
 namespace cambium::map {
 

@@ -7,6 +7,7 @@
 
 #include "cambium/core/diagnostic.hpp"
 #include "cambium/map/map.hpp"
+#include "cambium/map/opendrive_document.hpp"
 
 namespace cambium::map {
 

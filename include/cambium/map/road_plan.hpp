@@ -46,6 +46,14 @@ struct RoadPlan {
   std::string junction{};  ///< the junction that it is a connecting road of; empty: none
 };
 
+/// One end of a road.
+struct RoadEnd {
+  std::string road;
+  opendrive::ContactPoint end = opendrive::ContactPoint::end;
+
+  friend bool operator==(RoadEnd const&, RoadEnd const&) = default;
+};
+
 /// `count` lanes of equal width [m].
 [[nodiscard]] std::vector<LanePlan> equal_lanes(std::size_t count, double width = 3.5,
                                                 LaneType type = LaneType::driving);

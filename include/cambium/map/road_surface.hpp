@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+
 #include "cambium/map/road.hpp"
 
 namespace cambium::map {

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "cambium/map/map.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/route.hpp"
