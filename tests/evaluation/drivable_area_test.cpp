@@ -225,7 +225,7 @@ TEST_CASE("where the map ends the road does not: who drives out of it is not off
 TEST_CASE("who has left traffic is not off the road") {
   Sim world(straight_road(1, 100));
   auto const id = world.add({.position = {98, -1.75}, .speed = 20, .behavior = cb::ConstantAcceleration{}});
-  world.step(1.0);
+  REQUIRE(world.step(1.0));
   REQUIRE(world.status(id) == cb::AgentStatus::left_map);
   CHECK_FALSE(cb::DrivableArea{id}.evaluate(world).off_road);
   world.set_state(id, {.x = 50, .y = 30});  // back in traffic

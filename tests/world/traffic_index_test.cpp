@@ -391,7 +391,7 @@ Count compare_many(std::shared_ptr<cb::Map const> const& map, std::uint64_t worl
     auto world = random_world(map, seed, how);
     compare(world, count);
     if (seed % 7 != 0) continue;
-    for (int k = 0; k < 10; ++k) world.step(0.2);
+    for (int k = 0; k < 10; ++k) REQUIRE(world.step(0.2));
     compare(world, count);
   }
   return count;

@@ -43,7 +43,7 @@ TEST_CASE("an agent enters its lane, heads along it, and moves") {
 TEST_CASE("agents keep their lateral offset and follow curves") {
   Sim world(straight_road(1, 300, 0.01));
   auto const id = world.add({.position = {0, -1.5}, .speed = 10.0, .behavior = cb::ConstantAcceleration{}});
-  for (int i = 0; i < 100; ++i) world.step(0.1);
+  for (int i = 0; i < 100; ++i) REQUIRE(world.step(0.1));
   auto const& s = world.state(id);
   CHECK(std::hypot(s.x, s.y - 100) == doctest::Approx(101.5).epsilon(1e-4));
   CHECK(s.heading == doctest::Approx(100.0 / 101.75).epsilon(1e-3));
@@ -132,7 +132,7 @@ TEST_CASE("agents that pass the end of the road leave traffic, and are taken out
   CHECK(world.status(id) == cb::AgentStatus::left_map);
   CHECK_FALSE(world.observe(follower).front().has_value());
   auto const at = world.state(id);
-  world.step(0.2);
+  REQUIRE(world.step(0.2));
   CHECK(world.state(id) == at);
   CHECK(world.remove_departed() == 1);
   CHECK(world.size() == 1);
@@ -150,7 +150,7 @@ TEST_CASE("an agent whose route ends where the road goes on has arrived") {
                              .speed = 20,
                              .behavior = cb::ConstantAcceleration{},
                              .route = cb::map::Route{{first->id}}});
-  world.step(0.5);
+  REQUIRE(world.step(0.5));
   CHECK(world.status(id) == cb::AgentStatus::arrived);
 }
 
@@ -211,13 +211,13 @@ TEST_CASE("an agent that plans badly is named and keeps its last state; the othe
 TEST_CASE("history keeps the last frames with their actions, and copies do not take it along") {
   Sim world(straight_road());
   auto const id = world.add({.position = {10, -1.75}, .speed = 5});
-  world.step(0.2);
+  REQUIRE(world.step(0.2));
   CHECK(world.history_size() == 0);
   world.keep_history(3);
   std::vector<Sim::FrameType> frames;
   for (int i = 0; i < 5; ++i) {
     frames.push_back(world.frame());
-    world.step(0.2);
+    REQUIRE(world.step(0.2));
   }
   CHECK(world.history_size() == 3);
   for (std::size_t back = 1; back <= 3; ++back) CHECK(world.history(back) == frames[frames.size() - back]);
@@ -239,7 +239,7 @@ TEST_CASE("static objects stop traffic in the lanes they reach into, and only th
   CHECK(seen->object == object);
   CHECK(seen->gap == doctest::Approx(50 - cb::geometry::Shape{}.front).epsilon(0.01));
   CHECK_FALSE(world.observe(left).front().has_value());
-  for (int i = 0; i < 150; ++i) world.step(0.2);
+  for (int i = 0; i < 150; ++i) REQUIRE(world.step(0.2));
   CHECK(world.state(right).speed < 0.1);
   CHECK(world.state(right).x + cb::geometry::Shape{}.front < 60.0);
   CHECK(world.state(left).x > 200.0);
@@ -253,13 +253,13 @@ TEST_CASE("an agent driven from outside follows its input and changes lane corri
   auto const ego = world.add({.position = {10, -5.25}, .speed = 10, .behavior = cb::ExternalInput{}});
   CHECK(world.record(ego).lane.corridor == 1);
   world.memory<cb::ExternalInput>(ego) = {0.0, 0.05};
-  for (int i = 0; i < 12; ++i) world.step(0.2);
+  for (int i = 0; i < 12; ++i) REQUIRE(world.step(0.2));
   CHECK(world.record(ego).action.steering == doctest::Approx(0.05));
   CHECK(world.state(ego).y > -3.5);
   CHECK(world.record(ego).lane.corridor == 0);
   CHECK(world.lane_of(ego) == world.map().find_lane("1", 50, -1));
   world.memory<cb::ExternalInput>(ego) = {-4.0, 0.0};
-  for (int i = 0; i < 20; ++i) world.step(0.2);
+  for (int i = 0; i < 20; ++i) REQUIRE(world.step(0.2));
   CHECK(world.state(ego).speed == 0.0);
   CHECK(says(error_of([&] { (void)world.memory<cb::IdmClassic>(ego); }), "behaviour"));
 }
@@ -297,7 +297,7 @@ TEST_CASE("a state set where the route passes twice is taken for the pass that t
   auto const id = world.add({.position = {30, -1.75}, .speed = 20, .behavior = cb::ConstantAcceleration{}});
   double last = world.record(id).lane.s;
   for (int i = 0; i < 95; ++i) {
-    world.step(0.2);
+    REQUIRE(world.step(0.2));
     world.set_state(id, world.state(id));
     double const s = world.record(id).lane.s;
     CHECK(s == doctest::Approx(last + 4.0).epsilon(1e-3));
@@ -310,14 +310,14 @@ TEST_CASE("a frame is put back, as a search does, and only one that fits") {
   Sim world(straight_road(1, 500));
   auto const id = world.add({.position = {10, -1.75}, .speed = 10});
   auto const root = world.frame();
-  world.step(1.0);
+  REQUIRE(world.step(1.0));
   auto const later = world.frame();
   world.restore(root);
   CHECK(world.frame() == root);
-  world.step(1.0);
+  REQUIRE(world.step(1.0));
   CHECK(world.frame() == later);
   Sim node(world.shared_map(), world.shared_roster(), root);
-  node.step(1.0);
+  REQUIRE(node.step(1.0));
   CHECK(node.frame() == later);
   CHECK(&node.roster() == &world.roster());
   world.add({.position = {60, -1.75}});
@@ -331,7 +331,7 @@ TEST_CASE("frames are exchanged: each world goes on where the other's frame was,
   world.add({.position = {10, -1.75}, .speed = 10});
   world.add({.position = {40, -1.75}, .speed = 4});
   auto const root = world.frame();
-  for (int i = 0; i < 5; ++i) world.step(0.2);
+  for (int i = 0; i < 5; ++i) REQUIRE(world.step(0.2));
   auto const later = world.frame();
   auto frame = root;
   static_cast<void>(world.observe(world.roster().agents[0].id));  // the index is of this frame
@@ -342,7 +342,7 @@ TEST_CASE("frames are exchanged: each world goes on where the other's frame was,
   REQUIRE(leader);
   CHECK(leader->gap ==
         doctest::Approx(30.0 - world.roster().agents[0].shape.front - world.roster().agents[1].shape.rear));
-  for (int i = 0; i < 5; ++i) world.step(0.2);
+  for (int i = 0; i < 5; ++i) REQUIRE(world.step(0.2));
   CHECK(world.frame() == later);
   world.exchange(frame);
   CHECK(world.frame() == later);
@@ -355,7 +355,7 @@ TEST_CASE("an agent on the wrong lane at a fork leaves its route; one that passe
   auto const ramp = map->find_lane("2", 10, -1), first = map->find_lane("3", 10, -3);
   auto const id =
       world.add({.position = map->lane(ramp).path.pose(150.0).position(), .speed = 15, .goal = cb::ReachLane{first}});
-  while (world.status(id) == cb::AgentStatus::driving) world.step(0.5);
+  while (world.status(id) == cb::AgentStatus::driving) REQUIRE(world.step(0.5));
   CHECK(world.status(id) == cb::AgentStatus::arrived);
 }
 
@@ -365,7 +365,7 @@ TEST_CASE("an object that covers whole lanes stands in them, and goes with its e
   auto const small = world.add_object(cb::geometry::Polygon({{80, -3}, {81, -3}, {81, -1}, {80, -1}}));
   auto const all = world.add_object(cb::geometry::Polygon({{-1e3, -1e3}, {1e3, -1e3}, {1e3, 1e3}, {-1e3, 1e3}}));
   REQUIRE(world.observe(id).front().has_value());
-  world.step(1.0);
+  REQUIRE(world.step(1.0));
   CHECK(world.state(id).speed < 8.0);
   world.remove_object(all);
   CHECK(world.observe(id).front()->object == small);
@@ -390,7 +390,7 @@ TEST_CASE("a prediction with parameters that make no sense is refused") {
 TEST_CASE("a step may be long: what lies half a circle on is found") {
   Sim world(straight_road(1, 150, 0.08));  // radius 12.5 m
   auto const id = world.add({.position = {0, -1.75}, .speed = 10, .behavior = cb::ConstantAcceleration{}});
-  world.step(6.0);
+  REQUIRE(world.step(6.0));
   CHECK(world.record(id).lane.s == doctest::Approx(60.0).epsilon(1e-3));
   CHECK(std::abs(world.record(id).lane.lateral) < 0.05);
 }
@@ -398,11 +398,11 @@ TEST_CASE("a step may be long: what lies half a circle on is found") {
 TEST_CASE("who has left comes back into traffic by its state") {
   Sim world(straight_road(1, 100));
   auto const id = world.add({.position = {95, -1.75}, .speed = 20});
-  world.step(1.0);
+  REQUIRE(world.step(1.0));
   REQUIRE(world.status(id) == cb::AgentStatus::left_map);
   world.set_state(id, {.x = 20, .y = -1.75, .speed = 5});
   CHECK(world.status(id) == cb::AgentStatus::driving);
-  world.step(1.0);
+  REQUIRE(world.step(1.0));
   CHECK(world.state(id).x > 24.0);
 }
 
@@ -419,10 +419,10 @@ TEST_CASE("goals are reached by lane and by polygon") {
                                   .goal = cb::ReachLane{world.map().find_lane("1", 0, -2), 100.0, 120.0}});
   CHECK_FALSE(world.reached_goal(by_area));
   CHECK_FALSE(world.reached_goal(by_lane));
-  for (int i = 0; i < 15; ++i) world.step(0.2);  // at 110 m
+  for (int i = 0; i < 15; ++i) REQUIRE(world.step(0.2));  // at 110 m
   CHECK(world.reached_goal(by_area));
   CHECK(world.reached_goal(by_lane));
-  for (int i = 0; i < 10; ++i) world.step(0.2);  // at 130 m
+  for (int i = 0; i < 10; ++i) REQUIRE(world.step(0.2));  // at 130 m
   CHECK_FALSE(world.reached_goal(by_area));
   CHECK_FALSE(world.reached_goal(by_lane));
 }
@@ -436,8 +436,8 @@ TEST_CASE("a prediction shows what the observer expects, whatever the others rea
   auto future = world.observe(ego).predict(
       cb::predict_as<Guess>(cb::ConstantAcceleration{.acceleration = 1}, cb::ConstantAcceleration{}));
   for (int i = 0; i < 5; ++i) {
-    future.step(0.2);
-    world.step(0.2);
+    REQUIRE(future.step(0.2));
+    REQUIRE(world.step(0.2));
   }
   CHECK(future.state(other).speed == doctest::Approx(10.0));
   CHECK(future.state(ego).speed == doctest::Approx(11.0));
@@ -486,7 +486,7 @@ TEST_CASE("who has not started sees its neighbours as if it drove, and is seen b
       if (i % 4 == 0) spec.behavior = Latecomer{};
       world.add(spec);
     }
-    world.step(0.2);
+    REQUIRE(world.step(0.2));
     auto const late = [&](cb::AgentId id) { return world.status(id) == cb::AgentStatus::not_started; };
     for (auto const& agent : world.roster().agents) {
       auto const view = world.observe(agent.id);
@@ -515,7 +515,7 @@ TEST_CASE("who has not started sees its neighbours as if it drove, and is seen b
       auto const expected =
           Latecomer::Memory{truth.front() ? truth.front()->gap : -1e9, truth.rear() ? truth.rear()->gap : -1e9};
       Late next = world;
-      next.step(0.2);
+      REQUIRE(next.step(0.2));
       CHECK(next.memory<Latecomer>(agent.id) == expected);
       CHECK(late(agent.id));
     }

@@ -16,7 +16,7 @@ enum class StepProblem : std::uint8_t {
 };
 
 /// What became of a step. Agents with a problem keep their last valid state and leave traffic; all others have moved.
-struct StepResult {
+struct [[nodiscard("a step that is not valid may not have moved the world: check the result")]] StepResult {
   StepProblem problem = StepProblem::none;  ///< the first
   AgentId agent = none<AgentId>;            ///< who had it
   std::uint32_t failed = 0;                 ///< agents with a problem
