@@ -282,7 +282,7 @@ TEST_CASE("one whose course is over does not choose, and does not keep ego from 
   auto const before = planner.think(world.observe(ego), workspace).choosing;
   REQUIRE(before.size() > 1);
   auto state = world.state(before[1]);
-  state.y += 15.0;
+  state.y += 6.0;
   world.set_state(before[1], state);
   auto const after = planner.think(world.observe(ego), workspace).choosing;
   CHECK(after.front() == ego);

@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -284,9 +285,95 @@ TEST_CASE("states set from outside place the agent anew") {
   CHECK(world.record(id).lane.s == doctest::Approx(300));
   CHECK(world.record(id).lane.corridor == 0);
   CHECK(says(error_of([&] { world.set_state(id, {.x = std::numeric_limits<double>::infinity()}); }), "not a finite"));
-  CHECK(says(error_of([&] { world.set_state(id, {.x = 300, .y = 120}); }), "m away from the road of its route"));
-  CHECK(says(error_of([&] { world.set_state(id, {.x = -500, .y = -5.25}); }), "m away from the road of its route"));
+  CHECK(says(error_of([&] { world.set_state(id, {.x = 300, .y = 120}); }), "120 m from the lanes of its route"));
+  CHECK(says(error_of([&] { world.set_state(id, {.x = -500, .y = -5.25}); }), "500 m from the lanes of its route"));
   CHECK(world.state(id).x == 300);
+}
+
+TEST_CASE("a state that add refuses set_state refuses with the same words, and both take the rest") {
+  Sim world(straight_road(2));
+  auto const id = world.add({.position = {100, -1.75}, .speed = 10});
+  auto const before = world.frame();
+  struct Case {
+    cb::State state;
+    std::string said;
+  };
+  double const pi = cb::geometry::pi, nan = std::numeric_limits<double>::quiet_NaN();
+  for (auto const& [state, said] : {
+           Case{{.x = 50, .y = -5.25, .heading = 0, .speed = -3}, "its speed is -3, not a number from 0 to 1000 m/s"},
+           Case{{.x = 50, .y = -5.25, .heading = 0, .speed = -0.11}, "its speed is -0.11, not"},
+           Case{{.x = 50, .y = -5.25, .heading = 0, .speed = 1001}, "its speed is 1001, not"},
+           Case{{.x = 50, .y = -5.25, .heading = 0, .speed = nan}, "finite"},
+           Case{{.x = 50, .y = -5.25, .heading = nan, .speed = 3}, "finite"},
+           Case{{.x = 50, .y = -5.25, .heading = 1.58, .speed = 3}, "it heads against the direction of its lane"},
+           Case{{.x = 50, .y = -5.25, .heading = pi, .speed = 3}, "it heads against the direction of its lane"},
+           Case{{.x = 50, .y = 5.5, .heading = 0, .speed = 3}, " 5 m "},
+           Case{{.x = 50, .y = -12.5, .heading = 0, .speed = 3}, " 5 m "},
+           Case{{.x = 50, .y = -5.25, .heading = -1.57, .speed = 3}, ""},
+           Case{{.x = 50, .y = 4.5, .heading = 0, .speed = 3}, ""},
+           Case{{.x = 50, .y = -11.5, .heading = 0, .speed = 3}, ""},
+           Case{{.x = 50, .y = -5.25, .heading = 0, .speed = -0.1}, ""},
+           Case{{.x = 50, .y = -5.25, .heading = 6 * pi, .speed = 0}, ""},
+       }) {
+    CAPTURE(state.y);
+    CAPTURE(state.heading);
+    CAPTURE(state.speed);
+    auto const entering = error_of([&] {
+      Sim(world).add({.position = {state.x, state.y}, .heading = state.heading, .speed = state.speed});
+    });
+    auto const setting = error_of([&] { world.set_state(id, state); });
+    CHECK_MESSAGE(entering.empty() == said.empty(), entering);
+    CHECK_MESSAGE(setting.empty() == said.empty(), setting);
+    CHECK_MESSAGE(says(setting, said), setting);
+    CHECK((setting.empty() || world.frame() == before));
+    if (setting.empty()) CHECK(world.state(id).speed == std::max(state.speed, 0.0));
+    world.restore(before);
+  }
+}
+
+TEST_CASE("a vehicle that was measured to stand backs up no metre") {
+  Sim world(straight_road(1));
+  auto const id = world.add({.position = {100, -1.75}, .speed = -0.01, .behavior = cb::ConstantAcceleration{}});
+  CHECK(world.state(id).speed == 0.0);
+  world.set_state(id, {.x = 50, .y = -1.75, .speed = -0.02});
+  REQUIRE(world.step(1.0));
+  CHECK(world.state(id).x == 50.0);
+  CHECK(world.state(id).speed == 0.0);
+}
+
+TEST_CASE("with Reroute::yes a state is taken off the route, and the agent gets the one that add gives it there") {
+  // A road each way.
+  auto const map = support::map_of({.line = cb::map::lay_from({}, {{500.0}}),
+                                    .sections = {{.left = cb::map::equal_lanes(1), .right = cb::map::equal_lanes(1)}}});
+  Sim world(map);
+  auto const there = map->nearest_lane({100, -1.75, 0.0})->lane;
+  auto const back = map->nearest_lane({100, 1.75, cb::geometry::pi})->lane;
+  auto const id = world.add({.position = {100, -1.75},
+                             .speed = 10,
+                             .goal = cb::GoalSequence{{cb::ReachLane{.lane = there}, cb::ReachLane{.lane = back}}},
+                             .route = cb::map::Route{.lanes = {there}}});
+  CHECK(world.frame().agents[0].goals_passed == 1);
+  auto const shared = world;
+  cb::State const state{.x = 300, .y = 1.75, .heading = cb::geometry::pi, .speed = 5};
+  CHECK(says(error_of([&] { world.set_state(id, state); }), "against the direction of its lane"));
+  world.set_state(id, state, cb::Reroute::yes);
+  CHECK(world.lane_of(id) == back);
+  CHECK(world.reached_goal(id));
+  CHECK(shared.lane_of(id) == there);
+  Sim anew(map);
+  anew.add({.position = {300, 1.75}, .heading = cb::geometry::pi, .speed = 5, .goal = cb::ReachLane{.lane = back}});
+  CHECK(world.record(id).lane == anew.frame().agents[0].lane);
+  REQUIRE(world.step(1.0));
+  REQUIRE(anew.step(1.0));
+  CHECK(world.state(id) == anew.frame().agents[0].state);
+  CHECK(says(error_of([&] { world.set_state(id, {.x = 100, .y = 60, .heading = 0}, cb::Reroute::yes); }),
+             "no drivable lane within 5 m"));
+  // From here no way leads back.
+  CHECK(says(error_of([&] {
+               auto other = shared;
+               other.set_state(id, {.x = 100, .y = -1.75}, cb::Reroute::yes);
+             }),
+             "there is no route from"));
 }
 
 TEST_CASE("a state set where the route passes twice is taken for the pass that the agent is on") {

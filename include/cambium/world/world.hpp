@@ -43,6 +43,9 @@ struct WorldOptions {
   double time = 0.0;       ///< the world begins at [s]
 };
 
+/// Whether an agent whose state is set keeps its route or gets one from there: see `World::set_state`.
+enum class Reroute : std::uint8_t { no, yes };
+
 /// Interacting road traffic on a map: a value. Copies are independent, share the map and the roster, and cost one copy
 /// of the frame; copying into a world that has been used before allocates nothing. Reading from several threads is
 /// safe; `step`, `observe` and all that changes the world need it for themselves.
@@ -148,8 +151,11 @@ class World {
     frame_.agents[slot].memory = Set::initial_memory(behavior);
   }
 
-  /// Adds an agent; returns its id. Throws `WorldError` or `ParameterError` (the world is unchanged) where its numbers,
-  /// its lane, its route or its parameters are no good. O(agents), plus routing.
+  /// Adds an agent; returns its id. Throws `WorldError` or `ParameterError` (the world is unchanged) where its lane, its
+  /// route or its parameters are no good, and for what `set_state` refuses, too: a number that is not finite, a speed
+  /// that is not from 0 to 1000 m/s (of measured ones those down to -0.1 count as 0), a place more than 5 m from the
+  /// nearest lane (with a route of its own 2.5 m from the path of one), a heading against its direction. O(agents), plus
+  /// routing.
   AgentId add(AgentSpec const& spec) {
     AgentId const id = spec.id.value_or(static_cast<AgentId>(roster_->next_agent_id));
     auto entrant = detail::entrant<World>(*map_, *roster_, spec, id, frame_.time);
@@ -252,24 +258,36 @@ class World {
     return *std::get_if<place>(&frame_.agents[slot].memory);
   }
 
-  /// Sets the agent's state, as a planner does with what it perceives, and puts it (back) into traffic. A negative
-  /// speed is one of reversing. Throws `WorldError` (the world is unchanged) where the agent is unknown, a number is
-  /// not finite, the speed beyond 1000 m/s or the place farther than 100 m from the agent's road. The agent stays on
-  /// its route: where it was, if that fits, else in the lane corridor that comes nearest.
-  void set_state(AgentId id, State state) {
+  /// Sets the agent's state, as a planner does with what it perceives, and puts it (back) into traffic. It stays on its
+  /// route: where it was, if that fits, else in the lane corridor that comes nearest; with `Reroute::yes` it gets the
+  /// route that `add` would give it there, to what is left of its goal. Throws `WorldError` (the world is unchanged)
+  /// where the agent is unknown, and for what `add` refuses, too: a number that is not finite, a speed that is not from
+  /// 0 to 1000 m/s (of measured ones those down to -0.1 count as 0: nobody drives in reverse), a place more than 5 m
+  /// from the lanes of its route, a heading against their direction.
+  void set_state(AgentId id, State state, Reroute reroute = Reroute::no) {
     auto const slot = slot_of(id);
+    std::string const where = "agent " + to_string(id);
     state.time = frame_.time;
-    if (!is_finite(state) || std::abs(state.speed) > detail::fastest)
-      throw WorldError("agent " + to_string(id), "its state is not a finite number, or its speed beyond 1000 m/s");
+    if (!is_finite(state)) throw WorldError(where, "its position, heading or speed is not a finite number");
+    state.speed = detail::checked_speed(state.speed, where);
+    auto const& agent = roster_->agents[slot];
     auto& record = frame_.agents[slot];
-    auto const place = detail::relocate(*roster_->agents[slot].road, record.lane, {state.x, state.y, state.heading});
-    detail::check_near_road(*roster_->agents[slot].road, place, "agent " + to_string(id));
+    if (reroute == Reroute::yes) {
+      auto const again = detail::entrance_again<World>(*map_, *roster_, agent, roster_->goals[slot], record.goals_passed,
+                                                       state, where);
+      writable_roster().agents[slot].road = again.road;
+      record.lane = again.place;
+      scratch_.forget();
+    } else {
+      auto const place = detail::relocate(*agent.road, record.lane, {state.x, state.y, state.heading});
+      detail::check_set_place(*map_, *agent.road, place, where);
+      record.lane = place;
+    }
     record.state = state;
     record.action = {};
     record.execution = {};
     if (record.status != AgentStatus::driving) detail::forget_past(record);
     record.status = AgentStatus::driving;
-    record.lane = place;
     pass_goals(slot, record);
     scratch_.fresh = false;
   }

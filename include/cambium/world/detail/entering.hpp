@@ -24,6 +24,7 @@
 #include "cambium/world/detail/entering_route.hpp"
 #include "cambium/world/detail/objects_on_lanes.hpp"
 #include "cambium/world/detail/on_lanes.hpp"
+#include "cambium/world/detail/refusals.hpp"
 #include "cambium/world/detail/seen.hpp"
 #include "cambium/world/frame.hpp"
 
@@ -51,9 +52,7 @@ template <class Spec>
   auto at = map::locate(road, number, {spec.position.x(), spec.position.y(), 0.0}, hint);
   double const along = corridor.center.pose(at.s).heading;
   at.heading_error = spec.heading ? geometry::angle_difference(*spec.heading, along) : 0.0;
-  if (std::abs(at.heading_error) > geometry::pi / 2)
-    throw WorldError(where, "it heads against the direction of its lane (" + map.describe(lane) + ")",
-                     "leave the heading out, or enter along the lane");
+  check_heading(map, road, at, where);
   return at;
 }
 
@@ -82,24 +81,18 @@ template <class Spec>
 [[nodiscard]] map::LanePosition entering_free(Spec const& spec, map::RoadCorridor const& road,
                                               std::string const& where) {
   auto at = map::locate(road, 0, {spec.position.x(), spec.position.y(), spec.heading.value_or(0.0)});
-  auto const& way = road.corridors.front();
-  double const beyond = std::max({-at.s, at.s - way.length(), 0.0});
-  if (!(std::hypot(at.lateral, beyond) <= entering_radius + 0.5 * way.width_at(at.s)))
+  if (!(distance_outside(road, at) <= entering_radius))
     throw WorldError(where, "its position is more than 5 m from its road", "enter on it");
   if (!spec.heading) at.heading_error = 0.0;
   return at;
 }
-
-/// Speeds beyond this are no vehicle's [m/s].
-inline constexpr double fastest = 1000.0;
 
 /// Throws `WorldError` or `ParameterError` where a number of `spec` is no good.
 template <class Spec>
 void check_entering(Spec const& spec, std::string const& where) {
   if (!spec.position.allFinite() || (spec.heading && !std::isfinite(*spec.heading)))
     throw WorldError(where, "its position or heading is missing or not a finite number");
-  if (!(spec.speed >= 0 && spec.speed <= fastest))
-    throw WorldError(where, "its speed is not a number from 0 to 1000 m/s", "give metres per second");
+  (void)checked_speed(spec.speed, where);
   check_if_described(spec.behavior, where);
   check_if_described(spec.shape, where);
   check_if_described(spec.execution, where);
@@ -159,6 +152,23 @@ template <class Behavior>
           "load the map with a MapOptions::large_conflict_shape that holds it"};
 }
 
+/// Where `agent`, put into `state`, begins anew, as if it were added there with the parts of `goal` that are not
+/// `passed` yet. Throws `WorldError` as `entrance`, or where the agent is too large for the conflicts of its new way.
+template <class World>
+[[nodiscard]] Entrance entrance_again(Map const& map, typename World::RosterType const& roster,
+                                      typename World::RosterType::Agent const& agent, Goal goal, std::size_t passed,
+                                      typename World::State const& state, std::string const& where) {
+  if (auto* const sequence = std::get_if<GoalSequence>(&goal)) {
+    auto& parts = sequence->parts;
+    parts.erase(parts.begin(), parts.begin() + static_cast<std::ptrdiff_t>(std::min(passed, parts.size())));
+  }
+  typename World::AgentSpec const spec{
+      .position = {state.x, state.y}, .heading = state.heading, .goal = std::move(goal)};
+  auto again = entrance(map, roster, spec, where);
+  if (is_too_large(map, agent.behavior, agent.shape, *again.road)) throw too_large(where);
+  return again;
+}
+
 /// An agent about to enter: all that a world takes in of it.
 template <class World>
 struct Entrant {
@@ -187,7 +197,7 @@ template <class World>
   record.state.x = spec.position.x();
   record.state.y = spec.position.y();
   record.state.heading = spec.heading.value_or(road->corridors[place.corridor].center.pose(place.s).heading);
-  record.state.speed = spec.speed;
+  record.state.speed = checked_speed(spec.speed, where);
   record.memory = Set::initial_memory(spec.behavior);
   if (Set::start_time(spec.behavior) > time + same_time) record.status = AgentStatus::not_started;
   forget_past(record);

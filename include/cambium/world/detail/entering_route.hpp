@@ -17,11 +17,10 @@
 #include "cambium/map/route.hpp"
 #include "cambium/world/detail/check_described.hpp"
 #include "cambium/world/detail/objects_on_lanes.hpp"
+#include "cambium/world/detail/refusals.hpp"
 
 namespace cambium::detail {
 
-/// Farthest that an agent may enter from the nearest lane [m].
-inline constexpr double entering_radius = 5.0;
 /// Farthest that an agent with a route may enter from the path of one of its lanes [m].
 inline constexpr double path_radius = 2.5;
 

@@ -130,14 +130,6 @@ void move_on_lane(Map const& map, map::RoadCorridor const& road, double distance
   return best;
 }
 
-/// Throws `WorldError` where `at` is not that of a place near the road.
-inline void check_near_road(map::RoadCorridor const& road, map::LanePosition const& at, std::string const& where) {
-  constexpr double far = 100.0;  // [m]
-  if (double const distance = distance_from(road, at); distance > far)
-    throw WorldError(where, "its position is " + rounded_text(distance) + " m away from the road of its route",
-                     "check the frame of the position, or remove the agent and add it with another route");
-}
-
 /// Cosine of an angle that is mostly small, as between a vehicle and its lane.
 [[nodiscard]] inline double cosine_of_small(double angle) {
   return std::abs(angle) <= geometry::slight_angle ? geometry::sin_cos_slight(angle).cos : geometry::sin_cos(angle).cos;
