@@ -129,7 +129,8 @@ void register_steps(std::string const& name, std::size_t agents, Make make, Eval
     if (!*start) *start = std::make_unique<World>(make(agents));
     World world = **start;
     int k = 0;
-    for (int i = 0; i < 2 * steps_per_run; ++i) world.step(dt);  // everything has its memory now
+    for (int i = 0; i < 2 * steps_per_run; ++i)  // until everything has its memory
+      if (!world.step(dt)) return state.SkipWithError("a step failed");
     world = **start;
     yardstick::measure_step(state, (*start)->size(), [&] {
       if (++k % steps_per_run == 0) world = **start;

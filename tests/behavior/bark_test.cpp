@@ -108,8 +108,8 @@ TEST_CASE("BARK's sub-steps and the exact integration agree where nothing change
   driver.integration = cb::IdmClassic::Integration::bark_substeps;
   bark.add({.position = {10, -1.75}, .speed = 14, .behavior = driver});
   for (int i = 0; i < 100; ++i) {
-    exact.step(0.2);
-    bark.step(0.2);
+    REQUIRE(exact.step(0.2));
+    REQUIRE(bark.step(0.2));
   }
   CHECK(exact.frame().agents[0].state.x == doctest::Approx(bark.frame().agents[0].state.x).epsilon(1e-3));
   CHECK(exact.frame().agents[0].state.x != bark.frame().agents[0].state.x);

@@ -55,7 +55,7 @@ TEST_CASE(
   auto const other = world.add({.position = {30, -1.3}, .behavior = cb::ConstantAcceleration{}});
   double const start = world.record(id).lane.s, lateral = world.record(id).lane.lateral;
   for (int i = 0; i < 30; ++i) {
-    world.step(0.2);
+    REQUIRE(world.step(0.2));
     CHECK(world.record(id).action.acceleration == doctest::Approx(1.0));
   }
   CHECK(world.record(id).lane.s - start == doctest::Approx(60 + 18).epsilon(1e-6));
@@ -68,7 +68,7 @@ TEST_CASE("a deceleration that stops within the step is reported as what the ste
   Sim world(straight_road(1, 400));
   auto const id =
       world.add({.position = {5, -1.75}, .speed = 1.0, .behavior = cb::ConstantAcceleration{.acceleration = -4.0}});
-  world.step(0.5);
+  REQUIRE(world.step(0.5));
   CHECK(world.state(id).speed == 0.0);
   CHECK(world.state(id).x == doctest::Approx(5.125));
   CHECK(world.record(id).action.acceleration == doctest::Approx(-2.0));

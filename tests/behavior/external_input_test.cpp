@@ -34,7 +34,7 @@ TEST_CASE("the input stays until another one is set, and steers a circle") {
   CHECK(world.record(id).action == cb::Action{0.0, 0.3});
   world.memory<ExternalInput>(id) = {};
   auto const heading = world.state(id).heading;
-  world.step(0.2);
+  REQUIRE(world.step(0.2));
   CHECK(world.state(id).heading == heading);
 }
 
@@ -44,8 +44,8 @@ TEST_CASE("a copy takes the input along, and another input there is no business 
   world.memory<ExternalInput>(id) = {1.0, 0.0};
   Sim copy = world;
   copy.memory<ExternalInput>(id).acceleration = -1.0;
-  world.step(1.0);
-  copy.step(1.0);
+  REQUIRE(world.step(1.0));
+  REQUIRE(copy.step(1.0));
   CHECK(world.state(id).speed == doctest::Approx(9.0));
   CHECK(copy.state(id).speed == doctest::Approx(7.0));
 }
@@ -60,12 +60,12 @@ TEST_CASE("more than the vehicle can do is not done, and the action says what wa
   };
   double steering = -within_grip();
   world.memory<ExternalInput>(id) = {100.0, -3.0};
-  world.step(0.1);
+  REQUIRE(world.step(0.1));
   CHECK(world.record(id).action == cb::Action{model.highest_acceleration, steering});
   CHECK(world.state(id).speed == doctest::Approx(10 + 0.1 * model.highest_acceleration));
   steering = within_grip();
   world.memory<ExternalInput>(id) = {-100.0, 3.0};
-  world.step(0.1);
+  REQUIRE(world.step(0.1));
   CHECK(world.record(id).action == cb::Action{model.lowest_acceleration, steering});
 }
 
@@ -78,7 +78,7 @@ TEST_CASE("a braking vehicle stops where the closed form says, within a step too
     CHECK(world.state(id).speed == 0.0);
     CHECK(world.state(id).x == doctest::Approx(154.5));
     auto const state = world.state(id);
-    world.step(dt);
+    REQUIRE(world.step(dt));
     CHECK(world.state(id).x == state.x);
     CHECK(world.state(id).speed == 0.0);
   }
@@ -102,7 +102,7 @@ TEST_CASE("Euler's scheme and Runge-Kutta's agree for short sub-steps, and diffe
     Sim world(field());
     auto const id = add(world, 8.0, behavior);
     world.memory<ExternalInput>(id) = {0.5, 0.2};
-    for (int i = 0; i < 8; ++i) world.step(0.5);
+    for (int i = 0; i < 8; ++i) REQUIRE(world.step(0.5));
     return world.state(id);
   };
   auto const exact = end({.longest_substep = 0.01});

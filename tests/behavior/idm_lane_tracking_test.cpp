@@ -113,8 +113,8 @@ TEST_CASE("it slows down for a curve in time, and not without being asked to") {
   auto other = beside_lane<cb::SingleTrack>(curvature, 0.0, 0.0, 8.0, {}, driver);
   double fastest = 0.0, other_fastest = 0.0;
   for (int i = 0; i < 60; ++i) {
-    world.step(0.2);
-    other.step(0.2);
+    REQUIRE(world.step(0.2));
+    REQUIRE(other.step(0.2));
     fastest = std::max(fastest, world.frame().agents[0].state.speed);
     other_fastest = std::max(other_fastest, other.frame().agents[0].state.speed);
   }
@@ -204,12 +204,12 @@ TEST_CASE("dense traffic on a curve neither collides nor allocates, and its copi
                                            .coolness = i % 2 == 0 ? 0.0 : 0.99}});
   }
   auto copy = world;
-  for (int i = 0; i < 10; ++i) world.step(0.2);
+  for (int i = 0; i < 10; ++i) REQUIRE(world.step(0.2));
   auto const before = support::allocations();
   for (int i = 0; i < 60; ++i) REQUIRE(world.step(0.2));
   CHECK(support::allocations() == before);
   for (int i = 0; i < 70; ++i) {
-    copy.step(0.2);
+    REQUIRE(copy.step(0.2));
     CHECK_FALSE(cb::CollisionAny{}.evaluate(copy).any_collision);
   }
   CHECK(copy.frame() == world.frame());
@@ -231,8 +231,8 @@ TEST_CASE("whose speed rises beyond the desired one remembers the curves ahead, 
     auto forgetful = world;
     forgetful.memory<IdmLaneTracking>(id) = {};
     auto const fastest = world.memory<IdmLaneTracking>(id).fastest;
-    world.step(0.2);
-    forgetful.step(0.2);
+    REQUIRE(world.step(0.2));
+    REQUIRE(forgetful.step(0.2));
     REQUIRE(world.state(id) == forgetful.state(id));
     looked += world.memory<IdmLaneTracking>(id).fastest != fastest;
   }

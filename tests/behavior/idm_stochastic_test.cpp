@@ -82,15 +82,15 @@ TEST_CASE("the same seed gives the same traffic, another seed another, and copie
   driver.yielding.enabled = true;
   auto a = free_drivers(driver, 24, 3), b = free_drivers(driver, 24, 3), c = free_drivers(driver, 24, 4);
   for (int i = 0; i < 50; ++i) {
-    a.step(0.2);
-    b.step(0.2);
-    c.step(0.2);
+    REQUIRE(a.step(0.2));
+    REQUIRE(b.step(0.2));
+    REQUIRE(c.step(0.2));
   }
   CHECK(a.frame() == b.frame());
   CHECK(!(a.frame() == c.frame()));
   auto copy = a;
-  a.step(0.2);
-  copy.step(0.2);
+  REQUIRE(a.step(0.2));
+  REQUIRE(copy.step(0.2));
   CHECK(a.frame() == copy.frame());
 }
 
@@ -102,7 +102,7 @@ TEST_CASE("intentions to yield alternate, with durations of their distributions"
   int changes = 0;
   std::vector<bool> before(16, false);
   for (int i = 0; i < 900; ++i) {
-    world.step(0.1);
+    REQUIRE(world.step(0.1));
     for (std::uint32_t k = 0; k < 16; ++k) {
       if (world.frame().agents[k].status != cb::AgentStatus::driving) continue;
       bool const now = world.memory<IdmStochastic>(static_cast<cb::AgentId>(k)).yields;
@@ -123,7 +123,7 @@ TEST_CASE("drivers yield at different times from the start: at each moment as ma
   for (std::uint64_t const seed : {5u, 6u, 7u}) {
     auto world = free_drivers(driver, count, seed);
     for (int i = 0; i < 120; ++i) {
-      world.step(0.1);
+      REQUIRE(world.step(0.1));
       int yielding = 0;
       for (std::uint32_t k = 0; k < count; ++k)
         yielding += world.memory<IdmStochastic>(static_cast<cb::AgentId>(k)).yields;

@@ -75,7 +75,7 @@ std::vector<std::optional<double>> times_through(Sim& world, std::vector<AgentId
   std::vector<std::optional<double>> times(ids.size());
   CollisionAny const collision;
   while (world.time() < seconds) {
-    world.step(0.2);
+    REQUIRE(world.step(0.2));
     REQUIRE(!collision.evaluate(world).any_collision);
     for (std::size_t i = 0; i < ids.size(); ++i) {
       auto const lane = world.lane_of(ids[i]);
@@ -200,7 +200,7 @@ TEST_CASE("a junction's priorities go before right before left") {
   double left_in = 0.0, straight_in = 0.0;
   CollisionAny const collision;
   for (int k = 0; k < 200; ++k) {
-    world.step(0.2);
+    REQUIRE(world.step(0.2));
     REQUIRE(!collision.evaluate(world).any_collision);
     auto const in = [&](AgentId id) { return is_valid(map->road(map->lane(world.lane_of(id)).road).junction); };
     if (left_in == 0.0 && in(left)) left_in = world.time();
@@ -227,7 +227,7 @@ TEST_CASE("signs go before right before left, and who has a stop sign stands bef
     auto const alone = add_before(empty, crossing.route(2, 0), 40.0, 8.0);
     double slowest = 8.0;
     for (int k = 0; k < 100 && empty.status(alone) == AgentStatus::driving; ++k) {
-      empty.step(0.2);
+      REQUIRE(empty.step(0.2));
       slowest = std::min(slowest, empty.state(alone).speed);
     }
     CHECK((slowest < 0.1) == (std::string(type) == "206"));
@@ -293,7 +293,7 @@ TEST_CASE("who has just split off and stands with its rear in the way is seen") 
     add_before(at, straight, 30.0, 8.0);
     CollisionAny const collision;
     for (int k = 0; k < 100; ++k) {
-      at.step(0.2);
+      REQUIRE(at.step(0.2));
       REQUIRE(!collision.evaluate(at).any_collision);
     }
   }
@@ -308,11 +308,11 @@ TEST_CASE("crossing a junction allocates nothing, in the world and in a predicti
   auto future = world.observe(static_cast<AgentId>(0)).predict(predict_all_as<Set>(Intersection{}));
   for (auto* each : {&world, &future}) {
     Sim copy = *each;
-    for (int k = 0; k < 3; ++k) each->step(0.2), copy.step(0.2);
+    for (int k = 0; k < 3; ++k) REQUIRE((each->step(0.2) && copy.step(0.2)));
     auto const before = support::allocations();
-    for (int k = 0; k < 100; ++k) each->step(0.2);
+    for (int k = 0; k < 100; ++k) REQUIRE(each->step(0.2));
     CHECK(support::allocations() == before);
-    for (int k = 0; k < 100; ++k) copy.step(0.2);
+    for (int k = 0; k < 100; ++k) REQUIRE(copy.step(0.2));
     for (std::size_t i = 0; i < copy.size(); ++i)
       CHECK(copy.frame().agents[i].state.x == each->frame().agents[i].state.x);
   }

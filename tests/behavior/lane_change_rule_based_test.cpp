@@ -33,7 +33,7 @@ TEST_CASE("changes to the lane with the most space, of three") {
     add(world, 2, 250.0, 10.0, cb::ConstantAcceleration{});
     add(world, left_is_free ? 3 : 1, 280.0, 10.0, cb::ConstantAcceleration{});
     auto const driver = add(world, 2, 200.0, 14.0, roomy(20.0));
-    for (int k = 0; k < 60; ++k) world.step(0.2);
+    for (int k = 0; k < 60; ++k) REQUIRE(world.step(0.2));
     CHECK(world.record(driver).lane.corridor == (left_is_free ? 0 : 2));
   }
 }
@@ -44,7 +44,7 @@ TEST_CASE("a little more space is not worth a change") {
     add(world, 1, 240.0, 14.0, cb::ConstantAcceleration{});
     add(world, 2, 240.0 + more, 14.0, cb::ConstantAcceleration{});
     auto const driver = add(world, 1, 200.0, 14.0, roomy(14.0));
-    world.step(0.2);
+    REQUIRE(world.step(0.2));
     CHECK(world.memory<cb::LaneChangeRuleBased>(driver).change.active() == (more > 10.0));
   }
 }
@@ -88,7 +88,7 @@ TEST_CASE("MOBIL changes only where its filters let it, the library's and a user
     auto const free_lane = lane == 1 ? 2 : lane - 1;
     add(world, free_lane, 180.0, 14.0, cb::ConstantAcceleration{});
     if (lane == 2) add(world, 3, 205.0, 14.0, cb::ConstantAcceleration{});
-    world.step(0.2);
+    REQUIRE(world.step(0.2));
     return world.template memory<Driver>(id).change.active();
   };
   CHECK(changes(cb::Mobil{}, 1));

@@ -126,7 +126,7 @@ std::vector<std::uint16_t> lanes(World const& world) {
 template <class World>
 int step_and_count_changes(World& world, double dt = 0.2) {
   auto const before = lanes(world);
-  world.step(dt);
+  REQUIRE(world.step(dt));
   auto const after = lanes(world);
   int changes = 0;
   for (std::size_t i = 0; i < after.size(); ++i) changes += before[i] != after[i];

@@ -44,7 +44,7 @@ TEST_CASE_TEMPLATE("every car-following model stops before its lane's end where 
   // Not where the end is its destination, unless BARK's way is asked for.
   World other(straight_road(1, 300));
   auto const through = enter(other, Behavior{}, {.lane_end = cb::RoadRules::LaneEnd::before_destination});
-  for (int i = 0; i < 300; ++i) other.step(0.2);
+  for (int i = 0; i < 300; ++i) REQUIRE(other.step(0.2));
   CHECK(other.status(through) != cb::AgentStatus::driving);
 }
 
@@ -93,7 +93,7 @@ TEST_CASE("one who obeys speed limits keeps them, along a town's roads") {
       auto const& record = world.record(id);
       auto const& corridor = world.roster().agents[0].road->corridors[record.lane.corridor];
       CHECK(record.state.speed <= corridor.speed_limit_at(record.lane.s) * 1.05 + 0.3);
-      world.step(0.2);
+      REQUIRE(world.step(0.2));
     }
     ++limited;
   }

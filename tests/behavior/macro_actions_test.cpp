@@ -173,7 +173,7 @@ TEST_CASE("whatever the shape and the speed, the body stays within the two lanes
           double leftmost = -100.0, rightmost = 0.0;
           bool goes_on = true;
           do {
-            world.step(0.2);
+            REQUIRE(world.step(0.2));
             auto const state = world.state(id);
             auto const aside = cb::geometry::extent_along(shape, std::sin(state.heading), -std::cos(state.heading));
             leftmost = std::max(leftmost, state.y + aside.positive);
@@ -200,7 +200,7 @@ TEST_CASE("what is chosen, and the change under way, go along with copies") {
   at.drive(5);
   auto copy = at.world;
   at.drive(20);
-  for (int i = 0; i < 20; ++i) copy.step(0.25);
+  for (int i = 0; i < 20; ++i) REQUIRE(copy.step(0.25));
   CHECK(copy.frame() == at.world.frame());
   CHECK(at.y() == doctest::Approx(-8.75).epsilon(1e-6));
 }
@@ -239,7 +239,7 @@ TEST_CASE("a change into a lane that ends too soon is not available, and not beg
   CHECK(cb::MacroActions{.minimum_remaining = 150.0}.available(world.observe(far), number));
   CHECK_FALSE(cb::MacroActions{.minimum_remaining = 150.0}.available(world.observe(near), number));
   for (auto const id : {far, near}) world.memory<cb::MacroActions>(id).choose(number);
-  world.step(0.25);
+  REQUIRE(world.step(0.25));
   CHECK(world.memory<cb::MacroActions>(far).change.active());
   CHECK_FALSE(world.memory<cb::MacroActions>(near).change.active());
 }
@@ -252,8 +252,8 @@ TEST_CASE("keeping the gap is IDM") {
   other.add({.position = {100, -1.75}, .speed = 10, .behavior = cb::IdmClassic{}});
   other.add({.position = {140, -1.75}, .speed = 6, .behavior = cb::IdmClassic{.desired_speed = 6}});
   for (int i = 0; i < 40; ++i) {
-    world.step(0.25);
-    other.step(0.25);
+    REQUIRE(world.step(0.25));
+    REQUIRE(other.step(0.25));
     CHECK(world.state(cb::AgentId{0}).x == doctest::Approx(other.state(cb::AgentId{0}).x).epsilon(1e-12));
   }
 }
@@ -277,7 +277,7 @@ TEST_CASE("random actions are the same in every run and copy, others for another
   std::set<int> chosen;
   int switches = 0, last = -1;
   for (int i = 0; i < 240; ++i) {
-    world.step(0.25);
+    REQUIRE(world.step(0.25));
     if (world.status(id) != cb::AgentStatus::driving) break;
     int const now = world.memory<cb::RandomMacroActions>(id).macro.chosen;
     switches += now != last;
@@ -296,19 +296,21 @@ TEST_CASE("motion primitives are carried out by the vehicle model, as chosen") {
   auto const id = world.add({.position = {100, -5.25}, .speed = 10, .behavior = primitives});
   cb::SingleTrack const model;
   auto expected = cb::rk4_step(model, cb::rk4_step(model, world.state(id), {1.0, 0.05}, 0.1), {1.0, 0.05}, 0.1);
-  world.step(0.2);
+  REQUIRE(world.step(0.2));
   CHECK(world.state(id).x == doctest::Approx(expected.x).epsilon(1e-14));
   CHECK(world.state(id).heading == doctest::Approx(expected.heading).epsilon(1e-14));
   world.memory<cb::MotionPrimitives>(id).chosen = 1;
   double const speed = world.state(id).speed;
-  world.step(0.2);
+  REQUIRE(world.step(0.2));
   CHECK(world.state(id).speed == doctest::Approx(speed - 0.4));
   CHECK(world.record(id).action.acceleration == doctest::Approx(-2.0));
-  world.memory<cb::MotionPrimitives>(id).chosen = 9;  // there is none: coasts
+  world.memory<cb::MotionPrimitives>(id).chosen = cb::MotionPrimitives::nothing;  // coasts
   auto const before = world.state(id);
-  world.step(0.2);
+  REQUIRE(world.step(0.2));
   CHECK(world.state(id).speed == before.speed);
   CHECK(world.state(id).heading == before.heading);
+  world.memory<cb::MotionPrimitives>(id).chosen = 9;  // there is none
+  CHECK(world.step(0.2).problem == cb::StepProblem::no_plan);
   CHECK_THROWS_AS((void)cb::MotionPrimitives::of({}), cb::ParameterError);
 }
 

@@ -54,7 +54,7 @@ TEST_CASE("MOBIL decides as BARK's where BARK sees who is behind, and as publish
   auto const rows = corpus::table(*file);
   auto const wants = [&](int step, int agent) {
     auto world = world_at(rows, step);
-    world.step(0.2);
+    REQUIRE(world.step(0.2));
     return world.memory<Driver>(static_cast<cb::AgentId>(agent)).change.active();
   };
   auto const bark_moves = [&](int step, int agent) {
@@ -88,7 +88,7 @@ TEST_CASE("in BARK's traffic our drivers change, with hysteresis, and do not cha
   std::vector<int> ours(5), theirs(5);
   for (int k = 0; k < 50; ++k) {
     auto const before = lanes(world);
-    world.step(0.2);
+    REQUIRE(world.step(0.2));
     for (std::size_t i = 0; i < 4; ++i) ours[i + 1] += world.frame().agents[i].lane.corridor != before[i];
     CHECK(collisions(world) == 0);
   }
@@ -152,6 +152,6 @@ TEST_CASE("the nearest follower counts, BARK takes the farthest") {
   Driver const driver = bark_driver(20.0);
   CHECK(driver.changing.follower(rear, 140.0 - 4.5, 14.0) > -4.0);
   CHECK(driver.changing.follower(rear, rear->gap, 14.0) < -4.0);
-  world.step(0.2);
+  REQUIRE(world.step(0.2));
   CHECK(!world.memory<Driver>(ego).change.active());
 }

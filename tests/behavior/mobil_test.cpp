@@ -34,7 +34,7 @@ Counts run(World& world, int steps, double dt) {
   auto const memory = [&](std::size_t i) { return std::get<0>(world.frame().agents[i].memory); };
   for (int k = 0; k < steps; ++k) {
     auto const before = world.frame();
-    world.step(dt);
+    REQUIRE(world.step(dt));
     for (std::size_t i = 0; i < world.size(); ++i) {
       if (world.roster().agents[i].behavior.index() != 0) continue;
       auto const& was = std::get<0>(before.agents[i].memory).change;
@@ -103,7 +103,7 @@ TEST_CASE("of two who change into the same gap from both sides in the same step,
                b = add(world, 3, 190 + apart, v * between(0.97, 1.03), mobil(1.3 * v));
     for (int k = 0; k < 100; ++k) {
       auto const before = world.frame();
-      world.step(seed % 3 == 0 ? 0.1 : 0.2);
+      REQUIRE(world.step(seed % 3 == 0 ? 0.1 : 0.2));
       auto const began = [&](cb::AgentId id) {
         auto const slot = world.slot_of(id);
         return !std::get<0>(before.agents[slot].memory).change.active() &&
@@ -132,7 +132,7 @@ TEST_CASE("no change begins into an unsafe gap: by brute force over all vehicles
     fill(world, 3, 5.0, 600.0, 2.0, seed, [](double v) { return mobil(v); });
     for (int k = 0; k < 200; ++k) {
       auto const before = world.frame();
-      world.step(0.2);
+      REQUIRE(world.step(0.2));
       for (std::size_t i = 0; i < world.size(); ++i) {
         auto const now = std::get<0>(world.frame().agents[i].memory).change;
         if (std::get<0>(before.agents[i].memory).change.active() || !now.active()) continue;
@@ -176,7 +176,7 @@ TEST_CASE("mirrored traffic changes lanes as the mirror image") {
     double worst = 0.0;
     for (int k = 0; k < 150; ++k) {
       changes += step_and_count_changes(world);
-      mirrored.step(0.2);
+      REQUIRE(mirrored.step(0.2));
       for (std::size_t i = 0; i < world.size(); ++i) {
         auto const &a = world.frame().agents[i].state, &b = mirrored.frame().agents[i].state;
         worst = std::max({worst, std::abs(a.x - b.x), std::abs(a.y + b.y + 10.5)});
@@ -207,7 +207,7 @@ TEST_CASE("drivers slow for bends, and for limits where they obey them") {
         double across = 0.0, hardest = 0.0, fastest = 0.0;
         for (int k = 0; k < 200 && world.record(id).status == cb::AgentStatus::driving; ++k) {
           auto const before = world.state(id);
-          world.step(0.2);
+          REQUIRE(world.step(0.2));
           auto const& now = world.state(id);
           double const turn = std::abs(cb::geometry::angle_difference(now.heading, before.heading));
           across = std::max(across, turn / 0.2 * now.speed);
@@ -232,7 +232,7 @@ TEST_CASE("a bend behind it does not slow a driver for one that is gentle enough
   Sim world(map);
   auto const id = add(world, 1, 250.0, 16.9, mobil(16.9));  // 2.86 m/s^2 in the gentle one
   for (int k = 0; k < 100; ++k) {
-    world.step(0.2);
+    REQUIRE(world.step(0.2));
     REQUIRE(world.state(id).speed == doctest::Approx(16.9));
   }
 }
@@ -251,7 +251,7 @@ TEST_CASE("the more polite drivers are, the less deceleration they impose on oth
       for (int k = 0; k < 150; ++k) {
         auto const before = world.frame();
         Sim here = world;
-        world.step(0.2);
+        REQUIRE(world.step(0.2));
         for (std::size_t i = 0; i < world.size(); ++i) {
           auto const now = std::get<0>(world.frame().agents[i].memory).change;
           if (std::get<0>(before.agents[i].memory).change.active() || !now.active()) continue;
@@ -284,7 +284,7 @@ TEST_CASE("with the rule to keep right traffic drives on the right, and nobody i
         driver.bias = rule == 1 ? 0.3 : 0.0;
         return driver;
       });
-      for (int k = 0; k < 300; ++k) world.step(0.2);
+      for (int k = 0; k < 300; ++k) REQUIRE(world.step(0.2));
       for (auto const& record : world.frame().agents) on_right[rule] += record.lane.corridor == 2;
       if (rule == 1) total += static_cast<int>(world.size());
     }
@@ -302,7 +302,7 @@ TEST_CASE("a fast driver does not pass a slower one on the right under the rule 
     driver.keep_right = rule;
     driver.threshold = 5.0;  // stays on the right
     auto const fast = add(world, 2, 50.0, 28.0, driver);
-    for (int k = 0; k < 150; ++k) world.step(0.2);
+    for (int k = 0; k < 150; ++k) REQUIRE(world.step(0.2));
     CHECK((world.state(fast).x > world.state(slow).x) == !rule);
   }
 }
@@ -333,7 +333,7 @@ TEST_CASE("left-hand traffic under the rule to keep to its side is the mirror im
     double worst = 0.0;
     for (int k = 0; k < 200; ++k) {
       changes += step_and_count_changes(world);
-      mirrored.step(0.2);
+      REQUIRE(mirrored.step(0.2));
       for (std::size_t i = 0; i < world.size(); ++i) {
         auto const &a = world.frame().agents[i].state, &b = mirrored.frame().agents[i].state;
         worst = std::max({worst, std::abs(a.x - b.x), std::abs(a.y + b.y)});
@@ -365,7 +365,7 @@ std::pair<int, int> changes_and_returns(double threshold, double rest) {
     std::vector<Last> last(world.size());
     for (int k = 0; k < 300; ++k) {
       auto const before = lanes(world);
-      world.step(0.2);
+      REQUIRE(world.step(0.2));
       auto const after = lanes(world);
       for (std::size_t i = 0; i < world.size(); ++i) {
         if (before[i] == after[i]) continue;
@@ -401,7 +401,7 @@ TEST_CASE("a follower is judged by what is assumed of vehicles as long as it, an
       auto const id = add(world, 1, 200.0, 14.0, driver);
       auto const shape = is_truck ? cb::geometry::truck() : cb::geometry::car();
       add(world, 2, 160.0 - shape.front, 14.0, cb::ConstantAcceleration{}, {}, shape);
-      world.step(0.2);
+      REQUIRE(world.step(0.2));
       CHECK(world.memory<cb::Mobil>(id).change.active() == (is_truck != truck_is_hindered));
     }
   cb::LaneChanging const changing;
@@ -421,7 +421,7 @@ TEST_CASE("a change is aborted when somebody comes up in the new lane") {
     for (int k = 0; k < 60; ++k) {
       auto const was = world.memory<cb::Mobil>(driver).change;
       auto const home = world.record(driver).lane.corridor;
-      world.step(0.2);
+      REQUIRE(world.step(0.2));
       auto const now = world.memory<cb::Mobil>(driver).change;
       began = began || now.active();
       aborted += was.active() && was.target == 1 && now.active() && now.target == 0 && home == 0;
@@ -448,7 +448,7 @@ TEST_CASE(
     double const way_to_brake = 6.5 + 1.5 * v + v * (v - slow) / 4;
     auto const ahead = add(world, 1, at + way_to_brake * between(0.7, 1.5), slow, cb::ConstantAcceleration{});
     for (int k = 0; k < 150; ++k) {
-      world.step(0.2);
+      REQUIRE(world.step(0.2));
       CAPTURE(seed);
       REQUIRE(collisions(world) == 0);
       auto const leader = world.observe(follower).front();
@@ -476,7 +476,7 @@ TEST_CASE("who is off its lane's middle or direction comes back smoothly, howeve
                                    .behavior = mobil(speed)});
         double before = turn;
         for (int k = 0; k < 400 && world.status(id) == cb::AgentStatus::driving; ++k) {
-          world.step(0.1);
+          REQUIRE(world.step(0.1));
           auto const& at = world.record(id).lane;
           CAPTURE(curvature);
           CAPTURE(turn);
@@ -508,7 +508,7 @@ TEST_CASE("drivers go around a standing object, and wait before it while the oth
       add(world, 3 - number, s, 10.0, cb::IdmClassic{.desired_speed = 10.0});
     bool waited = false;
     for (int k = 0; k < 700; ++k) {
-      world.step(0.2);
+      REQUIRE(world.step(0.2));
       REQUIRE(collisions(world) == 0);
       waited = waited || world.state(driver).speed < 1.0;
     }
@@ -530,7 +530,7 @@ TEST_CASE("a driver stops before the end of a lane that its goal is not in, and 
     for (double s = 20.0; s < 590.0; s += spacing) add(world, 1, s, 6.0, cb::IdmClassic{.desired_speed = 6.0});
     bool reached = false;
     for (int k = 0; k < 1600 && !reached; ++k) {
-      world.step(0.2);
+      REQUIRE(world.step(0.2));
       REQUIRE(collisions(world) == 0);
       auto const status = world.status(driver);
       REQUIRE((status == cb::AgentStatus::driving || status == cb::AgentStatus::arrived));
@@ -560,7 +560,7 @@ TEST_CASE("from rest, on an empty road, who needs another lane at the end comes 
         auto const map = support::straight_road(4, 600.0);
         Sim world(map);
         auto const driver = add(world, lane, 600.0 - before, 0.0, mobil(30.0), last_metres_of(*map, goal));
-        for (int k = 0; k < 600 && !world.reached_goal(driver); ++k) world.step(0.2);
+        for (int k = 0; k < 600 && !world.reached_goal(driver); ++k) REQUIRE(world.step(0.2));
         CAPTURE(goal);
         CAPTURE(lane);
         CAPTURE(before);
@@ -578,7 +578,7 @@ TEST_CASE("two who stand side by side and need each other's lanes both come ther
                  b = add(world, 2, at + apart, 0.0, mobil(15.0), last_metres_of(*map, 1), shape);
       bool reached_a = false, reached_b = false;
       for (int k = 0; k < 900 && !(reached_a && reached_b); ++k) {
-        world.step(0.2);
+        REQUIRE(world.step(0.2));
         REQUIRE(collisions(world) == 0);
         reached_a = reached_a || world.reached_goal(a);
         reached_b = reached_b || world.reached_goal(b);
@@ -600,7 +600,7 @@ TEST_CASE("on a lane drop and at a fork MOBIL drivers leave the lane that ends, 
     fill(world, 3, 5.0, 250.0, 1.5, seed, [](double v) { return mobil(v); });
     int in_drop = 0;
     for (int k = 0; k < 500; ++k) {
-      world.step(0.2);
+      REQUIRE(world.step(0.2));
       CAPTURE(seed);
       CAPTURE(k);
       CHECK(collisions(world) == 0);

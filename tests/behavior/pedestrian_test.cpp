@@ -54,11 +54,11 @@ TEST_CASE("alone on its way a pedestrian comes to its desired speed with tau, an
   Sim world(road);
   auto const id = walk(world, way({{0, 50}, {60, 50}}), {1, 50}, {.fluctuation = 0.0});
   for (int i = 1; i <= 20; ++i) {
-    world.step(0.1);
+    REQUIRE(world.step(0.1));
     CHECK(world.state(id).speed == doctest::Approx(1.34 * (1 - std::exp(-0.1 * i / 0.5))).epsilon(1e-6));
     CHECK(world.state(id).y == doctest::Approx(50.0));
   }
-  for (int i = 0; i < 450; ++i) world.step(0.1);
+  for (int i = 0; i < 450; ++i) REQUIRE(world.step(0.1));
   CHECK(world.status(id) == cb::AgentStatus::arrived);
 }
 
@@ -68,7 +68,7 @@ TEST_CASE("round bends of its way a pedestrian stays on it") {
   auto const id = walk(world, bent, {0, 50});
   double farthest = 0.0;
   for (int i = 0; i < 600 && drives(world, id); ++i) {
-    world.step(0.1);
+    REQUIRE(world.step(0.1));
     farthest = std::max(farthest, std::abs(world.record(id).lane.lateral));
   }
   CHECK(world.status(id) == cb::AgentStatus::arrived);
@@ -86,7 +86,7 @@ TEST_CASE("two who head at each other evade, whatever way they come") {
     auto const a = walk(world, there, {0, 50 + between(random, -0.3, 0.3)}, {.social = {.desired_speed = v}}, v);
     auto const b = walk(world, back, {20, 50 + between(random, -0.3, 0.3)}, {.social = {.desired_speed = w}}, w);
     for (int i = 0; i < 400 && drives(world, a) && drives(world, b); ++i) {
-      world.step(0.1);
+      REQUIRE(world.step(0.1));
       smallest = std::min(smallest, apart(world, a, b));
     }
     arrived += world.status(a) == cb::AgentStatus::arrived || world.status(b) == cb::AgentStatus::arrived;
@@ -104,7 +104,7 @@ TEST_CASE("two ways that cross: nobody runs into another") {
     auto const a = walk(world, along, {0, 50}, {}, 1.34);
     auto const b = walk(world, across, {10, 40 + between(random, -1.0, 1.0)}, {}, 1.34);
     for (int i = 0; i < 250; ++i) {
-      world.step(0.1);
+      REQUIRE(world.step(0.1));
       if (drives(world, a) && drives(world, b)) smallest = std::min(smallest, apart(world, a, b));
     }
     CHECK(world.status(a) == cb::AgentStatus::arrived);
@@ -159,7 +159,7 @@ TEST_CASE("a pedestrian crosses in gaps, and is never run over by those who do n
     double entered = 1e9;
     for (int i = 0; i < 500 && drives(world, id); ++i) {
       bool const was_beside = world.state(id).y > 0.3 || world.state(id).y < -7.3;
-      world.step(0.1);
+      REQUIRE(world.step(0.1));
       REQUIRE(collisions(world) == 0);
       bool const is_in = world.state(id).y < 0.3 && world.state(id).y > -7.3;
       if (was_beside && is_in) entered = world.time(), least = std::min(least, time_left(world, id));
@@ -185,7 +185,7 @@ TEST_CASE("among drivers who brake for it a pedestrian who demands that gets acr
                              {.crossing = {.demanded_deceleration = 2.0}}));
     add_vehicles(world, random, 1.5, 8.0, 14.0, [](double speed) { return cb::IdmClassic{.desired_speed = speed}; });
     for (int i = 0; i < 900; ++i) {
-      world.step(0.1);
+      REQUIRE(world.step(0.1));
       REQUIRE(collisions(world) == 0);
     }
     for (auto const id : walkers) crossed += world.status(id) == cb::AgentStatus::arrived;
@@ -228,7 +228,7 @@ double order_of_crowd(std::uint32_t seed, cb::Pedestrian behavior) {
          goes ? 0.0 : cb::geometry::pi);
   }
   for (int i = 0; i < 400; ++i) {
-    world.step(0.1);
+    REQUIRE(world.step(0.1));
     for (std::size_t k = 0; k < world.size(); ++k) {
       auto state = world.frame().agents[k].state;
       double const shift = k % 2 == 0 && state.x > 50 ? -40.0 : k % 2 == 1 && state.x < 10 ? 40.0 : 0.0;
@@ -263,7 +263,7 @@ TEST_CASE("pedestrians stop before a static object, or go round it") {
     world.add_object(cb::geometry::Polygon({{x, y - half}, {x + 0.6, y - half}, {x + 0.6, y + half}, {x, y + half}}));
     auto const id = walk(world, along, {1, 50}, {}, 1.34);
     for (int i = 0; i < 300 && drives(world, id); ++i) {
-      world.step(0.1);
+      REQUIRE(world.step(0.1));
       REQUIRE(collisions(world) == 0);
     }
     if (std::abs(y - 50) > half + 0.4) CHECK(world.status(id) == cb::AgentStatus::arrived);
@@ -289,12 +289,12 @@ TEST_CASE("a step, a copy and the order of entering do not change a bit; no step
     return world;
   };
   auto a = fill(false), b = fill(true);
-  for (int i = 0; i < 40; ++i) a.step(0.1);
+  for (int i = 0; i < 40; ++i) REQUIRE(a.step(0.1));
   auto c = fill(true);
   for (int i = 0; i < 40; ++i) {
     c = b;
-    b.step(0.1);
-    c.step(0.1);
+    REQUIRE(b.step(0.1));
+    REQUIRE(c.step(0.1));
     REQUIRE(b.frame() == c.frame());
   }
   auto const same = [](Sim const& l, Sim const& r) {
@@ -304,7 +304,7 @@ TEST_CASE("a step, a copy and the order of entering do not change a bit; no step
   };
   CHECK(same(a, b));
   auto const before = support::allocations();
-  for (int i = 0; i < 100; ++i) b.step(0.1);
+  for (int i = 0; i < 100; ++i) REQUIRE(b.step(0.1));
   CHECK(support::allocations() == before);
 }
 
@@ -315,7 +315,7 @@ TEST_CASE("a prediction walks too, and a car that brakes for one who stands in i
   auto const car = world.add({.position = {270, -1.75}, .speed = 10, .behavior = cb::IdmClassic{}});
   using Set = cb::BehaviorSet<cb::Pedestrian, cb::IdmClassic>;
   auto future = world.observe(car).predict(cb::predict_as<Set>(cb::IdmClassic{}, cb::Pedestrian{}));
-  for (int i = 0; i < 150; ++i) future.step(0.1);
+  for (int i = 0; i < 150; ++i) REQUIRE(future.step(0.1));
   CHECK(future.status(walker) == cb::AgentStatus::arrived);
   CHECK(future.state(car).x > 320.0);
 
@@ -326,7 +326,7 @@ TEST_CASE("a prediction walks too, and a car that brakes for one who stands in i
   REQUIRE(front);
   CHECK(front->agent == walker);
   CHECK(front->gap == doctest::Approx(50 - 3.6 - 0.3).epsilon(0.01));
-  for (int i = 0; i < 110; ++i) stopping.step(0.1);
+  for (int i = 0; i < 110; ++i) REQUIRE(stopping.step(0.1));
   CHECK(stopping.state(car).speed < 0.5);
   CHECK(stopping.state(car).x + 3.6 < 319.7);
 }

@@ -177,8 +177,8 @@ TEST_CASE("where nothing is dangerous the nominal behaviour drives, to the bit")
     nominal.add({.position = {x, -5.25}, .speed = 20, .behavior = mobil});
   }
   for (int i = 0; i < 20; ++i) {
-    safe.step(0.2);
-    nominal.step(0.2);
+    REQUIRE(safe.step(0.2));
+    REQUIRE(nominal.step(0.2));
     for (std::size_t a = 0; a < 3; ++a) CHECK(safe.frame().agents[a].state == nominal.frame().agents[a].state);
   }
 }

@@ -62,7 +62,7 @@ TEST_CASE("every driver stops before a static object in its lane, also where it 
       int const kind = static_cast<int>(seed % 3);  // all of it, from the right, from the left
       put_box(world, x, kind == 2 ? -1.0 : -4.5, kind == 1 ? -2.5 : 1.0);
       for (int i = 0; i < 300; ++i) {
-        world.step(0.2);
+        REQUIRE(world.step(0.2));
         REQUIRE(collisions(world) == 0);
       }
       CHECK(world.state(id).speed < 0.2);
@@ -88,7 +88,7 @@ TEST_CASE("every driver stops for one who walks slowly in its lane, and drives o
                  .road = cb::map::build_free_corridor(*road, points)});
       bool has_stood = false;
       for (int i = 0; i < 600; ++i) {
-        world.step(0.2);
+        REQUIRE(world.step(0.2));
         REQUIRE(collisions(world) == 0);
         has_stood = has_stood || world.state(id).speed < 0.5;
       }
@@ -110,7 +110,7 @@ TEST_CASE("who may change lanes passes a static object in its own") {
       auto const id = add(world, lane, 10.0, between(random, 8, 14), driver);
       put_box(world, x, y - 3.0, y - 0.5);
       for (int i = 0; i < 300; ++i) {
-        world.step(0.2);
+        REQUIRE(world.step(0.2));
         REQUIRE(collisions(world) == 0);
       }
       CHECK((world.status(id) != cb::AgentStatus::driving || world.state(id).x > x + 10.0));
@@ -150,7 +150,7 @@ TEST_CASE("an object in a lane's neighbour query is there for cyclists and on fr
   REQUIRE(world.observe(late).front());
   CHECK(world.observe(late).front()->object == on_way);
   for (int i = 0; i < 300; ++i) {
-    world.step(0.2);
+    REQUIRE(world.step(0.2));
     REQUIRE(collisions(world) == 0);
   }
   CHECK(world.state(cyclist).speed < 0.1);
@@ -193,7 +193,7 @@ TEST_CASE("ways that are none are refused, and goals on free ways work") {
                              .goal = cb::ReachPolygon{cb::geometry::Polygon({{40, 10}, {60, 10}, {60, 30}, {40, 30}})},
                              .road = way});
   CHECK_FALSE(world.reached_goal(id));
-  for (int i = 0; i < 40 && !world.reached_goal(id); ++i) world.step(0.2);
+  for (int i = 0; i < 40 && !world.reached_goal(id); ++i) REQUIRE(world.step(0.2));
   CHECK(world.reached_goal(id));
   CHECK_FALSE(cb::is_valid(world.lane_of(id)));
   CHECK(world.situation(id).lane_position == doctest::Approx(world.state(id).x));

@@ -49,7 +49,7 @@ TEST_CASE("a replay reproduces what was recorded of traffic, at any step length 
   std::vector<std::vector<cb::State>> recordings(world.size());
   for (int k = 0; k <= 60; ++k) {
     for (std::size_t i = 0; i < world.size(); ++i) recordings[i].push_back(world.frame().agents[i].state);
-    world.step(dt);
+    REQUIRE(world.step(dt));
   }
   for (int const stride : {1, 2, 3}) {
     World again(world.shared_map());
@@ -107,9 +107,9 @@ TEST_CASE("a replay enters traffic when its recording begins, and leaves when it
 TEST_CASE("one whose recording begins between two steps enters at the first step's end behind that") {
   World world(straight_road(1, 1000.0));
   auto const id = world.add(replay(recorded(0.5, 100, 10, 0.2)));
-  world.step(0.4);
+  REQUIRE(world.step(0.4));
   CHECK(world.status(id) == cb::AgentStatus::not_started);
-  world.step(0.4);
+  REQUIRE(world.step(0.4));
   CHECK(world.status(id) == cb::AgentStatus::driving);
   CHECK(world.state(id).x == doctest::Approx(103));
   CHECK(world.record(id).action.acceleration == doctest::Approx(0));
@@ -124,7 +124,7 @@ TEST_CASE(
   CHECK(world.status(later) == cb::AgentStatus::not_started);
   CHECK(world.remove_departed() == 0);
   World copy = world;
-  for (int k = 0; k < 4; ++k) copy.step(1.0);
+  for (int k = 0; k < 4; ++k) REQUIRE(copy.step(1.0));
   CHECK(copy.status(later) == cb::AgentStatus::driving);
   CHECK(world.status(later) == cb::AgentStatus::not_started);
 }

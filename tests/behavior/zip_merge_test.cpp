@@ -50,7 +50,7 @@ Passed run(Sim& world, std::map<cb::AgentId, int> const& from, double x, int ste
   Passed passed;
   for (int k = 0; k < steps; ++k) {
     auto const before = world.frame();
-    world.step(0.2);
+    REQUIRE(world.step(0.2));
     std::vector<std::pair<double, int>> now;  // in one step the one ahead was first
     for (std::size_t i = 0; i < world.size(); ++i) {
       auto const at = from.find(world.roster().agents[i].id);
@@ -122,7 +122,7 @@ TEST_CASE("beside a fast lane nobody brakes to a standstill for those who pass b
     for (double s = 410.0; s > 100.0; s -= gap) add(world, 2, s, 26.0, zip(30.0));
     double slowest = 100.0;
     for (int k = 0; k < 150; ++k) {
-      world.step(0.2);
+      REQUIRE(world.step(0.2));
       for (auto const id : slow) slowest = std::min(slowest, world.state(id).speed);
       CHECK(collisions(world) == 0);
     }

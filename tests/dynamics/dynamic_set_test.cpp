@@ -161,9 +161,9 @@ TEST_CASE("a truck, a pedestrian and a user's own vehicle move in one world, eac
   tanks.memory<cb::ExternalInput>(own1) = input;
   for (int i = 0; i < 10; ++i) {
     REQUIRE(mixed.step(0.1));
-    trucks.step(0.1);
-    pedestrians.step(0.1);
-    tanks.step(0.1);
+    REQUIRE(trucks.step(0.1));
+    REQUIRE(pedestrians.step(0.1));
+    REQUIRE(tanks.step(0.1));
   }
   CHECK(mixed.state(t) == trucks.state(t1));
   CHECK(mixed.state(p) == pedestrians.state(p1));

@@ -190,7 +190,7 @@ TEST_CASE("who has left traffic is not hit any more") {
   Sim world(straight_road(1, 100));
   auto const gone = world.add({.position = {95, -1.75}, .speed = 20, .behavior = cb::ConstantAcceleration{}});
   auto const next = world.add({.position = {60, -1.75}, .speed = 0, .behavior = cb::ConstantAcceleration{}});
-  world.step(0.5);
+  REQUIRE(world.step(0.5));
   REQUIRE(world.status(gone) == AgentStatus::left_map);
   world.set_state(next, {.x = world.state(gone).x, .y = -1.75});
   CHECK_FALSE(cb::CollisionAny{}.evaluate(world).any_collision);

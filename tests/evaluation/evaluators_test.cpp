@@ -18,7 +18,7 @@ TEST_CASE("steps are counted, and time is up from the limit on") {
     CHECK(limited.evaluate(world).steps == step);
     CHECK(limited.evaluate(world).timed_out == (step >= 3));
     CHECK_FALSE(unlimited.evaluate(world).timed_out);
-    world.step(0.2);
+    REQUIRE(world.step(0.2));
   }
 }
 
@@ -51,7 +51,7 @@ TEST_CASE("several evaluators give one struct whose fields are named as in each"
                              cb::StepCount{20}, SlowestSpeed{});
   int collisions = 0, goals = 0, time_outs = 0;
   for (int i = 0; i < 30; ++i) {
-    world.step(0.2);
+    REQUIRE(world.step(0.2));
     auto const all = judge.evaluate(world);
     auto const any = cb::CollisionAny{}.evaluate(world);
     CHECK(all.any_collision == any.any_collision);

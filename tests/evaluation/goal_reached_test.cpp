@@ -16,10 +16,10 @@ TEST_CASE("a goal is reached by the agent that has it, while it is there") {
   auto const other = world.add({.position = {60, -1.75}, .speed = 10, .behavior = cb::ConstantAcceleration{}});
   cb::GoalReached const reached{ego};
   CHECK_FALSE(reached.evaluate(world).goal_reached);
-  for (int i = 0; i < 10; ++i) world.step(0.2);  // at 60 m
+  for (int i = 0; i < 10; ++i) REQUIRE(world.step(0.2));  // at 60 m
   CHECK(reached.evaluate(world).goal_reached);
   CHECK_FALSE(cb::GoalReached{other}.evaluate(world).goal_reached);
-  for (int i = 0; i < 10; ++i) world.step(0.2);  // at 80 m
+  for (int i = 0; i < 10; ++i) REQUIRE(world.step(0.2));  // at 80 m
   CHECK_FALSE(reached.evaluate(world).goal_reached);
 }
 

@@ -47,15 +47,15 @@ TEST_CASE("agents of one world carry out their plans each in its own way") {
 TEST_CASE("errors of execution are the same in copies, and in a world set back") {
   World<cb::StanleyExecution> world(straight_road(1, 1000), {.seed = 5});
   enter(world, 100, 12, {.execution = noisy()});
-  for (int i = 0; i < 10; ++i) world.step(0.2);
+  for (int i = 0; i < 10; ++i) REQUIRE(world.step(0.2));
   auto copy = world;
   auto const frame = world.frame();
-  for (int i = 0; i < 20; ++i) world.step(0.2);
-  for (int i = 0; i < 20; ++i) copy.step(0.2);
+  for (int i = 0; i < 20; ++i) REQUIRE(world.step(0.2));
+  for (int i = 0; i < 20; ++i) REQUIRE(copy.step(0.2));
   CHECK(world.frame() == copy.frame());
   auto const end = world.frame();
   world.restore(frame);
-  for (int i = 0; i < 20; ++i) world.step(0.2);
+  for (int i = 0; i < 20; ++i) REQUIRE(world.step(0.2));
   CHECK(world.frame() == end);
 }
 
@@ -76,8 +76,8 @@ TEST_CASE("tracking controllers allocate nothing in a step") {
   World<Set> world(straight_road(1, 1000));
   enter(world, 200, 12, {.execution = noisy()});
   enter(world, 100, 12, {.execution = cb::LqrExecution{}});
-  for (int i = 0; i < 5; ++i) world.step(0.2);
+  for (int i = 0; i < 5; ++i) REQUIRE(world.step(0.2));
   auto const before = support::allocations();
-  for (int i = 0; i < 50; ++i) world.step(0.2);
+  for (int i = 0; i < 50; ++i) REQUIRE(world.step(0.2));
   CHECK(support::allocations() == before);
 }

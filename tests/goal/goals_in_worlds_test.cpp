@@ -37,7 +37,7 @@ TEST_CASE("a sequence is reached once its parts have been passed in their order,
   for (int i = 0; i < 30; ++i) {
     CHECK(world.reached_goal(id) == (world.record(id).goals_passed == 2));
     passed.push_back(world.record(id).goals_passed);
-    world.step(0.5);
+    REQUIRE(world.step(0.5));
   }
   CHECK(passed.front() == 0);
   CHECK(passed[10] == 1);
@@ -51,15 +51,15 @@ TEST_CASE("what an agent has passed of a sequence goes along with copies, frames
   cb::Goal const goal = cb::GoalSequence{{cb::ReachPolygon{gate(105)}, cb::ReachPolygon{gate(200)}}};
   auto const id = world.add(driver(100, goal));
   auto const start = world.frame();
-  for (int i = 0; i < 4; ++i) world.step(0.5);
+  for (int i = 0; i < 4; ++i) REQUIRE(world.step(0.5));
   CHECK(world.record(id).goals_passed == 1);
   Sim copy = world;
-  for (int i = 0; i < 20; ++i) copy.step(0.5);
+  for (int i = 0; i < 20; ++i) REQUIRE(copy.step(0.5));
   CHECK(copy.reached_goal(id));
   CHECK_FALSE(world.reached_goal(id));
   auto future = world.observe(id).predict(cb::predict_all_as<Sim::Behaviors>(cb::ConstantAcceleration{}));
   CHECK(future.record(id).goals_passed == 1);
-  for (int i = 0; i < 20; ++i) future.step(0.5);
+  for (int i = 0; i < 20; ++i) REQUIRE(future.step(0.5));
   CHECK(future.reached_goal(id));
   copy.restore(start);
   CHECK(copy.record(id).goals_passed == 0);
@@ -107,7 +107,7 @@ TEST_CASE("the end of its lane is reached near the end of the road") {
   Sim world(straight_road(1, 300.0));
   auto const id = world.add(driver(250, cb::ReachLaneEnd{20.0}));
   CHECK_FALSE(world.reached_goal(id));
-  for (int i = 0; i < 3; ++i) world.step(1.0);
+  for (int i = 0; i < 3; ++i) REQUIRE(world.step(1.0));
   CHECK(world.state(id).x == doctest::Approx(280));
   CHECK(world.reached_goal(id));
 }
@@ -116,7 +116,7 @@ TEST_CASE("limits along the lane ask for the world's own offsets and speeds") {
   Sim world(straight_road(1, 300.0));
   auto const id = world.add(driver(50, cb::LaneLimits{.from = 60, .left = 0.3, .right = 0.3, .lowest_speed = 9}));
   CHECK_FALSE(world.reached_goal(id));
-  world.step(2.0);
+  REQUIRE(world.step(2.0));
   CHECK(world.reached_goal(id));
   put(world, id, 80, -1.4);
   CHECK_FALSE(world.reached_goal(id));

@@ -74,18 +74,18 @@ TEST_CASE("others are seen exactly as they were some steps ago, and the agent it
 
 TEST_CASE("who has just entered, or come back, is seen as it entered") {
   auto world = traffic(cb::DelayedObserver<3>{});
-  for (int i = 0; i < 5; ++i) world.step(0.2);
+  for (int i = 0; i < 5; ++i) REQUIRE(world.step(0.2));
   auto const late = world.add({.position = {400, -1.75}, .speed = 3});
   cb::AgentId const ego{2};
   CHECK(seen_by(world, ego).at(late) == world.state(late));
   auto const entered = world.state(late);
-  world.step(0.2);
+  REQUIRE(world.step(0.2));
   CHECK(seen_by(world, ego).at(late) == entered);
 }
 
 TEST_CASE("a prediction takes what is seen late for the present") {
   auto world = traffic(cb::DelayedObserver<3>{});
-  for (int i = 0; i < 5; ++i) world.step(0.2);
+  for (int i = 0; i < 5; ++i) REQUIRE(world.step(0.2));
   auto const seen = seen_by(world, cb::AgentId{2});
   auto future = world.observe(cb::AgentId{2}).predict(cb::predict_all_as<Behaviors>(cb::ConstantAcceleration{}));
   for (auto const& [id, state] : seen) {
@@ -97,7 +97,7 @@ TEST_CASE("a prediction takes what is seen late for the present") {
 
 TEST_CASE("copies, and worlds stepped on other threads, of late, blurred and short-sighted eyes are equal to the bit") {
   auto world = traffic(everything);
-  for (int i = 0; i < 5; ++i) world.step(0.2);
+  for (int i = 0; i < 5; ++i) REQUIRE(world.step(0.2));
   auto copy = world;
   auto assigned = traffic(everything, 7);
   assigned = world;
@@ -106,13 +106,13 @@ TEST_CASE("copies, and worlds stepped on other threads, of late, blurred and sho
   std::vector<std::thread> threads;
   for (auto& other : others)
     threads.emplace_back([&other] {
-      for (int i = 0; i < 50; ++i) other.step(0.2);
+      for (int i = 0; i < 50; ++i) REQUIRE(other.step(0.2));
     });
   for (auto& thread : threads) thread.join();
   for (int i = 0; i < 50; ++i) {
     CHECK(world.step(0.2));
-    copy.step(0.2);
-    assigned.step(0.2);
+    REQUIRE(copy.step(0.2));
+    REQUIRE(assigned.step(0.2));
   }
   CHECK(copy.frame() == world.frame());
   CHECK(assigned.frame() == world.frame());
@@ -143,7 +143,7 @@ TEST_CASE("agents of one world perceive by observers of their own kinds") {
   auto const late = world.add({.position = {150, -1.75}, .speed = 10, .observer = {cb::DelayedObserver<2>{}}});
   auto const near =
       world.add({.position = {250, -1.75}, .speed = 10, .observer = {cb::OccludedObserver{.range = 50.0}}});
-  for (int i = 0; i < 5; ++i) world.step(0.2);
+  for (int i = 0; i < 5; ++i) REQUIRE(world.step(0.2));
   CHECK(seen_by(world, sharp).at(late) == world.state(late));
   CHECK(seen_by(world, late).at(sharp) != world.state(sharp));
   CHECK(seen_by(world, near).empty());
@@ -164,8 +164,8 @@ TEST_CASE("a chain that changes nothing shows the truth itself, and is no other 
              .observer = {{cb::ParametricObserver{}, cb::DelayedObserver<2>{.others = 0}}}});
   blind.add({.position = {130, -1.75}, .speed = 8});
   for (int i = 0; i < 20; ++i) {  // neither noise nor delay, but not known at compile time
-    world.step(0.2);
-    blind.step(0.2);
+    REQUIRE(world.step(0.2));
+    REQUIRE(blind.step(0.2));
     CHECK(blind.state(ego) == world.state(ego));
   }
 }

@@ -141,7 +141,7 @@ TEST_CASE(
   CHECK(first.at(both_see).x - world.state(both_see).x !=
         doctest::Approx(first.at(neighbor).x - world.state(neighbor).x));
   CHECK(seen_by(world, another).at(both_see) != first.at(both_see));
-  world.step(0.2);
+  REQUIRE(world.step(0.2));
   auto const before = first.at(both_see).x - 100.0,
              after = seen_by(world, traffic.ego).at(both_see).x - world.state(both_see).x;
   CHECK(before != doctest::Approx(after));
@@ -160,7 +160,7 @@ TEST_CASE("a prediction begins with what the agent sees, and goes on without err
     CHECK(at.lateral == doctest::Approx(state.y - (at.corridor == 0 ? -1.75 : -5.25)));
   }
   CHECK(largest_error(future, traffic.ego) == 0.0);
-  future.step(0.5);
+  REQUIRE(future.step(0.5));
   for (auto const& [id, state] : seen) CHECK(future.state(id).x == doctest::Approx(state.x + 0.5 * state.speed));
 }
 

@@ -147,7 +147,7 @@ TEST_CASE("all courses are judged, cheapest first; the first valid one is driven
   CHECK(report.prediction.size() == 26);
   REQUIRE(report.course.size() == 26);
   CHECK(report.course[0].x == doctest::Approx(world.state(ego).x));
-  (void)world.step(0.2);
+  REQUIRE(world.step(0.2));
   CHECK(world.state(ego) == report.course[1]);
 }
 
@@ -207,7 +207,7 @@ TEST_CASE("where no course is valid it brakes as hard as it may") {
   world.add_object(obstacle(70, -1.75, -1.75, 1.75));
   Planner::Workspace workspace;
   CHECK_FALSE(Planner{}.think(world.observe(ego), {}, workspace).best);
-  (void)world.step(0.2);
+  REQUIRE(world.step(0.2));
   CHECK(world.record(ego).action.acceleration == doctest::Approx(-6.0));
 }
 
@@ -219,17 +219,17 @@ TEST_CASE("it goes the same way again, as a copy too; once warm only the predict
     return world;
   };
   auto world = scene(), again = scene();
-  for (int i = 0; i < 8; ++i) (void)world.step(0.2);
+  for (int i = 0; i < 8; ++i) REQUIRE(world.step(0.2));
   auto copy = world;
   for (int i = 0; i < 8; ++i) {
-    (void)world.step(0.2);
-    (void)copy.step(0.2);
+    REQUIRE(world.step(0.2));
+    REQUIRE(copy.step(0.2));
   }
-  for (int i = 0; i < 16; ++i) (void)again.step(0.2);
+  for (int i = 0; i < 16; ++i) REQUIRE(again.step(0.2));
   CHECK(world.frame() == copy.frame());
   CHECK(world.frame() == again.frame());
   auto const before = support::allocations();
-  (void)world.step(0.2);
+  REQUIRE(world.step(0.2));
   CHECK(support::allocations() - before < 20);
 }
 

@@ -146,7 +146,7 @@ TEST_CASE("branches are simulated under the intentions that matter to them") {
   }
   CHECK(changes > 10);
   CHECK(report.course.size() == 26);
-  (void)world.step(0.2);
+  REQUIRE(world.step(0.2));
   CHECK(world.state(ego) == report.course[1].agents[0].state);
 }
 
@@ -232,17 +232,17 @@ TEST_CASE("it goes the same way again, as a copy too; once warm it allocates lit
     return world;
   };
   auto world = scene(), again = scene();
-  for (int i = 0; i < 8; ++i) (void)world.step(0.2);
+  for (int i = 0; i < 8; ++i) REQUIRE(world.step(0.2));
   auto copy = world;
   for (int i = 0; i < 8; ++i) {
-    (void)world.step(0.2);
-    (void)copy.step(0.2);
+    REQUIRE(world.step(0.2));
+    REQUIRE(copy.step(0.2));
   }
-  for (int i = 0; i < 16; ++i) (void)again.step(0.2);
+  for (int i = 0; i < 16; ++i) REQUIRE(again.step(0.2));
   CHECK(world.frame() == copy.frame());
   CHECK(world.frame() == again.frame());
   auto const before = support::allocations();
-  (void)world.step(0.2);
+  REQUIRE(world.step(0.2));
   CHECK(support::allocations() - before < 40);  // some 30 sequences of 25 steps, each more than once
 }
 

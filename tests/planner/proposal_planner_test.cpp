@@ -129,7 +129,7 @@ TEST_CASE("a scored proposal says what came of it; the best is driven") {
   CHECK(report.agents.size() == 2);
   REQUIRE(report.course.size() == 41);
   CHECK(report.course[0].time == world.time());
-  (void)world.step(0.1);
+  REQUIRE(world.step(0.1));
   CHECK(world.state(ego) == report.course[1].agents[0].state);
 }
 
@@ -184,7 +184,7 @@ TEST_CASE("it brakes as hard as it may where all proposals soon collide") {
   world.add_object(obstacle(65, -1.75, 5.25));
   Planner::Workspace workspace;
   CHECK(Planner{}.think(world.observe(ego), {}, workspace).brakes);
-  (void)world.step(0.2);
+  REQUIRE(world.step(0.2));
   CHECK(world.record(ego).action.acceleration == doctest::Approx(-6.0));
 }
 
@@ -196,17 +196,17 @@ TEST_CASE("it goes the same way again, as a copy too, and plans without allocati
     return world;
   };
   auto world = scene(), again = scene();
-  for (int i = 0; i < 8; ++i) (void)world.step(0.2);
+  for (int i = 0; i < 8; ++i) REQUIRE(world.step(0.2));
   auto copy = world;
   for (int i = 0; i < 8; ++i) {
-    (void)world.step(0.2);
-    (void)copy.step(0.2);
+    REQUIRE(world.step(0.2));
+    REQUIRE(copy.step(0.2));
   }
-  for (int i = 0; i < 16; ++i) (void)again.step(0.2);
+  for (int i = 0; i < 16; ++i) REQUIRE(again.step(0.2));
   CHECK(world.frame() == copy.frame());
   CHECK(world.frame() == again.frame());
   auto const before = support::allocations();
-  (void)world.step(0.2);
+  REQUIRE(world.step(0.2));
   CHECK(support::allocations() - before < 20);  // 15 simulations of 40 steps
 }
 

@@ -43,7 +43,7 @@ TEST_CASE_TEMPLATE("every behaviour can predict, allocates nothing once warm, an
   auto prediction = begin;
   auto const run = [&] {
     prediction = begin;
-    for (int k = 0; k < 80; ++k) prediction.step(0.2);
+    for (int k = 0; k < 80; ++k) REQUIRE(prediction.step(0.2));
   };
   run();
   auto const first = prediction.frame();

@@ -86,7 +86,7 @@ void run(intersection::Site const& site, std::uint32_t number, Tally& tally) {
   for (int step = 0; step < 1500 && world.size() > 0 && !hit; ++step) {
     std::vector<double> before;
     for (auto const& agent : world.frame().agents) before.push_back(agent.lane.s);
-    world.step(0.2);
+    REQUIRE(world.step(0.2));
     if (site.lights) tally.on_red += crossed_on_red(world, before);
     remove_those_through(world);
     hit = collides(world);
@@ -186,7 +186,7 @@ TEST_CASE("nobody drives through a bend with more than the lateral acceleration 
       std::vector<std::pair<AgentId, double>> before;
       for (std::size_t i = 0; i < world.size(); ++i)
         before.emplace_back(world.roster().agents[i].id, world.frame().agents[i].state.heading);
-      world.step(dt);
+      REQUIRE(world.step(dt));
       for (auto const& [id, heading] : before) {
         double const turn = geometry::angle_difference(world.state(id).heading, heading);
         if (step > 25) fastest = std::max(fastest, std::abs(turn) / dt * world.state(id).speed);

@@ -40,7 +40,7 @@ TEST_CASE("a recording has the colours that the world's lights show, and where e
   world.set_light(LightId{1}, {.cycle = 20.0, .green_begin = 0.0, .green_end = 0.9, .yellow = 1.0});
   WorldRecorder recorder(world);
   for (int i = 0; i < 15; ++i) {
-    world.step(0.2);
+    REQUIRE(world.step(0.2));
     recorder.record(world);
   }
   auto const& recording = recorder.recording();

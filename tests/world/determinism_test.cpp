@@ -98,12 +98,12 @@ TEST_CASE("a copy goes the same way as its original, bit by bit, and neither dis
     std::vector<Mixed::FrameType> frames;
     Mixed copy = world;
     for (int i = 0; i < 60; ++i) {
-      world.step(0.2);
+      REQUIRE(world.step(0.2));
       frames.push_back(world.frame());
       if (i == 20) copy = world;
     }
     for (std::size_t i = 21; i < frames.size(); ++i) {
-      copy.step(0.2);
+      REQUIRE(copy.step(0.2));
       CHECK(copy.frame() == frames[i]);
       events.add(frames[i - 1], copy);
     }
@@ -119,8 +119,8 @@ TEST_CASE("the order in which agents enter does not matter") {
     auto forward = busy_world(map, seed), backward = busy_world(map, seed, true);
     for (int i = 0; i < 60; ++i) {
       auto const before = forward.frame();
-      forward.step(0.2);
-      backward.step(0.2);
+      REQUIRE(forward.step(0.2));
+      REQUIRE(backward.step(0.2));
       events.add(before, forward);
     }
     CHECK(forward.frame() == backward.frame());
@@ -137,7 +137,7 @@ TEST_CASE("worlds stepped on many threads end like those stepped on one") {
     world.memory<Wanderer>(static_cast<cb::AgentId>(0)).drift = 0.05 * static_cast<double>(i);
     auto before = world.frame();
     for (int k = 0; k < 60; ++k) {
-      world.step(0.2);
+      REQUIRE(world.step(0.2));
       if (events == nullptr) continue;
       events->add(before, world);
       before = world.frame();
@@ -167,8 +167,8 @@ TEST_CASE("another seed gives another course") {
   other->seed = 6;
   Mixed b(map, other, a.frame());
   for (int k = 0; k < 20; ++k) {
-    a.step(0.2);
-    b.step(0.2);
+    REQUIRE(a.step(0.2));
+    REQUIRE(b.step(0.2));
   }
   CHECK(a.frame() != b.frame());
 }
@@ -183,7 +183,7 @@ TEST_CASE("a warm world steps, copies and is judged without allocating") {
   auto const run = [&] {
     world = start;
     for (int k = 0; k < 100; ++k) {
-      world.step(0.2);
+      REQUIRE(world.step(0.2));
       (void)judge.evaluate(world);
     }
   };

@@ -42,7 +42,7 @@ TEST_CASE("a prediction does not know the dice: it takes another course than the
     Chance world(straight_road(), {.seed = seed});
     auto const first = world.add({.position = {50, -1.75}, .speed = 10});
     auto const second = world.add({.position = {90, -5.25}, .speed = 10});
-    for (std::uint64_t i = 0; i < seed % 4; ++i) world.step(0.2);
+    for (std::uint64_t i = 0; i < seed % 4; ++i) REQUIRE(world.step(0.2));
     auto prediction = cb::predict_all_as<Set>(Moody{});
     auto const truth = course(world), guess = course(world.observe(first).predict(prediction));
     REQUIRE(guess.size() == truth.size());
@@ -62,6 +62,6 @@ TEST_CASE("a prediction made a step later is drawn anew") {
   auto const id = world.add({.position = {50, -1.75}, .speed = 10});
   auto const prediction = cb::predict_all_as<Set>(Moody{});
   auto const before = world.observe(id).predict(prediction).roster().seed;
-  world.step(0.2);
+  REQUIRE(world.step(0.2));
   CHECK(world.observe(id).predict(prediction).roster().seed != before);
 }

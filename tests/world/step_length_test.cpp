@@ -52,7 +52,7 @@ TEST_CASE("a vehicle on a free road, or behind a steady leader, is exact for any
     Sim world(straight_road(1, 2000.0));
     auto const id = world.add({.position = {10, -1.75}, .speed = 3.0});
     if (leader) world.add({.position = {60, -1.75}, .speed = 8.0, .behavior = cb::ConstantAcceleration{}});
-    for (long k = 0; k < std::lround(12.0 / dt); ++k) world.step(dt);
+    for (long k = 0; k < std::lround(12.0 / dt); ++k) REQUIRE(world.step(dt));
     return world.state(id).x;
   };
   for (bool leader : {false, true}) {

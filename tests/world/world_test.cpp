@@ -2,6 +2,7 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <limits>
 #include <memory>
 #include <optional>
@@ -43,7 +44,7 @@ TEST_CASE("an agent enters its lane, heads along it, and moves") {
 TEST_CASE("agents keep their lateral offset and follow curves") {
   Sim world(straight_road(1, 300, 0.01));
   auto const id = world.add({.position = {0, -1.5}, .speed = 10.0, .behavior = cb::ConstantAcceleration{}});
-  for (int i = 0; i < 100; ++i) world.step(0.1);
+  for (int i = 0; i < 100; ++i) REQUIRE(world.step(0.1));
   auto const& s = world.state(id);
   CHECK(std::hypot(s.x, s.y - 100) == doctest::Approx(101.5).epsilon(1e-4));
   CHECK(s.heading == doctest::Approx(100.0 / 101.75).epsilon(1e-3));
@@ -132,7 +133,7 @@ TEST_CASE("agents that pass the end of the road leave traffic, and are taken out
   CHECK(world.status(id) == cb::AgentStatus::left_map);
   CHECK_FALSE(world.observe(follower).front().has_value());
   auto const at = world.state(id);
-  world.step(0.2);
+  REQUIRE(world.step(0.2));
   CHECK(world.state(id) == at);
   CHECK(world.remove_departed() == 1);
   CHECK(world.size() == 1);
@@ -150,7 +151,7 @@ TEST_CASE("an agent whose route ends where the road goes on has arrived") {
                              .speed = 20,
                              .behavior = cb::ConstantAcceleration{},
                              .route = cb::map::Route{{first->id}}});
-  world.step(0.5);
+  REQUIRE(world.step(0.5));
   CHECK(world.status(id) == cb::AgentStatus::arrived);
 }
 
@@ -211,13 +212,13 @@ TEST_CASE("an agent that plans badly is named and keeps its last state; the othe
 TEST_CASE("history keeps the last frames with their actions, and copies do not take it along") {
   Sim world(straight_road());
   auto const id = world.add({.position = {10, -1.75}, .speed = 5});
-  world.step(0.2);
+  REQUIRE(world.step(0.2));
   CHECK(world.history_size() == 0);
   world.keep_history(3);
   std::vector<Sim::FrameType> frames;
   for (int i = 0; i < 5; ++i) {
     frames.push_back(world.frame());
-    world.step(0.2);
+    REQUIRE(world.step(0.2));
   }
   CHECK(world.history_size() == 3);
   for (std::size_t back = 1; back <= 3; ++back) CHECK(world.history(back) == frames[frames.size() - back]);
@@ -239,7 +240,7 @@ TEST_CASE("static objects stop traffic in the lanes they reach into, and only th
   CHECK(seen->object == object);
   CHECK(seen->gap == doctest::Approx(50 - cb::geometry::Shape{}.front).epsilon(0.01));
   CHECK_FALSE(world.observe(left).front().has_value());
-  for (int i = 0; i < 150; ++i) world.step(0.2);
+  for (int i = 0; i < 150; ++i) REQUIRE(world.step(0.2));
   CHECK(world.state(right).speed < 0.1);
   CHECK(world.state(right).x + cb::geometry::Shape{}.front < 60.0);
   CHECK(world.state(left).x > 200.0);
@@ -253,13 +254,13 @@ TEST_CASE("an agent driven from outside follows its input and changes lane corri
   auto const ego = world.add({.position = {10, -5.25}, .speed = 10, .behavior = cb::ExternalInput{}});
   CHECK(world.record(ego).lane.corridor == 1);
   world.memory<cb::ExternalInput>(ego) = {0.0, 0.05};
-  for (int i = 0; i < 12; ++i) world.step(0.2);
+  for (int i = 0; i < 12; ++i) REQUIRE(world.step(0.2));
   CHECK(world.record(ego).action.steering == doctest::Approx(0.05));
   CHECK(world.state(ego).y > -3.5);
   CHECK(world.record(ego).lane.corridor == 0);
   CHECK(world.lane_of(ego) == world.map().find_lane("1", 50, -1));
   world.memory<cb::ExternalInput>(ego) = {-4.0, 0.0};
-  for (int i = 0; i < 20; ++i) world.step(0.2);
+  for (int i = 0; i < 20; ++i) REQUIRE(world.step(0.2));
   CHECK(world.state(ego).speed == 0.0);
   CHECK(says(error_of([&] { (void)world.memory<cb::IdmClassic>(ego); }), "behaviour"));
 }
@@ -284,9 +285,95 @@ TEST_CASE("states set from outside place the agent anew") {
   CHECK(world.record(id).lane.s == doctest::Approx(300));
   CHECK(world.record(id).lane.corridor == 0);
   CHECK(says(error_of([&] { world.set_state(id, {.x = std::numeric_limits<double>::infinity()}); }), "not a finite"));
-  CHECK(says(error_of([&] { world.set_state(id, {.x = 300, .y = 120}); }), "m away from the road of its route"));
-  CHECK(says(error_of([&] { world.set_state(id, {.x = -500, .y = -5.25}); }), "m away from the road of its route"));
+  CHECK(says(error_of([&] { world.set_state(id, {.x = 300, .y = 120}); }), "120 m from the lanes of its route"));
+  CHECK(says(error_of([&] { world.set_state(id, {.x = -500, .y = -5.25}); }), "500 m from the lanes of its route"));
   CHECK(world.state(id).x == 300);
+}
+
+TEST_CASE("a state that add refuses set_state refuses with the same words, and both take the rest") {
+  Sim world(straight_road(2));
+  auto const id = world.add({.position = {100, -1.75}, .speed = 10});
+  auto const before = world.frame();
+  struct Case {
+    cb::State state;
+    std::string said;
+  };
+  double const pi = cb::geometry::pi, nan = std::numeric_limits<double>::quiet_NaN();
+  for (auto const& [state, said] : {
+           Case{{.x = 50, .y = -5.25, .heading = 0, .speed = -3}, "its speed is -3, not a number from 0 to 1000 m/s"},
+           Case{{.x = 50, .y = -5.25, .heading = 0, .speed = -0.11}, "its speed is -0.11, not"},
+           Case{{.x = 50, .y = -5.25, .heading = 0, .speed = 1001}, "its speed is 1001, not"},
+           Case{{.x = 50, .y = -5.25, .heading = 0, .speed = nan}, "finite"},
+           Case{{.x = 50, .y = -5.25, .heading = nan, .speed = 3}, "finite"},
+           Case{{.x = 50, .y = -5.25, .heading = 1.58, .speed = 3}, "it heads against the direction of its lane"},
+           Case{{.x = 50, .y = -5.25, .heading = pi, .speed = 3}, "it heads against the direction of its lane"},
+           Case{{.x = 50, .y = 5.5, .heading = 0, .speed = 3}, " 5 m "},
+           Case{{.x = 50, .y = -12.5, .heading = 0, .speed = 3}, " 5 m "},
+           Case{{.x = 50, .y = -5.25, .heading = -1.57, .speed = 3}, ""},
+           Case{{.x = 50, .y = 4.5, .heading = 0, .speed = 3}, ""},
+           Case{{.x = 50, .y = -11.5, .heading = 0, .speed = 3}, ""},
+           Case{{.x = 50, .y = -5.25, .heading = 0, .speed = -0.1}, ""},
+           Case{{.x = 50, .y = -5.25, .heading = 6 * pi, .speed = 0}, ""},
+       }) {
+    CAPTURE(state.y);
+    CAPTURE(state.heading);
+    CAPTURE(state.speed);
+    auto const entering = error_of([&] {
+      Sim(world).add({.position = {state.x, state.y}, .heading = state.heading, .speed = state.speed});
+    });
+    auto const setting = error_of([&] { world.set_state(id, state); });
+    CHECK_MESSAGE(entering.empty() == said.empty(), entering);
+    CHECK_MESSAGE(setting.empty() == said.empty(), setting);
+    CHECK_MESSAGE(says(setting, said), setting);
+    CHECK((setting.empty() || world.frame() == before));
+    if (setting.empty()) CHECK(world.state(id).speed == std::max(state.speed, 0.0));
+    world.restore(before);
+  }
+}
+
+TEST_CASE("a vehicle that was measured to stand backs up no metre") {
+  Sim world(straight_road(1));
+  auto const id = world.add({.position = {100, -1.75}, .speed = -0.01, .behavior = cb::ConstantAcceleration{}});
+  CHECK(world.state(id).speed == 0.0);
+  world.set_state(id, {.x = 50, .y = -1.75, .speed = -0.02});
+  REQUIRE(world.step(1.0));
+  CHECK(world.state(id).x == 50.0);
+  CHECK(world.state(id).speed == 0.0);
+}
+
+TEST_CASE("with Reroute::yes a state is taken off the route, and the agent gets the one that add gives it there") {
+  // A road each way.
+  auto const map = support::map_of({.line = cb::map::lay_from({}, {{500.0}}),
+                                    .sections = {{.left = cb::map::equal_lanes(1), .right = cb::map::equal_lanes(1)}}});
+  Sim world(map);
+  auto const there = map->nearest_lane({100, -1.75, 0.0})->lane;
+  auto const back = map->nearest_lane({100, 1.75, cb::geometry::pi})->lane;
+  auto const id = world.add({.position = {100, -1.75},
+                             .speed = 10,
+                             .goal = cb::GoalSequence{{cb::ReachLane{.lane = there}, cb::ReachLane{.lane = back}}},
+                             .route = cb::map::Route{.lanes = {there}}});
+  CHECK(world.frame().agents[0].goals_passed == 1);
+  auto const shared = world;
+  cb::State const state{.x = 300, .y = 1.75, .heading = cb::geometry::pi, .speed = 5};
+  CHECK(says(error_of([&] { world.set_state(id, state); }), "against the direction of its lane"));
+  world.set_state(id, state, cb::Reroute::yes);
+  CHECK(world.lane_of(id) == back);
+  CHECK(world.reached_goal(id));
+  CHECK(shared.lane_of(id) == there);
+  Sim anew(map);
+  anew.add({.position = {300, 1.75}, .heading = cb::geometry::pi, .speed = 5, .goal = cb::ReachLane{.lane = back}});
+  CHECK(world.record(id).lane == anew.frame().agents[0].lane);
+  REQUIRE(world.step(1.0));
+  REQUIRE(anew.step(1.0));
+  CHECK(world.state(id) == anew.frame().agents[0].state);
+  CHECK(says(error_of([&] { world.set_state(id, {.x = 100, .y = 60, .heading = 0}, cb::Reroute::yes); }),
+             "no drivable lane within 5 m"));
+  // From here no way leads back.
+  CHECK(says(error_of([&] {
+               auto other = shared;
+               other.set_state(id, {.x = 100, .y = -1.75}, cb::Reroute::yes);
+             }),
+             "there is no route from"));
 }
 
 TEST_CASE("a state set where the route passes twice is taken for the pass that the agent is on") {
@@ -297,7 +384,7 @@ TEST_CASE("a state set where the route passes twice is taken for the pass that t
   auto const id = world.add({.position = {30, -1.75}, .speed = 20, .behavior = cb::ConstantAcceleration{}});
   double last = world.record(id).lane.s;
   for (int i = 0; i < 95; ++i) {
-    world.step(0.2);
+    REQUIRE(world.step(0.2));
     world.set_state(id, world.state(id));
     double const s = world.record(id).lane.s;
     CHECK(s == doctest::Approx(last + 4.0).epsilon(1e-3));
@@ -310,14 +397,14 @@ TEST_CASE("a frame is put back, as a search does, and only one that fits") {
   Sim world(straight_road(1, 500));
   auto const id = world.add({.position = {10, -1.75}, .speed = 10});
   auto const root = world.frame();
-  world.step(1.0);
+  REQUIRE(world.step(1.0));
   auto const later = world.frame();
   world.restore(root);
   CHECK(world.frame() == root);
-  world.step(1.0);
+  REQUIRE(world.step(1.0));
   CHECK(world.frame() == later);
   Sim node(world.shared_map(), world.shared_roster(), root);
-  node.step(1.0);
+  REQUIRE(node.step(1.0));
   CHECK(node.frame() == later);
   CHECK(&node.roster() == &world.roster());
   world.add({.position = {60, -1.75}});
@@ -331,7 +418,7 @@ TEST_CASE("frames are exchanged: each world goes on where the other's frame was,
   world.add({.position = {10, -1.75}, .speed = 10});
   world.add({.position = {40, -1.75}, .speed = 4});
   auto const root = world.frame();
-  for (int i = 0; i < 5; ++i) world.step(0.2);
+  for (int i = 0; i < 5; ++i) REQUIRE(world.step(0.2));
   auto const later = world.frame();
   auto frame = root;
   static_cast<void>(world.observe(world.roster().agents[0].id));  // the index is of this frame
@@ -342,7 +429,7 @@ TEST_CASE("frames are exchanged: each world goes on where the other's frame was,
   REQUIRE(leader);
   CHECK(leader->gap ==
         doctest::Approx(30.0 - world.roster().agents[0].shape.front - world.roster().agents[1].shape.rear));
-  for (int i = 0; i < 5; ++i) world.step(0.2);
+  for (int i = 0; i < 5; ++i) REQUIRE(world.step(0.2));
   CHECK(world.frame() == later);
   world.exchange(frame);
   CHECK(world.frame() == later);
@@ -355,7 +442,7 @@ TEST_CASE("an agent on the wrong lane at a fork leaves its route; one that passe
   auto const ramp = map->find_lane("2", 10, -1), first = map->find_lane("3", 10, -3);
   auto const id =
       world.add({.position = map->lane(ramp).path.pose(150.0).position(), .speed = 15, .goal = cb::ReachLane{first}});
-  while (world.status(id) == cb::AgentStatus::driving) world.step(0.5);
+  while (world.status(id) == cb::AgentStatus::driving) REQUIRE(world.step(0.5));
   CHECK(world.status(id) == cb::AgentStatus::arrived);
 }
 
@@ -365,7 +452,7 @@ TEST_CASE("an object that covers whole lanes stands in them, and goes with its e
   auto const small = world.add_object(cb::geometry::Polygon({{80, -3}, {81, -3}, {81, -1}, {80, -1}}));
   auto const all = world.add_object(cb::geometry::Polygon({{-1e3, -1e3}, {1e3, -1e3}, {1e3, 1e3}, {-1e3, 1e3}}));
   REQUIRE(world.observe(id).front().has_value());
-  world.step(1.0);
+  REQUIRE(world.step(1.0));
   CHECK(world.state(id).speed < 8.0);
   world.remove_object(all);
   CHECK(world.observe(id).front()->object == small);
@@ -390,7 +477,7 @@ TEST_CASE("a prediction with parameters that make no sense is refused") {
 TEST_CASE("a step may be long: what lies half a circle on is found") {
   Sim world(straight_road(1, 150, 0.08));  // radius 12.5 m
   auto const id = world.add({.position = {0, -1.75}, .speed = 10, .behavior = cb::ConstantAcceleration{}});
-  world.step(6.0);
+  REQUIRE(world.step(6.0));
   CHECK(world.record(id).lane.s == doctest::Approx(60.0).epsilon(1e-3));
   CHECK(std::abs(world.record(id).lane.lateral) < 0.05);
 }
@@ -398,11 +485,11 @@ TEST_CASE("a step may be long: what lies half a circle on is found") {
 TEST_CASE("who has left comes back into traffic by its state") {
   Sim world(straight_road(1, 100));
   auto const id = world.add({.position = {95, -1.75}, .speed = 20});
-  world.step(1.0);
+  REQUIRE(world.step(1.0));
   REQUIRE(world.status(id) == cb::AgentStatus::left_map);
   world.set_state(id, {.x = 20, .y = -1.75, .speed = 5});
   CHECK(world.status(id) == cb::AgentStatus::driving);
-  world.step(1.0);
+  REQUIRE(world.step(1.0));
   CHECK(world.state(id).x > 24.0);
 }
 
@@ -419,10 +506,10 @@ TEST_CASE("goals are reached by lane and by polygon") {
                                   .goal = cb::ReachLane{world.map().find_lane("1", 0, -2), 100.0, 120.0}});
   CHECK_FALSE(world.reached_goal(by_area));
   CHECK_FALSE(world.reached_goal(by_lane));
-  for (int i = 0; i < 15; ++i) world.step(0.2);  // at 110 m
+  for (int i = 0; i < 15; ++i) REQUIRE(world.step(0.2));  // at 110 m
   CHECK(world.reached_goal(by_area));
   CHECK(world.reached_goal(by_lane));
-  for (int i = 0; i < 10; ++i) world.step(0.2);  // at 130 m
+  for (int i = 0; i < 10; ++i) REQUIRE(world.step(0.2));  // at 130 m
   CHECK_FALSE(world.reached_goal(by_area));
   CHECK_FALSE(world.reached_goal(by_lane));
 }
@@ -436,8 +523,8 @@ TEST_CASE("a prediction shows what the observer expects, whatever the others rea
   auto future = world.observe(ego).predict(
       cb::predict_as<Guess>(cb::ConstantAcceleration{.acceleration = 1}, cb::ConstantAcceleration{}));
   for (int i = 0; i < 5; ++i) {
-    future.step(0.2);
-    world.step(0.2);
+    REQUIRE(future.step(0.2));
+    REQUIRE(world.step(0.2));
   }
   CHECK(future.state(other).speed == doctest::Approx(10.0));
   CHECK(future.state(ego).speed == doctest::Approx(11.0));
@@ -486,7 +573,7 @@ TEST_CASE("who has not started sees its neighbours as if it drove, and is seen b
       if (i % 4 == 0) spec.behavior = Latecomer{};
       world.add(spec);
     }
-    world.step(0.2);
+    REQUIRE(world.step(0.2));
     auto const late = [&](cb::AgentId id) { return world.status(id) == cb::AgentStatus::not_started; };
     for (auto const& agent : world.roster().agents) {
       auto const view = world.observe(agent.id);
@@ -515,7 +602,7 @@ TEST_CASE("who has not started sees its neighbours as if it drove, and is seen b
       auto const expected =
           Latecomer::Memory{truth.front() ? truth.front()->gap : -1e9, truth.rear() ? truth.rear()->gap : -1e9};
       Late next = world;
-      next.step(0.2);
+      REQUIRE(next.step(0.2));
       CHECK(next.memory<Latecomer>(agent.id) == expected);
       CHECK(late(agent.id));
     }
