@@ -151,11 +151,11 @@ class World {
     frame_.agents[slot].memory = Set::initial_memory(behavior);
   }
 
-  /// Adds an agent; returns its id. Throws `WorldError` or `ParameterError` (the world is unchanged) where its lane, its
-  /// route or its parameters are no good, and for what `set_state` refuses, too: a number that is not finite, a speed
-  /// that is not from 0 to 1000 m/s (of measured ones those down to -0.1 count as 0), a place more than 5 m from the
-  /// nearest lane (with a route of its own 2.5 m from the path of one), a heading against its direction. O(agents), plus
-  /// routing.
+  /// Adds an agent; returns its id. Throws `WorldError` or `ParameterError` (the world is unchanged) where its lane,
+  /// its route or its parameters are no good, and for what `set_state` refuses, too: a number that is not finite, a
+  /// speed that is not from 0 to 1000 m/s (of measured ones those down to -0.1 count as 0), a place more than 5 m from
+  /// the nearest lane (with a route of its own 2.5 m from the path of one), a heading against its direction. O(agents),
+  /// plus routing.
   AgentId add(AgentSpec const& spec) {
     AgentId const id = spec.id.value_or(static_cast<AgentId>(roster_->next_agent_id));
     auto entrant = detail::entrant<World>(*map_, *roster_, spec, id, frame_.time);
@@ -273,8 +273,8 @@ class World {
     auto const& agent = roster_->agents[slot];
     auto& record = frame_.agents[slot];
     if (reroute == Reroute::yes) {
-      auto const again = detail::entrance_again<World>(*map_, *roster_, agent, roster_->goals[slot], record.goals_passed,
-                                                       state, where);
+      auto const again = detail::entrance_again<World>(*map_, *roster_, agent, roster_->goals[slot],
+                                                       record.goals_passed, state, where);
       writable_roster().agents[slot].road = again.road;
       record.lane = again.place;
       scratch_.forget();

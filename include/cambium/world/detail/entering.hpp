@@ -93,7 +93,7 @@ void check_entering(Spec const& spec, std::string const& where) {
   if (!spec.position.allFinite() || (spec.heading && !std::isfinite(*spec.heading)))
     throw WorldError(where, "its position or heading is missing or not a finite number");
   (void)checked_speed(spec.speed, where);
-  check_if_described(spec.behavior, where);
+  check_if_described(spec.behavior.given(), where);
   check_if_described(spec.shape, where);
   check_if_described(spec.execution, where);
   check_if_described(spec.dynamics, where);
@@ -118,7 +118,7 @@ template <class Roster, class Spec>
   }
   LaneId const lane = spec.route ? entering_lane(map, spec.position, spec.heading, *spec.route, where)
                                  : entering_lane(map, spec.position, spec.heading, where);
-  auto const route = entering_route(map, lane, spec.route, spec.goal, where);
+  auto const route = entering_route(map, lane, spec.route, spec.goal.given(), where);
   auto const road = map::build_road_corridor(map, route);
   return {road, lane, entering_position(map, spec, *road, lane, where)};
 }
@@ -190,7 +190,7 @@ template <class World>
     throw WorldError(where, "the world has an agent of that id already", "leave the id out to get a free one");
   check_entering(spec, where);
   auto const [road, lane, place] = entrance(map, roster, spec, where);
-  if (is_too_large(map, spec.behavior, spec.shape, *road)) throw too_large(where);
+  if (is_too_large(map, spec.behavior.given(), spec.shape, *road)) throw too_large(where);
   typename World::Record record;
   record.lane = place;
   record.state.time = time;
@@ -198,11 +198,11 @@ template <class World>
   record.state.y = spec.position.y();
   record.state.heading = spec.heading.value_or(road->corridors[place.corridor].center.pose(place.s).heading);
   record.state.speed = checked_speed(spec.speed, where);
-  record.memory = Set::initial_memory(spec.behavior);
-  if (Set::start_time(spec.behavior) > time + same_time) record.status = AgentStatus::not_started;
+  record.memory = Set::initial_memory(spec.behavior.given());
+  if (Set::start_time(spec.behavior.given()) > time + same_time) record.status = AgentStatus::not_started;
   forget_past(record);
-  return {{id, spec.shape, road, spec.behavior, spec.execution, spec.dynamics, spec.observer},
-          entering_goal(map, spec.goal, lane, where),
+  return {{id, spec.shape, road, spec.behavior.given(), spec.execution, spec.dynamics, spec.observer},
+          entering_goal(map, spec.goal.given(), lane, where),
           record};
 }
 

@@ -38,8 +38,8 @@ inline constexpr double standstill_noise = 0.1;
   return std::hypot(aside, std::max({-at.s, at.s - corridor.length(), 0.0}));
 }
 
-/// Throws `WorldError` where an agent at `at` on its road heads against the direction of its lane. Free corridors may be
-/// walked in any direction.
+/// Throws `WorldError` where an agent at `at` on its road heads against the direction of its lane. Free corridors may
+/// be walked in any direction.
 inline void check_heading(Map const& map, map::RoadCorridor const& road, map::LanePosition const& at,
                           std::string const& where) {
   LaneId const lane = road.corridors[at.corridor].pieces[at.piece].lane;
