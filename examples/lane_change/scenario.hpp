@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include "cambium/behavior/behavior_set.hpp"
@@ -32,7 +31,7 @@ using Prediction = cb::World<PredictionSet, cb::InterpolateExecution, cb::Single
 /// began anew with one seed; with the paper's five actions that is number 3, the lane change.
 struct SameActionRollout {
   static constexpr char const* name = "same_action_rollout";
-  static constexpr auto parameters() { return std::make_tuple(); }
+  static constexpr auto parameters() { return cb::parameter_list(); }
 
   template <class Run>
   bool roll_out(Run& run) const {

@@ -22,7 +22,7 @@ template <class M>
 
 /// "33.33 m/s": numbers to four digits; "3 *window*": how many there are in a list of structs; "1 m, 2 m".
 template <class Value>
-[[nodiscard]] std::string value_text(Value const& value, char const* unit) {
+[[nodiscard]] std::string value_text(Value const& value, cb::ParameterInfo const& info) {
   if constexpr (cb::detail::ParameterList<Value>) {
     auto const list = cb::detail::elements_of(value);
     using Element = cb::detail::ElementOf<Value>;
@@ -30,14 +30,14 @@ template <class Value>
       return std::to_string(list.size()) + " *" + cb::detail::struct_name<Element>() + "*";
     std::string text;
     if constexpr (!cb::Described<Element>)
-      for (auto const& element : list) text += (text.empty() ? "" : ", ") + value_text(element, unit);
+      for (auto const& element : list) text += (text.empty() ? "" : ", ") + value_text(element, info);
     return text;
   } else if constexpr (std::is_floating_point_v<Value>) {
     char number[32];
     std::snprintf(number, sizeof number, "%.4g", value);
-    return cb::detail::with_unit(number, unit);
+    return cb::detail::with_unit(number, info.unit);
   } else {
-    return cb::detail::with_unit(cb::detail::number_text(value), unit);
+    return cb::detail::with_unit(cb::detail::value_text(info, cb::detail::ParameterValue(value)), info.unit);
   }
 }
 
@@ -59,7 +59,7 @@ template <class Part>
       if (!cb::equal_parameters(value, defaults.*entry.field))
         others += (others.empty() ? "" : ", ") + std::string(entry.name) + " " + part_text(value);
     } else if (!cb::detail::equal_values(value, defaults.*entry.field)) {
-      others += (others.empty() ? "" : ", ") + std::string(entry.name) + " " + value_text(value, entry.unit);
+      others += (others.empty() ? "" : ", ") + std::string(entry.name) + " " + value_text(value, entry);
     }
   });
   return "*" + std::string(cb::detail::struct_name<Part>()) + "*" + (others.empty() ? "" : " with " + others);
@@ -76,7 +76,7 @@ template <cb::Described M>
       std::string const unit(entry.unit);
       text += (unit == "-" ? "" : "[" + unit + "] ") + part_text(value);
     } else {
-      text += value_text(value, entry.unit);
+      text += value_text(value, entry);
     }
   });
   return text.empty() ? "-" : text;

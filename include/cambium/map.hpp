@@ -1,7 +1,8 @@
-/// The map room but for what is expensive to compile: the building of maps (Boost.Graph: `cambium/map/build_map.hpp`,
-/// `routing.hpp`; `opendrive.hpp` brings both), the union of lanes (Boost.Geometry: `road_area.hpp`), what checks and
-/// writes documents (`opendrive_check.hpp`, `opendrive_writer.hpp`), and maps in code: `map_builder.hpp` with
-/// `road_plan.hpp`, `curve_layout.hpp`, `polyline_roads.hpp` and `center_line_csv.hpp`.
+/// The map room but for what only those need who make, check or write maps, or ask for more than the plane; they include
+/// it by name: `opendrive.hpp` reads files (pugixml), `map_builder.hpp` with `road_plan.hpp`, `curve_layout.hpp`,
+/// `polyline_roads.hpp` and `center_line_csv.hpp` makes maps in code, `build_map.hpp` makes one of a document,
+/// `lane_network.hpp`, `opendrive_check.hpp` and `opendrive_writer.hpp` check and write, `road_surface.hpp` (Eigen) and
+/// `road_area.hpp` (Boost.Geometry) tell where lanes lie in space, and their union.
 #pragma once
 
 #include "cambium/map/build_corridor.hpp"
@@ -11,14 +12,12 @@
 #include "cambium/map/free_corridor.hpp"
 #include "cambium/map/junction.hpp"
 #include "cambium/map/lane.hpp"
-#include "cambium/map/lane_adjacency.hpp"
 #include "cambium/map/lane_area.hpp"
-#include "cambium/map/lane_network.hpp"
 #include "cambium/map/lane_position.hpp"
 #include "cambium/map/lane_tree.hpp"
 #include "cambium/map/lane_type.hpp"
-#include "cambium/map/make_roads.hpp"
 #include "cambium/map/map.hpp"
+#include "cambium/map/map_queries.hpp"
 #include "cambium/map/opendrive_document.hpp"
 #include "cambium/map/opendrive_element.hpp"
 #include "cambium/map/opendrive_lanes.hpp"
@@ -28,7 +27,6 @@
 #include "cambium/map/right_of_way.hpp"
 #include "cambium/map/road.hpp"
 #include "cambium/map/road_lanes.hpp"
-#include "cambium/map/road_surface.hpp"
 #include "cambium/map/route.hpp"
 #include "cambium/map/signals.hpp"
 #include "cambium/map/station_offset.hpp"

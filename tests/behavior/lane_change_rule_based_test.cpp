@@ -2,7 +2,6 @@
 
 #include <doctest/doctest.h>
 
-#include <tuple>
 #include <vector>
 
 #include "lane_traffic_fixtures.hpp"
@@ -18,7 +17,7 @@ cb::LaneChangeRuleBased roomy(double desired_speed) { return {.idm = {.desired_s
 /// A user's own condition: never to the left.
 struct NeverLeft {
   static constexpr char const* name = "never_left";
-  static constexpr auto parameters() { return std::make_tuple(); }
+  static constexpr auto parameters() { return cb::parameter_list(); }
 
   template <class View>
   [[nodiscard]] bool operator()(View const&, cb::LaneOption const& option) const {

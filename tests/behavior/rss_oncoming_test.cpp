@@ -19,9 +19,9 @@ struct Overtake {
   double speed = 15.0;            ///< [m/s]
 
   static constexpr auto parameters() {
-    return std::make_tuple(cb::parameter("begin", &Overtake::begin, "s", cb::any_finite, "of the time beside"),
-                           cb::parameter("end", &Overtake::end, "s", cb::any_finite, "of that"),
-                           cb::parameter("speed", &Overtake::speed, "m/s", cb::Range{0, 50}, "that it wants"));
+    return cb::parameter_list(cb::parameter("begin", &Overtake::begin, "s", cb::any_finite, "of the time beside"),
+                              cb::parameter("end", &Overtake::end, "s", cb::any_finite, "of that"),
+                              cb::parameter("speed", &Overtake::speed, "m/s", cb::Range{0, 50}, "that it wants"));
   }
 
   template <class View>

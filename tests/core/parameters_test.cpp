@@ -22,8 +22,8 @@ struct Window {
 
   static constexpr char const* name = "window";
   static constexpr auto parameters() {
-    return std::make_tuple(parameter("from", &Window::from, "s", non_negative, "Begin."),
-                           parameter("to", &Window::to, "s", positive, "End, not before the begin."));
+    return parameter_list(parameter("from", &Window::from, "s", non_negative, "Begin."),
+                          parameter("to", &Window::to, "s", positive, "End, not before the begin."));
   }
   void check(std::string const& where) const {
     if (to < from) throw ParameterError(where, "ends before it begins", "swap the two");
@@ -39,11 +39,11 @@ struct Follower {
 
   static constexpr char const* name = "follower";
   static constexpr auto parameters() {
-    return std::make_tuple(
+    return parameter_list(
         parameter("desired_speed", &Follower::desired_speed, "m/s", {0, 70}, "Speed on an empty road."),
         parameter("exponent", &Follower::exponent, "-", {1, 8}, "Sharpness of the approach to it."),
         parameter("stops", &Follower::stops, "-", {0, 1}, "Whether it stops at lights."),
-        parameter("scheme", &Follower::scheme, "-", {0, 1}, "Integration scheme."),
+        choice("scheme", &Follower::scheme, "euler|runge_kutta", "Integration scheme."),
         parameter("window", &Follower::window, "-", any_finite, "When it drives."));
   }
 };
@@ -56,15 +56,15 @@ struct Plan {
 
   static constexpr char const* name = "plan";
   static constexpr auto parameters() {
-    return std::make_tuple(parameter("weights", &Plan::weights, "kg", {0, 10}, "Of each half."),
-                           parameter("windows", &Plan::windows, "-", {}, "When it drives."),
-                           parameter("shared", &Plan::shared, "-", {}, "When others do."),
-                           parameter("lane", &Plan::lane, "-", {}, "Where."));
+    return parameter_list(parameter("weights", &Plan::weights, "kg", {0, 10}, "Of each half."),
+                          parameter("windows", &Plan::windows, "-", {}, "When it drives."),
+                          parameter("shared", &Plan::shared, "-", {}, "When others do."),
+                          parameter("lane", &Plan::lane, "-", {}, "Where."));
   }
 };
 
 struct Empty {
-  static constexpr auto parameters() { return std::make_tuple(); }
+  static constexpr auto parameters() { return parameter_list(); }
 };
 
 static_assert(Described<Follower>);
@@ -94,7 +94,7 @@ TEST_CASE("a value out of range is an error that names the struct, the key, the 
   CHECK_THROWS_WITH_AS(check_parameters(Follower{.exponent = 9}, "traffic.json"),
                        "traffic.json: follower.exponent: is 9; give a value in [1, 8]", ParameterError);
   CHECK_THROWS_WITH_AS(check_parameters(Follower{.scheme = static_cast<Scheme>(7)}),
-                       "follower.scheme: is 7; give a value in [0, 1]", ParameterError);
+                       "follower.scheme: is 7; give one of euler, runge_kutta", ParameterError);
   CHECK_THROWS_WITH_AS(check_parameters(Follower{.window = {.from = 0.0, .to = 0.0}}),
                        "follower.window.to: is 0 s; give a value in (0, inf) s", ParameterError);
 }
@@ -103,8 +103,8 @@ TEST_CASE("neither NaN nor an unwanted infinity is in any range") {
   CHECK_THROWS_AS(check_parameters(Follower{.desired_speed = not_a_number}), ParameterError);
   CHECK_THROWS_AS(check_parameters(Follower{.window = {.to = infinity}}), ParameterError);
   CHECK_THROWS_AS(check_parameters(Follower{.window = {.from = not_a_number}}), ParameterError);
-  CHECK(detail::in_range(infinity, Range{0.0, infinity}));
-  CHECK(!detail::in_range(not_a_number, Range{-infinity, infinity}));
+  CHECK(detail::ParameterValue(infinity).in({0.0, infinity}));
+  CHECK(!detail::ParameterValue(not_a_number).in({-infinity, infinity}));
 }
 
 TEST_CASE("a struct's own check sees relations between its fields, also when it is nested") {
@@ -136,7 +136,7 @@ TEST_CASE("hashes are equal for equal parameters, differ with any field, and nev
 
 TEST_CASE("one line for logs has every value, with its unit, exactly") {
   CHECK(to_string(Follower{.desired_speed = 0.1}) ==
-        "follower: desired_speed=0.1 m/s, exponent=4, stops=true, scheme=1, window.from=1 s, window.to=2 s");
+        "follower: desired_speed=0.1 m/s, exponent=4, stops=true, scheme=runge_kutta, window.from=1 s, window.to=2 s");
 }
 
 TEST_CASE("the table for the documentation has one row for each value") {
@@ -146,7 +146,7 @@ TEST_CASE("the table for the documentation has one row for each value") {
         "| desired_speed | 15 | m/s | [0, 70] | Speed on an empty road. |\n"
         "| exponent | 4 | - | [1, 8] | Sharpness of the approach to it. |\n"
         "| stops | true | - | - | Whether it stops at lights. |\n"
-        "| scheme | 1 | - | [0, 1] | Integration scheme. |\n"
+        "| scheme | runge_kutta | - | euler, runge_kutta | Integration scheme. |\n"
         "| window.from | 1 | s | [0, inf) | Begin. |\n"
         "| window.to | 2 | s | (0, inf) | End, not before the begin. |\n");
 }

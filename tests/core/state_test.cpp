@@ -1,4 +1,5 @@
 #include "cambium/core/state.hpp"
+#include "cambium/core/state_vector.hpp"
 
 #include <limits>
 

@@ -4,11 +4,13 @@
 
 #include <cmath>
 
+#include <Eigen/Dense>
+
 namespace cb = cambium;
 
 namespace {
 
-using Gain = cb::LqrExecution::Gain;
+using Gain = Eigen::Matrix<double, 1, 2>;
 
 /// The gain by plain iteration of the Riccati equation: a twin.
 Gain iterated(Eigen::Matrix2d const& A, Eigen::Vector2d const& B, Eigen::Matrix2d const& Q, double R) {
@@ -34,8 +36,8 @@ TEST_CASE("the doubling algorithm finds the gain that plain iteration finds") {
       A << 1.0, speed * h, 0.0, 1.0;
       auto const twin = iterated(A, Eigen::Vector2d(0.5 * speed * h * turn, turn), Q, lqr.steering_weight);
       auto const gain = lqr.lateral_gain(speed, 2.7, h);
-      CHECK(gain[0] == doctest::Approx(twin[0]).epsilon(1e-8));
-      CHECK(gain[1] == doctest::Approx(twin[1]).epsilon(1e-8));
+      CHECK(gain.first == doctest::Approx(twin[0]).epsilon(1e-8));
+      CHECK(gain.second == doctest::Approx(twin[1]).epsilon(1e-8));
     }
 }
 
@@ -47,8 +49,8 @@ TEST_CASE("for short periods the gain is the continuous regulator's closed form,
     // Sums grow with the number of periods: weights per second.
     cb::LqrExecution const per_second = lqr;
     auto const gain = per_second.lateral_gain(speed, 2.7, h);
-    CHECK(gain[0] == doctest::Approx(offset).epsilon(2e-3));
-    CHECK(gain[1] == doctest::Approx(heading).epsilon(2e-3));
+    CHECK(gain.first == doctest::Approx(offset).epsilon(2e-3));
+    CHECK(gain.second == doctest::Approx(heading).epsilon(2e-3));
   }
 }
 
@@ -60,7 +62,7 @@ TEST_CASE("the closed loop is stable for all speeds and periods") {
       Eigen::Matrix2d A;
       A << 1.0, v * h, 0.0, 1.0;
       auto const gain = lqr.lateral_gain(speed, 2.7, h);
-      Eigen::Matrix2d const closed = A - Eigen::Vector2d(0.5 * v * h * turn, turn) * gain;
+      Eigen::Matrix2d const closed = A - Eigen::Vector2d(0.5 * v * h * turn, turn) * Gain(gain.first, gain.second);
       double const half = 0.5 * closed.trace(), determinant = closed.determinant();
       double const root = half * half - determinant;
       double const radius = root >= 0.0 ? std::abs(half) + std::sqrt(root) : std::sqrt(determinant);

@@ -35,7 +35,7 @@
 #include "cambium/map/lane_area.hpp"
 #include "cambium/map/lane_position.hpp"
 #include "cambium/map/road_area.hpp"
-#include "cambium/map/routing.hpp"
+#include "cambium/map/map_impl.hpp"
 #include "../support/samples.hpp"
 #include "../support/corpus.hpp"
 #include "lanes_by_hand.hpp"
@@ -650,7 +650,6 @@ TEST_CASE("a start in the polygon of its goal is there already") {
   Map::Parts parts;
   parts.lanes = lanes;
   parts.roads.emplace_back().id = lanes.front().road;
-  parts.route_finder = make_route_finder();
   Map const map(std::move(parts));
   geometry::Polygon const area({{40, -3}, {60, -3}, {60, 3}, {40, 3}});
   for (double const x : {20.0, 40.5, 50.0, 59.5})

@@ -1,4 +1,4 @@
-#include "cambium/map/routing.hpp"
+#include "cambium/map/map_impl.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -33,7 +33,6 @@ struct Lanes {
   [[nodiscard]] std::shared_ptr<Map const> map() const {
     Map::Parts parts;
     parts.lanes = all;
-    parts.route_finder = make_route_finder();
     return std::make_shared<Map const>(std::move(parts));
   }
 };

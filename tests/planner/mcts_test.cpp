@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -442,7 +441,7 @@ struct Hurry {
     double const speed = world.frame().agents[slot].state.speed;
     return {{0.1 * speed * dt, speed > 13.0 ? 0.1 : 0.0}, false};
   }
-  static constexpr auto parameters() { return std::make_tuple(); }
+  static constexpr auto parameters() { return parameter_list(); }
 };
 
 }  // namespace

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
-#include <tuple>
 
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/planner/mcts_cooperative.hpp"

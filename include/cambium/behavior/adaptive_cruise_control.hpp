@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <tuple>
 
 #include "cambium/behavior/acc.hpp"
 #include "cambium/behavior/bark.hpp"
@@ -28,12 +27,12 @@ struct AdaptiveCruiseControl {
   static constexpr char const* source = "Kesting, Treiber, Helbing 2010, eq. 2.3 and 2.6";
   static constexpr auto parameters() {
     using Self = AdaptiveCruiseControl;
-    return std::make_tuple(parameter("idm", &Self::idm, "-", {}, "the car following it is built on"),
-                           parameter("coolness", &Self::coolness, "-", Range{0, 1},
-                                     "0: IDM; 1: brakes no harder than the leader's acceleration asks for"),
-                           parameter("rules", &Self::rules, "-", {}, "what it heeds beside other road users"),
-                           parameter("integration", &Self::integration, "-", Range{0, 1},
-                                     "0 accurate, 1 BARK's sub-steps and BARK's desired gap"));
+    return parameter_list(
+        parameter("idm", &Self::idm, "-", {}, "the car following it is built on"),
+        parameter("coolness", &Self::coolness, "-", Range{0, 1},
+                  "0: IDM; 1: brakes no harder than the leader's acceleration asks for"),
+        parameter("rules", &Self::rules, "-", {}, "what it heeds beside other road users"),
+        choice("integration", &Self::integration, "accurate|bark_substeps", "the latter with BARK's desired gap, too"));
   }
 
   template <class View>

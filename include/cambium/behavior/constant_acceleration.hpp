@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <tuple>
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/follow_lane.hpp"
@@ -18,10 +17,10 @@ struct ConstantAcceleration {
       "keeps its lane; v grows or falls by a, until it stands or has its highest speed";
   static constexpr char const* source = "kinematics";
   static constexpr auto parameters() {
-    return std::make_tuple(parameter("acceleration", &ConstantAcceleration::acceleration, "m/s^2", Range{-50, 50},
-                                     "held until the vehicle stands or is at its highest speed"),
-                           parameter("highest_speed", &ConstantAcceleration::highest_speed, "m/s", Range{0, 200},
-                                     "not exceeded by accelerating"));
+    return parameter_list(parameter("acceleration", &ConstantAcceleration::acceleration, "m/s^2", Range{-50, 50},
+                                    "held until the vehicle stands or is at its highest speed"),
+                          parameter("highest_speed", &ConstantAcceleration::highest_speed, "m/s", Range{0, 200},
+                                    "not exceeded by accelerating"));
   }
 
   template <class View>

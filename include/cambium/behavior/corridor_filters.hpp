@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <concepts>
-#include <tuple>
 
 #include "cambium/behavior/lane_changing.hpp"
 #include "cambium/core/parameters.hpp"
@@ -25,7 +24,7 @@ struct AllOf;
 template <>
 struct AllOf<> {
   static constexpr char const* name = "all_of";
-  static constexpr auto parameters() { return std::make_tuple(); }
+  static constexpr auto parameters() { return parameter_list(); }
 
   template <class View>
   [[nodiscard]] bool operator()(View const&, LaneOption const&) const {
@@ -43,8 +42,8 @@ struct AllOf<First, Rest...> {
 
   static constexpr char const* name = "all_of";
   static constexpr auto parameters() {
-    return std::make_tuple(parameter("first", &AllOf::first, "-", {}, "the first condition"),
-                           parameter("rest", &AllOf::rest, "-", {}, "the further ones"));
+    return parameter_list(parameter("first", &AllOf::first, "-", {}, "the first condition"),
+                          parameter("rest", &AllOf::rest, "-", {}, "the further ones"));
   }
 
   template <class View>
@@ -63,10 +62,10 @@ struct FreeSpace {
   static constexpr char const* summary = "room ahead, and behind by a time times the difference of speeds";
   static constexpr char const* source = "BARK";
   static constexpr auto parameters() {
-    return std::make_tuple(parameter("front", &FreeSpace::front, "m", Range{0, 1000}, "least gap to the new leader"),
-                           parameter("rear", &FreeSpace::rear, "m", Range{0, 1000}, "least gap to the new follower"),
-                           parameter("time", &FreeSpace::time, "s", Range{0, 60},
-                                     "times the difference of speeds to the new follower, on top of that"));
+    return parameter_list(parameter("front", &FreeSpace::front, "m", Range{0, 1000}, "least gap to the new leader"),
+                          parameter("rear", &FreeSpace::rear, "m", Range{0, 1000}, "least gap to the new follower"),
+                          parameter("time", &FreeSpace::time, "s", Range{0, 60},
+                                    "times the difference of speeds to the new follower, on top of that"));
   }
 
   template <class View>
@@ -85,8 +84,8 @@ struct RemainingLength {
   static constexpr char const* summary = "enough of the lane is left";
   static constexpr char const* source = "BARK";
   static constexpr auto parameters() {
-    return std::make_tuple(parameter("least", &RemainingLength::least, "m", Range{0, 10'000},
-                                     "left of the lane from beside the vehicle on"));
+    return parameter_list(parameter("least", &RemainingLength::least, "m", Range{0, 10'000},
+                                    "left of the lane from beside the vehicle on"));
   }
 
   template <class View>
@@ -104,7 +103,7 @@ struct SpeedLimitAtLeast {
   static constexpr char const* summary = "the lane permits so much";
   static constexpr char const* source = "own";
   static constexpr auto parameters() {
-    return std::make_tuple(
+    return parameter_list(
         parameter("speed", &SpeedLimitAtLeast::speed, "m/s", Range{0, 200}, "least speed limit of the lane"));
   }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
 
 #include "cambium/behavior/braking.hpp"
 #include "cambium/behavior/follow_lane.hpp"
@@ -32,7 +31,7 @@ struct CrossingParameters {
       "critical gap: Highway Capacity Manual 2000, eq. 18-17 (second-hand); the rest: own";
   static constexpr auto parameters() {
     using P = CrossingParameters;
-    return std::make_tuple(
+    return parameter_list(
         parameter("time_margin", &P::time_margin, "s", Range{0, 60}, "from leaving a lane to the next vehicle there"),
         parameter("margin_behind", &P::margin_behind, "s", Range{0, 60},
                   "from a vehicle's rear end to stepping into its lane"),

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <tuple>
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/dynamics/integration.hpp"
@@ -54,10 +53,9 @@ struct ExternalInput {
       "carries out acceleration and steering set from outside, through the vehicle model";
   static constexpr char const* source = "kinematics";
   static constexpr auto parameters() {
-    return std::make_tuple(parameter("scheme", &ExternalInput::scheme, "-", Range{0, 1},
-                                     "integration of the vehicle model: 0 RK4, 1 Euler"),
-                           parameter("longest_substep", &ExternalInput::longest_substep, "s", Range{1e-4, 10},
-                                     "a step is integrated in equal parts no longer than this"));
+    return parameter_list(choice("scheme", &ExternalInput::scheme, "rk4|euler", "integration of the vehicle model"),
+                          parameter("longest_substep", &ExternalInput::longest_substep, "s", Range{1e-4, 10},
+                                    "a step is integrated in equal parts no longer than this"));
   }
 
   template <class View>

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
 
 #include "cambium/behavior/follow_lane.hpp"
 #include "cambium/core/macros.hpp"
@@ -27,7 +26,7 @@ concept HasIdmParameters = requires(P const p) {
 /// The one description of those fields, for the models that have them.
 template <class P>
 [[nodiscard]] constexpr auto idm_parameters() {
-  return std::make_tuple(
+  return parameter_list(
       parameter("desired_speed", &P::desired_speed, "m/s", Range{0.1, 100}, "speed on a free road"),
       parameter("time_headway", &P::time_headway, "s", Range{0, 20}, "time gap kept to the leader"),
       parameter("minimum_gap", &P::minimum_gap, "m", Range{0, 100}, "gap kept in standing traffic"),

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <tuple>
 
 #include "cambium/behavior/bark.hpp"
 #include "cambium/behavior/behavior_model.hpp"
@@ -38,13 +37,13 @@ struct IdmClassic {
       "b)))";
   static constexpr char const* source = "Treiber, Hennecke, Helbing 2000, eq. 3 and 4";
   static constexpr auto parameters() {
-    return std::tuple_cat(
+    return join_parameters(
         idm_parameters<IdmClassic>(),
-        std::make_tuple(parameter("integration", &IdmClassic::integration, "-", Range{0, 1},
-                                  "0 exact within the step, 1 BARK's sub-steps"),
-                        parameter("tolerance", &IdmClassic::tolerance, "m/s^2", Range{1e-12, 1},
-                                  "error of the exact integration, as speed per second"),
-                        parameter("rules", &IdmClassic::rules, "-", {}, "what it heeds beside other road users")));
+        parameter_list(
+            choice("integration", &IdmClassic::integration, "exact|bark_substeps", "of the motion within a step"),
+            parameter("tolerance", &IdmClassic::tolerance, "m/s^2", Range{1e-12, 1},
+                      "error of the exact integration, as speed per second"),
+            parameter("rules", &IdmClassic::rules, "-", {}, "what it heeds beside other road users")));
   }
 
   template <class View>

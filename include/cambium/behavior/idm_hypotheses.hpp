@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <string>
-#include <tuple>
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/idm_classic.hpp"
@@ -32,7 +31,7 @@ struct IdmHypotheses {
   static constexpr char const* source = "Treiber 2000; regions after Bernhard 2020";
   static constexpr auto parameters() {
     using P = IdmHypotheses;
-    return std::make_tuple(
+    return parameter_list(
         parameter("driver", &P::driver, "-", {}, "all but the time headway"),
         parameter("shortest_headway", &P::shortest_headway, "s", Range{0, 20}, "where the first region begins"),
         parameter("longest_headway", &P::longest_headway, "s", Range{0, 20}, "where the last one ends"),

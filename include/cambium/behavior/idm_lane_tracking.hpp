@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <tuple>
 
 #include "cambium/behavior/acc.hpp"
 #include "cambium/behavior/bark.hpp"
@@ -63,7 +62,7 @@ struct IdmLaneTracking {
   static constexpr char const* source = "Treiber, Hennecke, Helbing 2000; Hoffmann, Tomlin, Montemerlo, Thrun 2007";
   static constexpr auto parameters() {
     using Self = IdmLaneTracking;
-    return std::make_tuple(
+    return parameter_list(
         parameter("idm", &Self::idm, "-", {}, "the driver's car following"),
         parameter("coolness", &Self::coolness, "-", Range{0, 1}, "0: IDM; up to 1: the ACC model's"),
         parameter("rules", &Self::rules, "-", {}, "what it heeds beside other road users"),
@@ -74,7 +73,7 @@ struct IdmLaneTracking {
                   "steers no more than this, beside the vehicle's own limits"),
         parameter("slow_for_curves", &Self::slow_for_curves, "-", Range{0, 1},
                   "brakes in time for curves that ask for more"),
-        parameter("integration", &Self::integration, "-", Range{0, 1}, "0 RK4, 1 BARK's sub-steps"),
+        choice("integration", &Self::integration, "rk4|bark_substeps", "of the motion along the lane"),
         parameter("longest_substep", &Self::longest_substep, "s", Range{1e-3, 10},
                   "steering is held over equal parts of a step no longer than this"),
         parameter("tolerance", &Self::tolerance, "m/s^2", Range{1e-12, 1}, "error of the speed, as speed per second"));

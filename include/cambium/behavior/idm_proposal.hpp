@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <tuple>
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/bends_ahead.hpp"
@@ -36,7 +35,7 @@ struct IdmProposal {
       "passes who leaves room beside; brakes for bends";
   static constexpr char const* source = "Treiber 2000; after Dauner et al. 2023";
   static constexpr auto parameters() {
-    return std::make_tuple(
+    return parameter_list(
         parameter("driver", &IdmProposal::driver, "-", {}, "its car following; integration is exact"),
         parameter("clearance", &IdmProposal::clearance, "m", Range{0, 5}, "to each side of those that it passes"),
         parameter("lateral_acceleration", &IdmProposal::lateral_acceleration, "m/s^2", Range{0.1, 50},

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <tuple>
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/idm.hpp"
@@ -30,7 +29,7 @@ struct Yielding {
       "enough";
   static constexpr char const* source = "own";
   static constexpr auto parameters() {
-    return std::make_tuple(
+    return parameter_list(
         parameter("enabled", &Yielding::enabled, "-", Range{0, 1}, "whether it ever lets others in"),
         parameter("yields", &Yielding::yields, "s", {}, "how long it does; at least 0.1 s"),
         parameter("insists", &Yielding::insists, "s", {}, "how long it does not; at least 0.1 s"),
@@ -64,8 +63,8 @@ struct BasicIdmStochastic {
   static constexpr char const* source = "law: Treiber, Hennecke, Helbing 2000; draws: own, after BARK";
   static constexpr auto parameters() {
     using Self = BasicIdmStochastic;
-    return std::make_tuple(
-        parameter("drawn", &Self::drawn, "-", Range{0, 1}, "0 once for the agent, 1 anew in every step"),
+    return parameter_list(
+        choice("drawn", &Self::drawn, "per_agent|per_step", "when parameters are drawn"),
         parameter("desired_speed", &Self::desired_speed, "m/s", {}, "of IDM's parameter"),
         parameter("time_headway", &Self::time_headway, "s", {}, "of IDM's parameter"),
         parameter("minimum_gap", &Self::minimum_gap, "m", {}, "of IDM's parameter"),

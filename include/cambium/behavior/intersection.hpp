@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <tuple>
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/bends_ahead.hpp"
@@ -50,7 +49,7 @@ struct Intersection {
   static constexpr char const* source = "rules of the road (StVO sections 8 and 9); prediction: own";
   static constexpr auto parameters() {
     using P = Intersection;
-    return std::make_tuple(
+    return parameter_list(
         parameter("idm", &P::idm, "-", {}, "car following"),
         parameter("rules", &P::rules, "-", {}, "what it heeds beside other road users"),
         parameter("look_ahead", &P::look_ahead, "m", Range{0, 1000},

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <tuple>
 
 #include "cambium/behavior/follow_lane.hpp"
 #include "cambium/core/parameters.hpp"
@@ -82,7 +81,7 @@ struct LaneChangeCourse {
   static constexpr char const* summary = "quintic course by the way driven: no jump of heading or curvature";
   static constexpr char const* source = "own";
   static constexpr auto parameters() {
-    return std::make_tuple(
+    return parameter_list(
         parameter("duration", &LaneChangeCourse::duration, "s", Range{0.5, 30}, "from one centre line to the other"),
         parameter("shortest_duration", &LaneChangeCourse::shortest_duration, "s", Range{0.5, 30},
                   "where less room is left, and for the way back of an aborted change"),

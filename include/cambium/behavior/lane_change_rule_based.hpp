@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <tuple>
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/corridor_filters.hpp"
@@ -35,7 +34,7 @@ struct LaneChangeRuleBased {
   static constexpr char const* source = "rule: BARK; safety: Kesting, Treiber, Helbing 2007";
   static constexpr auto parameters() {
     using P = LaneChangeRuleBased;
-    return std::make_tuple(
+    return parameter_list(
         parameter("idm", &P::idm, "-", {}, "the driver's own car following"),
         parameter("changing", &P::changing, "-", {}, "how it changes lanes, and what it assumes of others"),
         parameter("space", &P::space, "-", {}, "what must be free in the new lane"),

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <tuple>
 
 #include "cambium/behavior/bends_ahead.hpp"
 #include "cambium/behavior/idm.hpp"
@@ -62,7 +61,7 @@ struct LaneChanging {
   static constexpr char const* source = "own";
   static constexpr auto parameters() {
     using P = LaneChanging;
-    return std::make_tuple(
+    return parameter_list(
         parameter("others", &P::others, "-", {}, "what it assumes of other drivers"),
         parameter("trucks", &P::trucks, "-", {}, "what it assumes of drivers of long vehicles"),
         parameter("truck_length", &P::truck_length, "m", Range{0, 100}, "vehicles longer than this are trucks"),

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <tuple>
 
 #include "cambium/behavior/view.hpp"
 #include "cambium/core/macros.hpp"
@@ -36,15 +35,14 @@ struct RoadRules {
   static constexpr char const* summary = "braking for the end of the lane, obeying speed limits";
   static constexpr char const* source = "own; lane end: BARK";
   static constexpr auto parameters() {
-    return std::make_tuple(
-        parameter("lane_end", &RoadRules::lane_end, "-", Range{0, 2},
-                  "brake for the lane's end: 0 never, 1 where it ends before the route does, 2 always"),
-        parameter("lane_end_distance", &RoadRules::lane_end_distance, "m", Range{0, 10'000},
-                  "from how far before the end; above about 15 m/s the default is too short to stop"),
-        parameter("lane_end_offset", &RoadRules::lane_end_offset, "m", Range{0, 1000},
-                  "how far before the end the place is where it would stop"),
-        parameter("obey_speed_limits", &RoadRules::obey_speed_limits, "-", Range{0, 1},
-                  "desire no more than the limit, and be there in time for a lower one ahead"));
+    return parameter_list(choice("lane_end", &RoadRules::lane_end, "ignored|before_destination|always",
+                                 "which ends of its lane a driver brakes for"),
+                          parameter("lane_end_distance", &RoadRules::lane_end_distance, "m", Range{0, 10'000},
+                                    "from how far before the end; above about 15 m/s the default is too short to stop"),
+                          parameter("lane_end_offset", &RoadRules::lane_end_offset, "m", Range{0, 1000},
+                                    "how far before the end the place is where it would stop"),
+                          parameter("obey_speed_limits", &RoadRules::obey_speed_limits, "-", Range{0, 1},
+                                    "desire no more than the limit, and be there in time for a lower one ahead"));
   }
 };
 

@@ -7,7 +7,6 @@
 #include <limits>
 #include <optional>
 #include <string>
-#include <tuple>
 
 #include <boost/container/static_vector.hpp>
 
@@ -39,10 +38,9 @@ struct MacroAction {
   static constexpr char const* summary = "one manoeuvre of `MacroActions`";
   static constexpr auto parameters() {
     using P = MacroAction;
-    return std::make_tuple(
-        parameter("kind", &P::kind, "-", Range{0, 3}, "0 stay, 1 change_left, 2 change_right, 3 keep_gap"),
-        parameter("acceleration", &P::acceleration, "m/s^2", Range{-50, 50}, "not of keep_gap"),
-        parameter("keeps_gap", &P::keeps_gap, "-", Range{0, 1}, "no faster than IDM allows"));
+    return parameter_list(choice("kind", &P::kind, "stay|change_left|change_right|keep_gap", "what is done"),
+                          parameter("acceleration", &P::acceleration, "m/s^2", Range{-50, 50}, "not of keep_gap"),
+                          parameter("keeps_gap", &P::keeps_gap, "-", Range{0, 1}, "no faster than IDM allows"));
   }
 
   friend bool operator==(MacroAction const&, MacroAction const&) = default;
@@ -104,7 +102,7 @@ struct MacroActions {
   static constexpr char const* source = "after BARK";
   static constexpr auto parameters() {
     using P = MacroActions;
-    return std::make_tuple(
+    return parameter_list(
         parameter("actions", &P::actions, "-", {}, "what can be chosen, 1 to 16"),
         parameter("highest_speed", &P::highest_speed, "m/s", Range{0, 200}, "not exceeded by accelerating"),
         parameter("minimum_remaining", &P::minimum_remaining, "m", Range{0, 10'000},

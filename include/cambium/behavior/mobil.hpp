@@ -69,7 +69,7 @@ struct BasicMobil {
   static constexpr char const* source = "Kesting, Treiber, Helbing 2007, eq. 2 to 7";
   static constexpr auto parameters() {
     using P = BasicMobil;
-    auto const own = std::make_tuple(
+    auto const own = parameter_list(
         parameter("idm", &P::idm, "-", {}, "the driver's own car following"),
         parameter("changing", &P::changing, "-", {}, "how it changes lanes, and what it assumes of others"),
         parameter("politeness", &P::politeness, "-", Range{-1, 10}, "weight of the followers' accelerations"),
@@ -90,7 +90,7 @@ struct BasicMobil {
         parameter("tolerance", &P::tolerance, "m/s^2", Range{1e-12, 1},
                   "error of the exact integration, as speed per second"));
     if constexpr (sizeof...(Filters) > 0)
-      return std::tuple_cat(own, std::make_tuple(parameter("filters", &P::filters, "-", {}, "further conditions")));
+      return join_parameters(own, parameter_list(parameter("filters", &P::filters, "-", {}, "further conditions")));
     else
       return own;
   }

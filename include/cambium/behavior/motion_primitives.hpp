@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <initializer_list>
 #include <string>
-#include <tuple>
 
 #include <boost/container/static_vector.hpp>
 
@@ -24,7 +23,7 @@ struct MotionPrimitive {
   static constexpr char const* summary = "one input of `MotionPrimitives`";
   static constexpr auto parameters() {
     using P = MotionPrimitive;
-    return std::make_tuple(
+    return parameter_list(
         parameter("acceleration", &P::acceleration, "m/s^2", Range{-50, 50}, "along the heading"),
         parameter("steering", &P::steering, "rad", Range{-1.5, 1.5}, "steering angle, left positive"));
   }
@@ -55,11 +54,10 @@ struct MotionPrimitives {
   static constexpr char const* source = "after BARK";
   static constexpr auto parameters() {
     using P = MotionPrimitives;
-    return std::make_tuple(
-        parameter("primitives", &P::primitives, "-", {}, "what can be chosen, 1 to 16"),
-        parameter("scheme", &P::scheme, "-", Range{0, 1}, "integration of the vehicle model: 0 RK4, 1 Euler"),
-        parameter("longest_substep", &P::longest_substep, "s", Range{1e-4, 10},
-                  "a step is integrated in equal parts no longer than this"));
+    return parameter_list(parameter("primitives", &P::primitives, "-", {}, "what can be chosen, 1 to 16"),
+                          choice("scheme", &P::scheme, "rk4|euler", "integration of the vehicle model"),
+                          parameter("longest_substep", &P::longest_substep, "s", Range{1e-4, 10},
+                                    "a step is integrated in equal parts no longer than this"));
   }
 
   void check(std::string const& where) const {

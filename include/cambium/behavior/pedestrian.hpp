@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <tuple>
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/crossing.hpp"
@@ -75,7 +74,7 @@ struct Pedestrian {
   static constexpr char const* source = "Helbing, Molnár 1995";
   static constexpr auto parameters() {
     using P = Pedestrian;
-    return std::make_tuple(
+    return parameter_list(
         parameter("social", &P::social, "-", {}, "forces"),
         parameter("crossing", &P::crossing, "-", {}, "crossing lanes"),
         parameter("body_radius", &P::body_radius, "m", Range{0, 5},

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <tuple>
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/macro_actions.hpp"
@@ -21,9 +20,9 @@ struct RandomMacroActions {
   static constexpr char const* summary = "one of the available macro actions, each as likely, every interval";
   static constexpr char const* source = "own";
   static constexpr auto parameters() {
-    return std::make_tuple(parameter("macro", &RandomMacroActions::macro, "-", {}, "the actions"),
-                           parameter("interval", &RandomMacroActions::interval, "s", Range{0, 3600},
-                                     "until another one is chosen; 0: each step"));
+    return parameter_list(parameter("macro", &RandomMacroActions::macro, "-", {}, "the actions"),
+                          parameter("interval", &RandomMacroActions::interval, "s", Range{0, 3600},
+                                    "until another one is chosen; 0: each step"));
   }
 
   struct Memory {

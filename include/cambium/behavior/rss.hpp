@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include "cambium/core/parameters.hpp"
 
@@ -26,7 +25,7 @@ struct RssParameters {
   static constexpr auto parameters() {
     using P = RssParameters;
     constexpr Range rate{0.01, 50};
-    return std::make_tuple(
+    return parameter_list(
         parameter("response_time", &P::response_time, "s", Range{0, 10}, "until one responds to danger (rho)"),
         parameter("maximum_acceleration", &P::maximum_acceleration, "m/s^2", Range{0, 50}, "until then"),
         parameter("maximum_deceleration", &P::maximum_deceleration, "m/s^2", rate, "hardest braking of who is ahead"),

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <tuple>
 #include <type_traits>
 
 #include "cambium/behavior/behavior_set.hpp"
@@ -38,7 +37,7 @@ struct RssConformant {
       "asks";
   static constexpr char const* source = "Shalev-Shwartz, Shammah, Shashua 2017";
   static constexpr auto parameters() {
-    return std::make_tuple(
+    return parameter_list(
         parameter("nominal", &RssConformant::nominal, "-", {}, "the behaviour where nothing is dangerous"),
         parameter("rss", &RssConformant::rss, "-", {}, "what is dangerous, and the response"));
   }

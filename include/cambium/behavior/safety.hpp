@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/constant_acceleration.hpp"
@@ -19,8 +18,8 @@ struct Safety {
   static constexpr char const* summary = "brakes to standstill in the middle of its lane";
   static constexpr char const* source = "own";
   static constexpr auto parameters() {
-    return std::make_tuple(parameter("deceleration", &Safety::deceleration, "m/s^2", Range{0.01, 50}, "of the braking"),
-                           parameter("course", &Safety::course, "-", {}, "how it comes to the middle of its lane"));
+    return parameter_list(parameter("deceleration", &Safety::deceleration, "m/s^2", Range{0.01, 50}, "of the braking"),
+                          parameter("course", &Safety::course, "-", {}, "how it comes to the middle of its lane"));
   }
 
   using Memory = LaneChange;

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include "cambium/core/parameters.hpp"
 #include "cambium/geometry/angle.hpp"
@@ -57,7 +56,7 @@ struct SocialForceParameters {
       "Vicsek 2000";
   static constexpr auto parameters() {
     using P = SocialForceParameters;
-    return std::make_tuple(
+    return parameter_list(
         parameter("desired_speed", &P::desired_speed, "m/s", Range{0.1, 20},
                   "on a free way; in the paper normally distributed, 0.26 m/s wide"),
         parameter("relaxation_time", &P::relaxation_time, "s", Range{0.01, 100},

@@ -6,7 +6,6 @@
 #include <limits>
 #include <memory>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -31,7 +30,7 @@ struct StaticTrajectory {
       "replays recorded states, between two of them linearly; enters and leaves traffic with its recording";
   static constexpr char const* source = "interpolation";
   static constexpr auto parameters() {
-    return std::make_tuple(parameter("states", &StaticTrajectory::states, "-", {}, "recorded, in order of time"));
+    return parameter_list(parameter("states", &StaticTrajectory::states, "-", {}, "recorded, in order of time"));
   }
 
   /// Throws `ParameterError` where there are no states, or their times do not ascend.

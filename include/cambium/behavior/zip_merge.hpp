@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <tuple>
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/idm.hpp"
@@ -32,7 +31,7 @@ struct ZipMerge {
   static constexpr char const* source = "rule: StVO section 7 (4); control of the gap: own";
   static constexpr auto parameters() {
     using P = ZipMerge;
-    return std::make_tuple(
+    return parameter_list(
         parameter("idm", &P::idm, "-", {}, "the driver's own car following"),
         parameter("zone", &P::zone, "m", Range{1, 400}, "how far before a merge it begins to give way"),
         parameter("reach", &P::reach, "m", Range{0, 100}, "how far back a vehicle is still let in before"),

@@ -9,7 +9,6 @@
 #include <limits>
 #include <span>
 #include <string>
-#include <tuple>
 
 #include "cambium/core/macros.hpp"
 #include "cambium/core/error.hpp"
@@ -161,8 +160,8 @@ struct Uniform {
   static constexpr char const* summary = "each value between two ends as likely";
   static constexpr char const* source = "-";
   static constexpr auto parameters() {
-    return std::make_tuple(parameter("low", &Uniform::low, "-", any_finite, "Lower end."),
-                           parameter("high", &Uniform::high, "-", any_finite, "Upper end, not below the lower one."));
+    return parameter_list(parameter("low", &Uniform::low, "-", any_finite, "Lower end."),
+                          parameter("high", &Uniform::high, "-", any_finite, "Upper end, not below the lower one."));
   }
   /// Throws `ParameterError` unless `low` <= `high` with a finite difference; called by `check_parameters`.
   void check(std::string const& where) const {
@@ -187,8 +186,8 @@ struct Normal {
   static constexpr char const* summary = "mean and standard deviation; by inversion";
   static constexpr char const* source = "-";
   static constexpr auto parameters() {
-    return std::make_tuple(parameter("mean", &Normal::mean, "-", any_finite, "Mean."),
-                           parameter("deviation", &Normal::deviation, "-", non_negative, "Standard deviation."));
+    return parameter_list(parameter("mean", &Normal::mean, "-", any_finite, "Mean."),
+                          parameter("deviation", &Normal::deviation, "-", non_negative, "Standard deviation."));
   }
 
   template <BitStream Stream>
@@ -204,7 +203,7 @@ struct Exponential {
 
   static constexpr char const* name = "exponential";
   static constexpr auto parameters() {
-    return std::make_tuple(
+    return parameter_list(
         parameter("rate", &Exponential::rate, "-", positive, "Mean number of events per unit; 1 / mean."));
   }
 
@@ -246,14 +245,14 @@ class Discrete {
     }
     double total = 0.0;
     for (std::size_t i = 0; i < size_; ++i) {
-      if (!detail::in_range(weights[i], non_negative)) {
+      if (!(weights[i] >= 0.0 && std::isfinite(weights[i]))) {
         throw ParameterError(where + "[" + std::to_string(i) + "]", "is " + detail::number_text(weights[i]),
                              "give a finite weight of at least 0");
       }
       weights_[i] = weights[i];
       total += weights[i];
     }
-    if (!detail::in_range(total, positive)) {
+    if (!(total > 0.0 && std::isfinite(total))) {
       throw ParameterError(where, "has weights that sum to " + detail::number_text(total),
                            "give a positive finite sum");
     }

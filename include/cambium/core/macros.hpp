@@ -12,6 +12,14 @@
 #define CAMBIUM_ASSERT(condition, sentence) assert((condition) && (sentence))
 #endif
 
+/// Cold code: declared in `x.hpp`, defined in `x_impl.hpp` beside it; inline where the library is header-only, compiled
+/// once in `cambium::compiled`.
+#ifdef CAMBIUM_COMPILED
+#define CAMBIUM_COLD
+#else
+#define CAMBIUM_COLD inline
+#endif
+
 /// Asks the compiler to inline everything that a function calls: worth a quarter of the time of a step (`bench/run
 /// step` beside the same in a checkout that was configured with `CXXFLAGS=-DCAMBIUM_FLATTEN=`), for seconds of compiling
 /// where behaviours are large. Compile with `-DCAMBIUM_FLATTEN=` to do without.

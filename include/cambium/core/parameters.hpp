@@ -1,100 +1,49 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
-#include <charconv>
-#include <cstddef>
 #include <cstdint>
 #include <string>
-#include <type_traits>
 
 #include "cambium/core/described.hpp"
 #include "cambium/core/detail/parameter_values.hpp"
 #include "cambium/core/error.hpp"
-#include "cambium/core/ids.hpp"
 
 namespace cambium {
 
 namespace detail {
 
-/// Shortest text that reads back as the same number; enums as their number, the id of nothing as "none".
-template <class Value>
-[[nodiscard]] std::string number_text(Value value) {
-  if constexpr (std::is_same_v<Value, bool>) {
-    return value ? "true" : "false";
-  } else if constexpr (StrongId<Value>) {
-    return to_string(value);
-  } else if constexpr (std::is_enum_v<Value>) {
-    return std::to_string(static_cast<std::underlying_type_t<Value>>(value));
-  } else {
-    char buffer[32];
-    return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};
-  }
-}
+/// Shortest text that reads back as the same number.
+[[nodiscard]] std::string number_text(double value);
+
+/// As above; of a choice its name, of nothing's id "none".
+[[nodiscard]] std::string value_text(ParameterInfo const& info, ParameterValue const& value);
 
 /// "15 m/s"; no unit for "-" and "".
-[[nodiscard]] inline std::string with_unit(std::string number, char const* unit) {
-  std::string const text(unit);
-  return text.empty() || text == "-" ? number : number + " " + text;
-}
+[[nodiscard]] std::string with_unit(std::string number, char const* unit);
 
-/// "[0, 70]", "(0, inf)"; the bounds of the open ranges above are shown as what they mean.
-[[nodiscard]] inline std::string range_text(Range range) {
-  std::string text = range.low == any_finite.low ? "(-inf"
-                     : range.low == positive.low ? "(0"
-                                                 : "[" + number_text(range.low);
-  return text + ", " + (range.high == any_finite.high ? "inf)" : number_text(range.high) + "]");
-}
+/// "[0, 70]", "(0, inf)"; the bounds of the open ranges are shown as what they mean; of a choice its names.
+[[nodiscard]] std::string range_text(ParameterInfo const& info);
 
-/// Whether values of the type have a range.
-template <class Value>
-inline constexpr bool has_range = !std::is_same_v<Value, bool> && !StrongId<Value>;
+// What is said once of all structs. Each shows its reader the struct that it is given.
+using ReadStruct = void (*)(void const* object, ParameterPath const* own, ListElements lists, ParameterReader& reader);
+void check_values(char const* name, void const* object, ReadStruct read, std::string const& where);
+[[nodiscard]] std::string parameters_table(void const* object, ReadStruct read);
+[[nodiscard]] std::string parameters_line(char const* name, void const* object, ReadStruct read);
+[[nodiscard]] std::uint64_t parameters_hash(char const* name, void const* object, ReadStruct read);
 
-template <class Value>
-[[nodiscard]] constexpr bool in_range(Value value, Range range) {
-  if constexpr (!has_range<Value>) {
-    return true;
-  } else {
-    auto const number = static_cast<double>(value);
-    return number >= range.low && number <= range.high;  // false for NaN
-  }
-}
-
-[[noreturn]] inline void throw_out_of_range(std::string const& where, std::string const& key, std::string const& value,
-                                            Range range, char const* unit) {
-  throw ParameterError((where.empty() ? "" : where + ": ") + key, "is " + with_unit(value, unit),
-                       "give a value in " + with_unit(range_text(range), unit));
-}
-
-/// Calls the own checks of a struct and of the structs in it, where they have one, with the full key as `where`.
-template <class Value>
-void check_relations(Value const& value, ParameterPath const& path, std::string const& where) {
-  if constexpr (Described<Value>) {
-    for_each_parameter<Value>([&](auto const& entry) {
-      check_relations(value.*entry.field, ParameterPath{&path, entry.name}, where);
-    });
-    if constexpr (requires { value.check(where); }) value.check((where.empty() ? "" : where + ": ") + path.text());
-  } else if constexpr (ParameterList<Value>) {
-    std::size_t i = 0;
-    for (auto const& element : elements_of(value))
-      check_relations(element, ParameterPath{path.outer, path.name, i++}, where);
-  }
+template <Described T>
+void read_struct(void const* object, ParameterPath const* own, ListElements lists, ParameterReader& reader) {
+  read_parameters(*static_cast<T const*>(object), own, lists, reader);
 }
 
 }  // namespace detail
 
 /// Throws `ParameterError` unless every field is within its range (NaN never is). The message names `where` (a file, an
-/// agent), the struct and key, the value and the range. Then calls the own `check` of the struct and of those in it,
-/// where they have one.
+/// agent), the struct and key, the value and the range. Calls the own `check` of the struct, and of those in it, where
+/// they have one, after their fields.
 template <Described T>
 void check_parameters(T const& object, std::string const& where = {}) {
-  detail::ParameterPath const root{nullptr, detail::struct_name<T>()};
-  detail::visit_values<true>(object, &root, [&where](auto const& path, auto const& entry, auto value) {
-    if (!detail::in_range(value, entry.range)) {
-      detail::throw_out_of_range(where, path.text(), detail::number_text(value), entry.range, entry.unit);
-    }
-  });
-  detail::check_relations(object, root, where);
+  detail::check_values(detail::struct_name<T>(), &object, &detail::read_struct<T>, where);
 }
 
 namespace detail {
@@ -127,54 +76,25 @@ template <Described T>
 /// its elements has.
 template <Described T>
 [[nodiscard]] std::string describe_parameters() {
-  std::string table = "| name | default | unit | range | meaning |\n|---|---|---|---|---|\n";
-  detail::visit_values<false>(T{}, nullptr, [&table](auto const& path, auto const& entry, auto value) {
-    table += "| " + path.text() + " | " + (path.is_any_element() ? "-" : detail::number_text(value)) + " | " +
-             entry.unit + " | " + (detail::has_range<decltype(value)> ? detail::range_text(entry.range) : "-") + " | " +
-             entry.sentence + " |\n";
-  });
-  return table;
+  T const defaults{};
+  return detail::parameters_table(&defaults, &detail::read_struct<T>);
 }
 
 /// One line for logs: "idm_classic: desired_speed=15 m/s, time_headway=1.5 s". Numbers read back as the same bits.
 template <Described T>
 [[nodiscard]] std::string to_string(T const& object) {
-  std::string line;
-  detail::visit_values<true>(object, nullptr, [&line](auto const& path, auto const& entry, auto value) {
-    line += (line.empty() ? "" : ", ") + path.text() + "=" + detail::with_unit(detail::number_text(value), entry.unit);
-  });
-  return std::string(detail::struct_name<T>()) + ": " + line;
+  return detail::parameters_line(detail::struct_name<T>(), &object, &detail::read_struct<T>);
 }
 
 /// Hash over the struct's name, its keys and the bits of its values (FNV-1a, 64 bit): the same on every platform and in
 /// every run; changes when a field is renamed. Equal parameters have equal hashes.
 template <Described T>
-[[nodiscard]] constexpr std::uint64_t hash_parameters(T const& object) {
-  std::uint64_t hash = 0xcbf29ce484222325u;
-  auto const add_byte = [&hash](std::uint64_t byte) { hash = (hash ^ byte) * 0x100000001b3u; };
-  auto const add_name = [&](char const* name) {
-    for (; *name != '\0'; ++name) add_byte(static_cast<unsigned char>(*name));
-    add_byte(0);
-  };
-  auto const add_value = [&](auto value) {
-    std::uint64_t bits;
-    if constexpr (std::is_floating_point_v<decltype(value)>) {
-      bits = std::bit_cast<std::uint64_t>(static_cast<double>(value) + 0.0);  // -0 becomes 0
-    } else {
-      bits = static_cast<std::uint64_t>(value);
-    }
-    for (int shift = 0; shift < 64; shift += 8) add_byte((bits >> shift) & 0xffu);
-  };
-  add_name(detail::struct_name<T>());
-  detail::visit_values<true>(object, nullptr, [&](auto const& path, auto const& entry, auto value) {
-    for (auto const* key = &path; key != nullptr; key = key->outer) {
-      if (key != &path) add_name(key->name);
-      if (key->element != key->no_list) add_value(key->element);
-    }
-    add_name(entry.name);
-    add_value(value);
-  });
-  return hash;
+[[nodiscard]] std::uint64_t hash_parameters(T const& object) {
+  return detail::parameters_hash(detail::struct_name<T>(), &object, &detail::read_struct<T>);
 }
 
 }  // namespace cambium
+
+#ifndef CAMBIUM_COMPILED
+#include "cambium/core/parameters_impl.hpp"
+#endif

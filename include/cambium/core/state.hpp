@@ -2,10 +2,7 @@
 
 #include <cmath>
 #include <concepts>
-#include <tuple>
 #include <type_traits>
-
-#include <Eigen/Core>
 
 #include "cambium/core/described.hpp"
 #include "cambium/core/macros.hpp"
@@ -24,11 +21,11 @@ struct BasicState {
   static constexpr char const* name = "state";
   static constexpr auto parameters() {
     using S = BasicState;
-    return std::make_tuple(parameter("time", &S::time, "s", any_finite, "of the state"),
-                           parameter("x", &S::x, "m", any_finite, "of the reference point, map frame"),
-                           parameter("y", &S::y, "m", any_finite, "likewise"),
-                           parameter("heading", &S::heading, "rad", any_finite, "counter-clockwise from +x"),
-                           parameter("speed", &S::speed, "m/s", any_finite, "along the heading"));
+    return parameter_list(parameter("time", &S::time, "s", any_finite, "of the state"),
+                          parameter("x", &S::x, "m", any_finite, "of the reference point, map frame"),
+                          parameter("y", &S::y, "m", any_finite, "likewise"),
+                          parameter("heading", &S::heading, "rad", any_finite, "counter-clockwise from +x"),
+                          parameter("speed", &S::speed, "m/s", any_finite, "along the heading"));
   }
 
   friend bool operator==(BasicState const&, BasicState const&) = default;
@@ -47,18 +44,6 @@ concept MotionState = std::copyable<S> && std::is_trivially_copyable_v<S> && req
   s.speed;
 };
 static_assert(MotionState<State>);
-
-/// (time, x, y, heading, speed) as a fixed-size vector for numerics.
-template <class Scalar>
-[[nodiscard]] Eigen::Matrix<Scalar, 5, 1> to_vector(BasicState<Scalar> const& state) {
-  return {state.time, state.x, state.y, state.heading, state.speed};
-}
-
-/// Inverse of `to_vector`.
-template <class Scalar>
-[[nodiscard]] BasicState<Scalar> from_vector(Eigen::Matrix<Scalar, 5, 1> const& v) {
-  return {v[0], v[1], v[2], v[3], v[4]};
-}
 
 /// True when each of the fields of `BasicState` is a finite number.
 template <MotionState S>

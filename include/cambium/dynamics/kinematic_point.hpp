@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 #include <type_traits>
 
 #include "cambium/core/parameters.hpp"
@@ -36,7 +35,7 @@ struct KinematicPoint {
   static constexpr char const* source = "kinematics";
   static constexpr auto parameters() {
     using Self = KinematicPoint;
-    return std::make_tuple(
+    return parameter_list(
         parameter("wheel_base", &Self::wheel_base, "m", Range{0.1, 20}, "of the vehicle that steers the same course"),
         parameter("yaw_rate_limit", &Self::yaw_rate_limit, "rad/s", Range{0, 100}, "how fast it turns at most"),
         parameter("lowest_acceleration", &Self::lowest_acceleration, "m/s^2", Range{-50, 0}, "hardest braking"),

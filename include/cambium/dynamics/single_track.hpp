@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 #include <type_traits>
 
 #include "cambium/core/parameters.hpp"
@@ -78,7 +77,7 @@ struct SingleTrack {
       "x' = v cos(heading), y' = v sin(heading), heading' = v tan(steering) / wheel base, v' = a";
   static constexpr char const* source = "Rajamani 2012, section 2.2, about the rear axle";
   static constexpr auto parameters() {
-    return std::make_tuple(
+    return parameter_list(
         parameter("wheel_base", &SingleTrack::wheel_base, "m", Range{0.1, 20}, "distance between the axles"),
         parameter("steering_limit", &SingleTrack::steering_limit, "rad", Range{0, 1.5},
                   "largest steering angle to either side"),

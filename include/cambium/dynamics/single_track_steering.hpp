@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 #include <type_traits>
 
 #include "cambium/core/parameters.hpp"
@@ -53,7 +52,7 @@ struct SingleTrackSteering {
   static constexpr char const* source = "Rajamani 2012, section 2.2; lag: own";
   static constexpr auto parameters() {
     using Self = SingleTrackSteering;
-    return std::make_tuple(
+    return parameter_list(
         parameter("wheel_base", &Self::wheel_base, "m", Range{0.1, 20}, "distance between the axles"),
         parameter("steering_limit", &Self::steering_limit, "rad", Range{0, 1.5},
                   "largest steering angle to either side"),

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 #include <type_traits>
 
 #include "cambium/core/parameters.hpp"
@@ -60,7 +59,7 @@ struct TripleIntegrator {
   static constexpr char const* source = "kinematics; after BARK";
   static constexpr auto parameters() {
     using Self = TripleIntegrator;
-    return std::make_tuple(
+    return parameter_list(
         parameter("jerk_limit", &Self::jerk_limit, "m/s^3", Range{0.01, 1000}, "length of the jerk at most"),
         parameter("response_time", &Self::response_time, "s", Range{0.01, 10},
                   "of the acceleration to what the driver asks for"),

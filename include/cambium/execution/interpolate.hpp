@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cmath>
-#include <tuple>
 
 #include "cambium/core/parameters.hpp"
 #include "cambium/dynamics/single_track.hpp"
@@ -18,7 +17,7 @@ struct InterpolateExecution {
   static constexpr char const* summary =
       "the plan's own state at the time asked for, between two of them linearly; never beyond the plan";
   static constexpr char const* source = "interpolation";
-  static constexpr auto parameters() { return std::make_tuple(); }
+  static constexpr auto parameters() { return parameter_list(); }
 
   template <MotionState S, class Dynamics>
   [[nodiscard]] Executed<S> execute(BasicPlan<S> const& plan, S const& now, Dynamics const&, double time) const {

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
 
 #include "cambium/execution/lqr_gain.hpp"
 #include "cambium/execution/tracking.hpp"
@@ -30,7 +29,7 @@ struct LqrExecution {
   static constexpr auto parameters() {
     using Self = LqrExecution;
     constexpr Range weight{0, 1e6}, of_input{1e-6, 1e6};
-    return std::make_tuple(
+    return parameter_list(
         parameter("offset_weight", &Self::offset_weight, "1/m^2", weight, "of the offset from the plan, squared"),
         parameter("heading_weight", &Self::heading_weight, "1/rad^2", weight, "of the heading's error, squared"),
         parameter("steering_weight", &Self::steering_weight, "1/rad^2", of_input, "of the steering, squared"),
@@ -44,22 +43,15 @@ struct LqrExecution {
   template <MotionState S>
   using Memory = TrackingMemory<S>;
 
-  using Gain = Eigen::Matrix<double, 1, 2>;
-
   /// Gain of the steering on (offset, heading error) at `speed` [m/s], commands being held for `h` [s].
-  [[nodiscard]] Gain lateral_gain(double speed, double wheel_base, double h) const {
+  [[nodiscard]] LqrGain lateral_gain(double speed, double wheel_base, double h) const {
     double const v = std::max(1.0, speed), turn = v * h / wheel_base;
-    Eigen::Matrix2d A, Q = Eigen::Vector2d(offset_weight, heading_weight).asDiagonal();
-    A << 1.0, v * h, 0.0, 1.0;
-    return lqr_gain<2, 1>(A, Eigen::Vector2d(0.5 * v * h * turn, turn), Q,
-                          Eigen::Matrix<double, 1, 1>(steering_weight));
+    return lqr_gain({1.0, v * h, 0.0, 1.0}, 0.5 * v * h * turn, turn, offset_weight, heading_weight, steering_weight);
   }
 
   /// Gain of the acceleration on (lag, speed error).
-  [[nodiscard]] Gain longitudinal_gain(double h) const {
-    Eigen::Matrix2d A, Q = Eigen::Vector2d(lag_weight, speed_weight).asDiagonal();
-    A << 1.0, h, 0.0, 1.0;
-    return lqr_gain<2, 1>(A, Eigen::Vector2d(0.5 * h * h, h), Q, Eigen::Matrix<double, 1, 1>(acceleration_weight));
+  [[nodiscard]] LqrGain longitudinal_gain(double h) const {
+    return lqr_gain({1.0, h, 0.0, 1.0}, 0.5 * h * h, h, lag_weight, speed_weight, acceleration_weight);
   }
 
   template <MotionState S, class Dynamics>
@@ -67,10 +59,10 @@ struct LqrExecution {
                                     TrackingMemory<S>& memory, RandomStream& random) const {
     double const wheel_base = wheel_base_of(dynamics);
     double const h = actuation.interval(std::max(1e-3, time - now.time));
-    Gain const across = lateral_gain(now.speed, wheel_base, h), along = longitudinal_gain(h);
+    auto const across = lateral_gain(now.speed, wheel_base, h), along = longitudinal_gain(h);
     auto const law = [&](Reference const& reference, TrackingError const& error, S const&, double) -> Action {
-      return {reference.acceleration - along[0] * error.along - along[1] * error.speed,
-              std::atan(reference.curvature * wheel_base) - across[0] * error.left - across[1] * error.heading};
+      return {reference.acceleration - along.first * error.along - along.second * error.speed,
+              std::atan(reference.curvature * wheel_base) - across.first * error.left - across.second * error.heading};
     };
     return track(actuation, law, plan, now, dynamics, time, memory, random);
   }

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cmath>
-#include <tuple>
 
 #include "cambium/execution/steering.hpp"
 #include "cambium/execution/tracking.hpp"
@@ -24,7 +23,7 @@ struct StanleyExecution {
   static constexpr char const* source = "Hoffmann, Tomlin, Montemerlo, Thrun 2007";
   static constexpr auto parameters() {
     using Self = StanleyExecution;
-    return std::make_tuple(
+    return parameter_list(
         parameter("cross_track_gain", &Self::cross_track_gain, "1/s", Range{0, 20},
                   "how fast an offset from the plan decays"),
         parameter("softening_speed", &Self::softening_speed, "m/s", Range{0, 20}, "calms the steering at low speed"),

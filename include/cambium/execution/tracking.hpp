@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
-#include <tuple>
 
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/parameters.hpp"
@@ -30,7 +29,7 @@ struct Actuation {
   static constexpr char const* summary = "delay of the commands, normal noise of acceleration and steering";
   static constexpr char const* source = "own";
   static constexpr auto parameters() {
-    return std::make_tuple(
+    return parameter_list(
         parameter("period", &Actuation::period, "s", Range{1e-3, 1}, "the controller acts at least this often"),
         parameter("delay", &Actuation::delay, "s", Range{0, 5},
                   "from a command to its effect; at first there is none; below 4 ms at once; up to 4 periods"),

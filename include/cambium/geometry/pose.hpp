@@ -1,13 +1,61 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
-
-#include <Eigen/Core>
+#include <concepts>
 
 namespace cambium::geometry {
 
-/// A point in the map frame [m].
-using Point = Eigen::Vector2d;
+/// A vector of two numbers that is not a `Point`, such as Eigen's: it has `x()`, `y()`, and its size as a constant.
+template <class V>
+concept ForeignVector = requires(V const& v) {
+  requires static_cast<int>(V::SizeAtCompileTime) == 2;
+  { v.x() + v.y() } -> std::convertible_to<double>;
+};
+
+/// A point, or the way between two, in the map frame [m]. Converts from and to `Eigen::Vector2d` (and vectors like it),
+/// whose words it has: headers that need no more of Eigen do not include it.
+class Point {
+ public:
+  constexpr Point() = default;
+  constexpr Point(double x, double y) : x_(x), y_(y) {}
+  template <ForeignVector V>
+  constexpr Point(V const& v) : x_(v.x()), y_(v.y()) {}
+  template <ForeignVector V>
+  constexpr operator V() const {
+    return V(x_, y_);
+  }
+
+  [[nodiscard]] constexpr double x() const { return x_; }
+  [[nodiscard]] constexpr double y() const { return y_; }
+  [[nodiscard]] constexpr double& x() { return x_; }
+  [[nodiscard]] constexpr double& y() { return y_; }
+
+  [[nodiscard]] constexpr double dot(Point const& b) const { return x_ * b.x_ + y_ * b.y_; }
+  [[nodiscard]] constexpr double squaredNorm() const { return dot(*this); }
+  [[nodiscard]] double norm() const { return std::sqrt(squaredNorm()); }
+  [[nodiscard]] Point normalized() const {
+    double const length = norm();
+    return length > 0.0 ? *this / length : *this;
+  }
+  [[nodiscard]] constexpr Point cwiseMin(Point const& b) const { return {std::min(x_, b.x_), std::min(y_, b.y_)}; }
+  [[nodiscard]] constexpr Point cwiseMax(Point const& b) const { return {std::max(x_, b.x_), std::max(y_, b.y_)}; }
+  [[nodiscard]] bool allFinite() const { return std::isfinite(x_) && std::isfinite(y_); }
+
+  constexpr Point& operator+=(Point const& b) { return *this = *this + b; }
+  constexpr Point& operator-=(Point const& b) { return *this = *this - b; }
+
+  friend constexpr Point operator+(Point const& a, Point const& b) { return {a.x_ + b.x_, a.y_ + b.y_}; }
+  friend constexpr Point operator-(Point const& a, Point const& b) { return {a.x_ - b.x_, a.y_ - b.y_}; }
+  friend constexpr Point operator-(Point const& a) { return {-a.x_, -a.y_}; }
+  friend constexpr Point operator*(double k, Point const& a) { return {k * a.x_, k * a.y_}; }
+  friend constexpr Point operator*(Point const& a, double k) { return k * a; }
+  friend constexpr Point operator/(Point const& a, double k) { return {a.x_ / k, a.y_ / k}; }
+  friend constexpr bool operator==(Point const&, Point const&) = default;
+
+ private:
+  double x_{}, y_{};
+};
 
 /// Position [m] and heading [rad, counter-clockwise from +x] in the map frame.
 struct Pose {

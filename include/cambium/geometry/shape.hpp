@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cmath>
-#include <tuple>
 
 #include "cambium/core/parameters.hpp"
 
@@ -18,7 +17,7 @@ struct Shape {
   static constexpr char const* name = "shape";
   static constexpr Range extent{0.0, 100.0};
   static constexpr auto parameters() {
-    return std::make_tuple(
+    return parameter_list(
         parameter("front", &Shape::front, "m", extent, "From the reference point forward to the front end."),
         parameter("rear", &Shape::rear, "m", extent, "From the reference point back to the rear end."),
         parameter("left", &Shape::left, "m", extent, "From the reference point to the left side."),

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <algorithm>
+#include <cstddef>
 #include <variant>
 #include <vector>
 
@@ -53,23 +53,10 @@ struct GoalSequence {
 };
 
 /// True when the goal is reached. Pure.
-[[nodiscard]] inline bool at_goal(Goal const& goal, GoalSituation const& situation) {
-  return std::visit([&](auto const& g) { return g.at_goal(situation); }, goal);
-}
-
-inline bool AllGoals::at_goal(GoalSituation const& at) const {
-  return !parts.empty() &&
-         std::all_of(parts.begin(), parts.end(), [&](Goal const& part) { return cambium::at_goal(part, at); });
-}
-
-inline bool AnyGoal::at_goal(GoalSituation const& at) const {
-  return std::any_of(parts.begin(), parts.end(), [&](Goal const& part) { return cambium::at_goal(part, at); });
-}
-
-inline std::size_t GoalSequence::pass(GoalSituation const& at) const {
-  auto passed = at.passed;
-  while (passed < parts.size() && cambium::at_goal(parts[passed], at)) ++passed;
-  return passed;
-}
+[[nodiscard]] bool at_goal(Goal const& goal, GoalSituation const& situation);
 
 }  // namespace cambium
+
+#ifndef CAMBIUM_COMPILED
+#include "cambium/goal/goal_impl.hpp"
+#endif

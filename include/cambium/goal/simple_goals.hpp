@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <limits>
 #include <string>
-#include <tuple>
 
 #include "cambium/core/error.hpp"
 #include "cambium/core/ids.hpp"
@@ -61,9 +60,9 @@ struct ReachLane {
   static constexpr char const* name = "reach_lane";
   static constexpr char const* summary = "the reference point is in a lane, between two positions along its path";
   static constexpr auto parameters() {
-    return std::make_tuple(parameter("lane", &ReachLane::lane, "-", {}, "of the map"),
-                           parameter("from", &ReachLane::from, "m", detail::any_number, "along the path of the lane"),
-                           parameter("to", &ReachLane::to, "m", detail::any_number, "likewise, not below from"));
+    return parameter_list(parameter("lane", &ReachLane::lane, "-", {}, "of the map"),
+                          parameter("from", &ReachLane::from, "m", detail::any_number, "along the path of the lane"),
+                          parameter("to", &ReachLane::to, "m", detail::any_number, "likewise, not below from"));
   }
   void check(std::string const& where) const { detail::check_stretch(from, to, where); }
 
@@ -84,7 +83,7 @@ struct StateLimits {
   static constexpr char const* summary = "heading (over the wrap where need be) and speed within limits";
   static constexpr auto parameters() {
     using P = StateLimits;
-    return std::make_tuple(
+    return parameter_list(
         parameter("heading_from", &P::heading_from, "rad", any_finite, "counter-clockwise from here"),
         parameter("heading_to", &P::heading_to, "rad", any_finite, "to here; a turn of 2 pi leaves headings free"),
         parameter("lowest_speed", &P::lowest_speed, "m/s", detail::any_number, "of the speed"),
@@ -127,7 +126,7 @@ struct LaneLimits {
   static constexpr char const* summary = "within limits of the Frenet frame of a lane, or of whichever the agent is in";
   static constexpr auto parameters() {
     using P = LaneLimits;
-    return std::make_tuple(
+    return parameter_list(
         parameter("lane", &P::lane, "-", {}, "of the map; none: whichever the agent is in"),
         parameter("from", &P::from, "m", detail::any_number, "along the path of the lane"),
         parameter("to", &P::to, "m", detail::any_number, "likewise, not below from"),
@@ -159,7 +158,7 @@ struct ReachLaneEnd {
   static constexpr char const* name = "reach_lane_end";
   static constexpr char const* summary = "near the end of the lane corridor";
   static constexpr auto parameters() {
-    return std::make_tuple(
+    return parameter_list(
         parameter("distance", &ReachLaneEnd::distance, "m", non_negative, "to the end of the lane corridor"));
   }
 
@@ -182,8 +181,8 @@ struct ReachLaneBeside {
       "in the lane corridor to the left or right of the one that it entered in: a lane change";
   static constexpr auto parameters() {
     using P = ReachLaneBeside;
-    return std::make_tuple(
-        parameter("side", &P::side, "-", Range{0, 1}, "0 left, 1 right"),
+    return parameter_list(
+        choice("side", &P::side, "left|right", "of the lane corridor that it counts from"),
         parameter("from", &P::from, "-", {}, "beside this lane of the map; none: the one that the agent enters in"),
         parameter("tolerance", &P::tolerance, "m", non_negative, "from the centre line of that corridor"));
   }

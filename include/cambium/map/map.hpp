@@ -8,7 +8,6 @@
 #include <span>
 #include <string>
 #include <string_view>
-#include <tuple>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -21,12 +20,11 @@
 #include "cambium/geometry/box.hpp"
 #include "cambium/geometry/shape.hpp"
 #include "cambium/geometry/pose.hpp"
-#include "cambium/map/corridor.hpp"
-#include "cambium/map/detail/built_corridors.hpp"
 #include "cambium/map/detail/find_lane.hpp"
 #include "cambium/map/detail/follow_lane.hpp"
 #include "cambium/map/lane.hpp"
 #include "cambium/map/lane_tree.hpp"
+#include "cambium/map/map_queries.hpp"
 #include "cambium/map/road.hpp"
 #include "cambium/map/route.hpp"
 
@@ -50,7 +48,7 @@ struct MapOptions {
   static constexpr char const* name = "map_options";
   static constexpr auto parameters() {
     using P = MapOptions;
-    return std::make_tuple(
+    return parameter_list(
         parameter("position_tolerance", &P::position_tolerance, "m", Range{1e-5, 10},
                   "largest distance of a sampled lane from the exact one"),
         parameter("heading_tolerance", &P::heading_tolerance, "rad", Range{1e-4, 1},
@@ -86,7 +84,7 @@ struct Junction {
 };
 
 /// Roads, lanes and how they hang together. Immutable, but that it remembers road corridors that were built
-/// (safe on many threads); made by `load_opendrive` or `build_map`, shared by worlds.
+/// (safe on many threads); made by `load_opendrive`, `MapBuilder` or `build_map`, shared by worlds.
 class Map {
  public:
   struct Parts {
@@ -95,10 +93,10 @@ class Map {
     std::vector<Junction> junctions;
     std::vector<TrafficLight> lights;
     MapOptions options;
-    std::unique_ptr<RouteFinder const> route_finder;
   };
 
-  explicit Map(Parts parts) : parts_(std::move(parts)), tree_(parts_.lanes), bounds_(bounds_of(parts_.lanes)) {}
+  /// Defined in `map_impl.hpp`. O(n log n) for n path segments.
+  explicit Map(Parts parts);
   Map(Map const&) = delete;
   Map& operator=(Map const&) = delete;
 
@@ -234,8 +232,7 @@ class Map {
   /// twice, but for the one that leads round to its start's lane. Throws as above. O(k n (V + E) log V) for k routes of
   /// n lanes.
   [[nodiscard]] std::vector<Route> routes(LaneStation from, LaneStation to, RouteOptions const& options) const {
-    if (!parts_.route_finder) return {};
-    return parts_.route_finder->routes(parts_.lanes, from, to, options);
+    return queries_->routes(parts_.lanes, from, to, options);
   }
   /// As above, from the begin of `from` to the end of `to`.
   [[nodiscard]] std::vector<Route> routes(LaneId from, LaneId to, RouteOptions const& options) const {
@@ -246,31 +243,22 @@ class Map {
   /// equal ones the smallest id. Throws as above, and for a budget that is negative or not a number. O((V + E) log V).
   [[nodiscard]] std::vector<ReachedLane> reachable(LaneStation from, double budget,
                                                    RouteOptions const& options = {}) const {
-    if (!parts_.route_finder) return {};
-    return parts_.route_finder->reachable(parts_.lanes, from, budget, options);
+    return queries_->reachable(parts_.lanes, from, budget, options);
   }
   [[nodiscard]] std::vector<ReachedLane> reachable(LaneId from, double budget, RouteOptions const& options = {}) const {
     return reachable(LaneStation{from}, budget, options);
   }
 
-  /// What `build_road_corridor` has built.
-  [[nodiscard]] detail::BuiltCorridors& built_corridors() const { return built_corridors_; }
+  /// What takes long to compile; see the functions that are named there.
+  [[nodiscard]] MapQueries const& queries() const { return *queries_; }
 
  private:
   [[nodiscard]] static LaneStation end_of(LaneId lane) { return {lane, std::numeric_limits<double>::infinity()}; }
 
-  [[nodiscard]] static geometry::Box bounds_of(std::span<Lane const> lanes) {
-    geometry::Box box;
-    for (auto const& lane : lanes)
-      for (auto const* line : {&lane.path, &lane.left, &lane.right})
-        for (auto const& p : line->points()) box.add(p.x(), p.y());
-    return box;
-  }
-
   Parts parts_;
   LaneTree tree_;
   geometry::Box bounds_;
-  mutable detail::BuiltCorridors built_corridors_;
+  std::unique_ptr<MapQueries const> queries_;
 };
 
 }  // namespace cambium::map

@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <span>
 #include <vector>
 
 #include "cambium/core/ids.hpp"
@@ -43,17 +42,6 @@ struct RouteOptions {
 struct ReachedLane {
   LaneId lane = none<LaneId>;
   double cost{};
-};
-
-/// Finds routes: the part of a map that needs a graph library is behind this, so that worlds compile without it. See
-/// `Map::routes` and `Map::reachable` for what the functions do. The number of a lane must be its place in `lanes`.
-class RouteFinder {
- public:
-  virtual ~RouteFinder() = default;
-  [[nodiscard]] virtual std::vector<Route> routes(std::span<Lane const> lanes, LaneStation from, LaneStation to,
-                                                  RouteOptions const& options) const = 0;
-  [[nodiscard]] virtual std::vector<ReachedLane> reachable(std::span<Lane const> lanes, LaneStation from, double budget,
-                                                           RouteOptions const& options) const = 0;
 };
 
 }  // namespace cambium::map

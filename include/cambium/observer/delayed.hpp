@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <tuple>
 
 #include "cambium/core/parameters.hpp"
 #include "cambium/observer/observer_model.hpp"
@@ -26,7 +25,7 @@ struct DelayedObserver {
   static constexpr char const* source = "own";
   static constexpr auto parameters() {
     constexpr Range steps{0, static_cast<double>(LongestDelay)};
-    return std::make_tuple(
+    return parameter_list(
         parameter("others", &DelayedObserver::others, "-", steps, "steps after which others are seen"),
         parameter("own", &DelayedObserver::own, "-", steps, "steps after which the agent knows where itself is"));
   }

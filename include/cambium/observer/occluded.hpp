@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <limits>
 #include <span>
-#include <tuple>
 
 #include "cambium/core/parameters.hpp"
 #include "cambium/geometry/angle.hpp"
@@ -176,7 +175,7 @@ struct OccludedObserver {
   static constexpr char const* source = "geometry of lines of sight";
   static constexpr auto parameters() {
     using P = OccludedObserver;
-    return std::make_tuple(
+    return parameter_list(
         parameter("range", &P::range, "m", Range{0, 1e6}, "to the nearest point of a vehicle"),
         parameter("field_of_view", &P::field_of_view, "rad", Range{0, 7}, "about the own heading; 2 pi: all around"),
         parameter("resolution", &P::resolution, "rad", Range{0, 1}, "what appears smaller is not seen"),

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
-#include <tuple>
 
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/error.hpp"
@@ -41,21 +40,20 @@ struct ObservationNoise {
   static constexpr auto parameters() {
     using P = ObservationNoise;
     constexpr Range one{-1, 1}, metres{-1000, 1000}, spread{0, 1000};
-    return std::make_tuple(
-        parameter("mean_along", &P::mean_along, "m", metres, "mean error along the heading"),
-        parameter("mean_across", &P::mean_across, "m", metres, "mean error to the left of it"),
-        parameter("mean_heading", &P::mean_heading, "rad", Range{-4, 4}, "mean error of the heading"),
-        parameter("mean_speed", &P::mean_speed, "m/s", metres, "mean error of the speed"),
-        parameter("along", &P::along, "m", spread, "standard deviation along the heading"),
-        parameter("across", &P::across, "m", spread, "standard deviation across it"),
-        parameter("heading", &P::heading, "rad", Range{0, 4}, "standard deviation of the heading"),
-        parameter("speed", &P::speed, "m/s", spread, "standard deviation of the speed"),
-        parameter("along_across", &P::along_across, "-", one, "correlation"),
-        parameter("along_heading", &P::along_heading, "-", one, "correlation"),
-        parameter("along_speed", &P::along_speed, "-", one, "correlation"),
-        parameter("across_heading", &P::across_heading, "-", one, "correlation"),
-        parameter("across_speed", &P::across_speed, "-", one, "correlation"),
-        parameter("heading_speed", &P::heading_speed, "-", one, "correlation"));
+    return parameter_list(parameter("mean_along", &P::mean_along, "m", metres, "mean error along the heading"),
+                          parameter("mean_across", &P::mean_across, "m", metres, "mean error to the left of it"),
+                          parameter("mean_heading", &P::mean_heading, "rad", Range{-4, 4}, "mean error of the heading"),
+                          parameter("mean_speed", &P::mean_speed, "m/s", metres, "mean error of the speed"),
+                          parameter("along", &P::along, "m", spread, "standard deviation along the heading"),
+                          parameter("across", &P::across, "m", spread, "standard deviation across it"),
+                          parameter("heading", &P::heading, "rad", Range{0, 4}, "standard deviation of the heading"),
+                          parameter("speed", &P::speed, "m/s", spread, "standard deviation of the speed"),
+                          parameter("along_across", &P::along_across, "-", one, "correlation"),
+                          parameter("along_heading", &P::along_heading, "-", one, "correlation"),
+                          parameter("along_speed", &P::along_speed, "-", one, "correlation"),
+                          parameter("across_heading", &P::across_heading, "-", one, "correlation"),
+                          parameter("across_speed", &P::across_speed, "-", one, "correlation"),
+                          parameter("heading_speed", &P::heading_speed, "-", one, "correlation"));
   }
 
   /// Throws `ParameterError` where no four quantities can be correlated like that.
@@ -131,9 +129,9 @@ struct ParametricObserver {
   static constexpr char const* source = "normal distribution; after BARK";
   static constexpr auto parameters() {
     using P = ParametricObserver;
-    return std::make_tuple(parameter("own", &P::own, "-", {}, "errors about itself"),
-                           parameter("others", &P::others, "-", {}, "errors about others"),
-                           parameter("lasting", &P::lasting, "-", Range{1, 1e6}, "steps until errors are new ones"));
+    return parameter_list(parameter("own", &P::own, "-", {}, "errors about itself"),
+                          parameter("others", &P::others, "-", {}, "errors about others"),
+                          parameter("lasting", &P::lasting, "-", Range{1, 1e6}, "steps until errors are new ones"));
   }
 
   template <MotionState S>

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <tuple>
 
 #include "cambium/observer/observer_model.hpp"
 
@@ -12,7 +11,7 @@ struct PerfectObserver {
   static constexpr char const* name = "perfect";
   static constexpr char const* summary = "sees the truth";
   static constexpr char const* source = "-";
-  static constexpr auto parameters() { return std::make_tuple(); }
+  static constexpr auto parameters() { return parameter_list(); }
 
   template <MotionState S>
   [[nodiscard]] S const& observe(S const& truth, bool /*own*/, RandomStream const&) const {

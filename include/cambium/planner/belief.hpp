@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <span>
 #include <string>
-#include <tuple>
 
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/error.hpp"
@@ -25,7 +24,7 @@ struct BeliefParameters {
       "how beliefs about others change with what is observed: Bayes' rule, and forgetting";
   static constexpr auto parameters() {
     using P = BeliefParameters;
-    return std::make_tuple(
+    return parameter_list(
         parameter("forgetting", &P::forgetting, "-", Range{0, 1},
                   "share that goes back to all hypotheses alike before each observation: intentions change"),
         parameter("floor", &P::floor, "-", Range{0, 0.5}, "no hypothesis becomes less likely than this, by number"));

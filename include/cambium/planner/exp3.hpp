@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <tuple>
 
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/parameters.hpp"
@@ -25,8 +24,8 @@ struct Exp3 {
   static constexpr char const* summary = "plays in proportion to exp(exploration gain / arms), sometimes at random";
   static constexpr char const* source = "Auer 2002 (nonstochastic)";
   static constexpr auto parameters() {
-    return std::make_tuple(parameter("exploration", &Exp3::exploration, "-", Range{1e-6, 1},
-                                     "share of choices at random, gamma in the paper"));
+    return parameter_list(parameter("exploration", &Exp3::exploration, "-", Range{1e-6, 1},
+                                    "share of choices at random, gamma in the paper"));
   }
 
   template <class Arms, class Random>

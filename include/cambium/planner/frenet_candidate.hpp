@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <tuple>
 
 #include "cambium/core/parameters.hpp"
 #include "cambium/map/corridor.hpp"
@@ -27,7 +26,7 @@ struct FrenetCosts {
       "of jerk, time, and deviations at the end, as Werling 2010; of lanes off the route";
   static constexpr auto parameters() {
     using P = FrenetCosts;
-    return std::make_tuple(
+    return parameter_list(
         parameter("jerk", &P::jerk, "s^5/m^2", non_negative, "of the integral of its square"),
         parameter("time", &P::time, "1/s", non_negative, "of the time until it drives evenly"),
         parameter("offset", &P::offset, "1/m^2", non_negative, "of the squared offset from the lane's middle then"),
@@ -49,7 +48,7 @@ struct FrenetLimits {
   static constexpr char const* summary = "what a vehicle can do, or its passengers bear";
   static constexpr auto parameters() {
     using P = FrenetLimits;
-    return std::make_tuple(
+    return parameter_list(
         parameter("lowest_acceleration", &P::lowest_acceleration, "m/s^2", Range{-50, -0.1},
                   "of valid courses, and where none is valid"),
         parameter("highest_acceleration", &P::highest_acceleration, "m/s^2", Range{0.1, 50}, "of valid courses"),

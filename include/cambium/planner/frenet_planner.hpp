@@ -7,7 +7,6 @@
 #include <limits>
 #include <optional>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -80,7 +79,7 @@ struct FrenetPlanner {
   static constexpr char const* source = "Werling, Ziegler, Kammel, Thrun 2010";
   static constexpr auto parameters() {
     using P = FrenetPlanner;
-    return std::make_tuple(
+    return parameter_list(
         parameter("others", &P::others, "-", {}, "how the others are expected to behave"),
         parameter("desired_speed", &P::desired_speed, "m/s", Range{0.1, 100}, "on a free road"),
         parameter("speed_shares", &P::speed_shares, "-", Range{0, 2}, "of it, that courses end with"),

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -22,7 +21,7 @@ struct MctsCooperative {
   static_assert(detail::check_planner<PredictionWorld, Others>());
   static_assert(Described<Others>,
                 "cambium: a planner's Others must be a behaviour with described parameters, as cambium::IdmClassic; "
-                "where it has none: `static constexpr auto parameters() { return std::make_tuple(); }`");
+                "where it has none: `static constexpr auto parameters() { return parameter_list(); }`");
 
   using Domain = TrafficDomain<PredictionWorld, Actions, Reward>;
   using Workspace = MctsWorkspace<Domain, Options>;
@@ -42,7 +41,7 @@ struct MctsCooperative {
   static constexpr char const* source = "Lenz, Kessler, Knoll 2016; Tak, Lanctot, Winands 2014";
   static constexpr auto parameters() {
     using P = MctsCooperative;
-    return std::make_tuple(
+    return parameter_list(
         parameter("actions", &P::actions, "-", {}, "what those who choose may do"),
         parameter("others", &P::others, "-", {}, "how the rest is expected to behave"),
         parameter("reward", &P::reward, "-", {}, "what each wants"),

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -70,15 +69,15 @@ struct MctsHypothesis {
   static constexpr char const* source = "Bernhard, Knoll 2020 (RSBG); Silver, Veness 2010 (root sampling)";
   static constexpr auto parameters() {
     using P = MctsHypothesis;
-    return std::make_tuple(parameter("actions", &P::actions, "-", {}, "what ego may do"),
-                           parameter("others", &P::others, "-", {}, "what the others may be like"),
-                           parameter("reward", &P::reward, "-", {}, "what ego wants"),
-                           parameter("options", &P::options, "-", {}, "how it is searched"),
-                           parameter("belief", &P::belief, "-", {}, "how it follows what is observed"),
-                           parameter("speed_deviation", &P::speed_deviation, "m/s", Range{1e-3, 10},
-                                     "standard deviation of a speed after a step, from what a headway predicts"),
-                           parameter("range", &P::range, "m", non_negative,
-                                     "the 6 nearest within it are told apart; of the rest all is as likely"));
+    return parameter_list(parameter("actions", &P::actions, "-", {}, "what ego may do"),
+                          parameter("others", &P::others, "-", {}, "what the others may be like"),
+                          parameter("reward", &P::reward, "-", {}, "what ego wants"),
+                          parameter("options", &P::options, "-", {}, "how it is searched"),
+                          parameter("belief", &P::belief, "-", {}, "how it follows what is observed"),
+                          parameter("speed_deviation", &P::speed_deviation, "m/s", Range{1e-3, 10},
+                                    "standard deviation of a speed after a step, from what a headway predicts"),
+                          parameter("range", &P::range, "m", non_negative,
+                                    "the 6 nearest within it are told apart; of the rest all is as likely"));
   }
 
   template <class View>

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <tuple>
 
 #include "cambium/planner/mcts_single_agent.hpp"
 
@@ -25,9 +24,9 @@ struct MctsRiskConstrained {
   static constexpr char const* source = "Lee et al. 2018 (CC-POMCP)";
   static constexpr auto parameters() {
     using P = MctsRiskConstrained;
-    return std::make_tuple(parameter("planner", &P::planner, "-", {}, "the search"),
-                           parameter("risk", &P::risk, "-", Range{0, 1},
-                                     "greatest expected cost, the share of simulated courses that collide"));
+    return parameter_list(parameter("planner", &P::planner, "-", {}, "the search"),
+                          parameter("risk", &P::risk, "-", Range{0, 1},
+                                    "greatest expected cost, the share of simulated courses that collide"));
   }
 
   template <class View>

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -22,7 +21,7 @@ struct MctsSingleAgent {
   static_assert(detail::check_planner<PredictionWorld, Others>());
   static_assert(Described<Others>,
                 "cambium: a planner's Others must be a behaviour with described parameters, as cambium::IdmClassic; "
-                "where it has none: `static constexpr auto parameters() { return std::make_tuple(); }`");
+                "where it has none: `static constexpr auto parameters() { return parameter_list(); }`");
 
   using Domain = TrafficDomain<PredictionWorld, Actions, Reward>;
   using Workspace = MctsWorkspace<Domain, Options>;
@@ -39,10 +38,10 @@ struct MctsSingleAgent {
   static constexpr char const* source = "Kocsis, Szepesvari 2006; Bernhard 2020";
   static constexpr auto parameters() {
     using P = MctsSingleAgent;
-    return std::make_tuple(parameter("actions", &P::actions, "-", {}, "what ego may do"),
-                           parameter("others", &P::others, "-", {}, "how the others are expected to behave"),
-                           parameter("reward", &P::reward, "-", {}, "what ego wants"),
-                           parameter("options", &P::options, "-", {}, "how it is searched"));
+    return parameter_list(parameter("actions", &P::actions, "-", {}, "what ego may do"),
+                          parameter("others", &P::others, "-", {}, "how the others are expected to behave"),
+                          parameter("reward", &P::reward, "-", {}, "what ego wants"),
+                          parameter("options", &P::options, "-", {}, "how it is searched"));
   }
 
   template <class View>

@@ -5,7 +5,6 @@
 #include <optional>
 #include <span>
 #include <string>
-#include <tuple>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -37,13 +36,13 @@ struct MctsOptions {
   static constexpr char const* summary = "how a search of traffic goes about it";
   static constexpr auto parameters() {
     using P = MctsOptions;
-    return std::make_tuple(parameter("search", &P::search, "-", {}, "the tree"),
-                           parameter("budget", &P::budget, "-", {}, "how long it grows"),
-                           parameter("selection", &P::selection, "-", {}, "how agents choose at its nodes"),
-                           parameter("rollout", &P::rollout, "-", {}, "how courses go on from its leaves"),
-                           parameter("step", &P::step, "s", Range{0.01, 10}, "between decisions"),
-                           parameter("threads", &P::threads, "-", Range{1, 64},
-                                     "trees that share the budget, each grown by a thread of its own, and are merged"));
+    return parameter_list(parameter("search", &P::search, "-", {}, "the tree"),
+                          parameter("budget", &P::budget, "-", {}, "how long it grows"),
+                          parameter("selection", &P::selection, "-", {}, "how agents choose at its nodes"),
+                          parameter("rollout", &P::rollout, "-", {}, "how courses go on from its leaves"),
+                          parameter("step", &P::step, "s", Range{0.01, 10}, "between decisions"),
+                          parameter("threads", &P::threads, "-", Range{1, 64},
+                                    "trees that share the budget, each grown by a thread of its own, and are merged"));
   }
 };
 

@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <tuple>
 #include <vector>
 
 #include "cambium/behavior/macro_actions.hpp"
@@ -57,7 +56,7 @@ struct IntentionPrior {
   static constexpr char const* source = "own";
   static constexpr auto parameters() {
     using P = IntentionPrior;
-    return std::make_tuple(
+    return parameter_list(
         parameter("change", &P::change, "-", Range{0, 0.45}, "probability of a change to one side"),
         parameter("not_yield", &P::not_yield, "-", Range{0, 1}, "of not yielding to who comes in front of it"),
         parameter("lateral_speed", &P::lateral_speed, "m/s", Range{0.01, 10}, "mean in a change; 0 in the lane"),
@@ -140,7 +139,7 @@ struct PolicyWeights {
   static constexpr char const* source = "after Ding et al. 2020";
   static constexpr auto parameters() {
     using P = PolicyWeights;
-    return std::make_tuple(
+    return parameter_list(
         parameter("efficiency", &P::efficiency, "-", non_negative, "of the deviation from the desired speed"),
         parameter("safety", &P::safety, "-", non_negative, "of unsafe gaps"),
         parameter("navigation", &P::navigation, "-", non_negative, "of not being in the lane that the route ends in"),

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include "cambium/behavior/behavior_model.hpp"
@@ -79,7 +78,7 @@ struct PolicyTreePlanner {
   static constexpr char const* source = "Ding, Zhang, Chen, Shen 2020 (EUDM)";
   static constexpr auto parameters() {
     using P = PolicyTreePlanner;
-    return std::make_tuple(
+    return parameter_list(
         parameter("actions", &P::actions, "-", {}, "ego's"),
         parameter("others", &P::others, "-", {}, "how the others keep gaps"),
         parameter("intentions", &P::intentions, "-", {}, "what they may be about to do"),

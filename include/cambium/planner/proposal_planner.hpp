@@ -7,7 +7,6 @@
 #include <limits>
 #include <optional>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include <boost/container/static_vector.hpp>
@@ -40,7 +39,7 @@ struct ProposalScoring {
   static constexpr char const* source = "Dauner et al. 2023; Karnchanachari et al. 2024 (nuPlan)";
   static constexpr auto parameters() {
     using P = ProposalScoring;
-    return std::make_tuple(
+    return parameter_list(
         parameter("progress", &P::progress, "-", non_negative, "weight of the way along the lane, over the longest"),
         parameter("time_to_collision", &P::time_to_collision, "-", non_negative, "of no collision within look_ahead"),
         parameter("speed_limit", &P::speed_limit, "-", non_negative, "of the share of time within the limit"),
@@ -125,7 +124,7 @@ struct ProposalPlanner {
   static constexpr char const* source = "Dauner, Hallgarten, Geiger, Chitta 2023 (PDM-Closed)";
   static constexpr auto parameters() {
     using P = ProposalPlanner;
-    return std::make_tuple(
+    return parameter_list(
         parameter("driver", &P::driver, "-", {}, "who is proposed"),
         parameter("others", &P::others, "-", {}, "how the others are expected to behave"),
         parameter("speed_shares", &P::speed_shares, "-", Range{0, 2}, "of the desired speed; preferred one first"),

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <tuple>
 
 #include "cambium/core/parameters.hpp"
 #include "cambium/planner/selection_policy.hpp"
@@ -24,7 +23,7 @@ struct Puct {
   static constexpr char const* summary = "score plus exploration prior sqrt(N) / (1 + n)";
   static constexpr char const* source = "Rosin 2011; Silver 2017";
   static constexpr auto parameters() {
-    return std::make_tuple(
+    return parameter_list(
         parameter("exploration", &Puct::exploration, "-", Range{0, 100}, "weight of the prior against what was found"));
   }
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <tuple>
 
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/parameters.hpp"
@@ -26,7 +25,7 @@ struct RegretMatching {
   static constexpr char const* summary = "plays in proportion to positive regret, sometimes at random";
   static constexpr char const* source = "Hart 2000; Lanctot 2014";
   static constexpr auto parameters() {
-    return std::make_tuple(
+    return parameter_list(
         parameter("exploration", &RegretMatching::exploration, "-", Range{1e-6, 1}, "share of choices at random"));
   }
 

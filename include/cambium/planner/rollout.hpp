@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <limits>
 #include <span>
-#include <tuple>
 #include <vector>
 
 #include "cambium/core/distributions.hpp"
@@ -87,7 +86,7 @@ struct RandomRollout {
   static constexpr char const* summary = "random actions to the horizon";
   static constexpr char const* source = "-";
   static constexpr auto parameters() {
-    return std::make_tuple(
+    return parameter_list(
         parameter("hold", &RandomRollout::hold, "-", Range{1, 1'000'000}, "steps for which an action is kept"),
         parameter("steps", &RandomRollout::steps, "-", Range{1, 1'000'000}, "no longer than this"));
   }
@@ -108,7 +107,7 @@ struct PolicyRollout {
   static constexpr char const* summary = "the domain's own policy to the horizon";
   static constexpr char const* source = "-";
   static constexpr auto parameters() {
-    return std::make_tuple(parameter("steps", &PolicyRollout::steps, "-", Range{1, 1'000'000}, "no longer than this"));
+    return parameter_list(parameter("steps", &PolicyRollout::steps, "-", Range{1, 1'000'000}, "no longer than this"));
   }
 
   template <class Run>
@@ -130,7 +129,7 @@ struct TruncatedRollout {
   static constexpr char const* name = "truncated_rollout";
   static constexpr char const* summary = "another roll-out's first steps, then the domain's value";
   static constexpr auto parameters() {
-    return std::make_tuple(parameter("base", &TruncatedRollout::base, "-", {}, "what is done, and for how many steps"));
+    return parameter_list(parameter("base", &TruncatedRollout::base, "-", {}, "what is done, and for how many steps"));
   }
 
   template <class Run>
@@ -151,7 +150,7 @@ struct NoRollout {
   static constexpr char const* name = "no_rollout";
   static constexpr char const* summary = "the domain's value of the leaf, else 0";
   static constexpr char const* source = "-";
-  static constexpr auto parameters() { return std::make_tuple(); }
+  static constexpr auto parameters() { return parameter_list(); }
 
   template <class Run>
   bool roll_out(Run& run) const {

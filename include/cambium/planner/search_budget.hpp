@@ -4,7 +4,6 @@
 #include <chrono>
 #include <concepts>
 #include <cstddef>
-#include <tuple>
 
 #include "cambium/core/parameters.hpp"
 
@@ -37,7 +36,7 @@ struct IterationBudget {
   static constexpr char const* name = "iteration_budget";
   static constexpr char const* summary = "so many iterations";
   static constexpr auto parameters() {
-    return std::make_tuple(
+    return parameter_list(
         parameter("iterations", &IterationBudget::iterations, "-", Range{1, 1e9}, "how many there are"));
   }
 
@@ -57,7 +56,7 @@ struct TimeBudget {
   static constexpr char const* name = "time_budget";
   static constexpr char const* summary = "so much time of the wall clock";
   static constexpr auto parameters() {
-    return std::make_tuple(
+    return parameter_list(
         parameter("duration", &TimeBudget::duration, "s", Range{1e-6, 86'400}, "time for one search"),
         parameter("iterations", &TimeBudget::iterations, "-", Range{1, 1e9}, "never more than so many"));
   }

@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <span>
 #include <string>
-#include <tuple>
 
 #include "cambium/behavior/external_input.hpp"
 #include "cambium/behavior/macro_actions.hpp"
@@ -27,7 +26,7 @@ struct SampledInputs {
   static constexpr char const* source = "-";
   static constexpr auto parameters() {
     using P = SampledInputs;
-    return std::make_tuple(
+    return parameter_list(
         parameter("lowest_acceleration", &P::lowest_acceleration, "m/s^2", Range{-50, 0}, "hardest braking"),
         parameter("highest_acceleration", &P::highest_acceleration, "m/s^2", Range{0, 50}, "strongest acceleration"),
         parameter("largest_steering", &P::largest_steering, "rad", Range{0, 1.5}, "to either side"),

@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <tuple>
 
 #include "cambium/core/parameters.hpp"
 #include "cambium/evaluation/collision.hpp"
@@ -67,7 +66,7 @@ struct TrafficReward {
   static constexpr char const* source = "weights as in Bernhard 2020";
   static constexpr auto parameters() {
     using P = TrafficReward;
-    return std::make_tuple(
+    return parameter_list(
         parameter("goal", &P::goal, "-", any_finite, "for reaching the goal, which ends the course"),
         parameter("collision", &P::collision, "-", any_finite, "for touching somebody or something, likewise"),
         parameter("off_road", &P::off_road, "-", any_finite,

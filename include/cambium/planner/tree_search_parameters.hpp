@@ -3,7 +3,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include "cambium/core/distributions.hpp"
@@ -21,7 +20,7 @@ struct Widening {
   static constexpr char const* name = "widening";
   static constexpr char const* summary = "a node visited N times may have coefficient N^exponent children";
   static constexpr auto parameters() {
-    return std::make_tuple(
+    return parameter_list(
         parameter("coefficient", &Widening::coefficient, "-", Range{0, 1e4}, "children after the first visit"),
         parameter("exponent", &Widening::exponent, "-", Range{0, 1}, "0: no growth; 1: one more with every visit"));
   }
@@ -63,7 +62,7 @@ struct CostConstraint {
   static constexpr char const* summary =
       "the expected cost of the chosen course stays below a limit, by a Lagrange multiplier";
   static constexpr auto parameters() {
-    return std::make_tuple(
+    return parameter_list(
         parameter("limit", &CostConstraint::limit, "-", Range{0, 1}, "greatest expected cost; 1: costs do not count"),
         parameter("step", &CostConstraint::step, "-", Range{0, 1e3},
                   "how fast the multiplier is learnt, divided by the root of the iterations"));
@@ -93,7 +92,7 @@ struct TreeSearchParameters {
   static constexpr char const* summary = "what every tree search goes by";
   static constexpr auto parameters() {
     using P = TreeSearchParameters;
-    return std::make_tuple(
+    return parameter_list(
         parameter("horizon", &P::horizon, "-", Range{1, 10'000}, "steps that a course has, in the tree and after it"),
         parameter("discount", &P::discount, "-", Range{0, 1}, "what a reward one step later is worth"),
         parameter("lowest_return", &P::lowest_return, "-", Range{-1e290, 1e290},
@@ -103,7 +102,8 @@ struct TreeSearchParameters {
         parameter("memory", &P::memory, "B", Range{4096, 1e12},
                   "the tree grows no larger, but for the moment in which its arrays move, where time is its budget; "
                   "then the search goes on without new nodes"),
-        parameter("final_move", &P::final_move, "-", Range{0, 2}, "0 most visits, 1 best return, 2 lower bound"),
+        choice("final_move", &P::final_move, "most_visits|best_return|lower_bound",
+               "what the move that is made has most of"),
         parameter("action_widening", &P::action_widening, "-", {}, "how many of a continuum of actions are tried"),
         parameter("outcome_widening", &P::outcome_widening, "-", {},
                   "how many outcomes of the same actions become nodes, where steps are random"),

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <tuple>
 
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/parameters.hpp"
@@ -24,8 +23,8 @@ struct Ucb1 {
   static constexpr char const* summary = "score in [0, 1] plus exploration sqrt(ln N / n)";
   static constexpr char const* source = "Auer 2002; Kocsis 2006";
   static constexpr auto parameters() {
-    return std::make_tuple(parameter("exploration", &Ucb1::exploration, "-", Range{0, 100},
-                                     "weight of what is little known; sqrt(2) in the paper, for scores in [0, 1]"));
+    return parameter_list(parameter("exploration", &Ucb1::exploration, "-", Range{0, 100},
+                                    "weight of what is little known; sqrt(2) in the paper, for scores in [0, 1]"));
   }
 
   template <class Arms, class Random>
@@ -55,8 +54,8 @@ struct Ucb1Tuned {
   static constexpr char const* summary = "score plus exploration sqrt(ln N / n min(1/4, variance + sqrt(2 ln N / n)))";
   static constexpr char const* source = "Auer 2002";
   static constexpr auto parameters() {
-    return std::make_tuple(parameter("exploration", &Ucb1Tuned::exploration, "-", Range{0, 100},
-                                     "weight of what is little known; 1 in the paper"));
+    return parameter_list(parameter("exploration", &Ucb1Tuned::exploration, "-", Range{0, 100},
+                                    "weight of what is little known; 1 in the paper"));
   }
 
   template <class Arms, class Random>

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
-#include <tuple>
 #include <vector>
 
 #include "cambium/behavior/idm_classic.hpp"
@@ -38,7 +37,7 @@ struct LaneTraffic {
   static constexpr char const* name = "lane_traffic";
   static constexpr auto parameters() {
     using P = LaneTraffic;
-    return std::make_tuple(
+    return parameter_list(
         parameter("begin", &P::begin, "m", Range{-1e6, 1e6}, "first position on the corridor that a vehicle may cover"),
         parameter("end", &P::end, "m", Range{-1e6, 1e6}, "last position"),
         parameter("lowest_speed", &P::lowest_speed, "m/s", Range{0, 100}, "of the initial speeds"),

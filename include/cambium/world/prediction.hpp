@@ -106,7 +106,7 @@ template <class Set, class World>
     if (record.status != AgentStatus::driving || !detail::is_seen(world, slot, i)) continue;
     auto const& behavior = i == slot ? prediction.ego : prediction.others;
     if (detail::is_too_large(world.map(), behavior, agent.shape, *agent.road))
-      throw detail::too_large("prediction: agent " + to_string(agent.id));
+      detail::refuse_too_large("prediction: " + detail::name_of(agent.id));
     assumed->agents.push_back(
         {agent.id, agent.shape, agent.road, behavior, agent.execution, agent.dynamics, PerfectObserver{}});
     assumed->goals.push_back(i == slot ? roster.goals[i] : Goal{});

@@ -143,10 +143,10 @@ class World {
   /// Throws `WorldError` or `ParameterError` (the world is unchanged) as `add`.
   void set_behavior(AgentId id, Behavior const& behavior) {
     auto const slot = slot_of(id);
-    std::string const where = "agent " + to_string(id);
+    auto const where = detail::name_of(id);
     detail::check_if_described(behavior, where);
     auto const& agent = roster_->agents[slot];
-    if (detail::is_too_large(*map_, behavior, agent.shape, *agent.road)) throw detail::too_large(where);
+    if (detail::is_too_large(*map_, behavior, agent.shape, *agent.road)) detail::refuse_too_large(where);
     writable_roster().agents[slot].behavior = behavior;
     frame_.agents[slot].memory = Set::initial_memory(behavior);
   }
@@ -205,13 +205,7 @@ class World {
   /// Puts a static object in the way; returns its id. Throws `WorldError` for one of more than 10 km around.
   /// O(objects), and the length around the outline.
   ObjectId add_object(geometry::Polygon outline) {
-    double around = 0.0;
-    for (std::size_t i = 0; i < outline.size(); ++i) around += (outline.edge(i).second - outline.edge(i).first).norm();
-    if (around > 10'000.0) throw WorldError("object", "its outline is longer than 10 km", "give coordinates in metres");
-    StaticObject object{static_cast<ObjectId>(roster_->next_object_id), std::move(outline)};
-    auto const lanes =
-        detail::object_entries(*map_, roster_->free_roads, object, static_cast<std::uint32_t>(roster_->objects.size()));
-    return writable_roster().insert(std::move(object), lanes);
+    return detail::enter_object(*map_, writable_roster(), std::move(outline));
   }
 
   /// Takes it away. Throws `WorldError` if there is no such object. O(objects).
@@ -225,7 +219,7 @@ class World {
   /// The agent's place in roster and frame. Throws `WorldError` if there is no such agent. O(log agents).
   [[nodiscard]] std::size_t slot_of(AgentId id) const {
     if (auto const slot = roster_->slot_of(id)) return *slot;
-    throw WorldError("agent " + to_string(id), "the world has no such agent", "World::roster lists those it has");
+    detail::refuse(id, "the world has no such agent", "World::roster lists those it has");
   }
 
   [[nodiscard]] Record const& record(AgentId id) const { return frame_.agents[slot_of(id)]; }
@@ -254,7 +248,7 @@ class World {
     auto const slot = slot_of(id);
     constexpr auto place = Set::template index<B>;
     if (roster_->agents[slot].behavior.index() != place)
-      throw WorldError("agent " + to_string(id), "its behaviour is not the one whose memory was asked for");
+      detail::refuse(id, "its behaviour is not the one whose memory was asked for");
     return *std::get_if<place>(&frame_.agents[slot].memory);
   }
 
@@ -266,15 +260,17 @@ class World {
   /// from the lanes of its route, a heading against their direction.
   void set_state(AgentId id, State state, Reroute reroute = Reroute::no) {
     auto const slot = slot_of(id);
-    std::string const where = "agent " + to_string(id);
+    auto const where = detail::name_of(id);
     state.time = frame_.time;
     if (!is_finite(state)) throw WorldError(where, "its position, heading or speed is not a finite number");
     state.speed = detail::checked_speed(state.speed, where);
     auto const& agent = roster_->agents[slot];
     auto& record = frame_.agents[slot];
     if (reroute == Reroute::yes) {
-      auto const again = detail::entrance_again<World>(*map_, *roster_, agent, roster_->goals[slot],
-                                                       record.goals_passed, state, where);
+      auto const again = detail::entrance_again(
+          *map_, *roster_, {{state.x, state.y}, state.heading, agent.shape, roster_->goals[slot], {}, {}},
+          record.goals_passed, where);
+      if (detail::is_too_large(*map_, agent.behavior, agent.shape, *again.road)) detail::refuse_too_large(where);
       writable_roster().agents[slot].road = again.road;
       record.lane = again.place;
       scratch_.forget();

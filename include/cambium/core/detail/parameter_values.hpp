@@ -1,6 +1,8 @@
 #pragma once
 
+#include <concepts>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <string>
@@ -8,6 +10,7 @@
 #include <utility>
 
 #include "cambium/core/described.hpp"
+#include "cambium/core/ids.hpp"
 
 namespace cambium::detail {
 
@@ -45,12 +48,7 @@ struct ParameterPath {
   char const* name;
   std::size_t element = no_list;  ///< place in the list
 
-  [[nodiscard]] std::string text() const {
-    auto const own = element == no_list       ? std::string(name)
-                     : element == any_element ? std::string(name) + "[]"
-                                              : std::string(name) + "[" + std::to_string(element) + "]";
-    return outer != nullptr ? outer->text() + "." + own : own;
-  }
+  [[nodiscard]] std::string text() const;
   /// Whether it leads through some element of a list.
   [[nodiscard]] bool is_any_element() const {
     return element == any_element || (outer != nullptr && outer->is_any_element());
@@ -66,36 +64,84 @@ template <Described T>
   }
 }
 
-template <bool each_element, Described T, class F>
-constexpr void visit_values(T const& object, ParameterPath const* outer, F&& f);
+/// A field's value, whatever its type.
+struct ParameterValue {
+  enum class Kind : std::uint8_t { boolean, id, choice, signed_integer, unsigned_integer, single_precision, number };
 
-template <bool each_element, class Entry, class Value, class F>
-constexpr void visit_value(ParameterPath const& path, Entry const& entry, Value const& value, F&& f) {
+  Kind kind;
+  double number;       ///< what ranges are about
+  std::uint64_t bits;  ///< of an integer, a choice or an id: the value modulo 2^64
+
+  template <class Value>
+  explicit constexpr ParameterValue(Value value)
+      : kind(kind_of<Value>()),
+        number(static_cast<double>(value)),
+        bits(std::is_floating_point_v<Value> ? 0 : static_cast<std::uint64_t>(value)) {}
+
+  [[nodiscard]] constexpr bool has_range() const { return kind != Kind::boolean && kind != Kind::id; }
+  [[nodiscard]] constexpr bool in(Range range) const {
+    return !has_range() || (number >= range.low && number <= range.high);  // false for NaN
+  }
+
+ private:
+  template <class Value>
+  [[nodiscard]] static constexpr Kind kind_of() {
+    if constexpr (std::is_same_v<Value, bool>) return Kind::boolean;
+    if constexpr (StrongId<Value>) return Kind::id;
+    if constexpr (std::is_enum_v<Value>) return Kind::choice;
+    if constexpr (std::is_same_v<Value, float>) return Kind::single_precision;
+    if constexpr (std::is_floating_point_v<Value>) return Kind::number;
+    return std::is_signed_v<Value> ? Kind::signed_integer : Kind::unsigned_integer;
+  }
+};
+
+/// What reads parameters without knowing their structs: checks, texts, tables, hashes.
+class ParameterReader {
+ public:
+  virtual void value(ParameterPath const& path, ParameterInfo const& info, ParameterValue const& value) = 0;
+  /// After the fields of a struct that has a check of its own: `check(object, where)` throws.
+  virtual void own_check(ParameterPath const&, void const*, void (*)(void const*, std::string const&)) {}
+
+ protected:
+  ~ParameterReader() = default;
+};
+
+/// Which elements of lists are read: each of them or, to show what elements are, a default one.
+enum class ListElements : bool { one_default, each };
+
+template <class Value>
+void read_value(ParameterPath const& path, ParameterInfo const& info, Value const& value, ListElements lists,
+                ParameterReader& reader) {
   if constexpr (Described<Value>) {
-    visit_values<each_element>(value, &path, f);
-  } else if constexpr (ParameterList<Value> && each_element) {
+    read_parameters(value, &path, lists, reader);
+  } else if constexpr (ParameterList<Value>) {
+    if (lists == ListElements::one_default)
+      return read_value(ParameterPath{path.outer, path.name, ParameterPath::any_element}, info, ElementOf<Value>{},
+                        lists, reader);
     std::size_t i = 0;
     for (auto const& element : elements_of(value))
-      visit_value<each_element>(ParameterPath{path.outer, path.name, i++}, entry, element, f);
-  } else if constexpr (ParameterList<Value>) {
-    visit_value<each_element>(ParameterPath{path.outer, path.name, ParameterPath::any_element}, entry,
-                              ElementOf<Value>{}, f);
+      read_value(ParameterPath{path.outer, path.name, i++}, info, element, lists, reader);
   } else {
     static_assert(
         std::is_arithmetic_v<Value> || std::is_enum_v<Value>,
         "cambium::parameter: a field must be a number, a bool, an enum, an id, another described struct, or a "
         "list of these.");
-    f(path, entry, value);
+    reader.value(path, info, ParameterValue(value));
   }
 }
 
-/// Calls `f(path, parameter, value)` for each field that is a plain value, those of nested structs and of lists
-/// included; of lists either each element or, to show what elements are, a default one.
-template <bool each_element, Described T, class F>
-constexpr void visit_values(T const& object, ParameterPath const* outer, F&& f) {
+/// Shows `reader` each field that is a plain value, those of nested structs and of lists included. `own`: the path of
+/// the struct itself; none: its fields have none above.
+template <Described T>
+void read_parameters(T const& object, ParameterPath const* own, ListElements lists, ParameterReader& reader) {
   for_each_parameter<T>([&](auto const& entry) {
-    visit_value<each_element>(ParameterPath{outer, entry.name}, entry, object.*entry.field, f);
+    read_value(ParameterPath{own, entry.name}, entry, object.*entry.field, lists, reader);
   });
+  if constexpr (requires { object.check(std::string()); })
+    if (own != nullptr)
+      reader.own_check(*own, &object, [](void const* checked, std::string const& where) {
+        static_cast<T const*>(checked)->check(where);
+      });
 }
 
 }  // namespace cambium::detail

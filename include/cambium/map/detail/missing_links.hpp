@@ -13,6 +13,7 @@
 #include "cambium/map/lane.hpp"
 #include "cambium/map/lane_network.hpp"
 #include "cambium/map/map.hpp"
+#include "cambium/map/detail/network_check.hpp"
 
 namespace cambium::map::detail {
 

@@ -12,16 +12,15 @@
 
 namespace cambium::map {
 
-/// The place on a lane's exact path, with the direction of travel, beside path position `s` [m] of the sampled one.
-using LanePlace = std::function<geometry::Pose(Lane const&, double s)>;
-
 namespace detail {
 
 /// Moves the ends of an overlap from where they are on chords to where they are on the lanes' exact paths.
 class OverlapEnds {
  public:
+  using Place = std::function<geometry::Pose(Lane const&, double s)>;
+
   /// Without `place` the sampled paths are the exact ones.
-  OverlapEnds(LanePlace const& place, double clearance) : place_(place), clearance_(clearance) {}
+  OverlapEnds(Place const& place, double clearance) : place_(place), clearance_(clearance) {}
 
   /// Lets the stretches begin and end where one lane is as far from the other as the clearance. False where the exact
   /// paths do not come so near.
@@ -158,7 +157,7 @@ class OverlapEnds {
     return {std::min(p, q), std::max(p, q)};
   }
 
-  LanePlace const& place_;
+  Place const& place_;
   double clearance_;
 };
 

@@ -16,19 +16,13 @@
 #include "cambium/map/detail/document_index.hpp"
 #include "cambium/map/lane_type.hpp"
 #include "cambium/map/make_roads.hpp"
+#include "cambium/map/road_plan.hpp"
 #include "cambium/map/opendrive_document.hpp"
 #include "cambium/map/reference_line.hpp"
 #include "cambium/map/road.hpp"
+#include "cambium/map/detail/make_road.hpp"
 
 namespace cambium::map {
-
-/// One end of a road.
-struct RoadEnd {
-  std::string road;
-  opendrive::ContactPoint end = opendrive::ContactPoint::end;
-
-  friend bool operator==(RoadEnd const&, RoadEnd const&) = default;
-};
 
 namespace detail {
 

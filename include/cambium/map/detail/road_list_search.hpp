@@ -85,8 +85,7 @@ class RoadListSearch {
   void follow(Place const& at, double cost) {
     auto const& lane = map_.lane(at.lane);
     for (auto const side : {lane.left_neighbor, lane.right_neighbor})
-      if (is_valid(side) && map_.lane(side).drivable())
-        offer({at.step, side}, cost + lane_change_cost_, at);
+      if (is_valid(side) && map_.lane(side).drivable()) offer({at.step, side}, cost + lane_change_cost_, at);
     for (auto const next : lane.successors) {
       if (!map_.lane(next).drivable()) continue;
       if (stays_on_road(lane, map_.lane(next)))

@@ -27,7 +27,7 @@ inline double distance_to_line(geometry::Point const& p, PointList const& line) 
 inline PointList simplified(PointList const& line, double tolerance) {
   PointList points;
   for (geometry::Point const& p : line)
-    if (p.allFinite() && p.cwiseAbs().maxCoeff() < 1e8) points.push_back(p);
+    if (std::max(std::abs(p.x()), std::abs(p.y())) < 1e8 && p.allFinite()) points.push_back(p);
   if (points.size() < 3) return points;
   std::vector<bool> keep(points.size(), false);
   keep.front() = keep.back() = true;
@@ -93,7 +93,7 @@ struct LaneArea {
   /// True when `p` lies inside the outline (even-odd rule). O(points) within the bounding box, of which most are passed
   /// over 16 at a time, else O(1).
   [[nodiscard]] bool contains(geometry::Point const& p) const {
-    if (empty() || (p.array() < low.array()).any() || (p.array() > high.array()).any()) return false;
+    if (empty() || p.x() < low.x() || p.y() < low.y() || p.x() > high.x() || p.y() > high.y()) return false;
     bool inside = false;
     for (std::size_t k = 0; k < heights_.size(); ++k) {
       if (p.y() < heights_[k].low || p.y() > heights_[k].high) continue;

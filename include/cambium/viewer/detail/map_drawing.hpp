@@ -17,6 +17,7 @@
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/junction.hpp"
 #include "cambium/map/map.hpp"
+#include "cambium/map/right_of_way.hpp"
 #include "cambium/viewer/detail/map_legend.hpp"
 #include "cambium/viewer/detail/map_page.hpp"
 #include "cambium/viewer/detail/svg_panel.hpp"

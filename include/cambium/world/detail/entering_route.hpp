@@ -77,11 +77,9 @@ inline void check_stretch_of(Map const& map, LaneId lane, double from, double to
                      "give from and to along the lane's path");
 }
 
-/// The agent's goal, complete: lanes beside count from the one that it enters in. Throws `WorldError` for a sequence
-/// that is too long, or within another goal, or for one without parts, and `ParameterError` for a number out of its
-/// range, limits that leave nothing between them, or a lane or stretch that the map does not have.
-[[nodiscard]] inline Goal entering_goal(Map const& map, Goal goal, LaneId lane, std::string const& where,
-                                        bool is_outer = true) {
+/// See `entering_goal`.
+[[nodiscard]] inline Goal complete_goal(Map const& map, Goal goal, LaneId lane, std::string const& where,
+                                        bool is_outer) {
   check_if_described(goal, where);
   if (auto const* const reach = std::get_if<ReachLane>(&goal))
     check_stretch_of(map, reach->lane, reach->from, reach->to, where);
@@ -91,7 +89,7 @@ inline void check_stretch_of(Map const& map, LaneId lane, double from, double to
   auto const complete = [&](std::vector<Goal>& parts) {
     if (parts.empty())
       throw WorldError(where, "its goal is made of no parts: it is never reached", "give it parts, or NoGoal");
-    for (auto& part : parts) part = entering_goal(map, std::move(part), lane, where, false);
+    for (auto& part : parts) part = complete_goal(map, std::move(part), lane, where, false);
   };
   if (auto* const all = std::get_if<AllGoals>(&goal)) complete(all->parts);
   if (auto* const any = std::get_if<AnyGoal>(&goal)) complete(any->parts);

@@ -16,7 +16,7 @@ struct Scratch {
   PlaneIndex plane;    ///< only where behaviours look around
   bool fresh = false;  ///< the traffic index is that of the current frame
   std::vector<typename Frame::Record> next;
-  Workspaces workspaces;  ///< of behaviours
+  Workspaces workspaces;       ///< of behaviours
   std::vector<Frame> history;  ///< ring of frames
   std::size_t kept = 0, newest = 0;
 

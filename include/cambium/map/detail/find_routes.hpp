@@ -40,9 +40,7 @@ struct boost::graph_traits<cambium::map::detail::LaneGraph> {
   using degree_size_type = std::size_t;
 };
 
-namespace cambium::map {
-
-namespace detail {
+namespace cambium::map::detail {
 
 [[nodiscard]] inline auto out_edges(std::uint32_t place, LaneGraph const& g) {
   auto const at = [&g](std::uint32_t i) { return g.steps.begin() + static_cast<std::ptrdiff_t>(i); };
@@ -193,75 +191,66 @@ class YenSearch {
   std::set<std::pair<double, Path>> candidates_;
 };
 
-/// See `make_route_finder`.
-class GraphRouteFinder final : public RouteFinder {
- public:
-  [[nodiscard]] std::vector<Route> routes(std::span<Lane const> lanes, LaneStation from, LaneStation to,
-                                          RouteOptions const& options) const override {
-    if (!is_valid(to.lane))
-      throw MapError("route", "its destination names no lane", "see Map::lanes for those there are");
-    RouteGraphBuilder builder(lanes, from, to, options);
-    std::vector<Route> routes;
-    if (builder.is_ahead()) {
-      double const share = builder.to_share() - builder.from_share();
-      double const cost = share > 0.0 ? share * builder.cost(builder.lane_of(builder.start())) : 0.0;
-      if (options.max_routes > 0 && std::isfinite(cost))
-        routes.push_back({{from.lane}, share * lanes[index_of(from.lane)].length(), cost});
-      return routes;
-    }
-    auto const graph = builder.build();
-    for (auto const& [cost, path] : YenSearch(graph, builder.start(), builder.goal()).find(options.max_routes))
-      routes.push_back(make_route(lanes, builder, graph, path, cost));
-    return routes;
-  }
-
-  [[nodiscard]] std::vector<ReachedLane> reachable(std::span<Lane const> lanes, LaneStation from, double budget,
-                                                   RouteOptions const& options) const override {
-    if (!(budget >= 0.0)) throw MapError("reachable lanes", "the budget is negative or not a number", "give 0 or more");
-    RouteGraphBuilder builder(lanes, from, {}, options);
-    auto const graph = builder.build();
-    LaneSearch const search(graph, builder.start(), builder.goal(), budget, {});
-    std::vector<ReachedLane> reached;
-    for (std::uint32_t i = 0; i < lanes.size(); ++i) {
-      auto const own = builder.start_place(i);
-      double const cost = own == builder.no_place ? search.cost(i) : std::min(search.cost(i), search.cost(own));
-      if (cost <= budget && std::isfinite(cost)) reached.push_back({static_cast<LaneId>(i), cost});
-    }
-    std::sort(reached.begin(), reached.end(), [](ReachedLane const& a, ReachedLane const& b) {
-      return std::tie(a.cost, a.lane) < std::tie(b.cost, b.lane);
-    });
-    return reached;
-  }
-
- private:
-  [[nodiscard]] static Route make_route(std::span<Lane const> lanes, RouteGraphBuilder const& builder,
-                                        LaneGraph const& graph, std::vector<std::uint32_t> const& path, double cost) {
-    Route route{{}, 0.0, cost};
-    double begin = builder.from_share();  // where the current lane is entered
-    for (std::size_t i = 0; i < path.size(); ++i) {
-      auto const lane = builder.lane_of(path[i]);
-      route.lanes.push_back(static_cast<LaneId>(lane));
-      bool const is_last = i + 1 == path.size();
-      bool const ahead = !is_last && is_ahead(graph, path[i], path[i + 1]);
-      if (is_last || ahead) route.length += ((is_last ? builder.to_share() : 1.0) - begin) * lanes[lane].length();
-      if (ahead) begin = 0.0;
-    }
-    return route;
-  }
-
-  [[nodiscard]] static bool is_ahead(LaneGraph const& graph, std::uint32_t from, std::uint32_t to) {
-    auto const steps = graph.from(from);
-    return std::any_of(steps.begin(), steps.end(), [to](LaneStep const& step) { return step.to == to && step.ahead; });
-  }
-};
-
-}  // namespace detail
-
-/// A finder of routes by Boost.Graph. A route costs what is driven of its lanes, and each change to a neighbouring
-/// lane; of lanes beside each other that it changes between only the last one counts. Of routes with equal costs always
-/// the same one is found. No route leads from a drivable lane onto one that is not.
-[[nodiscard]] inline std::unique_ptr<RouteFinder const> make_route_finder() {
-  return std::make_unique<detail::GraphRouteFinder const>();
+[[nodiscard]] inline bool is_ahead(LaneGraph const& graph, std::uint32_t from, std::uint32_t to) {
+  auto const steps = graph.from(from);
+  return std::any_of(steps.begin(), steps.end(), [to](LaneStep const& step) { return step.to == to && step.ahead; });
 }
 
-}  // namespace cambium::map
+[[nodiscard]] inline Route make_route(std::span<Lane const> lanes, RouteGraphBuilder const& builder,
+                                      LaneGraph const& graph, std::vector<std::uint32_t> const& path, double cost) {
+  Route route{{}, 0.0, cost};
+  double begin = builder.from_share();  // where the current lane is entered
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    auto const lane = builder.lane_of(path[i]);
+    route.lanes.push_back(static_cast<LaneId>(lane));
+    bool const is_last = i + 1 == path.size();
+    bool const ahead = !is_last && is_ahead(graph, path[i], path[i + 1]);
+    if (is_last || ahead) route.length += ((is_last ? builder.to_share() : 1.0) - begin) * lanes[lane].length();
+    if (ahead) begin = 0.0;
+  }
+  return route;
+}
+
+/// See `Map::routes`. A route costs what is driven of its lanes, and each change to a neighbouring lane; of lanes
+/// beside each other that it changes between only the last one counts. Of routes with equal costs always the same one
+/// is found. No route leads from a drivable lane onto one that is not. The number of a lane must be its place in
+/// `lanes`.
+[[nodiscard]] inline std::vector<Route> find_routes(std::span<Lane const> lanes, LaneStation from, LaneStation to,
+                                                    RouteOptions const& options) {
+  if (!is_valid(to.lane))
+    throw MapError("route", "its destination names no lane", "see Map::lanes for those there are");
+  RouteGraphBuilder builder(lanes, from, to, options);
+  std::vector<Route> routes;
+  if (builder.is_ahead()) {
+    double const share = builder.to_share() - builder.from_share();
+    double const cost = share > 0.0 ? share * builder.cost(builder.lane_of(builder.start())) : 0.0;
+    if (options.max_routes > 0 && std::isfinite(cost))
+      routes.push_back({{from.lane}, share * lanes[index_of(from.lane)].length(), cost});
+    return routes;
+  }
+  auto const graph = builder.build();
+  for (auto const& [cost, path] : YenSearch(graph, builder.start(), builder.goal()).find(options.max_routes))
+    routes.push_back(make_route(lanes, builder, graph, path, cost));
+  return routes;
+}
+
+/// See `Map::reachable`. The number of a lane must be its place in `lanes`.
+[[nodiscard]] inline std::vector<ReachedLane> find_reachable(std::span<Lane const> lanes, LaneStation from,
+                                                             double budget, RouteOptions const& options) {
+  if (!(budget >= 0.0)) throw MapError("reachable lanes", "the budget is negative or not a number", "give 0 or more");
+  RouteGraphBuilder builder(lanes, from, {}, options);
+  auto const graph = builder.build();
+  LaneSearch const search(graph, builder.start(), builder.goal(), budget, {});
+  std::vector<ReachedLane> reached;
+  for (std::uint32_t i = 0; i < lanes.size(); ++i) {
+    auto const own = builder.start_place(i);
+    double const cost = own == builder.no_place ? search.cost(i) : std::min(search.cost(i), search.cost(own));
+    if (cost <= budget && std::isfinite(cost)) reached.push_back({static_cast<LaneId>(i), cost});
+  }
+  std::sort(reached.begin(), reached.end(), [](ReachedLane const& a, ReachedLane const& b) {
+    return std::tie(a.cost, a.lane) < std::tie(b.cost, b.lane);
+  });
+  return reached;
+}
+
+}  // namespace cambium::map::detail

@@ -1,0 +1,164 @@
+#pragma once
+
+#include <bit>
+#include <charconv>
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "cambium/core/error.hpp"
+#include "cambium/core/macros.hpp"
+#include "cambium/core/parameters.hpp"
+
+namespace cambium::detail {
+
+CAMBIUM_COLD std::string ParameterPath::text() const {
+  std::string own = outer != nullptr ? outer->text() + "." : std::string();
+  own += name;
+  if (element == any_element)
+    own += "[]";
+  else if (element != no_list)
+    own += "[" + std::to_string(element) + "]";
+  return own;
+}
+
+template <class Number>
+[[nodiscard]] std::string shortest_text(Number value) {
+  char buffer[32];
+  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value).ptr};
+}
+
+CAMBIUM_COLD std::string number_text(double value) { return shortest_text(value); }
+
+/// Name number `index` of "rk4|euler"; empty where there are not so many.
+[[nodiscard]] inline std::string_view choice_name(std::string_view names, std::uint64_t index) {
+  for (; index > 0; --index) {
+    auto const end = names.find('|');
+    if (end == names.npos) return {};
+    names.remove_prefix(end + 1);
+  }
+  return names.substr(0, names.find('|'));
+}
+
+CAMBIUM_COLD std::string value_text(ParameterInfo const& info, ParameterValue const& value) {
+  using Kind = ParameterValue::Kind;
+  switch (value.kind) {
+    case Kind::boolean:
+      return value.bits != 0 ? "true" : "false";
+    case Kind::id:
+      return to_string(static_cast<AgentId>(value.bits));
+    case Kind::choice:
+      if (auto const name = choice_name(info.choices != nullptr ? info.choices : "", value.bits); !name.empty())
+        return std::string(name);
+      return std::to_string(value.bits);
+    case Kind::signed_integer:
+      return std::to_string(static_cast<std::int64_t>(value.bits));
+    case Kind::unsigned_integer:
+      return std::to_string(value.bits);
+    case Kind::single_precision:
+      return shortest_text(static_cast<float>(value.number));
+    case Kind::number:
+      break;
+  }
+  return shortest_text(value.number);
+}
+
+CAMBIUM_COLD std::string with_unit(std::string number, char const* unit) {
+  std::string_view const text(unit);
+  if (!text.empty() && text != "-") (number += ' ') += text;
+  return number;
+}
+
+CAMBIUM_COLD std::string range_text(ParameterInfo const& info) {
+  if (info.choices != nullptr) {
+    std::string names;
+    for (char const* c = info.choices; *c != '\0'; ++c) names += *c == '|' ? std::string(", ") : std::string(1, *c);
+    return names;
+  }
+  auto const& range = info.range;
+  std::string text = range.low == any_finite.low ? "(-inf"
+                     : range.low == positive.low ? "(0"
+                                                 : "[" + number_text(range.low);
+  return text + ", " + (range.high == any_finite.high ? "inf)" : number_text(range.high) + "]");
+}
+
+CAMBIUM_COLD void check_values(char const* name, void const* object, ReadStruct read, std::string const& where) {
+  struct Check final : ParameterReader {
+    std::string const* where = nullptr;
+
+    [[nodiscard]] std::string place(ParameterPath const& path) const {
+      return (where->empty() ? "" : *where + ": ") + path.text();
+    }
+    void value(ParameterPath const& path, ParameterInfo const& info, ParameterValue const& value) override {
+      if (value.in(info.range)) return;
+      throw ParameterError(
+          place(path), "is " + with_unit(value_text(info, value), info.unit),
+          (info.choices != nullptr ? "give one of " : "give a value in ") + with_unit(range_text(info), info.unit));
+    }
+    void own_check(ParameterPath const& path, void const* checked,
+                   void (*check)(void const*, std::string const&)) override {
+      check(checked, place(path));
+    }
+  } reader;
+  reader.where = &where;
+  ParameterPath const root{nullptr, name};
+  read(object, &root, ListElements::each, reader);
+}
+
+CAMBIUM_COLD std::string parameters_table(void const* object, ReadStruct read) {
+  struct Table final : ParameterReader {
+    std::string text = "| name | default | unit | range | meaning |\n|---|---|---|---|---|\n";
+
+    void value(ParameterPath const& path, ParameterInfo const& info, ParameterValue const& value) override {
+      text += "| " + path.text() + " | " + (path.is_any_element() ? "-" : value_text(info, value)) + " | " + info.unit +
+              " | " + (value.has_range() ? range_text(info) : "-") + " | " + info.sentence + " |\n";
+    }
+  } table;
+  read(object, nullptr, ListElements::one_default, table);
+  return std::move(table.text);
+}
+
+CAMBIUM_COLD std::string parameters_line(char const* name, void const* object, ReadStruct read) {
+  struct Line final : ParameterReader {
+    std::string text;
+    bool is_first = true;
+
+    void value(ParameterPath const& path, ParameterInfo const& info, ParameterValue const& value) override {
+      text += (is_first ? " " : ", ") + path.text() + "=" + with_unit(value_text(info, value), info.unit);
+      is_first = false;
+    }
+  } line;
+  line.text = std::string(name) + ":";
+  read(object, nullptr, ListElements::each, line);
+  return std::move(line.text);
+}
+
+CAMBIUM_COLD std::uint64_t parameters_hash(char const* name, void const* object, ReadStruct read) {
+  struct Hash final : ParameterReader {
+    std::uint64_t hash = 0xcbf29ce484222325u;
+
+    void add_byte(std::uint64_t byte) { hash = (hash ^ byte) * 0x100000001b3u; }
+    void add_name(char const* text) {
+      for (; *text != '\0'; ++text) add_byte(static_cast<unsigned char>(*text));
+      add_byte(0);
+    }
+    void add_bits(std::uint64_t bits) {
+      for (int shift = 0; shift < 64; shift += 8) add_byte((bits >> shift) & 0xffu);
+    }
+    void value(ParameterPath const& path, ParameterInfo const& info, ParameterValue const& value) override {
+      for (auto const* key = &path; key != nullptr; key = key->outer) {
+        if (key != &path) add_name(key->name);
+        if (key->element != key->no_list) add_bits(key->element);
+      }
+      add_name(info.name);
+      bool const is_real =
+          value.kind == ParameterValue::Kind::number || value.kind == ParameterValue::Kind::single_precision;
+      add_bits(is_real ? std::bit_cast<std::uint64_t>(value.number + 0.0) : value.bits);  // -0 becomes 0
+    }
+  } hash;
+  hash.add_name(name);
+  read(object, nullptr, ListElements::each, hash);
+  return hash.hash;
+}
+
+}  // namespace cambium::detail

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cambium/core/diagnostic.hpp"
+#include "cambium/core/macros.hpp"
+#include "cambium/map/build_map.hpp"
+#include "cambium/map/detail/read_map_file.hpp"
+#include "cambium/map/map.hpp"
+#include "cambium/map/opendrive.hpp"
+#include "cambium/map/opendrive_reader.hpp"
+
+namespace cambium::map {
+
+CAMBIUM_COLD LoadedMap parse_opendrive(std::string_view text, MapOptions const& options, std::string const& file) {
+  LoadedMap result;
+  auto const document = read_opendrive_document(text, file, result.diagnostics);
+  result.map = build_map(document, options, file, result.diagnostics);
+  return result;
+}
+
+CAMBIUM_COLD LoadedMap load_opendrive(std::string const& path, MapOptions const& options) {
+  return parse_opendrive(detail::read_map_file(path, "give an OpenDRIVE file (.xodr)"), options, path);
+}
+
+CAMBIUM_COLD OpenDriveDocument load_opendrive_document(std::string const& path, std::vector<Diagnostic>& diagnostics) {
+  return read_opendrive_document(detail::read_map_file(path, "give an OpenDRIVE file (.xodr)"), path, diagnostics);
+}
+
+}  // namespace cambium::map
