@@ -63,11 +63,12 @@ if(CAMBIUM_CHECK_clang++-14)
     cambium/world/detail/entering.hpp cambium/planner/mcts_workspace.hpp)
 endif()
 
-# reach(VARIABLE HEADER): all that HEADER includes of cambium, directly or not.
+# reach(VARIABLE HEADER): all that HEADER includes of cambium, directly or not, but for definitions of cold code.
 function(reach variable header)
   get_property(known GLOBAL PROPERTY reach_${header} SET)
   if(NOT known)
     file(STRINGS ${PROJECT_SOURCE_DIR}/include/${header} lines REGEX "^#include \"cambium/")
+    list(FILTER lines EXCLUDE REGEX "_impl.hpp")
     set(all "")
     foreach(line IN LISTS lines)
       string(REGEX REPLACE "^#include \"(.*)\".*" "\\1" next "${line}")
