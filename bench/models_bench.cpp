@@ -24,11 +24,12 @@
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/map/free_corridor.hpp"
+#include "cambium/map/opendrive.hpp"
 #include "cambium/world/world.hpp"
 
-#include "support/maps.hpp"
 #include "yardstick/main.hpp"
 #include "yardstick/register.hpp"
+#include "yardstick/winding_road.hpp"
 
 namespace cb = cambium;
 
@@ -44,7 +45,7 @@ using Sim = cb::World<cb::BehaviorSet<Behaviors...>, cb::InterpolateExecution, c
 template <class World, class Driver>
 World highway(std::size_t agents, Driver const& driver) {
   double const length = 60.0 * static_cast<double>(agents) / 3.0 + 300.0;
-  World world(support::winding_road(length + 800.0), {.seed = 1});
+  World world(yardstick::winding_road(length + 800.0), {.seed = 1});
   cb::RandomStream random(7, 0, 0);
   auto const& section = world.map().roads()[0].sections[0];
   std::size_t number = 0;
@@ -64,7 +65,7 @@ World highway(std::size_t agents, Driver const& driver) {
 
 /// Vehicles on the lanes before the project's lane drop, the first ones 60 m before it.
 Sim<cb::ZipMerge> lane_drop(std::size_t agents) {
-  Sim<cb::ZipMerge> world(support::load_map(CAMBIUM_SOURCE_DIR "/maps/lane_drop.xodr"), {.seed = 1});
+  Sim<cb::ZipMerge> world(cb::load_opendrive(CAMBIUM_SOURCE_DIR "/maps/lane_drop.xodr").map, {.seed = 1});
   cb::RandomStream random(7, 0, 0);
   for (double s = 380.0; world.size() < agents; s -= 25.0)
     for (auto const& entry : world.map().roads()[0].sections[0].lanes) {
@@ -81,7 +82,7 @@ Sim<cb::ZipMerge> lane_drop(std::size_t agents) {
 
 /// Pedestrians in groups of 20 that meet on a way of their own, 4 m wide.
 Sim<cb::Pedestrian> crowd(std::size_t agents) {
-  Sim<cb::Pedestrian> world(support::winding_road(300.0), {.seed = 1});
+  Sim<cb::Pedestrian> world(yardstick::winding_road(300.0), {.seed = 1});
   cb::RandomStream random(8, 0, 0);
   for (double y = 1000.0; world.size() < agents; y += 10.0) {
     std::vector<cb::geometry::Point> const there{{0.0, y}, {100.0, y}}, back{{100.0, y}, {0.0, y}};
@@ -99,7 +100,7 @@ Sim<cb::Pedestrian> crowd(std::size_t agents) {
 
 /// Vehicles on all arms of the project's four-way crossing, the first ones 30 m before it, by all its ways.
 Sim<cb::Intersection> crossing(std::size_t agents) {
-  Sim<cb::Intersection> world(support::load_map(CAMBIUM_SOURCE_DIR "/maps/intersection_4way.xodr"), {.seed = 1});
+  Sim<cb::Intersection> world(cb::load_opendrive(CAMBIUM_SOURCE_DIR "/maps/intersection_4way.xodr").map, {.seed = 1});
   cb::RandomStream random(7, 0, 0);
   for (double row = 0.0; world.size() < agents; row += 16.0)
     for (auto const& lane : world.map().lanes()) {

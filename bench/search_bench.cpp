@@ -11,12 +11,12 @@
 #include "cambium/behavior/idm_classic.hpp"
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/execution/interpolate.hpp"
+#include "cambium/map/opendrive.hpp"
 #include "cambium/planner/mcts_single_agent.hpp"
 #include "cambium/planner/parallel_tree_search.hpp"
 #include "cambium/world/world.hpp"
 
 #include "../tests/planner/games.hpp"
-#include "support/maps.hpp"
 #include "yardstick/main.hpp"
 #include "yardstick/uct.hpp"
 
@@ -50,7 +50,7 @@ struct LaneChange {
   }
 
   static Traffic world_of(std::size_t agents) {
-    static auto const map = support::load_map(CAMBIUM_SOURCE_DIR "/maps/merging.xodr");
+    static auto const map = cb::load_opendrive(CAMBIUM_SOURCE_DIR "/maps/merging.xodr").map;
     Traffic world(map, {.seed = 1});
     auto const left = map->nearest_lane({100.0, -1.75, 0.0})->lane;
     world.add({.position = {90.0, -5.25},

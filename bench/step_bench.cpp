@@ -13,12 +13,14 @@
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/evaluation/evaluators.hpp"
 #include "cambium/execution/interpolate.hpp"
+#include "cambium/map/build_corridor.hpp"
+#include "cambium/map/opendrive.hpp"
 #include "cambium/scenario/lane_traffic.hpp"
 #include "cambium/world/world.hpp"
 
-#include "support/maps.hpp"
 #include "yardstick/main.hpp"
 #include "yardstick/register.hpp"
+#include "yardstick/winding_road.hpp"
 
 namespace cb = cambium;
 
@@ -67,13 +69,13 @@ void fill(Sim& world, std::size_t agents, double end) {
 }
 
 std::shared_ptr<cb::Map const> merging_map() {
-  static auto const map = support::load_map(CAMBIUM_SOURCE_DIR "/maps/merging.xodr");
+  static auto const map = cb::load_opendrive(CAMBIUM_SOURCE_DIR "/maps/merging.xodr").map;
   return map;
 }
 
 Sim highway_world(std::size_t agents) {
   double const length = 60.0 * static_cast<double>(agents) / 3.0 + 300.0;
-  Sim world(support::winding_road(length + 800.0), {.seed = 1});
+  Sim world(yardstick::winding_road(length + 800.0), {.seed = 1});
   fill(world, agents, length);
   return world;
 }
@@ -172,7 +174,7 @@ void register_filling() {
 void register_load() {
   yardstick::add("load/merging", [](benchmark::State& state) {
     yardstick::measure_duration(
-        state, [] { benchmark::DoNotOptimize(support::load_map(CAMBIUM_SOURCE_DIR "/maps/merging.xodr").get()); });
+        state, [] { benchmark::DoNotOptimize(cb::load_opendrive(CAMBIUM_SOURCE_DIR "/maps/merging.xodr").map.get()); });
   });
 }
 

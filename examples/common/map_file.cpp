@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <iostream>
 
+#include "cambium/map/build_map.hpp"
 #include "cambium/map/center_line_csv.hpp"
 #include "cambium/map/map_builder.hpp"
 #include "cambium/map/opendrive.hpp"

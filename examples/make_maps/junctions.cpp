@@ -1,4 +1,5 @@
 #include <array>
+#include <cmath>
 #include <utility>
 
 #include "maps.hpp"
@@ -124,7 +125,7 @@ MapBuilder roundabout() {
   auto const ring = [&](std::string id, std::string name, double from, double angle) {
     RoadPlan road{.id = std::move(id), .name = std::move(name), .type = "town", .speed_limit = kmh(30.0)};
     road.line = lay_from(seen_at(from, {radius, 0.0, 0.5 * pi}),
-                         {{detail::round_length(radius * angle), 1.0 / radius, 1.0 / radius}});
+                         {{std::round(radius * angle * 1e10) / 1e10, 1.0 / radius, 1.0 / radius}});
     road.lane_offset = {{0.0, 0.5 * ring_width, 0.0, 0.0, 0.0}};
     road.sections = {{.right = equal_lanes(1, ring_width)}};
     return road;

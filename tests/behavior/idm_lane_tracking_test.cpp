@@ -13,6 +13,7 @@
 #include "cambium/dynamics/single_track_steering.hpp"
 #include "cambium/dynamics/triple_integrator.hpp"
 #include "cambium/evaluation/collision.hpp"
+#include "cambium/map/curve_layout.hpp"
 
 using namespace fixtures;
 using cb::IdmLaneTracking;

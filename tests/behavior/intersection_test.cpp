@@ -18,6 +18,9 @@
 #include "cambium/core/random.hpp"
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/execution/interpolate.hpp"
+#include "cambium/map/build_corridor.hpp"
+#include "cambium/map/build_map.hpp"
+#include "cambium/map/opendrive.hpp"
 #include "cambium/map/opendrive_document.hpp"
 #include "cambium/world/world.hpp"
 
@@ -90,7 +93,7 @@ std::vector<std::optional<double>> times_through(Sim& world, std::vector<AgentId
 /// The crossing with signals beside the arms' ends: `type` for each arm, none where empty.
 std::shared_ptr<Map const> crossing_with(std::vector<std::pair<std::string, std::string>> const& signals) {
   std::vector<Diagnostic> diagnostics;
-  auto document = support::load_opendrive_document(CAMBIUM_SOURCE_DIR "/maps/intersection_4way.xodr", diagnostics);
+  auto document = cambium::map::load_opendrive_document(CAMBIUM_SOURCE_DIR "/maps/intersection_4way.xodr", diagnostics);
   for (auto& road : document.roads) {
     road.signals.clear();
     for (auto const& [arm, type] : signals)
@@ -103,7 +106,7 @@ std::shared_ptr<Map const> crossing_with(std::vector<std::pair<std::string, std:
         road.signals.push_back(signal);
       }
   }
-  return support::build_map(document, {}, "text", diagnostics);
+  return cambium::map::build_map(document, {}, "text", diagnostics);
 }
 
 }  // namespace

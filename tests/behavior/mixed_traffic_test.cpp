@@ -14,6 +14,8 @@
 #include "cambium/behavior/presets.hpp"
 #include "cambium/dynamics/dynamic_set.hpp"
 #include "cambium/execution/stanley.hpp"
+#include "cambium/map/build_corridor.hpp"
+#include "cambium/map/curve_layout.hpp"
 #include "cambium/map/free_corridor.hpp"
 
 #include "lane_traffic_fixtures.hpp"

@@ -8,6 +8,7 @@
 #include "cambium/behavior/rss_conformant.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/evaluation/collision.hpp"
+#include "cambium/map/curve_layout.hpp"
 
 using namespace fixtures;
 

@@ -15,6 +15,8 @@
 #include "cambium/behavior/pedestrian.hpp"
 #include "cambium/behavior/rss_conformant.hpp"
 #include "cambium/behavior/zip_merge.hpp"
+#include "cambium/map/build_corridor.hpp"
+#include "cambium/map/curve_layout.hpp"
 #include "cambium/map/free_corridor.hpp"
 
 #include "lane_traffic_fixtures.hpp"

@@ -10,6 +10,7 @@
 #include "../support/corpus.hpp"
 #include "cambium/map/find_corridor.hpp"
 #include "cambium/map/lane_network.hpp"
+#include "cambium/map/opendrive.hpp"
 #include "road_text.hpp"
 #include "../support/maps.hpp"
 
@@ -20,7 +21,7 @@ using cambium::LaneId;
 using cambium::Severity;
 using cambium::map::build_road_corridor;
 using cambium::map::RoadDirection;
-using support::Loaded;
+using cambium::LoadedMap;
 
 bool has_route(Loaded const& loaded, At const& from, At const& to) {
   auto const& map = *loaded.map;
@@ -344,7 +345,7 @@ TEST_CASE("a lane link to a lane that is not there costs that link only") {
 TEST_CASE("the four-way intersection can be crossed from each arm into each other arm") {
   auto const path = corpus::find("opendrive/4way_intersection.xodr");
   if (!path) return;
-  auto const loaded = support::load_opendrive(path->string());
+  auto const loaded = cambium::load_opendrive(path->string());
   auto const& map = *loaded.map;
   std::vector<LaneId> in, out;
   for (auto const& lane : map.lanes()) {

@@ -11,6 +11,7 @@
 #include "../support/map_faults.hpp"
 #include "../support/map_use.hpp"
 #include "cambium/map/map_builder.hpp"
+#include "cambium/map/opendrive.hpp"
 #include "cambium/map/opendrive_check.hpp"
 
 namespace {

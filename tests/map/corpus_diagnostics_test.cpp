@@ -7,6 +7,7 @@
 
 #include <doctest/doctest.h>
 
+#include "cambium/map/opendrive.hpp"
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"
 
@@ -59,7 +60,7 @@ TEST_CASE("the maps of the corpus have the findings that are known, and no other
   CHECK(std::size(expected) == 28);
   for (auto const& e : expected) {
     CAPTURE(e.map);
-    auto const loaded = support::load_opendrive((*folder / (std::string(e.map) + ".xodr")).string());
+    auto const loaded = cambium::load_opendrive((*folder / (std::string(e.map) + ".xodr")).string());
     auto const count = [&](Severity severity) {
       return std::count_if(loaded.diagnostics.begin(), loaded.diagnostics.end(),
                            [severity](auto const& d) { return d.severity == severity; });
@@ -82,7 +83,7 @@ TEST_CASE("a road has a handful of findings, however often it is at fault") {
   if (!folder) return;
   for (auto const& path : corpus::maps(*folder)) {
     std::vector<std::string> roads;
-    for (auto const& d : support::load_opendrive(path.string()).diagnostics)
+    for (auto const& d : cambium::load_opendrive(path.string()).diagnostics)
       roads.push_back(d.ids.substr(0, d.ids.find(',')));
     for (auto const& road : roads) CHECK(std::count(roads.begin(), roads.end(), road) <= 4);
   }
@@ -90,7 +91,7 @@ TEST_CASE("a road has a handful of findings, however often it is at fault") {
 
 TEST_CASE("our own maps have no finding at all") {
   for (auto const& path : corpus::maps(std::string(CAMBIUM_SOURCE_DIR) + "/maps")) {
-    auto const loaded = support::load_opendrive(path.string());
+    auto const loaded = cambium::load_opendrive(path.string());
     CHECK_MESSAGE(loaded.diagnostics.empty(), to_string(loaded.diagnostics.front()));
   }
 }

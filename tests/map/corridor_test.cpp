@@ -34,8 +34,9 @@
 #include "cambium/map/find_corridor.hpp"
 #include "cambium/map/lane_area.hpp"
 #include "cambium/map/lane_position.hpp"
+#include "cambium/map/opendrive.hpp"
 #include "cambium/map/road_area.hpp"
-#include "cambium/map/map_impl.hpp"
+#include "cambium/map/map.hpp"
 #include "../support/samples.hpp"
 #include "../support/corpus.hpp"
 #include "lanes_by_hand.hpp"
@@ -149,7 +150,7 @@ void for_each_real_map(Check const& check) {
   Numbers random{1};
   for (auto const& file : files) {
     CAPTURE(file.string());
-    check(*support::load_opendrive(file.string()).map, random);
+    check(*cambium::load_opendrive(file.string()).map, random);
   }
 }
 
@@ -457,7 +458,7 @@ TEST_CASE("straight on from every drivable lane of the project's and the corpus'
     if (auto const file = corpus::find(std::string("opendrive/") + name)) files.push_back(*file);
   for (auto const& file : files) {
     CAPTURE(file.string());
-    auto const map = support::load_opendrive(file.string()).map;
+    auto const map = cambium::load_opendrive(file.string()).map;
     for (auto const& lane : map->lanes()) {
       if (!lane.drivable()) continue;
       auto const road = build_road_corridor(*map, straight_route(*map, lane.id));
@@ -627,7 +628,7 @@ TEST_CASE("the nearest corridor is the one that holds a place, by direction wher
 
 TEST_CASE("a road corridor is found from a pose to a point or a polygon") {
   auto const map =
-      support::load_opendrive((std::filesystem::path(CAMBIUM_SOURCE_DIR) / "maps" / "merging.xodr").string()).map;
+      cambium::load_opendrive((std::filesystem::path(CAMBIUM_SOURCE_DIR) / "maps" / "merging.xodr").string()).map;
   auto const ramp = map->find_lane("2", 10, -1);
   auto const start = map->lane(ramp).path.pose(5.0);
   auto const way = straight_route(*map, ramp);
@@ -688,7 +689,7 @@ TEST_CASE("a road corridor is found along roads in either direction") {
   CHECK(several > 20);
   CHECK(backward > 20);
   auto const map =
-      support::load_opendrive((std::filesystem::path(CAMBIUM_SOURCE_DIR) / "maps" / "merging.xodr").string()).map;
+      cambium::load_opendrive((std::filesystem::path(CAMBIUM_SOURCE_DIR) / "maps" / "merging.xodr").string()).map;
   std::vector<std::string> const none_there{"77"}, back{"1", "2"};
   CHECK_THROWS_AS((void)build_road_corridor(*map, none_there, RoadDirection::forward), MapError);
   CHECK_THROWS_AS((void)build_road_corridor(*map, back, RoadDirection::forward), MapError);
@@ -714,7 +715,7 @@ TEST_CASE("a route that leads round to its start's lane has a corridor, too") {
 
 TEST_CASE("on the merging map the on-ramp's traffic is seen from the main road, and the other way round") {
   auto const map =
-      support::load_opendrive((std::filesystem::path(CAMBIUM_SOURCE_DIR) / "maps" / "merging.xodr").string()).map;
+      cambium::load_opendrive((std::filesystem::path(CAMBIUM_SOURCE_DIR) / "maps" / "merging.xodr").string()).map;
   auto const main = map->find_lane("1", 10, -2), ramp = map->find_lane("2", 10, -1);
   auto const from_main = build_road_corridor(*map, straight_route(*map, main));
   auto const from_ramp = build_road_corridor(*map, straight_route(*map, ramp));
@@ -784,7 +785,7 @@ TEST_CASE("centre lines on the corpus' maps go forward everywhere") {
   if (!folder) return;
   int segments = 0;
   for (auto const& file : corpus::maps(*folder)) {
-    auto const map = support::load_opendrive(file.string()).map;
+    auto const map = cambium::load_opendrive(file.string()).map;
     for (auto const& lane : map->lanes()) {
       // Of lanes that others lead to, which are mostly in the roads of those, a fifth as a sample; all of them by
       // CAMBIUM_SAMPLES=5.

@@ -19,6 +19,7 @@
 #include "cambium/core/distributions.hpp"
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/execution/interpolate.hpp"
+#include "cambium/map/opendrive.hpp"
 #include "cambium/world/world.hpp"
 #include "../support/maps.hpp"
 
@@ -83,7 +84,7 @@ Count damage(std::filesystem::path const& file, std::uint32_t number, std::uint3
     CAPTURE(i);
     CAPTURE(damaged.what);
     try {
-      auto const loaded = support::parse_opendrive(damaged.text);
+      auto const loaded = cambium::parse_opendrive(damaged.text);
       CHECK(fault_of(loaded.map) == "");
       ++count.maps;
     } catch (cb::MapError const&) {

@@ -11,6 +11,7 @@
 #include <doctest/doctest.h>
 
 #include "cambium/geometry/convex_hull.hpp"
+#include "cambium/map/opendrive.hpp"
 #include "../support/corpus.hpp"
 #include "lanes_by_hand.hpp"
 #include "../support/maps.hpp"
@@ -25,7 +26,7 @@ void for_each_corpus_map(Check const& check) {
   if (!folder) return;
   for (auto const& file : corpus::maps(*folder)) {
     CAPTURE(file.string());
-    check(*support::load_opendrive(file.string()).map);
+    check(*cambium::load_opendrive(file.string()).map);
   }
 }
 

@@ -9,6 +9,7 @@
 #include <doctest/doctest.h>
 
 #include "cambium/map/make_roads.hpp"
+#include "cambium/map/opendrive.hpp"
 
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"
@@ -47,7 +48,7 @@ TEST_CASE("the lanes that meet at the ends of roads are those of the links table
   for (auto const& file : corpus::maps(*folder)) {
     std::vector<cb::Diagnostic> diagnostics;
     std::multiset<Row> ours, theirs;
-    for (auto const& row : rows_of(support::load_opendrive_document(file.string(), diagnostics))) ours.insert(row);
+    for (auto const& row : rows_of(cambium::map::load_opendrive_document(file.string(), diagnostics))) ours.insert(row);
     for (auto row : corpus::table(file.parent_path() / "oracle" / file.stem().concat(".links.csv"))) {
       if (row.size() < 7) continue;  // an empty line
       row.resize(7);                 // without the column that names the peers
@@ -84,7 +85,7 @@ TEST_CASE("a road with both ends in one junction is left at the end that the roa
       std::vector<cb::Diagnostic> diagnostics;
       std::string const from = is_turned ? "end" : "start", to = is_turned ? "start" : "end", l = std::to_string(lane),
                         other = std::to_string(-lane);
-      CHECK(rows_of(support::read_opendrive_document(text, "", diagnostics)) ==
+      CHECK(rows_of(cambium::map::read_opendrive_document(text, "", diagnostics)) ==
             std::multiset<Row>{{"1", "end", "-1", "2", from, l, "junction:9"},
                                {"1", "start", "1", "2", to, other, "junction:9"},
                                {"2", from, l, "1", "end", "-1", "road"},
@@ -109,7 +110,7 @@ TEST_CASE("without a link of the road that is entered, its own place says which 
         .id = "2", .x = is_start ? -1.0 : 101.0, .before = to_junction("9"), .sections = {{0.0, {{1}, {-1}}}}};
     auto const text = file({both, away}, junction("9", connection("1", "2", "start", -1, -1, "linkedRoad"), "direct"));
     std::vector<cb::Diagnostic> diagnostics;
-    CHECK(rows_of(support::read_opendrive_document(text, "", diagnostics)) ==
+    CHECK(rows_of(cambium::map::read_opendrive_document(text, "", diagnostics)) ==
           std::multiset<Row>{{"1", is_start ? "start" : "end", "-1", "2", "start", "-1", "junction:9"}});
   }
 }

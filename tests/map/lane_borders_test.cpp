@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "cambium/map/opendrive.hpp"
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"
 
@@ -26,7 +27,7 @@ struct Comparison {
 
 Comparison compare(std::filesystem::path const& file) {
   Comparison result;
-  auto const map = support::load_opendrive(file.string()).map;
+  auto const map = cambium::load_opendrive(file.string()).map;
   for (auto const& row : corpus::table(file.parent_path() / "oracle" / file.stem().concat(".csv"))) {
     if (std::stod(row[8]) < 0.05) continue;  // no border to speak of, or a negative width, which counts as 0
     cb::LaneId id;

@@ -6,6 +6,7 @@
 
 #include <doctest/doctest.h>
 
+#include "cambium/map/opendrive.hpp"
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"
 
@@ -26,7 +27,7 @@ struct Comparison {
 
 Comparison compare_with_oracle(std::filesystem::path const& file) {
   Comparison result;
-  auto const map = support::load_opendrive(file.string()).map;
+  auto const map = cambium::load_opendrive(file.string()).map;
   for (auto const& row : corpus::table(file.parent_path() / "oracle" / file.stem().concat(".csv"))) {
     auto const number = [&row](std::size_t column) { return std::stod(row[column]); };
     auto const p = lane_point(map->find_road(row[0]), number(1), std::stoi(row[2]));

@@ -10,6 +10,7 @@
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"
 #include "cambium/map/detail/split_roads.hpp"
+#include "cambium/map/opendrive.hpp"
 
 using namespace cambium;
 using namespace cambium::map;
@@ -38,7 +39,7 @@ std::shared_ptr<Map const> road(std::string const& left, std::string const& cent
       "</geometry></planView><lanes><laneSection s=\"0\">" + (left.empty() ? "" : "<left>" + left + "</left>") +
       "<center>" + center + "</center>" + (right.empty() ? "" : "<right>" + right + "</right>") +
       "</laneSection></lanes></road></OpenDRIVE>";
-  return support::parse_opendrive(text).map;
+  return cambium::parse_opendrive(text).map;
 }
 
 using Stretches = std::vector<PathStretch>;
@@ -198,8 +199,8 @@ TEST_CASE("on real maps lanes say what the records at each of their places say")
   std::size_t forbidden = 0, permitted = 0, limited = 0, wrong = 0;
   for (auto const& file : corpus::maps(*folder)) {
     std::vector<Diagnostic> diagnostics;
-    auto const written = support::read_opendrive_document(corpus::read(file), file.string(), diagnostics);
-    auto const map = support::build_map(written, {}, file.string(), diagnostics);
+    auto const written = cambium::map::read_opendrive_document(corpus::read(file), file.string(), diagnostics);
+    auto const map = cambium::map::build_map(written, {}, file.string(), diagnostics);
     auto const document =
         map::detail::split_roads(written, map::detail::places_to_split(written));  // with the map's sections
     for (auto const& lane : map->lanes()) {

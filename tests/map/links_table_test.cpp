@@ -11,6 +11,7 @@
 #include <doctest/doctest.h>
 
 #include "cambium/core/random.hpp"
+#include "cambium/map/opendrive.hpp"
 
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"
@@ -191,7 +192,7 @@ TEST_CASE("every row of the links tables is a link of the map, and every link be
   CHECK(maps.size() == 28);
   for (auto const& path : maps) {
     CAPTURE(path.filename().string());
-    auto const map = support::load_opendrive(path.string()).map;
+    auto const map = cambium::load_opendrive(path.string()).map;
     auto const table = links_of(path);
     Ends const ends(*map);
     Counts c;
@@ -214,7 +215,7 @@ TEST_CASE("a route leads wherever the links tables lead, and nowhere else") {
   cambium::RandomStream next(1, 0, 0);
   int reached = 0, not_reached = 0;
   for (auto const& path : corpus::maps(*folder)) {
-    auto const map = support::load_opendrive(path.string()).map;
+    auto const map = cambium::load_opendrive(path.string()).map;
     Reach const reach(*map, links_of(path), Ends(*map));
     std::vector<LaneId> lanes;
     for (auto const& lane : map->lanes())
@@ -245,8 +246,8 @@ TEST_CASE("lanes of one road are linked from section to section, over those with
   for (auto const& path : corpus::maps(*folder)) {
     CAPTURE(path.filename().string());
     std::vector<Diagnostic> diagnostics;
-    auto const document = support::read_opendrive_document(corpus::read(path), "", diagnostics);
-    auto const map = support::build_map(document, {}, "", diagnostics);
+    auto const document = cambium::map::read_opendrive_document(corpus::read(path), "", diagnostics);
+    auto const map = cambium::map::build_map(document, {}, "", diagnostics);
     for (std::size_t r = 0; r < document.roads.size(); ++r) {
       auto const& sections = document.roads[r].lane_sections;
       auto const& road = map->roads()[r];

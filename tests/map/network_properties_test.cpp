@@ -15,6 +15,7 @@
 #include <doctest/doctest.h>
 
 #include "cambium/core/random.hpp"
+#include "cambium/map/opendrive.hpp"
 
 #include "../support/corpus.hpp"
 #include "transformed_documents.hpp"
@@ -38,12 +39,12 @@ std::vector<std::filesystem::path> all_maps() {
 
 OpenDriveDocument document_of(std::filesystem::path const& path) {
   std::vector<Diagnostic> diagnostics;
-  return support::read_opendrive_document(corpus::read(path), path.filename().string(), diagnostics);
+  return cambium::map::read_opendrive_document(corpus::read(path), path.filename().string(), diagnostics);
 }
 
 MapPointer built(OpenDriveDocument const& document) {
   std::vector<Diagnostic> diagnostics;
-  return support::build_map(document, {}, "test", diagnostics);
+  return cambium::map::build_map(document, {}, "test", diagnostics);
 }
 
 /// Which lane of the other map a lane is.
@@ -220,7 +221,7 @@ TEST_CASE("roads written from their other end give the same network") {
 TEST_CASE("a map that is built twice is the same to the last bit") {
   for (auto const& path : all_maps()) {
     CAPTURE(path.filename().string());
-    auto const a = support::load_opendrive(path.string()), b = support::load_opendrive(path.string());
+    auto const a = cambium::load_opendrive(path.string()), b = cambium::load_opendrive(path.string());
     CHECK(a.diagnostics == b.diagnostics);
     REQUIRE(a.map->lanes().size() == b.map->lanes().size());
     bool same = true;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "../support/corpus.hpp"
+#include "cambium/map/opendrive.hpp"
 #include "cambium/map/opendrive_writer.hpp"
 #include "../support/maps.hpp"
 
@@ -31,7 +32,7 @@ struct Reading {
 
 Reading read(std::string const& text) {
   Reading reading;
-  reading.document = support::read_opendrive_document(text, "test.xodr", reading.diagnostics);
+  reading.document = cambium::map::read_opendrive_document(text, "test.xodr", reading.diagnostics);
   return reading;
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "cambium/map/opendrive.hpp"
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"
 
@@ -90,7 +91,7 @@ struct Reading {
 
 Reading read(std::string const& text) {
   Reading reading;
-  reading.document = support::read_opendrive_document(text, "test.xodr", reading.diagnostics);
+  reading.document = cambium::map::read_opendrive_document(text, "test.xodr", reading.diagnostics);
   return reading;
 }
 
@@ -390,7 +391,7 @@ TEST_CASE("every map of the corpus is read, or refused for a geometry that comes
   for (auto const& map : maps) {
     std::vector<Diagnostic> diagnostics;
     try {
-      roads += support::read_opendrive_document(corpus::read(map), map.filename().string(), diagnostics).roads.size();
+      roads += cambium::map::read_opendrive_document(corpus::read(map), map.filename().string(), diagnostics).roads.size();
     } catch (MapError const& error) {
       ++refused;
       CHECK(contains(error.what(), "not supported yet"));

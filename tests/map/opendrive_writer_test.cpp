@@ -19,6 +19,7 @@
 #include "cambium/core/random.hpp"
 #include "../support/maps.hpp"
 #include "cambium/map/detail/xml_context.hpp"
+#include "cambium/map/opendrive.hpp"
 
 namespace {
 
@@ -28,7 +29,7 @@ using cambium::MapError;
 
 OpenDriveDocument read(std::string const& text) {
   std::vector<Diagnostic> diagnostics;
-  return support::read_opendrive_document(text, "test.xodr", diagnostics);
+  return cambium::map::read_opendrive_document(text, "test.xodr", diagnostics);
 }
 
 std::vector<std::filesystem::path> all_maps() {

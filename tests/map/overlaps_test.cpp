@@ -350,7 +350,7 @@ TEST_CASE("on every map of the corpus overlaps end within 1 cm of where finely s
   std::size_t ends = 0;
   for (auto const& file : corpus::maps(*folder)) {
     CAPTURE(file.stem().string());
-    auto const map = support::load_opendrive(file.string()).map;
+    auto const map = cambium::load_opendrive(file.string()).map;
     auto const twin = cambium::load_opendrive(file.string(), fine).map;
     REQUIRE(map->lanes().size() == twin->lanes().size());
     std::vector<Lane> lanes(twin->lanes().begin(), twin->lanes().end());

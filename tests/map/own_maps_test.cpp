@@ -14,6 +14,7 @@
 #include "../support/corpus.hpp"
 #include "../viewer/browser.hpp"
 #include "cambium/map/build_corridor.hpp"
+#include "cambium/map/opendrive.hpp"
 #include "../support/maps.hpp"
 
 namespace {
@@ -96,7 +97,7 @@ TEST_CASE("own maps load without a diagnostic, and are those that this file know
   CHECK(corpus::maps(folder).size() == all_ways.size());
   for (auto const& ways : all_ways) {
     CAPTURE(ways.file);
-    auto const loaded = support::load_opendrive((folder / ways.file).string());
+    auto const loaded = cambium::load_opendrive((folder / ways.file).string());
     for (auto const& d : loaded.diagnostics) FAIL_CHECK(to_string(d));
     for (auto const& lane : loaded.map->lanes())
       CHECK_MESSAGE(std::isfinite(lane.speed_limit_at(0.0)), loaded.map->describe(lane.id));
@@ -106,7 +107,7 @@ TEST_CASE("own maps load without a diagnostic, and are those that this file know
 TEST_CASE("in own maps geometries meet to a nanometre, and joined lanes in position, direction and borders") {
   for (auto const& ways : all_ways) {
     CAPTURE(ways.file);
-    auto const map = support::load_opendrive((folder / ways.file).string()).map;
+    auto const map = cambium::load_opendrive((folder / ways.file).string()).map;
     for (auto const& road : map->roads()) {
       auto const all = road.reference_line.geometries();
       for (std::size_t i = 1; i < all.size(); ++i) {
@@ -133,7 +134,7 @@ TEST_CASE("in own maps geometries meet to a nanometre, and joined lanes in posit
 TEST_CASE("in own maps every way in leads to every way out that it should, along corridors without kinks") {
   for (auto const& ways : all_ways) {
     CAPTURE(ways.file);
-    auto const map = support::load_opendrive((folder / ways.file).string()).map;
+    auto const map = cambium::load_opendrive((folder / ways.file).string()).map;
     std::set<std::string> roads;
     int lane_pairs = 0;
     double largest_turn = 0.0, largest_curvature = 0.0;
@@ -167,16 +168,16 @@ TEST_CASE("in own maps every way in leads to every way out that it should, along
 TEST_CASE("in the intersections those ways cross that must, and no others") {
   for (auto const& [file, count] : {std::pair{"intersection_3way.xodr", 3u}, {"intersection_4way.xodr", 36u}}) {
     CAPTURE(file);
-    auto const map = support::load_opendrive((folder / file).string()).map;
+    auto const map = cambium::load_opendrive((folder / file).string()).map;
     CHECK(crossings(*map).size() == count);
     CHECK(crossings(*map) == alternating(*map));
   }
   for (auto const* file : {"roundabout.xodr", "highway_exit.xodr", "merging.xodr", "lane_drop.xodr", "highway.xodr"})
-    CHECK(crossings(*support::load_opendrive((folder / file).string()).map).empty());
+    CHECK(crossings(*cambium::load_opendrive((folder / file).string()).map).empty());
 }
 
 TEST_CASE("in the roundabout each arm merges into the ring and splits off it") {
-  auto const map = support::load_opendrive((folder / "roundabout.xodr").string()).map;
+  auto const map = cambium::load_opendrive((folder / "roundabout.xodr").string()).map;
   for (std::string const arm : {"1", "2", "3", "4"}) {
     auto const& ring = map->lane(map->find_lane(arm + "01", 1.0, -1));
     auto const has = [&ring](LaneId other, OverlapKind kind) {

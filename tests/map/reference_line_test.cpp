@@ -7,6 +7,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "cambium/map/opendrive.hpp"
 #include "cambium/map/reference_line.hpp"
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"
@@ -49,7 +50,7 @@ struct Comparison {
 Comparison compare_with_oracle(std::filesystem::path const& map) {
   std::vector<cambium::Diagnostic> diagnostics;
   OpenDriveDocument const document =
-      support::read_opendrive_document(corpus::read(map), map.filename().string(), diagnostics);
+      cambium::map::read_opendrive_document(corpus::read(map), map.filename().string(), diagnostics);
   std::unordered_map<std::string, ReferenceLine> lines;
   for (auto const& road : document.roads) lines[road.id] = make_reference_line(road, document.header.offset);
   Comparison result;

@@ -9,6 +9,7 @@
 #include <doctest/doctest.h>
 
 #include "cambium/map/build_corridor.hpp"
+#include "cambium/map/opendrive.hpp"
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"
 #include "road_text.hpp"
@@ -24,7 +25,7 @@ TEST_CASE("a point that only one road covers is found on that road, in that lane
   int all = 0;
   for (auto const& file : corpus::maps(*folder)) {
     CAPTURE(file.stem().string());
-    auto const map = support::load_opendrive(file.string()).map;
+    auto const map = cambium::load_opendrive(file.string()).map;
     int rows = 0, narrow = 0;
     double largest_s = 0.0, largest_t = 0.0;
     for (auto const& row : corpus::table(file.parent_path() / "oracle" / file.stem().concat(".csv"))) {
@@ -60,7 +61,7 @@ TEST_CASE("a point that only one road covers is found on that road, in that lane
 TEST_CASE("of two roads that cross, a point has a place on both, the nearer centre first") {
   auto const folder = corpus::find("opendrive");
   if (!folder) return;
-  auto const map = support::load_opendrive((*folder / "Town04.xodr").string()).map;
+  auto const map = cambium::load_opendrive((*folder / "Town04.xodr").string()).map;
   std::size_t several = 0, all = 0, exact_ones = 0;
   for (auto const& lane : map->lanes()) {
     auto const p = lane.path.pose(0.5 * lane.length()).position();
@@ -86,7 +87,7 @@ TEST_CASE("of two roads that cross, a point has a place on both, the nearer cent
 TEST_CASE("something that is driven along its lanes is followed, and lost as little as it is found anew") {
   auto const folder = corpus::find("opendrive");
   if (!folder) return;
-  auto const map = support::load_opendrive((*folder / "Town04.xodr").string()).map;
+  auto const map = cambium::load_opendrive((*folder / "Town04.xodr").string()).map;
   std::mt19937 random(3);
   int steps = 0, same = 0;
   for (int k = 0; k < 50; ++k) {
@@ -114,7 +115,7 @@ TEST_CASE("a station beside a lane's path position is right to the sampling's to
   auto const folder = corpus::find("opendrive");
   if (!folder) return;
   for (auto const* name : {"Town04.xodr", "positive18.xodr", "velodrome.xodr"}) {
-    auto const map = support::load_opendrive((*folder / name).string()).map;
+    auto const map = cambium::load_opendrive((*folder / name).string()).map;
     for (auto const& lane : map->lanes())
       for (double const u : {0.0, 0.13, 0.5, 0.77, 1.0}) {
         double const s = u * lane.length();

@@ -6,6 +6,7 @@
 
 #include <doctest/doctest.h>
 
+#include "cambium/map/opendrive.hpp"
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"
 
@@ -38,7 +39,7 @@ TEST_CASE("the reference line's height agrees with the oracle on every map of th
   if (!folder) return;
   int rows = 0, banked = 0;
   for (auto const& file : corpus::maps(*folder)) {
-    auto const map = support::load_opendrive(file.string()).map;
+    auto const map = cambium::load_opendrive(file.string()).map;
     double largest = 0.0;
     for (auto const& row : corpus::table(file.parent_path() / "oracle" / file.stem().concat(".csv"))) {
       auto const number = [&row](std::size_t column) { return std::stod(row[column]); };

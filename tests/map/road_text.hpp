@@ -8,6 +8,7 @@
 
 #include <doctest/doctest.h>
 
+#include "cambium/map/opendrive.hpp"
 #include "../support/maps.hpp"
 
 /// OpenDRIVE texts put together in tests: what is not said is a straight road of 100 m with one lane of 3.5 m.
@@ -108,12 +109,12 @@ inline std::string junction(std::string const& id, std::string const& connection
   return "<junction id=\"" + id + "\" name=\"\" type=\"" + type + "\">" + connections + "</junction>";
 }
 
-inline support::Loaded load(std::string const& text, cambium::MapOptions const& options = {}) {
-  return support::parse_opendrive(text, options, "test.xodr");
+inline cambium::LoadedMap load(std::string const& text, cambium::MapOptions const& options = {}) {
+  return cambium::parse_opendrive(text, options, "test.xodr");
 }
 
 /// How many findings of the severity have `words` in their sentence.
-inline int count(support::Loaded const& loaded, cambium::Severity severity, std::string const& words = "") {
+inline int count(cambium::LoadedMap const& loaded, cambium::Severity severity, std::string const& words = "") {
   int found = 0;
   for (auto const& d : loaded.diagnostics)
     found += d.severity == severity && d.sentence.find(words) != std::string::npos;
@@ -126,10 +127,10 @@ struct At {
   double s;
   int lane;
 };
-inline cambium::map::Lane const& lane_at(support::Loaded const& loaded, At const& at) {
+inline cambium::map::Lane const& lane_at(cambium::LoadedMap const& loaded, At const& at) {
   return loaded.map->lane(loaded.map->find_lane(at.road, at.s, at.lane));
 }
-inline bool leads(support::Loaded const& loaded, At const& from, At const& to) {
+inline bool leads(cambium::LoadedMap const& loaded, At const& from, At const& to) {
   auto const &a = lane_at(loaded, from), &b = lane_at(loaded, to);
   auto const has = [](auto const& ids, cambium::LaneId id) {
     return std::find(ids.begin(), ids.end(), id) != ids.end();

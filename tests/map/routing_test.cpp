@@ -1,4 +1,4 @@
-#include "cambium/map/map_impl.hpp"
+#include "cambium/map/map.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +12,7 @@
 
 #include <doctest/doctest.h>
 
+#include "cambium/map/opendrive.hpp"
 #include "../support/corpus.hpp"
 
 #include "lanes_by_hand.hpp"
@@ -459,7 +460,7 @@ TEST_CASE("on real maps routes cost what a plain relaxation says, go with the tr
   std::size_t maps = 0;
   for (auto const& file : corpus::maps(*folder)) {
     CAPTURE(file.filename().string());
-    auto const map = support::load_opendrive(file.string()).map;
+    auto const map = cambium::load_opendrive(file.string()).map;
     ++maps;
     Numbers random{maps};
     auto const any = [&] { return static_cast<LaneId>(random(0, static_cast<double>(map->lanes().size()) - 1e-9)); };

@@ -8,6 +8,7 @@
 
 #include <doctest/doctest.h>
 
+#include "cambium/map/opendrive.hpp"
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"
 
@@ -66,7 +67,7 @@ TEST_CASE("sampled lanes keep within the tolerances between their vertices on ev
   for (auto const& file : corpus::maps(*folder)) {
     if (file.stem() == "SingleRoadNegativeWidth") continue;  // widths below 0 count as 0
     Deviation worst;
-    auto const map = support::load_opendrive(file.string()).map;
+    auto const map = cambium::load_opendrive(file.string()).map;
     for (auto const& lane : map->lanes())
       if (!is_valid(lane.merges_into)) add_deviation(*map, lane, worst);
     MESSAGE(file.stem().string() << ": " << worst.places << " places, path " << worst.path << " m, border "

@@ -10,6 +10,7 @@
 #include <pugixml.hpp>
 
 #include "cambium/core/error.hpp"
+#include "cambium/map/opendrive.hpp"
 #include "cambium/map/opendrive_writer.hpp"
 
 #include "../support/maps.hpp"
@@ -93,7 +94,7 @@ struct Outcome {
 
 Outcome outcome_of(std::string const& text) {
   std::vector<cambium::Diagnostic> diagnostics;
-  auto const document = support::read_opendrive_document(text, "test.xodr", diagnostics);
+  auto const document = cambium::map::read_opendrive_document(text, "test.xodr", diagnostics);
   Outcome outcome{{}, cambium::map::write_opendrive(document)};
   for (auto const& d : diagnostics) outcome.findings.push_back(d.element);
   return outcome;
@@ -227,7 +228,7 @@ TEST_CASE("attributes that nobody knows give one finding for each kind of elemen
   for (std::size_t at = 0; (at = text.find("<speed ", at)) != std::string::npos; at += 7)
     text.insert(at + 7, "v=\"1\" ");
   std::vector<cambium::Diagnostic> diagnostics;
-  (void)support::read_opendrive_document(text, "test.xodr", diagnostics);
+  (void)cambium::map::read_opendrive_document(text, "test.xodr", diagnostics);
   REQUIRE(diagnostics.size() == 2);
   CHECK(to_string(diagnostics[0]).find("like 1 more") != std::string::npos);
   CHECK(diagnostics[0].element == "speed");
@@ -245,7 +246,7 @@ TEST_CASE("a record with a bad place is left out") {
       text.replace(at, record.size(), bad);
   }
   std::vector<cambium::Diagnostic> diagnostics;
-  auto const road = support::read_opendrive_document(text, "test.xodr", diagnostics).roads.at(0);
+  auto const road = cambium::map::read_opendrive_document(text, "test.xodr", diagnostics).roads.at(0);
   CHECK(road.types.empty());
   for (auto const& lane : road.lane_sections.at(0).lanes) {
     CHECK(lane.road_marks.empty());

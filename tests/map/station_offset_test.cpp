@@ -8,6 +8,7 @@
 
 #include <doctest/doctest.h>
 
+#include "cambium/map/opendrive.hpp"
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"
 
@@ -72,7 +73,7 @@ TEST_CASE("the nearest point of a reference line is found on every map of the co
   if (!folder) return;
   std::mt19937 random(7);
   for (auto const& file : corpus::maps(*folder)) {
-    auto const map = support::load_opendrive(file.string()).map;
+    auto const map = cambium::load_opendrive(file.string()).map;
     CAPTURE(file.stem().string());
     for (int i = 0; i < 20; ++i) {
       auto const& road = map->roads()[random() % map->roads().size()];

@@ -10,6 +10,7 @@
 #include "../support/allocations.hpp"
 #include "../support/map_faults.hpp"
 #include "cambium/map/lane_network.hpp"
+#include "cambium/map/opendrive.hpp"
 #include "road_text.hpp"
 #include "../support/maps.hpp"
 
@@ -64,7 +65,7 @@ std::string one_road(double length, std::string const& geometries, std::string c
 std::string const one_lane = section(0, lane(-1, width(0, 3)));
 
 /// The map of a text, free of faults; and that it has no finding, where `is_clean`.
-support::Loaded load(std::string const& text, bool is_clean = true) {
+cambium::LoadedMap load(std::string const& text, bool is_clean = true) {
   auto loaded = road_text::load(text);
   CHECK(map_faults::first_fault(*loaded.map) == "");
   if (is_clean) CHECK_MESSAGE(loaded.diagnostics.empty(), to_string(loaded.diagnostics.front()));

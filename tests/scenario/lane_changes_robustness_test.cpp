@@ -13,6 +13,7 @@
 #include "../support/samples.hpp"
 #include "cambium/behavior/presets.hpp"
 #include "cambium/behavior/zip_merge.hpp"
+#include "cambium/map/opendrive.hpp"
 #include "cambium/observer/delayed.hpp"
 #include "cambium/observer/observer_set.hpp"
 #include "cambium/observer/occluded.hpp"
@@ -174,7 +175,7 @@ TEST_CASE("nobody collides on the corpus' roads of several lanes, whatever they 
   for (auto const& file : corpus::maps(*root / "opendrive")) {
     std::shared_ptr<cb::Map const> map;
     try {
-      map = support::load_opendrive(file.string()).map;
+      map = cambium::load_opendrive(file.string()).map;
     } catch (cb::Error const&) {
       continue;  // files that are wrong on purpose
     }

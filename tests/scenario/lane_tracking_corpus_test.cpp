@@ -10,6 +10,7 @@
 #include "cambium/behavior/behavior_set.hpp"
 #include "cambium/behavior/idm_lane_tracking.hpp"
 #include "cambium/execution/interpolate.hpp"
+#include "cambium/map/opendrive.hpp"
 #include "cambium/world/world.hpp"
 
 namespace cb = cambium;
@@ -23,7 +24,7 @@ TEST_CASE("lane tracking stays near the centre line on every map of the corpus")
   for (auto const& file : corpus::maps(*root / "opendrive")) {
     std::shared_ptr<cb::Map const> map;
     try {
-      map = support::load_opendrive(file.string()).map;
+      map = cambium::load_opendrive(file.string()).map;
     } catch (cb::Error const&) {
       continue;  // files that are wrong on purpose
     }

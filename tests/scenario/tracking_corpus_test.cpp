@@ -15,6 +15,7 @@
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/execution/lqr.hpp"
 #include "cambium/execution/stanley.hpp"
+#include "cambium/map/opendrive.hpp"
 #include "cambium/world/world.hpp"
 
 namespace cb = cambium;
@@ -62,7 +63,7 @@ void for_some_lanes(std::filesystem::path const& root, std::size_t each, F const
   for (auto const& file : corpus::maps(root / "opendrive")) {
     std::shared_ptr<cb::Map const> map;
     try {
-      map = support::load_opendrive(file.string()).map;
+      map = cambium::load_opendrive(file.string()).map;
     } catch (cb::Error const&) {
       continue;  // files that are wrong on purpose
     }

@@ -36,30 +36,4 @@ std::shared_ptr<cambium::Map const> corpus_map(std::string const& name) {
   return file ? cambium::load_opendrive(file->string()).map : nullptr;
 }
 
-Loaded load_opendrive(std::string const& path, cambium::MapOptions const& options) {
-  auto [map, diagnostics] = cambium::load_opendrive(path, options);
-  return {std::move(map), std::move(diagnostics)};
-}
-
-Loaded parse_opendrive(std::string_view text, cambium::MapOptions const& options, std::string const& file) {
-  auto [map, diagnostics] = cambium::parse_opendrive(text, options, file);
-  return {std::move(map), std::move(diagnostics)};
-}
-
-cambium::map::OpenDriveDocument read_opendrive_document(std::string_view text, std::string file,
-                                                        std::vector<cambium::Diagnostic>& diagnostics) {
-  return cambium::map::read_opendrive_document(text, std::move(file), diagnostics);
-}
-
-cambium::map::OpenDriveDocument load_opendrive_document(std::string const& path,
-                                                        std::vector<cambium::Diagnostic>& diagnostics) {
-  return cambium::map::load_opendrive_document(path, diagnostics);
-}
-
-std::shared_ptr<cambium::Map const> build_map(cambium::map::OpenDriveDocument const& document,
-                                              cambium::MapOptions const& options, std::string file,
-                                              std::vector<cambium::Diagnostic>& diagnostics) {
-  return cambium::map::build_map(document, options, std::move(file), diagnostics);
-}
-
 }  // namespace support

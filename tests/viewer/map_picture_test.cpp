@@ -5,6 +5,7 @@
 
 #include <doctest/doctest.h>
 
+#include "cambium/map/opendrive.hpp"
 #include "../map/road_text.hpp"
 
 namespace {
@@ -23,7 +24,7 @@ double attribute(std::string const& picture, std::string const& name) {
   return std::stod(picture.substr(at + name.size() + 3));
 }
 
-support::Loaded two_roads() {
+cambium::LoadedMap two_roads() {
   road_text::Road walked, far;
   walked.sections[0].lanes = {{.id = 1}, {.id = -1}, {.id = -2, .type = "sidewalk", .width = 2.0}};
   far.id = "far";
@@ -59,7 +60,7 @@ TEST_CASE("the legend names what the picture has, and nothing else") {
   for (char const* entry : {"travel direction", "leads to", "merges with one"}) CHECK_FALSE(has(bare, entry));
   CHECK_FALSE(has(cambium::svg_map_picture(*loaded.map, {.legend = false}), "class=\"legend\""));
   CHECK(count(cambium::html_map_picture(*loaded.map), "class=\"legend\"") == 1);
-  auto const junction = support::load_opendrive(CAMBIUM_SOURCE_DIR "/maps/intersection_4way.xodr");
+  auto const junction = cambium::load_opendrive(CAMBIUM_SOURCE_DIR "/maps/intersection_4way.xodr");
   auto const crossing = cambium::svg_map_picture(*junction.map);
   CHECK(has(crossing, "ground of two lanes"));
   CHECK(has(crossing, ">leads to<"));

@@ -1,15 +1,15 @@
-#include "maps.hpp"
+#pragma once
 
 #include <cmath>
+#include <memory>
 #include <sstream>
 
 #include "cambium/map/opendrive.hpp"
 
-std::shared_ptr<cambium::Map const> support::load_map(std::string const& file) {
-  return cambium::load_opendrive(file).map;
-}
+namespace yardstick {
 
-std::shared_ptr<cambium::Map const> support::winding_road(double length) {
+/// A winding carriageway of three lanes and at least `length` metres.
+inline std::shared_ptr<cambium::Map const> winding_road(double length) {
   constexpr double piece = 400.0, curvature = 1.0 / 700.0;
   int const pieces = static_cast<int>(std::ceil(length / piece));
   std::ostringstream xml;
@@ -33,3 +33,5 @@ std::shared_ptr<cambium::Map const> support::winding_road(double length) {
   xml << "</right></laneSection></lanes></road></OpenDRIVE>";
   return cambium::parse_opendrive(xml.str()).map;
 }
+
+}  // namespace yardstick
