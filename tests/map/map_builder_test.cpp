@@ -333,6 +333,16 @@ TEST_CASE("what is wrong in a plan is named by its number") {
   has(complaint([](RoadPlan& p) { p.line.front().s = 0.004; }), "no error");  // rounded as in files
 }
 
+TEST_CASE("a map of nothing is refused with what to add, and no word about a file") {
+  CHECK(what_of([] { (void)MapBuilder("mine").build(); }) ==
+        "map 'mine': no road has been added to it; call MapBuilder::add_road before build");
+  MapBuilder bare;
+  bare.add_road({.id = "1", .line = lay_from({}, {{50.0}}), .sections = {{}}});
+  auto const what = what_of([&] { (void)bare.build(); });
+  CHECK_MESSAGE(what.find("the map has no lane with a length") < what.size(), what);
+  CHECK_MESSAGE(what.find("file") == what.npos, what);
+}
+
 TEST_CASE("what fails changes nothing") {
   MapBuilder builder;
   for (auto const* id : {"8", "9"}) builder.add_junction(id);

@@ -125,6 +125,54 @@ TEST_CASE("polylines that make no lane are refused") {
     CHECK_THROWS_AS((void)lanes_between(borders), MapError);
 }
 
+TEST_CASE("errors of polylines name the road and the point, and tell what is no number from what is too close") {
+  double const nan = std::numeric_limits<double>::quiet_NaN(), far = 1e9;
+  auto const said = [](auto const& make) -> std::string {
+    try {
+      (void)make();
+    } catch (MapError const& e) {
+      return e.what();
+    }
+    return "";
+  };
+  std::vector<SideWidths> const widths{{1, 1}};
+  auto const along = [&](std::vector<Point> const& points, std::string const& id = {}) {
+    return said([&] { return lane_along(points, widths, {}, id); });
+  };
+  CHECK(along({{0, 0}, {10, 0}, {nan, 5}}, "12") ==
+        "road 12: point 2 (of 0 to 2) is not a finite number: nan, 5; give finite coordinates [m]");
+  CHECK(
+      along({{0, 0}, {10, 0}, {10, 0.0004}, {20, 0}}, "12") ==
+      "road 12: point 2 (of 0 to 3) is less than a millimetre from the one before: 0.0004 m; leave one of the two out");
+  CHECK(along({{0, 0}, {10, 0}, {10, 0}}) ==
+        "polyline: point 2 (of 0 to 2) is less than a millimetre from the one before: 0 m; leave one of the two out");
+  CHECK(along({{0, far}, {10, far}}) ==
+        "polyline: point 0 (of 0 to 1) is beyond 100 000 km: 0, 1e+09; give "
+        "coordinates in metres");
+  CHECK(along({{0, 0}, {2e6, 0}}) ==
+        "polyline: point 1 (of 0 to 1) is 2e+06 m from the one before; give points within 1000 km");
+  CHECK(along({{0, 0}}, "a") == "road a: it has 1 points; give at least two");
+  std::vector<Point> const line{{0, 0}, {10, 0}, {20, 1}};
+  CHECK(said([&] {
+          return lane_along(line, widths, std::vector<double>{0, nan, 0}, "7");
+        }) == "road 7: point 1 (of 0 to 2) has a heading of nan; give radians, up to 10 000");
+  CHECK(said([&] {
+          return lane_along(line, std::vector<SideWidths>{{1, 1}, {1, -1}, {1, 1}}, {}, "7");
+        }) ==
+        "road 7: the widths at point 1 are 1 and -1 m, not numbers from 0, up to 1 km wide; give the distances to the "
+        "borders in m");
+  using Borders = std::vector<std::vector<Point>>;
+  auto const between = [&](Borders const& borders) { return said([&] { return lanes_between(borders, "12"); }); };
+  CHECK(between({line, {{0, -3}, {20, nan}}}) ==
+        "road 12, border 1: point 1 (of 0 to 1) is not a finite number: 20, nan; give finite coordinates [m]");
+  CHECK(between({line, {{0, 3}, {20, 4}}}) ==
+        "road 12, border 1: it does not pass within 100 m to the right of border 0 at 0 m; give borders from left to "
+        "right, in travel direction");
+  CHECK(between({line}) == "road 12: there are fewer than two borders; give at least two");
+  CHECK(lane_along(line, widths, {}, "12").id == "12");
+  CHECK(lanes_between(Borders{line, {{0, -3}, {20, -3}}}, "12").id == "12");
+}
+
 TEST_CASE("a centre line is read from a table of x and y") {
   for (auto const* text : {"x,y\n0,0\n10,0\n20,1\n", "# a lane\r\nx;y\r\n0;0\r\n\r\n10;+0.0\r\n 20 ; 1e0 \r\n",
                            "0,0\n10,0\n20,1", "\xEF\xBB\xBFid,\"y\",\"x\"\n7,0,0\n7,0,10\n7,0,10\nq,1,20\n"}) {

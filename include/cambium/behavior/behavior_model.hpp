@@ -65,6 +65,55 @@ concept BehaviorModel = std::copyable<B> && std::copyable<MemoryOf<B>> && std::d
       { behavior.plan(view, memory, dt, workspace) } -> std::same_as<Plan<ViewArchetype>>;
     });
 
+namespace detail {
+struct HasPlan {
+  int plan;
+};
+template <class B>
+struct WithAnotherPlan : B, HasPlan {};
+/// Whether `B` has a member of the name plan, be it a template: beside another one the name says nothing.
+template <class B>
+concept NamesPlan = !requires {
+  &WithAnotherPlan<B>::plan;
+};
+/// Whether `plan` can be called on a `B`, or a `B const`, whatever it returns.
+template <class B>
+concept Plans = requires(B behavior, ViewArchetype const view, cambium::MemoryOf<B> memory, double dt) {
+  behavior.plan(view, memory, dt);
+}
+|| requires(B behavior, ViewArchetype const view, cambium::MemoryOf<B> memory, double dt,
+            cambium::WorkspaceOf<B>& workspace) {
+  behavior.plan(view, memory, dt, workspace);
+};
+
+/// True; says in a sentence what `B` lacks to be a behaviour.
+template <class B>
+[[nodiscard]] constexpr bool check_behavior() {
+  if constexpr (!BehaviorModel<B>) {
+    using Behavior = std::remove_const_t<B>;
+    constexpr bool has_plan = NamesPlan<Behavior>, plans = Plans<Behavior>, plans_const = Plans<Behavior const>;
+    static_assert(std::copyable<Behavior>, "cambium::BehaviorSet<...>: a behaviour must be a copyable struct");
+    static_assert(
+        std::copyable<cambium::MemoryOf<Behavior>> && std::default_initializable<cambium::MemoryOf<Behavior>>,
+        "cambium::BehaviorSet<...>: a behaviour's Memory must be copyable and default constructible, for it is "
+        "copied with the frame");
+    static_assert(has_plan,
+                  "cambium::BehaviorSet<...>: each alternative must be a behaviour, and this one has no function plan: "
+                  "`template <class View> Plan<View> plan(View const&, Memory&, double dt) const` (see BehaviorModel)");
+    static_assert(!has_plan || !plans || plans_const,
+                  "cambium::BehaviorSet<...>: a behaviour's plan must be const: what it remembers is its Memory");
+    static_assert(
+        !has_plan || plans,
+        "cambium::BehaviorSet<...>: a behaviour's plan must take (View const& view, Memory& memory, double dt), "
+        "View being a template parameter, and memory a NoMemory& where it names no Memory");
+    static_assert(!plans_const,
+                  "cambium::BehaviorSet<...>: a behaviour's plan must return cambium::Plan<View>, the type View being "
+                  "that of what it is called with");
+  }
+  return true;
+}
+}  // namespace detail
+
 /// Tells a behaviour's memory that the vehicle goes `way` [m] less along its last plan than that led, and whether it
 /// leaves the plan's course: what those who plan in another's stead call, see `RssConformant`.
 template <class Memory>

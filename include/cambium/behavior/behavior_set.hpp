@@ -56,10 +56,7 @@ template <class... Behaviors>
 struct BehaviorSet {
   static_assert(sizeof...(Behaviors) > 0,
                 "cambium::BehaviorSet<...>: name at least one behaviour, as in BehaviorSet<cambium::IdmClassic>");
-  static_assert((BehaviorModel<Behaviors> && ...),
-                "cambium::BehaviorSet<...>: each alternative must be a behaviour: a copyable struct with "
-                "`template <class View> Plan<View> plan(View const&, Memory&, double dt) const` (see BehaviorModel)");
-
+  static_assert((detail::check_behavior<Behaviors>() && ...));
   static_assert(
       detail::all_different<Behaviors...>,
       "cambium::BehaviorSet<...>: name each behaviour once; agents of one model have parameters of their own");

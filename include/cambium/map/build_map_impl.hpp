@@ -63,8 +63,8 @@ class MapBuild {
       for (std::size_t k = 0; k < parts_.roads[i].sections.size(); ++k)
         add_section(document_.roads[i], parts_.roads[i], k);
     if (parts_.lanes.empty())
-      throw MapError(file_, "the file has no lane with a length" + likely_cause(diagnostics_),
-                     "give a file with lanes beside lane 0");
+      throw MapError(file_, "the map has no lane with a length" + likely_cause(diagnostics_),
+                     "give roads that have lanes beside lane 0");
     if (std::none_of(parts_.lanes.begin(), parts_.lanes.end(), [](Lane const& lane) { return lane.drivable(); }))
       diagnostics_.push_back({Severity::warning, file_, 0, {}, {}, "there is no lane that one may drive on"});
   }

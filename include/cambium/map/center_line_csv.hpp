@@ -37,8 +37,8 @@ struct CenterLine {
 /// smaller one on both sides (a lane's path is the middle of its borders), and the rest becomes a lane of the type
 /// shoulder, 1 or -2: so the outermost borders are the table's at its points, but nobody plans to drive on the rest.
 /// Who wants the whole width as one lane, with its middle as the path, gives `line.points` and `line.widths` to the
-/// other `lane_along`. Throws `MapError` as that.
-[[nodiscard]] RoadPlan lane_along(CenterLine const& line, double lane_width = 3.5);
+/// other `lane_along`. `id`: the road's. Throws `MapError` as that.
+[[nodiscard]] RoadPlan lane_along(CenterLine const& line, double lane_width = 3.5, std::string const& id = {});
 
 }  // namespace cambium::map
 

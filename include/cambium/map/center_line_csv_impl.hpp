@@ -156,7 +156,7 @@ CAMBIUM_COLD CenterLine load_center_line_csv(std::string const& path, geometry::
   return read_center_line_csv(text, path, origin);
 }
 
-CAMBIUM_COLD RoadPlan lane_along(CenterLine const& line, double lane_width) {
+CAMBIUM_COLD RoadPlan lane_along(CenterLine const& line, double lane_width, std::string const& id) {
   std::vector<SideWidths> own, rest;
   for (auto const& w : line.widths) {
     double const half = std::min(w.left, w.right);
@@ -167,8 +167,8 @@ CAMBIUM_COLD RoadPlan lane_along(CenterLine const& line, double lane_width) {
   constexpr double slight = 2e-3;  // [m]
   auto const is_slight = [](SideWidths const& w) { return std::max(w.left, w.right) <= slight; };
   if (std::all_of(rest.begin(), rest.end(), is_slight))
-    return lane_along(line.points, line.widths.empty() ? own : line.widths, line.headings);
-  auto plan = lane_along(line.points, own, line.headings);
+    return lane_along(line.points, line.widths.empty() ? own : line.widths, line.headings, id);
+  auto plan = lane_along(line.points, own, line.headings, id);
   auto const stations = detail::stations_of(plan.line);
   auto const add = [&](double SideWidths::*side, std::vector<LanePlan>& lanes) {
     std::vector<double> widths;

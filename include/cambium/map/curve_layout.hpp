@@ -1,6 +1,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 #include <vector>
 
 #include "cambium/core/error.hpp"
@@ -35,9 +36,11 @@ struct CurvePiece {
 /// one a point, or without these that of the circle through the point and its neighbours. On a circle of 20 m with a
 /// point every metre it stays within 0.1 mm; a corner in the points comes out rounded, and swings a little to the
 /// outside of the corner before and behind it: give points close together where the way turns. Throws `MapError` with
-/// fewer than two points, or consecutive ones less than a millimetre apart.
+/// fewer than two points, ones that are not finite, or consecutive ones less than a millimetre apart; `where` names the
+/// line there, and points are counted from 0.
 [[nodiscard]] std::vector<Geometry> curve_through(std::span<geometry::Point const> points,
-                                                  std::span<double const> headings = {});
+                                                  std::span<double const> headings = {},
+                                                  std::string const& where = "polyline");
 
 }  // namespace cambium::map
 

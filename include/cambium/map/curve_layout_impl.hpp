@@ -166,22 +166,43 @@ CAMBIUM_COLD std::vector<Geometry> connecting_curve(geometry::Pose const& from, 
   return lay_from(from, pieces);
 }
 
-CAMBIUM_COLD std::vector<Geometry> curve_through(std::span<geometry::Point const> points,
-                                                 std::span<double const> headings) {
+namespace detail {
+/// Throws `MapError` where no curve goes through the points.
+inline void check_points(std::span<geometry::Point const> points, std::span<double const> headings,
+                         std::string const& where) {
+  auto const text = [](double value) { return cambium::detail::rounded_text(value); };
+  auto const fail = [&](std::string const& what, char const* remedy) { throw MapError(where, what, remedy); };
   auto const n = points.size();
-  if (n < 2) throw MapError("polyline", "it has fewer than two points", "give at least two");
+  if (n < 2) fail("it has " + std::to_string(n) + " points", "give at least two");
   if (!headings.empty() && headings.size() != n)
-    throw MapError("polyline",
-                   "it has " + std::to_string(n) + " points, but " + std::to_string(headings.size()) + " headings",
-                   "give one heading a point, or none");
+    fail("it has " + std::to_string(n) + " points, but " + std::to_string(headings.size()) + " headings",
+         "give one heading a point, or none");
+  for (std::size_t i = 0; i < n; ++i) {
+    auto const point = [i, n] { return "point " + std::to_string(i) + " (of 0 to " + std::to_string(n - 1) + ") "; };
+    double const x = points[i].x(), y = points[i].y();
+    if (!std::isfinite(x) || !std::isfinite(y))
+      fail(point() + "is not a finite number: " + text(x) + ", " + text(y), "give finite coordinates [m]");
+    if (std::max(std::abs(x), std::abs(y)) > 1e8)
+      fail(point() + "is beyond 100 000 km: " + text(x) + ", " + text(y), "give coordinates in metres");
+    if (!headings.empty() && !(std::abs(headings[i]) <= 1e4))
+      fail(point() + "has a heading of " + text(headings[i]), "give radians, up to 10 000");
+    if (i == 0) continue;
+    double const apart = (points[i] - points[i - 1]).norm();
+    if (!(apart > 1e-3))
+      fail(point() + "is less than a millimetre from the one before: " + text(apart) + " m",
+           "leave one of the two out");
+    if (!(apart < 1e6)) fail(point() + "is " + text(apart) + " m from the one before", "give points within 1000 km");
+  }
+}
+}  // namespace detail
+
+CAMBIUM_COLD std::vector<Geometry> curve_through(std::span<geometry::Point const> points,
+                                                 std::span<double const> headings, std::string const& where) {
+  detail::check_points(points, headings, where);
+  auto const n = points.size();
   std::vector<double> lengths, directions;
   for (std::size_t i = 0; i + 1 < n; ++i) {
     auto const chord = (points[i + 1] - points[i]);
-    if (!(chord.norm() > 1e-3) || !(chord.norm() < 1e6))
-      throw MapError("polyline",
-                     "points " + std::to_string(i) + " and " + std::to_string(i + 1) +
-                         " are less than a millimetre apart, or not finite",
-                     "leave one of them out");
     lengths.push_back(chord.norm());
     directions.push_back(std::atan2(chord.y(), chord.x()));
   }
@@ -199,10 +220,18 @@ CAMBIUM_COLD std::vector<Geometry> curve_through(std::span<geometry::Point const
     else if (n > 2)
       heading = directions[i - 1] + turn(i - 1) * share(i - 1, i - 1);
     poses.push_back({points[i].x(), points[i].y(), detail::round_angle(heading)});
-    detail::check_pose(poses.back());
   }
   std::vector<Geometry> geometries;
-  for (std::size_t i = 0; i + 1 < n; ++i) geometries.push_back(detail::make_cubic(poses[i], poses[i + 1]));
+  for (std::size_t i = 0; i + 1 < n; ++i) {
+    try {
+      geometries.push_back(detail::make_cubic(poses[i], poses[i + 1]));
+    } catch (MapError const&) {
+      throw MapError(where,
+                     "there is no smooth curve from point " + std::to_string(i) + " (of 0 to " + std::to_string(n - 1) +
+                         ") to the next one",
+                     "move them apart, or turn their headings");
+    }
+  }
   detail::number_stations(geometries);
   return geometries;
 }

@@ -124,6 +124,9 @@ CAMBIUM_COLD opendrive::Document& MapBuilder::document() {
 
 CAMBIUM_COLD std::shared_ptr<Map const> MapBuilder::build(MapOptions const& options,
                                                           std::vector<Diagnostic>* diagnostics) const {
+  if (document_.roads.empty())
+    throw MapError("map '" + document_.header.name + "'", "no road has been added to it",
+                   "call MapBuilder::add_road before build");
   std::vector<Diagnostic> unheard;
   auto& found = diagnostics != nullptr ? *diagnostics : unheard;
   auto document = document_;

@@ -41,6 +41,8 @@ struct FrenetReport {
 /// none it brakes. `PredictionWorld` must have `Others` in its behaviour set.
 template <class PredictionWorld, class Others = ConstantAcceleration>
 struct FrenetPlanner {
+  static_assert(detail::check_planner<PredictionWorld, Others>());
+
   /// Of the course at the vehicle, so that the next one goes on without a jerk.
   struct Memory {
     float acceleration = 0.0f;  ///< [m/s^2]

@@ -7,6 +7,7 @@
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/idm_classic.hpp"
+#include "cambium/planner/detail/predicted.hpp"
 #include "cambium/planner/mcts_workspace.hpp"
 
 namespace cambium {
@@ -17,6 +18,7 @@ namespace cambium {
 template <class PredictionWorld, class Actions = MacroActions, class Reward = TrafficReward, class Others = IdmClassic,
           class Options = MctsOptions<>>
 struct MctsCooperative {
+  static_assert(detail::check_planner<PredictionWorld, Others>());
   static_assert(Described<Others>,
                 "cambium: a planner's Others must be a behaviour with described parameters, as cambium::IdmClassic; "
                 "where it has none: `static constexpr auto parameters() { return parameter_list(); }`");

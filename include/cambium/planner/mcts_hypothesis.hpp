@@ -24,6 +24,7 @@ namespace cambium {
 template <class PredictionWorld, class Actions = MacroActions, class Reward = TrafficReward,
           class Options = MctsOptions<>>
 struct MctsHypothesis {
+  static_assert(detail::check_planner<PredictionWorld>());
   static_assert(PredictionWorld::Behaviors::template contains<IdmHypotheses>,
                 "cambium::MctsHypothesis<PredictionWorld>: the behaviour set of PredictionWorld must contain "
                 "cambium::IdmHypotheses, as which the others are predicted");

@@ -44,6 +44,7 @@ struct PolicyTreeReport {
 /// behaviour set.
 template <class PredictionWorld>
 struct PolicyTreePlanner {
+  static_assert(detail::check_planner<PredictionWorld>());
   static_assert(PredictionWorld::Behaviors::template contains<MacroActions>,
                 "cambium::PolicyTreePlanner<PredictionWorld>: the behaviour set of PredictionWorld must contain "
                 "cambium::MacroActions, which carries out ego's actions and the others' intentions");

@@ -90,6 +90,7 @@ struct ProposalReport {
 /// its goal it drives on.
 template <class PredictionWorld, class Others = ConstantAcceleration>
 struct ProposalPlanner {
+  static_assert(detail::check_planner<PredictionWorld, Others>());
   static_assert(PredictionWorld::Behaviors::template contains<IdmProposal>,
                 "cambium::ProposalPlanner<PredictionWorld>: the behaviour set of PredictionWorld must contain "
                 "cambium::IdmProposal, who is simulated");

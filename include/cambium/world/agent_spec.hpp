@@ -3,6 +3,8 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <type_traits>
+#include <utility>
 
 #include "cambium/core/ids.hpp"
 #include "cambium/geometry/pose.hpp"
@@ -13,6 +15,44 @@
 
 namespace cambium {
 
+namespace detail {
+enum class SpecPart { behavior, goal, id };
+
+/// A part of an `AgentSpecOf`, of type `Value`: takes anything, to say in a sentence what it cannot be.
+template <class Value, SpecPart part>
+struct Given : Value {
+  Given() = default;
+  Given(Value const& value) : Value(value) {}
+  Given(Value&& value) : Value(std::move(value)) {}
+  template <class T>
+  requires(!std::is_base_of_v<Value, std::remove_cvref_t<T>>) Given(T&& value)
+      : Value(converted(std::forward<T>(value))) {}
+
+  [[nodiscard]] Value const& given() const { return *this; }
+
+ private:
+  template <class T>
+  [[nodiscard]] static Value converted(T&& value) {
+    constexpr bool fits = std::is_convertible_v<T, Value>;
+    static_assert(fits || part != SpecPart::behavior,
+                  "cambium::AgentSpec::behavior: this type is none of the Models of the world's "
+                  "cambium::BehaviorSet<Models...>; add it there");
+    static_assert(
+        fits || part != SpecPart::goal,
+        "cambium::AgentSpec::goal: this type is no cambium::Goal: NoGoal, ReachPolygon, ReachLane, StateLimits, "
+        "LaneLimits, ReachLaneEnd, ReachLaneBeside, AllGoals, AnyGoal, GoalSequence; judge by an evaluator of "
+        "your own what these cannot say");
+    static_assert(
+        fits || part != SpecPart::id,
+        "cambium::AgentSpec::id: this is no id; write cambium::AgentId{7}, or leave it out to get a free one");
+    if constexpr (fits)
+      return std::forward<T>(value);
+    else
+      return Value{};
+  }
+};
+}  // namespace detail
+
 /// An agent that is to enter a world: see `World::AgentSpec`.
 template <class Behavior, class Execution, class Dynamics, class Observer>
 struct AgentSpecOf {
@@ -21,14 +61,14 @@ struct AgentSpecOf {
   std::optional<double> heading{};                                     ///< [rad]; along the lane where not given
   double speed = 0.0;                                                  ///< [m/s]
   geometry::Shape shape{};                                             ///< a car where not given
-  Behavior behavior{};
-  Goal goal{};
+  detail::Given<Behavior, detail::SpecPart::behavior> behavior{};
+  detail::Given<Goal, detail::SpecPart::goal> goal{};
   std::optional<map::Route> route{};                ///< else the shortest to the goal; without a goal straight on
   std::shared_ptr<map::RoadCorridor const> road{};  ///< instead of a route: see `map::build_free_corridor`
   Execution execution{};
   Dynamics dynamics{};
   Observer observer{};
-  std::optional<AgentId> id{};  ///< else the next free one
+  detail::Given<std::optional<AgentId>, detail::SpecPart::id> id{};  ///< else the next free one
 };
 
 }  // namespace cambium

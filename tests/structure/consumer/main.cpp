@@ -5,7 +5,8 @@
 #include <cambium/geometry/pose.hpp>
 
 int main() {
-  Eigen::MatrixXd const twice = Eigen::MatrixXd::Identity(3, 3) * 2.0;  // Eigen comes with cambium, without its warnings
+  Eigen::MatrixXd const twice =
+      Eigen::MatrixXd::Identity(3, 3) * 2.0;  // Eigen comes with cambium, without its warnings
   cambium::geometry::Pose const pose{1.0, 2.0, 0.0};
   bool const moved = cambium::geometry::to_map(pose, {3.0, 4.0}) == cambium::geometry::Point(4.0, 6.0);
   return moved && twice.inverse()(0, 0) == 0.5 && cambium::index_of(cambium::AgentId{7}) == 7 ? 0 : 1;

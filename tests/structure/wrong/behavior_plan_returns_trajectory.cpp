@@ -1,4 +1,4 @@
-// expect: cambium::BehaviorSet<...>: each alternative must be a behaviour: a copyable struct with `template <class View> Plan<View> plan
+// expect: a behaviour's plan must return cambium::Plan<View>
 #include <cambium/behavior/behavior_set.hpp>
 
 // A trajectory is not yet a plan.

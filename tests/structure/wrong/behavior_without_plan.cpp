@@ -1,4 +1,4 @@
-// expect: cambium::BehaviorSet<...>: each alternative must be a behaviour: a copyable struct with `template <class View> Plan<View> plan
+// expect: each alternative must be a behaviour, and this one has no function plan
 #include <cambium/behavior/behavior_set.hpp>
 
 struct Dreamer {

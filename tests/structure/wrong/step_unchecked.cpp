@@ -6,7 +6,8 @@
 
 #pragma GCC diagnostic error "-Wunused-result"
 
-using Sim = cambium::World<cambium::BehaviorSet<cambium::IdmClassic>, cambium::InterpolateExecution, cambium::SingleTrack>;
+using Sim =
+    cambium::World<cambium::BehaviorSet<cambium::IdmClassic>, cambium::InterpolateExecution, cambium::SingleTrack>;
 
 // Not a number, 0, a negative or a very long step: nothing happens, and nobody would know.
 void advance(Sim& world) { world.step(-0.1); }

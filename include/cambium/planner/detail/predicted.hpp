@@ -22,14 +22,61 @@ concept Predicts = requires(View const view, Prediction<Set> const prediction) {
   typename Other::FrameType;
 };
 
+/// Whether `W` is a `cambium::World`.
+template <class W>
+inline constexpr bool is_world = requires {
+  typename W::Behaviors;
+  typename W::FrameType;
+  typename W::View;
+};
+
+/// True; says in a sentence what the `PredictionWorld` of a planner lacks to predict with behaviours `Others`.
+template <class PredictionWorld, class... Others>
+[[nodiscard]] constexpr bool check_planner() {
+  static_assert(is_world<PredictionWorld>,
+                "cambium: a planner's PredictionWorld must be a cambium::World<BehaviorSet<...>, ...>; take "
+                "World::WithBehaviors<BehaviorSet<...>> of the world that it plans in");
+  if constexpr (is_world<PredictionWorld>)
+    static_assert((PredictionWorld::Behaviors::template contains<Others> && ...),
+                  "cambium: the behaviour set of a planner's PredictionWorld must contain its Others, as which the "
+                  "others are predicted");
+  return true;
+}
+
+template <class W>
+struct PartsOf;
+template <template <class...> class World, class Set, class ExecutionType, class DynamicsType, class ObserverType>
+struct PartsOf<World<Set, ExecutionType, DynamicsType, ObserverType>> {
+  using Execution = ExecutionType;
+  using Dynamics = DynamicsType;
+  using Observer = ObserverType;
+};
+
+/// True; says in a sentence where `PredictionWorld` differs from the world that is `Predicted`.
+template <class PredictionWorld, class Predicted>
+[[nodiscard]] constexpr bool check_prediction_world() {
+  if constexpr (!std::is_same_v<PredictionWorld, Predicted>) {
+    using Given = PartsOf<PredictionWorld>;
+    using Needed = PartsOf<Predicted>;
+    static_assert(std::is_same_v<typename Given::Execution, typename Needed::Execution>,
+                  "cambium: a planner's PredictionWorld has another execution model than the world that it plans in; "
+                  "take World::WithBehaviors<BehaviorSet<...>> of that world");
+    static_assert(std::is_same_v<typename Given::Dynamics, typename Needed::Dynamics>,
+                  "cambium: a planner's PredictionWorld has another vehicle model than the world that it plans in; "
+                  "take World::WithBehaviors<BehaviorSet<...>> of that world");
+    static_assert(std::is_same_v<typename Given::Observer, typename Needed::Observer>,
+                  "cambium: a planner's PredictionWorld must have cambium::PerfectObserver; "
+                  "take World::WithBehaviors<BehaviorSet<...>> of the world that it plans in");
+  }
+  return true;
+}
+
 /// The world that is predicted; the place of the agent itself there in `ego`, nothing where it is not in traffic.
 template <class PredictionWorld, class Ego, class Others, class View>
 [[nodiscard]] PredictionWorld predicted_for(View const& view, Ego const& behavior, Others const& others,
                                             std::optional<std::uint32_t>& ego) {
   auto world = view.predict(predict_as<typename PredictionWorld::Behaviors>(behavior, others));
-  static_assert(std::is_same_v<decltype(world), PredictionWorld>,
-                "cambium: the PredictionWorld of a planner must be the world's own type with another behaviour set: "
-                "World::WithBehaviors<BehaviorSet<...>>");
+  static_assert(check_prediction_world<PredictionWorld, decltype(world)>());
   ego.reset();
   if (auto const slot = world.roster().slot_of(view.id())) ego = static_cast<std::uint32_t>(*slot);
   return world;

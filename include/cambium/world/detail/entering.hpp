@@ -102,22 +102,22 @@ template <class World>
   check_numbers(entering, where);
   typename World::Record record;
   record.state.speed = checked_speed(spec.speed, where);
-  check_if_described(spec.behavior, where);
+  check_if_described(spec.behavior.given(), where);
   check_if_described(spec.execution, where);
   check_if_described(spec.dynamics, where);
   check_observer(spec.observer, where);
   auto const [road, lane, place] = entrance(map, roster, entering, where);
-  if (is_too_large(map, spec.behavior, spec.shape, *road)) refuse_too_large(where);
+  if (is_too_large(map, spec.behavior.given(), spec.shape, *road)) refuse_too_large(where);
   record.lane = place;
   record.state.time = time;
   record.state.x = spec.position.x();
   record.state.y = spec.position.y();
   record.state.heading = spec.heading.value_or(road->corridors[place.corridor].center.pose(place.s).heading);
-  record.memory = Set::initial_memory(spec.behavior);
-  if (Set::start_time(spec.behavior) > time + same_time) record.status = AgentStatus::not_started;
+  record.memory = Set::initial_memory(spec.behavior.given());
+  if (Set::start_time(spec.behavior.given()) > time + same_time) record.status = AgentStatus::not_started;
   forget_past(record);
-  return {{id, spec.shape, road, spec.behavior, spec.execution, spec.dynamics, spec.observer},
-          entering_goal(map, spec.goal, lane, where),
+  return {{id, spec.shape, road, spec.behavior.given(), spec.execution, spec.dynamics, spec.observer},
+          entering_goal(map, spec.goal.given(), lane, where),
           record};
 }
 

@@ -1,0 +1,10 @@
+// expect: a behaviour's plan must take (View const& view, Memory& memory, double dt)
+#include <cambium/behavior/behavior_set.hpp>
+
+struct Forgetful {
+  template <class View>
+  cambium::Plan<View> plan(View const&, double) const {
+    return {};
+  }
+};
+cambium::BehaviorSet<Forgetful> set;

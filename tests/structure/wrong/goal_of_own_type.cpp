@@ -1,0 +1,12 @@
+// expect: cambium::AgentSpec::goal: this type is no cambium::Goal
+#include <cambium/behavior/idm_classic.hpp>
+#include <cambium/dynamics/single_track.hpp>
+#include <cambium/execution/interpolate.hpp>
+#include <cambium/world/world.hpp>
+
+struct Home {
+  bool at_goal(cambium::GoalSituation const&) const { return true; }
+};
+using Sim =
+    cambium::World<cambium::BehaviorSet<cambium::IdmClassic>, cambium::InterpolateExecution, cambium::SingleTrack>;
+void enter(Sim& world) { world.add({.position = {10, -1.75}, .goal = Home{}}); }
