@@ -1,4 +1,5 @@
-/// All rooms of cambium; needs Eigen and Boost headers only. OpenDRIVE files are read by cambium/map/opendrive.hpp.
+/// All rooms of cambium but what makes maps, pictures and pages: those headers are included by name, as
+/// cambium/map/opendrive.hpp (files; needs pugixml), cambium/map/map_builder.hpp (maps in code) and cambium/viewer.hpp.
 #pragma once
 
 #include "cambium/behavior.hpp"
@@ -12,5 +13,4 @@
 #include "cambium/observer.hpp"
 #include "cambium/planner.hpp"
 #include "cambium/scenario.hpp"
-#include "cambium/viewer.hpp"
 #include "cambium/world.hpp"

@@ -1,8 +1,8 @@
-/// The map room but for what only those need who make, check or write maps, or ask for more than the plane; they include
-/// it by name: `opendrive.hpp` reads files (pugixml), `map_builder.hpp` with `road_plan.hpp`, `curve_layout.hpp`,
-/// `polyline_roads.hpp` and `center_line_csv.hpp` makes maps in code, `build_map.hpp` makes one of a document,
-/// `lane_network.hpp`, `opendrive_check.hpp` and `opendrive_writer.hpp` check and write, `road_surface.hpp` (Eigen) and
-/// `road_area.hpp` (Boost.Geometry) tell where lanes lie in space, and their union.
+/// The map room but for what only those need who make, check or write maps, or ask for more than the plane; they
+/// include it by name: `opendrive.hpp` reads files (pugixml), `map_builder.hpp` with `road_plan.hpp`,
+/// `curve_layout.hpp`, `polyline_roads.hpp` and `center_line_csv.hpp` makes maps in code, `build_map.hpp` makes one of
+/// an `opendrive_document.hpp`, `lane_network.hpp`, `opendrive_check.hpp` and `opendrive_writer.hpp` check and write,
+/// `road_surface.hpp` (Eigen) and `road_area.hpp` (Boost.Geometry) tell where lanes lie in space, and their union.
 #pragma once
 
 #include "cambium/map/build_corridor.hpp"
@@ -18,10 +18,6 @@
 #include "cambium/map/lane_type.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/map_queries.hpp"
-#include "cambium/map/opendrive_document.hpp"
-#include "cambium/map/opendrive_element.hpp"
-#include "cambium/map/opendrive_lanes.hpp"
-#include "cambium/map/opendrive_objects.hpp"
 #include "cambium/map/parametric_cubic.hpp"
 #include "cambium/map/reference_line.hpp"
 #include "cambium/map/right_of_way.hpp"

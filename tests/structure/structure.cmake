@@ -115,15 +115,31 @@ add_build_test(structure.headers_alone structure_headers_alone)
 write_if_new(${structure_binary}/all_headers.cpp "${all_headers}")
 write_if_new(${structure_binary}/twice.cpp "int main() {}\n")
 add_library(structure_all_headers OBJECT EXCLUDE_FROM_ALL ${structure_binary}/all_headers.cpp)
-target_link_libraries(structure_all_headers PRIVATE cambium_test_options)
-target_compile_options(structure_all_headers PRIVATE -O0)
+target_link_libraries(structure_all_headers PRIVATE cambium::opendrive)
+target_compile_options(structure_all_headers PRIVATE -O0 ${CAMBIUM_WARNINGS} -Werror)
 add_custom_command(OUTPUT ${structure_binary}/all_headers_again.o
   COMMAND ${CMAKE_COMMAND} -E copy $<TARGET_OBJECTS:structure_all_headers> ${structure_binary}/all_headers_again.o
   DEPENDS structure_all_headers $<TARGET_OBJECTS:structure_all_headers> VERBATIM)
 add_executable(structure_headers_twice EXCLUDE_FROM_ALL ${structure_binary}/twice.cpp
   $<TARGET_OBJECTS:structure_all_headers> ${structure_binary}/all_headers_again.o)
-target_link_libraries(structure_headers_twice PRIVATE cambium_test_options)
+target_link_libraries(structure_headers_twice PRIVATE cambium::opendrive)
 add_build_test(structure.headers_twice structure_headers_twice)
+
+# A program of two translation units, one of which makes the map: header-only, with cold code compiled apart, and with one
+# unit of each kind.
+add_library(structure_drive OBJECT EXCLUDE_FROM_ALL ${structure_source}/two_units/drive.cpp)
+target_link_libraries(structure_drive PRIVATE cambium::cambium)
+foreach(kind header_only compiled mixed)
+  add_executable(structure_two_units_${kind} EXCLUDE_FROM_ALL ${structure_source}/two_units/main.cpp)
+  target_compile_definitions(structure_two_units_${kind} PRIVATE CAMBIUM_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  target_compile_options(structure_two_units_${kind} PRIVATE ${CAMBIUM_WARNINGS} -Werror)
+  add_dependencies(cambium_tests structure_two_units_${kind})
+  add_test(NAME structure.two_units.${kind} COMMAND structure_two_units_${kind})
+endforeach()
+target_link_libraries(structure_two_units_header_only PRIVATE structure_drive cambium::opendrive)
+target_sources(structure_two_units_compiled PRIVATE ${structure_source}/two_units/drive.cpp)
+target_link_libraries(structure_two_units_compiled PRIVATE cambium::compiled)
+target_link_libraries(structure_two_units_mixed PRIVATE structure_drive cambium::compiled)
 
 # All headers at once, free of warnings under each compiler there is; g++ has just compiled them where it is the project's.
 foreach(name g++ clang++-14 clang++-19)
