@@ -227,6 +227,9 @@ inline int run_benchmarks(int argc, char** argv, std::string const& purpose,
     return 2;
   }
   detail::initialize(argv[0], options);
+#ifdef CAMBIUM_BENCH_FLAGS
+  if (!options.list) std::printf("compiled by %s, %s\n", __VERSION__, CAMBIUM_BENCH_FLAGS);
+#endif
   if (!options.list && isatty(STDERR_FILENO) == 0) std::fprintf(stderr, "measuring, which takes a minute or two\n");
   TableReporter table;
   detail::JsonReporter json;

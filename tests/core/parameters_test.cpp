@@ -48,7 +48,7 @@ struct Follower {
   }
 };
 
-struct Plan {
+struct Timetable {
   std::array<double, 2> weights{0.5, 2.0};
   std::vector<Window> windows{{1.0, 2.0}, {3.0, 4.0}};
   std::shared_ptr<std::vector<Window> const> shared{};
@@ -56,10 +56,10 @@ struct Plan {
 
   static constexpr char const* name = "plan";
   static constexpr auto parameters() {
-    return parameter_list(parameter("weights", &Plan::weights, "kg", {0, 10}, "Of each half."),
-                          parameter("windows", &Plan::windows, "-", {}, "When it drives."),
-                          parameter("shared", &Plan::shared, "-", {}, "When others do."),
-                          parameter("lane", &Plan::lane, "-", {}, "Where."));
+    return parameter_list(parameter("weights", &Timetable::weights, "kg", {0, 10}, "Of each half."),
+                          parameter("windows", &Timetable::windows, "-", {}, "When it drives."),
+                          parameter("shared", &Timetable::shared, "-", {}, "When others do."),
+                          parameter("lane", &Timetable::lane, "-", {}, "Where."));
   }
 };
 
@@ -155,7 +155,7 @@ TEST_CASE("lists and ids are parameters like others: compared, hashed, shown and
   auto const shared = [](Window const& window) {
     return std::make_shared<std::vector<Window> const>(std::vector<Window>{window});
   };
-  std::vector<Plan> const different{{},
+  std::vector<Timetable> const different{{},
                                     {.weights = {0.5, 2.5}},
                                     {.weights = {2.0, 0.5}},
                                     {.windows = {}},
@@ -176,21 +176,21 @@ TEST_CASE("lists and ids are parameters like others: compared, hashed, shown and
   }
   CHECK(hashes.size() == different.size());
   CHECK(lines.size() == different.size());
-  Plan const one{.shared = shared({5.0, 6.0})}, same{.shared = shared({5.0, 6.0})};
+  Timetable const one{.shared = shared({5.0, 6.0})}, same{.shared = shared({5.0, 6.0})};
   CHECK(equal_parameters(one, same));
   CHECK(hash_parameters(one) == hash_parameters(same));
-  CHECK(to_string(Plan{}) ==
+  CHECK(to_string(Timetable{}) ==
         "plan: weights[0]=0.5 kg, weights[1]=2 kg, windows[0].from=1 s, windows[0].to=2 s, windows[1].from=3 s, "
         "windows[1].to=4 s, lane=none");
   CHECK(to_string(different.back()).ends_with("lane=7"));
   CHECK_NOTHROW(check_parameters(one));
-  CHECK_THROWS_WITH_AS(check_parameters(Plan{.weights = {1.0, 11.0}}),
+  CHECK_THROWS_WITH_AS(check_parameters(Timetable{.weights = {1.0, 11.0}}),
                        "plan.weights[1]: is 11 kg; give a value in [0, 10] kg", ParameterError);
-  CHECK_THROWS_WITH_AS(check_parameters(Plan{.windows = {{1.0, 2.0}, {-1.0, 2.0}}}),
+  CHECK_THROWS_WITH_AS(check_parameters(Timetable{.windows = {{1.0, 2.0}, {-1.0, 2.0}}}),
                        "plan.windows[1].from: is -1 s; give a value in [0, inf) s", ParameterError);
-  CHECK_THROWS_WITH_AS(check_parameters(Plan{.shared = shared({5.0, 4.0})}),
+  CHECK_THROWS_WITH_AS(check_parameters(Timetable{.shared = shared({5.0, 4.0})}),
                        "plan.shared[0]: ends before it begins; swap the two", ParameterError);
-  CHECK(describe_parameters<Plan>() ==
+  CHECK(describe_parameters<Timetable>() ==
         "| name | default | unit | range | meaning |\n"
         "|---|---|---|---|---|\n"
         "| weights[] | - | kg | [0, 10] | Of each half. |\n"

@@ -24,10 +24,14 @@ constexpr std::size_t no_room = rooms.size();
 constexpr std::array light_rooms = {"dynamics", "execution", "behavior",   "observer",
                                     "goal",     "world",     "evaluation", "planner"};
 /// Headers (beginnings of paths) that may include Boost.Geometry and Boost.Graph.
-constexpr std::array heavy_headers = {"cambium/map/detail/find_routes", "cambium/map/map_impl", "cambium/map/build", "cambium/map/opendrive",
-                                      "cambium/geometry/polygon"};
+constexpr std::array heavy_headers = {
+    "cambium/map/detail/find_routes", "cambium/map/map_impl",     "cambium/map/build",
+    "cambium/map/opendrive",          "cambium/geometry/polygon", "cambium/geometry/detail/boost_polygon"};
 /// Headers (beginnings of paths) of cambium::opendrive; all others do without pugixml.
 constexpr std::array opendrive_headers = {"cambium/map/opendrive", "cambium/map/detail/"};
+
+/// Who makes maps brings what a map itself calls.
+bool makes_maps(std::string const& header) { return header == "cambium/map/build_map.hpp"; }
 
 /// The word after cambium/: "map" of both cambium/map.hpp and cambium/map/lane.hpp.
 std::string room_name(std::string const& header) {
@@ -49,8 +53,13 @@ bool begins_with_any(std::string const& text, Range const& beginnings) {
   return std::any_of(beginnings.begin(), beginnings.end(), [&](auto const* b) { return text.starts_with(b); });
 }
 
-/// All that `header` includes, directly or not.
-std::set<std::string> reach(Includes const& includes, std::string const& header) {
+/// The header that defines what `header` declares, where there is one.
+std::string definitions_of(std::string const& header) {
+  return header.substr(0, header.size() - std::string(".hpp").size()) + "_impl.hpp";
+}
+
+/// All that `header` includes, directly or not; `cold`: with the definitions that end headers.
+std::set<std::string> reach(Includes const& includes, std::string const& header, bool cold = true) {
   std::set<std::string> seen;
   std::vector<std::string> open{header};
   while (!open.empty()) {
@@ -58,6 +67,7 @@ std::set<std::string> reach(Includes const& includes, std::string const& header)
     open.pop_back();
     if (found == includes.end()) continue;
     for (auto const& next : found->second) {
+      if (!cold && next == definitions_of(found->first)) continue;
       if (seen.insert(next).second) open.push_back(next);
     }
   }
@@ -80,7 +90,10 @@ void check_weight(Includes const& includes, std::string const& header, std::vect
     breaches.push_back(header + " includes Boost.Geometry or Boost.Graph itself");
   }
   auto const all = reach(includes, header);
-  if (all.contains(header)) breaches.push_back(header + " includes itself in the end");
+  if (reach(includes, header, false).contains(header)) breaches.push_back(header + " includes itself in the end");
+  for (auto const& include : direct)
+    if (include.ends_with("_impl.hpp") && include != definitions_of(header) && !makes_maps(header))
+      breaches.push_back(header + " includes the definitions " + include + " of another header");
   auto const name = room_name(header);
   bool const light = std::find(light_rooms.begin(), light_rooms.end(), name) != light_rooms.end();
   auto const heavy = std::find_if(all.begin(), all.end(), is_heavy_library);
@@ -180,6 +193,11 @@ TEST_CASE("the walk finds each kind of breach") {
         "cambium/world/world.hpp drags in boost/graph/astar_search.hpp");
   CHECK(only_breach({{"cambium/core/a.hpp", {"cambium/core/a.hpp"}}}) ==
         "cambium/core/a.hpp includes itself in the end");
+  CHECK(find_breaches(
+            {{"cambium/core/a.hpp", {"cambium/core/a_impl.hpp"}}, {"cambium/core/a_impl.hpp", {"cambium/core/a.hpp"}}})
+            .empty());
+  CHECK(only_breach({{"cambium/core/a_impl.hpp", {}}, {"cambium/core/b.hpp", {"cambium/core/a_impl.hpp"}}}) ==
+        "cambium/core/b.hpp includes the definitions cambium/core/a_impl.hpp of another header");
   CHECK(only_breach({{"cambium/cambium.hpp", {"cambium/map/opendrive.hpp"}},
                      {"cambium/map/opendrive.hpp", {"pugixml.hpp"}}}) == "cambium/cambium.hpp drags in pugixml.hpp");
 }
