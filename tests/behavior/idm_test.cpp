@@ -5,7 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <string>
-#include <tuple>
 
 #include "cambium/behavior/idm_classic.hpp"
 #include "cambium/core/distributions.hpp"
@@ -141,8 +140,7 @@ TEST_CASE("whatever the parameters, the speeds and the gap, the motion is finite
   int bounded = 0;
   for (int i = 0; i < 20000; ++i) {
     cb::IdmClassic p;
-    std::apply([&](auto const&... entry) { ((p.*entry.field = any_in(entry.range, random)), ...); },
-               cb::idm_parameters<cb::IdmClassic>());
+    cb::idm_parameters<cb::IdmClassic>()([&](auto const& entry) { p.*entry.field = any_in(entry.range, random); });
     p.tolerance = any_in({1e-8, 1}, random);
     REQUIRE_NOTHROW(cb::check_parameters(p));
     double const speed = any_in({0, 60}, random), leader = any_in({0, 60}, random);

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Dense>
+
 #include "cambium/dynamics/dynamic_set.hpp"
 #include "cambium/dynamics/kinematic_point.hpp"
 #include "cambium/dynamics/single_track_steering.hpp"
@@ -237,14 +239,14 @@ TEST_CASE(
             cb::TrackingMemory<cb::State>::slots - static_cast<std::size_t>(std::ceil(step / interval - 1e-9));
         if (step > delay) continue;
         CHECK(static_cast<double>(memory.steering[first]) ==
-              doctest::Approx(-gain[0] * 0.4 - gain[1] * 0.02).epsilon(1e-6));
+              doctest::Approx(-gain.first * 0.4 - gain.second * 0.02).epsilon(1e-6));
         continue;
       }
       auto const along = lqr.longitudinal_gain(interval);
       auto twin = start;
       for (double t = 0.0; t < step - 1e-9; t += interval) {
         double const lag = twin.x - 10.0 * t, faster = twin.speed - 10.0;
-        twin = cb::drive(car, twin, {-along[0] * lag - along[1] * faster, -gain[0] * twin.y - gain[1] * twin.heading},
+        twin = cb::drive(car, twin, {-along.first * lag - along.second * faster, -gain.first * twin.y - gain.second * twin.heading},
                          interval);
       }
       CHECK(end.y == doctest::Approx(twin.y).epsilon(1e-9));

@@ -23,14 +23,14 @@ using cambium::map::build_road_corridor;
 using cambium::map::RoadDirection;
 using cambium::LoadedMap;
 
-bool has_route(Loaded const& loaded, At const& from, At const& to) {
+bool has_route(LoadedMap const& loaded, At const& from, At const& to) {
   auto const& map = *loaded.map;
   return map.shortest_route(map.find_lane(from.road, from.s, from.lane), map.find_lane(to.road, to.s, to.lane))
       .has_value();
 }
 
 /// No joined lanes are apart or kinked: whoever joins the wrong ends is found out.
-void check_that_all_meet(Loaded const& loaded) {
+void check_that_all_meet(LoadedMap const& loaded) {
   for (auto const& f : cambium::check_lane_network(*loaded.map))
     CHECK_MESSAGE((f.fault == cambium::NetworkFault::dead_end || f.fault == cambium::NetworkFault::no_way_in),
                   loaded.map->describe(f.lane) << ": " << to_string(f.fault));

@@ -9,6 +9,7 @@
 #include <doctest/doctest.h>
 
 #include "cambium/map/build_corridor.hpp"
+#include "cambium/map/detail/make_road_corridor.hpp"
 #include "lanes_by_hand.hpp"
 
 using namespace by_hand;

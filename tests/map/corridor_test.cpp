@@ -16,6 +16,7 @@
 #pragma GCC diagnostic pop
 #endif
 
+#include "cambium/geometry/detail/boost_polygon.hpp"
 #include "cambium/map/build_corridor.hpp"
 
 #include <algorithm>

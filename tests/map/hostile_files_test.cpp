@@ -19,6 +19,7 @@
 #include "cambium/core/distributions.hpp"
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/execution/interpolate.hpp"
+#include "cambium/map/build_corridor.hpp"
 #include "cambium/map/opendrive.hpp"
 #include "cambium/world/world.hpp"
 #include "../support/maps.hpp"

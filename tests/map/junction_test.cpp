@@ -12,6 +12,7 @@
 
 #include "cambium/geometry/convex_hull.hpp"
 #include "cambium/map/opendrive.hpp"
+#include "cambium/map/right_of_way.hpp"
 #include "../support/corpus.hpp"
 #include "lanes_by_hand.hpp"
 #include "../support/maps.hpp"

@@ -10,6 +10,7 @@
 
 #include "cambium/map/make_roads.hpp"
 #include "cambium/map/opendrive.hpp"
+#include "cambium/map/opendrive_reader.hpp"
 
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"

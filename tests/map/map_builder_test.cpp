@@ -9,7 +9,9 @@
 
 #include <doctest/doctest.h>
 
+#include "cambium/map/build_map.hpp"
 #include "cambium/map/opendrive.hpp"
+#include "cambium/map/opendrive_check.hpp"
 #include "cambium/map/opendrive_writer.hpp"
 #include "../support/allocations.hpp"
 #include "lanes_by_hand.hpp"

@@ -10,6 +10,7 @@
 
 #include "../support/corpus.hpp"
 #include "cambium/map/opendrive.hpp"
+#include "cambium/map/opendrive_reader.hpp"
 #include "cambium/map/opendrive_writer.hpp"
 #include "../support/maps.hpp"
 

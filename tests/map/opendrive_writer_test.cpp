@@ -19,7 +19,9 @@
 #include "cambium/core/random.hpp"
 #include "../support/maps.hpp"
 #include "cambium/map/detail/xml_context.hpp"
+#include "cambium/map/detail/xml_text.hpp"
 #include "cambium/map/opendrive.hpp"
+#include "cambium/map/opendrive_reader.hpp"
 
 namespace {
 

@@ -6,6 +6,7 @@
 
 #include <doctest/doctest.h>
 
+#include "cambium/map/detail/surface_height.hpp"
 #include "cambium/map/opendrive.hpp"
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"

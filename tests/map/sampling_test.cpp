@@ -8,6 +8,7 @@
 
 #include <doctest/doctest.h>
 
+#include "cambium/map/curve_layout.hpp"
 #include "cambium/map/opendrive.hpp"
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"

@@ -11,6 +11,7 @@
 
 #include "cambium/core/error.hpp"
 #include "cambium/map/opendrive.hpp"
+#include "cambium/map/opendrive_reader.hpp"
 #include "cambium/map/opendrive_writer.hpp"
 
 #include "../support/maps.hpp"

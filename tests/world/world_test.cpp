@@ -9,6 +9,7 @@
 #include <string>
 
 #include "cambium/core/distributions.hpp"
+#include "cambium/map/curve_layout.hpp"
 #include "fixtures.hpp"
 
 using namespace fixtures;

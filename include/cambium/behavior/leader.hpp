@@ -94,13 +94,18 @@ CAMBIUM_NOINLINE [[nodiscard]] inline double permitted_speed(map::LaneCorridor c
   return permitted;
 }
 
-/// The driver's parameters `idm` for where it is: its desired speed within the limits, if it obeys them.
+/// The driver's desired speed where it is [m/s]: within the limits, if it obeys them.
+template <class P, class View>
+[[nodiscard]] double desired_within_limits(RoadRules const& rules, P const& idm, View const& view, double speed) {
+  if (!rules.obey_speed_limits) return idm.desired_speed;
+  return std::clamp(permitted_speed(view.corridor(), view.lane_position().s, speed, idm.comfortable_deceleration), 0.1,
+                    idm.desired_speed);
+}
+
+/// The driver's parameters `idm` with that desired speed.
 template <class P, class View>
 [[nodiscard]] P within_limits(RoadRules const& rules, P idm, View const& view, double speed) {
-  if (rules.obey_speed_limits)
-    idm.desired_speed =
-        std::clamp(permitted_speed(view.corridor(), view.lane_position().s, speed, idm.comfortable_deceleration), 0.1,
-                   idm.desired_speed);
+  idm.desired_speed = desired_within_limits(rules, idm, view, speed);
   return idm;
 }
 

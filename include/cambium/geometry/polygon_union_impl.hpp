@@ -6,58 +6,13 @@
 #include <utility>
 #include <vector>
 
-#include <boost/geometry/algorithms/union.hpp>
-#include <boost/geometry/geometries/multi_polygon.hpp>
-#include <boost/geometry/geometries/point_xy.hpp>
-#include <boost/geometry/geometries/polygon.hpp>
-
 #include "cambium/core/macros.hpp"
 #include "cambium/geometry/polygon.hpp"
+#include "cambium/geometry/detail/boost_polygon.hpp"
 #include "cambium/geometry/polygon_union.hpp"
 #include "cambium/geometry/pose.hpp"
 
-// g++ 12 takes parts of Boost.Geometry for uninitialised; clang 19 rejects an enumeration of Boost 1.74.
-#if defined(__clang__)
-#pragma clang diagnostic push
-#if __has_warning("-Wenum-constexpr-conversion")
-#pragma clang diagnostic ignored "-Wenum-constexpr-conversion"
-#endif
-#elif defined(__GNUC__)
-#pragma GCC diagnostic push
-#pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
-#endif
-#if defined(__clang__)
-#pragma clang diagnostic pop
-#elif defined(__GNUC__)
-#pragma GCC diagnostic pop
-#endif
-
 namespace cambium::geometry {
-
-namespace detail {
-
-using BoostPoint = boost::geometry::model::d2::point_xy<double>;
-using BoostPolygon = boost::geometry::model::polygon<BoostPoint, false, true>;  // counter-clockwise, closed
-using BoostArea = boost::geometry::model::multi_polygon<BoostPolygon>;
-
-[[nodiscard]] inline BoostPolygon to_boost(Polygon const& polygon) {
-  BoostPolygon result;
-  for (auto const& p : polygon.points()) result.outer().emplace_back(p.x(), p.y());
-  result.outer().push_back(result.outer().front());
-  return result;
-}
-
-/// Adds a ring as a polygon unless it has no area worth the name (less than a square centimetre).
-template <class Ring>
-void add_ring(Ring const& ring, std::vector<Polygon>& polygons) {
-  std::vector<Point> points;
-  for (auto const& p : ring) points.emplace_back(p.x(), p.y());
-  double twice = 0.0;
-  for (std::size_t i = 1; i + 1 < points.size(); ++i) twice += turn(points[0], points[i], points[i + 1]);
-  if (std::abs(twice) > 2e-4) polygons.emplace_back(points, "area");
-}
-
-}  // namespace detail
 
 CAMBIUM_COLD std::vector<Area> union_of(std::span<Polygon const> polygons) {
   std::vector<detail::BoostArea> parts;

@@ -1,77 +1,35 @@
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "cambium/map/corridor.hpp"
-#include "cambium/map/map.hpp"
-#include "cambium/map/stop_lines.hpp"
+#include "cambium/core/ids.hpp"
 #include "cambium/viewer/recording.hpp"
 #include "cambium/world/frame.hpp"
-#include "cambium/world/static_object.hpp"
 
 namespace cambium {
 
+namespace map {
+class Map;
+struct LaneCorridor;
+}  // namespace map
+using map::Map;
+struct StaticObject;
+
 /// The lanes of a map as a recording shows them.
-[[nodiscard]] inline std::vector<RecordedLane> recorded_lanes(Map const& map) {
-  std::vector<RecordedLane> lanes;
-  for (bool const drivable : {false, true})  // shoulders first, lanes over them: what is drawn last is seen
-    for (auto const& lane : map.lanes()) {
-      if (lane.drivable() != drivable || lane.left.empty() || lane.right.empty()) continue;
-      auto const& road = map.road(lane.road);
-      auto const kind = !drivable                 ? RecordedLaneKind::other
-                        : is_valid(road.junction) ? RecordedLaneKind::junction
-                                                  : RecordedLaneKind::driving;
-      lanes.push_back(
-          {lane.left.points(), lane.right.points(), road.name + ":" + std::to_string(lane.number), kind, true});
-    }
-  return lanes;
-}
+[[nodiscard]] std::vector<RecordedLane> recorded_lanes(Map const& map);
 
 /// The stop lines of a map (see `map::stop_lines`) as a recording shows them.
-[[nodiscard]] inline std::vector<RecordedStopLine> recorded_stop_lines(Map const& map) {
-  std::vector<RecordedStopLine> lines;
-  for (auto const& line : map::stop_lines(map)) lines.push_back({line.left, line.right, line.light});
-  return lines;
-}
+[[nodiscard]] std::vector<RecordedStopLine> recorded_stop_lines(Map const& map);
 
 /// A free corridor as a recording shows it: beside the lanes; where it crosses them they are drawn over it.
-[[nodiscard]] inline RecordedLane recorded_way(map::LaneCorridor const& way) {
-  RecordedLane lane{.kind = RecordedLaneKind::way};
-  auto const samples = way.center.samples();
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    geometry::Point const at = samples[i].position();
-    geometry::Point const aside(-std::sin(samples[i].heading), std::cos(samples[i].heading));
-    lane.left.push_back(at + way.widths[i].left * aside);
-    lane.right.push_back(at - way.widths[i].right * aside);
-  }
-  return lane;
-}
+[[nodiscard]] RecordedLane recorded_way(map::LaneCorridor const& way);
 
 /// A static object as a recording shows it: the rectangle around its outline that has the direction of its longest
 /// side.
-[[nodiscard]] inline std::pair<RecordedAgent, RecordedPose> recorded_object(StaticObject const& object) {
-  geometry::Point longest(0.0, 0.0);
-  for (std::size_t i = 0; i < object.outline.size(); ++i) {
-    geometry::Point const side = object.outline.edge(i).second - object.outline.edge(i).first;
-    if (side.squaredNorm() > longest.squaredNorm()) longest = side;
-  }
-  geometry::Point const along = longest.normalized(), across(-along.y(), along.x());
-  geometry::Point const center = object.outline.bounding_box().center();
-  geometry::Shape shape{0, 0, 0, 0};
-  for (auto const& p : object.outline.points()) {
-    shape.front = std::max(shape.front, along.dot(p - center));
-    shape.rear = std::max(shape.rear, -along.dot(p - center));
-    shape.left = std::max(shape.left, across.dot(p - center));
-    shape.right = std::max(shape.right, -across.dot(p - center));
-  }
-  return {{none<AgentId>, shape, "object " + to_string(object.id), RecordedAgentKind::static_object},
-          {center.x(), center.y(), std::atan2(along.y(), along.x()), 0.0, 0.0, true}};
-}
+[[nodiscard]] std::pair<RecordedAgent, RecordedPose> recorded_object(StaticObject const& object);
 
 /// Writes a world's course into a recording: lanes, stop lines, agents and objects as they are now; then a frame for
 /// each call of `record`. Agents that enter later are not shown.
@@ -137,3 +95,7 @@ class WorldRecorder {
 };
 
 }  // namespace cambium
+
+#ifndef CAMBIUM_COMPILED
+#include "cambium/viewer/record_world_impl.hpp"
+#endif

@@ -1,12 +1,10 @@
 #pragma once
 
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "cambium/core/error.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/geometry/shape.hpp"
@@ -84,20 +82,10 @@ struct Recording {
 };
 
 /// Throws `Error` unless every frame has a pose for each agent and the times are finite and ascend strictly.
-inline void check_recording(Recording const& recording) {
-  for (std::size_t k = 0; k < recording.frames.size(); ++k) {
-    RecordedFrame const& frame = recording.frames[k];
-    std::string const where = "recording '" + recording.title + "', frame " + std::to_string(k);
-    if (frame.poses.size() != recording.agents.size())
-      throw Error(where,
-                  "has " + std::to_string(frame.poses.size()) + " poses for " +
-                      std::to_string(recording.agents.size()) + " agents",
-                  "give one pose for each agent, with present = false where it is away");
-    bool const ascends = k == 0 || frame.time > recording.frames[k - 1].time;
-    if (!std::isfinite(frame.time) || !ascends)
-      throw Error(where, "its time " + std::to_string(frame.time) + " s does not come after the frame before",
-                  "record frames in order of time");
-  }
-}
+void check_recording(Recording const& recording);
 
 }  // namespace cambium
+
+#ifndef CAMBIUM_COMPILED
+#include "cambium/viewer/recording_impl.hpp"
+#endif
