@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "../support/skipped.hpp"
 #include "../viewer/browser.hpp"
 #include "program.hpp"
 
@@ -94,7 +95,7 @@ TEST_CASE("the replay of a junction plays in a browser") {
   if (!program.is_there()) return;
   auto const chromium = browser::find();
   if (!chromium) {
-    MESSAGE("skipped: no chromium, chromium-browser or google-chrome in PATH");
+    support::skip("no browser: install chromium");
     return;
   }
   browser::TemporaryFolder const folder;

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "../support/corpus.hpp"
+#include "../support/skipped.hpp"
 #include "../viewer/browser.hpp"
 #include "program.hpp"
 
@@ -204,7 +205,7 @@ TEST_CASE("replay.html plays the replayed scenario in a browser, with the ego wh
   if (!program.is_there()) return;
   auto const chromium = browser::find();
   if (!chromium) {
-    MESSAGE("skipped: no chromium, chromium-browser or google-chrome in PATH");
+    support::skip("no browser: install chromium");
     return;
   }
   browser::TemporaryFolder const folder;

@@ -3,6 +3,9 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -468,6 +471,32 @@ void check_map(Case const& c, cambium::Map const& map) {
 }
 
 }  // namespace
+
+TEST_CASE("a file beyond the limits is refused before it takes memory, with limit, finding and remedy") {
+  auto const said = [](auto const& read) -> std::string {
+    try {
+      (void)read();
+    } catch (MapError const& e) {
+      return e.what();
+    }
+    return "";
+  };
+  auto const file = std::filesystem::path(CAMBIUM_BUILD_DIR) / "too_large.xodr";
+  std::ofstream(file) << "<OpenDRIVE>";
+  std::filesystem::resize_file(file, cambium::map::largest_map_file + 1);  // sparse: it takes no room
+  auto const large = said([&] { return cambium::load_opendrive(file.string()); });
+  std::filesystem::remove(file);
+  CHECK(large == file.string() +
+                     ": it has 536870913 bytes, more than the 536870912 that are read; split the map, or "
+                     "leave out what is not needed of it");
+
+  std::string many = "<OpenDRIVE>\n";
+  many.reserve(5 * cambium::map::most_elements);
+  for (std::size_t i = 0; i <= cambium::map::most_elements / 2; ++i) many += "<a b=''/>";
+  CHECK(said([&] { return cambium::parse_opendrive(many, {}, "many.xodr"); }) ==
+        "many.xodr:2: up to here there are 30000001 elements and attributes; at most 30000000 are read; split the map, "
+        "or leave out what is not needed of it");
+}
 
 TEST_CASE("a malformed file gives the map and the finding that are stated for it") {
   auto const good = road_text::load(good_file);

@@ -335,12 +335,27 @@ TEST_CASE(
 }
 
 TEST_CASE("user data of any depth is no danger") {
-  std::string text;
-  for (int i = 0; i < 200000; ++i) text += "<a>";
-  for (int i = 0; i < 200000; ++i) text += "</a>";
-  auto const r = read(file_with(text));
+  auto const nested = [](std::size_t levels, std::string const& between = "\n") {
+    std::string text;
+    for (std::size_t i = 0; i < levels; ++i) text += between + "<a>";
+    for (std::size_t i = 0; i < levels; ++i) text += "</a>";
+    return file_with(text);
+  };
+  auto const r = read(nested(cambium::map::deepest_element - 2));  // within a road within the root
   CHECK(r.find("more than 100 levels deep"));
   CHECK(read(write_opendrive(r.document)).document == r.document);
+  for (std::size_t const levels : {cambium::map::deepest_element - 1, std::size_t{200'000}}) {
+    std::string what;
+    try {
+      (void)read(nested(levels));
+    } catch (cambium::MapError const& e) {
+      what = e.what();
+    }
+    CHECK_MESSAGE(what.find("the elements lie 257 deep here; at most 256 are read") < what.size(), what);
+    CHECK_MESSAGE(what.find(':') < what.find("the elements"), what);
+  }
+  // What is no element does not count, whatever it looks like.
+  CHECK_NOTHROW((void)read(nested(200, "<!-- <a><a><a> --><![CDATA[<a><a>]]><?a <a> ?><b c='<a><a>' d=\"'/>\" />")));
 }
 
 TEST_CASE("attributes that are there twice are kept once") {

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "../support/corpus.hpp"
+#include "../support/skipped.hpp"
 #include "../viewer/browser.hpp"
 #include "cambium/map/build_corridor.hpp"
 #include "cambium/map/opendrive.hpp"
@@ -193,7 +194,7 @@ TEST_CASE("in the roundabout each arm merges into the ring and splits off it") {
 TEST_CASE("make_maps writes the maps as they are kept") {
   fs::path const program = CAMBIUM_EXAMPLES_DIR "/make_maps";
   if (!fs::exists(program)) {
-    MESSAGE("skipped: there is no " << program.string() << "; build the examples");
+    support::skip("no example programs: build the examples");
     return;
   }
   browser::TemporaryFolder const out;

@@ -12,25 +12,27 @@
 
 #include <doctest/doctest.h>
 
+#include "skipped.hpp"
+
 /// Where the tests find maps: the project's own, and the public ones of the corpus (which may be absent).
 namespace corpus {
 
-/// The corpus' folder: CAMBIUM_CORPUS, else `shared` beside the checkout; nothing where neither is there.
+/// The corpus' folder: CAMBIUM_CORPUS, else `shared` beside the checkout; where that is not there, nothing, and the
+/// test counts as skipped.
 inline std::optional<std::filesystem::path> root() {
-  if (char const* const set = std::getenv("CAMBIUM_CORPUS"); set != nullptr && *set != '\0') return set;
-  auto const beside = std::filesystem::path(CAMBIUM_SOURCE_DIR) / ".." / "shared";
-  if (std::filesystem::exists(beside / "opendrive")) return beside;
+  char const* const set = std::getenv("CAMBIUM_CORPUS");
+  bool const is_set = set != nullptr && *set != '\0';
+  std::filesystem::path const folder = is_set ? set : std::filesystem::path(CAMBIUM_SOURCE_DIR) / ".." / "shared";
+  if (std::filesystem::exists(folder / "opendrive")) return folder;
+  support::skip("no corpus: set CAMBIUM_CORPUS");
   return std::nullopt;
 }
 
-/// A file or folder of the corpus, such as "opendrive/Town04.xodr". Where there is no corpus, says that the test is
-/// skipped and returns nothing; where there is one, but without that file, ends the test as failed.
+/// A file or folder of the corpus, such as "opendrive/Town04.xodr". Nothing where there is no corpus, as `root`; where
+/// there is one, but without that file, the test ends as failed.
 inline std::optional<std::filesystem::path> find(std::string const& name) {
   auto const folder = root();
-  if (!folder) {
-    MESSAGE("skipped: there is no corpus with " << name << "; CAMBIUM_CORPUS is not set");
-    return std::nullopt;
-  }
+  if (!folder) return std::nullopt;
   auto const file = *folder / name;
   if (!std::filesystem::exists(file)) FAIL("the corpus in " << folder->string() << " has no " << name);
   return file;

@@ -11,6 +11,7 @@
 #include <doctest/doctest.h>
 
 #include "browser.hpp"
+#include "../support/skipped.hpp"
 #include "sample_recording.hpp"
 
 using namespace cambium;
@@ -139,7 +140,7 @@ TEST_CASE("writing replaces an older page as a whole") {
 TEST_CASE("a browser draws the page, plays it, and shows each vehicle where it is") {
   auto const chromium = browser::find();
   if (!chromium) {
-    MESSAGE("skipped: no chromium, chromium-browser or google-chrome in PATH");
+    support::skip("no browser: install chromium");
     return;
   }
   browser::TemporaryFolder const folder;
@@ -185,7 +186,7 @@ TEST_CASE("traffic lights are kept where they change, and shown as they are") {
   CHECK(data.find("\"lights\":[[0,\"01\"],\n[10,\"03\"]]") != std::string::npos);
   auto const chromium = browser::find();
   if (!chromium) {
-    MESSAGE("skipped: no chromium, chromium-browser or google-chrome in PATH");
+    support::skip("no browser: install chromium");
     return;
   }
   browser::TemporaryFolder const folder;
@@ -212,7 +213,7 @@ TEST_CASE("traffic lights are kept where they change, and shown as they are") {
 TEST_CASE("the replay runs by itself and stops at its end") {
   auto const chromium = browser::find();
   if (!chromium) {
-    MESSAGE("skipped: no chromium, chromium-browser or google-chrome in PATH");
+    support::skip("no browser: install chromium");
     return;
   }
   browser::TemporaryFolder const folder;
@@ -232,7 +233,7 @@ TEST_CASE("an empty recording is a page that says so") {
   CHECK(is_balanced(data_of(text)));
   auto const chromium = browser::find();
   if (!chromium) {
-    MESSAGE("skipped: no chromium, chromium-browser or google-chrome in PATH");
+    support::skip("no browser: install chromium");
     return;
   }
   browser::TemporaryFolder const folder;

@@ -7,6 +7,7 @@
 #include "cambium/core/diagnostic.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/map/opendrive_document.hpp"
+#include "cambium/map/reading_limits.hpp"
 
 namespace cambium::map {
 
@@ -18,7 +19,8 @@ namespace cambium::map {
 /// document has no field for is kept in its `rest`s, but for comments, text between elements, and attributes that are
 /// not known of an element that has attributes only; of the latter two there is one finding for each kind of element,
 /// with their number. Throws `MapError` when the text is no XML, its root is not
-/// OpenDRIVE, or no road is usable. Linear in the length of the text; lines are counted in bytes of UTF-8.
+/// OpenDRIVE, no road is usable, or, before it takes memory, where it is beyond `largest_map_file`, `deepest_element`
+/// or `most_elements`. Linear in the length of the text; lines are counted in bytes of UTF-8.
 [[nodiscard]] OpenDriveDocument read_opendrive_document(std::string_view text, std::string file_name,
                                                         std::vector<Diagnostic>& diagnostics);
 

@@ -21,6 +21,7 @@
 #include "cambium/map/detail/opendrive_objects_reader.hpp"
 #include "cambium/map/detail/opendrive_plan_view.hpp"
 #include "cambium/map/detail/xml_context.hpp"
+#include "cambium/map/detail/xml_limits.hpp"
 #include "cambium/map/opendrive_check.hpp"
 #include "cambium/map/opendrive_document.hpp"
 #include "cambium/map/opendrive_reader.hpp"
@@ -159,6 +160,7 @@ inline void read_lateral_profile(XmlContext& context, pugi::xml_node road_node, 
 /// The root element; throws when the text is no XML or its root is another one.
 [[nodiscard]] inline pugi::xml_node parse_root(pugi::xml_document& xml, std::string_view text,
                                                std::string const& file) {
+  XmlCounter(text).check(file);
   pugi::xml_parse_result const result =
       xml.load_buffer(text.data(), text.size(), pugi::parse_cdata | pugi::parse_escapes | pugi::parse_eol);
   if (!result) {

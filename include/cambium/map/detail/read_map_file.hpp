@@ -7,20 +7,42 @@
 #include <string>
 
 #include "cambium/core/error.hpp"
+#include "cambium/map/reading_limits.hpp"
 
 namespace cambium::map::detail {
 
-/// The bytes of a file. Throws `MapError` where it cannot be read, is empty, or beyond any map; `expected` says what to
-/// give: "give an OpenDRIVE file (.xodr)".
+/// How many bytes the file says that it has; 0 where it does not, as pipes, or is a folder.
+[[nodiscard]] inline std::size_t size_of(std::ifstream& file) {
+  auto const size = static_cast<std::streamoff>(file.seekg(0, std::ios::end).tellg());
+  file.clear();
+  file.seekg(0);
+  file.clear();
+  constexpr std::streamoff folder = std::streamoff{1} << 62;
+  return size < 0 || size >= folder ? 0 : static_cast<std::size_t>(size);
+}
+
+/// The bytes of a file. Throws `MapError` where it cannot be read, is empty, or larger than `largest_map_file` (before
+/// memory is taken, where it tells its size); `expected` says what to give: "give an OpenDRIVE file (.xodr)".
 [[nodiscard]] inline std::string read_map_file(std::string const& path, std::string const& expected) {
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   if (!file)
     throw MapError(path, std::string("the file cannot be opened (") + std::strerror(errno) + ")", "check the path");
-  constexpr std::size_t largest = std::size_t{1} << 30, chunk = std::size_t{1} << 20;  // [B]: beyond any map
+  constexpr std::size_t chunk = std::size_t{1} << 20;  // [B]
+  auto const check_size = [&](std::size_t size, char const* at_least) {
+    if (size > largest_map_file)
+      throw MapError(path,
+                     "it has " + (at_least + std::to_string(size)) + " bytes, more than the " +
+                         std::to_string(largest_map_file) + " that are read",
+                     "split the map, or leave out what is not needed of it");
+  };
+  auto const size = size_of(file);
+  check_size(size, "");
+  errno = 0;
   std::string text;
+  text.reserve(size + chunk);
   while (file) {
-    if (text.size() > largest) throw MapError(path, "it is larger than 1 GiB", expected);
+    check_size(text.size(), "at least ");
     std::size_t const before = text.size();
     text.resize(before + chunk);
     file.read(text.data() + before, static_cast<std::streamsize>(chunk));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <initializer_list>
 #include <optional>
 #include <string>
@@ -23,7 +24,8 @@ class LineTable {
   explicit LineTable(std::string_view text) {
     starts_.reserve(text.size() / 48 + 2);
     starts_.push_back(0);
-    for (std::size_t at = text.find('\n'); at != text.npos; at = text.find('\n', at + 1)) starts_.push_back(at + 1);
+    for (std::size_t at = text.find('\n'); at != text.npos; at = text.find('\n', at + 1))
+      starts_.push_back(static_cast<std::uint32_t>(at + 1));
   }
 
   /// Line of the byte at `offset`, the first is 1; 0 for a negative offset.
@@ -41,7 +43,7 @@ class LineTable {
   }
 
  private:
-  std::vector<std::size_t> starts_;
+  std::vector<std::uint32_t> starts_;  // a text has at most `largest_map_file` bytes
   std::size_t cursor_ = 0;
 };
 
