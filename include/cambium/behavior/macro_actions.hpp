@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <string>
@@ -85,10 +86,13 @@ struct MacroActions {
     friend bool operator==(Memory const&, Memory const&) = default;
   };
 
+  /// Those of a search that is told of no others. (Not a list in braces: g++ 12 takes that for uninitialised at -O2.)
+  static constexpr MacroAction usual[] = {{Kind::keep_gap},    {Kind::stay, 0.0},  {Kind::stay, 1.5},
+                                          {Kind::stay, -2.0},  {Kind::stay, -5.0}, {Kind::change_left},
+                                          {Kind::change_right}};
+
   /// 1 to `capacity` of them.
-  boost::container::static_vector<MacroAction, capacity> actions{
-      {Kind::keep_gap},   {Kind::stay, 0.0},   {Kind::stay, 1.5},   {Kind::stay, -2.0},
-      {Kind::stay, -5.0}, {Kind::change_left}, {Kind::change_right}};
+  boost::container::static_vector<MacroAction, capacity> actions{std::begin(usual), std::end(usual)};
   double highest_speed = 50.0;
   double minimum_remaining = 20.0;
   IdmParameters idm{};

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <initializer_list>
+#include <iterator>
 #include <string>
 
 #include <boost/container/static_vector.hpp>
@@ -43,8 +44,11 @@ struct MotionPrimitives {
     friend bool operator==(Memory, Memory) = default;
   };
 
+  /// Those of a search that is told of no others. (Not a list in braces: g++ 12 takes that for uninitialised at -O2.)
+  static constexpr MotionPrimitive usual[] = {{0, 0}, {2, 0}, {-3, 0}, {0, 0.1}, {0, -0.1}};
+
   /// 1 to `capacity` of them.
-  boost::container::static_vector<MotionPrimitive, capacity> primitives{{0, 0}, {2, 0}, {-3, 0}, {0, 0.1}, {0, -0.1}};
+  boost::container::static_vector<MotionPrimitive, capacity> primitives{std::begin(usual), std::end(usual)};
   InputScheme scheme = InputScheme::rk4;
   double longest_substep = 0.1;
 

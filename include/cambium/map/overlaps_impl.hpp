@@ -10,6 +10,7 @@
 #include <tuple>
 #include <vector>
 
+#include "cambium/core/detail/stable_sort.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/geometry/angle.hpp"
@@ -35,7 +36,7 @@ class OverlapFinder {
     find_related();
     find_contacts();
     for (auto& lane : lanes_)
-      std::sort(lane.overlaps.begin(), lane.overlaps.end(), [](Overlap const& l, Overlap const& r) {
+      cambium::detail::stable_sort_by(lane.overlaps, [](Overlap const& l, Overlap const& r) {
         return std::tie(l.begin, l.other, l.other_begin) < std::tie(r.begin, r.other, r.other_begin);
       });
   }

@@ -6,6 +6,7 @@
 #include <tuple>
 #include <vector>
 
+#include "cambium/core/detail/stable_sort.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/map.hpp"
@@ -69,14 +70,14 @@ inline void add_lanes_at(Road const& road, StationOffset const& foot, std::vecto
   for (auto const& hit : map.lanes_near(p, reach))
     detail::add_lanes_at(map.road(map.lane(hit.lane).road), exact_place(map, p, hit), places);
   // The lanes of a road lead to the same places.
-  std::sort(places.begin(), places.end(), [](RoadPlace const& a, RoadPlace const& b) {
+  cambium::detail::stable_sort_by(places, [](RoadPlace const& a, RoadPlace const& b) {
     return std::tie(a.road, a.number, a.s) < std::tie(b.road, b.number, b.s);
   });
   auto const is_same = [](RoadPlace const& a, RoadPlace const& b) {
     return a.road == b.road && a.number == b.number && std::abs(a.s - b.s) < 1e-6;
   };
   places.erase(std::unique(places.begin(), places.end(), is_same), places.end());
-  std::sort(places.begin(), places.end(), [](RoadPlace const& a, RoadPlace const& b) {
+  cambium::detail::stable_sort_by(places, [](RoadPlace const& a, RoadPlace const& b) {
     return std::tie(a.distance, a.road, a.number, a.s) < std::tie(b.distance, b.road, b.number, b.s);
   });
   return places;

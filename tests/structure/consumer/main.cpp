@@ -3,8 +3,17 @@
 #include <cambium/core/ids.hpp>
 #include <cambium/core/version.hpp>
 #include <cambium/geometry/pose.hpp>
+#ifdef CAMBIUM_COMPILED
+#include <cambium/map/map_builder.hpp>
+#endif
 
 int main() {
+#ifdef CAMBIUM_COMPILED
+  cambium::MapBuilder builder;
+  builder.add_road(
+      {.line = cambium::map::lay_from({}, {{100.0}}), .sections = {{.right = cambium::map::equal_lanes(1)}}});
+  if (builder.build()->lanes().size() != 1) return 1;
+#endif
   Eigen::MatrixXd const twice =
       Eigen::MatrixXd::Identity(3, 3) * 2.0;  // Eigen comes with cambium, without its warnings
   cambium::geometry::Pose const pose{1.0, 2.0, 0.0};

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <functional>
 #include <utility>
@@ -8,23 +7,44 @@
 
 namespace cambium::detail {
 
-/// Sorts by `key(element)`, elements of equal key keep their order; true when they were not sorted before. `key` gives
-/// a value. (std::stable_sort of libstdc++ 12 does not compile without warnings in clang 19.)
-template <class Element, class Key>
-bool stable_sort(std::vector<Element>& elements, Key const& key) {
-  auto const earlier = [&key](Element const& l, Element const& r) { return std::invoke(key, l) < std::invoke(key, r); };
-  if (std::is_sorted(elements.begin(), elements.end(), earlier)) return false;
-  std::vector<std::size_t> order(elements.size());
-  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-  std::sort(order.begin(), order.end(), [&](std::size_t l, std::size_t r) {
-    if (earlier(elements[l], elements[r])) return true;
-    return !earlier(elements[r], elements[l]) && l < r;
-  });
+/// The places of `count` elements in order, where `is_earlier(elements, l, r)` compares those at l and r; equal ones
+/// keep their order. Empty where they are in order already. One sort for all types: what is sorted rarely need not be
+/// compiled quick to run.
+[[nodiscard]] std::vector<std::size_t> sorted_places(std::size_t count,
+                                                     bool (*is_earlier)(void const*, std::size_t, std::size_t),
+                                                     void const* elements);
+
+/// Sorts by `is_earlier(l, r)`, equal elements keep their order; true when they were not sorted before.
+template <class Element, class Compare>
+bool stable_sort_by(std::vector<Element>& elements, Compare const& is_earlier) {
+  struct Sorted {
+    std::vector<Element> const& elements;
+    Compare const& is_earlier;
+  } const all{elements, is_earlier};
+  auto const places = sorted_places(
+      elements.size(),
+      [](void const* sorted, std::size_t l, std::size_t r) {
+        auto const& s = *static_cast<Sorted const*>(sorted);
+        return static_cast<bool>(s.is_earlier(s.elements[l], s.elements[r]));
+      },
+      &all);
+  if (places.empty()) return false;
   std::vector<Element> sorted;
   sorted.reserve(elements.size());
-  for (std::size_t const i : order) sorted.push_back(std::move(elements[i]));
+  for (std::size_t const i : places) sorted.push_back(std::move(elements[i]));
   elements = std::move(sorted);
   return true;
 }
 
+/// The same by `key(element)`, which gives a value.
+template <class Element, class Key>
+bool stable_sort(std::vector<Element>& elements, Key const& key) {
+  return stable_sort_by(
+      elements, [&key](Element const& l, Element const& r) { return std::invoke(key, l) < std::invoke(key, r); });
+}
+
 }  // namespace cambium::detail
+
+#ifndef CAMBIUM_COMPILED
+#include "cambium/core/detail/stable_sort_impl.hpp"
+#endif

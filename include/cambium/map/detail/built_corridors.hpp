@@ -1,14 +1,13 @@
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <vector>
 
+#include "cambium/core/detail/stable_sort.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/map/corridor.hpp"
 
@@ -67,7 +66,8 @@ class BuiltCorridors {
     std::vector<Roads::iterator> unused;
     for (auto at = roads_.begin(); at != roads_.end(); ++at)
       if (at->second.road.use_count() == 1) unused.push_back(at);
-    std::ranges::sort(unused, std::greater{}, [](auto const& at) { return at->second.asked; });
+    cambium::detail::stable_sort_by(unused,
+                                    [](auto const& l, auto const& r) { return l->second.asked > r->second.asked; });
     std::size_t kept = 0;
     for (auto const& at : unused) {
       kept += at->second.bytes;

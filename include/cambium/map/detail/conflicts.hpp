@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "cambium/core/detail/stable_sort.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/geometry/shape.hpp"
 #include "cambium/map/corridor.hpp"
@@ -261,8 +262,8 @@ class ConflictFinder {
       return std::tuple(c.hold[1], c.hull().begin, c.other, c.hull().other_begin, c.lane_end, c.zones[0][0].begin,
                         c.zones[0][1].begin, c.zones[1][0].begin);
     };
-    std::sort(conflicts.begin(), conflicts.end(),
-              [&key](Conflict const& a, Conflict const& b) { return key(a) < key(b); });
+    cambium::detail::stable_sort_by(conflicts,
+                                    [&key](Conflict const& a, Conflict const& b) { return key(a) < key(b); });
     double end = -std::numeric_limits<double>::infinity();
     for (auto& conflict : conflicts) conflict.farthest_end = end = std::max(end, conflict.hull().end);
   }

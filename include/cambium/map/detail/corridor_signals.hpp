@@ -5,6 +5,7 @@
 #include <tuple>
 #include <vector>
 
+#include "cambium/core/detail/stable_sort.hpp"
 #include "cambium/map/corridor.hpp"
 #include "cambium/map/map.hpp"
 
@@ -34,7 +35,7 @@ namespace cambium::map::detail {
   auto const order = [](CorridorSignal const& a, CorridorSignal const& b) {
     return std::tie(a.line, a.kind, a.light) < std::tie(b.line, b.kind, b.light);
   };
-  std::sort(signals.begin(), signals.end(), order);
+  cambium::detail::stable_sort_by(signals, order);
   signals.erase(std::unique(signals.begin(), signals.end()), signals.end());
   return signals;
 }

@@ -7,6 +7,7 @@
 #include <tuple>
 #include <vector>
 
+#include "cambium/core/detail/stable_sort.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/map/corridor.hpp"
 #include "cambium/map/map.hpp"
@@ -35,7 +36,7 @@ class FeederFinder {
         if (overlap.kind == OverlapKind::merge && !holds(overlap.other))
           add_upstream_of(overlap, position(piece, overlap.begin));
     }
-    std::sort(corridor_.feeders.begin(), corridor_.feeders.end(), [](Feeder const& a, Feeder const& b) {
+    cambium::detail::stable_sort_by(corridor_.feeders, [](Feeder const& a, Feeder const& b) {
       return std::tie(a.begin, a.lane, a.index_begin) < std::tie(b.begin, b.lane, b.index_begin);
     });
   }
@@ -108,8 +109,8 @@ class FeederFinder {
       if (other.lane == f.lane && other.index_begin < f.index_end - shortest &&
           other.index_end > f.index_begin + shortest)
         taken.push_back(other);
-    std::sort(taken.begin(), taken.end(),
-              [](Feeder const& a, Feeder const& b) { return a.index_begin < b.index_begin; });
+    cambium::detail::stable_sort_by(taken,
+                                    [](Feeder const& a, Feeder const& b) { return a.index_begin < b.index_begin; });
     double from = f.index_begin;
     auto const add_part = [&](double to) {
       if (to - from > shortest)

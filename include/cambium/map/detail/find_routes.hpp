@@ -18,6 +18,7 @@
 #include <boost/graph/graph_traits.hpp>
 #include <boost/property_map/property_map.hpp>
 
+#include "cambium/core/detail/stable_sort.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/map/detail/route_graph.hpp"
@@ -247,7 +248,7 @@ class YenSearch {
     double const cost = own == builder.no_place ? search.cost(i) : std::min(search.cost(i), search.cost(own));
     if (cost <= budget && std::isfinite(cost)) reached.push_back({static_cast<LaneId>(i), cost});
   }
-  std::sort(reached.begin(), reached.end(), [](ReachedLane const& a, ReachedLane const& b) {
+  cambium::detail::stable_sort_by(reached, [](ReachedLane const& a, ReachedLane const& b) {
     return std::tie(a.cost, a.lane) < std::tie(b.cost, b.lane);
   });
   return reached;

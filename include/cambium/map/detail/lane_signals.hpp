@@ -9,6 +9,7 @@
 #include <tuple>
 #include <vector>
 
+#include "cambium/core/detail/stable_sort.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/map/lane.hpp"
 #include "cambium/map/opendrive_document.hpp"
@@ -46,7 +47,7 @@ class LaneSignals {
       auto const order = [](LaneSignal const& a, LaneSignal const& b) {
         return std::tie(a.s, a.kind, a.light) < std::tie(b.s, b.kind, b.light);
       };
-      std::sort(lane.signals.begin(), lane.signals.end(), order);
+      cambium::detail::stable_sort_by(lane.signals, order);
       lane.signals.erase(std::unique(lane.signals.begin(), lane.signals.end()), lane.signals.end());
     }
     return std::move(lights_);

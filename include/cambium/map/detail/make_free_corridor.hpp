@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "cambium/core/detail/stable_sort.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/geometry/line.hpp"
@@ -64,7 +65,7 @@ class CrossingFinder {
       map_.for_each_drivable_near(way.pose(s, cursor).position(), 0.0, [&](LaneHit const& hit) { pass(hit, s, step); });
     }
     for (auto& crossing : crossings_) finish(crossing, step, way.length());
-    std::sort(crossings_.begin(), crossings_.end(), [](LaneCrossing const& a, LaneCrossing const& b) {
+    cambium::detail::stable_sort_by(crossings_, [](LaneCrossing const& a, LaneCrossing const& b) {
       return std::tie(a.begin, a.lane, a.lane_begin) < std::tie(b.begin, b.lane, b.lane_begin);
     });
     return std::move(crossings_);

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "cambium/core/detail/stable_sort.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/map/lane.hpp"
@@ -191,7 +192,7 @@ class RouteGraphBuilder {
 
   [[nodiscard]] LaneGraph finished() {
     auto& steps = graph_.steps;
-    std::sort(steps.begin(), steps.end(), [](LaneStep const& a, LaneStep const& b) {
+    cambium::detail::stable_sort_by(steps, [](LaneStep const& a, LaneStep const& b) {
       return std::tie(a.from, a.to, a.cost, a.ahead) < std::tie(b.from, b.to, b.cost, b.ahead);
     });
     auto const same = [](LaneStep const& a, LaneStep const& b) { return a.from == b.from && a.to == b.to; };
