@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdio>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -100,36 +99,12 @@ template <class Site>
 }
 
 /// What the words of the table mean.
-[[nodiscard]] inline std::string explained(Words const& words) {
-  std::string text =
-      "  success: " + words.success +
-      " before time was out, and nobody collided\n"
-      "  ego off-road: a part of the ego was beyond the lanes to drive on, as that of a truck may be in\n"
-      "    a tight bend, where its rear axle keeps to the lane\n";
-  for (auto const& count : words.counts)
-    if (!count.meaning.empty()) text += "  " + count.name + ": " + count.meaning + "\n";
-  return text;
-}
+[[nodiscard]] std::string explained(Words const& words);
 
-inline void print_table(Settings const& settings, Totals const& t, double seconds, Words const& words) {
-  auto const n = static_cast<double>(settings.scenarios);
-  auto const percent = [n](std::uint64_t count) { return 100.0 * static_cast<double>(count) / n; };
-  auto const steps = static_cast<double>(t.agent_steps);
-  std::printf("\n  %s on %s, %.1f agents each, seed %llu\n\n", counted(settings.scenarios, "scenario").c_str(),
-              std::filesystem::path(settings.map_file).filename().c_str(), static_cast<double>(t.agents) / n,
-              static_cast<unsigned long long>(settings.seed));
-  std::printf(
-      "  success          %6.1f %%\n  collision        %6.1f %%\n  time-out         %6.1f %%\n  ego off-road     %6.1f "
-      "%%\n",
-      percent(t.success), percent(t.collision), percent(t.time_out), percent(t.off_road));
-  std::printf("  mean speed       %6.2f m/s\n  hard brakings    %6.2f per scenario (harder than %.0f m/s^2)\n",
-              t.speed_sum / std::max(1.0, steps), static_cast<double>(t.hard_brakings) / n, -hard_braking);
-  for (std::size_t k = 0; k < t.counts.size(); ++k)
-    std::printf("  %-16s %6.2f per scenario\n", words.counts[k].name.c_str(), static_cast<double>(t.counts[k]) / n);
-  std::printf("  agent-steps      %.3g in %.2f s: %.3g per second on %llu thread%s, sampling and judging included\n",
-              steps, seconds, steps / seconds, static_cast<unsigned long long>(settings.threads),
-              settings.threads == 1 ? "" : "s");
-  std::printf("%s\n", explained(words).c_str());
-}
+/// "success     199979 of 200000   99.990 % (99.984-99.993)": a count, its share and the share's 95 % interval (Wilson).
+[[nodiscard]] std::string share_line(std::string const& name, std::uint64_t count, std::uint64_t total);
+
+/// The table of results, on the standard output.
+void print_table(Settings const& settings, Totals const& totals, double seconds, Words const& words);
 
 }  // namespace examples

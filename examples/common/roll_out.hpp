@@ -26,7 +26,7 @@ inline constexpr double hard_braking = -4.0;  // [m/s^2]; one hard braking lasts
 /// What a user sets on the command line.
 struct Settings {
   std::string map_file, out;
-  std::uint64_t scenarios = 100, seed = 1, steps = 300, trajectories = 10;
+  std::uint64_t scenarios = 200, seed = 1, steps = 300, trajectories = 10;
   std::uint64_t threads = std::max(1u, std::thread::hardware_concurrency());
 };
 
