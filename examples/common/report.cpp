@@ -1,9 +1,113 @@
 #include "report.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
+#include <nlohmann/json.hpp>
+
+#include "part_file.hpp"
+#include "version.hpp"
 #include "wilson.hpp"
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// "lane changes" as a key: "lane_changes".
+std::string in_one_word(std::string text) {
+  std::replace(text.begin(), text.end(), ' ', '_');
+  return text;
+}
+
+double mean(double sum, std::uint64_t n) { return n > 0 ? sum / static_cast<double>(n) : 0.0; }
+
+/// [s], without the last digits of a sum.
+double time_of(std::uint64_t steps) { return std::round(1e6 * static_cast<double>(steps) * examples::dt) / 1e6; }
+
+/// What the figures are measured in and what they mean.
+Json units(examples::Words const& words) {
+  Json json{{"dt", "s"},
+            {"success", "share of the scenarios"},
+            {"collision", "share of the scenarios"},
+            {"time_out", "share of the scenarios"},
+            {"off_road", "share of the scenarios"},
+            {"intervals", "95 %, Wilson"},
+            {"mean_speed", "m/s"},
+            {"mean_steps", "steps of dt"},
+            {"hard_brakings", "count"},
+            {"time", "s"},
+            {"steps", "steps of dt"},
+            {"lowest_acceleration", "m/s^2"}};
+  for (auto const& count : words.counts) json[in_one_word(count.name)] = "count";
+  return json;
+}
+
+Json collisions(std::vector<examples::Outcome> const& outcomes) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < outcomes.size(); ++i)
+    if (auto const& o = outcomes[i]; o.kind == examples::Outcome::Kind::collision)
+      list.push_back({{"scenario", i},
+                      {"time", time_of(o.steps)},
+                      {"agents", {to_string(o.collided_first), to_string(o.collided_second)}}});
+  return list;
+}
+
+Json head(examples::Settings const& settings, examples::Facts const& facts,
+          std::vector<examples::Outcome> const& outcomes, examples::Totals const& t, examples::Words const& words) {
+  auto const n = settings.scenarios;
+  Json json;
+  json["cambium_version"] = examples::version();
+  json["map"] = std::filesystem::path(settings.map_file).filename().string();
+  json["scenarios"] = n;
+  json["seed"] = settings.seed;
+  json["steps"] = settings.steps;
+  json["dt"] = examples::dt;
+  for (auto const& [name, count] : facts) json[name] = count;
+  std::vector<std::pair<char const*, std::uint64_t>> const shares = {
+      {"success", t.success}, {"collision", t.collision}, {"time_out", t.time_out}, {"off_road", t.off_road}};
+  for (auto const& [name, count] : shares) json[name] = mean(static_cast<double>(count), n);
+  json["mean_speed"] = mean(t.speed_sum, t.agent_steps);
+  json["mean_steps"] = mean(static_cast<double>(t.steps), n);
+  json["hard_brakings"] = t.hard_brakings;
+  for (std::size_t k = 0; k < t.counts.size(); ++k) json[in_one_word(words.counts[k].name)] = t.counts[k];
+  json["agents"] = t.agents;
+  json["agent_steps"] = t.agent_steps;
+  json["replayed_scenario"] = t.replayed;
+  for (auto const& [name, count] : shares) {
+    auto const interval = examples::wilson(count, n);
+    json["counts"][name] = count;
+    json["intervals"][name] = {interval.low, interval.high};
+  }
+  json["units"] = units(words);
+  json["thresholds"] = {{"hard_braking", {{"acceleration_below", examples::hard_braking}, {"unit", "m/s^2"}}}};
+  json["collisions"] = collisions(outcomes);
+  return json;
+}
+
+}  // namespace
+
+void examples::write_summary(std::filesystem::path const& file, Settings const& settings, Facts const& facts,
+                             std::vector<Outcome> const& outcomes, Totals const& totals, Words const& words) {
+  auto text = head(settings, facts, outcomes, totals, words).dump(1, ' ', false, Json::error_handler_t::replace);
+  text.resize(text.rfind('\n'));
+  PartFile out(file);
+  out.append(text + ",\n \"outcomes\": [");
+  char const* const names[] = {"success", "collision", "time_out"};
+  for (std::size_t i = 0; i < outcomes.size(); ++i) {
+    auto const& o = outcomes[i];
+    Json row{{"scenario", i},
+             {"outcome", names[static_cast<int>(o.kind)]},
+             {"off_road", o.off_road},
+             {"agents", o.agents},
+             {"steps", o.steps},
+             {"hard_brakings", o.hard_brakings},
+             {"lowest_acceleration", std::round(1e4 * o.lowest_acceleration) / 1e4 + 0.0}};
+    out.append((i == 0 ? "\n  " : ",\n  ") + row.dump());
+  }
+  out.append("\n ]\n}\n");
+  out.finish();
+}
 
 std::string examples::explained(Words const& words) {
   std::string text =

@@ -4,9 +4,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
-
-#include <nlohmann/json.hpp>
 
 #include "roll_out.hpp"
 
@@ -16,7 +15,7 @@ struct Totals {
   std::uint64_t success = 0, collision = 0, time_out = 0, off_road = 0, agents = 0, agent_steps = 0, hard_brakings = 0,
                 steps = 0;
   double speed_sum = 0.0;
-  std::uint64_t most_interesting = 0;
+  std::uint64_t replayed = 0;
   std::vector<std::uint64_t> counts;
 };
 
@@ -35,7 +34,7 @@ struct Totals {
     t.speed_sum += o.speed_sum;
     t.counts.resize(o.counts.size());
     for (std::size_t k = 0; k < o.counts.size(); ++k) t.counts[k] += o.counts[k];
-    if (o.interest() > outcomes[t.most_interesting].interest()) t.most_interesting = i;
+    if (o.interest() > outcomes[t.replayed].interest()) t.replayed = i;
   }
   return t;
 }
@@ -57,46 +56,12 @@ struct Words {
   return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
 }
 
-/// "lane changes" as a key: "lane_changes".
-[[nodiscard]] inline std::string in_one_word(std::string text) {
-  std::replace(text.begin(), text.end(), ' ', '_');
-  return text;
-}
+/// What there is to say about a site, by name: how many entrances it has.
+using Facts = std::vector<std::pair<std::string, std::size_t>>;
 
-/// The figures as a file keeps them. `add_facts(site, json)` beside the site
-/// adds what there is to say about it.
-template <class Site>
-[[nodiscard]] nlohmann::ordered_json summary(Settings const& settings, Site const& site,
-                                             std::vector<Outcome> const& outcomes, Totals const& t,
-                                             Words const& words) {
-  auto const n = static_cast<double>(settings.scenarios);
-  nlohmann::ordered_json json;
-  json["map"] = std::filesystem::path(settings.map_file).filename().string();
-  json["scenarios"] = settings.scenarios;
-  json["seed"] = settings.seed;
-  json["steps"] = settings.steps;
-  json["dt"] = dt;
-  add_facts(site, json);
-  json["success"] = static_cast<double>(t.success) / n;
-  json["collision"] = static_cast<double>(t.collision) / n;
-  json["time_out"] = static_cast<double>(t.time_out) / n;
-  json["off_road"] = static_cast<double>(t.off_road) / n;
-  json["mean_speed"] = t.agent_steps > 0 ? t.speed_sum / static_cast<double>(t.agent_steps) : 0.0;
-  json["mean_steps"] = static_cast<double>(t.steps) / n;
-  json["hard_brakings"] = t.hard_brakings;
-  for (std::size_t k = 0; k < t.counts.size(); ++k) json[in_one_word(words.counts[k].name)] = t.counts[k];
-  json["agents"] = t.agents;
-  json["agent_steps"] = t.agent_steps;
-  json["replayed_scenario"] = t.most_interesting;
-  char const* const names[] = {"success", "collision", "time_out"};
-  for (auto const& o : outcomes)
-    json["outcomes"].push_back({{"outcome", names[static_cast<int>(o.kind)]},
-                                {"off_road", o.off_road},
-                                {"agents", o.agents},
-                                {"steps", o.steps},
-                                {"hard_brakings", o.hard_brakings}});
-  return json;
-}
+/// Writes the figures, who collided with whom, and each scenario's outcome, with the units and thresholds, as JSON.
+void write_summary(std::filesystem::path const& file, Settings const& settings, Facts const& facts,
+                   std::vector<Outcome> const& outcomes, Totals const& totals, Words const& words);
 
 /// What the words of the table mean.
 [[nodiscard]] std::string explained(Words const& words);
