@@ -246,3 +246,13 @@ TEST_CASE("what is wrong is said in one line, with exit code 2 and nothing writt
     CHECK_FALSE(fs::exists(out));
   }
 }
+
+TEST_CASE("map: no message names a function of the library") {
+  program::Program const program("map");
+  if (!program.is_there()) return;
+  auto const run = program.run({CAMBIUM_SOURCE_DIR "/maps/merging.xodr", "--route", "99:-1:3", "1:-1:3"});
+  CHECK(run.code == 2);
+  CHECK(run.err.find("99") != std::string::npos);
+  CHECK(run.err.find("Map::") == std::string::npos);
+  CHECK(run.err.find("--picture") != std::string::npos);
+}
