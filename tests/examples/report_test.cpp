@@ -12,6 +12,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "../../examples/common/version.hpp"
 #include "../../examples/common/wilson.hpp"
 #include "../support/corpus.hpp"
 #include "program.hpp"
@@ -43,7 +44,7 @@ TEST_CASE("the table counts scenarios and gives intervals, and says how to give 
   CHECK(run.out.find("success        0 of 8    0.0 % (0.0-32.4)") != std::string::npos);
   CHECK(run.out.find("time-out       8 of 8  100.0 % (67.6-100.0)") != std::string::npos);
   CHECK(run.out.find("8 scenarios ended by the limit of 5 steps (1 s); --steps raises it") != std::string::npos);
-  CHECK(program.run({"--help"}).out.find("[200]") != std::string::npos);
+  CHECK(program.run({"--help"}).out.find("--scenarios N=200") != std::string::npos);
 }
 
 TEST_CASE("summary.json says who collided, when and in which scenario, with units, thresholds and the version") {
@@ -141,4 +142,36 @@ TEST_CASE("trajectories.csv is written while simulating, in memory that does not
   CAPTURE(size);
   CHECK(all - none < static_cast<long>(size / 4));
   CHECK(std::distance(std::filesystem::directory_iterator(folder.path() / "300"), {}) == 3);  // no part is left
+}
+
+TEST_CASE("on a map whose merges are not at its edge the example says what is missing") {
+  Program const program("merging");
+  auto const map = corpus::find("opendrive/Town04.xodr");
+  if (!program.is_there() || !map) return;
+  auto const run = program.run({"--scenarios", "1", "--map", map->string(), "--out", "/tmp/never"});
+  CHECK(run.code == 2);
+  CHECK(run.err.find("it has 432 merges, but") != std::string::npos);
+}
+
+TEST_CASE("every example has --version") {
+  for (std::string const name : {"merging", "highway", "intersection", "zip_merge", "lane_change", "map", "models",
+                                 "ring", "make_maps", "embed_in_planner"}) {
+    Program const program(name);
+    if (!program.is_there()) continue;
+    auto const run = program.run({"--version"});
+    CAPTURE(name);
+    CHECK(run.code == 0);
+    CHECK(run.out == name + " of cambium " + examples::version() + "\n");
+  }
+}
+
+TEST_CASE("an unknown option names near ones, and where all are listed") {
+  Program const program("merging");
+  if (!program.is_there()) return;
+  auto const said = [&](std::vector<std::string> const& words) { return program.run(words).err; };
+  CHECK(said({"--scenario", "3"}) ==
+        "merging: there is no option --scenario; is it --scenarios? (--help lists the options)\n");
+  CHECK(said({"--sede=3"}).find("is it --seed") != std::string::npos);
+  CHECK(said({"--frobnicate"}) == "merging: there is no option --frobnicate (--help lists the options)\n");
+  CHECK(said({"stray"}) == "merging: does not know what to do with 'stray' (--help lists the options)\n");
 }
