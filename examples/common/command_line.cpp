@@ -57,7 +57,8 @@ std::string unknown_words(CLI::App const& program) {
 
 std::string without_functions(std::string text) {
   auto const at = text.find("see Map::");
-  if (at != std::string::npos) text.replace(at, text.find(" for ", at) - at, "look at examples/run map FILE --picture OUT.html");
+  if (at != std::string::npos)
+    text.replace(at, text.find(" for ", at) - at, "look at examples/run map FILE --picture OUT.html");
   return text;
 }
 

@@ -154,8 +154,8 @@ void examples::print_table(Settings const& settings, Totals const& t, double sec
               -hard_braking);
   for (std::size_t k = 0; k < t.counts.size(); ++k)
     std::printf("  %-14s %.2f per scenario\n", words.counts[k].name.c_str(), static_cast<double>(t.counts[k]) / n);
-  std::printf("  %-14s %.3g in %.2f s: %.3g per second on %llu thread%s, sampling and judging included\n", "agent-steps",
-              steps, seconds, steps / seconds, static_cast<unsigned long long>(settings.threads),
+  std::printf("  %-14s %.3g in %.2f s: %.3g per second on %llu thread%s, sampling and judging included\n",
+              "agent-steps", steps, seconds, steps / seconds, static_cast<unsigned long long>(settings.threads),
               settings.threads == 1 ? "" : "s");
   if (t.time_out > 0)
     std::printf("  %s ended by the limit of %llu steps (%.0f s); --steps raises it\n",

@@ -66,7 +66,8 @@ void write_summary(std::filesystem::path const& file, Settings const& settings, 
 /// What the words of the table mean.
 [[nodiscard]] std::string explained(Words const& words);
 
-/// "success     199979 of 200000   99.990 % (99.984-99.993)": a count, its share and the share's 95 % interval (Wilson).
+/// "success     199979 of 200000   99.990 % (99.984-99.993)": a count, its share and the share's 95 % interval
+/// (Wilson).
 [[nodiscard]] std::string share_line(std::string const& name, std::uint64_t count, std::uint64_t total);
 
 /// The table of results, on the standard output.

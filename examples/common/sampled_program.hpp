@@ -111,7 +111,8 @@ void sample_and_report(Site const& site, Settings const& settings, Words const& 
   print_table(settings, totals, seconds, words);
   std::cout << "  " << (folder / "replay.html").string() << "       plays scenario " << totals.replayed << " ("
             << why_interesting(settings, outcomes[totals.replayed]) << ") in a browser\n  "
-            << (folder / "summary.json").string() << "      these figures, each scenario's outcome, and who collided\n  "
+            << (folder / "summary.json").string()
+            << "      these figures, each scenario's outcome, and who collided\n  "
             << (folder / "trajectories.csv").string()
             << "  paths of the first scenarios' vehicles and of the replayed one's\n";
 }

@@ -17,14 +17,10 @@ char const* class_of(cambium::geometry::Shape const& shape) {
     char const* name;
     g::Shape shape;
   };
-  static constexpr Named all[] = {{"car", g::car()},
-                                  {"van", g::van()},
-                                  {"truck", g::truck()},
-                                  {"articulated truck", g::articulated_truck()},
-                                  {"bus", g::bus()},
-                                  {"motorcycle", g::motorcycle()},
-                                  {"bicycle", g::bicycle()},
-                                  {"pedestrian", g::pedestrian()}};
+  static constexpr Named all[] = {{"car", g::car()},         {"van", g::van()},
+                                  {"truck", g::truck()},     {"articulated truck", g::articulated_truck()},
+                                  {"bus", g::bus()},         {"motorcycle", g::motorcycle()},
+                                  {"bicycle", g::bicycle()}, {"pedestrian", g::pedestrian()}};
   char const* best = "";
   double least = std::numeric_limits<double>::infinity();
   for (auto const& [name, known] : all) {

@@ -142,7 +142,10 @@ void add_options(CLI::App& program, Settings& settings) {
   program.add_option("--preset", settings.preset, "the paper's choices, or cambium's")
       ->check(CLI::IsMember({"paper", "cambium"}))
       ->capture_default_str();
-  program.add_option("--json", settings.json, "a row a cell, written once all are done; until then they are in FILE.part")->type_name("FILE")->check(examples::not_empty());
+  program
+      .add_option("--json", settings.json, "a row a cell, written once all are done; until then they are in FILE.part")
+      ->type_name("FILE")
+      ->check(examples::not_empty());
   program.add_option("--out", settings.out, "folder for the plot")
       ->type_name("DIR")
       ->capture_default_str()

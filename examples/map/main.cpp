@@ -142,7 +142,8 @@ int main(int argc, char** argv) {
       "no\n"
       "             row\n"
       "  --links    road,end,lane,next_road,next_contact,next_lane,via: as written in the file\n"
-      "Exit code: 0 where there is a map, whatever is odd about it; 1 with --strict where a warning, an error or a road\n"
+      "Exit code: 0 where there is a map, whatever is odd about it; 1 with --strict where a warning, an error or a "
+      "road\n"
       "left out is; 2 where there is no map, or another error.");
   return examples::run_program(program, argc, argv, [&] { return run(settings); });
 }

@@ -58,13 +58,12 @@ TEST_CASE("an interrupted lane change leaves an earlier file as it is, and says 
   auto const file = folder.path() / "rows.json", part = folder.path() / "rows.json.part";
   std::ofstream(file) << "earlier";
   // The first cell takes moments, the second hours.
-  auto const command = browser::quoted((std::filesystem::path(CAMBIUM_EXAMPLES_DIR) / "lane_change").string()) +
-                       " --scenarios 2 --iterations 10,90000000 --variation 0 --json " + browser::quoted(file.string()) +
-                       " --out " + browser::quoted(folder.path().string()) + " >" +
-                       browser::quoted((folder.path() / "out").string()) + " 2>" +
-                       browser::quoted((folder.path() / "err").string()) +
-                       " & while kill -0 $! && ! grep -q iterations_per_second " + browser::quoted(part.string()) +
-                       "; do sleep 0.05; done 2>/dev/null; kill -TERM $!; wait $!";
+  auto const command =
+      browser::quoted((std::filesystem::path(CAMBIUM_EXAMPLES_DIR) / "lane_change").string()) +
+      " --scenarios 2 --iterations 10,90000000 --variation 0 --json " + browser::quoted(file.string()) + " --out " +
+      browser::quoted(folder.path().string()) + " >" + browser::quoted((folder.path() / "out").string()) + " 2>" +
+      browser::quoted((folder.path() / "err").string()) + " & while kill -0 $! && ! grep -q iterations_per_second " +
+      browser::quoted(part.string()) + "; do sleep 0.05; done 2>/dev/null; kill -TERM $!; wait $!";
   CHECK(std::system(("bash -c " + browser::quoted(command) + " 2>/dev/null").c_str()) != 0);
   CHECK(content_of(file) == "earlier");
   auto const rows = nlohmann::json::parse(content_of(part), nullptr, false);

@@ -26,8 +26,8 @@ TEST_CASE("Wilson's intervals are those of the literature") {
     unsigned count, n;
     double low, high;
   };
-  for (auto const& [count, n, low, high] :
-       {Row{81, 263, 0.2553, 0.3662}, Row{15, 148, 0.0624, 0.1605}, Row{0, 20, 0.0, 0.1611}, Row{1, 29, 0.0061, 0.1718}}) {
+  for (auto const& [count, n, low, high] : {Row{81, 263, 0.2553, 0.3662}, Row{15, 148, 0.0624, 0.1605},
+                                            Row{0, 20, 0.0, 0.1611}, Row{1, 29, 0.0061, 0.1718}}) {
     auto const interval = examples::wilson(count, n);
     CHECK(std::abs(interval.low - low) < 1e-4);
     CHECK(std::abs(interval.high - high) < 1e-4);
@@ -124,12 +124,13 @@ TEST_CASE("trajectories.csv is written while simulating, in memory that does not
   browser::TemporaryFolder const folder;
   auto const peak = [&](char const* trajectories) {  // [KiB]
     auto const out = folder.path() / trajectories;
-    auto const command = "/usr/bin/env python3 -c \"import resource,subprocess,sys;"
-                         "subprocess.run(sys.argv[1:],stdout=subprocess.DEVNULL,check=True);"
-                         "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)\" " +
-                         browser::quoted((std::filesystem::path(CAMBIUM_EXAMPLES_DIR) / "merging").string()) +
-                         " --scenarios 300 --threads 2 --trajectories " + trajectories + " --out " +
-                         browser::quoted(out.string()) + " >" + browser::quoted(out.string() + ".txt");
+    auto const command =
+        "/usr/bin/env python3 -c \"import resource,subprocess,sys;"
+        "subprocess.run(sys.argv[1:],stdout=subprocess.DEVNULL,check=True);"
+        "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)\" " +
+        browser::quoted((std::filesystem::path(CAMBIUM_EXAMPLES_DIR) / "merging").string()) +
+        " --scenarios 300 --threads 2 --trajectories " + trajectories + " --out " + browser::quoted(out.string()) +
+        " >" + browser::quoted(out.string() + ".txt");
     if (std::system(command.c_str()) != 0) return -1L;
     return std::strtol(content_of(out.string() + ".txt").c_str(), nullptr, 10);
   };
