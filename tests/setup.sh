@@ -115,6 +115,15 @@ try_packages() {
   done
 }
 
+# check_owner: one sentence, not a compiler's complaint, where this user may not build here.
+check_owner() {
+  local place=$build
+  if [[ ! -e $build ]]; then place=$root; fi
+  if [[ ! -w $place ]] || { [[ -e $build/CMakeCache.txt ]] && [[ ! -w $build/CMakeCache.txt ]]; }; then
+    fail "$place belongs to $(stat -c %U "$place" 2>/dev/null || echo another user) and cannot be written to by $(id -un): build in a copy of the checkout that is yours, or change its owner"
+  fi
+}
+
 cache_says() { grep -qxF "$1" "$build/CMakeCache.txt" 2>/dev/null; }
 
 # is_configured PART: build/ is this checkout's, optimised, and has PART (TESTS, BENCH or EXAMPLES) on.
@@ -127,6 +136,7 @@ is_configured() {
 configure() {
   local part=$1
   shift
+  check_owner
   if is_configured "$part"; then return; fi
   ensure_packages "$@"
 

@@ -8,6 +8,7 @@
 #include <iostream>
 #include <string>
 #include <system_error>
+#include <type_traits>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -15,6 +16,8 @@
 #include "cambium/core/error.hpp"
 #include "cambium/core/text.hpp"
 #include "cambium/core/write_file.hpp"
+
+#include "version.hpp"
 
 namespace examples {
 
@@ -102,22 +105,43 @@ inline void prepare_folder(std::filesystem::path const& folder) {
   return 2;
 }
 
-/// Reads the command line, then runs `body`; what is thrown becomes one line on the error stream and exit code 2.
+/// What is wrong with words that no option takes: names the near ones.
+[[nodiscard]] std::string unknown_words(CLI::App const& program);
+
+/// `text` for the command line: where it sends a programmer to a function of the map ("see Map::roads for ..."), the
+/// user goes to the picture.
+[[nodiscard]] std::string without_functions(std::string text);
+
+/// Reads the command line, then runs `body`; what is thrown becomes one line on the error stream and exit code 2. What
+/// `body` returns, if anything, is the exit code.
 template <class Body>
 int run_program(CLI::App& program, int argc, char** argv, Body const& body) {
+  auto const refuse = [&program](std::string const& what) {
+    std::cerr << program.get_name() << ": " << what << "\n";
+    return 2;
+  };
+  program.set_version_flag("--version", program.get_name() + " of cambium " + version(), "print the version and exit");
   try {
     program.parse(argc, argv);
-    body();
-    return finish_output(program.get_name());
+    int code = 0;
+    if constexpr (std::is_void_v<decltype(body())>)
+      body();
+    else
+      code = body();
+    int const written = finish_output(program.get_name());
+    return written != 0 ? written : code;
   } catch (CLI::CallForHelp const&) {
     std::cout << program.help();
     return finish_output(program.get_name());
+  } catch (CLI::CallForVersion const& text) {
+    std::cout << text.what() << "\n";
+    return finish_output(program.get_name());
+  } catch (CLI::ExtrasError const&) {
+    return refuse(unknown_words(program));
   } catch (CLI::ParseError const& problem) {
-    std::cerr << program.get_name() << ": " << problem.what() << " (--help lists the options)\n";
-    return 2;
+    return refuse(problem.what() + std::string(" (--help lists the options)"));
   } catch (std::exception const& problem) {
-    std::cerr << program.get_name() << ": " << problem.what() << "\n";
-    return 2;
+    return refuse(without_functions(problem.what()));
   }
 }
 

@@ -1,11 +1,9 @@
 #pragma once
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cstdint>
-#include <cstdio>
 #include <exception>
 #include <mutex>
 #include <string>
@@ -15,41 +13,35 @@
 
 namespace examples {
 
-/// Draws a bar on a terminal; silent elsewhere.
+/// "  120 of 600, 14.2/s, 34 s left": how far a work is after `seconds`.
+[[nodiscard]] std::string progress_text(std::uint64_t done, std::uint64_t total, double seconds);
+
+/// Keeps a line on a terminal up to date; silent elsewhere. `what` begins the line: "cell 2 of 12:".
 class Progress {
  public:
-  explicit Progress(std::uint64_t total) : total_(total), shown_(isatty(STDERR_FILENO) == 1) {}
-  void advance() {
-    auto const done = ++done_;
-    if (!shown_) return;
-    std::unique_lock lock(mutex_, std::defer_lock);
-    if (done == total_)
-      lock.lock();
-    else if (!lock.try_lock())
-      return;
-    constexpr std::uint64_t width = 40;
-    auto const filled = done * width / total_;
-    std::fprintf(stderr, "\r[%s%s] %llu/%llu%s", std::string(filled, '#').c_str(),
-                 std::string(width - filled, ' ').c_str(), static_cast<unsigned long long>(done),
-                 static_cast<unsigned long long>(total_), done == total_ ? "\r\033[K" : "");
-    std::fflush(stderr);
-  }
+  explicit Progress(std::uint64_t total, std::string what = {});
+  ~Progress();
+  void advance();
 
  private:
+  using Clock = std::chrono::steady_clock;
+
   std::uint64_t total_;
+  std::string what_;
   std::atomic<std::uint64_t> done_{0};
   std::mutex mutex_;
-  bool shown_;
+  Clock::time_point begin_ = Clock::now(), shown_at_ = begin_;
+  bool shown_, drawn_ = false;
 };
 
 /// Calls `run(i)` for all i below `count`; each thread takes the next one that nobody has. Where one throws, no further
-/// one begins, and that comes out. Where the system gives fewer threads, those do the work.
+/// one begins, and that comes out. Where the system gives fewer threads, those do the work. `what`: see `Progress`.
 template <class Run>
-void run_on_threads(std::uint64_t count, std::uint64_t threads, Run const& run) {
+void run_on_threads(std::uint64_t count, std::uint64_t threads, Run const& run, std::string const& what = {}) {
   std::atomic<std::uint64_t> next{0};
   std::exception_ptr problem;
   std::mutex mutex;
-  Progress progress(count);
+  Progress progress(count, what);
   auto const work = [&] {
     try {
       for (auto i = next++; i < count; i = next++) {

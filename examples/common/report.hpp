@@ -2,12 +2,10 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <cstdio>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
-
-#include <nlohmann/json.hpp>
 
 #include "roll_out.hpp"
 
@@ -17,7 +15,7 @@ struct Totals {
   std::uint64_t success = 0, collision = 0, time_out = 0, off_road = 0, agents = 0, agent_steps = 0, hard_brakings = 0,
                 steps = 0;
   double speed_sum = 0.0;
-  std::uint64_t most_interesting = 0;
+  std::uint64_t replayed = 0;
   std::vector<std::uint64_t> counts;
 };
 
@@ -36,7 +34,7 @@ struct Totals {
     t.speed_sum += o.speed_sum;
     t.counts.resize(o.counts.size());
     for (std::size_t k = 0; k < o.counts.size(); ++k) t.counts[k] += o.counts[k];
-    if (o.interest() > outcomes[t.most_interesting].interest()) t.most_interesting = i;
+    if (o.interest() > outcomes[t.replayed].interest()) t.replayed = i;
   }
   return t;
 }
@@ -58,78 +56,21 @@ struct Words {
   return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
 }
 
-/// "lane changes" as a key: "lane_changes".
-[[nodiscard]] inline std::string in_one_word(std::string text) {
-  std::replace(text.begin(), text.end(), ' ', '_');
-  return text;
-}
+/// What there is to say about a site, by name: how many entrances it has.
+using Facts = std::vector<std::pair<std::string, std::size_t>>;
 
-/// The figures as a file keeps them. `add_facts(site, json)` beside the site
-/// adds what there is to say about it.
-template <class Site>
-[[nodiscard]] nlohmann::ordered_json summary(Settings const& settings, Site const& site,
-                                             std::vector<Outcome> const& outcomes, Totals const& t,
-                                             Words const& words) {
-  auto const n = static_cast<double>(settings.scenarios);
-  nlohmann::ordered_json json;
-  json["map"] = std::filesystem::path(settings.map_file).filename().string();
-  json["scenarios"] = settings.scenarios;
-  json["seed"] = settings.seed;
-  json["steps"] = settings.steps;
-  json["dt"] = dt;
-  add_facts(site, json);
-  json["success"] = static_cast<double>(t.success) / n;
-  json["collision"] = static_cast<double>(t.collision) / n;
-  json["time_out"] = static_cast<double>(t.time_out) / n;
-  json["off_road"] = static_cast<double>(t.off_road) / n;
-  json["mean_speed"] = t.agent_steps > 0 ? t.speed_sum / static_cast<double>(t.agent_steps) : 0.0;
-  json["mean_steps"] = static_cast<double>(t.steps) / n;
-  json["hard_brakings"] = t.hard_brakings;
-  for (std::size_t k = 0; k < t.counts.size(); ++k) json[in_one_word(words.counts[k].name)] = t.counts[k];
-  json["agents"] = t.agents;
-  json["agent_steps"] = t.agent_steps;
-  json["replayed_scenario"] = t.most_interesting;
-  char const* const names[] = {"success", "collision", "time_out"};
-  for (auto const& o : outcomes)
-    json["outcomes"].push_back({{"outcome", names[static_cast<int>(o.kind)]},
-                                {"off_road", o.off_road},
-                                {"agents", o.agents},
-                                {"steps", o.steps},
-                                {"hard_brakings", o.hard_brakings}});
-  return json;
-}
+/// Writes the figures, who collided with whom, and each scenario's outcome, with the units and thresholds, as JSON.
+void write_summary(std::filesystem::path const& file, Settings const& settings, Facts const& facts,
+                   std::vector<Outcome> const& outcomes, Totals const& totals, Words const& words);
 
 /// What the words of the table mean.
-[[nodiscard]] inline std::string explained(Words const& words) {
-  std::string text =
-      "  success: " + words.success +
-      " before time was out, and nobody collided\n"
-      "  ego off-road: a part of the ego was beyond the lanes to drive on, as that of a truck may be in\n"
-      "    a tight bend, where its rear axle keeps to the lane\n";
-  for (auto const& count : words.counts)
-    if (!count.meaning.empty()) text += "  " + count.name + ": " + count.meaning + "\n";
-  return text;
-}
+[[nodiscard]] std::string explained(Words const& words);
 
-inline void print_table(Settings const& settings, Totals const& t, double seconds, Words const& words) {
-  auto const n = static_cast<double>(settings.scenarios);
-  auto const percent = [n](std::uint64_t count) { return 100.0 * static_cast<double>(count) / n; };
-  auto const steps = static_cast<double>(t.agent_steps);
-  std::printf("\n  %s on %s, %.1f agents each, seed %llu\n\n", counted(settings.scenarios, "scenario").c_str(),
-              std::filesystem::path(settings.map_file).filename().c_str(), static_cast<double>(t.agents) / n,
-              static_cast<unsigned long long>(settings.seed));
-  std::printf(
-      "  success          %6.1f %%\n  collision        %6.1f %%\n  time-out         %6.1f %%\n  ego off-road     %6.1f "
-      "%%\n",
-      percent(t.success), percent(t.collision), percent(t.time_out), percent(t.off_road));
-  std::printf("  mean speed       %6.2f m/s\n  hard brakings    %6.2f per scenario (harder than %.0f m/s^2)\n",
-              t.speed_sum / std::max(1.0, steps), static_cast<double>(t.hard_brakings) / n, -hard_braking);
-  for (std::size_t k = 0; k < t.counts.size(); ++k)
-    std::printf("  %-16s %6.2f per scenario\n", words.counts[k].name.c_str(), static_cast<double>(t.counts[k]) / n);
-  std::printf("  agent-steps      %.3g in %.2f s: %.3g per second on %llu thread%s, sampling and judging included\n",
-              steps, seconds, steps / seconds, static_cast<unsigned long long>(settings.threads),
-              settings.threads == 1 ? "" : "s");
-  std::printf("%s\n", explained(words).c_str());
-}
+/// "success     199979 of 200000   99.990 % (99.984-99.993)": a count, its share and the share's 95 % interval
+/// (Wilson).
+[[nodiscard]] std::string share_line(std::string const& name, std::uint64_t count, std::uint64_t total);
+
+/// The table of results, on the standard output.
+void print_table(Settings const& settings, Totals const& totals, double seconds, Words const& words);
 
 }  // namespace examples

@@ -1,13 +1,13 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
-#include <cstdio>
 #include <optional>
 #include <string>
 #include <thread>
+#include <tuple>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "cambium/evaluation/collision.hpp"
@@ -17,6 +17,7 @@
 #include "cambium/world/frame.hpp"
 
 #include "on_threads.hpp"
+#include "trajectories.hpp"
 
 namespace examples {
 
@@ -26,8 +27,9 @@ inline constexpr double hard_braking = -4.0;  // [m/s^2]; one hard braking lasts
 /// What a user sets on the command line.
 struct Settings {
   std::string map_file, out;
-  std::uint64_t scenarios = 100, seed = 1, steps = 300, trajectories = 10;
+  std::uint64_t scenarios = 200, seed = 1, steps = 300, trajectories = 10;
   std::uint64_t threads = std::max(1u, std::thread::hardware_concurrency());
+  std::optional<std::uint64_t> replay{};  ///< the scenario to be replayed; none: the most telling one
 };
 
 /// What came of one scenario.
@@ -38,34 +40,32 @@ struct Outcome {
   cambium::AgentId collided_first = cambium::none<cambium::AgentId>, collided_second = collided_first;
   std::uint64_t steps = 0, agent_steps = 0, hard_brakings = 0;
   double speed_sum = 0.0;
+  double lowest_acceleration = 0.0;   // [m/s^2], of anybody
   std::vector<std::uint64_t> counts;  // what the scenario counts, see `Words::counts`
-  std::string trajectory;             // CSV rows, where asked for
 
-  /// How much there is to see; `why_interesting` says it in words.
-  [[nodiscard]] double interest() const {
-    return (kind == Kind::collision ? 1e6 : 0.0) + (off_road ? 1e5 : 0.0) + static_cast<double>(hard_brakings) +
-           0.01 * agents;
+  /// How much there is to see, most first: a collision, a time-out, the ego off-road, the closest call, which is the
+  /// hardest braking, and then the most of it. `why_interesting` says it in words.
+  [[nodiscard]] std::tuple<int, double, std::uint64_t> interest() const {
+    int const rank = kind == Kind::collision ? 3 : kind == Kind::time_out ? 2 : off_road ? 1 : 0;
+    return {rank, -lowest_acceleration, hard_brakings};
   }
 };
 
-/// Columns of the trajectories: x, y [m] are of the reference point (centre of the rear axle), front and rear [m] how
-/// far the vehicle reaches from there; ego is 1 for the ego, else 0.
-inline constexpr char const* trajectory_columns =
-    "scenario,time,agent,x,y,heading,speed,acceleration,front,rear,width,ego\n";
-
+/// The vehicles of the world as it is now, a line each.
 template <class World>
 void append_rows(std::string& rows, std::uint64_t scenario, World const& world, cambium::AgentId ego) {
-  char line[200];
+  auto const& map = world.map();
   for (std::size_t i = 0; i < world.size(); ++i) {
     auto const& r = world.frame().agents[i];
     if (r.status != cambium::AgentStatus::driving) continue;
-    auto const& shape = world.roster().agents[i].shape;
-    std::snprintf(line, sizeof line, "%llu,%.1f,%s,%.4f,%.4f,%.6f,%.4f,%.4f,%.2f,%.2f,%.2f,%d\n",
-                  static_cast<unsigned long long>(scenario), world.time(),
-                  cambium::to_string(world.roster().agents[i].id).c_str(), r.state.x, r.state.y,
-                  std::remainder(r.state.heading, 2 * cambium::geometry::pi), r.state.speed, r.action.acceleration,
-                  shape.front, shape.rear, shape.width(), world.roster().agents[i].id == ego);
-    rows += line;
+    auto const& agent = world.roster().agents[i];
+    auto const lane = r.lane.corridor < agent.road->corridors.size()
+                          ? agent.road->corridors[r.lane.corridor].lane_at(r.lane.s).lane
+                          : cambium::none<cambium::LaneId>;
+    append_row(rows, map,
+               {scenario, world.time(), agent.id, r.state.x, r.state.y, r.state.heading, r.state.speed,
+                r.action.acceleration, agent.shape, is_valid(lane) ? &map.lane(lane) : nullptr,
+                std::visit([](auto const& behavior) { return behavior.name; }, agent.behavior), agent.id == ego});
   }
 }
 
@@ -77,6 +77,7 @@ void count_agents(World const& world, std::vector<bool>& braking, Outcome& outco
     if (r.status != cambium::AgentStatus::driving) continue;
     ++outcome.agent_steps;
     outcome.speed_sum += r.state.speed;
+    outcome.lowest_acceleration = std::min(outcome.lowest_acceleration, r.action.acceleration);
     bool const hard = r.action.acceleration < hard_braking;
     outcome.hard_brakings += hard && !braking[i];
     braking[i] = hard;
@@ -107,7 +108,8 @@ class Film {
   cambium::WorldRecorder recorder_;
 };
 
-/// Rolls one scenario forward until it is done, something collides, or time is up; fills `recording` if there is one.
+/// Rolls one scenario forward until it is done, something collides, or time is up; fills `recording` and adds to `rows`
+/// of the trajectories if there are such.
 ///
 /// A `Site` is what an example's scenarios have in common; beside it stand `sample_scenario(site, seed, number)`, whose
 /// result has a `world`, an `ego` and `marked`, the agents that the replay shows in a colour of their own, and
@@ -115,25 +117,24 @@ class Film {
 /// which `is_done` keeps up to date.
 template <class Site>
 [[nodiscard]] Outcome run_scenario(Site const& site, Settings const& settings, std::uint64_t number,
-                                   cambium::Recording* recording) {
+                                   std::string* rows = nullptr, cambium::Recording* recording = nullptr) {
   auto scenario = sample_scenario(site, settings.seed, static_cast<std::uint32_t>(number));
   auto& world = scenario.world;
   Outcome outcome;
   outcome.agents = static_cast<std::uint32_t>(world.size());
-  bool const keep = number < settings.trajectories || recording != nullptr;
   cambium::Evaluators const judge(cambium::CollisionAny{}, cambium::DrivableArea{scenario.ego},
                                   cambium::StepCount{settings.steps});
   std::optional<Film> film;
   if (recording != nullptr) film.emplace(scenario);
   std::vector<bool> braking(world.size(), false);
-  if (keep) append_rows(outcome.trajectory, number, world, scenario.ego);
+  if (rows != nullptr) append_rows(*rows, number, world, scenario.ego);
   for (bool is_over = false; !is_over;) {
     auto const result = world.step(dt);
     if (!result)
       throw cambium::WorldError("scenario " + std::to_string(number) + ", agent " + to_string(result.agent),
                                 to_string(result.problem));
     count_agents(world, braking, outcome);
-    if (keep) append_rows(outcome.trajectory, number, world, scenario.ego);
+    if (rows != nullptr) append_rows(*rows, number, world, scenario.ego);
     if (film) film->record(world);
     auto const verdict = judge.evaluate(world);
     outcome.steps = verdict.steps;
@@ -152,12 +153,23 @@ template <class Site>
   return outcome;
 }
 
-/// Runs all scenarios. The outcomes do not depend on the threads.
+/// Runs all scenarios; the trajectories of the first ones go into `file` meanwhile. Neither depends on the threads.
 template <class Site>
-[[nodiscard]] std::vector<Outcome> run_all(Site const& site, Settings const& settings) {
+[[nodiscard]] std::vector<Outcome> run_all(Site const& site, Settings const& settings, PartFile& file) {
   std::vector<Outcome> outcomes(settings.scenarios);
-  run_on_threads(settings.scenarios, settings.threads,
-                 [&](std::uint64_t i) { outcomes[i] = run_scenario(site, settings, i, nullptr); });
+  file.append(trajectory_columns);
+  RowsInOrder in_order(file, 4 * settings.threads);
+  run_on_threads(settings.scenarios, settings.threads, [&](std::uint64_t i) {
+    try {
+      std::string rows;
+      bool const is_written = i < settings.trajectories;
+      outcomes[i] = run_scenario(site, settings, i, is_written ? &rows : nullptr);
+      if (is_written) in_order.put(i, std::move(rows));
+    } catch (...) {
+      in_order.give_up();
+      throw;
+    }
+  });
   return outcomes;
 }
 

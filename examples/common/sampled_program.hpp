@@ -9,23 +9,24 @@
 #include <vector>
 
 #include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 
 #include "cambium/core/error.hpp"
-#include "cambium/core/write_file.hpp"
 #include "cambium/viewer/html_replay.hpp"
 
 #include "command_line.hpp"
+#include "part_file.hpp"
 #include "report.hpp"
 #include "roll_out.hpp"
 
 namespace examples {
 
 /// Why of all scenarios this one is replayed.
-[[nodiscard]] inline char const* why_interesting(Outcome const& outcome) {
+[[nodiscard]] inline char const* why_interesting(Settings const& settings, Outcome const& outcome) {
+  if (settings.replay) return "as --replay says";
   if (outcome.kind == Outcome::Kind::collision) return "a collision";
+  if (outcome.kind == Outcome::Kind::time_out) return "a time-out";
   if (outcome.off_road) return "the ego is off-road";
-  return "the most hard brakings";
+  return "the closest call";
 }
 
 [[nodiscard]] inline std::string in_words(Outcome const& outcome, Words const& words) {
@@ -46,6 +47,12 @@ inline void add_options(CLI::App& program, Settings& settings, std::string const
   number("--steps", settings.steps, 1, 1'000'000, "of 0.2 s, after which a scenario is timed out");
   number("--trajectories", settings.trajectories, 0, 10'000'000,
          "scenarios whose trajectories are written, besides the replayed one");
+  program
+      .add_option("--replay", settings.replay,
+                  "scenario, from 0, that replay.html plays; else a collision, if there is one, else a time-out, else "
+                  "the ego off-road, else the closest call, which is where somebody brakes hardest")
+      ->type_name("N")
+      ->check(whole_number(0, 9'999'999));
   program.add_option("--map", settings.map_file, map_sentence)
       ->type_name("FILE")
       ->check(not_empty())
@@ -54,26 +61,25 @@ inline void add_options(CLI::App& program, Settings& settings, std::string const
       ->type_name("DIR")
       ->check(not_empty())
       ->capture_default_str();
-  program.footer("What it prints:\n" + explained({"", "the ego, or everybody, did what there was to do"}));
+  program.footer("What it prints:\n" + explained({"", "the ego, or everybody, did what there was to do"}) +
+                 "What it writes to trajectories.csv:\n"
+                 "  a line for each vehicle and step; x, y are of the centre of the rear axle, front and rear how far\n"
+                 "    it reaches from there; acceleration is that of the step before, which led to this place");
 }
 
+/// Simulates the replayed scenario once more and writes its replay, and its trajectory unless that is written already.
 template <class Site>
-void write_results(std::filesystem::path const& folder, Site const& site, Settings const& settings, Words const& words,
-                   std::vector<Outcome> const& outcomes, Totals const& totals) {
-  auto const shown = totals.most_interesting;
+void write_replay(std::filesystem::path const& file, Site const& site, Settings const& settings, Words const& words,
+                  std::uint64_t shown, PartFile& trajectories) {
   cambium::Recording recording;
-  auto const replayed = run_scenario(site, settings, shown, &recording);
+  std::string rows;
+  auto const replayed = run_scenario(site, settings, shown, &rows, &recording);
+  if (shown >= settings.trajectories) trajectories.append(rows);
   recording.title = words.title + " on " + std::filesystem::path(settings.map_file).filename().string() +
                     ", scenario " + std::to_string(shown);
   recording.notes = {"Outcome: " + in_words(replayed, words) + "; " + counted(replayed.agents, "vehicle") + ", " +
                      counted(replayed.hard_brakings, "hard braking") + ", seed " + std::to_string(settings.seed)};
-  std::string rows = trajectory_columns;
-  for (std::uint64_t i = 0; i < outcomes.size(); ++i) rows += i == shown ? replayed.trajectory : outcomes[i].trajectory;
-  auto const figures = summary(settings, site, outcomes, totals, words);
-  cambium::write_file(folder / "trajectories.csv", rows);
-  cambium::write_file(folder / "summary.json",
-                      figures.dump(1, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n");
-  cambium::write_html_replay(folder / "replay.html", recording);
+  cambium::write_html_replay(file, recording);
 }
 
 /// Runs all scenarios of a site (see `run_scenario`), prints the table and writes the files. What goes wrong in a
@@ -81,23 +87,32 @@ void write_results(std::filesystem::path const& folder, Site const& site, Settin
 template <class Site>
 void sample_and_report(Site const& site, Settings const& settings, Words const& words) {
   std::filesystem::path const folder(settings.out);
+  if (settings.replay && *settings.replay >= settings.scenarios)
+    throw cambium::Error("--replay " + std::to_string(*settings.replay),
+                         "the last scenario is number " + std::to_string(settings.scenarios - 1),
+                         "choose an earlier one, or give more --scenarios");
   prepare_folder(folder);
+  PartFile trajectories(folder / "trajectories.csv");
   auto const begin = std::chrono::steady_clock::now();
   auto const outcomes = [&] {
     try {
-      return run_all(site, settings);
+      return run_all(site, settings, trajectories);
     } catch (cambium::WorldError const& problem) {
       throw cambium::MapError(settings.map_file, problem.what(), "look at it with examples/run map --picture");
     }
   }();
   double const seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-  auto const totals = total(outcomes);
+  auto totals = total(outcomes);
+  if (settings.replay) totals.replayed = *settings.replay;
 
-  write_results(folder, site, settings, words, outcomes, totals);
+  write_replay(folder / "replay.html", site, settings, words, totals.replayed, trajectories);
+  trajectories.finish();
+  write_summary(folder / "summary.json", settings, facts_of(site), outcomes, totals, words);
   print_table(settings, totals, seconds, words);
-  std::cout << "  " << (folder / "replay.html").string() << "       plays scenario " << totals.most_interesting << " ("
-            << why_interesting(outcomes[totals.most_interesting]) << ") in a browser\n  "
-            << (folder / "summary.json").string() << "      these figures and each scenario's outcome\n  "
+  std::cout << "  " << (folder / "replay.html").string() << "       plays scenario " << totals.replayed << " ("
+            << why_interesting(settings, outcomes[totals.replayed]) << ") in a browser\n  "
+            << (folder / "summary.json").string()
+            << "      these figures, each scenario's outcome, and who collided\n  "
             << (folder / "trajectories.csv").string()
             << "  paths of the first scenarios' vehicles and of the replayed one's\n";
 }

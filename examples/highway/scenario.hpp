@@ -11,8 +11,6 @@
 #include <variant>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "cambium/behavior/behavior_set.hpp"
 #include "cambium/behavior/mobil.hpp"
 #include "cambium/behavior/presets.hpp"
@@ -222,9 +220,8 @@ struct Scenario {
 }
 
 /// What the summary says of the site.
-inline void add_facts(Site const& site, nlohmann::ordered_json& json) {
-  json["lanes"] = site.lanes.size();
-  json["exits"] = site.exits.size();
+[[nodiscard]] inline std::vector<std::pair<std::string, std::size_t>> facts_of(Site const& site) {
+  return {{"lanes", site.lanes.size()}, {"exits", site.exits.size()}};
 }
 
 }  // namespace highway

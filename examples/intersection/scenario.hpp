@@ -11,8 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "cambium/behavior/behavior_set.hpp"
 #include "cambium/behavior/intersection.hpp"
 #include "cambium/behavior/presets.hpp"
@@ -211,9 +209,8 @@ inline void switch_on_lights(Simulation& world) {
 }
 
 /// What the summary says of the site.
-inline void add_facts(Site const& site, nlohmann::ordered_json& json) {
-  json["entrances"] = site.entrances.size();
-  json["lights"] = site.lights;
+[[nodiscard]] inline std::vector<std::pair<std::string, std::size_t>> facts_of(Site const& site) {
+  return {{"entrances", site.entrances.size()}, {"lights", site.lights ? 1 : 0}};
 }
 
 }  // namespace intersection

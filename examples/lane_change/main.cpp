@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
-#include <iostream>
+#include <optional>
 #include <string>
 #include <thread>
 #include <vector>
@@ -19,6 +19,7 @@
 
 #include "../common/command_line.hpp"
 #include "../common/on_threads.hpp"
+#include "../common/part_file.hpp"
 #include "plot.hpp"
 #include "scenario.hpp"
 
@@ -45,11 +46,13 @@ std::shared_ptr<cambium::Map const> two_lanes() {
 }
 
 /// All scenarios of a cell; the outcomes do not depend on the threads.
-std::vector<Outcome> run(std::shared_ptr<cambium::Map const> const& map, Cell const& cell, Settings const& settings) {
+std::vector<Outcome> run(std::shared_ptr<cambium::Map const> const& map, Cell const& cell, Settings const& settings,
+                         std::string const& what) {
   std::vector<Outcome> outcomes(settings.scenarios);
-  examples::run_on_threads(settings.scenarios, settings.threads, [&](std::uint64_t i) {
+  auto const one = [&](std::uint64_t i) {
     outcomes[i] = play(sample(map, cell, settings.seed, static_cast<std::uint32_t>(i)));
-  });
+  };
+  examples::run_on_threads(settings.scenarios, settings.threads, one, what);
   return outcomes;
 }
 
@@ -92,7 +95,8 @@ void print(lane_change::Row const& row) {
 void run_grid(Settings const& settings) {
   std::filesystem::path const folder(settings.out);
   examples::prepare_folder(folder);
-  if (!settings.json.empty()) cambium::write_file(settings.json, "[]\n");  // finds out now whether it can
+  std::optional<examples::PartFile> json;  // finds out now whether it can be written
+  if (!settings.json.empty()) json.emplace(settings.json, examples::PartFile::Unfinished::kept);
   auto const map = two_lanes();
   std::printf(
       "%llu scenarios a cell; shares in %% with their 95 %% intervals (Wilson); steps: mean of the successes;\n"
@@ -101,22 +105,21 @@ void run_grid(Settings const& settings) {
       static_cast<unsigned long long>(settings.scenarios), "preset", "iter.", "var.", "success", "collision",
       "time-out", "steps", "iterations/s");
   std::vector<lane_change::Row> rows;
+  auto const cells = std::to_string(settings.variations.size() * settings.iterations.size());
   for (auto const variation : settings.variations)
     for (auto const iterations : settings.iterations) {
       Cell const cell{settings.preset == "paper", static_cast<std::size_t>(iterations), variation};
       auto const begin = std::chrono::steady_clock::now();
-      auto const outcomes = run(map, cell, settings);
+      auto const outcomes = run(map, cell, settings, "cell " + std::to_string(rows.size() + 1) + " of " + cells + ":");
       std::chrono::duration<double> const spent = std::chrono::steady_clock::now() - begin;
       rows.push_back(judge(cell, outcomes, spent.count(), settings.threads));
+      if (json) json->append((rows.size() == 1 ? "[\n " : ",\n ") + as_json(rows.back()).dump(), "\n]\n");
       print(rows.back());
     }
+  if (json) json->finish();
   auto const picture = folder / (settings.preset + ".svg");
   cambium::write_file(picture, lane_change::plot(rows));
   std::printf("\n%s  the same as a plot\n", picture.c_str());
-  if (settings.json.empty()) return;
-  nlohmann::ordered_json json = nlohmann::ordered_json::array();
-  for (auto const& row : rows) json.push_back(as_json(row));
-  cambium::write_file(settings.json, json.dump(1) + "\n");
 }
 
 void add_options(CLI::App& program, Settings& settings) {
@@ -139,7 +142,10 @@ void add_options(CLI::App& program, Settings& settings) {
   program.add_option("--preset", settings.preset, "the paper's choices, or cambium's")
       ->check(CLI::IsMember({"paper", "cambium"}))
       ->capture_default_str();
-  program.add_option("--json", settings.json, "writes a row a cell")->type_name("FILE")->check(examples::not_empty());
+  program
+      .add_option("--json", settings.json, "a row a cell, written once all are done; until then they are in FILE.part")
+      ->type_name("FILE")
+      ->check(examples::not_empty());
   program.add_option("--out", settings.out, "folder for the plot")
       ->type_name("DIR")
       ->capture_default_str()

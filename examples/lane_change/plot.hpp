@@ -11,6 +11,8 @@
 
 #include "cambium/viewer/detail/svg_panel.hpp"
 
+#include "../common/wilson.hpp"
+
 /// The results of the grid: intervals, JSON, and bars over the variations.
 namespace lane_change {
 
@@ -26,19 +28,7 @@ struct Row {
   double iterations_per_second = 0.0;  ///< of one thread
 };
 
-struct Interval {
-  double low, high;
-};
-
-/// Of a share, 95 % (Wilson 1927).
-inline Interval wilson(std::uint64_t count, std::uint64_t n) {
-  constexpr double z = 1.959963984540054;
-  auto const total = static_cast<double>(n);
-  double const p = static_cast<double>(count) / total;
-  double const middle = (p + z * z / (2 * total)) / (1 + z * z / total);
-  double const half = z / (1 + z * z / total) * std::sqrt(p * (1 - p) / total + z * z / (4 * total * total));
-  return {std::max(0.0, middle - half), std::min(1.0, middle + half)};
-}
+using examples::wilson;
 
 inline nlohmann::ordered_json as_json(Row const& row) {
   auto const share = [&](std::uint64_t count) {

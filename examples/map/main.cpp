@@ -26,7 +26,7 @@ struct Settings {
   std::string file, picture, sketch, poses, nearest, out, links, junction;
   std::vector<std::string> route, reachable;
   std::vector<double> part;
-  bool infer_links = false, in_space = false, network = false;
+  bool infer_links = false, in_space = false, network = false, strict = false;
 };
 
 /// Throws where files would be overwritten that are read, or one by the other, or not be written at all.
@@ -69,7 +69,7 @@ void draw(cambium::Map const& map, Settings const& settings) {
   }
 }
 
-void run(Settings const& settings) {
+int run(Settings const& settings) {
   namespace example = map_example;
   check_files(settings);
   auto const opened = examples::open_map(settings.file, {.infer_links = settings.infer_links});
@@ -85,6 +85,7 @@ void run(Settings const& settings) {
     cambium::write_file(settings.out, example::poses(map, settings.poses, settings.in_space));
   if (!settings.nearest.empty()) cambium::write_file(settings.out, example::nearest(map, settings.nearest));
   if (!settings.links.empty()) cambium::write_file(settings.links, example::links(opened.document));
+  return settings.strict && example::is_odd(opened) ? 1 : 0;
 }
 
 /// The options, and what `--help` says of them.
@@ -122,6 +123,7 @@ void describe(CLI::App& program, Settings& settings) {
   for (auto* const option : program.get_options())
     if (option->get_expected_max() == 1) option->check(is_said, "");
   program.add_flag("--infer-links", settings.infer_links, "join lanes whose ends meet where the file forgot the link");
+  program.add_flag("--strict", settings.strict, "exit code 1 where there is a warning, an error or a road left out");
 }
 
 }  // namespace
@@ -140,6 +142,8 @@ int main(int argc, char** argv) {
       "no\n"
       "             row\n"
       "  --links    road,end,lane,next_road,next_contact,next_lane,via: as written in the file\n"
-      "Exit code: 0 where there is a map, whatever is odd about it; 2 where there is none, or another error.");
-  return examples::run_program(program, argc, argv, [&] { run(settings); });
+      "Exit code: 0 where there is a map, whatever is odd about it; 1 with --strict where a warning, an error or a "
+      "road\n"
+      "left out is; 2 where there is no map, or another error.");
+  return examples::run_program(program, argc, argv, [&] { return run(settings); });
 }

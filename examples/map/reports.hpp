@@ -15,6 +15,7 @@
 #include "cambium/map/junction.hpp"
 #include "cambium/map/lane_network.hpp"
 #include "cambium/map/map.hpp"
+#include "cambium/map/right_of_way.hpp"
 
 #include "../common/csv.hpp"
 #include "summary.hpp"

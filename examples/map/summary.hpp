@@ -14,6 +14,7 @@
 #include "cambium/map/lane_network.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/opendrive_document.hpp"
+#include "cambium/map/right_of_way.hpp"
 
 #include "../common/map_file.hpp"
 
@@ -105,6 +106,19 @@ inline std::string overlaps_text(cb::Map const& map) {
          std::to_string(ruled);
 }
 
+/// Whether one could drive along somewhere: a lane whose widths are no numbers, or all 0, leads nowhere.
+inline bool has_width(cb::map::Lane const& lane) {
+  return std::any_of(lane.widths.begin(), lane.widths.end(),
+                     [](auto const& sides) { return std::isfinite(sides.left) && sides.left + sides.right > 0.0; });
+}
+
+/// Whether somebody should look at the file: a warning, an error, or a road that is not in the map.
+inline bool is_odd(examples::OpenedMap const& opened) {
+  return opened.map->roads().size() < opened.document.roads.size() ||
+         std::any_of(opened.diagnostics.begin(), opened.diagnostics.end(),
+                     [](auto const& diagnostic) { return diagnostic.severity != cb::Severity::info; });
+}
+
 /// What the map has.
 inline std::string map_text(cb::Map const& map) {
   std::map<std::string, std::size_t> types, faults;
@@ -112,7 +126,7 @@ inline std::string map_text(cb::Map const& map) {
   double length = 0.0;
   for (auto const& lane : map.lanes()) {
     ++types[std::string(to_string(lane.type))];
-    if (!lane.drivable()) continue;
+    if (!lane.drivable() || !has_width(lane)) continue;
     length += lane.length();
     merging += is_valid(lane.merges_into);
   }

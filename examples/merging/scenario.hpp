@@ -11,8 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include <nlohmann/json.hpp>
-
 #include "cambium/behavior/behavior_set.hpp"
 #include "cambium/behavior/idm_classic.hpp"
 #include "cambium/core/random.hpp"
@@ -128,6 +126,26 @@ inline void warn_of_crossings(Site const& site, std::string const& who) {
         << " where the traffic's routes cross or meet at an angle; nobody gives way there, so expect collisions\n";
 }
 
+/// How many merges there are on a map, wherever they are.
+[[nodiscard]] inline std::size_t count_merges(cambium::Map const& map) {
+  std::size_t count = 0;
+  for (auto const& lane : map.lanes())
+    for (auto const& overlap : lane.overlaps)
+      count += lane.id < overlap.other && overlap.kind == cambium::map::OverlapKind::merge;
+  return count;
+}
+
+/// What a map lacks on which `find_ramp` finds nothing.
+[[nodiscard]] inline std::string what_is_missing(cambium::Map const& map, std::vector<Entrance> const& entrances) {
+  auto const merges = count_merges(map);
+  if (merges == 0) return "no lane of this map merges into another";
+  std::string const has = "it has " + std::to_string(merges) + (merges == 1 ? " merge" : " merges");
+  if (entrances.empty())
+    return has + ", but no lane where traffic could enter: each is the continuation of another, narrow or short";
+  return has + ", but none lies 20 m or more down the straight ways from the " + std::to_string(entrances.size()) +
+         (entrances.size() == 1 ? " lane" : " lanes") + " where traffic enters: those that continue no other";
+}
+
 /// Finds the merge of a map: the entrances, and which of them is the ramp. Throws `MapError` where nothing merges.
 [[nodiscard]] inline Site find_site(std::shared_ptr<cambium::Map const> map, std::string const& file) {
   Site site;
@@ -135,8 +153,8 @@ inline void warn_of_crossings(Site const& site, std::string const& who) {
   site.entrances = find_entrances(*site.map);
   auto const ramp = find_ramp(site.entrances);
   if (!ramp)
-    throw cambium::MapError(file, "no lane of this map merges into another",
-                            "give a map with an on-ramp or a lane drop, such as maps/merging.xodr");
+    throw cambium::MapError(file, what_is_missing(*site.map, site.entrances),
+                            "give a map whose on-ramp or lane drop begins at its edge, such as maps/merging.xodr");
   site.ramp = *ramp;
   site.crossings = count_crossings(*site.map, site.entrances);
   auto const limit = site.map->lane(site.entrances[site.ramp].route.lanes.front()).speed_limit_at(0.0);
@@ -236,6 +254,8 @@ struct Scenario {
 [[nodiscard]] inline bool is_done(Scenario const& scenario) { return scenario.world.reached_goal(scenario.ego); }
 
 /// What the summary says of the site.
-inline void add_facts(Site const& site, nlohmann::ordered_json& json) { json["entrances"] = site.entrances.size(); }
+[[nodiscard]] inline std::vector<std::pair<std::string, std::size_t>> facts_of(Site const& site) {
+  return {{"entrances", site.entrances.size()}};
+}
 
 }  // namespace merging

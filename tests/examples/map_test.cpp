@@ -246,3 +246,57 @@ TEST_CASE("what is wrong is said in one line, with exit code 2 and nothing writt
     CHECK_FALSE(fs::exists(out));
   }
 }
+
+TEST_CASE("map: no message names a function of the library") {
+  program::Program const program("map");
+  if (!program.is_there()) return;
+  auto const run = program.run({CAMBIUM_SOURCE_DIR "/maps/merging.xodr", "--route", "99:-1:3", "1:-1:3"});
+  CHECK(run.code == 2);
+  CHECK(run.err.find("99") != std::string::npos);
+  CHECK(run.err.find("Map::") == std::string::npos);
+  CHECK(run.err.find("--picture") != std::string::npos);
+}
+
+TEST_CASE("map --strict: exit code 1 where something is odd about the map, 0 where nothing is") {
+  program::Program const program("map");
+  if (!program.is_there()) return;
+  browser::TemporaryFolder const folder;
+  auto text = program::content_of(CAMBIUM_SOURCE_DIR "/maps/merging.xodr");
+  CHECK(program.run({CAMBIUM_SOURCE_DIR "/maps/merging.xodr", "--strict"}).code == 0);
+  auto const at = text.find("<width ");
+  REQUIRE(at != std::string::npos);
+  for (auto place = at; place != std::string::npos; place = text.find("<width ", place + 1)) {
+    auto const a = text.find(" a=\"", place) + 4;
+    text.replace(a, text.find('"', a) - a, "nan");
+  }
+  auto const file = (folder.path() / "nan.xodr").string();
+  std::ofstream(file) << text;
+  auto const run = program.run({file, "--strict"});
+  CAPTURE(run.out);
+  CAPTURE(run.err);
+  CHECK(run.code == (run.out.empty() ? 2 : 1));
+  CHECK(program.run({file}).code == (run.out.empty() ? 2 : 0));
+  CHECK((run.out.empty() || run.out.find("to drive on    no lane") != std::string::npos));  // not the lanes' length
+}
+
+TEST_CASE("a checkout that belongs to another user is one sentence") {
+  browser::TemporaryFolder const folder;
+  auto const root = folder.path() / "checkout";
+  std::filesystem::create_directories(root / "tests");
+  std::filesystem::create_directories(root / "build");
+  std::filesystem::copy(CAMBIUM_SOURCE_DIR "/tests/setup.sh", root / "tests");
+  std::filesystem::permissions(folder.path(), std::filesystem::perms(0755));
+  std::filesystem::permissions(root / "build", std::filesystem::perms(0555));
+  auto const err = folder.path() / "err";
+  std::string const as = std::system("test $(id -u) = 0") == 0 ? "setpriv --reuid=65534 --clear-groups " : "";
+  if (!as.empty() && std::system((as + "true 2>/dev/null").c_str()) != 0) {
+    MESSAGE("skipped: the superuser may write everywhere");
+    return;
+  }
+  auto const script = "source " + browser::quoted((root / "tests/setup.sh").string()) + "; configure EXAMPLES";
+  CHECK(std::system((as + "bash -c " + browser::quoted(script) + " 2>" + browser::quoted(err.string())).c_str()) != 0);
+  auto const said = program::content_of(err);
+  CAPTURE(said);
+  CHECK(said.find("cannot be written to by") != std::string::npos);
+  CHECK(said.find('\n') + 1 == said.size());
+}

@@ -1,6 +1,7 @@
 // The examples lane_change and embed_in_planner as a user meets them.
 #include <doctest/doctest.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -48,6 +49,29 @@ TEST_CASE("the lane change example writes a row a cell, the same on any number o
     CHECK(one[2]["variation"] == 0.8);
     CHECK(content_of(folder.path() / (std::string(preset) + ".svg")).find("collision") != std::string::npos);
   }
+}
+
+TEST_CASE("an interrupted lane change leaves an earlier file as it is, and says where its rows are") {
+  Program const program("lane_change");
+  if (!program.is_there()) return;
+  browser::TemporaryFolder const folder;
+  auto const file = folder.path() / "rows.json", part = folder.path() / "rows.json.part";
+  std::ofstream(file) << "earlier";
+  // The first cell takes moments, the second hours.
+  auto const command =
+      browser::quoted((std::filesystem::path(CAMBIUM_EXAMPLES_DIR) / "lane_change").string()) +
+      " --scenarios 2 --iterations 10,90000000 --variation 0 --json " + browser::quoted(file.string()) + " --out " +
+      browser::quoted(folder.path().string()) + " >" + browser::quoted((folder.path() / "out").string()) + " 2>" +
+      browser::quoted((folder.path() / "err").string()) + " & while kill -0 $! && ! grep -q iterations_per_second " +
+      browser::quoted(part.string()) + "; do sleep 0.05; done 2>/dev/null; kill -TERM $!; wait $!";
+  CHECK(std::system(("bash -c " + browser::quoted(command) + " 2>/dev/null").c_str()) != 0);
+  CHECK(content_of(file) == "earlier");
+  auto const rows = nlohmann::json::parse(content_of(part), nullptr, false);
+  REQUIRE(rows.is_array());
+  CHECK(rows.size() == 1);
+  auto const err = content_of(folder.path() / "err");
+  CHECK(err.find("what was done is in " + part.string()) != std::string::npos);
+  CHECK(err.find("left") == std::string::npos);  // no progress where nobody looks
 }
 
 TEST_CASE("the lane change example names what is wrong with its options") {

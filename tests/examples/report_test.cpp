@@ -1,0 +1,178 @@
+// What the sampled examples print and write, and what all examples say of a wrong command line.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <iterator>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "../../examples/common/version.hpp"
+#include "../../examples/common/wilson.hpp"
+#include "../support/corpus.hpp"
+#include "program.hpp"
+
+using program::content_of;
+using program::Program;
+
+TEST_CASE("Wilson's intervals are those of the literature") {
+  // Newcombe 1998 (table I, method 3): 81 of 263, 15 of 148, 0 of 20, 1 of 29.
+  struct Row {
+    unsigned count, n;
+    double low, high;
+  };
+  for (auto const& [count, n, low, high] : {Row{81, 263, 0.2553, 0.3662}, Row{15, 148, 0.0624, 0.1605},
+                                            Row{0, 20, 0.0, 0.1611}, Row{1, 29, 0.0061, 0.1718}}) {
+    auto const interval = examples::wilson(count, n);
+    CHECK(std::abs(interval.low - low) < 1e-4);
+    CHECK(std::abs(interval.high - high) < 1e-4);
+  }
+  CHECK(examples::wilson(20, 20).high == 1.0);
+}
+
+TEST_CASE("the table counts scenarios and gives intervals, and says how to give them more time") {
+  Program const program("merging");
+  if (!program.is_there()) return;
+  browser::TemporaryFolder const folder;
+  auto const run = program.run({"--scenarios", "8", "--steps", "5", "--out", folder.path().string()});
+  REQUIRE(run.code == 0);
+  CHECK(run.out.find("success        0 of 8    0.0 % (0.0-32.4)") != std::string::npos);
+  CHECK(run.out.find("time-out       8 of 8  100.0 % (67.6-100.0)") != std::string::npos);
+  CHECK(run.out.find("8 scenarios ended by the limit of 5 steps (1 s); --steps raises it") != std::string::npos);
+  CHECK(program.run({"--help"}).out.find("--scenarios N=200") != std::string::npos);
+}
+
+TEST_CASE("summary.json says who collided, when and in which scenario, with units, thresholds and the version") {
+  Program const program("merging");
+  if (!program.is_there()) return;
+  browser::TemporaryFolder const folder;
+  std::vector<std::string> words{"--scenarios", "12", "--out", folder.path().string()};
+  auto const map = corpus::find("opendrive/DR_CHN_Merging_ZS_partial_v02.xodr");  // whose routes cross
+  if (map) words.insert(words.end(), {"--map", map->string(), "--steps", "200"});
+  REQUIRE(program.run(words).code == 0);
+  auto const summary = nlohmann::json::parse(content_of(folder.path() / "summary.json"));
+  CHECK(summary["cambium_version"].get<std::string>().find('.') != std::string::npos);
+  CHECK(summary["units"]["mean_speed"] == "m/s");
+  CHECK(summary["thresholds"]["hard_braking"]["acceleration_below"] == -4.0);
+  std::size_t collisions = 0;
+  for (auto const& outcome : summary["outcomes"]) collisions += outcome["outcome"] == "collision";
+  REQUIRE(summary["collisions"].size() == collisions);
+  CHECK(summary["counts"]["collision"] == collisions);
+  for (auto const& collision : summary["collisions"]) {
+    auto const& outcome = summary["outcomes"][collision["scenario"].get<std::size_t>()];
+    CHECK(outcome["outcome"] == "collision");
+    CHECK(collision["time"].get<double>() == doctest::Approx(0.2 * outcome["steps"].get<double>()));
+    CHECK(collision["agents"].size() == 2);
+  }
+}
+
+TEST_CASE("the trajectories' heading names units, and each line has lane, class and behaviour") {
+  Program const program("merging");
+  if (!program.is_there()) return;
+  browser::TemporaryFolder const folder;
+  REQUIRE(program.run({"--scenarios", "2", "--out", folder.path().string()}).code == 0);
+  std::istringstream text(content_of(folder.path() / "trajectories.csv"));
+  std::string line;
+  std::getline(text, line);
+  CHECK(line ==
+        "scenario,time [s],agent,x [m],y [m],heading [rad],speed [m/s],acceleration [m/s^2],front [m],rear [m],"
+        "width [m],road,lane,class,behavior,ego");
+  std::set<std::string> classes;
+  for (std::size_t count = 0; std::getline(text, line); ++count) {
+    std::vector<std::string> cells;
+    std::istringstream row(line);
+    for (std::string cell; std::getline(row, cell, ',');) cells.push_back(cell);
+    REQUIRE(cells.size() == 16);
+    CHECK_FALSE(cells[11].empty());
+    CHECK(std::stoi(cells[12]) != 0);
+    classes.insert(cells[13]);
+    CHECK(cells[14] == "idm_classic");
+  }
+  CHECK(classes == std::set<std::string>{"car", "truck"});
+  CHECK(program.run({"--help"}).out.find("acceleration is that of the step before") != std::string::npos);
+}
+
+TEST_CASE("--replay chooses the scenario; without it a time-out is more telling than a hard braking") {
+  Program const program("merging");
+  if (!program.is_there()) return;
+  browser::TemporaryFolder const folder;
+  auto const run = [&](std::vector<std::string> words) {
+    for (char const* word : {"--scenarios", "8", "--trajectories", "2", "--out"}) words.emplace_back(word);
+    words.push_back(folder.path().string());
+    return program.run(words);
+  };
+  auto const chosen = run({"--replay", "5"});
+  REQUIRE(chosen.code == 0);
+  CHECK(chosen.out.find("plays scenario 5 (as --replay says)") != std::string::npos);
+  CHECK(content_of(folder.path() / "replay.html").find("scenario 5") != std::string::npos);
+  CHECK(content_of(folder.path() / "trajectories.csv").find("\n5,0.0,") != std::string::npos);
+  CHECK(run({"--steps", "5"}).out.find("(a time-out)") != std::string::npos);
+  CHECK(run({}).out.find("(the closest call)") != std::string::npos);
+  auto const beyond = run({"--replay", "8"});
+  CHECK(beyond.code == 2);
+  CHECK(beyond.err.find("--replay 8: the last scenario is number 7") != std::string::npos);
+}
+
+TEST_CASE("trajectories.csv is written while simulating, in memory that does not grow with it") {
+  Program const program("merging");
+  if (!program.is_there()) return;
+  browser::TemporaryFolder const folder;
+  auto const peak = [&](char const* trajectories) {  // [KiB]
+    auto const out = folder.path() / trajectories;
+    auto const command =
+        "/usr/bin/env python3 -c \"import resource,subprocess,sys;"
+        "subprocess.run(sys.argv[1:],stdout=subprocess.DEVNULL,check=True);"
+        "print(resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss)\" " +
+        browser::quoted((std::filesystem::path(CAMBIUM_EXAMPLES_DIR) / "merging").string()) +
+        " --scenarios 300 --threads 2 --trajectories " + trajectories + " --out " + browser::quoted(out.string()) +
+        " >" + browser::quoted(out.string() + ".txt");
+    if (std::system(command.c_str()) != 0) return -1L;
+    return std::strtol(content_of(out.string() + ".txt").c_str(), nullptr, 10);
+  };
+  auto const none = peak("0"), all = peak("300");
+  if (none <= 0 || all <= 0) {
+    MESSAGE("skipped: no python3 to measure memory with");
+    return;
+  }
+  auto const size = std::filesystem::file_size(folder.path() / "300" / "trajectories.csv") / 1024;
+  CAPTURE(size);
+  CHECK(all - none < static_cast<long>(size / 4));
+  CHECK(std::distance(std::filesystem::directory_iterator(folder.path() / "300"), {}) == 3);  // no part is left
+}
+
+TEST_CASE("on a map whose merges are not at its edge the example says what is missing") {
+  Program const program("merging");
+  auto const map = corpus::find("opendrive/Town04.xodr");
+  if (!program.is_there() || !map) return;
+  auto const run = program.run({"--scenarios", "1", "--map", map->string(), "--out", "/tmp/never"});
+  CHECK(run.code == 2);
+  CHECK(run.err.find("it has 432 merges, but") != std::string::npos);
+}
+
+TEST_CASE("every example has --version") {
+  for (std::string const name : {"merging", "highway", "intersection", "zip_merge", "lane_change", "map", "models",
+                                 "ring", "make_maps", "embed_in_planner"}) {
+    Program const program(name);
+    if (!program.is_there()) continue;
+    auto const run = program.run({"--version"});
+    CAPTURE(name);
+    CHECK(run.code == 0);
+    CHECK(run.out == name + " of cambium " + examples::version() + "\n");
+  }
+}
+
+TEST_CASE("an unknown option names near ones, and where all are listed") {
+  Program const program("merging");
+  if (!program.is_there()) return;
+  auto const said = [&](std::vector<std::string> const& words) { return program.run(words).err; };
+  CHECK(said({"--scenario", "3"}) ==
+        "merging: there is no option --scenario; is it --scenarios? (--help lists the options)\n");
+  CHECK(said({"--sede=3"}).find("is it --seed") != std::string::npos);
+  CHECK(said({"--frobnicate"}) == "merging: there is no option --frobnicate (--help lists the options)\n");
+  CHECK(said({"stray"}) == "merging: does not know what to do with 'stray' (--help lists the options)\n");
+}
