@@ -58,7 +58,7 @@ template <class Part>
     if constexpr (cb::Described<std::remove_cvref_t<decltype(value)>>) {
       if (!cb::equal_parameters(value, defaults.*entry.field))
         others += (others.empty() ? "" : ", ") + std::string(entry.name) + " " + part_text(value);
-    } else if (!cb::detail::equal_values(value, defaults.*entry.field)) {
+    } else if (value_text(value, entry) != value_text(defaults.*entry.field, entry)) {
       others += (others.empty() ? "" : ", ") + std::string(entry.name) + " " + value_text(value, entry);
     }
   });

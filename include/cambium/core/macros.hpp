@@ -21,8 +21,8 @@
 #endif
 
 /// Asks the compiler to inline everything that a function calls: worth a quarter of the time of a step (`bench/run
-/// step` beside the same in a checkout that was configured with `CXXFLAGS=-DCAMBIUM_FLATTEN=`), for seconds of compiling
-/// where behaviours are large. Compile with `-DCAMBIUM_FLATTEN=` to do without.
+/// step` beside the same in a checkout that was configured with `CXXFLAGS=-DCAMBIUM_FLATTEN=`), for seconds of
+/// compiling where behaviours are large. Compile with `-DCAMBIUM_FLATTEN=` to do without.
 #ifndef CAMBIUM_FLATTEN
 #if defined(__GNUC__)
 #define CAMBIUM_FLATTEN [[gnu::flatten]]

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <string>
 
@@ -24,16 +23,20 @@ namespace detail {
 /// "[0, 70]", "(0, inf)"; the bounds of the open ranges are shown as what they mean; of a choice its names.
 [[nodiscard]] std::string range_text(ParameterInfo const& info);
 
-// What is said once of all structs. Each shows its reader the struct that it is given.
-using ReadStruct = void (*)(void const* object, ParameterPath const* own, ListElements lists, ParameterReader& reader);
+// What is said once of all structs. Each shows its reader the struct that it is given, and a second one if that is not
+// null.
+using ReadStruct = void (*)(void const* object, void const* other, ParameterPath const* own, ListElements lists,
+                            ParameterReader& reader);
 void check_values(char const* name, void const* object, ReadStruct read, std::string const& where);
 [[nodiscard]] std::string parameters_table(void const* object, ReadStruct read);
 [[nodiscard]] std::string parameters_line(char const* name, void const* object, ReadStruct read);
 [[nodiscard]] std::uint64_t parameters_hash(char const* name, void const* object, ReadStruct read);
+[[nodiscard]] bool parameters_equal(void const* a, void const* b, ReadStruct read);
 
 template <Described T>
-void read_struct(void const* object, ParameterPath const* own, ListElements lists, ParameterReader& reader) {
-  read_parameters(*static_cast<T const*>(object), own, lists, reader);
+void read_struct(void const* object, void const* other, ParameterPath const* own, ListElements lists,
+                 ParameterReader& reader) {
+  read_parameters(*static_cast<T const*>(object), static_cast<T const*>(other), own, lists, reader);
 }
 
 }  // namespace detail
@@ -46,30 +49,10 @@ void check_parameters(T const& object, std::string const& where = {}) {
   detail::check_values(detail::struct_name<T>(), &object, &detail::read_struct<T>, where);
 }
 
-namespace detail {
-
-template <class Value>
-[[nodiscard]] constexpr bool equal_values(Value const& a, Value const& b) {
-  if constexpr (Described<Value>) {
-    bool equal = true;
-    for_each_parameter<Value>(
-        [&](auto const& entry) { equal = equal && equal_values(a.*entry.field, b.*entry.field); });
-    return equal;
-  } else if constexpr (ParameterList<Value>) {
-    auto const of_a = elements_of(a), of_b = elements_of(b);
-    return std::equal(of_a.begin(), of_a.end(), of_b.begin(), of_b.end(),
-                      [](auto const& one, auto const& other) { return equal_values(one, other); });
-  } else {
-    return a == b;
-  }
-}
-
-}  // namespace detail
-
 /// True when all fields are equal by `==` (so 0 equals -0, and NaN equals nothing), lists element by element.
 template <Described T>
-[[nodiscard]] constexpr bool equal_parameters(T const& a, T const& b) {
-  return detail::equal_values(a, b);
+[[nodiscard]] bool equal_parameters(T const& a, T const& b) {
+  return detail::parameters_equal(&a, &b, &detail::read_struct<T>);
 }
 
 /// The parameters of T as a Markdown table with header: name, default, unit, range, meaning. For a list what each of

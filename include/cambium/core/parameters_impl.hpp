@@ -89,7 +89,8 @@ CAMBIUM_COLD void check_values(char const* name, void const* object, ReadStruct 
     [[nodiscard]] std::string place(ParameterPath const& path) const {
       return (where->empty() ? "" : *where + ": ") + path.text();
     }
-    void value(ParameterPath const& path, ParameterInfo const& info, ParameterValue const& value) override {
+    void value(ParameterPath const& path, ParameterInfo const& info, ParameterValue const& value,
+               ParameterValue const*) override {
       if (value.in(info.range)) return;
       throw ParameterError(
           place(path), "is " + with_unit(value_text(info, value), info.unit),
@@ -102,19 +103,20 @@ CAMBIUM_COLD void check_values(char const* name, void const* object, ReadStruct 
   } reader;
   reader.where = &where;
   ParameterPath const root{nullptr, name};
-  read(object, &root, ListElements::each, reader);
+  read(object, nullptr, &root, ListElements::each, reader);
 }
 
 CAMBIUM_COLD std::string parameters_table(void const* object, ReadStruct read) {
   struct Table final : ParameterReader {
     std::string text = "| name | default | unit | range | meaning |\n|---|---|---|---|---|\n";
 
-    void value(ParameterPath const& path, ParameterInfo const& info, ParameterValue const& value) override {
+    void value(ParameterPath const& path, ParameterInfo const& info, ParameterValue const& value,
+               ParameterValue const*) override {
       text += "| " + path.text() + " | " + (path.is_any_element() ? "-" : value_text(info, value)) + " | " + info.unit +
               " | " + (value.has_range() ? range_text(info) : "-") + " | " + info.sentence + " |\n";
     }
   } table;
-  read(object, nullptr, ListElements::one_default, table);
+  read(object, nullptr, nullptr, ListElements::one_default, table);
   return std::move(table.text);
 }
 
@@ -123,13 +125,14 @@ CAMBIUM_COLD std::string parameters_line(char const* name, void const* object, R
     std::string text;
     bool is_first = true;
 
-    void value(ParameterPath const& path, ParameterInfo const& info, ParameterValue const& value) override {
+    void value(ParameterPath const& path, ParameterInfo const& info, ParameterValue const& value,
+               ParameterValue const*) override {
       text += (is_first ? " " : ", ") + path.text() + "=" + with_unit(value_text(info, value), info.unit);
       is_first = false;
     }
   } line;
   line.text = std::string(name) + ":";
-  read(object, nullptr, ListElements::each, line);
+  read(object, nullptr, nullptr, ListElements::each, line);
   return std::move(line.text);
 }
 
@@ -145,7 +148,8 @@ CAMBIUM_COLD std::uint64_t parameters_hash(char const* name, void const* object,
     void add_bits(std::uint64_t bits) {
       for (int shift = 0; shift < 64; shift += 8) add_byte((bits >> shift) & 0xffu);
     }
-    void value(ParameterPath const& path, ParameterInfo const& info, ParameterValue const& value) override {
+    void value(ParameterPath const& path, ParameterInfo const& info, ParameterValue const& value,
+               ParameterValue const*) override {
       for (auto const* key = &path; key != nullptr; key = key->outer) {
         if (key != &path) add_name(key->name);
         if (key->element != key->no_list) add_bits(key->element);
@@ -157,8 +161,22 @@ CAMBIUM_COLD std::uint64_t parameters_hash(char const* name, void const* object,
     }
   } hash;
   hash.add_name(name);
-  read(object, nullptr, ListElements::each, hash);
+  read(object, nullptr, nullptr, ListElements::each, hash);
   return hash.hash;
+}
+
+CAMBIUM_COLD bool parameters_equal(void const* a, void const* b, ReadStruct read) {
+  struct Equality final : ParameterReader {
+    bool holds = true;
+
+    void value(ParameterPath const&, ParameterInfo const&, ParameterValue const& value,
+               ParameterValue const* other) override {
+      holds = holds && value.number == other->number && value.bits == other->bits;
+    }
+    void other_length() override { holds = false; }
+  } equality;
+  read(a, b, nullptr, ListElements::each, equality);
+  return equality.holds;
 }
 
 }  // namespace cambium::detail

@@ -48,27 +48,6 @@ template <class Set, class Behavior>
   return predict_as<Set>(behavior, behavior);
 }
 
-namespace detail {
-
-/// Takes over the static objects that agent number `slot` of `world` sees.
-template <class World, class Roster>
-void take_seen_objects(World const& world, std::uint32_t slot, Roster& assumed) {
-  auto const& roster = world.roster();
-  constexpr auto unseen = std::numeric_limits<std::uint32_t>::max();
-  std::vector<std::uint32_t> places(roster.objects.size(), unseen);
-  for (std::uint32_t i = 0; i < roster.objects.size(); ++i) {
-    if (!is_object_seen(world, slot, i)) continue;
-    places[i] = static_cast<std::uint32_t>(assumed.objects.size());
-    assumed.objects.push_back(roster.objects[i]);
-  }
-  for (auto entry : roster.object_entries) {
-    entry.slot = places[entry.slot];
-    if (entry.slot != unseen) assumed.object_entries.push_back(entry);  // still sorted: the order is kept
-  }
-}
-
-}  // namespace detail
-
 /// The world that agent number `slot` of `world` expects: states as it observes them, behaviours as `prediction` says.
 /// The others keep their routes, as if they signalled them, but not their goals. Agents that are not in traffic, or not
 /// seen, are left out; what is seen late counts as the present. Throws `ParameterError` where a parameter of an assumed
@@ -96,7 +75,9 @@ template <class Set, class World>
   assumed->next_agent_id = roster.next_agent_id;
   assumed->next_object_id = roster.next_object_id;
   assumed->has_sequences = roster.has_sequences;
-  detail::take_seen_objects(world, slot, *assumed);
+  std::vector<std::uint8_t> seen_objects(roster.objects.size());
+  for (std::uint32_t i = 0; i < roster.objects.size(); ++i) seen_objects[i] = detail::is_object_seen(world, slot, i);
+  assumed->assume_objects(roster, seen_objects);
   assumed->free_roads = roster.free_roads;
   assumed->lights = roster.lights;
   typename Predicted::FrameType seen{frame.time, frame.step, {}};
@@ -109,7 +90,7 @@ template <class Set, class World>
       detail::refuse_too_large("prediction: " + detail::name_of(agent.id));
     assumed->agents.push_back(
         {agent.id, agent.shape, agent.road, behavior, agent.execution, agent.dynamics, PerfectObserver{}});
-    assumed->goals.push_back(i == slot ? roster.goals[i] : Goal{});
+    assumed->assume_goal(i == slot ? &roster : nullptr, i);
     typename World::State state = detail::seen_state(world, slot, i);
     state.time = frame.time;
     auto lane = record.lane;

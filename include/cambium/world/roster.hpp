@@ -46,6 +46,12 @@ struct RosterBase {
   /// Takes the object at `place` out. O(objects).
   void erase_object(std::size_t place);
 
+  /// Takes over the goal at `slot` of another roster, or where that is null none, as the next one's.
+  void assume_goal(RosterBase const* other, std::size_t slot);
+
+  /// Takes over those of the static objects of another roster that are `seen`, with their places on lanes.
+  void assume_objects(RosterBase const& other, std::vector<std::uint8_t> const& seen);
+
  protected:
   void insert_goal(std::size_t slot, Goal goal);
   void erase_goal(std::size_t slot);

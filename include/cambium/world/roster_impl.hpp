@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -45,6 +46,24 @@ CAMBIUM_COLD void RosterBase::keep_goals(std::vector<std::size_t> const& slots) 
   for (std::size_t to = 0; to < slots.size(); ++to)
     if (to != slots[to]) goals[to] = std::move(goals[slots[to]]);
   goals.erase(goals.begin() + static_cast<std::ptrdiff_t>(slots.size()), goals.end());
+}
+
+CAMBIUM_COLD void RosterBase::assume_goal(RosterBase const* other, std::size_t slot) {
+  goals.push_back(other != nullptr ? other->goals[slot] : Goal{});
+}
+
+CAMBIUM_COLD void RosterBase::assume_objects(RosterBase const& other, std::vector<std::uint8_t> const& seen) {
+  constexpr auto unseen = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> places(other.objects.size(), unseen);
+  for (std::size_t i = 0; i < other.objects.size(); ++i) {
+    if (seen[i] == 0) continue;
+    places[i] = static_cast<std::uint32_t>(objects.size());
+    objects.push_back(other.objects[i]);
+  }
+  for (auto entry : other.object_entries) {
+    entry.slot = places[entry.slot];
+    if (entry.slot != unseen) object_entries.push_back(entry);  // still sorted: the order is kept
+  }
 }
 
 }  // namespace cambium

@@ -95,10 +95,14 @@ struct ParameterValue {
   }
 };
 
-/// What reads parameters without knowing their structs: checks, texts, tables, hashes.
+/// What reads parameters without knowing their structs: checks, texts, tables, hashes, comparisons.
 class ParameterReader {
  public:
-  virtual void value(ParameterPath const& path, ParameterInfo const& info, ParameterValue const& value) = 0;
+  /// `other`: the same field of the second struct, where two are read side by side; else null.
+  virtual void value(ParameterPath const& path, ParameterInfo const& info, ParameterValue const& value,
+                     ParameterValue const* other) = 0;
+  /// The second struct has another number of elements in a list, which is passed over.
+  virtual void other_length() {}
   /// After the fields of a struct that has a check of its own: `check(object, where)` throws.
   virtual void own_check(ParameterPath const&, void const*, void (*)(void const*, std::string const&)) {}
 
@@ -110,32 +114,37 @@ class ParameterReader {
 enum class ListElements : bool { one_default, each };
 
 template <class Value>
-void read_value(ParameterPath const& path, ParameterInfo const& info, Value const& value, ListElements lists,
-                ParameterReader& reader) {
+void read_value(ParameterPath const& path, ParameterInfo const& info, Value const& value, Value const* other,
+                ListElements lists, ParameterReader& reader) {
   if constexpr (Described<Value>) {
-    read_parameters(value, &path, lists, reader);
+    read_parameters(value, other, &path, lists, reader);
   } else if constexpr (ParameterList<Value>) {
     if (lists == ListElements::one_default)
       return read_value(ParameterPath{path.outer, path.name, ParameterPath::any_element}, info, ElementOf<Value>{},
-                        lists, reader);
-    std::size_t i = 0;
-    for (auto const& element : elements_of(value))
-      read_value(ParameterPath{path.outer, path.name, i++}, info, element, lists, reader);
+                        static_cast<ElementOf<Value> const*>(nullptr), lists, reader);
+    auto const elements = elements_of(value), others = other != nullptr ? elements_of(*other) : elements;
+    if (elements.size() != others.size()) return reader.other_length();
+    for (std::size_t i = 0; i < elements.size(); ++i)
+      read_value(ParameterPath{path.outer, path.name, i}, info, elements[i], other != nullptr ? &others[i] : nullptr,
+                 lists, reader);
   } else {
     static_assert(
         std::is_arithmetic_v<Value> || std::is_enum_v<Value>,
         "cambium::parameter: a field must be a number, a bool, an enum, an id, another described struct, or a "
         "list of these.");
-    reader.value(path, info, ParameterValue(value));
+    ParameterValue const of_other(other != nullptr ? *other : value);
+    reader.value(path, info, ParameterValue(value), other != nullptr ? &of_other : nullptr);
   }
 }
 
 /// Shows `reader` each field that is a plain value, those of nested structs and of lists included. `own`: the path of
 /// the struct itself; none: its fields have none above.
 template <Described T>
-void read_parameters(T const& object, ParameterPath const* own, ListElements lists, ParameterReader& reader) {
+void read_parameters(T const& object, T const* other, ParameterPath const* own, ListElements lists,
+                     ParameterReader& reader) {
   for_each_parameter<T>([&](auto const& entry) {
-    read_value(ParameterPath{own, entry.name}, entry, object.*entry.field, lists, reader);
+    read_value(ParameterPath{own, entry.name}, entry, object.*entry.field,
+               other != nullptr ? &(other->*entry.field) : nullptr, lists, reader);
   });
   if constexpr (requires { object.check(std::string()); })
     if (own != nullptr)

@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <concepts>
+#include <cstddef>
 #include <type_traits>
 #include <variant>
 
 #include "cambium/core/parameters.hpp"
 #include "cambium/goal/goal.hpp"
-#include "cambium/world/static_object.hpp"
+#include "cambium/world/roster.hpp"
 
 namespace cambium::detail {
 
@@ -28,7 +29,8 @@ template <class Variant>
   auto const is_same_as_other = [&b]<class Model>(Model const& model) {
     auto const& other = *std::get_if<Model>(&b);
     if constexpr (requires { model.parts; })
-      return std::ranges::equal(model.parts, other.parts, is_same_choice<Variant>);
+      return std::equal(model.parts.begin(), model.parts.end(), other.parts.begin(), other.parts.end(),
+                        is_same_choice<Variant>);
     else if constexpr (requires { model.area; })
       return model.area == other.area;
     else
@@ -36,6 +38,9 @@ template <class Variant>
   };
   return a.index() == b.index() && std::visit(is_same_as_other, a);
 }
+
+/// Whether goals, lights and objects are the same.
+[[nodiscard]] bool is_same_besides_agents(RosterBase const& a, RosterBase const& b);
 
 /// Whether all that steps depend on, but the frame, is the same in two worlds: map, agents with their roads and
 /// behaviours, goals, lights and objects. O(agents, and the lanes of their routes).
@@ -48,12 +53,14 @@ template <class World>
     return one.id == other.id && one.shape == other.shape && is_same_road &&
            is_same_choice(one.behavior, other.behavior) && is_same_value(one.dynamics, other.dynamics);
   };
-  auto const is_same_object = [](StaticObject const& one, StaticObject const& other) {
-    return one.id == other.id && one.outline == other.outline;
-  };
-  return &a.map() == &b.map() && std::ranges::equal(p.agents, q.agents, is_same_agent) &&
-         std::ranges::equal(p.goals, q.goals, is_same_choice<Goal>) && p.lights == q.lights &&
-         std::ranges::equal(p.objects, q.objects, is_same_object);
+  if (&a.map() != &b.map() || p.agents.size() != q.agents.size() || !is_same_besides_agents(p, q)) return false;
+  for (std::size_t i = 0; i < p.agents.size(); ++i)
+    if (!is_same_agent(p.agents[i], q.agents[i])) return false;
+  return true;
 }
 
 }  // namespace cambium::detail
+
+#ifndef CAMBIUM_COMPILED
+#include "cambium/planner/detail/same_scene_impl.hpp"
+#endif
