@@ -4,10 +4,8 @@
 #include <cstdint>
 #include <cstdio>
 #include <exception>
-#include <filesystem>
 #include <iostream>
 #include <string>
-#include <system_error>
 #include <type_traits>
 #include <vector>
 
@@ -15,8 +13,8 @@
 
 #include "cambium/core/error.hpp"
 #include "cambium/core/text.hpp"
-#include "cambium/core/write_file.hpp"
 
+#include "part_file.hpp"
 #include "version.hpp"
 
 namespace examples {
@@ -83,19 +81,6 @@ CLI::Option* add_list(CLI::App& program, std::string const& name, std::vector<Nu
         return word.empty() ? std::string("needs a name, not an empty text") : std::string();
       },
       "");
-}
-
-/// Makes the folder and finds out now, not after the work, whether it takes files. Older results stay until there are
-/// new ones.
-inline void prepare_folder(std::filesystem::path const& folder) {
-  std::error_code problem;
-  std::filesystem::create_directories(folder, problem);
-  if (problem)
-    throw cambium::Error(folder.string(), "this folder cannot be made (" + problem.message() + ")",
-                         "choose another --out");
-  auto const probe = folder / ".probe";
-  cambium::write_file(probe, "a file");
-  std::filesystem::remove(probe, problem);
 }
 
 /// 0, or 2 with a line on the error stream where the standard output did not take all that was printed.

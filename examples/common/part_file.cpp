@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "cambium/core/error.hpp"
+#include "cambium/core/write_file.hpp"
 
 namespace examples {
 namespace {
@@ -59,6 +60,17 @@ std::size_t look_after(std::filesystem::path const& path, std::filesystem::path 
 }
 
 }  // namespace
+
+void prepare_folder(std::filesystem::path const& folder) {
+  std::error_code problem;
+  std::filesystem::create_directories(folder, problem);
+  if (problem)
+    throw cambium::Error(folder.string(), "this folder cannot be made (" + problem.message() + ")",
+                         "choose another --out");
+  auto const probe = folder / ".probe";
+  cambium::write_file(probe, "a file");
+  std::filesystem::remove(probe, problem);
+}
 
 PartFile::PartFile(std::filesystem::path path, Unfinished fate)
     : path_(std::move(path)), fate_(fate), place_(pending.size()) {

@@ -8,6 +8,10 @@
 
 namespace examples {
 
+/// Makes the folder and finds out now, not after the work, whether it takes files. Older results stay until there are
+/// new ones.
+void prepare_folder(std::filesystem::path const& folder);
+
 /// A file that grows while a program works, beside `path`, whose place it takes once it is whole: until then an earlier
 /// file stays as it is. Straight into what is no regular file. Whoever interrupts the program (SIGINT, SIGTERM) loses
 /// the part, unless it is to be kept: then a message says where it is. All throw `cambium::Error`.

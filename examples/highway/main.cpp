@@ -20,7 +20,7 @@ int main(int argc, char** argv) {
   examples::Settings settings;
   settings.map_file = CAMBIUM_SOURCE_DIR "/maps/highway_exit.xodr";
   settings.out = "out/highway";
-  CLI::App program("Samples traffic on a highway of several lanes, simulates and judges it.", "highway");
-  examples::add_options(program, settings, "OpenDRIVE map with a road of several lanes");
-  return examples::run_program(program, argc, argv, [&] { run(settings); });
+  examples::Program const program{"highway", "Samples traffic on a highway of several lanes, simulates and judges it.",
+                                  "OpenDRIVE map with a road of several lanes"};
+  return examples::run_sampled(program, settings, argc, argv, [&] { run(settings); });
 }

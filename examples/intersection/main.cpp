@@ -1,6 +1,7 @@
 // Traffic crosses: samples situations before the junctions of an OpenDRIVE map, where everybody heeds the right of way,
 // rolls them forward, judges each, and writes figures, trajectories and a replay that plays in a browser.
 
+#include "../common/command_line.hpp"
 #include "../common/map_file.hpp"
 #include "../common/sampled_program.hpp"
 #include "scenario.hpp"

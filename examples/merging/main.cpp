@@ -19,7 +19,7 @@ int main(int argc, char** argv) {
   examples::Settings settings;
   settings.map_file = CAMBIUM_SOURCE_DIR "/maps/merging.xodr";
   settings.out = "out/merging";
-  CLI::App program("Samples dense merging situations, simulates and judges them.", "merging");
-  examples::add_options(program, settings, "OpenDRIVE map with a merge");
-  return examples::run_program(program, argc, argv, [&] { run(settings); });
+  examples::Program const program{"merging", "Samples dense merging situations, simulates and judges them.",
+                                  "OpenDRIVE map with a merge"};
+  return examples::run_sampled(program, settings, argc, argv, [&] { run(settings); });
 }

@@ -25,9 +25,9 @@ int main(int argc, char** argv) {
   examples::Settings settings;
   settings.map_file = CAMBIUM_SOURCE_DIR "/maps/lane_drop.xodr";
   settings.out = "out/zip_merge";
-  CLI::App program(
+  examples::Program const program{
+      "zip_merge",
       "Samples dense situations before a merge where drivers let one another in, simulates and judges them.",
-      "zip_merge");
-  examples::add_options(program, settings, "OpenDRIVE map with a merge");
-  return examples::run_program(program, argc, argv, [&] { run(settings); });
+      "OpenDRIVE map with a merge"};
+  return examples::run_sampled(program, settings, argc, argv, [&] { run(settings); });
 }

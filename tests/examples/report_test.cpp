@@ -176,3 +176,28 @@ TEST_CASE("an unknown option names near ones, and where all are listed") {
   CHECK(said({"--frobnicate"}) == "merging: there is no option --frobnicate (--help lists the options)\n");
   CHECK(said({"stray"}) == "merging: does not know what to do with 'stray' (--help lists the options)\n");
 }
+
+TEST_CASE("examples/run knows the version without building anything") {
+  browser::TemporaryFolder const folder;
+  auto const out = folder.path() / "out";
+  auto const command =
+      browser::quoted(CAMBIUM_SOURCE_DIR "/examples/run") + " --version >" + browser::quoted(out.string());
+  CHECK(std::system(command.c_str()) == 0);
+  CHECK(content_of(out) == "cambium " + examples::version() + "\n");
+}
+
+TEST_CASE("a terminal sees how far a long work is, a file does not") {
+  Program const program("merging");
+  if (!program.is_there()) return;
+  browser::TemporaryFolder const folder;
+  std::string const words = (std::filesystem::path(CAMBIUM_EXAMPLES_DIR) / "merging").string() +
+                            " --scenarios 2000 --trajectories 0 --out " + folder.path().string();
+  auto const seen = folder.path() / "seen", err = folder.path() / "err";
+  if (std::system("script --version >/dev/null 2>&1") == 0) {
+    CHECK(std::system(("script -qec " + browser::quoted(words) + " /dev/null >" + seen.string()).c_str()) == 0);
+    CHECK(content_of(seen).find(" of 2000, ") != std::string::npos);
+    CHECK(content_of(seen).find(" s left") != std::string::npos);
+  }
+  CHECK(std::system((words + " >/dev/null 2>" + err.string()).c_str()) == 0);
+  CHECK(content_of(err).empty());
+}

@@ -1,0 +1,48 @@
+#include "sampled_program.hpp"
+
+#include <cstdint>
+
+#include <CLI/CLI.hpp>
+
+#include "command_line.hpp"
+
+namespace examples {
+
+void add_options(CLI::App& program, Settings& settings, std::string const& map_sentence) {
+  auto const number = [&](char const* name, std::uint64_t& target, std::uint64_t low, std::uint64_t high,
+                          char const* sentence) {
+    program.add_option(name, target, sentence)->type_name("N")->check(whole_number(low, high))->capture_default_str();
+  };
+  number("--scenarios", settings.scenarios, 1, 10'000'000, "situations to sample");
+  number("--seed", settings.seed, 0, ~std::uint64_t{0}, "of everything random");
+  number("--threads", settings.threads, 1, 1024, "to run them on; the results do not depend on it");
+  number("--steps", settings.steps, 1, 1'000'000, "of 0.2 s, after which a scenario is timed out");
+  number("--trajectories", settings.trajectories, 0, 10'000'000,
+         "scenarios whose trajectories are written, besides the replayed one");
+  program
+      .add_option("--replay", settings.replay,
+                  "scenario, from 0, that replay.html plays; else a collision, if there is one, else a time-out, else "
+                  "the ego off-road, else the closest call, which is where somebody brakes hardest")
+      ->type_name("N")
+      ->check(whole_number(0, 9'999'999));
+  program.add_option("--map", settings.map_file, map_sentence)
+      ->type_name("FILE")
+      ->check(not_empty())
+      ->capture_default_str();
+  program.add_option("--out", settings.out, "folder for summary.json, trajectories.csv and replay.html")
+      ->type_name("DIR")
+      ->check(not_empty())
+      ->capture_default_str();
+  program.footer("What it prints:\n" + explained({"", "the ego, or everybody, did what there was to do"}) +
+                 "What it writes to trajectories.csv:\n"
+                 "  a line for each vehicle and step; x, y are of the centre of the rear axle, front and rear how far\n"
+                 "    it reaches from there; acceleration is that of the step before, which led to this place");
+}
+
+int run_sampled(Program const& program, Settings& settings, int argc, char** argv, std::function<void()> const& body) {
+  CLI::App app(program.sentence, program.name);
+  add_options(app, settings, program.map_sentence);
+  return run_program(app, argc, argv, body);
+}
+
+}  // namespace examples
