@@ -55,7 +55,7 @@ TEST_CASE("summary.json says who collided, when and in which scenario, with unit
   auto const map = corpus::find("opendrive/DR_CHN_Merging_ZS_partial_v02.xodr");  // whose routes cross
   if (map) words.insert(words.end(), {"--map", map->string(), "--steps", "200"});
   REQUIRE(program.run(words).code == 0);
-  auto const summary = nlohmann::json::parse(content_of(folder.path() / "summary.json"));
+  auto summary = nlohmann::json::parse(content_of(folder.path() / "summary.json"));
   CHECK(summary["cambium_version"].get<std::string>().find('.') != std::string::npos);
   CHECK(summary["units"]["mean_speed"] == "m/s");
   CHECK(summary["thresholds"]["hard_braking"]["acceleration_below"] == -4.0);
