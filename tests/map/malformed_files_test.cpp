@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "cambium/map/reading_limits.hpp"
 #include "../support/map_faults.hpp"
 #include "road_text.hpp"
 #include "../support/maps.hpp"
