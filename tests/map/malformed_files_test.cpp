@@ -14,6 +14,8 @@
 #include "../support/map_faults.hpp"
 #include "road_text.hpp"
 #include "../support/maps.hpp"
+#include "cambium/map/opendrive.hpp"
+#include "cambium/map/reading_limits.hpp"
 
 namespace {
 

@@ -12,6 +12,7 @@
 #include "cambium/map/opendrive.hpp"
 #include "cambium/map/opendrive_reader.hpp"
 #include "cambium/map/opendrive_writer.hpp"
+#include "cambium/map/reading_limits.hpp"
 #include "../support/maps.hpp"
 
 namespace {

@@ -8,6 +8,7 @@
 #include "cambium/core/diagnostic.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/opendrive_document.hpp"
+#include "cambium/map/reading_limits.hpp"
 
 namespace cambium::map {
 
@@ -18,7 +19,8 @@ struct LoadedMap {
 };
 
 /// The map of an OpenDRIVE text; `file` names it in messages. Throws `MapError` (file, line, what, remedy) where it is
-/// not XML or has no usable road; everything else that is odd becomes a diagnostic.
+/// not XML, has no usable road, or is beyond the limits in reading_limits.hpp; everything else that is odd becomes a
+/// diagnostic.
 [[nodiscard]] LoadedMap parse_opendrive(std::string_view text, MapOptions const& options = {},
                                         std::string const& file = "text");
 
