@@ -38,8 +38,9 @@ bool needs_more(std::string const& header) {
       "map/network_finding.hpp",    "map/opendrive.hpp",          "map/opendrive_check.hpp",
       "map/opendrive_document.hpp", "map/opendrive_element.hpp",  "map/opendrive_lanes.hpp",
       "map/opendrive_objects.hpp",  "map/opendrive_reader.hpp",   "map/opendrive_writer.hpp",
-      "map/overlaps.hpp",           "map/polyline_roads.hpp",     "map/road_area.hpp",
-      "map/road_plan.hpp",          "map/road_surface.hpp",       "scenario/ring_road.hpp"};
+      "map/overlaps.hpp",           "map/polyline_roads.hpp",     "map/reading_limits.hpp",
+      "map/road_area.hpp",          "map/road_plan.hpp",          "map/road_surface.hpp",
+      "scenario/ring_road.hpp"};
   return apart.contains(header) || header.ends_with("_impl.hpp");
 }
 
