@@ -109,6 +109,7 @@ class Compiler {
     std::vector<char*> arguments;
     for (auto& word : words) arguments.push_back(word.data());
     arguments.push_back(nullptr);
+    std::fflush(stdout);
     pid_t const child = fork();
     if (child < 0) throw std::runtime_error("cannot start " + words[0]);
     if (child == 0) {
