@@ -195,6 +195,30 @@ say('empty', look(''), '|', marked());
   CHECK(said(page, "empty") == " | ");
 }
 
+TEST_CASE("a window that changes its size keeps in view what was found, and the scale of a view that was chosen") {
+  auto const page = after(R"js(
+const sizes = [[1200, 600], [300, 600], [800, 400]];
+const turn = ([width, height]) => {
+  target.getBoundingClientRect = () => ({left: 0, top: 0, width, height});
+  window.dispatchEvent(new Event('resize'));
+  return target.viewBox.baseVal;
+};
+look('1');
+const boxes = [...document.querySelectorAll('.found')].map(lane => lane.getBBox());
+say('seen', sizes.map(size => {
+  const v = turn(size);
+  return boxes.every(b => b.x > v.x && b.y > v.y && b.x + b.width < v.x + v.width && b.y + b.height < v.y + v.height);
+}).join(' '));
+key('+');
+say('scales', sizes.map(size => (size[0] / turn(size).width).toFixed(3)).join(' '));
+)js");
+  if (page.empty()) return;
+  CHECK(said(page, "seen") == "true true true");
+  auto const scales = numbers(page, "scales");
+  REQUIRE(scales.size() == 3);
+  check_near(scales, {scales[0], scales[0], scales[0]}, 0.002);
+}
+
 TEST_CASE("an address looks for an id, and where two things have it, the page names both") {
   auto const page = after(R"js(
 say('hash', document.getElementById('found').textContent, '|', document.querySelectorAll('.found').length > 5);

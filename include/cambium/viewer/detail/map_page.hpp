@@ -45,6 +45,7 @@ inline constexpr std::string_view map_page_style = R"css(
   body .areas path:hover { fill: #2f6ea8; }
   body .arrows path { fill: #d5dee7; } body .links path { stroke: #35c77c; } body .links .tip { fill: #35c77c; }
   body .conflicts path { stroke: #f090a8; }
+  body .labels text { paint-order: stroke; stroke: #12181d; stroke-width: .16px; }
 }
 body .ground { fill: var(--page); }
 body .labels text, body .legend text { fill: var(--text); }
@@ -65,7 +66,7 @@ nav input[type=search] { flex: 1; min-width: 0; font-size: 16px; }
 nav input[type=search], nav button { height: 34px; padding: 0 10px; border: 1px solid var(--line); border-radius: 8px;
   background: var(--page); color: inherit; }
 nav button { font: inherit; cursor: pointer; }
-nav output { display: block; white-space: pre-line; overflow-wrap: anywhere; }
+nav output { display: block; margin-bottom: 4px; white-space: pre-line; overflow-wrap: anywhere; }
 nav output:empty { display: none; }
 nav details { color: var(--soft); } nav details > svg { display: block; width: 100%; height: auto; }
 summary { cursor: pointer; }

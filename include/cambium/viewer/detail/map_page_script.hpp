@@ -14,7 +14,7 @@ const map = element('map'), box = map.viewBox.baseVal, nav = document.querySelec
 const whole = {x: box.x, y: box.y, width: box.width, height: box.height};
 const view = {x: 0, y: 0, scale: 1};
 let width = 1, height = 1;
-let isWhole = true;   // until the user has chosen another view
+let refit = null;   // finds the view anew when the window changes its size; null once the reader has chosen one
 map.removeAttribute('width');
 map.removeAttribute('height');
 map.setAttribute('tabindex', '0');
@@ -34,6 +34,7 @@ function show() {
 }
 // Shows `part` as large as it fits beside the panel, or below it where the window is narrow.
 function fit(part, most) {
+  refit = () => fit(part, most);
   const panel = nav.getBoundingClientRect();
   let left = 0, top = 0;
   if (panel.right < width / 2) left = panel.right;
@@ -45,13 +46,13 @@ function fit(part, most) {
   view.y = part.y + part.height / 2 - top / 2 / view.scale;
   show();
 }
-const fitWhole = () => { isWhole = true; fit(whole, 100); };
+const fitWhole = () => fit(whole, 100);
 function pan(dx, dy) {
   const within = (value, low, size, window) => {   // the map is never lost: some of it stays in the window
     const beyond = .4 * window / view.scale;
     return Math.max(low - beyond, Math.min(low + size + beyond, value));
   };
-  isWhole = false;
+  refit = null;
   view.x = within(view.x - dx / view.scale, whole.x, whole.width, width);
   view.y = within(view.y - dy / view.scale, whole.y, whole.height, height);
   show();
@@ -68,7 +69,7 @@ function zoom(factor, x = width / 2, y = height / 2) {
 function resize() {
   const its = map.getBoundingClientRect();
   [width, height] = [Math.max(1, its.width), Math.max(1, its.height)];
-  isWhole ? fitWhole() : show();
+  refit ? refit() : show();
 }
 
 map.addEventListener('wheel', event => {
@@ -135,7 +136,6 @@ function find(text) {
   const boxes = some.map(lane => lane.getBBox());
   const low = side => Math.min(...boxes.map(b => b[side]));
   const high = (side, size) => Math.max(...boxes.map(b => b[side] + b[size]));
-  isWhole = false;
   fit({x: low('x'), y: low('y'), width: high('x', 'width') - low('x'), height: high('y', 'height') - low('y')}, 30);
 }
 document.querySelector('form').addEventListener('submit', event => {
@@ -173,11 +173,12 @@ function obeyAddress() {
   if (wish[1] === 'find') return find(element('find').value = text.trim());
   const [x, y, across] = text.split(',').map(Number);
   if (!(across > 0 && Number.isFinite(x + y + across))) return;
-  isWhole = false;
+  refit = null;
   Object.assign(view, {x: x - map.dataset.west, y: map.dataset.north - y, scale: width / across});
   show();
 }
 if (innerWidth < 700 && element('legend')) element('legend').open = false;
+refit = fitWhole;
 resize();
 addEventListener('resize', resize);
 addEventListener('hashchange', obeyAddress);
