@@ -177,15 +177,20 @@ const seen = () => [...document.querySelectorAll('.found')].every(lane => {
 });
 const closer = () => scale() > whole;
 say('lane', look(' 1:-1 '), '|', marked(), '|', seen(), closer());
+look('122:-1');
+const mine = document.querySelector('.areas [data-lane="122:-1"]');
+say('above', [...document.querySelector('#map > .areas').children].every(lane => lane === mine ||
+    lane.compareDocumentPosition(document.querySelector('.found')) & Node.DOCUMENT_POSITION_FOLLOWING));
 say('road', look('road 1'), '|', seen(), closer(), marked().split(' ').every(lane => lane.startsWith('1:')));
 const junction = document.querySelector('[data-junction]').dataset.junction;
 say('junction', look('junction ' + junction), '|', seen(), closer(),
-    [...document.querySelectorAll('.found')].length === document.querySelectorAll('[data-junction]').length);
+    document.querySelectorAll('.found').length === document.querySelectorAll('.areas [data-junction]').length);
 say('none', look('no such road'), '|', marked());
 say('empty', look(''), '|', marked());
 )js");
   if (page.empty()) return;
   CHECK(said(page, "lane") == "lane 1:-1 | 1:-1 | true true");
+  CHECK(said(page, "above") == "true");  // the lanes that cross it do not hide it
   CHECK(said(page, "road").find("road 1: ") == 0);
   CHECK(said(page, "road").find("| true true true") != std::string::npos);
   CHECK(said(page, "junction").find("junction ") == 0);

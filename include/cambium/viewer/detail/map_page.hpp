@@ -34,7 +34,7 @@ inline constexpr std::string_view map_page_style = R"css(
 :root { color-scheme: light dark; --page: #eef1ec; --panel: #ffffffe8; --line: #c3cbd2; --text: #101820; --soft: #55626f; }
 @media (prefers-color-scheme: dark) {
   :root { --page: #12181d; --panel: #1a222be8; --line: #35424e; --text: #e8eef5; --soft: #9aa9b8; }
-  body .areas path { fill: #26312a; stroke: #12181d; }
+  body .areas path { fill: #33413a; stroke: #12181d; }
   body .areas .driving { fill: #4b555f; } body .areas .junction { fill: #5a656f; stroke: #66717b; }
   body .areas .shoulder, body .areas .border, body .areas .stop, body .areas .curb { fill: #353f48; }
   body .areas .sidewalk, body .areas .walking { fill: #5c523f; } body .areas .biking { fill: #70503f; }
@@ -49,7 +49,9 @@ inline constexpr std::string_view map_page_style = R"css(
 }
 body .ground { fill: var(--page); }
 body .labels text, body .legend text { fill: var(--text); }
-body .areas .found, body .areas .found:hover { fill: #ffc31f; stroke: #c2410c; stroke-width: 3px; vector-effect: non-scaling-stroke; }
+.marks, .rims { pointer-events: none; }
+.found { fill: #ffc31f; }
+.rim { fill: none; stroke: #c2410c; stroke-width: 3px; vector-effect: non-scaling-stroke; }
 * { box-sizing: border-box; }
 body { margin: 0; overflow: hidden; background: var(--page); color: var(--text);
   font: 14px/1.4 system-ui, 'DejaVu Sans', sans-serif; }

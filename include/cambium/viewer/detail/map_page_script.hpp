@@ -114,8 +114,21 @@ const roadOf = lane => lane.dataset.lane.slice(0, lane.dataset.lane.lastIndexOf(
 const kinds = {
   lane: lane => lane.dataset.lane, road: roadOf, junction: lane => lane.dataset.junction,
 };
+// Neighbours and overlaps lie on a lane of a junction: its mark is a copy above the lanes, and a rim above all layers.
+const [marks, rims] = ['marks', 'rims'].map(name => {
+  const layer = document.createElementNS(map.namespaceURI, 'g');
+  layer.classList.add(name);
+  return layer;
+});
+map.querySelector('.areas').after(marks);
+map.append(rims);
 function mark(some, text) {
-  for (const lane of lanes) lane.classList.toggle('found', some.includes(lane));
+  for (const [layer, name] of [[marks, 'found'], [rims, 'rim']])
+    layer.replaceChildren(...some.map(lane => {
+      const copy = lane.cloneNode();
+      copy.setAttribute('class', name);
+      return copy;
+    }));
   element('found').textContent = text;
 }
 // What has no pointer to rest on a lane taps it.
