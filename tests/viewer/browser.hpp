@@ -80,7 +80,8 @@ const point = (type, pointerId, clientX, clientY) => target.dispatchEvent(new Po
     {pointerId, clientX, clientY, pointerType: 'touch', bubbles: true, button: type === 'move' ? -1 : 0}));
 const wheel = (deltaY, clientX, clientY) =>
     target.dispatchEvent(new WheelEvent('wheel', {deltaY, clientX, clientY, bubbles: true, cancelable: true}));
-const key = (key, at = document.body) => at.dispatchEvent(new KeyboardEvent('keydown', {key, bubbles: true, cancelable: true}));
+const key = (key, at = document.body) =>
+    at.dispatchEvent(new KeyboardEvent('keydown', {key, bubbles: true, cancelable: true}));
 try {
 )js" + script +
          "\n} catch (error) { say('failure', error.message); }\n})();</script>\n";

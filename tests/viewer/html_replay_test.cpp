@@ -242,7 +242,8 @@ const context = target.getContext('2d'), [text, rule] = document.getElementById(
 const obstacle = () => {
   const {data, width} = context.getImageData(0, 0, target.width, target.height), xs = [], ys = [];
   for (let i = 0; i < data.length; i += 4)
-    if (data[i] === 0xb7 && data[i + 1] === 0x9b && data[i + 2] === 0xff) xs.push(i / 4 % width), ys.push(i / 4 / width | 0);
+    if (data[i] === 0xb7 && data[i + 1] === 0x9b && data[i + 2] === 0xff)
+      xs.push(i / 4 % width), ys.push(i / 4 / width | 0);
   const middle = list => (Math.max(...list) + Math.min(...list)) / 2;
   return [middle(xs), middle(ys), Math.max(...xs) - Math.min(...xs) + 1];
 };

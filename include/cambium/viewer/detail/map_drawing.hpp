@@ -153,7 +153,7 @@ class MapDrawing {
     return label_of(lane) + (!is_valid(lane.opposite) ? "" : lane.along_road ? ", forward" : ", backward");
   }
 
-  /// What the page's search compares; the picture itself does not need it.
+  /// The ids that the page's search looks for.
   [[nodiscard]] std::string search_keys(map::Lane const& lane) const {
     auto const junction = map_.road(lane.road).junction;
     return " data-lane=\"" + label_of(lane) + '"' +

@@ -31,7 +31,10 @@ inline constexpr std::string_view map_picture_style =
 
 /// The look of the page around the picture, and its colours by night; `body` makes a rule win over the picture's own.
 inline constexpr std::string_view map_page_style = R"css(
-:root { color-scheme: light dark; --page: #eef1ec; --panel: #ffffffe8; --line: #c3cbd2; --text: #101820; --soft: #55626f; }
+:root {
+  color-scheme: light dark;
+  --page: #eef1ec; --panel: #ffffffe8; --line: #c3cbd2; --text: #101820; --soft: #55626f;
+}
 @media (prefers-color-scheme: dark) {
   :root { --page: #12181d; --panel: #1a222be8; --line: #35424e; --text: #e8eef5; --soft: #9aa9b8; }
   body .areas path { fill: #33413a; stroke: #12181d; }

@@ -142,10 +142,11 @@ function find(text) {
   if (words) tries.push([words[1].toLowerCase(), words[2]]);
   const hits = tries.map(([kind, id]) => [kind, id, lanes.filter(lane => kinds[kind](lane) === id)])
       .filter(([, , some]) => some.length);
-  if (!hits.length) return mark([], text && '\u201c' + text + '\u201d not found: no road, lane or junction here has this id');
+  const quoted = words => '\u201c' + words + '\u201d';
+  if (!hits.length) return mark([], text && quoted(text) + ' not found: no road, lane or junction here has this id');
   const [[kind, id, some], other] = hits, parts = some.length === 1 ? '' : ': ' + some.length + ' lanes';
   mark(some, kind + ' ' + id + (kind === 'lane' ? '' : parts) +
-      (other ? '\nthere is a ' + other[0] + ' ' + other[1] + ', too: look for \u201c' + other[0] + ' ' + other[1] + '\u201d' : ''));
+      (other ? '\nthere is a ' + other[0] + ' ' + id + ', too: look for ' + quoted(other[0] + ' ' + id) : ''));
   const boxes = some.map(lane => lane.getBBox());
   const low = side => Math.min(...boxes.map(b => b[side]));
   const high = (side, size) => Math.max(...boxes.map(b => b[side] + b[size]));
