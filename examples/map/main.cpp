@@ -55,7 +55,7 @@ void check_files(Settings const& settings) {
 
 void draw(cambium::Map const& map, Settings const& settings) {
   if (!settings.picture.empty()) {
-    cambium::MapPictureOptions options{.title = settings.file};
+    cambium::MapPictureOptions options{.title = std::filesystem::path(settings.file).filename().string()};
     if (auto const& p = settings.part; !p.empty()) options.part = {p[0], p[1], p[2], p[3]};
     cambium::write_map_picture(settings.picture, map, options);
     std::cout << "picture: " << settings.picture << "\n";

@@ -34,7 +34,8 @@ TEST_CASE("it says what a map contains and draws it") {
     for (char const* part : {"5, 8 lane sections", "1 default; 2 connections", "12 driving", "1 merges", "none"})
       CHECK(has(run.out, part));
     auto const text = content_of(picture);
-    for (char const* part : {"<svg", "</svg>", "11:-1"}) CHECK(has(text, part));
+    for (char const* part : {"<svg", "</svg>", "11:-1", "<title>merging.xodr</title>"}) CHECK(has(text, part));
+    CHECK_FALSE(has(text, merging));  // a page that is passed on tells nobody's folders
   }
 }
 

@@ -66,17 +66,38 @@ inline std::string address_of(std::filesystem::path const& file, std::string con
   return hash.empty() ? out : out + '#' + hash;
 }
 
+/// The flag with which pages see that their reader prefers dark colours; without it, light ones.
+inline constexpr char const* dark = "--blink-settings=preferredColorScheme=0";
+
+/// The page with what its reader does: `script` runs after the page's own. It has `point`, `wheel` and `key` to
+/// act on the element `target`, and `say(name, values...)` to leave words in the body's attribute data-name;
+/// data-failure says what it threw.
+inline std::string with_actions(std::string const& page, std::string const& target, std::string const& script) {
+  return page + "<script>(() => {\nconst target = document.getElementById('" + target + R"js(');
+Element.prototype.setPointerCapture = () => {};   // no real pointer is down
+const say = (name, ...values) => { document.body.dataset[name] = values.join(' '); };
+const point = (type, pointerId, clientX, clientY) => target.dispatchEvent(new PointerEvent('pointer' + type,
+    {pointerId, clientX, clientY, pointerType: 'touch', bubbles: true, button: type === 'move' ? -1 : 0}));
+const wheel = (deltaY, clientX, clientY) =>
+    target.dispatchEvent(new WheelEvent('wheel', {deltaY, clientX, clientY, bubbles: true, cancelable: true}));
+const key = (key, at = document.body) =>
+    at.dispatchEvent(new KeyboardEvent('keydown', {key, bubbles: true, cancelable: true}));
+try {
+)js" + script +
+         "\n} catch (error) { say('failure', error.message); }\n})();</script>\n";
+}
+
 /// The page's document, as markup, `milliseconds` of the page's own time after it was opened. Empty when the browser
-/// did not answer within a minute.
+/// did not answer within a minute. `flags` are further ones of the browser, such as `dark` or another window size.
 inline std::string document(std::filesystem::path const& chromium, std::filesystem::path const& file,
-                            std::string const& hash = {}, int milliseconds = 1000) {
+                            std::string const& hash = {}, int milliseconds = 1000, std::string const& flags = {}) {
   TemporaryFolder const profile;
   std::string const command =
       "timeout 60 " + quoted(chromium.string()) +
       " --headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking"
       " --disable-component-update --disable-sync --window-size=1200,800 --user-data-dir=" +
       quoted(profile.path().string()) + " --virtual-time-budget=" + std::to_string(milliseconds) + " --dump-dom " +
-      quoted(address_of(file, hash)) + " 2>/dev/null";
+      flags + ' ' + quoted(address_of(file, hash)) + " 2>/dev/null";
   std::FILE* pipe = ::popen(command.c_str(), "r");
   if (pipe == nullptr) return {};
   std::string text;

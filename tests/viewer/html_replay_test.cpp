@@ -10,6 +10,7 @@
 
 #include <doctest/doctest.h>
 
+#include "cambium/core/write_file.hpp"
 #include "browser.hpp"
 #include "../support/skipped.hpp"
 #include "sample_recording.hpp"
@@ -226,6 +227,75 @@ TEST_CASE("the replay runs by itself and stops at its end") {
   std::string const end = browser::document(*chromium, folder.path() / "replay.html", "play", 20000);
   CHECK(browser::attribute(end, "<body", "data-frame") == "20");
   CHECK(browser::attribute(end, "<button id=\"play\"", "aria-label") == "Play");
+}
+
+TEST_CASE("two fingers zoom a replay and hold what lies between them, and its scale bar tells the truth") {
+  auto const chromium = browser::find();
+  if (!chromium) {
+    support::skip("no browser: install chromium");
+    return;
+  }
+  browser::TemporaryFolder const folder;
+  write_file(folder.path() / "replay.html", browser::with_actions(html_replay(sample_recording()), "view", R"js(
+const context = target.getContext('2d'), [text, rule] = document.getElementById('scale').children;
+// Middle and width [px] of what has the obstacle's colour; it is 2 m wide.
+const obstacle = () => {
+  const {data, width} = context.getImageData(0, 0, target.width, target.height), xs = [], ys = [];
+  for (let i = 0; i < data.length; i += 4)
+    if (data[i] === 0xb7 && data[i + 1] === 0x9b && data[i + 2] === 0xff)
+      xs.push(i / 4 % width), ys.push(i / 4 / width | 0);
+  const middle = list => (Math.max(...list) + Math.min(...list)) / 2;
+  return [middle(xs), middle(ys), Math.max(...xs) - Math.min(...xs) + 1];
+};
+const look = name => say(name, ...obstacle(), parseFloat(rule.style.width) / parseFloat(text.textContent));
+const later = action => setTimeout(() => {
+  try { action(); } catch (error) { say('failure', error.message); }
+}, 300);
+later(() => {
+  look('first');
+  const [x, y] = obstacle();
+  point('down', 1, x - 50, y + 100); point('down', 2, x + 50, y + 100);
+  for (const [dx, dy] of [[10, 5], [40, 30]])
+    point('move', 1, x - 50 + dx, y + 100 + dy), point('move', 2, x + 50 + dx, y + 100 + dy);
+  later(() => {
+    look('dragged');
+    point('move', 1, x - 160, y + 130); point('move', 2, x + 240, y + 130);
+    later(() => look('pinched'));
+  });
+});
+)js"));
+  auto const page = browser::document(*chromium, folder.path() / "replay.html", "follow=0&fit", 2000);
+  CHECK(browser::attribute(page, "<body", "data-failure") == "");
+  auto const of = [&](char const* name) {
+    std::istringstream text(browser::attribute(page, "<body", std::string("data-") + name));
+    std::vector<double> list(4);
+    for (double& value : list) text >> value;
+    return list;
+  };
+  auto const first = of("first"), dragged = of("dragged"), pinched = of("pinched");
+  CHECK(dragged[0] - first[0] == doctest::Approx(40.0).epsilon(0.05));
+  CHECK(dragged[1] - first[1] == doctest::Approx(30.0).epsilon(0.05));
+  CHECK(pinched[3] / dragged[3] == doctest::Approx(4.0).epsilon(0.01));  // 400 px apart instead of 100
+  CHECK(pinched[2] == doctest::Approx(2.0 * pinched[3]).epsilon(0.2));   // its outline covers a part
+}
+
+TEST_CASE("a replay fits a phone's screen, and is dark where its reader prefers that") {
+  CHECK(html_replay(sample_recording())
+            .find("<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">") != std::string::npos);
+  auto const chromium = browser::find();
+  if (!chromium) {
+    support::skip("no browser: install chromium");
+    return;
+  }
+  browser::TemporaryFolder const folder;
+  write_html_replay(folder.path() / "replay.html", sample_recording());
+  auto const asphalt = [&](std::string const& flags) {
+    auto const page = browser::document(*chromium, folder.path() / "replay.html", "probe=100,0", 1000, flags);
+    return std::stoi("0" + browser::attribute(page, "<body", "data-pixel"));
+  };
+  CHECK(asphalt("") > 90);
+  CHECK(asphalt(browser::dark) < 70);
+  CHECK(asphalt("--window-size=500,844") > 90);
 }
 
 TEST_CASE("an empty recording is a page that says so") {

@@ -17,8 +17,9 @@ using map::Map;
 /// `Error` for a width or part out of range. Deterministic; its size is some 50 B per vertex of the map's lanes.
 [[nodiscard]] std::string svg_map_picture(Map const& map, MapPictureOptions const& options = {});
 
-/// The same as a page of its own that zooms, pans, and switches layers on and off; opened with `#at=X,Y,WIDTH` it shows
-/// the `WIDTH` metres around (X, Y).
+/// The same as a page of its own, light or dark as its reader prefers, that zooms and pans by pointer, touch and keys,
+/// switches layers on and off, and finds roads, lanes and junctions by their ids. Opened with `#at=X,Y,WIDTH` it shows
+/// the `WIDTH` metres around (X, Y), with `#find=ID` what has this id ("5", "5:-1", "junction 5").
 [[nodiscard]] std::string html_map_picture(Map const& map, MapPictureOptions const& options = {});
 
 /// Writes the picture to `path`, as SVG or as HTML by its ending. Throws `Error` for another ending and where it cannot

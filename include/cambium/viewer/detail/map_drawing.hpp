@@ -153,6 +153,13 @@ class MapDrawing {
     return label_of(lane) + (!is_valid(lane.opposite) ? "" : lane.along_road ? ", forward" : ", backward");
   }
 
+  /// The ids that the page's search looks for.
+  [[nodiscard]] std::string search_keys(map::Lane const& lane) const {
+    auto const junction = map_.road(lane.road).junction;
+    return " data-lane=\"" + label_of(lane) + '"' +
+           (is_valid(junction) ? " data-junction=\"" + escape_markup(map_.junction(junction).name) + '"' : "");
+  }
+
   [[nodiscard]] std::string tooltip(map::Lane const& lane) const {
     std::string text = "road " + escape_markup(map_.road(lane.road).name) + ", section " +
                        std::to_string(lane.section) + ", lane " + std::to_string(lane.number) + " (" +
@@ -174,8 +181,8 @@ class MapDrawing {
         outline.insert(outline.end(), right.rbegin(), right.rend());
         if (outline.size() < 3) continue;
         out_ += "<path class=\"" + std::string(drivable ? "driving" : to_string(lane.type)) +
-                (is_in_junction(lane) ? " junction" : "") + "\" d=\"" + path(outline) + "Z\"><title>" + tooltip(lane) +
-                "</title></path>\n";
+                (is_in_junction(lane) ? " junction" : "") + '"' + search_keys(lane) + " d=\"" + path(outline) +
+                "Z\"><title>" + tooltip(lane) + "</title></path>\n";
       }
   }
 

@@ -4,6 +4,7 @@
 #include <string_view>
 
 #include "cambium/viewer/detail/map_legend.hpp"
+#include "cambium/viewer/detail/map_page_script.hpp"
 #include "cambium/viewer/detail/svg_panel.hpp"
 #include "cambium/viewer/detail/text.hpp"
 
@@ -28,57 +29,89 @@ inline constexpr std::string_view map_picture_style =
     ".labels text{fill:#101820;text-anchor:middle;pointer-events:none}"
     ".legend text{fill:#101820}.scale{fill:#101820}";
 
-/// What makes the picture's view box follow the mouse wheel and the pointer, and the boxes switch layers.
-inline constexpr std::string_view map_page_script = R"(
-const map = document.getElementById('map'), box = map.viewBox.baseVal;
-map.removeAttribute('width'); map.removeAttribute('height');
-const whole = {x: box.x, y: box.y, width: box.width, height: box.height};
-const metres = e => new DOMPoint(e.clientX, e.clientY).matrixTransform(map.getScreenCTM().inverse());
-map.addEventListener('wheel', e => {
-  e.preventDefault();
-  const at = metres(e), k = Math.pow(1.0015, e.deltaY);
-  box.x = at.x - (at.x - box.x) * k; box.y = at.y - (at.y - box.y) * k;
-  box.width *= k; box.height *= k;
-}, {passive: false});
-let from = null;
-map.addEventListener('pointerdown', e => { from = metres(e); map.setPointerCapture(e.pointerId); });
-map.addEventListener('pointermove', e => {
-  if (!from) return;
-  const at = metres(e);
-  box.x += from.x - at.x; box.y += from.y - at.y;
-});
-for (const end of ['pointerup', 'pointercancel']) map.addEventListener(end, () => from = null);
-const at = location.hash.match(/^#at=([-\d.]+),([-\d.]+),([\d.]+)$/);
-if (at) {
-  const [x, y, width] = at.slice(1).map(Number), height = width * innerHeight / innerWidth;
-  Object.assign(box, {x: x - map.dataset.west - width / 2, y: map.dataset.north - y - height / 2, width, height});
+/// The look of the page around the picture, and its colours by night; `body` makes a rule win over the picture's own.
+inline constexpr std::string_view map_page_style = R"css(
+:root {
+  color-scheme: light dark;
+  --page: #eef1ec; --panel: #ffffffe8; --line: #c3cbd2; --text: #101820; --soft: #55626f;
 }
-document.getElementById('whole').onclick = () => Object.assign(box, whole);
-for (const input of document.querySelectorAll('input'))
-  input.onchange = () => {
-    for (const layer of map.getElementsByClassName(input.name)) layer.style.display = input.checked ? '' : 'none';
-  };
-)";
+@media (prefers-color-scheme: dark) {
+  :root { --page: #12181d; --panel: #1a222be8; --line: #35424e; --text: #e8eef5; --soft: #9aa9b8; }
+  body .areas path { fill: #33413a; stroke: #12181d; }
+  body .areas .driving { fill: #4b555f; } body .areas .junction { fill: #5a656f; stroke: #66717b; }
+  body .areas .shoulder, body .areas .border, body .areas .stop, body .areas .curb { fill: #353f48; }
+  body .areas .sidewalk, body .areas .walking { fill: #5c523f; } body .areas .biking { fill: #70503f; }
+  body .areas .parking { fill: #3c4b69; }
+  body .areas .bus, body .areas .taxi, body .areas .HOV { fill: #6d583f; }
+  body .areas .restricted, body .areas .roadWorks { fill: #643f40; }
+  body .areas .tram, body .areas .rail { fill: #55553b; }
+  body .areas path:hover { fill: #2f6ea8; }
+  body .arrows path { fill: #d5dee7; } body .links path { stroke: #35c77c; } body .links .tip { fill: #35c77c; }
+  body .conflicts path { stroke: #f090a8; }
+  body .labels text { paint-order: stroke; stroke: #12181d; stroke-width: .16px; }
+}
+body .ground { fill: var(--page); }
+body .labels text, body .legend text { fill: var(--text); }
+.marks, .rims { pointer-events: none; }
+.found { fill: #ffc31f; }
+.rim { fill: none; stroke: #c2410c; stroke-width: 3px; vector-effect: non-scaling-stroke; }
+* { box-sizing: border-box; }
+body { margin: 0; overflow: hidden; background: var(--page); color: var(--text);
+  font: 14px/1.4 system-ui, 'DejaVu Sans', sans-serif; }
+#map { display: block; width: 100vw; height: 100vh; height: 100dvh; cursor: grab; touch-action: none; outline: none; }
+#map.dragging { cursor: grabbing; }
+nav, #scale { position: fixed; background: var(--panel); border: 1px solid var(--line); border-radius: 8px; }
+nav { top: 8px; left: 8px; width: 396px; max-width: calc(100vw - 16px); max-height: calc(100vh - 76px);
+  overflow: auto; padding: 8px 12px; }
+nav b { display: block; overflow-wrap: anywhere; }
+nav label { display: inline-flex; align-items: center; gap: 4px; margin: 0 10px 4px 0; cursor: pointer; }
+nav input[type=checkbox] { width: 16px; height: 16px; margin: 0; }
+nav form { display: flex; gap: 6px; margin: 4px 0; }
+nav input[type=search] { flex: 1; min-width: 0; font-size: 16px; }
+nav input[type=search], nav button { height: 34px; padding: 0 10px; border: 1px solid var(--line); border-radius: 8px;
+  background: var(--page); color: inherit; }
+nav button { font: inherit; cursor: pointer; }
+nav output { display: block; margin-bottom: 4px; white-space: pre-line; overflow-wrap: anywhere; }
+nav output:empty { display: none; }
+nav details { color: var(--soft); } nav details > svg { display: block; width: 100%; height: auto; }
+summary { cursor: pointer; }
+kbd { padding: 0 4px; border: 1px solid var(--line); border-radius: 4px; font: inherit; }
+#scale { right: 8px; bottom: max(8px, env(safe-area-inset-bottom)); padding: 2px 10px 7px; font-size: 12px;
+  text-align: center; pointer-events: none; }
+#scale i { display: block; height: 5px; margin: auto; border: 1.5px solid var(--text); border-top: 0; }
+:focus-visible { outline: 2px solid #1273eb; outline-offset: 1px; }
+[hidden] { display: none !important; }
+)css";
+
+/// The form that finds roads, lanes and junctions, and says what it found.
+inline constexpr std::string_view map_page_search =
+    "<form role=\"search\"><input type=\"search\" id=\"find\" placeholder=\"road, road:lane or junction\" "
+    "aria-label=\"Find a road, a lane or a junction by its id\" autocomplete=\"off\" spellcheck=\"false\">"
+    "<button>find</button><button type=\"button\" id=\"whole\" title=\"Show the whole map (0)\">fit</button></form>"
+    "<output id=\"found\" role=\"status\"></output>";
+
+inline constexpr std::string_view map_page_keys =
+    "<details id=\"keys\"><summary>keys</summary><kbd>←</kbd> <kbd>→</kbd> <kbd>↑</kbd> <kbd>↓</kbd> pan, "
+    "<kbd>+</kbd> <kbd>-</kbd> zoom, <kbd>0</kbd> fits the map, <kbd>/</kbd> finds, <kbd>Esc</kbd> unmarks</details>";
 
 /// A page around a map's picture, with its legend of `width` [px].
 [[nodiscard]] inline std::string map_page(std::string_view title, std::string const& picture, double width,
                                           MapLegend const& legend) {
+  std::string const name = escape_markup(title);
   std::string page =
-      "<!doctype html>\n<html lang=\"en\"><meta charset=\"utf-8\"><title>" + escape_markup(title) +
-      "</title>\n<style>body{margin:0;font:14px system-ui,'DejaVu Sans',sans-serif;background:#eef1ec}"
-      "nav{position:fixed;top:8px;left:8px;max-width:380px;padding:8px 12px;border-radius:8px;background:#fffd;"
-      "box-shadow:0 1px 4px #0003}nav label{margin-right:8px;white-space:nowrap}nav "
-      "b{display:block}summary{cursor:pointer}"
-      "#map{display:block;width:100vw;height:100vh;cursor:grab}</style>\n<nav><b>" +
-      escape_markup(title) + "</b>";
+      "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"><title>" +
+      (name.empty() ? "Map" : name) + "</title>\n<style>" + std::string(map_page_style) +
+      "</style></head>\n<body><nav><b>" + name + "</b>" + std::string(map_page_search);
   for (char const* layer : {"arrows", "labels", "links", "overlaps", "conflicts"})
     if (picture.find("<g class=\"" + std::string(layer) + '"') != picture.npos)
       page += std::string("<label><input type=\"checkbox\" checked name=\"") + layer + "\">" + layer + "</label>";
-  page += " <button id=\"whole\">whole map</button>";
   if (!legend.text.empty())
-    page += "<details open><summary>legend</summary><svg width=\"" + svg_number(width) + "\" height=\"" +
+    page += "<details id=\"legend\" open><summary>legend</summary><svg viewBox=\"0 0 " + svg_number(width) + ' ' +
             svg_number(legend.height) + "\">" + legend.text + "</svg></details>";
-  return page + "</nav>\n" + picture + "<script>" + std::string(map_page_script) + "</script></html>\n";
+  return page + std::string(map_page_keys) + "</nav>\n" + picture +
+         "<div id=\"scale\" hidden><span></span><i></i></div>\n<script>" + std::string(map_page_script) +
+         "</script></body></html>\n";
 }
 
 }  // namespace cambium::detail

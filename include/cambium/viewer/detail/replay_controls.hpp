@@ -151,6 +151,10 @@ canvas.addEventListener('pointermove', event => {
   moved += Math.abs(x - last[0]) + Math.abs(y - last[1]);
   if (other) {
     const [ox, oy] = other[1], gap = ([a, b]) => Math.max(1, Math.hypot(a - ox, b - oy));
+    if (!state.follow) {   // the middle of the fingers holds the map
+      camera.x -= (x - last[0]) / 2 / camera.scale;
+      camera.y += (y - last[1]) / 2 / camera.scale;
+    }
     return zoom(gap([x, y]) / gap(last), (x + ox) / 2, (y + oy) / 2);
   }
   if (moved < 4) return;
