@@ -90,7 +90,7 @@ TEST_CASE("a road has a handful of findings, however often it is at fault") {
 }
 
 TEST_CASE("our own maps have no finding at all") {
-  for (auto const& path : corpus::maps(std::string(CAMBIUM_SOURCE_DIR) + "/maps")) {
+  for (auto const& path : corpus::maps(std::filesystem::path(CAMBIUM_SOURCE_DIR) / "maps")) {
     auto const loaded = cambium::load_opendrive(path.string());
     CHECK_MESSAGE(loaded.diagnostics.empty(), to_string(loaded.diagnostics.front()));
   }
