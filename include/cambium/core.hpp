@@ -1,5 +1,5 @@
-/// The room `core`: ids, states, plans, random streams and distributions, parameter structs, errors, writing of files,
-/// version.
+/// The room `core`: ids, states, plans, random streams and distributions, parameter structs, errors, version. What
+/// reads numbers from texts and writes files is included by name: `core/text.hpp`, `core/write_file.hpp`.
 #pragma once
 
 #include "cambium/core/described.hpp"
@@ -12,6 +12,4 @@
 #include "cambium/core/plan.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/core/state.hpp"
-#include "cambium/core/text.hpp"
 #include "cambium/core/version.hpp"
-#include "cambium/core/write_file.hpp"

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <map>
 #include <span>
 #include <vector>
 
@@ -70,16 +69,16 @@ inline void enter_object(map::LaneCorridor const& way, StaticObject const& objec
 /// place in the list of objects.
 [[nodiscard]] inline std::vector<TrafficEntry> object_entries(Map const& map, std::span<FreeRoad const> free_roads,
                                                               StaticObject const& object, std::uint32_t slot) {
-  std::map<LaneId, ObjectStretch> stretches;
+  std::vector<ObjectStretch> stretches(map.lanes().size());
   for (auto const& p : points_around(object.outline, 0.1))
-    for (auto const& hit : map.lanes_near(p, 0.0)) stretches[hit.lane].add(hit.s);
+    for (auto const& hit : map.lanes_near(p, 0.0)) stretches[index_of(hit.lane)].add(hit.s);
   for (auto const& lane : map.lanes()) {  // ends of lanes within the outline
     if (lane.path.empty()) continue;
     for (double const s : {0.0, lane.length()})
-      if (object.outline.contains(lane.path.pose(s).position())) stretches[lane.id].add(s);
+      if (object.outline.contains(lane.path.pose(s).position())) stretches[index_of(lane.id)].add(s);
   }
   std::vector<TrafficEntry> entries;
-  for (auto const& [lane, stretch] : stretches) stretch.enter(map.lane(lane).index_begin, object, slot, entries);
+  for (auto const& lane : map.lanes()) stretches[index_of(lane.id)].enter(lane.index_begin, object, slot, entries);
   for (auto const& road : free_roads) enter_object(road.numbered->corridors.front(), object, slot, entries);
   return entries;
 }
