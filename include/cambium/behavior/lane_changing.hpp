@@ -13,6 +13,7 @@
 #include "cambium/behavior/lane_ends.hpp"
 #include "cambium/behavior/leader.hpp"
 #include "cambium/core/distributions.hpp"
+#include "cambium/core/macros.hpp"
 
 namespace cambium {
 
@@ -133,8 +134,8 @@ struct LaneChanging {
   /// Whether nobody has to brake harder than `deceleration` [m/s^2], gaps are left, and nobody comes into the same gap
   /// from the lane beyond for whom that would not hold.
   template <class View>
-  [[nodiscard]] bool is_safe(View const& view, detail::IdmLaw const& law, LaneOption const& option,
-                             double deceleration) const {
+  CAMBIUM_NOINLINE [[nodiscard]] bool is_safe(View const& view, detail::IdmLaw const& law, LaneOption const& option,
+                                              double deceleration) const {
     auto const front_is_safe = [&](Neighbor const& n) {
       return n.gap > safe_gap && law(n.gap, n.speed) >= -deceleration;
     };
@@ -204,7 +205,8 @@ struct LaneChanging {
   }
 
   template <class View>
-  [[nodiscard]] bool may_go_on(View const& view, detail::IdmLaw const& law, LaneChange const& change) const {
+  CAMBIUM_NOINLINE [[nodiscard]] bool may_go_on(View const& view, detail::IdmLaw const& law,
+                                                LaneChange const& change) const {
     auto const& at = view.lane_position();
     auto const& piece = view.corridor().pieces[at.piece];
     LaneOption option{view.beside(change.target), change.target == piece.left, {}, {}};
@@ -217,7 +219,7 @@ struct LaneChanging {
   /// Turns back, if that is still possible. How long it then rests is drawn: who has met somebody in the same gap does
   /// not meet him there again.
   template <class View>
-  void abort(View const& view, double speed, Memory& memory) const {
+  CAMBIUM_NOINLINE void abort(View const& view, double speed, Memory& memory) const {
     constexpr std::uint32_t purpose = 0x4c43u;
     auto const& at = view.lane_position();
     auto const back = course.back(at.corridor, view.shape(), speed, at.lateral, memory.change.bend);
@@ -229,7 +231,7 @@ struct LaneChanging {
 
   /// Whether the vehicle fits into the lane `beside` where it comes in, `ahead` [m]: lanes may open slowly.
   template <class View>
-  [[nodiscard]] static bool is_wide_enough(View const& view, std::uint16_t beside, double ahead) {
+  CAMBIUM_NOINLINE [[nodiscard]] static bool is_wide_enough(View const& view, std::uint16_t beside, double ahead) {
     auto const& lane = view.road().corridors[beside];
     double const s = std::min(view.lane_position(beside).s + ahead, lane.length());
     return lane.width_at(s) > view.shape().width();
@@ -250,7 +252,8 @@ struct LaneChanging {
   /// How long a change may be: it must lead around a standing object, to before the end of the lane, and to where the
   /// next change can begin [m].
   template <class View>
-  [[nodiscard]] double room(View const& view, std::optional<Neighbor> const& leader, std::uint16_t target) const {
+  CAMBIUM_NOINLINE [[nodiscard]] double room(View const& view, std::optional<Neighbor> const& leader,
+                                             std::uint16_t target) const {
     auto const& at = view.lane_position();
     double const until_end =
         std::min(dead_end(view, at.corridor, at.piece) - at.s, way_to_stop(view, view.beside(target)));
@@ -282,9 +285,9 @@ struct LaneChanging {
   }
 
   template <class View>
-  [[nodiscard]] detail::Restriction ahead_while_changing(View const& view, detail::IdmLaw const& law,
-                                                         std::optional<Neighbor> const& leader,
-                                                         LaneChange const& change) const {
+  CAMBIUM_NOINLINE [[nodiscard]] detail::Restriction ahead_while_changing(View const& view, detail::IdmLaw const& law,
+                                                                          std::optional<Neighbor> const& leader,
+                                                                          LaneChange const& change) const {
     auto const& at = view.lane_position();
     auto const& corridor = view.corridor();
     auto const& piece = corridor.pieces[at.piece];

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "cambium/behavior/view.hpp"
+#include "cambium/core/macros.hpp"
 
 namespace cambium {
 
@@ -68,7 +69,7 @@ struct LanesToCross {
 /// From the place `s` [m] on a lane corridor, in its piece `piece`, with a finite `lane_end`. The lane that goes
 /// further may begin later. O(lanes beside), at most at each piece up to the end.
 template <class View>
-[[nodiscard]] LanesToCross lanes_to_cross(View const& view, std::uint16_t number, std::uint16_t piece, double s) {
+CAMBIUM_NOINLINE [[nodiscard]] LanesToCross lanes_to_cross(View const& view, std::uint16_t number, std::uint16_t piece, double s) {
   auto const& pieces = view.road().corridors[number].pieces;
   double const end = lane_end(view, number, piece);
   for (auto p = piece; p < pieces.size(); ++p) {
@@ -87,7 +88,7 @@ template <class View>
 /// them for each lane to be crossed, increasingly. O(1) where no end is ahead, else O(lanes
 /// beside), at most at each piece up to the end.
 template <class View>
-[[nodiscard]] LaneUrgency lane_urgency(View const& view, double horizon) {
+CAMBIUM_NOINLINE [[nodiscard]] LaneUrgency lane_urgency(View const& view, double horizon) {
   constexpr double infinite = std::numeric_limits<double>::infinity();
   auto const& at = view.lane_position();
   auto const& piece = view.corridor().pieces[at.piece];

@@ -12,6 +12,7 @@
 #include "cambium/behavior/corridor_filters.hpp"
 #include "cambium/behavior/idm.hpp"
 #include "cambium/behavior/lane_changing.hpp"
+#include "cambium/core/macros.hpp"
 
 namespace cambium {
 
@@ -191,7 +192,7 @@ struct BasicMobil {
 
   /// Eq. 5 for the own driving: who is faster than the leader in the inner lane follows that one, too.
   template <class View>
-  void pass_nobody_outside(LaneKeeping<View> const& now) const {
+  CAMBIUM_NOINLINE void pass_nobody_outside(LaneKeeping<View> const& now) const {
     auto const& piece = now.view.corridor().pieces[now.view.lane_position().piece];
     auto const inner = keeps_left(now.view, piece.lane) ? piece.right : piece.left;
     if (inner == map::no_corridor) return;
