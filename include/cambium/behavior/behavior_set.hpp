@@ -48,6 +48,15 @@ CAMBIUM_NOINLINE [[nodiscard]] Plan<View> plan_apart(B const& behavior, View con
                                                      Workspace& workspace) {
   return behavior.plan(view, memory, dt, workspace);
 }
+/// Plans by one of many behaviours, in a flattened function of its own: a step that took in all of them would compile
+/// more than twice as long, and run no faster.
+template <class B, class View, class Memory>
+CAMBIUM_NOINLINE CAMBIUM_FLATTEN [[nodiscard]] Plan<View> plan_apart(B const& behavior, View const& view,
+                                                                     Memory& memory, double dt) {
+  return behavior.plan(view, memory, dt);
+}
+/// Of so many behaviours a step takes in the plans.
+inline constexpr std::size_t most_plans_in_step = 4;
 }  // namespace detail
 
 /// The closed set of behaviours that the agents of a world may have. An agent has one of them with parameters of its
@@ -124,11 +133,14 @@ struct BehaviorSet {
     if constexpr (I + 1 < sizeof...(Behaviors))
       if (behavior.index() != I) return plan_from<I + 1>(behavior, view, memory, dt, workspaces);
     using Workspace = std::tuple_element_t<I, Workspaces>;
-    if constexpr (std::is_same_v<Workspace, NoWorkspace>)
-      return std::get_if<I>(&behavior)->plan(view, *std::get_if<I>(&memory), dt);
+    auto const& model = *std::get_if<I>(&behavior);
+    auto& own = *std::get_if<I>(&memory);
+    if constexpr (!std::is_same_v<Workspace, NoWorkspace>)
+      return detail::plan_apart(model, view, own, dt, std::get<I>(workspaces));
+    else if constexpr (sizeof...(Behaviors) > detail::most_plans_in_step)
+      return detail::plan_apart(model, view, own, dt);
     else
-      return detail::plan_apart(*std::get_if<I>(&behavior), view, *std::get_if<I>(&memory), dt,
-                                std::get<I>(workspaces));
+      return model.plan(view, own, dt);
   }
 };
 
