@@ -139,20 +139,6 @@ void move_on_lane(Map const& map, map::RoadCorridor const& road, double distance
 /// that [m, rad]: where two paths come too close for it, the lanes overlap and the index knows.
 inline constexpr double usual_half_width = 1.5, usual_heading_error = 0.05;
 
-/// The entry of an agent in lane `lane`, at its foot point there: with its speed along that lane, and its reach.
-template <class Agent, class Record>
-[[nodiscard]] TrafficEntry entry_in(map::Lane const& lane, double s, Agent const& agent, Record const& record,
-                                    TrafficEntry entry) {
-  double const turn = record.state.heading - lane.path.pose(s).heading;
-  auto const [sin, cos] = geometry::sin_cos(turn);
-  auto const reach = geometry::extent_along(agent.shape, cos, sin);
-  entry.position = lane.index_begin + std::clamp(s, 0.0, lane.length());
-  entry.front = reach.positive;
-  entry.rear = reach.negative;
-  entry.speed = record.state.speed * cos;
-  return entry;
-}
-
 /// The first lane coordinate that no lane has: there those of free corridors begin. [m]
 [[nodiscard]] inline double lane_coordinate_end(Map const& map) {
   if (map.lanes().empty()) return 0.0;
@@ -160,77 +146,19 @@ template <class Agent, class Record>
   return last.index_begin + std::ceil(last.length() + 10.0);  // agents beyond its end still count as in it
 }
 
-inline void add_in(map::Lane const& lane, TrafficEntry const& entry, ReachingEntries& list) {
-  list.add(entry, {lane.index_begin, lane.index_begin + lane.length()});
-}
-
-/// Adds an entry to the list for each drivable lane that the agent reaches into, whatever its own is.
-template <class Agent, class Record>
-void enter_touched(Map const& map, Agent const& agent, Record const& record, TrafficEntry const& entry,
-                   ReachingEntries& list) {
-  auto const& shape = agent.shape;
-  geometry::Point const at{record.state.x, record.state.y};
-  double const radius = std::max(shape.front, shape.rear) + std::max(shape.left, shape.right);
-  auto const first = static_cast<std::ptrdiff_t>(list.entries.size());
-  map.for_each_drivable_near(at, radius, [&](map::LaneHit const& hit) {
-    auto const& lane = map.lane(hit.lane);
-    auto const found = entry_in(lane, hit.s, agent, record, entry);
-    double const turn = record.state.heading - lane.path.pose(hit.s).heading;
-    auto const [sin, cos] = geometry::sin_cos(turn);
-    auto const aside = geometry::extent_along(shape, sin, -cos);
-    auto const widths = lane.widths_at(std::clamp(hit.s, 0.0, lane.length()), hit.segment);
-    bool const is_beside = hit.lateral - aside.negative > widths.left || hit.lateral + aside.positive < -widths.right;
-    if (is_beside || hit.s + found.front < 0.0 || hit.s - found.rear > lane.length()) return;
-    auto const is_there = [&](TrafficEntry const& other) {  // by another foot point
-      return other.position >= lane.index_begin && other.position <= lane.index_begin + lane.length();
-    };
-    if (std::none_of(list.entries.begin() + first, list.entries.end(), is_there)) add_in(lane, found, list);
-  });
-}
+/// A road user's body on its road.
+struct BodyOnRoad {
+  geometry::Shape const& shape;
+  map::RoadCorridor const& road;
+  map::LanePosition const& at;
+  geometry::Pose pose;
+  double speed;  ///< [m/s]
+};
 
 /// Adds an entry to the list for each lane that the agent reaches into: the lanes beside, or where there is none of its
 /// direction, a lane of oncoming traffic. Returns false where it has left its own lane: then for the drivable lane that
-/// it is in, if there is one.
-template <class Agent, class Record>
-bool straddle(Map const& map, Agent const& agent, Record const& record, TrafficEntry const& entry,
-              ReachingEntries& list) {
-  auto const& at = record.lane;
-  auto const& corridor = agent.road->corridors[at.corridor];
-  if (!is_drivable(corridor.pieces[at.piece].type)) {
-    enter_touched(map, agent, record, entry, list);
-    return true;
-  }
-  auto const& lane = map.lane(corridor.pieces[at.piece].lane);
-  auto const [sin, cos] = geometry::sin_cos(at.heading_error);
-  auto const reach = geometry::extent_along(agent.shape, sin, -cos);
-  double const left = at.lateral + reach.positive, right = reach.negative - at.lateral;
-  auto const widths = corridor.widths_at(at.s, at.segment);
-  geometry::Pose const pose{record.state.x, record.state.y, record.state.heading};
-  if (-left >= widths.right || -right >= widths.left) {
-    if (auto const hit = map.nearest_lane(pose, 0.0))
-      add_in(map.lane(hit->lane), entry_in(map.lane(hit->lane), hit->s, agent, record, entry), list);
-    return false;
-  }
-  double const share = (at.index - lane.index_begin) / lane.length();
-  auto const enter = [&](LaneId beside, double to_the_side) {
-    if (is_valid(beside)) {
-      auto const& other = map.lane(beside);
-      auto const foot = other.path.project(pose.position(), other.path.find(share * other.length()));
-      add_in(other, entry_in(other, foot.s, agent, record, entry), list);
-      return;
-    }
-    double const along = pose.heading - at.heading_error;
-    geometry::Point const side{pose.x - std::sin(along) * to_the_side, pose.y + std::cos(along) * to_the_side};
-    auto const hit = map.nearest_lane({side.x(), side.y(), along + geometry::pi}, 0.0);
-    if (!hit || hit->distance > 0.0) return;
-    auto const& oncoming = map.lane(hit->lane);
-    if (std::cos(oncoming.path.pose(hit->s).heading - along) < 0.0)
-      add_in(oncoming, entry_in(oncoming, hit->s, agent, record, entry), list);
-  };
-  if (left > widths.left) enter(lane.left_neighbor, reach.positive);
-  if (right > widths.right) enter(lane.right_neighbor, -reach.negative);
-  return true;
-}
+/// it is in, if there is one. `entry` is that of its own lane.
+[[nodiscard]] bool straddle(Map const& map, BodyOnRoad const& body, TrafficEntry const& entry, ReachingEntries& list);
 
 /// Brings the index up to date with the agents of a frame.
 template <class Roster, class Frame>
@@ -250,7 +178,9 @@ void refresh_traffic(TrafficIndex& index, Map const& map, Roster const& roster, 
     bool const is_usual = std::max(agent.shape.left, agent.shape.right) <= usual_half_width &&
                           std::abs(record.lane.heading_error) <= usual_heading_error;
     if (is_usual && std::abs(record.lane.lateral) <= on_path && record.lane.index < lanes_end) return entry;
-    if (!straddle(map, agent, record, entry, reaching)) entry.position = nowhere;
+    geometry::Pose const pose{record.state.x, record.state.y, record.state.heading};
+    if (!straddle(map, {agent.shape, *agent.road, record.lane, pose, record.state.speed}, entry, reaching))
+      entry.position = nowhere;
     return entry;
   };
   index.refresh(frame.agents.size(), add, [&](std::uint32_t slot) {
@@ -271,3 +201,7 @@ void refresh_plane(PlaneIndex& index, Roster const& roster, Frame const& frame) 
 }
 
 }  // namespace cambium::detail
+
+#ifndef CAMBIUM_COMPILED
+#include "cambium/world/detail/on_lanes_impl.hpp"
+#endif

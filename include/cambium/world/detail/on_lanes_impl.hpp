@@ -1,0 +1,98 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+
+#include "cambium/core/ids.hpp"
+#include "cambium/core/macros.hpp"
+#include "cambium/geometry/angle.hpp"
+#include "cambium/geometry/pose.hpp"
+#include "cambium/map/corridor.hpp"
+#include "cambium/map/lane.hpp"
+#include "cambium/map/lane_position.hpp"
+#include "cambium/map/map.hpp"
+#include "cambium/world/detail/on_lanes.hpp"
+#include "cambium/world/traffic_index.hpp"
+
+namespace cambium::detail {
+
+/// The entry of an agent in lane `lane`, at its foot point there: with its speed along that lane, and its reach.
+[[nodiscard]] inline TrafficEntry entry_in(map::Lane const& lane, double s, BodyOnRoad const& body,
+                                           TrafficEntry entry) {
+  double const turn = body.pose.heading - lane.path.pose(s).heading;
+  auto const [sin, cos] = geometry::sin_cos(turn);
+  auto const reach = geometry::extent_along(body.shape, cos, sin);
+  entry.position = lane.index_begin + std::clamp(s, 0.0, lane.length());
+  entry.front = reach.positive;
+  entry.rear = reach.negative;
+  entry.speed = body.speed * cos;
+  return entry;
+}
+
+inline void add_in(map::Lane const& lane, TrafficEntry const& entry, ReachingEntries& list) {
+  list.add(entry, {lane.index_begin, lane.index_begin + lane.length()});
+}
+
+/// Adds an entry to the list for each drivable lane that the agent reaches into, whatever its own is.
+inline void enter_touched(Map const& map, BodyOnRoad const& body, TrafficEntry const& entry, ReachingEntries& list) {
+  auto const& shape = body.shape;
+  geometry::Point const at = body.pose.position();
+  double const radius = std::max(shape.front, shape.rear) + std::max(shape.left, shape.right);
+  auto const first = static_cast<std::ptrdiff_t>(list.entries.size());
+  map.for_each_drivable_near(at, radius, [&](map::LaneHit const& hit) {
+    auto const& lane = map.lane(hit.lane);
+    auto const found = entry_in(lane, hit.s, body, entry);
+    double const turn = body.pose.heading - lane.path.pose(hit.s).heading;
+    auto const [sin, cos] = geometry::sin_cos(turn);
+    auto const aside = geometry::extent_along(shape, sin, -cos);
+    auto const widths = lane.widths_at(std::clamp(hit.s, 0.0, lane.length()), hit.segment);
+    bool const is_beside = hit.lateral - aside.negative > widths.left || hit.lateral + aside.positive < -widths.right;
+    if (is_beside || hit.s + found.front < 0.0 || hit.s - found.rear > lane.length()) return;
+    auto const is_there = [&](TrafficEntry const& other) {  // by another foot point
+      return other.position >= lane.index_begin && other.position <= lane.index_begin + lane.length();
+    };
+    if (std::none_of(list.entries.begin() + first, list.entries.end(), is_there)) add_in(lane, found, list);
+  });
+}
+
+CAMBIUM_COLD bool straddle(Map const& map, BodyOnRoad const& body, TrafficEntry const& entry, ReachingEntries& list) {
+  auto const& at = body.at;
+  auto const& corridor = body.road.corridors[at.corridor];
+  if (!is_drivable(corridor.pieces[at.piece].type)) {
+    enter_touched(map, body, entry, list);
+    return true;
+  }
+  auto const& lane = map.lane(corridor.pieces[at.piece].lane);
+  auto const [sin, cos] = geometry::sin_cos(at.heading_error);
+  auto const reach = geometry::extent_along(body.shape, sin, -cos);
+  double const left = at.lateral + reach.positive, right = reach.negative - at.lateral;
+  auto const widths = corridor.widths_at(at.s, at.segment);
+  auto const& pose = body.pose;
+  if (-left >= widths.right || -right >= widths.left) {
+    if (auto const hit = map.nearest_lane(pose, 0.0))
+      add_in(map.lane(hit->lane), entry_in(map.lane(hit->lane), hit->s, body, entry), list);
+    return false;
+  }
+  double const share = (at.index - lane.index_begin) / lane.length();
+  auto const enter = [&](LaneId beside, double to_the_side) {
+    if (is_valid(beside)) {
+      auto const& other = map.lane(beside);
+      auto const foot = other.path.project(pose.position(), other.path.find(share * other.length()));
+      add_in(other, entry_in(other, foot.s, body, entry), list);
+      return;
+    }
+    double const along = pose.heading - at.heading_error;
+    geometry::Point const side{pose.x - std::sin(along) * to_the_side, pose.y + std::cos(along) * to_the_side};
+    auto const hit = map.nearest_lane({side.x(), side.y(), along + geometry::pi}, 0.0);
+    if (!hit || hit->distance > 0.0) return;
+    auto const& oncoming = map.lane(hit->lane);
+    if (std::cos(oncoming.path.pose(hit->s).heading - along) < 0.0)
+      add_in(oncoming, entry_in(oncoming, hit->s, body, entry), list);
+  };
+  if (left > widths.left) enter(lane.left_neighbor, reach.positive);
+  if (right > widths.right) enter(lane.right_neighbor, -reach.negative);
+  return true;
+}
+
+}  // namespace cambium::detail
