@@ -5,6 +5,9 @@ set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd -P)
 build=$root/build
 
+# ccache, where it is there: keep what includes precompiled headers, too, and do not preprocess before compiling.
+export CCACHE_SLOPPINESS=${CCACHE_SLOPPINESS:-pch_defines,time_macros} CCACHE_DEPEND=${CCACHE_DEPEND:-1}
+
 note() { printf '%s\n' "$*" >&2; }
 fail() {
   note "$*"
