@@ -14,6 +14,7 @@
 #include "cambium/core/error.hpp"
 #include "cambium/core/text.hpp"
 
+#include "mistakes.hpp"
 #include "part_file.hpp"
 #include "version.hpp"
 
@@ -90,12 +91,13 @@ CLI::Option* add_list(CLI::App& program, std::string const& name, std::vector<Nu
   return 2;
 }
 
-/// What is wrong with words that no option takes: names the near ones.
-[[nodiscard]] std::string unknown_words(CLI::App const& program);
-
-/// `text` for the command line: where it sends a programmer to a function of the map ("see Map::roads for ..."), the
-/// user goes to the picture.
-[[nodiscard]] std::string without_functions(std::string text);
+/// The program's long options, as `--name`.
+[[nodiscard]] inline std::vector<std::string> long_options(CLI::App const& program) {
+  std::vector<std::string> names;
+  for (auto const* const option : program.get_options())
+    for (auto const& name : option->get_lnames()) names.push_back("--" + name);
+  return names;
+}
 
 /// Reads the command line, then runs `body`; what is thrown becomes one line on the error stream and exit code 2. What
 /// `body` returns, if anything, is the exit code.
@@ -122,7 +124,7 @@ int run_program(CLI::App& program, int argc, char** argv, Body const& body) {
     std::cout << text.what() << "\n";
     return finish_output(program.get_name());
   } catch (CLI::ExtrasError const&) {
-    return refuse(unknown_words(program));
+    return refuse(unknown_words(program.remaining(), long_options(program)));
   } catch (CLI::ParseError const& problem) {
     return refuse(problem.what() + std::string(" (--help lists the options)"));
   } catch (std::exception const& problem) {

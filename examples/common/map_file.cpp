@@ -2,29 +2,22 @@
 
 #include <filesystem>
 #include <iostream>
+#include <vector>
 
-#include "cambium/map/build_map.hpp"
+#include "cambium/core/diagnostic.hpp"
 #include "cambium/map/center_line_csv.hpp"
 #include "cambium/map/map_builder.hpp"
 #include "cambium/map/opendrive.hpp"
 
-examples::OpenedMap examples::open_map(std::string const& file, cambium::MapOptions const& options) {
-  OpenedMap opened;
+std::shared_ptr<cambium::Map const> examples::load_map(std::string const& file) {
   std::filesystem::path const path(file);
   if (path.extension() == ".csv") {
-    cambium::map::MapBuilder builder(path.stem().string());
+    cambium::MapBuilder builder(path.stem().string());
     builder.add_road(lane_along(cambium::map::load_center_line_csv(file)));
-    opened.document = builder.document();
-  } else {
-    opened.document = cambium::map::load_opendrive_document(file, opened.diagnostics);
+    return builder.build();
   }
-  opened.map = cambium::map::build_map(opened.document, options, file, opened.diagnostics);
-  return opened;
-}
-
-std::shared_ptr<cambium::Map const> examples::load_map(std::string const& file) {
-  auto opened = open_map(file);
-  for (auto const& diagnostic : opened.diagnostics)
+  auto const loaded = cambium::load_opendrive(file);
+  for (auto const& diagnostic : loaded.diagnostics)
     if (diagnostic.severity != cambium::Severity::info) std::cerr << to_string(diagnostic) << "\n";
-  return opened.map;
+  return loaded.map;
 }

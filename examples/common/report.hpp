@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "options.hpp"
 #include "roll_out.hpp"
 
 namespace examples {
@@ -39,18 +40,6 @@ struct Totals {
   return t;
 }
 
-/// Something that the scenarios count: "lane changes"; `meaning` may be left out.
-struct Count {
-  std::string name, meaning{};
-};
-
-/// What a program of sampled scenarios calls things.
-struct Words {
-  std::string title;    ///< of the replay: "Merging"
-  std::string success;  ///< "the ego merged"
-  std::vector<Count> counts{};
-};
-
 /// "1 vehicle", "2 vehicles".
 [[nodiscard]] inline std::string counted(std::uint64_t count, std::string const& thing) {
   return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
@@ -62,9 +51,6 @@ using Facts = std::vector<std::pair<std::string, std::size_t>>;
 /// Writes the figures, who collided with whom, and each scenario's outcome, with the units and thresholds, as JSON.
 void write_summary(std::filesystem::path const& file, Settings const& settings, Facts const& facts,
                    std::vector<Outcome> const& outcomes, Totals const& totals, Words const& words);
-
-/// What the words of the table mean.
-[[nodiscard]] std::string explained(Words const& words);
 
 /// "success     199979 of 200000   99.990 % (99.984-99.993)": a count, its share and the share's 95 % interval
 /// (Wilson).

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <optional>
 #include <string>
-#include <thread>
 #include <tuple>
 #include <utility>
 #include <variant>
@@ -17,20 +16,13 @@
 #include "cambium/world/frame.hpp"
 
 #include "on_threads.hpp"
+#include "options.hpp"
 #include "trajectories.hpp"
 
 namespace examples {
 
 inline constexpr double dt = 0.2;             // [s]
 inline constexpr double hard_braking = -4.0;  // [m/s^2]; one hard braking lasts while an agent brakes harder than this
-
-/// What a user sets on the command line.
-struct Settings {
-  std::string map_file, out;
-  std::uint64_t scenarios = 200, seed = 1, steps = 300, trajectories = 10;
-  std::uint64_t threads = std::max(1u, std::thread::hardware_concurrency());
-  std::optional<std::uint64_t> replay{};  ///< the scenario to be replayed; none: the most telling one
-};
 
 /// What came of one scenario.
 struct Outcome {

@@ -3,20 +3,16 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
-#include <functional>
 #include <iostream>
 #include <string>
 
 #include "cambium/core/error.hpp"
 #include "cambium/viewer/html_replay.hpp"
 
+#include "options.hpp"
 #include "part_file.hpp"
 #include "report.hpp"
 #include "roll_out.hpp"
-
-namespace CLI {
-class App;
-}
 
 namespace examples {
 
@@ -34,17 +30,6 @@ namespace examples {
   if (outcome.kind == Outcome::Kind::time_out) return "time ran out";
   return "agents " + to_string(outcome.collided_first) + " and " + to_string(outcome.collided_second) + " collide";
 }
-
-/// What a program is called and says of itself.
-struct Program {
-  std::string name, sentence, map_sentence;
-};
-
-/// The options that all of these programs have. `map_sentence` says what map it takes.
-void add_options(CLI::App& program, Settings& settings, std::string const& map_sentence);
-
-/// Reads a command line of these options, then runs `body` (see `run_program`). The exit code.
-int run_sampled(Program const& program, Settings& settings, int argc, char** argv, std::function<void()> const& body);
 
 /// Simulates the replayed scenario once more and writes its replay, and its trajectory unless that is written already.
 template <class Site>

@@ -15,7 +15,7 @@
 #include "cambium/viewer/svg_picture.hpp"
 
 #include "../common/command_line.hpp"
-#include "../common/map_file.hpp"
+#include "opened_map.hpp"
 #include "reports.hpp"
 #include "summary.hpp"
 #include "tables.hpp"
@@ -72,7 +72,7 @@ void draw(cambium::Map const& map, Settings const& settings) {
 int run(Settings const& settings) {
   namespace example = map_example;
   check_files(settings);
-  auto const opened = examples::open_map(settings.file, {.infer_links = settings.infer_links});
+  auto const opened = example::open_map(settings.file, {.infer_links = settings.infer_links});
   auto const& map = *opened.map;
   std::cout << example::summary(opened, settings.file);
   for (auto const& diagnostic : opened.diagnostics) std::cout << "  " << to_string(diagnostic) << "\n";

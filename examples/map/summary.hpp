@@ -16,7 +16,7 @@
 #include "cambium/map/opendrive_document.hpp"
 #include "cambium/map/right_of_way.hpp"
 
-#include "../common/map_file.hpp"
+#include "opened_map.hpp"
 
 namespace map_example {
 
@@ -113,7 +113,7 @@ inline bool has_width(cb::map::Lane const& lane) {
 }
 
 /// Whether somebody should look at the file: a warning, an error, or a road that is not in the map.
-inline bool is_odd(examples::OpenedMap const& opened) {
+inline bool is_odd(OpenedMap const& opened) {
   return opened.map->roads().size() < opened.document.roads.size() ||
          std::any_of(opened.diagnostics.begin(), opened.diagnostics.end(),
                      [](auto const& diagnostic) { return diagnostic.severity != cb::Severity::info; });
@@ -144,7 +144,7 @@ inline std::string map_text(cb::Map const& map) {
 }
 
 /// What the file contains and how much is odd about it.
-inline std::string summary(examples::OpenedMap const& opened, std::string const& file) {
+inline std::string summary(OpenedMap const& opened, std::string const& file) {
   std::map<std::string, std::size_t> severities;
   for (auto const& diagnostic : opened.diagnostics) ++severities[std::string(to_string(diagnostic.severity))];
   return file + '\n' + document_text(opened.document) + map_text(*opened.map) +

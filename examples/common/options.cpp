@@ -1,4 +1,4 @@
-#include "sampled_program.hpp"
+#include "options.hpp"
 
 #include <cstdint>
 

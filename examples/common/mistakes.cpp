@@ -1,5 +1,6 @@
-#include "command_line.hpp"
+#include "mistakes.hpp"
 
+#include <algorithm>
 #include <cstddef>
 #include <numeric>
 #include <utility>
@@ -22,15 +23,14 @@ std::size_t distance(std::string const& a, std::string const& b) {
   return row.back();
 }
 
-/// The program's long options that may be meant by `word`, nearest first.
-std::vector<std::string> near_options(CLI::App const& program, std::string const& word) {
+/// The options that may be meant by `word`, nearest first.
+std::vector<std::string> near_options(std::vector<std::string> const& options, std::string const& word) {
   std::vector<std::pair<std::size_t, std::string>> found;
-  for (auto const* const option : program.get_options())
-    for (auto const& name : option->get_lnames()) {
-      auto const far = distance(word, "--" + name);
-      bool const begins = word.size() > 3 && ("--" + name).rfind(word, 0) == 0;
-      if (begins || far <= std::max<std::size_t>(1, word.size() / 3)) found.emplace_back(begins ? 0 : far, "--" + name);
-    }
+  for (auto const& name : options) {
+    auto const far = distance(word, name);
+    bool const begins = word.size() > 3 && name.rfind(word, 0) == 0;
+    if (begins || far <= std::max<std::size_t>(1, word.size() / 3)) found.emplace_back(begins ? 0 : far, name);
+  }
   std::sort(found.begin(), found.end());
   std::vector<std::string> names;
   for (auto const& [far, name] : found)
@@ -40,8 +40,7 @@ std::vector<std::string> near_options(CLI::App const& program, std::string const
 
 }  // namespace
 
-std::string unknown_words(CLI::App const& program) {
-  auto const words = program.remaining();
+std::string unknown_words(std::vector<std::string> const& words, std::vector<std::string> const& options) {
   // What follows an unknown option was meant for it.
   auto const unknown =
       std::find_if(words.begin(), words.end(), [](std::string const& word) { return word.rfind('-', 0) == 0; });
@@ -50,7 +49,7 @@ std::string unknown_words(CLI::App const& program) {
            "' (--help lists the options)";
   auto const word = unknown->substr(0, unknown->find('='));
   std::string text = "there is no option " + word;
-  auto const near = near_options(program, word);
+  auto const near = near_options(options, word);
   for (std::size_t i = 0; i < near.size(); ++i) text += (i == 0 ? "; is it " : " or ") + near[i];
   return text + (near.empty() ? " (--help lists the options)" : "? (--help lists the options)");
 }

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cambium/core/diagnostic.hpp"
+#include "cambium/map/build_map.hpp"
+#include "cambium/map/center_line_csv.hpp"
+#include "cambium/map/map_builder.hpp"
+#include "cambium/map/opendrive.hpp"
+#include "cambium/map/opendrive_document.hpp"
+
+namespace map_example {
+
+/// A map's file, as written and as a map.
+struct OpenedMap {
+  cambium::map::OpenDriveDocument document;
+  std::shared_ptr<cambium::Map const> map;
+  std::vector<cambium::Diagnostic> diagnostics;
+};
+
+/// Reads an OpenDRIVE file, or the table of a centre line (.csv), which becomes a road of one lane. Throws
+/// `cambium::MapError`.
+inline OpenedMap open_map(std::string const& file, cambium::MapOptions const& options) {
+  OpenedMap opened;
+  std::filesystem::path const path(file);
+  if (path.extension() == ".csv") {
+    cambium::MapBuilder builder(path.stem().string());
+    builder.add_road(lane_along(cambium::map::load_center_line_csv(file)));
+    opened.document = builder.document();
+  } else {
+    opened.document = cambium::map::load_opendrive_document(file, opened.diagnostics);
+  }
+  opened.map = cambium::map::build_map(opened.document, options, file, opened.diagnostics);
+  return opened;
+}
+
+}  // namespace map_example
