@@ -59,14 +59,14 @@ enum class Stage { read, sampled, linked };
 /// Runs the stages that `parse_opendrive` consists of, up to `last`, with lanes sampled to 5 cm.
 std::size_t run_stages(std::string const& text, std::string const& name, Stage last) {
   std::vector<cb::Diagnostic> diagnostics;
-  auto const document = cb::map::read_opendrive_document(text, name, diagnostics);
+  auto document = cb::map::read_opendrive_document(text, name, diagnostics);
   if (last == Stage::read) return cb::map::make_roads(document).size();
-  return cb::map::detail::with_split_roads(document, [&](cb::map::OpenDriveDocument const& split) {
-    cb::map::detail::MapBuild build(split, {.position_tolerance = 0.05}, name, diagnostics);
-    build.add_lanes();
-    if (last == Stage::linked) build.link_lanes();
-    return diagnostics.size();
-  });
+  cb::map::detail::RequireBuildable::check(document);
+  cb::map::detail::split_roads(document);
+  cb::map::detail::MapBuild build(document, {.position_tolerance = 0.05}, name, diagnostics);
+  build.add_lanes();
+  if (last == Stage::linked) build.link_lanes();
+  return diagnostics.size();
 }
 
 void register_loading(std::string const& stem, std::shared_ptr<std::string const> const& text) {

@@ -203,8 +203,8 @@ TEST_CASE("on real maps lanes say what the records at each of their places say")
     std::vector<Diagnostic> diagnostics;
     auto const written = cambium::map::read_opendrive_document(corpus::read(file), file.string(), diagnostics);
     auto const map = cambium::map::build_map(written, {}, file.string(), diagnostics);
-    auto const document =
-        map::detail::split_roads(written, map::detail::places_to_split(written));  // with the map's sections
+    auto document = written;
+    map::detail::split_roads(document);  // with the map's sections
     for (auto const& lane : map->lanes()) {
       if (is_valid(lane.merges_into)) continue;  // its path leaves its cross-sections' order a little
       for (double const share : {0.1, 0.37, 0.5, 0.93}) {

@@ -19,7 +19,7 @@ namespace cambium::map {
 /// A lane for both directions (`direction="both"`, type bidirectional) becomes two lanes, see `Lane::opposite`. Lanes
 /// are linked at their ends only: a section is split where a connecting road of a virtual junction meets the middle of
 /// a road, and in the middle of a road of one section that closes upon itself.
-[[nodiscard]] std::shared_ptr<Map const> build_map(OpenDriveDocument const& document, MapOptions const& options,
+[[nodiscard]] std::shared_ptr<Map const> build_map(OpenDriveDocument document, MapOptions const& options,
                                                    std::string file, std::vector<Diagnostic>& diagnostics);
 
 }  // namespace cambium::map

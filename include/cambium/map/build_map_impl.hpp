@@ -38,7 +38,8 @@ namespace cambium::map {
 
 namespace detail {
 
-/// Turns a document into a map: roads, lanes with their geometry, links, merges, overlaps.
+/// Turns a document, which must be buildable and have its roads split, into a map: roads, lanes with their geometry,
+/// links, merges, overlaps.
 class MapBuild {
  public:
   MapBuild(OpenDriveDocument const& document, MapOptions const& options, std::string file,
@@ -174,22 +175,13 @@ class MapBuild {
   Map::Parts parts_;
 };
 
-/// Calls `run` with the document as `MapBuild` needs it: buildable, and with sections split where lanes meet the middle
-/// of others.
-template <class Run>
-auto with_split_roads(OpenDriveDocument const& document, Run const& run) {
-  RequireBuildable::check(document);
-  auto const places = places_to_split(document);
-  return places.empty() ? run(document) : run(split_roads(document, places));
-}
-
 }  // namespace detail
 
-CAMBIUM_COLD std::shared_ptr<Map const> build_map(OpenDriveDocument const& document, MapOptions const& options,
+CAMBIUM_COLD std::shared_ptr<Map const> build_map(OpenDriveDocument document, MapOptions const& options,
                                                   std::string file, std::vector<Diagnostic>& diagnostics) {
-  return detail::with_split_roads(document, [&](OpenDriveDocument const& split) {
-    return detail::MapBuild(split, options, std::move(file), diagnostics).build();
-  });
+  detail::RequireBuildable::check(document);
+  detail::split_roads(document);
+  return detail::MapBuild(document, options, std::move(file), diagnostics).build();
 }
 
 }  // namespace cambium::map

@@ -2,13 +2,13 @@
 
 #include <cstddef>
 #include <string_view>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "cambium/core/ids.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/map/cubic.hpp"
+#include "cambium/map/detail/id_places.hpp"
 #include "cambium/map/detail/make_road.hpp"
 #include "cambium/map/make_roads.hpp"
 #include "cambium/map/opendrive_document.hpp"
@@ -17,14 +17,14 @@
 namespace cambium::map {
 
 CAMBIUM_COLD std::vector<Road> make_roads(OpenDriveDocument const& document) {
-  std::unordered_map<std::string_view, JunctionId> junctions;
-  for (std::size_t i = 0; i < document.junctions.size(); ++i)
-    junctions.emplace(document.junctions[i].id, static_cast<JunctionId>(i));
+  detail::IdPlaces junctions;
+  for (std::size_t i = 0; i < document.junctions.size(); ++i) junctions.emplace(document.junctions[i].id, i);
   std::vector<Road> roads;
   roads.reserve(document.roads.size());
   for (auto const& source : document.roads) {
     roads.push_back(detail::make_road(source, static_cast<RoadId>(roads.size()), document.header.offset));
-    if (auto const at = junctions.find(source.junction); at != junctions.end()) roads.back().junction = at->second;
+    if (auto const at = junctions.find(source.junction); at != junctions.end())
+      roads.back().junction = static_cast<JunctionId>(at->second);
   }
   return roads;
 }

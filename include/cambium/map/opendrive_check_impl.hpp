@@ -6,10 +6,10 @@
 #include <string>
 #include <string_view>
 #include <unordered_map>
-#include <unordered_set>
 #include <utility>
 #include <vector>
 
+#include "cambium/map/detail/id_places.hpp"
 #include "cambium/core/diagnostic.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
@@ -57,23 +57,26 @@ class DocumentCheck {
   }
 
  private:
-  using Index = std::unordered_set<std::string_view>;
-
   /// Collects the ids and removes later elements of an id that was there before.
   template <class Element>
-  void index(std::vector<Element>& elements, Index& ids, char const* kind, char const* sentence) {
-    std::unordered_set<std::string> seen;
-    std::erase_if(elements, [&](Element const& element) {
-      if (seen.insert(element.id).second) return false;
-      report(Severity::warning, element.line, kind, "", "id " + element.id + sentence);
-      return true;
-    });
-    for (Element const& element : elements) ids.insert(element.id);
+  void index(std::vector<Element>& elements, IdPlaces& ids, char const* kind, char const* sentence) {
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+      if (!ids.emplace(elements[i].id, i).second) {
+        report(Severity::warning, elements[i].line, kind, "", "id " + elements[i].id + sentence);
+        continue;
+      }
+      if (kept != i) std::swap(elements[kept], elements[i]);
+      ++kept;
+    }
+    elements.resize(kept);
+    ids.clear();
+    for (std::size_t i = 0; i < kept; ++i) ids.emplace(elements[i].id, i);
   }
 
   /// The junctions with linked connecting roads, and no drivable lane on any: these need no connections.
-  [[nodiscard]] Index junctions_to_walk() const {
-    Index walked, driven;
+  [[nodiscard]] IdPlaces junctions_to_walk() const {
+    IdPlaces walked, driven;
     for (opendrive::Road const& road : document_->roads) {
       if (road.junction.empty()) continue;
       bool const is_driven =
@@ -82,11 +85,11 @@ class DocumentCheck {
                                [](opendrive::Lane const& lane) { return lane.id != 0 && is_drivable(lane.type); });
           });
       if (is_driven)
-        driven.insert(road.junction);
+        driven.emplace(road.junction, 0);
       else if (road.predecessor && road.successor)
-        walked.insert(road.junction);
+        walked.emplace(road.junction, 0);
     }
-    for (std::string_view const junction : driven) walked.erase(junction);
+    for (auto const& entry : driven) walked.erase(entry.first);
     return walked;
   }
 
@@ -221,8 +224,7 @@ class DocumentCheck {
   opendrive::Document* document_;
   std::string file_;
   std::vector<Diagnostic>* diagnostics_;
-  Index roads_;
-  Index junctions_;
+  IdPlaces roads_, junctions_;
 };
 
 }  // namespace detail

@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "cambium/core/diagnostic.hpp"
@@ -17,8 +18,8 @@ namespace cambium::map {
 
 CAMBIUM_COLD LoadedMap parse_opendrive(std::string_view text, MapOptions const& options, std::string const& file) {
   LoadedMap result;
-  auto const document = read_opendrive_document(text, file, result.diagnostics);
-  result.map = build_map(document, options, file, result.diagnostics);
+  auto document = read_opendrive_document(text, file, result.diagnostics);
+  result.map = build_map(std::move(document), options, file, result.diagnostics);
   return result;
 }
 

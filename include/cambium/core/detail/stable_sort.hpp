@@ -7,33 +7,34 @@
 
 namespace cambium::detail {
 
-/// The places of `count` elements in order, where `is_earlier(elements, l, r)` compares those at l and r; equal ones
-/// keep their order. Empty where they are in order already. One sort for all types: what is sorted rarely need not be
-/// compiled quick to run.
-[[nodiscard]] std::vector<std::size_t> sorted_places(std::size_t count,
-                                                     bool (*is_earlier)(void const*, std::size_t, std::size_t),
-                                                     void const* elements);
+/// A list of whatever type, as a sort sees it.
+struct SortedList {
+  void const* list;
+  std::size_t size;
+  bool (*is_earlier)(void const* list, std::size_t l, std::size_t r);
+  void (*swap)(void const* list, std::size_t l, std::size_t r);
+};
+
+/// Sorts, equal elements keep their order; true when they were not sorted before. One sort for all types: what is
+/// sorted rarely need not be compiled quick to run.
+bool stable_sort(SortedList const& sorted);
 
 /// Sorts by `is_earlier(l, r)`, equal elements keep their order; true when they were not sorted before.
 template <class Element, class Compare>
 bool stable_sort_by(std::vector<Element>& elements, Compare const& is_earlier) {
-  struct Sorted {
-    std::vector<Element> const& elements;
+  struct List {
+    Element* elements;
     Compare const& is_earlier;
-  } const all{elements, is_earlier};
-  auto const places = sorted_places(
-      elements.size(),
-      [](void const* sorted, std::size_t l, std::size_t r) {
-        auto const& s = *static_cast<Sorted const*>(sorted);
-        return static_cast<bool>(s.is_earlier(s.elements[l], s.elements[r]));
-      },
-      &all);
-  if (places.empty()) return false;
-  std::vector<Element> sorted;
-  sorted.reserve(elements.size());
-  for (std::size_t const i : places) sorted.push_back(std::move(elements[i]));
-  elements = std::move(sorted);
-  return true;
+  } const list{elements.data(), is_earlier};
+  auto const compare = [](void const* given, std::size_t l, std::size_t r) {
+    auto const& at = *static_cast<List const*>(given);
+    return static_cast<bool>(at.is_earlier(at.elements[l], at.elements[r]));
+  };
+  auto const exchange = [](void const* given, std::size_t l, std::size_t r) {
+    auto const& at = *static_cast<List const*>(given);
+    std::swap(at.elements[l], at.elements[r]);
+  };
+  return stable_sort({&list, elements.size(), compare, exchange});
 }
 
 /// The same by `key(element)`, which gives a value.

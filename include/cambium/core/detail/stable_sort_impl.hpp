@@ -10,19 +10,21 @@
 namespace cambium::detail {
 
 // (std::stable_sort of libstdc++ 12 does not compile without warnings in clang 19.)
-CAMBIUM_COLD std::vector<std::size_t> sorted_places(std::size_t count,
-                                                    bool (*is_earlier)(void const*, std::size_t, std::size_t),
-                                                    void const* elements) {
+CAMBIUM_COLD bool stable_sort(SortedList const& sorted) {
+  auto const is_earlier = [&](std::size_t l, std::size_t r) { return sorted.is_earlier(sorted.list, l, r); };
   std::size_t in_order = 1;
-  while (in_order < count && !is_earlier(elements, in_order, in_order - 1)) ++in_order;
-  if (in_order >= count) return {};
-  std::vector<std::size_t> places(count);
-  for (std::size_t i = 0; i < count; ++i) places[i] = i;
-  std::sort(places.begin(), places.end(), [&](std::size_t l, std::size_t r) {
-    if (is_earlier(elements, l, r)) return true;
-    return !is_earlier(elements, r, l) && l < r;
-  });
-  return places;
+  while (in_order < sorted.size && !is_earlier(in_order, in_order - 1)) ++in_order;
+  if (in_order >= sorted.size) return false;
+  std::vector<std::size_t> places(sorted.size);  // of the elements, in order
+  for (std::size_t i = 0; i < sorted.size; ++i) places[i] = i;
+  std::sort(places.begin(), places.end(),
+            [&](std::size_t l, std::size_t r) { return is_earlier(l, r) || (!is_earlier(r, l) && l < r); });
+  for (std::size_t i = 0; i < sorted.size; ++i) {
+    auto from = places[i];
+    while (from < i) from = places[from];  // where it was swapped to
+    if (from != i) sorted.swap(sorted.list, i, from);
+  }
+  return true;
 }
 
 }  // namespace cambium::detail

@@ -160,7 +160,9 @@ class AttributeReader {
       if (word == found) return true;
     }
     if (!word_of(field).empty()) field = Enum{};
-    report_unknown_word(attribute, field);
+    std::string known;
+    for (auto const& entry : words(Enum{})) add_word(known, entry.first);
+    report_unknown_word(attribute, known, word_of(field));
     return false;
   }
   [[gnu::cold]] void report_no_truth(pugi::xml_attribute attribute) {
@@ -168,14 +170,14 @@ class AttributeReader {
         Severity::warning, node_,
         std::string(attribute.name()) + "=\"" + attribute.value() + "\" is neither true nor false; false was taken");
   }
-  template <class Enum>
-  [[gnu::cold]] void report_unknown_word(pugi::xml_attribute attribute, Enum taken) {
-    std::string all;
-    for (auto const& [word, value] : words(taken))
-      if (!word.empty()) all += (all.empty() ? "" : ", ") + std::string(word);
-    std::string const done = word_of(taken).empty() ? "" : "; " + std::string(word_of(taken)) + " was taken";
+  [[gnu::cold]] static void add_word(std::string& words, std::string_view word) {
+    if (!word.empty()) words += (words.empty() ? "" : ", ") + std::string(word);
+  }
+  [[gnu::cold]] void report_unknown_word(pugi::xml_attribute attribute, std::string const& known,
+                                         std::string_view taken) {
+    std::string const done = taken.empty() ? "" : "; " + std::string(taken) + " was taken";
     context_->report(Severity::warning, node_,
-                     std::string(attribute.name()) + "=\"" + attribute.value() + "\" is none of " + all + done);
+                     std::string(attribute.name()) + "=\"" + attribute.value() + "\" is none of " + known + done);
   }
 
   XmlContext* context_;

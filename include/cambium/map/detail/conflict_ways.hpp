@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <set>
 #include <vector>
 
 #include "cambium/core/ids.hpp"
@@ -17,14 +16,15 @@ inline void add_ways_behind(Map const& map, Lane const& lane, double until, std:
     LaneId lane;
     double begin;  // [m]
   };
-  std::set<LaneId> seen;
+  std::vector<bool> seen(map.lanes().size());
   std::vector<Way> open{{lane.id, 0.0}};
   for (std::size_t i = 0; i < open.size(); ++i) {
     auto const way = open[i];
     if (way.begin <= until) continue;
     for (auto const before : map.lane(way.lane).predecessors) {
       auto const& previous = map.lane(before);
-      if (!previous.drivable() || before == lane.id || !seen.insert(before).second) continue;
+      if (!previous.drivable() || before == lane.id || seen[index_of(before)]) continue;
+      seen[index_of(before)] = true;
       double const begin = way.begin - previous.length(), from = std::max(0.0, until - begin);
       ways.push_back({previous.index_begin + from, previous.index_begin + previous.length(), begin + from});
       open.push_back({before, begin});
@@ -38,14 +38,15 @@ inline void add_ways_ahead(Map const& map, Lane const& lane, double until, std::
     LaneId lane;
     double end;  // [m]
   };
-  std::set<LaneId> seen;
+  std::vector<bool> seen(map.lanes().size());
   std::vector<Way> open{{lane.id, lane.length()}};
   for (std::size_t i = 0; i < open.size(); ++i) {
     auto const way = open[i];
     if (way.end >= until) continue;
     for (auto const after : map.lane(way.lane).successors) {
       auto const& next = map.lane(after);
-      if (!next.drivable() || after == lane.id || !seen.insert(after).second) continue;
+      if (!next.drivable() || after == lane.id || seen[index_of(after)]) continue;
+      seen[index_of(after)] = true;
       ways.push_back({next.index_begin, next.index_begin + std::min(next.length(), until - way.end), way.end});
       open.push_back({after, way.end + next.length()});
     }

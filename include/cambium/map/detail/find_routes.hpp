@@ -5,18 +5,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <iterator>
 #include <limits>
-#include <memory>
+#include <queue>
 #include <set>
 #include <span>
 #include <tuple>
 #include <utility>
 #include <vector>
-
-#include <boost/graph/dijkstra_shortest_paths.hpp>
-#include <boost/graph/graph_traits.hpp>
-#include <boost/property_map/property_map.hpp>
 
 #include "cambium/core/detail/stable_sort.hpp"
 #include "cambium/core/error.hpp"
@@ -25,73 +20,42 @@
 #include "cambium/map/lane.hpp"
 #include "cambium/map/route.hpp"
 
-/// `LaneGraph` as a graph in the sense of Boost.Graph: an edge is a `LaneStep`. (Boost's own compressed graph would do
-/// too, but takes longer to compile.)
-template <>
-struct boost::graph_traits<cambium::map::detail::LaneGraph> {
-  using vertex_descriptor = std::uint32_t;
-  using edge_descriptor = cambium::map::detail::LaneStep;
-  using out_edge_iterator = std::vector<edge_descriptor>::const_iterator;
-  using vertex_iterator = std::vector<std::uint32_t>::const_iterator;
-  using directed_category = boost::directed_tag;
-  using edge_parallel_category = boost::disallow_parallel_edge_tag;
-  struct traversal_category : boost::incidence_graph_tag, boost::vertex_list_graph_tag {};
-  using vertices_size_type = std::size_t;
-  using edges_size_type = std::size_t;
-  using degree_size_type = std::size_t;
-};
-
 namespace cambium::map::detail {
-
-[[nodiscard]] inline auto out_edges(std::uint32_t place, LaneGraph const& g) {
-  auto const at = [&g](std::uint32_t i) { return g.steps.begin() + static_cast<std::ptrdiff_t>(i); };
-  return std::pair(at(g.first[place]), at(g.first[place + 1]));
-}
-[[nodiscard]] inline std::size_t out_degree(std::uint32_t place, LaneGraph const& g) {
-  return g.first[place + 1] - g.first[place];
-}
-[[nodiscard]] inline std::uint32_t source(LaneStep const& step, LaneGraph const&) { return step.from; }
-[[nodiscard]] inline std::uint32_t target(LaneStep const& step, LaneGraph const&) { return step.to; }
-[[nodiscard]] inline auto vertices(LaneGraph const& g) { return std::pair(g.places.begin(), g.places.end()); }
-[[nodiscard]] inline std::size_t num_vertices(LaneGraph const& g) { return g.places.size(); }
 
 /// What a search may not use.
 struct Closed {
-  std::vector<bool> places;                                 ///< empty: none
-  std::set<std::pair<std::uint32_t, std::uint32_t>> steps;  ///< (from, to)
-};
+  std::vector<bool> places;                                    ///< empty: none
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> steps;  ///< (from, to), a few
 
-/// What a step costs, as a property map; infinite where it is closed.
-struct StepCost {
-  using key_type = LaneStep;
-  using value_type = double;
-  using reference = double;
-  using category = boost::readable_property_map_tag;
-
-  Closed const* closed;
-
-  friend double get(StepCost const& map, LaneStep const& step) {
-    bool const is_closed = (!map.closed->places.empty() && map.closed->places[step.to]) ||
-                           (!map.closed->steps.empty() && map.closed->steps.contains({step.from, step.to}));
-    return is_closed ? std::numeric_limits<double>::infinity() : step.cost;
+  [[nodiscard]] bool holds(LaneStep const& step) const {
+    return (!places.empty() && places[step.to]) ||
+           std::find(steps.begin(), steps.end(), std::pair(step.from, step.to)) != steps.end();
   }
 };
 
-/// Dijkstra's algorithm (1959) from one place: what it costs to come to the others.
+/// Dijkstra's algorithm (1959) from one place: what it costs to come to the others. (Boost.Graph's takes longer to
+/// include than the whole of this room, and ends early by an exception only.)
 class LaneSearch {
  public:
   /// Ends when `goal` is reached, or all that costs `budget` at most.
   LaneSearch(LaneGraph const& graph, std::uint32_t start, std::uint32_t goal, double budget, Closed const& closed)
       : distance_(graph.places.size(), infinity), previous_(graph.places.size()) {
-    std::vector<boost::default_color_type> color(graph.places.size(), boost::white_color);
+    using Candidate = std::pair<double, std::uint32_t>;  // cost, place
+    std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> open;
     distance_[start] = 0.0;
-    auto const place = boost::identity_property_map();
-    try {
-      boost::dijkstra_shortest_paths_no_init(
-          graph, start, boost::dummy_property_map(), boost::make_iterator_property_map(distance_.begin(), place),
-          StepCost{&closed}, place, std::less<double>(), boost::closed_plus<double>(infinity), 0.0,
-          Recorder(*this, goal, budget), boost::make_iterator_property_map(color.begin(), place));
-    } catch (Ended const&) {
+    open.emplace(0.0, start);
+    while (!open.empty()) {
+      auto const [cost, place] = open.top();
+      open.pop();
+      if (place == goal || cost > budget) return;
+      if (cost > distance_[place]) continue;  // reached at less since
+      for (auto const& step : graph.from(place)) {
+        double const there = cost + step.cost;
+        if (!(there < distance_[step.to]) || closed.holds(step)) continue;
+        distance_[step.to] = there;
+        previous_[step.to] = place;
+        open.emplace(there, step.to);
+      }
     }
   }
 
@@ -109,24 +73,6 @@ class LaneSearch {
 
  private:
   static constexpr double infinity = std::numeric_limits<double>::infinity();
-
-  /// Boost.Graph's way to end a search is to throw.
-  struct Ended {};
-  /// Notes from where each place is reached best, and ends the search.
-  class Recorder : public boost::default_dijkstra_visitor {
-   public:
-    Recorder(LaneSearch& search, std::uint32_t goal, double budget) : search_(&search), goal_(goal), budget_(budget) {}
-    void examine_vertex(std::uint32_t place, LaneGraph const&) const {
-      double const cost = search_->distance_[place];
-      if (place == goal_ || cost > budget_ || cost == infinity) throw Ended{};
-    }
-    void edge_relaxed(LaneStep const& step, LaneGraph const&) const { search_->previous_[step.to] = step.from; }
-
-   private:
-    LaneSearch* search_;
-    std::uint32_t goal_;
-    double budget_;
-  };
 
   std::vector<double> distance_;
   std::vector<std::uint32_t> previous_;
@@ -173,7 +119,7 @@ class YenSearch {
       closed.steps.clear();
       for (auto const& [cost, path] : found)
         if (path.size() > i + 1 && std::equal(last.begin(), here + 1, path.begin()))
-          closed.steps.emplace(path[i], path[i + 1]);
+          closed.steps.emplace_back(path[i], path[i + 1]);
       offer(Path(last.begin(), here), *here, closed);
       closed.places[*here] = true;
     }

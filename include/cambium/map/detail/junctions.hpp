@@ -3,10 +3,10 @@
 #include <cstddef>
 #include <span>
 #include <string_view>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
+#include "cambium/map/detail/id_places.hpp"
 #include "cambium/map/lane.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/opendrive_document.hpp"
@@ -17,8 +17,8 @@ namespace cambium::map::detail {
 /// them. Priorities between roads that are not in the map are left out.
 [[nodiscard]] inline std::vector<Junction> make_junctions(OpenDriveDocument const& document,
                                                           std::span<Road const> roads, std::span<Lane const> lanes) {
-  std::unordered_map<std::string_view, RoadId> ids;
-  for (auto const& road : roads) ids.emplace(road.name, road.id);
+  IdPlaces ids;
+  for (auto const& road : roads) ids.emplace(road.name, index_of(road.id));
   std::vector<Junction> junctions;
   for (auto const& written : document.junctions) {
     Junction junction;
@@ -26,7 +26,8 @@ namespace cambium::map::detail {
     junction.name = written.id;
     for (auto const& priority : written.priorities)
       if (ids.contains(priority.high) && ids.contains(priority.low))
-        junction.priorities.push_back({ids.at(priority.high), ids.at(priority.low)});
+        junction.priorities.push_back(
+            {static_cast<RoadId>(ids.at(priority.high)), static_cast<RoadId>(ids.at(priority.low))});
     junctions.push_back(std::move(junction));
   }
   for (auto const& road : roads)

@@ -6,12 +6,12 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <unordered_set>
 #include <vector>
 
 #include "cambium/core/error.hpp"
 #include "cambium/map/cubic.hpp"
 #include "cambium/map/detail/geometry_fault.hpp"
+#include "cambium/map/detail/id_places.hpp"
 #include "cambium/map/opendrive_document.hpp"
 #include "cambium/map/reference_line.hpp"
 
@@ -30,10 +30,10 @@ class RequireBuildable {
   static void check(OpenDriveDocument const& document) {
     RequireBuildable("header").require(is_bearable(document.header.offset),
                                        "its offset is not finite, or beyond any map", "give m and rad");
-    std::unordered_set<std::string_view> ids;
+    IdPlaces ids;
     for (auto const& road : document.roads) {
       RequireBuildable const here("road " + road.id);
-      here.require(ids.insert(road.id).second, "another road has the same id", "give each road an id of its own");
+      here.require(ids.emplace(road.id, 0).second, "another road has the same id", "give each road an id of its own");
       here.check_line(road);
       for (auto const* records : {&road.elevation, &road.superelevation, &road.lane_offset})
         here.check_records(*records, "of the road");

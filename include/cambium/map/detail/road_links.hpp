@@ -5,9 +5,9 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <vector>
 
+#include "cambium/map/detail/id_places.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/opendrive_document.hpp"
 #include "cambium/map/road.hpp"
@@ -150,7 +150,7 @@ class RoadLinks {
 
   OpenDriveDocument const& document_;
   std::vector<Road> const& roads_;
-  std::unordered_map<std::string_view, std::size_t> index_;
+  IdPlaces index_;
 };
 
 }  // namespace cambium::map::detail

@@ -4,10 +4,10 @@
 #include <cstddef>
 #include <optional>
 #include <string>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
+#include "cambium/map/detail/id_places.hpp"
 #include "cambium/map/detail/move_records.hpp"
 #include "cambium/map/detail/road_links.hpp"
 #include "cambium/map/opendrive_document.hpp"
@@ -36,9 +36,10 @@ inline void split_section(opendrive::Road& road, double s) {
   sections.insert(next, std::move(behind));
 }
 
-/// Where roads have to be split, so that lanes are linked at their ends only: where a connecting road of a virtual
-/// junction meets the middle of a road, and in the middle of a road that closes upon itself with a single section.
-[[nodiscard]] inline std::vector<std::pair<std::string, double>> places_to_split(OpenDriveDocument const& document) {
+/// Splits sections so that lanes are linked at their ends only: where a connecting road of a virtual junction meets the
+/// middle of a road, and in the middle of a road that closes upon itself with a single section. O(size of the
+/// document).
+inline void split_roads(OpenDriveDocument& document) {
   std::vector<std::pair<std::string, double>> places;
   for (auto const& road : document.roads)
     for (auto const* link : {&road.predecessor, &road.successor}) {
@@ -48,17 +49,11 @@ inline void split_section(opendrive::Road& road, double s) {
       else if ((*link)->id == road.id && road.lane_sections.size() == 1)
         places.emplace_back(road.id, 0.5 * (road.lane_sections.front().s + road.geometry_length()));
     }
-  return places;
-}
-
-/// The document with the sections split at these places. O(size of the document).
-[[nodiscard]] inline OpenDriveDocument split_roads(OpenDriveDocument document,
-                                                   std::vector<std::pair<std::string, double>> const& places) {
-  std::unordered_map<std::string, std::size_t> index;
+  if (places.empty()) return;
+  IdPlaces index;
   for (std::size_t i = 0; i < document.roads.size(); ++i) index.emplace(document.roads[i].id, i);
   for (auto const& [id, s] : places)
     if (auto const at = index.find(id); at != index.end()) split_section(document.roads[at->second], s);
-  return document;
 }
 
 }  // namespace cambium::map::detail
