@@ -1,5 +1,5 @@
 // Which models there are: their laws, sources and parameters, as Markdown, from the descriptions in the code itself.
-// README's tables are this program's output.
+// The tables of the rooms' READMEs (include/cambium/behavior, ...) are this program's output.
 
 #include <cstdio>
 #include <iostream>
