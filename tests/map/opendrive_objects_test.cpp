@@ -355,6 +355,14 @@ TEST_CASE("user data of any depth is no danger") {
     CHECK_MESSAGE(what.find("the elements lie 257 deep here; at most 256 are read") < what.size(), what);
     CHECK_MESSAGE(what.find(':') < what.find("the elements"), what);
   }
+  // Nothing hides elements from the count that the parser sees.
+  for (std::string const before : {"<!--><a b=\"-->", "<![CDATA[]>]]>", "<?a b=\"?>", "<!DOCTYPE x \"<a b='\">"}) {
+    CAPTURE(before);
+    CHECK_THROWS_WITH_AS((void)read(before + nested(200'000)), doctest::Contains("at most 256 are read"),
+                         cambium::MapError);
+  }
+  CHECK_THROWS_WITH_AS((void)read("<!DOCTYPE x [<!ENTITY a 'b'>]>" + nested(1)),
+                       doctest::Contains("declarations of its own"), cambium::MapError);
   // What is no element does not count, whatever it looks like.
   CHECK_NOTHROW((void)read(nested(200, "<!-- <a><a><a> --><![CDATA[<a><a>]]><?a <a> ?><b c='<a><a>' d=\"'/>\" />")));
 }

@@ -19,10 +19,15 @@ CAMBIUM_COLD bool stable_sort(SortedList const& sorted) {
   for (std::size_t i = 0; i < sorted.size; ++i) places[i] = i;
   std::sort(places.begin(), places.end(),
             [&](std::size_t l, std::size_t r) { return is_earlier(l, r) || (!is_earlier(r, l) && l < r); });
-  for (std::size_t i = 0; i < sorted.size; ++i) {
-    auto from = places[i];
-    while (from < i) from = places[from];  // where it was swapped to
-    if (from != i) sorted.swap(sorted.list, i, from);
+  for (std::size_t i = 0; i < sorted.size; ++i) {  // once along each cycle of the permutation
+    auto at = i;
+    while (places[at] != i) {
+      auto const from = places[at];
+      sorted.swap(sorted.list, at, from);
+      places[at] = at;
+      at = from;
+    }
+    places[at] = at;
   }
   return true;
 }

@@ -25,11 +25,15 @@ namespace cambium::map::detail {
 /// What a search may not use.
 struct Closed {
   std::vector<bool> places;                                    ///< empty: none
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> steps;  ///< (from, to), a few
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> steps;  ///< (from, to), each once: a few, all from one place
 
-  [[nodiscard]] bool holds(LaneStep const& step) const {
-    return (!places.empty() && places[step.to]) ||
-           std::find(steps.begin(), steps.end(), std::pair(step.from, step.to)) != steps.end();
+  [[nodiscard]] bool holds(std::uint32_t from, std::uint32_t to) const {
+    return (!places.empty() && places[to]) ||
+           std::find(steps.begin(), steps.end(), std::pair(from, to)) != steps.end();
+  }
+
+  void close(std::uint32_t from, std::uint32_t to) {
+    if (!holds(from, to)) steps.emplace_back(from, to);
   }
 };
 
@@ -51,7 +55,7 @@ class LaneSearch {
       if (cost > distance_[place]) continue;  // reached at less since
       for (auto const& step : graph.from(place)) {
         double const there = cost + step.cost;
-        if (!(there < distance_[step.to]) || closed.holds(step)) continue;
+        if (!(there < distance_[step.to]) || closed.holds(step.from, step.to)) continue;
         distance_[step.to] = there;
         previous_[step.to] = place;
         open.emplace(there, step.to);
@@ -119,7 +123,7 @@ class YenSearch {
       closed.steps.clear();
       for (auto const& [cost, path] : found)
         if (path.size() > i + 1 && std::equal(last.begin(), here + 1, path.begin()))
-          closed.steps.emplace_back(path[i], path[i + 1]);
+          closed.close(path[i], path[i + 1]);
       offer(Path(last.begin(), here), *here, closed);
       closed.places[*here] = true;
     }

@@ -4,14 +4,16 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "cambium/core/error.hpp"
 #include "cambium/map/reading_limits.hpp"
 
 namespace cambium::map::detail {
 
-/// Goes once over an XML text and counts, so that what would take a machine's memory is refused before it does. Text
-/// that is not well-formed is left to the parser.
+/// Goes once over an XML text and counts, so that what would take a machine's memory is refused before it does. It must
+/// see what the parser sees: comments, data sections and values end where pugixml ends them. Text that is not
+/// well-formed is left to the parser; a document type with declarations of its own is refused.
 class XmlCounter {
  public:
   explicit XmlCounter(std::string_view text) : text_(text) {}
@@ -24,7 +26,7 @@ class XmlCounter {
                          std::to_string(largest_map_file) + " that are read",
                      "split the map, or leave out what is not needed of it");
     while ((at_ = text_.find('<', at_)) != text_.npos) {
-      step();
+      step(file);
       if (depth_ > deepest_element)
         throw MapError(place(file),
                        "the elements lie " + std::to_string(depth_) + " deep here; at most " +
@@ -40,28 +42,45 @@ class XmlCounter {
 
  private:
   /// From one '<' to behind its tag, comment or the like.
-  void step() {
+  void step(std::string const& file) {
     auto const rest = text_.substr(at_);
-    if (rest.starts_with("<!--")) return skip("-->");
-    if (rest.starts_with("<![CDATA[")) return skip("]]>");
-    if (rest.starts_with("<?")) return skip("?>");
+    for (auto const& [begin, end] : {std::pair{"<!--", "-->"}, {"<![CDATA[", "]]>"}, {"<?", "?>"}})
+      if (rest.starts_with(begin)) return skip(std::string_view(begin).size(), end);
+    if (rest.starts_with("<!DOCTYPE")) return skip_document_type(file);
     if (rest.starts_with("</")) depth_ -= depth_ > 0;
     if (rest.starts_with("</") || rest.starts_with("<!")) return static_cast<void>(at_ += 2);
     ++depth_;
     ++count_;
     // To the end of the tag, over the attributes' values. (Byte by byte: words are too short for a search.)
     for (; at_ < text_.size() && text_[at_] != '>'; ++at_) {
-      char const c = text_[at_];
-      if (c != '"' && c != '\'') continue;
+      if (!is_quote(text_[at_])) continue;
       ++count_;
-      do ++at_;
-      while (at_ < text_.size() && text_[at_] != c);
+      skip_value();
     }
     at_ = std::min(at_, text_.size());
     if (at_ < text_.size() && text_[at_ - 1] == '/') --depth_;
   }
 
-  void skip(std::string_view end) { at_ = std::min(text_.find(end, at_ + 2), text_.size()); }
+  void skip_document_type(std::string const& file) {
+    for (; at_ < text_.size() && text_[at_] != '>'; ++at_) {
+      if (text_[at_] == '[')
+        throw MapError(place(file), "the <!DOCTYPE> has declarations of its own, which are not read",
+                       "leave out what is between [ and ] there");
+      if (is_quote(text_[at_])) skip_value();
+    }
+  }
+
+  [[nodiscard]] static bool is_quote(char c) { return c == '"' || c == '\''; }
+
+  /// From a quote to that which ends it.
+  void skip_value() {
+    char const quote = text_[at_];
+    do ++at_;
+    while (at_ < text_.size() && text_[at_] != quote);
+  }
+
+  /// From the begin of a comment or the like, `begin` bytes long, to its end.
+  void skip(std::size_t begin, std::string_view end) { at_ = std::min(text_.find(end, at_ + begin), text_.size()); }
 
   [[nodiscard]] std::string place(std::string const& file) const {
     auto const end = text_.begin() + static_cast<std::ptrdiff_t>(std::min(at_, text_.size()));
