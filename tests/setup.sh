@@ -108,6 +108,18 @@ ensure_packages() {
   fi
 }
 
+# need_compiler: where g++ is older than 12, g++-12 beside it, as on Ubuntu 22.04; not where the user has chosen one.
+need_compiler() {
+  local version
+  if [[ -n ${CXX:-} ]] || ! have g++; then return; fi
+  version=$(g++ -dumpversion)
+  if [[ ${version%%.*} -ge 12 ]]; then return; fi
+  if ! have g++-12; then
+    { is_debian && apt_install g++-12; } || fail "g++ $version is too old: install g++-12 or clang++ and set CXX to it"
+  fi
+  export CXX=g++-12
+}
+
 # try_packages PACKAGE...: goes on without those that cannot be had.
 try_packages() {
   local package
@@ -123,7 +135,7 @@ check_owner() {
   local place=$build
   if [[ ! -e $build ]]; then place=$root; fi
   if [[ ! -w $place ]] || { [[ -e $build/CMakeCache.txt ]] && [[ ! -w $build/CMakeCache.txt ]]; }; then
-    fail "$place belongs to $(stat -c %U "$place" 2>/dev/null || echo another user) and cannot be written to by $(id -un): build in a copy of the checkout that is yours, or change its owner"
+    fail "$place belongs to $(stat -c %U "$place" 2>/dev/null || echo another user) and cannot be written to by $(id -un): build in a copy of the checkout that is yours, or make it writable"
   fi
 }
 
@@ -142,6 +154,7 @@ configure() {
   check_owner
   if is_configured "$part"; then return; fi
   ensure_packages "$@"
+  need_compiler
 
   local -a options=(-DCMAKE_BUILD_TYPE=Release "-DCAMBIUM_BUILD_$part=ON")
   if [[ -e $build/CMakeCache.txt ]] && ! cache_says "CMAKE_HOME_DIRECTORY:INTERNAL=$root"; then

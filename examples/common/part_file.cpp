@@ -19,8 +19,7 @@ namespace {
 
 /// What a signal handler may touch: plain memory, made before.
 struct Pending {
-  std::atomic<bool> is_used{false};
-  bool is_kept = false;
+  std::atomic<bool> is_used{false}, is_kept{false};
   char path[4096] = "", message[8400] = "";
 };
 
@@ -42,7 +41,7 @@ std::string kept_message(std::filesystem::path const& path, std::filesystem::pat
   return "what was done is in " + part.string() + "; " + path.string() + " is as it was before\n";
 }
 
-std::size_t look_after(std::filesystem::path const& path, std::filesystem::path const& part, bool is_kept) {
+std::size_t look_after(std::filesystem::path const& path, std::filesystem::path const& part) {
   std::size_t place = 0;
   while (place < pending.size() && pending[place].is_used) ++place;
   auto const message = "\n" + kept_message(path, part);
@@ -52,9 +51,9 @@ std::size_t look_after(std::filesystem::path const& path, std::filesystem::path 
   auto& file = pending[place];
   std::strcpy(file.path, part.c_str());
   std::strcpy(file.message, message.c_str());
-  file.is_kept = is_kept;
+  file.is_kept = false;
   file.is_used = true;
-  for (int const signal : {SIGINT, SIGTERM})
+  for (int const signal : {SIGINT, SIGTERM, SIGHUP})
     if (std::signal(signal, on_interruption) == SIG_IGN) std::signal(signal, SIG_IGN);  // as under nohup
   return place;
 }
@@ -92,7 +91,7 @@ PartFile::PartFile(std::filesystem::path path, Unfinished fate)
   if (file_ == nullptr) fail(errno);
   if (is_special_) return;
   path_ = target;
-  place_ = look_after(path_, part_, fate == Unfinished::kept);
+  place_ = look_after(path_, part_);
 }
 
 PartFile::~PartFile() {
@@ -100,7 +99,7 @@ PartFile::~PartFile() {
   std::fclose(file_);
   if (place_ < pending.size()) pending[place_].is_used = false;
   if (is_special_) return;
-  if (fate_ == Unfinished::kept)
+  if (is_kept())
     std::cerr << kept_message(path_, part_);
   else
     unlink(part_.c_str());
@@ -114,16 +113,23 @@ void PartFile::append(std::string_view text, std::string_view closing) {
   if (closing.empty() || is_special_) return;
   write(closing);
   if (std::fflush(file_) != 0) fail(errno);  // to be there, whatever ends the program
+  if (place_ < pending.size()) pending[place_].is_kept = is_kept();
 }
+
+bool PartFile::is_kept() const { return fate_ == Unfinished::kept && !closing_.empty(); }
 
 void PartFile::finish() {
   if (is_special_) write(closing_);
-  if (std::fclose(std::exchange(file_, nullptr)) != 0) {
+  bool const is_closed = std::fclose(std::exchange(file_, nullptr)) == 0;
+  if (!is_closed || (!is_special_ && std::rename(part_.c_str(), path_.c_str()) != 0)) {
     int const reason = errno;
-    if (!is_special_) unlink(part_.c_str());
+    if (is_kept() && !is_special_)
+      std::cerr << kept_message(path_, part_);
+    else if (!is_special_)
+      unlink(part_.c_str());
+    if (place_ < pending.size()) pending[place_].is_used = false;
     fail(reason);
   }
-  if (!is_special_ && std::rename(part_.c_str(), path_.c_str()) != 0) fail(errno);
   if (place_ < pending.size()) pending[place_].is_used = false;
 }
 

@@ -13,8 +13,9 @@ namespace examples {
 void prepare_folder(std::filesystem::path const& folder);
 
 /// A file that grows while a program works, beside `path`, whose place it takes once it is whole: until then an earlier
-/// file stays as it is. Straight into what is no regular file. Whoever interrupts the program (SIGINT, SIGTERM) loses
-/// the part, unless it is to be kept: then a message says where it is. All throw `cambium::Error`.
+/// file stays as it is. Straight into what is no regular file. Whoever interrupts the program (SIGINT, SIGTERM, SIGHUP)
+/// loses the part, unless it is to be kept and has something in it: then a message says where it is. All throw
+/// `cambium::Error`.
 class PartFile {
  public:
   enum class Unfinished { removed, kept };
@@ -33,6 +34,7 @@ class PartFile {
  private:
   [[noreturn]] void fail(int reason) const;
   void write(std::string_view text);
+  [[nodiscard]] bool is_kept() const;
 
   std::filesystem::path path_, part_;
   std::FILE* file_ = nullptr;

@@ -49,7 +49,8 @@ Json collisions(std::vector<examples::Outcome> const& outcomes) {
     if (auto const& o = outcomes[i]; o.kind == examples::Outcome::Kind::collision)
       list.push_back({{"scenario", i},
                       {"time", time_of(o.steps)},
-                      {"agents", {to_string(o.collided_first), to_string(o.collided_second)}}});
+                      {"agents", {to_string(o.collided_first), to_string(o.collided_second)}},
+                      {"ego", to_string(o.ego)}});
   return list;
 }
 
@@ -121,18 +122,22 @@ std::string examples::explained(Words const& words) {
   return text;
 }
 
-std::string examples::share_line(std::string const& name, std::uint64_t count, std::uint64_t total) {
-  auto const percent = [](double share) { return 100.0 * share; };
+std::string examples::share_text(std::uint64_t count, std::uint64_t total) {
   auto const interval = wilson(count, total);
   // As many digits as it takes to tell the interval's ends apart.
   int const digits = interval.high - interval.low > 0.01 ? 1 : interval.high - interval.low > 0.001 ? 2 : 3;
-  auto const figures = std::to_string(total).size();
-  char line[160];
-  std::snprintf(line, sizeof line, "  %-14s %*llu of %llu  %*.*f %% (%.*f-%.*f)\n", name.c_str(),
-                static_cast<int>(figures), static_cast<unsigned long long>(count),
-                static_cast<unsigned long long>(total), digits + 4, digits,
-                percent(static_cast<double>(count) / static_cast<double>(total)), digits, percent(interval.low), digits,
-                percent(interval.high));
+  char text[96];
+  std::snprintf(text, sizeof text, "%*.*f %% (%.*f-%.*f)", digits + 4, digits,
+                100.0 * static_cast<double>(count) / static_cast<double>(total), digits, 100.0 * interval.low, digits,
+                100.0 * interval.high);
+  return text;
+}
+
+std::string examples::share_line(std::string const& name, std::uint64_t count, std::uint64_t total) {
+  char line[192];
+  std::snprintf(line, sizeof line, "  %-14s %*llu of %llu  %s\n", name.c_str(),
+                static_cast<int>(std::to_string(total).size()), static_cast<unsigned long long>(count),
+                static_cast<unsigned long long>(total), share_text(count, total).c_str());
   return line;
 }
 

@@ -52,6 +52,9 @@ using Facts = std::vector<std::pair<std::string, std::size_t>>;
 void write_summary(std::filesystem::path const& file, Settings const& settings, Facts const& facts,
                    std::vector<Outcome> const& outcomes, Totals const& totals, Words const& words);
 
+/// "99.990 % (99.984-99.993)": a share and its 95 % interval (Wilson). `total` > 0.
+[[nodiscard]] std::string share_text(std::uint64_t count, std::uint64_t total);
+
 /// "success     199979 of 200000   99.990 % (99.984-99.993)": a count, its share and the share's 95 % interval
 /// (Wilson).
 [[nodiscard]] std::string share_line(std::string const& name, std::uint64_t count, std::uint64_t total);

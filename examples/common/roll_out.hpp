@@ -29,6 +29,7 @@ struct Outcome {
   enum class Kind { success, collision, time_out } kind = Kind::time_out;
   bool off_road = false;
   std::uint32_t agents = 0;
+  cambium::AgentId ego = cambium::none<cambium::AgentId>;
   cambium::AgentId collided_first = cambium::none<cambium::AgentId>, collided_second = collided_first;
   std::uint64_t steps = 0, agent_steps = 0, hard_brakings = 0;
   double speed_sum = 0.0;
@@ -92,7 +93,7 @@ class Film {
 
   [[nodiscard]] cambium::Recording develop(Outcome const& outcome) {
     for (auto const id : {outcome.collided_first, outcome.collided_second})
-      if (is_valid(id)) recorder_.show_as(id, cambium::RecordedAgentKind::collided);
+      if (is_valid(id)) recorder_.show_as(id, cambium::RecordedAgentKind::collided, id == outcome.ego ? "ego" : "");
     return std::move(recorder_.recording());
   }
 
@@ -114,6 +115,7 @@ template <class Site>
   auto& world = scenario.world;
   Outcome outcome;
   outcome.agents = static_cast<std::uint32_t>(world.size());
+  outcome.ego = scenario.ego;
   cambium::Evaluators const judge(cambium::CollisionAny{}, cambium::DrivableArea{scenario.ego},
                                   cambium::StepCount{settings.steps});
   std::optional<Film> film;

@@ -28,7 +28,8 @@ namespace examples {
 [[nodiscard]] inline std::string in_words(Outcome const& outcome, Words const& words) {
   if (outcome.kind == Outcome::Kind::success) return words.success;
   if (outcome.kind == Outcome::Kind::time_out) return "time ran out";
-  return "agents " + to_string(outcome.collided_first) + " and " + to_string(outcome.collided_second) + " collide";
+  auto const name = [&](cambium::AgentId id) { return (id == outcome.ego ? "the ego, agent " : "agent ") + to_string(id); };
+  return name(outcome.collided_first) + ", and " + name(outcome.collided_second) + " collide";
 }
 
 /// Simulates the replayed scenario once more and writes its replay, and its trajectory unless that is written already.

@@ -66,7 +66,7 @@ lane_change::Row judge(Cell const& cell, std::vector<Outcome> const& outcomes, d
   for (auto const& outcome : outcomes) {
     row.success += outcome.end == End::success;
     row.collision += outcome.end == End::collision;
-    row.timeout += outcome.end == End::time_out;
+    row.time_out += outcome.end == End::time_out;
     if (outcome.end == End::success) steps += outcome.steps;
     all_steps += outcome.steps;
   }
@@ -78,16 +78,15 @@ lane_change::Row judge(Cell const& cell, std::vector<Outcome> const& outcomes, d
 
 void print(lane_change::Row const& row) {
   auto const share = [&](std::uint64_t count) {
-    auto const i = lane_change::wilson(count, row.scenarios);
-    char text[48];
-    std::snprintf(text, sizeof text, "%5.1f (%4.1f-%5.1f)",
-                  100.0 * static_cast<double>(count) / static_cast<double>(row.scenarios), 100 * i.low, 100 * i.high);
+    char text[128];
+    std::snprintf(text, sizeof text, "%7llu: %-23s", static_cast<unsigned long long>(count),
+                  examples::share_text(count, row.scenarios).c_str());
     return std::string(text);
   };
   char steps[16];
   std::snprintf(steps, sizeof steps, "%.1f", row.mean_steps);
-  std::printf("%-8s %6zu  %4.0f %%   %s   %s   %s   %5s   %7.0f\n", row.preset.c_str(), row.iterations,
-              100 * row.variation, share(row.success).c_str(), share(row.collision).c_str(), share(row.timeout).c_str(),
+  std::printf("%-8s %6zu  %4.0f %%  %s%s%s %5s   %7.0f\n", row.preset.c_str(), row.iterations,
+              100 * row.variation, share(row.success).c_str(), share(row.collision).c_str(), share(row.time_out).c_str(),
               row.success > 0 ? steps : "-", row.iterations_per_second);
   std::fflush(stdout);
 }
@@ -99,9 +98,9 @@ void run_grid(Settings const& settings) {
   if (!settings.json.empty()) json.emplace(settings.json, examples::PartFile::Unfinished::kept);
   auto const map = two_lanes();
   std::printf(
-      "%llu scenarios a cell; shares in %% with their 95 %% intervals (Wilson); steps: mean of the successes;\n"
-      "iterations/s: of one thread\n\n"
-      "%-8s %6s  %6s   %-19s   %-19s   %-19s   %5s   %s\n",
+      "%llu scenarios a cell: how many, and their share with its 95 %% interval (Wilson); steps: mean of the\n"
+      "successes; iterations/s: of one thread\n\n"
+      "%-8s %6s  %6s        %-26s%-26s%-26s  %5s   %s\n",
       static_cast<unsigned long long>(settings.scenarios), "preset", "iter.", "var.", "success", "collision",
       "time-out", "steps", "iterations/s");
   std::vector<lane_change::Row> rows;

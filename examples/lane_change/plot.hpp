@@ -23,21 +23,31 @@ struct Row {
   std::string preset;
   std::size_t iterations = 0;
   double variation = 0.0;
-  std::uint64_t scenarios = 0, success = 0, collision = 0, timeout = 0;
+  std::uint64_t scenarios = 0, success = 0, collision = 0, time_out = 0;
   double mean_steps = 0.0;             ///< of the successes; NaN without
   double iterations_per_second = 0.0;  ///< of one thread
 };
 
 using examples::wilson;
 
+/// Counts, and shares with their 95 % intervals.
 inline nlohmann::ordered_json as_json(Row const& row) {
-  auto const share = [&](std::uint64_t count) {
-    return static_cast<double>(count) / static_cast<double>(row.scenarios);
+  nlohmann::ordered_json json{{"preset", row.preset},
+                              {"iterations", row.iterations},
+                              {"variation", row.variation},
+                              {"scenarios", row.scenarios}};
+  struct Kind {
+    char const* name;
+    std::uint64_t count;
   };
-  nlohmann::ordered_json json{{"preset", row.preset},          {"iterations", row.iterations},
-                              {"variation", row.variation},    {"scenarios", row.scenarios},
-                              {"success", share(row.success)}, {"collision", share(row.collision)},
-                              {"timeout", share(row.timeout)}};
+  for (auto const& [name, count] :
+       {Kind{"success", row.success}, Kind{"collision", row.collision}, Kind{"time_out", row.time_out}}) {
+    auto const interval = wilson(count, row.scenarios);
+    json[name] = {{"count", count},
+                  {"share", static_cast<double>(count) / static_cast<double>(row.scenarios)},
+                  {"low", interval.low},
+                  {"high", interval.high}};
+  }
   json["mean_steps"] = std::isfinite(row.mean_steps) ? nlohmann::ordered_json(row.mean_steps) : nullptr;
   json["iterations_per_second"] = row.iterations_per_second;
   return json;
@@ -110,7 +120,7 @@ inline std::string plot(std::vector<Row> const& rows) {
          "\" height=\"650\" fill=\"#fff\"/>\n" +
          panel(rows, 30, "success [%], preset " + rows.front().preset, "#2e7d32", &Row::success) +
          panel(rows, 240, "collision [%]", "#c62828", &Row::collision) +
-         panel(rows, 450, "time-out [%]", "#1565c0", &Row::timeout) +
+         panel(rows, 450, "time-out [%]", "#1565c0", &Row::time_out) +
          text(70, 642, std::to_string(rows.front().scenarios) + " scenarios a cell; black: 95 % intervals (Wilson)",
               "font-size=\"10\" fill=\"#666\"") +
          "</svg>\n";

@@ -43,7 +43,15 @@ TEST_CASE("the lane change example writes a row a cell, the same on any number o
     for (auto const& row : one) {
       CHECK(row["preset"] == preset);
       CHECK(row["scenarios"] == 4);
-      CHECK(row["success"].get<double>() + row["collision"].get<double>() + row["timeout"].get<double>() == 1.0);
+      std::uint64_t sum = 0;
+      for (char const* kind : {"success", "collision", "time_out"}) {
+        auto const& of = row[kind];
+        sum += of["count"].get<std::uint64_t>();
+        CHECK(of["low"].get<double>() <= of["share"].get<double>());
+        CHECK(of["share"].get<double>() <= of["high"].get<double>());
+        CHECK(of["low"].get<double>() < of["high"].get<double>());
+      }
+      CHECK(sum == row["scenarios"].get<std::uint64_t>());
     }
     CHECK(one[1]["iterations"] == 100);
     CHECK(one[2]["variation"] == 0.8);

@@ -497,8 +497,72 @@ TEST_CASE("a file beyond the limits is refused before it takes memory, with limi
   many.reserve(5 * cambium::map::most_elements);
   for (std::size_t i = 0; i <= cambium::map::most_elements / 2; ++i) many += "<a b=''/>";
   CHECK(said([&] { return cambium::parse_opendrive(many, {}, "many.xodr"); }) ==
-        "many.xodr:2: up to here there are 30000001 elements and attributes; at most 30000000 are read; split the map, "
+        "many.xodr:2: up to here there are 15000001 elements and attributes; at most 15000000 are read; split the map, "
         "or leave out what is not needed of it");
+}
+
+TEST_CASE("a file with a fault at each element gives a bounded list of findings") {
+  std::string const road = "<road id='0' length='10' junction='-1'><planView><geometry s='0' x='0' y='0' hdg='0' "
+                           "length='10'><line/></geometry></planView><lanes><laneSection s='0'><right><lane id='-1' "
+                           "type='driving'><width sOffset='0' a='3' b='0' c='0' d='0'/></lane></right></laneSection>"
+                           "</lanes></road>";
+  std::string text = "<OpenDRIVE>" + road;
+  for (std::size_t i = 0; i <= cambium::map::most_diagnostics; ++i) text += "<road/>";
+  auto const loaded = cambium::parse_opendrive(text + "</OpenDRIVE>");
+  CHECK(loaded.map->roads().size() == 1);
+  CHECK(loaded.diagnostics.size() <= cambium::map::most_diagnostics + 10);  // of the map itself, and what the reader left out
+  std::size_t last = 0;
+  for (auto const& d : loaded.diagnostics) last += d.sentence.find("more to say of this file") != std::string::npos;
+  CHECK(last == 1);
+}
+
+TEST_CASE("a file in UTF-16 or UTF-32 is read as one in UTF-8, and its limits hold") {
+  struct Encoding {
+    char const* name;
+    std::size_t width, low;
+    std::string mark;
+  };
+  for (Encoding const& e : {Encoding{"UTF-16LE", 2, 0, "\xff\xfe"}, {"UTF-16BE", 2, 1, "\xfe\xff"},
+                            {"UTF-16LE, no mark", 2, 0, ""}, {"UTF-32LE", 4, 0, std::string("\xff\xfe\0\0", 4)},
+                            {"UTF-32BE", 4, 3, std::string("\0\0\xfe\xff", 4)}}) {
+    CAPTURE(e.name);
+    auto const widened = [&e](std::string const& text) {
+      std::string wide = e.mark;
+      for (char const c : text) {
+        std::string unit(e.width, '\0');
+        unit[e.low] = c;
+        wide += unit;
+      }
+      return wide;
+    };
+    std::string const text(std::string_view(good_file).substr(std::string_view(good_file).find('<')));
+    CHECK(cambium::parse_opendrive(widened(text)).map->roads().size() ==
+          cambium::parse_opendrive(text).map->roads().size());
+    std::string deep = "<OpenDRIVE>";
+    for (std::size_t i = 0; i < 1000; ++i) deep += "<a>";
+    CHECK_THROWS_WITH_AS((void)cambium::parse_opendrive(widened(deep)), doctest::Contains("at most 256 are read"),
+                         cambium::MapError);
+  }
+}
+
+TEST_CASE("of roads and junctions whose ids are there twice, however many, the first ones stay") {
+  std::string roads, junctions;
+  for (int const id : {1, 1, 2, 2, 3, 3, 3, 4}) {
+    auto const number = std::to_string(id);
+    roads += "<road id='" + number +
+             "' length='10' junction='-1'><planView><geometry s='0' x='0' y='0' hdg='0' length='10'><line/></geometry>"
+             "</planView><lanes><laneSection s='0'><right><lane id='-1' type='driving'><width sOffset='0' a='3' b='0' "
+             "c='0' d='0'/></lane></right></laneSection></lanes></road>";
+    junctions += "<junction id='" + number + "'/>";
+  }
+  auto const loaded = cambium::parse_opendrive("<OpenDRIVE>" + roads + junctions + "</OpenDRIVE>");
+  std::string kept;
+  for (auto const& road : loaded.map->roads()) kept += road.name + " ";
+  for (auto const& junction : loaded.map->junctions()) kept += junction.name + " ";
+  CHECK(kept == "1 2 3 4 1 2 3 4 ");
+  std::size_t twice = 0;
+  for (auto const& d : loaded.diagnostics) twice += d.sentence.find("is there twice") != std::string::npos;
+  CHECK(twice == 8);
 }
 
 TEST_CASE("a malformed file gives the map and the finding that are stated for it") {

@@ -225,6 +225,16 @@ TEST_CASE("turns join lanes smoothly, with the widths of both") {
   }
 }
 
+TEST_CASE("a turn between ends that meet already says which ones, and nothing is added") {
+  MapBuilder builder;
+  builder.add_junction("9");
+  builder.add_road(straight("1", {0, 0, 0}, 40, 0, 1));
+  builder.add_road(straight("2", {40, 0, 0}, 40, 0, 1));
+  CHECK_THROWS_WITH_AS(builder.add_turn("9", {"1", end}, {"2", start}),
+                       doctest::Contains("turn from road 1 to road 2: its ends are less than a millimetre apart"), MapError);
+  CHECK(builder.document().roads.size() == 2);
+}
+
 TEST_CASE("a crossing of left-hand traffic is the mirror image of one of right-hand traffic") {
   auto const right = checked(crossing(1)), left = checked(crossing(-1));
   CHECK(right->lanes().size() == 32);

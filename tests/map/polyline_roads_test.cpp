@@ -151,7 +151,7 @@ TEST_CASE("errors of polylines name the road and the point, and tell what is no 
         "coordinates in metres");
   CHECK(along({{0, 0}, {2e6, 0}}) ==
         "polyline: point 1 (of 0 to 1) is 2e+06 m from the one before; give points within 1000 km");
-  CHECK(along({{0, 0}}, "a") == "road a: it has 1 points; give at least two");
+  CHECK(along({{0, 0}}, "a") == "road a: it has one point; give at least two");
   std::vector<Point> const line{{0, 0}, {10, 0}, {20, 1}};
   CHECK(said([&] {
           return lane_along(line, widths, std::vector<double>{0, nan, 0}, "7");

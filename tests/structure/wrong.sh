@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # wrong.sh FLAGS SOURCE COMPILER...: passes when every compiler rejects SOURCE with the phrase of its first line,
-# `// expect: <phrase>`.
+# `// expect: <phrase>`, and with no other sentence of cambium's, but for that of a line `// also: <phrase>`.
 set -euo pipefail
 flags=$1
 source=$2
@@ -13,6 +13,8 @@ if [[ $phrase == "$first" || -z $phrase ]]; then
   exit 1
 fi
 
+also=$(sed -n '2s,^// also: ,,p' "$source")
+also=${also:-$phrase}
 for compiler in "$@"; do
   # Not -fsyntax-only: g++ would leave function templates uninstantiated. Without cold code, for that is quicker.
   if output=$("$compiler" "@$flags" -DCAMBIUM_COMPILED -O0 -S -o /dev/null "$source" 2>&1); then
@@ -21,6 +23,12 @@ for compiler in "$@"; do
   fi
   if [[ $output != *"$phrase"* ]]; then
     printf '%s\n' "$output" "$source: $compiler: it is rejected, but the compiler does not say '$phrase'"
+    exit 1
+  fi
+  others=$(grep -E '(static assertion failed|static_assert failed).*cambium' <<<"$output" | grep -vF "$phrase" |
+    grep -vF "$also") || true
+  if [[ -n $others ]]; then
+    printf '%s\n' "$output" "$source: $compiler: it says another sentence, too:" "$others"
     exit 1
   fi
 done

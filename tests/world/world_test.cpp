@@ -3,13 +3,17 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "cambium/behavior/mobil.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/map/curve_layout.hpp"
+#include "cambium/map/free_corridor.hpp"
 #include "fixtures.hpp"
 
 using namespace fixtures;
@@ -73,7 +77,7 @@ TEST_CASE("what cannot enter is named, and leaves the world as it was") {
              }),
              "lane 99"));
   CHECK(says(error_of([&] {
-               world.add({.position = {10, -1.75}, .route = cb::map::Route{{static_cast<cb::LaneId>(1)}}});
+               world.add({.position = {10, 2.0}, .route = cb::map::Route{{static_cast<cb::LaneId>(1)}}});
              }),
              "route"));
   CHECK(says(error_of([&] { world.add({.position = {10, -1.75}, .heading = 3.1}); }), "against the direction"));
@@ -156,11 +160,13 @@ TEST_CASE("an agent whose route ends where the road goes on has arrived") {
   CHECK(world.status(id) == cb::AgentStatus::arrived);
 }
 
-TEST_CASE("a step of no length, of no number or backwards changes nothing and says so") {
+TEST_CASE("a step of no length, of no number, backwards or of more than an hour changes nothing and says so") {
   Sim world(straight_road());
   world.add({.position = {10, -1.75}, .speed = 5});
+  CHECK(Sim(world).step(Sim::longest_step));
   auto const before = world.frame();
-  for (double dt : {0.0, -0.1, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+  for (double dt : {0.0, -0.1, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e9,
+                    std::nextafter(Sim::longest_step, 1e9)}) {
     auto const result = world.step(dt);
     CHECK_FALSE(result.valid());
     CHECK(result.problem == cb::StepProblem::bad_duration);
@@ -286,8 +292,8 @@ TEST_CASE("states set from outside place the agent anew") {
   CHECK(world.record(id).lane.s == doctest::Approx(300));
   CHECK(world.record(id).lane.corridor == 0);
   CHECK(says(error_of([&] { world.set_state(id, {.x = std::numeric_limits<double>::infinity()}); }), "not a finite"));
-  CHECK(says(error_of([&] { world.set_state(id, {.x = 300, .y = 120}); }), "120 m from the lanes of its route"));
-  CHECK(says(error_of([&] { world.set_state(id, {.x = -500, .y = -5.25}); }), "500 m from the lanes of its route"));
+  CHECK(says(error_of([&] { world.set_state(id, {.x = 300, .y = 120}); }), "120 m outside the lanes of its route"));
+  CHECK(says(error_of([&] { world.set_state(id, {.x = -500, .y = -5.25}); }), "500 m outside the lanes of its route"));
   CHECK(world.state(id).x == 300);
 }
 
@@ -322,7 +328,15 @@ TEST_CASE("a state that add refuses set_state refuses with the same words, and b
     auto const entering = error_of([&] {
       Sim(world).add({.position = {state.x, state.y}, .heading = state.heading, .speed = state.speed});
     });
+    auto const on_route = error_of([&] {
+      Sim(world).add({.position = {state.x, state.y},
+                      .heading = state.heading,
+                      .speed = state.speed,
+                      .route = cb::map::Route{.lanes = {world.map().find_lane("1", 50.0, -1),
+                                                        world.map().find_lane("1", 50.0, -2)}}});
+    });
     auto const setting = error_of([&] { world.set_state(id, state); });
+    CHECK_MESSAGE(on_route.empty() == said.empty(), on_route);
     CHECK_MESSAGE(entering.empty() == said.empty(), entering);
     CHECK_MESSAGE(setting.empty() == said.empty(), setting);
     CHECK_MESSAGE(says(setting, said), setting);
@@ -375,6 +389,59 @@ TEST_CASE("with Reroute::yes a state is taken off the route, and the agent gets 
                other.set_state(id, {.x = 100, .y = -1.75}, cb::Reroute::yes);
              }),
              "there is no route from"));
+}
+
+namespace {
+
+/// A road of 1 km along +x, three lanes that way and one the other.
+std::shared_ptr<cb::Map const> three_and_one() {
+  return support::map_of({.line = cb::map::lay_from({}, {{1000.0}}),
+                          .sections = {{.left = cb::map::equal_lanes(1), .right = cb::map::equal_lanes(3)}}});
+}
+
+cb::State const the_other_way{.x = 600, .y = 1.75, .heading = cb::geometry::pi, .speed = 20};
+
+}  // namespace
+
+TEST_CASE("an agent that is re-routed in the middle of a lane change has forgotten it, for lanes have other numbers") {
+  using World = cb::World<cb::BehaviorSet<cb::Mobil, cb::ConstantAcceleration>, cb::InterpolateExecution, cb::SingleTrack>;
+  World world(three_and_one());
+  auto const id =
+      world.add({.position = {100, -8.75}, .speed = 20, .behavior = cb::Mobil{.idm = {.desired_speed = 25}}});
+  world.add({.position = {130, -8.75}, .speed = 5, .behavior = cb::ConstantAcceleration{}});
+  int steps = 0;
+  while (!world.memory<cb::Mobil>(id).change.active() && steps++ < 100) REQUIRE(world.step(0.1));
+  REQUIRE(world.memory<cb::Mobil>(id).change.active());
+  auto const before = world.frame();
+  world.set_state(id, the_other_way, cb::Reroute::yes);
+  CHECK(world.memory<cb::Mobil>(id) == cb::Mobil::Memory{});
+  for (int i = 0; i < 20; ++i) REQUIRE(world.step(0.1));
+  CHECK(world.state(id).y == doctest::Approx(1.75));
+  CHECK(says(error_of([&] { world.restore(before); }), "the frame is from before an agent changed"));
+}
+
+TEST_CASE("frames from before another model of behaviour do not fit, those from before other parameters do") {
+  Sim world(three_and_one());
+  auto const id = world.add({.position = {100, -1.75}, .speed = 10});
+  auto const before = world.frame();
+  world.set_behavior(id, cb::IdmClassic{.desired_speed = 3.0});
+  world.restore(before);
+  world.set_behavior(id, cb::ConstantAcceleration{});
+  CHECK(says(error_of([&] { world.restore(before); }), "model of behaviour"));
+  REQUIRE(world.step(0.2));
+}
+
+TEST_CASE("an agent on a free corridor is not re-routed: no lane leads on from there") {
+  Sim world(three_and_one());
+  std::vector<cb::geometry::Point> const way{{50, -20}, {50, 20}};
+  auto const id = world.add({.position = {50, -15},
+                             .speed = 1,
+                             .behavior = cb::ConstantAcceleration{},
+                             .road = cb::map::build_free_corridor(world.map(), way)});
+  auto const before = world.frame();
+  CHECK(says(error_of([&] { world.set_state(id, {.x = 50, .y = -8, .heading = 0.3, .speed = 1}, cb::Reroute::yes); }),
+             "agent 0: it is on a free corridor"));
+  CHECK(world.frame() == before);
 }
 
 TEST_CASE("a state set where the route passes twice is taken for the pass that the agent is on") {

@@ -71,11 +71,15 @@ struct HasPlan {
 };
 template <class B>
 struct WithAnotherPlan : B, HasPlan {};
-/// Whether `B` has a member of the name plan, be it a template: beside another one the name says nothing.
+/// Whether struct `B` has a member of the name plan, be it a template: then that of a struct with another one is
+/// ambiguous. (Of a final struct nobody can tell.)
 template <class B>
-concept NamesPlan = !requires {
-  &WithAnotherPlan<B>::plan;
-};
+[[nodiscard]] constexpr bool names_plan() {
+  if constexpr (std::is_class_v<B> && !std::is_final_v<B>)
+    return !requires { &WithAnotherPlan<B>::plan; };
+  else
+    return std::is_final_v<B>;
+}
 /// Whether `plan` can be called on a `B`, or a `B const`, whatever it returns.
 template <class B>
 concept Plans = requires(B behavior, ViewArchetype const view, cambium::MemoryOf<B> memory, double dt) {
@@ -89,14 +93,19 @@ concept Plans = requires(B behavior, ViewArchetype const view, cambium::MemoryOf
 /// True; says in a sentence what `B` lacks to be a behaviour.
 template <class B>
 [[nodiscard]] constexpr bool check_behavior() {
-  if constexpr (!BehaviorModel<B>) {
-    using Behavior = std::remove_const_t<B>;
-    constexpr bool has_plan = NamesPlan<Behavior>, plans = Plans<Behavior>, plans_const = Plans<Behavior const>;
-    static_assert(std::copyable<Behavior>, "cambium::BehaviorSet<...>: a behaviour must be a copyable struct");
-    static_assert(
-        std::copyable<cambium::MemoryOf<Behavior>> && std::default_initializable<cambium::MemoryOf<Behavior>>,
-        "cambium::BehaviorSet<...>: a behaviour's Memory must be copyable and default constructible, for it is "
-        "copied with the frame");
+  using Memory = cambium::MemoryOf<B>;
+  using Workspace = cambium::WorkspaceOf<B>;
+  constexpr bool is_copyable = std::is_class_v<B> && std::copyable<B>;
+  constexpr bool remembers = std::copyable<Memory> && std::default_initializable<Memory>;
+  static_assert(is_copyable,
+                "cambium::BehaviorSet<...>: a behaviour must be a copyable struct, named without const");
+  static_assert(!is_copyable || remembers,
+                "cambium::BehaviorSet<...>: a behaviour's Memory must be copyable and default constructible, for it is "
+                "copied with the frame");
+  static_assert(std::default_initializable<Workspace>,
+                "cambium::BehaviorSet<...>: a behaviour's Workspace must be default constructible: worlds make it");
+  if constexpr (!BehaviorModel<B> && is_copyable && remembers) {
+    constexpr bool has_plan = names_plan<B>(), plans = Plans<B>, plans_const = Plans<B const>;
     static_assert(has_plan,
                   "cambium::BehaviorSet<...>: each alternative must be a behaviour, and this one has no function plan: "
                   "`template <class View> Plan<View> plan(View const&, Memory&, double dt) const` (see BehaviorModel)");

@@ -55,7 +55,8 @@ CAMBIUM_NOINLINE CAMBIUM_FLATTEN [[nodiscard]] Plan<View> plan_apart(B const& be
                                                                      Memory& memory, double dt) {
   return behavior.plan(view, memory, dt);
 }
-/// Of so many behaviours a step takes in the plans.
+/// A step inlines the plans of at most so many behaviours (those with a workspace do not count); of more, each plan is
+/// a function of its own.
 inline constexpr std::size_t most_plans_in_step = 4;
 }  // namespace detail
 
@@ -137,7 +138,8 @@ struct BehaviorSet {
     auto& own = *std::get_if<I>(&memory);
     if constexpr (!std::is_same_v<Workspace, NoWorkspace>)
       return detail::plan_apart(model, view, own, dt, std::get<I>(workspaces));
-    else if constexpr (sizeof...(Behaviors) > detail::most_plans_in_step)
+    else if constexpr ((std::size_t{std::is_same_v<WorkspaceOf<Behaviors>, NoWorkspace>} + ...) >
+                       detail::most_plans_in_step)
       return detail::plan_apart(model, view, own, dt);
     else
       return model.plan(view, own, dt);

@@ -66,7 +66,7 @@ template <class First, class Second>
 
 /// A parameter struct that says once, in one place, what its fields are. It has
 ///   `static constexpr char const* name = "idm_classic";`   (its own name in files and messages)
-///   `static constexpr auto parameters() { return parameter_list(parameter(...), ...); }`
+///   `static constexpr auto parameters() { return cambium::parameter_list(cambium::parameter(...), ...); }`
 /// and, where fields depend on each other, `void check(std::string const& where) const`, which throws `ParameterError`;
 /// `where` is the full key of the struct ("traffic.json: source.spacing").
 /// Models say more of themselves: `summary`, their law in short, and `source`, where it was published.
@@ -79,7 +79,10 @@ concept Described = requires {
 /// Calls `f(parameter)` for each field of T, in the order of the description. Nested structs are one parameter.
 template <Described T, class F>
 constexpr void for_each_parameter(F&& f) {
-  T::parameters()(f);
+  constexpr bool is_list = requires { T::parameters()(f); };
+  static_assert(is_list,
+                "cambium: a struct's parameters() must return cambium::parameter_list(cambium::parameter(...), ...)");
+  if constexpr (is_list) T::parameters()(f);
 }
 
 }  // namespace cambium

@@ -6,7 +6,8 @@
 #endif
 
 /// Checks an invariant of the library (never user input: that is checked with errors). Define `CAMBIUM_ASSERT` before
-/// the first cambium header to install a handler of your own; by default it is `assert`, and off with NDEBUG.
+/// the first cambium header to install a handler of your own: the same in all sources, and, where cambium::compiled is
+/// linked, for the CMake target cambium_compiled. By default it is `assert`, and off with NDEBUG.
 #ifndef CAMBIUM_ASSERT
 #include <cassert>
 #define CAMBIUM_ASSERT(condition, sentence) assert((condition) && (sentence))

@@ -6,11 +6,11 @@
 
 namespace cambium::geometry {
 
-/// A vector of two numbers that is not a `Point`, such as Eigen's: it has `x()`, `y()`, and its size as a constant.
+/// A vector of two doubles that is not a `Point`, such as Eigen's: it has `x()`, `y()`, and its size as a constant.
 template <class V>
 concept ForeignVector = requires(V const& v) {
   requires static_cast<int>(V::SizeAtCompileTime) == 2;
-  { v.x() + v.y() } -> std::convertible_to<double>;
+  { v.x() + v.y() } -> std::same_as<double>;
 };
 
 /// A point, or the way between two, in the map frame [m]. Converts from and to `Eigen::Vector2d` (and vectors like it),

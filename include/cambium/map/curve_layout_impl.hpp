@@ -17,11 +17,6 @@
 #include "cambium/map/parametric_cubic.hpp"
 #include "cambium/map/reference_line.hpp"
 
-/// Lays out the plan view of roads: pieces one behind the other, curves between two poses, curves through points. All
-/// of it meets to 1e-9 m and 1e-9 rad. Poses are rounded to 1e-10 m and 1e-13 rad before the next piece is laid out
-/// from them: so errors do not add up along a road, and every compiler's sine gives the same numbers. Every function
-/// throws `MapError` for numbers that are not finite.
-
 namespace cambium::map {
 
 namespace detail {
@@ -61,7 +56,7 @@ inline void check_piece(CurvePiece const& piece) {
 
 /// The cubic from one pose to another that leaves and arrives along tangents of these lengths (a Bezier curve's).
 [[nodiscard]] inline Geometry make_cubic(geometry::Pose const& from, geometry::Pose const& to, double leaving,
-                                         double arriving) {
+                                         double arriving, std::string const& where) {
   Geometry g;
   g.x = round_length(from.x);
   g.y = round_length(from.y);
@@ -77,16 +72,17 @@ inline void check_piece(CurvePiece const& piece) {
   auto const v = coefficients(0.0, end.y(), 3 * arriving * std::sin(turn));
   g.cubic = std::make_shared<ParametricCubic const>(u, v, 1.0);
   if (!g.cubic->is_regular())
-    throw MapError("curve", "there is no smooth curve from one pose to the next", "move them apart, or turn them");
+    throw MapError(where, "there is no smooth curve from one pose to the next", "move them apart, or turn them");
   g.length = round_length(g.cubic->length());
   return g;
 }
 
 /// As `make_cubic`, with tangents that come near a circle's and keep the curvature low (Hobby 1986, velocity function).
-[[nodiscard]] inline Geometry make_cubic(geometry::Pose const& from, geometry::Pose const& to) {
+[[nodiscard]] inline Geometry make_cubic(geometry::Pose const& from, geometry::Pose const& to,
+                                         std::string const& where) {
   double const dx = to.x - from.x, dy = to.y - from.y, chord = std::hypot(dx, dy), direction = std::atan2(dy, dx);
   if (!(chord > 1e-3))
-    throw MapError("curve", "two points of it are less than a millimetre apart", "leave one of them out");
+    throw MapError(where, "its ends are less than a millimetre apart", "move them apart, or join them without it");
   double const a = geometry::angle_difference(direction, from.heading);
   double const b = geometry::angle_difference(to.heading, direction);
   auto const tangent = [chord](double here, double there) {
@@ -96,7 +92,7 @@ inline void check_piece(CurvePiece const& piece) {
         1.0 + 0.5 * (std::sqrt(5.0) - 1.0) * std::cos(here) + 0.5 * (3.0 - std::sqrt(5.0)) * std::cos(there);
     return chord * std::clamp((2.0 + bend) / (3.0 * std::max(flat, 0.1)), 0.1, 4.0 / 3.0);
   };
-  return make_cubic(from, to, tangent(a, b), tangent(b, a));
+  return make_cubic(from, to, tangent(a, b), tangent(b, a), where);
 }
 
 inline void number_stations(std::vector<Geometry>& geometries) {
@@ -138,7 +134,8 @@ CAMBIUM_COLD std::vector<Geometry> lay_to(geometry::Pose end, std::vector<CurveP
   return geometries;
 }
 
-CAMBIUM_COLD std::vector<Geometry> connecting_curve(geometry::Pose const& from, geometry::Pose const& to) {
+CAMBIUM_COLD std::vector<Geometry> connecting_curve(geometry::Pose const& from, geometry::Pose const& to,
+                                                    std::string const& where) {
   detail::check_pose(from);
   detail::check_pose(to);
   constexpr double spiral_share = 0.3;  // of the corner's length, for each of the two
@@ -150,7 +147,7 @@ CAMBIUM_COLD std::vector<Geometry> connecting_curve(geometry::Pose const& from, 
   double const after = way.y() / std::sin(turn), before = way.x() - after * std::cos(turn);
   double const nearer = std::min(before, after), farther = std::max(before, after);
   if (!(std::abs(turn) > 0.01 && std::abs(turn) < 2.8 && nearer > 1e-3 && farther < 3.0 * nearer))
-    return {detail::make_cubic(from, to)};
+    return {detail::make_cubic(from, to, where)};
   auto const corner = [turn](double length) {
     double const curvature = detail::round_curvature(turn / ((1.0 - spiral_share) * length));
     double const spiral = detail::round_length(spiral_share * length);
@@ -173,7 +170,7 @@ inline void check_points(std::span<geometry::Point const> points, std::span<doub
   auto const text = [](double value) { return cambium::detail::rounded_text(value); };
   auto const fail = [&](std::string const& what, char const* remedy) { throw MapError(where, what, remedy); };
   auto const n = points.size();
-  if (n < 2) fail("it has " + std::to_string(n) + " points", "give at least two");
+  if (n < 2) fail(n == 0 ? "it has no points" : "it has one point", "give at least two");
   if (!headings.empty() && headings.size() != n)
     fail("it has " + std::to_string(n) + " points, but " + std::to_string(headings.size()) + " headings",
          "give one heading a point, or none");
@@ -224,7 +221,7 @@ CAMBIUM_COLD std::vector<Geometry> curve_through(std::span<geometry::Point const
   std::vector<Geometry> geometries;
   for (std::size_t i = 0; i + 1 < n; ++i) {
     try {
-      geometries.push_back(detail::make_cubic(poses[i], poses[i + 1]));
+      geometries.push_back(detail::make_cubic(poses[i], poses[i + 1], where));
     } catch (MapError const&) {
       throw MapError(where,
                      "there is no smooth curve from point " + std::to_string(i) + " (of 0 to " + std::to_string(n - 1) +

@@ -79,7 +79,7 @@ class MapBuilder {
   [[nodiscard]] opendrive::Road const& road(std::string const& id) const { return index_.road(document_, id); }
 
   /// The map of what has been made so far, checked as a file would be; what is odd goes to `diagnostics`. Throws
-  /// `MapError` where there is no road or no lane.
+  /// `MapError` where there is no road or no lane, and as `build_map`, and `ParameterError` for options out of range.
   [[nodiscard]] std::shared_ptr<Map const> build(MapOptions const& options = {},
                                                  std::vector<Diagnostic>* diagnostics = nullptr) const;
 

@@ -131,8 +131,9 @@ CAMBIUM_COLD std::shared_ptr<Map const> MapBuilder::build(MapOptions const& opti
   auto& found = diagnostics != nullptr ? *diagnostics : unheard;
   auto document = document_;
   if (document.header.line == 0) document.header.line = 1;  // 0 would say that there is no header
-  check_opendrive_document(document, document.header.name, found);
-  return build_map(document, options, document.header.name, found);
+  auto const name = document.header.name;
+  check_opendrive_document(document, name, found);
+  return build_map(std::move(document), options, name, found);
 }
 
 CAMBIUM_COLD void MapBuilder::check_id(std::string const& what, std::string const& id) {
@@ -146,7 +147,7 @@ CAMBIUM_COLD RoadPlan MapBuilder::turn_plan(RoadEnd const& from, RoadEnd const& 
   auto begin = lane_pose(from, lanes.front().from), end = lane_pose(to, lanes.front().to);
   end.heading += geometry::pi;
   RoadPlan road{.id = std::move(plan.id), .name = std::move(plan.name)};
-  road.line = connecting_curve(begin, end);
+  road.line = connecting_curve(begin, end, "turn from road " + from.road + " to road " + to.road);
   road.rule = checked(from).rule;
   road.speed_limit = plan.speed_limit;
   double const length = road.line.back().s + road.line.back().length;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
@@ -9,6 +8,7 @@
 
 #include "cambium/core/ids.hpp"
 #include "cambium/geometry/pose.hpp"
+#include "cambium/map/fwd.hpp"
 #include "cambium/map/lane.hpp"
 #include "cambium/map/route.hpp"
 
@@ -18,15 +18,8 @@ class Polygon;
 
 namespace cambium::map {
 
-class Map;
-struct RoadCorridor;
-struct ConflictArea;
-struct FreeCorridorOptions;
-struct StopLine;
-enum class RoadDirection : std::uint8_t;
-
-/// What a map is asked rarely, and what takes long to compile: routes, corridors, areas of junctions. Whoever makes a
-/// map compiles it (`map_impl.hpp`); everybody else calls it through the map, by the functions named here.
+/// The rare queries of a map that take long to compile: routes, corridors, areas of junctions. Whoever makes a map
+/// compiles them (`map_impl.hpp`); everybody else calls them through the map, by the functions named here.
 class MapQueries {
  public:
   using Corridor = std::shared_ptr<RoadCorridor const>;

@@ -10,6 +10,10 @@
 #include "cambium/map/opendrive_document.hpp"
 #include "cambium/map/reading_limits.hpp"
 
+#ifdef CAMBIUM_COMPILED_WITHOUT_READER
+#error "cambium::compiled holds no reader of OpenDRIVE, for CMake did not find pugixml: install it (libpugixml-dev)"
+#endif
+
 namespace cambium::map {
 
 /// A map that was read, and what was odd about it.
@@ -20,11 +24,12 @@ struct LoadedMap {
 
 /// The map of an OpenDRIVE text; `file` names it in messages. Throws `MapError` (file, line, what, remedy) where it is
 /// not XML, has no usable road, or is beyond the limits in reading_limits.hpp; everything else that is odd becomes a
-/// diagnostic.
+/// diagnostic. Throws `ParameterError` for options out of range.
 [[nodiscard]] LoadedMap parse_opendrive(std::string_view text, MapOptions const& options = {},
                                         std::string const& file = "text");
 
-/// The map of an OpenDRIVE file (.xodr). Throws `MapError` as `parse_opendrive`, and where the file cannot be read.
+/// The map of an OpenDRIVE file (.xodr). Throws as `parse_opendrive`, and `MapError` where the file cannot be
+/// read.
 [[nodiscard]] LoadedMap load_opendrive(std::string const& path, MapOptions const& options = {});
 
 /// All that an OpenDRIVE file says (signals, objects and user data too), to look at, change, write again, or make a map

@@ -60,17 +60,19 @@ class DocumentCheck {
   /// Collects the ids and removes later elements of an id that was there before.
   template <class Element>
   void index(std::vector<Element>& elements, IdPlaces& ids, char const* kind, char const* sentence) {
+    std::vector<bool> is_second(elements.size());  // marked first: the keys are views of ids that must not move
+    for (std::size_t i = 0; i < elements.size(); ++i) {
+      is_second[i] = !ids.emplace(elements[i].id, i).second;
+      if (is_second[i]) report(Severity::warning, elements[i].line, kind, "", "id " + elements[i].id + sentence);
+    }
+    ids.clear();
     std::size_t kept = 0;
     for (std::size_t i = 0; i < elements.size(); ++i) {
-      if (!ids.emplace(elements[i].id, i).second) {
-        report(Severity::warning, elements[i].line, kind, "", "id " + elements[i].id + sentence);
-        continue;
-      }
+      if (is_second[i]) continue;
       if (kept != i) std::swap(elements[kept], elements[i]);
       ++kept;
     }
     elements.resize(kept);
-    ids.clear();
     for (std::size_t i = 0; i < kept; ++i) ids.emplace(elements[i].id, i);
   }
 

@@ -9,6 +9,10 @@
 #include "cambium/map/opendrive_document.hpp"
 #include "cambium/map/reading_limits.hpp"
 
+#ifdef CAMBIUM_COMPILED_WITHOUT_READER
+#error "cambium::compiled holds no reader of OpenDRIVE, for CMake did not find pugixml: install it (libpugixml-dev)"
+#endif
+
 namespace cambium::map {
 
 /// Reads an OpenDRIVE file (revisions 1.1 to 1.8) from its text; `file_name` only names it in messages. Numbers are

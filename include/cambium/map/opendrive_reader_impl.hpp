@@ -160,7 +160,8 @@ inline void read_lateral_profile(XmlContext& context, pugi::xml_node road_node, 
 /// The root element; throws when the text is no XML or its root is another one.
 [[nodiscard]] inline pugi::xml_node parse_root(pugi::xml_document& xml, std::string_view text,
                                                std::string const& file) {
-  XmlCounter(text).check(file);
+  auto const narrow = narrowed(text);
+  XmlCounter(narrow.empty() ? text : narrow).check(file);
   pugi::xml_parse_result const result =
       xml.load_buffer(text.data(), text.size(), pugi::parse_cdata | pugi::parse_escapes | pugi::parse_eol);
   if (!result) {

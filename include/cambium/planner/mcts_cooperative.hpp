@@ -21,7 +21,7 @@ struct MctsCooperative {
   static_assert(detail::check_planner<PredictionWorld, Others>());
   static_assert(Described<Others>,
                 "cambium: a planner's Others must be a behaviour with described parameters, as cambium::IdmClassic; "
-                "where it has none: `static constexpr auto parameters() { return parameter_list(); }`");
+                "where it has none: `static constexpr auto parameters() { return cambium::parameter_list(); }`");
 
   using Domain = TrafficDomain<PredictionWorld, Actions, Reward>;
   using Workspace = MctsWorkspace<Domain, Options>;

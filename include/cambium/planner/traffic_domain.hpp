@@ -36,7 +36,7 @@ class TrafficDomain {
   static_assert(
       Described<Reward>,
       "cambium::TrafficDomain<World, Actions, Reward>: describe Reward's parameters, as cambium::TrafficReward "
-      "does; where it has none: `static constexpr auto parameters() { return parameter_list(); }`");
+      "does; where it has none: `static constexpr auto parameters() { return cambium::parameter_list(); }`");
 
  public:
   using World = PredictionWorld;

@@ -36,10 +36,10 @@ class TreeSearch {
       "cambium::TreeSearch<Domain>: Domain must be a game: State, Action, agents(), is_terminal(state), actions "
       "or sample_action, and `bool step(State&, std::span<Action const>, cambium::RandomStream&, "
       "std::span<cambium::AgentOutcome>)` (see SearchDomain)");
-  static_assert(RolloutPolicy<Rollout, Domain>,
+  static_assert(!SearchDomain<Domain> || RolloutPolicy<Rollout, Domain>,
                 "cambium::TreeSearch<Domain, Selection, Rollout>: Rollout must be a roll-out policy such as "
                 "cambium::RandomRollout (see RolloutPolicy)");
-  static_assert(detail::fewer_actions_than<Domain, 65536>,
+  static_assert(!SearchDomain<Domain> || detail::fewer_actions_than<Domain, 65536>,
                 "cambium::TreeSearch<Domain>: Domain::max_actions must be 1 to 65535");
 
  public:

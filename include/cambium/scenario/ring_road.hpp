@@ -1,10 +1,10 @@
 #pragma once
 
+#include <cmath>
 #include <memory>
 
-#include "cambium/map/map.hpp"
-#include "cambium/core/error.hpp"
 #include "cambium/geometry/pose.hpp"
+#include "cambium/map/map.hpp"
 #include "cambium/map/route.hpp"
 
 namespace cambium {

@@ -3,14 +3,10 @@
 #include <filesystem>
 #include <string>
 
+#include "cambium/map/fwd.hpp"
 #include "cambium/viewer/map_picture_options.hpp"
 
 namespace cambium {
-
-namespace map {
-class Map;
-}
-using map::Map;
 
 /// A picture of the map as SVG: lanes in the colours of their types, travel directions, ids (road:lane), links to
 /// successors, where lanes cross, merge and split, and a legend. What the pointer rests on says what it is. Throws

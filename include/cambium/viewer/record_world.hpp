@@ -6,16 +6,12 @@
 #include <vector>
 
 #include "cambium/core/ids.hpp"
+#include "cambium/map/fwd.hpp"
 #include "cambium/viewer/recording.hpp"
 #include "cambium/world/frame.hpp"
 
 namespace cambium {
 
-namespace map {
-class Map;
-struct LaneCorridor;
-}  // namespace map
-using map::Map;
 struct StaticObject;
 
 /// The lanes of a map as a recording shows them.

@@ -16,9 +16,10 @@
 namespace cambium {
 
 namespace detail {
-enum class SpecPart { behavior, goal, id };
+enum class SpecPart { behavior, execution, dynamics, observer, goal, id };
 
-/// A part of an `AgentSpecOf`, of type `Value`: takes anything, to say in a sentence what it cannot be.
+/// A part of an `AgentSpecOf`, of type `Value`. It can be made of any type, so that a wrong one is an error with a
+/// sentence (and not with the compiler's, which names no part).
 template <class Value, SpecPart part>
 struct Given : Value {
   Given() = default;
@@ -35,16 +36,23 @@ struct Given : Value {
   [[nodiscard]] static Value converted(T&& value) {
     constexpr bool fits = std::is_convertible_v<T, Value>;
     static_assert(fits || part != SpecPart::behavior,
-                  "cambium::AgentSpec::behavior: this type is none of the Models of the world's "
+                  "cambium::World::AgentSpec::behavior: this type is none of the Models of the world's "
                   "cambium::BehaviorSet<Models...>; add it there");
-    static_assert(
-        fits || part != SpecPart::goal,
-        "cambium::AgentSpec::goal: this type is no cambium::Goal: NoGoal, ReachPolygon, ReachLane, StateLimits, "
-        "LaneLimits, ReachLaneEnd, ReachLaneBeside, AllGoals, AnyGoal, GoalSequence; judge by an evaluator of "
-        "your own what these cannot say");
+    static_assert(fits || part != SpecPart::execution,
+                  "cambium::World::AgentSpec::execution: this type is not the Execution of the world "
+                  "World<Set, Execution, Dynamics, Observer>, nor one of its ExecutionSet");
+    static_assert(fits || part != SpecPart::dynamics,
+                  "cambium::World::AgentSpec::dynamics: this type is not the Dynamics of the world "
+                  "World<Set, Execution, Dynamics, Observer>, nor one of its DynamicSet");
+    static_assert(fits || part != SpecPart::observer,
+                  "cambium::World::AgentSpec::observer: this type is not the Observer of the world "
+                  "World<Set, Execution, Dynamics, Observer>, nor one of its ObserverSet");
+    static_assert(fits || part != SpecPart::goal,
+                  "cambium::World::AgentSpec::goal: this type is no cambium::Goal (cambium/goal/goal.hpp lists them); "
+                  "judge by an evaluator of your own what these cannot say");
     static_assert(
         fits || part != SpecPart::id,
-        "cambium::AgentSpec::id: this is no id; write cambium::AgentId{7}, or leave it out to get a free one");
+        "cambium::World::AgentSpec::id: this is no id; write cambium::AgentId{7}, or leave it out to get a free one");
     if constexpr (fits)
       return std::forward<T>(value);
     else
@@ -65,9 +73,9 @@ struct AgentSpecOf {
   detail::Given<Goal, detail::SpecPart::goal> goal{};
   std::optional<map::Route> route{};                ///< else the shortest to the goal; without a goal straight on
   std::shared_ptr<map::RoadCorridor const> road{};  ///< instead of a route: see `map::build_free_corridor`
-  Execution execution{};
-  Dynamics dynamics{};
-  Observer observer{};
+  detail::Given<Execution, detail::SpecPart::execution> execution{};
+  detail::Given<Dynamics, detail::SpecPart::dynamics> dynamics{};
+  detail::Given<Observer, detail::SpecPart::observer> observer{};
   detail::Given<std::optional<AgentId>, detail::SpecPart::id> id{};  ///< else the next free one
 };
 

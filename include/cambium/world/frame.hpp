@@ -56,8 +56,12 @@ struct Frame {
   double time = 0.0;       ///< [s]
   std::uint64_t step = 0;  ///< steps made since the world began
   std::vector<Record> agents;
+  std::uint32_t roster_revision = 0;  ///< of the roster that the records belong to: see `RosterBase::revision`
 
-  friend bool operator==(Frame const&, Frame const&) = default;
+  /// Whether both show the same at the same time, however often their rosters have changed.
+  friend bool operator==(Frame const& a, Frame const& b) {
+    return a.time == b.time && a.step == b.step && a.agents == b.agents;
+  }
 };
 
 }  // namespace cambium

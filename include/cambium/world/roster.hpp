@@ -26,6 +26,7 @@ struct FreeRoad {
 /// What a world's roster holds whatever its models are.
 struct RosterBase {
   std::uint64_t seed = 0;
+  std::uint32_t revision = 0;  ///< changes after which frames from before do not fit: agents, roads, kinds of behaviour
   std::uint32_t next_agent_id = 0;
   std::uint32_t next_object_id = 0;
   std::vector<Goal> goals;             ///< by slot
@@ -37,7 +38,9 @@ struct RosterBase {
 
   RosterBase();
   RosterBase(RosterBase const&);
+  RosterBase(RosterBase&&) noexcept;
   RosterBase& operator=(RosterBase const&);
+  RosterBase& operator=(RosterBase&&) noexcept;
   ~RosterBase();
 
   /// Takes in a static object, with `entries` for the lanes that it stands in; returns its id. O(objects).

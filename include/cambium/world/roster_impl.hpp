@@ -15,7 +15,9 @@ namespace cambium {
 
 CAMBIUM_COLD RosterBase::RosterBase() = default;
 CAMBIUM_COLD RosterBase::RosterBase(RosterBase const&) = default;
+CAMBIUM_COLD RosterBase::RosterBase(RosterBase&&) noexcept = default;
 CAMBIUM_COLD RosterBase& RosterBase::operator=(RosterBase const&) = default;
+CAMBIUM_COLD RosterBase& RosterBase::operator=(RosterBase&&) noexcept = default;
 CAMBIUM_COLD RosterBase::~RosterBase() = default;
 
 CAMBIUM_COLD ObjectId RosterBase::insert(StaticObject object, std::vector<TrafficEntry> const& entries) {

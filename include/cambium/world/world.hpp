@@ -49,13 +49,13 @@ enum class Reroute : std::uint8_t { no, yes };
 /// Interacting road traffic on a map: a value. Copies are independent, share the map and the roster, and cost one copy
 /// of the frame; copying into a world that has been used before allocates nothing. Reading from several threads is
 /// safe; `step`, `observe` and all that changes the world need it for themselves.
-template <class Set, class Execution, class DynamicModelType, class ObserverType = PerfectObserver>
+template <class Set, class ExecutionType, class DynamicModelType, class ObserverType = PerfectObserver>
 class World {
   static_assert(is_behavior_set<Set>, "cambium::World<Set, ...>: Set must be cambium::BehaviorSet<Models...>");
   static_assert(DynamicModel<DynamicModelType>,
                 "cambium::World<Set, Execution, Dynamics>: Dynamics must be a vehicle model such as "
                 "cambium::SingleTrack (see DynamicModel)");
-  static_assert(ExecutionModel<Execution, DynamicModelType>,
+  static_assert(!DynamicModel<DynamicModelType> || ExecutionModel<ExecutionType, DynamicModelType>,
                 "cambium::World<Set, Execution, ...>: Execution must be an execution model such as "
                 "cambium::InterpolateExecution (see ExecutionModel)");
   static_assert(ObserverModel<ObserverType>,
@@ -65,6 +65,7 @@ class World {
  public:
   using Behaviors = Set;
   using Behavior = typename Set::Any;
+  using Execution = ExecutionType;
   using Dynamics = DynamicModelType;
   using Observer = ObserverType;
   using State = typename Dynamics::State;
@@ -92,11 +93,11 @@ class World {
   }
 
   /// A world from its parts, as predictions, searches and snapshots make it. Throws `WorldError` without a map or a
-  /// roster, or where `frame` does not have one record for each agent of `roster`.
+  /// roster, or where `frame` is not one of `roster`.
   World(std::shared_ptr<Map const> map, std::shared_ptr<RosterType const> roster, FrameType frame)
       : map_(std::move(map)), roster_(std::move(roster)) {
     if (!map_ || !roster_) throw WorldError("World", "there is no map or no roster", "take them from another world");
-    detail::require_same_size(frame.agents.size(), roster_->agents.size());
+    detail::require_same_roster(frame.agents.size(), frame.roster_revision, roster_->agents.size(), roster_->revision);
     frame_ = std::move(frame);
   }
 
@@ -124,17 +125,18 @@ class World {
   [[nodiscard]] std::size_t size() const { return frame_.agents.size(); }
 
   /// Puts a frame of this world, or of a copy with the same roster, (back) into place: what a search does at its nodes.
-  /// Throws `WorldError` (the world is unchanged) where it is not one of this roster's size. No allocation once warm.
+  /// Throws `WorldError` (the world is unchanged) for a frame from before an agent entered, left, was re-routed or got
+  /// another model of behaviour. No allocation once warm.
   void restore(FrameType const& frame) {
-    detail::require_same_size(frame.agents.size(), roster_->agents.size());
+    detail::require_same_roster(frame.agents.size(), frame.roster_revision, size(), roster_->revision);
     frame_ = frame;
     scratch_.forget();
   }
 
-  /// Swaps the world's frame for one of the same roster, as `restore` without a copy. The frame must have as many
-  /// records as the world has agents (asserted). O(1).
+  /// Swaps the world's frame for one of the same roster, as `restore` without a copy; that it is one is asserted. O(1).
   void exchange(FrameType& frame) {
-    CAMBIUM_ASSERT(frame.agents.size() == size(), "World::exchange: the frame is not one of this roster's size");
+    CAMBIUM_ASSERT(frame.agents.size() == size() && frame.roster_revision == roster_->revision,
+                   "World::exchange: the frame is not one of this roster");
     std::swap(frame_, frame);
     scratch_.forget();
   }
@@ -147,19 +149,27 @@ class World {
     detail::check_if_described(behavior, where);
     auto const& agent = roster_->agents[slot];
     if (detail::is_too_large(*map_, behavior, agent.shape, *agent.road)) detail::refuse_too_large(where);
-    writable_roster().agents[slot].behavior = behavior;
+    bool const is_other_model = behavior.index() != agent.behavior.index();
+    (is_other_model ? revised_roster() : writable_roster()).agents[slot].behavior = behavior;
     frame_.agents[slot].memory = Set::initial_memory(behavior);
+  }
+
+  /// Says what a behaviour that is none of the set is missing.
+  template <class B>
+  requires(!std::is_convertible_v<B const&, Behavior>) void set_behavior(AgentId, B const&) {
+    static_assert(std::is_void_v<B>,
+                  "cambium::World::set_behavior: this type is none of the Models of the world's "
+                  "cambium::BehaviorSet<Models...>; add it there");
   }
 
   /// Adds an agent; returns its id. Throws `WorldError` or `ParameterError` (the world is unchanged) where its lane,
   /// its route or its parameters are no good, and for what `set_state` refuses, too: a number that is not finite, a
-  /// speed that is not from 0 to 1000 m/s (of measured ones those down to -0.1 count as 0), a place more than 5 m from
-  /// the nearest lane (with a route of its own 2.5 m from the path of one), a heading against its direction. O(agents),
-  /// plus routing.
+  /// speed that is not from 0 to 1000 m/s (measured ones down to -0.1 count as 0), a place more than 5 m outside of the
+  /// nearest lane (with a route of its own: of those on it), a heading against its direction. O(agents), plus routing.
   AgentId add(AgentSpec const& spec) {
     AgentId const id = spec.id.value_or(static_cast<AgentId>(roster_->next_agent_id));
     auto entrant = detail::entrant<World>(*map_, *roster_, spec, id, frame_.time);
-    auto& roster = writable_roster();
+    auto& roster = revised_roster();
     if (spec.road) detail::enter_free_road(roster, spec.road, entrant.agent.road);
     auto const slot = roster.insert(std::move(entrant.agent), std::move(entrant.goal));
     frame_.agents.insert(frame_.agents.begin() + static_cast<std::ptrdiff_t>(slot), entrant.record);
@@ -171,7 +181,7 @@ class World {
   /// Removes an agent. Throws `WorldError` if there is no such agent. O(agents).
   void remove(AgentId id) {
     auto const slot = slot_of(id);
-    writable_roster().erase(slot);
+    revised_roster().erase(slot);
     frame_.agents.erase(frame_.agents.begin() + static_cast<std::ptrdiff_t>(slot));
     scratch_.forget();
   }
@@ -186,7 +196,7 @@ class World {
         staying.push_back(slot);
     auto const departed = size() - staying.size();
     if (departed == 0) return 0;
-    writable_roster().keep(staying);
+    revised_roster().keep(staying);
     for (std::size_t to = 0; to < staying.size(); ++to) frame_.agents[to] = frame_.agents[staying[to]];
     frame_.agents.erase(frame_.agents.end() - static_cast<std::ptrdiff_t>(departed), frame_.agents.end());
     scratch_.forget();
@@ -202,9 +212,10 @@ class World {
     lights[index_of(id)] = plan;
   }
 
-  /// Puts a static object in the way; returns its id. Throws `WorldError` for one of more than 10 km around.
-  /// O(objects), and the length around the outline.
+  /// Puts a static object in the way; returns its id. Throws `WorldError` (the world is unchanged) for one of more than
+  /// 10 km around. O(objects + lanes of the map), and the length around the outline.
   ObjectId add_object(geometry::Polygon outline) {
+    detail::check_outline(outline);
     return detail::enter_object(*map_, writable_roster(), std::move(outline));
   }
 
@@ -253,11 +264,13 @@ class World {
   }
 
   /// Sets the agent's state, as a planner does with what it perceives, and puts it (back) into traffic. It stays on its
-  /// route: where it was, if that fits, else in the lane corridor that comes nearest; with `Reroute::yes` it gets the
-  /// route that `add` would give it there, to what is left of its goal. Throws `WorldError` (the world is unchanged)
-  /// where the agent is unknown, and for what `add` refuses, too: a number that is not finite, a speed that is not from
-  /// 0 to 1000 m/s (of measured ones those down to -0.1 count as 0: nobody drives in reverse), a place more than 5 m
-  /// from the lanes of its route, a heading against their direction.
+  /// route: where it was, if that fits, else in the lane corridor that comes nearest. With `Reroute::yes` it gets the
+  /// route that `add` would give it there, to what is left of its goal (straight on where nothing is), and its behaviour
+  /// forgets what it remembers, which is of the old route. Throws `WorldError` (the world is unchanged) where the agent
+  /// is unknown, and for what `add` refuses, too: a number that is not finite, a speed that is not from 0 to 1000 m/s
+  /// (measured ones down to -0.1 count as 0: speeds along the heading are never negative), a place more than 5 m outside
+  /// the lanes of its route, a heading against their direction; with `Reroute::yes` also where there is no route to the
+  /// goal, and for an agent on a free corridor. O(lanes of the route); with `Reroute::yes` O(agents), plus routing.
   void set_state(AgentId id, State state, Reroute reroute = Reroute::no) {
     auto const slot = slot_of(id);
     auto const where = detail::name_of(id);
@@ -268,11 +281,12 @@ class World {
     auto& record = frame_.agents[slot];
     if (reroute == Reroute::yes) {
       auto const again = detail::entrance_again(
-          *map_, *roster_, {{state.x, state.y}, state.heading, agent.shape, roster_->goals[slot], {}, {}},
+          *map_, *roster_, {{state.x, state.y}, state.heading, agent.shape, roster_->goals[slot], {}, agent.road},
           record.goals_passed, where);
       if (detail::is_too_large(*map_, agent.behavior, agent.shape, *again.road)) detail::refuse_too_large(where);
-      writable_roster().agents[slot].road = again.road;
+      revised_roster().agents[slot].road = again.road;
       record.lane = again.place;
+      record.memory = Set::initial_memory(roster_->agents[slot].behavior);  // lane corridors have other numbers now
       scratch_.forget();
     } else {
       auto const place = detail::relocate(*agent.road, record.lane, {state.x, state.y, state.heading});
@@ -342,7 +356,7 @@ class World {
   }
 
   /// Keeps the last `frames` frames from now on (0: none, as at the beginning). Copies and predictions do not take them
-  /// along; they end where an agent enters or leaves. Throws `WorldError` for more than a million.
+  /// along; they end where an agent enters, leaves or is re-routed. Throws `WorldError` for more than a million.
   void keep_history(std::size_t frames) {
     if (frames > 1'000'000) throw WorldError("history", "a million frames are kept at most", "record what you need");
     scratch_.keep(frames);
@@ -373,6 +387,13 @@ class World {
     if (roster_.use_count() != 1) roster_ = std::make_shared<RosterType>(*roster_);
     std::atomic_thread_fence(std::memory_order_acquire);  // what other holders read before they let go
     return const_cast<RosterType&>(*roster_);
+  }
+
+  /// For changes after which frames from before no longer fit.
+  [[nodiscard]] RosterType& revised_roster() {
+    auto& roster = writable_roster();
+    frame_.roster_revision = ++roster.revision;
+    return roster;
   }
 
   void refresh_traffic() {

@@ -1,4 +1,4 @@
-// expect: cambium::AgentSpec::goal: this type is no cambium::Goal
+// expect: cambium::World::AgentSpec::goal: this type is no cambium::Goal
 #include <cambium/behavior/idm_classic.hpp>
 #include <cambium/dynamics/single_track.hpp>
 #include <cambium/execution/interpolate.hpp>

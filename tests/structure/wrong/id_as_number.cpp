@@ -1,4 +1,4 @@
-// expect: cambium::AgentSpec::id: this is no id; write cambium::AgentId{7}
+// expect: cambium::World::AgentSpec::id: this is no id; write cambium::AgentId{7}
 #include <cambium/behavior/idm_classic.hpp>
 #include <cambium/dynamics/single_track.hpp>
 #include <cambium/execution/interpolate.hpp>

@@ -43,7 +43,7 @@ class LaneSearch {
  public:
   /// Ends when `goal` is reached, or all that costs `budget` at most.
   LaneSearch(LaneGraph const& graph, std::uint32_t start, std::uint32_t goal, double budget, Closed const& closed)
-      : distance_(graph.places.size(), infinity), previous_(graph.places.size()) {
+      : distance_(graph.size(), infinity), previous_(graph.size()) {
     using Candidate = std::pair<double, std::uint32_t>;  // cost, place
     std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> open;
     distance_[start] = 0.0;
@@ -117,7 +117,7 @@ class YenSearch {
   void branch(std::vector<std::pair<double, Path>> const& found) {
     Path const last = found.back().second;
     Closed closed;
-    closed.places.assign(graph_.places.size(), false);
+    closed.places.assign(graph_.size(), false);
     for (std::size_t i = 0; i + 1 < last.size(); ++i) {
       auto const here = last.begin() + static_cast<std::ptrdiff_t>(i);
       closed.steps.clear();

@@ -24,17 +24,15 @@ struct LaneStep {
   std::uint32_t from{}, to{};
   double cost{};
   bool ahead{};
-
-  friend bool operator==(LaneStep const&, LaneStep const&) = default;
 };
 
 /// Steps sorted by `from`, one for each pair of places. Place i is lane i; one more is the destination, and behind it
 /// come those of the start.
 struct LaneGraph {
   std::vector<LaneStep> steps;
-  std::vector<std::uint32_t> first;   ///< of each place's steps, and one more
-  std::vector<std::uint32_t> places;  ///< 0, 1, 2, ...
+  std::vector<std::uint32_t> first;  ///< of each place's steps, and one more
 
+  [[nodiscard]] std::size_t size() const { return first.size() - 1; }  ///< places
   [[nodiscard]] std::span<LaneStep const> from(std::uint32_t place) const {
     return {steps.data() + first[place], steps.data() + first[place + 1]};
   }
@@ -198,7 +196,6 @@ class RouteGraphBuilder {
     auto const same = [](LaneStep const& a, LaneStep const& b) { return a.from == b.from && a.to == b.to; };
     steps.erase(std::unique(steps.begin(), steps.end(), same), steps.end());
     for (std::uint32_t place = 0, i = 0; place <= goal() + start_lanes_.size(); ++place) {
-      graph_.places.push_back(place);
       graph_.first.push_back(i);
       while (i < steps.size() && steps[i].from == place) ++i;
     }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -10,6 +11,31 @@
 #include "cambium/map/reading_limits.hpp"
 
 namespace cambium::map::detail {
+
+/// An XML text that the parser will take for UTF-16 or UTF-32, by its first bytes, as one byte a unit: what is not
+/// ASCII becomes an x. Nothing of a text in another encoding.
+[[nodiscard]] inline std::string narrowed(std::string_view text) {
+  using namespace std::string_view_literals;
+  struct Encoding {
+    std::string_view begin;
+    std::size_t width, low;  // bytes of a unit, and which of them holds ASCII
+  };
+  constexpr Encoding encodings[] = {{"\0\0\xfe\xff"sv, 4, 3}, {"\xff\xfe\0\0"sv, 4, 0}, {"\0\0\0<"sv, 4, 3},
+                                    {"<\0\0\0"sv, 4, 0},       {"\xfe\xff"sv, 2, 1},     {"\xff\xfe"sv, 2, 0},
+                                    {"\0<"sv, 2, 1},           {"<\0"sv, 2, 0}};
+  std::string narrow;
+  auto const* const found = std::find_if(std::begin(encodings), std::end(encodings),
+                                         [text](Encoding const& e) { return text.starts_with(e.begin); });
+  if (found == std::end(encodings)) return narrow;
+  narrow.reserve(text.size() / found->width);
+  for (std::size_t i = 0; i + found->width <= text.size(); i += found->width) {
+    auto unit = text.substr(i, found->width);
+    char const c = unit[found->low];
+    bool const is_ascii = std::count(unit.begin(), unit.end(), '\0') + (c != '\0') == std::ptrdiff_t(found->width);
+    narrow += is_ascii ? c : 'x';
+  }
+  return narrow;
+}
 
 /// Goes once over an XML text and counts, so that what would take a machine's memory is refused before it does. It must
 /// see what the parser sees: comments, data sections and values end where pugixml ends them. Text that is not

@@ -22,10 +22,11 @@ concept Predicts = requires(View const view, Prediction<Set> const prediction) {
   typename Other::FrameType;
 };
 
-/// Whether `W` is a `cambium::World`.
+/// Whether `W` is a `cambium::World`, or derived from one.
 template <class W>
 inline constexpr bool is_world = requires {
   typename W::Behaviors;
+  typename W::Execution;
   typename W::FrameType;
   typename W::View;
 };
@@ -43,29 +44,25 @@ template <class PredictionWorld, class... Others>
   return true;
 }
 
-template <class W>
-struct PartsOf;
-template <template <class...> class World, class Set, class ExecutionType, class DynamicsType, class ObserverType>
-struct PartsOf<World<Set, ExecutionType, DynamicsType, ObserverType>> {
-  using Execution = ExecutionType;
-  using Dynamics = DynamicsType;
-  using Observer = ObserverType;
-};
-
 /// True; says in a sentence where `PredictionWorld` differs from the world that is `Predicted`.
 template <class PredictionWorld, class Predicted>
 [[nodiscard]] constexpr bool check_prediction_world() {
   if constexpr (!std::is_same_v<PredictionWorld, Predicted>) {
-    using Given = PartsOf<PredictionWorld>;
-    using Needed = PartsOf<Predicted>;
-    static_assert(std::is_same_v<typename Given::Execution, typename Needed::Execution>,
+    constexpr bool same_execution =
+        std::is_same_v<typename PredictionWorld::Execution, typename Predicted::Execution>;
+    constexpr bool same_dynamics = std::is_same_v<typename PredictionWorld::Dynamics, typename Predicted::Dynamics>;
+    constexpr bool same_observer = std::is_same_v<typename PredictionWorld::Observer, typename Predicted::Observer>;
+    static_assert(same_execution,
                   "cambium: a planner's PredictionWorld has another execution model than the world that it plans in; "
                   "take World::WithBehaviors<BehaviorSet<...>> of that world");
-    static_assert(std::is_same_v<typename Given::Dynamics, typename Needed::Dynamics>,
+    static_assert(same_dynamics,
                   "cambium: a planner's PredictionWorld has another vehicle model than the world that it plans in; "
                   "take World::WithBehaviors<BehaviorSet<...>> of that world");
-    static_assert(std::is_same_v<typename Given::Observer, typename Needed::Observer>,
+    static_assert(same_observer,
                   "cambium: a planner's PredictionWorld must have cambium::PerfectObserver; "
+                  "take World::WithBehaviors<BehaviorSet<...>> of the world that it plans in");
+    static_assert(!same_execution || !same_dynamics || !same_observer,
+                  "cambium: a planner's PredictionWorld must be a cambium::World itself, no class derived from one; "
                   "take World::WithBehaviors<BehaviorSet<...>> of the world that it plans in");
   }
   return true;

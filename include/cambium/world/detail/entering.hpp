@@ -63,6 +63,9 @@ void check_numbers(EnteringSpec const& spec, std::string const& where);
 void enter_free_road(RosterBase& roster, std::shared_ptr<map::RoadCorridor const> const& given,
                      std::shared_ptr<map::RoadCorridor const> const& numbered);
 
+/// Throws `WorldError` for an outline that is no object's.
+void check_outline(geometry::Polygon const& outline);
+
 /// Puts a static object in the way; see `World::add_object`.
 ObjectId enter_object(Map const& map, RosterBase& roster, geometry::Polygon outline);
 
@@ -103,9 +106,9 @@ template <class World>
   typename World::Record record;
   record.state.speed = checked_speed(spec.speed, where);
   check_if_described(spec.behavior.given(), where);
-  check_if_described(spec.execution, where);
-  check_if_described(spec.dynamics, where);
-  check_observer(spec.observer, where);
+  check_if_described(spec.execution.given(), where);
+  check_if_described(spec.dynamics.given(), where);
+  check_observer(spec.observer.given(), where);
   auto const [road, lane, place] = entrance(map, roster, entering, where);
   if (is_too_large(map, spec.behavior.given(), spec.shape, *road)) refuse_too_large(where);
   record.lane = place;
@@ -116,7 +119,8 @@ template <class World>
   record.memory = Set::initial_memory(spec.behavior.given());
   if (Set::start_time(spec.behavior.given()) > time + same_time) record.status = AgentStatus::not_started;
   forget_past(record);
-  return {{id, spec.shape, road, spec.behavior.given(), spec.execution, spec.dynamics, spec.observer},
+  return {{id, spec.shape, road, spec.behavior.given(), spec.execution.given(), spec.dynamics.given(),
+           spec.observer.given()},
           entering_goal(map, spec.goal.given(), lane, where),
           record};
 }

@@ -73,7 +73,8 @@ namespace cambium::detail {
                                                      std::string const& where) {
   auto at = map::locate(road, 0, {spec.position.x(), spec.position.y(), spec.heading.value_or(0.0)});
   if (!(distance_outside(road, at) <= entering_radius))
-    throw WorldError(where, "its position is more than 5 m from its road", "enter on it");
+    throw WorldError(where, "its position is more than " + rounded_text(entering_radius) + " m from its road",
+                     "enter on it");
   if (!spec.heading) at.heading_error = 0.0;
   return at;
 }
@@ -101,6 +102,9 @@ CAMBIUM_COLD Entrance entrance(Map const& map, RosterBase const& roster, Enterin
 
 CAMBIUM_COLD Entrance entrance_again(Map const& map, RosterBase const& roster, EnteringSpec const& spec,
                                      std::size_t passed, std::string const& where) {
+  if (!is_valid(spec.road->corridors.front().pieces.front().lane))
+    throw WorldError(where, "it is on a free corridor, which no route leads on from",
+                     "remove the agent and add it with another road");
   Goal left = spec.goal;
   if (auto* const sequence = std::get_if<GoalSequence>(&left)) {
     auto& parts = sequence->parts;
@@ -123,10 +127,13 @@ CAMBIUM_COLD void enter_free_road(RosterBase& roster, std::shared_ptr<map::RoadC
   std::sort(roster.object_entries.begin(), roster.object_entries.end());
 }
 
-CAMBIUM_COLD ObjectId enter_object(Map const& map, RosterBase& roster, geometry::Polygon outline) {
+CAMBIUM_COLD void check_outline(geometry::Polygon const& outline) {
   double around = 0.0;
   for (std::size_t i = 0; i < outline.size(); ++i) around += (outline.edge(i).second - outline.edge(i).first).norm();
   if (around > 10'000.0) throw WorldError("object", "its outline is longer than 10 km", "give coordinates in metres");
+}
+
+CAMBIUM_COLD ObjectId enter_object(Map const& map, RosterBase& roster, geometry::Polygon outline) {
   StaticObject object{static_cast<ObjectId>(roster.next_object_id), std::move(outline)};
   auto const lanes = object_entries(map, roster.free_roads, object, static_cast<std::uint32_t>(roster.objects.size()));
   return roster.insert(std::move(object), lanes);

@@ -21,12 +21,9 @@
 
 namespace cambium::detail {
 
-/// Farthest that an agent with a route may enter from the path of one of its lanes [m].
-inline constexpr double path_radius = 2.5;
-
 /// The lane of `route` whose path comes nearest to `position`, a radian off `heading` counting as 3 m: a path that
-/// swings over to its neighbour counts as its own lane there. Throws `WorldError` where none comes near, or only
-/// against it.
+/// swings over to its neighbour counts as its own lane there. Throws `WorldError` where `position` is more than
+/// `entering_radius` outside of all of them, or all are against `heading`.
 [[nodiscard]] inline LaneId entering_lane(Map const& map, geometry::Point const& position,
                                           std::optional<double> heading, map::Route const& route,
                                           std::string const& where) {
@@ -38,15 +35,20 @@ inline constexpr double path_radius = 2.5;
       throw WorldError(where, "its route names a lane that the map does not have", "use Map::find_lane");
     auto const& lane = map.lane(id);
     auto const foot = lane.path.project(position);
-    double const distance = std::hypot(foot.lateral, std::max({-foot.s, foot.s - lane.length(), 0.0}));
+    auto const widths = lane.widths_at(std::clamp(foot.s, 0.0, lane.length()));
+    double const beyond = std::max({-foot.s, foot.s - lane.length(), 0.0});
+    double const outside = std::hypot(std::max({foot.lateral - widths.left, -foot.lateral - widths.right, 0.0}), beyond);
+    double const distance = std::hypot(foot.lateral, beyond);
     double const along = lane.path.pose(foot.s).heading;
     double const turn = heading ? std::abs(geometry::angle_difference(*heading, along)) : 0.0;
-    if (distance > path_radius || turn > geometry::pi / 2 || distance + 3.0 * turn >= smallest) continue;
+    if (outside > entering_radius || turn > geometry::pi / 2 || distance + 3.0 * turn >= smallest) continue;
     smallest = distance + 3.0 * turn;
     best = id;
   }
   if (!is_valid(best))
-    throw WorldError(where, "no lane of its route comes within 2.5 m of its position, in its direction",
+    throw WorldError(where,
+                     "no lane of its route comes within " + rounded_text(entering_radius) +
+                         " m of its position, in its direction",
                      "begin the route there");
   return best;
 }
@@ -61,7 +63,7 @@ inline constexpr double path_radius = 2.5;
       if (map.lane(hit.lane).drivable()) return hit.lane;
   }
   throw WorldError(
-      where, "no drivable lane within " + std::to_string(static_cast<int>(entering_radius)) + " m of its position",
+      where, "no drivable lane within " + rounded_text(entering_radius) + " m of its position",
       "enter on a lane and along its direction");
 }
 
@@ -151,7 +153,7 @@ class Destinations {
           lanes.push_back(hit.lane);
     if (lanes.empty())
       throw WorldError(*where_, "its goal, a polygon, is not near a drivable lane",
-                       "give the route too, or a goal on a lane");
+                       "give a goal on a lane, or a route to add the agent with");
     return lanes;
   }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 
 #include "cambium/core/ids.hpp"
@@ -37,8 +38,9 @@ void check_set_place(Map const& map, map::RoadCorridor const& road, map::LanePos
 /// Throws `WorldError` for a light that the map does not have and for numbers that are no plan.
 void require_light_plan(Map const& map, LightId id, map::LightPlan const& plan);
 
-/// Throws `WorldError` where a frame of `records` is not one of a roster of `agents`.
-void require_same_size(std::size_t records, std::size_t agents);
+/// Throws `WorldError` where a frame of `records`, of revision `is` of its roster, is not one of the roster of `agents`
+/// at revision `now`.
+void require_same_roster(std::size_t records, std::uint32_t is, std::size_t agents, std::uint32_t now);
 
 /// Throws `WorldError` where `steps_back` is none of the `kept` frames.
 void require_kept(std::size_t steps_back, std::size_t kept);
@@ -46,7 +48,7 @@ void require_kept(std::size_t steps_back, std::size_t kept);
 /// "agent 7", for messages.
 [[nodiscard]] std::string name_of(AgentId id);
 
-// What a world throws; `where` is mostly `name_of` an agent.
+/// Throws `WorldError` of an agent: what is wrong, and what to do about it.
 [[noreturn]] void refuse(AgentId id, char const* what, char const* remedy = "");
 
 }  // namespace cambium::detail

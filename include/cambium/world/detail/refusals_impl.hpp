@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <string>
 
 #include "cambium/core/error.hpp"
@@ -20,7 +21,7 @@ namespace cambium::detail {
 CAMBIUM_COLD double checked_speed(double speed, std::string const& where) {
   if (speed >= -standstill_noise && speed <= fastest) return std::max(speed, 0.0);
   throw WorldError(where, "its speed is " + rounded_text(speed) + ", not a number from 0 to 1000 m/s",
-                   "give metres per second along the heading; nobody drives in reverse: give 0 to who does");
+                   "give metres per second along the heading, 0 for a vehicle that reverses");
 }
 
 CAMBIUM_COLD double distance_outside(map::RoadCorridor const& road, map::LanePosition const& at) {
@@ -42,7 +43,8 @@ CAMBIUM_COLD void check_set_place(Map const& map, map::RoadCorridor const& road,
                                   std::string const& where) {
   if (double const distance = distance_outside(road, at); !(distance <= entering_radius))
     throw WorldError(where,
-                     "its position is " + rounded_text(distance) + " m from the lanes of its route; at most 5 m count",
+                     "its position is " + rounded_text(distance) + " m outside the lanes of its route, more than the " +
+                         rounded_text(entering_radius) + " m allowed",
                      "check the frame of the position, or give Reroute::yes for a new route from there");
   check_heading(map, road, at, where);
 }
@@ -56,12 +58,14 @@ CAMBIUM_COLD void require_light_plan(Map const& map, LightId id, map::LightPlan 
                      "give green_begin <= green_end within the cycle");
 }
 
-CAMBIUM_COLD void require_same_size(std::size_t records, std::size_t agents) {
-  if (records != agents)
-    throw WorldError(
-        "World",
-        "the frame has " + std::to_string(records) + " records, the roster " + std::to_string(agents) + " agents",
-        "restore frames of this world from since the last agent entered or left");
+CAMBIUM_COLD void require_same_roster(std::size_t records, std::uint32_t is, std::size_t agents, std::uint32_t now) {
+  if (records == agents && is == now) return;
+  throw WorldError("World",
+                   records != agents ? "the frame has " + std::to_string(records) + " records, the roster " +
+                                           std::to_string(agents) + " agents"
+                                     : "the frame is from before an agent changed places, route or model of behaviour",
+                   "restore frames of this world from since the last agent entered, left, was re-routed or got another "
+                   "model of behaviour");
 }
 
 CAMBIUM_COLD void require_kept(std::size_t steps_back, std::size_t kept) {

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <cstdint>
+
+/// Names of the map room, for headers that only pass references on.
+namespace cambium::map {
+
+class Map;
+struct Lane;
+struct LaneCorridor;
+struct RoadCorridor;
+struct ConflictArea;
+struct FreeCorridorOptions;
+struct StopLine;
+enum class RoadDirection : std::uint8_t;
+
+}  // namespace cambium::map
+
+namespace cambium {
+using map::Map;
+}

@@ -1,0 +1,11 @@
+// expect: cambium::World::set_behavior: this type is none of the Models of the world's cambium::BehaviorSet<Models...>
+#include "cambium/behavior/constant_acceleration.hpp"
+#include "cambium/behavior/idm_classic.hpp"
+#include "cambium/dynamics/single_track.hpp"
+#include "cambium/execution/interpolate.hpp"
+#include "cambium/world/world.hpp"
+
+void f(cambium::World<cambium::BehaviorSet<cambium::IdmClassic>, cambium::InterpolateExecution, cambium::SingleTrack>&
+           world) {
+  world.set_behavior(cambium::AgentId{0}, cambium::ConstantAcceleration{});
+}
