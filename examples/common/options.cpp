@@ -14,9 +14,9 @@ void add_options(CLI::App& program, Settings& settings, std::string const& map_s
     program.add_option(name, target, sentence)->type_name("N")->check(whole_number(low, high))->capture_default_str();
   };
   number("--scenarios", settings.scenarios, 1, 10'000'000, "situations to sample");
-  number("--seed", settings.seed, 0, ~std::uint64_t{0}, "of everything random");
+  number("--seed", settings.seed, 0, ~std::uint64_t{0}, "of all random numbers");
   number("--threads", settings.threads, 1, 1024, "to run them on; the results do not depend on it");
-  number("--steps", settings.steps, 1, 1'000'000, "of 0.2 s, after which a scenario is timed out");
+  number("--steps", settings.steps, 1, 1'000'000, "of 0.2 s; a scenario that takes more counts as timed out");
   number("--trajectories", settings.trajectories, 0, 10'000'000,
          "scenarios whose trajectories are written, besides the replayed one");
   program

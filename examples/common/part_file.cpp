@@ -38,7 +38,7 @@ extern "C" void on_interruption(int signal) {
 }
 
 std::string kept_message(std::filesystem::path const& path, std::filesystem::path const& part) {
-  return "what was done is in " + part.string() + "; " + path.string() + " is as it was before\n";
+  return "what was done is in " + part.string() + "; " + path.string() + " has not been touched\n";
 }
 
 std::size_t look_after(std::filesystem::path const& path, std::filesystem::path const& part) {
@@ -75,9 +75,9 @@ PartFile::PartFile(std::filesystem::path path, Unfinished fate)
     : path_(std::move(path)), fate_(fate), place_(pending.size()) {
   namespace fs = std::filesystem;
   std::error_code none;
-  auto const target = fs::is_symlink(path_, none) ? fs::weakly_canonical(path_, none) : path_;
-  if (fs::is_directory(target, none)) fail(EISDIR);
-  is_special_ = fs::exists(target, none) && !fs::is_regular_file(target, none);
+  if (fs::is_directory(path_, none)) fail(EISDIR);
+  is_special_ = fs::exists(path_, none) && !fs::is_regular_file(path_, none);  // /dev/stdout leads to what has no path
+  auto const target = !is_special_ && fs::is_symlink(path_, none) ? fs::weakly_canonical(path_, none) : path_;
   if (is_special_) {
     part_ = target;
     file_ = std::fopen(part_.c_str(), "wb");
@@ -110,8 +110,8 @@ void PartFile::append(std::string_view text, std::string_view closing) {
     fail(errno);
   write(text);
   closing_ = closing;
-  if (closing.empty() || is_special_) return;
-  write(closing);
+  if (closing.empty()) return;
+  if (!is_special_) write(closing);
   if (std::fflush(file_) != 0) fail(errno);  // to be there, whatever ends the program
   if (place_ < pending.size()) pending[place_].is_kept = is_kept();
 }

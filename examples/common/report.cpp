@@ -111,12 +111,11 @@ void examples::write_summary(std::filesystem::path const& file, Settings const& 
 }
 
 std::string examples::explained(Words const& words) {
-  std::string text =
-      "  success: " + words.success +
-      " before time was out, and nobody collided\n"
-      "  ego off-road: a part of the ego was beyond the lanes to drive on, as that of a truck may be in\n"
-      "    a tight bend, where its rear axle keeps to the lane\n"
-      "  in brackets: the 95 % interval of the share (Wilson)\n";
+  std::string text = "  success: " + words.success +
+                     " in time, and nobody collided\n"
+                     "  ego off-road: a part of the ego was beyond the drivable lanes, as that of a truck may be in\n"
+                     "    a tight bend, where its rear axle keeps to the lane\n"
+                     "  in brackets: the 95 % interval of the share (Wilson)\n";
   for (auto const& count : words.counts)
     if (!count.meaning.empty()) text += "  " + count.name + ": " + count.meaning + "\n";
   return text;
@@ -163,8 +162,7 @@ void examples::print_table(Settings const& settings, Totals const& t, double sec
               "agent-steps", steps, seconds, steps / seconds, static_cast<unsigned long long>(settings.threads),
               settings.threads == 1 ? "" : "s");
   if (t.time_out > 0)
-    std::printf("  %s ended by the limit of %llu steps (%.0f s); --steps raises it\n",
-                counted(t.time_out, "scenario").c_str(), static_cast<unsigned long long>(settings.steps),
-                static_cast<double>(settings.steps) * dt);
+    std::printf("  %s ended by the limit of %s (%g s); --steps raises it\n", counted(t.time_out, "scenario").c_str(),
+                counted(settings.steps, "step").c_str(), static_cast<double>(settings.steps) * dt);
   std::printf("%s\n", explained(words).c_str());
 }

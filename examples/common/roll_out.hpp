@@ -93,7 +93,7 @@ class Film {
 
   [[nodiscard]] cambium::Recording develop(Outcome const& outcome) {
     for (auto const id : {outcome.collided_first, outcome.collided_second})
-      if (is_valid(id)) recorder_.show_as(id, cambium::RecordedAgentKind::collided, id == outcome.ego ? "ego" : "");
+      if (is_valid(id) && id != outcome.ego) recorder_.show_as(id, cambium::RecordedAgentKind::collided);
     return std::move(recorder_.recording());
   }
 

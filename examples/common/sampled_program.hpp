@@ -28,7 +28,9 @@ namespace examples {
 [[nodiscard]] inline std::string in_words(Outcome const& outcome, Words const& words) {
   if (outcome.kind == Outcome::Kind::success) return words.success;
   if (outcome.kind == Outcome::Kind::time_out) return "time ran out";
-  auto const name = [&](cambium::AgentId id) { return (id == outcome.ego ? "the ego, agent " : "agent ") + to_string(id); };
+  auto const name = [&](cambium::AgentId id) {
+    return (id == outcome.ego ? "the ego, agent " : "agent ") + to_string(id);
+  };
   return name(outcome.collided_first) + ", and " + name(outcome.collided_second) + " collide";
 }
 

@@ -20,6 +20,7 @@
 #include "../common/command_line.hpp"
 #include "../common/on_threads.hpp"
 #include "../common/part_file.hpp"
+#include "../common/report.hpp"
 #include "plot.hpp"
 #include "scenario.hpp"
 
@@ -85,8 +86,8 @@ void print(lane_change::Row const& row) {
   };
   char steps[16];
   std::snprintf(steps, sizeof steps, "%.1f", row.mean_steps);
-  std::printf("%-8s %6zu  %4.0f %%  %s%s%s %5s   %7.0f\n", row.preset.c_str(), row.iterations,
-              100 * row.variation, share(row.success).c_str(), share(row.collision).c_str(), share(row.time_out).c_str(),
+  std::printf("%-8s %6zu  %4.0f %%  %s%s%s %5s   %7.0f\n", row.preset.c_str(), row.iterations, 100 * row.variation,
+              share(row.success).c_str(), share(row.collision).c_str(), share(row.time_out).c_str(),
               row.success > 0 ? steps : "-", row.iterations_per_second);
   std::fflush(stdout);
 }
@@ -130,7 +131,7 @@ void add_options(CLI::App& program, Settings& settings) {
         ->capture_default_str();
   };
   number("--scenarios", settings.scenarios, 1, 1'000'000, "of each cell");
-  number("--seed", settings.seed, 0, ~std::uint64_t{0} >> 1, "of everything random");
+  number("--seed", settings.seed, 0, ~std::uint64_t{0} >> 1, "of all random numbers");
   number("--threads", settings.threads, 1, 1024, "to run them on; outcomes do not depend on it");
   examples::add_list(program, "--iterations", settings.iterations, examples::whole_number(1, 100'000'000),
                      "of a search, a column each")

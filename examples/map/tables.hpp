@@ -42,7 +42,7 @@ inline std::string poses(cb::Map const& map, std::string const& file, bool in_sp
     auto const p = lane_point(road, s, lane);
     if (!p)
       rows.fail_at(i, "road " + road.name + " has no lane " + std::to_string(lane) + " at s " + rows.word(i, 1),
-                   "ask for lanes that it has there, but lane 0");
+                   "name a lane it has there, other than lane 0");
     text += csv_cell(road.name) + ',' + digits(s) + ',' + std::to_string(lane);
     for (double const value :
          {p->center.x, p->center.y, cb::geometry::normalize_angle(p->center.heading), p->width, p->t, p->reference.x,

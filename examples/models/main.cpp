@@ -139,8 +139,7 @@ void print_shapes() {
     char const* name;
     Shape shape;
   };
-  std::cout
-      << "| shape, in `geometry` | length, width [m] | of that ahead of the reference point [m] |\n|---|---|---|\n";
+  std::cout << "| shape, in `geometry` | length, width [m] | reach to the front [m] |\n|---|---|---|\n";
   for (auto const& [name, shape] :
        {Named{"car", car()}, Named{"van", van()}, Named{"truck", truck()},
         Named{"articulated_truck", articulated_truck()}, Named{"bus", bus()}, Named{"motorcycle", motorcycle()},

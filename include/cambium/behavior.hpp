@@ -1,5 +1,8 @@
 #pragma once
 
+// First: it says which language and flags cambium needs.
+#include "cambium/core/macros.hpp"
+
 #include "cambium/behavior/acc.hpp"
 #include "cambium/behavior/adaptive_cruise_control.hpp"
 #include "cambium/behavior/bark.hpp"

@@ -2,6 +2,9 @@
 /// cambium/map/opendrive.hpp (files; needs pugixml), cambium/map/map_builder.hpp (maps in code) and cambium/viewer.hpp.
 #pragma once
 
+// First: it says which language and flags cambium needs.
+#include "cambium/core/macros.hpp"
+
 #include "cambium/behavior.hpp"
 #include "cambium/core.hpp"
 #include "cambium/dynamics.hpp"

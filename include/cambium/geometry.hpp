@@ -2,6 +2,9 @@
 /// union of polygons (Boost.Geometry) is apart: `cambium/geometry/polygon_union.hpp`.
 #pragma once
 
+// First: it says which language and flags cambium needs.
+#include "cambium/core/macros.hpp"
+
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/box.hpp"
 #include "cambium/geometry/box_tree.hpp"

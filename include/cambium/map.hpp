@@ -5,6 +5,9 @@
 /// `road_surface.hpp` (Eigen) and `road_area.hpp` (Boost.Geometry) tell where lanes lie in space, and their union.
 #pragma once
 
+// First: it says which language and flags cambium needs.
+#include "cambium/core/macros.hpp"
+
 #include "cambium/map/build_corridor.hpp"
 #include "cambium/map/corridor.hpp"
 #include "cambium/map/cubic.hpp"

@@ -1,6 +1,9 @@
 /// The room `planner`: tree search over copied worlds, and over any game; planners that simulate or sample courses.
 #pragma once
 
+// First: it says which language and flags cambium needs.
+#include "cambium/core/macros.hpp"
+
 #include "cambium/planner/belief.hpp"
 #include "cambium/planner/exp3.hpp"
 #include "cambium/planner/frenet_candidate.hpp"

@@ -1,6 +1,9 @@
 /// The room `world`: the world and its frames, what an agent sees of it, neighbours, predictions, static objects.
 #pragma once
 
+// First: it says which language and flags cambium needs.
+#include "cambium/core/macros.hpp"
+
 #include "cambium/world/agent_spec.hpp"
 #include "cambium/world/frame.hpp"
 #include "cambium/world/observed_world.hpp"

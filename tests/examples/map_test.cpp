@@ -307,7 +307,8 @@ TEST_CASE("a checkout that belongs to another user is one sentence") {
   auto const err = folder.path() / "err";
   std::string const as = std::system("test $(id -u) = 0") == 0 ? "setpriv --reuid=65534 --clear-groups " : "";
   if (!as.empty() && std::system((as + "true 2>/dev/null").c_str()) != 0) {
-    return support::skip("the superuser may write everywhere, and there is no setpriv (of util-linux) to be another user");
+    return support::skip(
+        "the superuser may write everywhere, and there is no setpriv (of util-linux) to be another user");
   }
   auto const script = "source " + browser::quoted((root / "tests/setup.sh").string()) + "; configure EXAMPLES";
   CHECK(std::system((as + "bash -c " + browser::quoted(script) + " 2>" + browser::quoted(err.string())).c_str()) != 0);

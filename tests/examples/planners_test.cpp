@@ -82,6 +82,37 @@ TEST_CASE("an interrupted lane change leaves an earlier file as it is, and says 
   CHECK(err.find("left") == std::string::npos);  // no progress where nobody looks
 }
 
+TEST_CASE("a lane change that is interrupted before its first row leaves nothing behind") {
+  Program const program("lane_change");
+  if (!program.is_there()) return;
+  browser::TemporaryFolder const folder;
+  auto const file = folder.path() / "rows.json", part = folder.path() / "rows.json.part";
+  auto const command = browser::quoted((std::filesystem::path(CAMBIUM_EXAMPLES_DIR) / "lane_change").string()) +
+                       " --scenarios 2 --iterations 90000000 --json " + browser::quoted(file.string()) + " --out " +
+                       browser::quoted(folder.path().string()) + " >/dev/null 2>&1 & while kill -0 $! && ! test -e " +
+                       browser::quoted(part.string()) + "; do sleep 0.05; done 2>/dev/null; kill -TERM $!; wait $!";
+  CHECK(std::system(("bash -c " + browser::quoted(command) + " 2>/dev/null").c_str()) != 0);
+  CHECK_FALSE(std::filesystem::exists(part));
+  CHECK_FALSE(std::filesystem::exists(file));
+}
+
+TEST_CASE("rows go to a pipe, too") {
+  Program const program("lane_change");
+  if (!program.is_there()) return;
+  browser::TemporaryFolder const folder;
+  auto const out = folder.path() / "piped";
+  auto const command =
+      "cd " + browser::quoted(folder.path().string()) + " && " +
+      browser::quoted((std::filesystem::path(CAMBIUM_EXAMPLES_DIR) / "lane_change").string()) +
+      " --scenarios 2 --iterations 10 --variation 0 --json /dev/stderr --out results 2>&1 >/dev/null | cat >" +
+      browser::quoted(out.string());
+  CHECK(std::system(("bash -o pipefail -c " + browser::quoted(command)).c_str()) == 0);
+  auto const rows = nlohmann::json::parse(content_of(out), nullptr, false);
+  REQUIRE(rows.is_array());
+  CHECK(rows.size() == 1);
+  CHECK_FALSE(std::filesystem::exists(folder.path() / ".part"));
+}
+
 TEST_CASE("the lane change example names what is wrong with its options") {
   Program const program("lane_change");
   if (!program.is_there()) return;

@@ -502,15 +502,17 @@ TEST_CASE("a file beyond the limits is refused before it takes memory, with limi
 }
 
 TEST_CASE("a file with a fault at each element gives a bounded list of findings") {
-  std::string const road = "<road id='0' length='10' junction='-1'><planView><geometry s='0' x='0' y='0' hdg='0' "
-                           "length='10'><line/></geometry></planView><lanes><laneSection s='0'><right><lane id='-1' "
-                           "type='driving'><width sOffset='0' a='3' b='0' c='0' d='0'/></lane></right></laneSection>"
-                           "</lanes></road>";
+  std::string const road =
+      "<road id='0' length='10' junction='-1'><planView><geometry s='0' x='0' y='0' hdg='0' "
+      "length='10'><line/></geometry></planView><lanes><laneSection s='0'><right><lane id='-1' "
+      "type='driving'><width sOffset='0' a='3' b='0' c='0' d='0'/></lane></right></laneSection>"
+      "</lanes></road>";
   std::string text = "<OpenDRIVE>" + road;
   for (std::size_t i = 0; i <= cambium::map::most_diagnostics; ++i) text += "<road/>";
   auto const loaded = cambium::parse_opendrive(text + "</OpenDRIVE>");
   CHECK(loaded.map->roads().size() == 1);
-  CHECK(loaded.diagnostics.size() <= cambium::map::most_diagnostics + 10);  // of the map itself, and what the reader left out
+  CHECK(loaded.diagnostics.size() <=
+        cambium::map::most_diagnostics + 10);  // of the map itself, and what the reader left out
   std::size_t last = 0;
   for (auto const& d : loaded.diagnostics) last += d.sentence.find("more to say of this file") != std::string::npos;
   CHECK(last == 1);
@@ -522,8 +524,10 @@ TEST_CASE("a file in UTF-16 or UTF-32 is read as one in UTF-8, and its limits ho
     std::size_t width, low;
     std::string mark;
   };
-  for (Encoding const& e : {Encoding{"UTF-16LE", 2, 0, "\xff\xfe"}, {"UTF-16BE", 2, 1, "\xfe\xff"},
-                            {"UTF-16LE, no mark", 2, 0, ""}, {"UTF-32LE", 4, 0, std::string("\xff\xfe\0\0", 4)},
+  for (Encoding const& e : {Encoding{"UTF-16LE", 2, 0, "\xff\xfe"},
+                            {"UTF-16BE", 2, 1, "\xfe\xff"},
+                            {"UTF-16LE, no mark", 2, 0, ""},
+                            {"UTF-32LE", 4, 0, std::string("\xff\xfe\0\0", 4)},
                             {"UTF-32BE", 4, 3, std::string("\0\0\xfe\xff", 4)}}) {
     CAPTURE(e.name);
     auto const widened = [&e](std::string const& text) {

@@ -231,7 +231,8 @@ TEST_CASE("a turn between ends that meet already says which ones, and nothing is
   builder.add_road(straight("1", {0, 0, 0}, 40, 0, 1));
   builder.add_road(straight("2", {40, 0, 0}, 40, 0, 1));
   CHECK_THROWS_WITH_AS(builder.add_turn("9", {"1", end}, {"2", start}),
-                       doctest::Contains("turn from road 1 to road 2: its ends are less than a millimetre apart"), MapError);
+                       doctest::Contains("turn from road 1 to road 2: its ends are less than a millimetre apart"),
+                       MapError);
   CHECK(builder.document().roads.size() == 2);
 }
 

@@ -24,7 +24,8 @@ inline std::optional<std::filesystem::path> root() {
   bool const is_set = set != nullptr && *set != '\0';
   std::filesystem::path const folder = is_set ? set : std::filesystem::path(CAMBIUM_SOURCE_DIR) / ".." / "shared";
   if (std::filesystem::exists(folder / "opendrive")) return folder;
-  support::skip(is_set ? "no corpus where CAMBIUM_CORPUS says it is, in " + folder.string() : "no corpus: set CAMBIUM_CORPUS");
+  support::skip(is_set ? "no corpus where CAMBIUM_CORPUS says it is, in " + folder.string()
+                       : "no corpus: set CAMBIUM_CORPUS");
   return std::nullopt;
 }
 

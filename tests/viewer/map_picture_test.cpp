@@ -51,18 +51,18 @@ TEST_CASE("a picture's width is a number of pixels, and a map of nothing has a p
 TEST_CASE("the legend names what the picture has, and nothing else") {
   auto const loaded = two_roads();
   auto const all = cambium::svg_map_picture(*loaded.map);
-  for (char const* entry : {"lane to drive on", "lane of type sidewalk", "travel direction"})
+  for (char const* entry : {"drivable lane", "lane of type sidewalk", "travel direction"})
     CHECK(count(all, std::string(">") + entry + "<") == 1);
   CHECK_FALSE(has(all, "of type median"));
   CHECK_FALSE(has(all, "in a junction"));
   CHECK_FALSE(has(all, ">leads to<"));
   auto const bare = cambium::svg_map_picture(*loaded.map, {.arrows = false, .links = false, .overlaps = false});
-  for (char const* entry : {"travel direction", "leads to", "merges with one"}) CHECK_FALSE(has(bare, entry));
+  for (char const* entry : {"travel direction", "leads to", "merges with another"}) CHECK_FALSE(has(bare, entry));
   CHECK_FALSE(has(cambium::svg_map_picture(*loaded.map, {.legend = false}), "class=\"legend\""));
   CHECK(count(cambium::html_map_picture(*loaded.map), "class=\"legend\"") == 1);
   auto const junction = cambium::load_opendrive(CAMBIUM_SOURCE_DIR "/maps/intersection_4way.xodr");
   auto const crossing = cambium::svg_map_picture(*junction.map);
-  CHECK(has(crossing, "ground of two lanes"));
+  CHECK(has(crossing, "shared ground"));
   CHECK(has(crossing, ">leads to<"));
   CHECK(count(crossing, "<title>ground of ") == 52);
 }
@@ -74,8 +74,8 @@ TEST_CASE("the legend names those overlaps and ends that are drawn") {
     auto const map = support::own_map(std::string(name) + ".xodr");
     auto const picture = cambium::svg_map_picture(*map);
     for (auto const& [entry, drawn] : {std::pair("crosses another lane", ": crossing with "),
-                                       {"merges with one", ": merge with "},
-                                       {"splits from one", ": split with "},
+                                       {"merges with another", ": merge with "},
+                                       {"splits from another", ": split with "},
                                        {"begins, no way in", " begins here<"},
                                        {"ends, no way on", " ends here<"}}) {
       CAPTURE(entry);

@@ -332,8 +332,8 @@ TEST_CASE("a state that add refuses set_state refuses with the same words, and b
       Sim(world).add({.position = {state.x, state.y},
                       .heading = state.heading,
                       .speed = state.speed,
-                      .route = cb::map::Route{.lanes = {world.map().find_lane("1", 50.0, -1),
-                                                        world.map().find_lane("1", 50.0, -2)}}});
+                      .route = cb::map::Route{
+                          .lanes = {world.map().find_lane("1", 50.0, -1), world.map().find_lane("1", 50.0, -2)}}});
     });
     auto const setting = error_of([&] { world.set_state(id, state); });
     CHECK_MESSAGE(on_route.empty() == said.empty(), on_route);
@@ -404,7 +404,8 @@ cb::State const the_other_way{.x = 600, .y = 1.75, .heading = cb::geometry::pi, 
 }  // namespace
 
 TEST_CASE("an agent that is re-routed in the middle of a lane change has forgotten it, for lanes have other numbers") {
-  using World = cb::World<cb::BehaviorSet<cb::Mobil, cb::ConstantAcceleration>, cb::InterpolateExecution, cb::SingleTrack>;
+  using World =
+      cb::World<cb::BehaviorSet<cb::Mobil, cb::ConstantAcceleration>, cb::InterpolateExecution, cb::SingleTrack>;
   World world(three_and_one());
   auto const id =
       world.add({.position = {100, -8.75}, .speed = 20, .behavior = cb::Mobil{.idm = {.desired_speed = 25}}});

@@ -53,11 +53,11 @@ using WorkspaceOf = typename detail::WorkspaceOf<B>::type;
 /// calls it once a step, on a view of frame k; `memory` is the agent's own, lives in the frame and is copied with it.
 /// Where that holds how far the vehicle is on a course, `memory.fell_short(way, left_course)` puts it right: see
 /// `fell_short`. It may have `double start_time() const` [s]: an agent that is added before is in traffic from then on
-/// only. One that needs much memory to plan, as a search, names a default constructible `Workspace`, and takes a reference to
-/// one after `dt`: it belongs to the world, is used by agent after agent, is not copied, and what it holds must not
-/// change what is planned.
+/// only. One that needs much memory to plan, as a search, names a default constructible `Workspace`, and takes a
+/// reference to one after `dt`: it belongs to the world, is used by agent after agent, is not copied, and what it holds
+/// must not change what is planned.
 template <class B>
-concept BehaviorModel = std::copyable<B> && std::copyable<MemoryOf<B>> && std::default_initializable<MemoryOf<B>> && (
+concept BehaviorModel = std::copyable<B> && std::copyable<MemoryOf<B>> && std::default_initializable<MemoryOf<B>> &&(
     requires(B const behavior, ViewArchetype const view, MemoryOf<B> memory, double dt) {
       { behavior.plan(view, memory, dt) } -> std::same_as<Plan<ViewArchetype>>;
     } ||
@@ -75,8 +75,9 @@ struct WithAnotherPlan : B, HasPlan {};
 /// ambiguous. (Of a final struct nobody can tell.)
 template <class B>
 [[nodiscard]] constexpr bool names_plan() {
-  if constexpr (std::is_class_v<B> && !std::is_final_v<B>)
-    return !requires { &WithAnotherPlan<B>::plan; };
+  if constexpr (std::is_class_v<B> && !std::is_final_v<B>) return !requires {
+      &WithAnotherPlan<B>::plan;
+    };
   else
     return std::is_final_v<B>;
 }
@@ -97,8 +98,7 @@ template <class B>
   using Workspace = cambium::WorkspaceOf<B>;
   constexpr bool is_copyable = std::is_class_v<B> && std::copyable<B>;
   constexpr bool remembers = std::copyable<Memory> && std::default_initializable<Memory>;
-  static_assert(is_copyable,
-                "cambium::BehaviorSet<...>: a behaviour must be a copyable struct, named without const");
+  static_assert(is_copyable, "cambium::BehaviorSet<...>: a behaviour must be a copyable struct, named without const");
   static_assert(!is_copyable || remembers,
                 "cambium::BehaviorSet<...>: a behaviour's Memory must be copyable and default constructible, for it is "
                 "copied with the frame");
@@ -113,8 +113,9 @@ template <class B>
                   "cambium::BehaviorSet<...>: a behaviour's plan must be const: what it remembers is its Memory");
     static_assert(
         !has_plan || plans,
-        "cambium::BehaviorSet<...>: a behaviour's plan must take (View const& view, Memory& memory, double dt), "
-        "View being a template parameter, and memory a NoMemory& where it names no Memory");
+        "cambium::BehaviorSet<...>: a behaviour's plan must take (View const& view, Memory& memory, double dt) and be "
+        "public: View is a template parameter, Memory the struct of that name in the behaviour, or else "
+        "cambium::NoMemory");
     static_assert(!plans_const,
                   "cambium::BehaviorSet<...>: a behaviour's plan must return cambium::Plan<View>, the type View being "
                   "that of what it is called with");

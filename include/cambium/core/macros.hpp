@@ -1,5 +1,9 @@
 #pragma once
 
+#if (defined(_MSVC_LANG) ? _MSVC_LANG : __cplusplus) < 202002L
+#error "cambium needs C++20: compile with -std=c++20, with CMake by target_link_libraries(... cambium::cambium)"
+#endif
+
 #if defined(__FAST_MATH__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
 #error \
     "cambium needs IEEE arithmetic: compile without -ffast-math and -ffinite-math-only (checks for NaN would be gone)"

@@ -11,8 +11,8 @@ inline constexpr std::size_t largest_map_file = std::size_t{512} << 20;
 /// is for user data.
 inline constexpr std::size_t deepest_element = 256;
 
-/// Most elements and attributes, together, of an OpenDRIVE file. Each takes up to 300 B of memory, so a file at the limit
-/// 4.5 GB. Maps have one every 20 B of their file, or fewer.
+/// Most elements and attributes, together, of an OpenDRIVE file. Each takes up to 300 B of memory, so a file at the
+/// limit 4.5 GB. Maps have one every 20 B of their file, or fewer.
 inline constexpr std::size_t most_elements = 15'000'000;
 
 /// Most diagnostics that reading a file gives; the last one says that there are more.

@@ -16,7 +16,7 @@
 namespace cambium {
 
 namespace detail {
-enum class SpecPart { behavior, execution, dynamics, observer, goal, id };
+enum class SpecPart { behavior, goal, id };
 
 /// A part of an `AgentSpecOf`, of type `Value`. It can be made of any type, so that a wrong one is an error with a
 /// sentence (and not with the compiler's, which names no part).
@@ -38,15 +38,6 @@ struct Given : Value {
     static_assert(fits || part != SpecPart::behavior,
                   "cambium::World::AgentSpec::behavior: this type is none of the Models of the world's "
                   "cambium::BehaviorSet<Models...>; add it there");
-    static_assert(fits || part != SpecPart::execution,
-                  "cambium::World::AgentSpec::execution: this type is not the Execution of the world "
-                  "World<Set, Execution, Dynamics, Observer>, nor one of its ExecutionSet");
-    static_assert(fits || part != SpecPart::dynamics,
-                  "cambium::World::AgentSpec::dynamics: this type is not the Dynamics of the world "
-                  "World<Set, Execution, Dynamics, Observer>, nor one of its DynamicSet");
-    static_assert(fits || part != SpecPart::observer,
-                  "cambium::World::AgentSpec::observer: this type is not the Observer of the world "
-                  "World<Set, Execution, Dynamics, Observer>, nor one of its ObserverSet");
     static_assert(fits || part != SpecPart::goal,
                   "cambium::World::AgentSpec::goal: this type is no cambium::Goal (cambium/goal/goal.hpp lists them); "
                   "judge by an evaluator of your own what these cannot say");
@@ -73,9 +64,9 @@ struct AgentSpecOf {
   detail::Given<Goal, detail::SpecPart::goal> goal{};
   std::optional<map::Route> route{};                ///< else the shortest to the goal; without a goal straight on
   std::shared_ptr<map::RoadCorridor const> road{};  ///< instead of a route: see `map::build_free_corridor`
-  detail::Given<Execution, detail::SpecPart::execution> execution{};
-  detail::Given<Dynamics, detail::SpecPart::dynamics> dynamics{};
-  detail::Given<Observer, detail::SpecPart::observer> observer{};
+  Execution execution{};
+  Dynamics dynamics{};
+  Observer observer{};
   detail::Given<std::optional<AgentId>, detail::SpecPart::id> id{};  ///< else the next free one
 };
 

@@ -265,12 +265,13 @@ class World {
 
   /// Sets the agent's state, as a planner does with what it perceives, and puts it (back) into traffic. It stays on its
   /// route: where it was, if that fits, else in the lane corridor that comes nearest. With `Reroute::yes` it gets the
-  /// route that `add` would give it there, to what is left of its goal (straight on where nothing is), and its behaviour
-  /// forgets what it remembers, which is of the old route. Throws `WorldError` (the world is unchanged) where the agent
-  /// is unknown, and for what `add` refuses, too: a number that is not finite, a speed that is not from 0 to 1000 m/s
-  /// (measured ones down to -0.1 count as 0: speeds along the heading are never negative), a place more than 5 m outside
-  /// the lanes of its route, a heading against their direction; with `Reroute::yes` also where there is no route to the
-  /// goal, and for an agent on a free corridor. O(lanes of the route); with `Reroute::yes` O(agents), plus routing.
+  /// route that `add` would give it there, to what is left of its goal (straight on where nothing is), and its
+  /// behaviour forgets what it remembers, which is of the old route. Throws `WorldError` (the world is unchanged) where
+  /// the agent is unknown, and for what `add` refuses, too: a number that is not finite, a speed that is not from 0 to
+  /// 1000 m/s (measured ones down to -0.1 count as 0: speeds along the heading are never negative), a place more than 5
+  /// m outside the lanes of its route, a heading against their direction; with `Reroute::yes` also where there is no
+  /// route to the goal, and for an agent on a free corridor. O(lanes of the route); with `Reroute::yes` O(agents), plus
+  /// routing.
   void set_state(AgentId id, State state, Reroute reroute = Reroute::no) {
     auto const slot = slot_of(id);
     auto const where = detail::name_of(id);

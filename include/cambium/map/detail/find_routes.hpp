@@ -28,8 +28,7 @@ struct Closed {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> steps;  ///< (from, to), each once: a few, all from one place
 
   [[nodiscard]] bool holds(std::uint32_t from, std::uint32_t to) const {
-    return (!places.empty() && places[to]) ||
-           std::find(steps.begin(), steps.end(), std::pair(from, to)) != steps.end();
+    return (!places.empty() && places[to]) || std::find(steps.begin(), steps.end(), std::pair(from, to)) != steps.end();
   }
 
   void close(std::uint32_t from, std::uint32_t to) {
@@ -122,8 +121,7 @@ class YenSearch {
       auto const here = last.begin() + static_cast<std::ptrdiff_t>(i);
       closed.steps.clear();
       for (auto const& [cost, path] : found)
-        if (path.size() > i + 1 && std::equal(last.begin(), here + 1, path.begin()))
-          closed.close(path[i], path[i + 1]);
+        if (path.size() > i + 1 && std::equal(last.begin(), here + 1, path.begin())) closed.close(path[i], path[i + 1]);
       offer(Path(last.begin(), here), *here, closed);
       closed.places[*here] = true;
     }

@@ -27,7 +27,8 @@ namespace cambium::map::detail {
   errno = 0;
   std::ifstream file(path, std::ios::binary);
   if (!file)
-    throw MapError(path, std::string("the file cannot be opened (") + std::strerror(errno) + ")", "check the path");
+    throw MapError(path.empty() ? "''" : path, std::string("the file cannot be opened (") + std::strerror(errno) + ")",
+                   "check the path");
   constexpr std::size_t chunk = std::size_t{1} << 20;  // [B]
   auto const check_size = [&](std::size_t size, char const* at_least) {
     if (size > largest_map_file)

@@ -21,8 +21,8 @@ namespace cambium::map::detail {
     std::size_t width, low;  // bytes of a unit, and which of them holds ASCII
   };
   constexpr Encoding encodings[] = {{"\0\0\xfe\xff"sv, 4, 3}, {"\xff\xfe\0\0"sv, 4, 0}, {"\0\0\0<"sv, 4, 3},
-                                    {"<\0\0\0"sv, 4, 0},       {"\xfe\xff"sv, 2, 1},     {"\xff\xfe"sv, 2, 0},
-                                    {"\0<"sv, 2, 1},           {"<\0"sv, 2, 0}};
+                                    {"<\0\0\0"sv, 4, 0},      {"\xfe\xff"sv, 2, 1},     {"\xff\xfe"sv, 2, 0},
+                                    {"\0<"sv, 2, 1},          {"<\0"sv, 2, 0}};
   std::string narrow;
   auto const* const found = std::find_if(std::begin(encodings), std::end(encodings),
                                          [text](Encoding const& e) { return text.starts_with(e.begin); });

@@ -48,8 +48,7 @@ template <class PredictionWorld, class... Others>
 template <class PredictionWorld, class Predicted>
 [[nodiscard]] constexpr bool check_prediction_world() {
   if constexpr (!std::is_same_v<PredictionWorld, Predicted>) {
-    constexpr bool same_execution =
-        std::is_same_v<typename PredictionWorld::Execution, typename Predicted::Execution>;
+    constexpr bool same_execution = std::is_same_v<typename PredictionWorld::Execution, typename Predicted::Execution>;
     constexpr bool same_dynamics = std::is_same_v<typename PredictionWorld::Dynamics, typename Predicted::Dynamics>;
     constexpr bool same_observer = std::is_same_v<typename PredictionWorld::Observer, typename Predicted::Observer>;
     static_assert(same_execution,

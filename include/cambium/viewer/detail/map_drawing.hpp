@@ -88,7 +88,7 @@ class MapDrawing {
     auto const add = [&entries](bool is_there, LegendEntry const& entry) {
       if (is_there) entries.push_back(entry);
     };
-    entries.push_back({LegendShape::area, "driving", "lane to drive on"});
+    entries.push_back({LegendShape::area, "driving", "drivable lane"});
     if (has_junction) entries.push_back({LegendShape::area, "driving junction", "in a junction"});
     for (auto const type : types) entries.push_back({LegendShape::area, type, "lane of type " + std::string(type)});
     if (options_.arrows) entries.push_back({LegendShape::arrow, "", "travel direction"});
@@ -99,9 +99,9 @@ class MapDrawing {
       return options_.overlaps && has_overlap[static_cast<std::size_t>(kind)];
     };
     add(overlaps(map::OverlapKind::crossing), {LegendShape::stretch, "crossing", "crosses another lane"});
-    add(overlaps(map::OverlapKind::merge), {LegendShape::stretch, "merge", "merges with one"});
-    add(overlaps(map::OverlapKind::split), {LegendShape::stretch, "split", "splits from one"});
-    if (options_.conflicts && has_junction) entries.push_back({LegendShape::conflict, "", "ground of two lanes"});
+    add(overlaps(map::OverlapKind::merge), {LegendShape::stretch, "merge", "merges with another"});
+    add(overlaps(map::OverlapKind::split), {LegendShape::stretch, "split", "splits from another"});
+    if (options_.conflicts && has_junction) entries.push_back({LegendShape::conflict, "", "shared ground"});
     return map_legend(entries, width);
   }
 

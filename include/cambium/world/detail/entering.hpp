@@ -106,9 +106,9 @@ template <class World>
   typename World::Record record;
   record.state.speed = checked_speed(spec.speed, where);
   check_if_described(spec.behavior.given(), where);
-  check_if_described(spec.execution.given(), where);
-  check_if_described(spec.dynamics.given(), where);
-  check_observer(spec.observer.given(), where);
+  check_if_described(spec.execution, where);
+  check_if_described(spec.dynamics, where);
+  check_observer(spec.observer, where);
   auto const [road, lane, place] = entrance(map, roster, entering, where);
   if (is_too_large(map, spec.behavior.given(), spec.shape, *road)) refuse_too_large(where);
   record.lane = place;
@@ -119,8 +119,7 @@ template <class World>
   record.memory = Set::initial_memory(spec.behavior.given());
   if (Set::start_time(spec.behavior.given()) > time + same_time) record.status = AgentStatus::not_started;
   forget_past(record);
-  return {{id, spec.shape, road, spec.behavior.given(), spec.execution.given(), spec.dynamics.given(),
-           spec.observer.given()},
+  return {{id, spec.shape, road, spec.behavior.given(), spec.execution, spec.dynamics, spec.observer},
           entering_goal(map, spec.goal.given(), lane, where),
           record};
 }

@@ -37,7 +37,8 @@ namespace cambium::detail {
     auto const foot = lane.path.project(position);
     auto const widths = lane.widths_at(std::clamp(foot.s, 0.0, lane.length()));
     double const beyond = std::max({-foot.s, foot.s - lane.length(), 0.0});
-    double const outside = std::hypot(std::max({foot.lateral - widths.left, -foot.lateral - widths.right, 0.0}), beyond);
+    double const outside =
+        std::hypot(std::max({foot.lateral - widths.left, -foot.lateral - widths.right, 0.0}), beyond);
     double const distance = std::hypot(foot.lateral, beyond);
     double const along = lane.path.pose(foot.s).heading;
     double const turn = heading ? std::abs(geometry::angle_difference(*heading, along)) : 0.0;
@@ -46,10 +47,10 @@ namespace cambium::detail {
     best = id;
   }
   if (!is_valid(best))
-    throw WorldError(where,
-                     "no lane of its route comes within " + rounded_text(entering_radius) +
-                         " m of its position, in its direction",
-                     "begin the route there");
+    throw WorldError(
+        where,
+        "no lane of its route comes within " + rounded_text(entering_radius) + " m of its position, in its direction",
+        "begin the route there");
   return best;
 }
 
@@ -62,9 +63,8 @@ namespace cambium::detail {
     for (auto const& hit : map.lanes_near(position, entering_radius))
       if (map.lane(hit.lane).drivable()) return hit.lane;
   }
-  throw WorldError(
-      where, "no drivable lane within " + rounded_text(entering_radius) + " m of its position",
-      "enter on a lane and along its direction");
+  throw WorldError(where, "no drivable lane within " + rounded_text(entering_radius) + " m of its position",
+                   "enter on a lane and along its direction");
 }
 
 /// Throws `WorldError` where the map has no lane of that id, or the lane is not between `from` and `to` [m].
