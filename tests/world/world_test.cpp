@@ -346,6 +346,30 @@ TEST_CASE("a state that add refuses set_state refuses with the same words, and b
   }
 }
 
+TEST_CASE("an agent that enters beside its route is in the lane where it stands") {
+  Sim world(straight_road(2));
+  auto const right = world.map().find_lane("1", 50.0, -2), left = world.map().find_lane("1", 50.0, -1);
+  auto const id = world.add({.position = {100, -5.25}, .speed = 10, .route = cb::map::Route{.lanes = {left}}});
+  CHECK(world.lane_of(id) == right);
+  CHECK(std::abs(world.record(id).lane.lateral) < 1e-9);
+  auto const entered = world.record(id).lane;
+  world.set_state(id, {.x = 100, .y = -5.25, .speed = 10});
+  CHECK(world.record(id).lane == entered);
+}
+
+TEST_CASE("another model of behaviour ends the history: its frames fit no more") {
+  Sim world(straight_road(1));
+  auto const id = world.add({.position = {100, -1.75}, .speed = 10});
+  world.keep_history(5);
+  REQUIRE(world.step(0.2));
+  world.set_behavior(id, cb::IdmClassic{.desired_speed = 20.0});
+  CHECK(world.history_size() == 1);
+  CHECK_NOTHROW(world.restore(world.history(1)));
+  REQUIRE(world.step(0.2));
+  world.set_behavior(id, cb::ConstantAcceleration{});
+  CHECK(world.history_size() == 0);
+}
+
 TEST_CASE("a vehicle that was measured to stand backs up no metre") {
   Sim world(straight_road(1));
   auto const id = world.add({.position = {100, -1.75}, .speed = -0.01, .behavior = cb::ConstantAcceleration{}});

@@ -13,6 +13,7 @@
 #include "cambium/core/diagnostic.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/map/build_map.hpp"
+#include "cambium/map/detail/findings.hpp"
 #include "cambium/map/detail/exact_paths.hpp"
 #include "cambium/map/detail/junctions.hpp"
 #include "cambium/map/detail/lane_change_marks.hpp"
@@ -67,7 +68,7 @@ class MapBuild {
       throw MapError(file_, "the map has no lane with a length" + likely_cause(diagnostics_),
                      "give roads that have lanes beside lane 0");
     if (std::none_of(parts_.lanes.begin(), parts_.lanes.end(), [](Lane const& lane) { return lane.drivable(); }))
-      diagnostics_.push_back({Severity::warning, file_, 0, {}, {}, "there is no lane that one may drive on"});
+      add_finding(diagnostics_, {Severity::warning, file_, 0, {}, {}, "there is no lane that one may drive on"});
   }
 
   /// What follows on what, and what merges.
@@ -112,10 +113,10 @@ class MapBuild {
       Lane lane = unsampled_lane(written, road, k);
       lane.id = static_cast<LaneId>(parts_.lanes.size());
       if (!has_geometry(lane, cross_sections, column)) {
-        diagnostics_.push_back(
-            {Severity::warning, file_, written.line, "lane",
-             "road " + road.name + ", section " + std::to_string(k) + ", lane " + std::to_string(written.id),
-             "it has no length, or its numbers are out of all range; it was left out"});
+        add_finding(diagnostics_,
+                    {Severity::warning, file_, written.line, "lane",
+                     "road " + road.name + ", section " + std::to_string(k) + ", lane " + std::to_string(written.id),
+                     "it has no length, or its numbers are out of all range; it was left out"});
         continue;
       }
       section.lanes[column].id = lane.id;

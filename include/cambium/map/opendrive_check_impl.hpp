@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "cambium/map/detail/findings.hpp"
 #include "cambium/map/detail/id_places.hpp"
 #include "cambium/core/diagnostic.hpp"
 #include "cambium/core/error.hpp"
@@ -220,7 +221,7 @@ class DocumentCheck {
   }
 
   void report(Severity severity, int line, std::string element, std::string ids, std::string sentence) {
-    diagnostics_->push_back({severity, file_, line, std::move(element), std::move(ids), std::move(sentence)});
+    add_finding(*diagnostics_, {severity, file_, line, std::move(element), std::move(ids), std::move(sentence)});
   }
 
   opendrive::Document* document_;

@@ -20,6 +20,7 @@
 #include "cambium/map/detail/opendrive_lanes_reader.hpp"
 #include "cambium/map/detail/opendrive_objects_reader.hpp"
 #include "cambium/map/detail/opendrive_plan_view.hpp"
+#include "cambium/map/detail/read_map_file.hpp"
 #include "cambium/map/detail/xml_context.hpp"
 #include "cambium/map/detail/xml_limits.hpp"
 #include "cambium/map/opendrive_check.hpp"
@@ -160,8 +161,11 @@ inline void read_lateral_profile(XmlContext& context, pugi::xml_node road_node, 
 /// The root element; throws when the text is no XML or its root is another one.
 [[nodiscard]] inline pugi::xml_node parse_root(pugi::xml_document& xml, std::string_view text,
                                                std::string const& file) {
-  auto const narrow = narrowed(text);
-  XmlCounter(narrow.empty() ? text : narrow).check(file);
+  require_readable(text.size(), file);
+  if (auto const narrow = narrowed(text); narrow.empty())
+    XmlCounter(text).check(file);
+  else
+    XmlCounter(narrow).check(file);
   pugi::xml_parse_result const result =
       xml.load_buffer(text.data(), text.size(), pugi::parse_cdata | pugi::parse_escapes | pugi::parse_eol);
   if (!result) {

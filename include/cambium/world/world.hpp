@@ -152,6 +152,7 @@ class World {
     bool const is_other_model = behavior.index() != agent.behavior.index();
     (is_other_model ? revised_roster() : writable_roster()).agents[slot].behavior = behavior;
     frame_.agents[slot].memory = Set::initial_memory(behavior);
+    if (is_other_model) scratch_.forget();
   }
 
   /// Says what a behaviour that is none of the set is missing.
@@ -357,7 +358,8 @@ class World {
   }
 
   /// Keeps the last `frames` frames from now on (0: none, as at the beginning). Copies and predictions do not take them
-  /// along; they end where an agent enters, leaves or is re-routed. Throws `WorldError` for more than a million.
+  /// along; they end where an agent enters, leaves, is re-routed or gets another model of behaviour. Throws
+  /// `WorldError` for more than a million.
   void keep_history(std::size_t frames) {
     if (frames > 1'000'000) throw WorldError("history", "a million frames are kept at most", "record what you need");
     scratch_.keep(frames);

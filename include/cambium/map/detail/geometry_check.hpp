@@ -11,6 +11,7 @@
 #include "cambium/core/diagnostic.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/geometry/angle.hpp"
+#include "cambium/map/detail/findings.hpp"
 #include "cambium/map/opendrive_document.hpp"
 #include "cambium/map/reference_line.hpp"
 
@@ -109,7 +110,7 @@ class GeometryCheck {
   }
 
   void report(Severity severity, int line, std::string sentence) {
-    diagnostics_.push_back({severity, file_, line, "geometry", "road " + road_.id, std::move(sentence)});
+    add_finding(diagnostics_, {severity, file_, line, "geometry", "road " + road_.id, std::move(sentence)});
   }
 
   opendrive::Road const& road_;

@@ -12,6 +12,7 @@
 
 #include "cambium/core/diagnostic.hpp"
 #include "cambium/core/error.hpp"
+#include "cambium/map/detail/findings.hpp"
 #include "cambium/map/detail/road_links.hpp"
 #include "cambium/map/lane_network.hpp"
 
@@ -56,7 +57,7 @@ class LinkCheck {
   using ContactPoint = opendrive::ContactPoint;
 
   void report(Severity severity, int line, std::string element, std::string ids, std::string sentence) {
-    diagnostics_.push_back({severity, file_, line, std::move(element), std::move(ids), std::move(sentence)});
+    add_finding(diagnostics_, {severity, file_, line, std::move(element), std::move(ids), std::move(sentence)});
   }
 
   /// A road's link must be known to the road that it leads to, or to the junction that lies there.

@@ -21,6 +21,15 @@ namespace cambium::map::detail {
   return size < 0 || size >= folder ? 0 : static_cast<std::size_t>(size);
 }
 
+/// Throws `MapError` for more than `largest_map_file` bytes, of a file or a text that `name` names.
+inline void require_readable(std::size_t bytes, std::string const& name, char const* at_least = "") {
+  if (bytes > largest_map_file)
+    throw MapError(name,
+                   "it has " + (at_least + std::to_string(bytes)) + " bytes, more than the " +
+                       std::to_string(largest_map_file) + " that are read",
+                   "split the map, or leave out what is not needed of it");
+}
+
 /// The bytes of a file. Throws `MapError` where it cannot be read, is empty, or larger than `largest_map_file` (before
 /// memory is taken, where it tells its size); `expected` says what to give: "give an OpenDRIVE file (.xodr)".
 [[nodiscard]] inline std::string read_map_file(std::string const& path, std::string const& expected) {
@@ -30,20 +39,13 @@ namespace cambium::map::detail {
     throw MapError(path.empty() ? "''" : path, std::string("the file cannot be opened (") + std::strerror(errno) + ")",
                    "check the path");
   constexpr std::size_t chunk = std::size_t{1} << 20;  // [B]
-  auto const check_size = [&](std::size_t size, char const* at_least) {
-    if (size > largest_map_file)
-      throw MapError(path,
-                     "it has " + (at_least + std::to_string(size)) + " bytes, more than the " +
-                         std::to_string(largest_map_file) + " that are read",
-                     "split the map, or leave out what is not needed of it");
-  };
   auto const size = size_of(file);
-  check_size(size, "");
+  require_readable(size, path);
   errno = 0;
   std::string text;
   text.reserve(size + chunk);
   while (file) {
-    check_size(text.size(), "at least ");
+    require_readable(text.size(), path, "at least ");
     std::size_t const before = text.size();
     text.resize(before + chunk);
     file.read(text.data() + before, static_cast<std::streamsize>(chunk));

@@ -10,6 +10,7 @@
 
 #include "cambium/core/diagnostic.hpp"
 #include "cambium/core/error.hpp"
+#include "cambium/map/detail/findings.hpp"
 #include "cambium/map/cubic.hpp"
 #include "cambium/map/opendrive_document.hpp"
 
@@ -110,7 +111,7 @@ class RecordCheck {
   }
 
   void report(int line, char const* element, std::string ids, std::string sentence) {
-    diagnostics_.push_back({Severity::warning, file_, line, element, std::move(ids), std::move(sentence)});
+    add_finding(diagnostics_, {Severity::warning, file_, line, element, std::move(ids), std::move(sentence)});
   }
 
   opendrive::Road& road_;

@@ -15,7 +15,7 @@
 
 #include "cambium/core/diagnostic.hpp"
 #include "cambium/core/text.hpp"
-#include "cambium/map/reading_limits.hpp"
+#include "cambium/map/detail/findings.hpp"
 
 namespace cambium::map::detail {
 
@@ -99,10 +99,7 @@ class XmlContext {
     report(severity, line(node), std::string(local_name(node)), std::move(sentence));
   }
   [[gnu::cold]] void report(Severity severity, int line, std::string element, std::string sentence) {
-    if (is_full_) return;
-    is_full_ = diagnostics_->size() + 1 >= most_diagnostics;
-    if (is_full_) sentence = "there is more to say of this file than " + std::to_string(most_diagnostics) + " findings";
-    diagnostics_->push_back({severity, file_, line, std::move(element), ids(), std::move(sentence)});
+    add_finding(*diagnostics_, {severity, file_, line, std::move(element), ids(), std::move(sentence)});
   }
 
   [[gnu::cold]] void report_missing(pugi::xml_node node, std::string_view attribute) {
@@ -193,7 +190,6 @@ class XmlContext {
   std::string file_;
   std::vector<Diagnostic>* diagnostics_;
   std::vector<Loss> losses_;  ///< a handful
-  bool is_full_ = false;      ///< as many findings as are listed
 };
 
 /// As `find_child`, of what may be there once: further ones are reported, for they are not read.

@@ -46,11 +46,6 @@ class XmlCounter {
 
   /// Throws `MapError` where the text is beyond the limits; `file` names it.
   void check(std::string const& file) {
-    if (text_.size() > largest_map_file)
-      throw MapError(file,
-                     "it has " + std::to_string(text_.size()) + " bytes, more than the " +
-                         std::to_string(largest_map_file) + " that are read",
-                     "split the map, or leave out what is not needed of it");
     while ((at_ = text_.find('<', at_)) != text_.npos) {
       step(file);
       if (depth_ > deepest_element)
@@ -88,10 +83,10 @@ class XmlCounter {
   }
 
   void skip_document_type(std::string const& file) {
-    for (; at_ < text_.size() && text_[at_] != '>'; ++at_) {
-      if (text_[at_] == '[')
-        throw MapError(place(file), "the <!DOCTYPE> has declarations of its own, which are not read",
-                       "leave out what is between [ and ] there");
+    for (++at_; at_ < text_.size() && text_[at_] != '>'; ++at_) {
+      if (text_[at_] == '[' || text_[at_] == '<')
+        throw MapError(place(file), "the <!DOCTYPE> has declarations or comments of its own, which are not read",
+                       "leave out what is between its name and its >");
       if (is_quote(text_[at_])) skip_value();
     }
   }

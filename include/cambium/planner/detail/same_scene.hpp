@@ -43,7 +43,8 @@ template <class Variant>
 [[nodiscard]] bool is_same_besides_agents(RosterBase const& a, RosterBase const& b);
 
 /// Whether all that steps depend on, but the frame, is the same in two worlds: map, agents with their roads and
-/// behaviours, goals, lights and objects. O(agents, and the lanes of their routes).
+/// behaviours, goals, lights and objects; and frames of the one fit the other. O(agents, and the lanes of their
+/// routes).
 template <class World>
 [[nodiscard]] bool is_same_scene(World const& a, World const& b) {
   auto const &p = a.roster(), &q = b.roster();
@@ -53,7 +54,9 @@ template <class World>
     return one.id == other.id && one.shape == other.shape && is_same_road &&
            is_same_choice(one.behavior, other.behavior) && is_same_value(one.dynamics, other.dynamics);
   };
-  if (&a.map() != &b.map() || p.agents.size() != q.agents.size() || !is_same_besides_agents(p, q)) return false;
+  if (&a.map() != &b.map() || p.revision != q.revision || p.agents.size() != q.agents.size() ||
+      !is_same_besides_agents(p, q))
+    return false;
   for (std::size_t i = 0; i < p.agents.size(); ++i)
     if (!is_same_agent(p.agents[i], q.agents[i])) return false;
   return true;

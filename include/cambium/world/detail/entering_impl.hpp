@@ -97,7 +97,14 @@ CAMBIUM_COLD Entrance entrance(Map const& map, RosterBase const& roster, Enterin
                                  : entering_lane(map, spec.position, spec.heading, where);
   auto const route = entering_route(map, lane, spec.route, spec.goal, where);
   auto const road = map::build_road_corridor(map, route);
-  return {road, lane, entering_position(map, spec, *road, lane, where)};
+  auto const at = entering_position(map, spec, *road, lane, where);
+  if (!spec.route || distance_outside(*road, at) == 0.0) return {road, lane, at};
+  // It stands beside its route: in the lane there, if the route's road has it.
+  auto beside = spec.heading ? map::nearest_corridor(*road, {spec.position.x(), spec.position.y(), *spec.heading})
+                             : map::nearest_corridor(*road, spec.position);
+  if (!(distance_outside(*road, beside) < distance_outside(*road, at))) return {road, lane, at};
+  check_heading(map, *road, beside, where);
+  return {road, road->corridors[beside.corridor].pieces[beside.piece].lane, beside};
 }
 
 CAMBIUM_COLD Entrance entrance_again(Map const& map, RosterBase const& roster, EnteringSpec const& spec,
