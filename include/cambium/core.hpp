@@ -10,6 +10,7 @@
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/ids.hpp"
+#include "cambium/core/one_of.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/plan.hpp"
 #include "cambium/core/random.hpp"

@@ -126,7 +126,7 @@ TEST_CASE("drivers who see with errors, late or not everybody change lanes witho
   for (bool const by_rule : {false, true})
     for (auto const& sight : sights()) {
       int changes = 0;
-      bool const is_slow = std::holds_alternative<cb::OccludedObserver>(sight.observer.any);
+      bool const is_slow = std::holds_alternative<cb::OccludedObserver>(sight.observer);
       for (std::uint64_t seed = 1; seed <= samples(is_slow ? 1 : 4); ++seed) {
         int const lanes = seed % 2 == 0 ? 3 : 4;
         World world(support::straight_road(lanes, 1500.0, seed % 3 == 0 ? 0.002 : 0.0), {.seed = seed});

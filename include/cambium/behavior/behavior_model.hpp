@@ -4,13 +4,9 @@
 #include <type_traits>
 
 #include "cambium/behavior/view.hpp"
+#include "cambium/core/one_of.hpp"
 
 namespace cambium {
-
-/// The memory of a behaviour that remembers nothing between steps.
-struct NoMemory {
-  friend bool operator==(NoMemory, NoMemory) = default;
-};
 
 namespace detail {
 template <class B>

@@ -9,14 +9,11 @@
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/core/macros.hpp"
+#include "cambium/core/one_of.hpp"
 
 namespace cambium {
 
 namespace detail {
-template <class... Ts>
-inline constexpr bool all_different = true;
-template <class T, class... Ts>
-inline constexpr bool all_different<T, Ts...> = (!std::is_same_v<T, Ts> && ...) && all_different<Ts...>;
 /// Whether a behaviour says that it asks for neighbours in the lanes beside: `static constexpr bool looks_beside`.
 template <class B>
 inline constexpr bool looks_beside = [] {
@@ -71,7 +68,7 @@ struct BehaviorSet {
       detail::all_different<Behaviors...>,
       "cambium::BehaviorSet<...>: name each behaviour once; agents of one model have parameters of their own");
 
-  using Any = std::variant<Behaviors...>;
+  using Any = OneOf<Behaviors...>;
   using Memory = std::variant<MemoryOf<Behaviors>...>;
 
   /// What planning works with, one for each behaviour.
@@ -79,7 +76,7 @@ struct BehaviorSet {
 
   /// Whether `B` is one of the set.
   template <class B>
-  static constexpr bool contains = (std::is_same_v<B, Behaviors> || ...);
+  static constexpr bool contains = Any::template contains<B>;
 
   /// Whether some of them ask for neighbours in the lanes beside: then those are worth being loaded ahead.
   static constexpr bool looks_beside = (detail::looks_beside<Behaviors> || ...);
@@ -89,60 +86,38 @@ struct BehaviorSet {
 
   /// Place of `B` in the set.
   template <class B>
-  static constexpr std::size_t index = [] {
-    bool const same[] = {std::is_same_v<B, Behaviors>...};
-    std::size_t i = 0;
-    while (i < sizeof...(Behaviors) && !same[i]) ++i;
-    return i;
-  }();
+  static constexpr std::size_t index = Any::template place<B>;
 
   /// The memory an agent starts with.
   [[nodiscard]] static Memory initial_memory(Any const& behavior) {
-    return initial_memory(behavior, std::index_sequence_for<Behaviors...>{});
+    return behavior.visit([](auto const&, auto place) { return Memory(std::in_place_index<place>); });
   }
 
   /// When the behaviour begins [s]; until then the agent is not in traffic. -infinity where it does not say so.
   [[nodiscard]] static double start_time(Any const& behavior) {
-    return std::visit(
-        [](auto const& model) {
-          if constexpr (requires { model.start_time(); })
-            return static_cast<double>(model.start_time());
-          else
-            return -std::numeric_limits<double>::infinity();
-        },
-        behavior);
+    return behavior.visit([](auto const& model) {
+      if constexpr (requires { model.start_time(); })
+        return static_cast<double>(model.start_time());
+      else
+        return -std::numeric_limits<double>::infinity();
+    });
   }
 
   /// Calls the agent's own behaviour with its own memory. One well-predicted branch per alternative, no virtual call.
   template <class View>
   [[nodiscard]] static Plan<View> plan(Any const& behavior, View const& view, Memory& memory, double dt,
                                        Workspaces& workspaces) {
-    return plan_from<0>(behavior, view, memory, dt, workspaces);
-  }
-
- private:
-  template <std::size_t... I>
-  [[nodiscard]] static Memory initial_memory(Any const& behavior, std::index_sequence<I...>) {
-    Memory memory;
-    ((behavior.index() == I ? void(memory.template emplace<I>()) : void()), ...);
-    return memory;
-  }
-
-  template <std::size_t I, class View>
-  [[nodiscard]] static Plan<View> plan_from(Any const& behavior, View const& view, Memory& memory, double dt,
-                                            Workspaces& workspaces) {
-    if constexpr (I + 1 < sizeof...(Behaviors))
-      if (behavior.index() != I) return plan_from<I + 1>(behavior, view, memory, dt, workspaces);
-    using Workspace = std::tuple_element_t<I, Workspaces>;
-    auto const& model = *std::get_if<I>(&behavior);
-    auto& own = *std::get_if<I>(&memory);
-    if constexpr (!std::is_same_v<Workspace, NoWorkspace>)
-      return detail::plan_apart(model, view, own, dt, std::get<I>(workspaces));
-    else if constexpr ((std::size_t{std::is_same_v<WorkspaceOf<Behaviors>, NoWorkspace>} + ...) >
-                       detail::most_plans_in_step)
-      return detail::plan_apart(model, view, own, dt);
-    else
-      return model.plan(view, own, dt);
+    return behavior.visit([&](auto const& model, auto place) -> Plan<View> {
+      using Workspace = std::tuple_element_t<place, Workspaces>;
+      auto& own = *std::get_if<place>(&memory);
+      if constexpr (!std::is_same_v<Workspace, NoWorkspace>)
+        return detail::plan_apart(model, view, own, dt, std::get<place>(workspaces));
+      else if constexpr ((std::size_t{std::is_same_v<WorkspaceOf<Behaviors>, NoWorkspace>} + ...) >
+                         detail::most_plans_in_step)
+        return detail::plan_apart(model, view, own, dt);
+      else
+        return model.plan(view, own, dt);
+    });
   }
 };
 

@@ -3,6 +3,7 @@
 #include <concepts>
 #include <type_traits>
 
+#include "cambium/core/one_of.hpp"
 #include "cambium/core/plan.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/dynamics/single_track.hpp"
@@ -16,15 +17,10 @@ struct Executed {
   bool valid = false;  ///< false: the plan does not say what happens at the time asked for
 };
 
-/// The memory of an execution model that remembers nothing between steps: takes no room in a frame.
-struct NoExecutionMemory {
-  friend bool operator==(NoExecutionMemory, NoExecutionMemory) = default;
-};
-
 namespace detail {
 template <class E, class State>
 struct ExecutionMemoryOf {
-  using type = NoExecutionMemory;
+  using type = NoMemory;
 };
 template <class E, class State>
 requires requires { typename E::template Memory<State>; }
@@ -34,7 +30,7 @@ struct ExecutionMemoryOf<E, State> {
 }  // namespace detail
 
 /// What execution model `E` remembers between steps of vehicles of `State`: its `Memory<State>`, or
-/// `NoExecutionMemory`.
+/// `NoMemory`.
 template <class E, class State>
 using ExecutionMemoryOf = typename detail::ExecutionMemoryOf<E, State>::type;
 

@@ -4,54 +4,49 @@
 #include <cstddef>
 #include <cstdint>
 #include <type_traits>
-#include <variant>
 
-#include "cambium/core/detail/visit.hpp"
+#include "cambium/core/one_of.hpp"
 #include "cambium/observer/observer_model.hpp"
 
 namespace cambium {
 
 /// One of several observers: for worlds whose agents perceive differently.
 template <ObserverModel... Observers>
-struct ObserverSet {
-  std::variant<Observers...> any{};
+struct ObserverSet : OneOf<Observers...> {
+  using OneOf<Observers...>::OneOf;
 
   static constexpr bool perfect = (Observers::perfect && ...);
   static constexpr std::size_t past_steps = std::max({std::size_t{0}, past_steps_of<Observers>...});
 
   [[nodiscard]] std::size_t steps_back(bool own) const {
-    return detail::visit([own](auto const& one) { return cambium::steps_back(one, own); }, any);
+    return this->visit([own](auto const& one) { return cambium::steps_back(one, own); });
   }
 
   template <class Scene>
   [[nodiscard]] bool sees(Scene const& scene, std::uint32_t own, std::uint32_t other) const
       requires(LimitedSight<Observers, Scene> || ...) {
-    return detail::visit(
-        [&](auto const& one) {
-          if constexpr (LimitedSight<std::remove_cvref_t<decltype(one)>, Scene>)
-            return one.sees(scene, own, other);
-          else
-            return true;
-        },
-        any);
+    return this->visit([&](auto const& one) {
+      if constexpr (LimitedSight<std::remove_cvref_t<decltype(one)>, Scene>)
+        return one.sees(scene, own, other);
+      else
+        return true;
+    });
   }
 
   template <class Scene>
   [[nodiscard]] bool sees_object(Scene const& scene, std::uint32_t own, std::uint32_t object) const
       requires(LimitedSightOfObjects<Observers, Scene> || ...) {
-    return detail::visit(
-        [&](auto const& one) {
-          if constexpr (LimitedSightOfObjects<std::remove_cvref_t<decltype(one)>, Scene>)
-            return one.sees_object(scene, own, object);
-          else
-            return true;
-        },
-        any);
+    return this->visit([&](auto const& one) {
+      if constexpr (LimitedSightOfObjects<std::remove_cvref_t<decltype(one)>, Scene>)
+        return one.sees_object(scene, own, object);
+      else
+        return true;
+    });
   }
 
   template <MotionState S>
   [[nodiscard]] S observe(S const& truth, bool own, RandomStream const& random) const {
-    return detail::visit([&](auto const& one) { return S(one.observe(truth, own, random)); }, any);
+    return this->visit([&](auto const& one) { return S(one.observe(truth, own, random)); });
   }
 };
 

@@ -34,7 +34,7 @@ enum class AgentStatus : std::uint8_t {
 
 /// What a step changes of one agent. `ExecutionMemory`: what its execution model remembers; `Past`: what observers that
 /// see late need of it.
-template <MotionState S, class Memory, class ExecutionMemory = NoExecutionMemory, class Past = NoPast>
+template <MotionState S, class Memory, class ExecutionMemory = NoMemory, class Past = NoPast>
 struct AgentRecord {
   S state;
   map::LanePosition lane;
@@ -49,7 +49,7 @@ struct AgentRecord {
 };
 
 /// What a step changes: time and one record per agent, in the order of the roster, in one buffer.
-template <MotionState S, class Memory, class ExecutionMemory = NoExecutionMemory, class Past = NoPast>
+template <MotionState S, class Memory, class ExecutionMemory = NoMemory, class Past = NoPast>
 struct Frame {
   using Record = AgentRecord<S, Memory, ExecutionMemory, Past>;
 

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstddef>
+#include <type_traits>
+#include <utility>
+#include <variant>
+
+namespace cambium {
+
+/// The memory of a model that remembers nothing between steps: takes no room in a frame.
+struct NoMemory {
+  friend bool operator==(NoMemory, NoMemory) = default;
+};
+
+namespace detail {
+template <class... Ts>
+inline constexpr bool all_different = true;
+template <class T, class... Ts>
+inline constexpr bool all_different<T, Ts...> = (!std::is_same_v<T, Ts> && ...) && all_different<Ts...>;
+
+template <class... Ts>
+void take_variant(std::variant<Ts...> const&);
+/// Whether `T` is a `std::variant`, or derived from one, as `OneOf`.
+template <class T>
+concept Variant = requires(T const& any) {
+  detail::take_variant(any);
+};
+}  // namespace detail
+
+/// A value of one of `Models`, each named once: what an agent has of the models that its world admits. It is a
+/// `std::variant` (`std::get_if`, `std::holds_alternative` and `std::visit` take it) with a dispatch for the step path.
+/// Trivially copyable where all models are.
+template <class... Models>
+struct OneOf : std::variant<Models...> {
+  using std::variant<Models...>::variant;
+
+  static constexpr std::size_t size = sizeof...(Models);
+
+  /// Whether `M` is one of them.
+  template <class M>
+  static constexpr bool contains = (std::is_same_v<M, Models> || ...);
+
+  /// The place of `M` among them; `size` where it is none of them.
+  template <class M>
+  static constexpr std::size_t place = [] {
+    bool const same[] = {std::is_same_v<M, Models>..., true};
+    std::size_t i = 0;
+    while (!same[i]) ++i;
+    return i;
+  }();
+
+  /// Calls `f(model)` or, where it takes that, `f(model, place)`, the place as a `std::integral_constant`. As std::visit
+  /// without its table of functions and its exception: one well-predicted branch for each model.
+  template <class F>
+  [[nodiscard]] constexpr decltype(auto) visit(F const& f) const {
+    return visit_from<0>(f);
+  }
+
+ private:
+  template <std::size_t i, class F>
+  [[nodiscard]] constexpr decltype(auto) visit_from(F const& f) const {
+    if constexpr (i + 1 < size)
+      if (this->index() != i) return visit_from<i + 1>(f);
+    auto const& model = *std::get_if<i>(static_cast<std::variant<Models...> const*>(this));
+    if constexpr (requires { f(model, std::integral_constant<std::size_t, i>{}); })
+      return f(model, std::integral_constant<std::size_t, i>{});
+    else
+      return f(model);
+  }
+};
+
+}  // namespace cambium
