@@ -115,7 +115,7 @@ inline int count_beside(cb::Map const& map, cb::map::RoadCorridor const& corrido
                         cb::LaneId cb::map::Lane::*side) {
   int count = 0;
   for (lane = map.lane(lane).*side; is_valid(lane); lane = map.lane(lane).*side)
-    count += corridor.corridor_of(lane) != cb::map::no_corridor;
+    count += corridor.corridor_of(lane) != cb::none<cb::CorridorId>;
   return count;
 }
 

@@ -26,7 +26,7 @@ struct Site : merging::Site {};
 
 /// Somebody on the way to the merge.
 struct Coming {
-  std::uint32_t slot{};
+  Slot slot{};
   std::size_t entrance{};
   double merge_at{};  ///< [m] along its lane corridor
 };

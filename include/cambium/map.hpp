@@ -16,7 +16,7 @@
 #include "cambium/map/junction.hpp"
 #include "cambium/map/lane.hpp"
 #include "cambium/map/lane_area.hpp"
-#include "cambium/map/lane_position.hpp"
+#include "cambium/map/lane_place.hpp"
 #include "cambium/map/lane_tree.hpp"
 #include "cambium/map/lane_type.hpp"
 #include "cambium/map/map.hpp"

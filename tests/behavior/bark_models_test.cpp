@@ -71,7 +71,7 @@ struct RowView {
   cb::map::LaneCorridor const* lane;
   cb::SingleTrack model{.steering_limit = 0.2, .lateral_acceleration_limit = 1000.0};
   cb::geometry::Shape box{1.75, 2.25, 1.0, 1.0};
-  cb::map::LanePosition at{};
+  cb::map::LanePlace at{};
 
   RowView(Row const& seen, Row const* next, cb::map::LaneCorridor const& corridor_of_row)
       : row(&seen), leader(next), lane(&corridor_of_row) {
@@ -86,7 +86,7 @@ struct RowView {
   [[nodiscard]] cb::geometry::Shape const& shape() const { return box; }
   [[nodiscard]] Dynamics const& dynamics() const { return model; }
   [[nodiscard]] cb::map::LaneCorridor const& corridor() const { return *lane; }
-  [[nodiscard]] cb::map::LanePosition const& lane_position() const { return at; }
+  [[nodiscard]] cb::map::LanePlace const& place() const { return at; }
   [[nodiscard]] std::optional<cb::Neighbor> front() const {
     if (leader == nullptr) return std::nullopt;
     return cb::Neighbor{cb::AgentId{1}, cb::none<cb::ObjectId>, row->front_gap, row->front_speed, 4.0, 0};

@@ -30,7 +30,7 @@ struct Counts {
 template <class World>
 Counts run(World& world, int steps, double dt) {
   Counts counts;
-  std::vector<std::uint16_t> home(world.size(), cb::map::no_corridor);  // where a change in progress began
+  std::vector<std::uint16_t> home(world.size(), cb::none<cb::CorridorId>);  // where a change in progress began
   auto const memory = [&](std::size_t i) { return std::get<0>(world.frame().agents[i].memory); };
   for (int k = 0; k < steps; ++k) {
     auto const before = world.frame();
@@ -359,7 +359,7 @@ std::pair<int, int> changes_and_returns(double threshold, double rest) {
       return driver;
     });
     struct Last {
-      std::uint16_t from = cb::map::no_corridor;
+      std::uint16_t from = cb::none<cb::CorridorId>;
       double time = -1e9;
     };
     std::vector<Last> last(world.size());

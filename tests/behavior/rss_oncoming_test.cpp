@@ -28,7 +28,7 @@ struct Overtake {
   template <class View>
   cb::Plan<View> plan(View const& view, cb::NoMemory&, double dt) const {
     constexpr double lateral_speed = 1.0;  // [m/s]
-    auto const& at = view.lane_position();
+    auto const& at = view.place();
     double const now = view.state().speed, a = std::clamp((speed - now) / dt, -3.0, 2.0);
     double const target = view.time() >= begin && view.time() < end ? 3.5 : 0.0;
     double const most = now > 2.0 ? lateral_speed * dt : 0.0, aside = std::clamp(target - at.lateral, -most, most);

@@ -64,7 +64,7 @@ TEST_CASE("a frame has no room for the memory of an execution model without one"
   static_assert(sizeof(Plain::Record) < sizeof(World<cb::StanleyExecution>::Record));
   struct Before {
     cb::State state;
-    cb::map::LanePosition lane;
+    cb::map::LanePlace lane;
     cb::Action action;
     Plain::Behaviors::Memory memory;
     cb::AgentStatus status;

@@ -34,7 +34,7 @@
 
 #include "cambium/map/find_corridor.hpp"
 #include "cambium/map/lane_area.hpp"
-#include "cambium/map/lane_position.hpp"
+#include "cambium/map/lane_place.hpp"
 #include "cambium/map/opendrive.hpp"
 #include "cambium/map/road_area.hpp"
 #include "cambium/map/map.hpp"
@@ -65,7 +65,7 @@ Route route_of(Map const& map, std::vector<LaneId> lanes) {
 /// Laws of every road corridor: what a world relies on.
 void check_laws(Map const& map, RoadCorridor const& road) {
   REQUIRE(road.main < road.corridors.size());
-  CHECK(road.corridor_of(road.route.back()) != no_corridor);
+  CHECK(road.corridor_of(road.route.back()) != none<CorridorId>);
   std::size_t wrong_places = 0;
   for (auto const& corridor : road.corridors) {
     REQUIRE(corridor.widths.size() == corridor.center.segments().size() + 1);
@@ -91,7 +91,7 @@ void check_laws(Map const& map, RoadCorridor const& road) {
       }
       for (auto const& [side, number] :
            {std::pair(lane.left_neighbor, piece.left), std::pair(lane.right_neighbor, piece.right)}) {
-        CHECK(is_valid(side) == (number != no_corridor));
+        CHECK(is_valid(side) == (number != none<CorridorId>));
         if (!is_valid(side)) continue;
         auto const beside = lanes_of(road.corridors[number]);
         CHECK(std::count(beside.begin(), beside.end(), side) == 1);
@@ -306,7 +306,7 @@ TEST_CASE("lanes beside the route have corridors that know each other, and one t
     CHECK(lanes_of(road->corridors[i]) == std::vector<LaneId>{sections[0][i], sections[1][i], sections[2][i]});
   CHECK(lanes_of(road->corridors[2]) == std::vector<LaneId>{sections[1][2]});
   CHECK(road->corridors[0].pieces[1].right == 1);
-  CHECK(road->corridors[1].pieces[0].right == no_corridor);
+  CHECK(road->corridors[1].pieces[0].right == none<CorridorId>);
   CHECK(road->corridors[1].pieces[1].right == 2);
   CHECK(road->corridors[2].pieces[0].left == 1);
   CHECK(road->corridor_of(sections[1][2]) == 2);
@@ -608,10 +608,10 @@ TEST_CASE("the nearest corridor is the one that holds a place, by direction wher
   CHECK(nearest_corridor(*road, Point(50, 30.0)).corridor == 0);
   CHECK(nearest_corridor(*road, Point(-7, -30.0)).corridor == 1);
   CHECK(nearest_corridor(*road, Point(50, -2.0)).heading_error == 0.0);
-  CHECK(nearest_corridor(RoadCorridor{}, Point(0, 0)).corridor == no_corridor);
+  CHECK(nearest_corridor(RoadCorridor{}, Point(0, 0)).corridor == none<CorridorId>);
   CHECK(road->left_of(1, 50) == 0);
   CHECK(road->right_of(0, 50) == 1);
-  CHECK(road->left_of(0, 50) == no_corridor);
+  CHECK(road->left_of(0, 50) == none<CorridorId>);
   CHECK(road->lanes() == std::vector<LaneId>{left, right});
   // Two ways from one place: the direction decides.
   std::vector<Lane> fork;
@@ -728,7 +728,7 @@ TEST_CASE("on the merging map the on-ramp's traffic is seen from the main road, 
   auto const on_main = merges(main_corridor), on_ramp = merges(ramp_corridor);
   REQUIRE(on_main != main_corridor.feeders.end());
   REQUIRE(on_ramp != ramp_corridor.feeders.end());
-  CHECK(from_ramp->corridor_of(on_ramp->lane) != no_corridor);
+  CHECK(from_ramp->corridor_of(on_ramp->lane) != none<CorridorId>);
   CHECK(map->lane(on_main->lane).merges_into == on_ramp->lane);
   // The same place seen from both: where each one's overlap begins, the paths are the clearance apart.
   auto const a = main_corridor.center.pose(on_main->begin), b = ramp_corridor.center.pose(on_ramp->begin);

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cambium/geometry/angle.hpp"
-#include "cambium/map/lane_position.hpp"
+#include "cambium/map/lane_place.hpp"
 
 #include "../support/maps.hpp"
 

@@ -191,7 +191,7 @@ struct SeesEven {
     return truth;
   }
   template <class Scene>
-  [[nodiscard]] bool sees(Scene const&, std::uint32_t, std::uint32_t other) const {
+  [[nodiscard]] bool sees(Scene const&, std::uint32_t, Slot other) const {
     return other % 2 == 0;
   }
 };
@@ -236,7 +236,7 @@ TEST_CASE("behind a truck nobody is seen, and the next one who is seen is the ne
   CHECK_FALSE(prediction.roster().slot_of(hidden));
 
   // A wall between the lanes ahead hides the one beside, so that there is no neighbour there.
-  auto const side = static_cast<std::uint16_t>(1 - world.observe(ego).lane_position().corridor);
+  auto const side = static_cast<std::uint16_t>(1 - world.observe(ego).place().corridor);
   CHECK(world.observe(ego).neighbors(side).front->agent == beside);
   world.add_object(cb::geometry::Polygon({{105, -3.6}, {160, -3.6}, {160, -3.4}, {105, -3.4}}));
   CHECK(seen(ego) == std::set{truck});
@@ -265,7 +265,7 @@ TEST_CASE("a neighbour behind one that is not seen is found") {
   CHECK(at(4).rear()->agent == static_cast<cb::AgentId>(2));
   CHECK(at(4).front()->agent == straddling);
   CHECK_FALSE(at(0).rear());
-  auto const side = static_cast<std::uint16_t>(1 - at(3).lane_position().corridor);
+  auto const side = static_cast<std::uint16_t>(1 - at(3).place().corridor);
   CHECK(at(3).neighbors(side).front->agent == straddling);
 }
 

@@ -118,11 +118,11 @@ TEST_CASE("an agent that errs about itself errs about its lane position and its 
   world.add({.position = {80, -1.75}, .speed = 10});
   world.add_object(cb::geometry::Polygon({{150, -6}, {151, -6}, {151, -4.5}, {150, -4.5}}));
   auto const view = world.observe(ego);
-  CHECK(view.lane_position().s == doctest::Approx(101.0));
-  CHECK(view.lane_position().lateral == doctest::Approx(0.25));
+  CHECK(view.place().s == doctest::Approx(101.0));
+  CHECK(view.place().lateral == doctest::Approx(0.25));
   CHECK(view.front()->gap == doctest::Approx(30 - 4.5 - 1.0));
   CHECK(view.rear()->gap == doctest::Approx(20 - 4.5 + 1.0));
-  auto const beside = static_cast<std::uint16_t>(1 - view.lane_position().corridor);
+  auto const beside = static_cast<std::uint16_t>(1 - view.place().corridor);
   CHECK(view.neighbors(beside).front->gap == doctest::Approx(50 - 3.6 - 1.0));
 }
 

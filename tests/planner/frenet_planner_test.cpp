@@ -178,7 +178,7 @@ TEST_CASE("courses into who drives beside are not valid") {
     int collisions = 0, changes = 0;
     for (auto const& c : report.candidates) {
       collisions += c.verdict == FrenetVerdict::collision ? 1 : 0;
-      changes += c.verdict == FrenetVerdict::valid && c.corridor != view.lane_position().corridor ? 1 : 0;
+      changes += c.verdict == FrenetVerdict::valid && c.corridor != view.place().corridor ? 1 : 0;
     }
     CHECK((collisions > 0) == beside);
     CHECK((changes > 0) == !beside);

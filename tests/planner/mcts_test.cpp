@@ -437,7 +437,7 @@ namespace {
 /// Every metre counts; each step faster than 13 m/s risks something.
 struct Hurry {
   template <class World>
-  [[nodiscard]] Judgement judge(World const& world, std::uint32_t slot, double dt) const {
+  [[nodiscard]] Judgement judge(World const& world, Slot slot, double dt) const {
     double const speed = world.frame().agents[slot].state.speed;
     return {{0.1 * speed * dt, speed > 13.0 ? 0.1 : 0.0}, false};
   }

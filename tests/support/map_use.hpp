@@ -12,7 +12,7 @@
 #include "cambium/map/build_corridor.hpp"
 #include "cambium/map/junction.hpp"
 #include "cambium/map/lane_area.hpp"
-#include "cambium/map/lane_position.hpp"
+#include "cambium/map/lane_place.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/road_area.hpp"
 #include "cambium/map/road_surface.hpp"

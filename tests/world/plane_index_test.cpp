@@ -27,12 +27,12 @@ TEST_CASE("everybody whose box meets the one asked for is found once, as by comp
       box.add(x, y);
       box.add(x + 17.0 * cb::uniform01(random), y + 3.0 * cb::uniform01(random));
     }
-    index.refresh(boxes.size(), [&](std::uint32_t slot) { return boxes[slot]; });
+    index.refresh(boxes.size(), [&](Slot slot) { return boxes[slot]; });
     for (int query = 0; query < 50; ++query) {
       double const x = far + side * cb::uniform01(random), y = -side * cb::uniform01(random);
       Box const asked{x, y, x + 20.0 * cb::uniform01(random), y + 20.0 * cb::uniform01(random)};
       std::map<std::uint32_t, int> found;
-      index.for_each_near(asked, [&](std::uint32_t slot) { ++found[slot]; });
+      index.for_each_near(asked, [&](Slot slot) { ++found[slot]; });
       for (auto const& [slot, times] : found) {
         CHECK(times == 1);
         CHECK(boxes[slot].grown(4.0).intersects(asked.grown(4.0)));
@@ -46,7 +46,7 @@ TEST_CASE("everybody whose box meets the one asked for is found once, as by comp
 TEST_CASE("once warm the index needs no memory, and no place is too far for it") {
   cb::PlaneIndex index;
   double shift = 0.0;
-  auto const box_of = [&](std::uint32_t slot) {
+  auto const box_of = [&](Slot slot) {
     double const x = 3.0 * slot + shift;
     return Box{x, 0.0, x + 5.0, 2.0};
   };

@@ -33,7 +33,7 @@ enum class Kind { driving, reaching, object };
 /// Somebody as the twin sees it: which lane, where on its path. One entry for each lane that it is in.
 struct Somebody {
   Kind kind;
-  std::uint32_t slot;  ///< among the agents or the objects
+  Slot slot;  ///< among the agents or the objects
   LaneId lane;
   double s, front, rear, speed;
 };
@@ -347,8 +347,8 @@ void compare(Sim& world, Count& count) {
       auto const& corridor = agent.road->corridors[k];
       auto const& twin = twins.try_emplace(&corridor, map, corridor).first->second;
       auto const& state = world.frame().agents[asker.slot].state;
-      double const s = k == view.lane_position().corridor
-                           ? view.lane_position().s
+      double const s = k == view.place().corridor
+                           ? view.place().s
                            : cb::map::locate(*agent.road, k, {state.x, state.y, state.heading}).s;
       for (int const sign : {1, -1}) {
         auto const found = sign > 0 ? view.neighbors(k).front : view.neighbors(k).rear;

@@ -40,7 +40,7 @@ struct AdaptiveCruiseControl {
     double const speed = std::max(0.0, view.state().speed);
     auto const p = within_limits(rules, idm, view, speed);
     auto const law = [&](double v, Leader const& leader) { return acc_acceleration(p, coolness, v, leader); };
-    auto const leader = leader_to_follow<true>(rules, view, view.front(), [&](auto const& l) { return law(speed, l); });
+    auto const leader = leader_to_follow<true>(rules, view, view.ahead(), [&](auto const& l) { return law(speed, l); });
     if (integration == Integration::bark_substeps) return bark::plan_along_lane(view, p, coolness, leader, dt);
     return plan_along_lane(view, follow_motion(law, speed, leader, dt), dt);
   }

@@ -26,7 +26,7 @@ struct ExtraReach {
 
 /// Another one at position `at` [m] of its way to a conflict (see `map::Conflict::ways`).
 struct ConflictUser {
-  LaneUser const& user;
+  RoadUser const& user;
   double at;
   ExtraReach reach;
 

@@ -53,7 +53,7 @@ struct CrossingStrip {
 template <class View>
 [[nodiscard]] CrossingStrip strip_of(View const& view, map::LaneCrossing const& crossing) {
   auto const& lane = view.map().lane(crossing.lane);
-  auto const& at = view.lane_position();
+  auto const& at = view.place();
   auto hint = lane.path.find(0.5 * (crossing.lane_begin + crossing.lane_end));
   CrossingStrip strip;
   for (double const s : {crossing.begin, crossing.end}) {
@@ -79,7 +79,7 @@ template <class View>
   auto const strip = strip_of(view, crossing);
   bool blocked = false;
   // `position`: on its way, counted from the begin of the lane that is crossed.
-  auto const heed = [&](LaneUser const& user, double position) {
+  auto const heed = [&](RoadUser const& user, double position) {
     if (blocked || position - user.rear > strip.end || !view.signals_way(user, crossing.lane)) return;
     double const distance = strip.begin - position - user.front, theirs = std::max(0.0, user.speed);
     if (distance > 0.0 && theirs * theirs < 2.0 * p.demanded_deceleration * distance) return;
@@ -89,8 +89,8 @@ template <class View>
     blocked = first < clearance + margin && arrival < last + p.margin_behind;
   };
   for (auto const& way : crossing.ways)
-    view.for_each_on_lane(way.index_begin, way.index_end,
-                          [&](LaneUser const& user) { heed(user, way.begin + user.position - way.index_begin); });
+    view.on_lane(way.index_begin, way.index_end,
+                 [&](RoadUser const& user) { heed(user, way.begin + user.s - way.index_begin); });
   return blocked;
 }
 
@@ -106,7 +106,7 @@ template <class View>
   constexpr double infinite = std::numeric_limits<double>::infinity();
   constexpr double near = 5.0;  // [m]
   constexpr double toe = 0.2;   // [m] who reaches over the kerb no farther has not begun to cross
-  double const s = view.lane_position().s, front = s + view.shape().front, rear = s - view.shape().rear;
+  double const s = view.place().s, front = s + view.shape().front, rear = s - view.shape().rear;
   double row_begin = -infinite, row_end = -infinite;
   for (auto const& crossing : view.corridor().crossings) {
     bool const is_next_row = crossing.begin > row_end + view.shape().length() + 2.0 * p.stop_margin;

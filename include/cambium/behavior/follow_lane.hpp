@@ -29,7 +29,7 @@ void place_on_lane(map::LaneCorridor const& corridor, double s, double lateral, 
 /// The state `motion` further along the lane corridor after `dt` [s]: keeps its lateral offset, heads along the lane.
 template <class View>
 [[nodiscard]] typename View::State follow_lane(View const& view, LongitudinalMotion<double> const& motion, double dt) {
-  auto const& position = view.lane_position();
+  auto const& position = view.place();
   typename View::State next = view.state();
   next.time = view.time() + dt;
   place_on_lane(view.corridor(), position.s + motion.distance, position.lateral, 0.0, position.segment, next);

@@ -58,7 +58,7 @@ struct IdmClassic {
       return p;
     };
     auto const leader = leader_to_follow(
-        rules, view, view.front(), [&](Leader const& l) { return idm_acceleration(limited(), speed, l.gap, l.speed); });
+        rules, view, view.ahead(), [&](Leader const& l) { return idm_acceleration(limited(), speed, l.gap, l.speed); });
     if (integration == Integration::bark_substeps) return bark::plan_along_lane(view, limited(), 0.0, leader, dt);
     detail::IdmTerms<double> const terms(*this, desired);
     return plan_along_lane(view, detail::idm_motion(terms, speed, leader.gap, leader.speed, dt, tolerance), dt);

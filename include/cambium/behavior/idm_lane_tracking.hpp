@@ -84,7 +84,7 @@ struct IdmLaneTracking {
     std::uint32_t from{}, straight_until{};  ///< segments of the centre line; the second one is not known
     float known_until{};                     ///< where that one begins [m]
     float fastest{};                         ///< the speed at which it is none [m/s]
-    std::uint16_t corridor = map::no_corridor;
+    CorridorId corridor = none<CorridorId>;
 
     friend bool operator==(Memory const&, Memory const&) = default;
   };
@@ -95,7 +95,7 @@ struct IdmLaneTracking {
     auto p = within_limits(rules, idm, view, speed);
     if (slow_for_curves && integration == Integration::rk4) slow_down(p, view, speed, memory);
     auto const law = [&](Leader const& l) { return acc_acceleration(p, coolness, speed, l); };
-    auto const next = view.front();
+    auto const next = view.ahead();
     auto const leader = coolness > 0.0 ? leader_to_follow<true>(rules, view, next, law)
                                        : leader_to_follow<false>(rules, view, next, law);
     return integration == Integration::rk4 ? drive_along(view, p, leader, dt) : bark_plan(view, p, leader, dt);
@@ -114,7 +114,7 @@ struct IdmLaneTracking {
   /// beside those that are new.
   template <class View>
   void slow_down(IdmParameters& p, View const& view, double speed, Memory& memory) const {
-    auto const& at = view.lane_position();
+    auto const& at = view.place();
     auto const segments = view.corridor().center.segments();
     double const fastest = std::max(speed, idm.desired_speed), square = fastest * fastest;
     auto const faster = static_cast<float>(fastest);
@@ -151,7 +151,7 @@ struct IdmLaneTracking {
     double const wheel_base = wheel_base_of(model);
     int const steps = dt <= longest_substep ? 1 : static_cast<int>(std::ceil(dt / longest_substep - 1e-9));
     double const h = steps == 1 ? dt : dt / steps;
-    auto segment = view.lane_position().segment;
+    auto segment = view.place().segment;
     auto x = view.state();
     x.speed = std::max(0.0, x.speed);
     Plan<View> plan;
@@ -180,7 +180,7 @@ struct IdmLaneTracking {
   [[nodiscard]] CAMBIUM_NOINLINE Plan<View> bark_plan(View view, IdmParameters p, Leader leader, double dt) const {
     auto const& model = view.dynamics();
     double const wheel_base = wheel_base_of(model), h = dt / bark::substeps;
-    auto segment = view.lane_position().segment;
+    auto segment = view.place().segment;
     auto x = view.state();
     double const start_speed = std::max(0.0, x.speed);
     Plan<View> plan;

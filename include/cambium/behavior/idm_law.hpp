@@ -33,7 +33,7 @@ class IdmLaw {
     return bounded(terms_.maximum * (rest_ - closeness * closeness));
   }
 
-  [[nodiscard]] double operator()(std::optional<Neighbor> const& leader) const {
+  [[nodiscard]] double operator()(std::optional<RoadUser> const& leader) const {
     return leader ? (*this)(leader->gap, leader->speed) : free();
   }
 

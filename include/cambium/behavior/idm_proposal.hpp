@@ -50,8 +50,8 @@ struct IdmProposal {
     auto const leader = leader_to_follow(driver.rules, view, detail::next_in_way(view, offset, clearance),
                                          [&](Leader const& l) { return idm_acceleration(p, speed, l.gap, l.speed); });
     auto motion = idm_motion(p, speed, leader.gap, leader.speed, dt, driver.tolerance);
-    auto const bends = bends_ahead(view.corridor(), view.lane_position().s, speed, p.desired_speed,
-                                   lateral_acceleration, p.comfortable_deceleration, -p.lowest_acceleration, dt);
+    auto const bends = bends_ahead(view.corridor(), view.place().s, speed, p.desired_speed, lateral_acceleration,
+                                   p.comfortable_deceleration, -p.lowest_acceleration, dt);
     if (bends.bound.distance < motion.distance) motion = bends.bound;
     return plan_to_center(view, memory.bend, motion, dt, offset);
   }

@@ -110,7 +110,7 @@ struct BasicIdmStochastic {
     RandomStream own(memory.person, 0, 0, purpose);
     auto const p = within_limits(rules, drawn == Drawn::per_agent ? draw(own) : draw(stream), view, speed);
     auto const law = [&](Leader const& l) { return idm_acceleration(p, speed, l.gap, l.speed); };
-    auto leader = leader_to_follow(rules, view, view.front(), law);
+    auto leader = leader_to_follow(rules, view, view.ahead(), law);
     if (memory.yields) let_in(view, law, p.comfortable_deceleration, leader);
     return plan_along_lane(view, idm_motion(p, speed, leader.gap, leader.speed, dt, tolerance), dt);
   }
@@ -144,17 +144,19 @@ struct BasicIdmStochastic {
 
   template <class View, class Law>
   void let_in(View const& view, Law const& law, double hardest, Leader& leader) const {
-    auto const& at = view.lane_position();
+    auto const& at = view.place();
     auto const& own = view.corridor();
     for (auto const side : {own.pieces[at.piece].left, own.pieces[at.piece].right}) {
-      if (side == map::no_corridor) continue;
-      auto const there = view.neighbors(side);
+      if (side == none<CorridorId>) continue;
+      auto const there = view.place(side);
       auto const& lane = view.road().corridors[side];
-      double const s = there.position.s + yielding.horizon;
+      double const s = there.s + yielding.horizon;
       bool const ends = s > lane.length() && !lane.continues && !lane.reaches_destination;
       bool const joins = lane.piece_at(s).lane == own.piece_at(at.s + yielding.horizon).lane;
-      if (!there.front || !(ends || joins)) continue;
-      Leader const other = leader_of<false>(view, there.front);
+      if (!ends && !joins) continue;
+      auto const front = view.ahead(there);
+      if (!front) continue;
+      Leader const other = leader_of<false>(view, front);
       double const braking = -law(other);
       if (other.gap > 0.0 && braking <= hardest && -braking < law(leader)) leader = other;
     }

@@ -82,7 +82,7 @@ struct Intersection {
     own.speed = std::max(0.0, view.state().speed);
     own.idm = within_limits(rules, idm, view, own.speed);
     own.look_ahead = std::max(look_ahead, own.speed * own.speed / (2.0 * idm.comfortable_deceleration) + 20.0);
-    own.s = view.lane_position().s;
+    own.s = view.place().s;
     own.front = own.s + view.shape().front;
     own.is_large = detail::is_large(view, view.shape());
     auto const bends = bends_ahead(view.corridor(), own.s, own.speed, own.idm.desired_speed, lateral_acceleration,
@@ -90,7 +90,7 @@ struct Intersection {
     own.highest = bends.highest;
     own.bound = bends.bound;
     own.waited = memory.waited;
-    follow(own, leader_of<false>(view, view.front_by_rule()));
+    follow(own, leader_of<false>(view, view.ahead({.merging = Merging::by_rule})));
     heed_conflicts(view, own, dt);
     auto const signals =
         stop_at_signals(view, own.front, own.speed, own.look_ahead, stop_margin, safe_deceleration, memory.stopped_at);
@@ -198,12 +198,12 @@ struct Intersection {
   [[nodiscard]] std::array<Claim, 2> claims_of(View const& view, map::Conflict const& conflict, Own& own) const {
     std::array<Claim, 2> claims{Claim::free, Claim::free};
     for (auto const& way : conflict.ways)
-      view.for_each_on_lane(way.index_begin, way.index_end, [&](LaneUser const& user) {
-        if (user.position < way.index_begin || user.position > way.index_end || !is_valid(user.agent)) return;
-        bool const large = detail::is_large(view, user.shape);
+      view.on_lane(way.index_begin, way.index_end, [&](RoadUser const& user) {
+        if (user.s < way.index_begin || user.s > way.index_end || !is_valid(user.agent)) return;
+        bool const large = detail::is_large(view, view.shape(user));
         auto const& zone = conflict.zones[own.is_large][large];
         if (zone.empty()) return;
-        Other const other{user, way.begin + user.position - way.index_begin,
+        Other const other{user, way.begin + user.s - way.index_begin,
                           detail::extra_reach(view, large, user.front, user.rear)};
         claims[large] = std::max(claims[large], claim_of(view, conflict, zone, other, own));
       });

@@ -38,11 +38,11 @@ template <class Scalar>
 
 /// A lane change in progress: what a behaviour that changes lanes remembers of it.
 struct LaneChange {
-  std::uint16_t target = map::no_corridor;  ///< number of the lane corridor that it leads to; none: keeps its lane
-  float left{};                             ///< of its length [m]; 0: it is to begin anew from where the vehicle is
-  float bend{};                             ///< of its course at the vehicle [1/m]
+  CorridorId target = none<CorridorId>;  ///< number of the lane corridor that it leads to; none: keeps its lane
+  float left{};                          ///< of its length [m]; 0: it is to begin anew from where the vehicle is
+  float bend{};                          ///< of its course at the vehicle [1/m]
 
-  [[nodiscard]] bool active() const { return target != map::no_corridor; }
+  [[nodiscard]] bool active() const { return target != none<CorridorId>; }
 
   /// See `cambium::fell_short`.
   void fell_short(double way, bool left_course) {
@@ -95,7 +95,7 @@ struct LaneChangeCourse {
   }
 
   /// The begin of a change to lane corridor `target` at `speed` [m/s], within `room` [m] where that can be done.
-  [[nodiscard]] LaneChange begin(std::uint16_t target, geometry::Shape const& shape, double speed,
+  [[nodiscard]] LaneChange begin(CorridorId target, geometry::Shape const& shape, double speed,
                                  double room = std::numeric_limits<double>::infinity()) const {
     double const shortest = std::max(least_length(shape), speed * std::min(shortest_duration, duration));
     return {target, static_cast<float>(std::max(shortest, std::min(speed * duration, room))), 0.0f};
@@ -108,7 +108,7 @@ struct LaneChangeCourse {
 
   /// The way back to lane corridor `home`, from `lateral` [m] beside its middle, at `speed` [m/s]; `bend`: of the
   /// course until then, at the vehicle.
-  [[nodiscard]] LaneChange back(std::uint16_t home, geometry::Shape const& shape, double speed, double lateral,
+  [[nodiscard]] LaneChange back(CorridorId home, geometry::Shape const& shape, double speed, double lateral,
                                 float bend) const {
     double const least = detail::least_course_length(minimum_length, shape, detail::longer_by_front_back(lateral));
     return {home, static_cast<float>(std::max(least, speed * std::min(shortest_duration, duration))), bend};
@@ -120,7 +120,7 @@ namespace detail {
 /// The plan that drives `motion` from `at` along the course that `change` has to the line `offset` [m] to the left of
 /// the centre line of `corridor`.
 template <class View>
-[[nodiscard]] Plan<View> plan_course(View const& view, map::LaneCorridor const& corridor, map::LanePosition const& at,
+[[nodiscard]] Plan<View> plan_course(View const& view, map::LaneCorridor const& corridor, map::LanePlace const& at,
                                      LaneChange& change, LongitudinalMotion<double> const& motion, double dt,
                                      double offset = 0.0) {
   double const stretch = std::max(0.1, 1.0 - corridor.center.segments()[at.segment].curvature * at.lateral);
@@ -153,7 +153,7 @@ template <class View>
 [[nodiscard]] Plan<View> plan_to_center(View const& view, float& bend, LongitudinalMotion<double> const& motion,
                                         double dt, double offset = 0.0) {
   constexpr double near = 1e-3, shortest = 15.0, duration = 3.0;  // [m or rad], [m], [s]
-  auto const& at = view.lane_position();
+  auto const& at = view.place();
   double const aslant = std::abs(at.heading_error);
   if ((std::abs(at.lateral - offset) < near && aslant < near) || aslant > detail::most_aslant) {
     bend = 0.0f;
@@ -174,7 +174,7 @@ template <class View>
 [[nodiscard]] Plan<View> plan_lane_change(View const& view, LaneChange& change,
                                           LongitudinalMotion<double> const& motion, double dt) {
   if (!change.active()) return plan_to_center(view, change.bend, motion, dt);
-  map::LanePosition const at = view.lane_position(change.target);
+  map::LanePlace const at = view.place(change.target);
   auto const& corridor = view.road().corridors[change.target];
   bool const is_over = at.s >= corridor.length() || !(change.left > 0.0f);
   if (is_over || std::abs(at.heading_error) > detail::most_aslant) {  // it ends, or was left
@@ -189,7 +189,7 @@ template <class View>
 /// Whether the vehicle stays within the lane that `change` leads to, if it begins now from within that lane.
 template <class View>
 [[nodiscard]] bool stays_within_lane(View const& view, LaneChange const& change) {
-  map::LanePosition const at = view.lane_position(change.target);
+  map::LanePlace const at = view.place(change.target);
   auto const& corridor = view.road().corridors[change.target];
   auto const sides = corridor.widths_at(at.s, at.segment);
   LateralCourse<double> const start{at.lateral, std::tan(std::clamp(at.heading_error, -1.0, 1.0)), change.bend};

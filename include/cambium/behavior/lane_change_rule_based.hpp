@@ -51,35 +51,35 @@ struct LaneChangeRuleBased {
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
     return changing.drive(view, memory, idm, tolerance, dt, [this](LaneKeeping<View> const& now) {
-      return now.may_change ? roomiest_side(now) : map::no_corridor;
+      return now.may_change ? roomiest_side(now) : none<CorridorId>;
     });
   }
 
  private:
-  [[nodiscard]] double space_ahead(std::optional<Neighbor> const& front) const {
+  [[nodiscard]] double space_ahead(std::optional<RoadUser> const& front) const {
     return front ? std::min(front->gap, horizon) : horizon;
   }
 
   template <class View>
-  [[nodiscard]] std::uint16_t roomiest_side(LaneKeeping<View> const& now) const {
+  [[nodiscard]] CorridorId roomiest_side(LaneKeeping<View> const& now) const {
     auto const& view = now.view;
-    auto const& piece = view.corridor().pieces[view.lane_position().piece];
-    if (piece.left == map::no_corridor && piece.right == map::no_corridor) return map::no_corridor;
+    auto const& piece = view.corridor().pieces[view.place().piece];
+    if (piece.left == none<CorridorId> && piece.right == none<CorridorId>) return none<CorridorId>;
     auto const urgency = lane_urgency(view, route_horizon);
     double best = space_ahead(now.leader) + advantage;
-    auto target = map::no_corridor;
+    auto target = none<CorridorId>;
     for (bool const left : {true, false}) {
-      auto const side = left ? piece.left : piece.right;
-      if (side == map::no_corridor || !changing.marks_permit(view, left)) continue;
+      auto const side = piece.beside(left);
+      if (side == none<CorridorId> || !changing.marks_permit(view, left)) continue;
       double const urge = left ? urgency.left : urgency.right;
-      LaneOption option{view.beside(side), left, {}, {}};
+      LaneOption option{view.place(side), left, {}, {}};
       double const remaining = lane_end(view, side, option.place.piece) - option.place.s;
       if (urge < 0.0 || (urge == 0.0 && remaining < minimum_remaining + changing.there_and_back(now.law.speed())))
         continue;
-      option.front = view.front(option.place);
+      option.front = view.ahead(option.place);
       double const ahead = urge > 0.0 ? std::numeric_limits<double>::infinity() : space_ahead(option.front);
       if (!(ahead > best)) continue;
-      option.rear = view.rear(option.place);
+      option.rear = view.behind(option.place);
       if (!space(view, option) || !changing.is_safe(view, now.law, option, changing.safe_deceleration)) continue;
       best = ahead;
       target = side;

@@ -19,9 +19,9 @@ namespace cambium {
 
 /// A lane beside that a change may lead to.
 struct LaneOption {
-  BesidePlace place;
+  map::LanePlace place;
   bool left = false;                    ///< on the left, else on the right
-  std::optional<Neighbor> front, rear;  ///< who would be the leader and the follower
+  std::optional<RoadUser> front, rear;  ///< who would be the leader and the follower
 };
 
 /// A driver that keeps its lane, as its rule for changing lanes sees it.
@@ -29,7 +29,7 @@ template <class View>
 struct LaneKeeping {
   View const& view;
   detail::IdmLaw const& law;              ///< its car following, at its speed
-  std::optional<Neighbor> const& leader;  ///< next ahead
+  std::optional<RoadUser> const& leader;  ///< next ahead
   double lane_end;                        ///< see there
   bool may_change;                        ///< not in the time of rest
   detail::Restriction& ahead;             ///< what it follows; a rule may add to it
@@ -96,23 +96,22 @@ struct LaneChanging {
                                  double dt, Choose const& choose) const {
     double const speed = std::max(0.0, view.state().speed);
     detail::IdmLaw const law(idm, speed, desired_speed(view, idm, speed));
-    auto const leader = view.front();
-    auto const home = view.lane_position().corridor;
+    auto const leader = view.ahead();
+    auto const home = view.place().corridor;
     memory.rest = std::max(0.0f, memory.rest - static_cast<float>(dt));
     course.renew(memory.change, view.shape(), speed);
-    if (memory.change.target == home && speed < standing &&
-        way_to_stop(view, view.lane_position()) < idm.minimum_gap + 1)
+    if (memory.change.target == home && speed < standing && way_to_stop(view, view.place()) < idm.minimum_gap + 1)
       memory.change = {};  // it must leave this lane, too: no way is left to come to its middle before
     if (memory.change.active()) {
       if (memory.change.target != home && !may_go_on(view, law, memory.change)) abort(view, speed, memory);
       auto const ahead = ahead_while_changing(view, law, leader, memory.change);
       return plan_lane_change(view, memory.change, law.motion(ahead.gap, ahead.speed, dt, tolerance), dt);
     }
-    double const end = lane_end(view, home, view.lane_position().piece);
+    double const end = lane_end(view, home, view.place().piece);
     auto ahead = ahead_in_lane(view, law, leader);
     bool const may_change = memory.rest == 0.0f;
     auto const target = choose(LaneKeeping<View>{view, law, leader, end, may_change, ahead});
-    if (may_change && target != map::no_corridor && is_wide_enough(view, target, 0.5 * speed * course.duration)) {
+    if (may_change && target != none<CorridorId> && is_wide_enough(view, target, 0.5 * speed * course.duration)) {
       memory.change = course.begin(target, view.shape(), speed, room(view, leader, target));
       memory.rest = static_cast<float>(rest + course.duration);
       ahead = ahead_while_changing(view, law, leader, memory.change);
@@ -121,13 +120,13 @@ struct LaneChanging {
   }
 
   /// How a follower drives, as this driver assumes it.
-  [[nodiscard]] detail::IdmLaw law_of(Neighbor const& who) const {
-    auto const& assumed = who.length > truck_length ? trucks : others;
+  [[nodiscard]] detail::IdmLaw law_of(RoadUser const& who) const {
+    auto const& assumed = who.length() > truck_length ? trucks : others;
     return detail::IdmLaw(assumed, std::max(0.0, who.speed), std::max(assumed.desired_speed, who.speed));
   }
 
   /// Acceleration of a follower as this driver assumes it [m/s^2]. Objects stand: they neither gain nor lose.
-  [[nodiscard]] double follower(std::optional<Neighbor> const& who, double gap, double leader_speed) const {
+  [[nodiscard]] double follower(std::optional<RoadUser> const& who, double gap, double leader_speed) const {
     return who && is_valid(who->agent) ? law_of(*who)(gap, leader_speed) : 0.0;
   }
 
@@ -136,19 +135,19 @@ struct LaneChanging {
   template <class View>
   CAMBIUM_NOINLINE [[nodiscard]] bool is_safe(View const& view, detail::IdmLaw const& law, LaneOption const& option,
                                               double deceleration) const {
-    auto const front_is_safe = [&](Neighbor const& n) {
+    auto const front_is_safe = [&](RoadUser const& n) {
       return n.gap > safe_gap && law(n.gap, n.speed) >= -deceleration;
     };
-    auto const rear_is_safe = [&](Neighbor const& n) {
+    auto const rear_is_safe = [&](RoadUser const& n) {
       return n.gap > safe_gap && follower(n, n.gap, law.speed()) >= -deceleration;
     };
     if (option.front && !front_is_safe(*option.front)) return false;
     if (option.rear && !rear_is_safe(*option.rear)) return false;
     auto const& there = view.road().corridors[option.place.corridor].pieces[option.place.piece];
-    auto const beyond = option.left ? there.left : there.right;
-    if (beyond == map::no_corridor || beyond == view.lane_position().corridor) return true;
-    auto const others_there = view.beside(beyond);
-    auto const front = view.front(others_there), rear = view.rear(others_there);
+    auto const beyond = there.beside(option.left);
+    if (beyond == none<CorridorId> || beyond == view.place().corridor) return true;
+    auto const others_there = view.place(beyond);
+    auto const front = view.ahead(others_there), rear = view.behind(others_there);
     if (front && comes(view, *front, option, true) && !front_is_safe(*front)) return false;
     return !(rear && comes(view, *rear, option, false) && !rear_is_safe(*rear));
   }
@@ -160,7 +159,7 @@ struct LaneChanging {
   template <class View>
   [[nodiscard]] bool marks_permit(View const& view, bool left) const {
     if (!heed_marks) return true;
-    auto const& at = view.lane_position();
+    auto const& at = view.place();
     auto const& piece = view.corridor().pieces[at.piece];
     auto const& lane = view.map().lane(piece.lane);
     double const s = at.s + piece.lane_offset;
@@ -179,7 +178,7 @@ struct LaneChanging {
   template <class View>
   [[nodiscard]] double desired_speed(View const& view, IdmParameters const& idm, double speed) const {
     auto const& corridor = view.corridor();
-    double const s = view.lane_position().s, fastest = std::max(speed, idm.desired_speed);
+    double const s = view.place().s, fastest = std::max(speed, idm.desired_speed);
     double desired = idm.desired_speed;
     if (fastest * fastest * corridor.sharpest_bend > lateral_acceleration) [[unlikely]]
       desired = desired_speed_before_bends(idm, corridor, s, speed, lateral_acceleration);
@@ -188,31 +187,32 @@ struct LaneChanging {
     return std::max(0.1, desired);
   }
 
-  [[nodiscard]] static bool is_object(Neighbor const& n) { return is_valid(n.object); }
+  [[nodiscard]] static bool is_object(RoadUser const& n) { return is_valid(n.object); }
 
   /// Whether a neighbour in the lane beyond `option`'s comes into it.
   template <class View>
-  [[nodiscard]] static bool comes(View const& view, Neighbor const& who, LaneOption const& option, bool ahead) {
+  [[nodiscard]] static bool comes(View const& view, RoadUser const& who, LaneOption const& option, bool ahead) {
     if (!is_valid(who.agent)) return false;
-    auto const other = view.agent(who);
+    auto const& shape = view.shape(who);
+    auto const& state = view.state(who);
     double const distance =
-        ahead ? view.shape().front + who.gap + other.shape.rear : -(view.shape().rear + who.gap + other.shape.front);
+        ahead ? view.shape().front + who.gap + shape.rear : -(view.shape().rear + who.gap + shape.front);
     auto segment = option.place.segment;
     double const along =
         view.road().corridors[option.place.corridor].center.pose(option.place.s + distance, segment).heading;
-    double const leftwards = other.state.speed * std::sin(other.state.heading - along);
+    double const leftwards = state.speed * std::sin(state.heading - along);
     return (option.left ? -leftwards : leftwards) > drift;
   }
 
   template <class View>
   CAMBIUM_NOINLINE [[nodiscard]] bool may_go_on(View const& view, detail::IdmLaw const& law,
                                                 LaneChange const& change) const {
-    auto const& at = view.lane_position();
+    auto const& at = view.place();
     auto const& piece = view.corridor().pieces[at.piece];
-    LaneOption option{view.beside(change.target), change.target == piece.left, {}, {}};
+    LaneOption option{view.place(change.target), change.target == piece.left, {}, {}};
     if (!option.left && change.target != piece.right) return true;  // no longer beside: it has merged
-    option.front = view.front(option.place);
-    option.rear = view.rear(option.place);
+    option.front = view.ahead(option.place);
+    option.rear = view.behind(option.place);
     return is_safe(view, law, option, abort_deceleration);
   }
 
@@ -221,7 +221,7 @@ struct LaneChanging {
   template <class View>
   CAMBIUM_NOINLINE void abort(View const& view, double speed, Memory& memory) const {
     constexpr std::uint32_t purpose = 0x4c43u;
-    auto const& at = view.lane_position();
+    auto const& at = view.place();
     auto const back = course.back(at.corridor, view.shape(), speed, at.lateral, memory.change.bend);
     if (!stays_within_lane(view, back)) return;
     auto random = view.random(purpose);
@@ -231,9 +231,9 @@ struct LaneChanging {
 
   /// Whether the vehicle fits into the lane `beside` where it comes in, `ahead` [m]: lanes may open slowly.
   template <class View>
-  CAMBIUM_NOINLINE [[nodiscard]] static bool is_wide_enough(View const& view, std::uint16_t beside, double ahead) {
+  CAMBIUM_NOINLINE [[nodiscard]] static bool is_wide_enough(View const& view, CorridorId beside, double ahead) {
     auto const& lane = view.road().corridors[beside];
-    double const s = std::min(view.lane_position(beside).s + ahead, lane.length());
+    double const s = std::min(view.place(beside).s + ahead, lane.length());
     return lane.width_at(s) > view.shape().width();
   }
 
@@ -252,18 +252,18 @@ struct LaneChanging {
   /// How long a change may be: it must lead around a standing object, to before the end of the lane, and to where the
   /// next change can begin [m].
   template <class View>
-  CAMBIUM_NOINLINE [[nodiscard]] double room(View const& view, std::optional<Neighbor> const& leader,
-                                             std::uint16_t target) const {
-    auto const& at = view.lane_position();
+  CAMBIUM_NOINLINE [[nodiscard]] double room(View const& view, std::optional<RoadUser> const& leader,
+                                             CorridorId target) const {
+    auto const& at = view.place();
     double const until_end =
-        std::min(dead_end(view, at.corridor, at.piece) - at.s, way_to_stop(view, view.beside(target)));
+        std::min(dead_end(view, at.corridor, at.piece) - at.s, way_to_stop(view, view.place(target)));
     double const beside_object = (1.0 - out_of_lane) * course.least_length(view.shape());
     return leader && is_object(*leader) ? std::min(until_end, leader->gap + beside_object) : until_end;
   }
 
   /// Adds a leader in a lane that the vehicle stays in: before an object it leaves room to change.
   void add_leader(detail::Restriction& ahead, detail::IdmLaw const& law, geometry::Shape const& shape,
-                  std::optional<Neighbor> const& leader, bool has_side) const {
+                  std::optional<RoadUser> const& leader, bool has_side) const {
     if (!leader) return;
     double const room = is_object(*leader) && has_side ? out_of_lane * course.least_length(shape) : 0.0;
     ahead.add(law, leader->gap - room, leader->speed);
@@ -275,24 +275,24 @@ struct LaneChanging {
 
   template <class View>
   [[nodiscard]] detail::Restriction ahead_in_lane(View const& view, detail::IdmLaw const& law,
-                                                  std::optional<Neighbor> const& leader) const {
-    auto const& at = view.lane_position();
+                                                  std::optional<RoadUser> const& leader) const {
+    auto const& at = view.place();
     auto const& piece = view.corridor().pieces[at.piece];
     detail::Restriction ahead{infinite, 0.0, law.free()};
-    add_leader(ahead, law, view.shape(), leader, piece.left != map::no_corridor || piece.right != map::no_corridor);
+    add_leader(ahead, law, view.shape(), leader, piece.left != none<CorridorId> || piece.right != none<CorridorId>);
     add_stop(ahead, law, way_to_stop(view, at));
     return ahead;
   }
 
   template <class View>
   CAMBIUM_NOINLINE [[nodiscard]] detail::Restriction ahead_while_changing(View const& view, detail::IdmLaw const& law,
-                                                                          std::optional<Neighbor> const& leader,
+                                                                          std::optional<RoadUser> const& leader,
                                                                           LaneChange const& change) const {
-    auto const& at = view.lane_position();
+    auto const& at = view.place();
     auto const& corridor = view.corridor();
     auto const& piece = corridor.pieces[at.piece];
     double const left = change.left, around = (1.0 - out_of_lane) * course.least_length(view.shape());
-    auto const is_passed = [&](Neighbor const& n, double until) {  // the course leads around it
+    auto const is_passed = [&](RoadUser const& n, double until) {  // the course leads around it
       return n.speed < 0.5 && n.gap > until;
     };
     detail::Restriction ahead{infinite, 0.0, law.free()};
@@ -303,9 +303,9 @@ struct LaneChanging {
       auto const sides = corridor.widths_at(at.s, at.segment);
       auto const beside = at.lateral + view.shape().left > sides.left     ? piece.left
                           : view.shape().right - at.lateral > sides.right ? piece.right
-                                                                          : map::no_corridor;
-      if (beside == map::no_corridor) return ahead;
-      auto const other = view.front(view.beside(beside));
+                                                                          : none<CorridorId>;
+      if (beside == none<CorridorId>) return ahead;
+      auto const other = view.ahead(view.place(beside));
       if (other && other->gap > 0.0 && !is_passed(*other, left - 0.5 * course.least_length(view.shape())))
         ahead.add(law, other->gap, other->speed);
       return ahead;
@@ -313,8 +313,8 @@ struct LaneChanging {
     if (leader && !is_passed(*leader, left - around)) ahead.add(law, leader->gap, leader->speed);
     double const until_end = dead_end(view, at.corridor, at.piece) - at.s;
     if (until_end < 0.6 * left) ahead.add(law, until_end - view.shape().front, 0.0);
-    auto const there = view.beside(change.target);
-    add_leader(ahead, law, view.shape(), view.front(there), true);
+    auto const there = view.place(change.target);
+    add_leader(ahead, law, view.shape(), view.ahead(there), true);
     // Into the lane beside it may go on, even if that ends soon.
     add_stop(ahead, law, std::max(way_to_stop(view, there), 0.6 * left + law.minimum_gap() + 1.0));
     return ahead;

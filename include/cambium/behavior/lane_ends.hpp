@@ -12,7 +12,7 @@ namespace cambium {
 /// Corridor position by which a vehicle on `number`, in its piece `piece`, must have changed lanes, or at least should
 /// have, for there its lane begins to merge; infinite where it may stay [m]. O(1).
 template <class View>
-[[nodiscard]] double lane_end(View const& view, std::uint16_t number, std::uint16_t piece) {
+[[nodiscard]] double lane_end(View const& view, CorridorId number, PieceId piece) {
   auto const& corridor = view.road().corridors[number];
   double const end = corridor.pieces[piece].lane_end;
   return corridor.reaches_destination || !view.has_goal() ? end : std::min(end, corridor.length());
@@ -25,7 +25,7 @@ template <class View>
 
 /// As `lane_end`, but infinite for a merge that may be driven over [m].
 template <class View>
-[[nodiscard]] double dead_end(View const& view, std::uint16_t number, std::uint16_t piece) {
+[[nodiscard]] double dead_end(View const& view, CorridorId number, PieceId piece) {
   double const end = lane_end(view, number, piece);
   return is_dead_end(view.road().corridors[number], end) ? end : std::numeric_limits<double>::infinity();
 }
@@ -39,21 +39,21 @@ namespace detail {
 
 /// What is left of a lane corridor's lane `along` [m] behind the begin of one of its pieces [m].
 template <class View>
-[[nodiscard]] double remaining_from(View const& view, std::uint16_t number, std::uint16_t piece, double along) {
+[[nodiscard]] double remaining_from(View const& view, CorridorId number, PieceId piece, double along) {
   return lane_end(view, number, piece) - view.road().corridors[number].pieces[piece].begin - along;
 }
 
 /// How many lanes to the left (right) of a piece of a lane corridor the next one is that goes further than `remaining`
 /// [m] from the place `along` [m] behind its begin; 0: there is none.
 template <class View>
-[[nodiscard]] int lanes_to_go(View const& view, std::uint16_t number, std::uint16_t piece, double along,
-                              double remaining, bool left) {
+[[nodiscard]] int lanes_to_go(View const& view, CorridorId number, PieceId piece, double along, double remaining,
+                              bool left) {
   constexpr int most = 16;
   for (int lanes = 1; lanes <= most; ++lanes) {
     auto const& at = view.road().corridors[number].pieces[piece];
-    number = left ? at.left : at.right;
-    piece = left ? at.left_piece : at.right_piece;
-    if (number == map::no_corridor) return 0;
+    number = at.beside(left);
+    piece = at.piece_beside(left);
+    if (number == none<CorridorId>) return 0;
     if (remaining_from(view, number, piece, along) > remaining + 1.0) return lanes;
   }
   return 0;
@@ -69,10 +69,11 @@ struct LanesToCross {
 /// From the place `s` [m] on a lane corridor, in its piece `piece`, with a finite `lane_end`. The lane that goes
 /// further may begin later. O(lanes beside), at most at each piece up to the end.
 template <class View>
-CAMBIUM_NOINLINE [[nodiscard]] LanesToCross lanes_to_cross(View const& view, std::uint16_t number, std::uint16_t piece, double s) {
+CAMBIUM_NOINLINE [[nodiscard]] LanesToCross lanes_to_cross(View const& view, CorridorId number, PieceId piece,
+                                                           double s) {
   auto const& pieces = view.road().corridors[number].pieces;
   double const end = lane_end(view, number, piece);
-  for (auto p = piece; p < pieces.size(); ++p) {
+  for (auto p = piece; index_of(p) < pieces.size(); ++p) {
     double const along = p == piece ? s - pieces[p].begin : 0.0, remaining = end - pieces[p].begin - along;
     if (!(remaining > 0.0)) break;
     int const left = detail::lanes_to_go(view, number, p, along, remaining, true);
@@ -90,15 +91,15 @@ CAMBIUM_NOINLINE [[nodiscard]] LanesToCross lanes_to_cross(View const& view, std
 template <class View>
 CAMBIUM_NOINLINE [[nodiscard]] LaneUrgency lane_urgency(View const& view, double horizon) {
   constexpr double infinite = std::numeric_limits<double>::infinity();
-  auto const& at = view.lane_position();
+  auto const& at = view.place();
   auto const& piece = view.corridor().pieces[at.piece];
   double const remaining = lane_end(view, at.corridor, at.piece) - at.s;
   auto const closeness = [&](double length, int lanes) {
     return std::clamp(1.0 - length / (lanes * horizon), 0.0, 1.0);
   };
   if (remaining == infinite) {
-    auto const away = [&](std::uint16_t number, std::uint16_t there) {
-      if (number == map::no_corridor) return 0.0;
+    auto const away = [&](CorridorId number, PieceId there) {
+      if (number == none<CorridorId>) return 0.0;
       double const left = detail::remaining_from(view, number, there, at.s - piece.begin);
       return left == infinite ? 0.0 : -closeness(left, 1);
     };

@@ -44,50 +44,44 @@ template <MotionState S>
   return reach;
 }
 
-/// What `neighbor` occupies of lane corridor `number`. O(objects) for an object.
+/// What `user` occupies of lane corridor `number`.
 template <class View>
-[[nodiscard]] std::optional<LaneReach> lane_reach(View const& view, std::uint16_t number, Neighbor const& neighbor,
-                                                  std::uint32_t hint) {
+[[nodiscard]] LaneReach lane_reach(View const& view, CorridorId number, RoadUser const& user, std::uint32_t hint) {
   auto const& line = view.road().corridors[number].center;
-  std::optional<LaneReach> reach;
-  if (is_valid(neighbor.agent)) {
-    auto const other = view.agent(neighbor);
-    reach = lane_reach(line, other.state, other.shape, hint);
-  } else {
-    view.for_each_object([&](ObjectId id, geometry::Polygon const& outline) {
-      if (id == neighbor.object) reach = lane_reach(line, outline, hint);
-    });
-  }
-  return reach;
+  return is_valid(user.agent) ? lane_reach(line, view.state(user), view.shape(user), hint)
+                              : lane_reach(line, view.outline(user), hint);
 }
 
 /// Whether `neighbor` is in lane corridor `number` but leaves room for a vehicle that drives `offset` [m] beside its
 /// middle, `clearance` [m] kept to both sides. Who is still to merge into the lane leaves none.
 template <class View>
-[[nodiscard]] bool leaves_room(View const& view, std::uint16_t number, Neighbor const& neighbor, double offset,
+[[nodiscard]] bool leaves_room(View const& view, CorridorId number, RoadUser const& neighbor, double offset,
                                double clearance) {
-  auto const at = view.lane_position(number);
+  auto const at = view.place(number);
   auto const sides = view.road().corridors[number].widths_at(at.s, at.segment);
   auto const reach = lane_reach(view, number, neighbor, at.segment);
-  return reach && reach->meets(-sides.right, sides.left) &&
-         !reach->meets(offset - view.shape().right - clearance, offset + view.shape().left + clearance);
+  return reach.meets(-sides.right, sides.left) &&
+         !reach.meets(offset - view.shape().right - clearance, offset + view.shape().left + clearance);
 }
 
-/// Calls `f(Neighbor)` for those ahead in lanes that merge into the own corridor, or have just split off it, of which
+/// Calls `f(RoadUser)` for those ahead in lanes that merge into the own corridor, or have just split off it, of which
 /// the begin is less than `distance` [m] ahead. Gaps as those of `front`. O(feeders) and those there.
 template <class View, class F>
 CAMBIUM_NOINLINE void for_each_on_feeders(View const& view, double distance, F const& f) {
-  double const s = view.lane_position().s, front = s + view.shape().front;
+  double const s = view.place().s, front = s + view.shape().front;
   for (auto const& feeder : view.corridor().feeders) {
     if (feeder.begin > s + distance) break;
     if (feeder.end < s) continue;
     double const from = s <= feeder.begin ? feeder.index_begin : feeder.index_at(s);
-    view.for_each_on_lane(from, feeder.index_end, [&](LaneUser const& user) {
-      if (user.position < feeder.index_begin || user.position > feeder.index_end) return;  // it only reaches in
-      double const position = feeder.image(user.position);
+    view.on_lane(from, feeder.index_end, [&](RoadUser const& user) {
+      if (user.s < feeder.index_begin || user.s > feeder.index_end) return;  // it only reaches in
+      double const position = feeder.image(user.s);
       if (position <= s) return;
       double const gap = map::gap_before_merge(front, position - user.rear, feeder.free_until);
-      f(Neighbor{user.agent, user.object, gap, user.speed, user.front + user.rear, user.slot});
+      auto ahead = user;
+      ahead.gap = gap;
+      ahead.s = position;
+      f(ahead);
     });
   }
 }
@@ -96,29 +90,33 @@ CAMBIUM_NOINLINE void for_each_on_feeders(View const& view, double distance, F c
 /// `clearance` [m] kept to both sides. Who is beside the way but in the lane is passed; who is still to merge into it
 /// is not. O(agents near) where somebody is passed.
 template <class View>
-[[nodiscard]] std::optional<Neighbor> next_in_way(View const& view, double offset, double clearance) {
-  auto next = view.front();
-  auto const& at = view.lane_position();
+[[nodiscard]] std::optional<RoadUser> next_in_way(View const& view, double offset, double clearance) {
+  auto next = view.ahead();
+  auto const& at = view.place();
   if (!next || !leaves_room(view, at.corridor, *next, offset, clearance)) return next;
   auto const& line = view.corridor().center;
   double const right = offset - view.shape().right - clearance, left = offset + view.shape().left + clearance,
                front = at.s + view.shape().front;
   next.reset();
-  auto const consider = [&](LaneReach const& reach, AgentId agent, ObjectId object, double speed) {
+  auto const consider = [&](LaneReach const& reach, RoadUser user, double speed) {
     if (reach.end <= front || !reach.meets(right, left) || (next && next->gap <= reach.begin - front)) return;
-    next = Neighbor{agent, object, reach.begin - front, speed, reach.end - reach.begin, 0};
+    user.gap = reach.begin - front;
+    user.speed = speed;
+    next = user;
   };
   constexpr double farthest = 200.0;  // [m]
-  view.for_each_near(at.corridor, farthest, [&](auto const& other) {
-    auto const reach = lane_reach(line, other.state, other.shape, at.segment);
+  view.around(at, farthest, [&](RoadUser const& other) {
+    if (!is_valid(other.agent)) return;
+    auto const& state = view.state(other);
+    auto const reach = lane_reach(line, state, view.shape(other), at.segment);
     auto hint = at.segment;
-    consider(reach, other.id, none<ObjectId>, geometry::to_frenet(line, other.state, hint).longitudinal_speed);
+    consider(reach, other, geometry::to_frenet(line, state, hint).longitudinal_speed);
   });
   view.for_each_object([&](ObjectId id, geometry::Polygon const& outline) {
     auto const reach = lane_reach(line, outline, at.segment);
-    if (reach.begin < front + farthest) consider(reach, none<AgentId>, id, 0.0);
+    if (reach.begin < front + farthest) consider(reach, {.object = id}, 0.0);
   });
-  for_each_on_feeders(view, farthest, [&](Neighbor const& other) {
+  for_each_on_feeders(view, farthest, [&](RoadUser const& other) {
     if ((!next || other.gap < next->gap) && !leaves_room(view, at.corridor, other, offset, clearance)) next = other;
   });
   return next;

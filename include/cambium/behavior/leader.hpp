@@ -52,18 +52,18 @@ template <class View>
   if (rules.lane_end == RoadRules::LaneEnd::ignored) return std::nullopt;
   auto const& corridor = view.corridor();
   if (rules.lane_end == RoadRules::LaneEnd::before_destination && corridor.reaches_destination) return std::nullopt;
-  double const left = corridor.length_until_end(view.lane_position().s) - view.shape().front;
+  double const left = corridor.length_until_end(view.place().s) - view.shape().front;
   if (left > rules.lane_end_distance) return std::nullopt;
   return Leader{std::max(0.0, left - rules.lane_end_offset), 0.0, 0.0};
 }
 
 /// The neighbour as a leader; its acceleration only where `heed_acceleration`.
 template <bool heed_acceleration, class View>
-[[nodiscard]] Leader leader_of(View const& view, std::optional<Neighbor> const& neighbor) {
+[[nodiscard]] Leader leader_of(View const& view, std::optional<RoadUser> const& neighbor) {
   if (!neighbor) return {};
   Leader leader{neighbor->gap, neighbor->speed, 0.0};
   if constexpr (heed_acceleration)
-    if (is_valid(neighbor->agent)) leader.acceleration = view.agent(*neighbor).acceleration;
+    if (is_valid(neighbor->agent)) leader.acceleration = view.acceleration(*neighbor);
   return leader;
 }
 
@@ -71,7 +71,7 @@ template <bool heed_acceleration, class View>
 /// `acceleration(Leader)` [m/s^2] is the driver's. Without either: a free road. The one place where all car-following
 /// models learn what is ahead of them.
 template <bool heed_acceleration = false, class View, class F>
-[[nodiscard]] Leader leader_to_follow(RoadRules const& rules, View const& view, std::optional<Neighbor> const& neighbor,
+[[nodiscard]] Leader leader_to_follow(RoadRules const& rules, View const& view, std::optional<RoadUser> const& neighbor,
                                       F const& acceleration) {
   Leader const next = leader_of<heed_acceleration>(view, neighbor);
   auto const end = lane_end_ahead(rules, view);
@@ -98,7 +98,7 @@ CAMBIUM_NOINLINE [[nodiscard]] inline double permitted_speed(map::LaneCorridor c
 template <class P, class View>
 [[nodiscard]] double desired_within_limits(RoadRules const& rules, P const& idm, View const& view, double speed) {
   if (!rules.obey_speed_limits) return idm.desired_speed;
-  return std::clamp(permitted_speed(view.corridor(), view.lane_position().s, speed, idm.comfortable_deceleration), 0.1,
+  return std::clamp(permitted_speed(view.corridor(), view.place().s, speed, idm.comfortable_deceleration), 0.1,
                     idm.desired_speed);
 }
 

@@ -136,7 +136,7 @@ struct MacroActions {
   template <class View>
   [[nodiscard]] bool available(View const& view, std::size_t number, LaneChange const& change = {}) const {
     if (number >= size()) return false;
-    return !is_change(actions[number].kind) || side_of(view, actions[number].kind, change) != none;
+    return !is_change(actions[number].kind) || side_of(view, actions[number].kind, change) != none<CorridorId>;
   }
 
   template <class View>
@@ -151,10 +151,10 @@ struct MacroActions {
     course.renew(memory.change, view.shape(), speed);
     if (memory.is_new && is_change(action.kind)) {
       auto const side = side_of(view, action.kind, memory.change);
-      if (side != none && side != memory.change.target) {
-        bool const is_back = side == view.lane_position().corridor;
+      if (side != none<CorridorId> && side != memory.change.target) {
+        bool const is_back = side == view.place().corridor;
         float const bend = memory.change.bend;
-        memory.change = is_back ? course.back(side, view.shape(), speed, view.lane_position().lateral, bend)
+        memory.change = is_back ? course.back(side, view.shape(), speed, view.place().lateral, bend)
                                 : course.begin(side, view.shape(), speed);
         memory.change.bend = bend;
       }
@@ -164,22 +164,20 @@ struct MacroActions {
   }
 
  private:
-  static constexpr auto none = map::no_corridor;
-
   [[nodiscard]] static bool is_change(Kind kind) { return kind == Kind::change_left || kind == Kind::change_right; }
 
   /// The lane corridor that a change leads to: the own one where a change to the other side is under way in it.
   template <class View>
-  [[nodiscard]] std::uint16_t side_of(View const& view, Kind kind, LaneChange const& change) const {
-    auto const& at = view.lane_position();
+  [[nodiscard]] CorridorId side_of(View const& view, Kind kind, LaneChange const& change) const {
+    auto const& at = view.place();
     auto const& piece = view.corridor().pieces[at.piece];
-    auto const side = kind == Kind::change_left ? piece.left : piece.right,
-               other_side = kind == Kind::change_left ? piece.right : piece.left;
-    if (change.active() && change.target == other_side) return at.corridor;
-    if (side == none) return none;
-    auto const there = view.lane_position(side);
+    bool const left = kind == Kind::change_left;
+    auto const side = piece.beside(left);
+    if (change.active() && change.target == piece.beside(!left)) return at.corridor;
+    if (side == none<CorridorId>) return side;
+    auto const there = view.place(side);
     double const least = detail::least_course_length(minimum_remaining, view.shape(), detail::longer_by_front);
-    return lane_end(view, side, there.piece) - there.s < least ? none : side;
+    return lane_end(view, side, there.piece) - there.s < least ? none<CorridorId> : side;
   }
 
   template <class View>
@@ -189,11 +187,11 @@ struct MacroActions {
     if (action.kind != Kind::keep_gap && !action.keeps_gap) return wanted;
     detail::IdmLaw const law(idm, speed);
     detail::Restriction ahead{std::numeric_limits<double>::infinity(), 0.0, law.free()};
-    auto const heed = [&](std::optional<Neighbor> const& leader) {
+    auto const heed = [&](std::optional<RoadUser> const& leader) {
       if (leader) ahead.add(law, leader->gap, leader->speed);
     };
-    heed(view.front());
-    if (change.active() && change.target != view.lane_position().corridor) heed(view.front(view.beside(change.target)));
+    heed(view.ahead());
+    if (change.active() && change.target != view.place().corridor) heed(view.ahead(view.place(change.target)));
     auto const allowed = law.motion(ahead.gap, ahead.speed, dt, tolerance);
     return action.kind == Kind::keep_gap || allowed.speed < wanted.speed ? allowed : wanted;
   }

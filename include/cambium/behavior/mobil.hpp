@@ -100,7 +100,7 @@ struct BasicMobil {
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
     return changing.drive(view, memory, idm, tolerance, dt, [this](LaneKeeping<View> const& now) {
       if (keep_right) pass_nobody_outside(now);
-      return now.may_change ? best_side(now) : map::no_corridor;
+      return now.may_change ? best_side(now) : none<CorridorId>;
     });
   }
 
@@ -112,37 +112,37 @@ struct BasicMobil {
 
   /// The side that it pays most to change to, if one pays.
   template <class View>
-  [[nodiscard]] std::uint16_t best_side(LaneKeeping<View> const& now) const {
+  [[nodiscard]] CorridorId best_side(LaneKeeping<View> const& now) const {
     auto const& view = now.view;
-    auto const& piece = view.corridor().pieces[view.lane_position().piece];
-    if (piece.left == map::no_corridor && piece.right == map::no_corridor) return map::no_corridor;
+    auto const& piece = view.corridor().pieces[view.place().piece];
+    if (piece.left == none<CorridorId> && piece.right == none<CorridorId>) return none<CorridorId>;
     MobilSituation situation{.own = now.ahead.acceleration};
-    if (auto const rear = view.rear())
+    if (auto const rear = view.behind())
       std::tie(situation.old_follower, situation.old_follower_after) = followers_view(now, rear, now.leader);
     // What changing is worth beside the own acceleration after it: a side that cannot pay needs no look.
     double const others =
         politeness * (situation.old_follower_after - situation.old_follower) - situation.own - threshold;
     bool const goes_on = now.lane_end == free_road, is_prejudged = politeness >= 0.0 && !keep_right;
-    if (is_prejudged && goes_on && others + std::abs(bias) + now.law.free() <= 0.0) return map::no_corridor;
+    if (is_prejudged && goes_on && others + std::abs(bias) + now.law.free() <= 0.0) return none<CorridorId>;
     auto const urgency = goes_on ? LaneUrgency{} : lane_urgency(view, route_horizon);
     bool const inner_is_left = !keeps_left(view, piece.lane);
     double best = 0.0;
-    auto target = map::no_corridor;
+    auto target = none<CorridorId>;
     for (bool const left : {true, false}) {
-      auto const side = left ? piece.left : piece.right;
-      if (side == map::no_corridor || !changing.marks_permit(view, left)) continue;
+      auto const side = piece.beside(left);
+      if (side == none<CorridorId> || !changing.marks_permit(view, left)) continue;
       bool const inwards = left == inner_is_left;
-      LaneOption option{view.beside(side), left, {}, {}};
+      LaneOption option{view.place(side), left, {}, {}};
       double const remaining = lane_end(view, side, option.place.piece) - option.place.s;
       double const urge =
           !goes_on ? (left ? urgency.left : urgency.right) : -std::max(0.0, 1.0 - remaining / route_horizon);
       if (urge <= 0.0 && remaining < minimum_remaining + changing.there_and_back(now.law.speed())) continue;
       double const pull = (inwards ? -bias : bias) + route_bias * urge;
-      option.front = view.front(option.place);
+      option.front = view.ahead(option.place);
       if (urge > 0.0 && !goes_on) adapt_to(now, option.front);
       situation.own_after = now.law(option.front);
       if (is_prejudged && others + situation.own_after + pull <= best) continue;
-      option.rear = view.rear(option.place);
+      option.rear = view.behind(option.place);
       double const worth = worth_of(now, situation, option, inwards) + pull;
       if (!(worth > best) || !changing.is_safe(view, now.law, option, changing.safe_deceleration) ||
           !filters(view, option))
@@ -156,7 +156,7 @@ struct BasicMobil {
   /// Follows somebody in another lane who is slower; but as if it had its desired headway at least, for nobody brakes
   /// hard for that.
   template <class View>
-  void adapt_to(LaneKeeping<View> const& now, std::optional<Neighbor> const& front) const {
+  void adapt_to(LaneKeeping<View> const& now, std::optional<RoadUser> const& front) const {
     if (front && front->gap > 0.0 && front->speed < now.law.speed())
       now.ahead.add(now.law, std::max(front->gap, idm.minimum_gap + now.law.speed() * idm.time_headway), front->speed);
   }
@@ -164,8 +164,8 @@ struct BasicMobil {
   /// Acceleration of a follower behind this vehicle, and behind `front`, who is next without it.
   template <class View>
   [[nodiscard]] std::pair<double, double> followers_view(LaneKeeping<View> const& now,
-                                                         std::optional<Neighbor> const& rear,
-                                                         std::optional<Neighbor> const& front) const {
+                                                         std::optional<RoadUser> const& rear,
+                                                         std::optional<RoadUser> const& front) const {
     if (!rear || !is_valid(rear->agent)) return {0.0, 0.0};
     auto const law = changing.law_of(*rear);
     double const behind = law(rear->gap, now.law.speed());
@@ -193,10 +193,10 @@ struct BasicMobil {
   /// Eq. 5 for the own driving: who is faster than the leader in the inner lane follows that one, too.
   template <class View>
   CAMBIUM_NOINLINE void pass_nobody_outside(LaneKeeping<View> const& now) const {
-    auto const& piece = now.view.corridor().pieces[now.view.lane_position().piece];
+    auto const& piece = now.view.corridor().pieces[now.view.place().piece];
     auto const inner = keeps_left(now.view, piece.lane) ? piece.right : piece.left;
-    if (inner == map::no_corridor) return;
-    auto const there = now.view.front(now.view.beside(inner));
+    if (inner == none<CorridorId>) return;
+    auto const there = now.view.ahead(now.view.place(inner));
     if (there && there->speed > critical_speed) adapt_to(now, there);
   }
 

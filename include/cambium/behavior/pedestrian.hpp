@@ -93,7 +93,7 @@ struct Pedestrian {
     detail::Surroundings around;
     gather(view, around);
     around.sight_cosine = std::cos(0.5 * social.sight_angle);
-    Walk walk{{start.x, start.y}, velocity_of(start), view.lane_position()};
+    Walk walk{{start.x, start.y}, velocity_of(start), view.place()};
     double const stop = distance_to_stop(crossing, social, view, start.speed) + walk.at.s;
     double const substeps = std::clamp(std::ceil(dt / longest_substep), 1.0, 400.0), h = dt / substeps;
     auto const push = random_push(view, dt);
@@ -106,7 +106,7 @@ struct Pedestrian {
 
   struct Walk {
     Vector position, velocity;
-    map::LanePosition at;
+    map::LanePlace at;
   };
 
   template <MotionState State>
@@ -118,11 +118,12 @@ struct Pedestrian {
   template <class View>
   void gather(View const& view, detail::Surroundings& around) const {
     geometry::Point const own{view.state().x, view.state().y};
-    view.for_each_around(range, [&](auto const& other) {
+    view.around(range, [&](RoadUser const& other) {
       constexpr double largest_body = 1.0;  // [m]
-      auto const box = geometry::box_of(other.shape, other.state);
-      double const size = std::max(other.shape.length(), other.shape.width());
-      auto const velocity = velocity_of(other.state);
+      auto const& [state, shape] = std::tie(view.state(other), view.shape(other));
+      auto const box = geometry::box_of(shape, state);
+      double const size = std::max(shape.length(), shape.width());
+      auto const velocity = velocity_of(state);
       around.add({box, velocity, geometry::distance(box, own), size <= largest_body ? 0.5 * size : 0.0});
     });
     view.for_each_object([&](ObjectId, geometry::Polygon const& outline) {

@@ -71,24 +71,30 @@ struct RssConformant {
     auto const now = across(view, view.state(), view.shape()), then = across(view, end, view.shape());
     double const speed = std::max(0.0, view.state().speed);
     auto const p = within_steps(dt);
-    auto const visit = [&](auto const& other) {
+    auto const visit = [&](RoadUser const& other) {
       if (may_matter(p, view, other, speed)) respond(p, view, other, now, then, dt, all);
     };
     for_each_oncoming(p, view, speed, visit);
-    auto const& at = view.lane_position();
-    auto const too_close = [&](std::uint16_t corridor) {
-      auto const objects = view.for_each_near(corridor, farthest, visit);
-      return objects.front && objects.front->gap < rss_same_direction(p, speed, 0.0);
+    auto const& at = view.place();
+    /// Whether an object ahead is too close; those who are near are visited.
+    auto const too_close = [&](map::LanePlace const& from) {
+      bool is_close = false;
+      view.around(from, farthest, [&](RoadUser const& other) {
+        if (is_valid(other.agent)) return visit(other);
+        is_close = is_close || (other.s >= from.s && other.gap < rss_same_direction(p, speed, 0.0));
+      });
+      return is_close;
     };
-    all.brake = too_close(at.corridor) || all.brake;
+    all.brake = too_close(at) || all.brake;
     for (bool const left : {true, false}) {
-      auto const side = next_to(view, at.corridor, at.piece, left);
-      if (side.corridor == map::no_corridor) continue;
+      auto const& piece = view.corridor().pieces[at.piece];
+      auto const side = piece.beside(left);
+      if (side == none<CorridorId>) continue;
       bool const closer = left ? then.left > now.left : then.right < now.right;
       auto& keep_off = left ? all.keep_off_left : all.keep_off_right;
-      keep_off = (too_close(side.corridor) && closer) || keep_off;
-      auto const next = next_to(view, side.corridor, side.piece, left);
-      if (next.corridor != map::no_corridor) view.for_each_near(next.corridor, farthest, visit);
+      keep_off = (too_close(view.place(side)) && closer) || keep_off;
+      auto const next = view.road().corridors[side].pieces[piece.piece_beside(left)].beside(left);
+      if (next != none<CorridorId>) (void)too_close(view.place(next));
     }
     return all;
   }
@@ -142,35 +148,25 @@ struct RssConformant {
     return detail::way_between(now, end) <= (1.0 + share) * distance + apart ? Reach::within : Reach::beyond;
   }
 
-  struct Place {
-    std::uint16_t corridor, piece;
-  };
-
-  template <class View>
-  [[nodiscard]] static Place next_to(View const& view, std::uint16_t corridor, std::uint16_t number, bool left) {
-    auto const& piece = view.road().corridors[corridor].pieces[number];
-    return left ? Place{piece.left, piece.left_piece} : Place{piece.right, piece.right_piece};
-  }
-
   /// False for who is too far away, whatever they are going to do.
-  template <class View, class Other>
-  [[nodiscard]] static bool may_matter(RssParameters const& p, View const& view, Other const& other, double speed) {
-    auto const& own = view.state();
-    double const fast = std::max(speed, std::abs(other.state.speed));
-    bool const same = std::cos(other.state.heading - own.heading) > 0.2 && other.state.speed >= 0.0;
+  template <class View>
+  [[nodiscard]] static bool may_matter(RssParameters const& p, View const& view, RoadUser const& other, double speed) {
+    auto const &own = view.state(), &state = view.state(other);
+    double const fast = std::max(speed, std::abs(state.speed));
+    bool const same = std::cos(state.heading - own.heading) > 0.2 && state.speed >= 0.0;
     double const far = same ? rss_same_direction(p, fast, 0.0) : rss_opposite_direction(p, fast, fast);
-    double const apart = std::hypot(other.state.x - own.x, other.state.y - own.y);
-    return apart <= far + 2.0 * (view.shape().radius() + other.shape.radius());
+    double const apart = std::hypot(state.x - own.x, state.y - own.y);
+    return apart <= far + 2.0 * (view.shape().radius() + view.shape(other).radius());
   }
 
-  /// Calls `f(ObservedAgent)` for those in the lanes of the own road that are driven the other way, beside and ahead.
+  /// Calls `f(RoadUser)` for those in the lanes of the own road that are driven the other way, beside and ahead.
   template <class View, class F>
   static void for_each_oncoming(RssParameters const& p, View const& view, double speed, F const& f) {
     constexpr double fast = 50.0, beside = 20.0;  // [m/s], [m]
     auto const& corridor = view.corridor();
-    auto const& at = view.lane_position();
+    auto const& at = view.place();
     double const from = at.s - beside, to = at.s + beside + rss_opposite_direction(p, speed, fast);
-    for (std::size_t i = corridor.piece_at(from, at.piece); i < corridor.pieces.size(); ++i) {
+    for (auto i = corridor.piece_at(from, at.piece); index_of(i) < corridor.pieces.size(); ++i) {
       auto const& piece = corridor.pieces[i];
       if (piece.begin > to) return;
       if (!is_valid(piece.lane)) continue;
@@ -183,10 +179,9 @@ struct RssConformant {
           auto const& other = view.map().lane(id);
           if (!other.drivable() || other.along_road == lane.along_road) continue;
           auto const stretch = other.stretch_between(begin, end);
-          view.for_each_on_lane(other.index_begin + stretch.begin, other.index_begin + stretch.end,
-                                [&](LaneUser const& user) {
-                                  if (is_valid(user.agent)) f(view.agent({.agent = user.agent, .slot = user.slot}));
-                                });
+          view.on_lane(other.index_begin + stretch.begin, other.index_begin + stretch.end, [&](RoadUser const& user) {
+            if (is_valid(user.agent)) f(user);
+          });
         }
     }
   }
@@ -202,7 +197,7 @@ struct RssConformant {
   [[nodiscard]] static Across across(View const& view, typename View::State const& state,
                                      geometry::Shape const& shape) {
     auto const& center = view.corridor().center;
-    auto const foot = center.project({state.x, state.y}, view.lane_position().segment);
+    auto const foot = center.project({state.x, state.y}, view.place().segment);
     auto const& segment = center.segments()[foot.segment];
     double const inside = std::clamp(foot.s - segment.s, 0.0, segment.length);
     auto const [sin, cos] = geometry::sin_cos(state.heading - (segment.heading + segment.curvature * inside));
@@ -218,13 +213,13 @@ struct RssConformant {
             state.speed * sin};
   }
 
-  template <class View, class Other>
-  static void respond(RssParameters const& p, View const& view, Other const& other, Across const& now,
+  template <class View>
+  static void respond(RssParameters const& p, View const& view, RoadUser const& other, Across const& now,
                       Across const& then, double dt, RssResponse& all) {
-    auto const its = across(view, other.state, other.shape);
+    auto const its = across(view, view.state(other), view.shape(other));
     RssSituation at{.speed = now.along, .other_speed = its.along, .other_lateral_speed = its.aside};
     if (its.along < 0.0) {
-      auto const sides = view.corridor().widths_at(now.s, view.lane_position().segment);
+      auto const sides = view.corridor().widths_at(now.s, view.place().segment);
       at.in_own_lane = -now.middle <= sides.right && now.middle <= sides.left;
     }
     at.is_ahead = its.s >= now.s;

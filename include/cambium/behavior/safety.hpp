@@ -27,8 +27,8 @@ struct Safety {
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
     double const speed = std::max(0.0, view.state().speed);
-    auto const lane = view.lane_position().corridor;
-    if (memory.active() ? memory.target != lane : std::abs(view.lane_position().lateral) > off_middle)
+    auto const lane = view.place().corridor;
+    if (memory.active() ? memory.target != lane : std::abs(view.place().lateral) > off_middle)
       memory = course.begin(lane, view.shape(), speed);
     course.renew(memory, view.shape(), speed);
     return plan_lane_change(view, memory, ConstantAcceleration{.acceleration = -deceleration}.motion(speed, dt), dt);

@@ -60,11 +60,11 @@ struct ZipMerge {
     detail::IdmLaw const law(idm, speed);
     detail::Restriction ahead{infinite, 0.0, law.free()};
     double const merge = next_merge(view);
-    auto const leader = merge < infinite ? view.front_in_lane() : view.front();
+    auto const leader = merge < infinite ? view.ahead({.merging = Merging::ignored}) : view.ahead();
     if (leader) ahead.add(law, leader->gap, leader->speed);
     if (merge < infinite) {
       if (auto const other = let_in(view, memory, leader, merge)) {
-        double const front = view.lane_position().s + view.shape().front;
+        double const front = view.place().s + view.shape().front;
         double const gap = gap_to_open(merge - front, other->s - other->rear - front, speed, other->speed);
         ahead.add(law, gap, other->speed);
       }
@@ -126,18 +126,18 @@ struct ZipMerge {
 
   /// Whether the vehicle ahead is on the own path; at the merge the other lane's vehicles are still beside it.
   template <class View>
-  [[nodiscard]] bool is_on_path(View const& view, Neighbor const& leader, double s) const {
+  [[nodiscard]] bool is_on_path(View const& view, RoadUser const& leader, double s) const {
     constexpr double beside = 1.5;  // [m]
     if (!is_valid(leader.agent)) return true;
     auto const& center = view.corridor().center;
-    auto const other = view.agent(leader);
-    return std::abs(center.project({other.state.x, other.state.y}, center.find(s)).lateral) < beside;
+    auto const& state = view.state(leader);
+    return std::abs(center.project({state.x, state.y}, center.find(s)).lateral) < beside;
   }
 
   /// Where the next merge within the zone is on the own corridor; infinite where there is none.
   template <class View>
   [[nodiscard]] double next_merge(View const& view) const {
-    double const s = view.lane_position().s;
+    double const s = view.place().s;
     for (auto const& feeder : view.corridor().feeders) {
       if (feeder.begin > s + zone) break;
       if (feeder.is_still_to_merge() && feeder.free_until > s && feeder.free_until < s + zone) return feeder.free_until;
@@ -147,17 +147,15 @@ struct ZipMerge {
 
   /// Who of the other lane is to go before this one, if there is somebody.
   template <class View>
-  [[nodiscard]] std::optional<MergingNeighbor> let_in(View const& view, Memory& memory,
-                                                      std::optional<Neighbor> const& leader, double merge) const {
-    double const front = view.lane_position().s + view.shape().front;
+  [[nodiscard]] std::optional<RoadUser> let_in(View const& view, Memory& memory, std::optional<RoadUser> const& leader,
+                                               double merge) const {
+    double const front = view.place().s + view.shape().front;
     Coming const own{std::max(0.0, view.state().speed), merge - front, view.shape().length()};
-    auto const coming = [&](MergingNeighbor const& other) {
-      return Coming{std::max(0.0, other.speed), merge - other.s - other.front, other.front + other.rear};
+    auto const coming = [&](RoadUser const& other) {
+      return Coming{std::max(0.0, other.speed), merge - other.s - other.front, other.length()};
     };
     // The next of the other lane whose turn it is not, where it goes first all the same.
-    auto const insists = [&](std::optional<MergingNeighbor> const& next) {
-      return next && !gives_way(coming(*next), own);
-    };
+    auto const insists = [&](std::optional<RoadUser> const& next) { return next && !gives_way(coming(*next), own); };
     if (!leader) {  // the first of the lane: who is closer to the merge goes first
       auto const other = view.merging(merge, infinite);
       constexpr double equal = 0.5;  // [m]

@@ -5,6 +5,7 @@
 #include <limits>
 #include <string>
 #include <type_traits>
+#include <vector>
 
 namespace cambium {
 
@@ -12,6 +13,8 @@ namespace cambium {
 enum class AgentId : std::uint32_t {};
 /// Names a static object of a world.
 enum class ObjectId : std::uint32_t {};
+/// Place of an agent among the agents of a world, or of an object among its objects; others move up where one leaves.
+enum class Slot : std::uint32_t {};
 /// Dense index of a road in its `Map`. The file's own id is `Road::name`.
 enum class RoadId : std::uint32_t {};
 /// Dense index of a lane (one lane of one lane section) in its `Map`.
@@ -21,12 +24,17 @@ enum class JunctionId : std::uint32_t {};
 /// Dense index of a traffic light in its `Map`.
 enum class LightId : std::uint32_t {};
 
+/// Number of a lane corridor in its `map::RoadCorridor`.
+enum class CorridorId : std::uint16_t {};
+/// Number of a lane's stretch in its `map::LaneCorridor`.
+enum class PieceId : std::uint16_t {};
+
 template <class Id>
-concept StrongId = std::is_enum_v<Id> && std::is_same_v<std::underlying_type_t<Id>, std::uint32_t>;
+concept StrongId = std::is_enum_v<Id> && std::is_unsigned_v<std::underlying_type_t<Id>>;
 
 /// The value that names nothing.
 template <StrongId Id>
-inline constexpr Id none = static_cast<Id>(std::numeric_limits<std::uint32_t>::max());
+inline constexpr Id none = static_cast<Id>(std::numeric_limits<std::underlying_type_t<Id>>::max());
 
 /// The id's number, to index arrays with.
 template <StrongId Id>
@@ -39,10 +47,26 @@ template <StrongId Id>
   return id != none<Id>;
 }
 
+/// The next number.
+template <StrongId Id>
+constexpr Id& operator++(Id& id) {
+  return id = static_cast<Id>(index_of(id) + 1);
+}
+
+/// A vector that ids of one type index, too.
+template <class T, StrongId Id>
+struct IdVector : std::vector<T> {
+  using std::vector<T>::vector;
+  using std::vector<T>::operator[];
+
+  [[nodiscard]] T& operator[](Id id) { return (*this)[index_of(id)]; }
+  [[nodiscard]] T const& operator[](Id id) const { return (*this)[index_of(id)]; }
+};
+
 /// The id's number in decimal, "none" for `none<Id>`.
 template <StrongId Id>
 [[nodiscard]] std::string to_string(Id id) {
-  return is_valid(id) ? std::to_string(static_cast<std::uint32_t>(id)) : std::string("none");
+  return is_valid(id) ? std::to_string(index_of(id)) : std::string("none");
 }
 
 }  // namespace cambium

@@ -24,7 +24,7 @@ namespace detail {
 struct Circle {
   double x, y, radius;
   double low;  ///< where it begins, once sorted
-  std::uint32_t slot;
+  Slot slot;
 
   [[nodiscard]] bool meets(Circle const& other) const {
     double const dx = x - other.x, dy = y - other.y, reach = radius + other.radius;
@@ -33,7 +33,7 @@ struct Circle {
 };
 
 template <class World>
-[[nodiscard]] Circle circle_of(World const& world, std::uint32_t slot) {
+[[nodiscard]] Circle circle_of(World const& world, Slot slot) {
   auto const& shape = world.roster().agents[slot].shape;
   auto const& state = world.frame().agents[slot].state;
   double const along = std::max(shape.front, shape.rear), across = std::max(shape.left, shape.right);
@@ -41,18 +41,18 @@ template <class World>
 }
 
 template <class World>
-[[nodiscard]] geometry::OrientedBox box_at(World const& world, std::uint32_t slot) {
+[[nodiscard]] geometry::OrientedBox box_at(World const& world, Slot slot) {
   return geometry::box_of(world.roster().agents[slot].shape, world.frame().agents[slot].state);
 }
 
 template <class World>
-[[nodiscard]] bool in_traffic(World const& world, std::uint32_t slot) {
+[[nodiscard]] bool in_traffic(World const& world, Slot slot) {
   return world.frame().agents[slot].status == AgentStatus::driving;
 }
 
 /// The first static object (in the order of their ids) that the agent touches.
 template <class World>
-[[nodiscard]] std::optional<ObjectId> touched_object(World const& world, std::uint32_t slot) {
+[[nodiscard]] std::optional<ObjectId> touched_object(World const& world, Slot slot) {
   auto const box = box_at(world, slot);
   auto const around = box.bounding_box();
   for (auto const& object : world.roster().objects)
@@ -74,15 +74,15 @@ struct CollisionEgo {
 
   template <class World>
   [[nodiscard]] Result evaluate(World const& world) const {
-    return at_slot(world, static_cast<std::uint32_t>(world.slot_of(agent)));
+    return at_slot(world, world.slot_of(agent));
   }
 
   /// The same for the agent at `ego` of the roster.
   template <class World>
-  [[nodiscard]] static Result at_slot(World const& world, std::uint32_t ego) {
+  [[nodiscard]] static Result at_slot(World const& world, Slot ego) {
     if (!detail::in_traffic(world, ego)) return {};
     auto const circle = detail::circle_of(world, ego);
-    for (std::uint32_t i = 0; i < world.size(); ++i) {
+    for (Slot i{}; index_of(i) < world.size(); ++i) {
       if (i == ego || !detail::in_traffic(world, i) || !circle.meets(detail::circle_of(world, i))) continue;
       if (geometry::intersects(detail::box_at(world, ego), detail::box_at(world, i)))
         return {true, world.roster().agents[i].id};
@@ -102,26 +102,25 @@ struct CollisionAny {
 
   template <class World>
   [[nodiscard]] Result evaluate(World const& world) const {
-    auto const count = static_cast<std::uint32_t>(world.size());
     if (!world.roster().objects.empty())
-      for (std::uint32_t i = 0; i < count; ++i)
+      for (Slot i{}; index_of(i) < world.size(); ++i)
         if (detail::in_traffic(world, i) && detail::touched_object(world, i))
           return {true, world.roster().agents[i].id, none<AgentId>};
-    return count <= few ? compare_all(world) : sweep(world);
+    return world.size() <= few ? compare_all(world) : sweep(world);
   }
 
  private:
-  static constexpr std::uint32_t few = 32;
+  static constexpr std::size_t few = 32;
 
   /// The first pair that touches, in the order of the agents. Each is compared with each, in loops that become SIMD
   /// code: less work than sorting so few.
   template <class World>
   [[nodiscard]] static Result compare_all(World const& world) {
     std::array<double, few> x, y, radius, heading, sin, cos;
-    std::array<std::uint32_t, few> slots;
+    std::array<Slot, few> slots;
     std::size_t count = 0;
     bool bounded = true;
-    for (std::uint32_t slot = 0; slot < world.size(); ++slot) {
+    for (Slot slot{}; index_of(slot) < world.size(); ++slot) {
       if (!detail::in_traffic(world, slot)) continue;
       auto const circle = detail::circle_of(world, slot);
       x[count] = circle.x;
@@ -163,7 +162,7 @@ struct CollisionAny {
     boost::container::small_vector<detail::Circle, 1024> circles;
     circles.reserve(world.size());
     geometry::Box scene;
-    for (std::uint32_t slot = 0; slot < world.size(); ++slot) {
+    for (Slot slot{}; index_of(slot) < world.size(); ++slot) {
       if (!detail::in_traffic(world, slot)) continue;
       auto const& circle = circles.emplace_back(detail::circle_of(world, slot));
       scene.add(circle.x, circle.y);

@@ -29,7 +29,7 @@ struct DrivableArea {
 
   /// The same for the agent at `slot` of the roster.
   template <class World>
-  [[nodiscard]] static bool off_road(World const& world, std::size_t slot) {
+  [[nodiscard]] static bool off_road(World const& world, Slot slot) {
     auto const& record = world.frame().agents[slot];
     if (record.status != AgentStatus::driving || inside_lanes(world, slot)) return false;
     auto const& s = record.state;
@@ -47,7 +47,7 @@ struct DrivableArea {
   /// A box within the narrower of the widths at its rear, middle and front, and straight enough, is inside: of its own
   /// lane, with those beside it where they go along with it all the way. [m, rad]
   template <class World>
-  [[nodiscard]] static bool inside_lanes(World const& world, std::size_t slot) {
+  [[nodiscard]] static bool inside_lanes(World const& world, Slot slot) {
     auto const& agent = world.roster().agents[slot];
     auto const& at = world.frame().agents[slot].lane;
     auto const& corridor = agent.road->corridors[at.corridor];
@@ -80,8 +80,8 @@ struct DrivableArea {
 
   /// Of the lane beside a piece at the same share of its length; 0 where there is none to drive on.
   [[nodiscard]] static double width_beside(map::RoadCorridor const& road, map::CorridorPiece const& from,
-                                           std::uint16_t number, std::uint16_t piece, double s) {
-    if (number == map::no_corridor) return 0.0;
+                                           CorridorId number, PieceId piece, double s) {
+    if (number == none<CorridorId>) return 0.0;
     auto const& beside = road.corridors[number];
     auto const& to = beside.pieces[piece];
     if (!map::is_drivable(to.type)) return 0.0;
@@ -90,7 +90,7 @@ struct DrivableArea {
 
   /// In no lane; past the end of the agent's own road does not count: the map ends there, not the road.
   template <class World>
-  [[nodiscard]] static bool beyond_road(World const& world, std::size_t slot, geometry::Point const& p) {
+  [[nodiscard]] static bool beyond_road(World const& world, Slot slot, geometry::Point const& p) {
     if (world.map().on_drivable_lane(p)) return false;
     auto const& at = world.frame().agents[slot].lane;
     auto const& corridor = world.roster().agents[slot].road->corridors[at.corridor];

@@ -14,15 +14,15 @@ namespace cambium {
 struct GoalSituation {
   geometry::Pose pose;
   geometry::Shape shape;
-  LaneId lane = none<LaneId>;                 ///< of its lane corridor
-  double lane_position{};                     ///< along that lane's path [m]
-  double speed{};                             ///< [m/s]
-  double lateral{};                           ///< from the lane corridor's centre line, left positive [m]
-  double heading_error{};                     ///< from the lane corridor's direction [rad]
-  map::RoadCorridor const* road = nullptr;    ///< the lanes of its route
-  std::uint16_t corridor = map::no_corridor;  ///< number of its lane corridor there
-  double s{};                                 ///< along that [m]
-  std::size_t passed{};                       ///< parts of its `GoalSequence` that it has reached
+  LaneId lane = none<LaneId>;               ///< of its lane corridor
+  double lane_position{};                   ///< along that lane's path [m]
+  double speed{};                           ///< [m/s]
+  double lateral{};                         ///< from the lane corridor's centre line, left positive [m]
+  double heading_error{};                   ///< from the lane corridor's direction [rad]
+  map::RoadCorridor const* road = nullptr;  ///< the lanes of its route
+  CorridorId corridor = none<CorridorId>;   ///< number of its lane corridor there
+  double s{};                               ///< along that [m]
+  std::size_t passed{};                     ///< parts of its `GoalSequence` that it has reached
 };
 
 }  // namespace cambium

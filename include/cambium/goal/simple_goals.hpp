@@ -189,14 +189,14 @@ struct ReachLaneBeside {
 
   [[nodiscard]] bool at_goal(GoalSituation const& at) const {
     if (at.road == nullptr || !is_valid(from) || std::abs(at.lateral) > tolerance) return false;
-    auto const holds = [&](std::uint16_t corridor) {
+    auto const holds = [&](CorridorId corridor) {
       auto const& pieces = at.road->corridors[corridor].pieces;
       return std::any_of(pieces.begin(), pieces.end(), [&](auto const& piece) { return piece.lane == from; });
     };
     if (holds(at.corridor)) return false;
     for (auto const& piece : at.road->corridors[at.corridor].pieces) {
       auto const back = side == Side::left ? piece.right : piece.left;
-      if (back != map::no_corridor && holds(back)) return true;
+      if (back != none<CorridorId> && holds(back)) return true;
     }
     return false;
   }

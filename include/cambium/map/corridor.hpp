@@ -15,23 +15,24 @@
 
 namespace cambium::map {
 
-/// Names no corridor.
-inline constexpr std::uint16_t no_corridor = std::numeric_limits<std::uint16_t>::max();
-
 /// A lane's stretch of a lane corridor.
 struct CorridorPiece {
   LaneId lane = none<LaneId>;
-  double begin{}, end{};             ///< corridor position [m]
-  double index_offset{};             ///< lane coordinate = corridor position + index_offset
-  std::uint16_t left = no_corridor;  ///< number of the corridor that holds the lane's left neighbour
-  std::uint16_t right = no_corridor;
+  double begin{}, end{};               ///< corridor position [m]
+  double index_offset{};               ///< lane coordinate = corridor position + index_offset
+  CorridorId left = none<CorridorId>;  ///< number of the corridor that holds the lane's left neighbour
+  CorridorId right = none<CorridorId>;
   LaneType type = LaneType::none;
-  std::uint16_t left_piece{}, right_piece{};  ///< number of the neighbour's piece there; only with `left`, `right`
+  PieceId left_piece{}, right_piece{};        ///< number of the neighbour's piece there; only with `left`, `right`
   double lane_offset{};                       ///< position on the lane's path = corridor position + lane_offset [m]
   std::uint32_t first_segment{}, segments{};  ///< of the corridor's centre line: where its own begin, and how many
   /// Where at the latest a vehicle should have changed lanes, for there the next merge into a neighbour begins or,
   /// where the corridor does not go as far as the route, the corridor ends; infinite where neither is ahead [m].
   double lane_end = std::numeric_limits<double>::infinity();
+
+  /// Number of the corridor to the left or the right, and of its piece there.
+  [[nodiscard]] CorridorId beside(bool leftwards) const { return leftwards ? left : right; }
+  [[nodiscard]] PieceId piece_beside(bool leftwards) const { return leftwards ? left_piece : right_piece; }
 };
 
 /// A stretch of a lane outside of the corridor whose traffic counts in it: a lane that merges in (from `merge_view`
@@ -131,16 +132,16 @@ struct LaneCrossing {
 
 /// A chain of lanes along which a vehicle drives: what behaviours follow. Immutable, shared.
 struct LaneCorridor {
-  geometry::Line center;                ///< the lanes' paths, joined
-  std::vector<SideWidths> widths;       ///< at the centre line's vertices
-  geometry::Line left, right;           ///< borders
-  std::vector<CorridorPiece> pieces;    ///< sorted by `begin`, gapless
-  std::vector<Feeder> feeders;          ///< sorted by `begin`
-  std::vector<Conflict> conflicts;      ///< sorted by `hold[1]`
-  std::vector<Bend> bends;              ///< sharper than 1 km of radius, sorted by `begin`
-  double sharpest_bend = 0.0;           ///< the curvature of the sharpest of them [1/m]
-  std::vector<CorridorSignal> signals;  ///< sorted by `line`
-  std::vector<SpeedStep> speed_limits;  ///< along the corridor, sorted; empty where nothing limits the speed
+  geometry::Line center;                    ///< the lanes' paths, joined
+  std::vector<SideWidths> widths;           ///< at the centre line's vertices
+  geometry::Line left, right;               ///< borders
+  IdVector<CorridorPiece, PieceId> pieces;  ///< sorted by `begin`, gapless
+  std::vector<Feeder> feeders;              ///< sorted by `begin`
+  std::vector<Conflict> conflicts;          ///< sorted by `hold[1]`
+  std::vector<Bend> bends;                  ///< sharper than 1 km of radius, sorted by `begin`
+  double sharpest_bend = 0.0;               ///< the curvature of the sharpest of them [1/m]
+  std::vector<CorridorSignal> signals;      ///< sorted by `line`
+  std::vector<SpeedStep> speed_limits;      ///< along the corridor, sorted; empty where nothing limits the speed
   bool continues = false;               ///< the road goes on beyond the end: the corridor ends because the route does
   bool reaches_destination = false;     ///< it holds the route's last lane
   std::vector<LaneCrossing> crossings;  ///< of a free corridor: the lanes that it crosses, sorted by `begin`
@@ -148,11 +149,11 @@ struct LaneCorridor {
   [[nodiscard]] double length() const { return center.length(); }
 
   /// Index of the piece that holds `s`, searched from `hint`.
-  [[nodiscard]] std::uint16_t piece_at(double s, std::uint16_t hint) const {
-    auto i = static_cast<std::size_t>(hint);
+  [[nodiscard]] PieceId piece_at(double s, PieceId hint) const {
+    auto i = index_of(hint);
     while (i + 1 < pieces.size() && s >= pieces[i + 1].begin) ++i;
     while (i > 0 && s < pieces[i].begin) --i;
-    return static_cast<std::uint16_t>(i);
+    return static_cast<PieceId>(i);
   }
 
   /// The piece that holds `s`, the first or last one beyond the ends. O(log pieces).
@@ -206,23 +207,21 @@ struct LaneCorridor {
 /// The lanes of a route and those beside them, as lane corridors. Immutable, built once per route and shared.
 struct RoadCorridor {
   std::vector<LaneId> route;  ///< the lanes from start to destination, lane changes included
-  std::vector<LaneCorridor> corridors;
-  std::uint16_t main = 0;  ///< the corridor that holds the route's last lane
+  IdVector<LaneCorridor, CorridorId> corridors;
+  CorridorId main{};  ///< the corridor that holds the route's last lane
 
-  /// Number of the first corridor that holds `lane`, `no_corridor` if none does. O(lanes).
-  [[nodiscard]] std::uint16_t corridor_of(LaneId lane) const {
+  /// Number of the first corridor that holds `lane`, `none<CorridorId>` if none does. O(lanes).
+  [[nodiscard]] CorridorId corridor_of(LaneId lane) const {
     for (std::size_t i = 0; i < corridors.size(); ++i)
       for (auto const& piece : corridors[i].pieces)
-        if (piece.lane == lane) return static_cast<std::uint16_t>(i);
-    return no_corridor;
+        if (piece.lane == lane) return static_cast<CorridorId>(i);
+    return none<CorridorId>;
   }
 
-  /// Number of the corridor left (right) of number `corridor` at `s` [m], `no_corridor` where there is none. O(log
+  /// Number of the corridor left (right) of number `corridor` at `s` [m], `none<CorridorId>` where there is none. O(log
   /// pieces).
-  [[nodiscard]] std::uint16_t left_of(std::uint16_t corridor, double s) const {
-    return corridors[corridor].piece_at(s).left;
-  }
-  [[nodiscard]] std::uint16_t right_of(std::uint16_t corridor, double s) const {
+  [[nodiscard]] CorridorId left_of(CorridorId corridor, double s) const { return corridors[corridor].piece_at(s).left; }
+  [[nodiscard]] CorridorId right_of(CorridorId corridor, double s) const {
     return corridors[corridor].piece_at(s).right;
   }
 

@@ -12,7 +12,7 @@ namespace cambium::map {
 using LaneElevation = std::function<double(Lane const&, double s)>;
 
 /// The place on a lane's exact path, with the direction of travel, beside path position `s` [m] of the sampled one.
-using LanePlace = std::function<geometry::Pose(Lane const&, double s)>;
+using LanePose = std::function<geometry::Pose(Lane const&, double s)>;
 
 /// Fills `Lane::overlaps` of the drivable lanes: the stretches on which two lanes' paths are closer than `clearance`
 /// [m], on both lanes. An end lies within 1 cm, along the path, of where the distance of the exact paths (`place`;
@@ -31,7 +31,7 @@ using LanePlace = std::function<geometry::Pose(Lane const&, double s)>;
 /// predecessor; else split where they are closer at the stretch's begin than at its end; else merge. For merge and
 /// split, begin and end are beside each other on the two lanes: where one lane begins or ends, so does the overlap.
 void find_overlaps(std::vector<Lane>& lanes, LaneElevation const& elevation, double clearance,
-                   LanePlace const& place = {});
+                   LanePose const& place = {});
 
 }  // namespace cambium::map
 

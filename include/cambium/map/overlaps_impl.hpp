@@ -28,7 +28,7 @@ namespace detail {
 /// See `find_overlaps`.
 class OverlapFinder {
  public:
-  OverlapFinder(std::vector<Lane>& lanes, LaneElevation const& elevation, double clearance, LanePlace const& place)
+  OverlapFinder(std::vector<Lane>& lanes, LaneElevation const& elevation, double clearance, LanePose const& place)
       : lanes_(lanes), elevation_(elevation), clearance_(clearance), ends_(place, clearance) {}
 
   void find() {
@@ -277,7 +277,7 @@ class OverlapFinder {
 }  // namespace detail
 
 CAMBIUM_COLD void find_overlaps(std::vector<Lane>& lanes, LaneElevation const& elevation, double clearance,
-                                LanePlace const& place) {
+                                LanePose const& place) {
   detail::OverlapFinder(lanes, elevation, clearance, place).find();
 }
 

@@ -28,7 +28,7 @@ struct ObserverChain {
   }
 
   template <class Scene>
-  [[nodiscard]] bool sees(Scene const& scene, std::uint32_t own, std::uint32_t other) const
+  [[nodiscard]] bool sees(Scene const& scene, Slot own, Slot other) const
       requires(LimitedSight<Observers, Scene> || ...) {
     auto const by = [&](auto const& stage) {
       if constexpr (LimitedSight<std::remove_cvref_t<decltype(stage)>, Scene>)
@@ -40,7 +40,7 @@ struct ObserverChain {
   }
 
   template <class Scene>
-  [[nodiscard]] bool sees_object(Scene const& scene, std::uint32_t own, std::uint32_t object) const
+  [[nodiscard]] bool sees_object(Scene const& scene, Slot own, Slot object) const
       requires(LimitedSightOfObjects<Observers, Scene> || ...) {
     auto const by = [&](auto const& stage) {
       if constexpr (LimitedSightOfObjects<std::remove_cvref_t<decltype(stage)>, Scene>)

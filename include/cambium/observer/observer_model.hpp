@@ -16,9 +16,9 @@ namespace cambium {
 /// `perfect` says that nothing is changed, so that what is seen can be a view of the truth.
 ///
 /// An observer may have more:
-/// - `template <class Scene> bool sees(Scene const& scene, std::uint32_t own, std::uint32_t other) const`: whether the
+/// - `template <class Scene> bool sees(Scene const& scene, Slot own, Slot other) const`: whether the
 ///   agent in slot `own` perceives that in slot `other` at all (see `ObserverScene`);
-/// - `template <class Scene> bool sees_object(Scene const& scene, std::uint32_t own, std::uint32_t object) const`:
+/// - `template <class Scene> bool sees_object(Scene const& scene, Slot own, Slot object) const`:
 ///   likewise static objects, by their place among them;
 /// - `static constexpr std::size_t past_steps` and `std::size_t steps_back(bool own) const`: it perceives states of up
 ///   to `past_steps` steps ago, which the world then keeps in its records.
@@ -31,13 +31,13 @@ concept ObserverModel = std::copyable<O> &&
 
 /// Whether observer `O` does not see everybody.
 template <class O, class Scene>
-concept LimitedSight = requires(O const observer, Scene const scene, std::uint32_t slot) {
+concept LimitedSight = requires(O const observer, Scene const scene, Slot slot) {
   { observer.sees(scene, slot, slot) } -> std::convertible_to<bool>;
 };
 
 /// Whether observer `O` does not see all static objects.
 template <class O, class Scene>
-concept LimitedSightOfObjects = requires(O const observer, Scene const scene, std::uint32_t slot) {
+concept LimitedSightOfObjects = requires(O const observer, Scene const scene, Slot slot) {
   { observer.sees_object(scene, slot, slot) } -> std::convertible_to<bool>;
 };
 

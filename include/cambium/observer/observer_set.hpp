@@ -23,7 +23,7 @@ struct ObserverSet : OneOf<Observers...> {
   }
 
   template <class Scene>
-  [[nodiscard]] bool sees(Scene const& scene, std::uint32_t own, std::uint32_t other) const
+  [[nodiscard]] bool sees(Scene const& scene, Slot own, Slot other) const
       requires(LimitedSight<Observers, Scene> || ...) {
     return this->visit([&](auto const& one) {
       if constexpr (LimitedSight<std::remove_cvref_t<decltype(one)>, Scene>)
@@ -34,7 +34,7 @@ struct ObserverSet : OneOf<Observers...> {
   }
 
   template <class Scene>
-  [[nodiscard]] bool sees_object(Scene const& scene, std::uint32_t own, std::uint32_t object) const
+  [[nodiscard]] bool sees_object(Scene const& scene, Slot own, Slot object) const
       requires(LimitedSightOfObjects<Observers, Scene> || ...) {
     return this->visit([&](auto const& one) {
       if constexpr (LimitedSightOfObjects<std::remove_cvref_t<decltype(one)>, Scene>)

@@ -190,7 +190,7 @@ struct OccludedObserver {
   }
 
   template <class Scene>
-  [[nodiscard]] bool sees(Scene const& scene, std::uint32_t own, std::uint32_t other) const {
+  [[nodiscard]] bool sees(Scene const& scene, Slot own, Slot other) const {
     auto const eye = geometry::box_of(scene.shape(own), scene.state(own)).center();
     auto const target = geometry::box_of(scene.shape(other), scene.state(other));
     if (geometry::distance(target, eye) > range) return false;
@@ -201,7 +201,7 @@ struct OccludedObserver {
   }
 
   template <class Scene>
-  [[nodiscard]] bool sees_object(Scene const& scene, std::uint32_t own, std::uint32_t object) const {
+  [[nodiscard]] bool sees_object(Scene const& scene, Slot own, Slot object) const {
     if (objects_known) return true;
     auto const eye = geometry::box_of(scene.shape(own), scene.state(own)).center();
     auto const& outline = scene.objects()[object].outline;
@@ -226,13 +226,12 @@ struct OccludedObserver {
   }
 
  private:
-  static constexpr std::uint32_t nobody = std::numeric_limits<std::uint32_t>::max();
+  static constexpr Slot nobody = none<Slot>;
 
   /// Calls `f(ViewInterval)`, map frame, for the parts of the object's edges that nothing else hides until that returns
   /// true; returns whether it did.
   template <class Scene, class F>
-  bool any_clear_edge(Scene const& scene, std::uint32_t own, std::uint32_t object, geometry::Point const& eye,
-                      F const& f) const {
+  bool any_clear_edge(Scene const& scene, Slot own, Slot object, geometry::Point const& eye, F const& f) const {
     auto const& outline = scene.objects()[object].outline;
     for (std::size_t i = 0; i < outline.size(); ++i) {
       auto const ends = outline.edge(i);
@@ -250,17 +249,17 @@ struct OccludedObserver {
 
   /// Calls `cover(ViewInterval)` for all that hides the target of `sight`: agent `other`, or object `object`.
   template <class Scene, class Cover>
-  void cover_all(Scene const& scene, std::uint32_t own, std::uint32_t other, std::uint32_t object,
-                 detail::Sight const& sight, geometry::Point const& eye, Cover const& cover) const {
+  void cover_all(Scene const& scene, Slot own, Slot other, Slot object, detail::Sight const& sight,
+                 geometry::Point const& eye, Cover const& cover) const {
     if (auto const hidden = sight.outside(scene.state(own).heading, field_of_view); !hidden.empty()) cover(hidden);
     if (!behind_vehicles) cover_by_vehicles(scene, own, other, sight, eye, cover);
     if (!behind_objects) cover_by_objects(scene, object, sight, cover);
   }
 
   template <class Scene, class Cover>
-  static void cover_by_vehicles(Scene const& scene, std::uint32_t own, std::uint32_t other, detail::Sight const& sight,
+  static void cover_by_vehicles(Scene const& scene, Slot own, Slot other, detail::Sight const& sight,
                                 geometry::Point const& eye, Cover const& cover) {
-    for (std::uint32_t i = 0; i < scene.size(); ++i) {
+    for (Slot i{}; index_of(i) < scene.size(); ++i) {
       if (i == own || i == other || !scene.in_traffic(i) || !sight.may_cover(scene.shape(i), scene.state(i))) continue;
       auto const box = geometry::box_of(scene.shape(i), scene.state(i));
       if (box.contains(eye)) continue;
@@ -271,10 +270,9 @@ struct OccludedObserver {
   }
 
   template <class Scene, class Cover>
-  static void cover_by_objects(Scene const& scene, std::uint32_t except, detail::Sight const& sight,
-                               Cover const& cover) {
+  static void cover_by_objects(Scene const& scene, Slot except, detail::Sight const& sight, Cover const& cover) {
     auto const& objects = scene.objects();
-    for (std::uint32_t k = 0; k < objects.size(); ++k) {
+    for (Slot k{}; index_of(k) < objects.size(); ++k) {
       if (k == except) continue;
       auto const& outline = objects[k].outline;
       for (std::size_t i = 0; i < outline.size(); ++i) {

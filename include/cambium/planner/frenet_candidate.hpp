@@ -82,7 +82,7 @@ enum class FrenetVerdict : std::uint8_t {
 struct FrenetCandidate {
   enum class Kind : std::uint8_t { keep_speed, follow };  ///< following what stands is stopping
 
-  std::uint16_t corridor = map::no_corridor;  ///< along whose centre line
+  CorridorId corridor = none<CorridorId>;  ///< along whose centre line
   Kind kind = Kind::keep_speed;
   bool by_way = false;       ///< the offset changes with the way, not with time: at low speed
   double duration{};         ///< [s]

@@ -148,15 +148,15 @@ struct FrenetPlanner {
 
   template <class View>
   [[nodiscard]] SearchProblem sample(View const& view, Memory const& memory, Workspace& workspace) const {
-    std::optional<std::uint32_t> ego;
+    std::optional<Slot> ego;
     auto world = detail::predicted_for<PredictionWorld>(view, others, others, ego);
     if (!ego) return SearchProblem::not_in_world;
     workspace.others.predict(std::move(world), *ego, horizon, step);
     workspace.candidates.clear();
-    auto const& at = view.lane_position();
+    auto const& at = view.place();
     auto const& piece = view.corridor().pieces[at.piece];
     for (auto const number : {at.corridor, piece.left, piece.right})
-      if (number != map::no_corridor) sample_lane(view, number, memory, workspace);
+      if (number != none<CorridorId>) sample_lane(view, number, memory, workspace);
     for (auto& candidate : workspace.candidates)
       if (std::isnan(candidate.cost)) candidate.cost = std::numeric_limits<double>::infinity();
     detail::stable_sort(workspace.candidates, &FrenetCandidate::cost);
@@ -164,8 +164,8 @@ struct FrenetPlanner {
   }
 
   template <class View>
-  void sample_lane(View const& view, std::uint16_t number, Memory const& memory, Workspace& workspace) const {
-    auto const at = view.lane_position(number);
+  void sample_lane(View const& view, CorridorId number, Memory const& memory, Workspace& workspace) const {
+    auto const at = view.place(number);
     if (std::abs(at.heading_error) > detail::most_aslant) return;
     auto const& corridor = view.road().corridors[number];
     CourseMotion<double> const now{at.heading_error, static_cast<double>(memory.curvature),
@@ -188,13 +188,13 @@ struct FrenetPlanner {
 
   /// The ends of courses of `duration` [s]: speeds, and behind who is ahead or before the lane's end.
   template <class View>
-  void set_targets(View const& view, std::uint16_t number, map::LanePosition const& at, double wanted, double duration,
+  void set_targets(View const& view, CorridorId number, map::LanePlace const& at, double wanted, double duration,
                    Workspace& workspace) const {
     auto& targets = workspace.targets;
     targets.clear();
     for (double const share : speed_shares)
       targets.push_back({std::numeric_limits<double>::infinity(), share * wanted});
-    if (auto const leader = view.neighbors(number).front)
+    if (auto const leader = view.ahead(view.place(number)))
       targets.push_back(behind(workspace.others, *leader, at.s, duration));
     auto const& corridor = view.road().corridors[number];
     double const end = lane_end(view, number, at.piece);
@@ -203,7 +203,7 @@ struct FrenetPlanner {
   }
 
   /// Where ego follows `leader` at the time gap, `time` [s] from now.
-  [[nodiscard]] FrenetTarget behind(detail::OthersAhead<PredictionWorld> const& ahead, Neighbor const& leader, double s,
+  [[nodiscard]] FrenetTarget behind(detail::OthersAhead<PredictionWorld> const& ahead, RoadUser const& leader, double s,
                                     double time) const {
     double const contact = s + leader.gap;
     auto const slot = ahead.world->roster().slot_of(leader.agent);
@@ -217,7 +217,7 @@ struct FrenetPlanner {
                                                       double time) const {
     auto const& corridor = view.road().corridors[candidate.corridor];
     auto const frenet = candidate.at(time);
-    auto hint = view.lane_position(candidate.corridor).segment;
+    auto hint = view.place(candidate.corridor).segment;
     auto const& segment = corridor.center.segment_at(frenet.s, hint);
     auto const course = course_motion(frenet, {segment.curvature, 0.0});
     auto state = view.state();
@@ -253,9 +253,9 @@ struct FrenetPlanner {
   template <class View>
   [[nodiscard]] bool comes_too_near(View const& view, FrenetCandidate const& candidate,
                                     detail::OthersAhead<PredictionWorld> const& ahead) const {
-    auto const leader = view.neighbors(candidate.corridor).front;
+    auto const leader = view.ahead(view.place(candidate.corridor));
     if (!leader) return false;
-    double const s = view.lane_position(candidate.corridor).s;
+    double const s = view.place(candidate.corridor).s;
     if (candidate.at(horizon).s <= behind(ahead, *leader, s, horizon).position) return false;
     return !detail::leaves_room(view, candidate.corridor, *leader, candidate.offset, limits.clearance);
   }

@@ -71,7 +71,7 @@ struct MctsCooperative {
   template <class View>
   [[nodiscard]] SearchResult<typename Domain::Action> const& search(View const& view, Memory const& memory,
                                                                     Workspace& workspace) const {
-    std::vector<std::uint32_t> slots;
+    std::vector<Slot> slots;
     auto world = detail::world_to_search<PredictionWorld>(view, actions, memory, others, slots);
     if (!slots.empty())
       for (auto const slot :

@@ -104,7 +104,7 @@ struct MctsHypothesis {
   template <class View>
   [[nodiscard]] SearchResult<typename Domain::Action> const& search(View const& view, Memory& memory, double dt,
                                                                     Workspace& workspace) const {
-    std::vector<std::uint32_t> slots;
+    std::vector<Slot> slots;
     auto world = detail::world_to_search<PredictionWorld>(view, actions, memory.course, others, slots);
     std::vector<typename Domain::Unknown> unknowns;
     if (!slots.empty()) unknowns = update(world, slots[0], memory, dt);
@@ -114,8 +114,8 @@ struct MctsHypothesis {
   }
 
   /// Takes in what the others did since the last step, and notes what they are expected to do in the next one.
-  [[nodiscard]] std::vector<typename Domain::Unknown> update(PredictionWorld const& world, std::uint32_t ego,
-                                                             Memory& memory, double dt) const {
+  [[nodiscard]] std::vector<typename Domain::Unknown> update(PredictionWorld const& world, Slot ego, Memory& memory,
+                                                             double dt) const {
     auto const near = detail::nearest_agents(world, ego, capacity, range);
     auto const regions = static_cast<std::size_t>(others.regions);
     bool const was_expected = std::abs(memory.expected_at - world.time()) < 1e-6;
@@ -130,7 +130,7 @@ struct MctsHypothesis {
       unknowns.push_back({near[i], tracked[i].belief});
     }
     // Of the rest nothing is known.
-    for (std::uint32_t slot = 0; slot < world.size(); ++slot)
+    for (Slot slot{}; index_of(slot) < world.size(); ++slot)
       if (std::get_if<index>(&world.frame().agents[slot].memory) != nullptr &&
           std::ranges::find(near, slot) == near.end())
         unknowns.push_back({slot, Belief(regions)});
@@ -153,7 +153,7 @@ struct MctsHypothesis {
     other.belief.update({likelihoods.data(), regions}, belief);
   }
 
-  void expect(PredictionWorld const& world, std::span<std::uint32_t const> slots, Memory& memory, double dt) const {
+  void expect(PredictionWorld const& world, std::span<Slot const> slots, Memory& memory, double dt) const {
     PredictionWorld trial = world;
     for (std::size_t r = 0; r < static_cast<std::size_t>(others.regions); ++r) {
       auto frame = world.frame();

@@ -64,7 +64,7 @@ struct MctsSingleAgent {
   template <class View>
   [[nodiscard]] SearchResult<typename Domain::Action> const& search(View const& view, Memory const& memory,
                                                                     Workspace& workspace) const {
-    std::vector<std::uint32_t> slots;
+    std::vector<Slot> slots;
     auto world = detail::world_to_search<PredictionWorld>(view, actions, memory, others, slots);
     return workspace.run(Domain(std::move(world), slots, actions, reward, options.step), options,
                          view.random(detail::search_purpose)());

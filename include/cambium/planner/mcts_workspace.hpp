@@ -71,7 +71,7 @@ class MctsWorkspace {
       detail::HasPriors<DomainType> ||
           !requires(typename Options::Selection::Statistics statistics) { statistics.prior; },
       "cambium::MctsWorkspace: a search by priors (cambium::Puct) needs a reward with `double prior(World const&, "
-      "std::uint32_t slot, cambium::MacroAction const&) const` (see RewardModel)");
+      "Slot slot, cambium::MacroAction const&) const` (see RewardModel)");
 
  public:
   using Domain = DomainType;
@@ -170,9 +170,9 @@ using ActionMemory = typename ActionSet<Actions>::Behavior::Memory;
 template <class PredictionWorld, class Actions, class Others, class View>
 [[nodiscard]] PredictionWorld world_to_search(View const& view, Actions const& actions,
                                               ActionMemory<Actions> const& memory, Others const& others,
-                                              std::vector<std::uint32_t>& slots) {
+                                              std::vector<Slot>& slots) {
   using Behavior = typename ActionSet<Actions>::Behavior;
-  std::optional<std::uint32_t> ego;
+  std::optional<Slot> ego;
   auto world = predicted_for<PredictionWorld>(view, ActionSet<Actions>::behavior(actions), others, ego);
   slots.clear();
   if (!ego) return world;
@@ -196,7 +196,7 @@ void take_course(View const& view, Workspace& workspace, double dt, Plan<View>& 
 
 /// Why a course is over, of the first of `slots` whose is; else that the reward says so.
 template <class World>
-[[nodiscard]] std::string what_is_over(World const& world, std::span<std::uint32_t const> slots) {
+[[nodiscard]] std::string what_is_over(World const& world, std::span<Slot const> slots) {
   for (auto const slot : slots) {
     auto const who = "agent " + to_string(world.roster().agents[slot].id) + " ";
     auto const status = world.frame().agents[slot].status;

@@ -107,7 +107,7 @@ struct PolicySequence {
 
 /// Another's intention, other than to keep its lane and yield, as far as it matters to ego.
 struct IntentionBranch {
-  std::uint32_t slot{};
+  Slot slot{};
   Intention intention{};
   double probability{};
   int side = 0;  ///< matters only to sequences that change to the left (1), to the right (-1), or to all (0)

@@ -54,7 +54,7 @@ struct PolicyTreePlanner {
   struct Workspace {
     std::optional<PredictionWorld> world;
     typename PredictionWorld::FrameType start;
-    std::uint32_t ego{};
+    Slot ego{};
     bool has_goal = false;
     std::vector<PolicyBranch> branches;
     std::vector<IntentionBranch> intentions;
@@ -141,7 +141,7 @@ struct PolicyTreePlanner {
 
   template <class View>
   [[nodiscard]] SearchProblem grow(View const& view, Memory const& memory, Workspace& workspace) const {
-    std::optional<std::uint32_t> ego;
+    std::optional<Slot> ego;
     workspace.world = detail::predicted_for<PredictionWorld>(view, actions, intended_actions(others), ego);
     if (!ego) return SearchProblem::not_in_world;
     workspace.ego = *ego;
@@ -268,11 +268,11 @@ struct PolicyTreePlanner {
     auto const view = workspace.world->observe(id);
     double const speed = view.state().speed, desired = actions.idm.desired_speed;
     cost.efficiency += share * std::abs(speed - desired) / desired;
-    auto const front = view.front(), rear = view.rear();
+    auto const front = view.ahead(), rear = view.behind();
     bool const unsafe = (front && front->gap < weights.safe_gap(speed, front->speed)) ||
                         (rear && rear->gap < weights.safe_gap(rear->speed, speed));
     cost.safety += unsafe ? share : 0.0;
-    auto const& at = view.lane_position();
+    auto const& at = view.place();
     if (workspace.has_goal) cost.navigation += share * detail::lanes_to_destination(view.road(), at.corridor, at.piece);
   }
 };

@@ -100,8 +100,8 @@ struct ProposalPlanner {
   struct Workspace {
     std::optional<PredictionWorld> world;
     typename PredictionWorld::FrameType start;
-    std::uint32_t ego{};
-    std::vector<std::uint32_t> counting;  ///< whom it has to look out for
+    Slot ego{};
+    std::vector<Slot> counting;  ///< whom it has to look out for
     std::vector<ProposalScore> proposals;
     std::size_t best{};
   };
@@ -181,7 +181,7 @@ struct ProposalPlanner {
 
   template <class View>
   [[nodiscard]] SearchProblem propose(View const& view, Memory const& memory, Workspace& workspace) const {
-    std::optional<std::uint32_t> ego;
+    std::optional<Slot> ego;
     workspace.world = detail::predicted_for<PredictionWorld>(view, driver, others, ego);
     if (!ego) return SearchProblem::not_in_world;
     workspace.ego = *ego;

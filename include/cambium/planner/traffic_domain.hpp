@@ -56,8 +56,8 @@ class TrafficDomain {
 
   /// `slots`: who chooses, ego first; they must have the behaviour that carries out `actions`. `cooperation`: what the
   /// rewards of the others count to each of them (Lenz, Kessler, Knoll 2016), 0 to 1.
-  TrafficDomain(World world, std::span<std::uint32_t const> slots, Actions const& actions, Reward const& reward,
-                double dt, double cooperation = 0.0)
+  TrafficDomain(World world, std::span<Slot const> slots, Actions const& actions, Reward const& reward, double dt,
+                double cooperation = 0.0)
       : world_(std::move(world)),
         slots_(slots.begin(), slots.end()),
         actions_(actions),
@@ -71,7 +71,7 @@ class TrafficDomain {
             std::ranges::any_of(slots_, [&](auto slot) { return reward_.judge(world_, slot, dt_).ends; })};
   }
   [[nodiscard]] World const& world() const { return world_; }
-  [[nodiscard]] std::span<std::uint32_t const> slots() const { return slots_; }
+  [[nodiscard]] std::span<Slot const> slots() const { return slots_; }
   [[nodiscard]] Actions const& action_set() const { return actions_; }
   [[nodiscard]] double dt() const { return dt_; }
 
@@ -151,7 +151,7 @@ class TrafficDomain {
              std::abs(geometry::angle_difference(a.state.heading, b.state.heading)) < 0.05 &&
              std::abs(a.state.speed - b.state.speed) < 0.5;
     };
-    auto const goes_on_alike = [&](std::uint32_t slot) {
+    auto const goes_on_alike = [&](Slot slot) {
       return Set::goes_on_alike(*std::get_if<behavior_index>(&predicted.frame.agents[slot].memory),
                                 *std::get_if<behavior_index>(&seen.frame.agents[slot].memory));
     };
@@ -195,13 +195,13 @@ class TrafficDomain {
   }
 
   [[nodiscard]] bool all_drive(State const& state) const {
-    return std::ranges::all_of(slots_, [&](std::uint32_t slot) {
-      return slot < state.frame.agents.size() && state.frame.agents[slot].status == AgentStatus::driving;
+    return std::ranges::all_of(slots_, [&](Slot slot) {
+      return index_of(slot) < state.frame.agents.size() && state.frame.agents[slot].status == AgentStatus::driving;
     });
   }
 
   World world_;
-  std::vector<std::uint32_t> slots_;
+  std::vector<Slot> slots_;
   Actions actions_{};
   Reward reward_{};
   double dt_ = 0.2;
@@ -222,7 +222,7 @@ class HypothesisDomain : public TrafficDomain<PredictionWorld, Actions, Reward> 
 
   /// What is believed of the agent at `slot`, whose behaviour must be `hypotheses`.
   struct Unknown {
-    std::uint32_t slot;
+    Slot slot;
     Belief belief;
   };
 

@@ -21,29 +21,29 @@ struct Judgement {
 
 /// Judges, for a search, where a step of `dt` [s] led the agent at `slot` of `world`: a copyable, described struct
 /// (`static constexpr auto parameters()`, see `TrafficReward`) with
-///   `template <class World> Judgement judge(World const& world, std::uint32_t slot, double dt) const`
+///   `template <class World> Judgement judge(World const& world, Slot slot, double dt) const`
 /// and, where it likes,
-///   `double value(World const& world, std::uint32_t slot, double dt) const`: what a course that is cut off there would
+///   `double value(World const& world, Slot slot, double dt) const`: what a course that is cut off there would
 ///     still bring, for `TruncatedRollout` and `NoRollout`;
-///   `double prior(World const& world, std::uint32_t slot, MacroAction const& action) const`: how likely the action is
+///   `double prior(World const& world, Slot slot, MacroAction const& action) const`: how likely the action is
 ///     the best, a weight of at least 0, for `Puct` (a `MotionPrimitive` or an `ExternalInput::Memory` likewise).
 /// Pure: what it judges is in the frame; neighbours are not (the traffic index is that of another frame). No
 /// allocation.
 template <class R, class World>
 concept RewardModel = std::copyable<R> && requires(R const reward, World const world) {
-  { reward.judge(world, std::uint32_t{}, double{}) } -> std::same_as<Judgement>;
+  { reward.judge(world, Slot{}, double{}) } -> std::same_as<Judgement>;
 };
 
 namespace detail {
 
 template <class R, class World>
 concept ValuesCourses = requires(R const reward, World const world) {
-  { reward.value(world, std::uint32_t{}, double{}) } -> std::convertible_to<double>;
+  { reward.value(world, Slot{}, double{}) } -> std::convertible_to<double>;
 };
 
 template <class R, class World, class Set>
 concept HasPrior = requires(R const reward, World const world, typename Set::Choice const choice) {
-  { reward.prior(world, std::uint32_t{}, Set::action({}, choice)) } -> std::convertible_to<double>;
+  { reward.prior(world, Slot{}, Set::action({}, choice)) } -> std::convertible_to<double>;
 };
 
 }  // namespace detail
@@ -84,7 +84,7 @@ struct TrafficReward {
   }
 
   template <class World>
-  [[nodiscard]] Judgement judge(World const& world, std::uint32_t slot, double dt) const {
+  [[nodiscard]] Judgement judge(World const& world, Slot slot, double dt) const {
     auto const& record = world.frame().agents[slot];
     switch (record.status) {
       case AgentStatus::driving:
@@ -104,7 +104,7 @@ struct TrafficReward {
 
   /// What is on the way, for `lookahead`.
   template <class World>
-  [[nodiscard]] double value(World const& world, std::uint32_t slot, double) const {
+  [[nodiscard]] double value(World const& world, Slot slot, double) const {
     return on_the_way(world.frame().agents[slot], lookahead);
   }
 

@@ -3,12 +3,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
-#include <vector>
 
 #include "cambium/core/macros.hpp"
 #include "cambium/core/plan.hpp"
 #include "cambium/execution/execution_model.hpp"
-#include "cambium/map/lane_position.hpp"
+#include "cambium/map/lane_place.hpp"
 #include "cambium/observer/observer_model.hpp"
 
 namespace cambium {
@@ -37,7 +36,7 @@ enum class AgentStatus : std::uint8_t {
 template <MotionState S, class Memory, class ExecutionMemory = NoMemory, class Past = NoPast>
 struct AgentRecord {
   S state;
-  map::LanePosition lane;
+  map::LanePlace lane;
   Action action;  ///< of the step that led here
   Memory memory;
   AgentStatus status = AgentStatus::driving;
@@ -55,7 +54,7 @@ struct Frame {
 
   double time = 0.0;       ///< [s]
   std::uint64_t step = 0;  ///< steps made since the world began
-  std::vector<Record> agents;
+  IdVector<Record, Slot> agents;
   std::uint32_t roster_revision = 0;  ///< of the roster that the records belong to: see `RosterBase::revision`
 
   /// Whether both show the same at the same time, however often their rosters have changed.

@@ -25,7 +25,7 @@ class PlaneIndex {
     ranges_.resize(count);
     begins_.assign(std::bit_ceil(count + 1) + 1, 0);
     std::size_t most = 0;
-    for (std::uint32_t slot = 0; slot < count; ++slot) {
+    for (Slot slot{}; index_of(slot) < count; ++slot) {
       geometry::Box const box = box_of(slot);
       auto& range = ranges_[slot];
       range = box.min_x <= box.max_x ? range_of(box) : Range{0, 0, -1, -1};
@@ -36,7 +36,7 @@ class PlaneIndex {
     if (entries_.capacity() < most) entries_.reserve(2 * most);
     entries_.resize(begins_.back());
     next_ = begins_;
-    for (std::uint32_t slot = 0; slot < count; ++slot)
+    for (Slot slot{}; index_of(slot) < count; ++slot)
       for_each_cell(ranges_[slot], [&](std::int32_t x, std::int32_t y) {
         entries_[next_[bucket(x, y)]++] = {x, y, slot};
       });
@@ -66,7 +66,7 @@ class PlaneIndex {
   };
   struct Entry {
     std::int32_t x, y;
-    std::uint32_t slot;
+    Slot slot;
   };
 
   [[nodiscard]] static std::int32_t cell_of(double coordinate) {
@@ -90,7 +90,7 @@ class PlaneIndex {
     return (mixed ^ (mixed >> 15)) & (begins_.size() - 2);
   }
 
-  std::vector<Range> ranges_;          ///< by slot
+  IdVector<Range, Slot> ranges_;       ///< by slot
   std::vector<std::uint32_t> begins_;  ///< of each bucket's entries, and the end
   std::vector<std::uint32_t> next_;
   std::vector<Entry> entries_;  ///< by bucket, then slot

@@ -11,7 +11,7 @@
 #include "cambium/behavior/behavior_set.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/goal/goal.hpp"
-#include "cambium/map/lane_position.hpp"
+#include "cambium/map/lane_place.hpp"
 #include "cambium/observer/perfect.hpp"
 #include "cambium/world/detail/entering.hpp"
 #include "cambium/world/detail/seen.hpp"
@@ -53,7 +53,7 @@ template <class Set, class Behavior>
 /// behaviour is out of its range, and `WorldError` where one heeds conflicts and the agent is too large for them, as
 /// `World::add`.
 template <class Set, class World>
-[[nodiscard]] typename World::template WithBehaviors<Set> predicted_world(World const& world, std::uint32_t slot,
+[[nodiscard]] typename World::template WithBehaviors<Set> predicted_world(World const& world, Slot slot,
                                                                           Prediction<Set> const& prediction) {
   using Predicted = typename World::template WithBehaviors<Set>;
   static_assert(
@@ -74,13 +74,13 @@ template <class Set, class World>
   assumed->next_agent_id = roster.next_agent_id;
   assumed->next_object_id = roster.next_object_id;
   assumed->has_sequences = roster.has_sequences;
-  std::vector<std::uint8_t> seen_objects(roster.objects.size());
-  for (std::uint32_t i = 0; i < roster.objects.size(); ++i) seen_objects[i] = detail::is_object_seen(world, slot, i);
+  IdVector<std::uint8_t, Slot> seen_objects(roster.objects.size());
+  for (Slot i{}; index_of(i) < roster.objects.size(); ++i) seen_objects[i] = detail::is_object_seen(world, slot, i);
   assumed->assume_objects(roster, seen_objects);
   assumed->free_roads = roster.free_roads;
   assumed->lights = roster.lights;
   typename Predicted::FrameType seen{frame.time, frame.step, {}};
-  for (std::uint32_t i = 0; i < roster.agents.size(); ++i) {
+  for (Slot i{}; index_of(i) < roster.agents.size(); ++i) {
     auto const& agent = roster.agents[i];
     auto const& record = frame.agents[i];
     if (record.status != AgentStatus::driving || !detail::is_seen(world, slot, i)) continue;

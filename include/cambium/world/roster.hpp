@@ -29,10 +29,10 @@ struct RosterBase {
   std::uint32_t revision = 0;  ///< changes after which frames from before do not fit: agents, roads, kinds of behaviour
   std::uint32_t next_agent_id = 0;
   std::uint32_t next_object_id = 0;
-  std::vector<Goal> goals;             ///< by slot
+  IdVector<Goal, Slot> goals;          ///< by slot
   bool has_sequences = false;          ///< one of them is, or was, a `GoalSequence`
   std::vector<map::LightPlan> lights;  ///< by `LightId`; off beyond its end
-  std::vector<StaticObject> objects;
+  IdVector<StaticObject, Slot> objects;
   std::vector<TrafficEntry> object_entries;  ///< objects on the lanes that they stand in; slot: place in `objects`
   std::vector<FreeRoad> free_roads;          ///< those that agents have entered on
 
@@ -47,18 +47,18 @@ struct RosterBase {
   ObjectId insert(StaticObject object, std::vector<TrafficEntry> const& entries);
 
   /// Takes the object at `place` out. O(objects).
-  void erase_object(std::size_t place);
+  void erase_object(Slot place);
 
   /// Takes over the goal at `slot` of another roster, or where that is null none, as the next one's.
-  void assume_goal(RosterBase const* other, std::size_t slot);
+  void assume_goal(RosterBase const* other, Slot slot);
 
   /// Takes over those of the static objects of another roster that are `seen`, with their places on lanes.
-  void assume_objects(RosterBase const& other, std::vector<std::uint8_t> const& seen);
+  void assume_objects(RosterBase const& other, IdVector<std::uint8_t, Slot> const& seen);
 
  protected:
-  void insert_goal(std::size_t slot, Goal goal);
-  void erase_goal(std::size_t slot);
-  void keep_goals(std::vector<std::size_t> const& slots);
+  void insert_goal(Slot slot, Goal goal);
+  void erase_goal(Slot slot);
+  void keep_goals(std::vector<Slot> const& slots);
 };
 
 /// Who the agents of a world are: what does not change while nobody enters or leaves. Shared by copies of the world,
@@ -75,18 +75,18 @@ struct Roster : RosterBase {
     Observer observer;
   };
 
-  std::vector<Agent> agents;
+  IdVector<Agent, Slot> agents;
 
   /// The agent's slot; nothing if there is no such agent. O(log n).
-  [[nodiscard]] std::optional<std::size_t> slot_of(AgentId id) const {
+  [[nodiscard]] std::optional<Slot> slot_of(AgentId id) const {
     auto const slot = place_of(id);
-    if (slot == agents.size() || agents[slot].id != id) return std::nullopt;
+    if (index_of(slot) == agents.size() || agents[slot].id != id) return std::nullopt;
     return slot;
   }
 
   using RosterBase::insert;
   /// Takes in an agent whose id nobody has; returns its slot. O(n).
-  std::size_t insert(Agent agent, Goal goal) {
+  Slot insert(Agent agent, Goal goal) {
     auto const slot = place_of(agent.id);
     next_agent_id = std::max(next_agent_id, static_cast<std::uint32_t>(agent.id) + 1);
     agents.insert(agents.begin() + static_cast<std::ptrdiff_t>(slot), std::move(agent));
@@ -95,28 +95,28 @@ struct Roster : RosterBase {
   }
 
   /// Takes the agent at `slot` out. O(n).
-  void erase(std::size_t slot) {
+  void erase(Slot slot) {
     agents.erase(agents.begin() + static_cast<std::ptrdiff_t>(slot));
     erase_goal(slot);
   }
 
   /// Takes all out but those at `slots`, which ascend. O(n).
-  void keep(std::vector<std::size_t> const& slots) {
+  void keep(std::vector<Slot> const& slots) {
     for (std::size_t to = 0; to < slots.size(); ++to)
-      if (to != slots[to]) agents[to] = std::move(agents[slots[to]]);
+      if (to != index_of(slots[to])) agents[to] = std::move(agents[slots[to]]);
     agents.erase(agents.begin() + static_cast<std::ptrdiff_t>(slots.size()), agents.end());
     keep_goals(slots);
   }
 
  private:
   /// Where `id` is, or belongs.
-  [[nodiscard]] std::size_t place_of(AgentId id) const {
+  [[nodiscard]] Slot place_of(AgentId id) const {
     std::size_t begin = 0, end = agents.size();
     while (begin < end) {
       auto const middle = begin + (end - begin) / 2;
       agents[middle].id < id ? begin = middle + 1 : end = middle;
     }
-    return begin;
+    return static_cast<Slot>(begin);
   }
 };
 

@@ -48,14 +48,6 @@ struct ReachingEntries {
 /// list; where somebody stands beside another, those farther on are looked at, too.
 class TrafficIndex {
  public:
-  /// Farthest reference point that is a neighbour, along the corridor [m].
-  static constexpr double horizon = 400.0;
-
-  /// See `map::gap_before_merge`.
-  [[nodiscard]] static double gap_between(double follower_front, double leader_rear, double merge) {
-    return map::gap_before_merge(follower_front, leader_rear, merge);
-  }
-
   /// Takes in `count` agents. `entry_of(slot, list)` gives each one's `TrafficEntry` (position +infinity: on no lane of
   /// its own) and appends entries in other lanes that it is in to the list; `lane_of(slot)` gives its own
   /// `LaneStretch`. No allocation once warm. O(count) when little has changed.
@@ -66,7 +58,7 @@ class TrafficIndex {
       agents_.reserve(3 * count);
       reaching_.entries.reserve(2 * count);
       agents_.resize(count);
-      for (std::uint32_t i = 0; i < count; ++i) agents_[rank_[i] = i].slot = i;
+      for (std::uint32_t i = 0; i < count; ++i) agents_[rank_[i] = i].slot = Slot{i};
     }
     reaching_.clear();
     Reach reach;
@@ -85,26 +77,38 @@ class TrafficIndex {
     crowded_ = !reach_.all_alike() && anybody_hides(lane_of);
   }
 
+  /// An entry as those who ask see it: `gap` [m] away, at `s` [m].
+  [[nodiscard]] static RoadUser user_of(TrafficEntry const& e, bool is_object, double gap, double s) {
+    return {.agent = is_object ? none<AgentId> : static_cast<AgentId>(e.id),
+            .object = is_object ? static_cast<ObjectId>(e.id) : none<ObjectId>,
+            .slot = e.slot,
+            .gap = gap,
+            .s = s,
+            .front = e.front,
+            .rear = e.rear,
+            .speed = e.speed};
+  }
+
   /// Whether an agent is on a lane of its own.
-  [[nodiscard]] bool has(std::uint32_t slot) const {
-    return agents_[rank_[slot]].position < std::numeric_limits<double>::infinity();
+  [[nodiscard]] bool has(Slot slot) const {
+    return agents_[rank_[index_of(slot)]].position < std::numeric_limits<double>::infinity();
   }
 
   /// Next ahead of the asker on `corridor`. `own`: the asker's own entry lies on this corridor's piece (saves a
   /// search).
   template <class Query>
-  [[nodiscard]] std::optional<TrafficHit> front(map::LaneCorridor const& corridor, Query const& query,
-                                                std::span<TrafficEntry const> objects, bool own) const {
-    return front_from(own ? rank_[query.slot] + 1 : upper(agents(), key(corridor, query), query.slot), corridor, query,
-                      objects);
+  [[nodiscard]] std::optional<RoadUser> front(map::LaneCorridor const& corridor, Query const& query,
+                                              std::span<TrafficEntry const> objects, bool own) const {
+    return front_from(own ? rank_[index_of(query.slot)] + 1 : upper(agents(), key(corridor, query), query.slot),
+                      corridor, query, objects);
   }
 
   /// Next behind the asker on `corridor`.
   template <class Query>
-  [[nodiscard]] std::optional<TrafficHit> rear(map::LaneCorridor const& corridor, Query const& query,
-                                               std::span<TrafficEntry const> objects, bool own) const {
-    return rear_from(own ? rank_[query.slot] : lower(agents(), key(corridor, query), query.slot), corridor, query,
-                     objects);
+  [[nodiscard]] std::optional<RoadUser> rear(map::LaneCorridor const& corridor, Query const& query,
+                                             std::span<TrafficEntry const> objects, bool own) const {
+    return rear_from(own ? rank_[index_of(query.slot)] : lower(agents(), key(corridor, query), query.slot), corridor,
+                     query, objects);
   }
 
   /// Where in the list of agents the asker's place is: one search for `front_from` and `rear_from`. O(log n).
@@ -128,8 +132,8 @@ class TrafficIndex {
 
   /// Next ahead; among the agents, entry `start` is the first candidate on the asker's piece.
   template <class Query>
-  [[nodiscard]] std::optional<TrafficHit> front_from(std::size_t start, map::LaneCorridor const& corridor,
-                                                     Query const& query, std::span<TrafficEntry const> objects) const {
+  [[nodiscard]] std::optional<RoadUser> front_from(std::size_t start, map::LaneCorridor const& corridor,
+                                                   Query const& query, std::span<TrafficEntry const> objects) const {
     Nearest best;
     front_on_corridor(corridor, query, start, best);
     if (crowded_ || !objects.empty() || !corridor.feeders.empty())
@@ -139,8 +143,8 @@ class TrafficIndex {
 
   /// Next behind; among the agents, candidates lie before entry `start`.
   template <class Query>
-  [[nodiscard]] std::optional<TrafficHit> rear_from(std::size_t start, map::LaneCorridor const& corridor,
-                                                    Query const& query, std::span<TrafficEntry const> objects) const {
+  [[nodiscard]] std::optional<RoadUser> rear_from(std::size_t start, map::LaneCorridor const& corridor,
+                                                  Query const& query, std::span<TrafficEntry const> objects) const {
     Nearest best;
     rear_on_corridor(corridor, query, start, best);
     if (crowded_ || !objects.empty() || !corridor.feeders.empty())
@@ -149,26 +153,29 @@ class TrafficIndex {
   }
 
   /// Of the agents in lanes that are still to merge into `corridor` at `merge`, the one with the foremost image on the
-  /// corridor not beyond `behind`: its entry, with the image as position. Whom `query` skips is passed over.
-  /// O(feeders), plus a search in each.
+  /// corridor not beyond `limit`. Whom `query` skips is passed over. O(feeders), plus a search in each.
   template <class Query>
-  [[nodiscard]] std::optional<TrafficEntry> merging(map::LaneCorridor const& corridor, double merge, double behind,
-                                                    Query const& query) const {
-    std::optional<TrafficEntry> best;
+  [[nodiscard]] std::optional<RoadUser> merging(map::LaneCorridor const& corridor, double merge, double limit,
+                                                Query const& query) const {
+    TrafficEntry const* best = nullptr;
+    double best_s = -std::numeric_limits<double>::infinity();
     for (auto const& feeder : corridor.feeders) {
-      if (feeder.free_until != merge || !feeder.is_still_to_merge() || feeder.begin > behind) continue;
-      double const to = behind >= feeder.end ? feeder.index_end : feeder.index_at(behind);
-      for (auto i = upper(agents(), to, std::numeric_limits<std::uint32_t>::max());
-           i > 0 && agents_[i - 1].position >= feeder.index_begin; --i) {
+      if (feeder.free_until != merge || !feeder.is_still_to_merge() || feeder.begin > limit) continue;
+      double const to = limit >= feeder.end ? feeder.index_end : feeder.index_at(limit);
+      for (auto i = upper(agents(), to, none<Slot>); i > 0 && agents_[i - 1].position >= feeder.index_begin; --i) {
+        auto const& entry = agents_[i - 1];
         if (!is_own(i - 1)) continue;
-        auto entry = agents_[i - 1];
-        entry.position = feeder.image(entry.position);
-        if (query.skips(entry, std::abs(entry.position - query.s))) continue;
-        if (!best || entry.position > best->position) best = entry;
+        double const s = feeder.image(entry.position);
+        if (query.skips(entry, std::abs(s - query.s))) continue;
+        if (!best || s > best_s) {
+          best = &entry;
+          best_s = s;
+        }
         break;
       }
     }
-    return best;
+    if (!best) return std::nullopt;
+    return user_of(*best, false, best_s - best->rear - (query.s + query.front), best_s);
   }
 
  private:
@@ -198,19 +205,20 @@ class TrafficIndex {
   /// The nearest so far: small enough to be handed over in registers.
   struct Nearest {
     double gap = std::numeric_limits<double>::infinity();  ///< [m]
+    double s{};                                            ///< on the corridor [m]
     TrafficEntry const* entry = nullptr;
 
-    void offer(TrafficEntry const& other, double other_gap) {
-      if (other_gap < gap) *this = {other_gap, &other};
+    void offer(TrafficEntry const& other, double other_s, double other_gap) {
+      if (other_gap < gap) *this = {other_gap, other_s, &other};
     }
   };
 
-  [[nodiscard]] static std::optional<TrafficHit> hit(Nearest const& best, List objects) {
+  [[nodiscard]] static std::optional<RoadUser> hit(Nearest const& best, List objects) {
     if (!best.entry) return std::nullopt;
     auto const& e = *best.entry;
     bool const is_object = !objects.empty() && !std::less{}(best.entry, objects.data()) &&
                            std::less{}(best.entry, objects.data() + objects.size());
-    return TrafficHit{e.slot, e.id, is_object, best.gap, e.speed, e.front + e.rear};
+    return user_of(e, is_object, best.gap, best.s);
   }
 
   template <class Query>
@@ -225,13 +233,13 @@ class TrafficIndex {
   }
 
   /// First entry that sorts behind (position, slot).
-  [[nodiscard]] static std::size_t upper(List list, double position, std::uint32_t slot) {
+  [[nodiscard]] static std::size_t upper(List list, double position, Slot slot) {
     auto i = first_at(list, position);
     while (i < list.size() && list[i].position == position && list[i].slot <= slot) ++i;
     return i;
   }
   /// First entry that does not sort before (position, slot).
-  [[nodiscard]] static std::size_t lower(List list, double position, std::uint32_t slot) {
+  [[nodiscard]] static std::size_t lower(List list, double position, Slot slot) {
     auto i = first_at(list, position);
     while (i < list.size() && list[i].position == position && list[i].slot < slot) ++i;
     return i;
@@ -256,15 +264,15 @@ class TrafficIndex {
                          Nearest& best) const {
     auto const list = agents();
     auto const& pieces = corridor.pieces;
-    for (std::size_t p = query.piece, i = start;;) {
+    for (std::size_t p = index_of(query.piece), i = start;;) {
       while (i < list.size() && query.skips(list[i], list[i].position - pieces[p].index_offset - query.s))
         ++i;  // the asker's own, reached over from another lane
       if (i < list.size() && list[i].position <= pieces[p].end + 1.0 + pieces[p].index_offset) {
         double const s = list[i].position - pieces[p].index_offset;
-        if (s - query.s <= horizon) best.offer(list[i], s - list[i].rear - (query.s + query.front));
+        if (s - query.s <= query.distance) best.offer(list[i], s, s - list[i].rear - (query.s + query.front));
         return;
       }
-      if (++p == pieces.size() || pieces[p].begin - query.s > horizon) return;
+      if (++p == pieces.size() || pieces[p].begin - query.s > query.distance) return;
       i = first_at(list, pieces[p].begin - 1.0 + pieces[p].index_offset);
     }
   }
@@ -273,16 +281,16 @@ class TrafficIndex {
   void rear_on_corridor(map::LaneCorridor const& corridor, Query const& query, std::size_t start, Nearest& best) const {
     auto const list = agents();
     auto const& pieces = corridor.pieces;
-    for (std::size_t p = query.piece, i = start;;) {  // candidates lie before i
+    for (std::size_t p = index_of(query.piece), i = start;;) {  // candidates lie before i
       while (i > 0 && query.skips(list[i - 1], query.s - (list[i - 1].position - pieces[p].index_offset))) --i;
       if (i > 0 && list[i - 1].position >= pieces[p].begin - 1.0 + pieces[p].index_offset) {
         auto const& entry = list[i - 1];
         double const s = entry.position - pieces[p].index_offset;
-        if (query.s - s <= horizon) best.offer(entry, query.s - query.rear - (s + entry.front));
+        if (query.s - s <= query.distance) best.offer(entry, s, query.s - query.rear - (s + entry.front));
         return;
       }
-      if (p-- == 0 || query.s - pieces[p].end > horizon) return;
-      i = upper(list, pieces[p].end + 1.0 + pieces[p].index_offset, std::numeric_limits<std::uint32_t>::max());
+      if (p-- == 0 || query.s - pieces[p].end > query.distance) return;
+      i = upper(list, pieces[p].end + 1.0 + pieces[p].index_offset, none<Slot>);
     }
   }
 
@@ -293,16 +301,16 @@ class TrafficIndex {
                             Query const& query, std::size_t start, Nearest& best) {
     auto const& pieces = corridor.pieces;
     double const own_front = query.s + query.front;
-    for (std::size_t p = query.piece, i = start; p < pieces.size(); ++p) {
+    for (std::size_t p = index_of(query.piece), i = start; p < pieces.size(); ++p) {
       double const offset = pieces[p].index_offset, from = pieces[p].begin - 1.0;
-      if (p > query.piece) {
-        if (from - longest - own_front >= best.gap || from - query.s > horizon) return;
+      if (p > index_of(query.piece)) {
+        if (from - longest - own_front >= best.gap || from - query.s > query.distance) return;
         i = first_at(list, from + offset);
       }
       for (; i < list.size() && list[i].position <= pieces[p].end + 1.0 + offset; ++i) {
         double const s = list[i].position - offset;
-        if (s - longest - own_front >= best.gap || s - query.s > horizon) return;
-        if (!skips(query, list[i], is_object, s - query.s)) best.offer(list[i], s - list[i].rear - own_front);
+        if (s - longest - own_front >= best.gap || s - query.s > query.distance) return;
+        if (!skips(query, list[i], is_object, s - query.s)) best.offer(list[i], s, s - list[i].rear - own_front);
       }
     }
   }
@@ -313,17 +321,17 @@ class TrafficIndex {
                            Query const& query, std::size_t start, Nearest& best) {
     auto const& pieces = corridor.pieces;
     double const own_rear = query.s - query.rear;
-    for (std::size_t p = query.piece + std::size_t{1}, i = start; p-- > 0;) {  // candidates lie before i
+    for (std::size_t p = index_of(query.piece) + 1, i = start; p-- > 0;) {  // candidates lie before i
       double const offset = pieces[p].index_offset, to = pieces[p].end + 1.0;
-      if (p < query.piece) {
-        if (own_rear - (to + longest) >= best.gap || query.s - to > horizon) return;
-        i = upper(list, to + offset, std::numeric_limits<std::uint32_t>::max());
+      if (p < index_of(query.piece)) {
+        if (own_rear - (to + longest) >= best.gap || query.s - to > query.distance) return;
+        i = upper(list, to + offset, none<Slot>);
       }
       for (; i > 0 && list[i - 1].position >= pieces[p].begin - 1.0 + offset; --i) {
         auto const& entry = list[i - 1];
         double const s = entry.position - offset;
-        if (own_rear - (s + longest) >= best.gap || query.s - s > horizon) return;
-        if (!skips(query, entry, is_object, query.s - s)) best.offer(entry, own_rear - (s + entry.front));
+        if (own_rear - (s + longest) >= best.gap || query.s - s > query.distance) return;
+        if (!skips(query, entry, is_object, query.s - s)) best.offer(entry, s, own_rear - (s + entry.front));
       }
     }
   }
@@ -336,12 +344,13 @@ class TrafficIndex {
                                            List objects, Nearest best) const {
     if (crowded_ && best.entry) nearest_front(agents(), false, reach_.longest_rear, corridor, query, start, best);
     if (!objects.empty())
-      nearest_front(objects, true, longest_object, corridor, query, upper(objects, key(corridor, query), 0), best);
+      nearest_front(objects, true, longest_object, corridor, query, upper(objects, key(corridor, query), Slot{}), best);
     for (auto const& feeder : corridor.feeders) {
-      if (feeder.begin > query.s + std::min(horizon, best.gap + query.front + reach_.longest_rear) && objects.empty())
+      if (feeder.begin > query.s + std::min(query.distance, best.gap + query.front + reach_.longest_rear) &&
+          objects.empty())
         break;  // nobody there is closer
-      if (feeder.begin > query.s + horizon) break;
-      if (feeder.end < query.s || (!query.with_merging && feeder.is_still_to_merge())) continue;
+      if (feeder.begin > query.s + query.distance) break;
+      if (feeder.end < query.s || (query.merging == Merging::ignored && feeder.is_still_to_merge())) continue;
       front_on_feeder(agents(), false, feeder, query, best);
       if (!objects.empty()) front_on_feeder(objects, true, feeder, query, best);
     }
@@ -354,12 +363,14 @@ class TrafficIndex {
                                           List objects, Nearest best) const {
     if (crowded_ && best.entry) nearest_rear(agents(), false, reach_.longest_front, corridor, query, start, best);
     if (!objects.empty())
-      nearest_rear(objects, true, longest_object, corridor, query, lower(objects, key(corridor, query), 0), best);
+      nearest_rear(objects, true, longest_object, corridor, query, lower(objects, key(corridor, query), Slot{}), best);
     for (auto const& feeder : corridor.feeders) {
       if (feeder.begin > query.s) break;
-      if (feeder.end < query.s - std::min(horizon, best.gap + query.rear + reach_.longest_front) && objects.empty())
+      if (feeder.end < query.s - std::min(query.distance, best.gap + query.rear + reach_.longest_front) &&
+          objects.empty())
         continue;  // nobody there is closer
-      if (feeder.end < query.s - horizon || (!query.with_merging && feeder.is_still_to_merge())) continue;
+      if (feeder.end < query.s - query.distance || (query.merging == Merging::ignored && feeder.is_still_to_merge()))
+        continue;
       rear_on_feeder(agents(), false, feeder, query, best);
       if (!objects.empty()) rear_on_feeder(objects, true, feeder, query, best);
     }
@@ -376,12 +387,13 @@ class TrafficIndex {
       if (entry.position < feeder.index_begin) continue;
       double const s = feeder.image(entry.position);
       if (skips(query, entry, is_object, s - query.s)) continue;
-      if (query.by_rule && feeder.by_rule && s + entry.front < feeder.free_until) continue;
+      if (query.merging == Merging::by_rule && feeder.by_rule && s + entry.front < feeder.free_until) continue;
       bool const ahead = s > query.s || (s == query.s && entry.slot > query.slot);
       if (!ahead) continue;
       double const own_front = query.s + query.front;
-      if (s - query.s > horizon || gap_between(own_front, s - longest, feeder.free_until) >= best.gap) return;
-      best.offer(entry, gap_between(own_front, s - entry.rear, feeder.free_until));
+      if (s - query.s > query.distance || map::gap_before_merge(own_front, s - longest, feeder.free_until) >= best.gap)
+        return;
+      best.offer(entry, s, map::gap_before_merge(own_front, s - entry.rear, feeder.free_until));
     }
   }
 
@@ -389,22 +401,23 @@ class TrafficIndex {
   void rear_on_feeder(List list, bool is_object, map::Feeder const& feeder, Query const& query, Nearest& best) const {
     double const longest = is_object ? longest_object : reach_.longest_front;
     double const to = query.s >= feeder.end ? feeder.index_end : feeder.index_at(query.s);
-    for (auto i = upper(list, to + 1e-6, std::numeric_limits<std::uint32_t>::max());
-         i > 0 && list[i - 1].position >= feeder.index_begin; --i) {
+    for (auto i = upper(list, to + 1e-6, none<Slot>); i > 0 && list[i - 1].position >= feeder.index_begin; --i) {
       auto const& entry = list[i - 1];
       if (entry.position > feeder.index_end) continue;
       double const s = feeder.image(entry.position);
       if (skips(query, entry, is_object, query.s - s)) continue;
+      if (query.merging == Merging::by_rule && feeder.by_rule && s + entry.front < feeder.free_until) continue;
       bool const behind = s < query.s || (s == query.s && entry.slot < query.slot);
       if (!behind) continue;
       double const own_rear = query.s - query.rear;
-      if (query.s - s > horizon || gap_between(s + longest, own_rear, feeder.free_until) >= best.gap) return;
-      best.offer(entry, gap_between(s + entry.front, own_rear, feeder.free_until));
+      if (query.s - s > query.distance || map::gap_before_merge(s + longest, own_rear, feeder.free_until) >= best.gap)
+        return;
+      best.offer(entry, s, map::gap_before_merge(s + entry.front, own_rear, feeder.free_until));
     }
   }
 
   /// Whether an entry is the one in the agent's own lane, not in another that it reaches into.
-  [[nodiscard]] bool is_own(std::size_t i) const { return rank_[agents_[i].slot] == i; }
+  [[nodiscard]] bool is_own(std::size_t i) const { return rank_[index_of(agents_[i].slot)] == i; }
 
   /// Whether somebody may be farther by reference point than another, but reach nearer: then two who are next to each
   /// other in the list are so, or one reaches over an end of its lane farther than the shortest would.
@@ -437,7 +450,7 @@ class TrafficIndex {
       auto const& entry = agents_[i - 1];
       for (; left > 0 && !(reaching[left - 1] < entry); --left) agents_[i - 1 + left] = reaching[left - 1];
       if (left > 0) agents_[i - 1 + left] = entry;
-      rank_[entry.slot] = static_cast<std::uint32_t>(i - 1 + left);
+      rank_[index_of(entry.slot)] = static_cast<std::uint32_t>(i - 1 + left);
     }
     while (left-- > 0) agents_[left] = reaching[left];
   }

@@ -1,7 +1,8 @@
 #pragma once
 
 #include <cstdint>
-#include <limits>
+
+#include "cambium/behavior/view.hpp"
 
 namespace cambium {
 
@@ -12,7 +13,7 @@ struct TrafficEntry {
   double position{};
   double front{}, rear{};
   double speed{};
-  std::uint32_t slot{};
+  Slot slot{};
   std::uint32_t id{};
 
   friend bool operator<(TrafficEntry const& a, TrafficEntry const& b) {
@@ -20,45 +21,35 @@ struct TrafficEntry {
   }
 };
 
-/// Who asks for neighbours: a position `s` on a lane corridor and the asker's extent. `slot` breaks ties and is never
-/// found.
+/// Who asks for neighbours: a position `s` on a lane corridor, the asker's extent, and what counts. `slot` breaks ties
+/// and is never found.
 struct TrafficQuery {
-  std::uint32_t slot{};
+  Slot slot{};
   double s{};
   double front{}, rear{};
-  std::uint16_t piece{};
-  bool with_merging = true;  ///< who is in a lane that is still to merge counts
-  bool by_rule = false;      ///< leave out who is still to merge in a junction (see `Feeder::by_rule`)
+  PieceId piece{};
+  Merging merging = Merging::counts;
+  double distance = Look::horizon;  ///< reference points farther away are not found [m]
 
-  /// Whether an entry, `distance` [m] away, is passed over: it is the asker's own.
-  [[nodiscard]] bool skips(TrafficEntry const& entry, double /*distance*/) const { return entry.slot == slot; }
+  /// Whether an entry, `way` [m] away, is passed over: it is the asker's own.
+  [[nodiscard]] bool skips(TrafficEntry const& entry, double /*way*/) const { return entry.slot == slot; }
   /// The same of a static object.
   [[nodiscard]] bool skips_object(TrafficEntry const&, double) const { return false; }
 };
 
-/// One who does not see everybody: `sees(slot)` says whom, `sees_object(slot)` which objects.
+/// One who does not see everybody: `sees(entry, way)` says whom, `sees_object(slot)` which objects.
 template <class Sees, class SeesObject>
 struct SightedQuery : TrafficQuery {
   Sees sees;
   SeesObject sees_object;
-  double far = 400.0;  ///< who is farther ends the search, seen or not [m]
+  double far = Look::horizon;  ///< who is farther ends the search, seen or not [m]
 
-  [[nodiscard]] bool skips(TrafficEntry const& entry, double distance) const {
-    return entry.slot == slot || (distance <= far && !sees(entry.slot));
+  [[nodiscard]] bool skips(TrafficEntry const& entry, double way) const {
+    return entry.slot == slot || (way <= far && !sees(entry, way));
   }
-  [[nodiscard]] bool skips_object(TrafficEntry const& entry, double distance) const {
-    return distance <= far && !sees_object(entry.slot);
+  [[nodiscard]] bool skips_object(TrafficEntry const& entry, double way) const {
+    return way <= far && !sees_object(entry.slot);
   }
-};
-
-/// What was found: an agent, or an object.
-struct TrafficHit {
-  std::uint32_t slot{};
-  std::uint32_t id{};
-  bool is_object = false;
-  double gap = std::numeric_limits<double>::infinity();  ///< [m]
-  double speed{};                                        ///< along its lane [m/s]
-  double length{};                                       ///< along its lane [m]
 };
 
 }  // namespace cambium

@@ -190,8 +190,8 @@ class World {
   /// Removes the agents that no longer take part in traffic; returns how many. They stay until then, with their last
   /// state. O(agents).
   std::size_t remove_departed() {
-    std::vector<std::size_t> staying;
-    for (std::size_t slot = 0; slot < size(); ++slot)
+    std::vector<Slot> staying;
+    for (Slot slot{}; index_of(slot) < size(); ++slot)
       if (auto const status = frame_.agents[slot].status;
           status == AgentStatus::driving || status == AgentStatus::not_started)
         staying.push_back(slot);
@@ -225,11 +225,11 @@ class World {
     auto const& objects = roster_->objects;
     auto const at = std::find_if(objects.begin(), objects.end(), [id](StaticObject const& o) { return o.id == id; });
     if (at == objects.end()) throw WorldError("object " + to_string(id), "the world has no such object");
-    writable_roster().erase_object(static_cast<std::size_t>(at - objects.begin()));
+    writable_roster().erase_object(static_cast<Slot>(at - objects.begin()));
   }
 
   /// The agent's place in roster and frame. Throws `WorldError` if there is no such agent. O(log agents).
-  [[nodiscard]] std::size_t slot_of(AgentId id) const {
+  [[nodiscard]] Slot slot_of(AgentId id) const {
     if (auto const slot = roster_->slot_of(id)) return *slot;
     detail::refuse(id, "the world has no such agent", "World::roster lists those it has");
   }
@@ -309,7 +309,7 @@ class World {
   [[nodiscard]] View observe(AgentId id) & {
     auto const slot = slot_of(id);
     refresh_traffic();
-    return View(*this, static_cast<std::uint32_t>(slot));
+    return View(*this, slot);
   }
 
   /// Says so where the world may not change.
@@ -377,7 +377,7 @@ class World {
 
  private:
   /// Notes which parts of a sequence of goals an agent in traffic has reached.
-  void pass_goals(std::size_t slot, Record& record) const {
+  void pass_goals(Slot slot, Record& record) const {
     auto const* const sequence = std::get_if<GoalSequence>(&roster_->goals[slot]);
     if (sequence && record.status != AgentStatus::not_started)
       record.goals_passed =
@@ -407,19 +407,20 @@ class World {
   }
 
   /// All in one function; with observers that would take minutes to compile.
-  CAMBIUM_FLATTEN void advance_all_inlined(double dt, double end, std::vector<Record>& next, StepResult& result) {
+  CAMBIUM_FLATTEN void advance_all_inlined(double dt, double end, IdVector<Record, Slot>& next, StepResult& result) {
     advance_all(dt, end, next, result);
   }
 
-  void advance_all(double dt, double end, std::vector<Record>& next, StepResult& result) {
-    for (std::uint32_t slot = 0; slot < next.size(); ++slot) {
-      if (next.size() > 256 && slot + 6 < next.size()) {
-        auto const* const segment = detail::road_under(*roster_, frame_, slot + 6);
+  void advance_all(double dt, double end, IdVector<Record, Slot>& next, StepResult& result) {
+    for (Slot slot{}; index_of(slot) < next.size(); ++slot) {
+      if (next.size() > 256 && index_of(slot) + 6 < next.size()) {
+        auto const soon = static_cast<Slot>(index_of(slot) + 6);
+        auto const* const segment = detail::road_under(*roster_, frame_, soon);
         CAMBIUM_PREFETCH(segment);
         CAMBIUM_PREFETCH(segment + 1);
         if constexpr (Set::looks_beside) {
-          CAMBIUM_PREFETCH(detail::road_beside(*roster_, frame_, slot + 6, true));
-          CAMBIUM_PREFETCH(detail::road_beside(*roster_, frame_, slot + 6, false));
+          CAMBIUM_PREFETCH(detail::road_beside(*roster_, frame_, soon, true));
+          CAMBIUM_PREFETCH(detail::road_beside(*roster_, frame_, soon, false));
         }
       }
       advance(slot, dt, end, next[slot], result);
@@ -427,7 +428,7 @@ class World {
   }
 
   /// Plans and drives: all of the agent's next record but where on its road it has come to.
-  void advance(std::uint32_t slot, double dt, double end, Record& next, StepResult& result) {
+  void advance(Slot slot, double dt, double end, Record& next, StepResult& result) {
     Record const& now = frame_.agents[slot];
     next = now;
     if (now.status != AgentStatus::driving && now.status != AgentStatus::not_started) return;
@@ -451,8 +452,8 @@ class World {
 
   /// Where those who drive have come to on their roads. In a loop of its own: a processor works on several agents at a
   /// time where little is to be done for each.
-  CAMBIUM_FLATTEN void place_all(double dt, std::vector<Record>& next, StepResult& result) {
-    for (std::uint32_t slot = 0; slot < next.size(); ++slot) {
+  CAMBIUM_FLATTEN void place_all(double dt, IdVector<Record, Slot>& next, StepResult& result) {
+    for (Slot slot{}; index_of(slot) < next.size(); ++slot) {
       auto& record = next[slot];
       if (record.status != AgentStatus::driving) continue;
       double const mean_speed = 0.5 * (frame_.agents[slot].state.speed + record.state.speed);

@@ -105,12 +105,12 @@ class LaneJoiner {
       if (border.empty() || std::hypot(p.x - border.back().x, p.y - border.back().y) > 0.01) border.push_back(p);
   }
 
-  [[nodiscard]] std::vector<CorridorPiece> make_pieces(geometry::Line const& center) const {
+  [[nodiscard]] IdVector<CorridorPiece, PieceId> make_pieces(geometry::Line const& center) const {
     auto const segments = center.segments();
     auto const position = [&](std::size_t vertex) {
       return vertex < segments.size() ? segments[vertex].s : center.length();
     };
-    std::vector<CorridorPiece> pieces;
+    IdVector<CorridorPiece, PieceId> pieces;
     for (std::size_t i = 0; i < starts_.size(); ++i) {
       auto const& start = starts_[i];
       std::size_t const last = i + 1 < starts_.size() ? starts_[i + 1].begin : segments.size();
@@ -161,23 +161,23 @@ inline void set_lane_ends(Map const& map, LaneCorridor& corridor, bool is_short)
 
 /// The number of the chain that holds `lane` in `stage`; of several, one that has not come there by a merge, else the
 /// first.
-[[nodiscard]] inline std::uint16_t chain_of(Map const& map, std::span<LaneChain const> chains, std::size_t stage,
-                                            LaneId lane) {
-  std::uint16_t found = no_corridor;
+[[nodiscard]] inline CorridorId chain_of(Map const& map, std::span<LaneChain const> chains, std::size_t stage,
+                                         LaneId lane) {
+  auto found = none<CorridorId>;
   if (!is_valid(lane)) return found;
   for (std::size_t i = 0; i < chains.size(); ++i) {
     if (chains[i].at(stage) != lane) continue;
     auto const before = static_cast<std::ptrdiff_t>(stage - chains[i].begin);
     bool const has_merged = std::any_of(chains[i].lanes.begin(), chains[i].lanes.begin() + before,
                                         [&map](LaneId l) { return is_valid(map.lane(l).merges_into); });
-    if (!has_merged) return static_cast<std::uint16_t>(i);
-    if (found == no_corridor) found = static_cast<std::uint16_t>(i);
+    if (!has_merged) return static_cast<CorridorId>(i);
+    if (found == none<CorridorId>) found = static_cast<CorridorId>(i);
   }
   return found;
 }
 
 /// The number of the chain with the route's last lane; of several, the first with the most lanes of the route.
-[[nodiscard]] inline std::uint16_t main_chain(std::span<LaneChain const> chains, std::span<LaneId const> route) {
+[[nodiscard]] inline CorridorId main_chain(std::span<LaneChain const> chains, std::span<LaneId const> route) {
   std::size_t best = 0;
   std::ptrdiff_t most = -1;
   for (std::size_t i = 0; i < chains.size(); ++i) {
@@ -187,7 +187,7 @@ inline void set_lane_ends(Map const& map, LaneCorridor& corridor, bool is_short)
     most = count;
     best = i;
   }
-  return static_cast<std::uint16_t>(best);
+  return static_cast<CorridorId>(best);
 }
 
 /// The road corridor along `route`, see `build_road_corridor`.
@@ -195,7 +195,7 @@ inline void set_lane_ends(Map const& map, LaneCorridor& corridor, bool is_short)
                                                                             std::vector<LaneId> const& route) {
   auto const stages = route_stages(map, route);
   auto const chains = lane_chains(map, stages);
-  if (chains.size() >= no_corridor)
+  if (chains.size() >= index_of(none<CorridorId>))
     throw MapError("route", "it has more lane corridors than can be numbered", "give a shorter one");
   auto road = std::make_shared<RoadCorridor>();
   road->route = route;
@@ -205,8 +205,8 @@ inline void set_lane_ends(Map const& map, LaneCorridor& corridor, bool is_short)
     for (std::size_t i = 0; i < corridor.pieces.size(); ++i) {
       auto& piece = corridor.pieces[i];
       auto const stage = chain.begin + i;
-      auto const piece_of = [&](std::uint16_t number) {
-        return static_cast<std::uint16_t>(number == no_corridor ? 0 : stage - chains[number].begin);
+      auto const piece_of = [&](CorridorId number) {
+        return static_cast<PieceId>(number == none<CorridorId> ? 0 : stage - chains[index_of(number)].begin);
       };
       piece.left = chain_of(map, chains, stage, map.lane(piece.lane).left_neighbor);
       piece.right = chain_of(map, chains, stage, map.lane(piece.lane).right_neighbor);

@@ -18,11 +18,11 @@ struct OthersAhead {
   std::optional<World> world;
   std::vector<typename World::FrameType> frames;  ///< now and after each step
   std::vector<geometry::OrientedBox> boxes;       ///< of those who count, step by step
-  std::vector<std::uint32_t> counting;            ///< who these are
+  std::vector<Slot> counting;                     ///< who these are
   double step{};                                  ///< [s]
 
   /// Predicts from `now` up to `horizon` [s].
-  void predict(World now, std::uint32_t ego, double horizon, double length) {
+  void predict(World now, Slot ego, double horizon, double length) {
     world = std::move(now);
     step = length;
     choose_counting(*world, ego, counting);
@@ -49,7 +49,7 @@ struct OthersAhead {
   }
 
   /// How far an agent has come after `time` [s], and its speed then; beyond the horizon it keeps that. O(steps).
-  [[nodiscard]] std::pair<double, double> way_of(std::size_t slot, double time) const {
+  [[nodiscard]] std::pair<double, double> way_of(Slot slot, double time) const {
     double way = 0.0, speed = frames[0].agents[slot].state.speed, left = time;
     for (std::size_t k = 1; k < frames.size() && left > 0.0; ++k, left -= step) {
       double const next = frames[k].agents[slot].state.speed;

@@ -70,11 +70,10 @@ template <class PredictionWorld, class Predicted>
 /// The world that is predicted; the place of the agent itself there in `ego`, nothing where it is not in traffic.
 template <class PredictionWorld, class Ego, class Others, class View>
 [[nodiscard]] PredictionWorld predicted_for(View const& view, Ego const& behavior, Others const& others,
-                                            std::optional<std::uint32_t>& ego) {
+                                            std::optional<Slot>& ego) {
   auto world = view.predict(predict_as<typename PredictionWorld::Behaviors>(behavior, others));
   static_assert(check_prediction_world<PredictionWorld, decltype(world)>());
-  ego.reset();
-  if (auto const slot = world.roster().slot_of(view.id())) ego = static_cast<std::uint32_t>(*slot);
+  ego = world.roster().slot_of(view.id());
   return world;
 }
 
@@ -94,7 +93,7 @@ void go_straight_on(View const& view, double end, Plan<View>& plan) {
 /// What the agent at `slot` does in `world` over the next `dt` [s], in equal steps of at most `step` [s], becomes its
 /// plan.
 template <class World, class S>
-void drive_predicted(World& world, std::uint32_t slot, double dt, double step, BasicPlan<S>& plan) {
+void drive_predicted(World& world, Slot slot, double dt, double step, BasicPlan<S>& plan) {
   auto const steps = std::max(1, static_cast<int>(std::ceil(dt / step - 1e-9)));
   double const begin = world.time();
   for (int i = 0; i < steps; ++i) {
@@ -109,16 +108,15 @@ void drive_predicted(World& world, std::uint32_t slot, double dt, double step, B
 
 /// The agents of `world` next to the one at `ego`, at most `count` of them within `range` [m], nearest first.
 template <class World>
-[[nodiscard]] std::vector<std::uint32_t> nearest_agents(World const& world, std::uint32_t ego, std::size_t count,
-                                                        double range) {
+[[nodiscard]] std::vector<Slot> nearest_agents(World const& world, Slot ego, std::size_t count, double range) {
   auto const& agents = world.frame().agents;
-  auto const distance = [&](std::uint32_t slot) {
+  auto const distance = [&](Slot slot) {
     return std::hypot(agents[slot].state.x - agents[ego].state.x, agents[slot].state.y - agents[ego].state.y);
   };
-  std::vector<std::uint32_t> slots;
-  for (std::uint32_t slot = 0; slot < world.size(); ++slot)
+  std::vector<Slot> slots;
+  for (Slot slot{}; index_of(slot) < world.size(); ++slot)
     if (slot != ego && agents[slot].status == AgentStatus::driving && distance(slot) <= range) slots.push_back(slot);
-  std::sort(slots.begin(), slots.end(), [&](std::uint32_t a, std::uint32_t b) {
+  std::sort(slots.begin(), slots.end(), [&](Slot a, Slot b) {
     double const to_a = distance(a), to_b = distance(b);
     return to_a < to_b || (to_a == to_b && a < b);
   });
@@ -134,7 +132,7 @@ template <MotionState S>
 
 /// The box of the agent at `slot` after `time` [s] at constant velocity.
 template <class World>
-[[nodiscard]] geometry::OrientedBox box_after(World const& world, std::uint32_t slot, double time) {
+[[nodiscard]] geometry::OrientedBox box_after(World const& world, Slot slot, double time) {
   auto box = box_at(world, slot);
   double const way = world.frame().agents[slot].state.speed * time;
   box.x += way * box.cos;
@@ -145,12 +143,12 @@ template <class World>
 /// The others that the agent at `ego` has to look out for: not those who follow behind in the strip that it drives in,
 /// who have to keep clear themselves. O(agents).
 template <class World>
-void choose_counting(World const& world, std::uint32_t ego, std::vector<std::uint32_t>& counting) {
+void choose_counting(World const& world, Slot ego, std::vector<Slot>& counting) {
   counting.clear();
   auto const& state = world.frame().agents[ego].state;
   double const rear = world.roster().agents[ego].shape.rear;
   auto const own = box_at(world, ego);
-  for (std::uint32_t i = 0; i < world.size(); ++i) {
+  for (Slot i{}; index_of(i) < world.size(); ++i) {
     auto const box = box_at(world, i);
     double const aside = own.cos * (box.y - own.y) - own.sin * (box.x - own.x);
     bool const beside = std::abs(aside) > own.half_width + box.half_width;
@@ -162,8 +160,7 @@ void choose_counting(World const& world, std::uint32_t ego, std::vector<std::uin
 /// that drives into it while it stands, or from behind (after the at-fault collisions of Dauner et al. 2023). Asked
 /// `time` [s] ahead, with constant velocities, only those count who are ahead now. O(agents).
 template <class World>
-[[nodiscard]] bool is_at_fault(World const& world, std::uint32_t slot, std::vector<std::uint32_t> const& counting,
-                               double time = 0.0) {
+[[nodiscard]] bool is_at_fault(World const& world, Slot slot, std::vector<Slot> const& counting, double time = 0.0) {
   constexpr double standing = 0.05;  // [m/s]
   auto const& ego = world.frame().agents[slot].state;
   auto const own = box_after(world, slot, time);
@@ -172,7 +169,7 @@ template <class World>
     if (around.intersects(object.outline.bounding_box()) && geometry::intersects(own, object.outline)) return true;
   if (ego.speed < standing) return false;
   double const behind = time > 0.0 ? 0.0 : -world.roster().agents[slot].shape.rear;
-  return std::ranges::any_of(counting, [&](std::uint32_t i) {
+  return std::ranges::any_of(counting, [&](Slot i) {
     return in_traffic(world, i) && geometry::intersects(own, box_after(world, i, time)) &&
            distance_ahead(ego, box_at(world, i)) > behind;
   });
@@ -188,7 +185,7 @@ template <class World>
 
 /// Whether the agent at `slot`, which is in no lane of its road, drives in a lane of oncoming traffic.
 template <class World>
-[[nodiscard]] bool drives_against_traffic(World const& world, std::uint32_t slot) {
+[[nodiscard]] bool drives_against_traffic(World const& world, Slot slot) {
   auto const& at = world.frame().agents[slot].lane;
   auto const sides = world.roster().agents[slot].road->corridors[at.corridor].widths_at(at.s, at.segment);
   bool const is_in_lane = at.lateral < sides.left && -at.lateral < sides.right;
@@ -201,7 +198,7 @@ enum class Passage : std::uint8_t { goes_on, is_over, collides, leaves_road };
 /// The same for the agent at `slot`, which `touches` somebody or something, or does not; over is what ends at its
 /// destination, or with the map. Who drives in a lane of oncoming traffic has left the road.
 template <class World>
-[[nodiscard]] Passage passage(World const& world, std::uint32_t slot, bool touches) {
+[[nodiscard]] Passage passage(World const& world, Slot slot, bool touches) {
   switch (world.frame().agents[slot].status) {
     case AgentStatus::driving:
       break;
@@ -218,17 +215,17 @@ template <class World>
 
 /// How many lane changes it takes from `piece` of lane corridor `number` to one that the route ends in; 0 where none
 /// is beside. O(lanes).
-[[nodiscard]] inline int lanes_to_destination(map::RoadCorridor const& road, std::uint16_t number,
-                                              std::uint16_t piece) {
+[[nodiscard]] inline int lanes_to_destination(map::RoadCorridor const& road, CorridorId number, PieceId piece) {
   constexpr int most = 16;
   if (road.corridors[number].reaches_destination) return 0;
   for (bool const left : {true, false}) {
-    auto corridor = number, at = piece;
+    auto corridor = number;
+    auto at = piece;
     for (int lanes = 1; lanes <= most; ++lanes) {
       auto const& here = road.corridors[corridor].pieces[at];
-      corridor = left ? here.left : here.right;
-      at = left ? here.left_piece : here.right_piece;
-      if (corridor == map::no_corridor) break;
+      corridor = here.beside(left);
+      at = here.piece_beside(left);
+      if (corridor == none<CorridorId>) break;
       if (road.corridors[corridor].reaches_destination) return lanes;
     }
   }

@@ -12,7 +12,7 @@
 #include "cambium/geometry/polygon.hpp"
 #include "cambium/geometry/shape.hpp"
 #include "cambium/goal/goal.hpp"
-#include "cambium/map/lane_position.hpp"
+#include "cambium/map/lane_place.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/route.hpp"
 #include "cambium/world/detail/check_described.hpp"
@@ -40,7 +40,7 @@ struct EnteringSpec {
 struct Entrance {
   std::shared_ptr<map::RoadCorridor const> road;
   LaneId lane = none<LaneId>;
-  map::LanePosition place;
+  map::LanePlace place;
 };
 
 /// Throws `WorldError` or `ParameterError` where position, heading or shape are no good.

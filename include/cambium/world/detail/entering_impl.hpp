@@ -15,7 +15,7 @@
 #include "cambium/geometry/angle.hpp"
 #include "cambium/goal/goal.hpp"
 #include "cambium/map/build_corridor.hpp"
-#include "cambium/map/lane_position.hpp"
+#include "cambium/map/lane_place.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/world/detail/entering.hpp"
 #include "cambium/world/detail/entering_route.hpp"
@@ -26,20 +26,20 @@
 namespace cambium::detail {
 
 /// Where on `road` an agent of `spec` enters, in lane `lane`: in the main corridor if that holds the lane.
-[[nodiscard]] inline map::LanePosition entering_position(Map const& map, EnteringSpec const& spec,
-                                                         map::RoadCorridor const& road, LaneId lane,
-                                                         std::string const& where) {
+[[nodiscard]] inline map::LanePlace entering_position(Map const& map, EnteringSpec const& spec,
+                                                      map::RoadCorridor const& road, LaneId lane,
+                                                      std::string const& where) {
   auto const holds = [lane](map::CorridorPiece const& piece) { return piece.lane == lane; };
   auto const& main = road.corridors[road.main].pieces;
   auto const number = std::any_of(main.begin(), main.end(), holds) ? road.main : road.corridor_of(lane);
-  if (number == map::no_corridor)
+  if (number == none<CorridorId>)
     throw WorldError(where, "its route does not hold the lane it enters in (" + map.describe(lane) + ")");
   // A corridor may come by the same place twice: the search begins in the lane.
   auto const& corridor = road.corridors[number];
   auto const piece = std::find_if(corridor.pieces.begin(), corridor.pieces.end(), holds);
   double const in_lane = map.lane(lane).path.project(spec.position).s;
-  map::LanePosition hint;
-  hint.piece = static_cast<std::uint16_t>(piece - corridor.pieces.begin());
+  map::LanePlace hint;
+  hint.piece = static_cast<PieceId>(piece - corridor.pieces.begin());
   hint.segment = corridor.center.find(std::clamp(in_lane - piece->lane_offset, piece->begin, piece->end));
   auto at = map::locate(road, number, {spec.position.x(), spec.position.y(), 0.0}, hint);
   double const along = corridor.center.pose(at.s).heading;
@@ -69,9 +69,9 @@ namespace cambium::detail {
 }
 
 /// Where on the free corridor `road` an agent of `spec` enters. Throws `WorldError` where that is far.
-[[nodiscard]] inline map::LanePosition entering_free(EnteringSpec const& spec, map::RoadCorridor const& road,
-                                                     std::string const& where) {
-  auto at = map::locate(road, 0, {spec.position.x(), spec.position.y(), spec.heading.value_or(0.0)});
+[[nodiscard]] inline map::LanePlace entering_free(EnteringSpec const& spec, map::RoadCorridor const& road,
+                                                  std::string const& where) {
+  auto at = map::locate(road, CorridorId{}, {spec.position.x(), spec.position.y(), spec.heading.value_or(0.0)});
   if (!(distance_outside(road, at) <= entering_radius))
     throw WorldError(where, "its position is more than " + rounded_text(entering_radius) + " m from its road",
                      "enter on it");
@@ -129,7 +129,7 @@ CAMBIUM_COLD void enter_free_road(RosterBase& roster, std::shared_ptr<map::RoadC
   for (auto const& known : roster.free_roads)
     if (known.numbered == numbered) return;
   roster.free_roads.push_back({given, numbered});
-  for (std::uint32_t i = 0; i < roster.objects.size(); ++i)
+  for (Slot i{}; index_of(i) < roster.objects.size(); ++i)
     enter_object(numbered->corridors.front(), roster.objects[i], i, roster.object_entries);
   std::sort(roster.object_entries.begin(), roster.object_entries.end());
 }
@@ -142,7 +142,7 @@ CAMBIUM_COLD void check_outline(geometry::Polygon const& outline) {
 
 CAMBIUM_COLD ObjectId enter_object(Map const& map, RosterBase& roster, geometry::Polygon outline) {
   StaticObject object{static_cast<ObjectId>(roster.next_object_id), std::move(outline)};
-  auto const lanes = object_entries(map, roster.free_roads, object, static_cast<std::uint32_t>(roster.objects.size()));
+  auto const lanes = object_entries(map, roster.free_roads, object, static_cast<Slot>(roster.objects.size()));
   return roster.insert(std::move(object), lanes);
 }
 

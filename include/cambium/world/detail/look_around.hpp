@@ -11,16 +11,16 @@ namespace cambium::detail {
 
 /// Calls `visit(slot)` for every other agent in traffic that the agent in slot `own` sees, in the order of their ids.
 template <class World, class Visit>
-void for_each_other(World const& world, std::uint32_t own, Visit const& visit) {
-  for (std::uint32_t i = 0; i < world.size(); ++i)
+void for_each_other(World const& world, Slot own, Visit const& visit) {
+  for (Slot i{}; index_of(i) < world.size(); ++i)
     if (i != own && world.frame().agents[i].status == AgentStatus::driving && is_seen(world, own, i)) visit(i);
 }
 
 /// See `ObservedWorld::for_each_around`; calls `visit(slot)`.
 template <class World, class Visit>
-void for_each_around(World const& world, std::uint32_t own, double distance, Visit const& visit) {
+void for_each_around(World const& world, Slot own, double distance, Visit const& visit) {
   auto const& here = world.frame().agents[own].state;
-  auto const visit_near = [&](std::uint32_t slot) {
+  auto const visit_near = [&](Slot slot) {
     auto const& [shape, state] = std::tie(world.roster().agents[slot].shape, world.frame().agents[slot].state);
     double const reach = distance + std::max(shape.front, shape.rear) + std::max(shape.left, shape.right);
     double const dx = state.x - here.x, dy = state.y - here.y;
@@ -31,16 +31,16 @@ void for_each_around(World const& world, std::uint32_t own, double distance, Vis
     world.plane().for_each_near({here.x - distance, here.y - distance, here.x + distance, here.y + distance},
                                 visit_near);
   } else {
-    for (std::uint32_t i = 0; i < world.size(); ++i)
+    for (Slot i{}; index_of(i) < world.size(); ++i)
       if (world.frame().agents[i].status == AgentStatus::driving) visit_near(i);
   }
 }
 
 /// Calls `f(id, outline)` for the static objects that the agent in slot `own` sees, in the order of their ids.
 template <class World, class F>
-void for_each_object(World const& world, std::uint32_t own, F&& f) {
+void for_each_object(World const& world, Slot own, F&& f) {
   auto const& objects = world.roster().objects;
-  for (std::uint32_t i = 0; i < objects.size(); ++i)
+  for (Slot i{}; index_of(i) < objects.size(); ++i)
     if (is_object_seen(world, own, i)) f(objects[i].id, objects[i].outline);
 }
 

@@ -39,7 +39,7 @@ struct ObjectStretch {
 
   /// Adds its entries, where the lane's coordinate begins at `index`: in parts of at most 10 m: each is ahead or
   /// behind by its middle, and none may reach farther than those who look for it look on.
-  void enter(double index, StaticObject const& object, std::uint32_t slot, std::vector<TrafficEntry>& entries) const {
+  void enter(double index, StaticObject const& object, Slot slot, std::vector<TrafficEntry>& entries) const {
     if (!(begin <= end)) return;
     int const parts = std::max(1, static_cast<int>(std::ceil((end - begin) / 10.0)));
     double const half = (end - begin) / (2 * parts);
@@ -51,7 +51,7 @@ struct ObjectStretch {
 
 /// Adds the index entries of a static object on a free corridor that it stands in. `slot`: its place in the list of
 /// objects.
-inline void enter_object(map::LaneCorridor const& way, StaticObject const& object, std::uint32_t slot,
+inline void enter_object(map::LaneCorridor const& way, StaticObject const& object, Slot slot,
                          std::vector<TrafficEntry>& entries) {
   ObjectStretch stretch;
   for (auto const& p : points_around(object.outline, 0.1)) {
@@ -68,7 +68,7 @@ inline void enter_object(map::LaneCorridor const& way, StaticObject const& objec
 /// Index entries of a static object in each lane, and each free corridor, whose borders it reaches across. `slot`: its
 /// place in the list of objects.
 [[nodiscard]] inline std::vector<TrafficEntry> object_entries(Map const& map, std::span<FreeRoad const> free_roads,
-                                                              StaticObject const& object, std::uint32_t slot) {
+                                                              StaticObject const& object, Slot slot) {
   std::vector<ObjectStretch> stretches(map.lanes().size());
   for (auto const& p : points_around(object.outline, 0.1))
     for (auto const& hit : map.lanes_near(p, 0.0)) stretches[index_of(hit.lane)].add(hit.s);

@@ -10,7 +10,7 @@
 #include "cambium/behavior/view.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/geometry/angle.hpp"
-#include "cambium/map/lane_position.hpp"
+#include "cambium/map/lane_place.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/world/frame.hpp"
 #include "cambium/world/plane_index.hpp"
@@ -30,9 +30,9 @@ inline constexpr double on_path = 0.3;
 
 /// Where beside `at` a lane corridor that is next is about, `piece` being the piece of it that is beside: lanes of one
 /// section are mostly sampled at the same stations.
-[[nodiscard]] inline map::LanePosition hint_beside(map::RoadCorridor const& road, map::LanePosition const& at,
-                                                   map::CorridorPiece const& from, std::uint16_t number) {
-  map::LanePosition hint;
+[[nodiscard]] inline map::LanePlace hint_beside(map::RoadCorridor const& road, map::LanePlace const& at,
+                                                map::CorridorPiece const& from, CorridorId number) {
+  map::LanePlace hint;
   hint.piece = number == from.left ? from.left_piece : from.right_piece;
   auto const& to = road.corridors[number].pieces[hint.piece];
   auto const passed = at.segment > from.first_segment ? at.segment - from.first_segment : 0;
@@ -44,12 +44,12 @@ inline constexpr double on_path = 0.3;
 /// The place beside `at` on lane corridor `number` of the same road, for an agent at `pose`: found from the lanes
 /// beside, for a corridor may come by the same place twice. O(1) for a corridor that is next, else O(lanes of the
 /// corridor).
-CAMBIUM_NOINLINE [[nodiscard]] inline map::LanePosition locate_beside(Map const& map, map::RoadCorridor const& road,
-                                                                      map::LanePosition const& at, std::uint16_t number,
-                                                                      geometry::Pose const& pose) {
+CAMBIUM_NOINLINE [[nodiscard]] inline map::LanePlace locate_beside(Map const& map, map::RoadCorridor const& road,
+                                                                   map::LanePlace const& at, CorridorId number,
+                                                                   geometry::Pose const& pose) {
   auto const& from = road.corridors[at.corridor].pieces[at.piece];
   auto const& corridor = road.corridors[number];
-  map::LanePosition hint;
+  map::LanePlace hint;
   if (number == from.left || number == from.right)
     return map::locate(road, number, pose, hint_beside(road, at, from, number));
   double const share = (at.s - from.begin) / (from.end - from.begin);
@@ -59,26 +59,11 @@ CAMBIUM_NOINLINE [[nodiscard]] inline map::LanePosition locate_beside(Map const&
       for (std::size_t i = 0; i < corridor.pieces.size(); ++i) {
         auto const& piece = corridor.pieces[i];
         if (piece.lane != lane) continue;
-        hint.piece = static_cast<std::uint16_t>(i);
+        hint.piece = static_cast<PieceId>(i);
         hint.segment = corridor.center.find(piece.begin + share * (piece.end - piece.begin));
         return map::locate(road, number, pose, hint);
       }
   return map::locate(road, number, pose);
-}
-
-/// As `locate_beside`, but only what neighbours are found with.
-[[nodiscard]] inline BesidePlace place_beside(Map const& map, map::RoadCorridor const& road,
-                                              map::LanePosition const& at, std::uint16_t number,
-                                              geometry::Pose const& pose) {
-  auto const& from = road.corridors[at.corridor].pieces[at.piece];
-  if (number != from.left && number != from.right) {
-    auto const place = locate_beside(map, road, at, number, pose);
-    return {place.s, place.segment, number, place.piece, 0};
-  }
-  auto const& corridor = road.corridors[number];
-  auto const hint = hint_beside(road, at, from, number);
-  auto const foot = corridor.center.project(pose.position(), hint.segment);
-  return {foot.s, foot.segment, number, corridor.piece_at(foot.s, hint.piece), 0};
 }
 
 /// Finds the new place of an agent that has driven `distance` [m] on its road: in its lane corridor, or in the next one
@@ -96,8 +81,8 @@ void move_on_lane(Map const& map, map::RoadCorridor const& road, double distance
     auto const widths = corridor.widths_at(at.s, at.segment);
     auto const beside = at.lateral > widths.left     ? piece.left
                         : at.lateral < -widths.right ? piece.right
-                                                     : map::no_corridor;
-    if (beside != map::no_corridor) {
+                                                     : none<CorridorId>;
+    if (beside != none<CorridorId>) {
       at = locate_beside(map, road, at, beside, pose);
       return;
     }
@@ -109,21 +94,21 @@ void move_on_lane(Map const& map, map::RoadCorridor const& road, double distance
 }
 
 /// How far the place is from its lane corridor [m].
-[[nodiscard]] inline double distance_from(map::RoadCorridor const& road, map::LanePosition const& at) {
+[[nodiscard]] inline double distance_from(map::RoadCorridor const& road, map::LanePlace const& at) {
   return std::hypot(at.lateral, std::max({-at.s, at.s - road.corridors[at.corridor].length(), 0.0}));
 }
 
 /// The place of `pose` on `road` for an agent that was last at `last`: there, if that fits, else where a lane corridor
 /// comes nearest, a radian off its direction counting as 3 m.
-[[nodiscard]] inline map::LanePosition relocate(map::RoadCorridor const& road, map::LanePosition const& last,
-                                                geometry::Pose const& pose) {
+[[nodiscard]] inline map::LanePlace relocate(map::RoadCorridor const& road, map::LanePlace const& last,
+                                             geometry::Pose const& pose) {
   constexpr double near = 2.0;  // [m]
-  auto const measure = [&road](map::LanePosition const& at) {
+  auto const measure = [&road](map::LanePlace const& at) {
     return distance_from(road, at) + 3.0 * std::abs(at.heading_error);
   };
   auto best = map::locate(road, last.corridor, pose, last);
   if (measure(best) < near) return best;
-  for (std::uint16_t i = 0; i < road.corridors.size(); ++i) {
+  for (CorridorId i{}; index_of(i) < road.corridors.size(); ++i) {
     auto const candidate = map::locate(road, i, pose);
     if (measure(candidate) < measure(best) - 1e-9) best = candidate;
   }
@@ -150,7 +135,7 @@ inline constexpr double usual_half_width = 1.5, usual_heading_error = 0.05;
 struct BodyOnRoad {
   geometry::Shape const& shape;
   map::RoadCorridor const& road;
-  map::LanePosition const& at;
+  map::LanePlace const& at;
   geometry::Pose pose;
   double speed;  ///< [m/s]
 };
@@ -165,7 +150,7 @@ template <class Roster, class Frame>
 void refresh_traffic(TrafficIndex& index, Map const& map, Roster const& roster, Frame const& frame) {
   constexpr double nowhere = std::numeric_limits<double>::infinity();
   double const lanes_end = lane_coordinate_end(map);
-  auto const add = [&](std::uint32_t slot, ReachingEntries& reaching) {
+  auto const add = [&](Slot slot, ReachingEntries& reaching) {
     auto const& record = frame.agents[slot];
     auto const& agent = roster.agents[slot];
     double const speed = record.state.speed * cosine_of_small(record.lane.heading_error);
@@ -183,7 +168,7 @@ void refresh_traffic(TrafficIndex& index, Map const& map, Roster const& roster, 
       entry.position = nowhere;
     return entry;
   };
-  index.refresh(frame.agents.size(), add, [&](std::uint32_t slot) {
+  index.refresh(frame.agents.size(), add, [&](Slot slot) {
     auto const& at = frame.agents[slot].lane;
     auto const& piece = roster.agents[slot].road->corridors[at.corridor].pieces[at.piece];
     return LaneStretch{piece.begin + piece.index_offset, piece.end + piece.index_offset};
@@ -193,7 +178,7 @@ void refresh_traffic(TrafficIndex& index, Map const& map, Roster const& roster, 
 /// Brings the index of the plane up to date with the agents of a frame.
 template <class Roster, class Frame>
 void refresh_plane(PlaneIndex& index, Roster const& roster, Frame const& frame) {
-  index.refresh(frame.agents.size(), [&](std::uint32_t slot) {
+  index.refresh(frame.agents.size(), [&](Slot slot) {
     auto const& record = frame.agents[slot];
     if (record.status != AgentStatus::driving) return geometry::Box{};
     return box_around(roster.agents[slot].shape, record.state, 0.0);

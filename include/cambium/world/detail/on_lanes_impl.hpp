@@ -10,7 +10,7 @@
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/corridor.hpp"
 #include "cambium/map/lane.hpp"
-#include "cambium/map/lane_position.hpp"
+#include "cambium/map/lane_place.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/world/detail/on_lanes.hpp"
 #include "cambium/world/traffic_index.hpp"

@@ -6,7 +6,7 @@
 
 #include "cambium/core/ids.hpp"
 #include "cambium/map/corridor.hpp"
-#include "cambium/map/lane_position.hpp"
+#include "cambium/map/lane_place.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/signals.hpp"
 
@@ -24,16 +24,14 @@ inline constexpr double standstill_noise = 0.1;
 [[nodiscard]] double checked_speed(double speed, std::string const& where);
 
 /// How far a place is outside of its lane corridor [m].
-[[nodiscard]] double distance_outside(map::RoadCorridor const& road, map::LanePosition const& at);
+[[nodiscard]] double distance_outside(map::RoadCorridor const& road, map::LanePlace const& at);
 
 /// Throws `WorldError` where an agent at `at` on its road heads against the direction of its lane. Free corridors may
 /// be walked in any direction.
-void check_heading(Map const& map, map::RoadCorridor const& road, map::LanePosition const& at,
-                   std::string const& where);
+void check_heading(Map const& map, map::RoadCorridor const& road, map::LanePlace const& at, std::string const& where);
 
 /// Throws `WorldError` where an agent may not be set to the place `at` of its road: see `World::set_state`.
-void check_set_place(Map const& map, map::RoadCorridor const& road, map::LanePosition const& at,
-                     std::string const& where);
+void check_set_place(Map const& map, map::RoadCorridor const& road, map::LanePlace const& at, std::string const& where);
 
 /// Throws `WorldError` for a light that the map does not have and for numbers that are no plan.
 void require_light_plan(Map const& map, LightId id, map::LightPlan const& plan);

@@ -11,7 +11,7 @@
 #include "cambium/core/macros.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/map/corridor.hpp"
-#include "cambium/map/lane_position.hpp"
+#include "cambium/map/lane_place.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/signals.hpp"
 #include "cambium/world/detail/refusals.hpp"
@@ -24,14 +24,14 @@ CAMBIUM_COLD double checked_speed(double speed, std::string const& where) {
                    "give metres per second along the heading, 0 for a vehicle that reverses");
 }
 
-CAMBIUM_COLD double distance_outside(map::RoadCorridor const& road, map::LanePosition const& at) {
+CAMBIUM_COLD double distance_outside(map::RoadCorridor const& road, map::LanePlace const& at) {
   auto const& corridor = road.corridors[at.corridor];
   auto const widths = corridor.widths_at(std::clamp(at.s, 0.0, corridor.length()), at.segment);
   double const aside = std::max({at.lateral - widths.left, -at.lateral - widths.right, 0.0});
   return std::hypot(aside, std::max({-at.s, at.s - corridor.length(), 0.0}));
 }
 
-CAMBIUM_COLD void check_heading(Map const& map, map::RoadCorridor const& road, map::LanePosition const& at,
+CAMBIUM_COLD void check_heading(Map const& map, map::RoadCorridor const& road, map::LanePlace const& at,
                                 std::string const& where) {
   LaneId const lane = road.corridors[at.corridor].pieces[at.piece].lane;
   if (!is_valid(lane) || std::abs(at.heading_error) <= geometry::pi / 2) return;
@@ -39,7 +39,7 @@ CAMBIUM_COLD void check_heading(Map const& map, map::RoadCorridor const& road, m
                    "give a heading along the lane, in radians counter-clockwise from +x");
 }
 
-CAMBIUM_COLD void check_set_place(Map const& map, map::RoadCorridor const& road, map::LanePosition const& at,
+CAMBIUM_COLD void check_set_place(Map const& map, map::RoadCorridor const& road, map::LanePlace const& at,
                                   std::string const& where) {
   if (double const distance = distance_outside(road, at); !(distance <= entering_radius))
     throw WorldError(where,

@@ -15,7 +15,7 @@ struct Scratch {
   TrafficIndex traffic;
   PlaneIndex plane;    ///< only where behaviours look around
   bool fresh = false;  ///< the traffic index is that of the current frame
-  std::vector<typename Frame::Record> next;
+  IdVector<typename Frame::Record, Slot> next;
   Workspaces workspaces;       ///< of behaviours
   std::vector<Frame> history;  ///< ring of frames
   std::size_t kept = 0, newest = 0;

@@ -26,14 +26,10 @@ class ObserverScene {
   explicit ObserverScene(World const& world) : world_(&world) {}
 
   [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(world_->size()); }
-  [[nodiscard]] bool in_traffic(std::uint32_t slot) const {
-    return world_->frame().agents[slot].status == AgentStatus::driving;
-  }
-  [[nodiscard]] typename World::State const& state(std::uint32_t slot) const {
-    return world_->frame().agents[slot].state;
-  }
-  [[nodiscard]] geometry::Shape const& shape(std::uint32_t slot) const { return world_->roster().agents[slot].shape; }
-  [[nodiscard]] std::span<StaticObject const> objects() const { return world_->roster().objects; }
+  [[nodiscard]] bool in_traffic(Slot slot) const { return world_->frame().agents[slot].status == AgentStatus::driving; }
+  [[nodiscard]] typename World::State const& state(Slot slot) const { return world_->frame().agents[slot].state; }
+  [[nodiscard]] geometry::Shape const& shape(Slot slot) const { return world_->roster().agents[slot].shape; }
+  [[nodiscard]] IdVector<StaticObject, Slot> const& objects() const { return world_->roster().objects; }
 
  private:
   World const* world_;
@@ -62,13 +58,13 @@ void forget_past(Record& record) {
 /// Whether agents may be hidden from the observers of `World`.
 template <class World>
 inline constexpr bool hides = requires(typename World::Observer const observer, ObserverScene<World> const scene,
-                                       std::uint32_t slot) {
+                                       Slot slot) {
   observer.sees(scene, slot, slot);
 };
 
 /// Whether the agent in slot `own` perceives that in slot `other`.
 template <class World>
-[[nodiscard]] bool is_seen(World const& world, std::uint32_t own, std::uint32_t other) {
+[[nodiscard]] bool is_seen(World const& world, Slot own, Slot other) {
   if constexpr (hides<World>)
     return own == other || world.roster().agents[own].observer.sees(ObserverScene<World>(world), own, other);
   else
@@ -81,7 +77,7 @@ inline constexpr bool hides_objects = LimitedSightOfObjects<typename World::Obse
 
 /// Whether the agent in slot `own` perceives the static object in place `object`.
 template <class World>
-[[nodiscard]] bool is_object_seen(World const& world, std::uint32_t own, std::uint32_t object) {
+[[nodiscard]] bool is_object_seen(World const& world, Slot own, Slot object) {
   if constexpr (hides_objects<World>)
     return world.roster().agents[own].observer.sees_object(ObserverScene<World>(world), own, object);
   else
@@ -91,7 +87,7 @@ template <class World>
 /// The state that the agent in slot `own` believes that in slot `other` to have. A perfect observer's is the truth
 /// itself.
 template <class World>
-[[nodiscard]] decltype(auto) seen_state(World const& world, std::uint32_t own, std::uint32_t other) {
+[[nodiscard]] decltype(auto) seen_state(World const& world, Slot own, Slot other) {
   auto const& observer = world.roster().agents[own].observer;
   auto const& record = world.frame().agents[other];
   auto const random = [&] {
@@ -128,7 +124,7 @@ void carry_over(Plan& plan, State const& believed, State const& truth) {
 
 /// And the acceleration [m/s^2].
 template <class World>
-[[nodiscard]] double seen_acceleration(World const& world, std::uint32_t own, std::uint32_t other) {
+[[nodiscard]] double seen_acceleration(World const& world, Slot own, Slot other) {
   auto const& record = world.frame().agents[other];
   if constexpr (past_steps_of < typename World::Observer >> 0) {
     auto const back = steps_back(world.roster().agents[own].observer, own == other);

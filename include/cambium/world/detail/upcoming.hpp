@@ -11,20 +11,20 @@ namespace cambium::detail {
 /// Where on its road an agent is whose turn comes soon: loaded ahead, where a world does not fit into the cache.
 /// (Compilers drop calls to functions that do nothing but prefetch.)
 template <class Roster, class Frame>
-[[nodiscard]] geometry::Line::Segment const* road_under(Roster const& roster, Frame const& frame, std::size_t slot) {
+[[nodiscard]] geometry::Line::Segment const* road_under(Roster const& roster, Frame const& frame, Slot slot) {
   auto const& at = frame.agents[slot].lane;
   return roster.agents[slot].road->corridors[at.corridor].center.segments().data() + at.segment;
 }
 
 /// The same on the lane to the left (right) of it; where there is none, its own place.
 template <class Roster, class Frame>
-[[nodiscard]] geometry::Line::Segment const* road_beside(Roster const& roster, Frame const& frame, std::size_t slot,
+[[nodiscard]] geometry::Line::Segment const* road_beside(Roster const& roster, Frame const& frame, Slot slot,
                                                          bool left) {
   auto const& at = frame.agents[slot].lane;
   auto const& road = *roster.agents[slot].road;
   auto const& piece = road.corridors[at.corridor].pieces[at.piece];
-  auto const side = left ? piece.left : piece.right;
-  if (side == map::no_corridor) return road_under(roster, frame, slot);
+  auto const side = piece.beside(left);
+  if (side == none<CorridorId>) return road_under(roster, frame, slot);
   return road.corridors[side].center.segments().data() + hint_beside(road, at, piece, side).segment;
 }
 

@@ -13,21 +13,21 @@
 namespace cambium::map {
 
 /// Where a vehicle is on a road corridor. `corridor` and `piece` number the lane corridor and its lane.
-struct LanePosition {
+struct LanePlace {
   double s{};               ///< along the lane corridor's centre line [m]
   double lateral{};         ///< from the centre line, left positive [m]
   double heading_error{};   ///< vehicle's heading minus the lane's [rad], in (-pi, pi]
   double index{};           ///< the map-wide lane coordinate (see `Lane::index_begin`)
   std::uint32_t segment{};  ///< of the centre line: the hint for the next projection
-  std::uint16_t corridor = no_corridor;
-  std::uint16_t piece{};
+  CorridorId corridor = none<CorridorId>;
+  PieceId piece{};
 
-  friend bool operator==(LanePosition const&, LanePosition const&) = default;
+  friend bool operator==(LanePlace const&, LanePlace const&) = default;
 };
 
 /// Places `pose` on lane corridor `number` of `road`; `hint` is the last position there. O(segments moved since).
-[[nodiscard]] inline LanePosition locate(RoadCorridor const& road, std::uint16_t number, geometry::Pose const& pose,
-                                         LanePosition const& hint) {
+[[nodiscard]] inline LanePlace locate(RoadCorridor const& road, CorridorId number, geometry::Pose const& pose,
+                                      LanePlace const& hint) {
   auto const& corridor = road.corridors[number];
   auto const foot = corridor.center.project(pose.position(), hint.segment);
   auto const& segment = corridor.center.segments()[foot.segment];
@@ -42,8 +42,8 @@ struct LanePosition {
 }
 
 /// As above without a hint: exact. O(segments).
-[[nodiscard]] inline LanePosition locate(RoadCorridor const& road, std::uint16_t number, geometry::Pose const& pose) {
-  LanePosition hint;
+[[nodiscard]] inline LanePlace locate(RoadCorridor const& road, CorridorId number, geometry::Pose const& pose) {
+  LanePlace hint;
   hint.segment = road.corridors[number].center.project(pose.position()).segment;
   return locate(road, number, pose, hint);
 }
@@ -51,20 +51,20 @@ struct LanePosition {
 namespace detail {
 
 /// See `nearest_corridor`. Where `heading` is null directions do not count.
-[[nodiscard]] inline LanePosition nearest_corridor(RoadCorridor const& road, geometry::Point const& p,
-                                                   double const* heading) {
-  LanePosition best;
+[[nodiscard]] inline LanePlace nearest_corridor(RoadCorridor const& road, geometry::Point const& p,
+                                                double const* heading) {
+  LanePlace best;
   auto best_rank = std::tuple(0.0, 0.0, 0.0);
   for (std::size_t i = 0; i < road.corridors.size(); ++i) {
     auto const& corridor = road.corridors[i];
-    auto at = locate(road, static_cast<std::uint16_t>(i), {p.x(), p.y(), heading ? *heading : 0.0});
+    auto at = locate(road, static_cast<CorridorId>(i), {p.x(), p.y(), heading ? *heading : 0.0});
     if (!heading) at.heading_error = 0.0;
     auto const sides = corridor.widths_at(at.s, at.segment);
     double const aside = std::max({at.lateral - sides.left, -sides.right - at.lateral, 0.0});
     double const outside = std::hypot(aside, std::max({-at.s, at.s - corridor.length(), 0.0}));
     double const turn = outside > 0.0 ? 0.0 : std::floor(std::abs(at.heading_error) / 0.05);
     auto const rank = std::tuple(outside, turn, std::abs(at.lateral));
-    if (best.corridor != no_corridor && !(rank < best_rank)) continue;
+    if (best.corridor != none<CorridorId> && !(rank < best_rank)) continue;
     best = at;
     best_rank = rank;
   }
@@ -76,12 +76,12 @@ namespace detail {
 /// The lane corridor of `road` that a vehicle at `pose` is in, and where on it: that which holds the position; of
 /// several that with the best direction (to steps of 0.05 rad), then that whose centre line is nearest, then the first.
 /// Where none holds it, the nearest. On no corridor only where the road has none. O(segments).
-[[nodiscard]] inline LanePosition nearest_corridor(RoadCorridor const& road, geometry::Pose const& pose) {
+[[nodiscard]] inline LanePlace nearest_corridor(RoadCorridor const& road, geometry::Pose const& pose) {
   return detail::nearest_corridor(road, pose.position(), &pose.heading);
 }
 
 /// As above for a point: directions do not count, and the heading error is 0.
-[[nodiscard]] inline LanePosition nearest_corridor(RoadCorridor const& road, geometry::Point const& p) {
+[[nodiscard]] inline LanePlace nearest_corridor(RoadCorridor const& road, geometry::Point const& p) {
   return detail::nearest_corridor(road, p, nullptr);
 }
 
