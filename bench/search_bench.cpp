@@ -39,7 +39,7 @@ struct LaneChange {
 
   explicit LaneChange(std::size_t agents) : domain(world_of(agents)) {
     auto const world = world_of(agents);
-    std::uint32_t const ego = 0;
+    cb::Slot const ego{};
     domain = Domain(world, {&ego, 1}, actions(), {}, 0.2);
     root = domain.root();
   }

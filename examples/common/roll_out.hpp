@@ -52,9 +52,8 @@ void append_rows(std::string& rows, std::uint64_t scenario, World const& world, 
     auto const& r = world.frame().agents[i];
     if (r.status != cambium::AgentStatus::driving) continue;
     auto const& agent = world.roster().agents[i];
-    auto const lane = r.lane.corridor < agent.road->corridors.size()
-                          ? agent.road->corridors[r.lane.corridor].lane_at(r.lane.s).lane
-                          : cambium::none<cambium::LaneId>;
+    auto const lane = is_valid(r.lane.corridor) ? agent.road->corridors[r.lane.corridor].lane_at(r.lane.s).lane
+                                                : cambium::none<cambium::LaneId>;
     append_row(rows, map,
                {scenario, world.time(), agent.id, r.state.x, r.state.y, r.state.heading, r.state.speed,
                 r.action.acceleration, agent.shape, is_valid(lane) ? &map.lane(lane) : nullptr,

@@ -114,7 +114,7 @@ struct Scenario {
   cambium::AgentId ego = cambium::none<cambium::AgentId>;
   cambium::geometry::Point start{0.0, 0.0};  ///< where the ego begins
   std::vector<cambium::AgentId> marked{};    ///< who takes an exit
-  std::vector<std::uint16_t> lanes{};        ///< lane corridors that the agents were in, by slot
+  std::vector<cambium::CorridorId> lanes{};  ///< lane corridors that the agents were in, by slot
   std::vector<std::uint64_t> counts = {0};   ///< lane changes
 };
 

@@ -190,10 +190,10 @@ struct Scenario {
   auto const driver = [&](cambium::AgentId agent) {
     return std::get<cambium::IdmClassic>(world.roster().agents[world.slot_of(agent)].behavior);
   };
-  if (auto const front = view.front())
+  if (auto const front = view.ahead())
     if (front->gap < cambium::LaneTraffic::safe_gap(driver(id), view.state().speed, front->speed, headway))
       return false;
-  if (auto const rear = view.rear())
+  if (auto const rear = view.behind())
     if (rear->gap < cambium::LaneTraffic::safe_gap(driver(rear->agent), rear->speed, view.state().speed, headway))
       return false;
   return true;

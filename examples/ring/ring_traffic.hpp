@@ -96,7 +96,7 @@ Measured measure(Sim& world, double length, double duration, double dt, Watch co
   for (std::size_t i = 0; i < agents.size(); ++i) {
     result.slowest = std::min(result.slowest, agents[i].state.speed);
     result.fastest = std::max(result.fastest, agents[i].state.speed);
-    auto const front = world.observe(world.roster().agents[i].id).front();
+    auto const front = world.observe(world.roster().agents[i].id).ahead();
     result.drove = result.drove && agents[i].status == cb::AgentStatus::driving && (!front || front->gap > 0.0);
   }
   return result;

@@ -26,7 +26,7 @@ struct Site : merging::Site {};
 
 /// Somebody on the way to the merge.
 struct Coming {
-  Slot slot{};
+  cambium::Slot slot{};
   std::size_t entrance{};
   double merge_at{};  ///< [m] along its lane corridor
 };
@@ -68,7 +68,7 @@ struct Scenario {
                         .id = agent.id});
     for (std::size_t k = 0; k < site.entrances.size(); ++k)
       if (site.entrances[k].merges() && site.entrances[k].route.lanes == agent.road->route)
-        scenario.coming.push_back({static_cast<std::uint32_t>(i), k, site.entrances[k].merge_at});
+        scenario.coming.push_back({static_cast<cambium::Slot>(i), k, site.entrances[k].merge_at});
   }
   return scenario;
 }

@@ -87,13 +87,11 @@ struct RowView {
   [[nodiscard]] Dynamics const& dynamics() const { return model; }
   [[nodiscard]] cb::map::LaneCorridor const& corridor() const { return *lane; }
   [[nodiscard]] cb::map::LanePlace const& place() const { return at; }
-  [[nodiscard]] std::optional<cb::Neighbor> front() const {
+  [[nodiscard]] std::optional<cb::RoadUser> ahead() const {
     if (leader == nullptr) return std::nullopt;
-    return cb::Neighbor{cb::AgentId{1}, cb::none<cb::ObjectId>, row->front_gap, row->front_speed, 4.0, 0};
+    return cb::RoadUser{.agent = cb::AgentId{1}, .gap = row->front_gap, .speed = row->front_speed};
   }
-  [[nodiscard]] cb::ObservedAgent<State> agent(cb::Neighbor const&) const {
-    return {cb::AgentId{1}, leader->state, box, leader->acceleration};
-  }
+  [[nodiscard]] double acceleration(cb::RoadUser const&) const { return leader->acceleration; }
 };
 
 struct Worst {

@@ -73,7 +73,7 @@ TEST_CASE("IDM with BARK's sub-steps reproduces BARK's highway traffic to 1e-9")
   double worst = 0;
   for (auto const& row : rows) {
     auto world = world_at(map, rows, row.step);
-    auto const front = world.observe(id_of(row.agent)).front();
+    auto const front = world.observe(id_of(row.agent)).ahead();
     int const ours = front ? static_cast<int>(front->agent) : -1;
     // BARK loses a leader that is not among the four nearest agents; there the agent is alone on its road for BARK.
     bool const lost = row.front == -1 && ours != -1;

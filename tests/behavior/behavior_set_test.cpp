@@ -52,7 +52,7 @@ using Set = cb::BehaviorSet<Counter<1>, Plain, Counter<2>, Counter<3>>;
 TEST_CASE("a set knows its members") {
   static_assert(Set::contains<Plain> && Set::contains<Counter<3>> && !Set::contains<Counter<4>>);
   static_assert(cb::is_behavior_set<Set> && !cb::is_behavior_set<Plain> && !cb::is_behavior_set<std::variant<Plain>>);
-  static_assert(std::is_same_v<Set::Any, OneOf<Counter<1>, Plain, Counter<2>, Counter<3>>>);
+  static_assert(std::is_same_v<Set::Any, cb::OneOf<Counter<1>, Plain, Counter<2>, Counter<3>>>);
   static_assert(std::is_same_v<cb::MemoryOf<Plain>, cb::NoMemory> &&
                 std::is_same_v<cb::MemoryOf<Counter<1>>, Counter<1>::Memory>);
 }

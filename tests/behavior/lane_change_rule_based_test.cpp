@@ -34,7 +34,7 @@ TEST_CASE("changes to the lane with the most space, of three") {
     add(world, left_is_free ? 3 : 1, 280.0, 10.0, cb::ConstantAcceleration{});
     auto const driver = add(world, 2, 200.0, 14.0, roomy(20.0));
     for (int k = 0; k < 60; ++k) REQUIRE(world.step(0.2));
-    CHECK(world.record(driver).lane.corridor == (left_is_free ? 0 : 2));
+    CHECK(index_of(world.record(driver).lane.corridor) == (left_is_free ? 0 : 2));
   }
 }
 

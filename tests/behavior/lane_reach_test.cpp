@@ -37,13 +37,13 @@ TEST_CASE("who is still to merge is in the way also behind one that is passed, a
           {.position = place(s, 0.0), .heading = corridor.center.pose(s).heading, .speed = 5, .route = route});
       auto const pose = map->lane(feeder.lane).path.pose(0.5 * map->lane(feeder.lane).length());
       auto const other = world.add({.position = pose.position(), .heading = pose.heading, .speed = 3});
-      auto const expected = world.observe(own).front();
+      auto const expected = world.observe(own).ahead();
       if (!expected || expected->agent != other) continue;
       world.add_object(
           geometry::Polygon({place(s + 15, 0.5), place(s + 18, 0.5), place(s + 18, 1.5), place(s + 15, 1.5)}));
       auto const view = world.observe(own);
-      REQUIRE(view.front());
-      REQUIRE_FALSE(is_valid(view.front()->agent));
+      REQUIRE(view.ahead());
+      REQUIRE_FALSE(is_valid(view.ahead()->agent));
       auto const next = detail::next_in_way(view, -0.8, 0.1);
       REQUIRE(next);
       CHECK(next->agent == other);

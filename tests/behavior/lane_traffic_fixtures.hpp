@@ -116,8 +116,8 @@ void fill_slow(World& world, int lanes, std::uint64_t seed, Driver const& driver
 
 /// Lane corridors that the agents are in, by slot.
 template <class World>
-std::vector<std::uint16_t> lanes(World const& world) {
-  std::vector<std::uint16_t> result;
+std::vector<cb::CorridorId> lanes(World const& world) {
+  std::vector<cb::CorridorId> result;
   for (auto const& record : world.frame().agents) result.push_back(record.lane.corridor);
   return result;
 }

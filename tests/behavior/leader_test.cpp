@@ -54,14 +54,14 @@ TEST_CASE("of a leader and the lane's end that counts which asks for more brakin
   auto const ahead = enter(world, cb::IdmClassic{}, rules, 290, 0), id = enter(world, cb::IdmClassic{}, rules, 250, 10);
   auto const law = [](cb::Leader const& l) { return cb::idm_acceleration(cb::IdmParameters{}, 10.0, l.gap, l.speed); };
   auto const view = world.observe(id);
-  auto const leader = cb::leader_to_follow(rules, view, view.front(), law);
-  REQUIRE(view.front().has_value());
-  CHECK(view.front()->agent == ahead);
-  CHECK(leader.gap < view.front()->gap);
+  auto const leader = cb::leader_to_follow(rules, view, view.ahead(), law);
+  REQUIRE(view.ahead().has_value());
+  CHECK(view.ahead()->agent == ahead);
+  CHECK(leader.gap < view.ahead()->gap);
   CHECK(leader.gap == doctest::Approx(300 - 250 - 3.6 - 15));
   world.set_state(ahead, {.x = 265, .y = -1.75});
   auto const near = world.observe(id);
-  CHECK(cb::leader_to_follow(rules, near, near.front(), law).gap == near.front()->gap);
+  CHECK(cb::leader_to_follow(rules, near, near.ahead(), law).gap == near.ahead()->gap);
 }
 
 TEST_CASE("the permitted speed is the limit, and what lets it be lower in time") {

@@ -127,7 +127,7 @@ TEST_CASE("a new follower is judged by what it is, not by the driver's own param
   auto const ego = add(world, 1, 200.0, 14.0, driver);
   add(world, 2, 120.0, 20.0, cb::ConstantAcceleration{});  // faster than the driver's own desired speed
   auto const view = world.observe(ego);
-  auto const rear = view.neighbors(1).rear;
+  auto const rear = view.behind(view.place(cb::CorridorId{1}));
   REQUIRE(rear);
   double const bark =
       cb::idm_acceleration(driver.idm, rear->speed, rear->gap, 14.0);  // at 20 of 15 m/s it brakes anyway
@@ -145,7 +145,7 @@ TEST_CASE("the nearest follower counts, BARK takes the farthest") {
   auto const near = add(world, 2, 190.0, 16.0, cb::ConstantAcceleration{});
   add(world, 2, 60.0, 16.0, cb::ConstantAcceleration{});
   auto const view = world.observe(ego);
-  auto const rear = view.neighbors(1).rear;
+  auto const rear = view.behind(view.place(cb::CorridorId{1}));
   REQUIRE(rear);
   CHECK(rear->agent == near);
   // To the farther one (BARK's) the change is safe, to the nearer one it is not.

@@ -30,7 +30,7 @@ struct Counts {
 template <class World>
 Counts run(World& world, int steps, double dt) {
   Counts counts;
-  std::vector<std::uint16_t> home(world.size(), cb::none<cb::CorridorId>);  // where a change in progress began
+  std::vector<cb::CorridorId> home(world.size(), cb::none<cb::CorridorId>);  // where a change in progress began
   auto const memory = [&](std::size_t i) { return std::get<0>(world.frame().agents[i].memory); };
   for (int k = 0; k < steps; ++k) {
     auto const before = world.frame();
@@ -140,7 +140,7 @@ TEST_CASE("no change begins into an unsafe gap: by brute force over all vehicles
         auto const& me = before.agents[i];
         auto const& shape = world.roster().agents[i].shape;
         auto const& driver = std::get<0>(world.roster().agents[i].behavior);
-        double const center = -3.5 * (now.target + 0.5);
+        double const center = -3.5 * (static_cast<double>(index_of(now.target)) + 0.5);
         for (std::size_t j = 0; j < world.size(); ++j) {
           auto const& other = before.agents[j];
           auto const& its = world.roster().agents[j].shape;
@@ -170,8 +170,8 @@ TEST_CASE("mirrored traffic changes lanes as the mirror image") {
     fill(world, 3, 5.0, 400.0, 2.0, seed, [](double v) { return mobil(v); });
     for (std::size_t i = 0; i < world.size(); ++i) {
       auto const& record = world.frame().agents[i];
-      add(mirrored, 3 - record.lane.corridor, record.state.x, record.state.speed, world.roster().agents[i].behavior, {},
-          world.roster().agents[i].shape);
+      add(mirrored, 3 - static_cast<int>(index_of(record.lane.corridor)), record.state.x, record.state.speed,
+          world.roster().agents[i].behavior, {}, world.roster().agents[i].shape);
     }
     double worst = 0.0;
     for (int k = 0; k < 150; ++k) {
@@ -256,12 +256,13 @@ TEST_CASE("the more polite drivers are, the less deceleration they impose on oth
           auto const now = std::get<0>(world.frame().agents[i].memory).change;
           if (std::get<0>(before.agents[i].memory).change.active() || !now.active()) continue;
           auto const view = here.observe(world.roster().agents[i].id);
-          auto const there = view.neighbors(now.target);
-          if (!there.rear) continue;
+          auto const there = view.place(now.target);
+          auto const front = view.ahead(there), rear = view.behind(there);
+          if (!rear) continue;
           auto const& driver = std::get<0>(world.roster().agents[i].behavior);
-          double const alone = there.front ? there.rear->gap + view.shape().length() + there.front->gap : 1e9;
-          double const loss = driver.changing.follower(there.rear, alone, there.front ? there.front->speed : 0.0) -
-                              driver.changing.follower(there.rear, there.rear->gap, view.state().speed);
+          double const alone = front ? rear->gap + view.shape().length() + front->gap : 1e9;
+          double const loss = driver.changing.follower(rear, alone, front ? front->speed : 0.0) -
+                              driver.changing.follower(rear, rear->gap, view.state().speed);
           total += std::max(0.0, loss);
         }
       }
@@ -285,7 +286,7 @@ TEST_CASE("with the rule to keep right traffic drives on the right, and nobody i
         return driver;
       });
       for (int k = 0; k < 300; ++k) REQUIRE(world.step(0.2));
-      for (auto const& record : world.frame().agents) on_right[rule] += record.lane.corridor == 2;
+      for (auto const& record : world.frame().agents) on_right[rule] += record.lane.corridor == cb::CorridorId{2};
       if (rule == 1) total += static_cast<int>(world.size());
     }
   }
@@ -359,7 +360,7 @@ std::pair<int, int> changes_and_returns(double threshold, double rest) {
       return driver;
     });
     struct Last {
-      std::uint16_t from = cb::none<cb::CorridorId>;
+      cb::CorridorId from = cb::none<cb::CorridorId>;
       double time = -1e9;
     };
     std::vector<Last> last(world.size());
@@ -405,9 +406,8 @@ TEST_CASE("a follower is judged by what is assumed of vehicles as long as it, an
       CHECK(world.memory<cb::Mobil>(id).change.active() == (is_truck != truck_is_hindered));
     }
   cb::LaneChanging const changing;
-  CHECK(changing.law_of({.speed = 40.0, .length = 4.5}).free() == doctest::Approx(0.0));
-  CHECK(changing.law_of({.speed = 10.0, .length = 4.5}).free() >
-        changing.law_of({.speed = 10.0, .length = 12.0}).free());
+  CHECK(changing.law_of({.front = 4.5, .speed = 40.0}).free() == doctest::Approx(0.0));
+  CHECK(changing.law_of({.front = 4.5, .speed = 10.0}).free() > changing.law_of({.front = 12.0, .speed = 10.0}).free());
 }
 
 TEST_CASE("a change is aborted when somebody comes up in the new lane") {
@@ -424,7 +424,8 @@ TEST_CASE("a change is aborted when somebody comes up in the new lane") {
       REQUIRE(world.step(0.2));
       auto const now = world.memory<cb::Mobil>(driver).change;
       began = began || now.active();
-      aborted += was.active() && was.target == 1 && now.active() && now.target == 0 && home == 0;
+      aborted += was.active() && was.target == cb::CorridorId{1} && now.active() && now.target == cb::CorridorId{} &&
+                 home == cb::CorridorId{};
       CHECK(collisions(world) == 0);
     }
     CHECK(began);
@@ -451,12 +452,13 @@ TEST_CASE(
       REQUIRE(world.step(0.2));
       CAPTURE(seed);
       REQUIRE(collisions(world) == 0);
-      auto const leader = world.observe(follower).front();
-      if (!leader || leader->agent != leaving || world.record(leaving).lane.corridor == 0) continue;
+      auto const leader = world.observe(follower).ahead();
+      if (!leader || leader->agent != leaving || world.record(leaving).lane.corridor == cb::CorridorId{}) continue;
       auto const& own = world.record(follower);
       double const gap = world.record(ahead).lane.s - own.lane.s - 4.5;
-      hidden += own.lane.corridor == 0 && cb::idm_acceleration(idm, own.state.speed, gap, slow) <
-                                              cb::idm_acceleration(idm, own.state.speed, leader->gap, leader->speed);
+      hidden += own.lane.corridor == cb::CorridorId{} &&
+                cb::idm_acceleration(idm, own.state.speed, gap, slow) <
+                    cb::idm_acceleration(idm, own.state.speed, leader->gap, leader->speed);
     }
   }
   CHECK(hidden > 50);

@@ -322,7 +322,7 @@ TEST_CASE("a prediction walks too, and a car that brakes for one who stands in i
   world.set_state(walker, {.x = 320, .y = -1.75, .heading = -1.57, .speed = 0.0});
   auto stopping = world.observe(car).predict(
       cb::predict_as<Set>(cb::IdmClassic{}, cb::Pedestrian{.social = {.desired_speed = 0.1}}));
-  auto const front = world.observe(car).front();
+  auto const front = world.observe(car).ahead();
   REQUIRE(front);
   CHECK(front->agent == walker);
   CHECK(front->gap == doctest::Approx(50 - 3.6 - 0.3).epsilon(0.01));
@@ -370,12 +370,11 @@ TEST_CASE("who is around is who is near, whatever lane it is on, as by looking a
     auto const view = world.observe(id);
     for (double const distance : {0.0, 1.0, 5.0, 30.0}) {
       std::vector<cb::AgentId> near, expected;
-      view.for_each_around(distance, [&](auto const& other) { near.push_back(other.id); });
-      view.for_each_other([&](auto const& other) {
-        double const reach =
-            distance + std::max(other.shape.front, other.shape.rear) + std::max(other.shape.left, other.shape.right);
-        if (std::hypot(other.state.x - view.state().x, other.state.y - view.state().y) <= reach)
-          expected.push_back(other.id);
+      view.around(distance, [&](auto const& other) { near.push_back(other.agent); });
+      view.around(std::numeric_limits<double>::infinity(), [&](auto const& other) {
+        auto const& [shape, state] = std::tie(view.shape(other), view.state(other));
+        double const reach = distance + std::max(shape.front, shape.rear) + std::max(shape.left, shape.right);
+        if (std::hypot(state.x - view.state().x, state.y - view.state().y) <= reach) expected.push_back(other.agent);
       });
       std::sort(near.begin(), near.end());
       CHECK(near == expected);

@@ -92,7 +92,7 @@ Tally drive(bool safe, std::uint32_t scenarios, std::uint64_t seed) {
     double const dt = 0.1 * (2 + cb::uniform_index(random, 4));
     world = sample(empty, safe, random);
     auto const lane_of = [&](std::size_t i) { return world.frame().agents[i].lane.corridor; };
-    std::vector<std::uint16_t> lanes(world.size());
+    std::vector<cb::CorridorId> lanes(world.size());
     for (std::size_t i = 0; i < lanes.size(); ++i) lanes[i] = lane_of(i);
     bool collided = false;
     for (double t = 0; t < 8.0 && !collided; t += dt) {

@@ -137,20 +137,20 @@ TEST_CASE("an object in a lane's neighbour query is there for cyclists and on fr
   auto const way = cb::map::build_free_corridor(*road, points);
   auto const behind = world.add({.position = {10, 20}, .speed = 1, .behavior = cb::IdmClassic{}, .road = way});
   auto const ahead = world.add({.position = {30, 19.9}, .speed = 1, .behavior = cb::IdmClassic{}, .road = way});
-  CHECK(world.observe(behind).front()->agent == ahead);
-  CHECK(world.observe(ahead).rear()->agent == behind);
-  CHECK_FALSE(world.observe(cyclist).front());
+  CHECK(world.observe(behind).ahead()->agent == ahead);
+  CHECK(world.observe(ahead).behind()->agent == behind);
+  CHECK_FALSE(world.observe(cyclist).ahead());
   auto const on_bike_lane = world.add_object(cb::geometry::Polygon({{80, -5.0}, {82, -5.0}, {82, -4.0}, {80, -4.0}}));
   auto const on_way = world.add_object(cb::geometry::Polygon({{60, 15}, {62, 15}, {62, 25}, {60, 25}}));
-  REQUIRE(world.observe(cyclist).front());
-  CHECK(world.observe(cyclist).front()->object == on_bike_lane);
-  CHECK(world.observe(ahead).front()->object == on_way);
-  CHECK(world.observe(ahead).front()->gap == doctest::Approx(30 - 3.6).epsilon(0.01));
+  REQUIRE(world.observe(cyclist).ahead());
+  CHECK(world.observe(cyclist).ahead()->object == on_bike_lane);
+  CHECK(world.observe(ahead).ahead()->object == on_way);
+  CHECK(world.observe(ahead).ahead()->gap == doctest::Approx(30 - 3.6).epsilon(0.01));
   std::vector<cb::geometry::Point> const other{{0, 22}, {100, 22}};  // entered on after the object was there
   auto const late = world.add(
       {.position = {10, 22}, .behavior = cb::IdmClassic{}, .road = cb::map::build_free_corridor(*road, other)});
-  REQUIRE(world.observe(late).front());
-  CHECK(world.observe(late).front()->object == on_way);
+  REQUIRE(world.observe(late).ahead());
+  CHECK(world.observe(late).ahead()->object == on_way);
   for (int i = 0; i < 300; ++i) {
     REQUIRE(world.step(0.2));
     REQUIRE(collisions(world) == 0);
@@ -172,13 +172,13 @@ TEST_CASE("a cyclist that reaches out of its lane is in the way of those in the 
                                   .behavior = cb::IdmClassic{},
                                   .route = cb::map::straight_route(*road, biking->id)});
   auto const car = world.add({.position = {20, -1.75}, .speed = 4, .behavior = cb::IdmClassic{}});
-  CHECK_FALSE(world.observe(car).front());
+  CHECK_FALSE(world.observe(car).ahead());
   world.set_state(cyclist, {.x = 60, .y = -3.7, .speed = 4});
-  REQUIRE(world.observe(car).front());
-  CHECK(world.observe(car).front()->agent == cyclist);
-  CHECK(world.observe(car).front()->gap == doctest::Approx(40 - 3.6 - 0.35));
-  CHECK(world.observe(car).front()->speed == doctest::Approx(4.0));
-  CHECK_FALSE(world.observe(cyclist).rear());  // nobody is in its own lane
+  REQUIRE(world.observe(car).ahead());
+  CHECK(world.observe(car).ahead()->agent == cyclist);
+  CHECK(world.observe(car).ahead()->gap == doctest::Approx(40 - 3.6 - 0.35));
+  CHECK(world.observe(car).ahead()->speed == doctest::Approx(4.0));
+  CHECK_FALSE(world.observe(cyclist).behind());  // nobody is in its own lane
 }
 
 TEST_CASE("ways that are none are refused, and goals on free ways work") {

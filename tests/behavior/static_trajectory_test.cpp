@@ -85,9 +85,9 @@ TEST_CASE("a replay enters traffic when its recording begins, and leaves when it
   auto const follower = world.add({.position = {50, -1.75}, .speed = 10});
   auto const late = world.add(replay(recorded(1.0, 100, 6, 0.4)));  // 1 to 3 s
   CHECK(world.status(late) == cb::AgentStatus::not_started);
-  CHECK_FALSE(world.observe(follower).front());  // from the very first frame on
+  CHECK_FALSE(world.observe(follower).ahead());  // from the very first frame on
   int seen = 0;
-  world.observe(follower).for_each_other([&](auto const&) { ++seen; });
+  world.observe(follower).around(std::numeric_limits<double>::infinity(), [&](auto const&) { ++seen; });
   CHECK(seen == 0);
   for (int k = 1; k <= 16; ++k) {
     CHECK(world.step(0.2));
@@ -97,7 +97,7 @@ TEST_CASE("a replay enters traffic when its recording begins, and leaves when it
                           : time < 3.01 ? cb::AgentStatus::driving
                                         : cb::AgentStatus::expired;
     CHECK(world.status(late) == expected);
-    CHECK(world.observe(follower).front().has_value() == (expected == cb::AgentStatus::driving));
+    CHECK(world.observe(follower).ahead().has_value() == (expected == cb::AgentStatus::driving));
     if (expected == cb::AgentStatus::driving) CHECK(world.state(late).x == doctest::Approx(100 + 10 * (time - 1.0)));
   }
   CHECK(world.state(late).x == doctest::Approx(120));

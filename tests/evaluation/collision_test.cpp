@@ -59,17 +59,17 @@ Sim random_world(std::shared_ptr<cb::Map const> const& map, Scene const& scene, 
   return Sim(map, std::move(roster), std::move(frame));
 }
 
-cb::geometry::OrientedBox box_of(Sim const& world, std::size_t slot) {
+cb::geometry::OrientedBox box_of(Sim const& world, cb::Slot slot) {
   return cb::geometry::box_of(world.roster().agents[slot].shape, world.frame().agents[slot].state);
 }
 
-bool drives(Sim const& world, std::size_t slot) { return world.frame().agents[slot].status == AgentStatus::driving; }
+bool drives(Sim const& world, cb::Slot slot) { return world.frame().agents[slot].status == AgentStatus::driving; }
 
-bool touch(Sim const& world, std::size_t i, std::size_t k) {
+bool touch(Sim const& world, cb::Slot i, cb::Slot k) {
   return drives(world, i) && drives(world, k) && cb::geometry::intersects(box_of(world, i), box_of(world, k));
 }
 
-bool touches_object(Sim const& world, std::size_t slot) {
+bool touches_object(Sim const& world, cb::Slot slot) {
   if (!drives(world, slot)) return false;
   for (auto const& object : world.roster().objects)
     if (cb::geometry::intersects(box_of(world, slot), object.outline)) return true;
@@ -77,14 +77,14 @@ bool touches_object(Sim const& world, std::size_t slot) {
 }
 
 /// First other agent, by id, that this one touches.
-std::optional<AgentId> first_touched(Sim const& world, std::size_t slot) {
-  for (std::size_t k = 0; k < world.size(); ++k)
+std::optional<AgentId> first_touched(Sim const& world, cb::Slot slot) {
+  for (cb::Slot k{}; index_of(k) < world.size(); ++k)
     if (k != slot && touch(world, slot, k)) return world.roster().agents[k].id;
   return std::nullopt;
 }
 
 bool brute_any(Sim const& world) {
-  for (std::size_t i = 0; i < world.size(); ++i)
+  for (cb::Slot i{}; index_of(i) < world.size(); ++i)
     if (touches_object(world, i) || first_touched(world, i)) return true;
   return false;
 }
@@ -107,7 +107,8 @@ int compare(Scene const& scene, std::uint32_t frames) {
     REQUIRE(any.any_collision == expected);
     if (any.any_collision) CHECK(is_true_pair(world, any));
     collisions += expected;
-    for (std::size_t slot = 0; slot < world.size(); slot += 1 + world.size() / 8) {
+    for (std::size_t i = 0; i < world.size(); i += 1 + world.size() / 8) {
+      auto const slot = static_cast<cb::Slot>(i);
       auto const ego = cb::CollisionEgo{world.roster().agents[slot].id}.evaluate(world);
       auto const other = first_touched(world, slot);
       CHECK(ego.ego_collision == (other.has_value() || touches_object(world, slot)));

@@ -64,7 +64,7 @@ Route route_of(Map const& map, std::vector<LaneId> lanes) {
 
 /// Laws of every road corridor: what a world relies on.
 void check_laws(Map const& map, RoadCorridor const& road) {
-  REQUIRE(road.main < road.corridors.size());
+  REQUIRE(index_of(road.main) < road.corridors.size());
   CHECK(road.corridor_of(road.route.back()) != none<CorridorId>);
   std::size_t wrong_places = 0;
   for (auto const& corridor : road.corridors) {
@@ -256,7 +256,7 @@ TEST_CASE("where a lane has two successors side by side the corridor takes that 
     REQUIRE(road->corridors.size() == 2);
     CHECK(lanes_of(road->corridors[0]) == std::vector<LaneId>{a, first});
     CHECK(lanes_of(road->corridors[1]) == std::vector<LaneId>{second});
-    CHECK(road->main == 0);
+    CHECK(index_of(road->main) == 0);
   }
 }
 
@@ -301,18 +301,18 @@ TEST_CASE("lanes beside the route have corridors that know each other, and one t
   auto const road = build_road_corridor(*map, straight_route(*map, sections[0][0]));
   check_laws(*map, *road);
   REQUIRE(road->corridors.size() == 3);
-  CHECK(road->main == 0);
+  CHECK(index_of(road->main) == 0);
   for (std::size_t i = 0; i < 2; ++i)
     CHECK(lanes_of(road->corridors[i]) == std::vector<LaneId>{sections[0][i], sections[1][i], sections[2][i]});
   CHECK(lanes_of(road->corridors[2]) == std::vector<LaneId>{sections[1][2]});
-  CHECK(road->corridors[0].pieces[1].right == 1);
+  CHECK(index_of(road->corridors[0].pieces[1].right) == 1);
   CHECK(road->corridors[1].pieces[0].right == none<CorridorId>);
-  CHECK(road->corridors[1].pieces[1].right == 2);
-  CHECK(road->corridors[2].pieces[0].left == 1);
-  CHECK(road->corridor_of(sections[1][2]) == 2);
+  CHECK(index_of(road->corridors[1].pieces[1].right) == 2);
+  CHECK(index_of(road->corridors[2].pieces[0].left) == 1);
+  CHECK(index_of(road->corridor_of(sections[1][2])) == 2);
   // A lane change is a part of the route: the corridor of its last lane is the main one.
   auto const changes = build_road_corridor(*map, route_of(*map, {sections[0][0], sections[0][1], sections[1][1]}));
-  CHECK(changes->main == 1);
+  CHECK(index_of(changes->main) == 1);
   CHECK(changes->corridors.size() == 3);
 }
 
@@ -337,8 +337,8 @@ TEST_CASE("a lane that merges into its neighbour goes on as that one") {
   REQUIRE(road->corridors.size() == 3);
   CHECK(lanes_of(road->corridors[0]) == std::vector<LaneId>{stays, after});
   CHECK(lanes_of(road->corridors[1]) == std::vector<LaneId>{ends, after});
-  CHECK(road->main == 1);                         // it has more of the route
-  CHECK(road->corridors[2].pieces[0].left == 0);  // the one that was there before
+  CHECK(index_of(road->main) == 1);                         // it has more of the route
+  CHECK(index_of(road->corridors[2].pieces[0].left) == 0);  // the one that was there before
   for (int i = 0; i < 2; ++i) {
     auto const& corridor = road->corridors[static_cast<std::size_t>(i)];
     check_feeder_laws(*map, corridor);
@@ -478,9 +478,9 @@ TEST_CASE("positions on a corridor and on its lanes lead to each other, and to t
           double const s = random(0, corridor.length());
           auto const at = corridor.lane_at(s);
           auto const& lane = map.lane(at.lane);
-          auto const& piece = corridor.pieces[corridor.piece_at(s, 0)];
+          auto const& piece = corridor.pieces[corridor.piece_at(s, {})];
           wrong += at.lane != piece.lane || corridor.type_at(s) != lane.type;
-          bool const is_first = corridor.pieces[corridor.piece_at(*corridor.position_of(at), 0)].begin == piece.begin;
+          bool const is_first = corridor.pieces[corridor.piece_at(*corridor.position_of(at), {})].begin == piece.begin;
           if (is_first) wrong += !(std::abs(*corridor.position_of(at) - s) < 1e-6);
           if (s - piece.begin < 2.5) continue;  // where gaps are bridged
           wrong += !((lane.path.pose(at.s).position() - corridor.center.pose(s).position()).norm() < 0.02);
@@ -600,18 +600,18 @@ TEST_CASE("the nearest corridor is the one that holds a place, by direction wher
   auto const map = make_map(lanes);
   auto const road = build_road_corridor(*map, straight_route(*map, left));
   auto const at = nearest_corridor(*road, Pose{50, -1.5, 0.1});
-  CHECK(at.corridor == 0);
+  CHECK(index_of(at.corridor) == 0);
   CHECK(at.s == doctest::Approx(50));
   CHECK(at.lateral == doctest::Approx(-1.5));
   CHECK(at.heading_error == doctest::Approx(0.1));
-  CHECK(nearest_corridor(*road, Point(50, -2.0)).corridor == 1);
-  CHECK(nearest_corridor(*road, Point(50, 30.0)).corridor == 0);
-  CHECK(nearest_corridor(*road, Point(-7, -30.0)).corridor == 1);
+  CHECK(index_of(nearest_corridor(*road, Point(50, -2.0)).corridor) == 1);
+  CHECK(index_of(nearest_corridor(*road, Point(50, 30.0)).corridor) == 0);
+  CHECK(index_of(nearest_corridor(*road, Point(-7, -30.0)).corridor) == 1);
   CHECK(nearest_corridor(*road, Point(50, -2.0)).heading_error == 0.0);
   CHECK(nearest_corridor(RoadCorridor{}, Point(0, 0)).corridor == none<CorridorId>);
-  CHECK(road->left_of(1, 50) == 0);
-  CHECK(road->right_of(0, 50) == 1);
-  CHECK(road->left_of(0, 50) == none<CorridorId>);
+  CHECK(index_of(road->left_of(CorridorId{1}, 50)) == 0);
+  CHECK(index_of(road->right_of(CorridorId{0}, 50)) == 1);
+  CHECK(road->left_of(CorridorId{0}, 50) == none<CorridorId>);
   CHECK(road->lanes() == std::vector<LaneId>{left, right});
   // Two ways from one place: the direction decides.
   std::vector<Lane> fork;
@@ -623,8 +623,8 @@ TEST_CASE("the nearest corridor is the one that holds a place, by direction wher
   RoadCorridor both;
   for (auto const next : {straight, turns})
     both.corridors.push_back(build_road_corridor(*forked, route_of(*forked, {a, next}))->corridors[0]);
-  CHECK(nearest_corridor(both, Pose{53, 0.3, 0.02}).corridor == 0);
-  CHECK(nearest_corridor(both, Pose{53, 0.3, 0.31}).corridor == 1);
+  CHECK(index_of(nearest_corridor(both, Pose{53, 0.3, 0.02}).corridor) == 0);
+  CHECK(index_of(nearest_corridor(both, Pose{53, 0.3, 0.31}).corridor) == 1);
 }
 
 TEST_CASE("a road corridor is found from a pose to a point or a polygon") {

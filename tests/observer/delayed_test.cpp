@@ -36,7 +36,9 @@ World<Observer> traffic(Observer const& observer, std::uint64_t seed = 1) {
 template <class World>
 std::map<cb::AgentId, cb::State> seen_by(World& world, cb::AgentId id) {
   std::map<cb::AgentId, cb::State> seen;
-  world.observe(id).for_each_other([&](auto const& other) { seen[other.id] = other.state; });
+  auto const view = world.observe(id);
+  view.around(std::numeric_limits<double>::infinity(),
+              [&](auto const& other) { seen[other.agent] = view.state(other); });
   return seen;
 }
 
@@ -60,10 +62,11 @@ TEST_CASE("others are seen exactly as they were some steps ago, and the agent it
     CHECK(seen.size() == 7);
     for (auto const& [id, state] : seen) CHECK(state == then.agents[world.slot_of(id)].state);
     CHECK(world.observe(ego).state() == own_then.agents[2].state);
-    world.observe(ego).for_each_other([&](auto const& other) {
-      CHECK(other.acceleration == then.agents[world.slot_of(other.id)].action.acceleration);
+    auto const view = world.observe(ego);
+    view.around(std::numeric_limits<double>::infinity(), [&](auto const& other) {
+      CHECK(view.acceleration(other) == then.agents[world.slot_of(other.agent)].action.acceleration);
     });
-    auto const front = world.observe(ego).front();
+    auto const front = view.ahead();
     REQUIRE(front);
     auto const& leader = then.agents[front->slot].state;
     CHECK(front->gap == doctest::Approx(leader.x - own_then.agents[2].state.x - 4.5));
@@ -157,7 +160,7 @@ TEST_CASE("a chain that changes nothing shows the truth itself, and is no other 
   world.add({.position = {130, -1.75}, .speed = 8});
   auto const view = world.observe(ego);
   CHECK(&view.state() == &world.state(ego));
-  CHECK(view.front()->gap == 30 - 4.5);
+  CHECK(view.ahead()->gap == 30 - 4.5);
   World<cb::ObserverChain<cb::ParametricObserver, cb::DelayedObserver<2>>> blind(world.shared_map());
   blind.add({.position = {100, -1.75},
              .speed = 10,

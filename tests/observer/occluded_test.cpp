@@ -21,13 +21,13 @@ constexpr double pi = cb::geometry::pi;
 struct Plane {
   std::vector<cb::State> states;
   std::vector<cb::geometry::Shape> shapes;
-  std::vector<cb::StaticObject> things;
+  cb::IdVector<cb::StaticObject, cb::Slot> things;
 
   [[nodiscard]] std::uint32_t size() const { return static_cast<std::uint32_t>(states.size()); }
-  [[nodiscard]] bool in_traffic(std::uint32_t) const { return true; }
-  [[nodiscard]] cb::State const& state(std::uint32_t i) const { return states[i]; }
-  [[nodiscard]] cb::geometry::Shape const& shape(std::uint32_t i) const { return shapes[i]; }
-  [[nodiscard]] std::vector<cb::StaticObject> const& objects() const { return things; }
+  [[nodiscard]] bool in_traffic(cb::Slot) const { return true; }
+  [[nodiscard]] cb::State const& state(cb::Slot i) const { return states[index_of(i)]; }
+  [[nodiscard]] cb::geometry::Shape const& shape(cb::Slot i) const { return shapes[index_of(i)]; }
+  [[nodiscard]] cb::IdVector<cb::StaticObject, cb::Slot> const& objects() const { return things; }
   [[nodiscard]] cb::geometry::OrientedBox box(std::uint32_t i) const {
     return cb::geometry::box_of(shapes[i], states[i]);
   }
@@ -122,7 +122,7 @@ Counts compare(cb::OccludedObserver const& observer) {
     for (std::uint32_t i = 1; i < plane.size(); ++i) {
       CAPTURE(number);
       CAPTURE(i);
-      bool const sees = observer.sees(plane, 0, i);
+      bool const sees = observer.sees(plane, cb::Slot{}, cb::Slot{i});
       double const distance = cb::geometry::distance(plane.box(i), plane.box(0).center());
       if (widths[i] > observer.resolution + 2 * step) CHECK(sees == (distance <= observer.range));
       if (widths[i] < observer.resolution - 2 * step) CHECK_FALSE(sees);
@@ -173,7 +173,7 @@ Counts compare_objects(cb::OccludedObserver const& observer) {
     for (std::uint32_t o = 0; o < plane.things.size(); ++o) {
       CAPTURE(number);
       CAPTURE(o);
-      bool const sees = observer.sees_object(plane, 0, o);
+      bool const sees = observer.sees_object(plane, cb::Slot{}, cb::Slot{o});
       double const distance = cb::geometry::distance(plane.things[o].outline, plane.box(0).center());
       if (widths[o] > observer.resolution + 2 * step) CHECK(sees == (distance <= observer.range));
       if (widths[o] < observer.resolution - 2 * step) CHECK_FALSE(sees);
@@ -191,8 +191,8 @@ struct SeesEven {
     return truth;
   }
   template <class Scene>
-  [[nodiscard]] bool sees(Scene const&, std::uint32_t, Slot other) const {
-    return other % 2 == 0;
+  [[nodiscard]] bool sees(Scene const&, cb::Slot, cb::Slot other) const {
+    return index_of(other) % 2 == 0;
   }
 };
 
@@ -223,24 +223,29 @@ TEST_CASE("behind a truck nobody is seen, and the next one who is seen is the ne
   auto const beside = world.add({.position = {135, -5.25}, .speed = 10});
   auto const seen = [&](cb::AgentId id) {
     std::set<cb::AgentId> others;
-    world.observe(id).for_each_other([&](auto const& other) { others.insert(other.id); });
+    world.observe(id).around(std::numeric_limits<double>::infinity(),
+                             [&](auto const& other) { others.insert(other.agent); });
     return others;
   };
   CHECK(seen(ego) == std::set{truck, beside});
   CHECK(seen(hidden) == std::set{truck, beside});
-  CHECK(world.observe(ego).front()->agent == truck);
-  CHECK(world.observe(truck).front()->agent == hidden);
+  CHECK(world.observe(ego).ahead()->agent == truck);
+  CHECK(world.observe(truck).ahead()->agent == hidden);
   auto const prediction =
       world.observe(ego).predict(cb::predict_all_as<cb::BehaviorSet<cb::IdmClassic>>(cb::IdmClassic{}));
   CHECK(prediction.size() == 3);
   CHECK_FALSE(prediction.roster().slot_of(hidden));
 
   // A wall between the lanes ahead hides the one beside, so that there is no neighbour there.
-  auto const side = static_cast<std::uint16_t>(1 - world.observe(ego).place().corridor);
-  CHECK(world.observe(ego).neighbors(side).front->agent == beside);
+  auto const side = static_cast<cb::CorridorId>(1 - index_of(world.observe(ego).place().corridor));
+  auto const next_beside = [&] {
+    auto const view = world.observe(ego);
+    return view.ahead(view.place(side));
+  };
+  CHECK(next_beside()->agent == beside);
   world.add_object(cb::geometry::Polygon({{105, -3.6}, {160, -3.6}, {160, -3.4}, {105, -3.4}}));
   CHECK(seen(ego) == std::set{truck});
-  auto const front = world.observe(ego).neighbors(side).front;
+  auto const front = next_beside();
   CHECK((!front || !cb::is_valid(front->agent)));
 }
 
@@ -249,9 +254,9 @@ TEST_CASE(
   World<cb::OccludedObserver> world(straight_road(1, 1000.0));
   auto const ego = world.add({.position = {100, -1.75}, .observer = {.range = 30.0, .field_of_view = 3.0}});
   world.add({.position = {140, -1.75}});
-  CHECK_FALSE(world.observe(ego).front());
+  CHECK_FALSE(world.observe(ego).ahead());
   world.add({.position = {90, -1.75}});
-  CHECK_FALSE(world.observe(ego).rear());  // out of its field of view
+  CHECK_FALSE(world.observe(ego).behind());  // out of its field of view
 }
 
 TEST_CASE("a neighbour behind one that is not seen is found") {
@@ -259,14 +264,14 @@ TEST_CASE("a neighbour behind one that is not seen is found") {
   for (int i = 0; i < 8; ++i) world.add({.position = {100 + 20.0 * i, -1.75}});
   auto const straddling = world.add({.position = {205, -3.3}});  // id 8
   auto const at = [&](std::uint32_t id) { return world.observe(static_cast<cb::AgentId>(id)); };
-  CHECK(at(0).front()->agent == static_cast<cb::AgentId>(2));
-  CHECK(at(0).front()->gap == doctest::Approx(40 - 4.5));
-  CHECK(at(5).rear()->agent == static_cast<cb::AgentId>(4));
-  CHECK(at(4).rear()->agent == static_cast<cb::AgentId>(2));
-  CHECK(at(4).front()->agent == straddling);
-  CHECK_FALSE(at(0).rear());
-  auto const side = static_cast<std::uint16_t>(1 - at(3).place().corridor);
-  CHECK(at(3).neighbors(side).front->agent == straddling);
+  CHECK(at(0).ahead()->agent == static_cast<cb::AgentId>(2));
+  CHECK(at(0).ahead()->gap == doctest::Approx(40 - 4.5));
+  CHECK(at(5).behind()->agent == static_cast<cb::AgentId>(4));
+  CHECK(at(4).behind()->agent == static_cast<cb::AgentId>(2));
+  CHECK(at(4).ahead()->agent == straddling);
+  CHECK_FALSE(at(0).behind());
+  auto const side = static_cast<cb::CorridorId>(1 - index_of(at(3).place().corridor));
+  CHECK(at(3).ahead(at(3).place(side))->agent == straddling);
 }
 
 TEST_CASE("which static objects are hidden is the same by intervals and by rays") {
@@ -279,7 +284,7 @@ TEST_CASE("which static objects are hidden is the same by intervals and by rays"
   CHECK(compare_objects({.field_of_view = 2.0, .resolution = 0.02}).seen < usual.seen);
   CHECK(compare_objects({.range = 15.0, .resolution = 0.02}).seen < usual.seen);
   cb::OccludedObserver const knows{.range = 1.0, .objects_known = true};
-  CHECK(knows.sees_object(sample(0), 0, 1));
+  CHECK(knows.sees_object(sample(0), cb::Slot{0}, cb::Slot{1}));
 }
 
 TEST_CASE("an object behind a truck is no neighbour, and in no prediction, until it is seen") {
@@ -295,15 +300,18 @@ TEST_CASE("an object behind a truck is no neighbour, and in no prediction, until
   };
   CHECK(seen(world.observe(ego)) == std::vector{farther});
   CHECK(seen(world.observe(truck)) == std::vector{hidden, farther});
-  CHECK(world.observe(truck).front()->object == hidden);
-  auto const near = world.observe(ego).for_each_near(0, 200.0, [](auto const&) {});
-  REQUIRE(near.front);
-  CHECK(near.front->object == farther);
+  CHECK(world.observe(truck).ahead()->object == hidden);
+  std::vector<cb::ObjectId> near;
+  auto const view = world.observe(ego);
+  view.around(view.place(), 200.0, [&](auto const& other) {
+    if (is_valid(other.object)) near.push_back(other.object);
+  });
+  CHECK(near == std::vector{farther});
   using Set = cb::BehaviorSet<cb::IdmClassic>;
   auto prediction = world.observe(ego).predict(cb::predict_all_as<Set>(cb::IdmClassic{}));
   REQUIRE(prediction.roster().objects.size() == 1);
   CHECK(prediction.roster().objects[0].id == farther);
-  CHECK(prediction.observe(truck).front()->object == farther);
+  CHECK(prediction.observe(truck).ahead()->object == farther);
   world.remove(truck);
-  CHECK(world.observe(ego).front()->object == hidden);
+  CHECK(world.observe(ego).ahead()->object == hidden);
 }

@@ -65,7 +65,9 @@ struct Traffic {
 template <class World>
 std::map<AgentId, cb::State> seen_by(World& world, AgentId id) {
   std::map<AgentId, cb::State> seen;
-  world.observe(id).for_each_other([&](auto const& other) { seen[other.id] = other.state; });
+  auto const view = world.observe(id);
+  view.around(std::numeric_limits<double>::infinity(),
+              [&](auto const& other) { seen[other.agent] = view.state(other); });
   return seen;
 }
 
@@ -101,12 +103,12 @@ TEST_CASE(
   }
   CHECK(world.observe(traffic.ego).state() == world.state(traffic.ego));
   CHECK(world.frame() == truth);
-  auto const front = world.observe(traffic.ego).front();
+  auto const front = world.observe(traffic.ego).ahead();
   REQUIRE(front.has_value());
   CHECK(front->speed == seen.at(front->agent).speed);
   auto const& own = world.state(traffic.ego);
   CHECK(front->gap == doctest::Approx(seen.at(front->agent).x - own.x - 3.6 - 0.9));
-  auto const rear = world.observe(traffic.ego).rear();
+  auto const rear = world.observe(traffic.ego).behind();
   REQUIRE(rear.has_value());
   CHECK(rear->gap == doctest::Approx(own.x - seen.at(rear->agent).x - 3.6 - 0.9));
 }
@@ -120,10 +122,10 @@ TEST_CASE("an agent that errs about itself errs about its lane position and its 
   auto const view = world.observe(ego);
   CHECK(view.place().s == doctest::Approx(101.0));
   CHECK(view.place().lateral == doctest::Approx(0.25));
-  CHECK(view.front()->gap == doctest::Approx(30 - 4.5 - 1.0));
-  CHECK(view.rear()->gap == doctest::Approx(20 - 4.5 + 1.0));
-  auto const beside = static_cast<std::uint16_t>(1 - view.place().corridor);
-  CHECK(view.neighbors(beside).front->gap == doctest::Approx(50 - 3.6 - 1.0));
+  CHECK(view.ahead()->gap == doctest::Approx(30 - 4.5 - 1.0));
+  CHECK(view.behind()->gap == doctest::Approx(20 - 4.5 + 1.0));
+  auto const beside = static_cast<cb::CorridorId>(1 - index_of(view.place().corridor));
+  CHECK(view.ahead(view.place(beside))->gap == doctest::Approx(50 - 3.6 - 1.0));
 }
 
 TEST_CASE(
@@ -157,7 +159,7 @@ TEST_CASE("a prediction begins with what the agent sees, and goes on without err
     CHECK(future.state(id) == state);
     auto const& at = future.record(id).lane;
     CHECK(at.s == doctest::Approx(state.x));
-    CHECK(at.lateral == doctest::Approx(state.y - (at.corridor == 0 ? -1.75 : -5.25)));
+    CHECK(at.lateral == doctest::Approx(state.y - (at.corridor == cb::CorridorId{} ? -1.75 : -5.25)));
   }
   CHECK(largest_error(future, traffic.ego) == 0.0);
   REQUIRE(future.step(0.5));

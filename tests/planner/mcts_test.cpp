@@ -320,7 +320,7 @@ TEST_CASE("searches in a warm world allocate nothing") {
   PredictionWorld world(support::straight_road(2, 600.0));
   world.add({.position = {60, -5.25}, .speed = 12, .behavior = MacroActions{}});
   for (int i = 0; i < 4; ++i) world.add({.position = {40.0 + 25.0 * i, -1.75}, .speed = 12, .behavior = IdmClassic{}});
-  std::uint32_t const slot = 0;
+  cambium::Slot const slot{};
   Domain domain(world, {&slot, 1}, MacroActions{}, {}, 0.2);
   auto const root = domain.root();
   TreeSearch<Domain> search(domain, {.horizon = 10}, {}, {}, {300});
@@ -541,10 +541,10 @@ TEST_CASE("who drives in a lane of oncoming traffic has left the road") {
   PredictionWorld world(support::two_way_road(300.0));
   TrafficReward const reward{.off_road = -10.0, .progress = 0.1};
   world.add({.position = {60, -1.75}, .heading = 0.0, .speed = 10});
-  CHECK(reward.judge(world, 0, 0.2).outcome.reward == doctest::Approx(0.2));
+  CHECK(reward.judge(world, cambium::Slot{}, 0.2).outcome.reward == doctest::Approx(0.2));
   world.set_state(ego, {.x = 60, .y = 1.75, .heading = 0.0, .speed = 10});
-  CHECK(reward.judge(world, 0, 0.2).outcome.reward == doctest::Approx(-10.0));
-  CHECK(reward.judge(world, 0, 0.2).ends);
+  CHECK(reward.judge(world, cambium::Slot{}, 0.2).outcome.reward == doctest::Approx(-10.0));
+  CHECK(reward.judge(world, cambium::Slot{}, 0.2).ends);
 }
 
 TEST_CASE("a lane change goes on from search to search, and the lane is kept behind the goal") {

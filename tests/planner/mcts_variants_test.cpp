@@ -21,7 +21,7 @@ struct Expecting : TrafficReward {
   double braking = 3.0;
 
   template <class World>
-  [[nodiscard]] double prior(World const&, std::uint32_t, MacroAction const& action) const {
+  [[nodiscard]] double prior(World const&, cambium::Slot, MacroAction const& action) const {
     return action.kind == MacroAction::Kind::stay && action.acceleration < -1.0 ? braking : 1.0;
   }
 };

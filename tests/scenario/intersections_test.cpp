@@ -38,7 +38,7 @@ struct Tally {
 };
 
 /// Height of the road below an agent [m]: evaluators know none, and on some maps bridges cross roads.
-double height(intersection::Simulation const& world, std::size_t slot) {
+double height(intersection::Simulation const& world, Slot slot) {
   auto const& at = world.frame().agents[slot].lane;
   auto const& corridor = world.roster().agents[slot].road->corridors[at.corridor];
   auto const place = corridor.lane_at(at.s);
@@ -48,8 +48,8 @@ double height(intersection::Simulation const& world, std::size_t slot) {
 
 bool collides(intersection::Simulation const& world) {
   if (!CollisionAny{}.evaluate(world).any_collision) return false;
-  for (std::uint32_t i = 0; i < world.size(); ++i)
-    for (std::uint32_t k = 0; k < i; ++k)
+  for (Slot i{}; index_of(i) < world.size(); ++i)
+    for (Slot k{}; k < i; ++k)
       if (geometry::intersects(detail::box_at(world, i), detail::box_at(world, k)) &&
           std::abs(height(world, i) - height(world, k)) < 3.0)
         return true;

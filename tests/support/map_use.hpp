@@ -65,12 +65,13 @@ inline std::string fault_of(Map const& map, RoadCorridor const& road) {
     auto const& corridor = road.corridors[i];
     if (auto const fault = fault_of(map, corridor); !fault.empty()) return fault;
     vertices += corridor.widths.size();
-    auto const at = locate(road, static_cast<std::uint16_t>(i), corridor.center.pose(0.5 * corridor.length()));
+    auto const at = locate(road, static_cast<cambium::CorridorId>(i), corridor.center.pose(0.5 * corridor.length()));
     if (!(std::abs(at.lateral) < 1e-3) || !std::isfinite(at.s + at.index)) return "a corridor's middle is beside it";
     if (corridor.widths.size() < 500 && !is_finite(area_of(corridor))) return "a corridor's area is not finite";
   }
-  if (road.main >= road.corridors.size()) return "the main corridor is missing";
-  if (nearest_corridor(road, road.corridors[0].center.pose(0.0)).corridor == no_corridor) return "no corridor is near";
+  if (index_of(road.main) >= road.corridors.size()) return "the main corridor is missing";
+  if (nearest_corridor(road, road.corridors[0].center.pose(0.0)).corridor == cambium::none<cambium::CorridorId>)
+    return "no corridor is near";
   if (vertices < 200)
     for (auto const& area : area_of(road))
       if (!std::isfinite(area.outer.area())) return "a road corridor's area is not finite";

@@ -13,6 +13,7 @@
 #include "../support/allocations.hpp"
 
 namespace cb = cambium;
+using cb::Slot;
 using cb::geometry::Box;
 
 TEST_CASE("everybody whose box meets the one asked for is found once, as by comparing all") {
@@ -20,7 +21,7 @@ TEST_CASE("everybody whose box meets the one asked for is found once, as by comp
   cb::PlaneIndex index;
   for (int round = 0; round < 40; ++round) {
     double const side = round % 2 ? 60.0 : 3000.0, far = round % 5 == 0 ? 1e6 : 0.0;
-    std::vector<Box> boxes(cb::uniform_index(random, 150));
+    cb::IdVector<Box, Slot> boxes(cb::uniform_index(random, 150));
     for (auto& box : boxes) {
       if (cb::uniform01(random) < 0.1) continue;  // is nowhere
       double const x = far + side * cb::uniform01(random), y = -side * cb::uniform01(random);
@@ -31,13 +32,13 @@ TEST_CASE("everybody whose box meets the one asked for is found once, as by comp
     for (int query = 0; query < 50; ++query) {
       double const x = far + side * cb::uniform01(random), y = -side * cb::uniform01(random);
       Box const asked{x, y, x + 20.0 * cb::uniform01(random), y + 20.0 * cb::uniform01(random)};
-      std::map<std::uint32_t, int> found;
+      std::map<Slot, int> found;
       index.for_each_near(asked, [&](Slot slot) { ++found[slot]; });
       for (auto const& [slot, times] : found) {
         CHECK(times == 1);
         CHECK(boxes[slot].grown(4.0).intersects(asked.grown(4.0)));
       }
-      for (std::uint32_t i = 0; i < boxes.size(); ++i)
+      for (Slot i{}; index_of(i) < boxes.size(); ++i)
         if (boxes[i].intersects(asked)) CHECK(found.contains(i));
     }
   }
@@ -47,7 +48,7 @@ TEST_CASE("once warm the index needs no memory, and no place is too far for it")
   cb::PlaneIndex index;
   double shift = 0.0;
   auto const box_of = [&](Slot slot) {
-    double const x = 3.0 * slot + shift;
+    double const x = 3.0 * static_cast<double>(index_of(slot)) + shift;
     return Box{x, 0.0, x + 5.0, 2.0};
   };
   index.refresh(100, box_of);
@@ -58,9 +59,9 @@ TEST_CASE("once warm the index needs no memory, and no place is too far for it")
   shift = 1e300;
   index.refresh(3, box_of);
   int found = 0;
-  index.for_each_near({1e299, -1.0, 1e301, 1.0}, [&](std::uint32_t) { ++found; });
+  index.for_each_near({1e299, -1.0, 1e301, 1.0}, [&](Slot) { ++found; });
   CHECK(found == 3);
   index.refresh(0, box_of);
-  index.for_each_near({-1e301, -1.0, 1e301, 1.0}, [&](std::uint32_t) { ++found; });
+  index.for_each_near({-1e301, -1.0, 1e301, 1.0}, [&](Slot) { ++found; });
   CHECK(found == 3);
 }

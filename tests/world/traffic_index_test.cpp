@@ -19,6 +19,7 @@
 
 using namespace fixtures;
 using cb::LaneId;
+using cb::Slot;
 using cb::geometry::Point;
 
 namespace {
@@ -154,11 +155,9 @@ Answer look(Twin const& twin, Somebody const& asker, double s, std::vector<Someb
     if (!is_object && other.slot == asker.slot) continue;
     for (auto const& image : twin.images(other.lane, other.s)) {
       double const ahead = sign * (image.s - s);
-      if (ahead < 0 || (ahead == 0 && (other.slot > asker.slot) != (sign > 0)) || ahead > cb::TrafficIndex::horizon)
-        continue;
-      double const gap = sign > 0
-                             ? cb::TrafficIndex::gap_between(s + asker.front, image.s - other.rear, image.free_until)
-                             : cb::TrafficIndex::gap_between(image.s + other.front, s - asker.rear, image.free_until);
+      if (ahead < 0 || (ahead == 0 && (other.slot > asker.slot) != (sign > 0)) || ahead > cb::Look::horizon) continue;
+      double const gap = sign > 0 ? cb::map::gap_before_merge(s + asker.front, image.s - other.rear, image.free_until)
+                                  : cb::map::gap_before_merge(image.s + other.front, s - asker.rear, image.free_until);
       answer.gaps.emplace_back(&other, gap);
       answer.least = std::min(answer.least, gap);
       if (image.on_corridor) answer.nearest = std::min(answer.nearest, {ahead, gap});
@@ -289,7 +288,7 @@ std::optional<std::pair<double, double>> reach(cb::map::Lane const& lane, cb::ge
 std::vector<Somebody> everybody(Sim const& world) {
   std::vector<Somebody> all;
   auto const& map = world.map();
-  for (std::uint32_t i = 0; i < world.size(); ++i) {
+  for (Slot i{}; index_of(i) < world.size(); ++i) {
     auto const& agent = world.roster().agents[i];
     auto const& record = world.frame().agents[i];
     if (record.status != cb::AgentStatus::driving) continue;
@@ -313,7 +312,7 @@ std::vector<Somebody> everybody(Sim const& world) {
     }
   }
   auto const& objects = world.roster().objects;
-  for (std::uint32_t i = 0; i < objects.size(); ++i)
+  for (Slot i{}; index_of(i) < objects.size(); ++i)
     for (auto const& lane : map.lanes()) {
       if (!lane.drivable()) continue;
       if (auto const range = reach(lane, objects[i].outline, 0.1)) {
@@ -343,7 +342,7 @@ void compare(Sim& world, Count& count) {
     if (asker.kind != Kind::driving) continue;
     auto const& agent = world.roster().agents[asker.slot];
     auto const view = world.observe(agent.id);
-    for (std::uint16_t k = 0; k < agent.road->corridors.size(); ++k) {
+    for (cb::CorridorId k{}; index_of(k) < agent.road->corridors.size(); ++k) {
       auto const& corridor = agent.road->corridors[k];
       auto const& twin = twins.try_emplace(&corridor, map, corridor).first->second;
       auto const& state = world.frame().agents[asker.slot].state;
@@ -351,7 +350,7 @@ void compare(Sim& world, Count& count) {
                            ? view.place().s
                            : cb::map::locate(*agent.road, k, {state.x, state.y, state.heading}).s;
       for (int const sign : {1, -1}) {
-        auto const found = sign > 0 ? view.neighbors(k).front : view.neighbors(k).rear;
+        auto const found = sign > 0 ? view.ahead(view.place(k)) : view.behind(view.place(k));
         auto const answer = look(twin, asker, s, all, sign);
         CAPTURE(map.describe(asker.lane));
         CAPTURE(state.x);
@@ -433,7 +432,7 @@ TEST_CASE("objects are in the lanes that their outlines reach into, to half a me
     auto const map = own_map(name);
     for (std::uint64_t seed = 0; seed < 30; ++seed) {
       auto const world = random_world(map, seed, {.objects = 5});
-      for (std::uint32_t i = 0; i < 5; ++i)
+      for (Slot i{}; index_of(i) < 5; ++i)
         for (auto const& lane : map->lanes()) {
           if (!lane.drivable()) continue;
           auto const range = reach(lane, world.roster().objects[i].outline, 0.01);
@@ -469,34 +468,34 @@ TEST_CASE("who has left the road is nobody's leader, and who is in another lane 
   auto const follower = world.add({.position = {50, -1.75}, .speed = 10});
   auto const other = world.add({.position = {100, -1.75}, .speed = 5});
   auto const oncoming = world.add({.position = {200, 1.75}, .heading = cb::geometry::pi, .speed = 10});
-  CHECK(world.observe(follower).front()->agent == other);
-  CHECK_FALSE(world.observe(oncoming).front().has_value());
+  CHECK(world.observe(follower).ahead()->agent == other);
+  CHECK_FALSE(world.observe(oncoming).ahead().has_value());
 
   world.set_state(other, {.x = 100, .y = -8, .speed = 5});
-  CHECK_FALSE(world.observe(follower).front().has_value());
-  CHECK_FALSE(world.observe(other).front().has_value());
+  CHECK_FALSE(world.observe(follower).ahead().has_value());
+  CHECK_FALSE(world.observe(other).ahead().has_value());
 
   world.set_state(other, {.x = 100, .y = 1.75, .speed = 5});  // in the oncoming lane, the wrong way round
-  CHECK_FALSE(world.observe(follower).front().has_value());
-  auto const front = world.observe(oncoming).front();
+  CHECK_FALSE(world.observe(follower).ahead().has_value());
+  auto const front = world.observe(oncoming).ahead();
   REQUIRE(front.has_value());
   CHECK(front->agent == other);
   CHECK(front->gap == doctest::Approx(100 - 3.6 - 3.6));
   CHECK(front->speed == doctest::Approx(-5.0));
 
   world.set_state(other, {.x = 100, .y = -0.5, .speed = 5});  // half of it over the middle
-  CHECK(world.observe(follower).front()->agent == other);
-  CHECK(world.observe(oncoming).front()->agent == other);
+  CHECK(world.observe(follower).ahead()->agent == other);
+  CHECK(world.observe(oncoming).ahead()->agent == other);
 }
 
 TEST_CASE("a long vehicle that stands aslant is seen in the lane that its front reaches into") {
   Sim world(straight_road(2, 500));
   auto const truck = world.add({.position = {100, -5.25}, .shape = cb::geometry::truck()});
   auto const follower = world.add({.position = {50, -1.75}, .speed = 10});
-  CHECK_FALSE(world.observe(follower).front().has_value());
+  CHECK_FALSE(world.observe(follower).ahead().has_value());
   world.set_state(truck, {.x = 100, .y = -5.25, .heading = 0.25, .speed = 0});
-  REQUIRE(world.observe(follower).front().has_value());
-  CHECK(world.observe(follower).front()->agent == truck);
+  REQUIRE(world.observe(follower).ahead().has_value());
+  CHECK(world.observe(follower).ahead()->agent == truck);
 }
 
 TEST_CASE("the nearest neighbour is the one with the smallest gap when nobody stands inside another") {
@@ -506,12 +505,12 @@ TEST_CASE("the nearest neighbour is the one with the smallest gap when nobody st
   auto const follower = world.add({.position = {50, -1.75}, .speed = 10});
   auto const truck = world.add({.position = {100, -1.75}, .speed = 10, .shape = cb::geometry::truck()});
   auto const car = world.add({.position = {130, -1.75}, .speed = 10});
-  CHECK(world.observe(follower).front()->agent == truck);
-  CHECK(world.observe(follower).front()->gap == doctest::Approx(50 - 3.6 - cb::geometry::truck().rear));
-  CHECK(world.observe(car).rear()->agent == truck);
-  CHECK(world.observe(car).rear()->gap == doctest::Approx(30 - 0.9 - cb::geometry::truck().front));
-  CHECK_FALSE(world.observe(car).front().has_value());
-  CHECK_FALSE(world.observe(follower).rear().has_value());
+  CHECK(world.observe(follower).ahead()->agent == truck);
+  CHECK(world.observe(follower).ahead()->gap == doctest::Approx(50 - 3.6 - cb::geometry::truck().rear));
+  CHECK(world.observe(car).behind()->agent == truck);
+  CHECK(world.observe(car).behind()->gap == doctest::Approx(30 - 0.9 - cb::geometry::truck().front));
+  CHECK_FALSE(world.observe(car).ahead().has_value());
+  CHECK_FALSE(world.observe(follower).behind().has_value());
 }
 
 TEST_CASE("of two objects beside each other in a lane, the one that reaches nearer counts, also of a long one") {
@@ -526,11 +525,11 @@ TEST_CASE("of two objects beside each other in a lane, the one that reaches near
     };
     auto const wall = block(begin, end, -1.0, -0.5);
     block(post, post + 0.4, -3.0, -2.5);
-    auto const front = world.observe(world.add({.position = {50, -1.75}})).front();
+    auto const front = world.observe(world.add({.position = {50, -1.75}})).ahead();
     REQUIRE(front);
     CHECK(front->object == wall);
     CHECK(front->gap == doctest::Approx(begin - 50 - cb::geometry::car().front).epsilon(1e-3));
-    auto const rear = world.observe(world.add({.position = {300, -1.75}})).rear();
+    auto const rear = world.observe(world.add({.position = {300, -1.75}})).behind();
     REQUIRE(rear);
     CHECK(rear->object == wall);
     CHECK(rear->gap == doctest::Approx(300 - cb::geometry::car().rear - end).epsilon(1e-3));
@@ -548,13 +547,13 @@ TEST_CASE("of two vehicles side by side within a lane, the one that reaches near
     auto const large = world.add({.position = {x, -1.3}, .shape = truck});
     auto const behind = world.add({.position = {20, -1.75}}), ahead = world.add({.position = {300, -1.75}});
     auto const small = world.add({.position = {x - 0.5, -3.07}, .shape = motorcycle});
-    REQUIRE(world.observe(behind).front());
-    CHECK(world.observe(behind).front()->agent == large);
-    CHECK(world.observe(behind).front()->gap == doctest::Approx(x - truck.rear - 20 - cb::geometry::car().front));
+    REQUIRE(world.observe(behind).ahead());
+    CHECK(world.observe(behind).ahead()->agent == large);
+    CHECK(world.observe(behind).ahead()->gap == doctest::Approx(x - truck.rear - 20 - cb::geometry::car().front));
     world.set_state(small, {.x = x + 0.5, .y = -3.07});
-    REQUIRE(world.observe(ahead).rear());
-    CHECK(world.observe(ahead).rear()->agent == large);
-    CHECK(world.observe(ahead).rear()->gap == doctest::Approx(300 - cb::geometry::car().rear - x - truck.front));
+    REQUIRE(world.observe(ahead).behind());
+    CHECK(world.observe(ahead).behind()->agent == large);
+    CHECK(world.observe(ahead).behind()->gap == doctest::Approx(300 - cb::geometry::car().rear - x - truck.front));
   }
 }
 
@@ -589,10 +588,10 @@ TEST_CASE("so it is where the larger one has left its own lane for another one, 
       CAPTURE(x);
       CAPTURE(ahead);
       compare(world, count);
-      REQUIRE(world.observe(behind).front());
-      CHECK(world.observe(behind).front()->agent == large);
-      REQUIRE(world.observe(before).rear());
-      CHECK(world.observe(before).rear()->agent == large);
+      REQUIRE(world.observe(behind).ahead());
+      CHECK(world.observe(behind).ahead()->agent == large);
+      REQUIRE(world.observe(before).behind());
+      CHECK(world.observe(before).behind()->agent == large);
     }
   CHECK(count.reaching > 200);
   CHECK(count.hidden > 50);
@@ -609,12 +608,12 @@ TEST_CASE("who reaches over the border hides nobody who is nearer") {
   auto const large = world.add({.position = {203, -5.25}, .shape = bus});
   world.add({.position = {202.9, beside}});
   auto const behind = world.add({.position = {300, -5.25}});
-  auto const front = world.observe(ahead).front();
+  auto const front = world.observe(ahead).ahead();
   REQUIRE(front);
   CHECK(front->agent == large);
   CHECK(front->gap == doctest::Approx(203 - bus.rear - 100 - car.front));
   world.set_state(world.roster().agents[2].id, {.x = 203.1, .y = beside});
-  auto const rear = world.observe(behind).rear();
+  auto const rear = world.observe(behind).behind();
   REQUIRE(rear);
   CHECK(rear->agent == large);
   CHECK(rear->gap == doctest::Approx(300 - car.rear - 203 - bus.front));
@@ -642,6 +641,6 @@ TEST_CASE("who only reaches over into a lane that is still to merge is not one o
   REQUIRE(next);
   CHECK(next->agent == from_ramp);
   auto const ramp_view = world.observe(from_ramp);
-  REQUIRE(ramp_view.front());
-  CHECK(ramp_view.front()->agent == beside);  // whom those behind it in the ramp's lane follow
+  REQUIRE(ramp_view.ahead());
+  CHECK(ramp_view.ahead()->agent == beside);  // whom those behind it in the ramp's lane follow
 }

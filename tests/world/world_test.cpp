@@ -136,7 +136,7 @@ TEST_CASE("agents that pass the end of the road leave traffic, and are taken out
   CHECK(world.step(0.2).left == 0);
   CHECK(world.step(0.5).left == 1);
   CHECK(world.status(id) == cb::AgentStatus::left_map);
-  CHECK_FALSE(world.observe(follower).front().has_value());
+  CHECK_FALSE(world.observe(follower).ahead().has_value());
   auto const at = world.state(id);
   REQUIRE(world.step(0.2));
   CHECK(world.state(id) == at);
@@ -242,29 +242,29 @@ TEST_CASE("static objects stop traffic in the lanes they reach into, and only th
   auto const left = world.add({.position = {10, -1.75}, .speed = 12});
   std::vector<cb::geometry::Point> const outline{{60, -6}, {62, -6}, {62, -4.5}, {60, -4.5}};
   auto const object = world.add_object(cb::geometry::Polygon(outline));
-  auto const seen = world.observe(right).front();
+  auto const seen = world.observe(right).ahead();
   REQUIRE(seen.has_value());
   CHECK(seen->object == object);
   CHECK(seen->gap == doctest::Approx(50 - cb::geometry::Shape{}.front).epsilon(0.01));
-  CHECK_FALSE(world.observe(left).front().has_value());
+  CHECK_FALSE(world.observe(left).ahead().has_value());
   for (int i = 0; i < 150; ++i) REQUIRE(world.step(0.2));
   CHECK(world.state(right).speed < 0.1);
   CHECK(world.state(right).x + cb::geometry::Shape{}.front < 60.0);
   CHECK(world.state(left).x > 200.0);
   world.remove_object(object);
-  CHECK_FALSE(world.observe(right).front().has_value());
+  CHECK_FALSE(world.observe(right).ahead().has_value());
   CHECK(says(error_of([&] { world.remove_object(object); }), "no such object"));
 }
 
 TEST_CASE("an agent driven from outside follows its input and changes lane corridors") {
   Sim world(straight_road(2));
   auto const ego = world.add({.position = {10, -5.25}, .speed = 10, .behavior = cb::ExternalInput{}});
-  CHECK(world.record(ego).lane.corridor == 1);
+  CHECK(index_of(world.record(ego).lane.corridor) == 1);
   world.memory<cb::ExternalInput>(ego) = {0.0, 0.05};
   for (int i = 0; i < 12; ++i) REQUIRE(world.step(0.2));
   CHECK(world.record(ego).action.steering == doctest::Approx(0.05));
   CHECK(world.state(ego).y > -3.5);
-  CHECK(world.record(ego).lane.corridor == 0);
+  CHECK(index_of(world.record(ego).lane.corridor) == 0);
   CHECK(world.lane_of(ego) == world.map().find_lane("1", 50, -1));
   world.memory<cb::ExternalInput>(ego) = {-4.0, 0.0};
   for (int i = 0; i < 20; ++i) REQUIRE(world.step(0.2));
@@ -278,7 +278,7 @@ TEST_CASE("an agent that reaches over its lane's border is seen in both lanes") 
   auto const left = world.add({.position = {10, -1.75}, .speed = 10});
   auto const right = world.add({.position = {10, -5.25}, .speed = 10});
   for (auto const id : {left, right}) {
-    auto const front = world.observe(id).front();
+    auto const front = world.observe(id).ahead();
     REQUIRE(front.has_value());
     CHECK(front->agent == drifting);
     CHECK(front->gap == doctest::Approx(50 - 3.6 - 0.9));
@@ -290,7 +290,7 @@ TEST_CASE("states set from outside place the agent anew") {
   auto const id = world.add({.position = {10, -5.25}, .speed = 10});
   world.set_state(id, {.x = 300, .y = -1.5, .heading = 0.01, .speed = 7});
   CHECK(world.record(id).lane.s == doctest::Approx(300));
-  CHECK(world.record(id).lane.corridor == 0);
+  CHECK(index_of(world.record(id).lane.corridor) == 0);
   CHECK(says(error_of([&] { world.set_state(id, {.x = std::numeric_limits<double>::infinity()}); }), "not a finite"));
   CHECK(says(error_of([&] { world.set_state(id, {.x = 300, .y = 120}); }), "120 m outside the lanes of its route"));
   CHECK(says(error_of([&] { world.set_state(id, {.x = -500, .y = -5.25}); }), "500 m outside the lanes of its route"));
@@ -518,7 +518,7 @@ TEST_CASE("frames are exchanged: each world goes on where the other's frame was,
   world.exchange(frame);
   CHECK(frame == later);
   CHECK(world.frame() == root);
-  auto const leader = world.observe(world.roster().agents[0].id).front();  // of the frame that is there now
+  auto const leader = world.observe(world.roster().agents[0].id).ahead();  // of the frame that is there now
   REQUIRE(leader);
   CHECK(leader->gap ==
         doctest::Approx(30.0 - world.roster().agents[0].shape.front - world.roster().agents[1].shape.rear));
@@ -544,13 +544,13 @@ TEST_CASE("an object that covers whole lanes stands in them, and goes with its e
   auto const id = world.add({.position = {20, -1.75}, .speed = 10});
   auto const small = world.add_object(cb::geometry::Polygon({{80, -3}, {81, -3}, {81, -1}, {80, -1}}));
   auto const all = world.add_object(cb::geometry::Polygon({{-1e3, -1e3}, {1e3, -1e3}, {1e3, 1e3}, {-1e3, 1e3}}));
-  REQUIRE(world.observe(id).front().has_value());
+  REQUIRE(world.observe(id).ahead().has_value());
   REQUIRE(world.step(1.0));
   CHECK(world.state(id).speed < 8.0);
   world.remove_object(all);
-  CHECK(world.observe(id).front()->object == small);
+  CHECK(world.observe(id).ahead()->object == small);
   world.remove_object(small);
-  CHECK_FALSE(world.observe(id).front().has_value());
+  CHECK_FALSE(world.observe(id).ahead().has_value());
   CHECK(world.roster().object_entries.empty());
   cb::geometry::Polygon const vast({{0, 0}, {1e200, 0}, {0, 1e200}});
   CHECK(says(error_of([&] { world.add_object(vast); }), "10 km"));
@@ -635,7 +635,7 @@ struct Latecomer {
 
   template <class View>
   [[nodiscard]] cb::Plan<View> plan(View const& view, Memory& memory, double) const {
-    auto const front = view.front(), rear = view.rear();
+    auto const front = view.ahead(), rear = view.behind();
     memory = {front ? front->gap : -1e9, rear ? rear->gap : -1e9};
     cb::Plan<View> plan;
     plan.status = cb::PlanStatus::not_started;
@@ -643,7 +643,7 @@ struct Latecomer {
   }
 };
 
-bool same(std::optional<cb::Neighbor> const& a, std::optional<cb::Neighbor> const& b) {
+bool same(std::optional<cb::RoadUser> const& a, std::optional<cb::RoadUser> const& b) {
   if (!a || !b) return !a && !b;
   return a->agent == b->agent && a->gap == b->gap && a->speed == b->speed;
 }
@@ -670,30 +670,30 @@ TEST_CASE("who has not started sees its neighbours as if it drove, and is seen b
     auto const late = [&](cb::AgentId id) { return world.status(id) == cb::AgentStatus::not_started; };
     for (auto const& agent : world.roster().agents) {
       auto const view = world.observe(agent.id);
-      for (std::uint16_t k = 0; k < agent.road->corridors.size(); ++k)
-        for (auto const& neighbor : {view.neighbors(k).front, view.neighbors(k).rear})
+      for (cb::CorridorId k{}; cb::index_of(k) < agent.road->corridors.size(); ++k)
+        for (auto const& neighbor : {view.ahead(view.place(k)), view.behind(view.place(k))})
           if (neighbor) CHECK_FALSE(late(neighbor->agent));
-      view.for_each_other([&](auto const& other) { CHECK_FALSE(late(other.id)); });
+      view.around(std::numeric_limits<double>::infinity(), [&](auto const& other) { CHECK_FALSE(late(other.agent)); });
       if (!late(agent.id)) continue;
       // The same world but for this agent, which drives.
       auto frame = world.frame();
       frame.agents[world.slot_of(agent.id)].status = cb::AgentStatus::driving;
       Late driven(map, std::make_shared<Late::RosterType>(world.roster()), frame);
       auto const truth = driven.observe(agent.id);
-      for (std::uint16_t k = 0; k < agent.road->corridors.size(); ++k) {
-        CHECK(same(view.neighbors(k).front, truth.neighbors(k).front));
-        CHECK(same(view.neighbors(k).rear, truth.neighbors(k).rear));
+      for (cb::CorridorId k{}; cb::index_of(k) < agent.road->corridors.size(); ++k) {
+        CHECK(same(view.ahead(view.place(k)), truth.ahead(truth.place(k))));
+        CHECK(same(view.behind(view.place(k)), truth.behind(truth.place(k))));
       }
-      seen_by_it += truth.front().has_value() + truth.rear().has_value();
+      seen_by_it += truth.ahead().has_value() + truth.behind().has_value();
       for (auto const& other : world.roster().agents) {
-        auto const front = driven.observe(other.id).front();
+        auto const front = driven.observe(other.id).ahead();
         would_see_it += front && front->agent == agent.id;
       }
       CHECK(view.predict(cb::predict_all_as<Sim::Behaviors>(cb::IdmClassic{})).roster().slot_of(agent.id) ==
             std::nullopt);
       // Its behaviour is shown in a step what the view shows.
       auto const expected =
-          Latecomer::Memory{truth.front() ? truth.front()->gap : -1e9, truth.rear() ? truth.rear()->gap : -1e9};
+          Latecomer::Memory{truth.ahead() ? truth.ahead()->gap : -1e9, truth.behind() ? truth.behind()->gap : -1e9};
       Late next = world;
       REQUIRE(next.step(0.2));
       CHECK(next.memory<Latecomer>(agent.id) == expected);

@@ -177,12 +177,12 @@ struct CollisionAny {
   }
 
   template <class World>
-  [[nodiscard]] static bool touch(World const& world, std::uint32_t a, std::uint32_t b) {
+  [[nodiscard]] static bool touch(World const& world, Slot a, Slot b) {
     return geometry::intersects(detail::box_at(world, a), detail::box_at(world, b));
   }
 
   template <class World>
-  [[nodiscard]] static Result pair(World const& world, std::uint32_t a, std::uint32_t b) {
+  [[nodiscard]] static Result pair(World const& world, Slot a, Slot b) {
     auto const& agents = world.roster().agents;
     return {true, agents[std::min(a, b)].id, agents[std::max(a, b)].id};
   }
