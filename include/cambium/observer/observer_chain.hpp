@@ -5,6 +5,7 @@
 #include <tuple>
 #include <type_traits>
 
+#include "cambium/core/ids.hpp"
 #include "cambium/observer/observer_model.hpp"
 
 namespace cambium {

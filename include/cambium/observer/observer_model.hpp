@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "cambium/core/ids.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/core/state.hpp"
 

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <type_traits>
 
+#include "cambium/core/ids.hpp"
 #include "cambium/core/one_of.hpp"
 #include "cambium/observer/observer_model.hpp"
 

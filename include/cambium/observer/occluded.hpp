@@ -8,6 +8,7 @@
 #include <limits>
 #include <span>
 
+#include "cambium/core/ids.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/collision.hpp"

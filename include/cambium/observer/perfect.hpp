@@ -1,6 +1,5 @@
 #pragma once
 
-
 #include "cambium/observer/observer_model.hpp"
 
 namespace cambium {

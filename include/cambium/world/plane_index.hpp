@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "cambium/core/ids.hpp"
 #include "cambium/geometry/box.hpp"
 
 namespace cambium {
@@ -43,11 +44,17 @@ class PlaneIndex {
   }
 
   /// Calls `f(slot)` once for each agent whose cells meet `box`: all whose own boxes do, and some nearby, in an order
-  /// that depends on their places and slots alone. O(cells of the box + agents there).
+  /// that depends on their places and slots alone. O(cells of the box + agents there), at most O(agents + 4096).
   template <class F>
   void for_each_near(geometry::Box const& box, F&& f) const {
     if (ranges_.empty() || !(box.min_x <= box.max_x)) return;
     auto const asked = range_of(box);
+    auto const side = [](std::int32_t from, std::int32_t to) { return static_cast<double>(to) - from + 1.0; };
+    if (side(asked.min_x, asked.max_x) * side(asked.min_y, asked.max_y) > 4096.0) {  // more than to look at everybody
+      for (Slot slot{}; index_of(slot) < ranges_.size(); ++slot)
+        if (meet(ranges_[slot], asked)) f(slot);
+      return;
+    }
     for_each_cell(asked, [&](std::int32_t x, std::int32_t y) {
       auto const in = bucket(x, y);
       for (auto i = begins_[in]; i < begins_[in + 1]; ++i) {
@@ -78,6 +85,10 @@ class PlaneIndex {
   /// Cells that a box of this side can meet.
   [[nodiscard]] static std::size_t at_most(double side) {
     return side >= 0.0 ? static_cast<std::size_t>(side / cell) + 2 : 0;
+  }
+  [[nodiscard]] static bool meet(Range const& a, Range const& b) {
+    return std::max(a.min_x, b.min_x) <= std::min(a.max_x, b.max_x) &&
+           std::max(a.min_y, b.min_y) <= std::min(a.max_y, b.max_y);
   }
   template <class F>
   static void for_each_cell(Range const& range, F&& f) {
