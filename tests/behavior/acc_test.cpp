@@ -1,5 +1,5 @@
 // Laws of the car-following models, as properties over many samples.
-#include "cambium/behavior/acc.hpp"
+#include "cambium/behavior/adaptive_cruise_control.hpp"
 
 #include <doctest/doctest.h>
 
@@ -102,7 +102,7 @@ TEST_CASE("followers settle at the gap of the closed form") {
     double const leader = between(0.2, 0.85, random) * p.desired_speed;
     double gap = between(20, 120, random), acc_gap = gap, v = between(0, 1, random) * p.desired_speed, acc_v = v;
     double const coolness = cb::uniform01(random);
-    auto const law = [&](double speed, cb::Leader const& l) { return cb::acc_acceleration(p, coolness, speed, l); };
+    cb::AccLaw const law(p, coolness, 0.0);
     for (int i = 0; i < 3000; ++i) {
       auto const m = cb::idm_motion(p, v, gap, leader, 0.2, 1e-6);
       gap += 0.2 * leader - m.distance;
@@ -124,13 +124,12 @@ TEST_CASE("the ACC model lies between IDM and the heuristic, nearer to it the co
   for (int i = 0; i < 50000; ++i) {
     auto const p = any_driver(random);
     double const v = between(0, 40, random);
-    cb::Leader const leader{between(0.5, 100, random), between(0, 40, random), between(-8, 3, random)};
-    double const idm = cb::acc_acceleration(p, 0.0, v, leader),
-                 cah = cb::cah_acceleration(v, leader, p.maximum_acceleration);
+    cb::Constraint const leader{between(0.5, 100, random), between(0, 40, random), between(-8, 3, random)};
+    double const idm = cb::AccLaw(p, 0.0, v)(leader), cah = cb::cah_acceleration(v, leader, p.maximum_acceleration);
     double const low = std::max(p.lowest_acceleration, std::min(idm, cah)), high = std::max(idm, cah);
     double previous = idm;
     for (double const coolness : {0.3, 0.6, 0.99, 1.0}) {
-      double const a = cb::acc_acceleration(p, coolness, v, leader);
+      double const a = cb::AccLaw(p, coolness, v)(leader);
       REQUIRE(std::isfinite(a));
       CHECK(a >= low - 1e-9);
       CHECK(a <= high + 1e-9);
@@ -145,8 +144,8 @@ TEST_CASE("the ACC model lies between IDM and the heuristic, nearer to it the co
 
 TEST_CASE("one who is cut in on by a vehicle as fast brakes hard by IDM, calmly by the ACC model") {
   auto const p = cb::presets::kesting_2010_car();
-  cb::Leader const leader{10.0, 25.0, 0.0};
-  double const idm = cb::acc_acceleration(p, 0.0, 25.0, leader), acc = cb::acc_acceleration(p, 0.99, 25.0, leader);
+  cb::Constraint const leader{10.0, 25.0, 0.0};
+  double const idm = cb::AccLaw(p, 0.0, 25.0)(leader), acc = cb::AccLaw(p, 0.99, 25.0)(leader);
   MESSAGE("IDM " << idm << " m/s^2, ACC " << acc << " m/s^2");
   CHECK(idm < -5.0);
   CHECK(acc > -2.5);
@@ -163,9 +162,9 @@ TEST_CASE("from safe gaps the ACC model does not collide with a leader that brak
     double v = between(0.1, 0.9, random) * p.desired_speed, leader = v;
     double gap = cb::idm_equilibrium_gap(p, v), braking = -between(0.5, 6.0, random);
     for (int i = 0; i * dt < 150.0; ++i) {
-      cb::Leader const seen{gap, leader, i > 0 && leader > 0.0 ? braking : 0.0};
+      cb::Constraint const seen{gap, leader, i > 0 && leader > 0.0 ? braking : 0.0};
       double const next = std::max(0.0, leader + braking * dt);
-      auto const law = [&](double speed, cb::Leader const& l) { return cb::acc_acceleration(p, coolness, speed, l); };
+      cb::AccLaw const law(p, coolness, 0.0);
       auto const m = cb::follow_motion(law, v, seen, dt);
       hardest = std::min(hardest, (m.speed - v) / dt);
       gap += 0.5 * (leader + next) * dt - m.distance;
@@ -187,7 +186,7 @@ TEST_CASE("extreme inputs give finite accelerations within the bounds") {
       for (double const leader : {0.0, 1e-9, 1000.0})
         for (double const a : {-50.0, 0.0, 1e-9, 50.0})
           for (double const coolness : {0.0, 0.5, 1.0}) {
-            double const result = cb::acc_acceleration(p, coolness, v, {gap, leader, a});
+            double const result = cb::AccLaw(p, coolness, v)({gap, leader, a});
             CHECK(result >= p.lowest_acceleration);
             CHECK(result <= p.highest_acceleration);
           }

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "../support/bark.hpp"
 #include "../support/corpus.hpp"
 #include "cambium/behavior/adaptive_cruise_control.hpp"
 #include "cambium/behavior/idm_classic.hpp"
@@ -87,11 +88,12 @@ struct RowView {
   [[nodiscard]] Dynamics const& dynamics() const { return model; }
   [[nodiscard]] cb::map::LaneCorridor const& corridor() const { return *lane; }
   [[nodiscard]] cb::map::LanePlace const& place() const { return at; }
-  [[nodiscard]] std::optional<cb::RoadUser> ahead() const {
+  [[nodiscard]] std::optional<cb::RoadUser> ahead(cb::Look const& = {}) const {
     if (leader == nullptr) return std::nullopt;
     return cb::RoadUser{.agent = cb::AgentId{1}, .gap = row->front_gap, .speed = row->front_speed};
   }
   [[nodiscard]] double acceleration(cb::RoadUser const&) const { return leader->acceleration; }
+  [[nodiscard]] cb::map::LightColor light(cb::LightId) const { return cb::map::LightColor::off; }
 };
 
 struct Worst {
@@ -172,18 +174,14 @@ cb::IdmParameters bark_idm(double desired_speed) {
   return p;
 }
 
-cb::IdmLaneTracking lane_tracking(double desired_speed) {
-  return {.idm = bark_idm(desired_speed), .integration = cb::IdmLaneTracking::Integration::bark_substeps};
-}
+bark::LaneTracking lane_tracking(double desired_speed) { return {bark_idm(desired_speed)}; }
 
 }  // namespace
 
 TEST_CASE("the ACC model with BARK's sub-steps is BARK's, to 1e-9") {
   if (!corpus::root()) return;
   auto const worst = compare("bark_idm_coolness_highway.csv", straight_corridors(), [](int agent) {
-    cb::AdaptiveCruiseControl driver{.idm = bark_idm(agent == 1 ? 15 : agent == 2 ? 12 : 8)};
-    driver.integration = cb::AdaptiveCruiseControl::Integration::bark_substeps;
-    return driver;
+    return bark::Driver{bark_idm(agent == 1 ? 15 : agent == 2 ? 12 : 8), cb::AdaptiveCruiseControl{}.coolness};
   });
   CHECK(worst.compared == 150);
   CHECK(worst.place < 1e-9);
@@ -207,16 +205,11 @@ TEST_CASE("rolled out over 50 steps the models are where BARK's are, within its 
   if (!corpus::root()) return;
   auto const idm = [](int agent) {
     double const desired[] = {15, 12, 8, 18, 10};
-    cb::IdmClassic driver{.desired_speed = desired[agent - 1]};
-    driver.comfortable_deceleration = 1.67f;
-    driver.integration = cb::IdmClassic::Integration::bark_substeps;
-    return driver;
+    return bark::Driver{bark_idm(desired[agent - 1])};
   };
   CHECK(roll_out("bark_idm_highway.csv", straight_corridors(), idm) < 1e-9);
   auto const acc = [](int agent) {
-    cb::AdaptiveCruiseControl driver{.idm = bark_idm(agent == 1 ? 15 : agent == 2 ? 12 : 8)};
-    driver.integration = cb::AdaptiveCruiseControl::Integration::bark_substeps;
-    return driver;
+    return bark::Driver{bark_idm(agent == 1 ? 15 : agent == 2 ? 12 : 8), cb::AdaptiveCruiseControl{}.coolness};
   };
   CHECK(roll_out("bark_idm_coolness_highway.csv", straight_corridors(), acc) < 1e-9);
   auto const tracking = [](int agent) { return lane_tracking(agent == 1 ? 15 : agent == 2 ? 12 : 10); };
@@ -236,12 +229,7 @@ TEST_CASE("on an arc lane tracking is BARK's along BARK's coarse line; the true 
 
 TEST_CASE("on an arc IDM is BARK's along BARK's coarse line; BARK moves an agent onto it first, we keep its offset") {
   if (!corpus::root()) return;
-  auto const driver_of = [](int agent) {
-    cb::IdmClassic driver{.desired_speed = agent == 1 ? 15.0 : agent == 2 ? 9.0 : 12.0};
-    driver.comfortable_deceleration = 1.67f;
-    driver.integration = cb::IdmClassic::Integration::bark_substeps;
-    return driver;
-  };
+  auto const driver_of = [](int agent) { return bark::Driver{bark_idm(agent == 1 ? 15.0 : agent == 2 ? 9.0 : 12.0)}; };
   auto const all = compare("bark_idm_arc.csv", arc_corridors("center"), driver_of);
   CHECK(all.place > 0.1);  // the lateral jump in BARK's first step: its line is that far from the true arc
   auto const worst = compare("bark_idm_arc.csv", arc_corridors("center"), driver_of, 1);
@@ -257,15 +245,14 @@ TEST_CASE("where BARK is wrong: a standing vehicle creeps back, and a faster lea
   cb::map::LaneCorridor lane = straight_corridors()[0];
   Row self{0, 1, {0, 100, -1.75, 0, 0}, 0, 0, 0, 2, 1.0, 0.0};
   RowView const view(self, &self, lane);
-  cb::Leader const near{1.0, 0.0, 0.0};
-  auto const theirs = cb::bark::plan_along_lane(view, p, 0.0, near, 0.2).trajectory.back();
-  cb::NoMemory memory;
+  auto const theirs = bark::Driver{p}.follow(view, {.gap = 1.0}, 0.2).trajectory.back();
+  cb::IdmClassic::Memory memory;
   auto const ours = cb::IdmClassic{}.plan(view, memory, 0.2).trajectory.back();
   MESSAGE("standing 1 m behind another, after 0.2 s: BARK " << theirs.x - 100 << " m, here " << ours.x - 100 << " m");
   CHECK(theirs.x < 100.0);
   CHECK(ours.x == 100.0);
-  cb::Leader const away{10.0, 25.0, 0.0};
-  double const bark = cb::bark::acceleration(p, 0.0, 10.0, away), law = cb::idm_acceleration(p, 10.0, 10.0, 25.0);
+  double const bark = bark::acceleration(p, 0.0, 10.0, {.gap = 10.0, .speed = 25.0}),
+               law = cb::idm_acceleration(p, 10.0, 10.0, 25.0);
   MESSAGE("at 10 m/s, 10 m behind a leader of 25 m/s: BARK " << bark << " m/s^2, here " << law << " m/s^2");
   CHECK(bark == p.lowest_acceleration);
   CHECK(law > 0.5);

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "../support/bark.hpp"
 #include "../support/corpus.hpp"
 #include "../world/fixtures.hpp"
 
@@ -37,22 +38,24 @@ std::vector<Row> read_rows(std::filesystem::path const& file) {
 
 cb::AgentId id_of(int agent) { return static_cast<cb::AgentId>(agent); }
 
+using World = cb::World<cb::BehaviorSet<bark::Driver, cb::IdmClassic, cb::ConstantAcceleration>,
+                        cb::InterpolateExecution, cb::SingleTrack>;
+
 /// The agents of one step as a world; `only`: just this one.
-Sim world_at(std::shared_ptr<cb::Map const> const& map, std::vector<Row> const& rows, int step, int only = 0) {
+World world_at(std::shared_ptr<cb::Map const> const& map, std::vector<Row> const& rows, int step, int only = 0) {
   std::map<int, double> const desired_speed{{1, 15.0}, {2, 12.0}, {3, 8.0}, {4, 18.0}, {5, 10.0}};
-  Sim world(map);
+  World world(map);
   for (auto const& row : rows) {
     if (row.step != step || (only != 0 && row.agent != only)) continue;
-    Sim::AgentSpec spec{.position = {row.state.x, row.state.y},
-                        .heading = row.state.heading,
-                        .speed = row.state.speed,
-                        .shape = box(1.75, 2.25)};
+    World::AgentSpec spec{.position = {row.state.x, row.state.y},
+                          .heading = row.state.heading,
+                          .speed = row.state.speed,
+                          .shape = box(1.75, 2.25)};
     spec.id = id_of(row.agent);
-    cb::IdmClassic driver;
-    driver.comfortable_deceleration = 1.67f;  // BARK keeps it as a float
-    driver.integration = cb::IdmClassic::Integration::bark_substeps;
+    bark::Driver driver;
+    driver.idm.comfortable_deceleration = 1.67f;  // BARK keeps it as a float
     if (auto const at = desired_speed.find(row.agent); at != desired_speed.end()) {
-      driver.desired_speed = at->second;
+      driver.idm.desired_speed = at->second;
       spec.behavior = driver;
     } else {
       spec.behavior = cb::ConstantAcceleration{};
@@ -102,11 +105,9 @@ TEST_CASE("IDM with BARK's sub-steps reproduces BARK's highway traffic to 1e-9")
 
 TEST_CASE("BARK's sub-steps and the exact integration agree where nothing changes fast") {
   auto const map = straight_road(1, 1000.0);
-  Sim exact(map), bark(map);
-  cb::IdmClassic driver;
-  exact.add({.position = {10, -1.75}, .speed = 14, .behavior = driver});
-  driver.integration = cb::IdmClassic::Integration::bark_substeps;
-  bark.add({.position = {10, -1.75}, .speed = 14, .behavior = driver});
+  World exact(map), bark(map);
+  exact.add({.position = {10, -1.75}, .speed = 14, .behavior = cb::IdmClassic{}});
+  bark.add({.position = {10, -1.75}, .speed = 14, .behavior = bark::Driver{}});
   for (int i = 0; i < 100; ++i) {
     REQUIRE(exact.step(0.2));
     REQUIRE(bark.step(0.2));

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "../support/maps.hpp"
-#include "cambium/behavior/bends_ahead.hpp"
+#include "cambium/behavior/road_rules.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/map/build_corridor.hpp"

@@ -110,7 +110,7 @@ TEST_CASE("it slows down for a curve in time, and not without being asked to") {
   double const allowed = std::sqrt(4.0 * 30.0);
   IdmLaneTracking driver;
   auto world = beside_lane<cb::SingleTrack>(curvature, 0.0, 0.0, 8.0, {}, driver);
-  driver.slow_for_curves = false;
+  driver.rules.slow_for_bends = false;
   auto other = beside_lane<cb::SingleTrack>(curvature, 0.0, 0.0, 8.0, {}, driver);
   double fastest = 0.0, other_fastest = 0.0;
   for (int i = 0; i < 60; ++i) {
@@ -146,36 +146,6 @@ TEST_CASE("before a bend it brakes comfortably, and enters it no faster than the
       CHECK(entered > 0.7 * allowed);
       CHECK(hardest > -1.3 * cb::IdmParameters{}.comfortable_deceleration);
     }
-}
-
-TEST_CASE("what is remembered of the road changes nothing, however the speed is set from outside") {
-  auto const map = support::map_of(
-      {.id = "1",
-       .line = cb::map::lay_from(
-           {}, {{100.0}, {40.0, 0.004, 0.004}, {60.0}, {40.0, -0.008, -0.008}, {80.0}, {40.0, 0.02, 0.02}, {500.0}}),
-       .sections = {{.right = cb::map::equal_lanes(1)}}});
-  using Single = cb::World<cb::BehaviorSet<IdmLaneTracking>, cb::InterpolateExecution, cb::SingleTrack>;
-  for (std::uint32_t seed = 0; seed < 20; ++seed) {
-    cb::RandomStream random(seed, 0, 0);
-    Single world(map);
-    // With this exponent it brakes gently from what is above its desired speed.
-    auto const id = world.add({.position = {5, -1.75},
-                               .speed = 8.0,
-                               .behavior = IdmLaneTracking{.idm = {.desired_speed = 12.0, .exponent = 1.0}}});
-    Single forgetful = world;
-    while (world.record(id).lane.s < 320.0) {
-      if (cb::uniform_index(random, 8) == 0) {
-        auto state = world.state(id);
-        state.speed = between(2.0, 30.0, random);
-        world.set_state(id, state);
-        forgetful.set_state(id, state);
-      }
-      forgetful.memory<IdmLaneTracking>(id) = {};
-      REQUIRE(world.step(0.2));
-      REQUIRE(forgetful.step(0.2));
-      REQUIRE(world.state(id) == forgetful.state(id));
-    }
-  }
 }
 
 TEST_CASE("steering stays within the vehicle's limit and the driver's lateral acceleration") {
@@ -214,29 +184,4 @@ TEST_CASE("dense traffic on a curve neither collides nor allocates, and its copi
     CHECK_FALSE(cb::CollisionAny{}.evaluate(copy).any_collision);
   }
   CHECK(copy.frame() == world.frame());
-}
-
-TEST_CASE("whose speed rises beyond the desired one remembers the curves ahead, and drives as if it looked anew") {
-  World<cb::SingleTrack> world(own_map("highway.xodr"));
-  auto const& lane = world.map().lane(world.map().roads()[0].sections[0].lanes[1].id);
-  auto const pose = lane.path.pose(20.0);
-  auto const id = world.add({.position = pose.position(),
-                             .heading = pose.heading,
-                             .speed = 15.0,
-                             .behavior = IdmLaneTracking{.idm = {.desired_speed = 14.0}}});
-  int looked = 0, steps = 0;
-  for (; steps < 200; ++steps) {
-    auto state = world.state(id);
-    state.speed = 15.0 + 0.1 * steps;
-    world.set_state(id, state);
-    auto forgetful = world;
-    forgetful.memory<IdmLaneTracking>(id) = {};
-    auto const fastest = world.memory<IdmLaneTracking>(id).fastest;
-    REQUIRE(world.step(0.2));
-    REQUIRE(forgetful.step(0.2));
-    REQUIRE(world.state(id) == forgetful.state(id));
-    looked += world.memory<IdmLaneTracking>(id).fastest != fastest;
-  }
-  CHECK(looked > 2);
-  CHECK(looked < 20);
 }

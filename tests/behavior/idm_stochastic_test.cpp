@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "../world/fixtures.hpp"
-#include "cambium/behavior/leader.hpp"
+#include "cambium/behavior/road_rules.hpp"
 
 using namespace fixtures;
 using cb::IdmStochastic;

@@ -201,8 +201,8 @@ TEST_CASE("drivers slow for bends, and for limits where they obey them") {
         Sim world(map);
         auto driver = mobil(28.0);
         driver.idm.comfortable_deceleration = braking;
-        driver.changing.lateral_acceleration = what == What::bends ? 3.0 : 50.0;
-        driver.changing.obey_speed_limits = what == What::limits;
+        driver.rules.slow_for_bends = what == What::bends;
+        driver.rules.obey_speed_limits = what == What::limits;
         auto const id = add(world, 1, 20.0, 28.0, driver);
         double across = 0.0, hardest = 0.0, fastest = 0.0;
         for (int k = 0; k < 200 && world.record(id).status == cb::AgentStatus::driving; ++k) {

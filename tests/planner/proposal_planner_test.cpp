@@ -68,7 +68,7 @@ TEST_CASE("it brakes in time for a bend, whatever the score has to say") {
                                     .sections = {{.right = map::equal_lanes(1)}}});
   for (double const comfortable : {2.5, 50.0}) {
     Planner planner;
-    planner.driver.lateral_acceleration = comfortable;
+    planner.driver.driver.rules.lateral_acceleration = comfortable;
     planner.scoring.comfort = 0.0;
     Sim world(map);
     world.add({.position = {20, -1.75}, .speed = 14, .behavior = planner});

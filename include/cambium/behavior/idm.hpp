@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 
+#include "cambium/behavior/constraint.hpp"
 #include "cambium/behavior/follow_lane.hpp"
+#include "cambium/behavior/view.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/core/parameters.hpp"
 
@@ -68,27 +71,66 @@ template <class Scalar>
   return pow(x, Scalar(exponent));
 }
 
-/// Desired gap s* [m] (Treiber, Hennecke, Helbing 2000, eq. 4), its dynamic part not below 0, so that a faster leader
-/// is not mistaken for a close one.
+/// What depends on IDM's parameters alone, and the formula (Treiber, Hennecke, Helbing 2000, eq. 3 and 4).
+template <class Scalar>
+struct IdmTerms {
+  template <HasIdmParameters P>
+  explicit IdmTerms(P const& p) : IdmTerms(p, p.desired_speed) {}
+
+  template <HasIdmParameters P>
+  IdmTerms(P const& p, double desired_speed)
+      : inverse_desired_speed(Scalar(1.0 / desired_speed)),
+        headway(Scalar(p.time_headway)),
+        closing(Scalar(0.5 / std::sqrt(p.maximum_acceleration * p.comfortable_deceleration))),
+        minimum_gap(Scalar(p.minimum_gap)),
+        maximum(Scalar(p.maximum_acceleration)),
+        low(Scalar(p.lowest_acceleration)),
+        high(Scalar(p.highest_acceleration)),
+        exponent(p.exponent) {}
+
+  /// The part of the desired gap s* that depends on the speeds [m]; below 0 where a leader is that much faster: then it
+  /// does not count, lest a faster leader is mistaken for a close one.
+  [[nodiscard]] Scalar dynamic_gap(Scalar speed, Scalar leader_speed) const {
+    return speed * (headway + (speed - leader_speed) * closing);
+  }
+  /// The desired gap as a part of the gap there is.
+  [[nodiscard]] Scalar closeness(Scalar dynamic, Scalar inverse_gap) const {
+    using std::max;
+    return (minimum_gap + max(Scalar(0), dynamic)) * inverse_gap;
+  }
+  /// What is left of the maximum acceleration on a free road, as a part of it.
+  [[nodiscard]] Scalar free(Scalar speed) const {
+    return Scalar(1) - idm_power(Scalar(speed * inverse_desired_speed), exponent);
+  }
+  /// Unbounded [m/s^2]. `gap` [m] bumper to bumper, above 0, infinite on a free road.
+  [[nodiscard]] Scalar unbounded(Scalar free, Scalar speed, Scalar gap, Scalar leader_speed) const {
+    Scalar const close = closeness(dynamic_gap(speed, leader_speed), Scalar(1) / gap);
+    return maximum * (free - close * close);
+  }
+  [[nodiscard]] Scalar bounded(Scalar acceleration) const {
+    using std::max;
+    using std::min;
+    return min(max(acceleration, low), high);
+  }
+
+  Scalar inverse_desired_speed, headway, closing, minimum_gap, maximum, low, high;
+  double exponent;
+};
+
+/// Desired gap s* [m] (Treiber, Hennecke, Helbing 2000, eq. 4).
 template <HasIdmParameters P, class Scalar>
 [[nodiscard]] Scalar idm_desired_gap(P const& p, Scalar speed, Scalar leader_speed) {
-  using std::max;
-  auto const inverse = Scalar(0.5 / std::sqrt(p.maximum_acceleration * p.comfortable_deceleration));
-  Scalar const dynamic = speed * (Scalar(p.time_headway) + (speed - leader_speed) * inverse);
-  return Scalar(p.minimum_gap) + max(Scalar(0), dynamic);
+  IdmTerms<Scalar> const terms(p);
+  return terms.closeness(terms.dynamic_gap(speed, leader_speed), Scalar(1));
 }
 
 /// Acceleration [m/s^2] of a follower (Treiber, Hennecke, Helbing 2000, eq. 3), within the parameters' bounds. `gap`
 /// [m] bumper to bumper, infinite on a free road; `leader_speed` [m/s]. A gap ≤ 0 yields the lower bound.
 template <HasIdmParameters P, class Scalar>
 [[nodiscard]] Scalar idm_acceleration(P const& p, Scalar speed, Scalar gap, Scalar leader_speed) {
-  if (!(gap > Scalar(0))) return Scalar(p.lowest_acceleration);
-  Scalar const closeness = idm_desired_gap(p, speed, leader_speed) / gap;
-  Scalar const free = idm_power(speed / Scalar(p.desired_speed), p.exponent);
-  Scalar const a = Scalar(p.maximum_acceleration) * (Scalar(1) - free - closeness * closeness);
-  using std::max;
-  using std::min;
-  return min(max(a, Scalar(p.lowest_acceleration)), Scalar(p.highest_acceleration));
+  IdmTerms<Scalar> const terms(p);
+  if (!(gap > Scalar(0))) return terms.low;
+  return terms.bounded(terms.unbounded(terms.free(speed), speed, gap, leader_speed));
 }
 
 /// The gap [m] at which followers at one speed keep it (Treiber, Hennecke, Helbing 2000, eq. 5); infinite at the
@@ -111,16 +153,6 @@ template <HasIdmParameters P>
   return low;
 }
 
-/// By which part of a speed that is allowed now, and to become less `way` [m] on, an IDM driver has to desire: it
-/// brakes comfortably only where it is that much faster than it desires. Within the last half second of the way less
-/// so.
-template <HasIdmParameters P>
-[[nodiscard]] double idm_lead(P const& p, double speed, double way) {
-  double const ratio = 1.0 + p.comfortable_deceleration / p.maximum_acceleration;
-  double const lead = p.exponent == 4.0 ? 1.0 / std::sqrt(std::sqrt(ratio)) : std::pow(ratio, -1.0 / p.exponent);
-  return 1.0 + std::min(1.0, way / std::max(1.0, 0.5 * speed)) * (lead - 1.0);
-}
-
 namespace detail {
 
 /// The acceleration of a follower and how it changes along its motion.
@@ -129,27 +161,6 @@ struct IdmResponse {
   Scalar acceleration;  ///< [m/s^2]
   Scalar jerk;          ///< [m/s^3], the leader keeping its speed; 0 at a bound
   bool bounded;         ///< the acceleration is at a bound
-};
-
-/// What depends on IDM's parameters alone.
-template <class Scalar>
-struct IdmTerms {
-  template <HasIdmParameters P>
-  explicit IdmTerms(P const& p) : IdmTerms(p, p.desired_speed) {}
-
-  template <HasIdmParameters P>
-  IdmTerms(P const& p, double desired_speed)
-      : inverse_desired_speed(Scalar(1.0 / desired_speed)),
-        headway(Scalar(p.time_headway)),
-        closing(Scalar(0.5 / std::sqrt(p.maximum_acceleration * p.comfortable_deceleration))),
-        minimum_gap(Scalar(p.minimum_gap)),
-        maximum(Scalar(p.maximum_acceleration)),
-        low(Scalar(p.lowest_acceleration)),
-        high(Scalar(p.highest_acceleration)),
-        exponent(p.exponent) {}
-
-  Scalar inverse_desired_speed, headway, closing, minimum_gap, maximum, low, high;
-  double exponent;
 };
 
 /// IDM over a step in which the leader keeps its speed.
@@ -165,9 +176,9 @@ class IdmStep {
 
   [[nodiscard]] IdmResponse<Scalar> operator()(Scalar speed, Scalar gap) const {
     Scalar const inverse_gap = Scalar(1) / gap;
-    Scalar const dynamic = speed * (terms_.headway + (speed - leader_speed_) * terms_.closing);
+    Scalar const dynamic = terms_.dynamic_gap(speed, leader_speed_);
     bool const interacts = dynamic > Scalar(0);
-    Scalar const closeness = (terms_.minimum_gap + (interacts ? dynamic : Scalar(0))) * inverse_gap;
+    Scalar const closeness = terms_.closeness(dynamic, inverse_gap);
     auto const [free, free_slope] = free_road(speed * terms_.inverse_desired_speed);
     Scalar const wanted = terms_.maximum * ((Scalar(1) - free) - closeness * closeness);
     if (!(gap > Scalar(0)) || !(wanted > terms_.low)) return {terms_.low, Scalar(0), true};
@@ -289,7 +300,46 @@ template <class Scalar>
 template <HasIdmParameters P, class Scalar>
 [[nodiscard]] LongitudinalMotion<Scalar> idm_motion(P const& p, Scalar speed, Scalar gap, Scalar leader_speed,
                                                     double dt, double tolerance) {
-  return detail::idm_motion(detail::IdmTerms<Scalar>(p), speed, gap, leader_speed, dt, tolerance);
+  return detail::idm_motion(IdmTerms<Scalar>(p), speed, gap, leader_speed, dt, tolerance);
 }
+
+/// A driver's car following by IDM at one speed [m/s].
+class IdmLaw {
+ public:
+  static constexpr bool asks_acceleration = false;  ///< of leaders
+
+  template <HasIdmParameters P>
+  IdmLaw(P const& p, double speed) : IdmLaw(p, speed, p.desired_speed) {}
+
+  template <HasIdmParameters P>
+  IdmLaw(P const& p, double speed, double desired_speed)
+      : terms_(p, desired_speed), speed_(speed), rest_(terms_.free(speed)) {}
+
+  /// [m/s^2], on a free road.
+  [[nodiscard]] double free() const { return terms_.bounded(terms_.maximum * rest_); }
+
+  /// [m/s^2], behind a leader.
+  [[nodiscard]] double operator()(double gap, double leader_speed) const {
+    if (!(gap > 0.0)) return terms_.low;
+    return terms_.bounded(terms_.unbounded(rest_, speed_, gap, leader_speed));
+  }
+  [[nodiscard]] double operator()(Constraint const& c) const { return (*this)(c.gap, c.speed); }
+  [[nodiscard]] double operator()(std::optional<RoadUser> const& leader) const {
+    return leader ? (*this)(leader->gap, leader->speed) : free();
+  }
+
+  [[nodiscard]] double speed() const { return speed_; }                    ///< [m/s]
+  [[nodiscard]] double minimum_gap() const { return terms_.minimum_gap; }  ///< [m]
+
+  /// See `idm_motion`.
+  [[nodiscard]] LongitudinalMotion<double> motion(Constraint const& c, double dt, double tolerance) const {
+    return detail::idm_motion(terms_, speed_, c.gap, c.speed, dt, tolerance);
+  }
+
+ private:
+  IdmTerms<double> terms_;
+  double speed_;
+  double rest_;  ///< see `IdmTerms::free`
+};
 
 }  // namespace cambium

@@ -2,22 +2,16 @@
 
 #include <algorithm>
 
-#include "cambium/behavior/bark.hpp"
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/idm.hpp"
-#include "cambium/behavior/leader.hpp"
+#include "cambium/behavior/road_rules.hpp"
 
 namespace cambium {
 
 /// Follows its lane corridor and the next vehicle in it by the Intelligent Driver Model (Treiber, Hennecke, Helbing
 /// 2000); defaults are BARK's. Keeps its lateral offset; heads along the lane.
 struct IdmClassic {
-  /// How the model is integrated over a step; the leader keeps its speed meanwhile.
-  enum class Integration {
-    exact,          ///< to `tolerance`, for any step length: the default
-    bark_substeps,  ///< 10 equal sub-steps as in BARK, for comparison with its results: each one's acceleration is
-                    ///< taken at the speed of the step's start, and the desired gap may become negative
-  };
+  using Memory = RoadRules::Memory;
 
   double desired_speed = 15.0;
   double time_headway = 1.5;
@@ -27,7 +21,6 @@ struct IdmClassic {
   double exponent = 4.0;
   double lowest_acceleration = -5.0;
   double highest_acceleration = 8.0;
-  Integration integration = Integration::exact;
   double tolerance = 1e-4;
   RoadRules rules{};
 
@@ -39,29 +32,19 @@ struct IdmClassic {
   static constexpr auto parameters() {
     return join_parameters(
         idm_parameters<IdmClassic>(),
-        parameter_list(
-            choice("integration", &IdmClassic::integration, "exact|bark_substeps", "of the motion within a step"),
-            parameter("tolerance", &IdmClassic::tolerance, "m/s^2", Range{1e-12, 1},
-                      "error of the exact integration, as speed per second"),
-            parameter("rules", &IdmClassic::rules, "-", {}, "what it heeds beside other road users")));
+        parameter_list(parameter("tolerance", &IdmClassic::tolerance, "m/s^2", Range{1e-12, 1},
+                                 "error of the integration, as speed per second"),
+                       parameter("rules", &IdmClassic::rules, "-", {}, "what it heeds beside other road users")));
   }
 
   template <class View>
-  [[nodiscard]] Plan<View> plan(View const& view, NoMemory&, double dt) const {
+  [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
     double const speed = std::max(0.0, view.state().speed);
-    double const desired = desired_within_limits(rules, *this, view, speed);
-    // A copy with that desired speed only where one is needed: it would be written field by field and read at once in
-    // wide parts, which processors wait for (by half of a step with g++ 12 -march=native on Zen 5).
-    auto const limited = [this, desired] {
-      auto p = *this;
-      p.desired_speed = desired;
-      return p;
-    };
-    auto const leader = leader_to_follow(
-        rules, view, view.ahead(), [&](Leader const& l) { return idm_acceleration(limited(), speed, l.gap, l.speed); });
-    if (integration == Integration::bark_substeps) return bark::plan_along_lane(view, limited(), 0.0, leader, dt);
-    detail::IdmTerms<double> const terms(*this, desired);
-    return plan_along_lane(view, detail::idm_motion(terms, speed, leader.gap, leader.speed, dt, tolerance), dt);
+    IdmLaw const law(*this, speed, rules.desired_speed(*this, view, speed));
+    Strictest ahead(law);
+    rules.heed(view, ahead);
+    auto const motion = law.motion(ahead.constraint(), dt, tolerance);
+    return plan_along_lane(view, rules.bound(view, *this, view.place().s, speed, motion, dt, memory), dt);
   }
 };
 static_assert(BehaviorModel<IdmClassic>);

@@ -17,8 +17,9 @@ struct IdmHypotheses {
 
   struct Memory {
     float time_headway = 1.5f;  ///< assumed [s]
+    IdmClassic::Memory driver{};
 
-    friend bool operator==(Memory, Memory) = default;
+    friend bool operator==(Memory const&, Memory const&) = default;
   };
 
   IdmClassic driver{};
@@ -50,11 +51,10 @@ struct IdmHypotheses {
   }
 
   template <class View>
-  [[nodiscard]] Plan<View> plan(View const& view, Memory const& memory, double dt) const {
+  [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
     IdmClassic assumed = driver;
     assumed.time_headway = static_cast<double>(memory.time_headway);
-    NoMemory none;
-    return assumed.plan(view, none, dt);
+    return assumed.plan(view, memory.driver, dt);
   }
 };
 static_assert(BehaviorModel<IdmHypotheses>);

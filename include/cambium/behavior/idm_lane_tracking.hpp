@@ -5,11 +5,10 @@
 #include <cstdint>
 #include <limits>
 
-#include "cambium/behavior/acc.hpp"
-#include "cambium/behavior/bark.hpp"
+#include "cambium/behavior/adaptive_cruise_control.hpp"
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/idm.hpp"
-#include "cambium/behavior/leader.hpp"
+#include "cambium/behavior/road_rules.hpp"
 #include "cambium/dynamics/integration.hpp"
 #include "cambium/execution/steering.hpp"
 #include "cambium/geometry/angle.hpp"
@@ -39,21 +38,16 @@ template <MotionState State>
 /// front axle to the corridor's centre line (Stanley), through its vehicle model. Slows down for curves, so that its
 /// lateral acceleration stays within `lateral_acceleration_limit`.
 struct IdmLaneTracking {
-  enum class Integration {
-    rk4,            ///< steps of at most `longest_substep`, steering held over each: the default
-    bark_substeps,  ///< 10 Euler steps as in BARK, for comparison with its results
-  };
-
   IdmParameters idm{};
   double coolness = 0.0;
-  RoadRules rules{};
+  RoadRules rules{.slow_for_bends = true, .lateral_acceleration = 3.4};
   double cross_track_gain = 1.0;
   double softening_speed = 1.0;
   double lateral_acceleration_limit = 4.0;
-  bool slow_for_curves = true;
-  Integration integration = Integration::rk4;
   double longest_substep = 0.2;
   double tolerance = 1e-4;
+
+  using Memory = RoadRules::Memory;
 
   static constexpr char const* name = "idm_lane_tracking";
   static constexpr char const* summary =
@@ -71,34 +65,20 @@ struct IdmLaneTracking {
         parameter("softening_speed", &Self::softening_speed, "m/s", Range{0, 20}, "calms the steering at low speed"),
         parameter("lateral_acceleration_limit", &Self::lateral_acceleration_limit, "m/s^2", Range{0.1, 20},
                   "steers no more than this, beside the vehicle's own limits"),
-        parameter("slow_for_curves", &Self::slow_for_curves, "-", Range{0, 1},
-                  "brakes in time for curves that ask for more"),
-        choice("integration", &Self::integration, "rk4|bark_substeps", "of the motion along the lane"),
         parameter("longest_substep", &Self::longest_substep, "s", Range{1e-3, 10},
                   "steering is held over equal parts of a step no longer than this"),
         parameter("tolerance", &Self::tolerance, "m/s^2", Range{1e-12, 1}, "error of the speed, as speed per second"));
   }
 
-  /// How far the road ahead is known to have no curve to slow down for.
-  struct Memory {
-    std::uint32_t from{}, straight_until{};  ///< segments of the centre line; the second one is not known
-    float known_until{};                     ///< where that one begins [m]
-    float fastest{};                         ///< the speed at which it is none [m/s]
-    CorridorId corridor = none<CorridorId>;
-
-    friend bool operator==(Memory const&, Memory const&) = default;
-  };
-
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
     double const speed = std::max(0.0, view.state().speed);
-    auto p = within_limits(rules, idm, view, speed);
-    if (slow_for_curves && integration == Integration::rk4) slow_down(p, view, speed, memory);
-    auto const law = [&](Leader const& l) { return acc_acceleration(p, coolness, speed, l); };
-    auto const next = view.ahead();
-    auto const leader = coolness > 0.0 ? leader_to_follow<true>(rules, view, next, law)
-                                       : leader_to_follow<false>(rules, view, next, law);
-    return integration == Integration::rk4 ? drive_along(view, p, leader, dt) : bark_plan(view, p, leader, dt);
+    auto p = idm;
+    p.desired_speed = rules.desired_speed(idm, view, speed);
+    AccLaw const law(p, coolness, speed);
+    Strictest ahead(law);
+    rules.heed(view, ahead);
+    return drive_along(view, p, ahead.constraint(), memory, dt);
   }
 
   /// The steering angle [rad] that it asks of a vehicle for a step of `h` [s].
@@ -110,42 +90,9 @@ struct IdmLaneTracking {
   }
 
  private:
-  /// Desires no more speed than what lets it take the curves within its way to brake. O(curved segments within it),
-  /// beside those that are new.
   template <class View>
-  void slow_down(IdmParameters& p, View const& view, double speed, Memory& memory) const {
-    auto const& at = view.place();
-    auto const segments = view.corridor().center.segments();
-    double const fastest = std::max(speed, idm.desired_speed), square = fastest * fastest;
-    auto const faster = static_cast<float>(fastest);
-    // Whose speed rises beyond the desired one does not look anew in every step.
-    float const room_to_rise = speed > idm.desired_speed ? 1.1f : 1.0f;
-    if (memory.corridor != at.corridor || at.segment < memory.from || faster > memory.fastest)
-      memory = {at.segment, 0, 0.0f, room_to_rise * faster, at.corridor};
-    memory.from = at.segment;
-    double const twice_braking = 2.0 * p.comfortable_deceleration;
-    if (speed * (speed + twice_braking) < twice_braking * (static_cast<double>(memory.known_until) - at.s)) return;
-    double const reach = at.s + speed * (speed / twice_braking + 1.0);
-    double const comfortable = 0.85 * lateral_acceleration_limit;  // the rest is for corrections
-    auto i = static_cast<std::size_t>(std::max(at.segment, memory.straight_until));
-    double const straight = comfortable / (static_cast<double>(memory.fastest) * static_cast<double>(memory.fastest));
-    while (i < segments.size() && segments[i].s < reach + 50.0 && std::abs(segments[i].curvature) <= straight) ++i;
-    memory.straight_until = static_cast<std::uint32_t>(i);
-    memory.known_until = i < segments.size() ? static_cast<float>(segments[i].s) : std::numeric_limits<float>::max();
-    double lowest = square, way = 0.0;
-    for (; i < segments.size() && segments[i].s < reach; ++i) {
-      double const ahead = std::max(0.0, segments[i].s - at.s), room = twice_braking * ahead,
-                   bend = std::abs(segments[i].curvature);
-      if (!(bend * (lowest - room) > comfortable)) continue;
-      lowest = room + comfortable / bend;
-      way = ahead;
-    }
-    if (lowest >= square) return;
-    p.desired_speed = std::clamp(std::sqrt(lowest) * idm_lead(p, speed, way), 0.1, p.desired_speed);
-  }
-
-  template <class View>
-  [[nodiscard]] Plan<View> drive_along(View const& view, IdmParameters const& p, Leader leader, double dt) const {
+  [[nodiscard]] Plan<View> drive_along(View const& view, IdmParameters const& p, Constraint leader, Memory& memory,
+                                       double dt) const {
     auto const& model = view.dynamics();
     auto const& line = view.corridor().center;
     double const wheel_base = wheel_base_of(model);
@@ -154,13 +101,15 @@ struct IdmLaneTracking {
     auto segment = view.place().segment;
     auto x = view.state();
     x.speed = std::max(0.0, x.speed);
+    double s = view.place().s;
     Plan<View> plan;
     for (int i = 0; i < steps; ++i) {
-      auto const motion = longitudinal(p, x.speed, leader, h);
+      auto const motion = rules.bound(view, p, s, x.speed, longitudinal(p, x.speed, leader, h), h, memory);
       double const angle = steering(front_axle(line, x, wheel_base, segment), x.speed, wheel_base, h);
       Action const action{(motion.speed - x.speed) / h, angle};
       if (i == 0) plan.action = action_of(model.input(action, x), action);
       leader.gap += h * leader.speed - motion.distance;
+      s += motion.distance;
       x = drive(model, x, action, h);
     }
     x.time = view.time() + dt;
@@ -168,36 +117,10 @@ struct IdmLaneTracking {
     return plan;
   }
 
-  [[nodiscard]] LongitudinalMotion<double> longitudinal(IdmParameters const& p, double speed, Leader const& leader,
+  [[nodiscard]] LongitudinalMotion<double> longitudinal(IdmParameters const& p, double speed, Constraint const& leader,
                                                         double h) const {
     if (coolness == 0.0) return idm_motion(p, speed, leader.gap, leader.speed, h, tolerance);
-    return follow_motion([&](double v, Leader const& l) { return acc_acceleration(p, coolness, v, l); }, speed, leader,
-                         h);
-  }
-
-  /// Out of line, with arguments by value: what others use is not kept in memory for it.
-  template <class View>
-  [[nodiscard]] CAMBIUM_NOINLINE Plan<View> bark_plan(View view, IdmParameters p, Leader leader, double dt) const {
-    auto const& model = view.dynamics();
-    double const wheel_base = wheel_base_of(model), h = dt / bark::substeps;
-    auto segment = view.place().segment;
-    auto x = view.state();
-    double const start_speed = std::max(0.0, x.speed);
-    Plan<View> plan;
-    for (int i = 0; i < bark::substeps; ++i) {
-      double const a = bark::acceleration(p, coolness, start_speed, leader);
-      auto const at = front_axle(view.corridor().center, x, wheel_base, segment);
-      double const grip = std::atan2(lateral_acceleration_limit * wheel_base, x.speed * x.speed);
-      double const angle = at.heading_error + std::atan2(-cross_track_gain * at.offset, x.speed);
-      auto const u = model.input({a, std::clamp(angle, -grip, grip)}, x);
-      if (i == 0) plan.action = action_of(u, {a, angle});
-      bark::advance(leader, start_speed, a, h);
-      x = euler_step(model, x, u, h);
-      x.speed = std::max(0.0, x.speed);
-      x.time = view.time() + dt * (i + 1) / bark::substeps;
-      plan.trajectory.push_back(x);
-    }
-    return plan;
+    return AccLaw(p, coolness, speed).motion(leader, h);
   }
 };
 static_assert(BehaviorModel<IdmLaneTracking>);

@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "cambium/behavior/behavior_model.hpp"
-#include "cambium/behavior/bends_ahead.hpp"
 #include "cambium/behavior/idm_classic.hpp"
 #include "cambium/behavior/lane_change.hpp"
 #include "cambium/behavior/lane_reach.hpp"
@@ -18,6 +17,7 @@ struct IdmProposal {
     float speed_share = 1.0f;  ///< of the driver's desired speed
     float offset = 0.0f;       ///< from the middle of the lane, left positive [m]
     float bend = 0.0f;         ///< of the course at the vehicle, see `plan_to_center` [1/m]
+    RoadRules::Memory rules{};
 
     void fell_short(double, bool left_course) {
       if (left_course) bend = 0.0f;
@@ -25,9 +25,8 @@ struct IdmProposal {
     friend bool operator==(Memory const&, Memory const&) = default;
   };
 
-  IdmClassic driver{};
+  IdmClassic driver{.rules = {.slow_for_bends = true}};
   double clearance = 0.2;
-  double lateral_acceleration = 2.5;
 
   static constexpr char const* name = "idm_proposal";
   static constexpr char const* summary =
@@ -36,23 +35,19 @@ struct IdmProposal {
   static constexpr char const* source = "Treiber 2000; after Dauner et al. 2023";
   static constexpr auto parameters() {
     return parameter_list(
-        parameter("driver", &IdmProposal::driver, "-", {}, "its car following; integration is exact"),
-        parameter("clearance", &IdmProposal::clearance, "m", Range{0, 5}, "to each side of those that it passes"),
-        parameter("lateral_acceleration", &IdmProposal::lateral_acceleration, "m/s^2", Range{0.1, 50},
-                  "in bends of its lane, at most"));
+        parameter("driver", &IdmProposal::driver, "-", {}, "its car following"),
+        parameter("clearance", &IdmProposal::clearance, "m", Range{0, 5}, "to each side of those that it passes"));
   }
 
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
     double const speed = std::max(0.0, view.state().speed), offset = static_cast<double>(memory.offset);
-    auto p = within_limits(driver.rules, driver, view, speed);
-    p.desired_speed = std::max(0.1, static_cast<double>(memory.speed_share) * p.desired_speed);
-    auto const leader = leader_to_follow(driver.rules, view, detail::next_in_way(view, offset, clearance),
-                                         [&](Leader const& l) { return idm_acceleration(p, speed, l.gap, l.speed); });
-    auto motion = idm_motion(p, speed, leader.gap, leader.speed, dt, driver.tolerance);
-    auto const bends = bends_ahead(view.corridor(), view.place().s, speed, p.desired_speed, lateral_acceleration,
-                                   p.comfortable_deceleration, -p.lowest_acceleration, dt);
-    if (bends.bound.distance < motion.distance) motion = bends.bound;
+    double const share = static_cast<double>(memory.speed_share);
+    IdmLaw const law(driver, speed, std::max(0.1, share * driver.rules.desired_speed(driver, view, speed)));
+    Strictest ahead(law);
+    driver.rules.heed(view, detail::next_in_way(view, offset, clearance), ahead);
+    auto const motion = driver.rules.bound(view, driver, view.place().s, speed,
+                                           law.motion(ahead.constraint(), dt, driver.tolerance), dt, memory.rules);
     return plan_to_center(view, memory.bend, motion, dt, offset);
   }
 };

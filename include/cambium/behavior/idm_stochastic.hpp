@@ -7,7 +7,7 @@
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/idm.hpp"
-#include "cambium/behavior/leader.hpp"
+#include "cambium/behavior/road_rules.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"
 
@@ -82,6 +82,7 @@ struct BasicIdmStochastic {
     std::uint32_t person{};  ///< key of the agent's own draws; 0: not drawn yet
     float left{};            ///< of the present intention [s]
     bool yields = false;
+    RoadRules::Memory rules{};
 
     friend bool operator==(Memory const&, Memory const&) = default;
   };
@@ -108,11 +109,13 @@ struct BasicIdmStochastic {
     if (yielding.enabled) change_mind(stream, memory, dt);
     double const speed = std::max(0.0, view.state().speed);
     RandomStream own(memory.person, 0, 0, purpose);
-    auto const p = within_limits(rules, drawn == Drawn::per_agent ? draw(own) : draw(stream), view, speed);
-    auto const law = [&](Leader const& l) { return idm_acceleration(p, speed, l.gap, l.speed); };
-    auto leader = leader_to_follow(rules, view, view.ahead(), law);
-    if (memory.yields) let_in(view, law, p.comfortable_deceleration, leader);
-    return plan_along_lane(view, idm_motion(p, speed, leader.gap, leader.speed, dt, tolerance), dt);
+    auto const p = drawn == Drawn::per_agent ? draw(own) : draw(stream);
+    IdmLaw const law(p, speed, rules.desired_speed(p, view, speed));
+    Strictest ahead(law);
+    rules.heed(view, ahead);
+    if (memory.yields) let_in(view, law, p.comfortable_deceleration, ahead);
+    auto const motion = law.motion(ahead.constraint(), dt, tolerance);
+    return plan_along_lane(view, rules.bound(view, p, view.place().s, speed, motion, dt, memory.rules), dt);
   }
 
  private:
@@ -142,8 +145,8 @@ struct BasicIdmStochastic {
     memory.left = static_cast<float>(duration(stream, memory.yields));
   }
 
-  template <class View, class Law>
-  void let_in(View const& view, Law const& law, double hardest, Leader& leader) const {
+  template <class View>
+  void let_in(View const& view, IdmLaw const& law, double hardest, Strictest<IdmLaw>& ahead) const {
     auto const& at = view.place();
     auto const& own = view.corridor();
     for (auto const side : {own.pieces[at.piece].left, own.pieces[at.piece].right}) {
@@ -156,9 +159,7 @@ struct BasicIdmStochastic {
       if (!ends && !joins) continue;
       auto const front = view.ahead(there);
       if (!front) continue;
-      Leader const other = leader_of<false>(view, front);
-      double const braking = -law(other);
-      if (other.gap > 0.0 && braking <= hardest && -braking < law(leader)) leader = other;
+      if (front->gap > 0.0 && -law(front) <= hardest) ahead.heed({front->gap, front->speed});
     }
   }
 };

@@ -4,14 +4,13 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "cambium/behavior/behavior_model.hpp"
-#include "cambium/behavior/bends_ahead.hpp"
 #include "cambium/behavior/braking.hpp"
 #include "cambium/behavior/conflict_order.hpp"
 #include "cambium/behavior/idm.hpp"
-#include "cambium/behavior/leader.hpp"
-#include "cambium/behavior/signals_ahead.hpp"
+#include "cambium/behavior/road_rules.hpp"
 
 namespace cambium {
 
@@ -29,12 +28,9 @@ namespace cambium {
 /// change lanes in a junction, do not heed its rules or are seen where they are not may still be run into.
 struct Intersection {
   IdmParameters idm{};
-  RoadRules rules{.obey_speed_limits = true};
+  RoadRules rules{.obey_speed_limits = true, .slow_for_bends = true, .obey_signals = true, .merging = Merging::by_rule};
   double look_ahead = 80.0;
   double time_margin = 1.0;
-  double stop_margin = 1.0;
-  double lateral_acceleration = 2.5;
-  double safe_deceleration = 3.0;
   double assumed_acceleration = 1.5;
   double patience = 1.0;
   bool keep_clear = true;
@@ -55,10 +51,6 @@ struct Intersection {
         parameter("look_ahead", &P::look_ahead, "m", Range{0, 1000},
                   "conflicts nearer than this, or than the way to brake comfortably, are heeded"),
         parameter("time_margin", &P::time_margin, "s", Range{0, 20}, "between two vehicles in one place"),
-        parameter("stop_margin", &P::stop_margin, "m", Range{0, 20}, "from the front end to the junction when waiting"),
-        parameter("lateral_acceleration", &P::lateral_acceleration, "m/s^2", Range{0.1, 20}, "in bends, at most"),
-        parameter("safe_deceleration", &P::safe_deceleration, "m/s^2", Range{0.1, 20},
-                  "who would have to brake harder does not stop any more"),
         parameter("assumed_acceleration", &P::assumed_acceleration, "m/s^2", Range{0, 20},
                   "of others on their way to the conflict"),
         parameter("patience", &P::patience, "s", Range{0, 600},
@@ -80,26 +72,34 @@ struct Intersection {
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
     Own own;
     own.speed = std::max(0.0, view.state().speed);
-    own.idm = within_limits(rules, idm, view, own.speed);
+    own.idm = idm;
+    own.idm.desired_speed = rules.desired_speed(idm, view, own.speed);
     own.look_ahead = std::max(look_ahead, own.speed * own.speed / (2.0 * idm.comfortable_deceleration) + 20.0);
     own.s = view.place().s;
     own.front = own.s + view.shape().front;
     own.is_large = detail::is_large(view, view.shape());
-    auto const bends = bends_ahead(view.corridor(), own.s, own.speed, own.idm.desired_speed, lateral_acceleration,
-                                   own.idm.comfortable_deceleration, hardest(own), dt);
-    own.highest = bends.highest;
-    own.bound = bends.bound;
+    own.highest = own.idm.desired_speed;
+    if (rules.slow_for_bends) {
+      auto const bends = bends_ahead(view.corridor(), own.s, own.speed, own.highest, rules.lateral_acceleration,
+                                     own.idm.comfortable_deceleration, hardest(own), dt);
+      own.highest = bends.highest;
+      own.bound = bends.bound;
+    }
     own.waited = memory.waited;
-    follow(own, leader_of<false>(view, view.ahead({.merging = Merging::by_rule})));
-    heed_conflicts(view, own, dt);
-    auto const signals =
-        stop_at_signals(view, own.front, own.speed, own.look_ahead, stop_margin, safe_deceleration, memory.stopped_at);
+    IdmLaw const law(own.idm, own.speed);
+    Strictest ahead(law);
+    rules.heed(view, ahead);
+    heed_conflicts(view, own, ahead, dt);
+    SignalStop signals;
+    if (rules.obey_signals)
+      signals = stop_at_signals(view, own.front, own.speed, own.look_ahead, rules.stop_margin, rules.safe_deceleration,
+                                memory.stopped_at);
     if (std::isfinite(signals.distance)) bound(own, signals.distance, own.idm.comfortable_deceleration, dt);
     if (signals.is_light || own.speed > starting || (own.speed >= standing && own.at_line))
       memory.waited = 0.0f;
     else if (own.at_line)
       memory.waited += static_cast<float>(dt);
-    auto motion = idm_motion(own.idm, own.speed, own.leader.gap, own.leader.speed, dt, tolerance);
+    auto motion = law.motion(ahead.constraint(), dt, tolerance);
     if (own.bound.distance < motion.distance) motion = own.bound;
     return plan_along_lane(view, motion, dt);
   }
@@ -110,6 +110,7 @@ struct Intersection {
   static constexpr double standing = standing_speed;
   static constexpr double starting = starting_speed;
   static constexpr double air = 0.3;  // [m] before a conflict
+  static constexpr double infinite = std::numeric_limits<double>::infinity();
 
   /// Where one is, what it has seen, and what it may do.
   struct Own {
@@ -118,9 +119,8 @@ struct Intersection {
     double look_ahead{};  ///< [m]
     double highest{};     ///< speed up to the place that it looks ahead to [m/s]
     bool is_large = false;
-    Leader leader;
-    LongitudinalMotion<double> bound;  ///< goes no farther in this step
-    bool at_line = false;              ///< has come to where it waits
+    LongitudinalMotion<double> bound{infinite, infinite};  ///< goes no farther in this step
+    bool at_line = false;                                  ///< has come to where it waits
   };
 
   /// What a conflict asks for, the strongest last.
@@ -136,19 +136,13 @@ struct Intersection {
     double begin, end;
   };
 
-  static void follow(Own& own, Leader const& leader) {
-    if (idm_acceleration(own.idm, own.speed, leader.gap, leader.speed) <
-        idm_acceleration(own.idm, own.speed, own.leader.gap, own.leader.speed))
-      own.leader = leader;
-  }
-
   [[nodiscard]] bool can_stop(double speed, double distance) const {
-    return cambium::can_stop(speed, distance, safe_deceleration);
+    return cambium::can_stop(speed, distance, rules.safe_deceleration);
   }
 
   /// Others count in the zone of the two sizes.
   template <class View>
-  void heed_conflicts(View const& view, Own& own, double dt) const {
+  void heed_conflicts(View const& view, Own& own, Strictest<IdmLaw>& ahead, double dt) const {
     auto const& conflicts = view.corridor().conflicts;
     auto const is_behind = [&](map::Conflict const& c) { return c.farthest_end < own.s; };
     for (auto at = std::partition_point(conflicts.begin(), conflicts.end(), is_behind); at != conflicts.end(); ++at) {
@@ -156,8 +150,8 @@ struct Intersection {
       if (conflict.hold[1] > own.front + own.look_ahead) break;
       if (conflict.hull().end < own.s) continue;
       auto const& zones = conflict.zones[own.is_large];
-      auto claims = claims_of(view, conflict, own);
-      if (!zones[0].empty() && claims[0] < Claim::yield && is_full_behind(view, zones[0], own))
+      auto claims = claims_of(view, conflict, own, ahead);
+      if (!zones[0].empty() && claims[0] < Claim::yield && is_full_behind(view, zones[0], own, ahead.constraint()))
         claims[0] = Claim::yield;
       for (std::size_t other = 0; other < 2; ++other)
         if (claims[other] != Claim::free) obey(claims[other], zones[other], conflict.hold[own.is_large], own, dt);
@@ -178,7 +172,7 @@ struct Intersection {
     double const to_hold = std::min(zone.line - own.front, hold - own.s);
     double const to_stop = distance_to_stop(claim, to_hold, own, to_conflict);
     if (claim == Claim::yield && !can_stop(own.speed, to_stop)) return;
-    double const braking = claim == Claim::watch ? safe_deceleration : own.idm.comfortable_deceleration;
+    double const braking = claim == Claim::watch ? rules.safe_deceleration : own.idm.comfortable_deceleration;
     bound(own, to_stop, braking, dt);
     own.at_line = own.at_line || to_stop < 2.0;
   }
@@ -187,7 +181,7 @@ struct Intersection {
   [[nodiscard]] double distance_to_stop(Claim claim, double to_hold, Own const& own, double to_conflict) const {
     double const to_line = std::min(to_hold, to_conflict);
     if (to_line < 0.0 || !can_stop(own.speed, to_line)) return to_conflict;
-    for (double const margin : {claim == Claim::watch ? air : stop_margin, air})
+    for (double const margin : {claim == Claim::watch ? air : rules.stop_margin, air})
       if (can_stop(own.speed, to_line - margin)) return std::max(0.0, to_line - margin);
     return to_line;
   }
@@ -195,7 +189,8 @@ struct Intersection {
   /// The strongest claims of all who are on their way to the conflict, by their sizes; merging
   /// leaders are followed.
   template <class View>
-  [[nodiscard]] std::array<Claim, 2> claims_of(View const& view, map::Conflict const& conflict, Own& own) const {
+  [[nodiscard]] std::array<Claim, 2> claims_of(View const& view, map::Conflict const& conflict, Own const& own,
+                                               Strictest<IdmLaw>& ahead) const {
     std::array<Claim, 2> claims{Claim::free, Claim::free};
     for (auto const& way : conflict.ways)
       view.on_lane(way.index_begin, way.index_end, [&](RoadUser const& user) {
@@ -205,7 +200,7 @@ struct Intersection {
         if (zone.empty()) return;
         Other const other{user, way.begin + user.s - way.index_begin,
                           detail::extra_reach(view, large, user.front, user.rear)};
-        claims[large] = std::max(claims[large], claim_of(view, conflict, zone, other, own));
+        claims[large] = std::max(claims[large], claim_of(view, conflict, zone, other, own, ahead));
       });
     return claims;
   }
@@ -213,7 +208,7 @@ struct Intersection {
   /// The claim of one on its way.
   template <class View>
   [[nodiscard]] Claim claim_of(View const& view, map::Conflict const& conflict, map::ConflictZone const& zone,
-                               Other const& other, Own& own) const {
+                               Other const& other, Own const& own, Strictest<IdmLaw>& ahead) const {
     auto const& [user, at, reach] = other;
     if (at > zone.other_end + reach.rear) return Claim::free;
     double const way = zone.other_begin - reach.front - at;
@@ -222,7 +217,7 @@ struct Intersection {
     bool const is_in = way <= 0.0, own_is_in = own_way <= 0.0;
     if (conflict.kind != map::OverlapKind::crossing && (is_in || conflict.kind == map::OverlapKind::split)) {
       double const place = at + conflict.shift, gap = place - user.rear - own.front;
-      if (place > own.s && (gap > 0.0 || own_is_in)) follow(own, {gap, user.speed});
+      if (place > own.s && (gap > 0.0 || own_is_in)) ahead.heed({gap, user.speed});
       if (gap > 0.0 || conflict.kind == map::OverlapKind::split) return Claim::free;
     }
     if (own_is_in) return Claim::free;
@@ -255,10 +250,11 @@ struct Intersection {
 
   /// Whether there would be no room behind the conflict, as in a queue.
   template <class View>
-  [[nodiscard]] bool is_full_behind(View const& view, map::ConflictZone const& zone, Own const& own) const {
-    if (!keep_clear || own.leader.speed > starting) return false;
+  [[nodiscard]] bool is_full_behind(View const& view, map::ConflictZone const& zone, Own const& own,
+                                    Constraint const& leader) const {
+    if (!keep_clear || leader.speed > starting) return false;
     double const end = zone.end - view.shape().rear;  // of the conflict, for rear ends
-    double const room = own.front + own.leader.gap - end;
+    double const room = own.front + leader.gap - end;
     return room < view.shape().length() + own.idm.minimum_gap;
   }
 };

@@ -19,6 +19,7 @@ namespace cambium {
 struct LaneChangeRuleBased {
   IdmParameters idm{};
   LaneChanging changing{};
+  RoadRules rules{.slow_for_bends = true};
   FreeSpace space{};
   double minimum_remaining = 60.0;
   double advantage = 10.0;
@@ -37,6 +38,7 @@ struct LaneChangeRuleBased {
     return parameter_list(
         parameter("idm", &P::idm, "-", {}, "the driver's own car following"),
         parameter("changing", &P::changing, "-", {}, "how it changes lanes, and what it assumes of others"),
+        parameter("rules", &P::rules, "-", {}, "what it heeds beside other road users"),
         parameter("space", &P::space, "-", {}, "what must be free in the new lane"),
         parameter("minimum_remaining", &P::minimum_remaining, "m", Range{0, 10'000},
                   "no change, but for the route, into a lane with less than this left when it could be left again"),
@@ -50,7 +52,7 @@ struct LaneChangeRuleBased {
 
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
-    return changing.drive(view, memory, idm, tolerance, dt, [this](LaneKeeping<View> const& now) {
+    return changing.drive(view, memory, idm, rules, tolerance, dt, [this](LaneKeeping<View> const& now) {
       return now.may_change ? roomiest_side(now) : none<CorridorId>;
     });
   }

@@ -6,12 +6,10 @@
 #include <limits>
 #include <optional>
 
-#include "cambium/behavior/bends_ahead.hpp"
 #include "cambium/behavior/idm.hpp"
-#include "cambium/behavior/idm_law.hpp"
 #include "cambium/behavior/lane_change.hpp"
 #include "cambium/behavior/lane_ends.hpp"
-#include "cambium/behavior/leader.hpp"
+#include "cambium/behavior/road_rules.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/macros.hpp"
 
@@ -28,11 +26,11 @@ struct LaneOption {
 template <class View>
 struct LaneKeeping {
   View const& view;
-  detail::IdmLaw const& law;              ///< its car following, at its speed
+  IdmLaw const& law;                      ///< its car following, at its speed
   std::optional<RoadUser> const& leader;  ///< next ahead
   double lane_end;                        ///< see there
   bool may_change;                        ///< not in the time of rest
-  detail::Restriction& ahead;             ///< what it follows; a rule may add to it
+  Strictest<IdmLaw>& ahead;               ///< what it follows; a rule may add to it
 };
 
 /// How a driver goes along lanes that it may change, and changes them once it has decided to: what it assumes of
@@ -52,8 +50,6 @@ struct LaneChanging {
   double safe_gap = 1.0;
   double rest = 3.0;
   bool heed_marks = true;
-  bool obey_speed_limits = false;
-  double lateral_acceleration = 3.0;
   LaneChangeCourse course{};
 
   static constexpr char const* name = "lane_changing";
@@ -72,10 +68,6 @@ struct LaneChanging {
         parameter("safe_gap", &P::safe_gap, "m", Range{0, 100}, "no change into smaller gaps, whatever the speeds"),
         parameter("rest", &P::rest, "s", Range{0, 600}, "no further change within this time of the last"),
         parameter("heed_marks", &P::heed_marks, "-", Range{0, 1}, "change only where the road marks permit it"),
-        parameter("obey_speed_limits", &P::obey_speed_limits, "-", Range{0, 1},
-                  "desire no more than the limit, and be there in time for a lower one ahead"),
-        parameter("lateral_acceleration", &P::lateral_acceleration, "m/s^2", Range{0.1, 50},
-                  "in bends, at most; where it has to slow for one it aims at 0.7 of it, for IDM brakes late"),
         parameter("course", &P::course, "-", {}, "how long a change takes"));
   }
 
@@ -83,6 +75,7 @@ struct LaneChanging {
   struct Memory {
     LaneChange change{};
     float rest{};  ///< [s] until the next change may begin
+    RoadRules::Memory rules{};
 
     void fell_short(double way, bool left_course) { change.fell_short(way, left_course); }
 
@@ -92,20 +85,25 @@ struct LaneChanging {
   /// The plan of a driver who follows by IDM and changes lanes where `choose(LaneKeeping)` says so: it returns the side
   /// to change to, as the number of its lane corridor, or none. Not called during a change.
   template <class View, class Choose>
-  [[nodiscard]] Plan<View> drive(View const& view, Memory& memory, IdmParameters const& idm, double tolerance,
-                                 double dt, Choose const& choose) const {
+  [[nodiscard]] Plan<View> drive(View const& view, Memory& memory, IdmParameters const& idm, RoadRules const& rules,
+                                 double tolerance, double dt, Choose const& choose) const {
     double const speed = std::max(0.0, view.state().speed);
-    detail::IdmLaw const law(idm, speed, desired_speed(view, idm, speed));
-    auto const leader = view.ahead();
+    IdmLaw const law(idm, speed, rules.desired_speed(idm, view, speed));
+    auto const leader = view.ahead({.merging = rules.merging});
     auto const home = view.place().corridor;
     memory.rest = std::max(0.0f, memory.rest - static_cast<float>(dt));
     course.renew(memory.change, view.shape(), speed);
     if (memory.change.target == home && speed < standing && way_to_stop(view, view.place()) < idm.minimum_gap + 1)
       memory.change = {};  // it must leave this lane, too: no way is left to come to its middle before
+    auto const go_on = [&](Strictest<IdmLaw> ahead) {
+      if (auto const end = rules.lane_end_ahead(view)) ahead.heed(*end);
+      auto const motion = law.motion(ahead.constraint(), dt, tolerance);
+      return plan_lane_change(view, memory.change,
+                              rules.bound(view, idm, view.place().s, speed, motion, dt, memory.rules), dt);
+    };
     if (memory.change.active()) {
       if (memory.change.target != home && !may_go_on(view, law, memory.change)) abort(view, speed, memory);
-      auto const ahead = ahead_while_changing(view, law, leader, memory.change);
-      return plan_lane_change(view, memory.change, law.motion(ahead.gap, ahead.speed, dt, tolerance), dt);
+      return go_on(ahead_while_changing(view, law, leader, memory.change));
     }
     double const end = lane_end(view, home, view.place().piece);
     auto ahead = ahead_in_lane(view, law, leader);
@@ -116,13 +114,13 @@ struct LaneChanging {
       memory.rest = static_cast<float>(rest + course.duration);
       ahead = ahead_while_changing(view, law, leader, memory.change);
     }
-    return plan_lane_change(view, memory.change, law.motion(ahead.gap, ahead.speed, dt, tolerance), dt);
+    return go_on(ahead);
   }
 
   /// How a follower drives, as this driver assumes it.
-  [[nodiscard]] detail::IdmLaw law_of(RoadUser const& who) const {
+  [[nodiscard]] IdmLaw law_of(RoadUser const& who) const {
     auto const& assumed = who.length() > truck_length ? trucks : others;
-    return detail::IdmLaw(assumed, std::max(0.0, who.speed), std::max(assumed.desired_speed, who.speed));
+    return IdmLaw(assumed, std::max(0.0, who.speed), std::max(assumed.desired_speed, who.speed));
   }
 
   /// Acceleration of a follower as this driver assumes it [m/s^2]. Objects stand: they neither gain nor lose.
@@ -133,7 +131,7 @@ struct LaneChanging {
   /// Whether nobody has to brake harder than `deceleration` [m/s^2], gaps are left, and nobody comes into the same gap
   /// from the lane beyond for whom that would not hold.
   template <class View>
-  CAMBIUM_NOINLINE [[nodiscard]] bool is_safe(View const& view, detail::IdmLaw const& law, LaneOption const& option,
+  CAMBIUM_NOINLINE [[nodiscard]] bool is_safe(View const& view, IdmLaw const& law, LaneOption const& option,
                                               double deceleration) const {
     auto const front_is_safe = [&](RoadUser const& n) {
       return n.gap > safe_gap && law(n.gap, n.speed) >= -deceleration;
@@ -174,19 +172,6 @@ struct LaneChanging {
   /// Lateral speed that shows the intention to change [m/s].
   static constexpr double drift = 0.12;
 
-  /// What the driver desires within limits, if it obeys them, and before bends [m/s].
-  template <class View>
-  [[nodiscard]] double desired_speed(View const& view, IdmParameters const& idm, double speed) const {
-    auto const& corridor = view.corridor();
-    double const s = view.place().s, fastest = std::max(speed, idm.desired_speed);
-    double desired = idm.desired_speed;
-    if (fastest * fastest * corridor.sharpest_bend > lateral_acceleration) [[unlikely]]
-      desired = desired_speed_before_bends(idm, corridor, s, speed, lateral_acceleration);
-    if (obey_speed_limits) [[unlikely]]
-      desired = std::min(desired, permitted_speed(corridor, s, speed, idm.comfortable_deceleration));
-    return std::max(0.1, desired);
-  }
-
   [[nodiscard]] static bool is_object(RoadUser const& n) { return is_valid(n.object); }
 
   /// Whether a neighbour in the lane beyond `option`'s comes into it.
@@ -205,8 +190,7 @@ struct LaneChanging {
   }
 
   template <class View>
-  CAMBIUM_NOINLINE [[nodiscard]] bool may_go_on(View const& view, detail::IdmLaw const& law,
-                                                LaneChange const& change) const {
+  CAMBIUM_NOINLINE [[nodiscard]] bool may_go_on(View const& view, IdmLaw const& law, LaneChange const& change) const {
     auto const& at = view.place();
     auto const& piece = view.corridor().pieces[at.piece];
     LaneOption option{view.place(change.target), change.target == piece.left, {}, {}};
@@ -262,32 +246,32 @@ struct LaneChanging {
   }
 
   /// Adds a leader in a lane that the vehicle stays in: before an object it leaves room to change.
-  void add_leader(detail::Restriction& ahead, detail::IdmLaw const& law, geometry::Shape const& shape,
-                  std::optional<RoadUser> const& leader, bool has_side) const {
+  void add_leader(Strictest<IdmLaw>& ahead, geometry::Shape const& shape, std::optional<RoadUser> const& leader,
+                  bool has_side) const {
     if (!leader) return;
     double const room = is_object(*leader) && has_side ? out_of_lane * course.least_length(shape) : 0.0;
-    ahead.add(law, leader->gap - room, leader->speed);
+    ahead.heed({leader->gap - room, leader->speed});
   }
 
-  static void add_stop(detail::Restriction& ahead, detail::IdmLaw const& law, double way) {
-    if (way < infinite) ahead.add(law, way, 0.0);
+  static void add_stop(Strictest<IdmLaw>& ahead, double way) {
+    if (way < infinite) ahead.heed({way, 0.0});
   }
 
   template <class View>
-  [[nodiscard]] detail::Restriction ahead_in_lane(View const& view, detail::IdmLaw const& law,
-                                                  std::optional<RoadUser> const& leader) const {
+  [[nodiscard]] Strictest<IdmLaw> ahead_in_lane(View const& view, IdmLaw const& law,
+                                                std::optional<RoadUser> const& leader) const {
     auto const& at = view.place();
     auto const& piece = view.corridor().pieces[at.piece];
-    detail::Restriction ahead{infinite, 0.0, law.free()};
-    add_leader(ahead, law, view.shape(), leader, piece.left != none<CorridorId> || piece.right != none<CorridorId>);
-    add_stop(ahead, law, way_to_stop(view, at));
+    Strictest<IdmLaw> ahead(law);
+    add_leader(ahead, view.shape(), leader, piece.left != none<CorridorId> || piece.right != none<CorridorId>);
+    add_stop(ahead, way_to_stop(view, at));
     return ahead;
   }
 
   template <class View>
-  CAMBIUM_NOINLINE [[nodiscard]] detail::Restriction ahead_while_changing(View const& view, detail::IdmLaw const& law,
-                                                                          std::optional<RoadUser> const& leader,
-                                                                          LaneChange const& change) const {
+  CAMBIUM_NOINLINE [[nodiscard]] Strictest<IdmLaw> ahead_while_changing(View const& view, IdmLaw const& law,
+                                                                        std::optional<RoadUser> const& leader,
+                                                                        LaneChange const& change) const {
     auto const& at = view.place();
     auto const& corridor = view.corridor();
     auto const& piece = corridor.pieces[at.piece];
@@ -295,10 +279,10 @@ struct LaneChanging {
     auto const is_passed = [&](RoadUser const& n, double until) {  // the course leads around it
       return n.speed < 0.5 && n.gap > until;
     };
-    detail::Restriction ahead{infinite, 0.0, law.free()};
+    Strictest<IdmLaw> ahead(law);
     if (change.target == at.corridor) {
-      add_leader(ahead, law, view.shape(), leader, true);
-      add_stop(ahead, law, way_to_stop(view, at));
+      add_leader(ahead, view.shape(), leader, true);
+      add_stop(ahead, way_to_stop(view, at));
       // While it reaches over the border, the leader there counts, too.
       auto const sides = corridor.widths_at(at.s, at.segment);
       auto const beside = at.lateral + view.shape().left > sides.left     ? piece.left
@@ -307,16 +291,16 @@ struct LaneChanging {
       if (beside == none<CorridorId>) return ahead;
       auto const other = view.ahead(view.place(beside));
       if (other && other->gap > 0.0 && !is_passed(*other, left - 0.5 * course.least_length(view.shape())))
-        ahead.add(law, other->gap, other->speed);
+        ahead.heed({other->gap, other->speed});
       return ahead;
     }
-    if (leader && !is_passed(*leader, left - around)) ahead.add(law, leader->gap, leader->speed);
+    if (leader && !is_passed(*leader, left - around)) ahead.heed({leader->gap, leader->speed});
     double const until_end = dead_end(view, at.corridor, at.piece) - at.s;
-    if (until_end < 0.6 * left) ahead.add(law, until_end - view.shape().front, 0.0);
+    if (until_end < 0.6 * left) ahead.heed({until_end - view.shape().front, 0.0});
     auto const there = view.place(change.target);
-    add_leader(ahead, law, view.shape(), view.ahead(there), true);
+    add_leader(ahead, view.shape(), view.ahead(there), true);
     // Into the lane beside it may go on, even if that ends soon.
-    add_stop(ahead, law, std::max(way_to_stop(view, there), 0.6 * left + law.minimum_gap() + 1.0));
+    add_stop(ahead, std::max(way_to_stop(view, there), 0.6 * left + law.minimum_gap() + 1.0));
     return ahead;
   }
 };

@@ -14,7 +14,7 @@
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/constant_acceleration.hpp"
 #include "cambium/behavior/idm.hpp"
-#include "cambium/behavior/idm_law.hpp"
+#include "cambium/behavior/idm.hpp"
 #include "cambium/behavior/lane_change.hpp"
 #include "cambium/behavior/lane_ends.hpp"
 #include "cambium/core/error.hpp"
@@ -185,14 +185,14 @@ struct MacroActions {
                                                   double speed, double dt) const {
     auto const wanted = ConstantAcceleration{action.acceleration, highest_speed}.motion(speed, dt);
     if (action.kind != Kind::keep_gap && !action.keeps_gap) return wanted;
-    detail::IdmLaw const law(idm, speed);
-    detail::Restriction ahead{std::numeric_limits<double>::infinity(), 0.0, law.free()};
+    IdmLaw const law(idm, speed);
+    Strictest ahead(law);
     auto const heed = [&](std::optional<RoadUser> const& leader) {
-      if (leader) ahead.add(law, leader->gap, leader->speed);
+      if (leader) ahead.heed({leader->gap, leader->speed});
     };
     heed(view.ahead());
     if (change.active() && change.target != view.place().corridor) heed(view.ahead(view.place(change.target)));
-    auto const allowed = law.motion(ahead.gap, ahead.speed, dt, tolerance);
+    auto const allowed = law.motion(ahead.constraint(), dt, tolerance);
     return action.kind == Kind::keep_gap || allowed.speed < wanted.speed ? allowed : wanted;
   }
 };

@@ -49,6 +49,7 @@ template <class... Filters>
 struct BasicMobil {
   IdmParameters idm{};
   LaneChanging changing{};
+  RoadRules rules{.slow_for_bends = true};
   double politeness = 0.2;
   double threshold = 0.2;
   double bias = 0.0;
@@ -73,6 +74,7 @@ struct BasicMobil {
     auto const own = parameter_list(
         parameter("idm", &P::idm, "-", {}, "the driver's own car following"),
         parameter("changing", &P::changing, "-", {}, "how it changes lanes, and what it assumes of others"),
+        parameter("rules", &P::rules, "-", {}, "what it heeds beside other road users"),
         parameter("politeness", &P::politeness, "-", Range{-1, 10}, "weight of the followers' accelerations"),
         parameter("threshold", &P::threshold, "m/s^2", Range{0, 10}, "advantage that makes a change worth it"),
         parameter("bias", &P::bias, "m/s^2", Range{-10, 10},
@@ -98,7 +100,7 @@ struct BasicMobil {
 
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
-    return changing.drive(view, memory, idm, tolerance, dt, [this](LaneKeeping<View> const& now) {
+    return changing.drive(view, memory, idm, rules, tolerance, dt, [this](LaneKeeping<View> const& now) {
       if (keep_right) pass_nobody_outside(now);
       return now.may_change ? best_side(now) : none<CorridorId>;
     });
@@ -116,7 +118,7 @@ struct BasicMobil {
     auto const& view = now.view;
     auto const& piece = view.corridor().pieces[view.place().piece];
     if (piece.left == none<CorridorId> && piece.right == none<CorridorId>) return none<CorridorId>;
-    MobilSituation situation{.own = now.ahead.acceleration};
+    MobilSituation situation{.own = now.ahead.acceleration()};
     if (auto const rear = view.behind())
       std::tie(situation.old_follower, situation.old_follower_after) = followers_view(now, rear, now.leader);
     // What changing is worth beside the own acceleration after it: a side that cannot pay needs no look.
@@ -158,7 +160,7 @@ struct BasicMobil {
   template <class View>
   void adapt_to(LaneKeeping<View> const& now, std::optional<RoadUser> const& front) const {
     if (front && front->gap > 0.0 && front->speed < now.law.speed())
-      now.ahead.add(now.law, std::max(front->gap, idm.minimum_gap + now.law.speed() * idm.time_headway), front->speed);
+      now.ahead.heed({std::max(front->gap, idm.minimum_gap + now.law.speed() * idm.time_headway), front->speed});
   }
 
   /// Acceleration of a follower behind this vehicle, and behind `front`, who is next without it.

@@ -7,7 +7,8 @@
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/idm.hpp"
-#include "cambium/behavior/lane_changing.hpp"
+#include "cambium/behavior/lane_change.hpp"
+#include "cambium/behavior/road_rules.hpp"
 #include "cambium/core/parameters.hpp"
 
 namespace cambium {
@@ -20,6 +21,7 @@ namespace cambium {
 /// following by IDM.
 struct ZipMerge {
   IdmParameters idm{};
+  RoadRules rules{};
   double zone = 200.0;
   double reach = 12.0;
   double patience = 4.0;
@@ -33,6 +35,7 @@ struct ZipMerge {
     using P = ZipMerge;
     return parameter_list(
         parameter("idm", &P::idm, "-", {}, "the driver's own car following"),
+        parameter("rules", &P::rules, "-", {}, "what it heeds beside other road users"),
         parameter("zone", &P::zone, "m", Range{1, 400}, "how far before a merge it begins to give way"),
         parameter("reach", &P::reach, "m", Range{0, 100}, "how far back a vehicle is still let in before"),
         parameter("patience", &P::patience, "s", Range{0, 600},
@@ -45,6 +48,7 @@ struct ZipMerge {
     AgentId ahead = none<AgentId>;  ///< who was last ahead in the own lane before the merge
     float stood{};                  ///< how long it has been standing [s]
     float bend{};                   ///< see `plan_to_center`
+    RoadRules::Memory rules{};
 
     void fell_short(double /*way*/, bool left_course) {
       if (left_course) bend = 0.0f;
@@ -57,21 +61,23 @@ struct ZipMerge {
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
     double const speed = std::max(0.0, view.state().speed);
     wait(memory, speed, dt);
-    detail::IdmLaw const law(idm, speed);
-    detail::Restriction ahead{infinite, 0.0, law.free()};
+    IdmLaw const law(idm, speed, rules.desired_speed(idm, view, speed));
+    Strictest ahead(law);
     double const merge = next_merge(view);
-    auto const leader = merge < infinite ? view.ahead({.merging = Merging::ignored}) : view.ahead();
-    if (leader) ahead.add(law, leader->gap, leader->speed);
+    auto const leader = view.ahead({.merging = merge < infinite ? Merging::ignored : rules.merging});
+    rules.heed(view, leader, ahead);
     if (merge < infinite) {
       if (auto const other = let_in(view, memory, leader, merge)) {
         double const front = view.place().s + view.shape().front;
         double const gap = gap_to_open(merge - front, other->s - other->rear - front, speed, other->speed);
-        ahead.add(law, gap, other->speed);
+        ahead.heed({gap, other->speed});
       }
     } else if (leader) {
       memory.ahead = leader->agent;
     }
-    return plan_to_center(view, memory.bend, law.motion(ahead.gap, ahead.speed, dt, tolerance), dt);
+    auto const motion = law.motion(ahead.constraint(), dt, tolerance);
+    return plan_to_center(view, memory.bend, rules.bound(view, idm, view.place().s, speed, motion, dt, memory.rules),
+                          dt);
   }
 
  private:

@@ -1,4 +1,4 @@
-#include "cambium/behavior/leader.hpp"
+#include "cambium/behavior/road_rules.hpp"
 
 #include <doctest/doctest.h>
 
@@ -52,16 +52,21 @@ TEST_CASE("of a leader and the lane's end that counts which asks for more brakin
   World world(straight_road(1, 300));
   cb::RoadRules const rules{.lane_end = cb::RoadRules::LaneEnd::always};
   auto const ahead = enter(world, cb::IdmClassic{}, rules, 290, 0), id = enter(world, cb::IdmClassic{}, rules, 250, 10);
-  auto const law = [](cb::Leader const& l) { return cb::idm_acceleration(cb::IdmParameters{}, 10.0, l.gap, l.speed); };
+  cb::IdmLaw const law(cb::IdmParameters{}, 10.0);
+  auto const strictest = [&](auto const& view) {
+    cb::Strictest of_all(law);
+    rules.heed(view, of_all);
+    return of_all.constraint();
+  };
   auto const view = world.observe(id);
-  auto const leader = cb::leader_to_follow(rules, view, view.ahead(), law);
+  auto const leader = strictest(view);
   REQUIRE(view.ahead().has_value());
   CHECK(view.ahead()->agent == ahead);
   CHECK(leader.gap < view.ahead()->gap);
   CHECK(leader.gap == doctest::Approx(300 - 250 - 3.6 - 15));
   world.set_state(ahead, {.x = 265, .y = -1.75});
   auto const near = world.observe(id);
-  CHECK(cb::leader_to_follow(rules, near, near.ahead(), law).gap == near.ahead()->gap);
+  CHECK(strictest(near).gap == near.ahead()->gap);
 }
 
 TEST_CASE("the permitted speed is the limit, and what lets it be lower in time") {

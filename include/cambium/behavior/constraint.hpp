@@ -1,0 +1,51 @@
+#pragma once
+
+#include <limits>
+
+namespace cambium {
+
+/// What bounds how a driver goes on: something ahead of it that goes along its lane, or stands. A leader, the end of
+/// the lane, a stop line, a place to give way at.
+struct Constraint {
+  double gap = std::numeric_limits<double>::infinity();  ///< from the own front end to it [m]
+  double speed = 0.0;                                    ///< along the lane [m/s]
+  double acceleration = 0.0;                             ///< of a leader, where a law asks for it [m/s^2]
+};
+
+/// The strictest of a driver's constraints: that which its car-following law answers with the lowest acceleration; of
+/// equals the nearest. Without any the road is free. `Law`: `double operator()(Constraint const&) const` [m/s^2], for
+/// the driver's speed, no higher behind a constraint than on a free road.
+template <class Law>
+class Strictest {
+ public:
+  explicit Strictest(Law const& law) : law_(&law) {}
+
+  void heed(Constraint const& other) {
+    if (!is_free_) {  // a single one is not asked about
+      double const a = (*law_)(other);
+      if (!(a < acceleration() || (a == acceleration() && other.gap < constraint_.gap))) return;
+      acceleration_ = a;
+    } else {
+      is_known_ = false;
+    }
+    is_free_ = false;
+    constraint_ = other;
+  }
+
+  [[nodiscard]] Constraint const& constraint() const { return constraint_; }
+
+  /// What the law answers it with [m/s^2].
+  [[nodiscard]] double acceleration() {
+    if (!is_known_) acceleration_ = (*law_)(constraint_);
+    is_known_ = true;
+    return acceleration_;
+  }
+
+ private:
+  Law const* law_;
+  Constraint constraint_;
+  double acceleration_ = 0.0;
+  bool is_free_ = true, is_known_ = false;
+};
+
+}  // namespace cambium
