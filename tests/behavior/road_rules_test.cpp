@@ -2,12 +2,23 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
+#include <string>
 
+#include "../support/maps.hpp"
 #include "../world/fixtures.hpp"
 #include "cambium/behavior/adaptive_cruise_control.hpp"
 #include "cambium/behavior/idm_lane_tracking.hpp"
 #include "cambium/behavior/idm_stochastic.hpp"
+#include "cambium/behavior/intersection.hpp"
+#include "cambium/behavior/lane_change_rule_based.hpp"
+#include "cambium/behavior/mobil.hpp"
+#include "cambium/behavior/rss_conformant.hpp"
+#include "cambium/behavior/zip_merge.hpp"
+#include "cambium/map/curve_layout.hpp"
+#include "cambium/map/opendrive.hpp"
 
 using namespace fixtures;
 
@@ -105,3 +116,103 @@ TEST_CASE("one who obeys speed limits keeps them, along a town's roads") {
   MESSAGE(limited << " lanes");
   CHECK(limited > 0);
 }
+
+namespace {
+
+/// A straight road of 500 m with a signal of `type` beside its only lane, 200 m on.
+std::shared_ptr<cb::Map const> road_with_signal(std::string const& type) {
+  return cb::parse_opendrive(
+             "<OpenDRIVE><road id='0' length='500' junction='-1'><planView><geometry s='0' x='0' y='0' hdg='0' "
+             "length='500'><line/></geometry></planView><lanes><laneSection s='0'><center><lane "
+             "id='0'/></center><right>"
+             "<lane id='-1' type='driving'><width sOffset='0' a='3.5' b='0' c='0' d='0'/></lane></right></laneSection>"
+             "</lanes><signals><signal id='1' s='200' t='-4' type='" +
+             type + "' subtype='-1' orientation='+' dynamic='no'/></signals></road></OpenDRIVE>")
+      .map;
+}
+
+template <class Behavior>
+using Alone = cb::World<cb::BehaviorSet<Behavior>, cb::InterpolateExecution, cb::SingleTrack>;
+
+}  // namespace
+
+#define DRIVERS                                                                                                   \
+  cb::IdmClassic, cb::AdaptiveCruiseControl, cb::IdmLaneTracking, cb::IdmStochastic, cb::Mobil, cb::Intersection, \
+      cb::LaneChangeRuleBased, cb::ZipMerge, cb::RssConformant<cb::IdmClassic>
+
+template <class Behavior>
+cb::RoadRules& rules_of(Behavior& behavior) {
+  if constexpr (requires { behavior.nominal; })
+    return behavior.nominal.rules;
+  else
+    return behavior.rules;
+}
+
+TEST_CASE_TEMPLATE("every driver stands at a red light until it is green, and runs it where it is not told", Behavior,
+                   DRIVERS) {
+  auto const map = road_with_signal("1000001");
+  REQUIRE(map->lights().size() == 1);
+  for (bool const obeys : {true, false}) {
+    Behavior driver{};
+    rules_of(driver).obey_signals = obeys;
+    Alone<Behavior> world(map);
+    world.set_light(map->lights()[0].id, {.cycle = 100.0, .green_begin = 60.0, .green_end = 90.0});
+    auto const id = world.add({.position = {50, -1.75}, .speed = 13, .behavior = driver});
+    for (int k = 0; k < 290; ++k) REQUIRE(world.step(0.2));
+    CAPTURE(world.state(id).x);
+    if (!obeys) {
+      CHECK(world.state(id).x > 210.0);
+      continue;
+    }
+    double const front = world.state(id).x + world.roster().agents[0].shape.front;
+    CHECK(world.state(id).speed < 0.1);
+    CHECK(front < 200.0);
+    CHECK(front > 197.5);
+    for (int k = 0; k < 50; ++k) REQUIRE(world.step(0.2));
+    CHECK(world.state(id).x > 210.0);
+  }
+}
+
+TEST_CASE_TEMPLATE("every driver stops at a stop sign once, and goes on", Behavior, DRIVERS) {
+  Behavior driver{};
+  rules_of(driver).obey_signals = true;
+  Alone<Behavior> world(road_with_signal("206"));
+  auto const id = world.add({.position = {100, -1.75}, .speed = 13, .behavior = driver});
+  int stops = 0;
+  for (int k = 0; k < 200 && world.state(id).x < 300.0; ++k) {
+    bool const stood = world.state(id).speed < cb::standing_speed;
+    REQUIRE(world.step(0.2));
+    stops += !stood && world.state(id).speed < cb::standing_speed;
+  }
+  CHECK(stops == 1);
+  CHECK(world.state(id).x >= 300.0);
+}
+
+TEST_CASE_TEMPLATE("every driver brakes in time for a bend, comfortably, and not where it is not told", Behavior,
+                   DRIVERS) {
+  double const radius = 20.0;
+  auto const map = support::map_of({.id = "1",
+                                    .line = cb::map::lay_from({}, {{200.0}, {60.0, 1 / radius, 1 / radius}}),
+                                    .sections = {{.right = cb::map::equal_lanes(1)}}});
+  for (bool const slows : {true, false}) {
+    Behavior driver{};
+    auto& rules = rules_of(driver);
+    rules.slow_for_bends = slows;
+    rules.lateral_acceleration = 2.5;
+    Alone<Behavior> world(map);
+    auto const id = world.add({.position = {10, -1.75}, .speed = 14.0, .behavior = driver});
+    double fastest = 0.0, hardest = 0.0;
+    while (world.status(id) == cb::AgentStatus::driving && world.record(id).lane.s < 240.0) {
+      REQUIRE(world.step(0.2));
+      hardest = std::min(hardest, world.record(id).action.acceleration);
+      if (world.record(id).lane.s > 201.0) fastest = std::max(fastest, world.state(id).speed);
+    }
+    double const allowed = std::sqrt(2.5 * (radius + 1.75));
+    CAPTURE(fastest);
+    CAPTURE(hardest);
+    CHECK((fastest < 1.03 * allowed) == slows);
+    if (slows) CHECK(fastest > 0.9 * allowed);
+    CHECK(hardest > -2.5);
+  }
+}
+#undef DRIVERS
