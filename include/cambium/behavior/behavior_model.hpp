@@ -52,6 +52,14 @@ using WorkspaceOf = typename detail::WorkspaceOf<B>::type;
 /// only. One that needs much memory to plan, as a search, names a default constructible `Workspace`, and takes a
 /// reference to one after `dt`: it belongs to the world, is used by agent after agent, is not copied, and what it holds
 /// must not change what is planned.
+///
+/// What a world does for its behaviours' sake they say by constants, all false where they are not there:
+/// - `static constexpr bool looks_beside`: asks for places on the lanes beside; then those are loaded ahead in large
+///   worlds. Nothing else depends on it.
+/// - `static constexpr bool looks_around`: calls `view.around(distance, f)` in each step; then worlds keep an index of
+///   the plane, and the call takes no longer in a large world.
+/// - `static constexpr bool heeds_conflicts`: goes by `LaneCorridor::conflicts`; then worlds refuse an agent that is
+///   larger than those that the map's conflicts are found for.
 template <class B>
 concept BehaviorModel = std::copyable<B> && std::copyable<MemoryOf<B>> && std::default_initializable<MemoryOf<B>> &&(
     requires(B const behavior, ViewArchetype const view, MemoryOf<B> memory, double dt) {
@@ -62,6 +70,47 @@ concept BehaviorModel = std::copyable<B> && std::copyable<MemoryOf<B>> && std::d
     });
 
 namespace detail {
+
+/// Whether a behaviour says so, see `BehaviorModel`.
+template <class B>
+[[nodiscard]] constexpr bool looks_beside() {
+  if constexpr (requires { B::looks_beside; }) return B::looks_beside;
+  return false;
+}
+template <class B>
+[[nodiscard]] constexpr bool looks_around() {
+  if constexpr (requires { B::looks_around; }) return B::looks_around;
+  return false;
+}
+template <class B>
+[[nodiscard]] constexpr bool heeds_conflicts() {
+  if constexpr (requires { B::heeds_conflicts; }) return B::heeds_conflicts;
+  return false;
+}
+
+/// A constant that is meant, but would be overlooked.
+template <class B>
+concept MisspellsConstants = requires {
+  B::look_beside;
+}
+|| requires { B::looks_besides; }
+|| requires { B::looks_aside; }
+|| requires { B::look_around; }
+|| requires { B::looks_arround; }
+|| requires { B::heed_conflicts; }
+|| requires { B::heeds_conflict; };
+
+/// One that is there must be a bool that is known when it is compiled.
+template <class B>
+[[nodiscard]] constexpr bool has_good_constants() {
+  bool good = !MisspellsConstants<B>;
+  if constexpr (requires { &B::looks_beside; }) good = good && std::is_same_v<decltype(&B::looks_beside), bool const*>;
+  if constexpr (requires { &B::looks_around; }) good = good && std::is_same_v<decltype(&B::looks_around), bool const*>;
+  if constexpr (requires { &B::heeds_conflicts; })
+    good = good && std::is_same_v<decltype(&B::heeds_conflicts), bool const*>;
+  return good;
+}
+
 struct HasPlan {
   int plan;
 };
@@ -100,6 +149,10 @@ template <class B>
                 "copied with the frame");
   static_assert(std::default_initializable<Workspace>,
                 "cambium::BehaviorSet<...>: a behaviour's Workspace must be default constructible: worlds make it");
+  if constexpr (is_copyable)
+    static_assert(has_good_constants<B>(),
+                  "cambium::BehaviorSet<...>: what a behaviour says to worlds is `static constexpr bool looks_beside`, "
+                  "looks_around or heeds_conflicts: spell it so, and as such a constant");
   if constexpr (!BehaviorModel<B> && is_copyable && remembers) {
     constexpr bool has_plan = names_plan<B>(), plans = Plans<B>, plans_const = Plans<B const>;
     static_assert(has_plan,

@@ -14,31 +14,6 @@
 namespace cambium {
 
 namespace detail {
-/// Whether a behaviour says that it asks for neighbours in the lanes beside: `static constexpr bool looks_beside`.
-template <class B>
-inline constexpr bool looks_beside = [] {
-  if constexpr (requires { B::looks_beside; })
-    return B::looks_beside;
-  else
-    return false;
-}();
-/// Whether a behaviour says that it asks for who is around, on whatever lane: `static constexpr bool looks_around`.
-template <class B>
-inline constexpr bool looks_around = [] {
-  if constexpr (requires { B::looks_around; })
-    return B::looks_around;
-  else
-    return false;
-}();
-/// Whether a behaviour must not be larger than those that conflicts are found for: `static constexpr bool
-/// heeds_conflicts`.
-template <class B>
-inline constexpr bool heeds_conflicts = [] {
-  if constexpr (requires { B::heeds_conflicts; })
-    return B::heeds_conflicts;
-  else
-    return false;
-}();
 /// Plans by a behaviour that has a workspace: not part of a flattened step, which would take in a whole search.
 template <class B, class View, class Memory, class Workspace>
 CAMBIUM_NOINLINE [[nodiscard]] Plan<View> plan_apart(B const& behavior, View const& view, Memory& memory, double dt,
@@ -79,10 +54,10 @@ struct BehaviorSet {
   static constexpr bool contains = Any::template contains<B>;
 
   /// Whether some of them ask for neighbours in the lanes beside: then those are worth being loaded ahead.
-  static constexpr bool looks_beside = (detail::looks_beside<Behaviors> || ...);
+  static constexpr bool looks_beside = (detail::looks_beside<Behaviors>() || ...);
 
   /// Whether some of them ask for who is around, on whatever lane: then worlds keep an index of the plane.
-  static constexpr bool looks_around = (detail::looks_around<Behaviors> || ...);
+  static constexpr bool looks_around = (detail::looks_around<Behaviors>() || ...);
 
   /// Place of `B` in the set.
   template <class B>

@@ -45,8 +45,8 @@ struct RssConformant {
   using Memory = MemoryOf<Nominal>;
   using Workspace = WorkspaceOf<Nominal>;
   static constexpr bool looks_beside = true;
-  static constexpr bool looks_around = detail::looks_around<Nominal>;
-  static constexpr bool heeds_conflicts = detail::heeds_conflicts<Nominal>;
+  static constexpr bool looks_around = detail::looks_around<Nominal>();
+  static constexpr bool heeds_conflicts = detail::heeds_conflicts<Nominal>();
 
   [[nodiscard]] double start_time() const requires requires(Nominal const behavior) { behavior.start_time(); }
   { return nominal.start_time(); }

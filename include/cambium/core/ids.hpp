@@ -30,7 +30,8 @@ enum class CorridorId : std::uint16_t {};
 enum class PieceId : std::uint16_t {};
 
 template <class Id>
-concept StrongId = std::is_enum_v<Id> && std::is_unsigned_v<std::underlying_type_t<Id>>;
+concept StrongId = std::is_enum_v<Id> &&(std::is_same_v<std::underlying_type_t<Id>, std::uint32_t> ||
+                                         std::is_same_v<std::underlying_type_t<Id>, std::uint16_t>);
 
 /// The value that names nothing.
 template <StrongId Id>

@@ -78,7 +78,7 @@ template <class Behavior>
 [[nodiscard]] bool is_too_large(Map const& map, Behavior const& behavior, geometry::Shape const& shape,
                                 map::RoadCorridor const& road) {
   bool const heeds =
-      std::visit([](auto const& model) { return heeds_conflicts<std::decay_t<decltype(model)>>; }, behavior);
+      std::visit([](auto const& model) { return heeds_conflicts<std::decay_t<decltype(model)>>(); }, behavior);
   return heeds && is_too_large(map, shape, road);
 }
 
