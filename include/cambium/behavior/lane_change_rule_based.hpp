@@ -19,7 +19,7 @@ namespace cambium {
 struct LaneChangeRuleBased {
   IdmParameters idm{};
   LaneChanging changing{};
-  RoadRules rules{.slow_for_bends = true};
+  RoadRules rules{.slow_for_bends = true, .lateral_acceleration = 3.0};
   FreeSpace space{};
   double minimum_remaining = 60.0;
   double advantage = 10.0;

@@ -49,7 +49,7 @@ template <class... Filters>
 struct BasicMobil {
   IdmParameters idm{};
   LaneChanging changing{};
-  RoadRules rules{.slow_for_bends = true};
+  RoadRules rules{.slow_for_bends = true, .lateral_acceleration = 3.0};
   double politeness = 0.2;
   double threshold = 0.2;
   double bias = 0.0;
