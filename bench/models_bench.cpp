@@ -117,7 +117,7 @@ Sim<cb::Intersection> crossing(std::size_t agents) {
 /// Judges nothing.
 struct NoEvaluator {
   template <class World>
-  int evaluate(World const&) const {
+  int operator()(World const&) const {
     return 0;
   }
 };
@@ -136,7 +136,7 @@ void register_steps(std::string const& name, std::size_t agents, Make make, Eval
     yardstick::measure_step(state, (*start)->size(), [&] {
       if (++k % steps_per_run == 0) world = **start;
       benchmark::DoNotOptimize(world.step(dt));
-      benchmark::DoNotOptimize(evaluator.evaluate(world));
+      benchmark::DoNotOptimize(evaluator(world));
     });
   });
 }
@@ -192,7 +192,7 @@ int main(int argc, char** argv) {
     auto const make = [](std::size_t agents) {
       return highway<World>(agents, [](double v) { return cb::IdmLaneTracking{.idm = {.desired_speed = v}}; });
     };
-    register_steps<World>("idm_lane_tracking", n, make, cb::CollisionAny{});
+    register_steps<World>("idm_lane_tracking", n, make, cb::AnyCollision{});
   }
   for (std::size_t const n : {std::size_t{20}, std::size_t{100}, std::size_t{10000}})
     register_steps<Sim<cb::Pedestrian>>("pedestrian", n, [](std::size_t agents) { return crowd(agents); });

@@ -11,7 +11,6 @@
 #include "cambium/behavior/idm_classic.hpp"
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/evaluation/collision.hpp"
-#include "cambium/evaluation/evaluators.hpp"
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/map/build_corridor.hpp"
 #include "cambium/map/opendrive.hpp"
@@ -136,13 +135,12 @@ void register_rollout() {
   yardstick::add("rollout/5x10", [](benchmark::State& state) {
     Sim const start = merging_world(5);
     Sim world = start;
-    cb::Evaluators const judge(cb::CollisionAny{});
     yardstick::measure_rate(state, [&] {
       world = start;
       bool collision = false;
       for (int i = 0; i < 10; ++i) {
         benchmark::DoNotOptimize(world.step(dt));
-        collision = collision || judge.evaluate(world).any_collision;
+        collision = collision || cb::AnyCollision{}(world);
       }
       benchmark::DoNotOptimize(collision);
     });

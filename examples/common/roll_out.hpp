@@ -10,8 +10,7 @@
 #include <vector>
 
 #include "cambium/evaluation/collision.hpp"
-#include "cambium/evaluation/drivable_area.hpp"
-#include "cambium/evaluation/evaluators.hpp"
+#include "cambium/evaluation/off_road.hpp"
 #include "cambium/viewer/record_world.hpp"
 #include "cambium/world/frame.hpp"
 
@@ -115,8 +114,7 @@ template <class Site>
   Outcome outcome;
   outcome.agents = static_cast<std::uint32_t>(world.size());
   outcome.ego = scenario.ego;
-  cambium::Evaluators const judge(cambium::CollisionAny{}, cambium::DrivableArea{scenario.ego},
-                                  cambium::StepCount{settings.steps});
+  auto const ego = world.slot_of(scenario.ego);
   std::optional<Film> film;
   if (recording != nullptr) film.emplace(scenario);
   std::vector<bool> braking(world.size(), false);
@@ -129,17 +127,17 @@ template <class Site>
     count_agents(world, braking, outcome);
     if (rows != nullptr) append_rows(*rows, number, world, scenario.ego);
     if (film) film->record(world);
-    auto const verdict = judge.evaluate(world);
-    outcome.steps = verdict.steps;
-    outcome.off_road = outcome.off_road || verdict.off_road;
-    outcome.collided_first = verdict.collision_first;
-    outcome.collided_second = verdict.collision_second;
+    auto const collision = cambium::AnyCollision{}.pair(world);
+    outcome.steps = world.frame().step;
+    outcome.off_road = outcome.off_road || cambium::OffRoad{}(world, ego);
+    if (collision)
+      std::tie(outcome.collided_first, outcome.collided_second) = std::tie(collision->first, collision->second);
     bool const done = is_done(scenario);
-    if (verdict.any_collision)
+    if (collision)
       outcome.kind = Outcome::Kind::collision;
     else if (done)
       outcome.kind = Outcome::Kind::success;
-    is_over = verdict.any_collision || done || verdict.timed_out;
+    is_over = collision || done || outcome.steps >= settings.steps;
   }
   if constexpr (requires { scenario.counts; }) outcome.counts = scenario.counts;
   if (film) *recording = film->develop(outcome);

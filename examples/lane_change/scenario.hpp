@@ -175,11 +175,11 @@ struct Outcome {
 /// Plays a scenario to its end. A collision of ego, or its leaving the road, counts before the goal.
 inline Outcome play(Scenario scenario) {
   auto& world = scenario.world;
+  auto const ego = world.slot_of(scenario.ego);
   for (int k = 1; k <= most_steps; ++k) {
     if (auto const result = world.step(step); !result)
       throw cb::WorldError("step " + std::to_string(k), to_string(result.problem));
-    if (cb::CollisionEgo{scenario.ego}.evaluate(world).ego_collision ||
-        cb::DrivableArea{scenario.ego}.evaluate(world).off_road)
+    if (cb::Collision{}(world, ego) || cb::OffRoad{}(world, ego))
       return {End::collision, k};
     if (world.reached_goal(scenario.ego)) return {End::success, k};
   }

@@ -185,7 +185,7 @@ struct Scenario {
 /// included.
 [[nodiscard]] inline bool enters_safely(Simulation& world, cambium::AgentId id) {
   constexpr double headway = 0.6;  // [s]
-  if (cambium::CollisionEgo{id}.evaluate(world).ego_collision) return false;
+  if (cambium::Collision{}(world, world.slot_of(id))) return false;
   auto const view = world.observe(id);
   auto const driver = [&](cambium::AgentId agent) {
     return std::get<cambium::IdmClassic>(world.roster().agents[world.slot_of(agent)].behavior);

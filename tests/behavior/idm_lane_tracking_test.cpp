@@ -181,7 +181,7 @@ TEST_CASE("dense traffic on a curve neither collides nor allocates, and its copi
   CHECK(support::allocations() == before);
   for (int i = 0; i < 70; ++i) {
     REQUIRE(copy.step(0.2));
-    CHECK_FALSE(cb::CollisionAny{}.evaluate(copy).any_collision);
+    CHECK_FALSE(cb::AnyCollision{}(copy));
   }
   CHECK(copy.frame() == world.frame());
 }

@@ -76,10 +76,10 @@ AgentId add_before(Sim& world, map::Route const& route, double distance, double 
 /// that nobody collides.
 std::vector<std::optional<double>> times_through(Sim& world, std::vector<AgentId> const& ids, double seconds = 90.0) {
   std::vector<std::optional<double>> times(ids.size());
-  CollisionAny const collision;
+  AnyCollision const collision;
   while (world.time() < seconds) {
     REQUIRE(world.step(0.2));
-    REQUIRE(!collision.evaluate(world).any_collision);
+    REQUIRE(!collision(world));
     for (std::size_t i = 0; i < ids.size(); ++i) {
       auto const lane = world.lane_of(ids[i]);
       auto const& road = world.roster().agents[world.slot_of(ids[i])].road->route;
@@ -201,10 +201,10 @@ TEST_CASE("a junction's priorities go before right before left") {
     waits = waits || conflict.right_of_way == map::RightOfWay::yields;
   CHECK(waits);
   double left_in = 0.0, straight_in = 0.0;
-  CollisionAny const collision;
+  AnyCollision const collision;
   for (int k = 0; k < 200; ++k) {
     REQUIRE(world.step(0.2));
-    REQUIRE(!collision.evaluate(world).any_collision);
+    REQUIRE(!collision(world));
     auto const in = [&](AgentId id) { return is_valid(map->road(map->lane(world.lane_of(id)).road).junction); };
     if (left_in == 0.0 && in(left)) left_in = world.time();
     if (straight_in == 0.0 && in(straight)) straight_in = world.time();
@@ -294,7 +294,7 @@ TEST_CASE("who has just split off and stands with its rear in the way is seen") 
             .behavior = IdmClassic{.desired_speed = 0.1, .maximum_acceleration = 0.01, .highest_acceleration = 0.0},
             .route = turning});
     add_before(at, straight, 30.0, 8.0);
-    CollisionAny const collision;
+    AnyCollision const collision;
     for (int k = 0; k < 100; ++k) {
       REQUIRE(at.step(0.2));
       REQUIRE(!collision.evaluate(at).any_collision);

@@ -99,7 +99,7 @@ Tally drive(bool safe, std::uint32_t scenarios, std::uint64_t seed) {
       CAPTURE(number);
       CAPTURE(t);
       if (!world.step(dt)) FAIL_CHECK("a step failed");
-      collided = cb::CollisionAny{}.evaluate(world).any_collision;
+      collided = cb::AnyCollision{}(world);
       if (safe && collided) FAIL_CHECK("a collision");
       for (std::size_t i = 0; i < lanes.size(); ++i) {
         tally.lane_changes += lane_of(i) != lanes[i];
@@ -159,7 +159,7 @@ TEST_CASE("steps longer than the response time are safe: what may happen in one 
         bool hit = false;
         for (double t = 0; t < 40 && !hit; t += dt) {
           REQUIRE(world.step(dt));
-          hit = cb::CollisionAny{}.evaluate(world).any_collision;
+          hit = cb::AnyCollision{}(world);
         }
         ++runs;
         collided += hit;

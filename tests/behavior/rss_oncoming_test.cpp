@@ -92,7 +92,7 @@ Tally drive(bool safe, std::uint32_t scenarios) {
       CAPTURE(number);
       CAPTURE(t);
       if (!world.step(dt)) FAIL_CHECK("a step failed");
-      collided = cb::CollisionAny{}.evaluate(world).any_collision;
+      collided = cb::AnyCollision{}(world);
       if (safe && collided) FAIL_CHECK("a collision");
       was_left = was_left || world.state(one).y > 0.0;
       braked = braked || (world.state(one).y > 0.0 && world.record(one).action.acceleration < -3.9);

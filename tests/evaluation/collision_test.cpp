@@ -90,10 +90,9 @@ bool brute_any(Sim const& world) {
 }
 
 /// True when the pair that is named does touch.
-bool is_true_pair(Sim const& world, cb::CollisionAny::Result const& found) {
-  auto const first = world.slot_of(found.collision_first);
-  return cb::is_valid(found.collision_second) ? touch(world, first, world.slot_of(found.collision_second))
-                                              : touches_object(world, first);
+bool is_true_pair(Sim const& world, cb::AnyCollision::Pair const& found) {
+  auto const first = world.slot_of(found.first);
+  return cb::is_valid(found.second) ? touch(world, first, world.slot_of(found.second)) : touches_object(world, first);
 }
 
 /// Compares both evaluators with the twin on `frames` frames; returns in how many something touches.
@@ -102,17 +101,17 @@ int compare(Scene const& scene, std::uint32_t frames) {
   int collisions = 0;
   for (std::uint32_t number = 0; number < frames; ++number) {
     auto const world = random_world(map, scene, number);
-    auto const any = cb::CollisionAny{}.evaluate(world);
+    auto const any = cb::AnyCollision{}.pair(world);
     bool const expected = brute_any(world);
-    REQUIRE(any.any_collision == expected);
-    if (any.any_collision) CHECK(is_true_pair(world, any));
+    REQUIRE(any.has_value() == expected);
+    if (any) CHECK(is_true_pair(world, *any));
     collisions += expected;
     for (std::size_t i = 0; i < world.size(); i += 1 + world.size() / 8) {
       auto const slot = static_cast<cb::Slot>(i);
-      auto const ego = cb::CollisionEgo{world.roster().agents[slot].id}.evaluate(world);
+      auto const contact = cb::Collision{}.contact(world, slot);
       auto const other = first_touched(world, slot);
-      CHECK(ego.ego_collision == (other.has_value() || touches_object(world, slot)));
-      CHECK(ego.ego_collision_with == other.value_or(cb::none<AgentId>));
+      CHECK(contact.has_value() == (other.has_value() || touches_object(world, slot)));
+      CHECK(contact.value_or(cb::Contact{}).agent == other.value_or(cb::none<AgentId>));
     }
   }
   return collisions;
@@ -155,9 +154,9 @@ TEST_CASE("up to 1024 agents nothing is allocated, beyond one block") {
   for (std::size_t const agents : {10u, 100u, 1024u, 1025u, 3000u}) {
     auto const world = random_world(map, {agents, 1e7, 1e4, 0.2}, 3);
     auto const before = support::allocations();
-    auto const found = cb::CollisionAny{}.evaluate(world);
+    auto const found = cb::AnyCollision{}.pair(world);
     CHECK(support::allocations() - before == (agents > 1024 ? 1 : 0));
-    CHECK_FALSE(found.any_collision);
+    CHECK_FALSE(found);
   }
 }
 
@@ -171,20 +170,20 @@ TEST_CASE("who touches an object only is told so, and which agent it is otherwis
   Sim world(straight_road(2));
   auto const a = world.add({.position = {20, -1.75}});
   auto const b = world.add({.position = {60, -1.75}});
-  CHECK_FALSE(cb::CollisionAny{}.evaluate(world).any_collision);
+  CHECK_FALSE(cb::AnyCollision{}(world));
   auto const object = world.add_object(rectangle(23.5, -2, 1, 1));
-  CHECK(cb::CollisionEgo{a}.evaluate(world).ego_collision);
-  CHECK(cb::CollisionEgo{a}.evaluate(world).ego_collision_with == cb::none<AgentId>);
-  CHECK_FALSE(cb::CollisionEgo{b}.evaluate(world).ego_collision);
-  CHECK(cb::CollisionAny{}.evaluate(world).collision_first == a);
-  CHECK(cb::CollisionAny{}.evaluate(world).collision_second == cb::none<AgentId>);
+  CHECK(cb::Collision{}(world, world.slot_of(a)));
+  CHECK(cb::Collision{}.contact(world, world.slot_of(a))->object == object);
+  CHECK_FALSE(cb::Collision{}(world, world.slot_of(b)));
+  CHECK(cb::AnyCollision{}.pair(world)->first == a);
+  CHECK(cb::AnyCollision{}.pair(world)->second == cb::none<AgentId>);
   world.remove_object(object);
-  CHECK_FALSE(cb::CollisionAny{}.evaluate(world).any_collision);
+  CHECK_FALSE(cb::AnyCollision{}(world));
   world.set_state(b, {.x = 22, .y = -3.4});
-  CHECK(cb::CollisionEgo{a}.evaluate(world).ego_collision_with == b);
-  CHECK(cb::CollisionEgo{b}.evaluate(world).ego_collision_with == a);
-  CHECK(cb::CollisionAny{}.evaluate(world).collision_first == a);
-  CHECK(cb::CollisionAny{}.evaluate(world).collision_second == b);
+  CHECK(cb::Collision{}.contact(world, world.slot_of(a))->agent == b);
+  CHECK(cb::Collision{}.contact(world, world.slot_of(b))->agent == a);
+  CHECK(cb::AnyCollision{}.pair(world)->first == a);
+  CHECK(cb::AnyCollision{}.pair(world)->second == b);
 }
 
 TEST_CASE("who has left traffic is not hit any more") {
@@ -194,12 +193,35 @@ TEST_CASE("who has left traffic is not hit any more") {
   REQUIRE(world.step(0.5));
   REQUIRE(world.status(gone) == AgentStatus::left_map);
   world.set_state(next, {.x = world.state(gone).x, .y = -1.75});
-  CHECK_FALSE(cb::CollisionAny{}.evaluate(world).any_collision);
-  CHECK_FALSE(cb::CollisionEgo{next}.evaluate(world).ego_collision);
-  CHECK_FALSE(cb::CollisionEgo{gone}.evaluate(world).ego_collision);
+  CHECK_FALSE(cb::AnyCollision{}(world));
+  CHECK_FALSE(cb::Collision{}(world, world.slot_of(next)));
+  CHECK_FALSE(cb::Collision{}(world, world.slot_of(gone)));
 }
 
-TEST_CASE("the collision of an agent that is not there is an error") {
-  Sim const world(straight_road(1, 100));
-  CHECK_THROWS_AS((void)cb::CollisionEgo{static_cast<AgentId>(5)}.evaluate(world), cb::WorldError);
+TEST_CASE("within a margin counts as touching, to all sides, for agents and objects") {
+  Sim world(straight_road(2));
+  auto const a = world.slot_of(world.add({.position = {20, -1.75}, .shape = box(2, 2)}));
+  world.add({.position = {25, -1.75}, .shape = box(2, 2)});  // 1 m ahead
+  CHECK_FALSE(cb::Collision{0.9}(world, a));
+  CHECK(cb::Collision{1.1}(world, a));
+  Sim other(straight_road(2));
+  auto const b = other.slot_of(other.add({.position = {20, -1.75}, .shape = box(2, 2)}));
+  other.add_object(rectangle(23, -2, 1, 1));
+  CHECK_FALSE(cb::Collision{0.9}(other, b));
+  CHECK(cb::Collision{1.1}(other, b));
+}
+
+TEST_CASE("to blame is who drives into somebody or something, not who is hit while it stands or from behind") {
+  Sim world(straight_road(1, 300));
+  auto const rear = world.add({.position = {20, -1.75}, .speed = 10}), front = world.add({.position = {24, -1.75}});
+  cb::AtFaultCollision const at_fault;
+  REQUIRE(cb::Collision{}(world, world.slot_of(rear)));
+  CHECK(at_fault(world, world.slot_of(rear)));
+  CHECK_FALSE(at_fault(world, world.slot_of(front)));
+  world.set_state(front, {.x = 24, .y = -1.75, .speed = 5});
+  CHECK_FALSE(at_fault(world, world.slot_of(front)));
+  world.set_state(rear, {.x = 20, .y = -1.75, .speed = 0});
+  CHECK_FALSE(at_fault(world, world.slot_of(rear)));
+  world.add_object(rectangle(20, -2, 1, 1));
+  CHECK(at_fault(world, world.slot_of(rear)));
 }

@@ -104,7 +104,7 @@ TEST_CASE("searches in traffic change into a gap in the other lane") {
       for (int step = 0; step < 60 && !world.reached_goal(ego); ++step) {
         auto const result = world.step(0.2);
         REQUIRE(result.failed == 0);
-        collisions += CollisionEgo{ego}.evaluate(world).ego_collision ? 1 : 0;
+        collisions += Collision{}(world, world.slot_of(ego)) ? 1 : 0;
       }
       reached += world.reached_goal(ego) ? 1 : 0;
     }
@@ -124,7 +124,7 @@ TEST_CASE("a narrowing where each waits for the other is solved by searching for
     world.add({.position = {45.0, 2.5}, .heading = geometry::pi, .speed = 8, .behavior = planner});
     for (int step = 0; step < 75; ++step) {
       REQUIRE(world.step(0.4).failed == 0);
-      REQUIRE_FALSE(CollisionEgo{ego}.evaluate(world).ego_collision);
+      REQUIRE_FALSE(Collision{}(world, world.slot_of(ego)));
       if (world.state(ego).x > 20.0 && world.state(AgentId{1}).x < -20.0) return true;
     }
     return false;

@@ -78,7 +78,7 @@ TEST_CASE("however it is searched, ego stops behind who stands") {
       world.add({.position = {90, -1.75}, .speed = 0, .behavior = IdmClassic{.desired_speed = 0.1}});
       for (int step = 0; step < 50; ++step) {
         REQUIRE(world.step(0.2));
-        REQUIRE_FALSE(CollisionEgo{ego}.evaluate(world).ego_collision);
+        REQUIRE_FALSE(Collision{}(world, world.slot_of(ego)));
       }
       CHECK(world.state(ego).speed < 3.0);
       CHECK(world.state(ego).x > 55.0);

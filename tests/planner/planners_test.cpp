@@ -57,8 +57,8 @@ TEST_CASE_TEMPLATE("in random traffic it hits nobody, stays on the road and gets
     double way = 0.0;
     for (int i = 0; i < std::lround(25.0 / dt); ++i) {
       REQUIRE(world.step(dt));
-      REQUIRE_FALSE(CollisionAny{}.evaluate(world).any_collision);
-      REQUIRE_FALSE(DrivableArea{ego}.evaluate(world).off_road);
+      REQUIRE_FALSE(AnyCollision{}(world));
+      REQUIRE_FALSE(OffRoad{}(world, world.slot_of(ego)));
       way += world.state(ego).speed * dt;
     }
     CHECK(way > 100.0);
@@ -86,7 +86,7 @@ TEST_CASE_TEMPLATE("where it sees with noise it plans all the same", Planner, Pr
   auto world = traffic<Sim<Planner, ParametricObserver>>(2, Planner{}, {.own = noise, .others = noise});
   for (int i = 0; i < 50; ++i) {
     REQUIRE(world.step(0.2));
-    REQUIRE_FALSE(CollisionEgo{ego}.evaluate(world).ego_collision);
+    REQUIRE_FALSE(Collision{}(world, world.slot_of(ego)));
   }
   CHECK(world.state(ego).speed > 2.0);
 }

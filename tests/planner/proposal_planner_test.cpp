@@ -43,7 +43,7 @@ void drive(Sim& world, int steps, double dt = 0.2) {
   for (int i = 0; i < steps; ++i) {
     auto const result = world.step(dt);
     CHECK(result.failed == 0);
-    REQUIRE_FALSE(CollisionEgo{ego}.evaluate(world).ego_collision);
+    REQUIRE_FALSE(Collision{}(world, world.slot_of(ego)));
   }
 }
 

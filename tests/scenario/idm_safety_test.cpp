@@ -77,7 +77,7 @@ Course drive(Sim world, double dt) {
   course.vehicles = static_cast<int>(world.size());
   for (int i = 0; i * dt < horizon; ++i) {
     course.invalid = course.invalid || !world.step(dt);
-    course.collided = course.collided || cb::CollisionAny{}.evaluate(world).any_collision;
+    course.collided = course.collided || cb::AnyCollision{}(world);
     for (auto const& record : world.frame().agents) {
       course.reversed = course.reversed || record.state.speed < 0.0;
       course.hardest = std::min(course.hardest, record.action.acceleration);

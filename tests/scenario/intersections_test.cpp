@@ -47,7 +47,7 @@ double height(intersection::Simulation const& world, Slot slot) {
 }
 
 bool collides(intersection::Simulation const& world) {
-  if (!CollisionAny{}.evaluate(world).any_collision) return false;
+  if (!AnyCollision{}(world)) return false;
   for (Slot i{}; index_of(i) < world.size(); ++i)
     for (Slot k{}; k < i; ++k)
       if (geometry::intersects(detail::box_at(world, i), detail::box_at(world, k)) &&

@@ -8,7 +8,7 @@
 
 #include "cambium/core/distributions.hpp"
 #include "cambium/evaluation/collision.hpp"
-#include "cambium/evaluation/evaluators.hpp"
+#include "cambium/evaluation/course_end.hpp"
 #include "cambium/scenario/lane_traffic.hpp"
 #include "../support/allocations.hpp"
 #include "fixtures.hpp"
@@ -179,12 +179,12 @@ TEST_CASE("a warm world steps, copies and is judged without allocating") {
   auto start = busy_world(map, 3);
   Mixed world = start;
   CHECK(support::allocations() > at_first + start.size());  // they are counted
-  cb::Evaluators const judge(cb::CollisionAny{}, cb::CollisionEgo{static_cast<cb::AgentId>(0)});
   auto const run = [&] {
     world = start;
     for (int k = 0; k < 100; ++k) {
       REQUIRE(world.step(0.2));
-      (void)judge.evaluate(world);
+      (void)cb::AnyCollision{}(world);
+      (void)course_end(world, cb::Slot{});
     }
   };
   run();

@@ -10,6 +10,7 @@
 #include <boost/container/small_vector.hpp>
 
 #include "cambium/core/ids.hpp"
+#include "cambium/core/parameters.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/box.hpp"
 #include "cambium/geometry/collision.hpp"
@@ -50,62 +51,110 @@ template <class World>
   return world.frame().agents[slot].status == AgentStatus::driving;
 }
 
-/// The first static object (in the order of their ids) that the agent touches.
-template <class World>
-[[nodiscard]] std::optional<ObjectId> touched_object(World const& world, Slot slot) {
-  auto const box = box_at(world, slot);
-  auto const around = box.bounding_box();
-  for (auto const& object : world.roster().objects)
-    if (around.intersects(object.outline.bounding_box()) && geometry::intersects(box, object.outline)) return object.id;
-  return std::nullopt;
-}
-
 }  // namespace detail
 
-/// Whether one agent, while it takes part in traffic, touches another agent or a static object. Throws `WorldError` if
-/// the world does not have the agent. O(agents).
-struct CollisionEgo {
-  struct Result {
-    bool ego_collision = false;
-    AgentId ego_collision_with = none<AgentId>;  ///< the first other agent touched; none if it is an object
-  };
-
+/// Whom or what an agent touches: an agent, or a static object.
+struct Contact {
   AgentId agent = none<AgentId>;
+  ObjectId object = none<ObjectId>;
+};
 
-  template <class World>
-  [[nodiscard]] Result evaluate(World const& world) const {
-    return at_slot(world, world.slot_of(agent));
+/// Whether an agent, while it takes part in traffic, touches another one or a static object, or comes within `margin`
+/// [m] of it: its box, larger by so much to all sides, touches it. O(agents + objects).
+struct Collision {
+  double margin = 0.0;
+
+  static constexpr char const* name = "collision";
+  static constexpr char const* summary = "touches another agent or a static object";
+  static constexpr auto parameters() {
+    return parameter_list(parameter("margin", &Collision::margin, "m", Range{0, 100}, "coming so close counts, too"));
   }
 
-  /// The same for the agent at `ego` of the roster.
   template <class World>
-  [[nodiscard]] static Result at_slot(World const& world, Slot ego) {
-    if (!detail::in_traffic(world, ego)) return {};
-    auto const circle = detail::circle_of(world, ego);
+  [[nodiscard]] bool operator()(World const& world, Slot slot) const {
+    return contact(world, slot).has_value();
+  }
+
+  /// The first one touched: of the agents, in the order of their ids, then of the objects.
+  template <class World>
+  [[nodiscard]] std::optional<Contact> contact(World const& world, Slot slot) const {
+    if (!detail::in_traffic(world, slot)) return std::nullopt;
+    auto const own = [&] {
+      auto box = detail::box_at(world, slot);
+      box.half_length += margin;
+      box.half_width += margin;
+      return box;
+    };
+    auto circle = detail::circle_of(world, slot);
+    circle.radius += 2.0 * margin;
     for (Slot i{}; index_of(i) < world.size(); ++i) {
-      if (i == ego || !detail::in_traffic(world, i) || !circle.meets(detail::circle_of(world, i))) continue;
-      if (geometry::intersects(detail::box_at(world, ego), detail::box_at(world, i)))
-        return {true, world.roster().agents[i].id};
+      if (i == slot || !detail::in_traffic(world, i) || !circle.meets(detail::circle_of(world, i))) continue;
+      if (geometry::intersects(own(), detail::box_at(world, i))) return Contact{.agent = world.roster().agents[i].id};
     }
-    return {!world.roster().objects.empty() && detail::touched_object(world, ego).has_value(), none<AgentId>};
+    if (world.roster().objects.empty()) return std::nullopt;
+    auto const box = own();
+    auto const around = box.bounding_box();
+    for (auto const& object : world.roster().objects)
+      if (around.intersects(object.outline.bounding_box()) && geometry::intersects(box, object.outline))
+        return Contact{.object = object.id};
+    return std::nullopt;
+  }
+};
+
+/// Whether an agent is to blame for a collision: it touches an object, or one that is not behind it, and does not stand
+/// (after the at-fault collisions of Dauner et al. 2023). O(agents + objects).
+struct AtFaultCollision {
+  double standing_speed = 0.05;  ///< slower is standing [m/s]
+
+  static constexpr char const* name = "at_fault_collision";
+  static constexpr char const* summary = "touches an object, or one that is not behind it, and does not stand";
+  static constexpr auto parameters() {
+    return parameter_list(
+        parameter("standing_speed", &AtFaultCollision::standing_speed, "m/s", Range{0, 10}, "slower is standing"));
+  }
+
+  template <class World>
+  [[nodiscard]] bool operator()(World const& world, Slot slot) const {
+    if (!detail::in_traffic(world, slot)) return false;
+    auto const& ego = world.frame().agents[slot].state;
+    double const rear = world.roster().agents[slot].shape.rear;
+    auto const own = detail::box_at(world, slot);
+    for (auto const& object : world.roster().objects)
+      if (geometry::intersects(own, object.outline)) return true;
+    if (ego.speed < standing_speed) return false;
+    for (Slot i{}; index_of(i) < world.size(); ++i) {
+      if (i == slot || !detail::in_traffic(world, i)) continue;
+      auto const box = detail::box_at(world, i);
+      double const ahead = (box.x - ego.x) * own.cos + (box.y - ego.y) * own.sin;
+      if (ahead > -rear && geometry::intersects(own, box)) return true;
+    }
+    return false;
   }
 };
 
 /// Whether any two agents that take part in traffic, or one and a static object, touch. O(n log n); allocates only for
 /// more than 1024 agents.
-struct CollisionAny {
-  struct Result {
-    bool any_collision = false;
-    AgentId collision_first = none<AgentId>,
-            collision_second = none<AgentId>;  ///< a pair that touches; the second is none for an object
+struct AnyCollision {
+  /// Two that touch; the second is none for an object.
+  struct Pair {
+    AgentId first = none<AgentId>, second = none<AgentId>;
   };
 
+  static constexpr char const* name = "any_collision";
+  static constexpr char const* summary = "any two touch, or one and an object";
+  static constexpr auto parameters() { return parameter_list(); }
+
+  /// Whoever it is: the slot does not matter.
   template <class World>
-  [[nodiscard]] Result evaluate(World const& world) const {
+  [[nodiscard]] bool operator()(World const& world, Slot = {}) const {
+    return pair(world).has_value();
+  }
+
+  template <class World>
+  [[nodiscard]] std::optional<Pair> pair(World const& world) const {
     if (!world.roster().objects.empty())
       for (Slot i{}; index_of(i) < world.size(); ++i)
-        if (detail::in_traffic(world, i) && detail::touched_object(world, i))
-          return {true, world.roster().agents[i].id, none<AgentId>};
+        if (detail::in_traffic(world, i) && touches_object(world, i)) return Pair{world.roster().agents[i].id};
     return world.size() <= few ? compare_all(world) : sweep(world);
   }
 
@@ -115,7 +164,7 @@ struct CollisionAny {
   /// The first pair that touches, in the order of the agents. Each is compared with each, in loops that become SIMD
   /// code: less work than sorting so few.
   template <class World>
-  [[nodiscard]] static Result compare_all(World const& world) {
+  [[nodiscard]] static std::optional<Pair> compare_all(World const& world) {
     std::array<double, few> x, y, radius, heading, sin, cos;
     std::array<Slot, few> slots;
     std::size_t count = 0;
@@ -151,14 +200,14 @@ struct CollisionAny {
       has_directions = true;
       auto const own = box(i);
       for (std::size_t j = i + 1; j < count; ++j)
-        if (meet(i, j) && geometry::intersects(own, box(j))) return pair(world, slots[i], slots[j]);
+        if (meet(i, j) && geometry::intersects(own, box(j))) return ordered(world, slots[i], slots[j]);
     }
-    return {};
+    return std::nullopt;
   }
 
   /// The first pair that touches, along the axis on which they are spread wider.
   template <class World>
-  [[nodiscard]] static Result sweep(World const& world) {
+  [[nodiscard]] static std::optional<Pair> sweep(World const& world) {
     boost::container::small_vector<detail::Circle, 1024> circles;
     circles.reserve(world.size());
     geometry::Box scene;
@@ -171,9 +220,19 @@ struct CollisionAny {
     for (std::size_t i = 0; i < circles.size(); ++i) {
       auto const& a = circles[i];
       for (std::size_t j = i + 1; j < circles.size() && circles[j].low <= a.x + a.radius; ++j)
-        if (a.meets(circles[j]) && touch(world, a.slot, circles[j].slot)) return pair(world, a.slot, circles[j].slot);
+        if (a.meets(circles[j]) && touch(world, a.slot, circles[j].slot))
+          return ordered(world, a.slot, circles[j].slot);
     }
-    return {};
+    return std::nullopt;
+  }
+
+  template <class World>
+  [[nodiscard]] static bool touches_object(World const& world, Slot slot) {
+    auto const box = detail::box_at(world, slot);
+    auto const around = box.bounding_box();
+    return std::ranges::any_of(world.roster().objects, [&](auto const& object) {
+      return around.intersects(object.outline.bounding_box()) && geometry::intersects(box, object.outline);
+    });
   }
 
   template <class World>
@@ -182,9 +241,9 @@ struct CollisionAny {
   }
 
   template <class World>
-  [[nodiscard]] static Result pair(World const& world, Slot a, Slot b) {
+  [[nodiscard]] static Pair ordered(World const& world, Slot a, Slot b) {
     auto const& agents = world.roster().agents;
-    return {true, agents[std::min(a, b)].id, agents[std::max(a, b)].id};
+    return {agents[std::min(a, b)].id, agents[std::max(a, b)].id};
   }
 
   /// Sorts by where circles begin along x, or y, which then becomes x: distances do not mind.

@@ -76,7 +76,7 @@ struct MctsCooperative {
     if (!slots.empty())
       for (auto const slot :
            detail::nearest_agents(world, slots[0], static_cast<std::size_t>(most_agents - 1), range)) {
-        if (reward.judge(std::as_const(world), slot, options.step).ends) continue;  // its course is over
+        if (reward.judge(world, slot, options.step).ends) continue;  // its course is over
         world.set_behavior(world.roster().agents[slot].id, detail::ActionSet<Actions>::behavior(actions));
         slots.push_back(slot);
       }

@@ -201,12 +201,10 @@ template <class World>
     auto const who = "agent " + to_string(world.roster().agents[slot].id) + " ";
     auto const status = world.frame().agents[slot].status;
     if (status != AgentStatus::driving) return who + "does not drive: its status is " + to_string(status);
-    auto const touched = CollisionEgo::at_slot(world, slot);
-    if (touched.ego_collision)
-      return who + "touches " +
-             (is_valid(touched.ego_collision_with) ? "agent " + to_string(touched.ego_collision_with) : "an object");
-    if (DrivableArea::off_road(world, slot)) return who + "is off the road";
-    if (drives_against_traffic(world, slot)) return who + "is in a lane of oncoming traffic";
+    if (auto const contact = Collision{}.contact(world, slot))
+      return who + "touches " + (is_valid(contact->agent) ? "agent " + to_string(contact->agent) : "an object");
+    if (OffRoad{}(world, slot)) return who + "is off the road";
+    if (OncomingLane{}(world, slot)) return who + "is in a lane of oncoming traffic";
     if (world.reached_goal(world.roster().agents[slot].id)) return who + "is at its goal";
   }
   return "the reward (`judge`) says so";

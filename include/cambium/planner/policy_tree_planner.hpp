@@ -249,10 +249,9 @@ struct PolicyTreePlanner {
       if (k == change) world.template memory<MacroActions>(id).choose(sequence.then);
       (void)world.step(step);
       visit(world.frame());
-      auto const passage =
-          detail::passage(world, workspace.ego, CollisionEgo::at_slot(world, workspace.ego).ego_collision);
-      if (passage == detail::Passage::is_over || (workspace.has_goal && world.reached_goal(id))) break;
-      if (passage != detail::Passage::goes_on) {  // the sooner, the worse
+      auto const end = course_end(world, workspace.ego);
+      if (end == CourseEnd::over || (workspace.has_goal && world.reached_goal(id))) break;
+      if (end != CourseEnd::none) {  // the sooner, the worse
         double const left = static_cast<double>(steps - k) / steps;
         cost.safety += weights.collision * (1.0 + left);
         cost.efficiency += left;

@@ -221,10 +221,11 @@ struct ProposalPlanner {
       auto const& now = world.frame().agents[ego];
       proposal.progress += 0.5 * step * (before.state.speed + now.state.speed) *
                            std::cos(0.5 * (before.lane.heading_error + now.lane.heading_error));
-      auto const passage = detail::passage(world, ego, detail::is_at_fault(world, ego, workspace.counting));
-      if (passage == detail::Passage::is_over) break;
-      proposal.collides = passage == detail::Passage::collides;
-      proposal.leaves_road = passage == detail::Passage::leaves_road;
+      auto const end = course_end(
+          world, ego, [&](auto const& now, Slot slot) { return detail::is_at_fault(now, slot, workspace.counting); });
+      if (end == CourseEnd::over) break;
+      proposal.collides = end == CourseEnd::collision;
+      proposal.leaves_road = end == CourseEnd::off_road;
       if (proposal.collides || proposal.leaves_road) {
         proposal.time_to_infraction = (driven + 1) * step;
         break;

@@ -66,7 +66,7 @@ class TrafficDomain {
         cooperation_(cooperation) {}
 
   /// The world's own frame as a root; over where the reward says that a course ends there.
-  [[nodiscard]] State root() const {
+  [[nodiscard]] State root() {
     return {world_.frame(),
             std::ranges::any_of(slots_, [&](auto slot) { return reward_.judge(world_, slot, dt_).ends; })};
   }
@@ -122,7 +122,7 @@ class TrafficDomain {
       double sum = 0.0;
       for (std::size_t k = 0; k < slots_.size(); ++k)
         if (k == agent || cooperation_ != 0.0)
-          sum += (k == agent ? 1.0 : cooperation_) * reward_.value(std::as_const(world_), slots_[k], dt_);
+          sum += (k == agent ? 1.0 : cooperation_) * reward_.value(world_, slots_[k], dt_);
       return sum;
     });
   }
@@ -132,7 +132,7 @@ class TrafficDomain {
               std::span<double> out) requires detail::HasPrior<Reward, World, Set> {
     in_world(state, [&] {
       for (std::size_t i = 0; i < actions.size(); ++i)
-        out[i] = reward_.prior(std::as_const(world_), slots_[agent], Set::action(actions_, actions[i]));
+        out[i] = reward_.prior(world_, slots_[agent], Set::action(actions_, actions[i]));
     });
   }
 

@@ -1,13 +1,11 @@
 #pragma once
 
-#include <cmath>
-#include <cstdint>
+#include <concepts>
 
 #include "cambium/core/parameters.hpp"
-#include "cambium/evaluation/collision.hpp"
-#include "cambium/evaluation/drivable_area.hpp"
-#include "cambium/geometry/angle.hpp"
-#include "cambium/planner/detail/predicted.hpp"
+#include "cambium/evaluation/course_end.hpp"
+#include "cambium/evaluation/driving.hpp"
+#include "cambium/evaluation/evaluator.hpp"
 #include "cambium/planner/search_domain.hpp"
 #include "cambium/world/frame.hpp"
 
@@ -21,28 +19,27 @@ struct Judgement {
 
 /// Judges, for a search, where a step of `dt` [s] led the agent at `slot` of `world`: a copyable, described struct
 /// (`static constexpr auto parameters()`, see `TrafficReward`) with
-///   `template <class World> Judgement judge(World const& world, Slot slot, double dt) const`
+///   `template <class World> Judgement judge(World& world, Slot slot, double dt) const`
 /// and, where it likes,
-///   `double value(World const& world, Slot slot, double dt) const`: what a course that is cut off there would
+///   `double value(World& world, Slot slot, double dt) const`: what a course that is cut off there would
 ///     still bring, for `TruncatedRollout` and `NoRollout`;
-///   `double prior(World const& world, Slot slot, MacroAction const& action) const`: how likely the action is
+///   `double prior(World& world, Slot slot, MacroAction const& action) const`: how likely the action is
 ///     the best, a weight of at least 0, for `Puct` (a `MotionPrimitive` or an `ExternalInput::Memory` likewise).
-/// Pure: what it judges is in the frame; neighbours are not (the traffic index is that of another frame). No
-/// allocation.
+/// Pure: what it judges is in the frame; its parts are evaluators. No allocation.
 template <class R, class World>
-concept RewardModel = std::copyable<R> && requires(R const reward, World const world) {
+concept RewardModel = std::copyable<R> && requires(R const reward, World& world) {
   { reward.judge(world, Slot{}, double{}) } -> std::same_as<Judgement>;
 };
 
 namespace detail {
 
 template <class R, class World>
-concept ValuesCourses = requires(R const reward, World const world) {
+concept ValuesCourses = requires(R const reward, World& world) {
   { reward.value(world, Slot{}, double{}) } -> std::convertible_to<double>;
 };
 
 template <class R, class World, class Set>
-concept HasPrior = requires(R const reward, World const world, typename Set::Choice const choice) {
+concept HasPrior = requires(R const reward, World& world, typename Set::Choice const choice) {
   { reward.prior(world, Slot{}, Set::action({}, choice)) } -> std::convertible_to<double>;
 };
 
@@ -85,39 +82,108 @@ struct TrafficReward {
 
   template <class World>
   [[nodiscard]] Judgement judge(World const& world, Slot slot, double dt) const {
-    auto const& record = world.frame().agents[slot];
-    switch (record.status) {
-      case AgentStatus::driving:
+    switch (course_end(world, slot, Collision{}, off_road != 0.0)) {
+      case CourseEnd::none:
         break;
-      case AgentStatus::off_route:
-      case AgentStatus::failed:
-        return {{off_road, 0.0}, true};
-      default:
+      case CourseEnd::over:
         return {{}, true};
+      case CourseEnd::collision:
+        return {{collision, 1.0}, true};
+      case CourseEnd::off_road:
+        return {{off_road, 0.0}, true};
     }
-    if (CollisionEgo::at_slot(world, slot).ego_collision) return {{collision, 1.0}, true};
-    if (off_road != 0.0 && (DrivableArea::off_road(world, slot) || detail::drives_against_traffic(world, slot)))
-      return {{off_road, 0.0}, true};
-    bool const there = goal != 0.0 && world.reached_goal(world.roster().agents[slot].id);
-    return {{on_the_way(record, dt) + (there ? goal : 0.0), 0.0}, there};
+    bool const there = goal != 0.0 && AtGoal{}(world, slot);
+    return {{on_the_way(world, slot, dt) + (there ? goal : 0.0), 0.0}, there};
   }
 
   /// What is on the way, for `lookahead`.
   template <class World>
   [[nodiscard]] double value(World const& world, Slot slot, double) const {
-    return on_the_way(world.frame().agents[slot], lookahead);
+    return on_the_way(world, slot, lookahead);
   }
 
  private:
-  template <class Record>
-  [[nodiscard]] double on_the_way(Record const& record, double duration) const {
-    double const speed = record.state.speed;
+  template <class World>
+  [[nodiscard]] double on_the_way(World const& world, Slot slot, double duration) const {
+    double const a = Acceleration{}(world, slot);
     double reward = 0.0;
-    reward += progress * speed * geometry::sin_cos(record.lane.heading_error).cos * duration;
-    reward += speed_deviation * std::abs(speed - desired_speed) * duration;
-    reward += acceleration * record.action.acceleration * record.action.acceleration * duration;
-    reward += lateral_offset * std::abs(record.lane.lateral) * duration;
+    reward += progress * Progress{}(world, slot) * duration;
+    reward += speed_deviation * SpeedDeviation{desired_speed}(world, slot) * duration;
+    reward += acceleration * a * a * duration;
+    reward += lateral_offset * LaneOffset{}(world, slot) * duration;
     return reward;
+  }
+};
+
+/// A term of a reward: what an evaluator says after a step, times a weight.
+template <class E>
+struct Weighted {
+  static_assert(
+      Described<E>,
+      "cambium::Reward<Evaluators...>: describe each evaluator's parameters, as cambium::Collision does; where "
+      "it has none: `static constexpr auto parameters() { return cambium::parameter_list(); }`");
+  E evaluator{};
+  double weight = 0.0;
+  bool per_second = false;
+  bool ends = false;
+
+  static constexpr char const* name = "weighted";
+  static constexpr auto parameters() {
+    using P = Weighted;
+    return parameter_list(
+        parameter("evaluator", &P::evaluator, "-", {}, "what judges"),
+        parameter("weight", &P::weight, "-", any_finite, "of what it says"),
+        parameter("per_second", &P::per_second, "-", Range{0, 1}, "it counts for as long as the step takes"),
+        parameter("ends", &P::ends, "-", Range{0, 1}, "a course ends where it says anything but 0"));
+  }
+
+  template <class World>
+  void judge(World& world, Slot slot, double dt, Judgement& all) const {
+    static_assert(
+        EvaluatorFor<E, World>,
+        "cambium::Reward<Evaluators...>: each must have `template <class World> auto operator()(World&, Slot) "
+        "const` that returns a bool or a number (see EvaluatorFor)");
+    auto const value = static_cast<double>(evaluator(world, slot));
+    all.outcome.reward += weight * value * (per_second ? dt : 1.0);
+    all.ends = all.ends || (ends && value != 0.0);
+  }
+};
+
+/// What `TrafficReward` says, and terms of a user's own: one for each evaluator.
+template <class... Evaluators>
+struct Reward;
+
+template <>
+struct Reward<> : TrafficReward {};
+
+template <class First, class... Rest>
+struct Reward<First, Rest...> {
+  Weighted<First> first{};
+  Reward<Rest...> rest{};
+
+  static constexpr char const* name = "reward";
+  static constexpr auto parameters() {
+    return parameter_list(parameter("first", &Reward::first, "-", {}, "the first term"),
+                          parameter("rest", &Reward::rest, "-", {}, "the further ones, at last those of traffic"));
+  }
+
+  /// Those of traffic.
+  [[nodiscard]] TrafficReward& traffic() {
+    if constexpr (sizeof...(Rest) == 0)
+      return rest;
+    else
+      return rest.traffic();
+  }
+
+  template <class World>
+  [[nodiscard]] Judgement judge(World& world, Slot slot, double dt) const {
+    auto all = rest.judge(world, slot, dt);
+    if (!all.ends) first.judge(world, slot, dt, all);
+    return all;
+  }
+  template <class World>
+  [[nodiscard]] double value(World& world, Slot slot, double dt) const {
+    return rest.value(world, slot, dt);
   }
 };
 

@@ -306,8 +306,8 @@ class World {
 
   /// What the agent sees now: a view, valid until the world changes. Throws as `slot_of`. Brings the traffic index up
   /// to date.
-  [[nodiscard]] View observe(AgentId id) & {
-    auto const slot = slot_of(id);
+  [[nodiscard]] View observe(AgentId id) & { return observe(slot_of(id)); }
+  [[nodiscard]] View observe(Slot slot) & {
     refresh_traffic();
     return View(*this, slot);
   }

@@ -10,7 +10,7 @@
 
 #include "cambium/core/plan.hpp"
 #include "cambium/evaluation/collision.hpp"
-#include "cambium/evaluation/drivable_area.hpp"
+#include "cambium/evaluation/course_end.hpp"
 #include "cambium/world/prediction.hpp"
 
 namespace cambium::detail {
@@ -173,44 +173,6 @@ template <class World>
     return in_traffic(world, i) && geometry::intersects(own, box_after(world, i, time)) &&
            distance_ahead(ego, box_at(world, i)) > behind;
   });
-}
-
-/// Whether the middle of `box` is in a lane that runs the other way, and in none that runs its way.
-[[nodiscard]] inline bool is_against_traffic(Map const& map, geometry::OrientedBox const& box) {
-  auto const hit = map.nearest_lane({box.x, box.y, std::atan2(box.sin, box.cos)}, 0.0);
-  if (!hit) return false;
-  auto const along = geometry::sin_cos(map.lane(hit->lane).path.pose(hit->s).heading);
-  return along.cos * box.cos + along.sin * box.sin < 0.0;
-}
-
-/// Whether the agent at `slot`, which is in no lane of its road, drives in a lane of oncoming traffic.
-template <class World>
-[[nodiscard]] bool drives_against_traffic(World const& world, Slot slot) {
-  auto const& at = world.frame().agents[slot].lane;
-  auto const sides = world.roster().agents[slot].road->corridors[at.corridor].widths_at(at.s, at.segment);
-  bool const is_in_lane = at.lateral < sides.left && -at.lateral < sides.right;
-  return !is_in_lane && is_against_traffic(world.map(), box_at(world, slot));
-}
-
-/// What became of a predicted course in a step.
-enum class Passage : std::uint8_t { goes_on, is_over, collides, leaves_road };
-
-/// The same for the agent at `slot`, which `touches` somebody or something, or does not; over is what ends at its
-/// destination, or with the map. Who drives in a lane of oncoming traffic has left the road.
-template <class World>
-[[nodiscard]] Passage passage(World const& world, Slot slot, bool touches) {
-  switch (world.frame().agents[slot].status) {
-    case AgentStatus::driving:
-      break;
-    case AgentStatus::off_route:
-    case AgentStatus::failed:
-      return Passage::leaves_road;
-    default:
-      return Passage::is_over;
-  }
-  if (touches) return Passage::collides;
-  bool const leaves = DrivableArea::off_road(world, slot) || drives_against_traffic(world, slot);
-  return leaves ? Passage::leaves_road : Passage::goes_on;
 }
 
 /// How many lane changes it takes from `piece` of lane corridor `number` to one that the route ends in; 0 where none

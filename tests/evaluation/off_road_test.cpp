@@ -1,5 +1,5 @@
 // The drivable area against a twin that looks at points all around the vehicle.
-#include "cambium/evaluation/drivable_area.hpp"
+#include "cambium/evaluation/off_road.hpp"
 
 #include <doctest/doctest.h>
 
@@ -71,7 +71,7 @@ Count compare(std::shared_ptr<cb::Map const> const& map, std::uint32_t places, d
                    turn = along ? between(-0.05, 0.05, random) : between(-1.3, 1.3, random);
       auto const at = cb::geometry::to_map(pose, {0.0, aside});
       world.set_state(id, {.x = at.x(), .y = at.y(), .heading = pose.heading + turn, .speed = 5});
-      bool const off = cb::DrivableArea{id}.evaluate(world).off_road;
+      bool const off = cb::OffRoad{}(world, world.slot_of(id));
       auto const twin = look(world, id);
       CAPTURE(map->describe(lane.id));
       CAPTURE(at.x());
@@ -148,7 +148,7 @@ Count compare_on_bends(std::vector<double> const& curvatures, double length, std
       auto const at = cb::geometry::to_map(pose, {0.0, k % 2 == 0 ? 0.0 : between(-0.8, 0.8, random)});
       double const turn = k % 3 == 0 ? 0.0 : between(-0.1, 0.1, random);
       world.set_state(id, {.x = at.x(), .y = at.y(), .heading = pose.heading + turn, .speed = 5});
-      bool const off = cb::DrivableArea{id}.evaluate(world).off_road;
+      bool const off = cb::OffRoad{}(world, world.slot_of(id));
       CAPTURE(curvatures[0]);
       CAPTURE(curvatures.size());
       CAPTURE(length);
@@ -174,10 +174,10 @@ TEST_CASE("a truck that enters a tight bend along its lane leaves the road with 
           world.add({.position = {38, 0}, .speed = 5, .shape = truck ? cb::geometry::truck() : cb::geometry::car()});
       CHECK(world.record(id).lane.lateral == doctest::Approx(0.0));
       CHECK(world.record(id).lane.heading_error == doctest::Approx(0.0));
-      CHECK(cb::DrivableArea{id}.evaluate(world).off_road == truck);
+      CHECK(cb::OffRoad{}(world, world.slot_of(id)) == truck);
       CHECK(look(world, id).off == truck);
       world.set_state(id, {.x = 20, .y = 0, .speed = 5});  // well before
-      CHECK_FALSE(cb::DrivableArea{id}.evaluate(world).off_road);
+      CHECK_FALSE(cb::OffRoad{}(world, world.slot_of(id)));
     }
   }
 }
@@ -201,7 +201,7 @@ TEST_CASE("a vehicle that crosses from lane to lane stays on the road, one that 
   auto const id = world.add({.position = {100, -1.75}});
   auto const off_at = [&](double y) {
     world.set_state(id, {.x = 100, .y = y});
-    return cb::DrivableArea{id}.evaluate(world).off_road;
+    return cb::OffRoad{}(world, world.slot_of(id));
   };
   CHECK_FALSE(off_at(-3.5));
   CHECK_FALSE(off_at(-0.92));
@@ -215,7 +215,7 @@ TEST_CASE("where the map ends the road does not: who drives out of it is not off
   auto const id = world.add({.position = {50, -1.75}});
   auto const off_at = [&](double x, double y) {
     world.set_state(id, {.x = x, .y = y});
-    return cb::DrivableArea{id}.evaluate(world).off_road;
+    return cb::OffRoad{}(world, world.slot_of(id));
   };
   CHECK_FALSE(off_at(98, -1.75));
   CHECK_FALSE(off_at(0.3, -1.75));
@@ -228,14 +228,9 @@ TEST_CASE("who has left traffic is not off the road") {
   auto const id = world.add({.position = {98, -1.75}, .speed = 20, .behavior = cb::ConstantAcceleration{}});
   REQUIRE(world.step(1.0));
   REQUIRE(world.status(id) == cb::AgentStatus::left_map);
-  CHECK_FALSE(cb::DrivableArea{id}.evaluate(world).off_road);
+  CHECK_FALSE(cb::OffRoad{}(world, world.slot_of(id)));
   world.set_state(id, {.x = 50, .y = 2});  // back in traffic
-  CHECK(cb::DrivableArea{id}.evaluate(world).off_road);
-}
-
-TEST_CASE("the road of an agent that is not there is an error") {
-  Sim const world(straight_road(1, 100));
-  CHECK_THROWS_AS((void)cb::DrivableArea{static_cast<cb::AgentId>(5)}.evaluate(world), cb::WorldError);
+  CHECK(cb::OffRoad{}(world, world.slot_of(id)));
 }
 
 TEST_CASE("where a bend is followed by one to the other side, too") {

@@ -6,30 +6,24 @@
 #include <cstdint>
 
 #include "cambium/core/ids.hpp"
+#include "cambium/core/parameters.hpp"
+#include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/oriented_box.hpp"
 #include "cambium/map/corridor.hpp"
+#include "cambium/map/map.hpp"
 #include "cambium/world/frame.hpp"
 
 namespace cambium {
 
 /// Whether an agent, while it takes part in traffic, has left the drivable lanes of the map: a corner of its box or the
-/// middle of a side lies in none. Throws `WorldError` if the world does not have the agent. O(log lanes); O(1) well
-/// inside the own lane.
-struct DrivableArea {
-  struct Result {
-    bool off_road = false;
-  };
-
-  AgentId agent = none<AgentId>;
+/// middle of a side lies in none. O(log lanes); O(1) well inside the own lane.
+struct OffRoad {
+  static constexpr char const* name = "off_road";
+  static constexpr char const* summary = "a corner, or the middle of a side, of its box is in no drivable lane";
+  static constexpr auto parameters() { return parameter_list(); }
 
   template <class World>
-  [[nodiscard]] Result evaluate(World const& world) const {
-    return {off_road(world, world.slot_of(agent))};
-  }
-
-  /// The same for the agent at `slot` of the roster.
-  template <class World>
-  [[nodiscard]] static bool off_road(World const& world, Slot slot) {
+  [[nodiscard]] bool operator()(World const& world, Slot slot) const {
     auto const& record = world.frame().agents[slot];
     if (record.status != AgentStatus::driving || inside_lanes(world, slot)) return false;
     auto const& s = record.state;
@@ -98,6 +92,36 @@ struct DrivableArea {
     if (foot.s > 0.0 && foot.s < corridor.length()) return true;
     auto const end = foot.s <= 0.0 ? corridor.widths.front() : corridor.widths.back();
     return foot.lateral > end.left || foot.lateral < -end.right;
+  }
+};
+
+namespace detail {
+
+/// Whether the middle of `box` is in a lane that runs the other way, and in none that runs its way.
+[[nodiscard]] inline bool is_against_traffic(Map const& map, geometry::OrientedBox const& box) {
+  auto const hit = map.nearest_lane({box.x, box.y, std::atan2(box.sin, box.cos)}, 0.0);
+  if (!hit) return false;
+  auto const along = geometry::sin_cos(map.lane(hit->lane).path.pose(hit->s).heading);
+  return along.cos * box.cos + along.sin * box.sin < 0.0;
+}
+
+}  // namespace detail
+
+/// Whether an agent that takes part in traffic and is in no lane of its route drives in a lane of oncoming traffic.
+struct OncomingLane {
+  static constexpr char const* name = "oncoming_lane";
+  static constexpr char const* summary = "drives in a lane of oncoming traffic";
+  static constexpr auto parameters() { return parameter_list(); }
+
+  template <class World>
+  [[nodiscard]] bool operator()(World const& world, Slot slot) const {
+    auto const& record = world.frame().agents[slot];
+    if (record.status != AgentStatus::driving) return false;
+    auto const& at = record.lane;
+    auto const sides = world.roster().agents[slot].road->corridors[at.corridor].widths_at(at.s, at.segment);
+    bool const is_in_lane = at.lateral < sides.left && -at.lateral < sides.right;
+    return !is_in_lane &&
+           detail::is_against_traffic(world.map(), geometry::box_of(world.roster().agents[slot].shape, record.state));
   }
 };
 

@@ -1,0 +1,157 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "cambium/core/ids.hpp"
+#include "cambium/core/parameters.hpp"
+#include "cambium/geometry/angle.hpp"
+#include "cambium/geometry/shape.hpp"
+
+namespace cambium {
+
+/// Whether an agent is at its goal; never without one.
+struct AtGoal {
+  static constexpr char const* name = "at_goal";
+  static constexpr char const* summary = "is at its goal";
+  static constexpr auto parameters() { return parameter_list(); }
+
+  template <class World>
+  [[nodiscard]] bool operator()(World const& world, Slot slot) const {
+    return world.reached_goal(world.roster().agents[slot].id);
+  }
+};
+
+/// How fast an agent goes along its lane [m/s].
+struct Progress {
+  static constexpr char const* name = "progress";
+  static constexpr char const* summary = "how fast it goes along its lane [m/s]";
+  static constexpr auto parameters() { return parameter_list(); }
+
+  template <class World>
+  [[nodiscard]] double operator()(World const& world, Slot slot) const {
+    auto const& record = world.frame().agents[slot];
+    return record.state.speed * geometry::sin_cos(record.lane.heading_error).cos;
+  }
+};
+
+/// How far the agent's speed is from what it should be [m/s].
+struct SpeedDeviation {
+  double desired_speed = 15.0;  ///< [m/s]
+
+  static constexpr char const* name = "speed_deviation";
+  static constexpr char const* summary = "how far its speed is from what it should be [m/s]";
+  static constexpr auto parameters() {
+    return parameter_list(
+        parameter("desired_speed", &SpeedDeviation::desired_speed, "m/s", Range{0, 200}, "what it should be"));
+  }
+
+  template <class World>
+  [[nodiscard]] double operator()(World const& world, Slot slot) const {
+    return std::abs(world.frame().agents[slot].state.speed - desired_speed);
+  }
+};
+
+/// How far the agent is from the middle of its lane [m].
+struct LaneOffset {
+  static constexpr char const* name = "lane_offset";
+  static constexpr char const* summary = "how far it is from the middle of its lane [m]";
+  static constexpr auto parameters() { return parameter_list(); }
+
+  template <class World>
+  [[nodiscard]] double operator()(World const& world, Slot slot) const {
+    return std::abs(world.frame().agents[slot].lane.lateral);
+  }
+};
+
+/// Its acceleration over the last step, along its heading [m/s^2].
+struct Acceleration {
+  static constexpr char const* name = "acceleration";
+  static constexpr char const* summary = "over the last step [m/s^2]";
+  static constexpr auto parameters() { return parameter_list(); }
+
+  template <class World>
+  [[nodiscard]] double operator()(World const& world, Slot slot) const {
+    return world.frame().agents[slot].action.acceleration;
+  }
+};
+
+/// Whether it has braked harder than so much.
+struct HardBraking {
+  double deceleration = 4.0;  ///< [m/s^2]
+
+  static constexpr char const* name = "hard_braking";
+  static constexpr char const* summary = "has braked harder than so much";
+  static constexpr auto parameters() {
+    return parameter_list(parameter("deceleration", &HardBraking::deceleration, "m/s^2", Range{0, 50}, "what is hard"));
+  }
+
+  template <class World>
+  [[nodiscard]] bool operator()(World const& world, Slot slot) const {
+    return world.frame().agents[slot].action.acceleration < -deceleration;
+  }
+};
+
+/// Its acceleration across its heading, left positive [m/s^2]: by how much it has turned over the last step. Of worlds
+/// that keep a history (`World::keep_history`); 0 before there is one.
+struct LateralAcceleration {
+  static constexpr char const* name = "lateral_acceleration";
+  static constexpr char const* summary = "over the last step, left positive [m/s^2]; needs a history";
+  static constexpr auto parameters() { return parameter_list(); }
+
+  template <class World>
+  [[nodiscard]] double operator()(World const& world, Slot slot) const {
+    if (world.history_size() == 0) return 0.0;
+    auto const &now = world.frame().agents[slot].state, &before = world.history(1).agents[slot].state;
+    double const dt = now.time - before.time;
+    return dt > 0.0 ? now.speed * geometry::angle_difference(now.heading, before.heading) / dt : 0.0;
+  }
+};
+
+/// How its acceleration has changed since the step before [m/s^3]. Of worlds that keep a history; 0 before there is
+/// one.
+struct Jerk {
+  static constexpr char const* name = "jerk";
+  static constexpr char const* summary = "change of the acceleration since the step before [m/s^3]; needs a history";
+  static constexpr auto parameters() { return parameter_list(); }
+
+  template <class World>
+  [[nodiscard]] double operator()(World const& world, Slot slot) const {
+    if (world.history_size() == 0) return 0.0;
+    auto const &now = world.frame().agents[slot], &before = world.history(1).agents[slot];
+    double const dt = now.state.time - before.state.time;
+    return dt > 0.0 ? (now.action.acceleration - before.action.acceleration) / dt : 0.0;
+  }
+};
+
+/// The free road to the next one ahead along its lane corridor, bumper to bumper [m]; infinite where there is none.
+struct Gap {
+  static constexpr char const* name = "gap";
+  static constexpr char const* summary = "free road to the next one ahead [m]";
+  static constexpr auto parameters() { return parameter_list(); }
+
+  template <class World>
+  [[nodiscard]] double operator()(World& world, Slot slot) const {
+    auto const next = world.observe(slot).ahead();
+    return next ? next->gap : std::numeric_limits<double>::infinity();
+  }
+};
+
+/// When it would run into the next one ahead along its lane corridor if both kept their speeds [s]; infinite where it
+/// would not.
+struct TimeToCollision {
+  static constexpr char const* name = "time_to_collision";
+  static constexpr char const* summary = "to the next one ahead, at constant speeds [s]";
+  static constexpr auto parameters() { return parameter_list(); }
+
+  template <class World>
+  [[nodiscard]] double operator()(World& world, Slot slot) const {
+    auto const view = world.observe(slot);
+    auto const next = view.ahead();
+    double const closing = next ? view.state().speed - next->speed : 0.0;
+    return closing > 0.0 ? std::max(0.0, next->gap) / closing : std::numeric_limits<double>::infinity();
+  }
+};
+
+}  // namespace cambium

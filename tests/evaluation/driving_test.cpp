@@ -1,0 +1,121 @@
+#include "cambium/evaluation/driving.hpp"
+
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "../support/maps.hpp"
+#include "../world/fixtures.hpp"
+#include "cambium/evaluation/course_end.hpp"
+#include "cambium/evaluation/evaluator.hpp"
+#include "cambium/map/curve_layout.hpp"
+
+using namespace fixtures;
+
+namespace {
+
+/// A user's own: looks at its neighbours through a view.
+struct TimeHeadway {
+  template <class World>
+  double operator()(World& world, cb::Slot slot) const {
+    auto const view = world.observe(slot);
+    auto const next = view.ahead();
+    return next ? next->gap / view.state().speed : 1e9;
+  }
+};
+static_assert(cb::EvaluatorFor<TimeHeadway, Sim> && cb::EvaluatorFor<cb::Collision, Sim const>);
+
+}  // namespace
+
+TEST_CASE("the goal is reached by the agent that has it, while it is there") {
+  Sim world(straight_road(1, 300));
+  auto const lane = world.map().find_lane("1", 0, -1);
+  auto const ego = world.slot_of(world.add({.position = {40, -1.75},
+                                            .speed = 10,
+                                            .behavior = cb::ConstantAcceleration{},
+                                            .goal = cb::ReachLane{lane, 50.0, 70.0}}));
+  auto const other =
+      world.slot_of(world.add({.position = {60, -1.75}, .speed = 10, .behavior = cb::ConstantAcceleration{}}));
+  cb::AtGoal const reached;
+  CHECK_FALSE(reached(world, ego));
+  for (int i = 0; i < 10; ++i) REQUIRE(world.step(0.2));  // at 60 m
+  CHECK(reached(world, ego));
+  CHECK_FALSE(reached(world, other));
+  for (int i = 0; i < 10; ++i) REQUIRE(world.step(0.2));  // at 80 m
+  CHECK_FALSE(reached(world, ego));
+}
+
+TEST_CASE("motion is judged along and across the lane") {
+  Sim world(straight_road(1, 300));
+  auto const id = world.add({.position = {40, -1.5},
+                             .heading = 0.3,
+                             .speed = 10,
+                             .behavior = cb::ConstantAcceleration{.acceleration = -5.0}});
+  auto const ego = world.slot_of(id);
+  world.keep_history(1);
+  CHECK(cb::Progress{}(world, ego) == doctest::Approx(10 * std::cos(0.3)));
+  CHECK(cb::LaneOffset{}(world, ego) == doctest::Approx(0.25));
+  CHECK(cb::SpeedDeviation{12.0}(world, ego) == doctest::Approx(2.0));
+  CHECK(cb::Jerk{}(world, ego) == 0.0);
+  CHECK(cb::LateralAcceleration{}(world, ego) == 0.0);
+  REQUIRE(world.step(0.2));
+  CHECK(cb::Acceleration{}(world, ego) == doctest::Approx(-5.0));
+  CHECK(cb::HardBraking{}(world, ego));
+  CHECK_FALSE(cb::HardBraking{5.5}(world, ego));
+  CHECK(cb::Jerk{}(world, ego) == doctest::Approx(-25.0));  // it did not brake before
+  REQUIRE(world.step(0.2));
+  CHECK(cb::Jerk{}(world, ego) == doctest::Approx(0.0));
+}
+
+TEST_CASE("the lateral acceleration is that of the curve driven") {
+  auto const map = support::map_of({.id = "1",
+                                    .line = cb::map::lay_from({}, {{200.0, 0.02, 0.02}}),
+                                    .sections = {{.right = cb::map::equal_lanes(1)}}});
+  Sim world(map);
+  auto const& lane = map->lanes()[0];
+  auto const pose = lane.path.pose(20.0);
+  auto const ego = world.slot_of(world.add(
+      {.position = pose.position(), .heading = pose.heading, .speed = 10, .behavior = cb::ConstantAcceleration{}}));
+  world.keep_history(1);
+  for (int i = 0; i < 5; ++i) REQUIRE(world.step(0.2));
+  double const radius = 50.0 + 1.75;  // the lane is on the outer side
+  CHECK(cb::LateralAcceleration{}(world, ego) == doctest::Approx(100.0 / radius).epsilon(0.01));
+}
+
+TEST_CASE("gaps and times to collision are those of the next one ahead; one's own evaluator looks likewise") {
+  Sim world(straight_road(1, 300));
+  auto const ego = world.slot_of(world.add({.position = {40, -1.75}, .speed = 10}));
+  CHECK(std::isinf(cb::Gap{}(world, ego)));
+  CHECK(std::isinf(cb::TimeToCollision{}(world, ego)));
+  auto const ahead = world.add({.position = {80, -1.75}, .speed = 6});
+  double const gap = 40.0 - cb::geometry::car().front - cb::geometry::car().rear;
+  CHECK(cb::Gap{}(world, ego) == doctest::Approx(gap));
+  CHECK(cb::TimeToCollision{}(world, ego) == doctest::Approx(gap / 4.0));
+  CHECK(TimeHeadway{}(world, ego) == doctest::Approx(gap / 10.0));
+  world.set_state(ahead, {.x = 80, .y = -1.75, .speed = 12});
+  CHECK(std::isinf(cb::TimeToCollision{}(world, ego)));
+}
+
+TEST_CASE("a course ends by a collision, off the road, in an oncoming lane, off its route, or where the map ends") {
+  auto const map = support::two_way_road(300.0);
+  Sim world(map);
+  auto const id = world.add({.position = {40, -1.75}, .heading = 0.0, .speed = 10});
+  auto const ego = world.slot_of(id);
+  CHECK(course_end(world, ego) == cb::CourseEnd::none);
+  world.set_state(id, {.x = 60, .y = 1.75, .heading = 0.0, .speed = 10});
+  CHECK(cb::OncomingLane{}(world, ego));
+  CHECK(course_end(world, ego) == cb::CourseEnd::off_road);
+  CHECK(course_end(world, ego, cb::Collision{}, false) == cb::CourseEnd::none);
+  world.set_state(id, {.x = 60, .y = -3.0, .heading = 0.0, .speed = 10});
+  CHECK(cb::OffRoad{}(world, ego));
+  CHECK(course_end(world, ego) == cb::CourseEnd::off_road);
+  world.set_state(id, {.x = 60, .y = -1.75, .heading = 0.0, .speed = 10});
+  world.add({.position = {62, -1.75}, .heading = 0.0});
+  CHECK(course_end(world, ego) == cb::CourseEnd::collision);
+  auto const nobody = [](auto const&, cb::Slot) { return false; };
+  CHECK(course_end(world, ego, nobody) == cb::CourseEnd::none);
+  world.set_state(id, {.x = 299, .y = -1.75, .heading = 0.0, .speed = 20});
+  REQUIRE(world.step(0.5));
+  CHECK(course_end(world, ego) == cb::CourseEnd::over);
+}

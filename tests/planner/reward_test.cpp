@@ -1,0 +1,90 @@
+// Rewards made of evaluators, a user's own among them.
+#include <doctest/doctest.h>
+
+#include <cmath>
+
+#include "cambium/execution/interpolate.hpp"
+#include "cambium/planner/mcts_single_agent.hpp"
+#include "cambium/world/world.hpp"
+#include "support/maps.hpp"
+
+using namespace cambium;
+
+namespace {
+
+/// A user's own: how much nearer than `comfortable` it is to the next one ahead [m], seen through a view.
+struct TooClose {
+  double comfortable = 30.0;
+
+  static constexpr auto parameters() {
+    return parameter_list(parameter("comfortable", &TooClose::comfortable, "m", Range{0, 1000}, "gap"));
+  }
+  template <class World>
+  [[nodiscard]] double operator()(World& world, Slot slot) const {
+    auto const next = world.observe(slot).ahead();
+    return next ? std::max(0.0, comfortable - next->gap) : 0.0;
+  }
+};
+
+/// Whether it is in the left one of the lanes.
+struct OnTheLeft {
+  static constexpr auto parameters() { return parameter_list(); }
+  template <class World>
+  [[nodiscard]] bool operator()(World const& world, Slot slot) const {
+    return world.frame().agents[slot].state.y > -3.5;
+  }
+};
+
+using Own = Reward<OnTheLeft, TooClose>;
+using PredictionWorld = World<BehaviorSet<MacroActions, IdmClassic>, InterpolateExecution, SingleTrack>;
+using Planner = MctsSingleAgent<PredictionWorld, MacroActions, Own>;
+using Sim = World<BehaviorSet<Planner, IdmClassic>, InterpolateExecution, SingleTrack>;
+
+constexpr Slot ego{};
+
+}  // namespace
+
+TEST_CASE("a reward is the sum of its terms, by the second where it says so, until a course ends") {
+  PredictionWorld world(support::straight_road(2, 600.0));
+  world.add({.position = {60, -5.25}, .speed = 12, .behavior = IdmClassic{}});
+  world.add({.position = {80, -5.25}, .speed = 12, .behavior = IdmClassic{}});
+  double const gap = 20.0 - geometry::car().front - geometry::car().rear;
+  Own reward;
+  reward.traffic() = {.progress = 0.5};
+  CHECK(reward.judge(world, ego, 0.2).outcome.reward == doctest::Approx(0.5 * 12 * 0.2));
+  reward.rest.first = {.weight = -2.0, .per_second = true};
+  CHECK(reward.judge(world, ego, 0.2).outcome.reward == doctest::Approx(1.2 - 2.0 * (30.0 - gap) * 0.2));
+  reward.rest.first.per_second = false;
+  CHECK(reward.judge(world, ego, 0.2).outcome.reward == doctest::Approx(1.2 - 2.0 * (30.0 - gap)));
+  reward.first = {.weight = 5.0, .ends = true};
+  CHECK_FALSE(reward.judge(world, ego, 0.2).ends);
+  world.set_state(AgentId{0}, {.x = 60, .y = -1.75, .speed = 12});
+  auto const left = reward.judge(world, ego, 0.2);
+  CHECK(left.ends);
+  CHECK(left.outcome.reward == doctest::Approx(1.2 + 5.0));
+  world.set_state(AgentId{0}, {.x = 78, .y = -5.25, .speed = 12});  // a collision: what it wants does not matter
+  CHECK(reward.judge(world, ego, 0.2).outcome.reward == reward.traffic().collision);
+}
+
+TEST_CASE("a planner goes by an evaluator of a user's own") {
+  for (double const weight : {20.0, -20.0}) {
+    Sim world(support::straight_road(2, 600.0), {.seed = 3});
+    Planner planner;
+    planner.options.budget.iterations = 600;
+    planner.reward.first = {.weight = weight, .per_second = true};
+    planner.reward.traffic().goal = 0.0;
+    auto const id = world.add({.position = {60, weight > 0 ? -5.25 : -1.75}, .speed = 12, .behavior = planner});
+    for (int k = 0; k < 40; ++k) REQUIRE(world.step(0.2));
+    CAPTURE(world.state(id).y);
+    CHECK((world.state(id).y > -3.5) == (weight > 0));
+  }
+}
+
+TEST_CASE("the parameters of a reward's terms are checked and compared with the rest") {
+  Own a, b;
+  CHECK(equal_parameters(a, b));
+  b.rest.first.evaluator.comfortable = 20.0;
+  CHECK_FALSE(equal_parameters(a, b));
+  b.rest.first.evaluator.comfortable = -1.0;
+  CHECK_THROWS_WITH_AS(check_parameters(b, "reward"), doctest::Contains("comfortable"), ParameterError);
+}

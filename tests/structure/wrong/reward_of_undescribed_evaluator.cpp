@@ -1,0 +1,10 @@
+// expect: cambium::Reward<Evaluators...>: describe each evaluator's parameters, as cambium::Collision does
+#include "cambium/planner/traffic_reward.hpp"
+
+struct Mood {
+  template <class World>
+  double operator()(World const&, cambium::Slot) const {
+    return 1.0;
+  }
+};
+cambium::Reward<Mood> reward;
