@@ -16,10 +16,8 @@ using World = Predicted::WithBehaviors<cb::BehaviorSet<Mcts, PolicyTree, Proposa
 template <class Planner>
 std::size_t think(World& world, cb::AgentId ego, Planner const& planner) {
   typename Planner::Workspace workspace;
-  if constexpr (requires { planner.think(world.observe(ego), workspace); })
-    return planner.think(world.observe(ego), workspace).course.size();
-  else
-    return planner.think(world.observe(ego), typename Planner::Memory{}, workspace).course.size();
+  typename Planner::Memory memory;
+  return planner.think(world.observe(ego), memory, workspace).course.size();
 }
 
 std::size_t think(World& world, cb::AgentId ego) {

@@ -102,7 +102,7 @@ void plan() {
   planner.options.rollout.hold = 5;
   planner.reward.progress = 0.1;
   Planner::Workspace workspace;
-  auto const report = planner.think(world.observe(cb::AgentId{0}), workspace);
+  auto const report = planner.think(world.observe(cb::AgentId{0}), {}, workspace);
 
   std::printf("%zu iterations, %zu nodes\n\n  visits   return  action\n", report.result.iterations,
               report.result.nodes);

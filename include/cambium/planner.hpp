@@ -15,6 +15,7 @@
 #include "cambium/planner/mcts_single_agent.hpp"
 #include "cambium/planner/mcts_workspace.hpp"
 #include "cambium/planner/parallel_tree_search.hpp"
+#include "cambium/planner/planner_model.hpp"
 #include "cambium/planner/policy_tree.hpp"
 #include "cambium/planner/policy_tree_planner.hpp"
 #include "cambium/planner/proposal_planner.hpp"

@@ -14,6 +14,7 @@
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/map/map_builder.hpp"
 #include "cambium/map/polyline_roads.hpp"
+#include "cambium/planner/planner_model.hpp"
 #include "cambium/world/world.hpp"
 #include "support/allocations.hpp"
 #include "support/maps.hpp"
@@ -169,7 +170,7 @@ TEST_CASE("a world with a planner in it goes the same way again, as a copy too")
 TEST_CASE("a planner says what it thought") {
   auto world = lane_change(0, quick(Single{}));
   Single::Workspace workspace;
-  auto const report = quick(Single{}, 500).think(world.observe(ego), workspace);
+  auto const report = quick(Single{}, 500).think(world.observe(ego), {}, workspace);
   CHECK(report.result.iterations == 500);
   CHECK(report.choosing == std::vector<AgentId>{ego});
   CHECK(report.actions.size() == report.result.of(0).size());
@@ -202,7 +203,7 @@ TEST_CASE("a search goes on from what it knows where the world came out as it wa
         if (agent.id != ego) world.set_behavior(agent.id, IdmClassic{});
       Single::Workspace workspace;
       CHECK_FALSE(workspace.keep());
-      auto report = planner.think(world.observe(ego), workspace);
+      auto report = planner.think(world.observe(ego), {}, workspace);
       for (int step = 0; step < 8; ++step) {
         REQUIRE(workspace.keep());
         CHECK(report.memory == *std::get_if<MacroActions::Memory>(&report.course[1].agents[0].memory));
@@ -213,7 +214,7 @@ TEST_CASE("a search goes on from what it knows where the world came out as it wa
           state.x += 3.0;
           world.set_state(AgentId{3}, state);
         }
-        report = planner.think(world.observe(ego), workspace, report.memory);
+        report = planner.think(world.observe(ego), report.memory, workspace);
         CHECK((report.result.kept_nodes > 0) == !surprised);
         CHECK(report.result.iterations == 600);
         CHECK(report.result.nodes > report.result.kept_nodes);
@@ -232,13 +233,13 @@ TEST_CASE("nothing is kept where anything has changed, or without being asked") 
     planner.actions = MacroActions::of({{MacroAction::Kind::change_left, 0.0}, {MacroAction::Kind::stay, 0.0}});
     planner.most_agents = 1;
     Cooperative::Workspace workspace;
-    auto report = planner.think(world.observe(ego), workspace);
+    auto report = planner.think(world.observe(ego), {}, workspace);
     REQUIRE(report.memory.change.active());
     if (keep) CHECK(workspace.keep());
     REQUIRE(world.step(planner.options.step));
     world.set_state(ego, report.course[1].agents[0].state);
     change(world, planner, report.memory);
-    return planner.think(world.observe(ego), workspace, report.memory).result.kept_nodes;
+    return planner.think(world.observe(ego), report.memory, workspace).result.kept_nodes;
   };
   auto const nothing = [](auto&, auto&, auto&) {};
   CHECK(kept_nodes(true, nothing) > 0);
@@ -278,12 +279,12 @@ TEST_CASE("one whose course is over does not choose, and does not keep ego from 
   auto world = lane_change(0, IdmClassic{});
   auto const planner = quick(Cooperative{}, 100);
   Cooperative::Workspace workspace;
-  auto const before = planner.think(world.observe(ego), workspace).choosing;
+  auto const before = planner.think(world.observe(ego), {}, workspace).choosing;
   REQUIRE(before.size() > 1);
   auto state = world.state(before[1]);
   state.y += 6.0;
   world.set_state(before[1], state);
-  auto const after = planner.think(world.observe(ego), workspace).choosing;
+  auto const after = planner.think(world.observe(ego), {}, workspace).choosing;
   CHECK(after.front() == ego);
   CHECK(std::ranges::count(after, before[1]) == 0);
 }
@@ -293,10 +294,10 @@ TEST_CASE("with threads a planner does the same again, as a behaviour too") {
   planner.options.threads = 3;
   auto world = lane_change(0, planner), again = lane_change(0, planner);
   Single::Workspace workspace, other;
-  auto const report = planner.think(world.observe(ego), workspace);
+  auto const report = planner.think(world.observe(ego), {}, workspace);
   CHECK(report.result.iterations == 301);
   CHECK(report.result.choice(0).action == report.result.variation[0]);
-  auto const same = planner.think(world.observe(ego), other);
+  auto const same = planner.think(world.observe(ego), {}, other);
   REQUIRE(same.result.arms.size() == report.result.arms.size());
   for (std::size_t i = 0; i < same.result.arms.size(); ++i) {
     CHECK(same.result.arms[i].visits == report.result.arms[i].visits);
@@ -304,15 +305,15 @@ TEST_CASE("with threads a planner does the same again, as a behaviour too") {
   }
   // From three threads to one, and back, in the same workspace.
   planner.options.threads = 1;
-  CHECK(planner.think(world.observe(ego), other).result.iterations == 301);
+  CHECK(planner.think(world.observe(ego), {}, other).result.iterations == 301);
   planner.options.threads = 3;
-  CHECK(planner.think(world.observe(ego), other).result.variation == report.result.variation);
+  CHECK(planner.think(world.observe(ego), {}, other).result.variation == report.result.variation);
   REQUIRE(world.step(0.2));
   REQUIRE(again.step(0.2));
   CHECK(world.frame() == again.frame());
   CHECK(world.state(ego) == report.course[1].agents[0].state);
   planner.options.threads = 65;
-  CHECK_THROWS_AS((void)planner.think(world.observe(ego), other), ParameterError);
+  CHECK_THROWS_AS((void)planner.think(world.observe(ego), {}, other), ParameterError);
 }
 
 TEST_CASE("searches in a warm world allocate nothing") {
@@ -359,10 +360,10 @@ TEST_CASE("beliefs in another number of headways are begun anew") {
   planner.others.regions = 8;
   Hypothesis::Workspace workspace;
   Hypothesis::Memory memory;
-  (void)planner.think(world.observe(ego), memory, 0.2, workspace);
+  (void)planner.think(world.observe(ego), memory, workspace);
   REQUIRE(world.step(0.2));
   planner.others.regions = 2;
-  (void)planner.think(world.observe(ego), memory, 0.2, workspace);
+  (void)planner.think(world.observe(ego), memory, workspace);
   for (std::uint32_t id = 1; id < 6; ++id) {
     auto const* belief = memory.belief(AgentId{id});
     REQUIRE(belief != nullptr);
@@ -410,7 +411,7 @@ TEST_CASE("of whom nothing is known any headway is drawn") {
   auto const planner = quick(Hypothesis{}, 20);
   Hypothesis::Workspace workspace;
   Hypothesis::Memory memory;
-  (void)planner.think(world.observe(ego), memory, 0.2, workspace);
+  (void)planner.think(world.observe(ego), memory, workspace);
   CHECK(memory.belief(AgentId{6}) != nullptr);
   CHECK(memory.belief(AgentId{7}) == nullptr);
   RandomStream random(1, 0, 0);
@@ -467,17 +468,21 @@ TEST_CASE("a constraint on risk gives up what the reward alone would do") {
   CHECK(careful > 10.0);
 }
 
+static_assert(PlannerModel<Single, Sim::View> && PlannerModel<Cooperative, Sim::View> &&
+              PlannerModel<Hypothesis, Sim::View> && PlannerModel<Risk, Sim::View> &&
+              !PlannerModel<IdmClassic, Sim::View>);
+
 TEST_CASE("what cannot be planned is said") {
   auto world = lane_change(0, quick(Single{}));
   Single::Workspace workspace;
   Single planner = quick(Single{});
   planner.options.budget.iterations = 0;
   CHECK_THROWS_AS(world.add({.position = {300, -1.75}, .speed = 12, .behavior = planner}), ParameterError);
-  CHECK_THROWS_AS((void)planner.think(world.observe(ego), workspace), ParameterError);
+  CHECK_THROWS_AS((void)planner.think(world.observe(ego), {}, workspace), ParameterError);
   planner = quick(Single{});
   planner.reward.progress = std::nan("");
   CHECK_THROWS_AS(world.add({.position = {300, -1.75}, .speed = 12, .behavior = planner}), ParameterError);
-  CHECK_THROWS_AS((void)planner.think(world.observe(ego), workspace), ParameterError);
+  CHECK_THROWS_AS((void)planner.think(world.observe(ego), {}, workspace), ParameterError);
   CHECK_THROWS_AS((void)world.observe(AgentId{77}), WorldError);
   // One that has left the map is not there to be planned for.
   auto state = world.state(ego);
@@ -486,7 +491,7 @@ TEST_CASE("what cannot be planned is said") {
   for (int step = 0; step < 5; ++step) REQUIRE(world.step(0.2));
   REQUIRE(world.status(ego) == AgentStatus::left_map);
   CHECK(std::string(to_string(world.status(ego))) == "left the map");
-  CHECK_THROWS_WITH_AS((void)quick(Single{}).think(world.observe(ego), workspace),
+  CHECK_THROWS_WITH_AS((void)quick(Single{}).think(world.observe(ego), {}, workspace),
                        "agent 0: it is not in the predicted world, or not in traffic; plan for agents that drive",
                        SearchError);
 }
@@ -497,16 +502,16 @@ TEST_CASE("think checks the planner's own parameters, and whether the course is 
   Cooperative::Workspace cooperative_workspace;
   auto planner = quick(Single{});
   planner.options.step = 0.0;
-  CHECK_THROWS_AS((void)planner.think(world.observe(ego), workspace), ParameterError);
+  CHECK_THROWS_AS((void)planner.think(world.observe(ego), {}, workspace), ParameterError);
   auto cooperative = quick(Cooperative{});
   cooperative.most_agents = 0;
-  CHECK_THROWS_AS((void)cooperative.think(world.observe(ego), cooperative_workspace), ParameterError);
+  CHECK_THROWS_AS((void)cooperative.think(world.observe(ego), {}, cooperative_workspace), ParameterError);
   // In the lane of its goal already.
   auto state = world.state(ego);
   state.y = -1.75;
   world.set_state(ego, state);
   CHECK_THROWS_WITH_AS(
-      (void)quick(Single{}).think(world.observe(ego), workspace),
+      (void)quick(Single{}).think(world.observe(ego), {}, workspace),
       "agent 0: the course is over already (agent 0 is at its goal); ask the evaluators before you plan", SearchError);
   auto const says_why = [&](double x, double y, char const* why) {
     auto moved = lane_change(0, quick(Single{}));
@@ -514,7 +519,7 @@ TEST_CASE("think checks the planner's own parameters, and whether the course is 
     at.x = x;
     at.y = y;
     moved.set_state(ego, at);
-    CHECK_THROWS_WITH_AS((void)quick(Single{}).think(moved.observe(ego), workspace), doctest::Contains(why),
+    CHECK_THROWS_WITH_AS((void)quick(Single{}).think(moved.observe(ego), {}, workspace), doctest::Contains(why),
                          SearchError);
   };
   says_why(95.0, -5.25, "agent 0 touches agent 5");
@@ -523,7 +528,7 @@ TEST_CASE("think checks the planner's own parameters, and whether the course is 
   planner = quick(Single{});
   planner.actions = MacroActions::of({{MacroAction::Kind::change_left}});
   planner.reward.goal = 0.0;
-  CHECK_THROWS_AS((void)planner.think(world.observe(ego), workspace), SearchError);
+  CHECK_THROWS_AS((void)planner.think(world.observe(ego), {}, workspace), SearchError);
 }
 
 TEST_CASE("a planner that leaves the map within a step, or steps for a moment, does not fail") {

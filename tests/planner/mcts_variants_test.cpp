@@ -99,7 +99,7 @@ TEST_CASE("a course that is cut off is worth what the reward says, the others' b
     planner.reward.lookahead = lookahead;
     planner.options.search = {.horizon = 1, .discount = 0.9};
     Cooperative::Workspace workspace;
-    auto const report = planner.think(world.observe(ego), workspace);
+    auto const report = planner.think(world.observe(ego), {}, workspace);
     double const own = 12.0 * (0.2 + 0.9 * lookahead), other = 10.0 * (0.2 + 0.9 * lookahead);
     CHECK(report.result.choice(0).mean_return == doctest::Approx(own + 0.5 * other));
     CHECK(report.result.choice(1).mean_return == doctest::Approx(other + 0.5 * own));
@@ -111,7 +111,7 @@ TEST_CASE("a course that is cut off is worth what the reward says, the others' b
   planner.options.budget.iterations = 1;
   planner.options.rollout.base.steps = 4;
   Truncated::Workspace workspace;
-  auto const report = planner.think(world.observe(ego), workspace);
+  auto const report = planner.think(world.observe(ego), {}, workspace);
   CHECK(report.result.choice(0).mean_return == doctest::Approx(12.0 * (5 * 0.2 + 2.0)));
 }
 
@@ -123,9 +123,9 @@ TEST_CASE("a user's prior leads the search of traffic, and is checked") {
   planner.reward.braking = 50.0;
   planner.options.budget.iterations = 200;
   Expected::Workspace workspace;
-  auto const report = planner.think(world.observe(ego), workspace);
+  auto const report = planner.think(world.observe(ego), {}, workspace);
   CHECK(report.result.choice(0).share > 0.3);
   CHECK(report.actions[report.result.best[0]].find("stay -") == 0);
   planner.reward.braking = -1.0;
-  CHECK_THROWS_AS((void)planner.think(world.observe(ego), workspace), SearchError);
+  CHECK_THROWS_AS((void)planner.think(world.observe(ego), {}, workspace), SearchError);
 }

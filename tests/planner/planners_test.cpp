@@ -8,6 +8,7 @@
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/observer/parametric.hpp"
 #include "cambium/planner/frenet_planner.hpp"
+#include "cambium/planner/planner_model.hpp"
 #include "cambium/planner/policy_tree_planner.hpp"
 #include "cambium/planner/proposal_planner.hpp"
 #include "cambium/world/world.hpp"
@@ -44,6 +45,11 @@ World traffic(std::uint64_t seed, Planner const& planner, typename World::Observ
   }
   return world;
 }
+
+template <class Planner>
+constexpr bool is_planner = PlannerModel<Planner, typename Sim<Planner>::View>;
+static_assert(is_planner<FrenetPlanner<PredictionWorld>> && is_planner<PolicyTreePlanner<PredictionWorld>> &&
+              is_planner<ProposalPlanner<PredictionWorld>>);
 
 }  // namespace
 

@@ -62,6 +62,7 @@ struct MctsHypothesis {
   BeliefParameters belief{};
   double speed_deviation = 0.05;
   double range = 60.0;
+  double interval = 0.2;
 
   static constexpr char const* name = "mcts_hypothesis";
   static constexpr char const* summary =
@@ -77,7 +78,9 @@ struct MctsHypothesis {
                           parameter("speed_deviation", &P::speed_deviation, "m/s", Range{1e-3, 10},
                                     "standard deviation of a speed after a step, from what a headway predicts"),
                           parameter("range", &P::range, "m", non_negative,
-                                    "the 6 nearest within it are told apart; of the rest all is as likely"));
+                                    "the 6 nearest within it are told apart; of the rest all is as likely"),
+                          parameter("interval", &P::interval, "s", Range{0.01, 60},
+                                    "between two looks by `think`; as a behaviour it looks in each step"));
   }
 
   template <class View>
@@ -86,15 +89,14 @@ struct MctsHypothesis {
         view, memory.course, workspace, dt, [&](auto& w) -> auto const& { return search(view, memory, dt, w); });
   }
 
-  /// What it thinks of what `view` shows, having seen what `memory` says, in a world of steps of `dt` [s]; notes there
-  /// what it sees, and leaves `memory.course`, the manoeuvre under way, to be set to the report's `memory`. Throws
-  /// `SearchError` where there is nothing to search, `ParameterError` where a parameter is out of its range.
+  /// What it thinks of what `view` shows, having seen what `memory` says; notes there what it sees, to be compared with
+  /// what it sees `interval` later, and leaves `memory.course`, the manoeuvre under way, to be set to the report's
+  /// `memory`. Throws `SearchError` where there is nothing to search, `ParameterError` where a parameter is out of its
+  /// range.
   template <class View>
-  [[nodiscard]] MctsReport<Domain> think(View const& view, Memory& memory, double dt, Workspace& workspace) const {
+  [[nodiscard]] MctsReport<Domain> think(View const& view, Memory& memory, Workspace& workspace) const {
     check_parameters(*this);
-    if (!(dt > 0.0 && dt <= PredictionWorld::longest_step))
-      throw ParameterError("mcts_hypothesis: dt", "is " + std::to_string(dt), "give the world's step, above 0 s");
-    detail::throw_if(search(view, memory, dt, workspace), workspace, view.id());
+    detail::throw_if(search(view, memory, interval, workspace), workspace, view.id());
     return workspace.report();
   }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-
 #include "cambium/planner/mcts_single_agent.hpp"
 
 namespace cambium {
@@ -36,9 +35,9 @@ struct MctsRiskConstrained {
 
   /// What it thinks of what `view` shows. Throws `SearchError` where there is nothing to search.
   template <class View>
-  [[nodiscard]] auto think(View const& view, Workspace& workspace, Memory const& memory = {}) const {
+  [[nodiscard]] auto think(View const& view, Memory const& memory, Workspace& workspace) const {
     check_parameters(*this);
-    return constrained().think(view, workspace, memory);
+    return constrained().think(view, memory, workspace);
   }
 
  private:

@@ -51,10 +51,10 @@ struct MctsSingleAgent {
   }
 
   /// What it thinks of what `view` shows. `memory`: the manoeuvre under way, as the last report's `memory`, or ego's
-  /// record in a frame of its `course`, has it; none by default. `workspace.keep()` before it: see there. Throws
+  /// record in a frame of its `course`, has it; {} for none. `workspace.keep()` before it: see there. Throws
   /// `SearchError` where there is nothing to search, `ParameterError` where a parameter is out of its range.
   template <class View>
-  [[nodiscard]] MctsReport<Domain> think(View const& view, Workspace& workspace, Memory const& memory = {}) const {
+  [[nodiscard]] MctsReport<Domain> think(View const& view, Memory const& memory, Workspace& workspace) const {
     check_parameters(*this);
     detail::throw_if(search(view, memory, workspace), workspace, view.id());
     return workspace.report();
