@@ -221,8 +221,9 @@ struct ProposalPlanner {
       auto const& now = world.frame().agents[ego];
       proposal.progress += 0.5 * step * (before.state.speed + now.state.speed) *
                            std::cos(0.5 * (before.lane.heading_error + now.lane.heading_error));
-      auto const end = course_end(
-          world, ego, [&](auto const& now, Slot slot) { return detail::is_at_fault(now, slot, workspace.counting); });
+      auto const end = course_end(world, ego, [&](auto const& predicted, Slot slot) {
+        return detail::is_at_fault(predicted, slot, workspace.counting);
+      });
       if (end == CourseEnd::over) break;
       proposal.collides = end == CourseEnd::collision;
       proposal.leaves_road = end == CourseEnd::off_road;
