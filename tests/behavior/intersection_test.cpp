@@ -297,7 +297,7 @@ TEST_CASE("who has just split off and stands with its rear in the way is seen") 
     AnyCollision const collision;
     for (int k = 0; k < 100; ++k) {
       REQUIRE(at.step(0.2));
-      REQUIRE(!collision.evaluate(at).any_collision);
+      REQUIRE(!collision(at));
     }
   }
 }
