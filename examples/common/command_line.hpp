@@ -127,7 +127,10 @@ int run_program(CLI::App& program, int argc, char** argv, Body const& body) {
     return refuse(unknown_words(program.remaining(), long_options(program)));
   } catch (CLI::ArgumentMismatch const& problem) {
     std::string const text = problem.what();
-    return refuse(text.substr(0, text.find(':')) + ": not as many values as it takes (--help lists the options)");
+    bool const is_repeated = text.find("At Most") != text.npos;
+    return refuse(text.substr(0, text.find(':')) +
+                  (is_repeated ? ": given more than once" : ": not as many values as it takes") +
+                  " (--help lists the options)");
   } catch (CLI::ParseError const& problem) {
     return refuse(problem.what() + std::string(" (--help lists the options)"));
   } catch (std::exception const& problem) {

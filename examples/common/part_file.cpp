@@ -67,7 +67,13 @@ void prepare_folder(std::filesystem::path const& folder) {
     throw cambium::Error(folder.string(), "this folder cannot be made (" + problem.message() + ")",
                          "choose another --out");
   auto const probe = folder / ".probe";
-  cambium::write_file(probe, "a file");
+  try {
+    cambium::write_file(probe, "a file");
+  } catch (cambium::Error const&) {
+    throw cambium::Error(folder.string(),
+                         "nothing can be written into this folder (" + std::string(std::strerror(errno)) + ")",
+                         "choose another --out");
+  }
   std::filesystem::remove(probe, problem);
 }
 

@@ -171,6 +171,8 @@ TEST_CASE("an unknown option names near ones, and where all are listed") {
   CHECK(said({"--scenario", "3"}) ==
         "merging: there is no option --scenario; is it --scenarios? (--help lists the options)\n");
   CHECK(said({"--sede=3"}).find("is it --seed") != std::string::npos);
+  CHECK(said({"--scenarios", "3", "--scenarios", "4"}) ==
+        "merging: --scenarios: given more than once (--help lists the options)\n");
   CHECK(said({"--scenarios"}) == "merging: --scenarios: not as many values as it takes (--help lists the options)\n");
   CHECK(said({"--frobnicate"}) == "merging: there is no option --frobnicate (--help lists the options)\n");
   CHECK(said({"stray"}) == "merging: does not know what to do with 'stray' (--help lists the options)\n");

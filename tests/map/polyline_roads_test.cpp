@@ -214,6 +214,8 @@ TEST_CASE("a table as BARK's, with the borders, becomes a map of one lane and a 
 }
 
 TEST_CASE("a table that is none is refused, with the line") {
+  CHECK(what_of([] { (void)read_center_line_csv("x,y\n0,0\n10,0\n5,0\n20,0\n", "a.csv"); }) ==
+        "a.csv:4: the line turns back on itself here; give the points in the order in which they are passed");
   CHECK(what_of([] { (void)read_center_line_csv("x,y\n0,0\n1,abc\n", "a.csv"); }) ==
         "a.csv:3: cell 2 is no finite number: \"abc\"; give a number with a decimal point");
   CHECK(what_of([] {

@@ -178,7 +178,7 @@ namespace {
 
 /// Plans badly, in the way asked for.
 struct Broken {
-  enum class How { no_plan, too_short, not_a_number, fine } how = How::fine;
+  enum class How { no_plan, too_short, not_a_number, fine, backwards, too_fast } how = How::fine;
 
   template <class View>
   [[nodiscard]] cb::Plan<View> plan(View const& view, cb::NoMemory&, double dt) const {
@@ -186,6 +186,8 @@ struct Broken {
     auto next = view.state();
     next.time += how == How::too_short ? dt / 2 : dt;
     if (how == How::not_a_number) next.x = std::numeric_limits<double>::quiet_NaN();
+    if (how == How::backwards) next.speed = -5.0;
+    if (how == How::too_fast) next.speed = 1e9;
     plan.trajectory.push_back(view.state());
     plan.trajectory.push_back(next);
     if (how == How::no_plan) plan.status = cb::PlanStatus::failed;
@@ -199,7 +201,9 @@ TEST_CASE("an agent that plans badly is named and keeps its last state; the othe
   using Fragile = cb::World<cb::BehaviorSet<cb::IdmClassic, Broken>, cb::InterpolateExecution, cb::SingleTrack>;
   std::pair<Broken::How, cb::StepProblem> const cases[] = {{Broken::How::no_plan, cb::StepProblem::no_plan},
                                                            {Broken::How::too_short, cb::StepProblem::no_execution},
-                                                           {Broken::How::not_a_number, cb::StepProblem::not_finite}};
+                                                           {Broken::How::not_a_number, cb::StepProblem::not_finite},
+                                                           {Broken::How::backwards, cb::StepProblem::bad_speed},
+                                                           {Broken::How::too_fast, cb::StepProblem::bad_speed}};
   for (auto const& [how, problem] : cases) {
     Fragile world(straight_road());
     auto const good = world.add({.position = {10, -1.75}, .speed = 10});

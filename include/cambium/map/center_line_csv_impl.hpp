@@ -115,6 +115,13 @@ class CenterLineReader {
     if (!(std::abs(point.x()) <= 1e8 && std::abs(point.y()) <= 1e8))
       fail("the point lies beyond 100 000 km", "give coordinates in m");
     if (!result_.points.empty() && (point - result_.points.back()).norm() <= 1e-3) return;  // a joint written twice
+    if (result_.points.size() > 1) {
+      auto const &last = result_.points.back(), &before = result_.points[result_.points.size() - 2];
+      double const from = std::atan2(last.y() - before.y(), last.x() - before.x());
+      double const to = std::atan2(point.y() - last.y(), point.x() - last.x());
+      if (std::abs(geometry::angle_difference(to, from)) > 0.75 * geometry::pi)
+        fail("the line turns back on itself here", "give the points in the order in which they are passed");
+    }
     if (column_[heading] && !result_.points.empty())
       for (double const theta : {result_.headings.back(), row[heading]})
         check_heading(theta, point - result_.points.back());

@@ -13,6 +13,7 @@ enum class StepProblem : std::uint8_t {
   no_plan,       ///< a behaviour failed
   no_execution,  ///< a plan does not reach the end of the step, or its execution failed
   not_finite,    ///< the next state would not have been a finite number
+  bad_speed,     ///< the next speed would have been negative, or above 1000 m/s
 };
 
 /// What became of a step. Agents with a problem keep their last valid state and leave traffic; all others have moved.
@@ -39,6 +40,8 @@ struct [[nodiscard("a step that is not valid may not have moved the world: check
       return "the plan does not reach the end of the step";
     case StepProblem::not_finite:
       return "the next state is not a finite number";
+    case StepProblem::bad_speed:
+      return "the next speed is not from 0 to 1000 m/s";
   }
   return "unknown problem";
 }

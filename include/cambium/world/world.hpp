@@ -427,6 +427,8 @@ class World {
     }
   }
 
+  static constexpr double rounding = 1e-6;  ///< of speeds that come to 0 [m/s]
+
   /// Plans and drives: all of the agent's next record but where on its road it has come to.
   void advance(Slot slot, double dt, double end, Record& next, StepResult& result) {
     Record const& now = frame_.agents[slot];
@@ -443,6 +445,8 @@ class World {
     if (!executed.valid) return fail(StepProblem::no_execution, agent.id, next, result);
     if (!is_finite(executed.state) || !std::isfinite(plan.action.acceleration + plan.action.steering))
       return fail(StepProblem::not_finite, agent.id, next, result);
+    if (!(executed.state.speed >= -rounding && executed.state.speed <= detail::fastest)) [[unlikely]]
+      return fail(StepProblem::bad_speed, agent.id, next, result);
     if constexpr (past_steps_of < Observer >> 0) next.past.push(now.state, now.action.acceleration);
     next.status = AgentStatus::driving;
     next.state = executed.state;
