@@ -6,7 +6,7 @@
 
 struct Fast {
   template <class World>
-  cambium::Judgement judge(World const& world, Slot slot, double dt) const {
+  cambium::Judgement judge(World const& world, cambium::Slot slot, double dt) const {
     return {{world.frame().agents[slot].state.speed * dt, 0.0}, false};
   }
 };
