@@ -21,14 +21,11 @@ class Strictest {
   explicit Strictest(Law const& law) : law_(&law) {}
 
   void heed(Constraint const& other) {
-    if (!is_free_) {  // a single one is not asked about
+    if (constraint_.gap < free_road) {  // a single one is not asked about
       double const a = (*law_)(other);
       if (!(a < acceleration() || (a == acceleration() && other.gap < constraint_.gap))) return;
       acceleration_ = a;
-    } else {
-      is_known_ = false;
     }
-    is_free_ = false;
     constraint_ = other;
   }
 
@@ -36,16 +33,16 @@ class Strictest {
 
   /// What the law answers it with [m/s^2].
   [[nodiscard]] double acceleration() {
-    if (!is_known_) acceleration_ = (*law_)(constraint_);
-    is_known_ = true;
+    if (acceleration_ == not_asked) acceleration_ = (*law_)(constraint_);
     return acceleration_;
   }
 
  private:
+  static constexpr double free_road = std::numeric_limits<double>::infinity(), not_asked = free_road;
+
   Law const* law_;
   Constraint constraint_;
-  double acceleration_ = 0.0;
-  bool is_free_ = true, is_known_ = false;
+  double acceleration_ = not_asked;
 };
 
 }  // namespace cambium

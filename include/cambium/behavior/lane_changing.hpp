@@ -95,7 +95,7 @@ struct LaneChanging {
     course.renew(memory.change, view.shape(), speed);
     if (memory.change.target == home && speed < standing && way_to_stop(view, view.place()) < idm.minimum_gap + 1)
       memory.change = {};  // it must leave this lane, too: no way is left to come to its middle before
-    auto const go_on = [&](Strictest<IdmLaw> ahead) {
+    auto const go_on = [&](Strictest<IdmLaw>& ahead) {
       if (auto const end = rules.lane_end_ahead(view)) ahead.heed(*end);
       auto const motion = law.motion(ahead.constraint(), dt, tolerance);
       return plan_lane_change(view, memory.change,
@@ -103,7 +103,8 @@ struct LaneChanging {
     };
     if (memory.change.active()) {
       if (memory.change.target != home && !may_go_on(view, law, memory.change)) abort(view, speed, memory);
-      return go_on(ahead_while_changing(view, law, leader, memory.change));
+      auto ahead = ahead_while_changing(view, law, leader, memory.change);
+      return go_on(ahead);
     }
     double const end = lane_end(view, home, view.place().piece);
     auto ahead = ahead_in_lane(view, law, leader);
