@@ -100,7 +100,7 @@ std::vector<Case> const cases{
      {{R"(revMajor="1" revMinor="6")", R"(revMajor="2" revMinor="7")"}},
      warning,
      "header",
-     "OpenDRIVE 2.7 is not one of those that are known, 1.1 to 1.8"},
+     "OpenDRIVE 2.7 is newer than what is known, up to 1.8; it was read as that"},
     {"no header", {{R"(<header revMajor="1" revMinor="6"/>)", ""}}, warning, "header", "no header"},
     {"section without lane 0",
      {{R"(<center><lane id="0" type="none"/></center>)", ""}},

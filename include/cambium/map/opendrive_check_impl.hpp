@@ -39,10 +39,10 @@ class DocumentCheck {
   void run() {
     if (document_->header.line == 0) report(Severity::warning, 0, "header", "", "the file has no header");
     auto const& header = document_->header;
-    if (header.line > 0 && (header.rev_major != 1 || header.rev_minor < 1 || header.rev_minor > 8))
-      report(header.rev_major == 1 ? Severity::info : Severity::warning, header.line, "header", "",
+    if (header.rev_major > 1 || (header.rev_major == 1 && header.rev_minor > 8))
+      report(header.rev_major > 1 ? Severity::warning : Severity::info, header.line, "header", "",
              "OpenDRIVE " + std::to_string(header.rev_major) + "." + std::to_string(header.rev_minor) +
-                 " is not one of those that are known, 1.1 to 1.8; it was read as one of them");
+                 " is newer than what is known, up to 1.8; it was read as that");
     if (!is_bearable(document_->header.offset)) {
       report(Severity::warning, document_->header.line, "offset", "", "it is beyond any map; it was left out");
       document_->header.offset = {};
