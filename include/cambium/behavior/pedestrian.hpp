@@ -120,7 +120,8 @@ struct Pedestrian {
     geometry::Point const own{view.state().x, view.state().y};
     view.around(range, [&](RoadUser const& other) {
       constexpr double largest_body = 1.0;  // [m]
-      auto const& [state, shape] = std::tie(view.state(other), view.shape(other));
+      auto const& state = view.state(other);  // a value where the observer is not perfect
+      auto const& shape = view.shape(other);
       auto const box = geometry::box_of(shape, state);
       double const size = std::max(shape.length(), shape.width());
       auto const velocity = velocity_of(state);
