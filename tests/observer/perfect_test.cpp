@@ -6,7 +6,15 @@
 #include <map>
 
 #include "../world/fixtures.hpp"
+#include "cambium/behavior/idm_proposal.hpp"
+#include "cambium/behavior/idm_stochastic.hpp"
+#include "cambium/behavior/intersection.hpp"
+#include "cambium/behavior/mobil.hpp"
+#include "cambium/behavior/pedestrian.hpp"
+#include "cambium/behavior/rss_conformant.hpp"
+#include "cambium/behavior/zip_merge.hpp"
 #include "cambium/core/distributions.hpp"
+#include "cambium/observer/parametric.hpp"
 
 using namespace fixtures;
 using cb::AgentId;
@@ -178,4 +186,13 @@ TEST_CASE("traffic of blurred eyes drives on") {
   Traffic<Noisy> traffic;
   for (int i = 0; i < 50; ++i) CHECK(traffic.world.step(0.2));
   for (auto const& record : traffic.world.frame().agents) CHECK(record.status == cb::AgentStatus::driving);
+}
+
+TEST_CASE_TEMPLATE("every kind of behaviour plans behind an observer that errs", Behavior, cb::Pedestrian,
+                   cb::RssConformant<cb::Mobil>, cb::IdmProposal, cb::Intersection, cb::ZipMerge, cb::IdmStochastic) {
+  cb::World<cb::BehaviorSet<Behavior>, cb::InterpolateExecution, cb::SingleTrack, cb::ParametricObserver> world(
+      straight_road(2, 500.0), {.seed = 3});
+  for (int i = 0; i < 6; ++i)
+    world.add({.position = {40.0 + 20.0 * i, i % 2 == 0 ? -1.75 : -5.25}, .speed = 8.0 + i, .behavior = Behavior{}});
+  for (int k = 0; k < 50; ++k) REQUIRE(world.step(0.2));
 }

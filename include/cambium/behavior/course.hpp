@@ -53,7 +53,8 @@ template <class View>
                                            LongitudinalMotion<double> const& motion, double dt) {
   using S = typename View::State;
   constexpr double shortest = 1e-6;  // [m] a way with a direction
-  S const* before = &view.state();
+  S const start = view.state();
+  S const* before = &start;
   double left = motion.distance;
   S next = *before;
   for (auto const& after : plan.trajectory) {
