@@ -18,12 +18,12 @@
 #include <pugixml.hpp>
 
 #include "cambium/core/random.hpp"
-#include "cambium/map/build_map.hpp"
-#include "cambium/map/make_roads.hpp"
-#include "cambium/map/map_builder.hpp"
+#include "cambium/map/build/build_map.hpp"
+#include "cambium/map/build/make_roads.hpp"
+#include "cambium/map/build/map_builder.hpp"
+#include "cambium/map/lanes/road_lanes.hpp"
 #include "cambium/map/opendrive.hpp"
-#include "cambium/map/opendrive_writer.hpp"
-#include "cambium/map/road_lanes.hpp"
+#include "cambium/map/opendrive/writer.hpp"
 
 #include "yardstick/main.hpp"
 

@@ -8,12 +8,12 @@
 #include <thread>
 
 #include "cambium/behavior/behavior_set.hpp"
-#include "cambium/behavior/idm_classic.hpp"
+#include "cambium/behavior/following/idm_classic.hpp"
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/map/opendrive.hpp"
-#include "cambium/planner/mcts_single_agent.hpp"
-#include "cambium/planner/parallel_tree_search.hpp"
+#include "cambium/planner/mcts/mcts_single_agent.hpp"
+#include "cambium/planner/search/parallel_tree_search.hpp"
 #include "cambium/world/world.hpp"
 
 #include "../tests/planner/games.hpp"

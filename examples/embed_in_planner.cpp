@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "cambium/execution/interpolate.hpp"
-#include "cambium/map/map_builder.hpp"
-#include "cambium/map/polyline_roads.hpp"
-#include "cambium/planner/mcts_single_agent.hpp"
+#include "cambium/map/build/map_builder.hpp"
+#include "cambium/map/build/polyline_roads.hpp"
+#include "cambium/planner/mcts/mcts_single_agent.hpp"
 #include "cambium/world/world.hpp"
 
 #include "common/command_line.hpp"

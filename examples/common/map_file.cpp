@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "cambium/core/diagnostic.hpp"
-#include "cambium/map/center_line_csv.hpp"
-#include "cambium/map/map_builder.hpp"
+#include "cambium/map/build/center_line_csv.hpp"
+#include "cambium/map/build/map_builder.hpp"
 #include "cambium/map/opendrive.hpp"
 
 std::shared_ptr<cambium::Map const> examples::load_map(std::string const& file) {

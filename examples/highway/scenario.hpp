@@ -12,14 +12,14 @@
 #include <vector>
 
 #include "cambium/behavior/behavior_set.hpp"
-#include "cambium/behavior/mobil.hpp"
+#include "cambium/behavior/lane_change/mobil.hpp"
 #include "cambium/behavior/presets.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/execution/interpolate.hpp"
-#include "cambium/map/build_corridor.hpp"
+#include "cambium/map/corridor/build_corridor.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/scenario/lane_traffic.hpp"
 #include "cambium/world/world.hpp"

@@ -12,13 +12,13 @@
 #include <vector>
 
 #include "cambium/behavior/behavior_set.hpp"
-#include "cambium/behavior/intersection.hpp"
+#include "cambium/behavior/junction/intersection.hpp"
 #include "cambium/behavior/presets.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/execution/interpolate.hpp"
-#include "cambium/map/build_corridor.hpp"
+#include "cambium/map/corridor/build_corridor.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/world/world.hpp"
 

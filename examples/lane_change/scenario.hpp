@@ -8,14 +8,14 @@
 #include <vector>
 
 #include "cambium/behavior/behavior_set.hpp"
-#include "cambium/behavior/idm_classic.hpp"
-#include "cambium/behavior/macro_actions.hpp"
+#include "cambium/behavior/following/idm_classic.hpp"
+#include "cambium/behavior/lane_change/macro_actions.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/execution/interpolate.hpp"
-#include "cambium/map/curve_layout.hpp"
-#include "cambium/planner/mcts_hypothesis.hpp"
-#include "cambium/planner/mcts_single_agent.hpp"
+#include "cambium/map/road/curve_layout.hpp"
+#include "cambium/planner/mcts/mcts_hypothesis.hpp"
+#include "cambium/planner/mcts/mcts_single_agent.hpp"
 #include "cambium/world/world.hpp"
 
 /// The lane change of Bernhard, Esterle, Hart, Kessler 2020 ("BARK: Open behavior benchmarking in multi-agent
@@ -179,8 +179,7 @@ inline Outcome play(Scenario scenario) {
   for (int k = 1; k <= most_steps; ++k) {
     if (auto const result = world.step(step); !result)
       throw cb::WorldError("step " + std::to_string(k), to_string(result.problem));
-    if (cb::Collision{}(world, ego) || cb::OffRoad{}(world, ego))
-      return {End::collision, k};
+    if (cb::Collision{}(world, ego) || cb::OffRoad{}(world, ego)) return {End::collision, k};
     if (world.reached_goal(scenario.ego)) return {End::success, k};
   }
   return {End::time_out, most_steps};

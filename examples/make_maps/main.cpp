@@ -16,7 +16,7 @@
 #include <utility>
 
 #include "cambium/core/write_file.hpp"
-#include "cambium/map/opendrive_writer.hpp"
+#include "cambium/map/opendrive/writer.hpp"
 
 #include "../common/command_line.hpp"
 #include "maps.hpp"

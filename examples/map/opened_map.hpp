@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "cambium/core/diagnostic.hpp"
-#include "cambium/map/build_map.hpp"
-#include "cambium/map/center_line_csv.hpp"
-#include "cambium/map/map_builder.hpp"
+#include "cambium/map/build/build_map.hpp"
+#include "cambium/map/build/center_line_csv.hpp"
+#include "cambium/map/build/map_builder.hpp"
 #include "cambium/map/opendrive.hpp"
-#include "cambium/map/opendrive_document.hpp"
+#include "cambium/map/opendrive/document.hpp"
 
 namespace map_example {
 

@@ -10,12 +10,12 @@
 
 #include "cambium/core/error.hpp"
 #include "cambium/core/text.hpp"
-#include "cambium/map/build_corridor.hpp"
-#include "cambium/map/find_corridor.hpp"
-#include "cambium/map/junction.hpp"
-#include "cambium/map/lane_network.hpp"
+#include "cambium/map/corridor/build_corridor.hpp"
+#include "cambium/map/corridor/find_corridor.hpp"
+#include "cambium/map/lanes/junction.hpp"
+#include "cambium/map/lanes/lane_network.hpp"
+#include "cambium/map/lanes/right_of_way.hpp"
 #include "cambium/map/map.hpp"
-#include "cambium/map/right_of_way.hpp"
 
 #include "../common/csv.hpp"
 #include "summary.hpp"

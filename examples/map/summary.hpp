@@ -10,11 +10,11 @@
 
 #include "cambium/core/error.hpp"
 #include "cambium/geometry/box.hpp"
-#include "cambium/map/junction.hpp"
-#include "cambium/map/lane_network.hpp"
+#include "cambium/map/lanes/junction.hpp"
+#include "cambium/map/lanes/lane_network.hpp"
+#include "cambium/map/lanes/right_of_way.hpp"
 #include "cambium/map/map.hpp"
-#include "cambium/map/opendrive_document.hpp"
-#include "cambium/map/right_of_way.hpp"
+#include "cambium/map/opendrive/document.hpp"
 
 #include "opened_map.hpp"
 

@@ -7,11 +7,11 @@
 #include "cambium/core/error.hpp"
 #include "cambium/core/text.hpp"
 #include "cambium/geometry/angle.hpp"
-#include "cambium/map/lane_adjacency.hpp"
-#include "cambium/map/make_roads.hpp"
+#include "cambium/map/build/lane_adjacency.hpp"
+#include "cambium/map/build/make_roads.hpp"
+#include "cambium/map/lanes/road_lanes.hpp"
 #include "cambium/map/map.hpp"
-#include "cambium/map/road_lanes.hpp"
-#include "cambium/map/road_surface.hpp"
+#include "cambium/map/road/road_surface.hpp"
 
 #include "../common/csv.hpp"
 

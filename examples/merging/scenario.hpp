@@ -12,12 +12,12 @@
 #include <vector>
 
 #include "cambium/behavior/behavior_set.hpp"
-#include "cambium/behavior/idm_classic.hpp"
+#include "cambium/behavior/following/idm_classic.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/execution/interpolate.hpp"
-#include "cambium/map/build_corridor.hpp"
+#include "cambium/map/corridor/build_corridor.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/scenario/lane_traffic.hpp"
 #include "cambium/world/world.hpp"

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "cambium/behavior/behavior_set.hpp"
-#include "cambium/behavior/idm_classic.hpp"
-#include "cambium/behavior/linear_stability.hpp"
+#include "cambium/behavior/following/idm_classic.hpp"
+#include "cambium/behavior/law/linear_stability.hpp"
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/scenario/ring_road.hpp"

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "cambium/behavior/behavior_set.hpp"
-#include "cambium/behavior/zip_merge.hpp"
+#include "cambium/behavior/lane_change/zip_merge.hpp"
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/execution/interpolate.hpp"
-#include "cambium/map/route.hpp"
+#include "cambium/map/routing/route.hpp"
 #include "cambium/world/world.hpp"
 
 #include "../merging/scenario.hpp"

@@ -1,32 +1,33 @@
-/// The map room but for what only those need who make, check or write maps, or ask for more than the plane; they
-/// include it by name: `opendrive.hpp` reads files (pugixml), `map_builder.hpp` with `road_plan.hpp`,
-/// `curve_layout.hpp`, `polyline_roads.hpp` and `center_line_csv.hpp` makes maps in code, `build_map.hpp` makes one of
-/// an `opendrive_document.hpp`, `lane_network.hpp`, `opendrive_check.hpp` and `opendrive_writer.hpp` check and write,
-/// `road_surface.hpp` (Eigen) and `road_area.hpp` (Boost.Geometry) tell where lanes lie in space, and their union.
+/// The map room, but for what only makers, checkers and writers of maps need, or who asks for more than the plane. Include
+/// those by name, below `cambium/map/`: `opendrive.hpp` reads files (pugixml); `build/map_builder.hpp` with
+/// `build/road_plan.hpp`, `road/curve_layout.hpp`, `build/polyline_roads.hpp` and `build/center_line_csv.hpp` make maps in
+/// code; `build/build_map.hpp` makes one of an `opendrive/document.hpp`; `lanes/lane_network.hpp`, `opendrive/check.hpp` and
+/// `opendrive/writer.hpp` check and write; `road/road_surface.hpp` (Eigen) and `corridor/road_area.hpp` (Boost.Geometry)
+/// tell where lanes lie in space, and their union.
 #pragma once
 
 // First: it says which language and flags cambium needs.
 #include "cambium/core/macros.hpp"
 
-#include "cambium/map/build_corridor.hpp"
-#include "cambium/map/corridor.hpp"
-#include "cambium/map/cubic.hpp"
-#include "cambium/map/find_corridor.hpp"
-#include "cambium/map/free_corridor.hpp"
-#include "cambium/map/junction.hpp"
-#include "cambium/map/lane.hpp"
-#include "cambium/map/lane_area.hpp"
-#include "cambium/map/lane_place.hpp"
-#include "cambium/map/lane_tree.hpp"
-#include "cambium/map/lane_type.hpp"
+#include "cambium/map/corridor/build_corridor.hpp"
+#include "cambium/map/corridor/corridor.hpp"
+#include "cambium/map/corridor/find_corridor.hpp"
+#include "cambium/map/corridor/free_corridor.hpp"
+#include "cambium/map/corridor/lane_area.hpp"
+#include "cambium/map/corridor/lane_place.hpp"
+#include "cambium/map/corridor/stop_lines.hpp"
+#include "cambium/map/lanes/junction.hpp"
+#include "cambium/map/lanes/lane.hpp"
+#include "cambium/map/lanes/lane_tree.hpp"
+#include "cambium/map/lanes/right_of_way.hpp"
+#include "cambium/map/lanes/road_lanes.hpp"
+#include "cambium/map/lanes/signals.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/map_queries.hpp"
-#include "cambium/map/parametric_cubic.hpp"
-#include "cambium/map/reference_line.hpp"
-#include "cambium/map/right_of_way.hpp"
-#include "cambium/map/road.hpp"
-#include "cambium/map/road_lanes.hpp"
-#include "cambium/map/route.hpp"
-#include "cambium/map/signals.hpp"
-#include "cambium/map/station_offset.hpp"
-#include "cambium/map/stop_lines.hpp"
+#include "cambium/map/road/cubic.hpp"
+#include "cambium/map/road/lane_type.hpp"
+#include "cambium/map/road/parametric_cubic.hpp"
+#include "cambium/map/road/reference_line.hpp"
+#include "cambium/map/road/road.hpp"
+#include "cambium/map/road/station_offset.hpp"
+#include "cambium/map/routing/route.hpp"

@@ -1,12 +1,12 @@
 // Laws of the car-following models, as properties over many samples.
-#include "cambium/behavior/adaptive_cruise_control.hpp"
+#include "cambium/behavior/following/adaptive_cruise_control.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 #include <vector>
 
-#include "cambium/behavior/linear_stability.hpp"
+#include "cambium/behavior/law/linear_stability.hpp"
 #include "cambium/behavior/presets.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"

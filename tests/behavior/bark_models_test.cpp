@@ -9,9 +9,9 @@
 
 #include "../support/bark.hpp"
 #include "../support/corpus.hpp"
-#include "cambium/behavior/adaptive_cruise_control.hpp"
-#include "cambium/behavior/idm_classic.hpp"
-#include "cambium/behavior/idm_lane_tracking.hpp"
+#include "cambium/behavior/following/adaptive_cruise_control.hpp"
+#include "cambium/behavior/following/idm_classic.hpp"
+#include "cambium/behavior/following/idm_lane_tracking.hpp"
 #include "cambium/execution/interpolate.hpp"
 
 namespace cb = cambium;

@@ -5,9 +5,9 @@
 #include <type_traits>
 #include <variant>
 
-#include "cambium/behavior/constant_acceleration.hpp"
-#include "cambium/behavior/external_input.hpp"
-#include "cambium/behavior/idm_classic.hpp"
+#include "cambium/behavior/following/constant_acceleration.hpp"
+#include "cambium/behavior/following/idm_classic.hpp"
+#include "cambium/behavior/open_loop/external_input.hpp"
 
 namespace cb = cambium;
 

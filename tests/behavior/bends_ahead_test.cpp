@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "../support/maps.hpp"
-#include "cambium/behavior/road_rules.hpp"
+#include "cambium/behavior/law/road_rules.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"
-#include "cambium/map/build_corridor.hpp"
-#include "cambium/map/curve_layout.hpp"
+#include "cambium/map/corridor/build_corridor.hpp"
+#include "cambium/map/road/curve_layout.hpp"
 
 using namespace cambium;
 

@@ -1,4 +1,4 @@
-#include "cambium/behavior/external_input.hpp"
+#include "cambium/behavior/open_loop/external_input.hpp"
 
 #include <doctest/doctest.h>
 

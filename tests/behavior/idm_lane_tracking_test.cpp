@@ -1,4 +1,4 @@
-#include "cambium/behavior/idm_lane_tracking.hpp"
+#include "cambium/behavior/following/idm_lane_tracking.hpp"
 
 #include <doctest/doctest.h>
 
@@ -13,7 +13,7 @@
 #include "cambium/dynamics/single_track_steering.hpp"
 #include "cambium/dynamics/triple_integrator.hpp"
 #include "cambium/evaluation/collision.hpp"
-#include "cambium/map/curve_layout.hpp"
+#include "cambium/map/road/curve_layout.hpp"
 
 using namespace fixtures;
 using cb::IdmLaneTracking;

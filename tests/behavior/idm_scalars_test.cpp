@@ -6,8 +6,8 @@
 #include <limits>
 #include <type_traits>
 
-#include "cambium/behavior/idm.hpp"
-#include "cambium/behavior/idm_classic.hpp"
+#include "cambium/behavior/following/idm_classic.hpp"
+#include "cambium/behavior/law/idm.hpp"
 #include "cambium/core/distributions.hpp"
 
 #include "../support/dual.hpp"

@@ -1,4 +1,4 @@
-#include "cambium/behavior/idm_stochastic.hpp"
+#include "cambium/behavior/following/idm_stochastic.hpp"
 
 #include <doctest/doctest.h>
 
@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "../world/fixtures.hpp"
-#include "cambium/behavior/road_rules.hpp"
+#include "cambium/behavior/law/road_rules.hpp"
 
 using namespace fixtures;
 using cb::IdmStochastic;

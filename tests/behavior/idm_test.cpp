@@ -1,4 +1,4 @@
-#include "cambium/behavior/idm.hpp"
+#include "cambium/behavior/law/idm.hpp"
 
 #include <doctest/doctest.h>
 
@@ -6,7 +6,7 @@
 #include <limits>
 #include <string>
 
-#include "cambium/behavior/idm_classic.hpp"
+#include "cambium/behavior/following/idm_classic.hpp"
 #include "cambium/core/distributions.hpp"
 
 namespace cb = cambium;

@@ -1,4 +1,4 @@
-#include "cambium/behavior/lane_change_rule_based.hpp"
+#include "cambium/behavior/lane_change/lane_change_rule_based.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,15 +1,15 @@
-#include "cambium/behavior/lane_reach.hpp"
+#include "cambium/behavior/lane_change/lane_reach.hpp"
 
 #include <doctest/doctest.h>
 
 #include <cmath>
 
 #include "cambium/behavior/behavior_set.hpp"
-#include "cambium/behavior/idm_classic.hpp"
+#include "cambium/behavior/following/idm_classic.hpp"
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/geometry/polygon.hpp"
-#include "cambium/map/build_corridor.hpp"
+#include "cambium/map/corridor/build_corridor.hpp"
 #include "cambium/world/world.hpp"
 #include "support/maps.hpp"
 

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "cambium/behavior/behavior_set.hpp"
-#include "cambium/behavior/constant_acceleration.hpp"
-#include "cambium/behavior/idm_classic.hpp"
-#include "cambium/behavior/lane_change_rule_based.hpp"
-#include "cambium/behavior/mobil.hpp"
+#include "cambium/behavior/following/constant_acceleration.hpp"
+#include "cambium/behavior/following/idm_classic.hpp"
+#include "cambium/behavior/lane_change/lane_change_rule_based.hpp"
+#include "cambium/behavior/lane_change/mobil.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/execution/interpolate.hpp"

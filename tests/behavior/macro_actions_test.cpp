@@ -1,4 +1,4 @@
-#include "cambium/behavior/macro_actions.hpp"
+#include "cambium/behavior/lane_change/macro_actions.hpp"
 
 #include <doctest/doctest.h>
 
@@ -7,9 +7,9 @@
 #include <string>
 
 #include "../world/fixtures.hpp"
-#include "cambium/behavior/motion_primitives.hpp"
-#include "cambium/behavior/random_macro_actions.hpp"
-#include "cambium/behavior/safety.hpp"
+#include "cambium/behavior/lane_change/random_macro_actions.hpp"
+#include "cambium/behavior/open_loop/motion_primitives.hpp"
+#include "cambium/behavior/safety/safety.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/dynamics/integration.hpp"
 

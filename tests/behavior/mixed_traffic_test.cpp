@@ -8,15 +8,15 @@
 #include <cstdint>
 #include <vector>
 
-#include "cambium/behavior/idm_lane_tracking.hpp"
-#include "cambium/behavior/intersection.hpp"
-#include "cambium/behavior/pedestrian.hpp"
+#include "cambium/behavior/following/idm_lane_tracking.hpp"
+#include "cambium/behavior/junction/intersection.hpp"
+#include "cambium/behavior/pedestrian/pedestrian.hpp"
 #include "cambium/behavior/presets.hpp"
 #include "cambium/dynamics/dynamic_set.hpp"
 #include "cambium/execution/stanley.hpp"
-#include "cambium/map/build_corridor.hpp"
-#include "cambium/map/curve_layout.hpp"
-#include "cambium/map/free_corridor.hpp"
+#include "cambium/map/corridor/build_corridor.hpp"
+#include "cambium/map/corridor/free_corridor.hpp"
+#include "cambium/map/road/curve_layout.hpp"
 
 #include "lane_traffic_fixtures.hpp"
 

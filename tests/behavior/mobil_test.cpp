@@ -1,4 +1,4 @@
-#include "cambium/behavior/mobil.hpp"
+#include "cambium/behavior/lane_change/mobil.hpp"
 
 #include <doctest/doctest.h>
 
@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "cambium/behavior/presets.hpp"
-#include "cambium/map/curve_layout.hpp"
-#include "cambium/map/road_plan.hpp"
+#include "cambium/map/build/road_plan.hpp"
+#include "cambium/map/road/curve_layout.hpp"
 #include "lane_traffic_fixtures.hpp"
 
 using namespace lane_traffic;

@@ -1,4 +1,4 @@
-#include "cambium/behavior/pedestrian.hpp"
+#include "cambium/behavior/pedestrian/pedestrian.hpp"
 
 #include <doctest/doctest.h>
 
@@ -7,10 +7,10 @@
 #include <cmath>
 #include <vector>
 
-#include "cambium/behavior/constant_acceleration.hpp"
-#include "cambium/behavior/idm_classic.hpp"
+#include "cambium/behavior/following/constant_acceleration.hpp"
+#include "cambium/behavior/following/idm_classic.hpp"
 #include "cambium/core/distributions.hpp"
-#include "cambium/map/free_corridor.hpp"
+#include "cambium/map/corridor/free_corridor.hpp"
 
 #include "../support/allocations.hpp"
 #include "lane_traffic_fixtures.hpp"

@@ -1,4 +1,4 @@
-#include "cambium/behavior/road_rules.hpp"
+#include "cambium/behavior/law/road_rules.hpp"
 
 #include <doctest/doctest.h>
 
@@ -9,16 +9,16 @@
 
 #include "../support/maps.hpp"
 #include "../world/fixtures.hpp"
-#include "cambium/behavior/adaptive_cruise_control.hpp"
-#include "cambium/behavior/idm_lane_tracking.hpp"
-#include "cambium/behavior/idm_stochastic.hpp"
-#include "cambium/behavior/intersection.hpp"
-#include "cambium/behavior/lane_change_rule_based.hpp"
-#include "cambium/behavior/mobil.hpp"
-#include "cambium/behavior/rss_conformant.hpp"
-#include "cambium/behavior/zip_merge.hpp"
-#include "cambium/map/curve_layout.hpp"
+#include "cambium/behavior/following/adaptive_cruise_control.hpp"
+#include "cambium/behavior/following/idm_lane_tracking.hpp"
+#include "cambium/behavior/following/idm_stochastic.hpp"
+#include "cambium/behavior/junction/intersection.hpp"
+#include "cambium/behavior/lane_change/lane_change_rule_based.hpp"
+#include "cambium/behavior/lane_change/mobil.hpp"
+#include "cambium/behavior/lane_change/zip_merge.hpp"
+#include "cambium/behavior/safety/rss_conformant.hpp"
 #include "cambium/map/opendrive.hpp"
+#include "cambium/map/road/curve_layout.hpp"
 
 using namespace fixtures;
 

@@ -1,5 +1,5 @@
 // RSS-conformant agents among their like never collide, however recklessly they would drive by themselves: a property.
-#include "cambium/behavior/rss_conformant.hpp"
+#include "cambium/behavior/safety/rss_conformant.hpp"
 
 #include <doctest/doctest.h>
 
@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "../world/fixtures.hpp"
-#include "cambium/behavior/idm_classic.hpp"
-#include "cambium/behavior/idm_stochastic.hpp"
-#include "cambium/behavior/mobil.hpp"
-#include "cambium/behavior/random_macro_actions.hpp"
+#include "cambium/behavior/following/idm_classic.hpp"
+#include "cambium/behavior/following/idm_stochastic.hpp"
+#include "cambium/behavior/lane_change/mobil.hpp"
+#include "cambium/behavior/lane_change/random_macro_actions.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/evaluation/collision.hpp"
 

@@ -8,13 +8,13 @@
 #include <vector>
 
 #include "../support/maps.hpp"
-#include "cambium/behavior/idm_classic.hpp"
-#include "cambium/behavior/intersection.hpp"
-#include "cambium/behavior/rss_conformant.hpp"
-#include "cambium/behavior/static_trajectory.hpp"
+#include "cambium/behavior/following/idm_classic.hpp"
+#include "cambium/behavior/junction/intersection.hpp"
+#include "cambium/behavior/open_loop/static_trajectory.hpp"
+#include "cambium/behavior/safety/rss_conformant.hpp"
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/execution/interpolate.hpp"
-#include "cambium/planner/mcts_single_agent.hpp"
+#include "cambium/planner/mcts/mcts_single_agent.hpp"
 #include "cambium/world/world.hpp"
 
 using namespace cambium;

@@ -5,10 +5,10 @@
 #include <cmath>
 
 #include "../world/fixtures.hpp"
-#include "cambium/behavior/rss_conformant.hpp"
+#include "cambium/behavior/safety/rss_conformant.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/evaluation/collision.hpp"
-#include "cambium/map/curve_layout.hpp"
+#include "cambium/map/road/curve_layout.hpp"
 
 using namespace fixtures;
 

@@ -1,4 +1,4 @@
-#include "cambium/behavior/rss.hpp"
+#include "cambium/behavior/safety/rss.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-#include "cambium/behavior/social_force.hpp"
+#include "cambium/behavior/pedestrian/social_force.hpp"
 
 #include <doctest/doctest.h>
 

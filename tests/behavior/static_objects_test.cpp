@@ -7,17 +7,17 @@
 #include <utility>
 #include <vector>
 
-#include "cambium/behavior/adaptive_cruise_control.hpp"
-#include "cambium/behavior/idm_lane_tracking.hpp"
-#include "cambium/behavior/idm_stochastic.hpp"
-#include "cambium/behavior/intersection.hpp"
-#include "cambium/behavior/macro_actions.hpp"
-#include "cambium/behavior/pedestrian.hpp"
-#include "cambium/behavior/rss_conformant.hpp"
-#include "cambium/behavior/zip_merge.hpp"
-#include "cambium/map/build_corridor.hpp"
-#include "cambium/map/curve_layout.hpp"
-#include "cambium/map/free_corridor.hpp"
+#include "cambium/behavior/following/adaptive_cruise_control.hpp"
+#include "cambium/behavior/following/idm_lane_tracking.hpp"
+#include "cambium/behavior/following/idm_stochastic.hpp"
+#include "cambium/behavior/junction/intersection.hpp"
+#include "cambium/behavior/lane_change/macro_actions.hpp"
+#include "cambium/behavior/lane_change/zip_merge.hpp"
+#include "cambium/behavior/pedestrian/pedestrian.hpp"
+#include "cambium/behavior/safety/rss_conformant.hpp"
+#include "cambium/map/corridor/build_corridor.hpp"
+#include "cambium/map/corridor/free_corridor.hpp"
+#include "cambium/map/road/curve_layout.hpp"
 
 #include "lane_traffic_fixtures.hpp"
 

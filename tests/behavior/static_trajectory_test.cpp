@@ -1,4 +1,4 @@
-#include "cambium/behavior/static_trajectory.hpp"
+#include "cambium/behavior/open_loop/static_trajectory.hpp"
 
 #include <doctest/doctest.h>
 

@@ -1,4 +1,4 @@
-#include "cambium/behavior/zip_merge.hpp"
+#include "cambium/behavior/lane_change/zip_merge.hpp"
 
 #include <doctest/doctest.h>
 

@@ -5,9 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "cambium/core/detail/stable_sort.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"
+#include "cambium/core/stable_sort.hpp"
 
 using namespace cambium;
 

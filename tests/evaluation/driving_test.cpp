@@ -9,7 +9,7 @@
 #include "../world/fixtures.hpp"
 #include "cambium/evaluation/course_end.hpp"
 #include "cambium/evaluation/evaluator.hpp"
-#include "cambium/map/curve_layout.hpp"
+#include "cambium/map/road/curve_layout.hpp"
 
 using namespace fixtures;
 

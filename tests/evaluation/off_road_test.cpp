@@ -11,7 +11,7 @@
 
 #include "../world/fixtures.hpp"
 #include "cambium/core/distributions.hpp"
-#include "cambium/map/curve_layout.hpp"
+#include "cambium/map/road/curve_layout.hpp"
 
 using namespace fixtures;
 using cb::geometry::Point;

@@ -23,9 +23,9 @@
 #include "../support/map_faults.hpp"
 #include "../support/map_use.hpp"
 #include "../support/xml_damage.hpp"
-#include "cambium/map/lane_network.hpp"
+#include "cambium/map/lanes/lane_network.hpp"
 #include "cambium/map/opendrive.hpp"
-#include "cambium/map/opendrive_writer.hpp"
+#include "cambium/map/opendrive/writer.hpp"
 
 extern "C" std::size_t LLVMFuzzerMutate(std::uint8_t* data, std::size_t size, std::size_t max_size);
 

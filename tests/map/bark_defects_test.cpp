@@ -8,8 +8,8 @@
 #include <doctest/doctest.h>
 
 #include "../support/corpus.hpp"
-#include "cambium/map/find_corridor.hpp"
-#include "cambium/map/lane_network.hpp"
+#include "cambium/map/corridor/find_corridor.hpp"
+#include "cambium/map/lanes/lane_network.hpp"
 #include "cambium/map/opendrive.hpp"
 #include "road_text.hpp"
 #include "../support/maps.hpp"
@@ -18,10 +18,10 @@ namespace {
 
 using namespace road_text;
 using cambium::LaneId;
+using cambium::LoadedMap;
 using cambium::Severity;
 using cambium::map::build_road_corridor;
 using cambium::map::RoadDirection;
-using cambium::LoadedMap;
 
 bool has_route(LoadedMap const& loaded, At const& from, At const& to) {
   auto const& map = *loaded.map;

@@ -1,5 +1,5 @@
 // Documents that no reader has looked at.
-#include "cambium/map/build_map.hpp"
+#include "cambium/map/build/build_map.hpp"
 
 #include <limits>
 #include <string>
@@ -10,9 +10,9 @@
 
 #include "../support/map_faults.hpp"
 #include "../support/map_use.hpp"
-#include "cambium/map/map_builder.hpp"
+#include "cambium/map/build/map_builder.hpp"
 #include "cambium/map/opendrive.hpp"
-#include "cambium/map/opendrive_check.hpp"
+#include "cambium/map/opendrive/check.hpp"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "cambium/map/detail/built_corridors.hpp"
+#include "cambium/map/corridor/detail/built_corridors.hpp"
 
 #include <algorithm>
 #include <cstddef>
@@ -8,8 +8,8 @@
 
 #include <doctest/doctest.h>
 
-#include "cambium/map/build_corridor.hpp"
-#include "cambium/map/detail/make_road_corridor.hpp"
+#include "cambium/map/corridor/build_corridor.hpp"
+#include "cambium/map/corridor/detail/make_road_corridor.hpp"
 #include "lanes_by_hand.hpp"
 
 using namespace by_hand;

@@ -16,7 +16,7 @@
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/geometry/collision.hpp"
-#include "cambium/map/build_corridor.hpp"
+#include "cambium/map/corridor/build_corridor.hpp"
 #include "cambium/map/map.hpp"
 
 using namespace cambium;

@@ -17,7 +17,7 @@
 #endif
 
 #include "cambium/geometry/detail/boost_polygon.hpp"
-#include "cambium/map/build_corridor.hpp"
+#include "cambium/map/corridor/build_corridor.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -32,12 +32,12 @@
 
 #include <doctest/doctest.h>
 
-#include "cambium/map/find_corridor.hpp"
-#include "cambium/map/lane_area.hpp"
-#include "cambium/map/lane_place.hpp"
-#include "cambium/map/opendrive.hpp"
-#include "cambium/map/road_area.hpp"
+#include "cambium/map/corridor/find_corridor.hpp"
+#include "cambium/map/corridor/lane_area.hpp"
+#include "cambium/map/corridor/lane_place.hpp"
+#include "cambium/map/corridor/road_area.hpp"
 #include "cambium/map/map.hpp"
+#include "cambium/map/opendrive.hpp"
 #include "../support/samples.hpp"
 #include "../support/corpus.hpp"
 #include "lanes_by_hand.hpp"

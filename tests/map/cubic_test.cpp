@@ -6,7 +6,7 @@
 
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"
-#include "cambium/map/cubic.hpp"
+#include "cambium/map/road/cubic.hpp"
 
 using cambium::map::BeforeFirst;
 using cambium::map::CubicProfile;

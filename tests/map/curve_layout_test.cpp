@@ -1,4 +1,4 @@
-#include "cambium/map/curve_layout.hpp"
+#include "cambium/map/road/curve_layout.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "cambium/map/free_corridor.hpp"
+#include "cambium/map/corridor/free_corridor.hpp"
 
 #include <doctest/doctest.h>
 
@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "cambium/geometry/angle.hpp"
-#include "cambium/map/lane_place.hpp"
+#include "cambium/map/corridor/lane_place.hpp"
 
 #include "../support/maps.hpp"
 

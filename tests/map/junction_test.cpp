@@ -1,4 +1,4 @@
-#include "cambium/map/junction.hpp"
+#include "cambium/map/lanes/junction.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -11,8 +11,8 @@
 #include <doctest/doctest.h>
 
 #include "cambium/geometry/convex_hull.hpp"
+#include "cambium/map/lanes/right_of_way.hpp"
 #include "cambium/map/opendrive.hpp"
-#include "cambium/map/right_of_way.hpp"
 #include "../support/corpus.hpp"
 #include "lanes_by_hand.hpp"
 #include "../support/maps.hpp"

@@ -1,4 +1,4 @@
-#include "cambium/map/lane_adjacency.hpp"
+#include "cambium/map/build/lane_adjacency.hpp"
 
 #include <cmath>
 #include <set>
@@ -8,9 +8,9 @@
 
 #include <doctest/doctest.h>
 
-#include "cambium/map/make_roads.hpp"
+#include "cambium/map/build/make_roads.hpp"
 #include "cambium/map/opendrive.hpp"
-#include "cambium/map/opendrive_reader.hpp"
+#include "cambium/map/opendrive/reader.hpp"
 
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"

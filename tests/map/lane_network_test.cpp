@@ -1,4 +1,4 @@
-#include "cambium/map/lane_network.hpp"
+#include "cambium/map/lanes/lane_network.hpp"
 
 #include <algorithm>
 #include <string>

@@ -1,4 +1,4 @@
-#include "cambium/map/road.hpp"
+#include "cambium/map/road/road.hpp"
 
 #include <algorithm>
 #include <cmath>

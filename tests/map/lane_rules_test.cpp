@@ -9,10 +9,10 @@
 
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"
-#include "cambium/map/build_map.hpp"
-#include "cambium/map/detail/split_roads.hpp"
+#include "cambium/map/build/build_map.hpp"
+#include "cambium/map/build/detail/split_roads.hpp"
 #include "cambium/map/opendrive.hpp"
-#include "cambium/map/opendrive_reader.hpp"
+#include "cambium/map/opendrive/reader.hpp"
 
 using namespace cambium;
 using namespace cambium::map;

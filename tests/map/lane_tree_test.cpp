@@ -1,4 +1,4 @@
-#include "cambium/map/lane_tree.hpp"
+#include "cambium/map/lanes/lane_tree.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "cambium/map/lanes/overlaps.hpp"
 #include "cambium/map/map.hpp"
-#include "cambium/map/overlaps.hpp"
 
 /// Lanes made in code for the tests: one road a lane, so that nothing is beside each other unless it is said.
 namespace by_hand {

@@ -11,9 +11,9 @@
 #include <doctest/doctest.h>
 
 #include "cambium/core/random.hpp"
-#include "cambium/map/build_map.hpp"
+#include "cambium/map/build/build_map.hpp"
 #include "cambium/map/opendrive.hpp"
-#include "cambium/map/opendrive_reader.hpp"
+#include "cambium/map/opendrive/reader.hpp"
 
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"

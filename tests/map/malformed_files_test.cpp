@@ -10,12 +10,12 @@
 #include <string_view>
 #include <vector>
 
-#include "cambium/map/reading_limits.hpp"
+#include "cambium/map/opendrive/reading_limits.hpp"
 #include "../support/map_faults.hpp"
 #include "road_text.hpp"
 #include "../support/maps.hpp"
 #include "cambium/map/opendrive.hpp"
-#include "cambium/map/reading_limits.hpp"
+#include "cambium/map/opendrive/reading_limits.hpp"
 
 namespace {
 

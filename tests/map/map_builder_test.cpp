@@ -1,4 +1,4 @@
-#include "cambium/map/map_builder.hpp"
+#include "cambium/map/build/map_builder.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,10 +9,10 @@
 
 #include <doctest/doctest.h>
 
-#include "cambium/map/build_map.hpp"
+#include "cambium/map/build/build_map.hpp"
 #include "cambium/map/opendrive.hpp"
-#include "cambium/map/opendrive_check.hpp"
-#include "cambium/map/opendrive_writer.hpp"
+#include "cambium/map/opendrive/check.hpp"
+#include "cambium/map/opendrive/writer.hpp"
 #include "../support/allocations.hpp"
 #include "lanes_by_hand.hpp"
 

@@ -10,9 +10,9 @@
 
 #include "../support/corpus.hpp"
 #include "cambium/map/opendrive.hpp"
-#include "cambium/map/opendrive_reader.hpp"
-#include "cambium/map/opendrive_writer.hpp"
-#include "cambium/map/reading_limits.hpp"
+#include "cambium/map/opendrive/reader.hpp"
+#include "cambium/map/opendrive/reading_limits.hpp"
+#include "cambium/map/opendrive/writer.hpp"
 #include "../support/maps.hpp"
 
 namespace {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cambium/map/opendrive.hpp"
-#include "cambium/map/opendrive_reader.hpp"
+#include "cambium/map/opendrive/reader.hpp"
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"
 
@@ -392,7 +392,8 @@ TEST_CASE("every map of the corpus is read, or refused for a geometry that comes
   for (auto const& map : maps) {
     std::vector<Diagnostic> diagnostics;
     try {
-      roads += cambium::map::read_opendrive_document(corpus::read(map), map.filename().string(), diagnostics).roads.size();
+      roads +=
+          cambium::map::read_opendrive_document(corpus::read(map), map.filename().string(), diagnostics).roads.size();
     } catch (MapError const& error) {
       ++refused;
       CHECK(contains(error.what(), "not supported yet"));

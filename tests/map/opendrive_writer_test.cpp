@@ -1,4 +1,4 @@
-#include "cambium/map/opendrive_writer.hpp"
+#include "cambium/map/opendrive/writer.hpp"
 
 #include <doctest/doctest.h>
 
@@ -18,10 +18,10 @@
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"
 #include "../support/maps.hpp"
-#include "cambium/map/detail/xml_context.hpp"
-#include "cambium/map/detail/xml_text.hpp"
 #include "cambium/map/opendrive.hpp"
-#include "cambium/map/opendrive_reader.hpp"
+#include "cambium/map/opendrive/detail/xml_context.hpp"
+#include "cambium/map/opendrive/detail/xml_text.hpp"
+#include "cambium/map/opendrive/reader.hpp"
 
 namespace {
 

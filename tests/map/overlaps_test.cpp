@@ -1,4 +1,4 @@
-#include "cambium/map/overlaps.hpp"
+#include "cambium/map/lanes/overlaps.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 
 #include <doctest/doctest.h>
 
-#include "cambium/map/build_map.hpp"
-#include "cambium/map/map_builder.hpp"
+#include "cambium/map/build/build_map.hpp"
+#include "cambium/map/build/map_builder.hpp"
 #include "cambium/map/opendrive.hpp"
 #include "../support/corpus.hpp"
 #include "../support/map_use.hpp"

@@ -14,7 +14,7 @@
 #include "../support/corpus.hpp"
 #include "../support/skipped.hpp"
 #include "../viewer/browser.hpp"
-#include "cambium/map/build_corridor.hpp"
+#include "cambium/map/corridor/build_corridor.hpp"
 #include "cambium/map/opendrive.hpp"
 #include "../support/maps.hpp"
 

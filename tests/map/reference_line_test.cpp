@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "cambium/map/opendrive.hpp"
-#include "cambium/map/opendrive_reader.hpp"
-#include "cambium/map/reference_line.hpp"
+#include "cambium/map/opendrive/reader.hpp"
+#include "cambium/map/road/reference_line.hpp"
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"
 

@@ -1,4 +1,4 @@
-#include "cambium/map/road_lanes.hpp"
+#include "cambium/map/lanes/road_lanes.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include <doctest/doctest.h>
 
-#include "cambium/map/build_corridor.hpp"
+#include "cambium/map/corridor/build_corridor.hpp"
 #include "cambium/map/opendrive.hpp"
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"

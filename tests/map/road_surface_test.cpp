@@ -1,4 +1,4 @@
-#include "cambium/map/road_surface.hpp"
+#include "cambium/map/road/road_surface.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -6,8 +6,8 @@
 
 #include <doctest/doctest.h>
 
-#include "cambium/map/detail/surface_height.hpp"
 #include "cambium/map/opendrive.hpp"
+#include "cambium/map/road/detail/surface_height.hpp"
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"
 

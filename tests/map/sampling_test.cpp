@@ -1,4 +1,4 @@
-#include "cambium/map/detail/section_sampler.hpp"
+#include "cambium/map/build/detail/section_sampler.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,8 +8,8 @@
 
 #include <doctest/doctest.h>
 
-#include "cambium/map/curve_layout.hpp"
 #include "cambium/map/opendrive.hpp"
+#include "cambium/map/road/curve_layout.hpp"
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"
 

@@ -11,8 +11,8 @@
 
 #include "cambium/core/error.hpp"
 #include "cambium/map/opendrive.hpp"
-#include "cambium/map/opendrive_reader.hpp"
-#include "cambium/map/opendrive_writer.hpp"
+#include "cambium/map/opendrive/reader.hpp"
+#include "cambium/map/opendrive/writer.hpp"
 
 #include "../support/maps.hpp"
 

@@ -1,4 +1,4 @@
-#include "cambium/map/station_offset.hpp"
+#include "cambium/map/road/station_offset.hpp"
 
 #include <cmath>
 #include <limits>

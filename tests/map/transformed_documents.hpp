@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "cambium/geometry/angle.hpp"
-#include "cambium/map/detail/road_links.hpp"
-#include "cambium/map/opendrive_document.hpp"
+#include "cambium/map/build/detail/road_links.hpp"
+#include "cambium/map/opendrive/document.hpp"
 
 /// Documents that say the same in another way: mirrored, moved, with roads written from their other end.
 namespace transformed {

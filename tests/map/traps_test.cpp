@@ -9,7 +9,7 @@
 
 #include "../support/allocations.hpp"
 #include "../support/map_faults.hpp"
-#include "cambium/map/lane_network.hpp"
+#include "cambium/map/lanes/lane_network.hpp"
 #include "cambium/map/opendrive.hpp"
 #include "road_text.hpp"
 #include "../support/maps.hpp"

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "../world/fixtures.hpp"
-#include "cambium/behavior/idm_lane_tracking.hpp"
-#include "cambium/behavior/static_trajectory.hpp"
+#include "cambium/behavior/following/idm_lane_tracking.hpp"
+#include "cambium/behavior/open_loop/static_trajectory.hpp"
 #include "cambium/observer/delayed.hpp"
 #include "cambium/observer/parametric.hpp"
 

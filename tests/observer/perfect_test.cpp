@@ -6,13 +6,13 @@
 #include <map>
 
 #include "../world/fixtures.hpp"
-#include "cambium/behavior/idm_proposal.hpp"
-#include "cambium/behavior/idm_stochastic.hpp"
-#include "cambium/behavior/intersection.hpp"
-#include "cambium/behavior/mobil.hpp"
-#include "cambium/behavior/pedestrian.hpp"
-#include "cambium/behavior/rss_conformant.hpp"
-#include "cambium/behavior/zip_merge.hpp"
+#include "cambium/behavior/following/idm_stochastic.hpp"
+#include "cambium/behavior/junction/intersection.hpp"
+#include "cambium/behavior/lane_change/idm_proposal.hpp"
+#include "cambium/behavior/lane_change/mobil.hpp"
+#include "cambium/behavior/lane_change/zip_merge.hpp"
+#include "cambium/behavior/pedestrian/pedestrian.hpp"
+#include "cambium/behavior/safety/rss_conformant.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/observer/parametric.hpp"
 

@@ -1,4 +1,4 @@
-#include "cambium/planner/frenet_motion.hpp"
+#include "cambium/planner/frenet/frenet_motion.hpp"
 
 #include <doctest/doctest.h>
 
@@ -7,7 +7,7 @@
 
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"
-#include "cambium/planner/quintic.hpp"
+#include "cambium/planner/frenet/quintic.hpp"
 
 using namespace cambium;
 

@@ -1,4 +1,4 @@
-#include "cambium/planner/frenet_planner.hpp"
+#include "cambium/planner/frenet/frenet_planner.hpp"
 
 #include <doctest/doctest.h>
 
@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <string>
 
-#include "cambium/behavior/idm_classic.hpp"
+#include "cambium/behavior/following/idm_classic.hpp"
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/world/world.hpp"
 #include "support/allocations.hpp"

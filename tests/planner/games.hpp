@@ -8,7 +8,7 @@
 #include <span>
 
 #include "cambium/core/distributions.hpp"
-#include "cambium/planner/search_domain.hpp"
+#include "cambium/planner/search/search_domain.hpp"
 
 // Small known games, to be searched.
 

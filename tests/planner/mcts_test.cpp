@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "cambium/execution/interpolate.hpp"
-#include "cambium/map/map_builder.hpp"
-#include "cambium/map/polyline_roads.hpp"
+#include "cambium/map/build/map_builder.hpp"
+#include "cambium/map/build/polyline_roads.hpp"
 #include "cambium/planner/planner_model.hpp"
 #include "cambium/world/world.hpp"
 #include "support/allocations.hpp"

@@ -6,9 +6,9 @@
 #include <string>
 
 #include "cambium/execution/interpolate.hpp"
-#include "cambium/planner/mcts_cooperative.hpp"
-#include "cambium/planner/mcts_single_agent.hpp"
-#include "cambium/planner/puct.hpp"
+#include "cambium/planner/mcts/mcts_cooperative.hpp"
+#include "cambium/planner/mcts/mcts_single_agent.hpp"
+#include "cambium/planner/search/puct.hpp"
 #include "cambium/world/world.hpp"
 #include "support/maps.hpp"
 

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <cstdint>
 
-#include "cambium/behavior/idm_classic.hpp"
+#include "cambium/behavior/following/idm_classic.hpp"
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/observer/parametric.hpp"
-#include "cambium/planner/frenet_planner.hpp"
+#include "cambium/planner/frenet/frenet_planner.hpp"
 #include "cambium/planner/planner_model.hpp"
-#include "cambium/planner/policy_tree_planner.hpp"
-#include "cambium/planner/proposal_planner.hpp"
+#include "cambium/planner/policy/policy_tree_planner.hpp"
+#include "cambium/planner/policy/proposal_planner.hpp"
 #include "cambium/world/world.hpp"
 #include "support/maps.hpp"
 

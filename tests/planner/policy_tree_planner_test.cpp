@@ -1,4 +1,4 @@
-#include "cambium/planner/policy_tree_planner.hpp"
+#include "cambium/planner/policy/policy_tree_planner.hpp"
 
 #include <doctest/doctest.h>
 
@@ -8,7 +8,7 @@
 #include <set>
 #include <vector>
 
-#include "cambium/behavior/idm_classic.hpp"
+#include "cambium/behavior/following/idm_classic.hpp"
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/world/world.hpp"
 #include "support/allocations.hpp"

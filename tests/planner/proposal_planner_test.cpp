@@ -1,4 +1,4 @@
-#include "cambium/planner/proposal_planner.hpp"
+#include "cambium/planner/policy/proposal_planner.hpp"
 
 #include <doctest/doctest.h>
 
@@ -8,8 +8,8 @@
 #include <string>
 
 #include "cambium/execution/interpolate.hpp"
-#include "cambium/map/curve_layout.hpp"
-#include "cambium/map/road_plan.hpp"
+#include "cambium/map/build/road_plan.hpp"
+#include "cambium/map/road/curve_layout.hpp"
 #include "cambium/world/world.hpp"
 #include "support/allocations.hpp"
 #include "support/maps.hpp"

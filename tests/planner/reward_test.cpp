@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "cambium/execution/interpolate.hpp"
-#include "cambium/planner/mcts_single_agent.hpp"
+#include "cambium/planner/mcts/mcts_single_agent.hpp"
 #include "cambium/world/world.hpp"
 #include "support/maps.hpp"
 

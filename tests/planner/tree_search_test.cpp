@@ -1,4 +1,4 @@
-#include "cambium/planner/tree_search.hpp"
+#include "cambium/planner/search/tree_search.hpp"
 
 #include <doctest/doctest.h>
 
@@ -11,12 +11,12 @@
 #include <string>
 #include <vector>
 
-#include "cambium/planner/belief.hpp"
-#include "cambium/planner/exp3.hpp"
-#include "cambium/planner/parallel_tree_search.hpp"
-#include "cambium/planner/puct.hpp"
-#include "cambium/planner/regret_matching.hpp"
-#include "cambium/planner/tree_export.hpp"
+#include "cambium/planner/mcts/belief.hpp"
+#include "cambium/planner/search/exp3.hpp"
+#include "cambium/planner/search/parallel_tree_search.hpp"
+#include "cambium/planner/search/puct.hpp"
+#include "cambium/planner/search/regret_matching.hpp"
+#include "cambium/planner/search/tree_export.hpp"
 #include "planner/games.hpp"
 #include "support/allocations.hpp"
 

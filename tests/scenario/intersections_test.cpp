@@ -16,7 +16,7 @@
 #include "../../examples/intersection/scenario.hpp"
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"
-#include "cambium/behavior/constant_acceleration.hpp"
+#include "cambium/behavior/following/constant_acceleration.hpp"
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/collision.hpp"

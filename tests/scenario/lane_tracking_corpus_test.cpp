@@ -8,7 +8,7 @@
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"
 #include "cambium/behavior/behavior_set.hpp"
-#include "cambium/behavior/idm_lane_tracking.hpp"
+#include "cambium/behavior/following/idm_lane_tracking.hpp"
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/map/opendrive.hpp"
 #include "cambium/world/world.hpp"

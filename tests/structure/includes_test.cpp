@@ -20,18 +20,25 @@ constexpr std::array rooms = {"core",      "geometry", "map",    "dynamics",   "
                               "observer",  "goal",     "world",  "evaluation", "planner",   "scenario",
                               "benchmark", "snapshot", "viewer", "learning",   "testing"};
 constexpr std::size_t no_room = rooms.size();
+/// Families are folders of a room, from top to bottom: a header of a family includes its own family, those above, and
+/// the headers that lie in the room itself.
+std::map<std::string, std::vector<std::string>> const families{
+    {"map", {"road", "opendrive", "lanes", "routing", "corridor", "build"}},
+    {"behavior", {"law", "following", "lane_change", "junction", "safety", "pedestrian", "open_loop"}},
+    {"planner", {"search", "mcts", "frenet", "policy"}}};
 /// Rooms that do without the Boost libraries that are slow to compile, over whatever they include.
 constexpr std::array light_rooms = {"dynamics", "execution", "behavior",   "observer",
                                     "goal",     "world",     "evaluation", "planner"};
 /// Headers (beginnings of paths) that may include Boost.Geometry and Boost.Graph.
 constexpr std::array heavy_headers = {"cambium/geometry/polygon_union", "cambium/geometry/detail/boost_polygon"};
 /// Headers (beginnings of paths) of cambium::opendrive; all others do without pugixml.
-constexpr std::array opendrive_headers = {"cambium/map/opendrive", "cambium/map/detail/"};
+constexpr std::array opendrive_headers = {"cambium/map/opendrive.hpp", "cambium/map/opendrive_impl.hpp",
+                                          "cambium/map/opendrive/"};
 
 /// Who makes maps brings what a map itself calls.
-bool makes_maps(std::string const& header) { return header == "cambium/map/build_map.hpp"; }
+bool makes_maps(std::string const& header) { return header == "cambium/map/build/build_map.hpp"; }
 
-/// The word after cambium/: "map" of both cambium/map.hpp and cambium/map/lane.hpp.
+/// The word after cambium/: "map" of both cambium/map.hpp and cambium/map/lanes/lane.hpp.
 std::string room_name(std::string const& header) {
   auto const begin = header.find('/') + 1;
   return header.substr(begin, header.find_first_of("/.", begin) - begin);
@@ -40,6 +47,13 @@ std::string room_name(std::string const& header) {
 /// Position in `rooms`, or `no_room`.
 std::size_t room_of(std::string const& header) {
   return static_cast<std::size_t>(std::find(rooms.begin(), rooms.end(), room_name(header)) - rooms.begin());
+}
+
+/// The folder of `header` below its room, "detail" included; empty where it lies in the room itself.
+std::string folder_of(std::string const& header) {
+  auto const room_end = header.find('/', header.find('/') + 1);
+  auto const folder_end = room_end == std::string::npos ? room_end : header.find('/', room_end + 1);
+  return folder_end == std::string::npos ? "" : header.substr(room_end + 1, folder_end - room_end - 1);
 }
 
 bool is_heavy_library(std::string_view include) {
@@ -82,6 +96,27 @@ void check_rooms(Includes const& includes, std::string const& header, std::vecto
   }
 }
 
+void check_families(Includes const& includes, std::string const& header, std::vector<std::string>& breaches) {
+  auto const known = families.find(room_name(header));
+  auto const place = [&](std::string const& folder) {
+    if (known == families.end()) return std::ptrdiff_t{-1};
+    auto const at = std::find(known->second.begin(), known->second.end(), folder);
+    return at == known->second.end() ? -1 : at - known->second.begin();
+  };
+  auto const family = folder_of(header);
+  if (!family.empty() && family != "detail" && place(family) < 0)
+    breaches.push_back(header + " is in no family of its room");
+  for (auto const& include : includes.at(header)) {
+    if (!include.starts_with("cambium/")) continue;
+    if (place(family) >= 0 && room_name(include) == room_name(header) && place(folder_of(include)) > place(family))
+      breaches.push_back(header + " looks down in its room: " + include);
+    auto const hidden = include.find("/detail/");
+    if (hidden == std::string::npos || header.starts_with(include.substr(0, hidden + 1))) continue;
+    bool const of_the_room = folder_of(header).empty() && room_name(header) == room_name(include);
+    if (!of_the_room) breaches.push_back(header + " looks into the detail of others: " + include);
+  }
+}
+
 void check_weight(Includes const& includes, std::string const& header, std::vector<std::string>& breaches) {
   auto const& direct = includes.at(header);
   if (std::any_of(direct.begin(), direct.end(), is_heavy_library) && !begins_with_any(header, heavy_headers)) {
@@ -105,6 +140,7 @@ std::vector<std::string> find_breaches(Includes const& includes) {
   std::vector<std::string> breaches;
   for (auto const& entry : includes) {
     check_rooms(includes, entry.first, breaches);
+    check_families(includes, entry.first, breaches);
     check_weight(includes, entry.first, breaches);
   }
   return breaches;
@@ -163,7 +199,7 @@ TEST_CASE(
 }
 
 TEST_CASE("an include is read in every way to write it") {
-  CHECK(include_of("#include <cambium/map/lane.hpp>") == "cambium/map/lane.hpp");
+  CHECK(include_of("#include <cambium/map/lanes/lane.hpp>") == "cambium/map/lanes/lane.hpp");
   CHECK(include_of("  #  include \"a.hpp\"  // why") == "a.hpp");
   CHECK(include_of("// #include <vector>").empty());
   CHECK(include_of("#define x").empty());
@@ -183,6 +219,19 @@ TEST_CASE("the walk finds each kind of breach") {
   CHECK(only_breach({{"cambium/core/a.hpp", {"cambium/core/b.hpp"}}}) ==
         "cambium/core/a.hpp includes cambium/core/b.hpp, which does not exist");
   CHECK(only_breach({{"cambium/cellar/a.hpp", {}}}) == "cambium/cellar/a.hpp is in no room of the list");
+  CHECK(only_breach({{"cambium/map/attic/a.hpp", {}}}) == "cambium/map/attic/a.hpp is in no family of its room");
+  CHECK(only_breach({{"cambium/map/lanes/a.hpp", {"cambium/map/build/b.hpp"}}, {"cambium/map/build/b.hpp", {}}}) ==
+        "cambium/map/lanes/a.hpp looks down in its room: cambium/map/build/b.hpp");
+  CHECK(only_breach({{"cambium/map/build/a.hpp", {"cambium/map/lanes/detail/b.hpp"}},
+                     {"cambium/map/lanes/detail/b.hpp", {}}}) ==
+        "cambium/map/build/a.hpp looks into the detail of others: cambium/map/lanes/detail/b.hpp");
+  CHECK(only_breach({{"cambium/world/a.hpp", {"cambium/map/detail/b.hpp"}}, {"cambium/map/detail/b.hpp", {}}}) ==
+        "cambium/world/a.hpp looks into the detail of others: cambium/map/detail/b.hpp");
+  CHECK(find_breaches({{"cambium/map/map.hpp", {"cambium/map/lanes/detail/b.hpp"}},
+                       {"cambium/map/build/a.hpp", {"cambium/map/map.hpp", "cambium/map/detail/c.hpp"}},
+                       {"cambium/map/detail/c.hpp", {}},
+                       {"cambium/map/lanes/detail/b.hpp", {}}})
+            .empty());
   CHECK(only_breach({{"cambium/map/map.hpp", {"boost/graph/astar_search.hpp"}}}) ==
         "cambium/map/map.hpp includes Boost.Geometry or Boost.Graph itself");
   CHECK(only_breach({{"cambium/geometry/polygon_union.hpp", {"boost/geometry/algorithms/union.hpp"}},

@@ -60,8 +60,8 @@ set(alone_compiler ${CMAKE_CXX_COMPILER})
 set(alone_bases "")  # of those that a header includes, the last is the most
 if(CAMBIUM_CHECK_clang++-14)
   set(alone_compiler ${CAMBIUM_CHECK_clang++-14})
-  set(alone_bases cambium/geometry/pose.hpp cambium/map/lane.hpp cambium/map/map.hpp cambium/behavior/view.hpp
-    cambium/world/detail/entering.hpp cambium/planner/mcts_workspace.hpp)
+  set(alone_bases cambium/geometry/pose.hpp cambium/map/lanes/lane.hpp cambium/map/map.hpp cambium/behavior/view.hpp
+    cambium/world/detail/entering.hpp cambium/planner/mcts/mcts_workspace.hpp)
 endif()
 
 # reach(VARIABLE HEADER): all that HEADER includes of cambium, directly or not, but for definitions of cold code.

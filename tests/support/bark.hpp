@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cambium/behavior/adaptive_cruise_control.hpp"
-#include "cambium/behavior/follow_lane.hpp"
-#include "cambium/behavior/idm_lane_tracking.hpp"
+#include "cambium/behavior/following/adaptive_cruise_control.hpp"
+#include "cambium/behavior/following/idm_lane_tracking.hpp"
+#include "cambium/behavior/law/follow_lane.hpp"
 #include "cambium/dynamics/integration.hpp"
 
 /// The drivers of BARK (fortiss, commit bc4d92c2) as its trajectories show them, for comparison with its results: 10

@@ -9,14 +9,14 @@
 #include <vector>
 
 #include "cambium/core/error.hpp"
-#include "cambium/map/build_corridor.hpp"
-#include "cambium/map/junction.hpp"
-#include "cambium/map/lane_area.hpp"
-#include "cambium/map/lane_place.hpp"
+#include "cambium/map/corridor/build_corridor.hpp"
+#include "cambium/map/corridor/lane_area.hpp"
+#include "cambium/map/corridor/lane_place.hpp"
+#include "cambium/map/corridor/road_area.hpp"
+#include "cambium/map/lanes/junction.hpp"
 #include "cambium/map/map.hpp"
-#include "cambium/map/road_area.hpp"
-#include "cambium/map/road_surface.hpp"
-#include "cambium/map/station_offset.hpp"
+#include "cambium/map/road/road_surface.hpp"
+#include "cambium/map/road/station_offset.hpp"
 #include "cambium/viewer/map_picture.hpp"
 
 /// What users do with a map, with a bounded amount of work: whatever file it was made of, all of it must work.

@@ -3,8 +3,8 @@
 #include <memory>
 #include <string>
 
+#include "cambium/map/build/road_plan.hpp"
 #include "cambium/map/map.hpp"
-#include "cambium/map/road_plan.hpp"
 
 /// Maps for tests.
 namespace support {

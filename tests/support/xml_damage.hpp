@@ -11,7 +11,7 @@
 #include <pugixml.hpp>
 
 #include "cambium/core/random.hpp"
-#include "cambium/map/detail/xml_context.hpp"
+#include "cambium/map/opendrive/detail/xml_context.hpp"
 
 /// Damage to XML files that leaves them XML: what random bytes never get to.
 namespace xml_damage {

@@ -1,9 +1,9 @@
 #pragma once
 
 #include "cambium/behavior/behavior_set.hpp"
-#include "cambium/behavior/constant_acceleration.hpp"
-#include "cambium/behavior/external_input.hpp"
-#include "cambium/behavior/idm_classic.hpp"
+#include "cambium/behavior/following/constant_acceleration.hpp"
+#include "cambium/behavior/following/idm_classic.hpp"
+#include "cambium/behavior/open_loop/external_input.hpp"
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/world/world.hpp"

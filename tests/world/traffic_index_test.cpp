@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "cambium/core/distributions.hpp"
-#include "cambium/map/build_corridor.hpp"
-#include "cambium/map/curve_layout.hpp"
+#include "cambium/map/corridor/build_corridor.hpp"
+#include "cambium/map/road/curve_layout.hpp"
 #include "fixtures.hpp"
 
 using namespace fixtures;

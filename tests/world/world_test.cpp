@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "cambium/behavior/mobil.hpp"
+#include "cambium/behavior/lane_change/mobil.hpp"
 #include "cambium/core/distributions.hpp"
-#include "cambium/map/curve_layout.hpp"
-#include "cambium/map/free_corridor.hpp"
+#include "cambium/map/corridor/free_corridor.hpp"
+#include "cambium/map/road/curve_layout.hpp"
 #include "fixtures.hpp"
 
 using namespace fixtures;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cambium/behavior/follow_lane.hpp"
+#include "cambium/behavior/law/follow_lane.hpp"
 #include "cambium/geometry/angle.hpp"
 
 namespace cambium {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "cambium/behavior/idm.hpp"
+#include "cambium/behavior/law/idm.hpp"
 #include "cambium/dynamics/kinematic_point.hpp"
 #include "cambium/dynamics/single_track.hpp"
 

@@ -8,8 +8,8 @@
 #include "cambium/core/random.hpp"
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/geometry/shape.hpp"
-#include "cambium/map/corridor.hpp"
-#include "cambium/map/lane_place.hpp"
+#include "cambium/map/corridor/corridor.hpp"
+#include "cambium/map/corridor/lane_place.hpp"
 #include "cambium/map/map.hpp"
 
 namespace cambium {

@@ -10,8 +10,8 @@
 #include <span>
 #include <string>
 
-#include "cambium/core/macros.hpp"
 #include "cambium/core/error.hpp"
+#include "cambium/core/macros.hpp"
 #include "cambium/core/parameters.hpp"
 
 // The same stream gives the same bits on every platform with IEEE doubles (no -ffast-math): only +, -, *, /, sqrt and

@@ -9,7 +9,7 @@
 #include "cambium/core/parameters.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/oriented_box.hpp"
-#include "cambium/map/corridor.hpp"
+#include "cambium/map/corridor/corridor.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/world/frame.hpp"
 

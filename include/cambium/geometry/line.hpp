@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
-#include "cambium/core/macros.hpp"
 #include "cambium/core/error.hpp"
+#include "cambium/core/macros.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/pose.hpp"
 

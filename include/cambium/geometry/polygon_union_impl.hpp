@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "cambium/core/macros.hpp"
-#include "cambium/geometry/polygon.hpp"
 #include "cambium/geometry/detail/boost_polygon.hpp"
+#include "cambium/geometry/polygon.hpp"
 #include "cambium/geometry/polygon_union.hpp"
 #include "cambium/geometry/pose.hpp"
 

@@ -6,7 +6,7 @@
 #include "cambium/core/ids.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/geometry/shape.hpp"
-#include "cambium/map/corridor.hpp"
+#include "cambium/map/corridor/corridor.hpp"
 
 namespace cambium {
 

@@ -18,15 +18,15 @@
 #include "cambium/core/parameters.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/box.hpp"
-#include "cambium/geometry/shape.hpp"
 #include "cambium/geometry/pose.hpp"
-#include "cambium/map/detail/find_lane.hpp"
-#include "cambium/map/detail/follow_lane.hpp"
-#include "cambium/map/lane.hpp"
-#include "cambium/map/lane_tree.hpp"
+#include "cambium/geometry/shape.hpp"
+#include "cambium/map/lanes/detail/find_lane.hpp"
+#include "cambium/map/lanes/detail/follow_lane.hpp"
+#include "cambium/map/lanes/lane.hpp"
+#include "cambium/map/lanes/lane_tree.hpp"
 #include "cambium/map/map_queries.hpp"
-#include "cambium/map/road.hpp"
-#include "cambium/map/route.hpp"
+#include "cambium/map/road/road.hpp"
+#include "cambium/map/routing/route.hpp"
 
 namespace cambium::map {
 
@@ -74,7 +74,7 @@ struct RoadPriority {
 /// Which way a road or lane is driven: along its road's reference line or against it.
 enum class RoadDirection : std::uint8_t { forward, backward };
 
-/// Where roads meet. Its area and conflicts: `cambium/map/junction.hpp`.
+/// Where roads meet. Its area and conflicts: `cambium/map/lanes/junction.hpp`.
 struct Junction {
   JunctionId id = none<JunctionId>;
   std::string name;                      ///< the file's id

@@ -8,14 +8,14 @@
 #include <vector>
 
 #include "cambium/core/macros.hpp"
-#include "cambium/map/detail/built_corridors.hpp"
-#include "cambium/map/detail/find_road_corridor.hpp"
-#include "cambium/map/detail/find_routes.hpp"
-#include "cambium/map/detail/find_stop_lines.hpp"
-#include "cambium/map/detail/junction_areas.hpp"
-#include "cambium/map/detail/make_free_corridor.hpp"
-#include "cambium/map/detail/make_road_corridor.hpp"
+#include "cambium/map/corridor/detail/built_corridors.hpp"
+#include "cambium/map/corridor/detail/find_road_corridor.hpp"
+#include "cambium/map/corridor/detail/find_stop_lines.hpp"
+#include "cambium/map/corridor/detail/junction_areas.hpp"
+#include "cambium/map/corridor/detail/make_free_corridor.hpp"
+#include "cambium/map/corridor/detail/make_road_corridor.hpp"
 #include "cambium/map/map.hpp"
+#include "cambium/map/routing/detail/find_routes.hpp"
 
 namespace cambium::map {
 

@@ -9,8 +9,8 @@
 #include "cambium/core/ids.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/fwd.hpp"
-#include "cambium/map/lane.hpp"
-#include "cambium/map/route.hpp"
+#include "cambium/map/lanes/lane.hpp"
+#include "cambium/map/routing/route.hpp"
 
 namespace cambium::geometry {
 class Polygon;

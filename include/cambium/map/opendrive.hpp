@@ -7,8 +7,8 @@
 
 #include "cambium/core/diagnostic.hpp"
 #include "cambium/map/map.hpp"
-#include "cambium/map/opendrive_document.hpp"
-#include "cambium/map/reading_limits.hpp"
+#include "cambium/map/opendrive/document.hpp"
+#include "cambium/map/opendrive/reading_limits.hpp"
 
 #ifdef CAMBIUM_COMPILED_WITHOUT_READER
 #error "cambium::compiled holds no reader of OpenDRIVE, for CMake did not find pugixml: install it (libpugixml-dev)"

@@ -8,11 +8,11 @@
 
 #include "cambium/core/diagnostic.hpp"
 #include "cambium/core/macros.hpp"
-#include "cambium/map/build_map.hpp"
+#include "cambium/map/build/build_map.hpp"
 #include "cambium/map/detail/read_map_file.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/opendrive.hpp"
-#include "cambium/map/opendrive_reader.hpp"
+#include "cambium/map/opendrive/reader.hpp"
 
 namespace cambium::map {
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cambium/behavior/idm_classic.hpp"
+#include "cambium/behavior/following/idm_classic.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/random.hpp"

@@ -5,7 +5,7 @@
 
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/map.hpp"
-#include "cambium/map/route.hpp"
+#include "cambium/map/routing/route.hpp"
 
 namespace cambium {
 

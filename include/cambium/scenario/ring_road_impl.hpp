@@ -7,8 +7,8 @@
 #include "cambium/core/macros.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/pose.hpp"
-#include "cambium/map/map_builder.hpp"
-#include "cambium/map/route.hpp"
+#include "cambium/map/build/map_builder.hpp"
+#include "cambium/map/routing/route.hpp"
 #include "cambium/scenario/ring_road.hpp"
 
 namespace cambium {

@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "cambium/core/macros.hpp"
-#include "cambium/map/corridor.hpp"
+#include "cambium/map/corridor/corridor.hpp"
+#include "cambium/map/corridor/stop_lines.hpp"
 #include "cambium/map/map.hpp"
-#include "cambium/map/stop_lines.hpp"
 #include "cambium/viewer/record_world.hpp"
 #include "cambium/viewer/recording.hpp"
 #include "cambium/world/static_object.hpp"

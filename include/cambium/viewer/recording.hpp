@@ -8,7 +8,7 @@
 #include "cambium/core/ids.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/geometry/shape.hpp"
-#include "cambium/map/signals.hpp"
+#include "cambium/map/lanes/signals.hpp"
 
 namespace cambium {
 

@@ -10,8 +10,8 @@
 #include "cambium/geometry/pose.hpp"
 #include "cambium/geometry/shape.hpp"
 #include "cambium/goal/goal.hpp"
-#include "cambium/map/corridor.hpp"
-#include "cambium/map/route.hpp"
+#include "cambium/map/corridor/corridor.hpp"
+#include "cambium/map/routing/route.hpp"
 
 namespace cambium {
 

@@ -7,7 +7,7 @@
 #include "cambium/core/macros.hpp"
 #include "cambium/core/plan.hpp"
 #include "cambium/execution/execution_model.hpp"
-#include "cambium/map/lane_place.hpp"
+#include "cambium/map/corridor/lane_place.hpp"
 #include "cambium/observer/observer_model.hpp"
 
 namespace cambium {

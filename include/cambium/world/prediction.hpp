@@ -11,7 +11,7 @@
 #include "cambium/behavior/behavior_set.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/goal/goal.hpp"
-#include "cambium/map/lane_place.hpp"
+#include "cambium/map/corridor/lane_place.hpp"
 #include "cambium/observer/perfect.hpp"
 #include "cambium/world/detail/entering.hpp"
 #include "cambium/world/detail/seen.hpp"

@@ -12,7 +12,7 @@
 #include "cambium/core/ids.hpp"
 #include "cambium/geometry/shape.hpp"
 #include "cambium/goal/goal.hpp"
-#include "cambium/map/corridor.hpp"
+#include "cambium/map/corridor/corridor.hpp"
 #include "cambium/world/static_object.hpp"
 #include "cambium/world/traffic_index.hpp"
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "cambium/core/macros.hpp"
-#include "cambium/map/corridor.hpp"
+#include "cambium/map/corridor/corridor.hpp"
 #include "cambium/world/traffic_query.hpp"
 
 namespace cambium {

@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "cambium/behavior/behavior_set.hpp"
-#include "cambium/core/macros.hpp"
 #include "cambium/core/error.hpp"
+#include "cambium/core/macros.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/dynamics/dynamic_model.hpp"
 #include "cambium/execution/execution_model.hpp"

@@ -1,5 +1,5 @@
 // expect: cambium::TreeSearch<Domain>: Domain must be a game
-#include <cambium/planner/tree_search.hpp>
+#include <cambium/planner/search/tree_search.hpp>
 
 struct Walk {
   using State = int;

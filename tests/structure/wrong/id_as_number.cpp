@@ -1,5 +1,5 @@
 // expect: cambium::World::AgentSpec::id: this is no id; write cambium::AgentId{7}
-#include <cambium/behavior/idm_classic.hpp>
+#include <cambium/behavior/following/idm_classic.hpp>
 #include <cambium/dynamics/single_track.hpp>
 #include <cambium/execution/interpolate.hpp>
 #include <cambium/world/world.hpp>

@@ -1,6 +1,6 @@
 // expect: cambium::World::memory<B>: B must be one of the Models of the world's cambium::BehaviorSet<Models...>
-#include <cambium/behavior/external_input.hpp>
-#include <cambium/behavior/idm_classic.hpp>
+#include <cambium/behavior/following/idm_classic.hpp>
+#include <cambium/behavior/open_loop/external_input.hpp>
 #include <cambium/dynamics/single_track.hpp>
 #include <cambium/execution/interpolate.hpp>
 #include <cambium/world/world.hpp>

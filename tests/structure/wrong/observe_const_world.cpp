@@ -1,5 +1,5 @@
 // expect: cambium::World::observe brings the traffic index up to date: call it on a world that is neither const nor a temporary
-#include <cambium/behavior/idm_classic.hpp>
+#include <cambium/behavior/following/idm_classic.hpp>
 #include <cambium/dynamics/single_track.hpp>
 #include <cambium/execution/interpolate.hpp>
 #include <cambium/world/world.hpp>

@@ -1,6 +1,6 @@
 // expect: cambium::MctsWorkspace<Domain, Options>: Options must be cambium::MctsOptions<Selection, Rollout, Budget>
 #include <cambium/execution/interpolate.hpp>
-#include <cambium/planner/mcts_single_agent.hpp>
+#include <cambium/planner/mcts/mcts_single_agent.hpp>
 #include <cambium/world/world.hpp>
 
 using Predicted = cambium::World<cambium::BehaviorSet<cambium::MacroActions, cambium::IdmClassic>,

@@ -1,7 +1,7 @@
 // expect: the behaviour set of a planner's PredictionWorld must contain its Others
-#include <cambium/behavior/external_input.hpp>
+#include <cambium/behavior/open_loop/external_input.hpp>
 #include <cambium/execution/interpolate.hpp>
-#include <cambium/planner/frenet_planner.hpp>
+#include <cambium/planner/frenet/frenet_planner.hpp>
 #include <cambium/world/world.hpp>
 
 using Predicted =

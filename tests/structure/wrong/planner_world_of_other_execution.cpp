@@ -1,7 +1,7 @@
 // expect: a planner's PredictionWorld has another execution model than the world that it plans in
 #include <cambium/execution/interpolate.hpp>
 #include <cambium/execution/lqr.hpp>
-#include <cambium/planner/mcts_single_agent.hpp>
+#include <cambium/planner/mcts/mcts_single_agent.hpp>
 #include <cambium/world/world.hpp>
 
 using Set = cambium::BehaviorSet<cambium::MacroActions, cambium::IdmClassic>;

@@ -1,5 +1,5 @@
 // expect: cambium::ObservedWorld::predict needs a Prediction
-#include <cambium/behavior/idm_classic.hpp>
+#include <cambium/behavior/following/idm_classic.hpp>
 #include <cambium/dynamics/single_track.hpp>
 #include <cambium/execution/interpolate.hpp>
 #include <cambium/world/world.hpp>

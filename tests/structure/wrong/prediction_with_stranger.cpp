@@ -1,6 +1,6 @@
 // expect: cambium::Prediction<Set>: the behaviour that is to be assumed must be one of the Models of Set
-#include <cambium/behavior/constant_acceleration.hpp>
-#include <cambium/behavior/external_input.hpp>
+#include <cambium/behavior/following/constant_acceleration.hpp>
+#include <cambium/behavior/open_loop/external_input.hpp>
 #include <cambium/world/prediction.hpp>
 
 using Set = cambium::BehaviorSet<cambium::ConstantAcceleration>;

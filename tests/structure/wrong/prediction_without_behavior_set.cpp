@@ -1,5 +1,5 @@
 // expect: cambium::Prediction<Set>: Set must be cambium::BehaviorSet<Models...>
-#include <cambium/behavior/constant_acceleration.hpp>
+#include <cambium/behavior/following/constant_acceleration.hpp>
 #include <cambium/world/prediction.hpp>
 
 // One behaviour alone is no set.

@@ -1,7 +1,7 @@
 // expect: a search by priors (cambium::Puct) needs a reward with
 #include <cambium/execution/interpolate.hpp>
-#include <cambium/planner/mcts_single_agent.hpp>
-#include <cambium/planner/puct.hpp>
+#include <cambium/planner/mcts/mcts_single_agent.hpp>
+#include <cambium/planner/search/puct.hpp>
 #include <cambium/world/world.hpp>
 
 using Predicted = cambium::World<cambium::BehaviorSet<cambium::MacroActions, cambium::IdmClassic>,

@@ -1,7 +1,7 @@
 // expect: describe Reward's parameters, as cambium::TrafficReward does
 // also: cambium::TreeSearch<Domain>: Domain must be a game
 #include <cambium/execution/interpolate.hpp>
-#include <cambium/planner/mcts_single_agent.hpp>
+#include <cambium/planner/mcts/mcts_single_agent.hpp>
 #include <cambium/world/world.hpp>
 
 struct Fast {

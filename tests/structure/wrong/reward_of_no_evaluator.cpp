@@ -1,12 +1,13 @@
 // expect: cambium::Reward<Evaluators...>: each must have `template <class World> auto operator()(World&, Slot) const`
 #include "cambium/execution/interpolate.hpp"
-#include "cambium/planner/mcts_single_agent.hpp"
+#include "cambium/planner/mcts/mcts_single_agent.hpp"
 #include "cambium/world/world.hpp"
 
 struct Mood {
   static constexpr char const* name = "mood";
   static constexpr auto parameters() { return cambium::parameter_list(); }
 };
-using World = cambium::World<cambium::BehaviorSet<cambium::IdmClassic>, cambium::InterpolateExecution, cambium::SingleTrack>;
+using World =
+    cambium::World<cambium::BehaviorSet<cambium::IdmClassic>, cambium::InterpolateExecution, cambium::SingleTrack>;
 
 auto judge(World& world) { return cambium::Reward<Mood>{}.judge(world, cambium::Slot{}, 0.2); }

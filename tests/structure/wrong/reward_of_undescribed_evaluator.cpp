@@ -1,5 +1,5 @@
 // expect: cambium::Reward<Evaluators...>: describe each evaluator's parameters, as cambium::Collision does
-#include "cambium/planner/traffic_reward.hpp"
+#include "cambium/planner/mcts/traffic_reward.hpp"
 
 struct Mood {
   template <class World>

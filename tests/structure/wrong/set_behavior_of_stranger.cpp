@@ -1,6 +1,6 @@
 // expect: cambium::World::set_behavior: this type is none of the Models of the world's cambium::BehaviorSet<Models...>
-#include "cambium/behavior/constant_acceleration.hpp"
-#include "cambium/behavior/idm_classic.hpp"
+#include "cambium/behavior/following/constant_acceleration.hpp"
+#include "cambium/behavior/following/idm_classic.hpp"
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/world/world.hpp"

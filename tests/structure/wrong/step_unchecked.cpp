@@ -1,5 +1,5 @@
 // expect: a step that is not valid may not have moved the world: check the result
-#include <cambium/behavior/idm_classic.hpp>
+#include <cambium/behavior/following/idm_classic.hpp>
 #include <cambium/dynamics/single_track.hpp>
 #include <cambium/execution/interpolate.hpp>
 #include <cambium/world/world.hpp>

@@ -1,6 +1,6 @@
 // expect: cambium::World<Set, Execution, ...>: Execution must be an execution model such as cambium::InterpolateExecution
+#include <cambium/behavior/following/constant_acceleration.hpp>
 #include <cambium/world/world.hpp>
-#include <cambium/behavior/constant_acceleration.hpp>
 
 // The models are in the wrong order.
 using Sim =

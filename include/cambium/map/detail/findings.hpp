@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "cambium/core/diagnostic.hpp"
-#include "cambium/map/reading_limits.hpp"
+#include "cambium/map/opendrive/reading_limits.hpp"
 
 namespace cambium::map::detail {
 

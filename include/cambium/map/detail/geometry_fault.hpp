@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cambium/map/reference_line.hpp"
+#include "cambium/map/road/reference_line.hpp"
 
 namespace cambium::map::detail {
 

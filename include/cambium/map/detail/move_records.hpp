@@ -5,8 +5,8 @@
 #include <type_traits>
 #include <vector>
 
-#include "cambium/map/cubic.hpp"
-#include "cambium/map/opendrive_lanes.hpp"
+#include "cambium/map/opendrive/lanes.hpp"
+#include "cambium/map/road/cubic.hpp"
 
 namespace cambium::map::detail {
 

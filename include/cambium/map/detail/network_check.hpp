@@ -11,8 +11,8 @@
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/box.hpp"
 #include "cambium/geometry/box_tree.hpp"
-#include "cambium/map/lane.hpp"
-#include "cambium/map/network_finding.hpp"
+#include "cambium/map/lanes/lane.hpp"
+#include "cambium/map/lanes/network_finding.hpp"
 #include "cambium/map/map.hpp"
 
 namespace cambium::map::detail {

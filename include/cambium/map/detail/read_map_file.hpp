@@ -7,7 +7,7 @@
 #include <string>
 
 #include "cambium/core/error.hpp"
-#include "cambium/map/reading_limits.hpp"
+#include "cambium/map/opendrive/reading_limits.hpp"
 
 namespace cambium::map::detail {
 

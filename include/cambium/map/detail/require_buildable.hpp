@@ -9,11 +9,11 @@
 #include <vector>
 
 #include "cambium/core/error.hpp"
-#include "cambium/map/cubic.hpp"
 #include "cambium/map/detail/geometry_fault.hpp"
 #include "cambium/map/detail/id_places.hpp"
-#include "cambium/map/opendrive_document.hpp"
-#include "cambium/map/reference_line.hpp"
+#include "cambium/map/opendrive/document.hpp"
+#include "cambium/map/road/cubic.hpp"
+#include "cambium/map/road/reference_line.hpp"
 
 namespace cambium::map::detail {
 

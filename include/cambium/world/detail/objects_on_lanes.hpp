@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "cambium/geometry/polygon.hpp"
-#include "cambium/map/corridor.hpp"
+#include "cambium/map/corridor/corridor.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/world/roster.hpp"
 #include "cambium/world/static_object.hpp"

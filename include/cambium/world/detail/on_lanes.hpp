@@ -10,7 +10,7 @@
 #include "cambium/behavior/view.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/geometry/angle.hpp"
-#include "cambium/map/lane_place.hpp"
+#include "cambium/map/corridor/lane_place.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/world/frame.hpp"
 #include "cambium/world/plane_index.hpp"

@@ -5,10 +5,10 @@
 #include <string>
 
 #include "cambium/core/ids.hpp"
-#include "cambium/map/corridor.hpp"
-#include "cambium/map/lane_place.hpp"
+#include "cambium/map/corridor/corridor.hpp"
+#include "cambium/map/corridor/lane_place.hpp"
+#include "cambium/map/lanes/signals.hpp"
 #include "cambium/map/map.hpp"
-#include "cambium/map/signals.hpp"
 
 namespace cambium::detail {
 

@@ -10,10 +10,10 @@
 #include "cambium/core/ids.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/geometry/angle.hpp"
-#include "cambium/map/corridor.hpp"
-#include "cambium/map/lane_place.hpp"
+#include "cambium/map/corridor/corridor.hpp"
+#include "cambium/map/corridor/lane_place.hpp"
+#include "cambium/map/lanes/signals.hpp"
 #include "cambium/map/map.hpp"
-#include "cambium/map/signals.hpp"
 #include "cambium/world/detail/refusals.hpp"
 
 namespace cambium::detail {

@@ -3,7 +3,7 @@
 #include <cstddef>
 
 #include "cambium/geometry/line.hpp"
-#include "cambium/map/corridor.hpp"
+#include "cambium/map/corridor/corridor.hpp"
 #include "cambium/world/detail/on_lanes.hpp"
 
 namespace cambium::detail {

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <algorithm>
+
+#include "cambium/behavior/behavior_model.hpp"
+#include "cambium/behavior/law/follow_lane.hpp"
+
+namespace cambium {
+
+/// Follows the lane with a constant acceleration and heeds nobody; stops rather than reverses. With 0: constant speed.
+struct ConstantAcceleration {
+  double acceleration = 0.0;
+  double highest_speed = 50.0;
+
+  static constexpr char const* name = "constant_acceleration";
+  static constexpr char const* summary =
+      "keeps its lane; v grows or falls by a, until it stands or has its highest speed";
+  static constexpr char const* source = "kinematics";
+  static constexpr auto parameters() {
+    return parameter_list(parameter("acceleration", &ConstantAcceleration::acceleration, "m/s^2", Range{-50, 50},
+                                    "held until the vehicle stands or is at its highest speed"),
+                          parameter("highest_speed", &ConstantAcceleration::highest_speed, "m/s", Range{0, 200},
+                                    "not exceeded by accelerating"));
+  }
+
+  template <class View>
+  [[nodiscard]] Plan<View> plan(View const& view, NoMemory&, double dt) const {
+    return plan_along_lane(view, motion(std::max(0.0, view.state().speed), dt), dt);
+  }
+
+  /// Exact motion over `dt` [s] from `speed` [m/s].
+  [[nodiscard]] LongitudinalMotion<double> motion(double speed, double dt) const {
+    double const limit = acceleration < 0 ? 0.0 : std::max(highest_speed, speed);
+    double const until_limit = acceleration == 0 ? dt : std::clamp((limit - speed) / acceleration, 0.0, dt);
+    double const distance = speed * until_limit + acceleration * until_limit * until_limit / 2;
+    if (until_limit >= dt) return {distance, speed + acceleration * dt};
+    return {distance + limit * (dt - until_limit), limit};
+  }
+};
+static_assert(BehaviorModel<ConstantAcceleration>);
+
+}  // namespace cambium

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <algorithm>
+
+#include "cambium/behavior/behavior_model.hpp"
+#include "cambium/behavior/law/idm.hpp"
+#include "cambium/behavior/law/road_rules.hpp"
+
+namespace cambium {
+
+/// Follows its lane corridor and the next vehicle in it by the Intelligent Driver Model (Treiber, Hennecke, Helbing
+/// 2000); defaults are BARK's. Keeps its lateral offset; heads along the lane.
+struct IdmClassic {
+  using Memory = RoadRules::Memory;
+
+  double desired_speed = 15.0;
+  double time_headway = 1.5;
+  double minimum_gap = 2.0;
+  double maximum_acceleration = 1.7;
+  double comfortable_deceleration = 1.67;
+  double exponent = 4.0;
+  double lowest_acceleration = -5.0;
+  double highest_acceleration = 8.0;
+  double tolerance = 1e-4;
+  RoadRules rules{};
+
+  static constexpr char const* name = "idm_classic";
+  static constexpr char const* summary =
+      "keeps its lane; a = a_max (1 - (v/v0)^4 - (s*/s)^2), s* = s0 + max(0, v T + v (v - v_leader) / (2 sqrt(a_max "
+      "b)))";
+  static constexpr char const* source = "Treiber, Hennecke, Helbing 2000, eq. 3 and 4";
+  static constexpr auto parameters() {
+    return join_parameters(
+        idm_parameters<IdmClassic>(),
+        parameter_list(parameter("tolerance", &IdmClassic::tolerance, "m/s^2", Range{1e-12, 1},
+                                 "error of the integration, as speed per second"),
+                       parameter("rules", &IdmClassic::rules, "-", {}, "what it heeds beside other road users")));
+  }
+
+  template <class View>
+  [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
+    double const speed = std::max(0.0, view.state().speed);
+    IdmLaw const law(*this, speed, rules.desired_speed(*this, view, speed));
+    Strictest ahead(law);
+    rules.heed(view, ahead);
+    auto const motion = law.motion(ahead.constraint(), dt, tolerance);
+    return plan_along_lane(view, rules.bound(view, *this, view.place().s, speed, motion, dt, memory), dt);
+  }
+};
+static_assert(BehaviorModel<IdmClassic>);
+
+/// A driver of these parameters, as of `presets`.
+[[nodiscard]] constexpr IdmClassic idm_classic(IdmParameters const& p) {
+  return {.desired_speed = p.desired_speed,
+          .time_headway = p.time_headway,
+          .minimum_gap = p.minimum_gap,
+          .maximum_acceleration = p.maximum_acceleration,
+          .comfortable_deceleration = p.comfortable_deceleration,
+          .exponent = p.exponent,
+          .lowest_acceleration = p.lowest_acceleration,
+          .highest_acceleration = p.highest_acceleration};
+}
+
+}  // namespace cambium

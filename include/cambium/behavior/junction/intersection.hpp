@@ -1,0 +1,263 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+#include "cambium/behavior/behavior_model.hpp"
+#include "cambium/behavior/junction/conflict_order.hpp"
+#include "cambium/behavior/law/braking.hpp"
+#include "cambium/behavior/law/idm.hpp"
+#include "cambium/behavior/law/road_rules.hpp"
+
+namespace cambium {
+
+/// Crosses junctions by the rules of the road, else follows its lane by IDM. Before a junction it lets those go first
+/// who have the right of way (`map::right_of_way`), if they would come into its way; enters when all conflicts there
+/// are its own, and only if there is room behind them; then it goes first before all who are still outside. It stops
+/// at red lights (`World::set_light`) and stop signs, and slows down for bends. Where each one waits for another, one
+/// after the other goes after some patience. Others are taken to come by the ways that they signal, with their speed,
+/// and faster where that is the worse. Static objects are heeded where they reach into the own lane, as by
+/// `IdmClassic`.
+///
+/// Conflicts are those of the two vehicles' sizes, see `MapOptions::conflict_shape`. As long as it can stop before one,
+/// it does not drive into it while another one is in there or cannot stop any more, and of two who can both stop the
+/// same one goes first by both their rules. So vehicles that all behave so keep out of each other's way; those who
+/// change lanes in a junction, do not heed its rules or are seen where they are not may still be run into.
+struct Intersection {
+  IdmParameters idm{};
+  RoadRules rules{.obey_speed_limits = true, .slow_for_bends = true, .obey_signals = true, .merging = Merging::by_rule};
+  double look_ahead = 80.0;
+  double time_margin = 1.0;
+  double assumed_acceleration = 1.5;
+  double patience = 1.0;
+  bool keep_clear = true;
+  double tolerance = 1e-4;
+
+  static constexpr bool heeds_conflicts = true;  ///< it must not be larger than those that conflicts are found for
+  static constexpr char const* name = "intersection";
+  static constexpr char const* summary =
+      "IDM; stops at red lights and stop signs; gives way by priorities of the map, signs, right before left, oncoming "
+      "before turning; stops where somebody predicted would come too close in time; resolves deadlocks; slows for "
+      "bends";
+  static constexpr char const* source = "rules of the road (StVO sections 8 and 9); prediction: own";
+  static constexpr auto parameters() {
+    using P = Intersection;
+    return parameter_list(
+        parameter("idm", &P::idm, "-", {}, "car following"),
+        parameter("rules", &P::rules, "-", {}, "what it heeds beside other road users"),
+        parameter("look_ahead", &P::look_ahead, "m", Range{0, 1000},
+                  "conflicts nearer than this, or than the way to brake comfortably, are heeded"),
+        parameter("time_margin", &P::time_margin, "s", Range{0, 20}, "between two vehicles in one place"),
+        parameter("assumed_acceleration", &P::assumed_acceleration, "m/s^2", Range{0, 20},
+                  "of others on their way to the conflict"),
+        parameter("patience", &P::patience, "s", Range{0, 600},
+                  "who has stood so long, and up to 48 s more by its id, goes before one who stands too, whatever the "
+                  "rules"),
+        parameter("keep_clear", &P::keep_clear, "-", Range{0, 1}, "do not stop within the junction"),
+        parameter("tolerance", &P::tolerance, "m/s^2", Range{1e-12, 1},
+                  "error of the exact integration, as speed per second"));
+  }
+
+  struct Memory {
+    float waited{};            ///< has been standing before a junction for [s]
+    float stopped_at = -1.0f;  ///< corridor position of the last stop sign that it has stopped at [m]
+
+    friend bool operator==(Memory const&, Memory const&) = default;
+  };
+
+  template <class View>
+  [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
+    Own own;
+    own.speed = std::max(0.0, view.state().speed);
+    own.idm = idm;
+    own.idm.desired_speed = rules.desired_speed(idm, view, own.speed);
+    own.look_ahead = std::max(look_ahead, own.speed * own.speed / (2.0 * idm.comfortable_deceleration) + 20.0);
+    own.s = view.place().s;
+    own.front = own.s + view.shape().front;
+    own.is_large = detail::is_large(view, view.shape());
+    own.highest = own.idm.desired_speed;
+    if (rules.slow_for_bends) {
+      auto const bends = bends_ahead(view.corridor(), own.s, own.speed, own.highest, rules.lateral_acceleration,
+                                     own.idm.comfortable_deceleration, hardest(own), dt);
+      own.highest = bends.highest;
+      own.bound = bends.bound;
+    }
+    own.waited = memory.waited;
+    IdmLaw const law(own.idm, own.speed);
+    Strictest ahead(law);
+    rules.heed(view, ahead);
+    heed_conflicts(view, own, ahead, dt);
+    SignalStop signals;
+    if (rules.obey_signals)
+      signals = stop_at_signals(view, own.front, own.speed, own.look_ahead, rules.stop_margin, rules.safe_deceleration,
+                                memory.stopped_at);
+    if (std::isfinite(signals.distance)) bound(own, signals.distance, own.idm.comfortable_deceleration, dt);
+    if (signals.is_light || own.speed > starting || (own.speed >= standing && own.at_line))
+      memory.waited = 0.0f;
+    else if (own.at_line)
+      memory.waited += static_cast<float>(dt);
+    auto motion = law.motion(ahead.constraint(), dt, tolerance);
+    if (own.bound.distance < motion.distance) motion = own.bound;
+    return plan_along_lane(view, motion, dt);
+  }
+
+ private:
+  using Other = detail::ConflictUser;
+
+  static constexpr double standing = standing_speed;
+  static constexpr double starting = starting_speed;
+  static constexpr double air = 0.3;  // [m] before a conflict
+  static constexpr double infinite = std::numeric_limits<double>::infinity();
+
+  /// Where one is, what it has seen, and what it may do.
+  struct Own {
+    IdmParameters idm;
+    double s{}, front{}, speed{}, waited{};
+    double look_ahead{};  ///< [m]
+    double highest{};     ///< speed up to the place that it looks ahead to [m/s]
+    bool is_large = false;
+    LongitudinalMotion<double> bound{infinite, infinite};  ///< goes no farther in this step
+    bool at_line = false;                                  ///< has come to where it waits
+  };
+
+  /// What a conflict asks for, the strongest last.
+  enum class Claim : std::uint8_t {
+    free,
+    watch,   ///< goes on, but so that it can still stop: it will be free in time
+    yield,   ///< waits, if it can still stop
+    blocked  ///< does not drive in there
+  };
+
+  /// When a vehicle is in a conflict [s from now].
+  struct Window {
+    double begin, end;
+  };
+
+  [[nodiscard]] bool can_stop(double speed, double distance) const {
+    return cambium::can_stop(speed, distance, rules.safe_deceleration);
+  }
+
+  /// Others count in the zone of the two sizes.
+  template <class View>
+  void heed_conflicts(View const& view, Own& own, Strictest<IdmLaw>& ahead, double dt) const {
+    auto const& conflicts = view.corridor().conflicts;
+    auto const is_behind = [&](map::Conflict const& c) { return c.farthest_end < own.s; };
+    for (auto at = std::partition_point(conflicts.begin(), conflicts.end(), is_behind); at != conflicts.end(); ++at) {
+      auto const& conflict = *at;
+      if (conflict.hold[1] > own.front + own.look_ahead) break;
+      if (conflict.hull().end < own.s) continue;
+      auto const& zones = conflict.zones[own.is_large];
+      auto claims = claims_of(view, conflict, own, ahead);
+      if (!zones[0].empty() && claims[0] < Claim::yield && is_full_behind(view, zones[0], own, ahead.constraint()))
+        claims[0] = Claim::yield;
+      for (std::size_t other = 0; other < 2; ++other)
+        if (claims[other] != Claim::free) obey(claims[other], zones[other], conflict.hold[own.is_large], own, dt);
+    }
+  }
+
+  [[nodiscard]] static double hardest(Own const& own) { return -own.idm.lowest_acceleration; }
+
+  void bound(Own& own, double to_stop, double braking, double dt) const {
+    auto const motion = motion_before_stop(own.speed, to_stop, braking, hardest(own), dt);
+    if (motion.distance < own.bound.distance) own.bound = motion;
+  }
+
+  /// Bounds the step's motion by what a conflict asks for.
+  void obey(Claim claim, map::ConflictZone const& zone, double hold, Own& own, double dt) const {
+    double const to_conflict = zone.begin - air - own.s;
+    if (to_conflict + air < 0.0) return;  // it is in there already
+    double const to_hold = std::min(zone.line - own.front, hold - own.s);
+    double const to_stop = distance_to_stop(claim, to_hold, own, to_conflict);
+    if (claim == Claim::yield && !can_stop(own.speed, to_stop)) return;
+    double const braking = claim == Claim::watch ? rules.safe_deceleration : own.idm.comfortable_deceleration;
+    bound(own, to_stop, braking, dt);
+    own.at_line = own.at_line || to_stop < 2.0;
+  }
+
+  /// How far it goes to where it waits: before the line if it can still stop there, else before the conflict [m].
+  [[nodiscard]] double distance_to_stop(Claim claim, double to_hold, Own const& own, double to_conflict) const {
+    double const to_line = std::min(to_hold, to_conflict);
+    if (to_line < 0.0 || !can_stop(own.speed, to_line)) return to_conflict;
+    for (double const margin : {claim == Claim::watch ? air : rules.stop_margin, air})
+      if (can_stop(own.speed, to_line - margin)) return std::max(0.0, to_line - margin);
+    return to_line;
+  }
+
+  /// The strongest claims of all who are on their way to the conflict, by their sizes; merging
+  /// leaders are followed.
+  template <class View>
+  [[nodiscard]] std::array<Claim, 2> claims_of(View const& view, map::Conflict const& conflict, Own const& own,
+                                               Strictest<IdmLaw>& ahead) const {
+    std::array<Claim, 2> claims{Claim::free, Claim::free};
+    for (auto const& way : conflict.ways)
+      view.on_lane(way.index_begin, way.index_end, [&](RoadUser const& user) {
+        if (user.s < way.index_begin || user.s > way.index_end || !is_valid(user.agent)) return;
+        bool const large = detail::is_large(view, view.shape(user));
+        auto const& zone = conflict.zones[own.is_large][large];
+        if (zone.empty()) return;
+        Other const other{user, way.begin + user.s - way.index_begin,
+                          detail::extra_reach(view, large, user.front, user.rear)};
+        claims[large] = std::max(claims[large], claim_of(view, conflict, zone, other, own, ahead));
+      });
+    return claims;
+  }
+
+  /// The claim of one on its way.
+  template <class View>
+  [[nodiscard]] Claim claim_of(View const& view, map::Conflict const& conflict, map::ConflictZone const& zone,
+                               Other const& other, Own const& own, Strictest<IdmLaw>& ahead) const {
+    auto const& [user, at, reach] = other;
+    if (at > zone.other_end + reach.rear) return Claim::free;
+    double const way = zone.other_begin - reach.front - at;
+    if (at < 0.0 && !view.signals_way(user, conflict.other)) return Claim::free;
+    double const own_way = zone.begin - own.s;
+    bool const is_in = way <= 0.0, own_is_in = own_way <= 0.0;
+    if (conflict.kind != map::OverlapKind::crossing && (is_in || conflict.kind == map::OverlapKind::split)) {
+      double const place = at + conflict.shift, gap = place - user.rear - own.front;
+      if (place > own.s && (gap > 0.0 || own_is_in)) ahead.heed({gap, user.speed});
+      if (gap > 0.0 || conflict.kind == map::OverlapKind::split) return Claim::free;
+    }
+    if (own_is_in) return Claim::free;
+    if (is_in || !can_stop(user.speed, way)) {
+      double const out = (zone.other_end + reach.rear - at) / std::max(user.speed, standing);
+      return out + 0.5 * time_margin < arrival(own, own_way) ? Claim::watch : Claim::blocked;
+    }
+    detail::ConflictAsker const asker{own.s, own.front, own.speed, own.waited, patience};
+    if (detail::goes_first(view, conflict, zone, other, way, own_way, asker)) return Claim::free;
+    return claim_in_time(conflict, zone, other, way, own_way, own);
+  }
+
+  /// The claim of one who goes first and comes to the zone in `way` [m].
+  [[nodiscard]] Claim claim_in_time(map::Conflict const& conflict, map::ConflictZone const& zone, Other const& other,
+                                    double way, double own_way, Own const& own) const {
+    auto const& [user, at, reach] = other;
+    Window const theirs{
+        time_to_cover(way, user.speed, assumed_acceleration, std::max(user.speed, own.idm.desired_speed)),
+        (way + zone.other_end - zone.other_begin + reach.front + reach.rear) / std::max(user.speed, standing)};
+    Window const ours{arrival(own, own_way), arrival(own, zone.end - own.s)};
+    bool const is_in = other.is_inside(conflict, zone);
+    if (theirs.end + time_margin < ours.begin) return is_in ? Claim::watch : Claim::free;
+    return ours.end + time_margin < theirs.begin && !is_in ? Claim::free : Claim::yield;
+  }
+
+  /// The earliest time [s] at which it has gone `distance` [m].
+  [[nodiscard]] static double arrival(Own const& own, double distance) {
+    return time_to_cover(distance, own.speed, own.idm.maximum_acceleration, std::max(own.speed, own.highest));
+  }
+
+  /// Whether there would be no room behind the conflict, as in a queue.
+  template <class View>
+  [[nodiscard]] bool is_full_behind(View const& view, map::ConflictZone const& zone, Own const& own,
+                                    Constraint const& leader) const {
+    if (!keep_clear || leader.speed > starting) return false;
+    double const end = zone.end - view.shape().rear;  // of the conflict, for rear ends
+    double const room = own.front + leader.gap - end;
+    return room < view.shape().length() + own.idm.minimum_gap;
+  }
+};
+static_assert(BehaviorModel<Intersection>);
+
+}  // namespace cambium

@@ -1,0 +1,205 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+
+#include "cambium/behavior/law/follow_lane.hpp"
+#include "cambium/core/parameters.hpp"
+#include "cambium/geometry/angle.hpp"
+#include "cambium/geometry/shape.hpp"
+
+namespace cambium {
+
+/// How a vehicle lies beside a line that it converges to: as a function of the distance along the line.
+template <class Scalar>
+struct LateralCourse {
+  Scalar offset{};  ///< left positive [m]
+  Scalar slope{};   ///< change of the offset per metre [-]
+  Scalar bend{};    ///< change of the slope per metre [1/m]
+};
+
+/// The course after `distance` [m] of the one with the least squared jerk over `length` [m] that ends on the line and
+/// along it: a polynomial of order 5 (Takahashi, Hongo, Ninomiya, Sugimoto 1989; Werling, Ziegler, Kammel, Thrun 2010,
+/// section IV). `length` > 0; on the line from there on.
+template <class Scalar>
+[[nodiscard]] LateralCourse<Scalar> converge(LateralCourse<Scalar> const& start, Scalar length, Scalar distance) {
+  if (!(distance < length)) return {};
+  Scalar const d = start.offset, v = start.slope * length, a = start.bend * length * length, u = distance / length;
+  Scalar const c2 = a / Scalar(2), c3 = Scalar(-10) * d - Scalar(6) * v - Scalar(3) * c2,
+               c4 = Scalar(15) * d + Scalar(8) * v + Scalar(3) * c2, c5 = Scalar(-6) * d - Scalar(3) * v - c2;
+  Scalar const offset = d + u * (v + u * (c2 + u * (c3 + u * (c4 + u * c5))));
+  Scalar const slope = v + u * (Scalar(2) * c2 + u * (Scalar(3) * c3 + u * (Scalar(4) * c4 + u * Scalar(5) * c5)));
+  Scalar const bend = Scalar(2) * c2 + u * (Scalar(6) * c3 + u * (Scalar(12) * c4 + u * Scalar(20) * c5));
+  return {offset, slope / length, bend / (length * length)};
+}
+
+/// A lane change in progress: what a behaviour that changes lanes remembers of it.
+struct LaneChange {
+  CorridorId target = none<CorridorId>;  ///< number of the lane corridor that it leads to; none: keeps its lane
+  float left{};                          ///< of its length [m]; 0: it is to begin anew from where the vehicle is
+  float bend{};                          ///< of its course at the vehicle [1/m]
+
+  [[nodiscard]] bool active() const { return target != none<CorridorId>; }
+
+  /// See `cambium::fell_short`.
+  void fell_short(double way, bool left_course) {
+    if (left_course)
+      left = bend = 0.0f;
+    else if (active())
+      left += static_cast<float>(way);
+  }
+
+  friend bool operator==(LaneChange const&, LaneChange const&) = default;
+};
+
+namespace detail {
+
+/// How much longer a course has to be for each metre that a vehicle's front is farther from its rear axle than a car's,
+/// so that it does not swing out into the lane beyond, where lanes are 3.5 m wide [-].
+inline constexpr double longer_by_front = 5.0;
+
+/// The same of a course back to the middle of the own lane from `lateral` [m] beside it: less, for it is not so far,
+/// and to come back soon is worth 0.1 m beyond the border.
+[[nodiscard]] inline double longer_by_front_back(double lateral) { return 4.0 * std::min(1.0, std::abs(lateral)); }
+
+[[nodiscard]] constexpr double least_course_length(double of_car, geometry::Shape const& shape, double by_front) {
+  return of_car + by_front * std::max(0.0, shape.front - geometry::car().front);
+}
+
+}  // namespace detail
+
+/// How long a lane change takes.
+struct LaneChangeCourse {
+  double duration = 4.0;
+  double shortest_duration = 2.5;
+  double minimum_length = 15.0;
+
+  static constexpr char const* name = "lane_change_course";
+  static constexpr char const* summary = "quintic course by the way driven: no jump of heading or curvature";
+  static constexpr char const* source = "own";
+  static constexpr auto parameters() {
+    return parameter_list(
+        parameter("duration", &LaneChangeCourse::duration, "s", Range{0.5, 30}, "from one centre line to the other"),
+        parameter("shortest_duration", &LaneChangeCourse::shortest_duration, "s", Range{0.5, 30},
+                  "where less room is left, and for the way back of an aborted change"),
+        parameter("minimum_length", &LaneChangeCourse::minimum_length, "m", Range{5, 200},
+                  "however slow a car drives; 5 m more for each metre that a longer vehicle's front is farther ahead"));
+  }
+
+  /// The least length of a change, however slow a vehicle of this shape drives [m].
+  [[nodiscard]] double least_length(geometry::Shape const& shape) const {
+    return detail::least_course_length(minimum_length, shape, detail::longer_by_front);
+  }
+
+  /// The begin of a change to lane corridor `target` at `speed` [m/s], within `room` [m] where that can be done.
+  [[nodiscard]] LaneChange begin(CorridorId target, geometry::Shape const& shape, double speed,
+                                 double room = std::numeric_limits<double>::infinity()) const {
+    double const shortest = std::max(least_length(shape), speed * std::min(shortest_duration, duration));
+    return {target, static_cast<float>(std::max(shortest, std::min(speed * duration, room))), 0.0f};
+  }
+
+  /// Begins a change anew whose course the vehicle has been made to leave.
+  void renew(LaneChange& change, geometry::Shape const& shape, double speed) const {
+    if (change.active() && !(change.left > 0.0f)) change = begin(change.target, shape, speed);
+  }
+
+  /// The way back to lane corridor `home`, from `lateral` [m] beside its middle, at `speed` [m/s]; `bend`: of the
+  /// course until then, at the vehicle.
+  [[nodiscard]] LaneChange back(CorridorId home, geometry::Shape const& shape, double speed, double lateral,
+                                float bend) const {
+    double const least = detail::least_course_length(minimum_length, shape, detail::longer_by_front_back(lateral));
+    return {home, static_cast<float>(std::max(least, speed * std::min(shortest_duration, duration))), bend};
+  }
+};
+
+namespace detail {
+
+/// The plan that drives `motion` from `at` along the course that `change` has to the line `offset` [m] to the left of
+/// the centre line of `corridor`.
+template <class View>
+[[nodiscard]] Plan<View> plan_course(View const& view, map::LaneCorridor const& corridor, map::LanePlace const& at,
+                                     LaneChange& change, LongitudinalMotion<double> const& motion, double dt,
+                                     double offset = 0.0) {
+  double const stretch = std::max(0.1, 1.0 - corridor.center.segments()[at.segment].curvature * at.lateral);
+  auto const [sin, cos] = geometry::sin_cos(at.heading_error);
+  LateralCourse<double> const start{at.lateral - offset, stretch * (sin / cos), change.bend};
+  double const along = motion.distance * cos / stretch;
+  auto const course = converge(start, static_cast<double>(change.left), along);
+  Plan<View> plan;
+  typename View::State next = view.state();
+  next.time = view.time() + dt;
+  place_on_lane(corridor, at.s + along, offset + course.offset, geometry::arc_tangent(course.slope / stretch),
+                at.segment, next);
+  next.speed = motion.speed;
+  plan.trajectory.push_back(next);
+  plan.action.acceleration = (motion.speed - view.state().speed) / dt;
+  change.left -= static_cast<float>(along);
+  change.bend = static_cast<float>(course.bend);
+  return plan;
+}
+
+/// Headings farther from the lane's [rad] have no course: the vehicle is turned along its lane.
+inline constexpr double most_aslant = 1.0;
+
+}  // namespace detail
+
+/// The plan that keeps the lane. Who is off its centre line or its direction, as after a change that was given up, or
+/// where observation errs, comes back smoothly, by a course that begins anew in each step; `bend` [1/m] is that of the
+/// course at the vehicle. `offset`: keeps so far to the left of the centre line [m].
+template <class View>
+[[nodiscard]] Plan<View> plan_to_center(View const& view, float& bend, LongitudinalMotion<double> const& motion,
+                                        double dt, double offset = 0.0) {
+  constexpr double near = 1e-3, shortest = 15.0, duration = 3.0;  // [m or rad], [m], [s]
+  auto const& at = view.place();
+  double const aslant = std::abs(at.heading_error);
+  if ((std::abs(at.lateral - offset) < near && aslant < near) || aslant > detail::most_aslant) {
+    bend = 0.0f;
+    return plan_along_lane(view, motion, dt);
+  }
+  double const length =
+      std::max(detail::least_course_length(shortest, view.shape(), detail::longer_by_front_back(at.lateral - offset)),
+               duration * motion.speed);
+  LaneChange back{at.corridor, static_cast<float>(length), bend};
+  auto const plan = detail::plan_course(view, view.corridor(), at, back, motion, dt, offset);
+  bend = back.bend;
+  return plan;
+}
+
+/// The plan that drives `motion` along the course of a lane change, from where the vehicle is: deviations are taken in
+/// as they are seen. Ends the change when it is done, or its lane is. Without one: see `plan_to_center`.
+template <class View>
+[[nodiscard]] Plan<View> plan_lane_change(View const& view, LaneChange& change,
+                                          LongitudinalMotion<double> const& motion, double dt) {
+  if (!change.active()) return plan_to_center(view, change.bend, motion, dt);
+  map::LanePlace const at = view.place(change.target);
+  auto const& corridor = view.road().corridors[change.target];
+  bool const is_over = at.s >= corridor.length() || !(change.left > 0.0f);
+  if (is_over || std::abs(at.heading_error) > detail::most_aslant) {  // it ends, or was left
+    change = {};
+    return plan_to_center(view, change.bend, motion, dt);
+  }
+  auto const plan = detail::plan_course(view, corridor, at, change, motion, dt);
+  if (!(change.left > 0.0f)) change = {};
+  return plan;
+}
+
+/// Whether the vehicle stays within the lane that `change` leads to, if it begins now from within that lane.
+template <class View>
+[[nodiscard]] bool stays_within_lane(View const& view, LaneChange const& change) {
+  map::LanePlace const at = view.place(change.target);
+  auto const& corridor = view.road().corridors[change.target];
+  auto const sides = corridor.widths_at(at.s, at.segment);
+  LateralCourse<double> const start{at.lateral, std::tan(std::clamp(at.heading_error, -1.0, 1.0)), change.bend};
+  constexpr int samples = 8;
+  for (int i = 0; i < samples; ++i) {
+    double const length = change.left;
+    double const offset = converge(start, length, length * i / samples).offset;
+    if (offset > sides.left || -offset > sides.right) return false;
+  }
+  return true;
+}
+
+}  // namespace cambium

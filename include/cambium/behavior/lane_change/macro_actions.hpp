@@ -1,0 +1,201 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <iterator>
+#include <limits>
+#include <optional>
+#include <string>
+
+#include <boost/container/static_vector.hpp>
+
+#include "cambium/behavior/behavior_model.hpp"
+#include "cambium/behavior/following/constant_acceleration.hpp"
+#include "cambium/behavior/lane_change/lane_change.hpp"
+#include "cambium/behavior/law/idm.hpp"
+#include "cambium/behavior/law/idm.hpp"
+#include "cambium/behavior/law/lane_ends.hpp"
+#include "cambium/core/error.hpp"
+#include "cambium/core/parameters.hpp"
+
+namespace cambium {
+
+/// What a driver may decide to do.
+struct MacroAction {
+  enum class Kind : std::uint8_t {
+    stay,          ///< keeps the lane at `acceleration`
+    change_left,   ///< changes to the lane on the left at `acceleration`
+    change_right,  ///< to the right
+    keep_gap,      ///< keeps the lane and a gap by IDM; `acceleration` does not count
+  };
+
+  Kind kind = Kind::stay;
+  double acceleration = 0.0;  ///< [m/s^2]
+  bool keeps_gap = false;     ///< no faster than IDM allows; `keep_gap` never is
+
+  static constexpr char const* name = "macro_action";
+  static constexpr char const* summary = "one manoeuvre of `MacroActions`";
+  static constexpr auto parameters() {
+    using P = MacroAction;
+    return parameter_list(choice("kind", &P::kind, "stay|change_left|change_right|keep_gap", "what is done"),
+                          parameter("acceleration", &P::acceleration, "m/s^2", Range{-50, 50}, "not of keep_gap"),
+                          parameter("keeps_gap", &P::keeps_gap, "-", Range{0, 1}, "no faster than IDM allows"));
+  }
+
+  friend bool operator==(MacroAction const&, MacroAction const&) = default;
+};
+
+/// As in messages and tables.
+[[nodiscard]] constexpr char const* to_string(MacroAction::Kind kind) {
+  switch (kind) {
+    case MacroAction::Kind::stay:
+      return "stay";
+    case MacroAction::Kind::change_left:
+      return "change_left";
+    case MacroAction::Kind::change_right:
+      return "change_right";
+    case MacroAction::Kind::keep_gap:
+      return "keep_gap";
+  }
+  return "unknown";
+}
+
+/// Drives by one of a few manoeuvres along its lanes. A search or a learner chooses in the agent's memory
+/// (`World::memory<MacroActions>(id).choose(number)`); the manoeuvre goes on until the next is chosen. A lane change
+/// that has begun is finished, whatever is chosen meanwhile, but for a change back. One that is not `available` when
+/// chosen is not begun: the vehicle keeps its lane at the action's acceleration. A number that there is not fails.
+struct MacroActions {
+  using Kind = MacroAction::Kind;
+  static constexpr std::size_t capacity = 16;
+  static constexpr std::uint8_t nothing = 255;  ///< chosen instead of an action: it keeps its lane and its speed
+
+  struct Memory {
+    LaneChange change{};      ///< leads to the target corridor
+    std::uint8_t chosen = 0;  ///< number of the action
+    bool is_new = true;       ///< it has not begun yet
+
+    void choose(std::size_t number) {
+      chosen = static_cast<std::uint8_t>(number <= nothing ? number : nothing - 1);
+      is_new = true;
+    }
+
+    void fell_short(double way, bool left_course) { change.fell_short(way, left_course); }
+
+    friend bool operator==(Memory const&, Memory const&) = default;
+  };
+
+  /// Those of a search that is told of no others. (Not a list in braces: g++ 12 takes that for uninitialised at -O2.)
+  static constexpr MacroAction usual[] = {{Kind::keep_gap},    {Kind::stay, 0.0},  {Kind::stay, 1.5},
+                                          {Kind::stay, -2.0},  {Kind::stay, -5.0}, {Kind::change_left},
+                                          {Kind::change_right}};
+
+  /// 1 to `capacity` of them.
+  boost::container::static_vector<MacroAction, capacity> actions{std::begin(usual), std::end(usual)};
+  double highest_speed = 50.0;
+  double minimum_remaining = 20.0;
+  IdmParameters idm{};
+  LaneChangeCourse course{};
+  double tolerance = 1e-4;
+
+  static constexpr char const* name = "macro_actions";
+  static constexpr char const* summary =
+      "carries out what a search chooses: stay with an acceleration, change left or right, keep the gap by IDM; each "
+      "where its precondition holds";
+  static constexpr char const* source = "after BARK";
+  static constexpr auto parameters() {
+    using P = MacroActions;
+    return parameter_list(
+        parameter("actions", &P::actions, "-", {}, "what can be chosen, 1 to 16"),
+        parameter("highest_speed", &P::highest_speed, "m/s", Range{0, 200}, "not exceeded by accelerating"),
+        parameter("minimum_remaining", &P::minimum_remaining, "m", Range{0, 10'000},
+                  "no change into a lane that ends, or begins to merge into its neighbour, sooner; longer vehicles "
+                  "need more, as in their course"),
+        parameter("idm", &P::idm, "-", {}, "how gaps are kept"),
+        parameter("course", &P::course, "-", {}, "how long a change takes"),
+        parameter("tolerance", &P::tolerance, "m/s^2", Range{1e-12, 1},
+                  "error of IDM's exact integration, as speed per second"));
+  }
+
+  void check(std::string const& where) const {
+    if (actions.empty()) throw ParameterError(where + ".actions", "has none", "give 1 to 16");
+  }
+
+  /// With these actions. Throws `ParameterError` for none, or more than `capacity`.
+  [[nodiscard]] static MacroActions of(std::initializer_list<MacroAction> list) {
+    if (list.size() == 0 || list.size() > capacity)
+      throw ParameterError(name, "has " + std::to_string(list.size()) + " actions", "give 1 to 16");
+    return {.actions = list};
+  }
+
+  [[nodiscard]] std::size_t size() const { return actions.size(); }
+
+  /// Whether action `number` could begin now, `change` being under way: a change needs a lane of the road on that side,
+  /// long enough; one back to the lane that it came from can always begin. O(1).
+  template <class View>
+  [[nodiscard]] bool available(View const& view, std::size_t number, LaneChange const& change = {}) const {
+    if (number >= size()) return false;
+    return !is_change(actions[number].kind) || side_of(view, actions[number].kind, change) != none<CorridorId>;
+  }
+
+  template <class View>
+  [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
+    if (memory.chosen >= size() && memory.chosen != nothing) {
+      Plan<View> failed;
+      failed.status = PlanStatus::failed;
+      return failed;
+    }
+    auto const action = memory.chosen != nothing ? actions[memory.chosen] : MacroAction{};
+    double const speed = std::max(0.0, view.state().speed);
+    course.renew(memory.change, view.shape(), speed);
+    if (memory.is_new && is_change(action.kind)) {
+      auto const side = side_of(view, action.kind, memory.change);
+      if (side != none<CorridorId> && side != memory.change.target) {
+        bool const is_back = side == view.place().corridor;
+        float const bend = memory.change.bend;
+        memory.change = is_back ? course.back(side, view.shape(), speed, view.place().lateral, bend)
+                                : course.begin(side, view.shape(), speed);
+        memory.change.bend = bend;
+      }
+    }
+    memory.is_new = false;
+    return plan_lane_change(view, memory.change, motion(view, memory.change, action, speed, dt), dt);
+  }
+
+ private:
+  [[nodiscard]] static bool is_change(Kind kind) { return kind == Kind::change_left || kind == Kind::change_right; }
+
+  /// The lane corridor that a change leads to: the own one where a change to the other side is under way in it.
+  template <class View>
+  [[nodiscard]] CorridorId side_of(View const& view, Kind kind, LaneChange const& change) const {
+    auto const& at = view.place();
+    auto const& piece = view.corridor().pieces[at.piece];
+    bool const left = kind == Kind::change_left;
+    auto const side = piece.beside(left);
+    if (change.active() && change.target == piece.beside(!left)) return at.corridor;
+    if (side == none<CorridorId>) return side;
+    auto const there = view.place(side);
+    double const least = detail::least_course_length(minimum_remaining, view.shape(), detail::longer_by_front);
+    return lane_end(view, side, there.piece) - there.s < least ? none<CorridorId> : side;
+  }
+
+  template <class View>
+  [[nodiscard]] LongitudinalMotion<double> motion(View const& view, LaneChange const& change, MacroAction const& action,
+                                                  double speed, double dt) const {
+    auto const wanted = ConstantAcceleration{action.acceleration, highest_speed}.motion(speed, dt);
+    if (action.kind != Kind::keep_gap && !action.keeps_gap) return wanted;
+    IdmLaw const law(idm, speed);
+    Strictest ahead(law);
+    auto const heed = [&](std::optional<RoadUser> const& leader) {
+      if (leader) ahead.heed({leader->gap, leader->speed});
+    };
+    heed(view.ahead());
+    if (change.active() && change.target != view.place().corridor) heed(view.ahead(view.place(change.target)));
+    auto const allowed = law.motion(ahead.constraint(), dt, tolerance);
+    return action.kind == Kind::keep_gap || allowed.speed < wanted.speed ? allowed : wanted;
+  }
+};
+static_assert(BehaviorModel<MacroActions>);
+
+}  // namespace cambium

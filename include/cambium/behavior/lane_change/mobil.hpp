@@ -1,0 +1,218 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <tuple>
+#include <utility>
+
+#include "cambium/behavior/behavior_model.hpp"
+#include "cambium/behavior/lane_change/corridor_filters.hpp"
+#include "cambium/behavior/lane_change/lane_changing.hpp"
+#include "cambium/behavior/law/idm.hpp"
+#include "cambium/core/macros.hpp"
+
+namespace cambium {
+
+/// What a driver and the followers of a lane change would gain: accelerations [m/s^2] now and after the change.
+struct MobilSituation {
+  double own{}, own_after{};
+  double new_follower{}, new_follower_after{};
+  double old_follower{}, old_follower_after{};
+};
+
+/// MOBIL's parameters as fields of a parameter struct: what `mobil_incentive` asks for.
+template <class P>
+concept HasMobilParameters = requires(P const p) {
+  p.politeness;
+  p.threshold;
+};
+
+/// How far the incentive exceeds the threshold (Kesting, Treiber, Helbing 2007, eq. 3) [m/s^2]: above 0, changing is
+/// worth it.
+template <HasMobilParameters P>
+[[nodiscard]] double mobil_incentive(P const& p, MobilSituation const& at) {
+  double const others = at.new_follower_after - at.new_follower + at.old_follower_after - at.old_follower;
+  return at.own_after - at.own + p.politeness * others - p.threshold;
+}
+
+/// Lane changing by MOBIL (Kesting, Treiber, Helbing 2007, "General lane-changing model MOBIL for car-following
+/// models"), car following by IDM. Changes where that pays for itself and, weighed by `politeness`, for the old and the
+/// new follower, and where it is safe (see `LaneChanging`, which has how a change is carried out). Who must leave its
+/// lane comes down to the speed of the lane that it needs. Of a side that does
+/// not pay for the driver itself and its old follower, what a new follower might gain there is not asked.
+///
+/// `Filters`: further conditions, see `corridor_filters.hpp`; `Mobil` is without any.
+template <class... Filters>
+struct BasicMobil {
+  IdmParameters idm{};
+  LaneChanging changing{};
+  RoadRules rules{.slow_for_bends = true, .lateral_acceleration = 3.0};
+  double politeness = 0.2;
+  double threshold = 0.2;
+  double bias = 0.0;
+  bool keep_right = false;
+  double critical_speed = 16.7;
+  double route_bias = 2.0;
+  double route_horizon = 300.0;
+  double minimum_remaining = 60.0;
+  double tolerance = 1e-4;
+  [[no_unique_address]] AllOf<Filters...> filters{};
+
+  using Memory = LaneChanging::Memory;
+  static constexpr bool looks_beside = true;
+
+  static constexpr char const* name = "mobil";
+  static constexpr char const* summary =
+      "IDM; changes lanes where a_new - a_old + politeness (gains of new and old follower) > threshold + bias, and the "
+      "new follower brakes no harder than is safe; each one has parameters of its own";
+  static constexpr char const* source = "Kesting, Treiber, Helbing 2007, eq. 2 to 7";
+  static constexpr auto parameters() {
+    using P = BasicMobil;
+    auto const own = parameter_list(
+        parameter("idm", &P::idm, "-", {}, "the driver's own car following"),
+        parameter("changing", &P::changing, "-", {}, "how it changes lanes, and what it assumes of others"),
+        parameter("rules", &P::rules, "-", {}, "what it heeds beside other road users"),
+        parameter("politeness", &P::politeness, "-", Range{-1, 10}, "weight of the followers' accelerations"),
+        parameter("threshold", &P::threshold, "m/s^2", Range{0, 10}, "advantage that makes a change worth it"),
+        parameter("bias", &P::bias, "m/s^2", Range{-10, 10},
+                  "in favour of the outer lane (right; with left-hand "
+                  "traffic left); negative: of the inner one"),
+        parameter("keep_right", &P::keep_right, "-", Range{0, 1},
+                  "European rule: no passing on the outer side above critical_speed (eq. 5 to 7)"),
+        parameter("critical_speed", &P::critical_speed, "m/s", Range{0, 100},
+                  "up to it, in congestion, keep_right lets pass on the outer side"),
+        parameter("route_bias", &P::route_bias, "m/s^2", Range{0, 20},
+                  "in favour of a lane that goes further, where the own one ends"),
+        parameter("route_horizon", &P::route_horizon, "m", Range{1, 10'000},
+                  "from how far before a lane's end it counts, for each lane to be crossed"),
+        parameter("minimum_remaining", &P::minimum_remaining, "m", Range{0, 10'000},
+                  "no change, but for the route, into a lane with less than this left when it could be left again"),
+        parameter("tolerance", &P::tolerance, "m/s^2", Range{1e-12, 1},
+                  "error of the exact integration, as speed per second"));
+    if constexpr (sizeof...(Filters) > 0)
+      return join_parameters(own, parameter_list(parameter("filters", &P::filters, "-", {}, "further conditions")));
+    else
+      return own;
+  }
+
+  template <class View>
+  [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
+    return changing.drive(view, memory, idm, rules, tolerance, dt, [this](LaneKeeping<View> const& now) {
+      if (keep_right) pass_nobody_outside(now);
+      return now.may_change ? best_side(now) : none<CorridorId>;
+    });
+  }
+
+ private:
+  /// What the incentive asks for.
+  struct Weights {
+    double politeness, threshold;
+  };
+
+  /// The side that it pays most to change to, if one pays.
+  template <class View>
+  [[nodiscard]] CorridorId best_side(LaneKeeping<View> const& now) const {
+    auto const& view = now.view;
+    auto const& piece = view.corridor().pieces[view.place().piece];
+    if (piece.left == none<CorridorId> && piece.right == none<CorridorId>) return none<CorridorId>;
+    MobilSituation situation{.own = now.ahead.acceleration()};
+    if (auto const rear = view.behind())
+      std::tie(situation.old_follower, situation.old_follower_after) = followers_view(now, rear, now.leader);
+    // What changing is worth beside the own acceleration after it: a side that cannot pay needs no look.
+    double const others =
+        politeness * (situation.old_follower_after - situation.old_follower) - situation.own - threshold;
+    bool const goes_on = now.lane_end == free_road, is_prejudged = politeness >= 0.0 && !keep_right;
+    if (is_prejudged && goes_on && others + std::abs(bias) + now.law.free() <= 0.0) return none<CorridorId>;
+    auto const urgency = goes_on ? LaneUrgency{} : lane_urgency(view, route_horizon);
+    bool const inner_is_left = !keeps_left(view, piece.lane);
+    double best = 0.0;
+    auto target = none<CorridorId>;
+    for (bool const left : {true, false}) {
+      auto const side = piece.beside(left);
+      if (side == none<CorridorId> || !changing.marks_permit(view, left)) continue;
+      bool const inwards = left == inner_is_left;
+      LaneOption option{view.place(side), left, {}, {}};
+      double const remaining = lane_end(view, side, option.place.piece) - option.place.s;
+      double const urge =
+          !goes_on ? (left ? urgency.left : urgency.right) : -std::max(0.0, 1.0 - remaining / route_horizon);
+      if (urge <= 0.0 && remaining < minimum_remaining + changing.there_and_back(now.law.speed())) continue;
+      double const pull = (inwards ? -bias : bias) + route_bias * urge;
+      option.front = view.ahead(option.place);
+      if (urge > 0.0 && !goes_on) adapt_to(now, option.front);
+      situation.own_after = now.law(option.front);
+      if (is_prejudged && others + situation.own_after + pull <= best) continue;
+      option.rear = view.behind(option.place);
+      double const worth = worth_of(now, situation, option, inwards) + pull;
+      if (!(worth > best) || !changing.is_safe(view, now.law, option, changing.safe_deceleration) ||
+          !filters(view, option))
+        continue;
+      best = worth;
+      target = side;
+    }
+    return target;
+  }
+
+  /// Follows somebody in another lane who is slower; but as if it had its desired headway at least, for nobody brakes
+  /// hard for that.
+  template <class View>
+  void adapt_to(LaneKeeping<View> const& now, std::optional<RoadUser> const& front) const {
+    if (front && front->gap > 0.0 && front->speed < now.law.speed())
+      now.ahead.heed({std::max(front->gap, idm.minimum_gap + now.law.speed() * idm.time_headway), front->speed});
+  }
+
+  /// Acceleration of a follower behind this vehicle, and behind `front`, who is next without it.
+  template <class View>
+  [[nodiscard]] std::pair<double, double> followers_view(LaneKeeping<View> const& now,
+                                                         std::optional<RoadUser> const& rear,
+                                                         std::optional<RoadUser> const& front) const {
+    if (!rear || !is_valid(rear->agent)) return {0.0, 0.0};
+    auto const law = changing.law_of(*rear);
+    double const behind = law(rear->gap, now.law.speed());
+    if (!front) return {behind, law.free()};
+    return {behind, law(rear->gap + now.view.shape().length() + front->gap, front->speed)};
+  }
+
+  template <class View>
+  [[nodiscard]] double worth_of(LaneKeeping<View> const& now, MobilSituation situation, LaneOption const& option,
+                                bool inwards) const {
+    std::tie(situation.new_follower_after, situation.new_follower) = followers_view(now, option.rear, option.front);
+    if (keep_right) {
+      // Eq. 5 to 7: on the outer side nobody is passed, and only the follower in the inner lane counts.
+      auto const& in_inner_lane = inwards ? option.front : now.leader;
+      if (in_inner_lane && now.law.speed() > in_inner_lane->speed && in_inner_lane->speed > critical_speed)
+        (inwards ? situation.own : situation.own_after) = std::min(situation.own, situation.own_after);
+      if (inwards)
+        situation.old_follower = situation.old_follower_after = 0.0;
+      else
+        situation.new_follower = situation.new_follower_after = 0.0;
+    }
+    return mobil_incentive(Weights{politeness, threshold}, situation);
+  }
+
+  /// Eq. 5 for the own driving: who is faster than the leader in the inner lane follows that one, too.
+  template <class View>
+  CAMBIUM_NOINLINE void pass_nobody_outside(LaneKeeping<View> const& now) const {
+    auto const& piece = now.view.corridor().pieces[now.view.place().piece];
+    auto const inner = keeps_left(now.view, piece.lane) ? piece.right : piece.left;
+    if (inner == none<CorridorId>) return;
+    auto const there = now.view.ahead(now.view.place(inner));
+    if (there && there->speed > critical_speed) adapt_to(now, there);
+  }
+
+  template <class View>
+  [[nodiscard]] bool keeps_left(View const& view, LaneId lane) const {
+    if ((bias == 0.0 && !keep_right) || !is_valid(lane)) return false;
+    return view.map().road(view.map().lane(lane).road).left_hand_traffic;
+  }
+
+  static constexpr double free_road = std::numeric_limits<double>::infinity();
+};
+
+/// MOBIL as published.
+using Mobil = BasicMobil<>;
+static_assert(BehaviorModel<Mobil>);
+
+}  // namespace cambium

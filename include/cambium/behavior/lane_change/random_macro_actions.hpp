@@ -1,0 +1,62 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include "cambium/behavior/behavior_model.hpp"
+#include "cambium/behavior/lane_change/macro_actions.hpp"
+#include "cambium/core/distributions.hpp"
+
+namespace cambium {
+
+/// Chooses a new one of the available macro actions every `interval`, each as likely as the others, by the agent's own
+/// random numbers: the same in every run, copy and thread.
+struct RandomMacroActions {
+  MacroActions macro{};
+  double interval = 1.0;
+
+  static constexpr char const* name = "random_macro_actions";
+  static constexpr char const* summary = "one of the available macro actions, each as likely, every interval";
+  static constexpr char const* source = "own";
+  static constexpr auto parameters() {
+    return parameter_list(parameter("macro", &RandomMacroActions::macro, "-", {}, "the actions"),
+                          parameter("interval", &RandomMacroActions::interval, "s", Range{0, 3600},
+                                    "until another one is chosen; 0: each step"));
+  }
+
+  struct Memory {
+    MacroActions::Memory macro{};
+    float left{};  ///< [s] until the next choice
+
+    void fell_short(double way, bool left_course) { macro.fell_short(way, left_course); }
+
+    friend bool operator==(Memory const&, Memory const&) = default;
+  };
+
+  template <class View>
+  [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
+    constexpr float rounding = 1e-4f;
+    if (!(memory.left > rounding)) {
+      choose(view, memory.macro);
+      memory.left = std::max(0.0f, memory.left + static_cast<float>(interval));
+    }
+    memory.left -= static_cast<float>(dt);
+    return macro.plan(view, memory.macro, dt);
+  }
+
+ private:
+  template <class View>
+  void choose(View const& view, MacroActions::Memory& memory) const {
+    std::uint32_t available = 0;
+    for (std::size_t i = 0; i < macro.size(); ++i) available += macro.available(view, i, memory.change) ? 1 : 0;
+    if (available == 0) return;
+    auto random = view.random(0);
+    auto nth = uniform_index(random, available);
+    for (std::size_t i = 0; i < macro.size(); ++i)
+      if (macro.available(view, i, memory.change) && nth-- == 0) return memory.choose(i);
+  }
+};
+static_assert(BehaviorModel<RandomMacroActions>);
+
+}  // namespace cambium

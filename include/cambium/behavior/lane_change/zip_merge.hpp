@@ -1,0 +1,186 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "cambium/behavior/behavior_model.hpp"
+#include "cambium/behavior/lane_change/lane_change.hpp"
+#include "cambium/behavior/law/idm.hpp"
+#include "cambium/behavior/law/road_rules.hpp"
+#include "cambium/core/parameters.hpp"
+
+namespace cambium {
+
+/// Zip merge: keeps its lane up to where it merges with another, and there lets one vehicle from the other lane in
+/// before itself, behind the vehicle ahead (the alternate order that, for instance, the German StVO asks for in section
+/// 7 (4)). The first of the other lane behind the vehicle ahead is let in where it is ahead, beside, or not farther
+/// back than `reach`; who is first of all of its lane goes before those behind it. Between the two a gap opens bit by
+/// bit, in proportion to the way that is left. After `patience` at a standstill it goes when there is room. Car
+/// following by IDM.
+struct ZipMerge {
+  IdmParameters idm{};
+  RoadRules rules{};
+  double zone = 200.0;
+  double reach = 12.0;
+  double patience = 4.0;
+  double tolerance = 1e-4;
+
+  static constexpr char const* name = "zip_merge";
+  static constexpr char const* summary =
+      "IDM; keeps its lane up to a merge and lets one vehicle from the other lane in before itself";
+  static constexpr char const* source = "rule: StVO section 7 (4); control of the gap: own";
+  static constexpr auto parameters() {
+    using P = ZipMerge;
+    return parameter_list(
+        parameter("idm", &P::idm, "-", {}, "the driver's own car following"),
+        parameter("rules", &P::rules, "-", {}, "what it heeds beside other road users"),
+        parameter("zone", &P::zone, "m", Range{1, 400}, "how far before a merge it begins to give way"),
+        parameter("reach", &P::reach, "m", Range{0, 100}, "how far back a vehicle is still let in before"),
+        parameter("patience", &P::patience, "s", Range{0, 600},
+                  "at a standstill, until it no longer waits to be passed"),
+        parameter("tolerance", &P::tolerance, "m/s^2", Range{1e-12, 1},
+                  "error of the exact integration, as speed per second"));
+  }
+
+  struct Memory {
+    AgentId ahead = none<AgentId>;  ///< who was last ahead in the own lane before the merge
+    float stood{};                  ///< how long it has been standing [s]
+    float bend{};                   ///< see `plan_to_center`
+    RoadRules::Memory rules{};
+
+    void fell_short(double /*way*/, bool left_course) {
+      if (left_course) bend = 0.0f;
+    }
+
+    friend bool operator==(Memory const&, Memory const&) = default;
+  };
+
+  template <class View>
+  [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
+    double const speed = std::max(0.0, view.state().speed);
+    wait(memory, speed, dt);
+    IdmLaw const law(idm, speed, rules.desired_speed(idm, view, speed));
+    Strictest ahead(law);
+    double const merge = next_merge(view);
+    auto const leader = view.ahead({.merging = merge < infinite ? Merging::ignored : rules.merging});
+    rules.heed(view, leader, ahead);
+    if (merge < infinite) {
+      if (auto const other = let_in(view, memory, leader, merge)) {
+        double const front = view.place().s + view.shape().front;
+        double const gap = gap_to_open(merge - front, other->s - other->rear - front, speed, other->speed);
+        ahead.heed({gap, other->speed});
+      }
+    } else if (leader) {
+      memory.ahead = leader->agent;
+    }
+    auto const motion = law.motion(ahead.constraint(), dt, tolerance);
+    return plan_to_center(view, memory.bend, rules.bound(view, idm, view.place().s, speed, motion, dt, memory.rules),
+                          dt);
+  }
+
+ private:
+  static constexpr double infinite = std::numeric_limits<double>::infinity();
+  /// Deceleration with which a vehicle that is ahead still lets another one in [m/s^2].
+  static constexpr double comfortable = 2.0;
+
+  /// The gap [m] to follow one in the other lane by, `gap` being the one that there is: more of it the farther the
+  /// merge is, so that it opens bit by bit, or most of what opens by itself until then where the other is faster; but
+  /// never more than the way to whichever is farther.
+  [[nodiscard]] static double gap_to_open(double to_merge, double gap, double speed, double other_speed) {
+    constexpr double share = 0.3, trust = 0.7;
+    if (!(to_merge > 0.0)) return gap;
+    double const opening = trust * (other_speed - speed) * to_merge / std::max(speed, 1.0);
+    return std::min(gap + std::max(share * to_merge, opening), std::max(gap, to_merge));
+  }
+
+  /// Counts how long the vehicle has been standing. Who has lost patience and goes has none again before it drives.
+  void wait(Memory& memory, double speed, double dt) const {
+    constexpr double stands = 0.3, drives = 5.0;  // [m/s]
+    if (speed < stands)
+      memory.stood += static_cast<float>(dt);
+    else if (memory.stood <= static_cast<float>(patience) || speed > drives)
+      memory.stood = 0.0f;
+  }
+
+  /// Somebody on the way to the merge.
+  struct Coming {
+    double speed{};
+    double to_merge{};  ///< from its front end [m]
+    double length{};
+  };
+
+  /// Deceleration [m/s^2] with which one comes to the merge after another has cleared it.
+  [[nodiscard]] double braking_after(Coming const& other, Coming const& one) const {
+    if (!(one.speed > 0.0)) return 0.0;
+    if (!(one.to_merge > 0.0)) return infinite;
+    double const way = std::max(0.0, other.to_merge + other.length + idm.minimum_gap);
+    double const time = way / std::max(other.speed, 1.0);
+    double const too_far = one.speed * time - one.to_merge;
+    if (too_far <= 0.0) return 0.0;
+    double const evenly = 2.0 * too_far / (time * time);
+    return evenly * time < one.speed ? evenly : one.speed * one.speed / (2.0 * one.to_merge);
+  }
+
+  /// Whether one lets in another whose turn it is: not from too far back, nor where that is too hard for it, and harder
+  /// than the other way round. Both see it in the same way.
+  [[nodiscard]] bool gives_way(Coming const& one, Coming const& other) const {
+    return other.to_merge < one.to_merge + reach &&
+           braking_after(other, one) <= std::max(comfortable, braking_after(one, other));
+  }
+
+  /// Whether the vehicle ahead is on the own path; at the merge the other lane's vehicles are still beside it.
+  template <class View>
+  [[nodiscard]] bool is_on_path(View const& view, RoadUser const& leader, double s) const {
+    constexpr double beside = 1.5;  // [m]
+    if (!is_valid(leader.agent)) return true;
+    auto const& center = view.corridor().center;
+    auto const& state = view.state(leader);
+    return std::abs(center.project({state.x, state.y}, center.find(s)).lateral) < beside;
+  }
+
+  /// Where the next merge within the zone is on the own corridor; infinite where there is none.
+  template <class View>
+  [[nodiscard]] double next_merge(View const& view) const {
+    double const s = view.place().s;
+    for (auto const& feeder : view.corridor().feeders) {
+      if (feeder.begin > s + zone) break;
+      if (feeder.is_still_to_merge() && feeder.free_until > s && feeder.free_until < s + zone) return feeder.free_until;
+    }
+    return infinite;
+  }
+
+  /// Who of the other lane is to go before this one, if there is somebody.
+  template <class View>
+  [[nodiscard]] std::optional<RoadUser> let_in(View const& view, Memory& memory, std::optional<RoadUser> const& leader,
+                                               double merge) const {
+    double const front = view.place().s + view.shape().front;
+    Coming const own{std::max(0.0, view.state().speed), merge - front, view.shape().length()};
+    auto const coming = [&](RoadUser const& other) {
+      return Coming{std::max(0.0, other.speed), merge - other.s - other.front, other.length()};
+    };
+    // The next of the other lane whose turn it is not, where it goes first all the same.
+    auto const insists = [&](std::optional<RoadUser> const& next) { return next && !gives_way(coming(*next), own); };
+    if (!leader) {  // the first of the lane: who is closer to the merge goes first
+      auto const other = view.merging(merge, infinite);
+      constexpr double equal = 0.5;  // [m]
+      if (other && coming(*other).to_merge < own.to_merge + (other->agent < view.id() ? equal : -equal)) return other;
+      return std::nullopt;
+    }
+    double const rear_of_leader = front + leader->gap;
+    if (rear_of_leader < merge && is_on_path(view, *leader, rear_of_leader)) memory.ahead = leader->agent;
+    if (leader->agent != memory.ahead) {  // the other lane has had its turn
+      auto const next = view.merging(merge, infinite);
+      return insists(next) ? next : std::nullopt;
+    }
+    auto const other = view.merging(merge, rear_of_leader);
+    if (!other || !gives_way(own, coming(*other))) return std::nullopt;
+    if (memory.stood > patience && coming(*other).to_merge > own.to_merge) return std::nullopt;
+    auto const next = view.merging(merge, other->s - other->rear);
+    return insists(next) && next->agent != other->agent ? next : other;
+  }
+};
+static_assert(BehaviorModel<ZipMerge>);
+
+}  // namespace cambium

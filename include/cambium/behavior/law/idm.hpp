@@ -1,0 +1,345 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "cambium/behavior/law/constraint.hpp"
+#include "cambium/behavior/law/follow_lane.hpp"
+#include "cambium/behavior/view.hpp"
+#include "cambium/core/macros.hpp"
+#include "cambium/core/parameters.hpp"
+
+namespace cambium {
+
+/// The parameters of the Intelligent Driver Model, as fields of a parameter struct: what the functions below ask for.
+template <class P>
+concept HasIdmParameters = requires(P const p) {
+  p.desired_speed;
+  p.time_headway;
+  p.minimum_gap;
+  p.maximum_acceleration;
+  p.comfortable_deceleration;
+  p.exponent;
+  p.lowest_acceleration;
+  p.highest_acceleration;
+};
+
+/// The one description of those fields, for the models that have them.
+template <class P>
+[[nodiscard]] constexpr auto idm_parameters() {
+  return parameter_list(
+      parameter("desired_speed", &P::desired_speed, "m/s", Range{0.1, 100}, "speed on a free road"),
+      parameter("time_headway", &P::time_headway, "s", Range{0, 20}, "time gap kept to the leader"),
+      parameter("minimum_gap", &P::minimum_gap, "m", Range{0, 100}, "gap kept in standing traffic"),
+      parameter("maximum_acceleration", &P::maximum_acceleration, "m/s^2", Range{0.01, 20},
+                "acceleration from rest on a free road"),
+      parameter("comfortable_deceleration", &P::comfortable_deceleration, "m/s^2", Range{0.01, 20},
+                "braking that the driver finds normal"),
+      parameter("exponent", &P::exponent, "-", Range{1, 100},
+                "how late the acceleration falls off towards the desired speed"),
+      parameter("lowest_acceleration", &P::lowest_acceleration, "m/s^2", Range{-50, 0}, "hardest braking"),
+      parameter("highest_acceleration", &P::highest_acceleration, "m/s^2", Range{0, 50},
+                "upper bound of the acceleration"));
+}
+
+/// These parameters alone: what a model holds beside its own, or assumes of others. Defaults are BARK's.
+struct IdmParameters {
+  double desired_speed = 15.0;
+  double time_headway = 1.5;
+  double minimum_gap = 2.0;
+  double maximum_acceleration = 1.7;
+  double comfortable_deceleration = 1.67;
+  double exponent = 4.0;
+  double lowest_acceleration = -5.0;
+  double highest_acceleration = 8.0;
+
+  static constexpr char const* name = "idm";
+  static constexpr char const* summary =
+      "the parameters of the Intelligent Driver Model, where a model holds them beside its own";
+  static constexpr char const* source = "Treiber, Hennecke, Helbing 2000; defaults: BARK";
+  static constexpr auto parameters() { return idm_parameters<IdmParameters>(); }
+};
+static_assert(HasIdmParameters<IdmParameters>);
+
+/// x to the power of `exponent`; IDM's usual 4 without `pow`.
+template <class Scalar>
+[[nodiscard]] Scalar idm_power(Scalar x, double exponent) {
+  if (exponent == 4.0) return (x * x) * (x * x);
+  using std::pow;
+  return pow(x, Scalar(exponent));
+}
+
+/// What depends on IDM's parameters alone, and the formula (Treiber, Hennecke, Helbing 2000, eq. 3 and 4).
+template <class Scalar>
+struct IdmTerms {
+  template <HasIdmParameters P>
+  explicit IdmTerms(P const& p) : IdmTerms(p, p.desired_speed) {}
+
+  template <HasIdmParameters P>
+  IdmTerms(P const& p, double desired_speed)
+      : inverse_desired_speed(Scalar(1.0 / desired_speed)),
+        headway(Scalar(p.time_headway)),
+        closing(Scalar(0.5 / std::sqrt(p.maximum_acceleration * p.comfortable_deceleration))),
+        minimum_gap(Scalar(p.minimum_gap)),
+        maximum(Scalar(p.maximum_acceleration)),
+        low(Scalar(p.lowest_acceleration)),
+        high(Scalar(p.highest_acceleration)),
+        exponent(p.exponent) {}
+
+  /// The part of the desired gap s* that depends on the speeds [m]; below 0 where a leader is that much faster: then it
+  /// does not count, lest a faster leader is mistaken for a close one.
+  [[nodiscard]] Scalar dynamic_gap(Scalar speed, Scalar leader_speed) const {
+    return speed * (headway + (speed - leader_speed) * closing);
+  }
+  /// The desired gap as a part of the gap there is.
+  [[nodiscard]] Scalar closeness(Scalar dynamic, Scalar inverse_gap) const {
+    using std::max;
+    return (minimum_gap + max(Scalar(0), dynamic)) * inverse_gap;
+  }
+  /// What is left of the maximum acceleration on a free road, as a part of it.
+  [[nodiscard]] Scalar free(Scalar speed) const {
+    return Scalar(1) - idm_power(Scalar(speed * inverse_desired_speed), exponent);
+  }
+  /// Unbounded [m/s^2]. `gap` [m] bumper to bumper, above 0, infinite on a free road.
+  [[nodiscard]] Scalar unbounded(Scalar free, Scalar speed, Scalar gap, Scalar leader_speed) const {
+    Scalar const close = closeness(dynamic_gap(speed, leader_speed), Scalar(1) / gap);
+    return maximum * (free - close * close);
+  }
+  [[nodiscard]] Scalar bounded(Scalar acceleration) const {
+    using std::max;
+    using std::min;
+    return min(max(acceleration, low), high);
+  }
+
+  Scalar inverse_desired_speed, headway, closing, minimum_gap, maximum, low, high;
+  double exponent;
+};
+
+/// Desired gap s* [m] (Treiber, Hennecke, Helbing 2000, eq. 4).
+template <HasIdmParameters P, class Scalar>
+[[nodiscard]] Scalar idm_desired_gap(P const& p, Scalar speed, Scalar leader_speed) {
+  IdmTerms<Scalar> const terms(p);
+  return terms.closeness(terms.dynamic_gap(speed, leader_speed), Scalar(1));
+}
+
+/// Acceleration [m/s^2] of a follower (Treiber, Hennecke, Helbing 2000, eq. 3), within the parameters' bounds. `gap`
+/// [m] bumper to bumper, infinite on a free road; `leader_speed` [m/s]. A gap ≤ 0 yields the lower bound.
+template <HasIdmParameters P, class Scalar>
+[[nodiscard]] Scalar idm_acceleration(P const& p, Scalar speed, Scalar gap, Scalar leader_speed) {
+  IdmTerms<Scalar> const terms(p);
+  if (!(gap > Scalar(0))) return terms.low;
+  return terms.bounded(terms.unbounded(terms.free(speed), speed, gap, leader_speed));
+}
+
+/// The gap [m] at which followers at one speed keep it (Treiber, Hennecke, Helbing 2000, eq. 5); infinite at the
+/// desired speed.
+template <HasIdmParameters P>
+[[nodiscard]] double idm_equilibrium_gap(P const& p, double speed) {
+  double const free = 1.0 - idm_power(speed / p.desired_speed, p.exponent);
+  return free <= 0 ? std::numeric_limits<double>::infinity()
+                   : (p.minimum_gap + speed * p.time_headway) / std::sqrt(free);
+}
+
+/// The speed [m/s] at which followers keep `gap` [m]: what the gap above belongs to. 0 below the minimum gap.
+template <HasIdmParameters P>
+[[nodiscard]] double idm_equilibrium_speed(P const& p, double gap) {
+  double low = 0.0, high = p.desired_speed;
+  for (int i = 0; i < 60; ++i) {
+    double const middle = 0.5 * (low + high);
+    (idm_equilibrium_gap(p, middle) <= gap ? low : high) = middle;
+  }
+  return low;
+}
+
+namespace detail {
+
+/// The acceleration of a follower and how it changes along its motion.
+template <class Scalar>
+struct IdmResponse {
+  Scalar acceleration;  ///< [m/s^2]
+  Scalar jerk;          ///< [m/s^3], the leader keeping its speed; 0 at a bound
+  bool bounded;         ///< the acceleration is at a bound
+};
+
+/// IDM over a step in which the leader keeps its speed.
+template <class Scalar>
+class IdmStep {
+ public:
+  IdmStep(IdmTerms<Scalar> const& terms, Scalar leader_speed) : terms_(terms), leader_speed_(leader_speed) {}
+
+  IdmStep(IdmTerms<Scalar>&&, Scalar) = delete;
+
+  [[nodiscard]] IdmTerms<Scalar> const& terms() const { return terms_; }
+  [[nodiscard]] Scalar leader_speed() const { return leader_speed_; }
+
+  [[nodiscard]] IdmResponse<Scalar> operator()(Scalar speed, Scalar gap) const {
+    Scalar const inverse_gap = Scalar(1) / gap;
+    Scalar const dynamic = terms_.dynamic_gap(speed, leader_speed_);
+    bool const interacts = dynamic > Scalar(0);
+    Scalar const closeness = terms_.closeness(dynamic, inverse_gap);
+    auto const [free, free_slope] = free_road(speed * terms_.inverse_desired_speed);
+    Scalar const wanted = terms_.maximum * ((Scalar(1) - free) - closeness * closeness);
+    if (!(gap > Scalar(0)) || !(wanted > terms_.low)) return {terms_.low, Scalar(0), true};
+    if (wanted >= terms_.high) return {terms_.high, Scalar(0), true};
+    Scalar const dynamic_slope =
+        interacts ? terms_.headway + (Scalar(2) * speed - leader_speed_) * terms_.closing : Scalar(0);
+    Scalar const by_speed =
+        free_slope * terms_.inverse_desired_speed + Scalar(2) * closeness * inverse_gap * dynamic_slope;
+    Scalar const by_gap = Scalar(2) * closeness * closeness * inverse_gap;
+    return {wanted, terms_.maximum * (by_gap * (leader_speed_ - speed) - by_speed * wanted), false};
+  }
+
+ private:
+  struct FreeRoad {
+    Scalar power, slope;
+  };
+
+  /// x^exponent and its derivative.
+  [[nodiscard]] FreeRoad free_road(Scalar x) const {
+    if (terms_.exponent == 4.0) {
+      Scalar const square = x * x;
+      return {square * square, Scalar(4) * square * x};
+    }
+    Scalar const power = idm_power(x, terms_.exponent);
+    return {power, x > Scalar(0) ? Scalar(terms_.exponent) * power / x : Scalar(0)};
+  }
+
+  IdmTerms<Scalar> const& terms_;
+  Scalar leader_speed_;
+};
+
+/// What a step of the scheme below came to.
+template <class Scalar>
+struct IdmTrial {
+  Scalar distance, speed;
+  bool accurate;
+};
+
+/// One step over `step` [s], from a speed and a gap at which the model responds with `now`.
+template <class Scalar>
+[[nodiscard]] IdmTrial<Scalar> try_idm_step(IdmStep<Scalar> const& response, IdmResponse<Scalar> const& now, Scalar v,
+                                            Scalar gap, double step, double tolerance) {
+  using std::abs;
+  using std::min;
+  auto const square = [](Scalar x) { return x * x; };
+  auto const largest_square = Scalar(4.0 * tolerance);  // of the third-order term
+  Scalar const leader_speed = response.leader_speed(), highest = min(response.terms().maximum, response.terms().high);
+  auto const [a1, j1, bounded1] = now;
+  bool const stands = v <= Scalar(0) && a1 <= Scalar(0);
+  auto const h = Scalar(step), half = Scalar(step / 2), third_part = Scalar(step * (1.0 / 3)),
+             sixth = Scalar(step * (1.0 / 6)), eighth = Scalar(step * step / 8);
+  Scalar const middle_speed = v + half * a1 + eighth * j1;
+  Scalar const middle_gap = gap + half * (leader_speed - v) - eighth * a1;
+  auto const [a2, j2, bounded2] =
+      response(stands ? Scalar(0) : middle_speed, stands ? gap + half * leader_speed : middle_gap);
+  Scalar const third = third_part * (j2 - j1);
+  Scalar next_speed = min(Scalar(v + h * (a1 + half * j1 + third)), Scalar(v + h * highest));
+  Scalar distance = min(Scalar(h * (v + sixth * (a1 + Scalar(2) * a2))), Scalar(h * (v + half * highest)));
+  bool const stops = stands || next_speed < Scalar(0) || middle_speed < Scalar(0);
+  if (stops) {  // constant deceleration until it stands
+    distance = stands ? Scalar(0) : min(Scalar(h * v), Scalar(v * v / (Scalar(2) * abs(a1))));
+    next_speed = Scalar(0);
+  }
+  bool accurate = stops ? v <= Scalar(tolerance) && a2 <= Scalar(0) : square(third) <= largest_square;
+  Scalar const expected = a1 + h * j2;  // at the end, with a jerk that changes evenly
+  if (accurate && (bounded1 || bounded2 || expected < response.terms().low))
+    accurate =
+        square(response(next_speed, gap + h * leader_speed - distance).acceleration - expected) <= largest_square;
+  return {distance, next_speed, accurate};
+}
+
+/// The steps of `idm_motion`: [s], shorter is never needed, longer might step over something.
+inline constexpr double shortest_idm_step = 1e-3, longest_idm_step = 0.25;
+
+/// `idm_motion` where one step is not enough. Gets a copy, so that what is used elsewhere can stay in registers.
+template <class Scalar>
+CAMBIUM_NOINLINE [[nodiscard]] LongitudinalMotion<Scalar> idm_motion_in_steps(IdmTerms<Scalar> terms, Scalar speed,
+                                                                              Scalar gap, Scalar leader_speed,
+                                                                              double dt, double tolerance) {
+  IdmStep<Scalar> const response(terms, leader_speed);
+  LongitudinalMotion<Scalar> motion{Scalar(0), speed};
+  double left = dt, step = std::min(dt, longest_idm_step);
+  while (true) {
+    auto const now = response(motion.speed, gap);
+    auto trial = try_idm_step(response, now, motion.speed, gap, step, tolerance);
+    while (!trial.accurate && step > shortest_idm_step) {
+      step /= 2;
+      trial = try_idm_step(response, now, motion.speed, gap, step, tolerance);
+    }
+    motion.distance += trial.distance;
+    motion.speed = trial.speed;
+    gap += Scalar(step) * response.leader_speed() - trial.distance;
+    left -= step;
+    if (left <= dt * 1e-12) return motion;
+    step = std::min({2 * step, longest_idm_step, left});
+  }
+}
+
+/// As `idm_motion` below, for terms that are computed already.
+template <class Scalar>
+[[nodiscard]] LongitudinalMotion<Scalar> idm_motion(IdmTerms<Scalar> const& terms, Scalar speed, Scalar gap,
+                                                    Scalar leader_speed, double dt, double tolerance) {
+  IdmStep<Scalar> const response(terms, leader_speed);
+  if (dt <= longest_idm_step) {
+    auto const trial = try_idm_step(response, response(speed, gap), speed, gap, dt, tolerance);
+    if (trial.accurate) return {trial.distance, trial.speed};
+  }
+  return idm_motion_in_steps(terms, speed, gap, leader_speed, dt, tolerance);
+}
+
+}  // namespace detail
+
+/// Motion over `dt` [s] of an IDM follower behind a leader that keeps its speed: the model's differential equation,
+/// solved by the two-derivative Runge-Kutta scheme of order 4 with two stages (Chan and Tsai 2010), which needs the
+/// jerk but only two evaluations. Its step is halved while the term of third order is larger than 2 sqrt(tolerance) m/s
+/// per second, which keeps the error in speed near `tolerance` [m/s per s]; and, where a bound of the acceleration is
+/// met, until that is met to within as much. Where the speed reaches 0 the vehicle stops, and stands until the model
+/// lets it start. `dt` > 0.
+template <HasIdmParameters P, class Scalar>
+[[nodiscard]] LongitudinalMotion<Scalar> idm_motion(P const& p, Scalar speed, Scalar gap, Scalar leader_speed,
+                                                    double dt, double tolerance) {
+  return detail::idm_motion(IdmTerms<Scalar>(p), speed, gap, leader_speed, dt, tolerance);
+}
+
+/// A driver's car following by IDM at one speed [m/s].
+class IdmLaw {
+ public:
+  static constexpr bool asks_acceleration = false;  ///< of leaders
+
+  template <HasIdmParameters P>
+  IdmLaw(P const& p, double speed) : IdmLaw(p, speed, p.desired_speed) {}
+
+  template <HasIdmParameters P>
+  IdmLaw(P const& p, double speed, double desired_speed)
+      : terms_(p, desired_speed), speed_(speed), rest_(terms_.free(speed)) {}
+
+  /// [m/s^2], on a free road.
+  [[nodiscard]] double free() const { return terms_.bounded(terms_.maximum * rest_); }
+
+  /// [m/s^2], behind a leader.
+  [[nodiscard]] double operator()(double gap, double leader_speed) const {
+    if (!(gap > 0.0)) return terms_.low;
+    return terms_.bounded(terms_.unbounded(rest_, speed_, gap, leader_speed));
+  }
+  [[nodiscard]] double operator()(Constraint const& c) const { return (*this)(c.gap, c.speed); }
+  [[nodiscard]] double operator()(std::optional<RoadUser> const& leader) const {
+    return leader ? (*this)(leader->gap, leader->speed) : free();
+  }
+
+  [[nodiscard]] double speed() const { return speed_; }                    ///< [m/s]
+  [[nodiscard]] double minimum_gap() const { return terms_.minimum_gap; }  ///< [m]
+
+  /// See `idm_motion`.
+  [[nodiscard]] LongitudinalMotion<double> motion(Constraint const& c, double dt, double tolerance) const {
+    return detail::idm_motion(terms_, speed_, c.gap, c.speed, dt, tolerance);
+  }
+
+ private:
+  IdmTerms<double> terms_;
+  double speed_;
+  double rest_;  ///< see `IdmTerms::free`
+};
+
+}  // namespace cambium

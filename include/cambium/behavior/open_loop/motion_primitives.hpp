@@ -1,0 +1,93 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <initializer_list>
+#include <iterator>
+#include <string>
+
+#include <boost/container/static_vector.hpp>
+
+#include "cambium/behavior/behavior_model.hpp"
+#include "cambium/behavior/open_loop/external_input.hpp"
+#include "cambium/core/error.hpp"
+#include "cambium/core/parameters.hpp"
+
+namespace cambium {
+
+/// An input that a search may choose.
+struct MotionPrimitive {
+  double acceleration = 0.0;  ///< [m/s^2]
+  double steering = 0.0;      ///< steering angle, left positive [rad]
+
+  static constexpr char const* name = "motion_primitive";
+  static constexpr char const* summary = "one input of `MotionPrimitives`";
+  static constexpr auto parameters() {
+    using P = MotionPrimitive;
+    return parameter_list(
+        parameter("acceleration", &P::acceleration, "m/s^2", Range{-50, 50}, "along the heading"),
+        parameter("steering", &P::steering, "rad", Range{-1.5, 1.5}, "steering angle, left positive"));
+  }
+
+  friend bool operator==(MotionPrimitive const&, MotionPrimitive const&) = default;
+};
+
+/// Drives by one of a few inputs, held over each step and carried out by the vehicle model. A search or a learner sets
+/// which in the agent's memory (`World::memory`). Heeds neither lanes nor others. Never reverses.
+struct MotionPrimitives {
+  static constexpr std::size_t capacity = 16;
+  static constexpr std::uint8_t nothing = 255;  ///< chosen instead of a primitive: it coasts straight on
+
+  struct Memory {
+    std::uint8_t chosen = 0;  ///< place in the list, or `nothing`; another one fails
+
+    friend bool operator==(Memory, Memory) = default;
+  };
+
+  /// Those of a search that is told of no others. (Not a list in braces: g++ 12 takes that for uninitialised at -O2.)
+  static constexpr MotionPrimitive usual[] = {{0, 0}, {2, 0}, {-3, 0}, {0, 0.1}, {0, -0.1}};
+
+  /// 1 to `capacity` of them.
+  boost::container::static_vector<MotionPrimitive, capacity> primitives{std::begin(usual), std::end(usual)};
+  InputScheme scheme = InputScheme::rk4;
+  double longest_substep = 0.1;
+
+  static constexpr char const* name = "motion_primitives";
+  static constexpr char const* summary =
+      "carries out one of a few inputs (acceleration, steering) through the vehicle model, as a search chooses";
+  static constexpr char const* source = "after BARK";
+  static constexpr auto parameters() {
+    using P = MotionPrimitives;
+    return parameter_list(parameter("primitives", &P::primitives, "-", {}, "what can be chosen, 1 to 16"),
+                          choice("scheme", &P::scheme, "rk4|euler", "integration of the vehicle model"),
+                          parameter("longest_substep", &P::longest_substep, "s", Range{1e-4, 10},
+                                    "a step is integrated in equal parts no longer than this"));
+  }
+
+  void check(std::string const& where) const {
+    if (primitives.empty()) throw ParameterError(where + ".primitives", "has none", "give 1 to 16");
+  }
+
+  /// With these primitives. Throws `ParameterError` for none, or more than `capacity`.
+  [[nodiscard]] static MotionPrimitives of(std::initializer_list<MotionPrimitive> list) {
+    if (list.size() == 0 || list.size() > capacity)
+      throw ParameterError(name, "has " + std::to_string(list.size()) + " primitives", "give 1 to 16");
+    return {.primitives = list};
+  }
+
+  [[nodiscard]] std::size_t size() const { return primitives.size(); }
+
+  template <class View>
+  [[nodiscard]] Plan<View> plan(View const& view, Memory const& memory, double dt) const {
+    if (memory.chosen >= size() && memory.chosen != nothing) {
+      Plan<View> failed;
+      failed.status = PlanStatus::failed;
+      return failed;
+    }
+    auto const chosen = memory.chosen != nothing ? primitives[memory.chosen] : MotionPrimitive{};
+    return plan_with_input(view, {chosen.acceleration, chosen.steering}, dt, scheme, longest_substep);
+  }
+};
+static_assert(BehaviorModel<MotionPrimitives>);
+
+}  // namespace cambium

@@ -1,0 +1,241 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+
+#include "cambium/behavior/behavior_model.hpp"
+#include "cambium/behavior/law/follow_lane.hpp"
+#include "cambium/behavior/pedestrian/crossing.hpp"
+#include "cambium/behavior/pedestrian/social_force.hpp"
+#include "cambium/core/distributions.hpp"
+#include "cambium/geometry/collision.hpp"
+#include "cambium/geometry/oriented_box.hpp"
+#include "cambium/geometry/polygon.hpp"
+
+namespace cambium {
+
+namespace detail {
+
+/// Who and what is around one who walks: no heap.
+struct Surroundings {
+  static constexpr std::size_t most = 32;
+
+  struct Other {
+    geometry::OrientedBox box;
+    PlaneVector<double> velocity;
+    double distance;
+    double radius;  ///< of a round body; 0 for a rectangle
+  };
+
+  std::array<Other, most> others;
+  std::array<geometry::Polygon const*, most> objects;
+  std::size_t other_count = 0, object_count = 0;
+  double sight_cosine = 0.0;  ///< of half the angle in which others count fully
+
+  /// Takes it in; of too many the nearest stay.
+  void add(Other const& other) {
+    if (other_count < most) {
+      others[other_count++] = other;
+      return;
+    }
+    auto const farthest = std::max_element(others.begin(), others.end(),
+                                           [](Other const& a, Other const& b) { return a.distance < b.distance; });
+    if (other.distance < farthest->distance) *farthest = other;
+  }
+};
+
+}  // namespace detail
+
+/// One who walks along its road corridor by social forces (see `SocialForceParameters`): it wants to go on along the
+/// way at its desired speed, keeps off others, off the way's borders and off static objects, and crosses the lanes that
+/// its way crosses when their traffic leaves it a gap (see `CrossingParameters`). Between the frames the others go
+/// straight on. The way is a free corridor, or lanes for those on foot.
+///
+/// What others do to it bends its course; a heading follows the velocity. It plans the motion of a point with mass, so
+/// that vehicle models do not matter to it (one that executes its plans through the dynamics wants `KinematicPoint`).
+struct Pedestrian {
+  SocialForceParameters social{};
+  CrossingParameters crossing{};
+  double body_radius = 0.3;
+  double look_ahead = 2.0;
+  double range = 5.0;
+  double fluctuation = 0.1;
+  double longest_substep = 0.05;
+
+  static constexpr bool looks_around = true;
+  static constexpr char const* name = "pedestrian";
+  static constexpr char const* summary =
+      "walks along its way, a free corridor or lane, by social forces: off others, borders and objects; crosses lanes "
+      "in gaps of their traffic";
+  static constexpr char const* source = "Helbing, Molnár 1995";
+  static constexpr auto parameters() {
+    using P = Pedestrian;
+    return parameter_list(
+        parameter("social", &P::social, "-", {}, "forces"),
+        parameter("crossing", &P::crossing, "-", {}, "crossing lanes"),
+        parameter("body_radius", &P::body_radius, "m", Range{0, 5},
+                  "of its body; 0.25 to 0.35 in Helbing, Farkas, Vicsek 2000"),
+        parameter("look_ahead", &P::look_ahead, "m", Range{0.1, 50}, "where on its way it goes to"),
+        parameter("range", &P::range, "m", Range{0, 50}, "others and objects nearer than this are felt"),
+        parameter("fluctuation", &P::fluctuation, "m/s^1.5", Range{0, 10},
+                  "random part of its velocity: grows by this in a second"),
+        parameter("longest_substep", &P::longest_substep, "s", Range{0.001, 10},
+                  "of the integration; no more than 400 in a step"));
+  }
+
+  template <class View>
+  [[nodiscard]] Plan<View> plan(View const& view, NoMemory&, double dt) const {
+    auto const& start = view.state();
+    detail::Surroundings around;
+    gather(view, around);
+    around.sight_cosine = std::cos(0.5 * social.sight_angle);
+    Walk walk{{start.x, start.y}, velocity_of(start), view.place()};
+    double const stop = distance_to_stop(crossing, social, view, start.speed) + walk.at.s;
+    double const substeps = std::clamp(std::ceil(dt / longest_substep), 1.0, 400.0), h = dt / substeps;
+    auto const push = random_push(view, dt);
+    for (int i = 0; i < static_cast<int>(substeps); ++i) advance(view, stop, push, h, around, walk);
+    return plan_to(view, walk, dt);
+  }
+
+ private:
+  using Vector = PlaneVector<double>;
+
+  struct Walk {
+    Vector position, velocity;
+    map::LanePlace at;
+  };
+
+  template <MotionState State>
+  [[nodiscard]] static Vector velocity_of(State const& state) {
+    auto const [sin, cos] = geometry::sin_cos(state.heading);
+    return {state.speed * cos, state.speed * sin};
+  }
+
+  template <class View>
+  void gather(View const& view, detail::Surroundings& around) const {
+    geometry::Point const own{view.state().x, view.state().y};
+    view.around(range, [&](RoadUser const& other) {
+      constexpr double largest_body = 1.0;    // [m]
+      auto const& state = view.state(other);  // a value where the observer is not perfect
+      auto const& shape = view.shape(other);
+      auto const box = geometry::box_of(shape, state);
+      double const size = std::max(shape.length(), shape.width());
+      auto const velocity = velocity_of(state);
+      around.add({box, velocity, geometry::distance(box, own), size <= largest_body ? 0.5 * size : 0.0});
+    });
+    view.for_each_object([&](ObjectId, geometry::Polygon const& outline) {
+      if (around.object_count < detail::Surroundings::most && outline.bounding_box().grown(range).contains(own))
+        around.objects[around.object_count++] = &outline;
+    });
+  }
+
+  template <class View>
+  [[nodiscard]] Vector random_push(View const& view, double dt) const {
+    if (fluctuation == 0.0) return {};
+    constexpr std::uint32_t purpose = 0x77616c6b;
+    auto random = view.random(purpose);
+    double const size = fluctuation / std::sqrt(dt);
+    double const x = Normal{0.0, size}(random);
+    return {x, Normal{0.0, size}(random)};
+  }
+
+  template <class View>
+  void advance(View const& view, double stop, Vector const& push, double h, detail::Surroundings& around,
+               Walk& walk) const {
+    auto const& way = view.corridor();
+    auto const sides = way.widths_at(walk.at.s, walk.at.segment);
+    // Towards a place ahead on the way, as far aside as it is, if that is on the way.
+    double const aside =
+        std::clamp(walk.at.lateral, -std::max(0.0, sides.right - body_radius), std::max(0.0, sides.left - body_radius));
+    State aim;
+    place_on_lane(way, walk.at.s + look_ahead, aside, 0.0, walk.at.segment, aim);
+    Vector const ahead = Vector{aim.x, aim.y} - walk.position;
+    // So slowly that it does not overshoot where it is to stop: critically damped.
+    double const room = std::max(0.0, stop - walk.at.s - crossing.stop_margin);
+    double const speed = std::min(social.desired_speed, room / (4.0 * social.relaxation_time));
+    double const distance = ahead.norm();
+    Vector const desired = distance > 1e-9 ? (speed / distance) * ahead : Vector{};
+    auto force = push + limited(force_of(around, ahead, walk) + borders(way, sides, stop, walk));
+    walk.velocity = social_velocity(social, walk.velocity, desired, force, h);
+    walk.position = walk.position + h * walk.velocity;
+    walk.at = map::locate(view.road(), walk.at.corridor, {walk.position.x, walk.position.y, 0.0}, walk.at);
+    for (std::size_t i = 0; i < around.other_count; ++i) {
+      around.others[i].box.x += h * around.others[i].velocity.x;
+      around.others[i].box.y += h * around.others[i].velocity.y;
+    }
+  }
+
+  /// What is farther off than it can be felt does not matter: neither does a longer stride.
+  [[nodiscard]] Vector stride_of(detail::Surroundings::Other const& other, Walk const& walk) const {
+    Vector const velocity = social.relative_stride ? other.velocity - walk.velocity : other.velocity;
+    return std::min(social.stride_time, range / std::max(1e-3, velocity.norm())) * velocity;
+  }
+
+  [[nodiscard]] Vector limited(Vector const& force) const {
+    double const size = force.norm();
+    return size > social.highest_acceleration ? (social.highest_acceleration / size) * force : force;
+  }
+
+  /// By others and by objects.
+  [[nodiscard]] Vector force_of(detail::Surroundings const& around, Vector const& ahead, Walk const& walk) const {
+    Vector sum;
+    geometry::Point const own{walk.position.x, walk.position.y};
+    for (std::size_t i = 0; i < around.other_count; ++i) {
+      auto const& other = around.others[i];
+      bool const is_round = other.radius > 0.0 || other.box.contains(own);
+      geometry::Point const from = is_round ? other.box.center() : geometry::nearest_point(other.box, own);
+      Vector const apart{own.x() - from.x(), own.y() - from.y()};
+      double const distance = apart.norm();
+      if (!(distance > 1e-9)) continue;
+      auto const social_part = social_repulsion(social, apart, stride_of(other, walk));
+      sum = sum + sight_weight(social, around.sight_cosine, ahead, social_part) * social_part;
+      sum = sum + (contact_repulsion(social, distance - other.radius - body_radius) / distance) * apart;
+    }
+    for (std::size_t i = 0; i < around.object_count; ++i) {
+      geometry::Point const from = geometry::nearest_border_point(*around.objects[i], own);
+      bool const is_inside = around.objects[i]->contains(own);
+      Vector const apart{own.x() - from.x(), own.y() - from.y()};
+      double const distance = apart.norm();
+      if (!(distance > 1e-9)) continue;
+      double const free = is_inside ? 0.0 : distance;
+      double const size = border_repulsion(social, free) + contact_repulsion(social, free - body_radius);
+      sum = sum + ((is_inside ? -size : size) / distance) * apart;
+    }
+    return sum;
+  }
+
+  /// By the way's borders, and by the kerb where it is to stop.
+  [[nodiscard]] Vector borders(map::LaneCorridor const& way, map::SideWidths const& sides, double stop,
+                               Walk const& walk) const {
+    auto const& g = way.center.segments()[walk.at.segment];
+    double const leftwards = border_repulsion(social, sides.right + walk.at.lateral) -
+                             border_repulsion(social, sides.left - walk.at.lateral);
+    double const back =
+        stop < std::numeric_limits<double>::infinity() ? border_repulsion(social, stop - walk.at.s) : 0.0;
+    return {-leftwards * g.uy - back * g.ux, leftwards * g.ux - back * g.uy};
+  }
+
+  template <class View>
+  [[nodiscard]] Plan<View> plan_to(View const& view, Walk const& walk, double dt) const {
+    constexpr double standing = 0.02;  // [m/s]: slower than this nobody turns
+    Plan<View> plan;
+    auto next = view.state();
+    double const before = next.speed;
+    next.time = view.time() + dt;
+    next.x = walk.position.x;
+    next.y = walk.position.y;
+    next.speed = walk.velocity.norm();
+    if (next.speed > standing)
+      next.heading += geometry::angle_difference(std::atan2(walk.velocity.y, walk.velocity.x), next.heading);
+    plan.action.acceleration = (next.speed - before) / dt;
+    plan.trajectory.push_back(next);
+    return plan;
+  }
+};
+static_assert(BehaviorModel<Pedestrian>);
+
+}  // namespace cambium

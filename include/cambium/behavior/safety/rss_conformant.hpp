@@ -1,0 +1,243 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <type_traits>
+
+#include "cambium/behavior/behavior_set.hpp"
+#include "cambium/behavior/course.hpp"
+#include "cambium/behavior/following/constant_acceleration.hpp"
+#include "cambium/behavior/law/follow_lane.hpp"
+#include "cambium/behavior/safety/rss.hpp"
+#include "cambium/core/macros.hpp"
+#include "cambium/execution/interpolate.hpp"
+#include "cambium/geometry/angle.hpp"
+#include "cambium/geometry/shape.hpp"
+
+namespace cambium {
+
+/// Any behaviour, but for dangerous situations by Responsibility-Sensitive Safety (see rss.hpp) with those who are in
+/// the own lane, those beside and those of the own road that are driven the other way: there it brakes, or comes no
+/// closer to a side, as the proper response asks. It also keeps its accelerations within what others count on. Who has
+/// to brake stays on the course of the nominal behaviour; who has to keep off a side keeps its lateral place and drives
+/// on along the lane. The nominal behaviour plans in each step and remembers it, and is told how much of its course was
+/// not driven (`fell_short`). A plan that leads farther than its acceleration, as a recording that went on while its
+/// vehicle had to wait, is driven along its course by that acceleration. Plans may turn in sideways harder than
+/// `lateral_acceleration`: that a plan does not make a situation dangerous is asked of where it leads, as if the other
+/// did the same. Where a step is longer than `response_time`, its length counts. O(agents within some hundred metres).
+template <BehaviorModel Nominal>
+struct RssConformant {
+  Nominal nominal{};
+  RssParameters rss{};
+
+  static constexpr char const* name = "rss_conformant";
+  static constexpr char const* summary =
+      "any behaviour; below the safe distances along and across it brakes, or comes no closer, as the proper response "
+      "asks";
+  static constexpr char const* source = "Shalev-Shwartz, Shammah, Shashua 2017";
+  static constexpr auto parameters() {
+    return parameter_list(
+        parameter("nominal", &RssConformant::nominal, "-", {}, "the behaviour where nothing is dangerous"),
+        parameter("rss", &RssConformant::rss, "-", {}, "what is dangerous, and the response"));
+  }
+
+  using Memory = MemoryOf<Nominal>;
+  using Workspace = WorkspaceOf<Nominal>;
+  static constexpr bool looks_beside = true;
+  static constexpr bool looks_around = detail::looks_around<Nominal>();
+  static constexpr bool heeds_conflicts = detail::heeds_conflicts<Nominal>();
+
+  [[nodiscard]] double start_time() const requires requires(Nominal const behavior) { behavior.start_time(); }
+  { return nominal.start_time(); }
+
+  template <class View>
+  [[nodiscard]] Plan<View> plan(View const& view, Memory& memory,
+                                double dt) const requires std::is_same_v<Workspace, NoWorkspace> {
+    return conform(view, nominal.plan(view, memory, dt), memory, dt);
+  }
+
+  template <class View>
+  [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt, Workspace& workspace) const {
+    return conform(view, nominal.plan(view, memory, dt, workspace), memory, dt);
+  }
+
+  /// The proper response to all that is near, where the vehicle means to be in the state `end` after `dt` [s]: `brake`
+  /// where the situation is dangerous as it is, a side to keep off from where it would be, for coming closer.
+  template <class View>
+  CAMBIUM_NOINLINE [[nodiscard]] RssResponse response(View const& view, typename View::State const& end,
+                                                      double dt) const {
+    RssResponse all;
+    auto const now = across(view, view.state(), view.shape()), then = across(view, end, view.shape());
+    double const speed = std::max(0.0, view.state().speed);
+    auto const p = within_steps(dt);
+    auto const visit = [&](RoadUser const& other) {
+      if (may_matter(p, view, other, speed)) respond(p, view, other, now, then, dt, all);
+    };
+    for_each_oncoming(p, view, speed, visit);
+    auto const& at = view.place();
+    /// Whether an object ahead is too close; those who are near are visited.
+    auto const too_close = [&](map::LanePlace const& from) {
+      bool is_close = false;
+      view.around(from, farthest, [&](RoadUser const& other) {
+        if (is_valid(other.agent)) return visit(other);
+        is_close = is_close || (other.s >= from.s && other.gap < rss_same_direction(p, speed, 0.0));
+      });
+      return is_close;
+    };
+    all.brake = too_close(at) || all.brake;
+    for (bool const left : {true, false}) {
+      auto const& piece = view.corridor().pieces[at.piece];
+      auto const side = piece.beside(left);
+      if (side == none<CorridorId>) continue;
+      bool const closer = left ? then.left > now.left : then.right < now.right;
+      auto& keep_off = left ? all.keep_off_left : all.keep_off_right;
+      keep_off = (too_close(view.place(side)) && closer) || keep_off;
+      auto const next = view.road().corridors[side].pieces[piece.piece_beside(left)].beside(left);
+      if (next != none<CorridorId>) (void)too_close(view.place(next));
+    }
+    return all;
+  }
+
+ private:
+  static constexpr double rounding = 1e-9;
+  static constexpr double farthest = 400.0;  // [m]
+
+  /// What is assumed where nobody responds before the next step.
+  [[nodiscard]] RssParameters within_steps(double dt) const {
+    auto p = rss;
+    p.response_time = std::max(p.response_time, dt);
+    return p;
+  }
+
+  /// The nominal behaviour's `plan`, or what is driven instead.
+  template <class View>
+  [[nodiscard]] Plan<View> conform(View const& view, Plan<View> plan, Memory& memory, double dt) const {
+    if (plan.status != PlanStatus::valid) return plan;
+    auto const end = InterpolateExecution{}.execute(plan, view.state(), view.dynamics(), view.time() + dt);
+    if (!end.valid) return plan;
+    auto const must = response(view, end.state, dt);
+    bool const keeps_off = must.keep_off_left || must.keep_off_right;
+    double const speed = std::max(0.0, view.state().speed), wanted = (end.state.speed - speed) / dt;
+    double const most = must.brake ? -rss.minimum_deceleration : rss.maximum_acceleration;
+    double const acceleration = std::clamp(wanted, -rss.maximum_deceleration, most);
+    auto const driven = ConstantAcceleration{.acceleration = acceleration}.motion(speed, dt);
+    auto const reach = reach_of(view.state(), end.state, driven.distance);
+    bool const as_wanted = reach == Reach::within && std::abs(acceleration - wanted) <= rounding;
+    if (as_wanted && !keeps_off) return plan;
+    while (!plan.trajectory.empty() && plan.trajectory.back().time >= end.state.time) plan.trajectory.pop_back();
+    plan.trajectory.push_back(end.state);
+    double const way = course_length(plan, view.state());
+    auto motion = as_wanted ? LongitudinalMotion<double>{way, end.state.speed} : driven;
+    if (acceleration < wanted) motion.distance = std::min(motion.distance, way);
+    fell_short(memory, keeps_off ? way : way - motion.distance, keeps_off);
+    bool const along_lane = keeps_off || reach == Reach::behind;
+    return along_lane ? plan_along_lane(view, motion, dt) : plan_along_course(view, plan, motion, dt);
+  }
+
+  /// Where a plan leads, seen from what can be driven in the step. A recording goes on while its vehicle waits.
+  enum class Reach : std::uint8_t { within, beyond, behind };
+
+  /// That of a plan from `now` to `end` where `distance` [m] is driven. A way aside or outside in a bend is a bit
+  /// longer.
+  template <MotionState S>
+  [[nodiscard]] static Reach reach_of(S const& now, S const& end, double distance) {
+    constexpr double share = 0.05, apart = 0.1;  // [-], [m]
+    auto const ahead = geometry::sin_cos(now.heading);
+    if ((end.x - now.x) * ahead.cos + (end.y - now.y) * ahead.sin < -apart) return Reach::behind;
+    return detail::way_between(now, end) <= (1.0 + share) * distance + apart ? Reach::within : Reach::beyond;
+  }
+
+  /// False for who is too far away, whatever they are going to do.
+  template <class View>
+  [[nodiscard]] static bool may_matter(RssParameters const& p, View const& view, RoadUser const& other, double speed) {
+    auto const &own = view.state(), &state = view.state(other);
+    double const fast = std::max(speed, std::abs(state.speed));
+    bool const same = std::cos(state.heading - own.heading) > 0.2 && state.speed >= 0.0;
+    double const far = same ? rss_same_direction(p, fast, 0.0) : rss_opposite_direction(p, fast, fast);
+    double const apart = std::hypot(state.x - own.x, state.y - own.y);
+    return apart <= far + 2.0 * (view.shape().radius() + view.shape(other).radius());
+  }
+
+  /// Calls `f(RoadUser)` for those in the lanes of the own road that are driven the other way, beside and ahead.
+  template <class View, class F>
+  static void for_each_oncoming(RssParameters const& p, View const& view, double speed, F const& f) {
+    constexpr double fast = 50.0, beside = 20.0;  // [m/s], [m]
+    auto const& corridor = view.corridor();
+    auto const& at = view.place();
+    double const from = at.s - beside, to = at.s + beside + rss_opposite_direction(p, speed, fast);
+    for (auto i = corridor.piece_at(from, at.piece); index_of(i) < corridor.pieces.size(); ++i) {
+      auto const& piece = corridor.pieces[i];
+      if (piece.begin > to) return;
+      if (!is_valid(piece.lane)) continue;
+      auto const& lane = view.map().lane(piece.lane);
+      double const begin = lane.station_at(std::max(from, piece.begin) + piece.lane_offset),
+                   end = lane.station_at(std::min(to, piece.end) + piece.lane_offset);
+      for (auto const& entry : view.map().road(lane.road).sections[lane.section].lanes)
+        for (auto const id : {entry.id, entry.opposite}) {
+          if (!is_valid(id)) continue;
+          auto const& other = view.map().lane(id);
+          if (!other.drivable() || other.along_road == lane.along_road) continue;
+          auto const stretch = other.stretch_between(begin, end);
+          view.on_lane(other.index_begin + stretch.begin, other.index_begin + stretch.end, [&](RoadUser const& user) {
+            if (is_valid(user.agent)) f(user);
+          });
+        }
+    }
+  }
+
+  /// What a road user takes up across the own lane corridor, and how it moves there.
+  struct Across {
+    double s{}, front{}, rear{};       ///< along the corridor, and how far it reaches [m]
+    double middle{}, left{}, right{};  ///< of the reference point and the sides, left positive [m]
+    double along{}, aside{};           ///< speeds [m/s]
+  };
+
+  template <class View>
+  [[nodiscard]] static Across across(View const& view, typename View::State const& state,
+                                     geometry::Shape const& shape) {
+    auto const& center = view.corridor().center;
+    auto const foot = center.project({state.x, state.y}, view.place().segment);
+    auto const& segment = center.segments()[foot.segment];
+    double const inside = std::clamp(foot.s - segment.s, 0.0, segment.length);
+    auto const [sin, cos] = geometry::sin_cos(state.heading - (segment.heading + segment.curvature * inside));
+    auto const lengthwise = geometry::extent_along(shape, cos, sin),
+               sideways = geometry::extent_along(shape, sin, -cos);
+    return {foot.s,
+            lengthwise.positive,
+            lengthwise.negative,
+            foot.lateral,
+            foot.lateral + sideways.positive,
+            foot.lateral - sideways.negative,
+            state.speed * cos,
+            state.speed * sin};
+  }
+
+  template <class View>
+  static void respond(RssParameters const& p, View const& view, RoadUser const& other, Across const& now,
+                      Across const& then, double dt, RssResponse& all) {
+    auto const its = across(view, view.state(other), view.shape(other));
+    RssSituation at{.speed = now.along, .other_speed = its.along, .other_lateral_speed = its.aside};
+    if (its.along < 0.0) {
+      auto const sides = view.corridor().widths_at(now.s, view.place().segment);
+      at.in_own_lane = -now.middle <= sides.right && now.middle <= sides.left;
+    }
+    at.is_ahead = its.s >= now.s;
+    at.is_left = its.middle > now.middle;
+    at.gap = at.is_ahead ? its.s - its.rear - (now.s + now.front) : now.s - now.rear - (its.s + its.front);
+    at.side_gap = at.is_left ? its.right - now.left : now.right - its.left;
+    all.brake = all.brake || rss_response(p, at).brake;
+    if (!(at.side_gap > 0.0)) return;
+    double const closing = std::max(0.0, at.is_left ? then.left - now.left : now.right - then.right);
+    if (!(closing > rounding)) return;
+    // As it will be, if the other comes closer by as much.
+    double const toward = std::max(closing / dt, at.is_left ? then.aside : -then.aside);
+    at.lateral_speed = at.is_left ? toward : -toward;
+    at.side_gap = std::max(at.side_gap - 2.0 * closing, rounding);
+    auto const one = rss_response(p, at);
+    all.keep_off_left = all.keep_off_left || one.keep_off_left;
+    all.keep_off_right = all.keep_off_right || one.keep_off_right;
+  }
+};
+
+}  // namespace cambium

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cambium/core/diagnostic.hpp"
+#include "cambium/map/map.hpp"
+#include "cambium/map/opendrive/document.hpp"
+
+namespace cambium::map {
+
+/// The map that a document describes; what was odd is added to `diagnostics`, with `file` as the place: links that lead
+/// nowhere, that only one side knows, or that seem to be missing (see `MapOptions::infer_links`), joined lanes that do
+/// not meet, a map without a lane to drive on. Throws `MapError` where no lane is left, and where a document, which may
+/// have been made or changed in code, lacks what the reader guarantees: geometries and lane sections in order and
+/// finite, a curve for each cubic, no id twice. (`check_opendrive_document` finds more, and mends some of it.)
+///
+/// A lane for both directions (`direction="both"`, type bidirectional) becomes two lanes, see `Lane::opposite`. Lanes
+/// are linked at their ends only: a section is split where a connecting road of a virtual junction meets the middle of
+/// a road, and in the middle of a road of one section that closes upon itself.
+[[nodiscard]] std::shared_ptr<Map const> build_map(OpenDriveDocument document, MapOptions const& options,
+                                                   std::string file, std::vector<Diagnostic>& diagnostics);
+
+}  // namespace cambium::map
+
+#ifndef CAMBIUM_COMPILED
+#include "cambium/map/build/build_map_impl.hpp"
+#include "cambium/map/map_impl.hpp"
+#endif

@@ -1,0 +1,188 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cambium/core/diagnostic.hpp"
+#include "cambium/core/macros.hpp"
+#include "cambium/map/build/build_map.hpp"
+#include "cambium/map/build/detail/exact_paths.hpp"
+#include "cambium/map/build/detail/junctions.hpp"
+#include "cambium/map/build/detail/lane_change_marks.hpp"
+#include "cambium/map/build/detail/lane_geometry.hpp"
+#include "cambium/map/build/detail/lane_links.hpp"
+#include "cambium/map/build/detail/lane_merges.hpp"
+#include "cambium/map/build/detail/lane_signals.hpp"
+#include "cambium/map/build/detail/link_check.hpp"
+#include "cambium/map/build/detail/missing_links.hpp"
+#include "cambium/map/build/detail/road_links.hpp"
+#include "cambium/map/build/detail/section_sampler.hpp"
+#include "cambium/map/build/detail/speed_limits.hpp"
+#include "cambium/map/build/detail/split_roads.hpp"
+#include "cambium/map/build/detail/unsampled_lane.hpp"
+#include "cambium/map/build/make_roads.hpp"
+#include "cambium/map/detail/findings.hpp"
+#include "cambium/map/detail/likely_cause.hpp"
+#include "cambium/map/detail/require_buildable.hpp"
+#include "cambium/map/lanes/overlaps.hpp"
+#include "cambium/map/map.hpp"
+#include "cambium/map/opendrive/document.hpp"
+
+namespace cambium::map {
+
+namespace detail {
+
+/// Turns a document, which must be buildable and have its roads split, into a map: roads, lanes with their geometry,
+/// links, merges, overlaps.
+class MapBuild {
+ public:
+  MapBuild(OpenDriveDocument const& document, MapOptions const& options, std::string file,
+           std::vector<Diagnostic>& diagnostics)
+      : document_(document), file_(std::move(file)), diagnostics_(diagnostics) {
+    parts_.options = options;
+  }
+
+  [[nodiscard]] std::shared_ptr<Map const> build() {
+    add_lanes();
+    link_lanes();
+    return finish();
+  }
+
+  // The stages of `build`, in their order:
+
+  /// Roads, and lanes with their geometry and neighbours.
+  void add_lanes() {
+    check_parameters(parts_.options, "MapOptions");
+    parts_.roads = make_roads(document_);
+    for (std::size_t i = 0; i < parts_.roads.size(); ++i)
+      for (std::size_t k = 0; k < parts_.roads[i].sections.size(); ++k)
+        add_section(document_.roads[i], parts_.roads[i], k);
+    if (parts_.lanes.empty())
+      throw MapError(file_, "the map has no lane with a length" + likely_cause(diagnostics_),
+                     "give roads that have lanes beside lane 0");
+    if (std::none_of(parts_.lanes.begin(), parts_.lanes.end(), [](Lane const& lane) { return lane.drivable(); }))
+      add_finding(diagnostics_, {Severity::warning, file_, 0, {}, {}, "there is no lane that one may drive on"});
+  }
+
+  /// What follows on what, and what merges.
+  void link_lanes() {
+    RoadLinks const links(document_, parts_.roads);
+    LaneLinker(links, parts_.lanes, file_, diagnostics_).link();
+    MissingLinks missing(links, parts_.lanes, file_, diagnostics_);
+    auto const dead_ends = missing.find(parts_.options.infer_links);
+    LaneMerger(parts_.roads, parts_.lanes, parts_.options, dead_ends).merge();
+    missing.report_dead_ends(dead_ends);
+    LinkCheck check(links, file_, diagnostics_);
+    check.report_one_sided();
+    check.report_joints(parts_.lanes);
+  }
+
+  /// Limits, marks, junctions, overlaps: all that a world needs.
+  [[nodiscard]] std::shared_ptr<Map const> finish() {
+    set_speed_limits(document_, parts_.lanes);
+    set_lane_changes(document_, parts_.lanes);
+    parts_.lights = LaneSignals(document_, parts_.lanes).set();
+    parts_.junctions = make_junctions(document_, parts_.roads, parts_.lanes);
+    number_lane_coordinate();
+    ExactPaths const paths(parts_.roads, parts_.lanes, parts_.options);
+    find_overlaps(
+        parts_.lanes, [this](Lane const& lane, double s) { return elevation(lane, s); },
+        parts_.options.overlap_clearance, [&paths](Lane const& lane, double s) { return paths.at(lane, s); });
+    return std::make_shared<Map const>(std::move(parts_));
+  }
+
+ private:
+  /// Height of a lane's path [m], to tell a bridge from a crossing.
+  [[nodiscard]] double elevation(Lane const& lane, double s) const {
+    return parts_.roads[index_of(lane.road)].elevation.value(lane.station_at(s));
+  }
+
+  void add_section(opendrive::Road const& source, Road& road, std::size_t k) {
+    auto& section = road.sections[k];
+    if (section.lanes.empty() || section.end - section.begin < shortest_section) return;
+    auto const cross_sections = SectionSampler(road, section, parts_.options).sample();
+    for (std::size_t column = 0; column < section.lanes.size(); ++column) {
+      auto const& written = *source.lane_sections[k].find(section.lanes[column].number);
+      Lane lane = unsampled_lane(written, road, k);
+      lane.id = static_cast<LaneId>(parts_.lanes.size());
+      if (!has_geometry(lane, cross_sections, column)) {
+        add_finding(diagnostics_,
+                    {Severity::warning, file_, written.line, "lane",
+                     "road " + road.name + ", section " + std::to_string(k) + ", lane " + std::to_string(written.id),
+                     "it has no length, or its numbers are out of all range; it was left out"});
+        continue;
+      }
+      section.lanes[column].id = lane.id;
+      parts_.lanes.push_back(std::move(lane));
+      if (runs_both_ways(written)) section.lanes[column].opposite = add_opposite(cross_sections, column);
+    }
+    RoadLane const* left = nullptr;
+    for (auto const& lane : section.lanes) {
+      if (!is_valid(lane.id)) continue;
+      if (left != nullptr) make_neighbors(*left, lane);
+      left = &lane;
+    }
+  }
+
+  /// Adds the last lane once more, driven the other way.
+  LaneId add_opposite(std::span<CrossSection const> cross_sections, std::size_t column) {
+    Lane lane = parts_.lanes.back();
+    lane.id = static_cast<LaneId>(parts_.lanes.size());
+    lane.opposite = parts_.lanes.back().id;
+    lane.along_road = !lane.along_road;
+    (void)has_geometry(lane, cross_sections, column);  // the other one has
+    parts_.lanes.back().opposite = lane.id;
+    parts_.lanes.push_back(std::move(lane));
+    return parts_.lanes.back().id;
+  }
+
+  [[nodiscard]] static bool has_geometry(Lane& lane, std::span<CrossSection const> cross_sections, std::size_t column) {
+    try {
+      return set_geometry(lane, cross_sections, column, [column](CrossSection const& c) { return c.center(column); });
+    } catch (MapError const&) {  // a point that is not a finite number
+      return false;
+    }
+  }
+
+  /// `left` lies left of `right` as seen along the road. Nobody changes onto a lane with oncoming traffic.
+  void make_neighbors(RoadLane const& left, RoadLane const& right) {
+    auto &a = parts_.lanes[index_of(left.id)], &b = parts_.lanes[index_of(right.id)];
+    if (!a.drivable() || !b.drivable() || a.along_road != b.along_road) return;
+    if (is_valid(left.opposite) || is_valid(right.opposite)) return;
+    (a.along_road ? a.right_neighbor : a.left_neighbor) = b.id;
+    (b.along_road ? b.left_neighbor : b.right_neighbor) = a.id;
+  }
+
+  /// Every lane gets a range of its own, apart from the next by more than an agent can be past a lane's end.
+  void number_lane_coordinate() {
+    constexpr double apart = 10.0;
+    double begin = 0.0;
+    for (auto& lane : parts_.lanes) {
+      lane.index_begin = begin;
+      begin += std::ceil(lane.length() + apart);
+    }
+  }
+
+  OpenDriveDocument const& document_;
+  std::string file_;
+  std::vector<Diagnostic>& diagnostics_;
+  Map::Parts parts_;
+};
+
+}  // namespace detail
+
+CAMBIUM_COLD std::shared_ptr<Map const> build_map(OpenDriveDocument document, MapOptions const& options,
+                                                  std::string file, std::vector<Diagnostic>& diagnostics) {
+  detail::RequireBuildable::check(document);
+  detail::split_roads(document);
+  return detail::MapBuild(document, options, std::move(file), diagnostics).build();
+}
+
+}  // namespace cambium::map

@@ -1,0 +1,153 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <map>
+#include <span>
+#include <string>
+#include <tuple>
+#include <utility>
+#include <vector>
+
+#include "cambium/core/diagnostic.hpp"
+#include "cambium/core/error.hpp"
+#include "cambium/map/build/detail/road_links.hpp"
+#include "cambium/map/detail/findings.hpp"
+#include "cambium/map/lanes/lane_network.hpp"
+
+namespace cambium::map::detail {
+
+/// Reports links that only one side knows, and joined lanes that do not meet: a line for each pair of roads.
+class LinkCheck {
+ public:
+  LinkCheck(RoadLinks const& links, std::string const& file, std::vector<Diagnostic>& diagnostics)
+      : links_(links), file_(file), diagnostics_(diagnostics) {}
+
+  /// What the document says from one side only.
+  void report_one_sided() {
+    auto const& roads = links_.document().roads;
+    for (std::size_t r = 0; r < roads.size(); ++r) {
+      for (auto const end : {ContactPoint::start, ContactPoint::end}) check_road_link(r, end);
+      check_lane_links(r);
+      check_short_sections(r);
+    }
+  }
+
+  /// Gaps and kinks between lanes that were joined.
+  void report_joints(std::span<Lane const> lanes) {
+    struct Worst {
+      NetworkFinding finding;
+      int count = 0;
+    };
+    std::map<std::tuple<NetworkFault, RoadId, RoadId>, Worst> worst;
+    for (auto const& finding : check_lane_network(lanes)) {
+      if (finding.fault != NetworkFault::gap && finding.fault != NetworkFault::border_step &&
+          finding.fault != NetworkFault::kink)
+        continue;
+      RoadId const a = lanes[index_of(finding.lane)].road, b = lanes[index_of(finding.other)].road;
+      auto& of_roads = worst[{finding.fault, std::min(a, b), std::max(a, b)}];
+      ++of_roads.count;
+      if (std::abs(finding.size) > std::abs(of_roads.finding.size)) of_roads.finding = finding;
+    }
+    for (auto const& [key, of_roads] : worst) report_joint(lanes, of_roads.finding, of_roads.count);
+  }
+
+ private:
+  using ContactPoint = opendrive::ContactPoint;
+
+  void report(Severity severity, int line, std::string element, std::string ids, std::string sentence) {
+    add_finding(diagnostics_, {severity, file_, line, std::move(element), std::move(ids), std::move(sentence)});
+  }
+
+  /// A road's link must be known to the road that it leads to, or to the junction that lies there.
+  void check_road_link(std::size_t r, ContactPoint end) {
+    auto const& link = links_.link_at(r, end);
+    if (!link || link->element_s) return;
+    auto const others = links_.follow(link);
+    if (others.count == 0) return;
+    SectionEnd const at = links_.road_end(r, end);
+    auto const& road = links_.document().roads[r];
+    auto const& back = links_.link_at(others.at[0].road, others.at[0].end);
+    // The road before a junction names that, not the connecting roads; a direct junction may be named by one side only.
+    if (back && back->element_type == opendrive::ElementType::junction) return;
+    auto const returns = links_.follow(back);
+    if (std::find(returns.begin(), returns.end(), at) != returns.end()) return;
+    report(Severity::warning, link->line, end == ContactPoint::end ? "successor" : "predecessor", "road " + road.id,
+           "it names the " + std::string(others.at[0].end == ContactPoint::end ? "end" : "start") + " of road " +
+               link->id + ", which " + (back ? "names another place" : "names nothing there") +
+               "; lanes are joined by what either side says");
+  }
+
+  /// Lanes that name a lane which names others at that place.
+  void check_lane_links(std::size_t r) {
+    auto const& road = links_.document().roads[r];
+    int count = 0;
+    std::string first;
+    int line = 0;
+    auto const check = [&](SectionEnd const& at, opendrive::Lane const& lane, std::vector<int> const& numbers) {
+      auto const others = links_.beyond(at);
+      if (others.count != 1 || numbers.empty()) return;
+      auto const& other = others.at[0];
+      auto const& section = links_.document().roads[other.road].lane_sections[other.section];
+      auto const returns = links_.beyond(other);
+      if (std::find(returns.begin(), returns.end(), at) == returns.end()) return;  // the road's link is not known there
+      for (int const number : numbers) {
+        auto const* named = section.find(number);
+        if (named == nullptr || lane.id == 0) continue;
+        auto const& back = other.end == ContactPoint::end ? named->successors : named->predecessors;
+        if (back.empty() || std::find(back.begin(), back.end(), lane.id) != back.end()) continue;
+        if (count++ > 0) continue;
+        line = lane.line;
+        first = "lane " + std::to_string(lane.id) + " of section " + std::to_string(at.section) + " names lane " +
+                std::to_string(number) + " of road " + links_.document().roads[other.road].id + ", which names lane " +
+                std::to_string(back.front());
+      }
+    };
+    for (std::size_t k = 0; k < road.lane_sections.size(); ++k)
+      for (auto const& lane : road.lane_sections[k].lanes) {
+        check({r, k, ContactPoint::start}, lane, lane.predecessors);
+        check({r, k, ContactPoint::end}, lane, lane.successors);
+      }
+    if (count > 0)
+      report(Severity::info, line, "link", "road " + road.id, first + others_text(count) + "; the lanes were joined");
+  }
+
+  void check_short_sections(std::size_t r) {
+    int count = 0, line = 0;
+    auto const& sections = links_.roads()[r].sections;
+    for (std::size_t k = 0; k < sections.size(); ++k)
+      if (sections[k].end - sections[k].begin < shortest_section && count++ == 0)
+        line = links_.document().roads[r].lane_sections[k].line;
+    if (count > 0)
+      report(Severity::info, line, "laneSection", "road " + links_.roads()[r].name,
+             "it has no length" + others_text(count) + "; its lanes are not in the map, links lead through it");
+  }
+
+  [[nodiscard]] static std::string others_text(int count) {
+    return count > 1 ? " (and " + std::to_string(count - 1) + " more such)" : "";
+  }
+
+  void report_joint(std::span<Lane const> lanes, NetworkFinding const& finding, int count) {
+    auto const &lane = lanes[index_of(finding.lane)], &next = lanes[index_of(finding.other)];
+    auto const name = [&](Lane const& l) { return links_.roads()[index_of(l.road)].name; };
+    auto const* written = links_.document().roads[index_of(lane.road)].lane_sections[lane.section].find(lane.number);
+    using cambium::detail::rounded_text;
+    std::string const size = rounded_text(std::abs(finding.size));
+    std::string what;
+    if (finding.fault == NetworkFault::gap) what = size + " m away from where it ends";
+    if (finding.fault == NetworkFault::border_step) what = "with a border " + size + " m away from its own";
+    if (finding.fault == NetworkFault::kink) what = size + " rad off its direction";
+    report(finding.fault == NetworkFault::gap ? Severity::warning : Severity::info,
+           written != nullptr ? static_cast<int>(written->line) : 0, "link",
+           "road " + name(lane) + ", section " + std::to_string(lane.section) + ", lane " + std::to_string(lane.number),
+           "lane " + std::to_string(next.number) + " of road " + name(next) + ", section " +
+               std::to_string(next.section) + ", goes on " + what + others_text(count));
+  }
+
+  RoadLinks const& links_;
+  std::string const& file_;
+  std::vector<Diagnostic>& diagnostics_;
+};
+
+}  // namespace cambium::map::detail

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstddef>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "cambium/core/ids.hpp"
+#include "cambium/core/macros.hpp"
+#include "cambium/map/build/detail/make_road.hpp"
+#include "cambium/map/build/make_roads.hpp"
+#include "cambium/map/detail/id_places.hpp"
+#include "cambium/map/opendrive/document.hpp"
+#include "cambium/map/road/cubic.hpp"
+#include "cambium/map/road/road.hpp"
+
+namespace cambium::map {
+
+CAMBIUM_COLD std::vector<Road> make_roads(OpenDriveDocument const& document) {
+  detail::IdPlaces junctions;
+  for (std::size_t i = 0; i < document.junctions.size(); ++i) junctions.emplace(document.junctions[i].id, i);
+  std::vector<Road> roads;
+  roads.reserve(document.roads.size());
+  for (auto const& source : document.roads) {
+    roads.push_back(detail::make_road(source, static_cast<RoadId>(roads.size()), document.header.offset));
+    if (auto const at = junctions.find(source.junction); at != junctions.end())
+      roads.back().junction = static_cast<JunctionId>(at->second);
+  }
+  return roads;
+}
+
+}  // namespace cambium::map

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <memory>
+
+#include "cambium/core/ids.hpp"
+#include "cambium/map/corridor/corridor.hpp"
+#include "cambium/map/map.hpp"
+#include "cambium/map/routing/route.hpp"
+
+namespace cambium::map {
+
+/// The way straight on from `from`: at forks the successor that turns least (within 50 m), of equal ones the smallest
+/// id. Ends at a dead end, where a lane would come again, or with the lane that makes it `max_length` [m] long. Throws
+/// `MapError` for a lane that the map does not have.
+[[nodiscard]] inline Route straight_route(Map const& map, LaneId from, double max_length = 2000.0) {
+  return map.queries().straight_route(map, from, max_length);
+}
+
+/// The road corridor along `route`: its lanes and all beside them, as lane corridors. Throws `MapError` where the route
+/// has no lane, names one that the map does not have, or jumps.
+///
+/// A lane corridor follows successors while these are beside the route, at forks the route, else straight on; a lane
+/// that merges into its neighbour goes on there, so that two lane corridors may share their further lanes. A lane that
+/// opens beside the route begins a lane corridor of its own. Where consecutive lanes do not quite meet, the corridor
+/// bridges the gap within 1 m (or twice the gap). Feeders of a lane corridor, all of them lanes that are not in it:
+/// - lanes that merge into it: on the overlap, and from `MapOptions::merge_view` before it on, free until the overlap
+/// begins;
+/// - lanes that lead into one of its lanes without an overlap: likewise, free until that lane begins;
+/// - lanes that have just split off: on the overlap;
+/// - lanes that lead to its begin: 100 m back, with negative images (of a ring, the corridor's own last lanes too).
+/// Lanes that cross it are none; those are its conflicts, with lanes that merge with it in a junction. No stretch of a
+/// lane has two images, except by different corridors.
+///
+/// The map remembers those that are in use, and others: their routes give the same object again, at once. Whenever 8 MB
+/// of new ones have come, it forgets those not in use but for the last 8 MB that were asked for. Safe on many threads.
+[[nodiscard]] inline std::shared_ptr<RoadCorridor const> build_road_corridor(Map const& map, Route const& route) {
+  return map.queries().road_corridor(map, route.lanes);
+}
+
+}  // namespace cambium::map

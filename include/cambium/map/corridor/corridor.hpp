@@ -1,0 +1,239 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "cambium/core/ids.hpp"
+#include "cambium/geometry/line.hpp"
+#include "cambium/map/lanes/lane.hpp"
+
+namespace cambium::map {
+
+/// A lane's stretch of a lane corridor.
+struct CorridorPiece {
+  LaneId lane = none<LaneId>;
+  double begin{}, end{};               ///< corridor position [m]
+  double index_offset{};               ///< lane coordinate = corridor position + index_offset
+  CorridorId left = none<CorridorId>;  ///< number of the corridor that holds the lane's left neighbour
+  CorridorId right = none<CorridorId>;
+  LaneType type = LaneType::none;
+  PieceId left_piece{}, right_piece{};        ///< number of the neighbour's piece there; only with `left`, `right`
+  double lane_offset{};                       ///< position on the lane's path = corridor position + lane_offset [m]
+  std::uint32_t first_segment{}, segments{};  ///< of the corridor's centre line: where its own begin, and how many
+  /// Where at the latest a vehicle should have changed lanes, for there the next merge into a neighbour begins or,
+  /// where the corridor does not go as far as the route, the corridor ends; infinite where neither is ahead [m].
+  double lane_end = std::numeric_limits<double>::infinity();
+
+  /// Number of the corridor to the left or the right, and of its piece there.
+  [[nodiscard]] CorridorId beside(bool leftwards) const { return leftwards ? left : right; }
+  [[nodiscard]] PieceId piece_beside(bool leftwards) const { return leftwards ? left_piece : right_piece; }
+};
+
+/// A stretch of a lane outside of the corridor whose traffic counts in it: a lane that merges in (from `merge_view`
+/// before the overlap on), one that has just split off and still overlaps, or one that leads onto the corridor's first
+/// lane. Lane coordinates [index_begin, index_end] map linearly onto corridor positions [begin, end].
+struct Feeder {
+  LaneId lane = none<LaneId>;
+  double index_begin{}, index_end{};
+  double begin{}, end{};
+  /// Corridor position from which on the two lanes are one [m].
+  double free_until = -std::numeric_limits<double>::infinity();
+  bool by_rule = false;  ///< the two merge in a junction: who goes first is a matter of right of way, see `Conflict`
+
+  /// Whether it lies before the merge.
+  [[nodiscard]] bool is_still_to_merge() const { return end <= free_until; }
+  [[nodiscard]] double image(double index) const {
+    return begin + (index - index_begin) * (end - begin) / (index_end - index_begin);
+  }
+  [[nodiscard]] double index_at(double s) const {
+    return index_begin + (s - begin) * (index_end - index_begin) / (end - begin);
+  }
+};
+
+/// Gap [m] between a follower's front end and its leader's rear end (corridor positions) where the two lanes are one
+/// from `merge` on. Before that the two may be side by side: the follower is given half of its way to the merge on top,
+/// so that a gap opens bit by bit, but never more than the way to whichever is farther, leader or merge.
+[[nodiscard]] inline double gap_before_merge(double follower_front, double leader_rear, double merge) {
+  double const gap = leader_rear - follower_front, to_merge = merge - follower_front;
+  if (to_merge <= 0.0) return gap;
+  return std::min(gap + 0.5 * to_merge, std::max(gap, to_merge));
+}
+
+/// A stop sign or a light for the corridor's traffic.
+struct CorridorSignal {
+  double line{};  ///< where front ends stop: where the junction behind it begins, else the signal [m]
+  SignalKind kind = SignalKind::stop;
+  LightId light = none<LightId>;
+
+  friend bool operator==(CorridorSignal const&, CorridorSignal const&) = default;
+};
+
+/// A stretch of the map-wide lane coordinate (see `Lane::index_begin`) on the way to, through and behind a conflict.
+struct ConflictWay {
+  double index_begin{}, index_end{};
+  double begin{};  ///< of the way where the stretch begins: position on the other lane's path, negative before it [m]
+};
+
+/// Where the reference points of two vehicles, of a size each, may be when these touch.
+struct ConflictZone {
+  double begin = std::numeric_limits<double>::infinity(), end = -begin;  ///< corridor position [m]
+  double other_begin{}, other_end{};  ///< position along the other's way, as in `Conflict::ways` [m]
+  double line{};        ///< corridor position where front ends enter: where the junction begins, else the zone [m]
+  double other_line{};  ///< likewise on the other's way [m]
+
+  /// Whether they never touch.
+  [[nodiscard]] bool empty() const { return begin > end; }
+};
+
+/// Zones by the sizes of the own vehicle and the other: 0 where it is no larger than `MapOptions::conflict_shape`, 1 up
+/// to `MapOptions::large_conflict_shape`.
+using ConflictZones = std::array<std::array<ConflictZone, 2>, 2>;
+
+/// Where a lane outside of the corridor crosses it, merges with it or parts from it.
+struct Conflict {
+  LaneId other = none<LaneId>;
+  OverlapKind kind = OverlapKind::crossing;
+  RightOfWay right_of_way = RightOfWay::equal;  ///< of this corridor's traffic
+  ConflictZones zones;                          ///< that of two large ones holds all others and is not empty
+  /// Corridor position, by the size of the corridor's vehicle, up to which reference points are in no zone of the
+  /// junction: there one waits. No farther for large ones [m].
+  std::array<double, 2> hold{};
+  double lane_end{}, other_lane_end{};  ///< where the two lanes end: corridor position, and on the other's way [m]
+
+  [[nodiscard]] ConflictZone const& hull() const { return zones[1][1]; }
+  double farthest_end{};                ///< of the hulls of this one and those before it in the corridor [m]
+  LightId other_light = none<LightId>;  ///< that stops the other's traffic
+  double shift{};  ///< where they merge or part: corridor position = position on the way + shift [m]
+  double meet = std::numeric_limits<double>::infinity();  ///< where lanes that merge come together [m]
+  /// The way: the other lane, those behind it back to `MapOptions::merge_view` before the conflict, and those that it
+  /// leads into, as far as who is there may still reach back into the conflict.
+  std::vector<ConflictWay> ways;
+};
+
+/// A stretch of a corridor on which it bends about evenly.
+struct Bend {
+  double begin{}, end{};  ///< corridor position [m]
+  double curvature{};     ///< the sharpest there, positive [1/m]
+};
+
+/// A drivable lane that a free corridor crosses, from border to border (see `build_free_corridor`).
+struct LaneCrossing {
+  LaneId lane = none<LaneId>;
+  double begin{}, end{};            ///< corridor position [m]
+  double lane_begin{}, lane_end{};  ///< of the stretch that the corridor covers: position on the lane's path [m]
+  std::vector<ConflictWay> ways;    ///< by which traffic comes to that stretch, positions counted from the lane's begin
+};
+
+/// A chain of lanes along which a vehicle drives: what behaviours follow. Immutable, shared.
+struct LaneCorridor {
+  geometry::Line center;                    ///< the lanes' paths, joined
+  std::vector<SideWidths> widths;           ///< at the centre line's vertices
+  geometry::Line left, right;               ///< borders
+  IdVector<CorridorPiece, PieceId> pieces;  ///< sorted by `begin`, gapless
+  std::vector<Feeder> feeders;              ///< sorted by `begin`
+  std::vector<Conflict> conflicts;          ///< sorted by `hold[1]`
+  std::vector<Bend> bends;                  ///< sharper than 1 km of radius, sorted by `begin`
+  double sharpest_bend = 0.0;               ///< the curvature of the sharpest of them [1/m]
+  std::vector<CorridorSignal> signals;      ///< sorted by `line`
+  std::vector<SpeedStep> speed_limits;      ///< along the corridor, sorted; empty where nothing limits the speed
+  bool continues = false;               ///< the road goes on beyond the end: the corridor ends because the route does
+  bool reaches_destination = false;     ///< it holds the route's last lane
+  std::vector<LaneCrossing> crossings;  ///< of a free corridor: the lanes that it crosses, sorted by `begin`
+
+  [[nodiscard]] double length() const { return center.length(); }
+
+  /// Index of the piece that holds `s`, searched from `hint`.
+  [[nodiscard]] PieceId piece_at(double s, PieceId hint) const {
+    auto i = index_of(hint);
+    while (i + 1 < pieces.size() && s >= pieces[i + 1].begin) ++i;
+    while (i > 0 && s < pieces[i].begin) --i;
+    return static_cast<PieceId>(i);
+  }
+
+  /// The piece that holds `s`, the first or last one beyond the ends. O(log pieces).
+  [[nodiscard]] CorridorPiece const& piece_at(double s) const {
+    auto const next = std::upper_bound(pieces.begin(), pieces.end(), s,
+                                       [](double value, CorridorPiece const& piece) { return value < piece.begin; });
+    return next == pieces.begin() ? pieces.front() : *(next - 1);
+  }
+
+  /// The place on a lane's path that is at `s`, which counts as that of the nearer end beyond the ends. O(log pieces).
+  [[nodiscard]] LaneStation lane_at(double s) const {
+    auto const& piece = piece_at(s);
+    return {piece.lane, std::max(0.0, std::clamp(s, piece.begin, piece.end) + piece.lane_offset)};
+  }
+
+  /// Where the corridor passes `station`; the first time, where its lane comes more than once; nothing where the lane
+  /// is not in it. A station beyond the lane's ends counts as the end. [m], O(pieces).
+  [[nodiscard]] std::optional<double> position_of(LaneStation const& station) const {
+    for (auto const& piece : pieces)
+      if (piece.lane == station.lane) return std::clamp(station.s - piece.lane_offset, piece.begin, piece.end);
+    return std::nullopt;
+  }
+
+  /// What is left of the corridor behind `s` [m]; 0 beyond its end.
+  [[nodiscard]] double length_until_end(double s) const { return std::max(0.0, length() - s); }
+
+  /// The speed limit at `s`; infinite where there is none. [m/s], O(log steps).
+  [[nodiscard]] double speed_limit_at(double s) const { return map::speed_limit_at(speed_limits, s); }
+
+  /// The type of the lane at `s`. O(log pieces).
+  [[nodiscard]] LaneType type_at(double s) const { return piece_at(s).type; }
+
+  /// Distances from the centre line to the lane's borders at `s` [m]. O(log n).
+  [[nodiscard]] SideWidths widths_at(double s) const { return widths_at(s, center.find(s)); }
+
+  /// The lane's width at `s` [m]. O(log n).
+  [[nodiscard]] double width_at(double s) const {
+    auto const sides = widths_at(s);
+    return sides.left + sides.right;
+  }
+
+  /// Distances from the centre line to the lane's borders at `s` within `segment` of the centre line [m].
+  [[nodiscard]] SideWidths widths_at(double s, std::uint32_t segment) const {
+    auto const& g = center.segments()[segment];
+    double const u = std::clamp((s - g.s) / g.length, 0.0, 1.0);
+    auto const &a = widths[segment], &b = widths[segment + 1];
+    return {a.left + u * (b.left - a.left), a.right + u * (b.right - a.right)};
+  }
+};
+
+/// The lanes of a route and those beside them, as lane corridors. Immutable, built once per route and shared.
+struct RoadCorridor {
+  std::vector<LaneId> route;  ///< the lanes from start to destination, lane changes included
+  IdVector<LaneCorridor, CorridorId> corridors;
+  CorridorId main{};  ///< the corridor that holds the route's last lane
+
+  /// Number of the first corridor that holds `lane`, `none<CorridorId>` if none does. O(lanes).
+  [[nodiscard]] CorridorId corridor_of(LaneId lane) const {
+    for (std::size_t i = 0; i < corridors.size(); ++i)
+      for (auto const& piece : corridors[i].pieces)
+        if (piece.lane == lane) return static_cast<CorridorId>(i);
+    return none<CorridorId>;
+  }
+
+  /// Number of the corridor left (right) of number `corridor` at `s` [m], `none<CorridorId>` where there is none. O(log
+  /// pieces).
+  [[nodiscard]] CorridorId left_of(CorridorId corridor, double s) const { return corridors[corridor].piece_at(s).left; }
+  [[nodiscard]] CorridorId right_of(CorridorId corridor, double s) const {
+    return corridors[corridor].piece_at(s).right;
+  }
+
+  /// All lanes, by id, each once. O(n log n).
+  [[nodiscard]] std::vector<LaneId> lanes() const {
+    std::vector<LaneId> result;
+    for (auto const& corridor : corridors)
+      for (auto const& piece : corridor.pieces) result.push_back(piece.lane);
+    std::sort(result.begin(), result.end());
+    result.erase(std::unique(result.begin(), result.end()), result.end());
+    return result;
+  }
+};
+
+}  // namespace cambium::map

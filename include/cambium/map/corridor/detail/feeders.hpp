@@ -1,0 +1,130 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <map>
+#include <tuple>
+#include <vector>
+
+#include "cambium/core/ids.hpp"
+#include "cambium/core/stable_sort.hpp"
+#include "cambium/map/corridor/corridor.hpp"
+#include "cambium/map/map.hpp"
+
+namespace cambium::map::detail {
+
+/// Finds the feeders of a lane corridor whose `pieces` are there already, see `build_road_corridor`. No stretch of a
+/// lane gets two images: what was found first stays, overlaps before lanes behind the begin before lanes that merge in.
+class FeederFinder {
+ public:
+  FeederFinder(Map const& map, LaneCorridor& corridor) : map_(map), corridor_(corridor) {}
+
+  void find() {
+    constexpr double rear_view = 100.0;  // [m] before the corridor's begin
+    constexpr double never = -std::numeric_limits<double>::infinity();
+    corridor_.feeders.clear();
+    for (auto const& piece : corridor_.pieces)
+      for (auto const& overlap : map_.lane(piece.lane).overlaps) add_overlap(piece, overlap);
+    auto const& first = corridor_.pieces.front();
+    add_predecessors(first.lane, rear_view, first.begin, never, true);
+    for (std::size_t i = 0; i < corridor_.pieces.size(); ++i) {
+      auto const& piece = corridor_.pieces[i];
+      auto const& lane = map_.lane(piece.lane);
+      if (i > 0) add_predecessors(piece.lane, map_.options().merge_view, piece.begin, piece.begin, false);
+      for (auto const& overlap : lane.overlaps)
+        if (overlap.kind == OverlapKind::merge && !holds(overlap.other))
+          add_upstream_of(overlap, position(piece, overlap.begin));
+    }
+    cambium::detail::stable_sort_by(corridor_.feeders, [](Feeder const& a, Feeder const& b) {
+      return std::tie(a.begin, a.lane, a.index_begin) < std::tie(b.begin, b.lane, b.index_begin);
+    });
+  }
+
+ private:
+  [[nodiscard]] bool holds(LaneId lane) const {
+    return std::any_of(corridor_.pieces.begin(), corridor_.pieces.end(),
+                       [lane](CorridorPiece const& p) { return p.lane == lane; });
+  }
+
+  /// Corridor position of path position `s` of the piece's lane.
+  [[nodiscard]] double position(CorridorPiece const& piece, double s) const {
+    return map_.lane(piece.lane).index_begin + s - piece.index_offset;
+  }
+
+  void add_overlap(CorridorPiece const& piece, Overlap const& overlap) {
+    if (overlap.kind == OverlapKind::crossing || holds(overlap.other)) return;
+    double const begin = position(piece, overlap.begin), end = position(piece, overlap.end);
+    double const index = map_.lane(overlap.other).index_begin;
+    double const free_until = overlap.kind == OverlapKind::merge ? begin : -std::numeric_limits<double>::infinity();
+    add({overlap.other, index + overlap.other_begin, index + overlap.other_end, begin, end, free_until});
+  }
+
+  /// The merging lane before the overlap and the lanes behind it.
+  void add_upstream_of(Overlap const& overlap, double begin) {
+    double const view = map_.options().merge_view;
+    auto const& other = map_.lane(overlap.other);
+    double const length = std::min(view, overlap.other_begin);
+    add({other.id, other.index_begin + overlap.other_begin - length, other.index_begin + overlap.other_begin,
+         begin - length, begin, begin});
+    if (length < view) add_predecessors(other.id, view - length, begin - length, begin, false);
+  }
+
+  /// Adds the predecessors of `lane` and those behind them, up to `view` [m] back; `end` is the image of the lane's
+  /// begin. One way is followed to its end before the next; of a lane come to again no more than what is new, so that
+  /// lanes linked crosswise or in rings are not followed over and over.
+  void add_predecessors(LaneId lane, double view, double end, double free_until, bool with_own) {
+    constexpr double worth_it = 0.01;  // [m]
+    struct Way {
+      LaneId lane;
+      double view, end;
+    };
+    std::vector<Way> open;
+    std::map<LaneId, double> seen;  // the largest view
+    auto const open_before = [&](Way const& way) {
+      auto const& before = map_.lane(way.lane).predecessors;
+      for (auto i = before.rbegin(); i != before.rend(); ++i)
+        if (map_.lane(*i).drivable() && (with_own || !holds(*i))) open.push_back({*i, way.view, way.end});
+    };
+    for (open_before({lane, view, end}); !open.empty();) {
+      auto const way = open.back();
+      open.pop_back();
+      auto const [mark, is_new] = seen.emplace(way.lane, way.view);
+      if (!is_new && way.view < mark->second + worth_it) continue;
+      mark->second = way.view;
+      auto const& previous = map_.lane(way.lane);
+      double const length = std::min(way.view, previous.length());
+      double const index_end = previous.index_begin + previous.length();
+      add({way.lane, index_end - length, index_end, way.end - length, way.end, free_until});
+      if (length < way.view) open_before({way.lane, way.view - length, way.end - length});
+    }
+  }
+
+  /// Adds the parts of `f` that have no image yet.
+  void add(Feeder const& f) {
+    constexpr double shortest = 1e-6;  // [m]
+    if (f.index_end - f.index_begin < shortest) return;
+    std::vector<Feeder> taken;
+    for (auto const& other : corridor_.feeders)
+      if (other.lane == f.lane && other.index_begin < f.index_end - shortest &&
+          other.index_end > f.index_begin + shortest)
+        taken.push_back(other);
+    cambium::detail::stable_sort_by(taken,
+                                    [](Feeder const& a, Feeder const& b) { return a.index_begin < b.index_begin; });
+    double from = f.index_begin;
+    auto const add_part = [&](double to) {
+      if (to - from > shortest)
+        corridor_.feeders.push_back({f.lane, from, to, f.image(from), f.image(to), f.free_until});
+    };
+    for (auto const& other : taken) {
+      add_part(other.index_begin);
+      from = std::max(from, other.index_end);
+    }
+    add_part(f.index_end);
+  }
+
+  Map const& map_;
+  LaneCorridor& corridor_;
+};
+
+}  // namespace cambium::map::detail

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <memory>
+#include <span>
+
+#include "cambium/geometry/pose.hpp"
+#include "cambium/map/corridor/corridor.hpp"
+#include "cambium/map/map.hpp"
+#include "cambium/map/road/lane_type.hpp"
+
+namespace cambium::map {
+
+/// What a free corridor is like.
+struct FreeCorridorOptions {
+  double width = 2.0;                 ///< half of it to either side of the points [m]
+  LaneType type = LaneType::walking;  ///< what it is for
+  double view = 200.0;                ///< how far back the lanes that it crosses are looked along [m]
+};
+
+/// A way through `points` [m], its corners rounded, that belongs to no lane, as a road corridor of one lane corridor:
+/// for those on foot or on wheels who go beside the lanes and across. Its `crossings` are the drivable lanes that it
+/// crosses, whose traffic goes first; a way along a lane is one long crossing of it. Bridges count as level. Worlds
+/// take it in `AgentSpec::road`; give agents on one way the same corridor, so that they are neighbours on it. Throws
+/// `MapError` for fewer than two distinct points, numbers that are not finite, a length beyond 10 km, or a width or
+/// view that is not positive. O(length log lanes).
+[[nodiscard]] inline std::shared_ptr<RoadCorridor const> build_free_corridor(Map const& map,
+                                                                             std::span<geometry::Point const> points,
+                                                                             FreeCorridorOptions const& options = {}) {
+  return map.queries().free_corridor(map, points, options);
+}
+
+}  // namespace cambium::map

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <string>
+
+#include "cambium/core/error.hpp"
+#include "cambium/core/ids.hpp"
+#include "cambium/map/road/road.hpp"
+
+namespace cambium::map::detail {
+
+/// "from 0 to 30 m, from 50 to 80 m": where `road` has lane `number`; empty where nowhere.
+[[nodiscard]] inline std::string stations_text(Road const& road, int number) {
+  using cambium::detail::rounded_text;
+  std::string text;
+  RoadSection const* last = nullptr;
+  double begin = 0.0;
+  auto const finish = [&] {
+    if (last == nullptr) return;
+    text += (text.empty() ? "from " : ", from ") + rounded_text(begin) + " to " + rounded_text(last->end) + " m";
+    last = nullptr;
+  };
+  for (auto const& section : road.sections)
+    for (auto const& lane : section.lanes) {
+      if (lane.number != number || !is_valid(lane.id)) continue;
+      if (last != nullptr && last->end != section.begin) finish();
+      if (last == nullptr) begin = section.begin;
+      last = &section;
+    }
+  finish();
+  return text;
+}
+
+/// "2, 1, -1": the lanes of a section that are in the map.
+[[nodiscard]] inline std::string lanes_text(RoadSection const& section) {
+  std::string text;
+  for (auto const& lane : section.lanes)
+    if (is_valid(lane.id)) text += (text.empty() ? "" : ", ") + std::to_string(lane.number);
+  return text;
+}
+
+/// Lane `number` of `road` at station `s` [m]. Throws `MapError` that says where the road has it.
+[[nodiscard]] inline RoadLane const& lane_at(Road const& road, double s, int number) {
+  using cambium::detail::rounded_text;
+  std::string const where = "road " + road.name + ", s " + rounded_text(s);
+  auto const* section = s >= 0.0 ? road.section_at(s) : nullptr;
+  if (section == nullptr) {
+    double const begin = road.sections.empty() ? 0.0 : road.sections.front().begin;
+    std::string const what = s < begin    ? "it lies before the road's lanes"
+                             : s >= begin ? "the road is " + rounded_text(road.length) + " m long"
+                                          : "it is no number";
+    throw MapError(where, what,
+                   "give a place from s " + rounded_text(begin) + " to " + rounded_text(road.length) + " m");
+  }
+  for (auto const& lane : section->lanes)
+    if (lane.number == number && is_valid(lane.id)) return lane;
+  auto const stations = stations_text(road, number), lanes = lanes_text(*section);
+  std::string const what = "there is no lane " + std::to_string(number) +
+                           (stations.empty() ? ", nor elsewhere on the road" : "; the road has it " + stations);
+  throw MapError(where, what, lanes.empty() ? "ask for another place: it has none here" : "ask for one of " + lanes);
+}
+
+}  // namespace cambium::map::detail

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "cambium/core/macros.hpp"
+#include "cambium/geometry/angle.hpp"
+#include "cambium/geometry/box.hpp"
+#include "cambium/geometry/box_tree.hpp"
+#include "cambium/map/detail/network_check.hpp"
+#include "cambium/map/lanes/lane.hpp"
+#include "cambium/map/lanes/lane_network.hpp"
+#include "cambium/map/map.hpp"
+
+namespace cambium::map {
+
+CAMBIUM_COLD std::vector<NetworkFinding> check_lane_network(std::span<Lane const> lanes,
+                                                            NetworkTolerances const& tolerances) {
+  return detail::NetworkCheck(lanes, tolerances).run();
+}
+
+CAMBIUM_COLD std::vector<NetworkFinding> check_lane_network(Map const& map, NetworkTolerances const& tolerances) {
+  return check_lane_network(map.lanes(), tolerances);
+}
+
+}  // namespace cambium::map

@@ -1,0 +1,277 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <boost/container/static_vector.hpp>
+
+#include "cambium/behavior/behavior_model.hpp"
+#include "cambium/behavior/following/constant_acceleration.hpp"
+#include "cambium/behavior/lane_change/lane_change.hpp"
+#include "cambium/behavior/lane_change/lane_reach.hpp"
+#include "cambium/behavior/law/lane_ends.hpp"
+#include "cambium/core/stable_sort.hpp"
+#include "cambium/planner/detail/others_ahead.hpp"
+#include "cambium/planner/detail/predicted.hpp"
+#include "cambium/planner/frenet/frenet_candidate.hpp"
+#include "cambium/planner/search/search_result.hpp"
+
+namespace cambium {
+
+/// What a `FrenetPlanner` thought.
+template <class World>
+struct FrenetReport {
+  std::vector<FrenetCandidate> candidates;            ///< cheapest first, all checked
+  std::optional<std::size_t> best;                    ///< the first valid one; none: it brakes
+  std::vector<typename World::State> course;          ///< of the best, step by step; empty where it brakes
+  std::vector<typename World::FrameType> prediction;  ///< the others, now and step by step, ego as one of them
+  std::vector<AgentId> agents;                        ///< of the frames' records
+};
+
+/// Plans by sampling courses in the Frenet frames of its lane and those beside: quintic polynomials across, quartic or
+/// quintic ones along, to several speeds, or behind who is ahead, over several durations. The cheapest one that is
+/// drivable, stays on the road and keeps clear of the others, predicted once as `Others`, is driven; where there is
+/// none it brakes. `PredictionWorld` must have `Others` in its behaviour set.
+template <class PredictionWorld, class Others = ConstantAcceleration>
+struct FrenetPlanner {
+  static_assert(detail::check_planner<PredictionWorld, Others>());
+
+  /// Of the course at the vehicle, so that the next one goes on without a jerk.
+  struct Memory {
+    float acceleration = 0.0f;  ///< [m/s^2]
+    float curvature = 0.0f;     ///< [1/m]
+
+    void fell_short(double, bool left_course) {
+      if (left_course) *this = {};
+    }
+    friend bool operator==(Memory const&, Memory const&) = default;
+  };
+
+  struct Workspace {
+    detail::OthersAhead<PredictionWorld> others;
+    std::vector<FrenetCandidate> candidates;
+    std::vector<FrenetTarget> targets;
+  };
+
+  Others others{};
+  double desired_speed = 15.0;
+  boost::container::static_vector<double, 16> speed_shares{1.0, 0.8, 0.6, 0.4, 0.2, 0.0};
+  boost::container::static_vector<double, 8> durations{2.0, 3.0, 4.0, 5.0};
+  boost::container::static_vector<double, 8> offsets{0.0, -0.7, 0.7};
+  FrenetCosts costs{};
+  FrenetLimits limits{};
+  double minimum_gap = 2.0;
+  double time_headway = 1.2;
+  double horizon = 5.0;
+  double step = 0.2;
+  double low_speed = 4.0;
+
+  static constexpr char const* name = "frenet_planner";
+  static constexpr char const* summary =
+      "samples quintic courses in the Frenet frames of its lane and those beside, and drives the cheapest valid one";
+  static constexpr char const* source = "Werling, Ziegler, Kammel, Thrun 2010";
+  static constexpr auto parameters() {
+    using P = FrenetPlanner;
+    return parameter_list(
+        parameter("others", &P::others, "-", {}, "how the others are expected to behave"),
+        parameter("desired_speed", &P::desired_speed, "m/s", Range{0.1, 100}, "on a free road"),
+        parameter("speed_shares", &P::speed_shares, "-", Range{0, 2}, "of it, that courses end with"),
+        parameter("durations", &P::durations, "s", Range{0.5, 30}, "of courses until they go on evenly"),
+        parameter("offsets", &P::offsets, "m", Range{-10, 10}, "from the lane's middle that courses end at"),
+        parameter("costs", &P::costs, "-", {}, "what is preferred"),
+        parameter("limits", &P::limits, "-", {}, "what is valid"),
+        parameter("minimum_gap", &P::minimum_gap, "m", Range{0, 100}, "kept to what stands"),
+        parameter("time_headway", &P::time_headway, "s", Range{0, 20}, "kept on top of it to who drives ahead"),
+        parameter("horizon", &P::horizon, "s", Range{0.1, 60}, "up to which courses are checked"),
+        parameter("step", &P::step, "s", Range{0.01, 2}, "between two checks"),
+        parameter("low_speed", &P::low_speed, "m/s", Range{0.1, 50}, "below which offsets change with the way driven"));
+  }
+
+  void check(std::string const& where) const {
+    if (speed_shares.empty() || durations.empty() || offsets.empty())
+      throw ParameterError(where, "has no speed share, duration or offset", "give at least one of each");
+  }
+
+  template <class View>
+  [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt, Workspace& workspace) const {
+    Plan<View> plan;
+    plan.status = PlanStatus::failed;
+    if constexpr (detail::Predicts<View, typename PredictionWorld::Behaviors, PredictionWorld>) {
+      if (sample(view, memory, workspace) != SearchProblem::none) return plan;
+      for (auto const& candidate : workspace.candidates)
+        if (verdict(view, candidate, workspace) == FrenetVerdict::valid) return follow(view, candidate, memory, dt);
+      float bend = 0.0f;
+      double const speed = std::max(0.0, view.state().speed);
+      memory = {static_cast<float>(speed > 0.0 ? limits.lowest_acceleration : 0.0), 0.0f};
+      return plan_to_center(view, bend, ConstantAcceleration{limits.lowest_acceleration}.motion(speed, dt), dt);
+    }
+    return plan;
+  }
+
+  /// What it thinks of what `view` shows, on a course as `memory` says. Throws `ParameterError` where a parameter is
+  /// out of its range, `SearchError` where there is nothing to plan.
+  template <class View>
+  [[nodiscard]] FrenetReport<PredictionWorld> think(View const& view, Memory const& memory,
+                                                    Workspace& workspace) const {
+    check_parameters(*this);
+    throw_if(sample(view, memory, workspace));
+    FrenetReport<PredictionWorld> report;
+    for (auto& candidate : workspace.candidates) {
+      candidate.verdict = verdict(view, candidate, workspace);
+      if (!report.best && candidate.verdict == FrenetVerdict::valid)
+        report.best = static_cast<std::size_t>(&candidate - workspace.candidates.data());
+    }
+    report.candidates = workspace.candidates;
+    report.prediction = workspace.others.frames;
+    for (auto const& agent : workspace.others.world->roster().agents) report.agents.push_back(agent.id);
+    if (!report.best) return report;
+    for (std::size_t k = 0; k < report.prediction.size(); ++k)
+      report.course.push_back(state_at(view, report.candidates[*report.best], static_cast<double>(k) * step).state);
+    return report;
+  }
+
+ private:
+  /// A state on a course, and how the course bends there.
+  template <class State>
+  struct Driven {
+    State state;
+    CourseMotion<double> course;
+    FrenetMotion<double> frenet;
+  };
+
+  template <class View>
+  [[nodiscard]] SearchProblem sample(View const& view, Memory const& memory, Workspace& workspace) const {
+    std::optional<Slot> ego;
+    auto world = detail::predicted_for<PredictionWorld>(view, others, others, ego);
+    if (!ego) return SearchProblem::not_in_world;
+    workspace.others.predict(std::move(world), *ego, horizon, step);
+    workspace.candidates.clear();
+    auto const& at = view.place();
+    auto const& piece = view.corridor().pieces[at.piece];
+    for (auto const number : {at.corridor, piece.left, piece.right})
+      if (number != none<CorridorId>) sample_lane(view, number, memory, workspace);
+    for (auto& candidate : workspace.candidates)
+      if (std::isnan(candidate.cost)) candidate.cost = std::numeric_limits<double>::infinity();
+    detail::stable_sort(workspace.candidates, &FrenetCandidate::cost);
+    return SearchProblem::none;
+  }
+
+  template <class View>
+  void sample_lane(View const& view, CorridorId number, Memory const& memory, Workspace& workspace) const {
+    auto const at = view.place(number);
+    if (std::abs(at.heading_error) > detail::most_aslant) return;
+    auto const& corridor = view.road().corridors[number];
+    CourseMotion<double> const now{at.heading_error, static_cast<double>(memory.curvature),
+                                   std::max(0.0, view.state().speed), static_cast<double>(memory.acceleration)};
+    auto const start = frenet_motion(now, at.s, at.lateral, {corridor.center.segments()[at.segment].curvature, 0.0});
+    double const wanted = std::min(desired_speed, corridor.speed_limit_at(at.s));
+    double const route =
+        view.has_goal() ? costs.route * detail::lanes_to_destination(view.road(), number, at.piece) : 0.0;
+    for (double const duration : durations) {
+      set_targets(view, number, at, wanted, duration, workspace);
+      for (auto const& target : workspace.targets)
+        for (double const offset : offsets) {
+          auto& c = workspace.candidates.emplace_back(
+              frenet_candidate(start, target, offset, duration, wanted, low_speed, costs));
+          c.corridor = number;
+          c.cost += route;
+        }
+    }
+  }
+
+  /// The ends of courses of `duration` [s]: speeds, and behind who is ahead or before the lane's end.
+  template <class View>
+  void set_targets(View const& view, CorridorId number, map::LanePlace const& at, double wanted, double duration,
+                   Workspace& workspace) const {
+    auto& targets = workspace.targets;
+    targets.clear();
+    for (double const share : speed_shares)
+      targets.push_back({std::numeric_limits<double>::infinity(), share * wanted});
+    if (auto const leader = view.ahead(view.place(number)))
+      targets.push_back(behind(workspace.others, *leader, at.s, duration));
+    auto const& corridor = view.road().corridors[number];
+    double const end = lane_end(view, number, at.piece);
+    if (is_dead_end(corridor, end) && std::isfinite(end))
+      targets.push_back({end - view.shape().front - minimum_gap, 0.0});
+  }
+
+  /// Where ego follows `leader` at the time gap, `time` [s] from now.
+  [[nodiscard]] FrenetTarget behind(detail::OthersAhead<PredictionWorld> const& ahead, RoadUser const& leader, double s,
+                                    double time) const {
+    double const contact = s + leader.gap;
+    auto const slot = ahead.world->roster().slot_of(leader.agent);
+    if (!slot) return {contact - minimum_gap, 0.0};
+    auto const [way, speed] = ahead.way_of(*slot, time);
+    return {contact + way - minimum_gap - time_headway * speed, speed};
+  }
+
+  template <class View>
+  [[nodiscard]] Driven<typename View::State> state_at(View const& view, FrenetCandidate const& candidate,
+                                                      double time) const {
+    auto const& corridor = view.road().corridors[candidate.corridor];
+    auto const frenet = candidate.at(time);
+    auto hint = view.place(candidate.corridor).segment;
+    auto const& segment = corridor.center.segment_at(frenet.s, hint);
+    auto const course = course_motion(frenet, {segment.curvature, 0.0});
+    auto state = view.state();
+    place_on_lane(corridor, frenet.s, frenet.offset, course.heading_error, hint, state);
+    state.time = view.time() + time;
+    state.speed = std::max(0.0, course.speed);
+    return {state, course, frenet};
+  }
+
+  template <class View>
+  [[nodiscard]] FrenetVerdict verdict(View const& view, FrenetCandidate const& candidate,
+                                      Workspace const& workspace) const {
+    auto const& ahead = workspace.others;
+    if (!std::isfinite(candidate.cost)) return FrenetVerdict::not_finite;
+    if (candidate.kind == FrenetCandidate::Kind::keep_speed && comes_too_near(view, candidate, ahead))
+      return FrenetVerdict::gap;
+    auto const& corridor = view.road().corridors[candidate.corridor];
+    double const fastest = std::max(view.state().speed, 1.1 * desired_speed) + 0.1;
+    for (std::size_t k = 1; k < ahead.frames.size(); ++k) {
+      auto const [state, course, frenet] = state_at(view, candidate, static_cast<double>(k) * step);
+      auto const verdict = drivable(limits, course, frenet, fastest);
+      if (verdict != FrenetVerdict::valid) return verdict;
+      auto box = geometry::box_of(view.shape(), state);
+      if (detail::leaves_road(view.map(), corridor, frenet.s, frenet.offset, box)) return FrenetVerdict::road;
+      box.half_length += limits.clearance;
+      box.half_width += limits.clearance;
+      if (ahead.touched(box, k)) return FrenetVerdict::collision;
+    }
+    return FrenetVerdict::valid;
+  }
+
+  /// Whether it ends nearer to who is ahead than following would, unless it passes.
+  template <class View>
+  [[nodiscard]] bool comes_too_near(View const& view, FrenetCandidate const& candidate,
+                                    detail::OthersAhead<PredictionWorld> const& ahead) const {
+    auto const leader = view.ahead(view.place(candidate.corridor));
+    if (!leader) return false;
+    double const s = view.place(candidate.corridor).s;
+    if (candidate.at(horizon).s <= behind(ahead, *leader, s, horizon).position) return false;
+    return !detail::leaves_room(view, candidate.corridor, *leader, candidate.offset, limits.clearance);
+  }
+
+  template <class View>
+  [[nodiscard]] Plan<View> follow(View const& view, FrenetCandidate const& candidate, Memory& memory, double dt) const {
+    Plan<View> plan;
+    int const parts = std::max(1, static_cast<int>(std::ceil(dt / step - 1e-9)));
+    for (int i = 1; i <= parts; ++i) {
+      auto const driven = state_at(view, candidate, dt * i / parts);
+      plan.trajectory.push_back(driven.state);
+      memory = {static_cast<float>(driven.course.acceleration), static_cast<float>(driven.course.curvature)};
+    }
+    plan.action.acceleration = (plan.trajectory.front().speed - view.state().speed) * parts / dt;
+    return plan;
+  }
+};
+
+}  // namespace cambium

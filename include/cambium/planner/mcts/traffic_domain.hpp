@@ -1,0 +1,248 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "cambium/behavior/following/idm_hypotheses.hpp"
+#include "cambium/geometry/angle.hpp"
+#include "cambium/planner/detail/same_scene.hpp"
+#include "cambium/planner/mcts/belief.hpp"
+#include "cambium/planner/mcts/traffic_actions.hpp"
+#include "cambium/planner/mcts/traffic_reward.hpp"
+#include "cambium/planner/search/search_domain.hpp"
+
+namespace cambium {
+
+/// Traffic as a game: a predicted world in which some agents, ego first, choose actions for each step of `dt` [s],
+/// while the others behave as predicted. States are frames; the roster is shared by all. A course ends for all where it
+/// ends for one of those that choose.
+template <class PredictionWorld, class Actions, class Reward>
+class TrafficDomain {
+  using Set = detail::ActionSet<Actions>;
+  using Behavior = typename Set::Behavior;
+  static_assert(
+      PredictionWorld::Behaviors::template contains<Behavior>,
+      "cambium::TrafficDomain<World, Actions, Reward>: the behaviour set of World must contain the model that "
+      "carries out Actions (MacroActions, MotionPrimitives; ExternalInput for SampledInputs)");
+  static_assert(RewardModel<Reward, PredictionWorld>,
+                "cambium::TrafficDomain<World, Actions, Reward>: Reward must judge a world, as cambium::TrafficReward "
+                "does (see RewardModel)");
+  static_assert(
+      Described<Reward>,
+      "cambium::TrafficDomain<World, Actions, Reward>: describe Reward's parameters, as cambium::TrafficReward "
+      "does; where it has none: `static constexpr auto parameters() { return cambium::parameter_list(); }`");
+
+ public:
+  using World = PredictionWorld;
+  using Action = typename Set::Choice;
+  using Memory = typename Behavior::Memory;                                                  ///< of who chooses
+  static constexpr std::size_t behavior_index = World::Behaviors::template index<Behavior>;  ///< of who chooses
+  /// World randomness is keyed by its seed, agent and step: the same actions lead to the same frame.
+  static constexpr bool is_deterministic = true;
+
+  struct State {
+    typename World::FrameType frame;
+    bool over = false;
+  };
+
+  /// Nobody chooses; to be assigned to.
+  explicit TrafficDomain(World world) : world_(std::move(world)) {}
+
+  /// `slots`: who chooses, ego first; they must have the behaviour that carries out `actions`. `cooperation`: what the
+  /// rewards of the others count to each of them (Lenz, Kessler, Knoll 2016), 0 to 1.
+  TrafficDomain(World world, std::span<Slot const> slots, Actions const& actions, Reward const& reward, double dt,
+                double cooperation = 0.0)
+      : world_(std::move(world)),
+        slots_(slots.begin(), slots.end()),
+        actions_(actions),
+        reward_(reward),
+        dt_(dt),
+        cooperation_(cooperation) {}
+
+  /// The world's own frame as a root; over where the reward says that a course ends there.
+  [[nodiscard]] State root() {
+    return {world_.frame(),
+            std::ranges::any_of(slots_, [&](auto slot) { return reward_.judge(world_, slot, dt_).ends; })};
+  }
+  [[nodiscard]] World const& world() const { return world_; }
+  [[nodiscard]] std::span<Slot const> slots() const { return slots_; }
+  [[nodiscard]] Actions const& action_set() const { return actions_; }
+  [[nodiscard]] double dt() const { return dt_; }
+
+  [[nodiscard]] std::size_t agents() const { return slots_.size(); }
+  [[nodiscard]] bool is_terminal(State const& state) { return state.over || !all_drive(state); }
+
+  static constexpr std::size_t max_actions = [] {
+    if constexpr (detail::ListsChoices<Actions>)
+      return Set::capacity;
+    else
+      return std::size_t{1};
+  }();
+
+  [[nodiscard]] std::size_t actions(State const& state, std::size_t agent,
+                                    std::span<Action> out) requires detail::ListsChoices<Actions> {
+    return in_world(state, [&] {
+      auto const& memory = *std::get_if<behavior_index>(&world_.frame().agents[slots_[agent]].memory);
+      return Set::list(actions_, typename World::View(world_, slots_[agent]), memory, out);
+    });
+  }
+
+  [[nodiscard]] Action sample_action(State const&, std::size_t,
+                                     RandomStream& random) requires(!detail::ListsChoices<Actions>) {
+    return Set::sample(actions_, random);
+  }
+
+  /// All drive on as they do without any manoeuvre.
+  [[nodiscard]] Action policy_action(State const&, std::size_t, RandomStream&) const { return Set::usual(actions_); }
+
+  bool step(State& state, std::span<Action const> joint, RandomStream&, std::span<AgentOutcome> outcomes) {
+    enter(state, joint, dt_);
+    double sum = 0.0;
+    for (std::size_t k = 0; k < slots_.size(); ++k) {
+      auto const judgement = reward_.judge(world_, slots_[k], dt_);
+      outcomes[k] = judgement.outcome;
+      sum += judgement.outcome.reward;
+      state.over = state.over || judgement.ends;
+    }
+    for (auto& outcome : outcomes) outcome.reward += cooperation_ * (sum - outcome.reward);
+    world_.exchange(state.frame);
+    state.over = state.over || !all_drive(state);
+    return state.over;
+  }
+
+  /// What the reward says that the rest of a course is worth, the others' by the cooperation.
+  [[nodiscard]] double value(State const& state, std::size_t agent) requires detail::ValuesCourses<Reward, World> {
+    return in_world(state, [&] {
+      double sum = 0.0;
+      for (std::size_t k = 0; k < slots_.size(); ++k)
+        if (k == agent || cooperation_ != 0.0)
+          sum += (k == agent ? 1.0 : cooperation_) * reward_.value(world_, slots_[k], dt_);
+      return sum;
+    });
+  }
+
+  /// How much the reward expects of each action beforehand.
+  void priors(State const& state, std::size_t agent, std::span<Action const> actions,
+              std::span<double> out) requires detail::HasPrior<Reward, World, Set> {
+    in_world(state, [&] {
+      for (std::size_t i = 0; i < actions.size(); ++i)
+        out[i] = reward_.prior(world_, slots_[agent], Set::action(actions_, actions[i]));
+    });
+  }
+
+  /// All drive on for `duration` [s], at most `dt`, and nobody judges it.
+  void advance(State& state, std::span<Action const> joint, double duration) {
+    enter(state, joint, duration);
+    world_.exchange(state.frame);
+  }
+
+  /// Whether what was seen comes close to what was predicted: half a metre, half a metre per second and 0.05 rad, for
+  /// everybody; and whether those who choose are in the middle of the same manoeuvre.
+  [[nodiscard]] bool same_state(State const& predicted, State const& seen) const {
+    auto const is_near = [](auto const& a, auto const& b) {
+      return a.status == b.status && a.lane.corridor == b.lane.corridor && std::abs(a.lane.s - b.lane.s) < 0.5 &&
+             std::hypot(a.state.x - b.state.x, a.state.y - b.state.y) < 0.5 &&
+             std::abs(geometry::angle_difference(a.state.heading, b.state.heading)) < 0.05 &&
+             std::abs(a.state.speed - b.state.speed) < 0.5;
+    };
+    auto const goes_on_alike = [&](Slot slot) {
+      return Set::goes_on_alike(*std::get_if<behavior_index>(&predicted.frame.agents[slot].memory),
+                                *std::get_if<behavior_index>(&seen.frame.agents[slot].memory));
+    };
+    return std::abs(predicted.frame.time - seen.frame.time) < 1e-6 &&
+           std::ranges::equal(predicted.frame.agents, seen.frame.agents, is_near) &&
+           std::ranges::all_of(slots_, goes_on_alike);
+  }
+
+  /// Whether what is known of states of another one holds for this one: the same agents choose among the same actions
+  /// at the same times and for the same reward, and nothing differs in their worlds but the states.
+  [[nodiscard]] bool is_same_game(TrafficDomain const& other) const {
+    return std::ranges::equal(slots_, other.slots_) && equal_parameters(actions_, other.actions_) && dt_ == other.dt_ &&
+           cooperation_ == other.cooperation_ && detail::is_same_value(reward_, other.reward_) &&
+           detail::is_same_scene(world_, other.world_);
+  }
+
+  [[nodiscard]] std::size_t heap_bytes(State const& state) const {
+    return state.frame.agents.size() * sizeof(typename World::Record);
+  }
+
+ private:
+  /// What `f()` finds with the world in `state`, which is given back as it was.
+  template <class F>
+  decltype(auto) in_world(State const& state, F&& f) {
+    struct Visit {
+      World& world;
+      typename World::FrameType& frame;
+      Visit(World& w, typename World::FrameType& f) : world(w), frame(f) { world.exchange(frame); }
+      Visit(Visit const&) = delete;
+      ~Visit() { world.exchange(frame); }
+    } const visit(world_, const_cast<State&>(state).frame);
+    return f();
+  }
+
+  /// Steps the world from `state`, and leaves it there.
+  void enter(State& state, std::span<Action const> joint, double duration) {
+    for (std::size_t k = 0; k < slots_.size(); ++k)
+      Set::set(*std::get_if<behavior_index>(&state.frame.agents[slots_[k]].memory), joint[k]);
+    world_.exchange(state.frame);
+    (void)world_.step(duration);
+  }
+
+  [[nodiscard]] bool all_drive(State const& state) const {
+    return std::ranges::all_of(slots_, [&](Slot slot) {
+      return index_of(slot) < state.frame.agents.size() && state.frame.agents[slot].status == AgentStatus::driving;
+    });
+  }
+
+  World world_;
+  std::vector<Slot> slots_;
+  Actions actions_{};
+  Reward reward_{};
+  double dt_ = 0.2;
+  double cooperation_ = 0.0;
+};
+
+/// The same where the others' time headways are drawn anew for each iteration, by what is believed of each: nodes stand
+/// for ego's actions whatever the others do.
+template <class PredictionWorld, class Actions, class Reward>
+class HypothesisDomain : public TrafficDomain<PredictionWorld, Actions, Reward> {
+  using Base = TrafficDomain<PredictionWorld, Actions, Reward>;
+
+ public:
+  using State = typename Base::State;
+  static constexpr bool is_deterministic = false;
+
+  using Base::Base;
+
+  /// What is believed of the agent at `slot`, whose behaviour must be `hypotheses`.
+  struct Unknown {
+    Slot slot;
+    Belief belief;
+  };
+
+  void set_unknowns(std::span<Unknown const> unknowns, IdmHypotheses const& hypotheses) {
+    unknowns_.assign(unknowns.begin(), unknowns.end());
+    hypotheses_ = hypotheses;
+  }
+
+  void sample_root(State& state, RandomStream& random) const {
+    constexpr auto index = PredictionWorld::Behaviors::template index<IdmHypotheses>;
+    for (auto const& unknown : unknowns_) {
+      auto const region = unknown.belief.sample(random);
+      std::get_if<index>(&state.frame.agents[unknown.slot].memory)->time_headway =
+          static_cast<float>(hypotheses_.headway(region, uniform01(random)));
+    }
+  }
+
+ private:
+  std::vector<Unknown> unknowns_;
+  IdmHypotheses hypotheses_{};
+};
+
+}  // namespace cambium

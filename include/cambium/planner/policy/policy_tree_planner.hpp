@@ -1,0 +1,279 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cambium/behavior/behavior_model.hpp"
+#include "cambium/planner/detail/predicted.hpp"
+#include "cambium/planner/mcts/traffic_actions.hpp"
+#include "cambium/planner/policy/policy_tree.hpp"
+#include "cambium/planner/search/search_result.hpp"
+
+namespace cambium {
+
+/// A sequence of ego's actions, and what it is expected to cost.
+struct PolicyBranch {
+  PolicySequence sequence{};
+  std::size_t scenarios{};  ///< of the others' intentions that it was simulated in
+  PolicyCost mean{};        ///< expected
+  double expected{};        ///< in all
+  double worst{};           ///< of the scenarios that are not too unlikely, no less than the expected one
+  double cost{};            ///< of both: what it is chosen by
+};
+
+/// What a `PolicyTreePlanner` thought.
+template <class World>
+struct PolicyTreeReport {
+  std::vector<PolicyBranch> branches;
+  std::size_t best{};
+  std::vector<std::string> actions;               ///< ego's, in words
+  std::vector<IntentionBranch> intentions;        ///< of the others, that were asked for
+  std::vector<typename World::FrameType> course;  ///< of the best where all others keep their lanes: all agents
+  std::vector<AgentId> agents;                    ///< of the frames' records
+};
+
+/// Plans by a tree of sequences of semantic actions with one change at most, each simulated closed loop under what the
+/// others near it may intend: all keep their lanes, or one of them does otherwise, where that matters to the sequence;
+/// the scenarios are weighed by how likely they are. EUDM (Ding, Zhang, Chen, Shen 2020, "Efficient uncertainty-aware
+/// decision-making for automated driving using guided branching"). `PredictionWorld` must have `MacroActions` in its
+/// behaviour set.
+template <class PredictionWorld>
+struct PolicyTreePlanner {
+  static_assert(detail::check_planner<PredictionWorld>());
+  static_assert(PredictionWorld::Behaviors::template contains<MacroActions>,
+                "cambium::PolicyTreePlanner<PredictionWorld>: the behaviour set of PredictionWorld must contain "
+                "cambium::MacroActions, which carries out ego's actions and the others' intentions");
+
+  using Memory = MacroActions::Memory;  ///< the ongoing action
+
+  struct Workspace {
+    std::optional<PredictionWorld> world;
+    typename PredictionWorld::FrameType start;
+    Slot ego{};
+    bool has_goal = false;
+    std::vector<PolicyBranch> branches;
+    std::vector<IntentionBranch> intentions;
+    std::size_t best{};
+  };
+
+  MacroActions actions = semantic_actions();
+  IdmParameters others{};
+  IntentionPrior intentions{};
+  PolicyWeights weights{};
+  int layers = 5;
+  double layer_duration = 1.0;
+  double step = 0.2;
+  int most_agents = 4;
+  double range = 60.0;
+
+  static constexpr char const* name = "policy_tree_planner";
+  static constexpr char const* summary =
+      "simulates sequences of semantic actions with one change at most, under the others' intentions that matter to "
+      "them, and drives the best of mean and worst case";
+  static constexpr char const* source = "Ding, Zhang, Chen, Shen 2020 (EUDM)";
+  static constexpr auto parameters() {
+    using P = PolicyTreePlanner;
+    return parameter_list(
+        parameter("actions", &P::actions, "-", {}, "ego's"),
+        parameter("others", &P::others, "-", {}, "how the others keep gaps"),
+        parameter("intentions", &P::intentions, "-", {}, "what they may be about to do"),
+        parameter("weights", &P::weights, "-", {}, "what a good sequence is"),
+        parameter("layers", &P::layers, "-", Range{1, 32}, "of the tree"),
+        parameter("layer_duration", &P::layer_duration, "s", Range{0.1, 20}, "of each"),
+        parameter("step", &P::step, "s", Range{0.01, 1}, "of the simulations"),
+        parameter("most_agents", &P::most_agents, "-", Range{0, 32}, "nearest others whose intentions are asked for"),
+        parameter("range", &P::range, "m", non_negative, "within which these are"));
+  }
+
+  template <class View>
+  [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt, Workspace& workspace) const {
+    Plan<View> plan;
+    plan.status = PlanStatus::failed;
+    if constexpr (detail::Predicts<View, typename PredictionWorld::Behaviors, PredictionWorld>) {
+      if (grow(view, memory, workspace) != SearchProblem::none) return plan;
+      begin(workspace, memory, workspace.branches[workspace.best].sequence.first, nullptr);
+      detail::drive_predicted(*workspace.world, workspace.ego, dt, step, plan);
+      memory = *std::get_if<index>(&workspace.world->frame().agents[workspace.ego].memory);
+    }
+    return plan;
+  }
+
+  /// What it thinks of what `view` shows, while it does what `memory` says. Throws `ParameterError` where a parameter
+  /// is out of its range, `SearchError` where there is nothing to plan.
+  template <class View>
+  [[nodiscard]] PolicyTreeReport<PredictionWorld> think(View const& view, Memory const& memory,
+                                                        Workspace& workspace) const {
+    check_parameters(*this);
+    throw_if(grow(view, memory, workspace));
+    PolicyTreeReport<PredictionWorld> report{workspace.branches, workspace.best, {}, workspace.intentions, {}, {}};
+    for (std::size_t i = 0; i < actions.size(); ++i)
+      report.actions.push_back(detail::ActionSet<MacroActions>::text(actions, static_cast<std::uint8_t>(i)));
+    for (auto const& agent : workspace.world->roster().agents) report.agents.push_back(agent.id);
+    report.course.push_back(workspace.start);
+    (void)simulate(workspace, memory, report.branches[report.best].sequence, nullptr,
+                   [&](auto const& frame) { report.course.push_back(frame); });
+    return report;
+  }
+
+ private:
+  static constexpr auto index = PredictionWorld::Behaviors::template index<MacroActions>;
+
+  [[nodiscard]] static bool is_change(MacroAction const& action, int side) {
+    return action.kind == (side > 0 ? MacroAction::Kind::change_left : MacroAction::Kind::change_right);
+  }
+
+  /// The ongoing action: after a change is done, keeping the lane at its acceleration.
+  [[nodiscard]] std::size_t ongoing(Memory const& memory) const {
+    std::size_t const chosen = memory.chosen < actions.size() ? memory.chosen : 0;
+    auto const& action = actions.actions[chosen];
+    bool const changes = is_change(action, 1) || is_change(action, -1);
+    if (!changes || memory.change.active() || memory.is_new) return chosen;
+    for (std::size_t i = 0; i < actions.size(); ++i)
+      if (actions.actions[i].kind == MacroAction::Kind::stay && actions.actions[i].acceleration == action.acceleration)
+        return i;
+    return chosen;
+  }
+
+  template <class View>
+  [[nodiscard]] SearchProblem grow(View const& view, Memory const& memory, Workspace& workspace) const {
+    std::optional<Slot> ego;
+    workspace.world = detail::predicted_for<PredictionWorld>(view, actions, intended_actions(others), ego);
+    if (!ego) return SearchProblem::not_in_world;
+    workspace.ego = *ego;
+    workspace.start = workspace.world->frame();
+    workspace.has_goal = view.has_goal();
+    set_intentions(workspace);
+    workspace.branches.clear();
+    workspace.best = 0;
+    auto const now = ongoing(memory);
+    for (auto const& sequence : policy_sequences(actions.size(), now, static_cast<std::size_t>(layers))) {
+      bool const is_under_way = sequence.first == now && !memory.is_new;
+      if (!is_under_way && !actions.available(view, sequence.first, memory.change)) continue;
+      auto& branch = workspace.branches.emplace_back();
+      branch.sequence = sequence;
+      weigh(workspace, memory, branch);
+      if (sequence.first != now) branch.cost += weights.change;
+      if (!std::isfinite(branch.cost)) return SearchProblem::not_finite;
+      if (branch.cost < workspace.branches[workspace.best].cost) workspace.best = workspace.branches.size() - 1;
+    }
+    return workspace.branches.empty() ? SearchProblem::no_actions : SearchProblem::none;
+  }
+
+  /// Those beside ego may come into its lane from where they are ahead, and not let it into theirs from behind.
+  void set_intentions(Workspace& workspace) const {
+    auto const& world = *workspace.world;
+    auto const& own = world.roster().agents[workspace.ego];
+    auto const& at = world.frame().agents[workspace.ego].lane;
+    auto const& corridor = own.road->corridors[at.corridor];
+    auto const sides = corridor.widths_at(at.s, at.segment);
+    double const width = sides.left + sides.right;
+    workspace.intentions.clear();
+    for (auto const slot : detail::nearest_agents(world, workspace.ego, static_cast<std::size_t>(most_agents), range)) {
+      auto const& other = world.frame().agents[slot];
+      auto const foot = corridor.center.project({other.state.x, other.state.y}, at.segment);
+      double const aside = std::abs(foot.lateral);
+      if (aside < 0.5 * width || aside > 1.5 * width || std::abs(other.lane.heading_error) > 1.0) continue;
+      int const side = foot.lateral > 0.0 ? 1 : -1;
+      auto const changes = change_probabilities(intentions, other.state.speed * std::sin(other.lane.heading_error));
+      double const front = foot.s + world.roster().agents[slot].shape.front;
+      if (front > at.s - own.shape.rear)
+        workspace.intentions.push_back({slot, side > 0 ? Intention::change_right : Intention::change_left,
+                                        side > 0 ? changes.right : changes.left, 0});
+      if (front < at.s + own.shape.front)
+        workspace.intentions.push_back({slot, Intention::not_yield, intentions.not_yield, side});
+    }
+  }
+
+  /// Simulates a branch where all others keep their lanes, and where one of them deviates, weighed by the odds.
+  void weigh(Workspace& workspace, Memory const& memory, PolicyBranch& branch) const {
+    auto const& sequence = branch.sequence;
+    auto const matters = [&](IntentionBranch const& other) {
+      return other.side == 0 || is_change(actions.actions[sequence.first], other.side) ||
+             is_change(actions.actions[sequence.then], other.side);
+    };
+    double sum = 0.0;
+    auto const add = [&](IntentionBranch const* deviation, double odds) {
+      auto const cost = simulate(workspace, memory, sequence, deviation, [](auto const&) {});
+      double const total = weights.total(cost);
+      if (branch.scenarios++ == 0) branch.worst = total;
+      if (odds >= weights.least_odds) branch.worst = std::max(branch.worst, total);
+      branch.mean.efficiency += odds * cost.efficiency;
+      branch.mean.safety += odds * cost.safety;
+      branch.mean.navigation += odds * cost.navigation;
+      sum += odds;
+    };
+    add(nullptr, 1.0);
+    constexpr double most = 0.99;  // odds against all that is likely are finite
+    for (auto const& other : workspace.intentions)
+      if (other.probability > 0.0 && matters(other)) {
+        double const p = std::min(other.probability, most);
+        add(&other, p / (1.0 - p));
+      }
+    for (auto* part : {&branch.mean.efficiency, &branch.mean.safety, &branch.mean.navigation}) *part /= sum;
+    branch.expected = weights.total(branch.mean);
+    branch.worst = std::max(branch.worst, branch.expected);
+    branch.cost = (1.0 - weights.worst_case) * branch.expected + weights.worst_case * branch.worst;
+  }
+
+  /// Puts the predicted world to its start, with ego about to do `action`.
+  void begin(Workspace& workspace, Memory const& memory, std::uint8_t action, IntentionBranch const* deviation) const {
+    auto& world = *workspace.world;
+    world.restore(workspace.start);
+    auto const& agents = world.roster().agents;
+    auto& own = world.template memory<MacroActions>(agents[workspace.ego].id);
+    own = memory;
+    if (action == ongoing(memory))
+      own.chosen = action;
+    else
+      own.choose(action);
+    if (deviation != nullptr)
+      world.template memory<MacroActions>(agents[deviation->slot].id)
+          .choose(static_cast<std::size_t>(deviation->intention));
+  }
+
+  template <class F>
+  [[nodiscard]] PolicyCost simulate(Workspace& workspace, Memory const& memory, PolicySequence const& sequence,
+                                    IntentionBranch const* deviation, F&& visit) const {
+    auto& world = *workspace.world;
+    auto const id = world.roster().agents[workspace.ego].id;
+    begin(workspace, memory, sequence.first, deviation);
+    int const steps = std::max(1, static_cast<int>(std::lround(layers * layer_duration / step)));
+    int const change = static_cast<int>(std::lround(sequence.layers_of_first * layer_duration / step));
+    PolicyCost cost;
+    for (int k = 0; k < steps; ++k) {
+      if (k == change) world.template memory<MacroActions>(id).choose(sequence.then);
+      (void)world.step(step);
+      visit(world.frame());
+      auto const end = course_end(world, workspace.ego);
+      if (end == CourseEnd::over || (workspace.has_goal && world.reached_goal(id))) break;
+      if (end != CourseEnd::none) {  // the sooner, the worse
+        double const left = static_cast<double>(steps - k) / steps;
+        cost.safety += weights.collision * (1.0 + left);
+        cost.efficiency += left;
+        break;
+      }
+      add_step(workspace, id, 1.0 / steps, cost);
+    }
+    return cost;
+  }
+
+  /// The costs of `share` of the time.
+  void add_step(Workspace& workspace, AgentId id, double share, PolicyCost& cost) const {
+    auto const view = workspace.world->observe(id);
+    double const speed = view.state().speed, desired = actions.idm.desired_speed;
+    cost.efficiency += share * std::abs(speed - desired) / desired;
+    auto const front = view.ahead(), rear = view.behind();
+    bool const unsafe = (front && front->gap < weights.safe_gap(speed, front->speed)) ||
+                        (rear && rear->gap < weights.safe_gap(rear->speed, speed));
+    cost.safety += unsafe ? share : 0.0;
+    auto const& at = view.place();
+    if (workspace.has_goal) cost.navigation += share * detail::lanes_to_destination(view.road(), at.corridor, at.piece);
+  }
+};
+
+}  // namespace cambium

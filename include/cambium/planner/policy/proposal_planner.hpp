@@ -1,0 +1,285 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <boost/container/static_vector.hpp>
+
+#include "cambium/behavior/behavior_model.hpp"
+#include "cambium/behavior/following/constant_acceleration.hpp"
+#include "cambium/behavior/lane_change/idm_proposal.hpp"
+#include "cambium/geometry/angle.hpp"
+#include "cambium/planner/detail/predicted.hpp"
+#include "cambium/planner/search/search_result.hpp"
+
+namespace cambium {
+
+/// How a `ProposalPlanner` weighs what a proposal is like, and what it finds comfortable.
+struct ProposalScoring {
+  double progress = 5.0;
+  double time_to_collision = 5.0;
+  double speed_limit = 4.0;
+  double comfort = 2.0;
+  double look_ahead = 0.9;
+  double lowest_acceleration = -4.05;
+  double highest_acceleration = 2.4;
+  double lateral_acceleration = 4.89;
+  double jerk = 8.37;
+  double indifference = 0.01;
+
+  static constexpr char const* name = "proposal_scoring";
+  static constexpr char const* summary =
+      "0 where it collides by its own fault or leaves the road, else the weighted mean of its marks, 0 to 1 each";
+  static constexpr char const* source = "Dauner et al. 2023; Karnchanachari et al. 2024 (nuPlan)";
+  static constexpr auto parameters() {
+    using P = ProposalScoring;
+    return parameter_list(
+        parameter("progress", &P::progress, "-", non_negative, "weight of the way along the lane, over the longest"),
+        parameter("time_to_collision", &P::time_to_collision, "-", non_negative, "of no collision within look_ahead"),
+        parameter("speed_limit", &P::speed_limit, "-", non_negative, "of the share of time within the limit"),
+        parameter("comfort", &P::comfort, "-", non_negative, "of staying within the limits below"),
+        parameter("look_ahead", &P::look_ahead, "s", Range{0, 10}, "at constant velocities"),
+        parameter("lowest_acceleration", &P::lowest_acceleration, "m/s^2", Range{-50, 0}, "comfortable"),
+        parameter("highest_acceleration", &P::highest_acceleration, "m/s^2", Range{0, 50}, "comfortable"),
+        parameter("lateral_acceleration", &P::lateral_acceleration, "m/s^2", Range{0, 50}, "comfortable"),
+        parameter("jerk", &P::jerk, "m/s^3", non_negative, "comfortable, along the course"),
+        parameter("indifference", &P::indifference, "-", Range{0, 1},
+                  "an offset farther from the lane's middle, or a lower speed, must be better by more than this"));
+  }
+
+  void check(std::string const& where) const {
+    if (!(progress + time_to_collision + speed_limit + comfort > 0.0))
+      throw ParameterError(where, "has no weight above 0", "give one");
+  }
+};
+
+/// A proposal, and what came of it.
+struct ProposalScore {
+  double speed_share{};  ///< of the desired speed
+  double offset{};       ///< from the middle of the lane [m]
+  double progress{};     ///< along the lane [m]
+  bool collides = false;
+  bool leaves_road = false;
+  double time_to_infraction = std::numeric_limits<double>::infinity();  ///< until either [s]
+  double time_to_collision = 1.0;                                       ///< mark, 0 or 1
+  double comfort = 1.0;                                                 ///< mark, 0 or 1
+  double speed_limit = 1.0;                                             ///< mark: share of the time
+  double score{};                                                       ///< in all, 0 to 1
+};
+
+/// What a `ProposalPlanner` thought.
+template <class World>
+struct ProposalReport {
+  std::vector<ProposalScore> proposals;  ///< in order of preference
+  std::size_t best{};
+  bool brakes = false;                            ///< the best meets with an infraction too soon
+  std::vector<typename World::FrameType> course;  ///< of the best: all agents, now and step by step
+  std::vector<AgentId> agents;                    ///< of the frames' records
+};
+
+/// Simulates IDM drivers at several speeds and offsets from the middle of its lane, closed loop, among others who
+/// behave as `Others`, scores them, and drives as the best: PDM-Closed (Dauner, Hallgarten, Geiger, Chitta 2023,
+/// "Parting with misconceptions about learning-based vehicle motion planning"). Brakes where that meets with an
+/// infraction too soon. `PredictionWorld` must have `IdmProposal` and `Others` in its behaviour set. Keeps its lane; at
+/// its goal it drives on.
+template <class PredictionWorld, class Others = ConstantAcceleration>
+struct ProposalPlanner {
+  static_assert(detail::check_planner<PredictionWorld, Others>());
+  static_assert(PredictionWorld::Behaviors::template contains<IdmProposal>,
+                "cambium::ProposalPlanner<PredictionWorld>: the behaviour set of PredictionWorld must contain "
+                "cambium::IdmProposal, who is simulated");
+
+  using Memory = IdmProposal::Memory;  ///< the proposal that is driven
+
+  struct Workspace {
+    std::optional<PredictionWorld> world;
+    typename PredictionWorld::FrameType start;
+    Slot ego{};
+    std::vector<Slot> counting;  ///< whom it has to look out for
+    std::vector<ProposalScore> proposals;
+    std::size_t best{};
+  };
+
+  IdmProposal driver{};
+  Others others{};
+  boost::container::static_vector<double, 8> speed_shares{1.0, 0.8, 0.6, 0.4, 0.2};
+  boost::container::static_vector<double, 8> offsets{0.0, -1.0, 1.0};
+  ProposalScoring scoring{};
+  double horizon = 4.0;
+  double step = 0.1;
+  double emergency_time = 2.0;
+  double emergency_deceleration = 6.0;
+
+  static constexpr char const* name = "proposal_planner";
+  static constexpr char const* summary =
+      "simulates IDM drivers over speeds and lateral offsets, and drives as the one that scores best; brakes where "
+      "that "
+      "soon collides";
+  static constexpr char const* source = "Dauner, Hallgarten, Geiger, Chitta 2023 (PDM-Closed)";
+  static constexpr auto parameters() {
+    using P = ProposalPlanner;
+    return parameter_list(
+        parameter("driver", &P::driver, "-", {}, "who is proposed"),
+        parameter("others", &P::others, "-", {}, "how the others are expected to behave"),
+        parameter("speed_shares", &P::speed_shares, "-", Range{0, 2}, "of the desired speed; preferred one first"),
+        parameter("offsets", &P::offsets, "m", Range{-10, 10}, "from the lane's middle; preferred one first"),
+        parameter("scoring", &P::scoring, "-", {}, "what a good proposal is"),
+        parameter("horizon", &P::horizon, "s", Range{0.1, 60}, "of the simulations"),
+        parameter("step", &P::step, "s", Range{0.01, 1}, "of the simulations"),
+        parameter("emergency_time", &P::emergency_time, "s", non_negative, "to an infraction, below which it brakes"),
+        parameter("emergency_deceleration", &P::emergency_deceleration, "m/s^2", Range{0.01, 50}, "then"));
+  }
+
+  void check(std::string const& where) const {
+    if (speed_shares.empty() || offsets.empty())
+      throw ParameterError(where, "has no speed share or no offset", "give 1 to 8 of each");
+  }
+
+  template <class View>
+  [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt, Workspace& workspace) const {
+    Plan<View> plan;
+    plan.status = PlanStatus::failed;
+    if constexpr (detail::Predicts<View, typename PredictionWorld::Behaviors, PredictionWorld>) {
+      if (propose(view, memory, workspace) != SearchProblem::none) return plan;
+      auto const& best = workspace.proposals[workspace.best];
+      if (best.time_to_infraction < emergency_time) {
+        double const speed = std::max(0.0, view.state().speed);
+        return plan_to_center(view, memory.bend, ConstantAcceleration{-emergency_deceleration}.motion(speed, dt), dt,
+                              best.offset);
+      }
+      begin(workspace, best, memory);
+      detail::drive_predicted(*workspace.world, workspace.ego, dt, step, plan);
+      memory = *std::get_if<index>(&workspace.world->frame().agents[workspace.ego].memory);
+    }
+    return plan;
+  }
+
+  /// What it thinks of what `view` shows, while it drives as `memory` says. Throws `ParameterError` where a parameter
+  /// is out of its range, `SearchError` where there is nothing to plan.
+  template <class View>
+  [[nodiscard]] ProposalReport<PredictionWorld> think(View const& view, Memory const& memory,
+                                                      Workspace& workspace) const {
+    check_parameters(*this);
+    throw_if(propose(view, memory, workspace));
+    ProposalReport<PredictionWorld> report{workspace.proposals, workspace.best, false, {workspace.start}, {}};
+    auto const& best = report.proposals[report.best];
+    report.brakes = best.time_to_infraction < emergency_time;
+    for (auto const& agent : workspace.world->roster().agents) report.agents.push_back(agent.id);
+    auto again = best;
+    simulate(workspace, again, memory, [&](auto const& frame) { report.course.push_back(frame); });
+    return report;
+  }
+
+ private:
+  static constexpr auto index = PredictionWorld::Behaviors::template index<IdmProposal>;
+
+  template <class View>
+  [[nodiscard]] SearchProblem propose(View const& view, Memory const& memory, Workspace& workspace) const {
+    std::optional<Slot> ego;
+    workspace.world = detail::predicted_for<PredictionWorld>(view, driver, others, ego);
+    if (!ego) return SearchProblem::not_in_world;
+    workspace.ego = *ego;
+    workspace.start = workspace.world->frame();
+    detail::choose_counting(*workspace.world, *ego, workspace.counting);
+    workspace.proposals.clear();
+    for (double const offset : offsets)
+      for (double const share : speed_shares) {
+        auto& proposal = workspace.proposals.emplace_back();
+        proposal.speed_share = share;
+        proposal.offset = offset;
+        simulate(workspace, proposal, memory, [](auto const&) {});
+      }
+    return choose(workspace);
+  }
+
+  /// Puts the predicted world where the proposal begins.
+  void begin(Workspace& workspace, ProposalScore const& proposal, Memory const& memory) const {
+    auto& world = *workspace.world;
+    world.restore(workspace.start);
+    world.template memory<IdmProposal>(world.roster().agents[workspace.ego].id) = {
+        static_cast<float>(proposal.speed_share), static_cast<float>(proposal.offset), memory.bend};
+  }
+
+  template <class F>
+  void simulate(Workspace& workspace, ProposalScore& proposal, Memory const& memory, F&& visit) const {
+    auto& world = *workspace.world;
+    auto const ego = workspace.ego;
+    begin(workspace, proposal, memory);
+    int const steps = std::max(1, static_cast<int>(std::lround(horizon / step)));
+    int too_fast = 0, driven = 0;
+    double last_acceleration = std::numeric_limits<double>::quiet_NaN();  // none yet
+    for (; driven < steps; ++driven) {
+      auto const before = world.frame().agents[ego];
+      (void)world.step(step);
+      visit(world.frame());
+      auto const& now = world.frame().agents[ego];
+      proposal.progress += 0.5 * step * (before.state.speed + now.state.speed) *
+                           std::cos(0.5 * (before.lane.heading_error + now.lane.heading_error));
+      auto const end = course_end(world, ego, [&](auto const& predicted, Slot slot) {
+        return detail::is_at_fault(predicted, slot, workspace.counting);
+      });
+      if (end == CourseEnd::over) break;
+      proposal.collides = end == CourseEnd::collision;
+      proposal.leaves_road = end == CourseEnd::off_road;
+      if (proposal.collides || proposal.leaves_road) {
+        proposal.time_to_infraction = (driven + 1) * step;
+        break;
+      }
+      judge(workspace, before.state, last_acceleration, proposal);
+      auto const& corridor = world.roster().agents[ego].road->corridors[now.lane.corridor];
+      too_fast += now.state.speed > corridor.speed_limit_at(now.lane.s) + 1e-3 ? 1 : 0;
+    }
+    proposal.speed_limit = 1.0 - static_cast<double>(too_fast) / std::max(1, driven);
+  }
+
+  /// Time to collision and comfort of a step from `before`.
+  template <class State>
+  void judge(Workspace const& workspace, State const& before, double& last_acceleration,
+             ProposalScore& proposal) const {
+    auto const& world = *workspace.world;
+    auto const ego = workspace.ego;
+    auto const& now = world.frame().agents[ego].state;
+    for (double const part : {1.0 / 3, 2.0 / 3, 1.0})
+      if (now.speed > 0.05 && detail::is_at_fault(world, ego, workspace.counting, part * scoring.look_ahead))
+        proposal.time_to_collision = 0.0;
+    double const along = (now.speed - before.speed) / step;
+    double const across = now.speed * geometry::angle_difference(now.heading, before.heading) / step;
+    bool const jerks = std::abs(along - last_acceleration) > scoring.jerk * step;  // not where there was none before
+    if (along < scoring.lowest_acceleration || along > scoring.highest_acceleration || jerks ||
+        std::abs(across) > scoring.lateral_acceleration)
+      proposal.comfort = 0.0;
+    last_acceleration = along;
+  }
+
+  [[nodiscard]] SearchProblem choose(Workspace& workspace) const {
+    constexpr double standing = 0.1;  // [m]
+    auto& proposals = workspace.proposals;
+    double farthest = 0.0;
+    for (auto const& p : proposals)
+      if (!p.collides && !p.leaves_road) farthest = std::max(farthest, p.progress);
+    double const weights = scoring.progress + scoring.time_to_collision + scoring.speed_limit + scoring.comfort;
+    workspace.best = 0;
+    for (std::size_t i = 0; i < proposals.size(); ++i) {
+      auto& p = proposals[i];
+      double const progress = farthest > standing ? std::clamp(p.progress / farthest, 0.0, 1.0) : 1.0;
+      double const sum = scoring.progress * progress + scoring.time_to_collision * p.time_to_collision +
+                         scoring.speed_limit * p.speed_limit + scoring.comfort * p.comfort;
+      p.score = p.collides || p.leaves_road ? 0.0 : sum / weights;
+      if (!std::isfinite(p.score)) return SearchProblem::not_finite;
+      auto const& best = proposals[workspace.best];
+      // Without an infraction first, or with the latest; then by the score.
+      bool const both_free = std::isinf(p.time_to_infraction) && std::isinf(best.time_to_infraction);
+      if (both_free ? p.score > best.score + scoring.indifference : p.time_to_infraction > best.time_to_infraction)
+        workspace.best = i;
+    }
+    return SearchProblem::none;
+  }
+};
+
+}  // namespace cambium

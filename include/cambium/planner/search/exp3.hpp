@@ -1,0 +1,75 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include "cambium/core/distributions.hpp"
+#include "cambium/core/parameters.hpp"
+#include "cambium/planner/search/selection_policy.hpp"
+
+namespace cambium {
+
+/// Exp3 (Auer, Cesa-Bianchi, Freund, Schapire 2002): an arm is played in proportion to exp(gamma G / K), where G is
+/// what it has brought, divided by how likely it was played; gamma is the share of choices at random. Makes no
+/// assumption on how the others play.
+struct Exp3 {
+  struct Statistics {
+    double gain = 0.0;  ///< G
+  };
+
+  double exploration = 0.1;
+
+  static constexpr char const* name = "exp3";
+  static constexpr char const* summary = "plays in proportion to exp(exploration gain / arms), sometimes at random";
+  static constexpr char const* source = "Auer 2002 (nonstochastic)";
+  static constexpr auto parameters() {
+    return parameter_list(parameter("exploration", &Exp3::exploration, "-", Range{1e-6, 1},
+                                    "share of choices at random, gamma in the paper"));
+  }
+
+  template <class Arms, class Random>
+  [[nodiscard]] std::size_t select(Arms const& arms, std::uint32_t, ReturnScale const&, Random& random) const {
+    auto const [best, sum] = normaliser(arms);
+    double left = uniform01(random);
+    for (std::size_t i = 0; i + 1 < arms.size(); ++i) {
+      left -= mixed(arms, i, best, sum);
+      if (left < 0.0) return i;
+    }
+    return arms.size() - 1;
+  }
+
+  template <class Arms>
+  void update(Arms const& arms, std::size_t chosen, double score, ReturnScale const&) const {
+    auto const [best, sum] = normaliser(arms);
+    arms[chosen].statistics.gain += score / mixed(arms, chosen, best, sum);
+  }
+
+ private:
+  struct Normaliser {
+    double best, sum;
+  };
+
+  template <class Arms>
+  [[nodiscard]] Normaliser normaliser(Arms const& arms) const {
+    double best = arms[0].statistics.gain, sum = 0.0;
+    for (auto const& arm : arms) best = std::max(best, arm.statistics.gain);
+    for (auto const& arm : arms) sum += weight(arm, best, arms.size());
+    return {best, sum};
+  }
+
+  /// Relative to the best arm's: never overflows.
+  template <class Arm>
+  [[nodiscard]] double weight(Arm const& arm, double best, std::size_t arms) const {
+    return detail::portable_exp(exploration * (arm.statistics.gain - best) / static_cast<double>(arms));
+  }
+
+  template <class Arms>
+  [[nodiscard]] double mixed(Arms const& arms, std::size_t i, double best, double sum) const {
+    return exploration / static_cast<double>(arms.size()) +
+           (1.0 - exploration) * weight(arms[i], best, arms.size()) / sum;
+  }
+};
+static_assert(SelectionPolicy<Exp3>);
+
+}  // namespace cambium

@@ -1,0 +1,193 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <span>
+#include <string>
+#include <thread>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "cambium/core/error.hpp"
+#include "cambium/planner/search/search_result.hpp"
+#include "cambium/planner/search/tree_search_parameters.hpp"
+
+namespace cambium {
+
+/// Several trees of one search, grown at once on threads of their own, and merged at the root: visits and returns of
+/// the same action are added (root parallelisation: Chaslot, Winands, van den Herik 2008). The trees share the budget
+/// and the memory. The result is a pure function of state, parameters, seed and number of trees. Each run starts its
+/// threads anew; one tree alone needs none, and is as the search itself.
+template <class Search>
+class ParallelTreeSearch {
+ public:
+  using State = typename Search::State;
+  using Action = typename Search::Action;
+  using Result = typename Search::Result;
+  using Domain = std::remove_cvref_t<decltype(std::declval<Search&>().domain())>;
+
+  /// No tree: first `set`, then `run`.
+  ParallelTreeSearch() = default;
+
+  /// As `search`, by `trees` trees. Throws as `set`.
+  ParallelTreeSearch(Search const& search, std::size_t trees) {
+    set(search.domain(), search.parameters(), search.selection(), search.rollout(), search.budget(), trees);
+  }
+
+  /// Searches `domain` by these parameters from now on, by `trees` trees, but no more than there are iterations; keeps
+  /// their memory, and what `keep` has kept. Throws `ParameterError` for no tree, more than 1024, or where a parameter
+  /// is out of its range.
+  template <class Selection, class Rollout, class Budget>
+  void set(Domain domain, TreeSearchParameters parameters, Selection const& selection, Rollout const& rollout,
+           Budget const& budget, std::size_t trees) {
+    if (trees == 0 || trees > 1024)
+      throw ParameterError("ParallelTreeSearch", "has " + std::to_string(trees) + " trees",
+                           "give 1 to 1024, no more than there are cores");
+    auto const count = std::min(trees, std::max<std::size_t>(1, budget.most()));
+    if (count > 1) parameters.memory = std::max<std::size_t>(4096, parameters.memory / count);
+    searches_.reserve(count);
+    while (searches_.size() > count) searches_.pop_back();
+    for (std::size_t i = 0; i < count; ++i) {
+      bool const is_last = i + 1 == count;
+      if (i == searches_.size())
+        searches_.emplace_back(is_last ? std::move(domain) : domain, parameters, selection, rollout,
+                               budget.part(i, count));
+      else {
+        searches_[i].domain() = is_last ? std::move(domain) : domain;
+        searches_[i].set(parameters, selection, rollout, budget.part(i, count));
+      }
+    }
+  }
+
+  /// As `TreeSearch::keep` and `forget`, each tree its own.
+  bool keep(std::span<Action const> joint) {
+    bool any = false;
+    for (auto& search : searches_) any = search.keep(joint) || any;
+    return any;
+  }
+  void forget() {
+    for (auto& search : searches_) search.forget();
+  }
+
+  /// As `TreeSearch::run`. The principal variation is that of the tree that knows most about the best actions. Passes
+  /// on what a domain throws.
+  Result const& run(State const& root, std::uint64_t seed) {
+    if (searches_.empty()) throw SearchError("ParallelTreeSearch", "has no domain yet", "call `set` before `run`");
+    if (searches_.size() == 1) return searches_[0].run(root, seed);
+    std::vector<std::exception_ptr> errors(searches_.size());
+    auto const grow = [&](std::size_t i) {
+      try {
+        searches_[i].run(root, seed, static_cast<std::uint32_t>(i));
+      } catch (...) {
+        errors[i] = std::current_exception();
+      }
+    };
+    {
+      Crew crew;
+      for (std::size_t i = 1; i < searches_.size(); ++i) crew.threads.emplace_back(grow, i);
+      grow(0);
+    }
+    for (auto const& error : errors)
+      if (error) std::rethrow_exception(error);
+    merge();
+    return result_;
+  }
+
+  [[nodiscard]] Result const& result() const { return searches_.size() == 1 ? searches_[0].result() : result_; }
+  [[nodiscard]] std::vector<Search>& searches() { return searches_; }
+  [[nodiscard]] std::vector<Search> const& searches() const { return searches_; }
+
+ private:
+  /// Waits for its threads, also where not all could be started.
+  struct Crew {
+    std::vector<std::thread> threads;
+    ~Crew() {
+      for (auto& thread : threads) thread.join();
+    }
+  };
+
+  void merge() {
+    for (auto const& search : searches_)
+      if (search.result().problem != SearchProblem::none) {  // which makes it empty
+        result_ = search.result();
+        return;
+      }
+    result_ = searches_[0].result();
+    std::vector<ReturnScale> scales(searches_[0].scales().begin(), searches_[0].scales().end());
+    for (std::size_t i = 1; i < searches_.size(); ++i) {
+      auto const& other = searches_[i].result();
+      result_.iterations += other.iterations;
+      result_.nodes += other.nodes;
+      result_.kept_nodes += other.kept_nodes;
+      result_.is_full = result_.is_full || other.is_full;
+      for (std::size_t d = 0; d < result_.depths.size(); ++d) result_.depths[d] += other.depths[d];
+      for (std::size_t k = 0; k < scales.size(); ++k) {
+        scales[k].include(searches_[i].scales()[k].low);
+        scales[k].include(searches_[i].scales()[k].high);
+      }
+      add_arms(other);
+    }
+    auto const& parameters = searches_[0].parameters();
+    for (std::size_t k = 0; k < result_.agents; ++k)
+      result_.best[k] =
+          detail::final_choice(result_.of(k), scales[k], parameters.final_move, parameters.constraint.limit);
+    take_variation();
+  }
+
+  /// Adds what another tree knows of the same actions, and appends those that are its own.
+  void add_arms(Result const& other) {
+    std::vector<RootArm<Action>> arms;
+    std::vector<std::size_t> first;
+    for (std::size_t k = 0; k < result_.agents; ++k) {
+      first.push_back(arms.size());
+      auto const own = result_.of(k);
+      arms.insert(arms.end(), own.begin(), own.end());
+      for (auto const& arm : other.of(k)) {
+        auto const begin = arms.begin() + static_cast<std::ptrdiff_t>(first[k]);
+        auto const same = std::find_if(begin, arms.end(), [&](auto const& a) { return a.action == arm.action; });
+        if (same == arms.end())
+          arms.push_back(arm);
+        else
+          add(*same, arm);
+      }
+      double visits = 0.0;
+      for (auto i = first[k]; i < arms.size(); ++i) visits += arms[i].visits;
+      for (auto i = first[k]; i < arms.size(); ++i) arms[i].share = visits > 0.0 ? arms[i].visits / visits : 0.0;
+    }
+    first.push_back(arms.size());
+    result_.arms = std::move(arms);
+    result_.first_arm = std::move(first);
+  }
+
+  static void add(RootArm<Action>& arm, RootArm<Action> const& other) {
+    auto const visits = arm.visits + other.visits;
+    if (visits == 0) return;
+    arm.mean_return = (arm.mean_return * arm.visits + other.mean_return * other.visits) / visits;
+    arm.mean_cost = (arm.mean_cost * arm.visits + other.mean_cost * other.visits) / visits;
+    arm.visits = visits;
+  }
+
+  void take_variation() {
+    std::uint32_t most = 0;
+    result_.variation.clear();
+    for (auto const& search : searches_) {
+      auto const& own = search.result();
+      bool agrees = true;
+      for (std::size_t k = 0; k < result_.agents; ++k)
+        agrees = agrees && own.choice(k).action == result_.choice(k).action;
+      if (!agrees || own.choice(0).visits <= most) continue;
+      most = own.choice(0).visits;
+      result_.variation = own.variation;
+    }
+    if (most == 0)  // no tree has chosen like all together
+      for (std::size_t k = 0; k < result_.agents; ++k) result_.variation.push_back(result_.choice(k).action);
+  }
+
+  std::vector<Search> searches_;
+  Result result_;
+};
+
+}  // namespace cambium

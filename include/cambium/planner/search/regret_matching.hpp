@@ -1,0 +1,76 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+
+#include "cambium/core/distributions.hpp"
+#include "cambium/core/parameters.hpp"
+#include "cambium/planner/search/selection_policy.hpp"
+
+namespace cambium {
+
+/// Regret matching for simultaneous moves (Hart, Mas-Colell 2000; in trees: Lanctot, Lisy, Winands 2014): an arm is
+/// played in proportion to the regret of not having played it; in zero-sum games the visits tend to a mixed
+/// equilibrium, where `Ucb1` may go round in circles. What the arms that were not played would have brought is
+/// estimated from the one that was, with their means as control variates (Schmid et al. 2019).
+struct RegretMatching {
+  struct Statistics {
+    double regret = 0.0;
+  };
+
+  double exploration = 0.1;
+
+  static constexpr char const* name = "regret_matching";
+  static constexpr char const* summary = "plays in proportion to positive regret, sometimes at random";
+  static constexpr char const* source = "Hart 2000; Lanctot 2014";
+  static constexpr auto parameters() {
+    return parameter_list(
+        parameter("exploration", &RegretMatching::exploration, "-", Range{1e-6, 1}, "share of choices at random"));
+  }
+
+  template <class Arms, class Random>
+  [[nodiscard]] std::size_t select(Arms const& arms, std::uint32_t, ReturnScale const&, Random& random) const {
+    double const regrets = positive_regrets(arms);
+    double left = uniform01(random);
+    for (std::size_t i = 0; i + 1 < arms.size(); ++i) {
+      left -= mixed(arms, i, regrets);
+      if (left < 0.0) return i;
+    }
+    return arms.size() - 1;
+  }
+
+  template <class Arms>
+  void update(Arms const& arms, std::size_t chosen, double score, ReturnScale const& scale) const {
+    double const regrets = positive_regrets(arms);
+    auto const known = [&](std::size_t i) { return arms[i].visits > 0 ? scale.score(arms[i]) : 0.5; };
+    double const surprise = (score - known(chosen)) / mixed(arms, chosen, regrets);
+    double expected = probability(arms, chosen, regrets) * surprise;
+    for (std::size_t i = 0; i < arms.size(); ++i) expected += probability(arms, i, regrets) * known(i);
+    for (std::size_t i = 0; i < arms.size(); ++i)
+      arms[i].statistics.regret += known(i) + (i == chosen ? surprise : 0.0) - expected;
+  }
+
+ private:
+  template <class Arms>
+  [[nodiscard]] static double positive_regrets(Arms const& arms) {
+    double sum = 0.0;
+    for (auto const& arm : arms) sum += std::max(0.0, arm.statistics.regret);
+    return sum;
+  }
+
+  /// What regret alone says.
+  template <class Arms>
+  [[nodiscard]] static double probability(Arms const& arms, std::size_t i, double regrets) {
+    return regrets > 0.0 ? std::max(0.0, arms[i].statistics.regret) / regrets : 1.0 / static_cast<double>(arms.size());
+  }
+
+  /// What is played.
+  template <class Arms>
+  [[nodiscard]] double mixed(Arms const& arms, std::size_t i, double regrets) const {
+    return exploration / static_cast<double>(arms.size()) + (1.0 - exploration) * probability(arms, i, regrets);
+  }
+};
+static_assert(SelectionPolicy<RegretMatching>);
+
+}  // namespace cambium

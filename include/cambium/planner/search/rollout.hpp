@@ -1,0 +1,163 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "cambium/core/distributions.hpp"
+#include "cambium/core/parameters.hpp"
+#include "cambium/planner/search/search_domain.hpp"
+
+namespace cambium {
+
+/// What a roll-out works with; belongs to the search.
+template <SearchDomain Domain>
+struct RolloutRun {
+  Domain& domain;
+  typename Domain::State& state;  ///< moved along
+  RandomStream& random;
+  int steps;                                    ///< at most, to the search's horizon
+  double discount;                              ///< per step
+  std::span<double> returns;                    ///< out: per agent, from `state` on
+  std::span<double> costs;                      ///< out
+  std::span<typename Domain::Action> joint;     ///< working memory, one per agent
+  std::span<AgentOutcome> outcomes;             ///< likewise
+  std::span<typename Domain::Action> options;   ///< likewise, `max_actions`
+  int played = 0;                               ///< out: how many steps there were
+  SearchProblem problem = SearchProblem::none;  ///< out: of the last one
+};
+
+/// How a course is judged from where the tree ends: a copyable struct of parameters with `roll_out(run)`, which fills
+/// in `run.returns` and `run.costs` (zero at first) and says whether the game ended on the way. No allocation.
+template <class R, class Domain>
+concept RolloutPolicy = std::copyable<R> && requires(R const rollout, RolloutRun<Domain>& run) {
+  { rollout.roll_out(run) } -> std::same_as<bool>;
+};
+
+namespace detail {
+
+/// Plays up to `steps` steps in which agent k does `choose(k)`; returns the discount that is left, 0 where the game is
+/// over.
+template <class Run, class Choose>
+[[nodiscard]] double play(Run& run, int steps, Choose&& choose) {
+  double weight = 1.0;
+  for (int step = 0; step < steps; ++step) {
+    for (std::size_t k = 0; k < run.joint.size(); ++k) run.joint[k] = choose(k, step);
+    if (run.problem != SearchProblem::none) return 0.0;
+    std::fill(run.outcomes.begin(), run.outcomes.end(), AgentOutcome{});
+    bool const over = run.domain.step(run.state, run.joint, run.random, run.outcomes);
+    ++run.played;
+    run.problem = problem_of(run.outcomes);
+    if (run.problem != SearchProblem::none) return 0.0;
+    for (std::size_t k = 0; k < run.joint.size(); ++k) {
+      run.returns[k] += weight * run.outcomes[k].reward;
+      run.costs[k] += run.outcomes[k].cost;
+    }
+    if (over) return 0.0;
+    weight *= run.discount;
+  }
+  return weight;
+}
+
+/// One of the agent's actions, each as likely.
+template <class Run>
+[[nodiscard]] auto random_action(Run& run, std::size_t agent) {
+  if constexpr (ListsActions<std::remove_reference_t<decltype(run.domain)>>) {
+    auto const count = static_cast<std::size_t>(run.domain.actions(run.state, agent, run.options));
+    bool const is_wrong = count == 0 || count > run.options.size();
+    if (is_wrong) run.problem = SearchProblem::no_actions;
+    return run.options[is_wrong ? 0 : uniform_index(run.random, static_cast<std::uint32_t>(count))];
+  } else {
+    return run.domain.sample_action(run.state, agent, run.random);
+  }
+}
+
+}  // namespace detail
+
+/// Random actions to the horizon, each held for `hold` steps; more than one is for games in which what may be done now
+/// may be done again.
+struct RandomRollout {
+  int hold = 1;
+  int steps = 1'000'000;
+
+  static constexpr char const* name = "random_rollout";
+  static constexpr char const* summary = "random actions to the horizon";
+  static constexpr char const* source = "-";
+  static constexpr auto parameters() {
+    return parameter_list(
+        parameter("hold", &RandomRollout::hold, "-", Range{1, 1'000'000}, "steps for which an action is kept"),
+        parameter("steps", &RandomRollout::steps, "-", Range{1, 1'000'000}, "no longer than this"));
+  }
+
+  template <class Run>
+  bool roll_out(Run& run) const {
+    return detail::play(run, std::min(run.steps, steps), [&](std::size_t agent, int step) {
+             return step % hold == 0 ? detail::random_action(run, agent) : run.joint[agent];
+           }) == 0.0;
+  }
+};
+
+/// All act to the horizon as the domain's `policy_action` says: behaviour models, in traffic.
+struct PolicyRollout {
+  int steps = 1'000'000;
+
+  static constexpr char const* name = "policy_rollout";
+  static constexpr char const* summary = "the domain's own policy to the horizon";
+  static constexpr char const* source = "-";
+  static constexpr auto parameters() {
+    return parameter_list(parameter("steps", &PolicyRollout::steps, "-", Range{1, 1'000'000}, "no longer than this"));
+  }
+
+  template <class Run>
+  bool roll_out(Run& run) const {
+    static_assert(detail::HasPolicy<std::remove_reference_t<decltype(run.domain)>>,
+                  "cambium::PolicyRollout: the domain must say how agents act: "
+                  "`Action policy_action(State const&, std::size_t agent, RandomStream&)`");
+    return detail::play(run, std::min(run.steps, steps), [&](std::size_t agent, int) {
+             return run.domain.policy_action(run.state, agent, run.random);
+           }) == 0.0;
+  }
+};
+
+/// `Base` for its number of steps, then the domain's `value` of where that led.
+template <class Base>
+struct TruncatedRollout {
+  Base base{};
+
+  static constexpr char const* name = "truncated_rollout";
+  static constexpr char const* summary = "another roll-out's first steps, then the domain's value";
+  static constexpr auto parameters() {
+    return parameter_list(parameter("base", &TruncatedRollout::base, "-", {}, "what is done, and for how many steps"));
+  }
+
+  template <class Run>
+  bool roll_out(Run& run) const {
+    static_assert(detail::HasValue<std::remove_reference_t<decltype(run.domain)>>,
+                  "cambium::TruncatedRollout: the domain must say what a state is worth: "
+                  "`double value(State const&, std::size_t agent)`");
+    int const steps = std::min(run.steps, base.steps);
+    if (base.roll_out(run)) return true;
+    double const weight = detail::integer_power(run.discount, static_cast<unsigned>(steps));
+    for (std::size_t k = 0; k < run.joint.size(); ++k) run.returns[k] += weight * run.domain.value(run.state, k);
+    return false;
+  }
+};
+
+/// No steps: the domain's `value` of the leaf where it has one, else 0.
+struct NoRollout {
+  static constexpr char const* name = "no_rollout";
+  static constexpr char const* summary = "the domain's value of the leaf, else 0";
+  static constexpr char const* source = "-";
+  static constexpr auto parameters() { return parameter_list(); }
+
+  template <class Run>
+  bool roll_out(Run& run) const {
+    if constexpr (detail::HasValue<std::remove_reference_t<decltype(run.domain)>>)
+      for (std::size_t k = 0; k < run.joint.size(); ++k) run.returns[k] = run.domain.value(run.state, k);
+    return false;
+  }
+};
+
+}  // namespace cambium

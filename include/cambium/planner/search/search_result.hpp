@@ -1,0 +1,175 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cambium/core/distributions.hpp"
+#include "cambium/core/error.hpp"
+#include "cambium/planner/search/detail/search_tree.hpp"
+#include "cambium/planner/search/search_domain.hpp"
+#include "cambium/planner/search/selection_policy.hpp"
+#include "cambium/planner/search/tree_search_parameters.hpp"
+
+namespace cambium {
+
+/// A search cannot be done.
+struct SearchError : Error {
+  using Error::Error;
+};
+
+/// Throws `SearchError` unless `problem` is none; it arose `steps` steps from the root.
+inline void throw_if(SearchProblem problem, int steps = 0) {
+  auto const where = "search" + (steps > 0 ? ", at step " + std::to_string(steps) : std::string());
+  switch (problem) {
+    case SearchProblem::none:
+      return;
+    case SearchProblem::no_agents:
+      throw SearchError("search", "no agent chooses", "let SearchDomain::agents be at least 1");
+    case SearchProblem::no_actions:
+      throw SearchError(where, "an agent has no action, or more than max_actions, in a state where the game goes on",
+                        "list at least one, such as doing nothing, or let step say that the game is over");
+    case SearchProblem::no_budget:
+      throw SearchError("search", "its budget is 0 iterations", "give it at least 1");
+    case SearchProblem::terminal_root:
+      throw SearchError("search", "the game is over at the root", "ask is_terminal before you search");
+    case SearchProblem::not_finite:
+      throw SearchError(where, "a reward, a cost or a value is not a finite number, or a return is beyond 1e290",
+                        "check what step, value and the evaluators give");
+    case SearchProblem::cost_out_of_range:
+      throw SearchError(where, "a cost is not within 0 to 1",
+                        "give the probability of what must not happen, 1 where it happened");
+    case SearchProblem::bad_priors:
+      throw SearchError(where, "the priors of a node are negative, not finite or all zero",
+                        "give weights of at least 0, one of them positive");
+    case SearchProblem::not_in_world:
+      throw SearchError("search", "the agent that is to plan is not in the predicted world, or not in traffic",
+                        "ask for an agent that drives");
+  }
+}
+
+/// What a search found about one action of one agent at the root.
+template <class Action>
+struct RootArm {
+  Action action{};
+  std::uint32_t visits = 0;
+  double mean_return = 0.0;
+  double mean_cost = 0.0;
+  double share = 0.0;  ///< of the visits: the agent's mixed strategy
+};
+
+/// What a search found.
+template <class Action>
+struct SearchResult {
+  SearchProblem problem = SearchProblem::none;
+  int problem_steps = 0;  ///< from the root to where it arose
+  std::uint64_t seed = 0;
+  std::size_t iterations = 0;
+  std::size_t nodes = 0;       ///< in the tree, with those that were kept
+  std::size_t kept_nodes = 0;  ///< of the search before
+  bool is_full = false;        ///< memory ran out; the search went on without new nodes
+
+  std::size_t agents = 0;
+  std::vector<RootArm<Action>> arms;   ///< of the first agent, then of the next, ...
+  std::vector<std::size_t> first_arm;  ///< per agent, and the end of `arms`
+  std::vector<std::size_t> best;       ///< per agent: the action to take, among its arms
+  std::vector<Action> variation;       ///< principal variation: all agents' actions, step by step
+  std::vector<std::uint32_t> depths;   ///< by steps: how many iterations left the tree there
+
+  /// The agent's actions at the root. Throws `SearchError` where there is a problem, or no such agent.
+  [[nodiscard]] std::span<RootArm<Action> const> of(std::size_t agent) const {
+    throw_if(problem, problem_steps);
+    if (agent >= agents)
+      throw SearchError("search result", "has no agent " + std::to_string(agent),
+                        agents == 0 ? "run the search first" : "it has " + std::to_string(agents));
+    return {arms.data() + first_arm[agent], first_arm[agent + 1] - first_arm[agent]};
+  }
+  /// What the agent is to do, and what is expected of it. Throws as `of`.
+  [[nodiscard]] RootArm<Action> const& choice(std::size_t agent) const { return of(agent)[best[agent]]; }
+
+  /// Empties it, but keeps its memory; makes room for the longest variation.
+  void clear(std::uint64_t new_seed, std::size_t horizon, std::size_t choosing) {
+    problem = SearchProblem::none;
+    problem_steps = 0;
+    seed = new_seed;
+    iterations = nodes = kept_nodes = agents = 0;
+    is_full = false;
+    arms.clear();
+    first_arm.clear();
+    best.clear();
+    variation.clear();
+    variation.reserve(horizon * choosing);
+    depths.assign(horizon + 1, 0);
+  }
+};
+
+namespace detail {
+
+/// Which of `arms` to take: of those that cost no more than they may, the best by `final_move`; else the cheapest.
+/// Costs are estimated by Laplace's rule of succession: who was hardly tried is not taken to be safe.
+template <class Action>
+[[nodiscard]] std::size_t final_choice(std::span<RootArm<Action> const> arms, ReturnScale scale, FinalMove final_move,
+                                       double cost_limit) {
+  auto const cost = [](RootArm<Action> const& arm) { return (arm.mean_cost * arm.visits + 1.0) / (arm.visits + 2.0); };
+  double visits = 0.0, cheapest = 1.0;
+  for (auto const& arm : arms) {
+    visits += arm.visits;
+    if (arm.visits > 0) cheapest = std::min(cheapest, cost(arm));
+  }
+  double const log_visits = portable_log(std::max(1.0, visits));
+  double const limit = std::max(cheapest, cost_limit);
+  scale.multiplier = 0.0;
+  auto const merit = [&](RootArm<Action> const& arm) {
+    double const score = scale.score(arm.mean_return, 0.0);
+    if (final_move == FinalMove::most_visits) return arm.visits + 0.5 * score;  // equally visited: the better one
+    return final_move == FinalMove::best_return ? score : score - std::sqrt(log_visits / arm.visits);
+  };
+  return best_arm(arms, [&](RootArm<Action> const& arm) {
+    return arm.visits > 0 && cost(arm) <= limit ? merit(arm) : -std::numeric_limits<double>::infinity();
+  });
+}
+
+/// Follows what all agents do: at the root their best actions, below it those most visited.
+template <class Tree, class Action>
+void fill_variation(Tree const& tree, std::span<std::uint16_t> joint, SearchResult<Action>& result) {
+  for (std::uint32_t node = 0; node != no_node && tree.has_arms(node);) {
+    for (std::size_t k = 0; k < tree.agents(); ++k) {
+      auto const arms = tree.arms(node, k);
+      joint[k] = static_cast<std::uint16_t>(
+          node == 0 ? result.best[k] : best_arm(arms, [](auto const& arm) { return double(arm.visits); }));
+    }
+    auto const child = tree.find(node, joint);
+    if (child == no_node && node != 0) break;  // their best actions need not have been tried together
+    for (std::size_t k = 0; k < tree.agents(); ++k) result.variation.push_back(tree.arms(node, k)[joint[k]].action);
+    node = child;
+  }
+}
+
+/// Fills in what the tree says: arms, best ones, principal variation.
+template <class Tree, class Action>
+void fill_result(Tree const& tree, std::span<ReturnScale const> scales, TreeSearchParameters const& parameters,
+                 std::span<std::uint16_t> joint, SearchResult<Action>& result) {
+  result.agents = tree.agents();
+  result.nodes = tree.size();
+  for (std::size_t k = 0; k < tree.agents(); ++k) {
+    result.first_arm.push_back(result.arms.size());
+    double visits = 0.0;
+    for (auto const& arm : tree.arms(0, k)) visits += arm.visits;
+    for (auto const& arm : tree.arms(0, k))
+      result.arms.push_back(
+          {arm.action, arm.visits, arm.mean_return(), arm.mean_cost(), visits > 0.0 ? arm.visits / visits : 0.0});
+  }
+  result.first_arm.push_back(result.arms.size());
+  for (std::size_t k = 0; k < tree.agents(); ++k)
+    result.best.push_back(final_choice(result.of(k), scales[k], parameters.final_move, parameters.constraint.limit));
+  fill_variation(tree, joint, result);
+}
+
+}  // namespace detail
+
+}  // namespace cambium
