@@ -1,9 +1,9 @@
-/// The map room, but for what only makers, checkers and writers of maps need, or who asks for more than the plane. Include
-/// those by name, below `cambium/map/`: `opendrive.hpp` reads files (pugixml); `build/map_builder.hpp` with
-/// `build/road_plan.hpp`, `road/curve_layout.hpp`, `build/polyline_roads.hpp` and `build/center_line_csv.hpp` make maps in
-/// code; `build/build_map.hpp` makes one of an `opendrive/document.hpp`; `lanes/lane_network.hpp`, `opendrive/check.hpp` and
-/// `opendrive/writer.hpp` check and write; `road/road_surface.hpp` (Eigen) and `corridor/road_area.hpp` (Boost.Geometry)
-/// tell where lanes lie in space, and their union.
+/// The map room, without what is only for making, checking and writing maps, or for more than the plane. Include that by
+/// name, below `cambium/map/`: `opendrive.hpp` reads files (pugixml); `build/map_builder.hpp`, `build/road_plan.hpp`,
+/// `road/curve_layout.hpp`, `build/polyline_roads.hpp` and `build/center_line_csv.hpp` make maps in code;
+/// `build/build_map.hpp` makes a map of an `opendrive/document.hpp`; `lanes/lane_network.hpp`, `opendrive/check.hpp` and
+/// `opendrive/writer.hpp` check and write; `road/road_surface.hpp` (Eigen) and `corridor/road_area.hpp`
+/// (Boost.Geometry) tell where lanes lie in space, and their union.
 #pragma once
 
 // First: it says which language and flags cambium needs.
