@@ -108,11 +108,12 @@ struct BasicIdmStochastic {
     if (yielding.enabled && is_new) begin_somewhere(stream, memory);
     if (yielding.enabled) change_mind(stream, memory, dt);
     double const speed = std::max(0.0, view.state().speed);
+    auto const next = view.ahead({.merging = rules.merging});
     RandomStream own(memory.person, 0, 0, purpose);
     auto const p = drawn == Drawn::per_agent ? draw(own) : draw(stream);
     IdmLaw const law(p, speed, rules.desired_speed(p, view, speed));
     Strictest ahead(law);
-    rules.heed(view, ahead);
+    rules.heed(view, next, ahead);
     if (memory.yields) let_in(view, law, p.comfortable_deceleration, ahead);
     auto const motion = law.motion(ahead.constraint(), dt, tolerance);
     return plan_along_lane(view, rules.bound(view, p, view.place().s, speed, motion, dt, memory.rules), dt);

@@ -95,27 +95,25 @@ struct LaneChanging {
     course.renew(memory.change, view.shape(), speed);
     if (memory.change.target == home && speed < standing && way_to_stop(view, view.place()) < idm.minimum_gap + 1)
       memory.change = {};  // it must leave this lane, too: no way is left to come to its middle before
-    auto const go_on = [&](Strictest<IdmLaw>& ahead) {
-      if (auto const end = rules.lane_end_ahead(view)) ahead.heed(*end);
-      auto const motion = law.motion(ahead.constraint(), dt, tolerance);
-      return plan_lane_change(view, memory.change,
-                              rules.bound(view, idm, view.place().s, speed, motion, dt, memory.rules), dt);
-    };
+    Strictest ahead(law);
     if (memory.change.active()) {
       if (memory.change.target != home && !may_go_on(view, law, memory.change)) abort(view, speed, memory);
-      auto ahead = ahead_while_changing(view, law, leader, memory.change);
-      return go_on(ahead);
-    }
-    double const end = lane_end(view, home, view.place().piece);
-    auto ahead = ahead_in_lane(view, law, leader);
-    bool const may_change = memory.rest == 0.0f;
-    auto const target = choose(LaneKeeping<View>{view, law, leader, end, may_change, ahead});
-    if (may_change && target != none<CorridorId> && is_wide_enough(view, target, 0.5 * speed * course.duration)) {
-      memory.change = course.begin(target, view.shape(), speed, room(view, leader, target));
-      memory.rest = static_cast<float>(rest + course.duration);
       ahead = ahead_while_changing(view, law, leader, memory.change);
+    } else {
+      ahead = ahead_in_lane(view, law, leader);
+      bool const may_change = memory.rest == 0.0f;
+      auto const target =
+          choose(LaneKeeping<View>{view, law, leader, lane_end(view, home, view.place().piece), may_change, ahead});
+      if (may_change && target != none<CorridorId> && is_wide_enough(view, target, 0.5 * speed * course.duration)) {
+        memory.change = course.begin(target, view.shape(), speed, room(view, leader, target));
+        memory.rest = static_cast<float>(rest + course.duration);
+        ahead = ahead_while_changing(view, law, leader, memory.change);
+      }
     }
-    return go_on(ahead);
+    if (auto const end = rules.lane_end_ahead(view)) ahead.heed(*end);
+    auto const motion = law.motion(ahead.constraint(), dt, tolerance);
+    return plan_lane_change(view, memory.change,
+                            rules.bound(view, idm, view.place().s, speed, motion, dt, memory.rules), dt);
   }
 
   /// How a follower drives, as this driver assumes it.

@@ -194,7 +194,12 @@ struct RoadRules {
     bool const bends = slow_for_bends && fastest * fastest * view.corridor().sharpest_bend > lateral_acceleration;
     if (!bends && !obey_signals) [[likely]]
       return motion;
-    return within_bounds(view, {idm.comfortable_deceleration, -idm.lowest_acceleration}, s, speed, motion, dt, memory);
+    View const here = view;  // what is not inlined gets copies, so that the originals can stay in registers
+    Memory changed = memory;
+    auto const bounded =
+        within_bounds(here, {idm.comfortable_deceleration, -idm.lowest_acceleration}, s, speed, motion, dt, changed);
+    memory = changed;
+    return bounded;
   }
 
  private:

@@ -41,17 +41,14 @@ inline constexpr double on_path = 0.3;
   return hint;
 }
 
-/// The place beside `at` on lane corridor `number` of the same road, for an agent at `pose`: found from the lanes
-/// beside, for a corridor may come by the same place twice. O(1) for a corridor that is next, else O(lanes of the
-/// corridor).
-CAMBIUM_NOINLINE [[nodiscard]] inline map::LanePlace locate_beside(Map const& map, map::RoadCorridor const& road,
-                                                                   map::LanePlace const& at, CorridorId number,
-                                                                   geometry::Pose const& pose) {
+/// As `locate_beside`, for a lane corridor that is not next to that of `at`.
+CAMBIUM_NOINLINE [[nodiscard]] inline map::LanePlace locate_farther_beside(Map const& map,
+                                                                           map::RoadCorridor const& road,
+                                                                           map::LanePlace const& at, CorridorId number,
+                                                                           geometry::Pose const& pose) {
   auto const& from = road.corridors[at.corridor].pieces[at.piece];
   auto const& corridor = road.corridors[number];
   map::LanePlace hint;
-  if (number == from.left || number == from.right)
-    return map::locate(road, number, pose, hint_beside(road, at, from, number));
   double const share = (at.s - from.begin) / (from.end - from.begin);
   for (bool const leftwards : {true, false})
     for (LaneId lane = from.lane; is_valid(lane);
@@ -64,6 +61,18 @@ CAMBIUM_NOINLINE [[nodiscard]] inline map::LanePlace locate_beside(Map const& ma
         return map::locate(road, number, pose, hint);
       }
   return map::locate(road, number, pose);
+}
+
+/// The place beside `at` on lane corridor `number` of the same road, for an agent at `pose`: found from the lanes
+/// beside, for a corridor may come by the same place twice. O(1) for a corridor that is next, else O(lanes of the
+/// corridor).
+[[nodiscard]] inline map::LanePlace locate_beside(Map const& map, map::RoadCorridor const& road,
+                                                  map::LanePlace const& at, CorridorId number,
+                                                  geometry::Pose const& pose) {
+  auto const& from = road.corridors[at.corridor].pieces[at.piece];
+  if (number == from.left || number == from.right) [[likely]]
+    return map::locate(road, number, pose, hint_beside(road, at, from, number));
+  return locate_farther_beside(map, road, at, number, pose);
 }
 
 /// Finds the new place of an agent that has driven `distance` [m] on its road: in its lane corridor, or in the next one
