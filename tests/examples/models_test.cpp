@@ -80,7 +80,7 @@ TEST_CASE("every model, goal, driver and shape in the headers is in its room's t
                           kind("geometry", "constexpr Shape (\\w+)\\(\\)", 8)}) {
     auto const text = tables(one.folder);
     int found = 0;
-    for (auto const& file : fs::directory_iterator(one.folder)) {
+    for (auto const& file : fs::recursive_directory_iterator(one.folder)) {
       if (!file.is_regular_file()) continue;
       auto const header = content_of(file.path());
       for (std::sregex_iterator match(header.begin(), header.end(), one.declaration), end; match != end; ++match) {
