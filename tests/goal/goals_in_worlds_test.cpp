@@ -208,3 +208,90 @@ TEST_CASE("a goal that can never be reached is refused with what is wrong with i
   CHECK_NOTHROW(world.add(driver(100, cb::StateLimits{.lowest_speed = 10, .highest_speed = 10})));
   CHECK_NOTHROW(world.add(driver(200, cb::LaneLimits{.from = 20, .to = 20, .left = -0.5, .right = 0.5})));
 }
+
+namespace {
+
+/// Reached when driving at some speed beyond a place in one of a few lanes.
+struct PassFast {
+  std::vector<cb::LaneId> ends{};
+  double speed = 12.0, x = 0.0;
+
+  static constexpr char const* name = "pass_fast";
+  static constexpr auto parameters() {
+    return cb::parameter_list(cb::parameter("speed", &PassFast::speed, "m/s", cb::Range{0, 100}, "at least"),
+                              cb::parameter("x", &PassFast::x, "m", cb::any_finite, "from here on"));
+  }
+  void check(std::string const& where) const {
+    if (x > 1000.0) throw cb::ParameterError(where, "x is beyond the road", "give less");
+  }
+  std::vector<cb::LaneId> lanes(cb::Map const&) const { return ends; }
+  bool at_goal(cb::GoalSituation const& at) const { return at.speed >= speed && at.pose.x >= x; }
+};
+
+/// The least that a goal of one's own needs.
+struct NeverAgain {
+  bool at_goal(cb::GoalSituation const& at) const { return at.pose.x > 150.0; }
+};
+
+}  // namespace
+
+TEST_CASE("a goal of one's own is reached as its function says, alone and as a part of others") {
+  Sim world(straight_road(2, 1000.0));
+  auto const fast = world.add(driver(100, PassFast{.x = 130.0}, 15.0));
+  auto const slow = world.add(driver(60, PassFast{.x = 70.0}, 10.0));
+  auto const bare = world.add(driver(20, NeverAgain{}, 10.0));
+  auto const both = world.add(driver(140, cb::AllGoals{{NeverAgain{}, cb::StateLimits{.lowest_speed = 5.0}}}));
+  auto const first = world.add(driver(180, cb::GoalSequence{{PassFast{.speed = 5.0, .x = 190.0}, NeverAgain{}}}));
+  for (auto const id : {fast, slow, bare, both, first}) CHECK_FALSE(world.reached_goal(id));
+  auto copy = world;
+  for (int i = 0; i < 6; ++i) REQUIRE(copy.step(0.5));
+  CHECK(copy.reached_goal(fast));
+  CHECK_FALSE(copy.reached_goal(slow));
+  CHECK_FALSE(copy.reached_goal(bare));
+  CHECK(copy.reached_goal(both));
+  CHECK(copy.reached_goal(first));
+  CHECK(copy.record(first).goals_passed == 2);
+  CHECK_FALSE(world.reached_goal(fast));
+  auto future = world.observe(fast).predict(cb::predict_all_as<cb::BehaviorSet<cb::IdmClassic>>(cb::IdmClassic{}));
+  for (int i = 0; i < 8; ++i) REQUIRE(future.step(0.5));
+  CHECK(future.reached_goal(fast));
+}
+
+TEST_CASE("the route of an agent leads to the lanes that its own kind of goal names") {
+  Sim world(support::own_map("intersection_4way.xodr"));
+  auto const& map = world.map();
+  int routes = 0;
+  for (auto const& lane : map.lanes()) {
+    if (!lane.drivable() || !lane.predecessors.empty() || lane.successors.size() < 2) continue;
+    auto const at = lane.path.pose(5.0);
+    for (auto const inside : lane.successors) {
+      auto const end = map.lane(inside).successors.front();
+      auto const id = world.add({.position = at.position(), .heading = at.heading, .goal = PassFast{.ends = {end}}});
+      CHECK(world.roster().agents[world.slot_of(id)].road->route.back() == end);
+      world.remove(id);
+      ++routes;
+    }
+  }
+  CHECK(routes > 5);
+  auto const anywhere = map.lanes().front().path.pose(1.0);
+  CHECK_THROWS_WITH_AS(world.add({.position = anywhere.position(), .goal = PassFast{.ends = {cb::LaneId{9999}}}}),
+                       doctest::Contains("which the map does not have"), cb::WorldError);
+}
+
+TEST_CASE("a goal of one's own is checked by its description and its own check, compared, and given back") {
+  Sim world(straight_road(2, 1000.0));
+  CHECK_THROWS_WITH_AS(world.add(driver(100, PassFast{.speed = -1.0})), doctest::Contains("pass_fast.speed: is -1 m/s"),
+                       cb::ParameterError);
+  CHECK_THROWS_WITH_AS(world.add(driver(100, cb::AnyGoal{{PassFast{.x = 2000.0}}})),
+                       doctest::Contains("x is beyond the road"), cb::ParameterError);
+  CHECK(world.size() == 0);
+  cb::OwnGoal const goal = PassFast{.x = 5.0}, same = PassFast{.x = 5.0}, other = PassFast{.x = 6.0},
+                    bare = NeverAgain{};
+  CHECK(goal == same);
+  CHECK_FALSE(goal == other);
+  CHECK_FALSE(goal == bare);
+  CHECK(bare == cb::OwnGoal(NeverAgain{}));
+  REQUIRE(goal.get<PassFast>() != nullptr);
+  CHECK(goal.get<PassFast>()->x == 5.0);
+  CHECK(goal.get<NeverAgain>() == nullptr);
+}

@@ -19,7 +19,7 @@ struct AtGoal {
 
   template <class World>
   [[nodiscard]] bool operator()(World const& world, Slot slot) const {
-    return world.reached_goal(world.roster().agents[slot].id);
+    return world.reached_goal(slot);
   }
 };
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "cambium/goal/goal_situation.hpp"
+#include "cambium/goal/own_goal.hpp"
 #include "cambium/goal/simple_goals.hpp"
 
 namespace cambium {
@@ -13,9 +14,10 @@ struct AllGoals;
 struct AnyGoal;
 struct GoalSequence;
 
-/// What an agent wants to reach; decides its route where none is given. A value: combinations hold their parts.
+/// What an agent wants to reach; decides its route where none is given. A value: combinations hold their parts. Any
+/// struct of your own that is a `GoalModel` converts to it, and can be a part like any other.
 using Goal = std::variant<NoGoal, ReachPolygon, ReachLane, StateLimits, LaneLimits, ReachLaneEnd, ReachLaneBeside,
-                          AllGoals, AnyGoal, GoalSequence>;
+                          AllGoals, AnyGoal, GoalSequence, OwnGoal>;
 
 /// Reached when all of its parts are, at the same time; without parts never.
 struct AllGoals {
@@ -51,6 +53,10 @@ struct GoalSequence {
   /// How many parts are passed, the agent being at `at`.
   [[nodiscard]] std::size_t pass(GoalSituation const& at) const;
 };
+
+static_assert(GoalModel<NoGoal> && GoalModel<ReachPolygon> && GoalModel<ReachLane> && GoalModel<StateLimits> &&
+              GoalModel<LaneLimits> && GoalModel<ReachLaneEnd> && GoalModel<ReachLaneBeside> && GoalModel<AllGoals> &&
+              GoalModel<AnyGoal> && GoalModel<GoalSequence> && GoalModel<OwnGoal>);
 
 /// True when the goal is reached. Pure.
 [[nodiscard]] bool at_goal(Goal const& goal, GoalSituation const& situation);

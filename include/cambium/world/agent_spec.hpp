@@ -39,8 +39,8 @@ struct Given : Value {
                   "cambium::World::AgentSpec::behavior: this type is none of the Models of the world's "
                   "cambium::BehaviorSet<Models...>; add it there");
     static_assert(fits || part != SpecPart::goal,
-                  "cambium::World::AgentSpec::goal: this type is no cambium::Goal (cambium/goal/goal.hpp lists them); "
-                  "judge by an evaluator of your own what these cannot say");
+                  "cambium::World::AgentSpec::goal: this type is no goal; give one of cambium/goal.hpp, or a copyable "
+                  "struct of your own with `bool at_goal(cambium::GoalSituation const&) const`");
     static_assert(
         fits || part != SpecPart::id,
         "cambium::World::AgentSpec::id: this is no id; write cambium::AgentId{7}, or leave it out to get a free one");

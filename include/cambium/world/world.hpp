@@ -248,7 +248,10 @@ class World {
   [[nodiscard]] LaneId lane_of(AgentId id) const { return situation(id).lane; }
 
   /// True when the agent is at its goal. Throws as `slot_of`.
-  [[nodiscard]] bool reached_goal(AgentId id) const { return at_goal(roster_->goals[slot_of(id)], situation(id)); }
+  [[nodiscard]] bool reached_goal(AgentId id) const { return reached_goal(slot_of(id)); }
+  [[nodiscard]] bool reached_goal(Slot slot) const {
+    return at_goal(roster_->goals[slot], detail::situation_of(roster_->agents[slot], frame_.agents[slot]));
+  }
 
   /// What the agent's behaviour `B` remembers, to set it from outside. Throws `WorldError` where its behaviour is
   /// another.

@@ -205,7 +205,7 @@ template <class World>
       return who + "touches " + (is_valid(contact->agent) ? "agent " + to_string(contact->agent) : "an object");
     if (OffRoad{}(world, slot)) return who + "is off the road";
     if (OncomingLane{}(world, slot)) return who + "is in a lane of oncoming traffic";
-    if (world.reached_goal(world.roster().agents[slot].id)) return who + "is at its goal";
+    if (world.reached_goal(slot)) return who + "is at its goal";
   }
   return "the reward (`judge`) says so";
 }

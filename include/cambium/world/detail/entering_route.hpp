@@ -67,11 +67,16 @@ namespace cambium::detail {
                    "enter on a lane and along its direction");
 }
 
-/// Throws `WorldError` where the map has no lane of that id, or the lane is not between `from` and `to` [m].
-inline void check_stretch_of(Map const& map, LaneId lane, double from, double to, std::string const& where) {
+/// Throws `WorldError` where the map has no lane of that id.
+inline void check_lane_of_goal(Map const& map, LaneId lane, std::string const& where) {
   if (index_of(lane) >= map.lanes().size())
     throw WorldError(where, "its goal names lane " + to_string(lane) + ", which the map does not have",
                      "use Map::find_lane");
+}
+
+/// Throws `WorldError` where the map has no lane of that id, or the lane is not between `from` and `to` [m].
+inline void check_stretch_of(Map const& map, LaneId lane, double from, double to, std::string const& where) {
+  check_lane_of_goal(map, lane, where);
   if (double const length = map.lane(lane).length(); from > length || to < 0.0)
     throw WorldError(where,
                      "its goal's stretch of lane is not on lane " + to_string(lane) + ", which is " +
@@ -88,6 +93,7 @@ inline void check_stretch_of(Map const& map, LaneId lane, double from, double to
   if (auto const* const limits = std::get_if<LaneLimits>(&goal); limits && is_valid(limits->lane))
     check_stretch_of(map, limits->lane, limits->from, limits->to, where);
   if (auto* const beside = std::get_if<ReachLaneBeside>(&goal); beside && !is_valid(beside->from)) beside->from = lane;
+  if (auto const* const own = std::get_if<OwnGoal>(&goal)) own->check(where);
   auto const complete = [&](std::vector<Goal>& parts) {
     if (parts.empty())
       throw WorldError(where, "its goal is made of no parts: it is never reached", "give it parts, or NoGoal");
@@ -141,6 +147,12 @@ class Destinations {
     for (auto const& part : goal.parts)
       for (auto const lane : of(part)) all.push_back(lane);
     return all;
+  }
+
+  [[nodiscard]] std::vector<LaneId> lanes(OwnGoal const& goal) const {
+    auto lanes = goal.lanes(*map_);
+    for (auto const lane : lanes) check_lane_of_goal(*map_, lane, *where_);
+    return lanes;
   }
 
   [[nodiscard]] std::vector<LaneId> lanes(ReachPolygon const& goal) const {
