@@ -120,7 +120,7 @@ TEST_CASE("the speed that bends allow is that of the sharpest within the way to 
     double const dt = 0.2, lateral = 2.5, braking = 1.5 + uniform01(random);
     double s = 5.0, speed = 3.0;
     while (s < corridor.length() - 30.0) {
-      auto const ahead = bends_ahead(corridor, s, speed, 15.0, lateral, braking, 8.0, dt);
+      auto const ahead = detail::bends_ahead(corridor, s, speed, 15.0, lateral, braking, 8.0, dt);
       double const end = std::min({ahead.bound.speed, speed + 2.0 * dt, 15.0});
       s += std::min(ahead.bound.distance, 0.5 * (speed + end) * dt);
       speed = end;

@@ -33,10 +33,10 @@ TEST_CASE("the length of a course is that of the arcs between its states") {
   Sim world(straight_road(1, 500));
   auto const id = world.add({.position = {10, -1.75}, .speed = 10});
   auto const view = world.observe(id);
-  CHECK(course_length(cb::Plan<decltype(view)>{}, view.state()) == 0.0);
+  CHECK(cb::detail::course_length(cb::Plan<decltype(view)>{}, view.state()) == 0.0);
   for (double const radius : {15.0, -15.0, 80.0}) {
     auto const plan = arc_from(view, radius, std::copysign(0.1, radius));
-    CHECK(course_length(plan, view.state()) == doctest::Approx(0.6 * std::abs(radius)).epsilon(1e-5));
+    CHECK(cb::detail::course_length(plan, view.state()) == doctest::Approx(0.6 * std::abs(radius)).epsilon(1e-5));
   }
 }
 
@@ -49,7 +49,7 @@ TEST_CASE("by any motion one stays on the course, as far along it as the motion 
   auto const plan = arc_from(view, radius, angle / 6);
   for (double way = 0.0; way < 1.5 * length; way += 0.37) {
     CAPTURE(way);
-    auto const result = plan_along_course(view, plan, {.distance = way, .speed = 7.0}, 0.4);
+    auto const result = cb::detail::plan_along_course(view, plan, {.distance = way, .speed = 7.0}, 0.4);
     REQUIRE(result.trajectory.size() == 1);
     auto const& at = result.trajectory.front();
     double const turn = std::min(way / radius, angle), beyond = std::max(0.0, way - length);

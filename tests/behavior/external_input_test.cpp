@@ -111,8 +111,8 @@ TEST_CASE("Euler's scheme and Runge-Kutta's agree for short sub-steps, and diffe
     return std::hypot(s.x - exact.x, s.y - exact.y);
   };
   CHECK(distance({}) < 1e-4);
-  CHECK(distance({.scheme = ExternalInput::Scheme::euler, .longest_substep = 0.5}) > 1.0);
-  CHECK(distance({.scheme = ExternalInput::Scheme::euler, .longest_substep = 0.001}) < 0.02);
+  CHECK(distance({.scheme = cb::InputScheme::euler, .longest_substep = 0.5}) > 1.0);
+  CHECK(distance({.scheme = cb::InputScheme::euler, .longest_substep = 0.001}) < 0.02);
 }
 
 TEST_CASE("an input that is no number fails the agent, with its name, and nobody else") {

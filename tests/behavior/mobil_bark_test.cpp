@@ -131,7 +131,7 @@ TEST_CASE("a new follower is judged by what it is, not by the driver's own param
   REQUIRE(rear);
   double const bark =
       cb::idm_acceleration(driver.idm, rear->speed, rear->gap, 14.0);  // at 20 of 15 m/s it brakes anyway
-  double const ours = driver.changing.follower(rear, rear->gap, 14.0);
+  double const ours = driver.changing.law_of(*rear)(rear->gap, 14.0);
   auto own = driver.changing.others;
   own.desired_speed = 20.0;
   CHECK(ours == doctest::Approx(cb::idm_acceleration(own, rear->speed, rear->gap, 14.0)));
@@ -150,8 +150,8 @@ TEST_CASE("the nearest follower counts, BARK takes the farthest") {
   CHECK(rear->agent == near);
   // To the farther one (BARK's) the change is safe, to the nearer one it is not.
   Driver const driver = bark_driver(20.0);
-  CHECK(driver.changing.follower(rear, 140.0 - 4.5, 14.0) > -4.0);
-  CHECK(driver.changing.follower(rear, rear->gap, 14.0) < -4.0);
+  CHECK(driver.changing.law_of(*rear)(140.0 - 4.5, 14.0) > -4.0);
+  CHECK(driver.changing.law_of(*rear)(rear->gap, 14.0) < -4.0);
   REQUIRE(world.step(0.2));
   CHECK(!world.memory<Driver>(ego).change.active());
 }

@@ -262,8 +262,8 @@ TEST_CASE("the more polite drivers are, the less deceleration they impose on oth
           if (!rear) continue;
           auto const& driver = std::get<0>(world.roster().agents[i].behavior);
           double const alone = front ? rear->gap + view.shape().length() + front->gap : 1e9;
-          double const loss = driver.changing.follower(rear, alone, front ? front->speed : 0.0) -
-                              driver.changing.follower(rear, rear->gap, view.state().speed);
+          double const loss = driver.changing.law_of(*rear)(alone, front ? front->speed : 0.0) -
+                              driver.changing.law_of(*rear)(rear->gap, view.state().speed);
           total += std::max(0.0, loss);
         }
       }

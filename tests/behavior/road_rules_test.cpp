@@ -82,12 +82,12 @@ TEST_CASE("of a leader and the lane's end that counts which asks for more brakin
 
 TEST_CASE("the permitted speed is the limit, and what lets it be lower in time") {
   auto const corridor = with_limits();
-  CHECK(cb::permitted_speed(corridor, 10.0, 20.0, 2.0) == 30.0);
-  CHECK(cb::permitted_speed(corridor, 150.0, 30.0, 2.0) == doctest::Approx(10.0));
-  CHECK(cb::permitted_speed(corridor, 60.0, 30.0, 2.0) == doctest::Approx(std::sqrt(100.0 + 4.0 * 50.0)));
-  CHECK(cb::permitted_speed(corridor, 250.0, 10.0, 2.0) == 10.0);
-  CHECK(cb::permitted_speed(corridor, 401.0, 10.0, 2.0) == 20.0);
-  CHECK(std::isinf(cb::permitted_speed(cb::map::LaneCorridor{}, 10.0, 20.0, 2.0)));
+  CHECK(cb::detail::permitted_speed(corridor, 10.0, 20.0, 2.0) == 30.0);
+  CHECK(cb::detail::permitted_speed(corridor, 150.0, 30.0, 2.0) == doctest::Approx(10.0));
+  CHECK(cb::detail::permitted_speed(corridor, 60.0, 30.0, 2.0) == doctest::Approx(std::sqrt(100.0 + 4.0 * 50.0)));
+  CHECK(cb::detail::permitted_speed(corridor, 250.0, 10.0, 2.0) == 10.0);
+  CHECK(cb::detail::permitted_speed(corridor, 401.0, 10.0, 2.0) == 20.0);
+  CHECK(std::isinf(cb::detail::permitted_speed(cb::map::LaneCorridor{}, 10.0, 20.0, 2.0)));
 }
 
 TEST_CASE("one who obeys speed limits keeps them, along a town's roads") {
