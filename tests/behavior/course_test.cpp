@@ -10,7 +10,7 @@ using namespace fixtures;
 
 namespace {
 
-/// A course by an arc of six states, `step` rad each, from the agent of `view` on.
+/// A course of six states on an arc, `step` rad apart, that starts at the agent of `view`.
 template <class View>
 cb::Plan<View> arc_from(View const& view, double radius, double step) {
   cb::Plan<View> plan;
@@ -40,7 +40,7 @@ TEST_CASE("the length of a course is that of the arcs between its states") {
   }
 }
 
-TEST_CASE("by any motion one stays on the course, as far along it as the motion goes, and straight on behind its end") {
+TEST_CASE("a plan along a course stays on it for any motion, and goes straight on beyond its end") {
   Sim world(straight_road(1, 500));
   auto const id = world.add({.position = {10, -1.75}, .speed = 10});
   auto const view = world.observe(id);
