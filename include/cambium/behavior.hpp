@@ -10,9 +10,8 @@
 /// - `View` is what the agent sees: its own state and lane corridor, and queries for others; view.hpp lists all of it.
 ///   A query returns a `RoadUser` (an agent or a static object, with gap and speed). `Look` holds the options of a
 ///   query along a lane. `LanePlace` is a place on a lane corridor: position s, lateral offset, heading error.
-/// - `Constraint` is anything ahead that bounds the motion, as a gap and a speed. `Strictest` keeps the one to which
-/// the
-///   law responds with the lowest acceleration. `IdmLaw` and `AccLaw` are the laws.
+/// - `Constraint` is anything ahead that bounds the motion, as a gap and a speed. `IdmLaw` and `AccLaw` are the laws;
+///   `Strictest` keeps the constraint to which the law responds with the lowest acceleration.
 /// - `RoadRules` holds what all drivers can heed besides road users: limits, bends, signals, lane ends, merges.
 /// - `LaneChanging` carries out lane changes safely; a model such as MOBIL only decides when and to which side.
 ///

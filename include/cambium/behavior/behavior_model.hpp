@@ -8,40 +8,33 @@
 
 namespace cambium {
 
-namespace detail {
-template <class B>
-struct MemoryOf {
-  using type = NoMemory;
-};
-template <class B>
-requires requires { typename B::Memory; }
-struct MemoryOf<B> {
-  using type = typename B::Memory;
-};
-}  // namespace detail
-
-/// What behaviour `B` remembers between steps: its `Memory`, or `NoMemory`.
-template <class B>
-using MemoryOf = typename detail::MemoryOf<B>::type;
-
 /// The workspace of a behaviour that needs none.
 struct NoWorkspace {};
 
 namespace detail {
 template <class B>
-struct WorkspaceOf {
-  using type = NoWorkspace;
-};
+[[nodiscard]] constexpr auto memory_of() {
+  if constexpr (requires { typename B::Memory; })
+    return std::type_identity<typename B::Memory>{};
+  else
+    return std::type_identity<NoMemory>{};
+}
 template <class B>
-requires requires { typename B::Workspace; }
-struct WorkspaceOf<B> {
-  using type = typename B::Workspace;
-};
+[[nodiscard]] constexpr auto workspace_of() {
+  if constexpr (requires { typename B::Workspace; })
+    return std::type_identity<typename B::Workspace>{};
+  else
+    return std::type_identity<NoWorkspace>{};
+}
 }  // namespace detail
+
+/// What behaviour `B` remembers between steps: its `Memory`, or `NoMemory`.
+template <class B>
+using MemoryOf = typename decltype(detail::memory_of<B>())::type;
 
 /// The scratch memory of behaviour `B`: its `Workspace`, or `NoWorkspace`.
 template <class B>
-using WorkspaceOf = typename detail::WorkspaceOf<B>::type;
+using WorkspaceOf = typename decltype(detail::workspace_of<B>())::type;
 
 /// A behaviour: a copyable struct of parameters with one function template
 ///   `template <class View> Plan<View> plan(View const& view, Memory& memory, double dt) const`
@@ -130,19 +123,18 @@ template <class B>
 }
 /// Whether `plan` can be called on a `B` (or `B const`), whatever it returns.
 template <class B>
-concept Plans = requires(B behavior, ViewArchetype const view, cambium::MemoryOf<B> memory, double dt) {
+concept Plans = requires(B behavior, ViewArchetype const view, MemoryOf<B> memory, double dt) {
   behavior.plan(view, memory, dt);
 }
-|| requires(B behavior, ViewArchetype const view, cambium::MemoryOf<B> memory, double dt,
-            cambium::WorkspaceOf<B>& workspace) {
+|| requires(B behavior, ViewArchetype const view, MemoryOf<B> memory, double dt, WorkspaceOf<B>& workspace) {
   behavior.plan(view, memory, dt, workspace);
 };
 
 /// Returns true; fails to compile with a sentence that says what `B` lacks to be a behaviour.
 template <class B>
 [[nodiscard]] constexpr bool check_behavior() {
-  using Memory = cambium::MemoryOf<B>;
-  using Workspace = cambium::WorkspaceOf<B>;
+  using Memory = MemoryOf<B>;
+  using Workspace = WorkspaceOf<B>;
   constexpr bool is_copyable = std::is_class_v<B> && std::copyable<B>;
   constexpr bool remembers = std::copyable<Memory> && std::default_initializable<Memory>;
   static_assert(is_copyable, "cambium::BehaviorSet<...>: a behaviour must be a copyable struct, named without const");

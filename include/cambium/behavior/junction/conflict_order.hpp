@@ -78,8 +78,7 @@ template <class View>
                               ConflictUser const& other, double way, double own_way, ConflictAsker const& own) {
   constexpr double short_way = 15.0;  // [m] from the junction: a slow vehicle within it has just started
   constexpr double spread = 8.0;      // [s] range over which ids spread the end of patience
-  constexpr double later =
-      20.0;  // [s] more for the larger id of two, and where only one of them is inside the junction
+  constexpr double later = 20.0;      // [s] more for the larger id, and if only one of the two is in the junction
   auto const& [user, at, reach] = other;
   bool const stands = user.speed < standing_speed, own_stands = own.speed < standing_speed;
   // Two drivers must not lose their patience together. Of two that wait for each other, the smaller id goes long before

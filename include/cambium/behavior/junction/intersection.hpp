@@ -25,9 +25,9 @@ namespace cambium {
 ///
 /// For each conflict ahead, the driver predicts who comes (with its speed, or accelerating if that is worse, along the
 /// ways that its turn signal permits) and derives a claim: the conflict is free, must be watched, must be yielded, or
-/// is blocked. A vehicle inside the zone, or too fast to stop before it, blocks it. A vehicle that goes first
-/// (`detail::goes_first`) has the zone if the two times in it are less than `time_margin` apart. The strongest claim
-/// bounds the step so that the vehicle can stop at its line.
+/// is blocked. A vehicle inside the zone, or too fast to stop before it, blocks it unless it leaves in time. A vehicle
+/// that goes first (`detail::goes_first`) has the zone if the two times in it are less than `time_margin` apart. The
+/// strongest claim bounds the step so that the vehicle can stop at its line.
 ///
 /// The driver enters a junction when all its conflicts are its own and there is room behind them. It then goes before
 /// all vehicles that are still outside. It stops at red lights (`World::set_light`) and stop signs, and slows down for

@@ -22,7 +22,7 @@ namespace cambium {
 /// - the wrapper computes the proper response to all road users in the own lane, in the lanes beside and in the
 ///   oncoming lanes of the own road;
 /// - it returns the nominal plan if that conforms to the response and to the bounds of acceleration that others rely
-///   on; otherwise it changes the plan as little as possible and tells the nominal behaviour how much of its course was
+///   on; otherwise it brakes, or comes no closer to a side, and tells the nominal behaviour how much of its course was
 ///   not driven (`fell_short`).
 ///
 /// If the vehicle must brake, it stays on the nominal course. If it must keep off a side, it keeps its lateral offset
