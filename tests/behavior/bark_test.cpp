@@ -171,7 +171,10 @@ cb::IdmParameters bark_idm(double desired_speed) {
   return p;
 }
 
-bark::LaneTracking lane_tracking(double desired_speed) { return {bark_idm(desired_speed)}; }
+bark::Driver acc_driver(int agent) {
+  return {bark_idm(agent == 1 ? 15 : agent == 2 ? 12 : 8), cb::AdaptiveCruiseControl{}.coolness};
+}
+bark::LaneTracking straight_tracking(int agent) { return {bark_idm(agent == 1 ? 15 : agent == 2 ? 12 : 10)}; }
 
 cb::AgentId id_of(int agent) { return static_cast<cb::AgentId>(agent); }
 
@@ -250,9 +253,7 @@ TEST_CASE("BARK's sub-steps and the exact integration agree where nothing change
 
 TEST_CASE("the ACC model with BARK's sub-steps equals BARK's to 1e-9") {
   if (!corpus::root()) return;
-  auto const worst = compare("bark_idm_coolness_highway.csv", straight_corridors(), [](int agent) {
-    return bark::Driver{bark_idm(agent == 1 ? 15 : agent == 2 ? 12 : 8), cb::AdaptiveCruiseControl{}.coolness};
-  });
+  auto const worst = compare("bark_idm_coolness_highway.csv", straight_corridors(), acc_driver);
   CHECK(worst.compared == 150);
   CHECK(worst.place < 1e-9);
   CHECK(worst.speed < 1e-9);
@@ -261,9 +262,7 @@ TEST_CASE("the ACC model with BARK's sub-steps equals BARK's to 1e-9") {
 
 TEST_CASE("lane tracking with BARK's sub-steps equals BARK's, except for its angles of single precision") {
   if (!corpus::root()) return;
-  auto const worst = compare("bark_lanetracking_straight.csv", straight_corridors(), [](int agent) {
-    return lane_tracking(agent == 1 ? 15 : agent == 2 ? 12 : 10);
-  });
+  auto const worst = compare("bark_lanetracking_straight.csv", straight_corridors(), straight_tracking);
   CHECK(worst.compared == 150);
   CHECK(worst.place < 1e-6);
   CHECK(worst.heading < 5e-7);
@@ -278,17 +277,13 @@ TEST_CASE("over 50 steps the models stay with BARK's agents within the tables' t
     return bark::Driver{bark_idm(desired[agent - 1])};
   };
   CHECK(roll_out("bark_idm_highway.csv", straight_corridors(), idm) < 1e-9);
-  auto const acc = [](int agent) {
-    return bark::Driver{bark_idm(agent == 1 ? 15 : agent == 2 ? 12 : 8), cb::AdaptiveCruiseControl{}.coolness};
-  };
-  CHECK(roll_out("bark_idm_coolness_highway.csv", straight_corridors(), acc) < 1e-9);
-  auto const tracking = [](int agent) { return lane_tracking(agent == 1 ? 15 : agent == 2 ? 12 : 10); };
-  CHECK(roll_out("bark_lanetracking_straight.csv", straight_corridors(), tracking) < 1e-4);
+  CHECK(roll_out("bark_idm_coolness_highway.csv", straight_corridors(), acc_driver) < 1e-9);
+  CHECK(roll_out("bark_lanetracking_straight.csv", straight_corridors(), straight_tracking) < 1e-4);
 }
 
 TEST_CASE("on an arc lane tracking equals BARK's along BARK's coarse line") {
   if (!corpus::root()) return;
-  auto const driver = [](int agent) { return lane_tracking(agent == 1 ? 15 : agent == 2 ? 9 : 12); };
+  auto const driver = [](int agent) { return bark::LaneTracking{bark_idm(agent == 1 ? 15 : agent == 2 ? 9 : 12)}; };
   auto const worst = compare("bark_lanetracking_arc.csv", arc_corridors("center"), driver);
   CHECK(worst.compared == 150);
   CHECK(worst.at_kinks <= 1);

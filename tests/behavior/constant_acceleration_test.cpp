@@ -2,8 +2,6 @@
 
 #include <doctest/doctest.h>
 
-#include <cmath>
-
 #include "../world/fixtures.hpp"
 
 using namespace fixtures;

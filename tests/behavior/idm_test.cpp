@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <limits>
-#include <string>
 
 #include "cambium/cambium.hpp"
 
@@ -64,6 +63,16 @@ cb::LongitudinalMotion<double> fine_motion(cb::IdmClassic const& p, double v, do
   return run(20000);
 }
 
+/// A value of the range, usually log-uniform, sometimes one of its ends.
+double any_in(cb::Range range, cb::RandomStream& random) {
+  double const u = cb::uniform01(random);
+  if (u < 0.08) return range.low;
+  if (u < 0.16) return range.high;
+  double const v = cb::uniform01(random);
+  if (range.low > 0) return range.low * std::pow(range.high / range.low, v);
+  return range.low + (range.high - range.low) * (u < 0.5 ? v : range.low < 0 ? 1 - v * v * v : v * v * v);
+}
+
 }  // namespace
 
 TEST_CASE("the motion of a step solves the model's differential equation for any step length") {
@@ -117,20 +126,6 @@ TEST_CASE("a follower stops behind a standing leader, stands, and starts when th
   }
   CHECK(v > 1.0);
 }
-
-namespace {
-
-/// A value of the range, usually log-uniform, sometimes one of its ends.
-double any_in(cb::Range range, cb::RandomStream& random) {
-  double const u = cb::uniform01(random);
-  if (u < 0.08) return range.low;
-  if (u < 0.16) return range.high;
-  double const v = cb::uniform01(random);
-  if (range.low > 0) return range.low * std::pow(range.high / range.low, v);
-  return range.low + (range.high - range.low) * (u < 0.5 ? v : range.low < 0 ? 1 - v * v * v : v * v * v);
-}
-
-}  // namespace
 
 TEST_CASE("for any parameters, speeds and gap the motion is finite, forward and within its bounds") {
   cb::RandomStream random(31, 0, 0);

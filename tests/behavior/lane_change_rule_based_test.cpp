@@ -2,8 +2,6 @@
 
 #include <doctest/doctest.h>
 
-#include <vector>
-
 #include "lane_traffic_fixtures.hpp"
 
 using namespace lane_traffic;

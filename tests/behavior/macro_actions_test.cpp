@@ -65,13 +65,6 @@ TEST_CASE("the plan fails for a number that does not exist; `nothing` can be cho
   at.choose(cb::MacroActions::nothing);
   at.drive(20);
   CHECK(at.world.state(at.id).x == doctest::Approx(150.0));
-  World world(straight_road(1, 500.0));
-  auto const id = world.add({.position = {100, -1.75}, .speed = 10, .behavior = cb::MotionPrimitives{}});
-  world.memory<cb::MotionPrimitives>(id).chosen = cb::MotionPrimitives::nothing;
-  CHECK(world.step(0.25));
-  CHECK(world.state(id).x == doctest::Approx(102.5));
-  world.memory<cb::MotionPrimitives>(id).chosen = 77;
-  CHECK(world.step(0.25).failed == 1);
 }
 
 TEST_CASE("staying holds its acceleration until another action is chosen, and stops rather than reverses") {
@@ -300,8 +293,14 @@ TEST_CASE("the vehicle model carries out the chosen motion primitive") {
   REQUIRE(world.step(0.2));
   CHECK(world.state(id).speed == before.speed);
   CHECK(world.state(id).heading == before.heading);
-  world.memory<cb::MotionPrimitives>(id).chosen = 9;  // does not exist
-  CHECK(world.step(0.2).problem == cb::StepProblem::no_plan);
+  CHECK(std::hypot(world.state(id).x - before.x, world.state(id).y - before.y) == doctest::Approx(0.2 * before.speed));
+  for (std::uint8_t const missing : {std::uint8_t{9}, std::uint8_t{77}}) {
+    auto copy = world;
+    copy.memory<cb::MotionPrimitives>(id).chosen = missing;
+    auto const result = copy.step(0.2);
+    CHECK(result.problem == cb::StepProblem::no_plan);
+    CHECK(result.failed == 1);
+  }
   CHECK_THROWS_AS((void)cb::MotionPrimitives::of({}), cb::ParameterError);
 }
 

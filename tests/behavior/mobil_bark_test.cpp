@@ -1,7 +1,6 @@
 // BARK's rule-based MOBIL compared with ours, where it decides correctly and where it does not.
 #include <doctest/doctest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>

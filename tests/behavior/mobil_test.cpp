@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 #include <utility>
 #include <vector>
 
@@ -75,6 +74,41 @@ Counts run(Sim& world, int steps, double dt) {
     counts.collisions += collisions(world);
   }
   return counts;
+}
+
+/// Number of lane changes in dense traffic, and how many of them lead back to the previous lane within 12 s.
+std::pair<int, int> changes_and_returns(double threshold, double rest) {
+  int changes = 0, returns = 0;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    Sim world(support::straight_road(3, 3000.0), {.seed = seed});
+    fill(world, 3, 5.0, 700.0, 2.0, seed, [&](double v) {
+      return cb::Mobil{.idm = {.desired_speed = v}, .changing = {.rest = rest}, .threshold = threshold};
+    });
+    struct Last {
+      cb::CorridorId from = cb::none<cb::CorridorId>;
+      double time = -1e9;
+    };
+    std::vector<Last> last(world.size());
+    for (int k = 0; k < 300; ++k) {
+      auto const before = lanes(world);
+      REQUIRE(world.step(0.2));
+      auto const after = lanes(world);
+      for (std::size_t i = 0; i < world.size(); ++i) {
+        if (before[i] == after[i]) continue;
+        ++changes;
+        returns += after[i] == last[i].from && world.time() - last[i].time < 12.0;
+        last[i] = {before[i], world.time()};
+      }
+    }
+  }
+  return {changes, returns};
+}
+
+/// A goal on a lane of a straight road, counted from the left, from `s` [m] on.
+cb::Goal goal_on(cb::Map const& map, int number, double s = 590.0) {
+  for (auto const& entry : map.roads()[0].sections[0].lanes)
+    if (map.lane(entry.id).number == -number) return cb::ReachLane{entry.id, s};
+  return {};
 }
 
 }  // namespace
@@ -228,11 +262,8 @@ TEST_CASE("the more polite drivers are, the less deceleration they impose on oth
     double total = 0.0;
     for (std::uint64_t seed = 1; seed <= 16; ++seed) {
       Sim world(support::straight_road(3, 2500.0), {.seed = seed});
-      fill(world, 3, 5.0, 900.0, 2.0, seed, [&](double v) {
-        auto driver = mobil(v);
-        driver.politeness = politeness;
-        return driver;
-      });
+      fill(world, 3, 5.0, 900.0, 2.0, seed,
+           [&](double v) { return cb::Mobil{.idm = {.desired_speed = v}, .politeness = politeness}; });
       for (int k = 0; k < 150; ++k)
         step_and_visit_changes(world, [&](Sim const& before, std::size_t i, cb::CorridorId target) {
           auto here = before;
@@ -258,10 +289,7 @@ TEST_CASE("under the keep-right rule traffic drives on the right") {
     for (std::uint64_t seed = 1; seed <= 4; ++seed) {
       Sim world(support::straight_road(3, 4000.0), {.seed = seed});
       fill(world, 3, 5.0, 1500.0, 0.05, seed, [&](double v) {
-        auto driver = mobil(20.0 + 0.2 * v);
-        driver.keep_right = rule == 1;
-        driver.bias = rule == 1 ? 0.3 : 0.0;
-        return driver;
+        return cb::Mobil{.idm = {.desired_speed = 20.0 + 0.2 * v}, .bias = 0.3 * rule, .keep_right = rule == 1};
       });
       for (int k = 0; k < 300; ++k) REQUIRE(world.step(0.2));
       for (auto const& record : world.frame().agents) on_right[rule] += record.lane.corridor == cb::CorridorId{2};
@@ -277,9 +305,7 @@ TEST_CASE("under the keep-right rule a fast driver does not pass a slower one on
   for (bool const rule : {false, true}) {
     Sim world(support::straight_road(2, 2000.0));
     auto const slow = add(world, 1, 150.0, 20.0, cb::ConstantAcceleration{});
-    cb::Mobil driver = mobil(30.0);
-    driver.keep_right = rule;
-    driver.threshold = 5.0;  // stays on the right
+    cb::Mobil const driver{.idm = {.desired_speed = 30.0}, .threshold = 5.0, .keep_right = rule};  // stays on the right
     auto const fast = add(world, 2, 50.0, 28.0, driver);
     for (int k = 0; k < 150; ++k) REQUIRE(world.step(0.2));
     CHECK((world.state(fast).x > world.state(slow).x) == !rule);
@@ -297,10 +323,8 @@ TEST_CASE("mirrored traffic, and left-hand traffic that keeps to its side, chang
       auto const road = support::straight_road(3, 3000.0);
       Sim world(road, {.seed = seed}), mirrored(left_hand ? left_hand_road : road, {.seed = seed});
       fill(world, 3, 5.0, left_hand ? 900.0 : 400.0, left_hand ? 0.2 : 2.0, seed, [left_hand](double v) {
-        auto driver = mobil(left_hand ? 18.0 + 0.5 * v : v);
-        driver.keep_right = left_hand;
-        driver.bias = left_hand ? 0.3 : 0.0;
-        return driver;
+        double const desired = left_hand ? 18.0 + 0.5 * v : v;
+        return cb::Mobil{.idm = {.desired_speed = desired}, .bias = left_hand ? 0.3 : 0.0, .keep_right = left_hand};
       });
       double const axis = left_hand ? 0.0 : -5.25;
       for (std::size_t i = 0; i < world.size(); ++i) {
@@ -318,41 +342,6 @@ TEST_CASE("mirrored traffic, and left-hand traffic that keeps to its side, chang
     CHECK(changes > 50);
   }
 }
-
-namespace {
-
-/// Number of lane changes in dense traffic, and how many of them lead back to the previous lane within 12 s.
-std::pair<int, int> changes_and_returns(double threshold, double rest) {
-  int changes = 0, returns = 0;
-  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-    Sim world(support::straight_road(3, 3000.0), {.seed = seed});
-    fill(world, 3, 5.0, 700.0, 2.0, seed, [&](double v) {
-      auto driver = mobil(v);
-      driver.threshold = threshold;
-      driver.changing.rest = rest;
-      return driver;
-    });
-    struct Last {
-      cb::CorridorId from = cb::none<cb::CorridorId>;
-      double time = -1e9;
-    };
-    std::vector<Last> last(world.size());
-    for (int k = 0; k < 300; ++k) {
-      auto const before = lanes(world);
-      REQUIRE(world.step(0.2));
-      auto const after = lanes(world);
-      for (std::size_t i = 0; i < world.size(); ++i) {
-        if (before[i] == after[i]) continue;
-        ++changes;
-        returns += after[i] == last[i].from && world.time() - last[i].time < 12.0;
-        last[i] = {before[i], world.time()};
-      }
-    }
-  }
-  return {changes, returns};
-}
-
-}  // namespace
 
 TEST_CASE("the threshold and the rest after a change prevent changing back and forth") {
   auto const [changes, returns] = changes_and_returns(0.2, 3.0);
@@ -485,17 +474,12 @@ TEST_CASE("drivers go around a standing object even if the other lane is busy") 
 TEST_CASE("a driver stops before the end of a lane without its goal, and changes as soon as it can") {
   for (double const spacing : {9.0, 14.0, 60.0}) {
     auto const map = support::straight_road(2, 600.0);
-    auto const& section = map->roads()[0].sections[0];
-    cb::LaneId goal = cb::none<cb::LaneId>;
-    for (auto const& entry : section.lanes)
-      if (map->lane(entry.id).number == -1) goal = entry.id;
     Sim world(map);
-    auto const driver = add(world, 2, 60.0, 15.0, mobil(15.0), cb::ReachLane{goal, 560.0});
+    auto const driver = add(world, 2, 60.0, 15.0, mobil(15.0), goal_on(*map, 1, 560.0));
     for (double s = 20.0; s < 590.0; s += spacing) add(world, 1, s, 6.0, cb::IdmClassic{.desired_speed = 6.0});
     bool reached = false;
     for (int k = 0; k < 1600 && !reached; ++k) {
-      REQUIRE(world.step(0.2));
-      REQUIRE(collisions(world) == 0);
+      drive_safely(world, 1);
       auto const status = world.status(driver);
       REQUIRE((status == cb::AgentStatus::driving || status == cb::AgentStatus::arrived));
       reached = world.reached_goal(driver);
@@ -505,17 +489,6 @@ TEST_CASE("a driver stops before the end of a lane without its goal, and changes
   }
 }
 
-namespace {
-
-/// The goal on the last metres of a straight road's lane, counted from the left.
-cb::Goal last_metres_of(cb::Map const& map, int number) {
-  for (auto const& entry : map.roads()[0].sections[0].lanes)
-    if (map.lane(entry.id).number == -number) return cb::ReachLane{entry.id, 590.0};
-  return {};
-}
-
-}  // namespace
-
 TEST_CASE("from rest on an empty road a driver reaches the lane of its goal from every lane") {
   for (int const goal : {1, 4})
     for (int lane = 1; lane <= 4; ++lane) {
@@ -523,7 +496,7 @@ TEST_CASE("from rest on an empty road a driver reaches the lane of its goal from
       for (double const before : {300.0, 150.0, 80.0, shortest}) {
         auto const map = support::straight_road(4, 600.0);
         Sim world(map);
-        auto const driver = add(world, lane, 600.0 - before, 0.0, mobil(30.0), last_metres_of(*map, goal));
+        auto const driver = add(world, lane, 600.0 - before, 0.0, mobil(30.0), goal_on(*map, goal));
         for (int k = 0; k < 600 && !world.reached_goal(driver); ++k) REQUIRE(world.step(0.2));
         INFO("goal ", goal, ", lane ", lane, ", before ", before);
         CHECK(world.reached_goal(driver));
@@ -536,12 +509,11 @@ TEST_CASE("two vehicles that stand side by side and need each other's lanes both
     for (double const apart : {-3.0, 0.0, 3.0}) {
       auto const map = support::straight_road(2, 600.0);
       Sim world(map);
-      auto const a = add(world, 1, at, 0.0, mobil(15.0), last_metres_of(*map, 2), shape),
-                 b = add(world, 2, at + apart, 0.0, mobil(15.0), last_metres_of(*map, 1), shape);
+      auto const a = add(world, 1, at, 0.0, mobil(15.0), goal_on(*map, 2), shape),
+                 b = add(world, 2, at + apart, 0.0, mobil(15.0), goal_on(*map, 1), shape);
       bool reached_a = false, reached_b = false;
       for (int k = 0; k < 900 && !(reached_a && reached_b); ++k) {
-        REQUIRE(world.step(0.2));
-        REQUIRE(collisions(world) == 0);
+        drive_safely(world, 1);
         reached_a = reached_a || world.reached_goal(a);
         reached_b = reached_b || world.reached_goal(b);
       }

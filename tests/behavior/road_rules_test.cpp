@@ -30,6 +30,18 @@ cb::AgentId enter(World& world, Behavior behavior, cb::RoadRules const& rules, d
   return world.add({.position = {x, -1.75}, .speed = speed, .behavior = behavior});
 }
 
+/// A straight road of 500 m with a signal of `type` for its only lane at 200 m.
+std::shared_ptr<cb::Map const> road_with_signal(std::string const& type) {
+  return cb::parse_opendrive(
+             "<OpenDRIVE><road id='0' length='500' junction='-1'><planView><geometry s='0' x='0' y='0' hdg='0' "
+             "length='500'><line/></geometry></planView><lanes><laneSection s='0'><center><lane "
+             "id='0'/></center><right>"
+             "<lane id='-1' type='driving'><width sOffset='0' a='3.5' b='0' c='0' d='0'/></lane></right></laneSection>"
+             "</lanes><signals><signal id='1' s='200' t='-4' type='" +
+             type + "' subtype='-1' orientation='+' dynamic='no'/></signals></road></OpenDRIVE>")
+      .map;
+}
+
 }  // namespace
 
 TEST_CASE_TEMPLATE("every car-following model stops before its lane's end if the rules say so", Behavior,
@@ -106,22 +118,6 @@ TEST_CASE("a driver that obeys speed limits keeps them on a town's roads") {
   MESSAGE(limited << " lanes");
   CHECK(limited > 0);
 }
-
-namespace {
-
-/// A straight road of 500 m with a signal of `type` for its only lane at 200 m.
-std::shared_ptr<cb::Map const> road_with_signal(std::string const& type) {
-  return cb::parse_opendrive(
-             "<OpenDRIVE><road id='0' length='500' junction='-1'><planView><geometry s='0' x='0' y='0' hdg='0' "
-             "length='500'><line/></geometry></planView><lanes><laneSection s='0'><center><lane "
-             "id='0'/></center><right>"
-             "<lane id='-1' type='driving'><width sOffset='0' a='3.5' b='0' c='0' d='0'/></lane></right></laneSection>"
-             "</lanes><signals><signal id='1' s='200' t='-4' type='" +
-             type + "' subtype='-1' orientation='+' dynamic='no'/></signals></road></OpenDRIVE>")
-      .map;
-}
-
-}  // namespace
 
 #define DRIVERS                                                                                                   \
   cb::IdmClassic, cb::AdaptiveCruiseControl, cb::IdmLaneTracking, cb::IdmStochastic, cb::Mobil, cb::Intersection, \

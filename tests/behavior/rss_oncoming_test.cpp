@@ -55,9 +55,7 @@ struct Tally {
 };
 
 Tally drive(bool safe, std::uint32_t scenarios) {
-  auto const map = support::map_of({.id = "1",
-                                    .line = cb::map::lay_from({}, {{2000.0}}),
-                                    .sections = {{.left = cb::map::equal_lanes(1), .right = cb::map::equal_lanes(1)}}});
+  auto const map = support::two_way_road(2000.0);
   Tally tally;
   for (std::uint32_t number = 0; number < scenarios; ++number) {
     cb::RandomStream random(7, number, 0);

@@ -119,9 +119,8 @@ TEST_CASE("beside a fast lane nobody brakes to a standstill for vehicles that pa
     for (double s = 410.0; s > 100.0; s -= gap) add(world, 2, s, 26.0, zip(30.0));
     double slowest = 100.0;
     for (int k = 0; k < 150; ++k) {
-      REQUIRE(world.step(0.2));
+      drive_safely(world, 1);
       for (auto const id : slow) slowest = std::min(slowest, world.state(id).speed);
-      CHECK(collisions(world) == 0);
     }
     CHECK(slowest > 3.0);
   }
