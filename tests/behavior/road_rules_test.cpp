@@ -17,12 +17,6 @@ namespace {
 using Set = cb::BehaviorSet<cb::IdmClassic, cb::AdaptiveCruiseControl, cb::IdmLaneTracking, cb::IdmStochastic>;
 using World = cb::World<Set, cb::InterpolateExecution, cb::SingleTrack>;
 
-cb::map::LaneCorridor with_limits() {
-  cb::map::LaneCorridor corridor;
-  corridor.speed_limits = {{0.0, 30.0}, {200.0, 10.0}, {400.0, 20.0}};
-  return corridor;
-}
-
 /// Adds a driver with these rules.
 template <class Behavior>
 cb::AgentId enter(World& world, Behavior behavior, cb::RoadRules const& rules, double x = 100, double speed = 14) {
@@ -83,7 +77,8 @@ TEST_CASE("of a leader and the lane's end, the one that requires more braking co
 }
 
 TEST_CASE("the permitted speed is the limit, or a speed that still meets lower limits ahead") {
-  auto const corridor = with_limits();
+  cb::map::LaneCorridor corridor;
+  corridor.speed_limits = {{0.0, 30.0}, {200.0, 10.0}, {400.0, 20.0}};
   CHECK(cb::detail::permitted_speed(corridor, 10.0, 20.0, 2.0) == 30.0);
   CHECK(cb::detail::permitted_speed(corridor, 150.0, 30.0, 2.0) == doctest::Approx(10.0));
   CHECK(cb::detail::permitted_speed(corridor, 60.0, 30.0, 2.0) == doctest::Approx(std::sqrt(100.0 + 4.0 * 50.0)));

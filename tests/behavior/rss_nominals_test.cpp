@@ -36,15 +36,10 @@ AgentId add_through(Sim& world, geometry::Shape const& shape, Sim::Behavior cons
   auto const& map = world.map();
   for (auto const& lane : map.lanes()) {
     if (!lane.drivable() || is_valid(map.road(lane.road).junction) || lane.successors.empty()) continue;
-    map::Route route{{lane.id}, lane.length()};
-    for (int i = 0; i < 2; ++i) {
-      auto const& next = map.lane(route.lanes.back()).successors;
-      if (next.empty()) break;
-      route.lanes.push_back(next.front());
-      route.length += map.lane(next.front()).length();
-    }
-    return world.add(
-        {.position = lane.path.pose(20.0).position(), .shape = shape, .behavior = behavior, .route = route});
+    return world.add({.position = lane.path.pose(20.0).position(),
+                      .shape = shape,
+                      .behavior = behavior,
+                      .route = map::straight_route(map, lane.id)});
   }
   FAIL("the map has no junction");
   return none<AgentId>;
