@@ -70,13 +70,13 @@ TEST_CASE("a corridor's bends are where the lane bends, and as sharp") {
     Winding const winding(random);
     auto const& corridor = winding.corridor();
     for (double s = 4.0; s < corridor.length() - 4.0; s += 0.7) {
-      auto const [least, greatest] = winding.around(s);
+      auto const range = winding.around(s);
       double found = 0.0;
       for (auto const& bend : corridor.bends)
         if (bend.begin <= s && s <= bend.end) found = std::max(found, bend.curvature);
-      INFO("s ", s, ", least ", least, ", greatest ", greatest);
-      CHECK(found >= 0.95 * least - 1e-3);
-      CHECK(found <= 1.15 * greatest + 1e-3);
+      INFO("s ", s, ", least ", range.least, ", greatest ", range.greatest);
+      CHECK(found >= 0.95 * range.least - 1e-3);
+      CHECK(found <= 1.15 * range.greatest + 1e-3);
       (found > 0.0 ? bent : straight) += 1;
     }
   }

@@ -41,14 +41,14 @@ void put_box(Sim& world, double x, double right, double left) {
 template <class F>
 void for_each_driver(std::uint32_t purpose, double least_speed, F const& f) {
   auto const road = support::straight_road(1, 600.0);  // y from 0 to -3.5
-  for (auto const& [name, driver] : drivers())
+  for (auto const& driver : drivers())
     for (std::uint32_t seed = 0; seed < 12; ++seed) {
-      INFO("name ", name, ", seed ", seed);
+      INFO("driver ", driver.first, ", seed ", seed);
       cb::RandomStream random(seed, purpose, 0);
       Sim world(road, {.seed = seed});
       double const x = between(120, 220, random), speed = between(least_speed, 16, random);
-      auto const id = add(world, 1, between(5, 20, random), speed, driver);
-      f(world, id, x, seed, random, name);
+      auto const id = add(world, 1, between(5, 20, random), speed, driver.second);
+      f(world, id, x, seed, random, driver.first);
     }
 }
 
