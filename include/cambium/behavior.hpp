@@ -1,3 +1,28 @@
+/// The room `behavior`: what drivers and pedestrians do next. A behaviour is a struct of parameters with one function,
+/// `plan(view, memory, dt)`. A driver consists of three parts:
+///
+///                constraints it heeds                    car-following law        lane choice
+///   View  ->  leader, lane end, conflict, ...  ->  strictest one -> motion  ->  own lane, or  ->  Plan: states over dt
+///             (gap, speed)                          ^                ^          lane change
+///             speed limit ----- desired speed ------'                |
+///             bend, stop line ------------- bound of the motion -----'
+///
+/// - `View` is what the agent sees: its own state and lane corridor, and queries for others; view.hpp lists all of it.
+///   A query returns a `RoadUser` (an agent or a static object, with gap and speed). `Look` holds the options of a
+///   query along a lane. `LanePlace` is a place on a lane corridor: position s, lateral offset, heading error.
+/// - `Constraint` is anything ahead that bounds the motion, as a gap and a speed. `IdmLaw` and `AccLaw` are the laws;
+///   `Strictest` keeps the constraint to which the law responds with the lowest acceleration.
+/// - `RoadRules` holds what all drivers can heed besides road users: limits, bends, signals, lane ends, merges.
+/// - `LaneChanging` carries out lane changes safely; a model such as MOBIL only decides when and to which side.
+///
+/// The families, each in a folder:
+/// - law/: constraints, IDM, braking, road rules, lane ends: the parts that the models share
+/// - following/: drivers that keep their lane (IDM, ACC, stochastic IDM, lane tracking, constant acceleration)
+/// - lane_change/: drivers that change lanes (MOBIL, rule-based, macro actions), and that merge or pass within a lane
+/// - junction/: a driver that crosses junctions by right of way
+/// - safety/: RSS as a wrapper of any behaviour; braking to a standstill
+/// - pedestrian/: social forces, and crossing lanes
+/// - open_loop/: recorded trajectories, and inputs from a search or from outside
 #pragma once
 
 // First: it says which language and flags cambium needs.

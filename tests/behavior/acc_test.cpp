@@ -6,10 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "cambium/behavior/law/linear_stability.hpp"
-#include "cambium/behavior/presets.hpp"
-#include "cambium/core/distributions.hpp"
-#include "cambium/core/random.hpp"
+#include "cambium/cambium.hpp"
 
 namespace cb = cambium;
 
@@ -31,14 +28,14 @@ cb::LinearFollowing linear(cb::IdmParameters const& p, double speed) {
   return cb::linear_following(law, speed, cb::idm_equilibrium_gap(p, speed));
 }
 
-/// How much a follower makes of its leader's oscillation of the angular frequency `w` [rad/s].
+/// Ratio of a follower's oscillation to its leader's at the angular frequency `w` [rad/s].
 double amplification(cb::LinearFollowing const& f, double w) {
   double const above = f.by_gap * f.by_gap + w * w * f.by_leader_speed * f.by_leader_speed;
   double const real = f.by_gap - w * w, imaginary = w * f.by_speed;
   return std::sqrt(above / (real * real + imaginary * imaginary));
 }
 
-/// Amplitude of the speed's oscillation of the last vehicle of a platoon over the leader's, in simulation.
+/// The same for the last vehicle of a platoon, by simulation.
 double simulated_amplification(cb::IdmParameters const& p, double speed, double w, int followers) {
   double const dt = 0.05, period = 6.2831853 / w, amplitude = 0.01;
   auto const n = static_cast<std::size_t>(followers);
@@ -47,7 +44,7 @@ double simulated_amplification(cb::IdmParameters const& p, double speed, double 
   double leader = 0.0, low = 1e9, high = -1e9;
   double const settled = 60.0 + 8.0 * followers, end = settled + 3.0 * period;
   for (double t = 0.0; t < end; t += dt) {
-    // The middle of each step: the leader's speed is taken to be constant over it.
+    // The middle of each step, because the leader's speed is constant over the step.
     double const front_speed = speed + amplitude * std::sin(w * (t + dt / 2));
     double ahead = leader, ahead_speed = front_speed;
     for (std::size_t i = 0; i < n; ++i) {
@@ -69,7 +66,7 @@ double simulated_amplification(cb::IdmParameters const& p, double speed, double 
 
 }  // namespace
 
-TEST_CASE("platoons damp or amplify a small wave as linear theory says, for stable and for unstable drivers") {
+TEST_CASE("platoons damp or amplify a small wave as linear theory predicts") {
   int stable = 0, unstable = 0;
   for (std::uint32_t seed = 0; seed < 24; ++seed) {
     cb::RandomStream random(seed, 0, 0);
@@ -79,12 +76,11 @@ TEST_CASE("platoons damp or amplify a small wave as linear theory says, for stab
     // String stable: no frequency is amplified (Treiber, Kesting 2013, section 15.4): f_v^2 - f_l^2 >= 2 f_s.
     double const margin = f.by_speed * f.by_speed - f.by_leader_speed * f.by_leader_speed - 2 * f.by_gap;
     double const w = margin < 0.0 ? std::sqrt(-margin / 2) : 0.3;
-    if (w < 0.08) continue;  // at the border: waves too long to wait for
+    if (w < 0.08) continue;  // near the limit: waves too long to simulate
     int const followers = 12;
     double const expected = std::pow(amplification(f, w), followers);
     double const measured = simulated_amplification(p, speed, w, followers);
-    CAPTURE(seed);
-    CAPTURE(margin);
+    INFO("seed ", seed, ", margin ", margin);
     CHECK(measured == doctest::Approx(expected).epsilon(0.1));
     CHECK((measured < 1.0) == (margin > 0.0));
     CHECK(f.is_string_stable() == (margin >= 0.0));
@@ -95,7 +91,7 @@ TEST_CASE("platoons damp or amplify a small wave as linear theory says, for stab
   CHECK(unstable >= 3);
 }
 
-TEST_CASE("followers settle at the gap of the closed form") {
+TEST_CASE("followers settle at the closed-form gap") {
   for (std::uint32_t seed = 0; seed < 100; ++seed) {
     cb::RandomStream random(seed, 1, 0);
     auto const p = any_driver(random);
@@ -118,7 +114,7 @@ TEST_CASE("followers settle at the gap of the closed form") {
   }
 }
 
-TEST_CASE("the ACC model lies between IDM and the heuristic, nearer to it the cooler the driver") {
+TEST_CASE("the ACC model lies between IDM and the heuristic, closer to the heuristic the cooler the driver") {
   cb::RandomStream random(7, 0, 0);
   int cooler = 0;
   for (int i = 0; i < 50000; ++i) {
@@ -142,7 +138,7 @@ TEST_CASE("the ACC model lies between IDM and the heuristic, nearer to it the co
   CHECK(cooler > 20000);
 }
 
-TEST_CASE("one who is cut in on by a vehicle as fast brakes hard by IDM, calmly by the ACC model") {
+TEST_CASE("behind an equally fast vehicle that cuts in, IDM brakes hard and the ACC model calmly") {
   auto const p = cb::presets::kesting_2010_car();
   cb::Constraint const leader{10.0, 25.0, 0.0};
   double const idm = cb::AccLaw(p, 0.0, 25.0)(leader), acc = cb::AccLaw(p, 0.99, 25.0)(leader);
@@ -152,7 +148,7 @@ TEST_CASE("one who is cut in on by a vehicle as fast brakes hard by IDM, calmly 
   CHECK(acc < 0.0);
 }
 
-TEST_CASE("from safe gaps the ACC model does not collide with a leader that brakes to standstill") {
+TEST_CASE("from safe gaps the ACC model does not collide with a leader that brakes to a standstill") {
   double hardest = 0.0;
   for (std::uint32_t seed = 0; seed < 2000; ++seed) {
     cb::RandomStream random(seed, 2, 0);

@@ -5,21 +5,19 @@
 #include <type_traits>
 #include <variant>
 
-#include "cambium/behavior/following/constant_acceleration.hpp"
-#include "cambium/behavior/following/idm_classic.hpp"
-#include "cambium/behavior/open_loop/external_input.hpp"
+#include "cambium/cambium.hpp"
 
 namespace cb = cambium;
 
 namespace {
 
-/// The little that the behaviours of this test ask for.
+/// The little that the behaviours of this test need.
 struct View {
   using State = cb::State;
   [[nodiscard]] State state() const { return {}; }
 };
 
-/// Says who it is, and how often it was asked.
+/// Reports its number and counts its calls.
 template <int number>
 struct Counter {
   struct Memory {
@@ -37,7 +35,7 @@ struct Counter {
   }
 };
 
-/// Remembers nothing.
+/// Has no memory.
 struct Plain {
   template <class V>
   [[nodiscard]] cb::Plan<V> plan(V const&, cb::NoMemory&, double) const {
@@ -71,7 +69,7 @@ TEST_CASE("each member plans with its own parameters and its own memory") {
   }
 }
 
-TEST_CASE("a memory is kept from call to call, and apart from that of a twin") {
+TEST_CASE("each agent's memory is kept from call to call") {
   Set::Any const behavior = Counter<2>{};
   auto memory = Set::initial_memory(behavior), other = memory;
   Set::Workspaces workspaces;
@@ -80,7 +78,7 @@ TEST_CASE("a memory is kept from call to call, and apart from that of a twin") {
   CHECK(std::get<2>(other).calls == 20);
 }
 
-TEST_CASE("the shipped behaviours are copied as memory") {
+TEST_CASE("the shipped behaviours and their memories are trivially copyable") {
   using Shipped = cb::BehaviorSet<cb::IdmClassic, cb::ConstantAcceleration, cb::ExternalInput>;
   CHECK(std::is_trivially_copyable_v<Shipped::Any>);
   CHECK(std::is_trivially_copyable_v<Shipped::Memory>);

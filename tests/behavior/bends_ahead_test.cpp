@@ -2,22 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <memory>
 #include <vector>
 
 #include "../support/maps.hpp"
-#include "cambium/behavior/law/road_rules.hpp"
-#include "cambium/core/distributions.hpp"
-#include "cambium/core/random.hpp"
-#include "cambium/map/corridor/build_corridor.hpp"
+#include "cambium/cambium.hpp"
 #include "cambium/map/road/curve_layout.hpp"
 
 using namespace cambium;
 
 namespace {
 
-/// A road of pieces whose curvature is known: straight, arcs and clothoids, to both sides.
+/// A road of straights, arcs and clothoids to both sides, whose curvature is known.
 struct Winding {
   std::vector<map::CurvePiece> pieces;
   std::shared_ptr<map::RoadCorridor const> road;
@@ -37,8 +33,8 @@ struct Winding {
   }
   [[nodiscard]] map::LaneCorridor const& corridor() const { return road->corridors[road->main]; }
 
-  /// The least and the greatest curvature of the lane, which keeps 1.75 m to the right of its road, within 3 m of
-  /// `place` [m] along the lane; the least is 0 where it bends to both sides.
+  /// Smallest and largest curvature of the lane, 1.75 m to the right of its road's reference line, within 3 m of
+  /// `place` [m] along the lane; the smallest is 0 where the lane bends to both sides.
   struct Range {
     double least, greatest;
   };
@@ -74,15 +70,13 @@ TEST_CASE("a corridor's bends are where the lane bends, and as sharp") {
     Winding const winding(random);
     auto const& corridor = winding.corridor();
     for (double s = 4.0; s < corridor.length() - 4.0; s += 0.7) {
-      auto const [least, greatest] = winding.around(s);
+      auto const range = winding.around(s);
       double found = 0.0;
       for (auto const& bend : corridor.bends)
         if (bend.begin <= s && s <= bend.end) found = std::max(found, bend.curvature);
-      CAPTURE(s);
-      CAPTURE(least);
-      CAPTURE(greatest);
-      CHECK(found >= 0.95 * least - 1e-3);
-      CHECK(found <= 1.15 * greatest + 1e-3);
+      INFO("s ", s, ", least ", range.least, ", greatest ", range.greatest);
+      CHECK(found >= 0.95 * range.least - 1e-3);
+      CHECK(found <= 1.15 * range.greatest + 1e-3);
       (found > 0.0 ? bent : straight) += 1;
     }
   }
@@ -90,7 +84,9 @@ TEST_CASE("a corridor's bends are where the lane bends, and as sharp") {
   CHECK(straight > 500);
 }
 
-TEST_CASE("who brakes for a bend comes to it as fast as it may, at any step, and brakes no harder than it wants") {
+TEST_CASE(
+    "braking for a bend ends at the bend at the permitted speed, for any step, and never exceeds the chosen "
+    "deceleration") {
   RandomStream random(4, 0, 0);
   for (int run = 0; run < 500; ++run) {
     double const dt = 0.05 + 0.45 * uniform01(random), braking = 1.0 + 3.0 * uniform01(random);
@@ -112,7 +108,7 @@ TEST_CASE("who brakes for a bend comes to it as fast as it may, at any step, and
   }
 }
 
-TEST_CASE("the speed that bends allow is that of the sharpest within the way to brake, and a step keeps to it") {
+TEST_CASE("the speed for bends is that of the sharpest one within the braking distance, and a step keeps to it") {
   RandomStream random(12, 0, 0);
   for (int run = 0; run < 30; ++run) {
     Winding const winding(random);
@@ -120,12 +116,12 @@ TEST_CASE("the speed that bends allow is that of the sharpest within the way to 
     double const dt = 0.2, lateral = 2.5, braking = 1.5 + uniform01(random);
     double s = 5.0, speed = 3.0;
     while (s < corridor.length() - 30.0) {
-      auto const ahead = bends_ahead(corridor, s, speed, 15.0, lateral, braking, 8.0, dt);
+      auto const ahead = detail::bends_ahead(corridor, s, speed, 15.0, lateral, braking, 8.0, dt);
       double const end = std::min({ahead.bound.speed, speed + 2.0 * dt, 15.0});
       s += std::min(ahead.bound.distance, 0.5 * (speed + end) * dt);
       speed = end;
       CHECK(ahead.highest <= 15.0);
-      // the lane's own curvature at the place: a step may end just within the next piece
+      // The lane's own curvature at the place; a step may end just inside the next piece.
       CHECK(speed * speed * winding.around(s).least <= 1.1 * lateral);
     }
   }

@@ -2,8 +2,6 @@
 
 #include <doctest/doctest.h>
 
-#include <cmath>
-
 #include "../world/fixtures.hpp"
 
 using namespace fixtures;
@@ -26,7 +24,7 @@ TEST_CASE("a braking vehicle stops after v^2 / 2a and stands from then on") {
   CHECK(braking.motion(0.0, 5.0).speed == 0.0);
 }
 
-TEST_CASE("accelerating ends at the highest speed; who is faster keeps his speed") {
+TEST_CASE("acceleration ends at the highest speed; a faster vehicle keeps its speed") {
   cb::ConstantAcceleration const model{.acceleration = 2.0, .highest_speed = 20.0};
   auto const motion = model.motion(16.0, 5.0);  // 2 s to 20 m/s
   CHECK(motion.speed == 20.0);
@@ -35,7 +33,7 @@ TEST_CASE("accelerating ends at the highest speed; who is faster keeps his speed
   CHECK(model.motion(30.0, 5.0).distance == doctest::Approx(150.0));
 }
 
-TEST_CASE("two halves of a step make the whole, over the kinks too") {
+TEST_CASE("two halves of a step equal the whole step, also across kinks") {
   for (double const a : {-3.0, -0.4, 0.0, 0.9, 4.0})
     for (double const speed : {0.0, 0.5, 9.0, 19.5, 25.0}) {
       cb::ConstantAcceleration const model{.acceleration = a, .highest_speed = 20.0};
@@ -47,8 +45,7 @@ TEST_CASE("two halves of a step make the whole, over the kinks too") {
     }
 }
 
-TEST_CASE(
-    "in a world it drives the length it says along its lane, whoever is in the way, and reports its acceleration") {
+TEST_CASE("in a world it drives the computed distance along its lane, ignores others and reports its acceleration") {
   Sim world(straight_road(1, 400, 0.005));
   auto const id =
       world.add({.position = {5, -1.75}, .speed = 10, .behavior = cb::ConstantAcceleration{.acceleration = 1.0}});
@@ -64,7 +61,7 @@ TEST_CASE(
   CHECK(world.state(other).x == 30.0);
 }
 
-TEST_CASE("a deceleration that stops within the step is reported as what the step really had") {
+TEST_CASE("a deceleration that stops within the step is reported as the average over the step") {
   Sim world(straight_road(1, 400));
   auto const id =
       world.add({.position = {5, -1.75}, .speed = 1.0, .behavior = cb::ConstantAcceleration{.acceleration = -4.0}});

@@ -10,7 +10,7 @@ using namespace fixtures;
 
 namespace {
 
-/// A course by an arc of six states, `step` rad each, from the agent of `view` on.
+/// A course of six states on an arc, `step` rad apart, that starts at the agent of `view`.
 template <class View>
 cb::Plan<View> arc_from(View const& view, double radius, double step) {
   cb::Plan<View> plan;
@@ -33,14 +33,14 @@ TEST_CASE("the length of a course is that of the arcs between its states") {
   Sim world(straight_road(1, 500));
   auto const id = world.add({.position = {10, -1.75}, .speed = 10});
   auto const view = world.observe(id);
-  CHECK(course_length(cb::Plan<decltype(view)>{}, view.state()) == 0.0);
+  CHECK(cb::detail::course_length(cb::Plan<decltype(view)>{}, view.state()) == 0.0);
   for (double const radius : {15.0, -15.0, 80.0}) {
     auto const plan = arc_from(view, radius, std::copysign(0.1, radius));
-    CHECK(course_length(plan, view.state()) == doctest::Approx(0.6 * std::abs(radius)).epsilon(1e-5));
+    CHECK(cb::detail::course_length(plan, view.state()) == doctest::Approx(0.6 * std::abs(radius)).epsilon(1e-5));
   }
 }
 
-TEST_CASE("by any motion one stays on the course, as far along it as the motion goes, and straight on behind its end") {
+TEST_CASE("a plan along a course stays on it for any motion, and goes straight on beyond its end") {
   Sim world(straight_road(1, 500));
   auto const id = world.add({.position = {10, -1.75}, .speed = 10});
   auto const view = world.observe(id);
@@ -49,7 +49,7 @@ TEST_CASE("by any motion one stays on the course, as far along it as the motion 
   auto const plan = arc_from(view, radius, angle / 6);
   for (double way = 0.0; way < 1.5 * length; way += 0.37) {
     CAPTURE(way);
-    auto const result = plan_along_course(view, plan, {.distance = way, .speed = 7.0}, 0.4);
+    auto const result = cb::detail::plan_along_course(view, plan, {.distance = way, .speed = 7.0}, 0.4);
     REQUIRE(result.trajectory.size() == 1);
     auto const& at = result.trajectory.front();
     double const turn = std::min(way / radius, angle), beyond = std::max(0.0, way - length);

@@ -13,7 +13,7 @@ using cb::ExternalInput;
 
 namespace {
 
-/// A plane that is all road: steering has room.
+/// A wide road with room for steering.
 std::shared_ptr<cb::Map const> field() { return straight_road(60, 400); }
 
 cb::AgentId add(Sim& world, double speed, ExternalInput const& behavior = {}) {
@@ -22,7 +22,7 @@ cb::AgentId add(Sim& world, double speed, ExternalInput const& behavior = {}) {
 
 }  // namespace
 
-TEST_CASE("the input stays until another one is set, and steers a circle") {
+TEST_CASE("an input holds until the next one is set, and steers a circle") {
   Sim world(field());
   auto const id = add(world, 8.0);
   world.memory<ExternalInput>(id) = {0.0, 0.3};
@@ -38,7 +38,7 @@ TEST_CASE("the input stays until another one is set, and steers a circle") {
   CHECK(world.state(id).heading == heading);
 }
 
-TEST_CASE("a copy takes the input along, and another input there is no business of the original") {
+TEST_CASE("a copy has the same input; another input in the copy does not affect the original") {
   Sim world(field());
   auto const id = add(world, 8.0);
   world.memory<ExternalInput>(id) = {1.0, 0.0};
@@ -50,7 +50,7 @@ TEST_CASE("a copy takes the input along, and another input there is no business 
   CHECK(copy.state(id).speed == doctest::Approx(7.0));
 }
 
-TEST_CASE("more than the vehicle can do is not done, and the action says what was") {
+TEST_CASE("inputs beyond the vehicle's limits are reduced, and the action reports the reduced ones") {
   Sim world(field());
   auto const id = add(world, 10.0);
   cb::SingleTrack const model;
@@ -69,7 +69,7 @@ TEST_CASE("more than the vehicle can do is not done, and the action says what wa
   CHECK(world.record(id).action == cb::Action{model.lowest_acceleration, steering});
 }
 
-TEST_CASE("a braking vehicle stops where the closed form says, within a step too, and never reverses") {
+TEST_CASE("a braking vehicle stops where the closed form says, even within a step, and never reverses") {
   for (double const dt : {0.1, 0.2, 0.3, 3.0}) {
     Sim world(field());
     auto const id = add(world, 6.0);
@@ -89,7 +89,7 @@ TEST_CASE("no sequence of inputs makes a vehicle reverse") {
   Sim world(field());
   auto const id = add(world, 3.0);
   for (int i = 0; i < 5000; ++i) {
-    // Numbers with few digits: they often stop exactly at the end of a step.
+    // Numbers with few digits often stop exactly at the end of a step.
     world.memory<ExternalInput>(id).acceleration = 0.5 * (static_cast<double>(cb::uniform_index(random, 17)) - 8.0);
     REQUIRE(world.step(0.1));
     CHECK(world.state(id).speed >= 0.0);
@@ -97,7 +97,7 @@ TEST_CASE("no sequence of inputs makes a vehicle reverse") {
   }
 }
 
-TEST_CASE("Euler's scheme and Runge-Kutta's agree for short sub-steps, and differ for long ones") {
+TEST_CASE("Euler and Runge-Kutta integration agree for short sub-steps and differ for long ones") {
   auto const end = [](ExternalInput const& behavior) {
     Sim world(field());
     auto const id = add(world, 8.0, behavior);
@@ -111,11 +111,11 @@ TEST_CASE("Euler's scheme and Runge-Kutta's agree for short sub-steps, and diffe
     return std::hypot(s.x - exact.x, s.y - exact.y);
   };
   CHECK(distance({}) < 1e-4);
-  CHECK(distance({.scheme = ExternalInput::Scheme::euler, .longest_substep = 0.5}) > 1.0);
-  CHECK(distance({.scheme = ExternalInput::Scheme::euler, .longest_substep = 0.001}) < 0.02);
+  CHECK(distance({.scheme = cb::InputScheme::euler, .longest_substep = 0.5}) > 1.0);
+  CHECK(distance({.scheme = cb::InputScheme::euler, .longest_substep = 0.001}) < 0.02);
 }
 
-TEST_CASE("an input that is no number fails the agent, with its name, and nobody else") {
+TEST_CASE("an input that is not a number fails this agent only, and names it") {
   Sim world(field());
   auto const id = add(world, 8.0);
   auto const other = world.add({.position = {50, -1.75}, .speed = 5});

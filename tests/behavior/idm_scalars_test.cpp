@@ -1,4 +1,4 @@
-// IDM's mathematics with other numbers than double: float, and one that carries a derivative along.
+// IDM's mathematics with float and with dual numbers, which carry a derivative.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -6,9 +6,7 @@
 #include <limits>
 #include <type_traits>
 
-#include "cambium/behavior/following/idm_classic.hpp"
-#include "cambium/behavior/law/idm.hpp"
-#include "cambium/core/distributions.hpp"
+#include "cambium/cambium.hpp"
 
 #include "../support/dual.hpp"
 
@@ -20,7 +18,7 @@ using support::Dual;
 
 double between(double low, double high, cb::RandomStream& random) { return low + (high - low) * cb::uniform01(random); }
 
-/// A follower at random: moderate numbers.
+/// A random follower with moderate numbers.
 struct Case {
   cb::IdmClassic p;
   double speed, gap, leader_speed;
@@ -36,7 +34,7 @@ struct Case {
 
 }  // namespace
 
-TEST_CASE("with float IDM gives what it gives with double, to float's accuracy") {
+TEST_CASE("IDM with float agrees with double to float's accuracy") {
   cb::RandomStream random(21, 0, 0);
   double worst_acceleration = 0, worst_speed = 0, worst_distance = 0;
   for (int i = 0; i < 20000; ++i) {
@@ -46,7 +44,7 @@ TEST_CASE("with float IDM gives what it gives with double, to float's accuracy")
     auto const a = cb::idm_acceleration(c.p, speed, gap, leader);
     static_assert(std::is_same_v<decltype(a), float const>);
     double const exact = cb::idm_acceleration(c.p, double{speed}, double{gap}, double{leader});
-    // The terms that are subtracted may be far larger than what is left.
+    // The terms of the difference may be far larger than the result.
     double const scale = 1.0 + std::pow(speed / c.p.desired_speed, c.p.exponent) +
                          std::pow(cb::idm_desired_gap(c.p, c.speed, c.leader_speed) / c.gap, 2);
     worst_acceleration = std::max(worst_acceleration, std::abs(a - exact) / scale);
@@ -58,11 +56,11 @@ TEST_CASE("with float IDM gives what it gives with double, to float's accuracy")
   MESSAGE("largest differences: " << worst_acceleration << " of the largest term, " << worst_speed << " m/s, "
                                   << worst_distance << " m");
   CHECK(worst_acceleration < 5e-6);
-  CHECK(worst_speed < 1e-3);  // another step length now and then: the tolerance is 1e-4 m/s per s
+  CHECK(worst_speed < 1e-3);  // the step length may differ: the tolerance is 1e-4 m/s per s
   CHECK(worst_distance < 2e-4);
 }
 
-TEST_CASE("with dual numbers IDM gives the acceleration's derivatives") {
+TEST_CASE("with dual numbers IDM yields the derivatives of the acceleration") {
   cb::RandomStream random(22, 0, 0);
   int compared = 0;
   for (int i = 0; i < 20000; ++i) {
@@ -94,7 +92,7 @@ TEST_CASE("with dual numbers IDM gives the acceleration's derivatives") {
   CHECK(free.d == doctest::Approx(-1.7 * 4 * std::pow(10.0 / 15, 3) / 15));
 }
 
-TEST_CASE("with dual numbers IDM's motion is that of double, and tells how it depends on its start") {
+TEST_CASE("with dual numbers IDM's motion has the same value and yields its derivative by the initial gap") {
   cb::RandomStream random(23, 0, 0);
   int compared = 0;
   for (int i = 0; i < 3000; ++i) {
@@ -105,7 +103,7 @@ TEST_CASE("with dual numbers IDM's motion is that of double, and tells how it de
     CHECK(dual.distance.v == doctest::Approx(twin.distance).epsilon(1e-12));
     CHECK(dual.speed.v == doctest::Approx(twin.speed).epsilon(1e-12));
     double const a = cb::idm_acceleration(c.p, c.speed, c.gap, c.leader_speed), h = 1e-3;
-    if (a < -4 || c.speed < 2) continue;  // it may stop, or meet a bound
+    if (a < -4 || c.speed < 2) continue;  // it may stop or reach a bound
     CHECK(dual.speed.d == doctest::Approx((motion(c.gap + h).speed - motion(c.gap - h).speed) / (2 * h)).epsilon(0.02));
     ++compared;
   }

@@ -6,16 +6,15 @@
 #include <set>
 #include <vector>
 
-#include "../world/fixtures.hpp"
 #include "cambium/behavior/law/road_rules.hpp"
+#include "lane_traffic_fixtures.hpp"
 
-using namespace fixtures;
+using namespace lane_traffic;
 using cb::IdmStochastic;
 
 namespace {
 
-using World =
-    cb::World<cb::BehaviorSet<IdmStochastic, cb::ConstantAcceleration>, cb::InterpolateExecution, cb::SingleTrack>;
+using World = Traffic<IdmStochastic, cb::ConstantAcceleration>;
 
 World free_drivers(IdmStochastic const& driver, int agents, std::uint64_t seed) {
   World world(straight_road(8, 3000), {.seed = seed});
@@ -26,7 +25,7 @@ World free_drivers(IdmStochastic const& driver, int agents, std::uint64_t seed) 
 
 }  // namespace
 
-TEST_CASE("draws are within their distributions, uniform, and within IDM's own ranges") {
+TEST_CASE("draws follow their distributions and stay within IDM's ranges") {
   IdmStochastic const driver;
   double sum = 0.0, low = 1e9, high = 0.0;
   for (std::uint32_t i = 0; i < 20000; ++i) {
@@ -50,7 +49,7 @@ TEST_CASE("draws are within their distributions, uniform, and within IDM's own r
   }
 }
 
-TEST_CASE("drawn once, an agent keeps its parameters: on a free road all come to speeds of their own") {
+TEST_CASE("with parameters drawn once, each agent settles at its own speed on a free road") {
   auto world = free_drivers({}, 40, 3);
   for (int i = 0; i < 150; ++i) REQUIRE(world.step(0.2));
   std::set<double> speeds;
@@ -64,7 +63,7 @@ TEST_CASE("drawn once, an agent keeps its parameters: on a free road all come to
   CHECK(*speeds.rbegin() - *speeds.begin() > 2.0);
 }
 
-TEST_CASE("drawn in every step, the acceleration is noise about that of the mean driver") {
+TEST_CASE("with parameters drawn in every step, the acceleration is noisy") {
   IdmStochastic driver;
   driver.drawn = IdmStochastic::Drawn::per_step;
   auto world = free_drivers(driver, 8, 3);
@@ -77,7 +76,7 @@ TEST_CASE("drawn in every step, the acceleration is noise about that of the mean
   CHECK(changes > 5.0);
 }
 
-TEST_CASE("the same seed gives the same traffic, another seed another, and copies go on alike") {
+TEST_CASE("equal seeds give equal traffic, different seeds differ, and copies continue equally") {
   IdmStochastic driver;
   driver.yielding.enabled = true;
   auto a = free_drivers(driver, 24, 3), b = free_drivers(driver, 24, 3), c = free_drivers(driver, 24, 4);
@@ -94,7 +93,7 @@ TEST_CASE("the same seed gives the same traffic, another seed another, and copie
   CHECK(a.frame() == copy.frame());
 }
 
-TEST_CASE("intentions to yield alternate, with durations of their distributions") {
+TEST_CASE("yielding and insisting alternate with durations from their distributions") {
   IdmStochastic driver;
   driver.yielding = {.enabled = true, .yields = {2.0, 4.0}, .insists = {6.0, 8.0}};
   auto world = free_drivers(driver, 16, 5);
@@ -116,7 +115,7 @@ TEST_CASE("intentions to yield alternate, with durations of their distributions"
   CHECK(all * 0.1 / changes == doctest::Approx(5.0).epsilon(0.1));
 }
 
-TEST_CASE("drivers yield at different times from the start: at each moment as many as the durations ask for") {
+TEST_CASE("drivers do not yield in unison: at any time their number fits the durations") {
   IdmStochastic driver;
   driver.yielding = {.enabled = true, .yields = {4.0, 4.0}, .insists = {6.0, 6.0}};
   constexpr std::uint32_t count = 40;
@@ -127,15 +126,15 @@ TEST_CASE("drivers yield at different times from the start: at each moment as ma
       int yielding = 0;
       for (std::uint32_t k = 0; k < count; ++k)
         yielding += world.memory<IdmStochastic>(static_cast<cb::AgentId>(k)).yields;
-      CHECK(yielding > 4);  // 16 are expected, 3.1 the standard deviation
+      CHECK(yielding > 4);  // 16 expected, with a standard deviation of 3.1
       CHECK(yielding < 28);
     }
   }
 }
 
-TEST_CASE("while it yields, a driver leaves room for a vehicle in the neighbouring lane that ends, else not") {
+TEST_CASE("a yielding driver leaves room for a vehicle in the neighbouring lane that ends") {
   auto const map = own_map("lane_drop.xodr");
-  // The lane beside the one that leads into a lane with the same successor as its neighbour.
+  // The lane beside one that leads into a lane with the same successor as its neighbour.
   for (auto const& lane : map->lanes()) {
     if (!lane.drivable() || !cb::is_valid(lane.left_neighbor) || lane.successors.empty()) continue;
     auto const& through = map->lane(lane.left_neighbor);

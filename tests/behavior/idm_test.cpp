@@ -4,10 +4,8 @@
 
 #include <cmath>
 #include <limits>
-#include <string>
 
-#include "cambium/behavior/following/idm_classic.hpp"
-#include "cambium/core/distributions.hpp"
+#include "cambium/cambium.hpp"
 
 namespace cb = cambium;
 
@@ -21,7 +19,7 @@ TEST_CASE("a follower at the equilibrium gap keeps its speed") {
   CHECK(std::isinf(cb::idm_equilibrium_gap(p, 15.0)));
 }
 
-TEST_CASE("a gap that has closed brakes as hard as the driver can") {
+TEST_CASE("a closed gap causes the hardest braking") {
   cb::IdmClassic const p;
   for (double gap : {0.0, -1.0, -1e9}) CHECK(cb::idm_acceleration(p, 10.0, gap, 10.0) == p.lowest_acceleration);
 }
@@ -48,8 +46,7 @@ TEST_CASE("acceleration falls with speed, with a slower leader and with a smalle
 
 namespace {
 
-/// The same motion by 20000 explicit steps with linear extrapolation of their error (Richardson): a twin of
-/// `idm_motion`.
+/// A twin of `idm_motion` by 20000 explicit midpoint steps.
 cb::LongitudinalMotion<double> fine_motion(cb::IdmClassic const& p, double v, double gap, double leader, double dt) {
   auto const run = [&](int n) {
     double x = 0, speed = v;
@@ -66,9 +63,19 @@ cb::LongitudinalMotion<double> fine_motion(cb::IdmClassic const& p, double v, do
   return run(20000);
 }
 
+/// A value of the range, usually log-uniform, sometimes one of its ends.
+double any_in(cb::Range range, cb::RandomStream& random) {
+  double const u = cb::uniform01(random);
+  if (u < 0.08) return range.low;
+  if (u < 0.16) return range.high;
+  double const v = cb::uniform01(random);
+  if (range.low > 0) return range.low * std::pow(range.high / range.low, v);
+  return range.low + (range.high - range.low) * (u < 0.5 ? v : range.low < 0 ? 1 - v * v * v : v * v * v);
+}
+
 }  // namespace
 
-TEST_CASE("motion within a step solves the model's differential equation, for any step length") {
+TEST_CASE("the motion of a step solves the model's differential equation for any step length") {
   cb::RandomStream random(11, 0, 0);
   double worst_speed = 0, worst_distance = 0;
   for (int i = 0; i < 300; ++i) {
@@ -102,7 +109,7 @@ TEST_CASE("a smaller tolerance makes the motion more accurate") {
   CHECK(previous < 1e-5);
 }
 
-TEST_CASE("a follower stops behind a standing leader, stands, and starts again when it leaves") {
+TEST_CASE("a follower stops behind a standing leader, stands, and starts when the leader leaves") {
   cb::IdmClassic const p;
   double gap = 30, v = 10;
   for (int i = 0; i < 400; ++i) {
@@ -120,21 +127,7 @@ TEST_CASE("a follower stops behind a standing leader, stands, and starts again w
   CHECK(v > 1.0);
 }
 
-namespace {
-
-/// A value of the range: mostly anywhere in it by its logarithm, now and then an end of it.
-double any_in(cb::Range range, cb::RandomStream& random) {
-  double const u = cb::uniform01(random);
-  if (u < 0.08) return range.low;
-  if (u < 0.16) return range.high;
-  double const v = cb::uniform01(random);
-  if (range.low > 0) return range.low * std::pow(range.high / range.low, v);
-  return range.low + (range.high - range.low) * (u < 0.5 ? v : range.low < 0 ? 1 - v * v * v : v * v * v);
-}
-
-}  // namespace
-
-TEST_CASE("whatever the parameters, the speeds and the gap, the motion is finite, forward and within its bounds") {
+TEST_CASE("for any parameters, speeds and gap the motion is finite, forward and within its bounds") {
   cb::RandomStream random(31, 0, 0);
   double const infinite = std::numeric_limits<double>::infinity();
   int bounded = 0;
@@ -145,11 +138,7 @@ TEST_CASE("whatever the parameters, the speeds and the gap, the motion is finite
     REQUIRE_NOTHROW(cb::check_parameters(p));
     double const speed = any_in({0, 60}, random), leader = any_in({0, 60}, random);
     double const gap = i % 6 == 0 ? infinite : any_in({-10, 500}, random), dt = any_in({1e-3, 10}, random);
-    CAPTURE(cb::to_string(p));
-    CAPTURE(speed);
-    CAPTURE(gap);
-    CAPTURE(leader);
-    CAPTURE(dt);
+    INFO(cb::to_string(p), ", speed ", speed, ", gap ", gap, ", leader ", leader, ", dt ", dt);
     auto const motion = cb::idm_motion(p, speed, gap, leader, dt, p.tolerance);
     REQUIRE(std::isfinite(motion.distance));
     REQUIRE(std::isfinite(motion.speed));
@@ -163,7 +152,7 @@ TEST_CASE("whatever the parameters, the speeds and the gap, the motion is finite
     CHECK(motion.speed <= highest_speed * (1 + 1e-12));
     CHECK(motion.distance <= dt * highest_speed * (1 + 1e-12));
     if (p.exponent <= 20 && p.lowest_acceleration <= -0.1 && p.tolerance <= 0.01) {
-      // Nobody accelerates beyond the desired speed, but for the error that the tolerance and the shortest step allow.
+      // Nobody accelerates beyond the desired speed, except for the error of the tolerance and the shortest step.
       double const fastest = std::max(speed, p.desired_speed) + p.tolerance * dt + 1e-3 * strongest;
       CHECK(motion.speed <= fastest);
       CHECK(motion.distance <= dt * fastest);

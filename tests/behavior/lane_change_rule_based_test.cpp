@@ -2,8 +2,6 @@
 
 #include <doctest/doctest.h>
 
-#include <vector>
-
 #include "lane_traffic_fixtures.hpp"
 
 using namespace lane_traffic;
@@ -16,7 +14,6 @@ cb::LaneChangeRuleBased roomy(double desired_speed) { return {.idm = {.desired_s
 
 /// A user's own condition: never to the left.
 struct NeverLeft {
-  static constexpr char const* name = "never_left";
   static constexpr auto parameters() { return cb::parameter_list(); }
 
   template <class View>
@@ -27,7 +24,7 @@ struct NeverLeft {
 
 }  // namespace
 
-TEST_CASE("changes to the lane with the most space, of three") {
+TEST_CASE("it changes to the lane with the most space of three") {
   for (bool const left_is_free : {true, false}) {
     Sim world(support::straight_road(3, 2000.0));
     add(world, 2, 250.0, 10.0, cb::ConstantAcceleration{});
@@ -49,36 +46,27 @@ TEST_CASE("a little more space is not worth a change") {
   }
 }
 
-TEST_CASE("nobody collides in dense traffic of rule-based drivers, and they do change") {
-  int changes = 0;
-  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
-    Sim world(support::straight_road(3, 1500.0, seed % 3 == 0 ? 0.002 : 0.0), {.seed = seed});
-    fill(world, 3, 5.0, 500.0, 1.0 + static_cast<double>(seed % 3), seed, [](double v) { return roomy(v); });
-    for (int k = 0; k < 250; ++k) {
-      changes += step_and_count_changes(world);
+TEST_CASE("rule-based drivers change lanes without collisions in dense and in slow traffic") {
+  for (bool const slow : {false, true}) {
+    int changes = 0;
+    for (std::uint64_t seed = 1; seed <= (slow ? 24 : 12); ++seed) {
       CAPTURE(seed);
-      CHECK(collisions(world) == 0);
+      Sim world(support::straight_road(3, 1500.0, seed % 3 == 0 ? 0.002 : 0.0), {.seed = seed});
+      if (slow)
+        fill_slow(world, 3, seed, [](bool is_long) { return roomy(is_long ? 20.0 : 30.0); });
+      else
+        fill(world, 3, 5.0, 500.0, 1.0 + static_cast<double>(seed % 3), seed, roomy);
+      for (int k = 0; k < (slow ? 450 : 250); ++k) {
+        changes += step_and_count_changes(world);
+        CHECK(collisions(world) == 0);
+      }
     }
+    MESSAGE(changes << " changes");
+    CHECK(changes > (slow ? 500 : 50));
   }
-  CHECK(changes > 50);
 }
 
-TEST_CASE("nor in slow traffic of cars, trucks and buses") {
-  int changes = 0;
-  for (std::uint64_t seed = 1; seed <= 24; ++seed) {
-    Sim world(support::straight_road(3, 1500.0, seed % 3 == 0 ? 0.002 : 0.0), {.seed = seed});
-    fill_slow(world, 3, seed, [](bool is_long) { return roomy(is_long ? 20.0 : 30.0); });
-    for (int k = 0; k < 450; ++k) {
-      changes += step_and_count_changes(world);
-      CAPTURE(seed);
-      CHECK(collisions(world) == 0);
-    }
-  }
-  MESSAGE(changes << " changes");
-  CHECK(changes > 500);
-}
-
-TEST_CASE("MOBIL changes only where its filters let it, the library's and a user's own") {
+TEST_CASE("MOBIL changes only if its filters permit it, the library's and the user's") {
   auto const changes = [](auto driver, int lane) {
     using Driver = decltype(driver);
     Traffic<Driver, cb::ConstantAcceleration> world(support::straight_road(3, 2000.0));
@@ -102,4 +90,21 @@ TEST_CASE("MOBIL changes only where its filters let it, the library's and a user
   CHECK_NOTHROW(cb::check_parameters(wary));
   wary.filters.first.rear = -1.0;
   CHECK_THROWS_AS(cb::check_parameters(wary), cb::ParameterError);
+}
+
+TEST_CASE("a lane is changed into only if its speed limit is high enough") {
+  using Limited = cb::BasicMobil<cb::SpeedLimitAtLeast>;
+  auto const road = support::map_of({.id = "1",
+                                     .line = cb::map::lay_from({}, {{1000.0}}),
+                                     .sections = {{.right = cb::map::equal_lanes(2)}},
+                                     .speed_limit = 20.0});
+  for (double const least : {15.0, 25.0}) {
+    Limited driver;
+    driver.filters.first.speed = least;
+    Traffic<Limited, cb::ConstantAcceleration> world(road);
+    add(world, 1, 250.0, 8.0, cb::ConstantAcceleration{});
+    auto const id = add(world, 1, 200.0, 14.0, driver);
+    REQUIRE(world.step(0.2));
+    CHECK(world.memory<Limited>(id).change.active() == (least < 20.0));
+  }
 }

@@ -4,18 +4,12 @@
 
 #include <cmath>
 
-#include "cambium/behavior/behavior_set.hpp"
-#include "cambium/behavior/following/idm_classic.hpp"
-#include "cambium/dynamics/single_track.hpp"
-#include "cambium/execution/interpolate.hpp"
-#include "cambium/geometry/polygon.hpp"
-#include "cambium/map/corridor/build_corridor.hpp"
-#include "cambium/world/world.hpp"
+#include "cambium/cambium.hpp"
 #include "support/maps.hpp"
 
 using namespace cambium;
 
-TEST_CASE("who is still to merge is in the way also behind one that is passed, as if that were not there") {
+TEST_CASE("a vehicle that is still to merge is in the path even behind an object that is passed") {
   using Sim = World<BehaviorSet<IdmClassic>, InterpolateExecution, SingleTrack>;
   auto const map = support::own_map("merging.xodr");
   int merging = 0;
@@ -49,7 +43,7 @@ TEST_CASE("who is still to merge is in the way also behind one that is passed, a
       CHECK(next->agent == other);
       CHECK(next->gap == doctest::Approx(expected->gap).epsilon(0.01));
       CHECK(next->speed == doctest::Approx(expected->speed).epsilon(0.01));
-      CHECK_FALSE(is_valid(detail::next_in_way(view, 0.8, 0.1)->agent));  // there the object is in the way
+      CHECK_FALSE(is_valid(detail::next_in_way(view, 0.8, 0.1)->agent));  // there the object is in the path
       ++merging;
     }
   }

@@ -5,29 +5,33 @@
 #include <memory>
 #include <vector>
 
-#include "cambium/behavior/behavior_set.hpp"
-#include "cambium/behavior/following/constant_acceleration.hpp"
-#include "cambium/behavior/following/idm_classic.hpp"
-#include "cambium/behavior/lane_change/lane_change_rule_based.hpp"
-#include "cambium/behavior/lane_change/mobil.hpp"
-#include "cambium/core/distributions.hpp"
-#include "cambium/dynamics/single_track.hpp"
-#include "cambium/execution/interpolate.hpp"
-#include "cambium/geometry/collision.hpp"
-#include "cambium/geometry/oriented_box.hpp"
-#include "cambium/world/world.hpp"
+#include "cambium/cambium.hpp"
+#include "cambium/map/road/curve_layout.hpp"
 
 #include "../support/maps.hpp"
 
-/// Traffic on several lanes, for the tests of behaviours that change between them.
+/// Traffic on straight roads, in particular on several lanes.
 namespace lane_traffic {
 
 namespace cb = cambium;
 
+using support::corpus_map;
+using support::own_map;
+using support::straight_road;
+
 template <class... Behaviors>
 using Traffic = cb::World<cb::BehaviorSet<Behaviors...>, cb::InterpolateExecution, cb::SingleTrack>;
 
-/// The agents that drive, as boxes.
+inline double between(double low, double high, cb::RandomStream& random) { return cb::Uniform{low, high}(random); }
+
+/// A road of one lane: 200 m straight, then a bend.
+inline std::shared_ptr<cb::Map const> road_with_bend(double radius) {
+  return support::map_of({.id = "1",
+                          .line = cb::map::lay_from({}, {{200.0}, {60.0, 1 / radius, 1 / radius}}),
+                          .sections = {{.right = cb::map::equal_lanes(1)}}});
+}
+
+/// The driving agents as boxes.
 template <class World>
 std::vector<cb::geometry::OrientedBox> boxes(World const& world) {
   std::vector<cb::geometry::OrientedBox> result;
@@ -40,7 +44,7 @@ std::vector<cb::geometry::OrientedBox> boxes(World const& world) {
   return result;
 }
 
-/// How many pairs of agents overlap, and agents with static objects.
+/// Number of overlapping pairs, of two agents or of an agent and a static object.
 template <class World>
 int collisions(World const& world) {
   auto const all = boxes(world);
@@ -52,7 +56,16 @@ int collisions(World const& world) {
   return count;
 }
 
-/// Puts an agent onto a lane of the first road, `number` counted from the left of those in its direction.
+/// Drives some steps and requires that nothing fails or collides.
+template <class World>
+void drive_safely(World& world, int steps, double dt = 0.2) {
+  for (int k = 0; k < steps; ++k) {
+    REQUIRE(world.step(dt));
+    REQUIRE(collisions(world) == 0);
+  }
+}
+
+/// Adds an agent on a lane of the first road; `number` counts the lanes of its direction from the left.
 template <class World>
 cb::AgentId add(World& world, int number, double s, double speed, typename World::Behavior const& behavior,
                 cb::Goal const& goal = {}, cb::geometry::Shape const& shape = {}) {
@@ -70,19 +83,19 @@ cb::AgentId add(World& world, int number, double s, double speed, typename World
   return cb::none<cb::AgentId>;
 }
 
-/// Random traffic on lanes 1 to `lanes`: speeds, gaps and sizes drawn, gaps so that nobody need brake hard.
+/// Adds random traffic on lanes 1 to `lanes`, with gaps large enough that nobody has to brake hard.
 /// `driver(desired_speed)` makes a behaviour.
 template <class World, class Driver>
 void fill(World& world, int lanes, double begin, double end, double density, std::uint64_t seed, Driver const& driver) {
   cb::RandomStream random(seed, 0, 0);
-  auto const between = [&random](double low, double high) { return low + (high - low) * cb::uniform01(random); };
   for (int lane = 1; lane <= lanes; ++lane) {
-    double speed = between(6.0, 14.0);
-    for (double s = begin + between(0.0, 30.0); s < end;) {
+    double speed = between(6.0, 14.0, random);
+    for (double s = begin + between(0.0, 30.0, random); s < end;) {
       bool const is_truck = cb::uniform01(random) < 0.1;
       auto const shape = is_truck ? cb::geometry::truck() : cb::geometry::car();
-      add(world, lane, s + shape.rear, speed, driver(between(is_truck ? 8.0 : 9.0, is_truck ? 14.0 : 22.0)), {}, shape);
-      double const next = between(6.0, 14.0);
+      add(world, lane, s + shape.rear, speed, driver(between(is_truck ? 8.0 : 9.0, is_truck ? 14.0 : 22.0, random)), {},
+          shape);
+      double const next = between(6.0, 14.0, random);
       s += shape.length() + 4.0 + (1.0 + 3.0 * cb::uniform01(random) / density) * speed +
            std::max(0.0, speed - next) * 3.0;
       speed = next;
@@ -90,31 +103,30 @@ void fill(World& world, int lanes, double begin, double end, double density, std
   }
 }
 
-/// Slow traffic on lanes 1 to `lanes` with many trucks and buses, behind somebody on each lane who stays slow.
+/// Adds slow traffic with many trucks and buses on lanes 1 to `lanes`, each behind a driver that stays slow.
 /// `driver(is_long)` makes a behaviour.
 template <class World, class Driver>
 void fill_slow(World& world, int lanes, std::uint64_t seed, Driver const& driver) {
   cb::RandomStream random(seed, 26, 5);
-  auto const between = [&random](double low, double high) { return low + (high - low) * cb::uniform01(random); };
   for (int lane = 1; lane <= lanes; ++lane) {
-    double speed = between(1.0, 6.0);
-    for (double s = 20.0 + between(0.0, 20.0); s < 400.0;) {
+    double speed = between(1.0, 6.0, random);
+    for (double s = 20.0 + between(0.0, 20.0, random); s < 400.0;) {
       bool const is_long = cb::uniform01(random) < 0.25;
       auto const shape = !is_long                      ? cb::geometry::car()
                          : cb::uniform01(random) < 0.5 ? cb::geometry::bus()
                                                        : cb::geometry::truck();
       add(world, lane, s + shape.rear, speed, driver(is_long), {}, shape);
-      double const next = between(1.0, 6.0);
-      s += shape.length() + 4.0 + between(1.0, 3.0) * speed + 6.0 * std::max(0.0, speed - next);
+      double const next = between(1.0, 6.0, random);
+      s += shape.length() + 4.0 + between(1.0, 3.0, random) * speed + 6.0 * std::max(0.0, speed - next);
       speed = next;
     }
     auto slow = driver(false);
-    slow.idm.desired_speed = between(2.0, 5.0);
-    add(world, lane, 470.0 + 8.0 * lane, between(1.0, 4.0), slow);
+    slow.idm.desired_speed = between(2.0, 5.0, random);
+    add(world, lane, 470.0 + 8.0 * lane, between(1.0, 4.0, random), slow);
   }
 }
 
-/// Lane corridors that the agents are in, by slot.
+/// Lane corridors of the agents, by slot.
 template <class World>
 std::vector<cb::CorridorId> lanes(World const& world) {
   std::vector<cb::CorridorId> result;
@@ -122,7 +134,7 @@ std::vector<cb::CorridorId> lanes(World const& world) {
   return result;
 }
 
-/// Steps; how many agents are in another lane than before.
+/// Steps and returns how many agents have changed lanes.
 template <class World>
 int step_and_count_changes(World& world, double dt = 0.2) {
   auto const before = lanes(world);

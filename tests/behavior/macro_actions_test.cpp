@@ -5,15 +5,9 @@
 #include <cmath>
 #include <set>
 #include <string>
+#include "lane_traffic_fixtures.hpp"
 
-#include "../world/fixtures.hpp"
-#include "cambium/behavior/lane_change/random_macro_actions.hpp"
-#include "cambium/behavior/open_loop/motion_primitives.hpp"
-#include "cambium/behavior/safety/safety.hpp"
-#include "cambium/core/error.hpp"
-#include "cambium/dynamics/integration.hpp"
-
-using namespace fixtures;
+using namespace lane_traffic;
 using Kind = cb::MacroAction::Kind;
 
 namespace {
@@ -22,7 +16,7 @@ using Behaviors =
     cb::BehaviorSet<cb::MacroActions, cb::RandomMacroActions, cb::MotionPrimitives, cb::Safety, cb::IdmClassic>;
 using World = cb::World<Behaviors, cb::InterpolateExecution, cb::SingleTrack>;
 
-/// Three lanes at -1.75, -5.25 and -8.75; one agent in the middle at 100 m and 10 m/s.
+/// Three lanes at -1.75, -5.25 and -8.75 m; one agent in the middle one at 100 m and 10 m/s.
 struct Highway {
   World world{straight_road(3, 2000.0)};
   cb::AgentId id;
@@ -61,7 +55,7 @@ TEST_CASE("actions can be counted and named") {
   CHECK_THROWS_AS(Highway{wrong}, cb::ParameterError);
 }
 
-TEST_CASE("a number that there is not fails; nothing can be chosen, too") {
+TEST_CASE("the plan fails for a number that does not exist; `nothing` can be chosen") {
   for (std::size_t const number : {std::size_t{7}, std::size_t{254}, std::size_t{999}}) {
     Highway at;
     at.choose(number);
@@ -71,16 +65,9 @@ TEST_CASE("a number that there is not fails; nothing can be chosen, too") {
   at.choose(cb::MacroActions::nothing);
   at.drive(20);
   CHECK(at.world.state(at.id).x == doctest::Approx(150.0));
-  World world(straight_road(1, 500.0));
-  auto const id = world.add({.position = {100, -1.75}, .speed = 10, .behavior = cb::MotionPrimitives{}});
-  world.memory<cb::MotionPrimitives>(id).chosen = cb::MotionPrimitives::nothing;
-  CHECK(world.step(0.25));
-  CHECK(world.state(id).x == doctest::Approx(102.5));
-  world.memory<cb::MotionPrimitives>(id).chosen = 77;
-  CHECK(world.step(0.25).failed == 1);
 }
 
-TEST_CASE("staying keeps the acceleration until another one is chosen, and stops rather than reverses") {
+TEST_CASE("staying holds its acceleration until another action is chosen, and stops rather than reverses") {
   Highway at;
   at.choose(number_of(Kind::stay, 1.5));
   at.drive(8);
@@ -92,7 +79,7 @@ TEST_CASE("staying keeps the acceleration until another one is chosen, and stops
   CHECK(at.world.state(at.id).speed == 0.0);
 }
 
-TEST_CASE("a change goes to the lane on its side, once, and is finished whatever is chosen meanwhile") {
+TEST_CASE("a change leads to the next lane once, and is completed whatever is chosen meanwhile") {
   for (bool const left : {true, false}) {
     Highway at;
     at.choose(number_of(left ? Kind::change_left : Kind::change_right));
@@ -102,20 +89,20 @@ TEST_CASE("a change goes to the lane on its side, once, and is finished whatever
     at.drive(20);
     CHECK(at.y() == doctest::Approx(left ? -1.75 : -8.75).epsilon(1e-6));
     CHECK(at.world.state(at.id).speed > 15);
-    at.choose(number_of(left ? Kind::change_left : Kind::change_right));  // no further lane
+    at.choose(number_of(left ? Kind::change_left : Kind::change_right));  // there is no further lane
     at.drive(20);
     CHECK(at.y() == doctest::Approx(left ? -1.75 : -8.75).epsilon(1e-6));
   }
 }
 
-TEST_CASE("a change that is chosen again on its way goes on; one to the other side leads back") {
+TEST_CASE("choosing a change again continues it; choosing the opposite one leads back") {
   Highway at, twice, back;
   at.choose(number_of(Kind::change_left));
   twice.choose(number_of(Kind::change_left));
   back.choose(number_of(Kind::change_left));
   at.drive(4);
   twice.drive(4);
-  back.drive(10);  // in the left lane by now
+  back.drive(10);  // already in the left lane
   CHECK(back.y() > -3.5);
   twice.choose(number_of(Kind::change_left));
   back.choose(number_of(Kind::change_right));
@@ -126,10 +113,10 @@ TEST_CASE("a change that is chosen again on its way goes on; one to the other si
   CHECK(back.y() == doctest::Approx(-5.25).epsilon(1e-6));
 }
 
-TEST_CASE("one to the other side before the border is crossed leads back to the old lane, smoothly") {
+TEST_CASE("the opposite change leads back smoothly before the border is crossed") {
   for (bool const left : {true, false})
     for (int const steps : {1, 4, 6}) {
-      // In the middle there is a lane farther on; at the edge there is none.
+      // The middle lane has a lane beyond, the edge has none.
       for (double const y : {-5.25, left ? -8.75 : -1.75}) {
         Highway at({}, y);
         at.choose(number_of(left ? Kind::change_left : Kind::change_right));
@@ -153,16 +140,15 @@ TEST_CASE("one to the other side before the border is crossed leads back to the 
     }
 }
 
-TEST_CASE("whatever the shape and the speed, the body stays within the two lanes of a change") {
-  // The two in the middle of four lanes, from -10.5 to -3.5. Who gives up while it is aslant comes to lie a little
-  // farther on its way back.
+TEST_CASE("for any shape and speed the body stays within the two lanes of a change") {
+  // The two middle lanes of four, from -10.5 to -3.5 m. A vehicle that aborts at an angle gets a little farther.
   double const left_border = -3.5, right_border = -10.5;
   for (auto const& shape :
        {cb::geometry::car(), cb::geometry::van(), cb::geometry::truck(), cb::geometry::articulated_truck(),
         cb::geometry::bus(), cb::geometry::motorcycle(), cb::geometry::bicycle(), cb::geometry::pedestrian()})
     for (int speed = 1; speed <= 30; ++speed)
       for (bool const leftwards : {true, false})
-        for (double const given_up_after : {0.3, 1.0, 1.7, 2.5, 10.0}) {  // so far aside [m]
+        for (double const given_up_after : {0.3, 1.0, 1.7, 2.5, 10.0}) {  // aborts at this lateral distance [m]
           double const from = leftwards ? -8.75 : -5.25;
           World world(straight_road(4, 1000.0));
           auto const id = world.add(
@@ -183,10 +169,8 @@ TEST_CASE("whatever the shape and the speed, the body stays within the two lanes
               goes_on = false;
             }
           } while (world.memory<cb::MacroActions>(id).change.active());
-          CAPTURE(shape.length());
-          CAPTURE(speed);
-          CAPTURE(leftwards);
-          CAPTURE(given_up_after);
+          INFO("length ", shape.length(), ", speed ", speed, ", leftwards ", leftwards, ", given up after ",
+               given_up_after);
           double const over = goes_on ? 0.0 : 0.1;
           CHECK(leftmost < left_border + over);
           CHECK(rightmost > right_border - over);
@@ -194,7 +178,7 @@ TEST_CASE("whatever the shape and the speed, the body stays within the two lanes
         }
 }
 
-TEST_CASE("what is chosen, and the change under way, go along with copies") {
+TEST_CASE("copies include the chosen action and the change in progress") {
   Highway at;
   at.choose(number_of(Kind::change_right));
   at.drive(5);
@@ -205,7 +189,7 @@ TEST_CASE("what is chosen, and the change under way, go along with copies") {
   CHECK(at.y() == doctest::Approx(-8.75).epsilon(1e-6));
 }
 
-TEST_CASE("changes are available where there is a lane on that side") {
+TEST_CASE("changes are available if there is a lane on that side") {
   auto const available = [](double y, Kind kind) {
     Highway at({}, y);
     return cb::MacroActions{}.available(at.world.observe(at.id), number_of(kind));
@@ -220,7 +204,7 @@ TEST_CASE("changes are available where there is a lane on that side") {
   CHECK_FALSE(cb::MacroActions{}.available(at.world.observe(at.id), 7));
 }
 
-TEST_CASE("a change into a lane that ends too soon is not available, and not begun") {
+TEST_CASE("a change into a lane that ends too soon is unavailable and does not begin") {
   World world(support::own_map("lane_drop.xodr"));
   auto const& road = world.map().roads()[0];
   auto const number = number_of(Kind::change_right);
@@ -244,7 +228,7 @@ TEST_CASE("a change into a lane that ends too soon is not available, and not beg
   CHECK_FALSE(world.memory<cb::MacroActions>(near).change.active());
 }
 
-TEST_CASE("keeping the gap is IDM") {
+TEST_CASE("keeping the gap equals IDM") {
   World world(straight_road(1, 2000.0));
   world.add({.position = {100, -1.75}, .speed = 10, .behavior = cb::MacroActions{}});
   world.add({.position = {140, -1.75}, .speed = 6, .behavior = cb::IdmClassic{.desired_speed = 6}});
@@ -258,7 +242,7 @@ TEST_CASE("keeping the gap is IDM") {
   }
 }
 
-TEST_CASE("random actions are the same in every run and copy, others for another seed, and all of them come up") {
+TEST_CASE("random actions repeat in runs and copies, differ between seeds, and all occur") {
   auto const run = [](std::uint64_t seed, bool with_copies) {
     World world(straight_road(3, 2000.0), {.seed = seed});
     for (int i = 0; i < 5; ++i)
@@ -289,7 +273,7 @@ TEST_CASE("random actions are the same in every run and copy, others for another
   CHECK(switches > 50);
 }
 
-TEST_CASE("motion primitives are carried out by the vehicle model, as chosen") {
+TEST_CASE("the vehicle model carries out the chosen motion primitive") {
   World world(straight_road(3, 2000.0));
   cb::MotionPrimitives const primitives = cb::MotionPrimitives::of({{1.0, 0.05}, {-2.0, 0.0}});
   CHECK(primitives.size() == 2);
@@ -309,12 +293,18 @@ TEST_CASE("motion primitives are carried out by the vehicle model, as chosen") {
   REQUIRE(world.step(0.2));
   CHECK(world.state(id).speed == before.speed);
   CHECK(world.state(id).heading == before.heading);
-  world.memory<cb::MotionPrimitives>(id).chosen = 9;  // there is none
-  CHECK(world.step(0.2).problem == cb::StepProblem::no_plan);
+  CHECK(std::hypot(world.state(id).x - before.x, world.state(id).y - before.y) == doctest::Approx(0.2 * before.speed));
+  for (std::uint8_t const missing : {std::uint8_t{9}, std::uint8_t{77}}) {
+    auto copy = world;
+    copy.memory<cb::MotionPrimitives>(id).chosen = missing;
+    auto const result = copy.step(0.2);
+    CHECK(result.problem == cb::StepProblem::no_plan);
+    CHECK(result.failed == 1);
+  }
   CHECK_THROWS_AS((void)cb::MotionPrimitives::of({}), cb::ParameterError);
 }
 
-TEST_CASE("safety brakes to standstill, and comes to the middle of its lane on the way") {
+TEST_CASE("safety brakes to a standstill and returns to the middle of its lane") {
   World world(straight_road(2, 1000.0));
   auto const id = world.add({.position = {100, -1.0}, .speed = 30, .behavior = cb::Safety{}});
   for (int i = 0; i < 40; ++i) CHECK(world.step(0.25));
@@ -339,7 +329,7 @@ TEST_CASE("the lists to choose from are parameters") {
                        cb::ParameterError);
 }
 
-TEST_CASE("an action that keeps the gap is no faster than car following allows, in either lane of a change") {
+TEST_CASE("an action that keeps the gap is no faster than car following permits, in either lane of a change") {
   using Action = cb::MacroAction;
   auto const macro = cb::MacroActions::of({{Kind::stay, 1.0},
                                            {Kind::stay, 1.0, true},

@@ -1,4 +1,4 @@
-// Cars, bicycles and pedestrians in one world, each through the dynamics of its own.
+// Cars, bicycles and pedestrians in one world, each with its own dynamics.
 
 #include <doctest/doctest.h>
 
@@ -8,14 +8,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "cambium/behavior/following/idm_lane_tracking.hpp"
-#include "cambium/behavior/junction/intersection.hpp"
-#include "cambium/behavior/pedestrian/pedestrian.hpp"
-#include "cambium/behavior/presets.hpp"
-#include "cambium/dynamics/dynamic_set.hpp"
-#include "cambium/execution/stanley.hpp"
-#include "cambium/map/corridor/build_corridor.hpp"
-#include "cambium/map/corridor/free_corridor.hpp"
 #include "cambium/map/road/curve_layout.hpp"
 
 #include "lane_traffic_fixtures.hpp"
@@ -50,7 +42,7 @@ cb::AgentId enter(Mixed& world, cb::map::LaneType type, double s, Mixed::AgentSp
 
 }  // namespace
 
-TEST_CASE("cars, cyclists and those on foot go their ways through dynamics of their own, and do not touch") {
+TEST_CASE("cars, cyclists and pedestrians with their own dynamics follow their ways and do not touch") {
   auto const map = street();
   Mixed world(map, {.seed = 2});
   using cb::map::LaneType;
@@ -65,7 +57,7 @@ TEST_CASE("cars, cyclists and those on foot go their ways through dynamics of th
                             {.shape = cb::geometry::pedestrian(),
                              .behavior = cb::Pedestrian{},
                              .dynamics = cb::presets::pedestrian_dynamics()});
-  // One who stands about in the car's lane, 120 m on.
+  // A pedestrian loiters in the car's lane, 120 m ahead.
   auto const& driving = lane_of(*map, LaneType::driving);
   auto const there = driving.path.pose(130.0);
   cb::geometry::Point const aside{-std::sin(there.heading), std::cos(there.heading)};
@@ -77,8 +69,7 @@ TEST_CASE("cars, cyclists and those on foot go their ways through dynamics of th
                                .dynamics = cb::presets::pedestrian_dynamics()});
   double slowest = 100.0, farthest = 0.0;
   for (int i = 0; i < 250; ++i) {
-    CHECK(world.step(0.1).failed == 0);
-    REQUIRE(collisions(world) == 0);
+    drive_safely(world, 1, 0.1);
     slowest = std::min(slowest, world.state(car).speed);
     if (i > 50) farthest = std::max(farthest, std::abs(world.record(cyclist).lane.lateral));
   }
@@ -92,7 +83,7 @@ TEST_CASE("cars, cyclists and those on foot go their ways through dynamics of th
   CHECK(std::abs(world.record(walker).lane.lateral) < 1.2);
 }
 
-TEST_CASE("in one lane with cars bicycles are followed, not touched, and everybody gets on") {
+TEST_CASE("cars and bicycles in one lane follow each other without contact and make progress") {
   auto const road = support::straight_road(1, 2000.0);
   using Queue = cb::World<cb::BehaviorSet<cb::Intersection>, cb::InterpolateExecution, cb::SingleTrack>;
   for (std::uint32_t seed = 0; seed < 40; ++seed) {
@@ -114,10 +105,7 @@ TEST_CASE("in one lane with cars bicycles are followed, not touched, and everybo
       s += 8.0 + 40.0 * cb::uniform01(random);
       if (speed > 6.0) s += 20.0;
     }
-    for (int k = 0; k < 400; ++k) {
-      CHECK(world.step(0.2).failed == 0);
-      REQUIRE(collisions(world) == 0);
-    }
+    drive_safely(world, 400);
     for (std::size_t i = 0; i < world.size(); ++i)
       CHECK(world.frame().agents[i].lane.s > begins[i] + 300.0);  // 80 s at 18 km/h are 400 m
   }

@@ -1,7 +1,6 @@
-// BARK's rule-based MOBIL: where its decision is fair, and where it is wrong, both numbers.
+// BARK's rule-based MOBIL compared with ours, where it decides correctly and where it does not.
 #include <doctest/doctest.h>
 
-#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
@@ -14,13 +13,13 @@ using namespace lane_traffic;
 
 namespace {
 
-/// BARK asks for free space on top of the safety criterion.
+/// BARK requires free space in addition to the safety criterion.
 using Driver = cb::BasicMobil<cb::FreeSpace>;
 using Sim = Traffic<Driver, cb::ConstantAcceleration>;
 
 constexpr cb::geometry::Shape bark_car{1.75, 2.25, 1.0, 1.0};
 
-/// BARK's defaults: politeness 0.2, threshold 0.2, safe deceleration 4, everybody drives like the driver itself.
+/// BARK's defaults: politeness 0.2, threshold 0.2, safe deceleration 4; every driver is assumed to drive like oneself.
 Driver bark_driver(double desired_speed) {
   Driver driver;
   driver.idm.desired_speed = driver.changing.others.desired_speed = desired_speed;
@@ -31,7 +30,7 @@ Driver bark_driver(double desired_speed) {
 
 double const desired[] = {0.0, 20.0, 8.0, 14.0, 12.0};  // by agent
 
-/// The agents of one step of the file, as a world.
+/// The agents of one step of the file as a world.
 Sim world_at(std::vector<std::vector<std::string>> const& rows, int step) {
   Sim world(support::straight_road(2, 1000.0));
   for (auto const& row : rows) {
@@ -48,7 +47,7 @@ Sim world_at(std::vector<std::vector<std::string>> const& rows, int step) {
 
 }  // namespace
 
-TEST_CASE("MOBIL decides as BARK's where BARK sees who is behind, and as published where it does not") {
+TEST_CASE("MOBIL decides as BARK's where BARK sees the follower, and as published where it does not") {
   auto const file = corpus::find("oracle/bark/bark_mobil_highway.csv");
   if (!file) return;
   auto const rows = corpus::table(*file);
@@ -72,7 +71,7 @@ TEST_CASE("MOBIL decides as BARK's where BARK sees who is behind, and as publish
     theirs += bark_moves(step, 1) ? '1' : '0';
     CHECK(!wants(step, 4));
     CHECK(!bark_moves(step, 4));
-    // Agent 1 closes up behind agent 2, which is polite; BARK leaves the old follower out.
+    // Agent 1 closes up behind agent 2, so a polite agent 2 changes; BARK ignores the old follower.
     CHECK(wants(step, 2));
     CHECK(!bark_moves(step, 2));
   }
@@ -80,7 +79,7 @@ TEST_CASE("MOBIL decides as BARK's where BARK sees who is behind, and as publish
   CHECK(ours == theirs);
 }
 
-TEST_CASE("in BARK's traffic our drivers change, with hysteresis, and do not change back and forth") {
+TEST_CASE("in BARK's traffic our drivers change lanes with hysteresis, not back and forth") {
   auto const file = corpus::find("oracle/bark/bark_mobil_highway.csv");
   if (!file) return;
   auto const rows = corpus::table(*file);
@@ -100,12 +99,12 @@ TEST_CASE("in BARK's traffic our drivers change, with hysteresis, and do not cha
   }
   MESSAGE("lane changes of agents 1 to 4: ours " << ours[1] << ours[2] << ours[3] << ours[4] << ", BARK " << theirs[1]
                                                  << theirs[2] << theirs[3] << theirs[4]);
-  CHECK(theirs[4] == 2);  // over and back, for want of hysteresis
+  CHECK(theirs[4] == 2);  // over and back, without hysteresis
   CHECK(ours[4] <= 1);
 }
 
-TEST_CASE("the old follower counts, which BARK's formula leaves out") {
-  // Own and old follower drive behind one slow leader; the follower wants to go faster by far.
+TEST_CASE("the old follower counts, which BARK's formula omits") {
+  // Driver and old follower are behind one slow leader; the follower's desired speed is much higher.
   cb::MobilSituation const at{.own = -0.10,
                               .own_after = 0.05,
                               .new_follower = 0.0,
@@ -120,7 +119,7 @@ TEST_CASE("the old follower counts, which BARK's formula leaves out") {
   CHECK(cb::mobil_incentive(p, at) == doctest::Approx(0.43));
 }
 
-TEST_CASE("a new follower is judged by what it is, not by the driver's own parameters as in BARK") {
+TEST_CASE("a new follower is judged by its own speed, not by the driver's parameters as in BARK") {
   Sim world(support::straight_road(2, 1000.0));
   add(world, 1, 250.0, 9.0, cb::ConstantAcceleration{});
   auto driver = bark_driver(15.0);
@@ -129,16 +128,16 @@ TEST_CASE("a new follower is judged by what it is, not by the driver's own param
   auto const view = world.observe(ego);
   auto const rear = view.behind(view.place(cb::CorridorId{1}));
   REQUIRE(rear);
-  double const bark =
-      cb::idm_acceleration(driver.idm, rear->speed, rear->gap, 14.0);  // at 20 of 15 m/s it brakes anyway
-  double const ours = driver.changing.follower(rear, rear->gap, 14.0);
+  double const bark = cb::idm_acceleration(driver.idm, rear->speed, rear->gap,
+                                           14.0);  // at 20 m/s with a desired speed of 15 m/s it brakes anyway
+  double const ours = driver.changing.law_of(*rear)(rear->gap, 14.0);
   auto own = driver.changing.others;
   own.desired_speed = 20.0;
   CHECK(ours == doctest::Approx(cb::idm_acceleration(own, rear->speed, rear->gap, 14.0)));
   CHECK(bark < ours - 1e-6);
 }
 
-TEST_CASE("the nearest follower counts, BARK takes the farthest") {
+TEST_CASE("the nearest follower counts; BARK takes the farthest") {
   Sim world(support::straight_road(2, 1000.0));
   add(world, 1, 230.0, 5.0, cb::ConstantAcceleration{});
   auto const ego = add(world, 1, 200.0, 14.0, bark_driver(20.0));
@@ -148,10 +147,10 @@ TEST_CASE("the nearest follower counts, BARK takes the farthest") {
   auto const rear = view.behind(view.place(cb::CorridorId{1}));
   REQUIRE(rear);
   CHECK(rear->agent == near);
-  // To the farther one (BARK's) the change is safe, to the nearer one it is not.
+  // The change is safe with respect to the farther follower (BARK's), but not to the nearer one.
   Driver const driver = bark_driver(20.0);
-  CHECK(driver.changing.follower(rear, 140.0 - 4.5, 14.0) > -4.0);
-  CHECK(driver.changing.follower(rear, rear->gap, 14.0) < -4.0);
+  CHECK(driver.changing.law_of(*rear)(140.0 - 4.5, 14.0) > -4.0);
+  CHECK(driver.changing.law_of(*rear)(rear->gap, 14.0) < -4.0);
   REQUIRE(world.step(0.2));
   CHECK(!world.memory<Driver>(ego).change.active());
 }

@@ -3,14 +3,8 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <vector>
-
-#include "cambium/behavior/following/constant_acceleration.hpp"
-#include "cambium/behavior/following/idm_classic.hpp"
-#include "cambium/core/distributions.hpp"
-#include "cambium/map/corridor/free_corridor.hpp"
 
 #include "../support/allocations.hpp"
 #include "lane_traffic_fixtures.hpp"
@@ -39,94 +33,26 @@ cb::AgentId walk(Sim& world, Way const& on, Point const& from, cb::Pedestrian co
                     .road = on});
 }
 
-double between(cb::RandomStream& random, double low, double high) { return cb::Uniform{low, high}(random); }
-
 bool drives(Sim const& world, cb::AgentId id) { return world.status(id) == cb::AgentStatus::driving; }
 
-/// Of the two bodies, as circles [m].
+/// Distance of two bodies, as circles [m].
 double apart(Sim const& world, cb::AgentId a, cb::AgentId b) {
   return std::hypot(world.state(a).x - world.state(b).x, world.state(a).y - world.state(b).y) - 0.6;
 }
-
-}  // namespace
-
-TEST_CASE("alone on its way a pedestrian comes to its desired speed with tau, and arrives") {
-  Sim world(road);
-  auto const id = walk(world, way({{0, 50}, {60, 50}}), {1, 50}, {.fluctuation = 0.0});
-  for (int i = 1; i <= 20; ++i) {
-    REQUIRE(world.step(0.1));
-    CHECK(world.state(id).speed == doctest::Approx(1.34 * (1 - std::exp(-0.1 * i / 0.5))).epsilon(1e-6));
-    CHECK(world.state(id).y == doctest::Approx(50.0));
-  }
-  for (int i = 0; i < 450; ++i) REQUIRE(world.step(0.1));
-  CHECK(world.status(id) == cb::AgentStatus::arrived);
-}
-
-TEST_CASE("round bends of its way a pedestrian stays on it") {
-  Sim world(road);
-  auto const bent = way({{0, 50}, {10, 50}, {10, 60}, {20, 60}, {12, 70}});
-  auto const id = walk(world, bent, {0, 50});
-  double farthest = 0.0;
-  for (int i = 0; i < 600 && drives(world, id); ++i) {
-    REQUIRE(world.step(0.1));
-    farthest = std::max(farthest, std::abs(world.record(id).lane.lateral));
-  }
-  CHECK(world.status(id) == cb::AgentStatus::arrived);
-  CHECK(farthest < 1.5);
-}
-
-TEST_CASE("two who head at each other evade, whatever way they come") {
-  double smallest = 1e9;
-  int arrived = 0;
-  for (std::uint32_t seed = 0; seed < 100; ++seed) {
-    cb::RandomStream random(seed, 0, 0);
-    Sim world(road, {.seed = seed});
-    auto const there = way({{0, 50}, {20, 50}}, 3.0), back = way({{20, 50}, {0, 50}}, 3.0);
-    double const v = between(random, 0.8, 1.8), w = between(random, 0.8, 1.8);
-    auto const a = walk(world, there, {0, 50 + between(random, -0.3, 0.3)}, {.social = {.desired_speed = v}}, v);
-    auto const b = walk(world, back, {20, 50 + between(random, -0.3, 0.3)}, {.social = {.desired_speed = w}}, w);
-    for (int i = 0; i < 400 && drives(world, a) && drives(world, b); ++i) {
-      REQUIRE(world.step(0.1));
-      smallest = std::min(smallest, apart(world, a, b));
-    }
-    arrived += world.status(a) == cb::AgentStatus::arrived || world.status(b) == cb::AgentStatus::arrived;
-  }
-  CHECK(smallest > 0.0);
-  CHECK(arrived == 100);
-}
-
-TEST_CASE("two ways that cross: nobody runs into another") {
-  double smallest = 1e9;
-  for (std::uint32_t seed = 0; seed < 60; ++seed) {
-    cb::RandomStream random(seed, 1, 0);
-    Sim world(road, {.seed = seed});
-    auto const along = way({{0, 50}, {20, 50}}), across = way({{10, 40}, {10, 60}});
-    auto const a = walk(world, along, {0, 50}, {}, 1.34);
-    auto const b = walk(world, across, {10, 40 + between(random, -1.0, 1.0)}, {}, 1.34);
-    for (int i = 0; i < 250; ++i) {
-      REQUIRE(world.step(0.1));
-      if (drives(world, a) && drives(world, b)) smallest = std::min(smallest, apart(world, a, b));
-    }
-    CHECK(world.status(a) == cb::AgentStatus::arrived);
-    CHECK(world.status(b) == cb::AgentStatus::arrived);
-  }
-  CHECK(smallest > 0.0);
-}
-
-namespace {
 
 /// Vehicles at constant speed, or IDM drivers, on both lanes.
 template <class Driver>
 void add_vehicles(Sim& world, cb::RandomStream& random, double mean_gap, double least, double most,
                   Driver const& driver) {
   for (double const y : {-1.75, -5.25}) {
-    double const speed = between(random, least, most);  // one for a lane: they do not follow each other
-    for (double x = between(random, 5.0, 60.0); x < 300.0; x += 6.0 + between(random, 0.0, 2.0) * mean_gap * speed)
+    double const speed =
+        between(least, most, random);  // the same for all vehicles of a lane, so that they need not follow each other
+    for (double x = between(5.0, 60.0, random); x < 300.0; x += 6.0 + between(0.0, 2.0, random) * mean_gap * speed)
       world.add({.position = {x, y}, .speed = speed, .behavior = driver(speed)});
   }
 }
 
-/// The least time [s] until a vehicle of a lane that the body has just stepped into arrives at it, if it drives on.
+/// Shortest time [s] in which a vehicle in the lane that the body has just entered would reach it.
 double time_left(Sim const& world, cb::AgentId walker) {
   auto const& own = world.state(walker);
   double least = 1e9;
@@ -140,63 +66,8 @@ double time_left(Sim const& world, cb::AgentId walker) {
   return least;
 }
 
-}  // namespace
-
-TEST_CASE("a pedestrian crosses in gaps, and is never run over by those who do not look") {
-  int crossed = 0, waited = 0;
-  double least = 1e9;
-  for (std::uint32_t seed = 0; seed < 80; ++seed) {
-    CAPTURE(seed);
-    cb::RandomStream random(seed, 2, 0);
-    Sim world(road, {.seed = seed});
-    bool const back = seed % 2 == 1;
-    auto const across = back ? way({{320, -14}, {320, 8}}) : way({{320, 8}, {320, -14}});
-    auto const id =
-        walk(world, across, {320, back ? -14.0 : 8.0},
-             {.social = {.desired_speed = between(random, 0.9, 1.8)}, .crossing = {.assumed_acceleration = 0}});
-    add_vehicles(world, random, between(random, 1.0, 10.0), 8.0, 20.0,
-                 [](double) { return cb::ConstantAcceleration{}; });
-    double entered = 1e9;
-    for (int i = 0; i < 500 && drives(world, id); ++i) {
-      bool const was_beside = world.state(id).y > 0.3 || world.state(id).y < -7.3;
-      REQUIRE(world.step(0.1));
-      REQUIRE(collisions(world) == 0);
-      bool const is_in = world.state(id).y < 0.3 && world.state(id).y > -7.3;
-      if (was_beside && is_in) entered = world.time(), least = std::min(least, time_left(world, id));
-    }
-    crossed += !drives(world, id);
-    waited += entered > 12.0;
-  }
-  CHECK(crossed == 80);
-  CHECK(waited > 20);
-  CHECK(least > 3.0);
-}
-
-TEST_CASE("among drivers who brake for it a pedestrian who demands that gets across, and unhurt") {
-  int crossed = 0;
-  for (std::uint32_t seed = 0; seed < 40; ++seed) {
-    CAPTURE(seed);
-    cb::RandomStream random(seed, 3, 0);
-    Sim world(road, {.seed = seed});
-    auto const across = way({{320, 6}, {320, -12}}, 4.0);
-    std::vector<cb::AgentId> walkers;
-    for (int i = 0; i < 3; ++i)
-      walkers.push_back(walk(world, across, {319.0 + i, 6.0 + between(random, 0.0, 1.0)},
-                             {.crossing = {.demanded_deceleration = 2.0}}));
-    add_vehicles(world, random, 1.5, 8.0, 14.0, [](double speed) { return cb::IdmClassic{.desired_speed = speed}; });
-    for (int i = 0; i < 900; ++i) {
-      REQUIRE(world.step(0.1));
-      REQUIRE(collisions(world) == 0);
-    }
-    for (auto const id : walkers) crossed += world.status(id) == cb::AgentStatus::arrived;
-  }
-  CHECK(crossed == 120);
-}
-
-namespace {
-
-/// How much those within 6 m in one's own stripe, 1 m wide, go the same way (after Rex and Löwen 2007): the mean of
-/// (same - other) / (same + other) over those between x = 15 and 45.
+/// How uniformly pedestrians walk (after Rex and Löwen 2007): mean of (same - other) / (same + other) direction over
+/// the neighbours within 6 m in a stripe 1 m wide, for those between x = 15 and 45 m.
 double order(Sim const& world) {
   double sum = 0.0;
   int count = 0;
@@ -216,7 +87,7 @@ double order(Sim const& world) {
   return sum / std::max(1, count);
 }
 
-/// The order of a crowd, mixed at the beginning, that walks both ways for 40 s; who comes to the end begins anew.
+/// Order of an initially mixed crowd that walks both ways for 40 s; whoever reaches the end starts anew.
 double order_of_crowd(std::uint32_t seed, cb::Pedestrian behavior) {
   cb::RandomStream random(seed, 4, 0);
   Sim world(road, {.seed = seed});
@@ -224,7 +95,7 @@ double order_of_crowd(std::uint32_t seed, cb::Pedestrian behavior) {
   for (int i = 0; i < 60; ++i) {
     behavior.social.desired_speed = std::max(0.6, cb::Normal{1.34, 0.26}(random));
     bool const goes = i % 2 == 0;
-    walk(world, goes ? there : back, {between(random, 10, 50), between(random, 48.1, 51.9)}, behavior, 1.0,
+    walk(world, goes ? there : back, {between(10, 50, random), between(48.1, 51.9, random)}, behavior, 1.0,
          goes ? 0.0 : cb::geometry::pi);
   }
   for (int i = 0; i < 400; ++i) {
@@ -241,7 +112,104 @@ double order_of_crowd(std::uint32_t seed, cb::Pedestrian behavior) {
 
 }  // namespace
 
-TEST_CASE("lanes of one direction form where many meet, but not by forces of 1995, nor without any") {
+TEST_CASE("alone on its way a pedestrian reaches its desired speed with tau, and arrives") {
+  Sim world(road);
+  auto const id = walk(world, way({{0, 50}, {60, 50}}), {1, 50}, {.fluctuation = 0.0});
+  for (int i = 1; i <= 20; ++i) {
+    REQUIRE(world.step(0.1));
+    CHECK(world.state(id).speed == doctest::Approx(1.34 * (1 - std::exp(-0.1 * i / 0.5))).epsilon(1e-6));
+    CHECK(world.state(id).y == doctest::Approx(50.0));
+  }
+  for (int i = 0; i < 450; ++i) REQUIRE(world.step(0.1));
+  CHECK(world.status(id) == cb::AgentStatus::arrived);
+}
+
+TEST_CASE("a pedestrian stays on its way in bends") {
+  Sim world(road);
+  auto const bent = way({{0, 50}, {10, 50}, {10, 60}, {20, 60}, {12, 70}});
+  auto const id = walk(world, bent, {0, 50});
+  double farthest = 0.0;
+  for (int i = 0; i < 600 && drives(world, id); ++i) {
+    REQUIRE(world.step(0.1));
+    farthest = std::max(farthest, std::abs(world.record(id).lane.lateral));
+  }
+  CHECK(world.status(id) == cb::AgentStatus::arrived);
+  CHECK(farthest < 1.5);
+}
+
+TEST_CASE("two pedestrians whose ways meet or cross evade each other") {
+  for (bool const cross : {false, true}) {
+    double smallest = 1e9;
+    for (std::uint32_t seed = 0; seed < 100; ++seed) {
+      CAPTURE(seed);
+      cb::RandomStream random(seed, 0, 0);
+      Sim world(road, {.seed = seed});
+      double const width = cross ? 2.0 : 3.0, v = between(0.8, 1.8, random), w = cross ? v : between(0.8, 1.8, random);
+      double const shift = between(-0.3, 0.3, random),
+                   other = cross ? between(-1, 1, random) : between(-0.3, 0.3, random);
+      auto const a = walk(world, way({{0, 50}, {20, 50}}, width), {0, 50 + shift}, {.social = {.desired_speed = v}}, v);
+      auto const b =
+          cross ? walk(world, way({{10, 40}, {10, 60}}), {10, 40 + other}, {.social = {.desired_speed = w}}, w)
+                : walk(world, way({{20, 50}, {0, 50}}, width), {20, 50 + other}, {.social = {.desired_speed = w}}, w);
+      for (int i = 0; i < 400; ++i) {
+        REQUIRE(world.step(0.1));
+        if (drives(world, a) && drives(world, b)) smallest = std::min(smallest, apart(world, a, b));
+      }
+      CHECK(world.status(a) == cb::AgentStatus::arrived);
+      CHECK(world.status(b) == cb::AgentStatus::arrived);
+    }
+    CHECK(smallest > 0.0);
+  }
+}
+
+TEST_CASE("a pedestrian crosses in gaps and is never hit by vehicles that ignore it") {
+  int crossed = 0, waited = 0;
+  double least = 1e9;
+  for (std::uint32_t seed = 0; seed < 80; ++seed) {
+    CAPTURE(seed);
+    cb::RandomStream random(seed, 2, 0);
+    Sim world(road, {.seed = seed});
+    bool const back = seed % 2 == 1;
+    auto const across = back ? way({{320, -14}, {320, 8}}) : way({{320, 8}, {320, -14}});
+    auto const id =
+        walk(world, across, {320, back ? -14.0 : 8.0},
+             {.social = {.desired_speed = between(0.9, 1.8, random)}, .crossing = {.assumed_acceleration = 0}});
+    add_vehicles(world, random, between(1.0, 10.0, random), 8.0, 20.0,
+                 [](double) { return cb::ConstantAcceleration{}; });
+    double entered = 1e9;
+    for (int i = 0; i < 500 && drives(world, id); ++i) {
+      bool const was_beside = world.state(id).y > 0.3 || world.state(id).y < -7.3;
+      drive_safely(world, 1, 0.1);
+      bool const is_in = world.state(id).y < 0.3 && world.state(id).y > -7.3;
+      if (was_beside && is_in) entered = world.time(), least = std::min(least, time_left(world, id));
+    }
+    crossed += !drives(world, id);
+    waited += entered > 12.0;
+  }
+  CHECK(crossed == 80);
+  CHECK(waited > 20);
+  CHECK(least > 3.0);
+}
+
+TEST_CASE("a pedestrian that relies on braking drivers gets across unhurt") {
+  int crossed = 0;
+  for (std::uint32_t seed = 0; seed < 40; ++seed) {
+    CAPTURE(seed);
+    cb::RandomStream random(seed, 3, 0);
+    Sim world(road, {.seed = seed});
+    auto const across = way({{320, 6}, {320, -12}}, 4.0);
+    std::vector<cb::AgentId> walkers;
+    for (int i = 0; i < 3; ++i)
+      walkers.push_back(walk(world, across, {319.0 + i, 6.0 + between(0.0, 1.0, random)},
+                             {.crossing = {.demanded_deceleration = 2.0}}));
+    add_vehicles(world, random, 1.5, 8.0, 14.0, [](double speed) { return cb::IdmClassic{.desired_speed = speed}; });
+    drive_safely(world, 900, 0.1);
+    for (auto const id : walkers) crossed += world.status(id) == cb::AgentStatus::arrived;
+  }
+  CHECK(crossed == 120);
+}
+
+TEST_CASE("a crowd forms lanes of one direction, but not with the forces of 1995 or without forces") {
   double formed = 0.0, mixed = 0.0, published = 0.0;
   for (std::uint32_t seed = 0; seed < 3; ++seed) {
     formed += order_of_crowd(seed, {}) / 3;
@@ -259,18 +227,15 @@ TEST_CASE("pedestrians stop before a static object, or go round it") {
     cb::RandomStream random(seed, 5, 0);
     Sim world(road, {.seed = seed});
     auto const along = way({{0, 50}, {30, 50}}, 4.0);
-    double const x = between(random, 10, 20), y = 50 + between(random, -1.5, 1.5), half = between(random, 0.1, 1.0);
+    double const x = between(10, 20, random), y = 50 + between(-1.5, 1.5, random), half = between(0.1, 1.0, random);
     world.add_object(cb::geometry::Polygon({{x, y - half}, {x + 0.6, y - half}, {x + 0.6, y + half}, {x, y + half}}));
     auto const id = walk(world, along, {1, 50}, {}, 1.34);
-    for (int i = 0; i < 300 && drives(world, id); ++i) {
-      REQUIRE(world.step(0.1));
-      REQUIRE(collisions(world) == 0);
-    }
+    for (int i = 0; i < 300 && drives(world, id); ++i) drive_safely(world, 1, 0.1);
     if (std::abs(y - 50) > half + 0.4) CHECK(world.status(id) == cb::AgentStatus::arrived);
   }
 }
 
-TEST_CASE("a step, a copy and the order of entering do not change a bit; no step allocates") {
+TEST_CASE("steps, copies and the order of entering do not change a bit; no step allocates") {
   auto const across = way({{320, 6}, {320, -12}}, 4.0), along = way({{310, 3}, {330, 3}}, 3.0);
   auto const fill = [&](bool turned) {
     Sim world(road, {.seed = 5});
@@ -297,18 +262,13 @@ TEST_CASE("a step, a copy and the order of entering do not change a bit; no step
     REQUIRE(c.step(0.1));
     REQUIRE(b.frame() == c.frame());
   }
-  auto const same = [](Sim const& l, Sim const& r) {
-    for (std::size_t i = 0; i < l.size(); ++i)
-      if (!(l.frame().agents[i].state == r.frame().agents[i].state)) return false;
-    return true;
-  };
-  CHECK(same(a, b));
+  for (std::size_t i = 0; i < a.size(); ++i) CHECK(a.frame().agents[i].state == b.frame().agents[i].state);
   auto const before = support::allocations();
   for (int i = 0; i < 100; ++i) REQUIRE(b.step(0.1));
   CHECK(support::allocations() == before);
 }
 
-TEST_CASE("a prediction walks too, and a car that brakes for one who stands in its lane is predicted to stop") {
+TEST_CASE("predictions include pedestrians, and a car is predicted to stop for one that stands in its lane") {
   Sim world(road);
   auto const across = way({{320, 6}, {320, -12}});
   auto const walker = walk(world, across, {320, 1.0}, {.social = {.desired_speed = 0.1}});
@@ -331,7 +291,7 @@ TEST_CASE("a prediction walks too, and a car that brakes for one who stands in i
   CHECK(stopping.state(car).x + 3.6 < 319.7);
 }
 
-TEST_CASE("no input makes a pedestrian's state anything but finite") {
+TEST_CASE("a pedestrian's state stays finite for any input") {
   auto const along = way({{0, 50}, {30, 50}});
   for (double const dt : {1e-6, 0.2, 7.0, 3600.0}) {
     Sim world(road, {.seed = 1});
@@ -355,12 +315,12 @@ TEST_CASE("no input makes a pedestrian's state anything but finite") {
   }
 }
 
-TEST_CASE("who is around is who is near, whatever lane it is on, as by looking at everybody") {
+TEST_CASE("a query in the plane finds all neighbours in any lane, as brute force does") {
   Sim world(road, {.seed = 3});
   cb::RandomStream random(3, 6, 0);
   auto const along = way({{300, 3}, {340, 3}}, 20.0);
   std::vector<cb::AgentId> ids;
-  for (int i = 0; i < 30; ++i) ids.push_back(walk(world, along, {between(random, 300, 340), between(random, -8, 12)}));
+  for (int i = 0; i < 30; ++i) ids.push_back(walk(world, along, {between(300, 340, random), between(-8, 12, random)}));
   for (int i = 0; i < 4; ++i)
     ids.push_back(world.add({.position = {300.0 + 12 * i, -1.75},
                              .shape = i % 2 ? cb::geometry::articulated_truck() : cb::geometry::car(),

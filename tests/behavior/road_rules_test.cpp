@@ -7,42 +7,38 @@
 #include <memory>
 #include <string>
 
-#include "../support/maps.hpp"
-#include "../world/fixtures.hpp"
-#include "cambium/behavior/following/adaptive_cruise_control.hpp"
-#include "cambium/behavior/following/idm_lane_tracking.hpp"
-#include "cambium/behavior/following/idm_stochastic.hpp"
-#include "cambium/behavior/junction/intersection.hpp"
-#include "cambium/behavior/lane_change/lane_change_rule_based.hpp"
-#include "cambium/behavior/lane_change/mobil.hpp"
-#include "cambium/behavior/lane_change/zip_merge.hpp"
-#include "cambium/behavior/safety/rss_conformant.hpp"
 #include "cambium/map/opendrive.hpp"
-#include "cambium/map/road/curve_layout.hpp"
+#include "lane_traffic_fixtures.hpp"
 
-using namespace fixtures;
+using namespace lane_traffic;
 
 namespace {
 
 using Set = cb::BehaviorSet<cb::IdmClassic, cb::AdaptiveCruiseControl, cb::IdmLaneTracking, cb::IdmStochastic>;
 using World = cb::World<Set, cb::InterpolateExecution, cb::SingleTrack>;
 
-cb::map::LaneCorridor with_limits() {
-  cb::map::LaneCorridor corridor;
-  corridor.speed_limits = {{0.0, 30.0}, {200.0, 10.0}, {400.0, 20.0}};
-  return corridor;
-}
-
-/// How it goes on a straight road of 300 m: the end's place and speed.
+/// Adds a driver with these rules.
 template <class Behavior>
 cb::AgentId enter(World& world, Behavior behavior, cb::RoadRules const& rules, double x = 100, double speed = 14) {
   behavior.rules = rules;
   return world.add({.position = {x, -1.75}, .speed = speed, .behavior = behavior});
 }
 
+/// A straight road of 500 m with a signal of `type` for its only lane at 200 m.
+std::shared_ptr<cb::Map const> road_with_signal(std::string const& type) {
+  return cb::parse_opendrive(
+             "<OpenDRIVE><road id='0' length='500' junction='-1'><planView><geometry s='0' x='0' y='0' hdg='0' "
+             "length='500'><line/></geometry></planView><lanes><laneSection s='0'><center><lane "
+             "id='0'/></center><right>"
+             "<lane id='-1' type='driving'><width sOffset='0' a='3.5' b='0' c='0' d='0'/></lane></right></laneSection>"
+             "</lanes><signals><signal id='1' s='200' t='-4' type='" +
+             type + "' subtype='-1' orientation='+' dynamic='no'/></signals></road></OpenDRIVE>")
+      .map;
+}
+
 }  // namespace
 
-TEST_CASE_TEMPLATE("every car-following model stops before its lane's end where it is told to", Behavior,
+TEST_CASE_TEMPLATE("every car-following model stops before its lane's end if the rules say so", Behavior,
                    cb::IdmClassic, cb::AdaptiveCruiseControl, cb::IdmLaneTracking, cb::IdmStochastic) {
   World world(straight_road(1, 300));
   auto const id = enter(world, Behavior{}, {.lane_end = cb::RoadRules::LaneEnd::always});
@@ -52,14 +48,14 @@ TEST_CASE_TEMPLATE("every car-following model stops before its lane's end where 
   double const front = world.state(id).x + 3.6;
   CHECK(front < 285.0);
   CHECK(front > 280.0);
-  // Not where the end is its destination, unless BARK's way is asked for.
+  // It drives on if the end is its destination, except under BARK's option.
   World other(straight_road(1, 300));
   auto const through = enter(other, Behavior{}, {.lane_end = cb::RoadRules::LaneEnd::before_destination});
   for (int i = 0; i < 300; ++i) REQUIRE(other.step(0.2));
   CHECK(other.status(through) != cb::AgentStatus::driving);
 }
 
-TEST_CASE("of a leader and the lane's end that counts which asks for more braking") {
+TEST_CASE("of a leader and the lane's end, the one that requires more braking counts") {
   World world(straight_road(1, 300));
   cb::RoadRules const rules{.lane_end = cb::RoadRules::LaneEnd::always};
   auto const ahead = enter(world, cb::IdmClassic{}, rules, 290, 0), id = enter(world, cb::IdmClassic{}, rules, 250, 10);
@@ -80,17 +76,18 @@ TEST_CASE("of a leader and the lane's end that counts which asks for more brakin
   CHECK(strictest(near).gap == near.ahead()->gap);
 }
 
-TEST_CASE("the permitted speed is the limit, and what lets it be lower in time") {
-  auto const corridor = with_limits();
-  CHECK(cb::permitted_speed(corridor, 10.0, 20.0, 2.0) == 30.0);
-  CHECK(cb::permitted_speed(corridor, 150.0, 30.0, 2.0) == doctest::Approx(10.0));
-  CHECK(cb::permitted_speed(corridor, 60.0, 30.0, 2.0) == doctest::Approx(std::sqrt(100.0 + 4.0 * 50.0)));
-  CHECK(cb::permitted_speed(corridor, 250.0, 10.0, 2.0) == 10.0);
-  CHECK(cb::permitted_speed(corridor, 401.0, 10.0, 2.0) == 20.0);
-  CHECK(std::isinf(cb::permitted_speed(cb::map::LaneCorridor{}, 10.0, 20.0, 2.0)));
+TEST_CASE("the permitted speed is the limit, or a speed that still meets lower limits ahead") {
+  cb::map::LaneCorridor corridor;
+  corridor.speed_limits = {{0.0, 30.0}, {200.0, 10.0}, {400.0, 20.0}};
+  CHECK(cb::detail::permitted_speed(corridor, 10.0, 20.0, 2.0) == 30.0);
+  CHECK(cb::detail::permitted_speed(corridor, 150.0, 30.0, 2.0) == doctest::Approx(10.0));
+  CHECK(cb::detail::permitted_speed(corridor, 60.0, 30.0, 2.0) == doctest::Approx(std::sqrt(100.0 + 4.0 * 50.0)));
+  CHECK(cb::detail::permitted_speed(corridor, 250.0, 10.0, 2.0) == 10.0);
+  CHECK(cb::detail::permitted_speed(corridor, 401.0, 10.0, 2.0) == 20.0);
+  CHECK(std::isinf(cb::detail::permitted_speed(cb::map::LaneCorridor{}, 10.0, 20.0, 2.0)));
 }
 
-TEST_CASE("one who obeys speed limits keeps them, along a town's roads") {
+TEST_CASE("a driver that obeys speed limits keeps them on a town's roads") {
   auto const map = corpus_map("Town04.xodr");
   if (!map) return;
   int limited = 0;
@@ -117,25 +114,6 @@ TEST_CASE("one who obeys speed limits keeps them, along a town's roads") {
   CHECK(limited > 0);
 }
 
-namespace {
-
-/// A straight road of 500 m with a signal of `type` beside its only lane, 200 m on.
-std::shared_ptr<cb::Map const> road_with_signal(std::string const& type) {
-  return cb::parse_opendrive(
-             "<OpenDRIVE><road id='0' length='500' junction='-1'><planView><geometry s='0' x='0' y='0' hdg='0' "
-             "length='500'><line/></geometry></planView><lanes><laneSection s='0'><center><lane "
-             "id='0'/></center><right>"
-             "<lane id='-1' type='driving'><width sOffset='0' a='3.5' b='0' c='0' d='0'/></lane></right></laneSection>"
-             "</lanes><signals><signal id='1' s='200' t='-4' type='" +
-             type + "' subtype='-1' orientation='+' dynamic='no'/></signals></road></OpenDRIVE>")
-      .map;
-}
-
-template <class Behavior>
-using Alone = cb::World<cb::BehaviorSet<Behavior>, cb::InterpolateExecution, cb::SingleTrack>;
-
-}  // namespace
-
 #define DRIVERS                                                                                                   \
   cb::IdmClassic, cb::AdaptiveCruiseControl, cb::IdmLaneTracking, cb::IdmStochastic, cb::Mobil, cb::Intersection, \
       cb::LaneChangeRuleBased, cb::ZipMerge, cb::RssConformant<cb::IdmClassic>
@@ -148,14 +126,14 @@ cb::RoadRules& rules_of(Behavior& behavior) {
     return behavior.rules;
 }
 
-TEST_CASE_TEMPLATE("every driver stands at a red light until it is green, and runs it where it is not told", Behavior,
-                   DRIVERS) {
+TEST_CASE_TEMPLATE("every driver stops at a red light until it is green if the rules say so, and passes it otherwise",
+                   Behavior, DRIVERS) {
   auto const map = road_with_signal("1000001");
   REQUIRE(map->lights().size() == 1);
   for (bool const obeys : {true, false}) {
     Behavior driver{};
     rules_of(driver).obey_signals = obeys;
-    Alone<Behavior> world(map);
+    Traffic<Behavior> world(map);
     world.set_light(map->lights()[0].id, {.cycle = 100.0, .green_begin = 60.0, .green_end = 90.0});
     auto const id = world.add({.position = {50, -1.75}, .speed = 13, .behavior = driver});
     for (int k = 0; k < 290; ++k) REQUIRE(world.step(0.2));
@@ -173,10 +151,10 @@ TEST_CASE_TEMPLATE("every driver stands at a red light until it is green, and ru
   }
 }
 
-TEST_CASE_TEMPLATE("every driver stops at a stop sign once, and goes on", Behavior, DRIVERS) {
+TEST_CASE_TEMPLATE("every driver stops once at a stop sign and goes on", Behavior, DRIVERS) {
   Behavior driver{};
   rules_of(driver).obey_signals = true;
-  Alone<Behavior> world(road_with_signal("206"));
+  Traffic<Behavior> world(road_with_signal("206"));
   auto const id = world.add({.position = {100, -1.75}, .speed = 13, .behavior = driver});
   int stops = 0;
   for (int k = 0; k < 200 && world.state(id).x < 300.0; ++k) {
@@ -188,18 +166,15 @@ TEST_CASE_TEMPLATE("every driver stops at a stop sign once, and goes on", Behavi
   CHECK(world.state(id).x >= 300.0);
 }
 
-TEST_CASE_TEMPLATE("every driver brakes in time for a bend, comfortably, and not where it is not told", Behavior,
-                   DRIVERS) {
+TEST_CASE_TEMPLATE("every driver brakes comfortably and in time for a bend if the rules say so", Behavior, DRIVERS) {
   double const radius = 20.0;
-  auto const map = support::map_of({.id = "1",
-                                    .line = cb::map::lay_from({}, {{200.0}, {60.0, 1 / radius, 1 / radius}}),
-                                    .sections = {{.right = cb::map::equal_lanes(1)}}});
+  auto const map = road_with_bend(radius);
   for (bool const slows : {true, false}) {
     Behavior driver{};
     auto& rules = rules_of(driver);
     rules.slow_for_bends = slows;
     rules.lateral_acceleration = 2.5;
-    Alone<Behavior> world(map);
+    Traffic<Behavior> world(map);
     auto const id = world.add({.position = {10, -1.75}, .speed = 14.0, .behavior = driver});
     double fastest = 0.0, hardest = 0.0;
     while (world.status(id) == cb::AgentStatus::driving && world.record(id).lane.s < 240.0) {
@@ -208,8 +183,7 @@ TEST_CASE_TEMPLATE("every driver brakes in time for a bend, comfortably, and not
       if (world.record(id).lane.s > 201.0) fastest = std::max(fastest, world.state(id).speed);
     }
     double const allowed = std::sqrt(2.5 * (radius + 1.75));
-    CAPTURE(fastest);
-    CAPTURE(hardest);
+    INFO("fastest ", fastest, ", hardest ", hardest);
     CHECK((fastest < 1.03 * allowed) == slows);
     if (slows) CHECK(fastest > 0.9 * allowed);
     CHECK(hardest > -2.5);

@@ -1,4 +1,4 @@
-// RSS-conformant agents among their like never collide, however recklessly they would drive by themselves: a property.
+// A property: RSS-conformant agents never collide with each other, however reckless their nominal behaviour.
 #include "cambium/behavior/safety/rss_conformant.hpp"
 
 #include <doctest/doctest.h>
@@ -6,16 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <vector>
+#include "lane_traffic_fixtures.hpp"
 
-#include "../world/fixtures.hpp"
-#include "cambium/behavior/following/idm_classic.hpp"
-#include "cambium/behavior/following/idm_stochastic.hpp"
-#include "cambium/behavior/lane_change/mobil.hpp"
-#include "cambium/behavior/lane_change/random_macro_actions.hpp"
-#include "cambium/core/distributions.hpp"
-#include "cambium/evaluation/collision.hpp"
-
-using namespace fixtures;
+using namespace lane_traffic;
 
 namespace {
 
@@ -27,8 +20,6 @@ using Behaviors =
                     cb::MacroActions, Safe<cb::MacroActions>, Safe<cb::IdmStochastic>>;
 using World = cb::World<Behaviors, cb::InterpolateExecution, cb::SingleTrack>;
 
-double between(double low, double high, cb::RandomStream& random) { return cb::Uniform{low, high}(random); }
-
 /// `nominal`, or `nominal` made safe.
 template <class Nominal>
 Behaviors::Any driver(Nominal const& nominal, cb::RssParameters const& rss, bool safe) {
@@ -36,7 +27,7 @@ Behaviors::Any driver(Nominal const& nominal, cb::RssParameters const& rss, bool
   return nominal;
 }
 
-/// Somebody who heeds nobody, or changes lanes like mad, or brakes as hard as anybody may, or drives as usual.
+/// A driver that ignores everybody, changes lanes wildly, brakes as hard as permitted, or drives normally.
 Behaviors::Any sample_driver(cb::RssParameters const& rss, bool safe, cb::RandomStream& random) {
   switch (cb::uniform_index(random, 5)) {
     case 0:
@@ -55,7 +46,7 @@ struct Tally {
   int scenarios = 0, collisions = 0, vehicles = 0, lane_changes = 0, standing = 0;
 };
 
-/// Nine vehicles on three lanes, each at its safe distance from the one ahead, some at just that.
+/// Nine vehicles on three lanes, each at least at its safe distance from the one ahead.
 World sample(World const& empty, bool safe, cb::RandomStream& random) {
   World world = empty;
   cb::RssParameters rss;
@@ -91,20 +82,12 @@ Tally drive(bool safe, std::uint32_t scenarios, std::uint64_t seed) {
     cb::RandomStream random(seed, number, 0);
     double const dt = 0.1 * (2 + cb::uniform_index(random, 4));
     world = sample(empty, safe, random);
-    auto const lane_of = [&](std::size_t i) { return world.frame().agents[i].lane.corridor; };
-    std::vector<cb::CorridorId> lanes(world.size());
-    for (std::size_t i = 0; i < lanes.size(); ++i) lanes[i] = lane_of(i);
     bool collided = false;
     for (double t = 0; t < 8.0 && !collided; t += dt) {
-      CAPTURE(number);
-      CAPTURE(t);
-      if (!world.step(dt)) FAIL_CHECK("a step failed");
+      INFO("number ", number, ", t ", t);
+      tally.lane_changes += step_and_count_changes(world, dt);
       collided = cb::AnyCollision{}(world);
       if (safe && collided) FAIL_CHECK("a collision");
-      for (std::size_t i = 0; i < lanes.size(); ++i) {
-        tally.lane_changes += lane_of(i) != lanes[i];
-        lanes[i] = lane_of(i);
-      }
     }
     ++tally.scenarios;
     tally.vehicles += static_cast<int>(world.size());
@@ -117,6 +100,13 @@ Tally drive(bool safe, std::uint32_t scenarios, std::uint64_t seed) {
   return tally;
 }
 
+constexpr std::size_t change_left = 5;  // of the default macro actions
+
+/// A box of 4 m from `x` on, in the lane around `y`.
+cb::geometry::Polygon box_at(double x, double y) {
+  return cb::geometry::Polygon({{x, y - 1}, {x + 4, y - 1}, {x + 4, y + 1}, {x, y + 1}});
+}
+
 }  // namespace
 
 TEST_CASE("RSS-conformant agents among RSS-conformant agents never collide") {
@@ -126,9 +116,9 @@ TEST_CASE("RSS-conformant agents among RSS-conformant agents never collide") {
   CHECK(tally.vehicles > 60'000);
 }
 
-TEST_CASE("the same agents without it do collide") { CHECK(drive(false, 300, 1).collisions > 30); }
+TEST_CASE("the same agents without RSS do collide") { CHECK(drive(false, 300, 1).collisions > 30); }
 
-TEST_CASE("steps longer than the response time are safe: what may happen in one is looked ahead to") {
+TEST_CASE("steps longer than the response time are safe") {
   int runs = 0, collided = 0;
   for (double const response_time : {0.0, 0.1})
     for (double const dt : {0.5, 1.0})
@@ -168,7 +158,7 @@ TEST_CASE("steps longer than the response time are safe: what may happen in one 
   CHECK(collided == 0);
 }
 
-TEST_CASE("where nothing is dangerous the nominal behaviour drives, to the bit") {
+TEST_CASE("without danger the nominal behaviour drives, to the bit") {
   World safe(straight_road(3, 1500.0)), nominal(safe.shared_map());
   cb::Mobil const mobil{.idm = {.desired_speed = 20}};
   for (int i = 0; i < 3; ++i) {
@@ -183,7 +173,7 @@ TEST_CASE("where nothing is dangerous the nominal behaviour drives, to the bit")
   }
 }
 
-TEST_CASE("an object in the lane is stopped for") {
+TEST_CASE("an RSS-conformant agent stops for an object in its lane") {
   World world(straight_road(2, 1500.0));
   auto const blind = world.add({.position = {100, -1.75}, .speed = 20, .behavior = Safe<cb::ConstantAcceleration>{}});
   world.add_object(cb::geometry::Polygon({{250, -3}, {251, -3}, {251, -0.5}, {250, -0.5}}));
@@ -193,18 +183,7 @@ TEST_CASE("an object in the lane is stopped for") {
   CHECK(world.state(blind).x > 200);
 }
 
-namespace {
-
-constexpr std::size_t change_left = 5;  // of the default macro actions
-
-/// A box from `x` on, 4 m long, in the lane around `y`.
-cb::geometry::Polygon box_at(double x, double y) {
-  return cb::geometry::Polygon({{x, y - 1}, {x + 4, y - 1}, {x + 4, y + 1}, {x, y + 1}});
-}
-
-}  // namespace
-
-TEST_CASE("who has to brake in a lane change stays on its course, and keeps its heading") {
+TEST_CASE("a vehicle that must brake during a lane change stays on its course and keeps its heading") {
   double const dt = 0.1;
   World safe(straight_road(3, 1500.0)), nominal(safe.shared_map());
   auto const one = safe.add({.position = {100, -5.25}, .speed = 20, .behavior = Safe<cb::MacroActions>{}});
@@ -216,7 +195,7 @@ TEST_CASE("who has to brake in a lane change stays on its course, and keeps its 
     CHECK(nominal.step(dt));
     course.push_back(nominal.state(other));
   }
-  safe.add_object(box_at(175, -5.25));  // in the old lane: not to be hit, nor reached before the change is done
+  safe.add_object(box_at(175, -5.25));  // in the old lane, too far to be reached before the change is complete
   double slowest = 20.0, farthest_off = 0.0;
   for (int i = 0; i < 100 && safe.state(one).y < -1.8; ++i) {
     CHECK(safe.step(dt));
@@ -235,7 +214,7 @@ TEST_CASE("who has to brake in a lane change stays on its course, and keeps its 
   CHECK(safe.state(one).y > -1.8);
 }
 
-TEST_CASE("who has to keep off a side waits with its lane change, and then changes without a jump") {
+TEST_CASE("a vehicle that must keep off a side delays its lane change, and then changes without a jump") {
   World world(straight_road(2, 1500.0));
   auto const one = world.add({.position = {100, -5.25}, .speed = 15, .behavior = Safe<cb::MacroActions>{}});
   auto const beside =
@@ -255,10 +234,10 @@ TEST_CASE("who has to keep off a side waits with its lane change, and then chang
     farthest = std::max(farthest, world.state(one).y - y);
   }
   CHECK(world.state(one).y == doctest::Approx(-1.75).epsilon(1e-3));
-  CHECK(farthest < 0.4);  // 60 m for 3.5 m
+  CHECK(farthest < 0.4);  // 3.5 m aside over 60 m
 }
 
-TEST_CASE("what the nominal behaviour remembers goes on while it is not followed") {
+TEST_CASE("the memory of the nominal behaviour advances while it is overridden") {
   World world(straight_road(2, 1500.0));
   Safe<cb::IdmStochastic> const driver{
       .nominal = {.desired_speed = {30, 40}, .time_headway = {0.1, 0.1}, .yielding = {.enabled = true}}};

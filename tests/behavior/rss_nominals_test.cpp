@@ -1,21 +1,13 @@
-// Which nominal behaviours may be made RSS-conformant: recordings, searches, those that heed conflicts.
+// Nominal behaviours of RSS-conformant agents: recordings, searches, models that heed conflicts.
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <type_traits>
 #include <vector>
 
 #include "../support/maps.hpp"
-#include "cambium/behavior/following/idm_classic.hpp"
-#include "cambium/behavior/junction/intersection.hpp"
-#include "cambium/behavior/open_loop/static_trajectory.hpp"
-#include "cambium/behavior/safety/rss_conformant.hpp"
-#include "cambium/dynamics/single_track.hpp"
-#include "cambium/execution/interpolate.hpp"
-#include "cambium/planner/mcts/mcts_single_agent.hpp"
-#include "cambium/world/world.hpp"
+#include "cambium/cambium.hpp"
 
 using namespace cambium;
 
@@ -29,7 +21,7 @@ using Sim = World<BehaviorSet<IdmClassic, ConstantAcceleration, Safe<StaticTraje
                               Intersection, Safe<Intersection>, Safe<IdmClassic>>,
                   InterpolateExecution, SingleTrack>;
 
-/// On a straight road from x = 100 m on, at `speed` from 0 to 20 s; where `stops_at` [s] is, at once standing then.
+/// A recording on a straight road from x = 100 m on, at `speed` for 20 s, or standing at once from `stops_at` [s] on.
 StaticTrajectory recording(double speed, std::optional<double> stops_at = {}) {
   std::vector<State> states;
   for (int i = 0; i <= 200; ++i) {
@@ -39,20 +31,15 @@ StaticTrajectory recording(double speed, std::optional<double> stops_at = {}) {
   return StaticTrajectory(states);
 }
 
-/// Adds somebody who drives through the map's junction, as large as `shape`.
+/// Adds an agent of this shape that drives through the map's junction.
 AgentId add_through(Sim& world, geometry::Shape const& shape, Sim::Behavior const& behavior) {
   auto const& map = world.map();
   for (auto const& lane : map.lanes()) {
     if (!lane.drivable() || is_valid(map.road(lane.road).junction) || lane.successors.empty()) continue;
-    map::Route route{{lane.id}, lane.length()};
-    for (int i = 0; i < 2; ++i) {
-      auto const& next = map.lane(route.lanes.back()).successors;
-      if (next.empty()) break;
-      route.lanes.push_back(next.front());
-      route.length += map.lane(next.front()).length();
-    }
-    return world.add(
-        {.position = lane.path.pose(20.0).position(), .shape = shape, .behavior = behavior, .route = route});
+    return world.add({.position = lane.path.pose(20.0).position(),
+                      .shape = shape,
+                      .behavior = behavior,
+                      .route = map::straight_route(map, lane.id)});
   }
   FAIL("the map has no junction");
   return none<AgentId>;
@@ -60,7 +47,7 @@ AgentId add_through(Sim& world, geometry::Shape const& shape, Sim::Behavior cons
 
 }  // namespace
 
-TEST_CASE("who has braked behind somebody does not jump to where its recording is by then") {
+TEST_CASE("a vehicle that had to brake does not jump to where its recording is by then") {
   double const dt = 0.1;
   for (double const leader_speed : {2.0, 5.0, 8.0}) {
     CAPTURE(leader_speed);
@@ -88,7 +75,7 @@ TEST_CASE("who has braked behind somebody does not jump to where its recording i
   }
 }
 
-TEST_CASE("who cannot brake as its recording does, and comes to be before it, does not turn round") {
+TEST_CASE("a vehicle that passes its recording because it cannot brake as hard does not turn round") {
   Sim world(support::straight_road(2, 1000.0));
   auto const one =
       world.add({.position = {100, -1.75}, .speed = 15, .behavior = Safe<StaticTrajectory>{recording(15, 3.0), {}}});
@@ -103,7 +90,7 @@ TEST_CASE("who cannot brake as its recording does, and comes to be before it, do
         doctest::Approx(145 + 15 * 15 / (2 * RssParameters{}.maximum_deceleration)).epsilon(0.02));
 }
 
-TEST_CASE("a search may be the nominal behaviour: alone it drives to the bit, before an object it brakes") {
+TEST_CASE("a search as nominal behaviour drives to the bit when alone, and brakes before an object") {
   Search search;
   search.options.budget.iterations = 20;
   search.options.rollout.hold = 5;
@@ -122,7 +109,7 @@ TEST_CASE("a search may be the nominal behaviour: alone it drives to the bit, be
   CHECK(safe.state(one).speed <= speed - 0.2 * RssParameters{}.minimum_deceleration + 1e-9);
 }
 
-TEST_CASE("who heeds conflicts must not be larger than they are found for, whatever wraps it, and from whenever") {
+TEST_CASE("agents that heed conflicts must not exceed the conflict shapes, however wrapped and whenever set") {
   auto const map = support::own_map("intersection_4way.xodr");
   Sim world(map);
   auto const large = geometry::articulated_truck();

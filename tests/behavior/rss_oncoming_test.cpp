@@ -1,28 +1,24 @@
-// RSS-conformant agents that overtake on a two-way road never collide with those who come towards them: a property.
+// A property: RSS-conformant agents that overtake on a two-way road never collide with oncoming ones.
 #include <doctest/doctest.h>
 
 #include <algorithm>
 #include <cmath>
+#include "lane_traffic_fixtures.hpp"
 
-#include "../world/fixtures.hpp"
-#include "cambium/behavior/safety/rss_conformant.hpp"
-#include "cambium/core/distributions.hpp"
-#include "cambium/evaluation/collision.hpp"
-#include "cambium/map/road/curve_layout.hpp"
-
-using namespace fixtures;
+using namespace lane_traffic;
 
 namespace {
 
-/// Drives heedlessly at its speed beside its lane, to the left, from one moment to another.
+/// Ignores others and drives beside its lane, on the left, for some time.
 struct Overtake {
   double begin = 0.0, end = 0.0;  ///< [s]
   double speed = 15.0;            ///< [m/s]
 
   static constexpr auto parameters() {
-    return cb::parameter_list(cb::parameter("begin", &Overtake::begin, "s", cb::any_finite, "of the time beside"),
-                              cb::parameter("end", &Overtake::end, "s", cb::any_finite, "of that"),
-                              cb::parameter("speed", &Overtake::speed, "m/s", cb::Range{0, 50}, "that it wants"));
+    return cb::parameter_list(
+        cb::parameter("begin", &Overtake::begin, "s", cb::any_finite, "start of the time beside the lane"),
+        cb::parameter("end", &Overtake::end, "s", cb::any_finite, "end of the time beside the lane"),
+        cb::parameter("speed", &Overtake::speed, "m/s", cb::Range{0, 50}, "desired speed"));
   }
 
   template <class View>
@@ -59,28 +55,26 @@ struct Tally {
 };
 
 Tally drive(bool safe, std::uint32_t scenarios) {
-  auto const map = support::map_of({.id = "1",
-                                    .line = cb::map::lay_from({}, {{2000.0}}),
-                                    .sections = {{.left = cb::map::equal_lanes(1), .right = cb::map::equal_lanes(1)}}});
+  auto const map = support::two_way_road(2000.0);
   Tally tally;
   for (std::uint32_t number = 0; number < scenarios; ++number) {
     cb::RandomStream random(7, number, 0);
-    auto const between = [&random](double low, double high) { return cb::Uniform{low, high}(random); };
-    double const dt = 0.1 * (2 + cb::uniform_index(random, 4)), speed = between(8, 25), slow = between(3, 8);
+    auto const draw = [&random](double low, double high) { return between(low, high, random); };
+    double const dt = 0.1 * (2 + cb::uniform_index(random, 4)), speed = draw(8, 25), slow = draw(3, 8);
     World world(map);
-    double const begin = between(0, 6);
-    // The one ahead drives slower, at a safe distance; those who come are far enough, or just, or not.
-    double const gap = cb::rss_same_direction(cb::RssParameters{}, speed, slow) + between(0, 20);
+    double const begin = draw(0, 6);
+    // The leader is slower and at a safe distance; oncoming vehicles are far enough, only just, or too close.
+    double const gap = cb::rss_same_direction(cb::RssParameters{}, speed, slow) + draw(0, 20);
     auto const one = world.add({.position = {300, -1.75},
                                 .heading = 0.0,
                                 .speed = speed,
-                                .behavior = driver({begin, begin + between(3, 15), speed}, safe)});
+                                .behavior = driver({begin, begin + draw(3, 15), speed}, safe)});
     world.add({.position = {305 + gap, -1.75}, .heading = 0.0, .speed = slow, .behavior = driver({0, 0, slow}, safe)});
-    double x = 300 + between(40, 600);
+    double x = 300 + draw(40, 600);
     for (int i = 0; i < 2; ++i) {
-      double const oncoming = between(5, 25);
+      double const oncoming = draw(5, 25);
       bool const overtakes = cb::uniform_index(random, 4) == 0;
-      double const from = overtakes ? between(0, 6) : 0.0;
+      double const from = overtakes ? draw(0, 6) : 0.0;
       world.add({.position = {x, 1.75},
                  .heading = 3.14159265358979323846,
                  .speed = oncoming,
@@ -89,8 +83,7 @@ Tally drive(bool safe, std::uint32_t scenarios) {
     }
     bool collided = false, was_left = false, braked = false;
     for (double t = 0; t < 25.0 && !collided; t += dt) {
-      CAPTURE(number);
-      CAPTURE(t);
+      INFO("number ", number, ", t ", t);
       if (!world.step(dt)) FAIL_CHECK("a step failed");
       collided = cb::AnyCollision{}(world);
       if (safe && collided) FAIL_CHECK("a collision");
@@ -110,7 +103,7 @@ Tally drive(bool safe, std::uint32_t scenarios) {
 
 }  // namespace
 
-TEST_CASE("RSS-conformant agents who come towards each other never collide, whoever overtakes") {
+TEST_CASE("oncoming RSS-conformant agents never collide, whoever overtakes") {
   auto const tally = drive(true, 3000);
   CHECK(tally.collisions == 0);
   CHECK(tally.in_other_lane > 300);
@@ -118,9 +111,9 @@ TEST_CASE("RSS-conformant agents who come towards each other never collide, whoe
   CHECK(tally.passed > 1000);
 }
 
-TEST_CASE("the same agents without it do collide") { CHECK(drive(false, 300).collisions > 60); }
+TEST_CASE("the same agents without RSS do collide") { CHECK(drive(false, 300).collisions > 60); }
 
-TEST_CASE("nobody brakes for those who come in their own lane") {
+TEST_CASE("nobody brakes for oncoming vehicles in their own lane") {
   auto const map = support::map_of({.id = "1",
                                     .line = cb::map::lay_from({}, {{500.0, 0.004, 0.004}, {500.0, -0.004, -0.004}}),
                                     .sections = {{.left = cb::map::equal_lanes(1), .right = cb::map::equal_lanes(1)}}});

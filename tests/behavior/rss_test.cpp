@@ -5,14 +5,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "cambium/core/distributions.hpp"
-#include "cambium/core/random.hpp"
+#include "cambium/cambium.hpp"
 
 namespace cb = cambium;
 
 namespace {
 
-/// Moves lengthwise or sideways with an acceleration for a time, then brakes; by tiny steps.
+/// Moves in one dimension with constant acceleration, then brakes, in tiny steps.
 struct Mover {
   double position = 0.0, speed = 0.0;
 
@@ -29,7 +28,7 @@ struct Mover {
 
 constexpr double h = 1e-3;
 
-/// The smallest gap on the way where the rear one responds after the response time and the front one brakes at once.
+/// Smallest gap if the rear vehicle responds after the response time and the front one brakes at once.
 double smallest_gap(cb::RssParameters const& p, double rear_speed, double front_speed, double gap) {
   Mover rear{0.0, rear_speed}, front{gap, front_speed};
   double smallest = gap;
@@ -46,20 +45,20 @@ double smallest_gap(cb::RssParameters const& p, double rear_speed, double front_
 
 }  // namespace
 
-TEST_CASE("the safe distance behind another is the published formula's") {
+TEST_CASE("safe distances equal the published formulas") {
   // 20 m/s behind 10 m/s: 20 + 1.75 + 23.5^2 / 8 - 100 / 16.
   CHECK(cb::rss_same_direction(cb::RssParameters{}, 20.0, 10.0) == doctest::Approx(84.53125));
   CHECK(cb::rss_same_direction(cb::RssParameters{}, 0.0, 30.0) == 0.0);
   // 10 m/s against 5 m/s: 11.75 + 13.5^2 / 6 + 6.75 + 8.5^2 / 8.
   CHECK(cb::rss_opposite_direction(cb::RssParameters{}, 10.0, 5.0) == doctest::Approx(57.90625));
-  // 0.5 m/s towards one that stands: 0.1 + 0.6 + 0.7^2 / 1.6 + 0.1 + 0.2^2 / 1.6.
+  // 0.5 m/s towards a standing vehicle: 0.1 + 0.6 + 0.7^2 / 1.6 + 0.1 + 0.2^2 / 1.6.
   CHECK(cb::rss_lateral(cb::RssParameters{}, -0.5, 0.0) == doctest::Approx(1.13125));
   CHECK(cb::rss_lateral(cb::RssParameters{}, 0.0, 0.5) == doctest::Approx(1.13125));
   CHECK(cb::rss_lateral(cb::RssParameters{}, 3.0, 0.0) == 0.1);  // away
   CHECK(cb::rss_same_direction(cb::RssParameters{}, 20.0f, 10.0f) == doctest::Approx(84.53125f));
 }
 
-TEST_CASE("from the safe distance the worst case ends just short of a collision, from less it does not") {
+TEST_CASE("from the safe distance the worst case just avoids a collision; from a shorter one it does not") {
   cb::RandomStream random(1, 0, 0);
   auto const between = [&](double a, double b) { return cb::Uniform{a, b}(random); };
   int exact = 0;
@@ -81,7 +80,7 @@ TEST_CASE("from the safe distance the worst case ends just short of a collision,
   CHECK(exact > 150);
 }
 
-TEST_CASE("the lateral distance is what two need who come closer until they respond") {
+TEST_CASE("the lateral distance is what two vehicles need that approach each other until they respond") {
   cb::RandomStream random(2, 0, 0);
   auto const between = [&](double a, double b) { return cb::Uniform{a, b}(random); };
   for (int i = 0; i < 200; ++i) {
@@ -103,7 +102,9 @@ TEST_CASE("the lateral distance is what two need who come closer until they resp
   }
 }
 
-TEST_CASE("the proper response: who is behind brakes, neither comes closer sideways, beside each other nobody brakes") {
+TEST_CASE(
+    "the proper response: the rear vehicle brakes, neither comes closer sideways, and vehicles beside each other do "
+    "not brake") {
   cb::RssParameters const p;
   cb::RssSituation at{.gap = 20, .speed = 20, .other_speed = 20, .side_gap = -1.0};
   CHECK(cb::rss_response(p, at) == cb::RssResponse{.brake = true});
@@ -128,7 +129,7 @@ TEST_CASE("the proper response: who is behind brakes, neither comes closer sidew
   CHECK_FALSE(cb::rss_response(p, at).any());
   at = {.gap = 5, .speed = 10, .other_speed = -10, .side_gap = 0.2, .is_ahead = false};
   CHECK_FALSE(cb::rss_response(p, at).any());  // it has passed
-  // Who is in its own lane is counted on to brake less hard.
+  // The vehicle in its own lane is expected to brake less hard.
   double const right = cb::rss_opposite_direction(p, 20.0, 10.0), wrong = cb::rss_opposite_direction(p, 10.0, 20.0);
   CHECK(right > wrong + 5.0);
   at = {.gap = 0.5 * (right + wrong), .speed = 20, .other_speed = -10, .side_gap = 0.0};
@@ -137,7 +138,7 @@ TEST_CASE("the proper response: who is behind brakes, neither comes closer sidew
   CHECK_FALSE(cb::rss_response(p, at).any());
 }
 
-TEST_CASE("bounds of braking that contradict each other are refused") {
+TEST_CASE("contradictory bounds of braking are errors") {
   cambium::RssParameters rss;
   rss.minimum_deceleration = rss.maximum_deceleration + 2.0;
   CHECK_THROWS_WITH_AS(check_parameters(rss, "driver"), doctest::Contains("minimum_deceleration"),

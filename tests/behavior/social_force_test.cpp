@@ -4,8 +4,7 @@
 
 #include <cmath>
 
-#include "cambium/core/distributions.hpp"
-#include "cambium/core/random.hpp"
+#include "cambium/cambium.hpp"
 
 #include "../support/dual.hpp"
 
@@ -14,7 +13,7 @@ using Vector = cb::PlaneVector<double>;
 
 namespace {
 
-/// V0 exp(-b / sigma), written down from the paper's eqs. 3 and 4 once more.
+/// V0 exp(-b / sigma), directly from eqs. 3 and 4 of the paper.
 double potential(cb::SocialForceParameters const& p, double x, double y, Vector const& stride) {
   double const sum = std::hypot(x, y) + std::hypot(x - stride.x, y - stride.y);
   double const b = std::sqrt(sum * sum - stride.x * stride.x - stride.y * stride.y) / 2;
@@ -23,7 +22,7 @@ double potential(cb::SocialForceParameters const& p, double x, double y, Vector 
 
 }  // namespace
 
-TEST_CASE("the parameters are the published ones, and within their ranges") {
+TEST_CASE("the parameters are as published and within their ranges") {
   cb::SocialForceParameters const p;
   CHECK_NOTHROW(cb::check_parameters(p));
   CHECK(p.repulsion == 2.1);
@@ -34,7 +33,7 @@ TEST_CASE("the parameters are the published ones, and within their ranges") {
   CHECK(p.stride_time == 2.0);
 }
 
-TEST_CASE("the repulsion is minus the gradient of the elliptical potential") {
+TEST_CASE("the repulsion is the negative gradient of the elliptical potential") {
   cb::SocialForceParameters const p;
   cb::RandomStream random(3, 0, 0);
   cb::Uniform const place{-3.0, 3.0};
@@ -52,7 +51,7 @@ TEST_CASE("the repulsion is minus the gradient of the elliptical potential") {
   }
 }
 
-TEST_CASE("of one who stands the repulsion is exp(-r / sigma); at the foci it is nothing, not infinite") {
+TEST_CASE("a standing pedestrian repels by exp(-r / sigma); the repulsion is 0 at the foci, not infinite") {
   cb::SocialForceParameters const p;
   auto const force = cb::social_repulsion(p, Vector{0.3, 0.4}, Vector{});
   CHECK(force.norm() == doctest::Approx(7.0 * std::exp(-0.5 / 0.3)));
@@ -64,7 +63,7 @@ TEST_CASE("of one who stands the repulsion is exp(-r / sigma); at the foci it is
   }
 }
 
-TEST_CASE("borders and bodies repel less with distance, and no more than at touch") {
+TEST_CASE("the repulsion of borders and bodies decreases with distance and is bounded at contact") {
   cb::SocialForceParameters const p;
   CHECK(cb::border_repulsion(p, 0.0) == doctest::Approx(50.0));
   CHECK(cb::border_repulsion(p, 0.2) == doctest::Approx(50.0 / std::exp(1.0)));
@@ -73,18 +72,18 @@ TEST_CASE("borders and bodies repel less with distance, and no more than at touc
   CHECK(cb::contact_repulsion(p, -1.0) == doctest::Approx(25.0));
 }
 
-TEST_CASE("what comes from behind counts half: the field of view is 200 degrees wide") {
+TEST_CASE("forces from behind count half: the field of view is 200 degrees wide") {
   cb::SocialForceParameters const p;
   Vector const ahead{2.0, 0.0};
   for (int degrees = -180; degrees <= 180; degrees += 5) {
     double const angle = degrees * cb::geometry::pi / 180;
-    Vector const force{-std::cos(angle), -std::sin(angle)};  // by one in that direction
+    Vector const force{-std::cos(angle), -std::sin(angle)};  // from a source in that direction
     if (std::abs(degrees) == 100) continue;
     CHECK(cb::sight_weight(p, std::cos(0.5 * p.sight_angle), ahead, force) == (std::abs(degrees) < 100 ? 1.0 : 0.5));
   }
 }
 
-TEST_CASE("the speed relaxes to the desired one with tau, whatever the step") {
+TEST_CASE("the speed approaches the desired one with tau, for any step") {
   cb::SocialForceParameters const p;
   for (double const h : {0.01, 0.1, 0.5}) {
     Vector v{0.2, -0.1};
@@ -93,7 +92,7 @@ TEST_CASE("the speed relaxes to the desired one with tau, whatever the step") {
     CHECK(v.x == doctest::Approx(1.3 + (0.2 - 1.3) * std::exp(-2.0)));
     CHECK(v.y == doctest::Approx(-0.1 * std::exp(-2.0)));
   }
-  // As Euler's rule with small steps, where a force is added.
+  // Equals Euler's rule with small steps when a force is added.
   Vector fine{0.5, 0.5}, coarse = fine;
   for (int i = 0; i < 100000; ++i) {
     fine.x += 1e-5 * ((1.0 - fine.x) / p.relaxation_time + 0.7);
@@ -105,7 +104,7 @@ TEST_CASE("the speed relaxes to the desired one with tau, whatever the step") {
   CHECK(cb::social_velocity(p, {0.0, 0.0}, {1.34, 0.0}, {100.0, 0.0}, 10.0).norm() == doctest::Approx(1.3 * 1.34));
 }
 
-TEST_CASE("with dual numbers the repulsion tells how it depends on the place") {
+TEST_CASE("with dual numbers the repulsion yields its derivative by the place") {
   using support::Dual;
   cb::SocialForceParameters const p;
   cb::PlaneVector<Dual> const apart{Dual(0.7, 1.0), Dual(0.4)}, stride{Dual(1.0), Dual(0.2)};

@@ -4,17 +4,13 @@
 
 #include <cmath>
 #include <vector>
+#include "lane_traffic_fixtures.hpp"
 
-#include "../world/fixtures.hpp"
-#include "cambium/core/distributions.hpp"
-#include "cambium/core/error.hpp"
-
-using namespace fixtures;
+using namespace lane_traffic;
 
 namespace {
 
-using World =
-    cb::World<cb::BehaviorSet<cb::IdmClassic, cb::StaticTrajectory>, cb::InterpolateExecution, cb::SingleTrack>;
+using World = Traffic<cb::IdmClassic, cb::StaticTrajectory>;
 
 World::AgentSpec replay(std::vector<cb::State> const& states) {
   return {.position = {states.front().x, states.front().y},
@@ -23,7 +19,7 @@ World::AgentSpec replay(std::vector<cb::State> const& states) {
           .behavior = cb::StaticTrajectory(states)};
 }
 
-/// Drives along y = -1.75 from `x` at `begin` [s], one state every `spacing` [s].
+/// Drives along y = -1.75 m from `x` at time `begin` [s], with one state every `spacing` [s].
 std::vector<cb::State> recorded(double begin, double x, int count, double spacing) {
   std::vector<cb::State> states;
   for (int i = 0; i < count; ++i) states.push_back({begin + spacing * i, x + 10.0 * spacing * i, -1.75, 0.0, 10.0});
@@ -37,7 +33,7 @@ double distance(cb::State const& a, cb::State const& b) {
 
 }  // namespace
 
-TEST_CASE("a replay reproduces what was recorded of traffic, at any step length that meets its samples") {
+TEST_CASE("a replay reproduces recorded traffic at any step length that meets its samples") {
   cb::RandomStream random(3, 0, 0);
   World world(straight_road(2, 2000.0, 0.002));
   auto const& lane = world.map().lanes()[0];
@@ -66,7 +62,7 @@ TEST_CASE("a replay reproduces what was recorded of traffic, at any step length 
   }
 }
 
-TEST_CASE("between two samples it interpolates, the heading the shorter way round") {
+TEST_CASE("a replay interpolates between samples, the heading along the shorter arc") {
   cb::StaticTrajectory const replay({{1.0, 0, 0, 3.0, 4}, {3.0, 10, -2, -3.0, 8}});
   auto const middle = replay.at(2.0);
   CHECK(middle.time == 2.0);
@@ -80,12 +76,12 @@ TEST_CASE("between two samples it interpolates, the heading the shorter way roun
   CHECK(replay.at(9.0).x == 10);
 }
 
-TEST_CASE("a replay enters traffic when its recording begins, and leaves when it ends") {
+TEST_CASE("a replay enters traffic when its recording begins and leaves when it ends") {
   World world(straight_road(1, 1000.0));
   auto const follower = world.add({.position = {50, -1.75}, .speed = 10});
   auto const late = world.add(replay(recorded(1.0, 100, 6, 0.4)));  // 1 to 3 s
   CHECK(world.status(late) == cb::AgentStatus::not_started);
-  CHECK_FALSE(world.observe(follower).ahead());  // from the very first frame on
+  CHECK_FALSE(world.observe(follower).ahead());  // from the first frame on
   int seen = 0;
   world.observe(follower).around(std::numeric_limits<double>::infinity(), [&](auto const&) { ++seen; });
   CHECK(seen == 0);
@@ -104,7 +100,7 @@ TEST_CASE("a replay enters traffic when its recording begins, and leaves when it
   CHECK(world.remove_departed() == 1);
 }
 
-TEST_CASE("one whose recording begins between two steps enters at the first step's end behind that") {
+TEST_CASE("a replay that begins within a step enters at the end of the step") {
   World world(straight_road(1, 1000.0));
   auto const id = world.add(replay(recorded(0.5, 100, 10, 0.2)));
   REQUIRE(world.step(0.4));
@@ -116,7 +112,7 @@ TEST_CASE("one whose recording begins between two steps enters at the first step
 }
 
 TEST_CASE(
-    "a replay that has begun is in traffic at once; agents wait in copies and stay when the departed are removed") {
+    "a replay that has begun is in traffic at once; agents that wait are copied and not removed with departed ones") {
   World world(straight_road(1, 1000.0), {.time = 5.0});
   auto const now = world.add(replay(recorded(5.0, 100, 6, 0.4)));
   auto const later = world.add(replay(recorded(8.0, 200, 6, 0.4)));
@@ -129,7 +125,7 @@ TEST_CASE(
   CHECK(world.status(later) == cb::AgentStatus::not_started);
 }
 
-TEST_CASE("recordings without states, with times that do not ascend, or with numbers that are none are refused") {
+TEST_CASE("recordings without states, with descending times or with invalid numbers are errors") {
   World world(straight_road(1, 1000.0));
   auto const bad = [&](cb::StaticTrajectory const& behavior) {
     CHECK_THROWS_AS(world.add({.position = {100, -1.75}, .behavior = behavior}), cb::ParameterError);
@@ -140,7 +136,7 @@ TEST_CASE("recordings without states, with times that do not ascend, or with num
   bad(cb::StaticTrajectory({{1, 0, 0, 0, 0}, {2, std::nan(""), 0, 0, 0}}));
 }
 
-TEST_CASE("replays of different recordings are different parameters, whoever shares them") {
+TEST_CASE("replays of different recordings are different parameters, however shared") {
   auto const states = recorded(0.0, 100.0, 5, 0.5);
   auto other = states;
   other.back().speed += 1e-9;

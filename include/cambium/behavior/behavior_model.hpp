@@ -8,58 +8,53 @@
 
 namespace cambium {
 
-namespace detail {
-template <class B>
-struct MemoryOf {
-  using type = NoMemory;
-};
-template <class B>
-requires requires { typename B::Memory; }
-struct MemoryOf<B> {
-  using type = typename B::Memory;
-};
-}  // namespace detail
-
-/// What behaviour `B` remembers between steps: its `Memory`, or `NoMemory`.
-template <class B>
-using MemoryOf = typename detail::MemoryOf<B>::type;
-
 /// The workspace of a behaviour that needs none.
 struct NoWorkspace {};
 
 namespace detail {
 template <class B>
-struct WorkspaceOf {
-  using type = NoWorkspace;
-};
+[[nodiscard]] constexpr auto memory_of() {
+  if constexpr (requires { typename B::Memory; })
+    return std::type_identity<typename B::Memory>{};
+  else
+    return std::type_identity<NoMemory>{};
+}
 template <class B>
-requires requires { typename B::Workspace; }
-struct WorkspaceOf<B> {
-  using type = typename B::Workspace;
-};
+[[nodiscard]] constexpr auto workspace_of() {
+  if constexpr (requires { typename B::Workspace; })
+    return std::type_identity<typename B::Workspace>{};
+  else
+    return std::type_identity<NoWorkspace>{};
+}
 }  // namespace detail
 
-/// What behaviour `B` works with: its `Workspace`, or `NoWorkspace`.
+/// What behaviour `B` remembers between steps: its `Memory`, or `NoMemory`.
 template <class B>
-using WorkspaceOf = typename detail::WorkspaceOf<B>::type;
+using MemoryOf = typename decltype(detail::memory_of<B>())::type;
+
+/// The scratch memory of behaviour `B`: its `Workspace`, or `NoWorkspace`.
+template <class B>
+using WorkspaceOf = typename decltype(detail::workspace_of<B>())::type;
 
 /// A behaviour: a copyable struct of parameters with one function template
 ///   `template <class View> Plan<View> plan(View const& view, Memory& memory, double dt) const`
-/// that says what the agent does over the next `dt` [s]: pure but for `memory`, no allocation, no exception. A world
-/// calls it once a step, on a view of frame k; `memory` is the agent's own, lives in the frame and is copied with it.
-/// Where that holds how far the vehicle is on a course, `memory.fell_short(way, left_course)` puts it right: see
-/// `fell_short`. It may have `double start_time() const` [s]: an agent that is added before is in traffic from then on
-/// only. One that needs much memory to plan, as a search, names a default constructible `Workspace`, and takes a
-/// reference to one after `dt`: it belongs to the world, is used by agent after agent, is not copied, and what it holds
-/// must not change what is planned.
+/// that plans the agent's motion over the next `dt` [s]. It changes nothing but `memory`, allocates nothing and throws
+/// nothing. A world calls it once a step, on a view of frame k; `memory` belongs to the agent, lives in the frame and
+/// is copied with it. A behaviour may further have
+/// - `memory.fell_short(way, left_course)`, if its memory holds how far the vehicle is along a course: see
+///   `fell_short`.
+/// - `double start_time() const` [s]: an agent that is added earlier enters traffic only then.
+/// - a default constructible `Workspace`, if planning needs much scratch memory, as a search does; `plan` then takes a
+///   reference to one after `dt`. It belongs to the world, serves one agent after the other and is not copied, so its
+///   content must not influence the plan.
 ///
-/// What a world does for its behaviours' sake they say by constants, all false where they are not there:
-/// - `static constexpr bool looks_beside`: asks for places on the lanes beside; then those are loaded ahead in large
-///   worlds. Nothing else depends on it.
-/// - `static constexpr bool looks_around`: calls `view.around(distance, f)` in each step; then worlds keep an index of
-///   the plane, and the call takes no longer in a large world.
-/// - `static constexpr bool heeds_conflicts`: goes by `LaneCorridor::conflicts`; then worlds refuse an agent that is
-///   larger than those that the map's conflicts are found for.
+/// Three constants, false by default, tell the world what to prepare:
+/// - `static constexpr bool looks_beside`: the behaviour asks for places in the lanes beside; large worlds then
+///   prefetch them. No result depends on it.
+/// - `static constexpr bool looks_around`: the behaviour calls `view.around(distance, f)` in each step; worlds then
+///   keep an index of the plane, and the call takes no longer in a large world.
+/// - `static constexpr bool heeds_conflicts`: the behaviour relies on `LaneCorridor::conflicts`; worlds then refuse
+///   agents larger than the shapes for which the map computed its conflicts.
 template <class B>
 concept BehaviorModel = std::copyable<B> && std::copyable<MemoryOf<B>> && std::default_initializable<MemoryOf<B>> &&(
     requires(B const behavior, ViewArchetype const view, MemoryOf<B> memory, double dt) {
@@ -71,7 +66,7 @@ concept BehaviorModel = std::copyable<B> && std::copyable<MemoryOf<B>> && std::d
 
 namespace detail {
 
-/// Whether a behaviour says so, see `BehaviorModel`.
+/// The constants of a behaviour, see `BehaviorModel`; false where it has none.
 template <class B>
 [[nodiscard]] constexpr bool looks_beside() {
   if constexpr (requires { B::looks_beside; }) return B::looks_beside;
@@ -88,7 +83,7 @@ template <class B>
   return false;
 }
 
-/// A constant that is meant, but would be overlooked.
+/// Detects misspelt constants, which would silently have no effect.
 template <class B>
 concept MisspellsConstants = requires {
   B::look_beside;
@@ -100,7 +95,7 @@ concept MisspellsConstants = requires {
 || requires { B::heed_conflicts; }
 || requires { B::heeds_conflict; };
 
-/// One that is there must be a bool that is known when it is compiled.
+/// Whether the constants that `B` has are `static constexpr bool` and spelled correctly.
 template <class B>
 [[nodiscard]] constexpr bool has_good_constants() {
   bool good = !MisspellsConstants<B>;
@@ -116,8 +111,8 @@ struct HasPlan {
 };
 template <class B>
 struct WithAnotherPlan : B, HasPlan {};
-/// Whether struct `B` has a member of the name plan, be it a template: then that of a struct with another one is
-/// ambiguous. (Of a final struct nobody can tell.)
+/// Whether class `B` has a member named `plan`, even a template: a second member of that name makes the name ambiguous.
+/// A final class cannot be tested and counts as having one.
 template <class B>
 [[nodiscard]] constexpr bool names_plan() {
   if constexpr (std::is_class_v<B> && !std::is_final_v<B>) return !requires {
@@ -126,29 +121,29 @@ template <class B>
   else
     return std::is_final_v<B>;
 }
-/// Whether `plan` can be called on a `B`, or a `B const`, whatever it returns.
+/// Whether `plan` can be called on a `B` (or `B const`), whatever it returns.
 template <class B>
-concept Plans = requires(B behavior, ViewArchetype const view, cambium::MemoryOf<B> memory, double dt) {
+concept Plans = requires(B behavior, ViewArchetype const view, MemoryOf<B> memory, double dt) {
   behavior.plan(view, memory, dt);
 }
-|| requires(B behavior, ViewArchetype const view, cambium::MemoryOf<B> memory, double dt,
-            cambium::WorkspaceOf<B>& workspace) {
+|| requires(B behavior, ViewArchetype const view, MemoryOf<B> memory, double dt, WorkspaceOf<B>& workspace) {
   behavior.plan(view, memory, dt, workspace);
 };
 
-/// True; says in a sentence what `B` lacks to be a behaviour.
+/// Returns true; fails to compile with a sentence that says what `B` lacks to be a behaviour.
 template <class B>
 [[nodiscard]] constexpr bool check_behavior() {
-  using Memory = cambium::MemoryOf<B>;
-  using Workspace = cambium::WorkspaceOf<B>;
+  using Memory = MemoryOf<B>;
+  using Workspace = WorkspaceOf<B>;
   constexpr bool is_copyable = std::is_class_v<B> && std::copyable<B>;
   constexpr bool remembers = std::copyable<Memory> && std::default_initializable<Memory>;
   static_assert(is_copyable, "cambium::BehaviorSet<...>: a behaviour must be a copyable struct, named without const");
   static_assert(!is_copyable || remembers,
-                "cambium::BehaviorSet<...>: a behaviour's Memory must be copyable and default constructible, for it is "
-                "copied with the frame");
-  static_assert(std::default_initializable<Workspace>,
-                "cambium::BehaviorSet<...>: a behaviour's Workspace must be default constructible: worlds make it");
+                "cambium::BehaviorSet<...>: a behaviour's Memory must be copyable and default constructible, because "
+                "it is copied with the frame");
+  static_assert(
+      std::default_initializable<Workspace>,
+      "cambium::BehaviorSet<...>: a behaviour's Workspace must be default constructible, because worlds create it");
   if constexpr (is_copyable)
     static_assert(has_good_constants<B>(),
                   "cambium::BehaviorSet<...>: what a behaviour says to worlds is `static constexpr bool looks_beside`, "
@@ -173,8 +168,8 @@ template <class B>
 }
 }  // namespace detail
 
-/// Tells a behaviour's memory that the vehicle goes `way` [m] less along its last plan than that led, and whether it
-/// leaves the plan's course: what those who plan in another's stead call, see `RssConformant`.
+/// Tells a behaviour's memory that the vehicle drives `way` [m] less along its last plan than planned, and whether it
+/// leaves the plan's course. A behaviour that overrides the plan of another one calls this, see `RssConformant`.
 template <class Memory>
 void fell_short(Memory& memory, double way, bool left_course) {
   if constexpr (requires { memory.fell_short(way, left_course); }) memory.fell_short(way, left_course);

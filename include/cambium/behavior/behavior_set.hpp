@@ -14,26 +14,25 @@
 namespace cambium {
 
 namespace detail {
-/// Plans by a behaviour that has a workspace: not part of a flattened step, which would take in a whole search.
+/// Plans with a workspace in a function of its own: a flattened step must not inline a whole search.
 template <class B, class View, class Memory, class Workspace>
 CAMBIUM_NOINLINE [[nodiscard]] Plan<View> plan_apart(B const& behavior, View const& view, Memory& memory, double dt,
                                                      Workspace& workspace) {
   return behavior.plan(view, memory, dt, workspace);
 }
-/// Plans by one of many behaviours, in a flattened function of its own: a step that took in all of them would compile
-/// more than twice as long, and run no faster.
+/// Plans in a flattened function of its own. A step that inlined every behaviour of a large set would take more than
+/// twice as long to compile and run no faster.
 template <class B, class View, class Memory>
 CAMBIUM_NOINLINE CAMBIUM_FLATTEN [[nodiscard]] Plan<View> plan_apart(B const& behavior, View const& view,
                                                                      Memory& memory, double dt) {
   return behavior.plan(view, memory, dt);
 }
-/// A step inlines the plans of at most so many behaviours (those with a workspace do not count); of more, each plan is
-/// a function of its own.
+/// A step inlines the plans of at most this many behaviours (those with a workspace do not count).
 inline constexpr std::size_t most_plans_in_step = 4;
 }  // namespace detail
 
-/// The closed set of behaviours that the agents of a world may have. An agent has one of them with parameters of its
-/// own.
+/// The closed set of behaviours that the agents of a world may have. Each agent has one of them, with its own
+/// parameters.
 template <class... Behaviors>
 struct BehaviorSet {
   static_assert(sizeof...(Behaviors) > 0,
@@ -46,29 +45,29 @@ struct BehaviorSet {
   using Any = OneOf<Behaviors...>;
   using Memory = std::variant<MemoryOf<Behaviors>...>;
 
-  /// What planning works with, one for each behaviour.
+  /// Scratch memory for planning, one for each behaviour.
   using Workspaces = std::tuple<WorkspaceOf<Behaviors>...>;
 
-  /// Whether `B` is one of the set.
+  /// Whether `B` is in the set.
   template <class B>
   static constexpr bool contains = Any::template contains<B>;
 
-  /// Whether some of them ask for neighbours in the lanes beside: then those are worth being loaded ahead.
+  /// Whether any behaviour asks for neighbours in the lanes beside; worlds then prefetch them.
   static constexpr bool looks_beside = (detail::looks_beside<Behaviors>() || ...);
 
-  /// Whether some of them ask for who is around, on whatever lane: then worlds keep an index of the plane.
+  /// Whether any behaviour asks for neighbours in the plane; worlds then keep an index of it.
   static constexpr bool looks_around = (detail::looks_around<Behaviors>() || ...);
 
-  /// Place of `B` in the set.
+  /// Index of `B` in the set.
   template <class B>
   static constexpr std::size_t index = Any::template place<B>;
 
-  /// The memory an agent starts with.
+  /// The memory with which an agent starts.
   [[nodiscard]] static Memory initial_memory(Any const& behavior) {
     return behavior.visit([](auto const&, auto place) { return Memory(std::in_place_index<place>); });
   }
 
-  /// When the behaviour begins [s]; until then the agent is not in traffic. -infinity where it does not say so.
+  /// When the agent enters traffic [s]; -infinity if the behaviour does not say.
   [[nodiscard]] static double start_time(Any const& behavior) {
     return behavior.visit([](auto const& model) {
       if constexpr (requires { model.start_time(); })
@@ -78,7 +77,7 @@ struct BehaviorSet {
     });
   }
 
-  /// Calls the agent's own behaviour with its own memory. One well-predicted branch per alternative, no virtual call.
+  /// Plans by the agent's behaviour with its memory. One well-predicted branch per alternative, no virtual call.
   template <class View>
   [[nodiscard]] static Plan<View> plan(Any const& behavior, View const& view, Memory& memory, double dt,
                                        Workspaces& workspaces) {

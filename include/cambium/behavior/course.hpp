@@ -10,15 +10,15 @@ namespace cambium {
 
 namespace detail {
 
-/// Length [m] of the way from one state to another: of an arc that turns as much, to the second order of the turn.
+/// Length [m] of the way between two states: of an arc with the same turn, to second order in the turn.
 template <MotionState S>
 [[nodiscard]] double way_between(S const& a, S const& b) {
   double const turn = geometry::angle_difference(b.heading, a.heading);
   return std::hypot(b.x - a.x, b.y - a.y) * (1.0 + turn * turn / 24.0);
 }
 
-/// Place and heading at share `u` of the `way` [m] from `a` to `b`, put into `state`: on the cubic that leaves the one
-/// and comes to the other along their headings (Hermite).
+/// Sets position and heading of `state` at share `u` of the `way` [m] from `a` to `b`, on the cubic Hermite curve
+/// through both along their headings.
 template <MotionState S>
 void place_between(S const& a, S const& b, double way, double u, S& state) {
   auto const from = geometry::sin_cos(a.heading), to = geometry::sin_cos(b.heading);
@@ -32,35 +32,33 @@ void place_between(S const& a, S const& b, double way, double u, S& state) {
   state.heading = a.heading + geometry::angle_difference(std::atan2(tangent_y, tangent_x), a.heading);
 }
 
-}  // namespace detail
-
-/// Length [m] of the course from `start` through the plan's states.
+/// Length [m] of the course from `start` through the states of the plan.
 template <MotionState S>
 [[nodiscard]] double course_length(BasicPlan<S> const& plan, S const& start) {
   double length = 0.0;
   S const* before = &start;
   for (auto const& after : plan.trajectory) {
-    length += detail::way_between(*before, after);
+    length += way_between(*before, after);
     before = &after;
   }
   return length;
 }
 
-/// The plan that leads along the course of `plan`, but by `motion` over `dt` [s]; straight on behind its end. Steers as
-/// that. The course is taken to leave and reach the plan's states along their headings. O(states).
+/// The plan that follows the course of `plan`, but moves by `motion` over `dt` [s]; goes straight on beyond its end.
+/// Keeps the plan's steering. The course passes through the plan's states along their headings. O(states).
 template <class View>
 [[nodiscard]] Plan<View> plan_along_course(View const& view, Plan<View> const& plan,
                                            LongitudinalMotion<double> const& motion, double dt) {
   using S = typename View::State;
-  constexpr double shortest = 1e-6;  // [m] a way with a direction
+  constexpr double shortest = 1e-6;  // [m] a shorter way has no direction
   S const start = view.state();
   S const* before = &start;
   double left = motion.distance;
   S next = *before;
   for (auto const& after : plan.trajectory) {
-    double const way = detail::way_between(*before, after);
+    double const way = way_between(*before, after);
     next = after;
-    if (left < way && way > shortest) detail::place_between(*before, after, way, left / way, next);
+    if (left < way && way > shortest) place_between(*before, after, way, left / way, next);
     left -= way;
     before = &after;
     if (left < 0.0) break;
@@ -78,5 +76,7 @@ template <class View>
   result.is_absolute = plan.is_absolute;
   return result;
 }
+
+}  // namespace detail
 
 }  // namespace cambium

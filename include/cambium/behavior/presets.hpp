@@ -4,13 +4,13 @@
 #include "cambium/dynamics/kinematic_point.hpp"
 #include "cambium/dynamics/single_track.hpp"
 
-/// Drivers from the literature, as parameters of the car-following models, and vehicle models of the weak. Vehicle
-/// shapes: geometry/shape.hpp. Papers' numbers are as others quote them, not compared with the papers' tables; the
-/// bounds of acceleration, which the papers do not have, are chosen here.
+/// Drivers from the literature as parameters of the car-following models, and vehicle models of cyclists and
+/// pedestrians. For vehicle shapes see geometry/shape.hpp. The numbers of the papers are quoted second-hand and not
+/// compared with the papers' tables. The papers do not bound accelerations; the bounds are ours.
 namespace cambium::presets {
 
 /// Treiber, Hennecke, Helbing 2000, "Congested traffic states in empirical observations and microscopic simulations",
-/// table I: 120 km/h, 1.6 s, 0.73 m/s^2, 1.67 m/s^2, 2 m. String unstable in dense traffic, as the paper means it.
+/// table I: 120 km/h, 1.6 s, 0.73 m/s^2, 1.67 m/s^2, 2 m. String unstable in dense traffic, as the paper intends.
 [[nodiscard]] constexpr IdmParameters treiber_2000() {
   return {.desired_speed = 120 / 3.6,
           .time_headway = 1.6,
@@ -21,7 +21,7 @@ namespace cambium::presets {
 }
 
 /// Car of Kesting, Treiber, Helbing 2010, "Enhanced intelligent driver model to access the impact of driving strategies
-/// on traffic capacity", table 1: 120 km/h, 1.5 s, 1.4 m/s^2, 2 m/s^2, 2 m; for the ACC model, coolness 0.99.
+/// on traffic capacity", table 1: 120 km/h, 1.5 s, 1.4 m/s^2, 2 m/s^2, 2 m; the ACC model adds coolness 0.99.
 [[nodiscard]] constexpr IdmParameters kesting_2010_car() {
   return {.desired_speed = 120 / 3.6,
           .time_headway = 1.5,
@@ -41,9 +41,8 @@ namespace cambium::presets {
           .lowest_acceleration = -6.0};
 }
 
-/// One who is in a hurry. Treiber and Kesting 2013, "Traffic Flow Dynamics", section 11.3.1 say which way the
-/// parameters go (short headway, high acceleration, late and hard braking); the numbers are chosen here, about those of
-/// `kesting_2010_car`.
+/// A driver in a hurry: short headway, high acceleration, late and hard braking (Treiber, Kesting 2013, "Traffic Flow
+/// Dynamics", section 11.3.1). The numbers are ours, chosen around `kesting_2010_car`.
 [[nodiscard]] constexpr IdmParameters aggressive() {
   return {.desired_speed = 140 / 3.6,
           .time_headway = 0.9,
@@ -53,7 +52,7 @@ namespace cambium::presets {
           .lowest_acceleration = -8.0};
 }
 
-/// One who is careful; chosen as `aggressive` is.
+/// A careful driver; the opposite of `aggressive`, chosen likewise.
 [[nodiscard]] constexpr IdmParameters timid() {
   return {.desired_speed = 100 / 3.6,
           .time_headway = 2.1,
@@ -63,8 +62,8 @@ namespace cambium::presets {
           .lowest_acceleration = -8.0};
 }
 
-/// Cyclist, as a driver of `bicycle_dynamics`. The numbers are chosen here: 18 km/h, a little below the highest speed
-/// that SUMO gives bicycles by default (20 km/h), started and stopped gently, with short gaps.
+/// A cyclist, to be combined with `bicycle_dynamics`. The numbers are ours: 18 km/h, slightly below SUMO's default
+/// maximum speed of bicycles (20 km/h), gentle acceleration and braking, short gaps.
 [[nodiscard]] constexpr IdmParameters cyclist() {
   return {.desired_speed = 18 / 3.6,
           .time_headway = 1.0,
@@ -74,9 +73,9 @@ namespace cambium::presets {
           .lowest_acceleration = -5.0};
 }
 
-/// Vehicle model of a bicycle (`geometry::bicycle`): it steers and cannot turn on the spot, so that it is a single
-/// track, not a point. It brakes by 5 m/s^2 before its rear wheel lifts off (a centre of mass 1.1 m high, 0.6 m behind
-/// the front axle), and leans by 27 degrees at most.
+/// Vehicle model of a bicycle (`geometry::bicycle`). It is a single track, because a bicycle steers and cannot turn on
+/// the spot. It brakes by at most 5 m/s^2, before its rear wheel lifts off (centre of mass 1.1 m high, 0.6 m behind the
+/// front axle), and leans by at most 27 degrees.
 [[nodiscard]] constexpr SingleTrack bicycle_dynamics() {
   return {.wheel_base = 1.1,
           .steering_limit = 0.8,
@@ -85,8 +84,8 @@ namespace cambium::presets {
           .lateral_acceleration_limit = 5.0};
 }
 
-/// Vehicle model of one who walks, where plans are executed through the dynamics: fast enough for 1.3 times the desired
-/// speed of Helbing and Molnár 1995, and able to do what social forces ask for.
+/// Vehicle model of a pedestrian whose plans are executed through the dynamics: reaches 1.3 times the desired speed of
+/// Helbing and Molnár 1995, and the accelerations of the social forces.
 [[nodiscard]] constexpr KinematicPoint pedestrian_dynamics() {
   return {.wheel_base = 0.5,
           .yaw_rate_limit = 10.0,
@@ -96,14 +95,14 @@ namespace cambium::presets {
           .highest_speed = 3.0};
 }
 
-/// A driver with its name and where its numbers are from.
+/// A driver with its name and the source of its numbers.
 struct Preset {
   char const* name;
   char const* source;
   IdmParameters parameters;
 };
 
-/// All of them.
+/// All drivers.
 inline constexpr Preset all[] = {
     {"treiber_2000", "Treiber, Hennecke, Helbing 2000, table I (second-hand); bounds of acceleration: own",
      treiber_2000()},
@@ -111,8 +110,8 @@ inline constexpr Preset all[] = {
      kesting_2010_car()},
     {"kesting_2010_truck", "Kesting, Treiber, Helbing 2010, table 1 (second-hand); bounds of acceleration: own",
      kesting_2010_truck()},
-    {"aggressive", "own numbers; which way they go: Treiber, Kesting 2013, section 11.3.1", aggressive()},
+    {"aggressive", "own numbers; direction: Treiber, Kesting 2013, section 11.3.1", aggressive()},
     {"timid", "own numbers, likewise", timid()},
-    {"cyclist", "own numbers, about SUMO's default speed of bicycles", cyclist()}};
+    {"cyclist", "own numbers, near SUMO's default speed of bicycles", cyclist()}};
 
 }  // namespace cambium::presets

@@ -18,39 +18,39 @@ namespace geometry {
 class Polygon;
 }
 
-/// A road user as a view finds it: an agent, or a static object. `ViewArchetype::state`, `shape` and `acceleration`
-/// tell more of an agent, `outline` of an object.
+/// A road user as a view finds it: an agent or a static object. `ViewArchetype::state`, `shape` and `acceleration` give
+/// more about an agent, `outline` about an object.
 struct RoadUser {
-  AgentId agent = none<AgentId>;     ///< who it is; none where it is a static object
-  ObjectId object = none<ObjectId>;  ///< what it is; none where it is an agent
-  Slot slot{};                       ///< its place among the agents or the objects
-  double gap{};  ///< free road to it, bumper to bumper [m]; negative where the two overlap lengthwise. Where it
-                 ///< is in a lane whose merge is still ahead: see `map::gap_before_merge`. 0 where none is asked
-                 ///< for, as in a circle
-  double s{};    ///< of its reference point, on the lane corridor or in the lane coordinate that was asked of [m]
-  double front{}, rear{};  ///< how far it reaches from there along the lane [m]
+  AgentId agent = none<AgentId>;     ///< the agent; none for a static object
+  ObjectId object = none<ObjectId>;  ///< the static object; none for an agent
+  Slot slot{};                       ///< index among the agents or the objects
+  double gap{};  ///< free road to it, bumper to bumper [m]; negative where the two overlap lengthwise; in a lane that
+                 ///< merges further ahead: see `map::gap_before_merge`; 0 where the query has no direction, as `around`
+                 ///< in the plane
+  double s{};    ///< position of its reference point, on the lane corridor or in the lane coordinate of the query [m]
+  double front{}, rear{};  ///< extent from there along the lane, ahead and behind [m]
   double speed{};          ///< along its lane [m/s]
 
   [[nodiscard]] double length() const { return front + rear; }  ///< along its lane [m]
 };
 
-/// How those count who are in a lane that is still to merge into the lane corridor asked of.
+/// How a query along a lane corridor treats road users in lanes that merge into the corridor further ahead.
 enum class Merging : std::uint8_t {
-  counts,   ///< as those in the corridor, by where they will be at the merge
-  by_rule,  ///< so, but not in junctions: there the right of way says who goes first, see `LaneCorridor::conflicts`
+  counts,   ///< like those in the corridor, by their position relative to the merge
+  by_rule,  ///< likewise, except in junctions, where the right of way decides, see `LaneCorridor::conflicts`
   ignored,
 };
 
-/// What counts when a view looks along a lane corridor.
+/// Options of a query along a lane corridor.
 struct Look {
-  static constexpr double horizon = 400.0;  ///< nobody is found farther away [m]
+  static constexpr double horizon = 400.0;  ///< no query looks farther [m]
 
   Merging merging = Merging::counts;
-  double distance = horizon;  ///< along the corridor, to the reference point, at most [m]
+  double distance = horizon;  ///< longest distance along the corridor to the other's reference point [m]
 };
 
-/// The least a behaviour may ask of what it sees; `ObservedWorld` offers it. Concepts are checked against this type,
-/// whose functions are declared only. Angles, frames and units as everywhere: SI, map frame, radians.
+/// Everything that a behaviour may ask of its view; `ObservedWorld` offers it. Concepts are checked against this type,
+/// whose functions are only declared. SI units, map frame, radians.
 struct ViewArchetype {
   using State = cambium::State;
   using Dynamics = SingleTrack;
@@ -60,38 +60,37 @@ struct ViewArchetype {
   [[nodiscard]] geometry::Shape const& shape() const;  ///< own shape
   [[nodiscard]] Dynamics const& dynamics() const;      ///< own vehicle model
   [[nodiscard]] Map const& map() const;
-  [[nodiscard]] map::RoadCorridor const& road() const;                   ///< the lanes of the own route
-  [[nodiscard]] map::LaneCorridor const& corridor() const;               ///< the lane corridor the agent is in
-  [[nodiscard]] map::LanePlace const& place() const;                     ///< where it is in there
-  [[nodiscard]] map::LanePlace place(CorridorId corridor) const;         ///< and on another one of the road
-  [[nodiscard]] std::optional<RoadUser> ahead(Look const& = {}) const;   ///< next along the own lane corridor
-  [[nodiscard]] std::optional<RoadUser> behind(Look const& = {}) const;  ///< the same to the rear
-  /// The next ahead of a place on a lane corridor of the road, or behind it, as if the agent were there.
+  [[nodiscard]] map::RoadCorridor const& road() const;                   ///< all lanes along the own route
+  [[nodiscard]] map::LaneCorridor const& corridor() const;               ///< the lane corridor that the agent is in
+  [[nodiscard]] map::LanePlace const& place() const;                     ///< its own place there
+  [[nodiscard]] map::LanePlace place(CorridorId corridor) const;         ///< its place in another one
+  [[nodiscard]] std::optional<RoadUser> ahead(Look const& = {}) const;   ///< next road user along the own lane corridor
+  [[nodiscard]] std::optional<RoadUser> behind(Look const& = {}) const;  ///< next one behind
+  /// The next road user ahead of (behind) a place on a lane corridor of the road, as if the agent were there.
   [[nodiscard]] std::optional<RoadUser> ahead(map::LanePlace const& place, Look const& = {}) const;
   [[nodiscard]] std::optional<RoadUser> behind(map::LanePlace const& place, Look const& = {}) const;
-  /// Of those in lanes that merge into the own corridor at `merge`, the foremost that is not beyond `limit`, in its
-  /// `s`.
+  /// The foremost road user, in the lanes that merge into the own corridor at `merge`, whose `s` does not exceed
+  /// `limit`.
   [[nodiscard]] std::optional<RoadUser> merging(double merge, double limit) const;
-  /// Calls `f(RoadUser)` for the agents that are along a corridor within `distance` [m] of a place, then for the next
-  /// objects ahead and behind; for some agents more than once.
+  /// Calls `f(RoadUser)` for the agents along a corridor within `distance` [m] of a place, then for the next objects
+  /// ahead and behind. May report an agent more than once.
   template <class F>
   void around(map::LanePlace const& place, double distance, F&& f) const;
   template <class F>
-  void around(double distance, F&& f) const;  ///< for the agents that are near, on whatever lane or none
+  void around(double distance, F&& f) const;  ///< for agents nearby, in any lane or none
   template <class F>
-  void on_lane(double index_begin, double index_end, F&& f) const;  ///< for all who reach into a stretch of a lane
+  void on_lane(double index_begin, double index_end, F&& f) const;  ///< for agents that overlap a stretch of a lane
   template <class F>
-  void for_each_object(F&& f) const;  ///< `f(id, outline)` for the static objects, outlines as polygons
+  void for_each_object(F&& f) const;  ///< `f(id, outline)` for each static object; the outline is a polygon
   [[nodiscard]] State const& state(RoadUser const& agent) const;  ///< as observed
   [[nodiscard]] geometry::Shape const& shape(RoadUser const& agent) const;
   [[nodiscard]] double acceleration(RoadUser const& agent) const;  ///< over the last step, along its heading [m/s^2]
   [[nodiscard]] geometry::Polygon const& outline(RoadUser const& object) const;
-  [[nodiscard]] bool signals_way(RoadUser const& user,
-                                 LaneId lane) const;      ///< its turn signal says that it comes by it
-  [[nodiscard]] map::LightColor light(LightId id) const;  ///< what a traffic light shows now
+  [[nodiscard]] bool signals_way(RoadUser const& user, LaneId lane) const;  ///< its turn signal permits that way
+  [[nodiscard]] map::LightColor light(LightId id) const;                    ///< current colour of a traffic light
   [[nodiscard]] AgentId id() const;
-  [[nodiscard]] bool has_goal() const;                             ///< it matters in which lane the route ends
-  [[nodiscard]] RandomStream random(std::uint32_t purpose) const;  ///< of its own for (seed, agent, step, purpose)
+  [[nodiscard]] bool has_goal() const;                             ///< whether the lane in which the route ends matters
+  [[nodiscard]] RandomStream random(std::uint32_t purpose) const;  ///< own stream for (seed, agent, step, purpose)
 };
 
 }  // namespace cambium

@@ -9,27 +9,27 @@
 
 namespace cambium {
 
-/// The acceleration [m/s^2] that avoids a collision if the leader keeps its own (constant-acceleration heuristic;
-/// Kesting, Treiber, Helbing 2010, eq. 2.3); the leader is not taken to accelerate more than `most` [m/s^2].
+/// Acceleration [m/s^2] that just avoids a collision if the leader keeps its acceleration (constant-acceleration
+/// heuristic; Kesting, Treiber, Helbing 2010, eq. 2.3). The leader's acceleration counts up to `most` [m/s^2].
 [[nodiscard]] inline double cah_acceleration(double speed, Constraint const& leader, double most) {
   double const a = std::min(leader.acceleration, most), gap = std::max(leader.gap, 1e-9);
   double const closing = speed - leader.speed;
   double const denominator = leader.speed * leader.speed - 2.0 * gap * a;
-  // The leader stands before the two would be at the closest; one that stands already is left to the other case.
+  // The leader stops before the two are closest; the case below covers a leader that already stands.
   if (leader.speed * closing <= -2.0 * gap * a && denominator > 0.0) return speed * speed * a / denominator;
   return a - (closing > 0.0 ? closing * closing / (2.0 * gap) : 0.0);
 }
 
-/// The blend of IDM's acceleration with that of the heuristic: where IDM brakes harder than needed, `coolness` 0 to 1
-/// says how far the driver trusts the heuristic (eq. 2.6).
+/// Blends IDM's acceleration with that of the heuristic where IDM brakes harder than necessary (eq. 2.6). `coolness`, 0
+/// to 1, says how far the driver trusts the heuristic.
 [[nodiscard]] inline double acc_blend(double idm, double cah, double comfortable_deceleration, double coolness) {
   if (idm >= cah) return idm;
   double const b = comfortable_deceleration;
   return (1.0 - coolness) * idm + coolness * (cah + b * std::tanh((idm - cah) / b));
 }
 
-/// Motion over `dt` [s] of a follower with any law `acceleration(speed, Constraint)` behind a leader that keeps its
-/// speed: Heun's scheme of order 2 in equal parts of at most 0.1 s. Where the speed reaches 0 the vehicle stops.
+/// Motion over `dt` [s] behind a leader of constant speed, for any law `acceleration(speed, Constraint)`: Heun's scheme
+/// of order 2 in equal parts of at most 0.1 s. A vehicle whose speed reaches 0 stops.
 template <class Law>
 [[nodiscard]] LongitudinalMotion<double> follow_motion(Law const& acceleration, double speed, Constraint leader,
                                                        double dt) {
@@ -42,7 +42,7 @@ template <class Law>
     Constraint ahead = leader;
     ahead.gap += h * (leader.speed - 0.5 * (v + next));
     double const a = 0.5 * (a1 + acceleration(next, ahead));
-    double const moving = v + h * a < 0.0 ? v / -a : h;  // until it stands
+    double const moving = v + h * a < 0.0 ? v / -a : h;  // until it stops
     double const distance = std::max(0.0, v * moving + a * moving * moving / 2);
     motion.distance += distance;
     motion.speed = moving < h ? 0.0 : v + h * a;
@@ -52,8 +52,8 @@ template <class Law>
 }
 
 /// A driver's car following at one speed [m/s] by the ACC model (Kesting, Treiber, Helbing 2010, "Enhanced intelligent
-/// driver model to access the impact of driving strategies on traffic capacity"), within the parameters' bounds; IDM's
-/// where `coolness` is 0.
+/// driver model to access the impact of driving strategies on traffic capacity"), within the parameters' bounds; equals
+/// IDM if `coolness` is 0.
 class AccLaw {
  public:
   static constexpr bool asks_acceleration = true;  ///< of leaders
@@ -62,19 +62,19 @@ class AccLaw {
   AccLaw(P const& p, double coolness, double speed)
       : terms_(p), comfortable_(p.comfortable_deceleration), coolness_(coolness), speed_(speed) {}
 
-  /// [m/s^2]
+  /// Acceleration behind a leader [m/s^2].
   [[nodiscard]] double operator()(Constraint const& leader) const { return (*this)(speed_, leader); }
 
   /// The same at another speed [m/s].
   [[nodiscard]] double operator()(double speed, Constraint const& leader) const {
     if (!(leader.gap > 0.0)) return terms_.low;
-    // The blend is one of unbounded accelerations.
+    // The blend takes unbounded accelerations.
     double const idm = terms_.unbounded(terms_.free(speed), speed, leader.gap, leader.speed);
     if (coolness_ == 0.0 || std::isinf(leader.gap)) return terms_.bounded(idm);
     return terms_.bounded(acc_blend(idm, cah_acceleration(speed, leader, terms_.maximum), comfortable_, coolness_));
   }
 
-  /// Motion over `dt` [s] behind a leader that keeps its speed.
+  /// Motion over `dt` [s] behind a leader of constant speed.
   [[nodiscard]] LongitudinalMotion<double> motion(Constraint const& leader, double dt) const {
     return follow_motion(*this, speed_, leader, dt);
   }
@@ -84,8 +84,8 @@ class AccLaw {
   double comfortable_, coolness_, speed_;
 };
 
-/// Follows its lane corridor and the next vehicle in it by the ACC model: IDM that does not overreact to small gaps, as
-/// after a lane change of another, as long as the leader's acceleration makes them no danger.
+/// Follows its lane corridor and the next vehicle in it by the ACC model: IDM without the overreaction to small gaps,
+/// such as after another vehicle has cut in, if the leader's acceleration makes them harmless.
 struct AdaptiveCruiseControl {
   using Memory = RoadRules::Memory;
 
@@ -95,15 +95,15 @@ struct AdaptiveCruiseControl {
 
   static constexpr char const* name = "adaptive_cruise_control";
   static constexpr char const* summary =
-      "IDM, but where that brakes harder than the constant-acceleration heuristic c asks for: (1 - coolness) a_IDM + "
+      "IDM, but where it brakes harder than the constant-acceleration heuristic c requires: (1 - coolness) a_IDM + "
       "coolness (c + b tanh((a_IDM - c) / b))";
   static constexpr char const* source = "Kesting, Treiber, Helbing 2010, eq. 2.3 and 2.6";
   static constexpr auto parameters() {
     using Self = AdaptiveCruiseControl;
-    return parameter_list(parameter("idm", &Self::idm, "-", {}, "the car following it is built on"),
+    return parameter_list(parameter("idm", &Self::idm, "-", {}, "the underlying car following"),
                           parameter("coolness", &Self::coolness, "-", Range{0, 1},
-                                    "0: IDM; 1: brakes no harder than the leader's acceleration asks for"),
-                          parameter("rules", &Self::rules, "-", {}, "what it heeds beside other road users"));
+                                    "0: IDM; 1: brakes no harder than the leader's acceleration requires"),
+                          parameter("rules", &Self::rules, "-", {}, "what it heeds besides other road users"));
   }
 
   template <class View>

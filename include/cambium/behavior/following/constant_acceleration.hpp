@@ -7,20 +7,21 @@
 
 namespace cambium {
 
-/// Follows the lane with a constant acceleration and heeds nobody; stops rather than reverses. With 0: constant speed.
+/// Follows its lane with constant acceleration (0: constant speed) and ignores all others. It stops rather than
+/// reverses.
 struct ConstantAcceleration {
   double acceleration = 0.0;
   double highest_speed = 50.0;
 
   static constexpr char const* name = "constant_acceleration";
   static constexpr char const* summary =
-      "keeps its lane; v grows or falls by a, until it stands or has its highest speed";
+      "keeps its lane; v changes by a until the vehicle stands or has its highest speed";
   static constexpr char const* source = "kinematics";
   static constexpr auto parameters() {
     return parameter_list(parameter("acceleration", &ConstantAcceleration::acceleration, "m/s^2", Range{-50, 50},
-                                    "held until the vehicle stands or is at its highest speed"),
+                                    "held until the vehicle stands or has its highest speed"),
                           parameter("highest_speed", &ConstantAcceleration::highest_speed, "m/s", Range{0, 200},
-                                    "not exceeded by accelerating"));
+                                    "limit when accelerating"));
   }
 
   template <class View>

@@ -9,7 +9,7 @@
 namespace cambium {
 
 /// Follows its lane corridor and the next vehicle in it by the Intelligent Driver Model (Treiber, Hennecke, Helbing
-/// 2000); defaults are BARK's. Keeps its lateral offset; heads along the lane.
+/// 2000); defaults are BARK's. Keeps its lateral offset and takes the lane's heading.
 struct IdmClassic {
   using Memory = RoadRules::Memory;
 
@@ -33,8 +33,8 @@ struct IdmClassic {
     return join_parameters(
         idm_parameters<IdmClassic>(),
         parameter_list(parameter("tolerance", &IdmClassic::tolerance, "m/s^2", Range{1e-12, 1},
-                                 "error of the integration, as speed per second"),
-                       parameter("rules", &IdmClassic::rules, "-", {}, "what it heeds beside other road users")));
+                                 "integration error in speed, per second"),
+                       parameter("rules", &IdmClassic::rules, "-", {}, "what it heeds besides other road users")));
   }
 
   template <class View>
@@ -49,7 +49,7 @@ struct IdmClassic {
 };
 static_assert(BehaviorModel<IdmClassic>);
 
-/// A driver of these parameters, as of `presets`.
+/// An `IdmClassic` with the given parameters, such as those in `presets`.
 [[nodiscard]] constexpr IdmClassic idm_classic(IdmParameters const& p) {
   return {.desired_speed = p.desired_speed,
           .time_headway = p.time_headway,

@@ -10,8 +10,8 @@
 
 namespace cambium {
 
-/// A driver by IDM whose time headway is not known, but lies in one of a few regions of equal width: what a planner
-/// believes of somebody, see `MctsHypothesis`. The headway that is assumed is its memory: a search draws it anew.
+/// An IDM driver whose time headway is unknown but lies in one of a few regions of equal width: a planner's belief
+/// about another driver, see `MctsHypothesis`. The assumed headway is its memory, which a search draws anew.
 struct IdmHypotheses {
   static constexpr std::size_t most_regions = 8;
 
@@ -28,24 +28,24 @@ struct IdmHypotheses {
   int regions = 4;
 
   static constexpr char const* name = "idm_hypotheses";
-  static constexpr char const* summary = "as idm_classic, with a time headway from one of a few regions, as assumed";
+  static constexpr char const* summary = "as idm_classic, with an assumed time headway from one of a few regions";
   static constexpr char const* source = "Treiber 2000; regions after Bernhard 2020";
   static constexpr auto parameters() {
     using P = IdmHypotheses;
     return parameter_list(
-        parameter("driver", &P::driver, "-", {}, "all but the time headway"),
-        parameter("shortest_headway", &P::shortest_headway, "s", Range{0, 20}, "where the first region begins"),
-        parameter("longest_headway", &P::longest_headway, "s", Range{0, 20}, "where the last one ends"),
-        parameter("regions", &P::regions, "-", Range{1, most_regions}, "how many there are"));
+        parameter("driver", &P::driver, "-", {}, "everything except the time headway"),
+        parameter("shortest_headway", &P::shortest_headway, "s", Range{0, 20}, "begin of the first region"),
+        parameter("longest_headway", &P::longest_headway, "s", Range{0, 20}, "end of the last region"),
+        parameter("regions", &P::regions, "-", Range{1, most_regions}, "number of regions"));
   }
 
-  /// Throws `ParameterError` where the headways are in the wrong order.
+  /// Throws `ParameterError` if the longest headway is below the shortest.
   void check(std::string const& where) const {
     if (!(shortest_headway <= longest_headway))
       throw ParameterError(where, "has its longest headway below the shortest", "swap the two");
   }
 
-  /// The headway at `share`, 0 to 1, of region `number` [s].
+  /// Headway [s] at `share`, 0 to 1, of region `number`.
   [[nodiscard]] double headway(std::size_t number, double share) const {
     return shortest_headway + (longest_headway - shortest_headway) * (static_cast<double>(number) + share) / regions;
   }

@@ -15,14 +15,15 @@
 
 namespace cambium {
 
-/// How a front axle lies to a line.
+/// Pose of a front axle relative to a line.
 struct FrontAxle {
   double offset{};         ///< of the axle to the left of the line [m]
-  double heading_error{};  ///< direction of the line over the vehicle's [rad]
+  double heading_error{};  ///< direction of the line minus that of the vehicle [rad]
   double curvature{};      ///< of the line [1/m]
 };
 
-/// The front axle `wheel_base` [m] ahead of `state`, to `line`. `hint`: a segment nearby, becomes the one found.
+/// Pose of the front axle, `wheel_base` [m] ahead of `state`, relative to `line`. `hint`: a nearby segment; becomes the
+/// one found.
 template <MotionState State>
 [[nodiscard]] FrontAxle front_axle(geometry::Line const& line, State const& state, double wheel_base,
                                    std::uint32_t& hint) {
@@ -34,9 +35,9 @@ template <MotionState State>
   return {foot.lateral, geometry::angle_difference(along, state.heading), segment.curvature};
 }
 
-/// Follows the next vehicle in its lane corridor by IDM, or by the ACC model with `coolness` above 0, and steers its
-/// front axle to the corridor's centre line (Stanley), through its vehicle model. Slows down for curves, so that its
-/// lateral acceleration stays within `lateral_acceleration_limit`.
+/// Follows the next vehicle in its lane corridor by IDM (by the ACC model with `coolness` above 0) and steers its front
+/// axle to the corridor's centre line (Stanley controller) through its vehicle model. It slows down for bends so that
+/// its lateral acceleration stays within `lateral_acceleration_limit`.
 struct IdmLaneTracking {
   IdmParameters idm{};
   double coolness = 0.0;
@@ -51,23 +52,23 @@ struct IdmLaneTracking {
 
   static constexpr char const* name = "idm_lane_tracking";
   static constexpr char const* summary =
-      "along: IDM, or the ACC model where coolness > 0, slower in curves; across: front axle to the centre line, "
-      "steering = heading error - atan(k e / (v + v_soft)), through the vehicle model";
+      "along: IDM, or the ACC model if coolness > 0, slower in bends; across: front axle to the centre line, steering "
+      "= heading error - atan(k e / (v + v_soft)), through the vehicle model";
   static constexpr char const* source = "Treiber, Hennecke, Helbing 2000; Hoffmann, Tomlin, Montemerlo, Thrun 2007";
   static constexpr auto parameters() {
     using Self = IdmLaneTracking;
     return parameter_list(
         parameter("idm", &Self::idm, "-", {}, "the driver's car following"),
-        parameter("coolness", &Self::coolness, "-", Range{0, 1}, "0: IDM; up to 1: the ACC model's"),
-        parameter("rules", &Self::rules, "-", {}, "what it heeds beside other road users"),
+        parameter("coolness", &Self::coolness, "-", Range{0, 1}, "0: IDM; up to 1: as in the ACC model"),
+        parameter("rules", &Self::rules, "-", {}, "what it heeds besides other road users"),
         parameter("cross_track_gain", &Self::cross_track_gain, "1/s", Range{0, 20},
-                  "how fast an offset from the line decays"),
+                  "rate at which an offset from the line decays"),
         parameter("softening_speed", &Self::softening_speed, "m/s", Range{0, 20}, "calms the steering at low speed"),
         parameter("lateral_acceleration_limit", &Self::lateral_acceleration_limit, "m/s^2", Range{0.1, 20},
-                  "steers no more than this, beside the vehicle's own limits"),
+                  "bound of the steering, besides the vehicle's own limits"),
         parameter("longest_substep", &Self::longest_substep, "s", Range{1e-3, 10},
-                  "steering is held over equal parts of a step no longer than this"),
-        parameter("tolerance", &Self::tolerance, "m/s^2", Range{1e-12, 1}, "error of the speed, as speed per second"));
+                  "steering is held over equal parts of a step, each at most this long"),
+        parameter("tolerance", &Self::tolerance, "m/s^2", Range{1e-12, 1}, "integration error in speed, per second"));
   }
 
   template <class View>
@@ -81,9 +82,9 @@ struct IdmLaneTracking {
     return drive_along(view, p, ahead.constraint(), memory, dt);
   }
 
-  /// The steering angle [rad] that it asks of a vehicle for a step of `h` [s].
+  /// Steering angle [rad] for a step of `h` [s].
   [[nodiscard]] double steering(FrontAxle const& at, double speed, double wheel_base, double h) const {
-    double const along = at.curvature * wheel_base;  // the steering that the line itself takes
+    double const along = at.curvature * wheel_base;  // the steering that follows the line itself
     double const wanted = stanley_steering(at.heading_error, at.offset, speed, cross_track_gain, softening_speed);
     double const angle = along + (wanted - along) * held_feedback(speed * h, wheel_base);
     return std::copysign(steering_within_grip(std::abs(angle), lateral_acceleration_limit, wheel_base, speed), angle);

@@ -13,9 +13,9 @@
 
 namespace cambium {
 
-/// A driver who now and then lets others in: for a while it follows, beside its own leader, the next vehicle ahead in
-/// each neighbouring lane that ends soon or joins its own, where comfortable braking is enough; then for a while it
-/// does not. Each one begins somewhere in between.
+/// A driver who sometimes lets others in. While it yields, it follows, besides its own leader, the next vehicle ahead
+/// in each neighbouring lane that soon ends or joins its own, if comfortable braking suffices. Periods of yielding and
+/// insisting alternate; each driver starts somewhere in between.
 template <class Distribution>
 struct Yielding {
   bool enabled = false;
@@ -25,21 +25,21 @@ struct Yielding {
 
   static constexpr char const* name = "yielding";
   static constexpr char const* summary =
-      "now and then follows who is next ahead in a neighbouring lane that ends or joins, where comfortable braking is "
-      "enough";
+      "sometimes follows the next vehicle ahead in a neighbouring lane that ends or joins, if comfortable braking "
+      "suffices";
   static constexpr char const* source = "own";
   static constexpr auto parameters() {
-    return parameter_list(
-        parameter("enabled", &Yielding::enabled, "-", Range{0, 1}, "whether it ever lets others in"),
-        parameter("yields", &Yielding::yields, "s", {}, "how long it does; at least 0.1 s"),
-        parameter("insists", &Yielding::insists, "s", {}, "how long it does not; at least 0.1 s"),
-        parameter("horizon", &Yielding::horizon, "m", Range{0, 10'000}, "lanes that end or join within this count"));
+    return parameter_list(parameter("enabled", &Yielding::enabled, "-", Range{0, 1}, "whether it ever lets others in"),
+                          parameter("yields", &Yielding::yields, "s", {}, "duration of yielding, at least 0.1 s"),
+                          parameter("insists", &Yielding::insists, "s", {}, "duration of insisting, at least 0.1 s"),
+                          parameter("horizon", &Yielding::horizon, "m", Range{0, 10'000},
+                                    "lanes that end or join within this distance count"));
   }
 };
 
-/// IDM with parameters drawn from distributions, once for each agent or anew in every step, and intentions to yield
-/// that alternate. Draws are kept within the parameters' valid ranges. Reproducible: all numbers come from the agent's
-/// own stream.
+/// IDM with parameters drawn from distributions, once for each agent or anew in every step, and periods of yielding.
+/// Draws are clamped to the parameters' valid ranges. Reproducible: all random numbers come from the agent's own
+/// stream.
 template <class Distribution>
 struct BasicIdmStochastic {
   enum class Drawn { per_agent, per_step };
@@ -59,35 +59,35 @@ struct BasicIdmStochastic {
 
   static constexpr char const* name = "idm_stochastic";
   static constexpr char const* summary =
-      "IDM with parameters drawn once for each agent or anew in every step; intentions to yield that alternate";
+      "IDM with parameters drawn once for each agent or anew in every step; alternates between yielding and insisting";
   static constexpr char const* source = "law: Treiber, Hennecke, Helbing 2000; draws: own, after BARK";
   static constexpr auto parameters() {
     using Self = BasicIdmStochastic;
     return parameter_list(
         choice("drawn", &Self::drawn, "per_agent|per_step", "when parameters are drawn"),
-        parameter("desired_speed", &Self::desired_speed, "m/s", {}, "of IDM's parameter"),
-        parameter("time_headway", &Self::time_headway, "s", {}, "of IDM's parameter"),
-        parameter("minimum_gap", &Self::minimum_gap, "m", {}, "of IDM's parameter"),
-        parameter("maximum_acceleration", &Self::maximum_acceleration, "m/s^2", {}, "of IDM's parameter"),
-        parameter("comfortable_deceleration", &Self::comfortable_deceleration, "m/s^2", {}, "of IDM's parameter"),
+        parameter("desired_speed", &Self::desired_speed, "m/s", {}, "as in IDM"),
+        parameter("time_headway", &Self::time_headway, "s", {}, "as in IDM"),
+        parameter("minimum_gap", &Self::minimum_gap, "m", {}, "as in IDM"),
+        parameter("maximum_acceleration", &Self::maximum_acceleration, "m/s^2", {}, "as in IDM"),
+        parameter("comfortable_deceleration", &Self::comfortable_deceleration, "m/s^2", {}, "as in IDM"),
         parameter("yielding", &Self::yielding, "-", {}, "when it lets others in"),
-        parameter("rules", &Self::rules, "-", {}, "what it heeds beside other road users"),
-        parameter("exponent", &Self::exponent, "-", Range{1, 100}, "as of IDM"),
-        parameter("lowest_acceleration", &Self::lowest_acceleration, "m/s^2", Range{-50, 0}, "as of IDM"),
-        parameter("highest_acceleration", &Self::highest_acceleration, "m/s^2", Range{0, 50}, "as of IDM"),
-        parameter("tolerance", &Self::tolerance, "m/s^2", Range{1e-12, 1}, "as of IdmClassic"));
+        parameter("rules", &Self::rules, "-", {}, "what it heeds besides other road users"),
+        parameter("exponent", &Self::exponent, "-", Range{1, 100}, "as in IDM"),
+        parameter("lowest_acceleration", &Self::lowest_acceleration, "m/s^2", Range{-50, 0}, "as in IDM"),
+        parameter("highest_acceleration", &Self::highest_acceleration, "m/s^2", Range{0, 50}, "as in IDM"),
+        parameter("tolerance", &Self::tolerance, "m/s^2", Range{1e-12, 1}, "as in IdmClassic"));
   }
 
   struct Memory {
     std::uint32_t person{};  ///< key of the agent's own draws; 0: not drawn yet
-    float left{};            ///< of the present intention [s]
+    float left{};            ///< of the current period [s]
     bool yields = false;
     RoadRules::Memory rules{};
 
     friend bool operator==(Memory const&, Memory const&) = default;
   };
 
-  /// The parameters that `stream` gives, each within its valid range.
+  /// The parameters drawn from `stream`, each within its valid range.
   template <BitStream Stream>
   [[nodiscard]] IdmParameters draw(Stream& stream) const {
     IdmParameters p{
@@ -108,12 +108,11 @@ struct BasicIdmStochastic {
     if (yielding.enabled && is_new) begin_somewhere(stream, memory);
     if (yielding.enabled) change_mind(stream, memory, dt);
     double const speed = std::max(0.0, view.state().speed);
-    auto const next = view.ahead({.merging = rules.merging});
     RandomStream own(memory.person, 0, 0, purpose);
     auto const p = drawn == Drawn::per_agent ? draw(own) : draw(stream);
     IdmLaw const law(p, speed, rules.desired_speed(p, view, speed));
     Strictest ahead(law);
-    rules.heed(view, next, ahead);
+    rules.heed(view, ahead);
     if (memory.yields) let_in(view, law, p.comfortable_deceleration, ahead);
     auto const motion = law.motion(ahead.constraint(), dt, tolerance);
     return plan_along_lane(view, rules.bound(view, p, view.place().s, speed, motion, dt, memory.rules), dt);
@@ -127,17 +126,17 @@ struct BasicIdmStochastic {
     return std::max(0.1, (yields ? yielding.yields : yielding.insists)(stream));
   }
 
-  /// Enters somewhere between the begin of yielding and the end of insisting: drivers do not change their minds in
-  /// step.
+  /// Starts at a random time between the begin of yielding and the end of insisting, so that drivers do not switch in
+  /// unison.
   template <BitStream Stream>
   void begin_somewhere(Stream& stream, Memory& memory) const {
     double const yields = duration(stream, true), insists = duration(stream, false);
-    double const left = uniform01(stream) * (yields + insists);  // of insisting, before that of yielding
+    double const left = uniform01(stream) * (yields + insists);  // insisting, which precedes yielding here
     memory.yields = left >= insists;
     memory.left = static_cast<float>(memory.yields ? left - insists : left);
   }
 
-  /// Goes on with its intention, or has the other one from now on.
+  /// Continues its period, or switches to the other one when it is over.
   template <BitStream Stream>
   void change_mind(Stream& stream, Memory& memory, double dt) const {
     memory.left -= static_cast<float>(dt);
@@ -165,7 +164,7 @@ struct BasicIdmStochastic {
   }
 };
 
-/// The usual one: every parameter uniform between two ends.
+/// The usual variant, with uniform distributions.
 using IdmStochastic = BasicIdmStochastic<Uniform>;
 static_assert(BehaviorModel<IdmStochastic>);
 

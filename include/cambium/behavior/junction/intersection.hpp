@@ -14,18 +14,31 @@
 
 namespace cambium {
 
-/// Crosses junctions by the rules of the road, else follows its lane by IDM. Before a junction it lets those go first
-/// who have the right of way (`map::right_of_way`), if they would come into its way; enters when all conflicts there
-/// are its own, and only if there is room behind them; then it goes first before all who are still outside. It stops
-/// at red lights (`World::set_light`) and stop signs, and slows down for bends. Where each one waits for another, one
-/// after the other goes after some patience. Others are taken to come by the ways that they signal, with their speed,
-/// and faster where that is the worse. Static objects are heeded where they reach into the own lane, as by
-/// `IdmClassic`.
+/// Crosses junctions by the rules of the road, otherwise follows its lane by IDM. The map knows where two ways through
+/// a junction conflict (`map::Conflict`):
 ///
-/// Conflicts are those of the two vehicles' sizes, see `MapOptions::conflict_shape`. As long as it can stop before one,
-/// it does not drive into it while another one is in there or cannot stop any more, and of two who can both stop the
-/// same one goes first by both their rules. So vehicles that all behave so keep out of each other's way; those who
-/// change lanes in a junction, do not heed its rules or are seen where they are not may still be run into.
+///                |other|
+///          line  |  v  |
+///            |   |     |
+///    own ->  |   |/////|  ->     zone: where the two bodies could touch
+///            |   |     |
+///
+/// For each conflict ahead, the driver predicts who comes (with its speed, or accelerating if that is worse, along the
+/// ways that its turn signal permits) and derives a claim: the conflict is free, must be watched, must be yielded, or
+/// is blocked. A vehicle inside the zone, or too fast to stop before it, blocks it unless it leaves in time. A vehicle
+/// that goes first (`detail::goes_first`) has the zone if the two times in it are less than `time_margin` apart. The
+/// strongest claim bounds the step so that the vehicle can stop at its line.
+///
+/// The driver enters a junction when all its conflicts are its own and there is room behind them. It then goes before
+/// all vehicles that are still outside. It stops at red lights (`World::set_light`) and stop signs, and slows down for
+/// bends. In a deadlock one driver after the other loses its `patience` and goes. Static objects count where they
+/// extend into the own lane, as for `IdmClassic`.
+///
+/// Guarantee: as long as the vehicle can stop before a conflict, it does not enter while another vehicle is inside or
+/// can no longer stop. Of two vehicles that can both stop, both drivers let the same one go first. So vehicles that all
+/// follow this model do not collide. A collision remains possible with vehicles that change lanes in a junction, ignore
+/// its rules, or are observed where they are not. Conflicts depend on the sizes of the two vehicles, see
+/// `MapOptions::conflict_shape`.
 struct Intersection {
   IdmParameters idm{};
   RoadRules rules{.obey_speed_limits = true, .slow_for_bends = true, .obey_signals = true, .merging = Merging::by_rule};
@@ -36,34 +49,32 @@ struct Intersection {
   bool keep_clear = true;
   double tolerance = 1e-4;
 
-  static constexpr bool heeds_conflicts = true;  ///< it must not be larger than those that conflicts are found for
+  static constexpr bool heeds_conflicts = true;  ///< agents must not exceed the shapes of the map's conflicts
   static constexpr char const* name = "intersection";
   static constexpr char const* summary =
       "IDM; stops at red lights and stop signs; gives way by priorities of the map, signs, right before left, oncoming "
-      "before turning; stops where somebody predicted would come too close in time; resolves deadlocks; slows for "
-      "bends";
+      "before turning; stops for vehicles predicted to come too close in time; resolves deadlocks; slows for bends";
   static constexpr char const* source = "rules of the road (StVO sections 8 and 9); prediction: own";
   static constexpr auto parameters() {
     using P = Intersection;
     return parameter_list(
         parameter("idm", &P::idm, "-", {}, "car following"),
-        parameter("rules", &P::rules, "-", {}, "what it heeds beside other road users"),
+        parameter("rules", &P::rules, "-", {}, "what it heeds besides other road users"),
         parameter("look_ahead", &P::look_ahead, "m", Range{0, 1000},
-                  "conflicts nearer than this, or than the way to brake comfortably, are heeded"),
+                  "conflicts within this distance, or within the comfortable braking distance, count"),
         parameter("time_margin", &P::time_margin, "s", Range{0, 20}, "between two vehicles in one place"),
         parameter("assumed_acceleration", &P::assumed_acceleration, "m/s^2", Range{0, 20},
                   "of others on their way to the conflict"),
         parameter("patience", &P::patience, "s", Range{0, 600},
-                  "who has stood so long, and up to 48 s more by its id, goes before one who stands too, whatever the "
-                  "rules"),
+                  "a driver that has stood for this time, and up to 48 s more by its id, goes before another one that "
+                  "stands, whatever the rules"),
         parameter("keep_clear", &P::keep_clear, "-", Range{0, 1}, "do not stop within the junction"),
-        parameter("tolerance", &P::tolerance, "m/s^2", Range{1e-12, 1},
-                  "error of the exact integration, as speed per second"));
+        parameter("tolerance", &P::tolerance, "m/s^2", Range{1e-12, 1}, "integration error in speed, per second"));
   }
 
   struct Memory {
-    float waited{};            ///< has been standing before a junction for [s]
-    float stopped_at = -1.0f;  ///< corridor position of the last stop sign that it has stopped at [m]
+    float waited{};            ///< time at a standstill before a junction [s]
+    float stopped_at = -1.0f;  ///< corridor position of the stop sign at which it stopped last [m]
 
     friend bool operator==(Memory const&, Memory const&) = default;
   };
@@ -80,22 +91,23 @@ struct Intersection {
     own.is_large = detail::is_large(view, view.shape());
     own.highest = own.idm.desired_speed;
     if (rules.slow_for_bends) {
-      auto const bends = bends_ahead(view.corridor(), own.s, own.speed, own.highest, rules.lateral_acceleration,
-                                     own.idm.comfortable_deceleration, hardest(own), dt);
+      auto const bends = detail::bends_ahead(view.corridor(), own.s, own.speed, own.highest, rules.lateral_acceleration,
+                                             own.idm.comfortable_deceleration, hardest(own), dt);
       own.highest = bends.highest;
       own.bound = bends.bound;
     }
     own.waited = memory.waited;
+    own.patience = patience;
     IdmLaw const law(own.idm, own.speed);
     Strictest ahead(law);
     rules.heed(view, ahead);
     heed_conflicts(view, own, ahead, dt);
-    SignalStop signals;
+    detail::SignalStop signals;
     if (rules.obey_signals)
-      signals = stop_at_signals(view, own.front, own.speed, own.look_ahead, rules.stop_margin, rules.safe_deceleration,
-                                memory.stopped_at);
+      signals = detail::stop_at_signals(view, own.front, own.speed, own.look_ahead, rules.stop_margin,
+                                        rules.safe_deceleration, memory.stopped_at);
     if (std::isfinite(signals.distance)) bound(own, signals.distance, own.idm.comfortable_deceleration, dt);
-    if (signals.is_light || own.speed > starting || (own.speed >= standing && own.at_line))
+    if (signals.is_light || own.speed > starting || (own.speed >= standing_speed && own.at_line))
       memory.waited = 0.0f;
     else if (own.at_line)
       memory.waited += static_cast<float>(dt);
@@ -107,31 +119,29 @@ struct Intersection {
  private:
   using Other = detail::ConflictUser;
 
-  static constexpr double standing = standing_speed;
-  static constexpr double starting = starting_speed;
-  static constexpr double air = 0.3;  // [m] before a conflict
+  static constexpr double starting = detail::starting_speed;
+  static constexpr double air = 0.3;  // [m] distance kept to a conflict
   static constexpr double infinite = std::numeric_limits<double>::infinity();
 
-  /// Where one is, what it has seen, and what it may do.
-  struct Own {
+  /// The own vehicle: its place, and its motion as bounded so far.
+  struct Own : detail::ConflictAsker {
     IdmParameters idm;
-    double s{}, front{}, speed{}, waited{};
     double look_ahead{};  ///< [m]
-    double highest{};     ///< speed up to the place that it looks ahead to [m/s]
+    double highest{};     ///< highest speed within `look_ahead` [m/s]
     bool is_large = false;
-    LongitudinalMotion<double> bound{infinite, infinite};  ///< goes no farther in this step
-    bool at_line = false;                                  ///< has come to where it waits
+    LongitudinalMotion<double> bound{infinite, infinite};  ///< longest motion of this step
+    bool at_line = false;                                  ///< has arrived where it waits
   };
 
-  /// What a conflict asks for, the strongest last.
+  /// What a conflict demands, in ascending order.
   enum class Claim : std::uint8_t {
     free,
-    watch,   ///< goes on, but so that it can still stop: it will be free in time
-    yield,   ///< waits, if it can still stop
-    blocked  ///< does not drive in there
+    watch,   ///< goes on such that it can still stop: the zone will be free in time
+    yield,   ///< waits if it can still stop
+    blocked  ///< does not enter
   };
 
-  /// When a vehicle is in a conflict [s from now].
+  /// Times at which a vehicle enters and leaves a conflict [s from now].
   struct Window {
     double begin, end;
   };
@@ -140,7 +150,7 @@ struct Intersection {
     return cambium::can_stop(speed, distance, rules.safe_deceleration);
   }
 
-  /// Others count in the zone of the two sizes.
+  /// Bounds the motion by all conflicts ahead, each with the zone that belongs to the sizes of the two vehicles.
   template <class View>
   void heed_conflicts(View const& view, Own& own, Strictest<IdmLaw>& ahead, double dt) const {
     auto const& conflicts = view.corridor().conflicts;
@@ -165,10 +175,10 @@ struct Intersection {
     if (motion.distance < own.bound.distance) own.bound = motion;
   }
 
-  /// Bounds the step's motion by what a conflict asks for.
+  /// Bounds the step's motion by the claim on a conflict.
   void obey(Claim claim, map::ConflictZone const& zone, double hold, Own& own, double dt) const {
     double const to_conflict = zone.begin - air - own.s;
-    if (to_conflict + air < 0.0) return;  // it is in there already
+    if (to_conflict + air < 0.0) return;  // it is inside already
     double const to_hold = std::min(zone.line - own.front, hold - own.s);
     double const to_stop = distance_to_stop(claim, to_hold, own, to_conflict);
     if (claim == Claim::yield && !can_stop(own.speed, to_stop)) return;
@@ -177,7 +187,7 @@ struct Intersection {
     own.at_line = own.at_line || to_stop < 2.0;
   }
 
-  /// How far it goes to where it waits: before the line if it can still stop there, else before the conflict [m].
+  /// Distance to where it waits [m]: before the line if it can still stop there, otherwise before the conflict.
   [[nodiscard]] double distance_to_stop(Claim claim, double to_hold, Own const& own, double to_conflict) const {
     double const to_line = std::min(to_hold, to_conflict);
     if (to_line < 0.0 || !can_stop(own.speed, to_line)) return to_conflict;
@@ -186,8 +196,8 @@ struct Intersection {
     return to_line;
   }
 
-  /// The strongest claims of all who are on their way to the conflict, by their sizes; merging
-  /// leaders are followed.
+  /// The strongest claims of the normal and of the large vehicles on their way to the conflict. Adds merging leaders to
+  /// the constraints.
   template <class View>
   [[nodiscard]] std::array<Claim, 2> claims_of(View const& view, map::Conflict const& conflict, Own const& own,
                                                Strictest<IdmLaw>& ahead) const {
@@ -205,7 +215,7 @@ struct Intersection {
     return claims;
   }
 
-  /// The claim of one on its way.
+  /// The claim of one vehicle on its way.
   template <class View>
   [[nodiscard]] Claim claim_of(View const& view, map::Conflict const& conflict, map::ConflictZone const& zone,
                                Other const& other, Own const& own, Strictest<IdmLaw>& ahead) const {
@@ -222,38 +232,37 @@ struct Intersection {
     }
     if (own_is_in) return Claim::free;
     if (is_in || !can_stop(user.speed, way)) {
-      double const out = (zone.other_end + reach.rear - at) / std::max(user.speed, standing);
+      double const out = (zone.other_end + reach.rear - at) / std::max(user.speed, standing_speed);
       return out + 0.5 * time_margin < arrival(own, own_way) ? Claim::watch : Claim::blocked;
     }
-    detail::ConflictAsker const asker{own.s, own.front, own.speed, own.waited, patience};
-    if (detail::goes_first(view, conflict, zone, other, way, own_way, asker)) return Claim::free;
+    if (detail::goes_first(view, conflict, zone, other, way, own_way, own)) return Claim::free;
     return claim_in_time(conflict, zone, other, way, own_way, own);
   }
 
-  /// The claim of one who goes first and comes to the zone in `way` [m].
+  /// The claim of a vehicle that goes first and arrives at the zone after `way` [m].
   [[nodiscard]] Claim claim_in_time(map::Conflict const& conflict, map::ConflictZone const& zone, Other const& other,
                                     double way, double own_way, Own const& own) const {
     auto const& [user, at, reach] = other;
     Window const theirs{
         time_to_cover(way, user.speed, assumed_acceleration, std::max(user.speed, own.idm.desired_speed)),
-        (way + zone.other_end - zone.other_begin + reach.front + reach.rear) / std::max(user.speed, standing)};
+        (way + zone.other_end - zone.other_begin + reach.front + reach.rear) / std::max(user.speed, standing_speed)};
     Window const ours{arrival(own, own_way), arrival(own, zone.end - own.s)};
     bool const is_in = other.is_inside(conflict, zone);
     if (theirs.end + time_margin < ours.begin) return is_in ? Claim::watch : Claim::free;
     return ours.end + time_margin < theirs.begin && !is_in ? Claim::free : Claim::yield;
   }
 
-  /// The earliest time [s] at which it has gone `distance` [m].
+  /// Earliest time [s] at which the own vehicle has driven `distance` [m].
   [[nodiscard]] static double arrival(Own const& own, double distance) {
     return time_to_cover(distance, own.speed, own.idm.maximum_acceleration, std::max(own.speed, own.highest));
   }
 
-  /// Whether there would be no room behind the conflict, as in a queue.
+  /// Whether the room behind the conflict is too small for the vehicle, as in a queue.
   template <class View>
   [[nodiscard]] bool is_full_behind(View const& view, map::ConflictZone const& zone, Own const& own,
                                     Constraint const& leader) const {
     if (!keep_clear || leader.speed > starting) return false;
-    double const end = zone.end - view.shape().rear;  // of the conflict, for rear ends
+    double const end = zone.end - view.shape().rear;  // end of the conflict for a rear end
     double const room = own.front + leader.gap - end;
     return room < view.shape().length() + own.idm.minimum_gap;
   }

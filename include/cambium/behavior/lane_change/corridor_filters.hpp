@@ -9,7 +9,7 @@
 
 namespace cambium {
 
-/// A condition that a lane beside must fulfil for a change into it: a described struct with
+/// A condition that the target lane of a lane change must meet: a described struct with
 ///   `template <class View> bool operator()(View const& view, LaneOption const& option) const`.
 template <class F>
 concept CorridorFilter = std::copyable<F> && Described<F> &&
@@ -17,7 +17,7 @@ concept CorridorFilter = std::copyable<F> && Described<F> &&
   { filter(view, option) } -> std::convertible_to<bool>;
 };
 
-/// All of several conditions, in their order.
+/// The conjunction of several conditions, evaluated in order.
 template <class... Filters>
 struct AllOf;
 
@@ -43,7 +43,7 @@ struct AllOf<First, Rest...> {
   static constexpr char const* name = "all_of";
   static constexpr auto parameters() {
     return parameter_list(parameter("first", &AllOf::first, "-", {}, "the first condition"),
-                          parameter("rest", &AllOf::rest, "-", {}, "the further ones"));
+                          parameter("rest", &AllOf::rest, "-", {}, "the further conditions"));
   }
 
   template <class View>
@@ -52,20 +52,20 @@ struct AllOf<First, Rest...> {
   }
 };
 
-/// Free space ahead and behind as BARK asks for it: fixed distances, behind with a time for the difference of speeds.
+/// Free space as BARK requires it: a fixed gap ahead, and behind a fixed gap plus a time times the speed difference.
 struct FreeSpace {
   double front = 5.0;
   double rear = 5.0;
   double time = 1.0;
 
   static constexpr char const* name = "free_space";
-  static constexpr char const* summary = "room ahead, and behind by a time times the difference of speeds";
+  static constexpr char const* summary = "a gap ahead, and one behind that grows with the speed difference";
   static constexpr char const* source = "BARK";
   static constexpr auto parameters() {
-    return parameter_list(parameter("front", &FreeSpace::front, "m", Range{0, 1000}, "least gap to the new leader"),
-                          parameter("rear", &FreeSpace::rear, "m", Range{0, 1000}, "least gap to the new follower"),
+    return parameter_list(parameter("front", &FreeSpace::front, "m", Range{0, 1000}, "smallest gap to the new leader"),
+                          parameter("rear", &FreeSpace::rear, "m", Range{0, 1000}, "smallest gap to the new follower"),
                           parameter("time", &FreeSpace::time, "s", Range{0, 60},
-                                    "times the difference of speeds to the new follower, on top of that"));
+                                    "times the speed difference to the new follower, added to the gap behind"));
   }
 
   template <class View>
@@ -76,16 +76,16 @@ struct FreeSpace {
 };
 static_assert(CorridorFilter<FreeSpace>);
 
-/// Enough of the lane is left before it ends, merges or leaves the route.
+/// The target lane must be long enough before it ends, merges or leaves the route.
 struct RemainingLength {
   double least = 60.0;
 
   static constexpr char const* name = "remaining_length";
-  static constexpr char const* summary = "enough of the lane is left";
+  static constexpr char const* summary = "the target lane is long enough";
   static constexpr char const* source = "BARK";
   static constexpr auto parameters() {
     return parameter_list(parameter("least", &RemainingLength::least, "m", Range{0, 10'000},
-                                    "left of the lane from beside the vehicle on"));
+                                    "length of the lane from beside the vehicle on"));
   }
 
   template <class View>
@@ -95,16 +95,16 @@ struct RemainingLength {
 };
 static_assert(CorridorFilter<RemainingLength>);
 
-/// No change into a lane whose speed limit is below what is asked for.
+/// The speed limit of the target lane must be high enough.
 struct SpeedLimitAtLeast {
   double speed = 0.0;
 
   static constexpr char const* name = "speed_limit_at_least";
-  static constexpr char const* summary = "the lane permits so much";
+  static constexpr char const* summary = "the target lane permits this speed";
   static constexpr char const* source = "own";
   static constexpr auto parameters() {
     return parameter_list(
-        parameter("speed", &SpeedLimitAtLeast::speed, "m/s", Range{0, 200}, "least speed limit of the lane"));
+        parameter("speed", &SpeedLimitAtLeast::speed, "m/s", Range{0, 200}, "lowest speed limit of the lane"));
   }
 
   template <class View>

@@ -9,9 +9,9 @@
 
 namespace cambium {
 
-/// Follows the next vehicle in its way by IDM, at a share of its desired speed and an offset from the middle of its
-/// lane: both are its memory, to be set from outside, as a planner does that tries several (see `ProposalPlanner`).
-/// Passes who is in its lane but leaves it room; brakes in time for bends.
+/// Follows the next vehicle in its path by IDM, at a share of its desired speed and an offset from the middle of its
+/// lane. Share and offset are its memory, which a planner sets to try several proposals (see `ProposalPlanner`). It
+/// passes road users in its lane that leave enough room, and brakes in time for bends.
 struct IdmProposal {
   struct Memory {
     float speed_share = 1.0f;  ///< of the driver's desired speed
@@ -31,12 +31,12 @@ struct IdmProposal {
   static constexpr char const* name = "idm_proposal";
   static constexpr char const* summary =
       "as idm_classic, at a share of the desired speed and an offset from the lane's middle that a planner sets; "
-      "passes who leaves room beside; brakes for bends";
+      "passes road users that leave room; brakes for bends";
   static constexpr char const* source = "Treiber 2000; after Dauner et al. 2023";
   static constexpr auto parameters() {
-    return parameter_list(
-        parameter("driver", &IdmProposal::driver, "-", {}, "its car following"),
-        parameter("clearance", &IdmProposal::clearance, "m", Range{0, 5}, "to each side of those that it passes"));
+    return parameter_list(parameter("driver", &IdmProposal::driver, "-", {}, "its car following"),
+                          parameter("clearance", &IdmProposal::clearance, "m", Range{0, 5},
+                                    "to each side of the road users that it passes"));
   }
 
   template <class View>

@@ -13,17 +13,17 @@
 
 namespace cambium {
 
-/// How a vehicle lies beside a line that it converges to: as a function of the distance along the line.
+/// Lateral position of a vehicle that converges to a line, as a function of the distance along the line.
 template <class Scalar>
 struct LateralCourse {
   Scalar offset{};  ///< left positive [m]
-  Scalar slope{};   ///< change of the offset per metre [-]
-  Scalar bend{};    ///< change of the slope per metre [1/m]
+  Scalar slope{};   ///< derivative of the offset [-]
+  Scalar bend{};    ///< derivative of the slope [1/m]
 };
 
-/// The course after `distance` [m] of the one with the least squared jerk over `length` [m] that ends on the line and
-/// along it: a polynomial of order 5 (Takahashi, Hongo, Ninomiya, Sugimoto 1989; Werling, Ziegler, Kammel, Thrun 2010,
-/// section IV). `length` > 0; on the line from there on.
+/// Point at `distance` [m] on the course from `start` that ends on the line and parallel to it after `length` [m] with
+/// the least squared jerk: a quintic polynomial (Takahashi, Hongo, Ninomiya, Sugimoto 1989; Werling, Ziegler, Kammel,
+/// Thrun 2010, section IV). Beyond `length` > 0 it stays on the line.
 template <class Scalar>
 [[nodiscard]] LateralCourse<Scalar> converge(LateralCourse<Scalar> const& start, Scalar length, Scalar distance) {
   if (!(distance < length)) return {};
@@ -36,10 +36,10 @@ template <class Scalar>
   return {offset, slope / length, bend / (length * length)};
 }
 
-/// A lane change in progress: what a behaviour that changes lanes remembers of it.
+/// A lane change in progress, as a behaviour remembers it.
 struct LaneChange {
-  CorridorId target = none<CorridorId>;  ///< number of the lane corridor that it leads to; none: keeps its lane
-  float left{};                          ///< of its length [m]; 0: it is to begin anew from where the vehicle is
+  CorridorId target = none<CorridorId>;  ///< lane corridor that it leads to; none: keeps its lane
+  float left{};                          ///< remaining length [m]; 0: restarts from where the vehicle is
   float bend{};                          ///< of its course at the vehicle [1/m]
 
   [[nodiscard]] bool active() const { return target != none<CorridorId>; }
@@ -57,12 +57,12 @@ struct LaneChange {
 
 namespace detail {
 
-/// How much longer a course has to be for each metre that a vehicle's front is farther from its rear axle than a car's,
-/// so that it does not swing out into the lane beyond, where lanes are 3.5 m wide [-].
+/// Extra length of a course for each metre that the vehicle's front is farther from its rear axle than a car's [-]. It
+/// keeps long vehicles from swinging out into the lane beyond, for lanes 3.5 m wide.
 inline constexpr double longer_by_front = 5.0;
 
-/// The same of a course back to the middle of the own lane from `lateral` [m] beside it: less, for it is not so far,
-/// and to come back soon is worth 0.1 m beyond the border.
+/// The same for a course back to the middle of the own lane from `lateral` [m] beside it. It is smaller because the way
+/// is shorter, and because an early return is worth 0.1 m beyond the border.
 [[nodiscard]] inline double longer_by_front_back(double lateral) { return 4.0 * std::min(1.0, std::abs(lateral)); }
 
 [[nodiscard]] constexpr double least_course_length(double of_car, geometry::Shape const& shape, double by_front) {
@@ -71,43 +71,43 @@ inline constexpr double longer_by_front = 5.0;
 
 }  // namespace detail
 
-/// How long a lane change takes.
+/// How long a lane change takes, in time and distance.
 struct LaneChangeCourse {
   double duration = 4.0;
   double shortest_duration = 2.5;
   double minimum_length = 15.0;
 
   static constexpr char const* name = "lane_change_course";
-  static constexpr char const* summary = "quintic course by the way driven: no jump of heading or curvature";
+  static constexpr char const* summary = "quintic course over the distance driven: no jump of heading or curvature";
   static constexpr char const* source = "own";
   static constexpr auto parameters() {
     return parameter_list(
         parameter("duration", &LaneChangeCourse::duration, "s", Range{0.5, 30}, "from one centre line to the other"),
         parameter("shortest_duration", &LaneChangeCourse::shortest_duration, "s", Range{0.5, 30},
-                  "where less room is left, and for the way back of an aborted change"),
+                  "if less room is left, and for the way back of an aborted change"),
         parameter("minimum_length", &LaneChangeCourse::minimum_length, "m", Range{5, 200},
                   "however slow a car drives; 5 m more for each metre that a longer vehicle's front is farther ahead"));
   }
 
-  /// The least length of a change, however slow a vehicle of this shape drives [m].
+  /// Shortest length of a change [m], however slow a vehicle of this shape drives.
   [[nodiscard]] double least_length(geometry::Shape const& shape) const {
     return detail::least_course_length(minimum_length, shape, detail::longer_by_front);
   }
 
-  /// The begin of a change to lane corridor `target` at `speed` [m/s], within `room` [m] where that can be done.
+  /// A new change to lane corridor `target` at `speed` [m/s], within `room` [m] if possible.
   [[nodiscard]] LaneChange begin(CorridorId target, geometry::Shape const& shape, double speed,
                                  double room = std::numeric_limits<double>::infinity()) const {
     double const shortest = std::max(least_length(shape), speed * std::min(shortest_duration, duration));
     return {target, static_cast<float>(std::max(shortest, std::min(speed * duration, room))), 0.0f};
   }
 
-  /// Begins a change anew whose course the vehicle has been made to leave.
+  /// Restarts a change whose course the vehicle had to leave.
   void renew(LaneChange& change, geometry::Shape const& shape, double speed) const {
     if (change.active() && !(change.left > 0.0f)) change = begin(change.target, shape, speed);
   }
 
-  /// The way back to lane corridor `home`, from `lateral` [m] beside its middle, at `speed` [m/s]; `bend`: of the
-  /// course until then, at the vehicle.
+  /// The way back to lane corridor `home`, from `lateral` [m] beside its middle, at `speed` [m/s]; `bend` [1/m] of the
+  /// present course at the vehicle.
   [[nodiscard]] LaneChange back(CorridorId home, geometry::Shape const& shape, double speed, double lateral,
                                 float bend) const {
     double const least = detail::least_course_length(minimum_length, shape, detail::longer_by_front_back(lateral));
@@ -117,8 +117,8 @@ struct LaneChangeCourse {
 
 namespace detail {
 
-/// The plan that drives `motion` from `at` along the course that `change` has to the line `offset` [m] to the left of
-/// the centre line of `corridor`.
+/// The plan that drives `motion` from `at` along the course of `change`, which ends `offset` [m] to the left of the
+/// centre line of `corridor`.
 template <class View>
 [[nodiscard]] Plan<View> plan_course(View const& view, map::LaneCorridor const& corridor, map::LanePlace const& at,
                                      LaneChange& change, LongitudinalMotion<double> const& motion, double dt,
@@ -141,14 +141,14 @@ template <class View>
   return plan;
 }
 
-/// Headings farther from the lane's [rad] have no course: the vehicle is turned along its lane.
+/// Largest heading error [rad] for which a course exists; beyond it the vehicle is turned along its lane.
 inline constexpr double most_aslant = 1.0;
 
 }  // namespace detail
 
-/// The plan that keeps the lane. Who is off its centre line or its direction, as after a change that was given up, or
-/// where observation errs, comes back smoothly, by a course that begins anew in each step; `bend` [1/m] is that of the
-/// course at the vehicle. `offset`: keeps so far to the left of the centre line [m].
+/// The plan that keeps the lane. A vehicle off the centre line or its direction, such as after an aborted change or an
+/// observation error, returns smoothly on a course that restarts in each step; `bend` [1/m] is that of the course at
+/// the vehicle. `offset` [m]: keeps this far to the left of the centre line.
 template <class View>
 [[nodiscard]] Plan<View> plan_to_center(View const& view, float& bend, LongitudinalMotion<double> const& motion,
                                         double dt, double offset = 0.0) {
@@ -168,8 +168,8 @@ template <class View>
   return plan;
 }
 
-/// The plan that drives `motion` along the course of a lane change, from where the vehicle is: deviations are taken in
-/// as they are seen. Ends the change when it is done, or its lane is. Without one: see `plan_to_center`.
+/// The plan that drives `motion` along the course of a lane change, from the observed place of the vehicle. Ends the
+/// change when it is complete or its lane ends. Without a change it equals `plan_to_center`.
 template <class View>
 [[nodiscard]] Plan<View> plan_lane_change(View const& view, LaneChange& change,
                                           LongitudinalMotion<double> const& motion, double dt) {
@@ -177,7 +177,7 @@ template <class View>
   map::LanePlace const at = view.place(change.target);
   auto const& corridor = view.road().corridors[change.target];
   bool const is_over = at.s >= corridor.length() || !(change.left > 0.0f);
-  if (is_over || std::abs(at.heading_error) > detail::most_aslant) {  // it ends, or was left
+  if (is_over || std::abs(at.heading_error) > detail::most_aslant) {  // the lane ends, or the course was left
     change = {};
     return plan_to_center(view, change.bend, motion, dt);
   }
@@ -186,7 +186,9 @@ template <class View>
   return plan;
 }
 
-/// Whether the vehicle stays within the lane that `change` leads to, if it begins now from within that lane.
+namespace detail {
+
+/// Whether the vehicle stays within the target lane of `change`, if the change begins now within that lane.
 template <class View>
 [[nodiscard]] bool stays_within_lane(View const& view, LaneChange const& change) {
   map::LanePlace const at = view.place(change.target);
@@ -201,5 +203,7 @@ template <class View>
   }
   return true;
 }
+
+}  // namespace detail
 
 }  // namespace cambium

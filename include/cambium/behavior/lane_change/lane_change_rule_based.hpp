@@ -12,10 +12,10 @@
 
 namespace cambium {
 
-/// Changes to the lane with the most free space ahead (BARK's rule-based lane change): where a lane beside has
-/// `advantage` more of it than the own one, `space` behind and ahead, and is safe. Of what is farther than `horizon`
-/// nobody takes notice. Where the own lane ends, changes towards one that goes on, whatever the space. Car following by
-/// IDM; how a change is carried out: see `LaneChanging`.
+/// Changes to the lane with the most free space ahead (BARK's rule-based lane change), if that is at least `advantage`
+/// more than in the own lane, `space` is free and the gap is safe. Free space counts up to `horizon`. Where its lane
+/// ends, it changes towards one that goes on, whatever the space. Car following by IDM; `LaneChanging` carries out the
+/// change.
 struct LaneChangeRuleBased {
   IdmParameters idm{};
   LaneChanging changing{};
@@ -31,23 +31,24 @@ struct LaneChangeRuleBased {
   static constexpr bool looks_beside = true;
 
   static constexpr char const* name = "lane_change_rule_based";
-  static constexpr char const* summary = "IDM; changes to the lane with the most free space ahead, where that is safe";
+  static constexpr char const* summary = "IDM; changes to the lane with the most free space ahead, if that is safe";
   static constexpr char const* source = "rule: BARK; safety: Kesting, Treiber, Helbing 2007";
   static constexpr auto parameters() {
     using P = LaneChangeRuleBased;
     return parameter_list(
         parameter("idm", &P::idm, "-", {}, "the driver's own car following"),
         parameter("changing", &P::changing, "-", {}, "how it changes lanes, and what it assumes of others"),
-        parameter("rules", &P::rules, "-", {}, "what it heeds beside other road users"),
+        parameter("rules", &P::rules, "-", {}, "what it heeds besides other road users"),
         parameter("space", &P::space, "-", {}, "what must be free in the new lane"),
-        parameter("minimum_remaining", &P::minimum_remaining, "m", Range{0, 10'000},
-                  "no change, but for the route, into a lane with less than this left when it could be left again"),
-        parameter("advantage", &P::advantage, "m", Range{0, 1000}, "of free space that makes a change worth it"),
-        parameter("horizon", &P::horizon, "m", Range{0, 400}, "as far as space counts"),
+        parameter(
+            "minimum_remaining", &P::minimum_remaining, "m", Range{0, 10'000},
+            "length of the new lane that must remain after changing there and back, unless the route needs the change"),
+        parameter("advantage", &P::advantage, "m", Range{0, 1000},
+                  "additional free space that makes a change worthwhile"),
+        parameter("horizon", &P::horizon, "m", Range{0, 400}, "limit of the free space considered"),
         parameter("route_horizon", &P::route_horizon, "m", Range{1, 10'000},
-                  "from how far before a lane's end it counts, for each lane to be crossed"),
-        parameter("tolerance", &P::tolerance, "m/s^2", Range{1e-12, 1},
-                  "error of the exact integration, as speed per second"));
+                  "distance before a lane's end from which it counts, for each lane to cross"),
+        parameter("tolerance", &P::tolerance, "m/s^2", Range{1e-12, 1}, "integration error in speed, per second"));
   }
 
   template <class View>

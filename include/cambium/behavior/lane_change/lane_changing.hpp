@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "cambium/behavior/lane_change/lane_change.hpp"
+#include "cambium/behavior/law/braking.hpp"
 #include "cambium/behavior/law/idm.hpp"
 #include "cambium/behavior/law/lane_ends.hpp"
 #include "cambium/behavior/law/road_rules.hpp"
@@ -15,32 +16,42 @@
 
 namespace cambium {
 
-/// A lane beside that a change may lead to.
+/// A neighbouring lane as the target of a change.
 struct LaneOption {
   map::LanePlace place;
-  bool left = false;                    ///< on the left, else on the right
-  std::optional<RoadUser> front, rear;  ///< who would be the leader and the follower
+  bool left = false;                    ///< on the left, otherwise on the right
+  std::optional<RoadUser> front, rear;  ///< the new leader and the new follower
 };
 
-/// A driver that keeps its lane, as its rule for changing lanes sees it.
+/// A driver that keeps its lane, as seen by the rule that decides on lane changes.
 template <class View>
 struct LaneKeeping {
   View const& view;
-  IdmLaw const& law;                      ///< its car following, at its speed
+  IdmLaw const& law;                      ///< its car following at its speed
   std::optional<RoadUser> const& leader;  ///< next ahead
-  double lane_end;                        ///< see there
-  bool may_change;                        ///< not in the time of rest
-  Strictest<IdmLaw>& ahead;               ///< what it follows; a rule may add to it
+  double lane_end;                        ///< see `cambium::lane_end`
+  bool may_change;                        ///< the rest since the last change is over
+  Strictest<IdmLaw>& ahead;               ///< what it follows; the rule may add to it
 };
 
-/// How a driver goes along lanes that it may change, and changes them once it has decided to: what it assumes of
-/// others, what it finds safe, when it gives up. It slows for bends, and for limits where it obeys them.
-/// A change takes time and follows a smooth course. It is aborted where it has become unsafe, or where somebody comes
-/// into the same gap from the other side, while the way back does not leave the old lane. Meanwhile the leaders in all
-/// lanes that the vehicle is in count. Before objects and before the end of a lane that must be left it stops with
-/// enough room to change; a long vehicle that stands nearer to it than its least course is long stays there. Other
-/// drivers are taken to have the parameters `others` (long vehicles: `trucks`), and at least the desired speed that
-/// they show.
+/// Carries out lane changes for a driver who follows by IDM. A rule such as MOBIL decides where to change; this part
+/// knows what the driver assumes of others, which gaps are safe, how the vehicle gets there and when it gives up.
+///
+///    ======================================================  lane beyond
+///      [rear]                . - - - - - - - ->   [front]    target lane: new follower, new leader
+///    - - - - - - - - - - . ' - - - - - - - - - - - - - - -
+///            [own] - - '   quintic course          [leader]  own lane
+///    ======================================================
+///
+/// - Before: the vehicle follows its leader. Before static objects and lane ends that it must avoid, it stops early
+///   enough that the shortest change still fits. (A long vehicle that already stands closer stays there.)
+/// - Safe: nobody has to brake harder than `safe_deceleration`, assuming IDM with the parameters `others` (`trucks` for
+///   long vehicles) and a desired speed not below the present one. Vehicles that enter the same gap from the lane
+///   beyond count, too.
+/// - During: the vehicle follows the leaders in all lanes that it occupies. It turns back if the change becomes unsafe
+///   (`abort_deceleration`) and the way back stays within the old lane.
+/// - After: it rests for `rest` before the next change; after an abort for a random time, so that two drivers who
+///   aborted for each other do not meet again.
 struct LaneChanging {
   IdmParameters others{};
   IdmParameters trucks{.desired_speed = 23.0, .time_headway = 1.7, .maximum_acceleration = 0.9};
@@ -54,7 +65,7 @@ struct LaneChanging {
 
   static constexpr char const* name = "lane_changing";
   static constexpr char const* summary =
-      "a change along a smooth course, with rest between changes; aborted where it becomes unsafe";
+      "a change along a smooth course, followed by a rest; aborted if it becomes unsafe";
   static constexpr char const* source = "own";
   static constexpr auto parameters() {
     using P = LaneChanging;
@@ -64,9 +75,9 @@ struct LaneChanging {
         parameter("truck_length", &P::truck_length, "m", Range{0, 100}, "vehicles longer than this are trucks"),
         parameter("safe_deceleration", &P::safe_deceleration, "m/s^2", Range{0, 20}, "nobody is made to brake harder"),
         parameter("abort_deceleration", &P::abort_deceleration, "m/s^2", Range{0, 20},
-                  "a change is aborted where somebody would have to brake harder"),
-        parameter("safe_gap", &P::safe_gap, "m", Range{0, 100}, "no change into smaller gaps, whatever the speeds"),
-        parameter("rest", &P::rest, "s", Range{0, 600}, "no further change within this time of the last"),
+                  "a change is aborted if somebody would have to brake harder"),
+        parameter("safe_gap", &P::safe_gap, "m", Range{0, 100}, "smallest gap for a change, whatever the speeds"),
+        parameter("rest", &P::rest, "s", Range{0, 600}, "from the end of a change to the next one"),
         parameter("heed_marks", &P::heed_marks, "-", Range{0, 1}, "change only where the road marks permit it"),
         parameter("course", &P::course, "-", {}, "how long a change takes"));
   }
@@ -74,7 +85,7 @@ struct LaneChanging {
   /// What the driver remembers.
   struct Memory {
     LaneChange change{};
-    float rest{};  ///< [s] until the next change may begin
+    float rest{};  ///< time until the next change may begin [s]
     RoadRules::Memory rules{};
 
     void fell_short(double way, bool left_course) { change.fell_short(way, left_course); }
@@ -82,8 +93,8 @@ struct LaneChanging {
     friend bool operator==(Memory const&, Memory const&) = default;
   };
 
-  /// The plan of a driver who follows by IDM and changes lanes where `choose(LaneKeeping)` says so: it returns the side
-  /// to change to, as the number of its lane corridor, or none. Not called during a change.
+  /// The plan of a driver who follows by IDM and changes lanes as `choose(LaneKeeping)` decides: it returns the lane
+  /// corridor to change to, or none. It is not called during a change.
   template <class View, class Choose>
   [[nodiscard]] Plan<View> drive(View const& view, Memory& memory, IdmParameters const& idm, RoadRules const& rules,
                                  double tolerance, double dt, Choose const& choose) const {
@@ -93,8 +104,9 @@ struct LaneChanging {
     auto const home = view.place().corridor;
     memory.rest = std::max(0.0f, memory.rest - static_cast<float>(dt));
     course.renew(memory.change, view.shape(), speed);
-    if (memory.change.target == home && speed < standing && way_to_stop(view, view.place()) < idm.minimum_gap + 1)
-      memory.change = {};  // it must leave this lane, too: no way is left to come to its middle before
+    if (memory.change.target == home && speed < standing_speed &&
+        distance_to_stop(view, view.place()) < idm.minimum_gap + 1)
+      memory.change = {};  // the vehicle must leave this lane, too, and has no room left to reach its middle first
     Strictest ahead(law);
     if (memory.change.active()) {
       if (memory.change.target != home && !may_go_on(view, law, memory.change)) abort(view, speed, memory);
@@ -105,7 +117,7 @@ struct LaneChanging {
       auto const target =
           choose(LaneKeeping<View>{view, law, leader, lane_end(view, home, view.place().piece), may_change, ahead});
       if (may_change && target != none<CorridorId> && is_wide_enough(view, target, 0.5 * speed * course.duration)) {
-        memory.change = course.begin(target, view.shape(), speed, room(view, leader, target));
+        memory.change = course.begin(target, view.shape(), speed, longest_change(view, leader, target));
         memory.rest = static_cast<float>(rest + course.duration);
         ahead = ahead_while_changing(view, law, leader, memory.change);
       }
@@ -116,19 +128,14 @@ struct LaneChanging {
                             rules.bound(view, idm, view.place().s, speed, motion, dt, memory.rules), dt);
   }
 
-  /// How a follower drives, as this driver assumes it.
+  /// The car following that this driver assumes of a follower.
   [[nodiscard]] IdmLaw law_of(RoadUser const& who) const {
     auto const& assumed = who.length() > truck_length ? trucks : others;
     return IdmLaw(assumed, std::max(0.0, who.speed), std::max(assumed.desired_speed, who.speed));
   }
 
-  /// Acceleration of a follower as this driver assumes it [m/s^2]. Objects stand: they neither gain nor lose.
-  [[nodiscard]] double follower(std::optional<RoadUser> const& who, double gap, double leader_speed) const {
-    return who && is_valid(who->agent) ? law_of(*who)(gap, leader_speed) : 0.0;
-  }
-
-  /// Whether nobody has to brake harder than `deceleration` [m/s^2], gaps are left, and nobody comes into the same gap
-  /// from the lane beyond for whom that would not hold.
+  /// Whether a change is safe: all gaps exceed `safe_gap` and nobody has to brake harder than `deceleration` [m/s^2].
+  /// This includes vehicles that enter the same gap from the lane beyond.
   template <class View>
   CAMBIUM_NOINLINE [[nodiscard]] bool is_safe(View const& view, IdmLaw const& law, LaneOption const& option,
                                               double deceleration) const {
@@ -136,7 +143,7 @@ struct LaneChanging {
       return n.gap > safe_gap && law(n.gap, n.speed) >= -deceleration;
     };
     auto const rear_is_safe = [&](RoadUser const& n) {
-      return n.gap > safe_gap && follower(n, n.gap, law.speed()) >= -deceleration;
+      return n.gap > safe_gap && (is_object(n) || law_of(n)(n.gap, law.speed()) >= -deceleration);
     };
     if (option.front && !front_is_safe(*option.front)) return false;
     if (option.rear && !rear_is_safe(*option.rear)) return false;
@@ -149,10 +156,10 @@ struct LaneChanging {
     return !(rear && comes(view, *rear, option, false) && !rear_is_safe(*rear));
   }
 
-  /// The way of two changes at `speed` [m/s] and the rest between them [m].
+  /// Distance [m] of two changes at `speed` [m/s] and the rest between them.
   [[nodiscard]] double there_and_back(double speed) const { return speed * (2.0 * course.duration + rest); }
 
-  /// Whether the road marks permit a change, or do not count.
+  /// Whether the road marks permit a change or are ignored.
   template <class View>
   [[nodiscard]] bool marks_permit(View const& view, bool left) const {
     if (!heed_marks) return true;
@@ -165,15 +172,14 @@ struct LaneChanging {
 
  private:
   static constexpr double infinite = std::numeric_limits<double>::infinity();
-  /// Part of a change's length after which the vehicle has left its old lane.
+  /// Share of a change after which the vehicle has left its old lane.
   static constexpr double out_of_lane = 0.7;
-  static constexpr double standing = 0.1;  ///< who is slower stands [m/s]: the law only creeps up to its stop
-  /// Lateral speed that shows the intention to change [m/s].
+  /// Lateral speed that reveals the intention to change [m/s].
   static constexpr double drift = 0.12;
 
   [[nodiscard]] static bool is_object(RoadUser const& n) { return is_valid(n.object); }
 
-  /// Whether a neighbour in the lane beyond `option`'s comes into it.
+  /// Whether a neighbour in the lane beyond that of `option` moves into it.
   template <class View>
   [[nodiscard]] static bool comes(View const& view, RoadUser const& who, LaneOption const& option, bool ahead) {
     if (!is_valid(who.agent)) return false;
@@ -193,26 +199,25 @@ struct LaneChanging {
     auto const& at = view.place();
     auto const& piece = view.corridor().pieces[at.piece];
     LaneOption option{view.place(change.target), change.target == piece.left, {}, {}};
-    if (!option.left && change.target != piece.right) return true;  // no longer beside: it has merged
+    if (!option.left && change.target != piece.right) return true;  // no longer beside: the lanes have merged
     option.front = view.ahead(option.place);
     option.rear = view.behind(option.place);
     return is_safe(view, law, option, abort_deceleration);
   }
 
-  /// Turns back, if that is still possible. How long it then rests is drawn: who has met somebody in the same gap does
-  /// not meet him there again.
+  /// Turns back if the way back stays within the old lane. The rest that follows is random, see above.
   template <class View>
   CAMBIUM_NOINLINE void abort(View const& view, double speed, Memory& memory) const {
     constexpr std::uint32_t purpose = 0x4c43u;
     auto const& at = view.place();
     auto const back = course.back(at.corridor, view.shape(), speed, at.lateral, memory.change.bend);
-    if (!stays_within_lane(view, back)) return;
+    if (!detail::stays_within_lane(view, back)) return;
     auto random = view.random(purpose);
     memory.change = back;
     memory.rest = static_cast<float>(course.shortest_duration + rest * (0.5 + uniform01(random)));
   }
 
-  /// Whether the vehicle fits into the lane `beside` where it comes in, `ahead` [m]: lanes may open slowly.
+  /// Whether the vehicle fits into the lane `beside` when it arrives there, `ahead` [m]: lanes may open slowly.
   template <class View>
   CAMBIUM_NOINLINE [[nodiscard]] static bool is_wide_enough(View const& view, CorridorId beside, double ahead) {
     auto const& lane = view.road().corridors[beside];
@@ -220,11 +225,11 @@ struct LaneChanging {
     return lane.width_at(s) > view.shape().width();
   }
 
-  /// How far the vehicle's front may go on from `at`, on a lane corridor whose lane must be left; infinite where it
-  /// need not be [m]. For each lane to be crossed there has to be room for the shortest change. Who goes to the left
-  /// stops earlier: two who need each other's lanes do not come to stand side by side.
+  /// Distance [m] that the vehicle's front may still drive from `at` in a lane that it must leave; infinite if it may
+  /// stay. It leaves room for the shortest change for each lane to cross. A vehicle that goes to the left stops
+  /// earlier, so that two vehicles that need each other's lanes do not stop side by side.
   template <class View, class Place>
-  [[nodiscard]] double way_to_stop(View const& view, Place const& at) const {
+  [[nodiscard]] double distance_to_stop(View const& view, Place const& at) const {
     double const until_end = dead_end(view, at.corridor, at.piece) - at.s;
     if (until_end == infinite) return infinite;
     auto const lanes = lanes_to_cross(view, at.corridor, at.piece, at.s);
@@ -232,19 +237,19 @@ struct LaneChanging {
     return until_end - view.shape().front - changes * course.least_length(view.shape());
   }
 
-  /// How long a change may be: it must lead around a standing object, to before the end of the lane, and to where the
-  /// next change can begin [m].
+  /// Longest permissible length of a change [m]: it must end before the lane does, lead around a standing object, and
+  /// leave room for the next change.
   template <class View>
-  CAMBIUM_NOINLINE [[nodiscard]] double room(View const& view, std::optional<RoadUser> const& leader,
-                                             CorridorId target) const {
+  CAMBIUM_NOINLINE [[nodiscard]] double longest_change(View const& view, std::optional<RoadUser> const& leader,
+                                                       CorridorId target) const {
     auto const& at = view.place();
     double const until_end =
-        std::min(dead_end(view, at.corridor, at.piece) - at.s, way_to_stop(view, view.place(target)));
+        std::min(dead_end(view, at.corridor, at.piece) - at.s, distance_to_stop(view, view.place(target)));
     double const beside_object = (1.0 - out_of_lane) * course.least_length(view.shape());
     return leader && is_object(*leader) ? std::min(until_end, leader->gap + beside_object) : until_end;
   }
 
-  /// Adds a leader in a lane that the vehicle stays in: before an object it leaves room to change.
+  /// Adds a leader in a lane that the vehicle stays in; before an object it leaves room to change.
   void add_leader(Strictest<IdmLaw>& ahead, geometry::Shape const& shape, std::optional<RoadUser> const& leader,
                   bool has_side) const {
     if (!leader) return;
@@ -263,7 +268,7 @@ struct LaneChanging {
     auto const& piece = view.corridor().pieces[at.piece];
     Strictest<IdmLaw> ahead(law);
     add_leader(ahead, view.shape(), leader, piece.left != none<CorridorId> || piece.right != none<CorridorId>);
-    add_stop(ahead, way_to_stop(view, at));
+    add_stop(ahead, distance_to_stop(view, at));
     return ahead;
   }
 
@@ -281,8 +286,8 @@ struct LaneChanging {
     Strictest<IdmLaw> ahead(law);
     if (change.target == at.corridor) {
       add_leader(ahead, view.shape(), leader, true);
-      add_stop(ahead, way_to_stop(view, at));
-      // While it reaches over the border, the leader there counts, too.
+      add_stop(ahead, distance_to_stop(view, at));
+      // While the body extends over the border, the leader there counts, too.
       auto const sides = corridor.widths_at(at.s, at.segment);
       auto const beside = at.lateral + view.shape().left > sides.left     ? piece.left
                           : view.shape().right - at.lateral > sides.right ? piece.right
@@ -298,8 +303,8 @@ struct LaneChanging {
     if (until_end < 0.6 * left) ahead.heed({until_end - view.shape().front, 0.0});
     auto const there = view.place(change.target);
     add_leader(ahead, view.shape(), view.ahead(there), true);
-    // Into the lane beside it may go on, even if that ends soon.
-    add_stop(ahead, std::max(way_to_stop(view, there), 0.6 * left + law.minimum_gap() + 1.0));
+    // The vehicle may enter the neighbouring lane even if that ends soon.
+    add_stop(ahead, std::max(distance_to_stop(view, there), 0.6 * left + law.minimum_gap() + 1.0));
     return ahead;
   }
 };

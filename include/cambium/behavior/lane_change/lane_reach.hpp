@@ -16,7 +16,7 @@ namespace cambium {
 
 namespace detail {
 
-/// What somebody occupies of a lane corridor: from where to where along it, and to its right and left. [m]
+/// The part of a lane corridor that a road user occupies: along it, and to its right and left [m].
 struct LaneReach {
   double begin, end, right, left;
 
@@ -44,7 +44,7 @@ template <MotionState S>
   return reach;
 }
 
-/// What `user` occupies of lane corridor `number`.
+/// The part of lane corridor `number` that `user` occupies.
 template <class View>
 [[nodiscard]] LaneReach lane_reach(View const& view, CorridorId number, RoadUser const& user, std::uint32_t hint) {
   auto const& line = view.road().corridors[number].center;
@@ -52,8 +52,8 @@ template <class View>
                               : lane_reach(line, view.outline(user), hint);
 }
 
-/// Whether `neighbor` is in lane corridor `number` but leaves room for a vehicle that drives `offset` [m] beside its
-/// middle, `clearance` [m] kept to both sides. Who is still to merge into the lane leaves none.
+/// Whether `neighbor` is in lane corridor `number` but leaves room for a vehicle that drives `offset` [m] to the left
+/// of its middle with `clearance` [m] to both sides. A road user that is still to merge into the lane leaves none.
 template <class View>
 [[nodiscard]] bool leaves_room(View const& view, CorridorId number, RoadUser const& neighbor, double offset,
                                double clearance) {
@@ -64,8 +64,8 @@ template <class View>
          !reach.meets(offset - view.shape().right - clearance, offset + view.shape().left + clearance);
 }
 
-/// Calls `f(RoadUser)` for those ahead in lanes that merge into the own corridor, or have just split off it, of which
-/// the begin is less than `distance` [m] ahead. Gaps as those of `front`. O(feeders) and those there.
+/// Calls `f(RoadUser)` for the road users ahead in lanes that merge into the own corridor, or have just split off it,
+/// if these begin less than `distance` [m] ahead. Gaps as in `ViewArchetype::ahead`. O(feeders + their agents).
 template <class View, class F>
 CAMBIUM_NOINLINE void for_each_on_feeders(View const& view, double distance, F const& f) {
   double const s = view.place().s, front = s + view.shape().front;
@@ -74,7 +74,7 @@ CAMBIUM_NOINLINE void for_each_on_feeders(View const& view, double distance, F c
     if (feeder.end < s) continue;
     double const from = s <= feeder.begin ? feeder.index_begin : feeder.index_at(s);
     view.on_lane(from, feeder.index_end, [&](RoadUser const& user) {
-      if (user.s < feeder.index_begin || user.s > feeder.index_end) return;  // it only reaches in
+      if (user.s < feeder.index_begin || user.s > feeder.index_end) return;  // it only extends into the stretch
       double const position = feeder.image(user.s);
       if (position <= s) return;
       double const gap = map::gap_before_merge(front, position - user.rear, feeder.free_until);
@@ -86,9 +86,9 @@ CAMBIUM_NOINLINE void for_each_on_feeders(View const& view, double distance, F c
   }
 }
 
-/// The next one ahead that is in the way of a vehicle that drives `offset` [m] beside the middle of its lane,
-/// `clearance` [m] kept to both sides. Who is beside the way but in the lane is passed; who is still to merge into it
-/// is not. O(agents near) where somebody is passed.
+/// The next road user in the path of a vehicle that drives `offset` [m] to the left of the middle of its lane with
+/// `clearance` [m] to both sides. It passes road users in the lane that are beside this path, except those that are
+/// still to merge. O(agents nearby) if it passes anybody.
 template <class View>
 [[nodiscard]] std::optional<RoadUser> next_in_way(View const& view, double offset, double clearance) {
   auto next = view.ahead();

@@ -15,39 +15,38 @@
 #include "cambium/behavior/following/constant_acceleration.hpp"
 #include "cambium/behavior/lane_change/lane_change.hpp"
 #include "cambium/behavior/law/idm.hpp"
-#include "cambium/behavior/law/idm.hpp"
 #include "cambium/behavior/law/lane_ends.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/parameters.hpp"
 
 namespace cambium {
 
-/// What a driver may decide to do.
+/// A manoeuvre of `MacroActions`.
 struct MacroAction {
   enum class Kind : std::uint8_t {
     stay,          ///< keeps the lane at `acceleration`
     change_left,   ///< changes to the lane on the left at `acceleration`
-    change_right,  ///< to the right
-    keep_gap,      ///< keeps the lane and a gap by IDM; `acceleration` does not count
+    change_right,  ///< likewise to the right
+    keep_gap,      ///< keeps the lane, and a gap by IDM; ignores `acceleration`
   };
 
   Kind kind = Kind::stay;
   double acceleration = 0.0;  ///< [m/s^2]
-  bool keeps_gap = false;     ///< no faster than IDM allows; `keep_gap` never is
+  bool keeps_gap = false;     ///< no faster than IDM permits; implied by `keep_gap`
 
   static constexpr char const* name = "macro_action";
   static constexpr char const* summary = "one manoeuvre of `MacroActions`";
   static constexpr auto parameters() {
     using P = MacroAction;
-    return parameter_list(choice("kind", &P::kind, "stay|change_left|change_right|keep_gap", "what is done"),
-                          parameter("acceleration", &P::acceleration, "m/s^2", Range{-50, 50}, "not of keep_gap"),
-                          parameter("keeps_gap", &P::keeps_gap, "-", Range{0, 1}, "no faster than IDM allows"));
+    return parameter_list(choice("kind", &P::kind, "stay|change_left|change_right|keep_gap", "the manoeuvre"),
+                          parameter("acceleration", &P::acceleration, "m/s^2", Range{-50, 50}, "ignored by keep_gap"),
+                          parameter("keeps_gap", &P::keeps_gap, "-", Range{0, 1}, "no faster than IDM permits"));
   }
 
   friend bool operator==(MacroAction const&, MacroAction const&) = default;
 };
 
-/// As in messages and tables.
+/// The name, as in messages and tables.
 [[nodiscard]] constexpr char const* to_string(MacroAction::Kind kind) {
   switch (kind) {
     case MacroAction::Kind::stay:
@@ -62,17 +61,17 @@ struct MacroAction {
   return "unknown";
 }
 
-/// Drives by one of a few manoeuvres along its lanes. A search or a learner chooses in the agent's memory
-/// (`World::memory<MacroActions>(id).choose(number)`); the manoeuvre goes on until the next is chosen. A lane change
-/// that has begun is finished, whatever is chosen meanwhile, but for a change back. One that is not `available` when
-/// chosen is not begun: the vehicle keeps its lane at the action's acceleration. A number that there is not fails.
+/// Drives by one of a few manoeuvres along its lanes. A search or a learner chooses one in the agent's memory
+/// (`World::memory<MacroActions>(id).choose(number)`); it continues until the next is chosen. A lane change in progress
+/// is completed whatever is chosen meanwhile, except a change back. If a manoeuvre is not `available` when chosen, the
+/// vehicle keeps its lane at the manoeuvre's acceleration. The plan fails if the number does not exist.
 struct MacroActions {
   using Kind = MacroAction::Kind;
   static constexpr std::size_t capacity = 16;
-  static constexpr std::uint8_t nothing = 255;  ///< chosen instead of an action: it keeps its lane and its speed
+  static constexpr std::uint8_t nothing = 255;  ///< chosen instead of an action: keep the lane and the speed
 
   struct Memory {
-    LaneChange change{};      ///< leads to the target corridor
+    LaneChange change{};      ///< towards the target corridor
     std::uint8_t chosen = 0;  ///< number of the action
     bool is_new = true;       ///< it has not begun yet
 
@@ -86,7 +85,7 @@ struct MacroActions {
     friend bool operator==(Memory const&, Memory const&) = default;
   };
 
-  /// Those of a search that is told of no others. (Not a list in braces: g++ 12 takes that for uninitialised at -O2.)
+  /// The default actions. (Not a braced list: g++ 12 reports that as uninitialised at -O2.)
   static constexpr MacroAction usual[] = {{Kind::keep_gap},    {Kind::stay, 0.0},  {Kind::stay, 1.5},
                                           {Kind::stay, -2.0},  {Kind::stay, -5.0}, {Kind::change_left},
                                           {Kind::change_right}};
@@ -102,27 +101,26 @@ struct MacroActions {
   static constexpr char const* name = "macro_actions";
   static constexpr char const* summary =
       "carries out what a search chooses: stay with an acceleration, change left or right, keep the gap by IDM; each "
-      "where its precondition holds";
+      "if its precondition holds";
   static constexpr char const* source = "after BARK";
   static constexpr auto parameters() {
     using P = MacroActions;
     return parameter_list(
-        parameter("actions", &P::actions, "-", {}, "what can be chosen, 1 to 16"),
-        parameter("highest_speed", &P::highest_speed, "m/s", Range{0, 200}, "not exceeded by accelerating"),
+        parameter("actions", &P::actions, "-", {}, "the actions to choose from, 1 to 16"),
+        parameter("highest_speed", &P::highest_speed, "m/s", Range{0, 200}, "limit when accelerating"),
         parameter("minimum_remaining", &P::minimum_remaining, "m", Range{0, 10'000},
-                  "no change into a lane that ends, or begins to merge into its neighbour, sooner; longer vehicles "
-                  "need more, as in their course"),
+                  "no change into a lane that ends, or begins to merge into its neighbour, within this distance; "
+                  "longer vehicles need more, as in their course"),
         parameter("idm", &P::idm, "-", {}, "how gaps are kept"),
         parameter("course", &P::course, "-", {}, "how long a change takes"),
-        parameter("tolerance", &P::tolerance, "m/s^2", Range{1e-12, 1},
-                  "error of IDM's exact integration, as speed per second"));
+        parameter("tolerance", &P::tolerance, "m/s^2", Range{1e-12, 1}, "integration error in speed, per second"));
   }
 
   void check(std::string const& where) const {
     if (actions.empty()) throw ParameterError(where + ".actions", "has none", "give 1 to 16");
   }
 
-  /// With these actions. Throws `ParameterError` for none, or more than `capacity`.
+  /// Creates the behaviour from a list of actions. Throws `ParameterError` for none, or more than `capacity`.
   [[nodiscard]] static MacroActions of(std::initializer_list<MacroAction> list) {
     if (list.size() == 0 || list.size() > capacity)
       throw ParameterError(name, "has " + std::to_string(list.size()) + " actions", "give 1 to 16");
@@ -131,8 +129,8 @@ struct MacroActions {
 
   [[nodiscard]] std::size_t size() const { return actions.size(); }
 
-  /// Whether action `number` could begin now, `change` being under way: a change needs a lane of the road on that side,
-  /// long enough; one back to the lane that it came from can always begin. O(1).
+  /// Whether action `number` could begin now, with `change` in progress. A change needs a sufficiently long lane of the
+  /// road on that side; a change back can always begin. O(1).
   template <class View>
   [[nodiscard]] bool available(View const& view, std::size_t number, LaneChange const& change = {}) const {
     if (number >= size()) return false;
@@ -166,7 +164,7 @@ struct MacroActions {
  private:
   [[nodiscard]] static bool is_change(Kind kind) { return kind == Kind::change_left || kind == Kind::change_right; }
 
-  /// The lane corridor that a change leads to: the own one where a change to the other side is under way in it.
+  /// Target lane corridor of a change: the own one if a change to the other side is in progress.
   template <class View>
   [[nodiscard]] CorridorId side_of(View const& view, Kind kind, LaneChange const& change) const {
     auto const& at = view.place();

@@ -16,35 +16,35 @@
 
 namespace cambium {
 
-/// What a driver and the followers of a lane change would gain: accelerations [m/s^2] now and after the change.
+/// Accelerations [m/s^2] of the driver and both followers, now and after a lane change.
 struct MobilSituation {
   double own{}, own_after{};
   double new_follower{}, new_follower_after{};
   double old_follower{}, old_follower_after{};
 };
 
-/// MOBIL's parameters as fields of a parameter struct: what `mobil_incentive` asks for.
+/// Incentive of a lane change above the threshold [m/s^2] (Kesting, Treiber, Helbing 2007, eq. 3); a change is
+/// worthwhile if it is above 0. `P` has the parameters `politeness` [-] and `threshold` [m/s^2].
 template <class P>
-concept HasMobilParameters = requires(P const p) {
-  p.politeness;
-  p.threshold;
-};
-
-/// How far the incentive exceeds the threshold (Kesting, Treiber, Helbing 2007, eq. 3) [m/s^2]: above 0, changing is
-/// worth it.
-template <HasMobilParameters P>
 [[nodiscard]] double mobil_incentive(P const& p, MobilSituation const& at) {
   double const others = at.new_follower_after - at.new_follower + at.old_follower_after - at.old_follower;
   return at.own_after - at.own + p.politeness * others - p.threshold;
 }
 
 /// Lane changing by MOBIL (Kesting, Treiber, Helbing 2007, "General lane-changing model MOBIL for car-following
-/// models"), car following by IDM. Changes where that pays for itself and, weighed by `politeness`, for the old and the
-/// new follower, and where it is safe (see `LaneChanging`, which has how a change is carried out). Who must leave its
-/// lane comes down to the speed of the lane that it needs. Of a side that does
-/// not pay for the driver itself and its old follower, what a new follower might gain there is not asked.
+/// models"), car following by IDM. The driver compares accelerations, which it computes by IDM, now and after a change:
 ///
-/// `Filters`: further conditions, see `corridor_filters.hpp`; `Mobil` is without any.
+///   own_after - own + politeness (new_follower_after - new_follower + old_follower_after - old_follower) > threshold
+///
+///   target lane   [new follower]  ->   ( own after )   [new leader]
+///   own lane       [old follower]  ->   [own]              [leader]
+///
+/// It changes to the side with the largest incentive if that is also safe. `LaneChanging` defines what is safe and
+/// carries out the change. `bias` and `keep_right` shift the incentive between the sides, `route_bias` towards the
+/// lanes that go further. A driver who must leave its lane adapts its speed to the lane that it needs. A side that
+/// cannot be worthwhile for the driver and its old follower is rejected before the new follower is looked up.
+///
+/// `Filters`: further conditions, see `corridor_filters.hpp`; `Mobil` has none.
 template <class... Filters>
 struct BasicMobil {
   IdmParameters idm{};
@@ -66,32 +66,31 @@ struct BasicMobil {
 
   static constexpr char const* name = "mobil";
   static constexpr char const* summary =
-      "IDM; changes lanes where a_new - a_old + politeness (gains of new and old follower) > threshold + bias, and the "
-      "new follower brakes no harder than is safe; each one has parameters of its own";
+      "IDM; changes lanes if a_new - a_old + politeness (gains of new and old follower) > threshold + bias, and the "
+      "new follower need not brake harder than is safe; parameters are the driver's own";
   static constexpr char const* source = "Kesting, Treiber, Helbing 2007, eq. 2 to 7";
   static constexpr auto parameters() {
     using P = BasicMobil;
     auto const own = parameter_list(
         parameter("idm", &P::idm, "-", {}, "the driver's own car following"),
         parameter("changing", &P::changing, "-", {}, "how it changes lanes, and what it assumes of others"),
-        parameter("rules", &P::rules, "-", {}, "what it heeds beside other road users"),
+        parameter("rules", &P::rules, "-", {}, "what it heeds besides other road users"),
         parameter("politeness", &P::politeness, "-", Range{-1, 10}, "weight of the followers' accelerations"),
-        parameter("threshold", &P::threshold, "m/s^2", Range{0, 10}, "advantage that makes a change worth it"),
+        parameter("threshold", &P::threshold, "m/s^2", Range{0, 10}, "advantage that makes a change worthwhile"),
         parameter("bias", &P::bias, "m/s^2", Range{-10, 10},
-                  "in favour of the outer lane (right; with left-hand "
-                  "traffic left); negative: of the inner one"),
+                  "in favour of the outer lane (right; in left-hand traffic left); negative: of the inner lane"),
         parameter("keep_right", &P::keep_right, "-", Range{0, 1},
                   "European rule: no passing on the outer side above critical_speed (eq. 5 to 7)"),
         parameter("critical_speed", &P::critical_speed, "m/s", Range{0, 100},
-                  "up to it, in congestion, keep_right lets pass on the outer side"),
+                  "below it, in congestion, keep_right permits passing on the outer side"),
         parameter("route_bias", &P::route_bias, "m/s^2", Range{0, 20},
-                  "in favour of a lane that goes further, where the own one ends"),
+                  "in favour of a lane that goes further than the own one"),
         parameter("route_horizon", &P::route_horizon, "m", Range{1, 10'000},
-                  "from how far before a lane's end it counts, for each lane to be crossed"),
-        parameter("minimum_remaining", &P::minimum_remaining, "m", Range{0, 10'000},
-                  "no change, but for the route, into a lane with less than this left when it could be left again"),
-        parameter("tolerance", &P::tolerance, "m/s^2", Range{1e-12, 1},
-                  "error of the exact integration, as speed per second"));
+                  "distance before a lane's end from which it counts, for each lane to cross"),
+        parameter(
+            "minimum_remaining", &P::minimum_remaining, "m", Range{0, 10'000},
+            "length of the new lane that must remain after changing there and back, unless the route needs the change"),
+        parameter("tolerance", &P::tolerance, "m/s^2", Range{1e-12, 1}, "integration error in speed, per second"));
     if constexpr (sizeof...(Filters) > 0)
       return join_parameters(own, parameter_list(parameter("filters", &P::filters, "-", {}, "further conditions")));
     else
@@ -107,12 +106,7 @@ struct BasicMobil {
   }
 
  private:
-  /// What the incentive asks for.
-  struct Weights {
-    double politeness, threshold;
-  };
-
-  /// The side that it pays most to change to, if one pays.
+  /// The side with the largest incentive, or none.
   template <class View>
   [[nodiscard]] CorridorId best_side(LaneKeeping<View> const& now) const {
     auto const& view = now.view;
@@ -121,7 +115,7 @@ struct BasicMobil {
     MobilSituation situation{.own = now.ahead.acceleration()};
     if (auto const rear = view.behind())
       std::tie(situation.old_follower, situation.old_follower_after) = followers_view(now, rear, now.leader);
-    // What changing is worth beside the own acceleration after it: a side that cannot pay needs no look.
+    // The incentive without the own acceleration after the change: a side that cannot become worthwhile is skipped.
     double const others =
         politeness * (situation.old_follower_after - situation.old_follower) - situation.own - threshold;
     bool const goes_on = now.lane_end == free_road, is_prejudged = politeness >= 0.0 && !keep_right;
@@ -155,15 +149,15 @@ struct BasicMobil {
     return target;
   }
 
-  /// Follows somebody in another lane who is slower; but as if it had its desired headway at least, for nobody brakes
-  /// hard for that.
+  /// Follows a slower vehicle in another lane, but as if the gap were at least the desired headway, because nobody
+  /// brakes hard for it.
   template <class View>
   void adapt_to(LaneKeeping<View> const& now, std::optional<RoadUser> const& front) const {
     if (front && front->gap > 0.0 && front->speed < now.law.speed())
       now.ahead.heed({std::max(front->gap, idm.minimum_gap + now.law.speed() * idm.time_headway), front->speed});
   }
 
-  /// Acceleration of a follower behind this vehicle, and behind `front`, who is next without it.
+  /// Acceleration of a follower behind this vehicle, and behind `front` once this vehicle has left.
   template <class View>
   [[nodiscard]] std::pair<double, double> followers_view(LaneKeeping<View> const& now,
                                                          std::optional<RoadUser> const& rear,
@@ -180,7 +174,7 @@ struct BasicMobil {
                                 bool inwards) const {
     std::tie(situation.new_follower_after, situation.new_follower) = followers_view(now, option.rear, option.front);
     if (keep_right) {
-      // Eq. 5 to 7: on the outer side nobody is passed, and only the follower in the inner lane counts.
+      // Eq. 5 to 7: nobody passes on the outer side, and only the follower in the inner lane counts.
       auto const& in_inner_lane = inwards ? option.front : now.leader;
       if (in_inner_lane && now.law.speed() > in_inner_lane->speed && in_inner_lane->speed > critical_speed)
         (inwards ? situation.own : situation.own_after) = std::min(situation.own, situation.own_after);
@@ -189,10 +183,10 @@ struct BasicMobil {
       else
         situation.new_follower = situation.new_follower_after = 0.0;
     }
-    return mobil_incentive(Weights{politeness, threshold}, situation);
+    return mobil_incentive(*this, situation);
   }
 
-  /// Eq. 5 for the own driving: who is faster than the leader in the inner lane follows that one, too.
+  /// Eq. 5 for the own lane: a driver faster than the leader in the inner lane follows that leader, too.
   template <class View>
   CAMBIUM_NOINLINE void pass_nobody_outside(LaneKeeping<View> const& now) const {
     auto const& piece = now.view.corridor().pieces[now.view.place().piece];

@@ -10,24 +10,24 @@
 
 namespace cambium {
 
-/// Chooses a new one of the available macro actions every `interval`, each as likely as the others, by the agent's own
-/// random numbers: the same in every run, copy and thread.
+/// Chooses one of the available macro actions at random every `interval`, with equal probability. The random numbers
+/// are the agent's own: the same in every run, copy and thread.
 struct RandomMacroActions {
   MacroActions macro{};
   double interval = 1.0;
 
   static constexpr char const* name = "random_macro_actions";
-  static constexpr char const* summary = "one of the available macro actions, each as likely, every interval";
+  static constexpr char const* summary = "one of the available macro actions every interval, with equal probability";
   static constexpr char const* source = "own";
   static constexpr auto parameters() {
     return parameter_list(parameter("macro", &RandomMacroActions::macro, "-", {}, "the actions"),
                           parameter("interval", &RandomMacroActions::interval, "s", Range{0, 3600},
-                                    "until another one is chosen; 0: each step"));
+                                    "time until the next choice; 0: each step"));
   }
 
   struct Memory {
     MacroActions::Memory macro{};
-    float left{};  ///< [s] until the next choice
+    float left{};  ///< time until the next choice [s]
 
     void fell_short(double way, bool left_course) { macro.fell_short(way, left_course); }
 

@@ -13,12 +13,17 @@
 
 namespace cambium {
 
-/// Zip merge: keeps its lane up to where it merges with another, and there lets one vehicle from the other lane in
-/// before itself, behind the vehicle ahead (the alternate order that, for instance, the German StVO asks for in section
-/// 7 (4)). The first of the other lane behind the vehicle ahead is let in where it is ahead, beside, or not farther
-/// back than `reach`; who is first of all of its lane goes before those behind it. Between the two a gap opens bit by
-/// bit, in proportion to the way that is left. After `patience` at a standstill it goes when there is room. Car
-/// following by IDM.
+/// Zip merge: the driver keeps its lane up to the merge and there lets one vehicle of the other lane in between itself
+/// and its leader. This is the alternating order of the German StVO, section 7 (4):
+///
+///   own lane        [4]       [2] -----.
+///                                       merge ----->    order: 1, 2, 3, 4
+///   other lane          [3]       [1] -'
+///
+/// The vehicle to let in is the first one of the other lane behind the own leader, if it is ahead, beside, or at most
+/// `reach` behind. A driver without a leader lets a vehicle in that is closer to the merge. The gap opens gradually, in
+/// proportion to the distance to the merge. After `patience` at a standstill the driver goes as soon as there is room.
+/// Car following by IDM.
 struct ZipMerge {
   IdmParameters idm{};
   RoadRules rules{};
@@ -35,18 +40,17 @@ struct ZipMerge {
     using P = ZipMerge;
     return parameter_list(
         parameter("idm", &P::idm, "-", {}, "the driver's own car following"),
-        parameter("rules", &P::rules, "-", {}, "what it heeds beside other road users"),
-        parameter("zone", &P::zone, "m", Range{1, 400}, "how far before a merge it begins to give way"),
-        parameter("reach", &P::reach, "m", Range{0, 100}, "how far back a vehicle is still let in before"),
+        parameter("rules", &P::rules, "-", {}, "what it heeds besides other road users"),
+        parameter("zone", &P::zone, "m", Range{1, 400}, "distance before a merge at which it begins to give way"),
+        parameter("reach", &P::reach, "m", Range{0, 100}, "how far behind a vehicle may be and still be let in"),
         parameter("patience", &P::patience, "s", Range{0, 600},
-                  "at a standstill, until it no longer waits to be passed"),
-        parameter("tolerance", &P::tolerance, "m/s^2", Range{1e-12, 1},
-                  "error of the exact integration, as speed per second"));
+                  "at a standstill, until it stops waiting for vehicles behind"),
+        parameter("tolerance", &P::tolerance, "m/s^2", Range{1e-12, 1}, "integration error in speed, per second"));
   }
 
   struct Memory {
-    AgentId ahead = none<AgentId>;  ///< who was last ahead in the own lane before the merge
-    float stood{};                  ///< how long it has been standing [s]
+    AgentId ahead = none<AgentId>;  ///< the last leader in the own lane before the merge
+    float stood{};                  ///< time at a standstill [s]
     float bend{};                   ///< see `plan_to_center`
     RoadRules::Memory rules{};
 
@@ -82,12 +86,12 @@ struct ZipMerge {
 
  private:
   static constexpr double infinite = std::numeric_limits<double>::infinity();
-  /// Deceleration with which a vehicle that is ahead still lets another one in [m/s^2].
+  /// Highest deceleration of a vehicle ahead to let another one in [m/s^2].
   static constexpr double comfortable = 2.0;
 
-  /// The gap [m] to follow one in the other lane by, `gap` being the one that there is: more of it the farther the
-  /// merge is, so that it opens bit by bit, or most of what opens by itself until then where the other is faster; but
-  /// never more than the way to whichever is farther.
+  /// Gap [m] for following a vehicle of the other lane, where `gap` is the actual one. It is larger the farther the
+  /// merge is, so that the gap opens gradually, and includes most of what a faster vehicle opens by itself. It never
+  /// exceeds the larger of `gap` and the distance to the merge.
   [[nodiscard]] static double gap_to_open(double to_merge, double gap, double speed, double other_speed) {
     constexpr double share = 0.3, trust = 0.7;
     if (!(to_merge > 0.0)) return gap;
@@ -95,7 +99,7 @@ struct ZipMerge {
     return std::min(gap + std::max(share * to_merge, opening), std::max(gap, to_merge));
   }
 
-  /// Counts how long the vehicle has been standing. Who has lost patience and goes has none again before it drives.
+  /// Counts the time at a standstill. A driver that has lost its patience and starts regains it only at driving speed.
   void wait(Memory& memory, double speed, double dt) const {
     constexpr double stands = 0.3, drives = 5.0;  // [m/s]
     if (speed < stands)
@@ -104,14 +108,14 @@ struct ZipMerge {
       memory.stood = 0.0f;
   }
 
-  /// Somebody on the way to the merge.
+  /// A vehicle on its way to the merge.
   struct Coming {
     double speed{};
     double to_merge{};  ///< from its front end [m]
     double length{};
   };
 
-  /// Deceleration [m/s^2] with which one comes to the merge after another has cleared it.
+  /// Deceleration [m/s^2] with which `one` arrives at the merge after `other` has cleared it.
   [[nodiscard]] double braking_after(Coming const& other, Coming const& one) const {
     if (!(one.speed > 0.0)) return 0.0;
     if (!(one.to_merge > 0.0)) return infinite;
@@ -123,14 +127,14 @@ struct ZipMerge {
     return evenly * time < one.speed ? evenly : one.speed * one.speed / (2.0 * one.to_merge);
   }
 
-  /// Whether one lets in another whose turn it is: not from too far back, nor where that is too hard for it, and harder
-  /// than the other way round. Both see it in the same way.
+  /// Whether `one` lets `other` in when it is that one's turn: `other` must not be too far behind, and `one` must not
+  /// have to brake hard, unless `other` would have to brake even harder. Both drivers come to the same result.
   [[nodiscard]] bool gives_way(Coming const& one, Coming const& other) const {
     return other.to_merge < one.to_merge + reach &&
            braking_after(other, one) <= std::max(comfortable, braking_after(one, other));
   }
 
-  /// Whether the vehicle ahead is on the own path; at the merge the other lane's vehicles are still beside it.
+  /// Whether the vehicle ahead is on the own path; near the merge, vehicles of the other lane are still beside it.
   template <class View>
   [[nodiscard]] bool is_on_path(View const& view, RoadUser const& leader, double s) const {
     constexpr double beside = 1.5;  // [m]
@@ -140,7 +144,7 @@ struct ZipMerge {
     return std::abs(center.project({state.x, state.y}, center.find(s)).lateral) < beside;
   }
 
-  /// Where the next merge within the zone is on the own corridor; infinite where there is none.
+  /// Position of the next merge within the zone on the own corridor [m]; infinite without one.
   template <class View>
   [[nodiscard]] double next_merge(View const& view) const {
     double const s = view.place().s;
@@ -151,7 +155,7 @@ struct ZipMerge {
     return infinite;
   }
 
-  /// Who of the other lane is to go before this one, if there is somebody.
+  /// The vehicle of the other lane that goes before this one, if any.
   template <class View>
   [[nodiscard]] std::optional<RoadUser> let_in(View const& view, Memory& memory, std::optional<RoadUser> const& leader,
                                                double merge) const {
@@ -160,9 +164,9 @@ struct ZipMerge {
     auto const coming = [&](RoadUser const& other) {
       return Coming{std::max(0.0, other.speed), merge - other.s - other.front, other.length()};
     };
-    // The next of the other lane whose turn it is not, where it goes first all the same.
+    // The next vehicle of the other lane goes first even though it is not its turn.
     auto const insists = [&](std::optional<RoadUser> const& next) { return next && !gives_way(coming(*next), own); };
-    if (!leader) {  // the first of the lane: who is closer to the merge goes first
+    if (!leader) {  // without a leader, the vehicle closer to the merge goes first
       auto const other = view.merging(merge, infinite);
       constexpr double equal = 0.5;  // [m]
       if (other && coming(*other).to_merge < own.to_merge + (other->agent < view.id() ? equal : -equal)) return other;

@@ -9,17 +9,17 @@
 
 namespace cambium {
 
-/// Who is slower than this stands [m/s].
+/// A vehicle slower than this counts as stopped [m/s].
 inline constexpr double standing_speed = 0.1;
 
-/// Whether a vehicle of `speed` [m/s] stops within `distance` [m] by braking with `deceleration` [m/s^2]: who stands
-/// always does.
+/// Whether a vehicle of `speed` [m/s] can stop within `distance` [m] by braking with `deceleration` [m/s^2]. A stopped
+/// vehicle always can.
 [[nodiscard]] inline bool can_stop(double speed, double distance, double deceleration) {
   return speed * speed <= 2.0 * deceleration * std::max(0.0, distance) || speed < standing_speed;
 }
 
-/// The time [s] in which a vehicle of `speed` [m/s] that accelerates by `acceleration` up to `highest` [m/s] covers
-/// `distance` [m]; 0 for what lies behind it, infinite where it never gets there.
+/// Time [s] in which a vehicle of `speed` [m/s] that accelerates by `acceleration` [m/s^2] up to `highest` [m/s] covers
+/// `distance` [m]; 0 for a distance ≤ 0, infinite if the vehicle never gets there.
 [[nodiscard]] inline double time_to_cover(double distance, double speed, double acceleration, double highest) {
   if (distance <= 0.0) return 0.0;
   if (acceleration <= 0.0 || speed >= highest)
@@ -30,9 +30,9 @@ inline constexpr double standing_speed = 0.1;
   return (std::sqrt(speed * speed + 2.0 * acceleration * distance) - speed) / acceleration;
 }
 
-/// The farthest that a vehicle of `speed` [m/s] may go in `dt` [s] if it is to stop within `distance` [m] by braking
-/// with `deceleration` [m/s^2], or harder where that is too late, up to `hardest`: the safe speed of Krauss (1998, eq.
-/// 3.6) before a standing obstacle, at the end of a step of even acceleration.
+/// The longest motion over `dt` [s] after which a vehicle of `speed` [m/s] can still stop within `distance` [m] by
+/// braking with `deceleration` [m/s^2]; if that no longer suffices, it brakes harder, up to `hardest` [m/s^2]. This is
+/// the safe speed of Krauss (1998, eq. 3.6) before a standing obstacle, at the end of a step of constant acceleration.
 [[nodiscard]] inline LongitudinalMotion<double> motion_before_stop(double speed, double distance, double deceleration,
                                                                    double hardest, double dt) {
   double const needed = distance > 0.0 ? speed * speed / (2.0 * distance) : std::numeric_limits<double>::infinity();
@@ -43,13 +43,13 @@ inline constexpr double standing_speed = 0.1;
   }
   double const root = change * change - 4.0 * braking * (speed * dt - 2.0 * distance);
   double const end = 0.5 * (std::sqrt(std::max(0.0, root)) - change);
-  if (end <= 0.0) return {std::min(distance, 0.5 * speed * dt), 0.0};  // it stands before the step is over
+  if (end <= 0.0) return {std::min(distance, 0.5 * speed * dt), 0.0};  // it stops before the end of the step
   return {0.5 * (speed + end) * dt, end};
 }
 
-/// The farthest that a vehicle of `speed` [m/s] may go in `dt` [s] if it is to be no faster than `highest` [m/s] from
-/// `distance` [m] on (0 or less: now) by braking with `deceleration` [m/s^2], or where that is too late with `hardest`:
-/// as `motion_before_stop`, at the end of a step of even acceleration.
+/// The longest motion over `dt` [s] after which a vehicle of `speed` [m/s] can still slow down to `highest` [m/s]
+/// within `distance` [m] (0 or less: at once) by braking with `deceleration` [m/s^2]; if that no longer suffices, it
+/// brakes with `hardest` [m/s^2]. Derived as `motion_before_stop`.
 [[nodiscard]] inline LongitudinalMotion<double> motion_before_bend(double speed, double distance, double highest,
                                                                    double deceleration, double hardest, double dt) {
   double end = highest;

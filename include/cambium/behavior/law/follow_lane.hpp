@@ -7,15 +7,15 @@
 
 namespace cambium {
 
-/// How far and how fast a vehicle is after some time on its lane.
+/// Distance covered and final speed of a vehicle after some time on its lane.
 template <class Scalar>
 struct LongitudinalMotion {
   Scalar distance{};  ///< [m]
   Scalar speed{};     ///< [m/s]
 };
 
-/// Puts `state` at position `s` of a lane corridor, `lateral` [m] to the left of its centre line, heading along it
-/// but for `turn` [rad]. `hint`: a segment of the centre line nearby.
+/// Places `state` at position `s` [m] of a lane corridor, `lateral` [m] to the left of its centre line, with heading
+/// `turn` [rad] relative to the lane. `hint`: a nearby segment of the centre line.
 template <MotionState State>
 void place_on_lane(map::LaneCorridor const& corridor, double s, double lateral, double turn, std::uint32_t hint,
                    State& state) {
@@ -26,7 +26,8 @@ void place_on_lane(map::LaneCorridor const& corridor, double s, double lateral, 
   state.heading = segment.heading + segment.curvature * std::clamp(along, 0.0, segment.length) + turn;
 }
 
-/// The state `motion` further along the lane corridor after `dt` [s]: keeps its lateral offset, heads along the lane.
+/// The state after `motion` along the lane corridor over `dt` [s]: keeps its lateral offset and takes the lane's
+/// heading.
 template <class View>
 [[nodiscard]] typename View::State follow_lane(View const& view, LongitudinalMotion<double> const& motion, double dt) {
   auto const& position = view.place();
@@ -37,7 +38,7 @@ template <class View>
   return next;
 }
 
-/// The plan that leads there.
+/// The plan that leads to `follow_lane`.
 template <class View>
 [[nodiscard]] Plan<View> plan_along_lane(View const& view, LongitudinalMotion<double> const& motion, double dt) {
   Plan<View> plan;

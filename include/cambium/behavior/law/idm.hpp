@@ -13,7 +13,7 @@
 
 namespace cambium {
 
-/// The parameters of the Intelligent Driver Model, as fields of a parameter struct: what the functions below ask for.
+/// A parameter struct with the fields of the Intelligent Driver Model, which the functions below read.
 template <class P>
 concept HasIdmParameters = requires(P const p) {
   p.desired_speed;
@@ -26,13 +26,13 @@ concept HasIdmParameters = requires(P const p) {
   p.highest_acceleration;
 };
 
-/// The one description of those fields, for the models that have them.
+/// The description of these fields, shared by all models that have them.
 template <class P>
 [[nodiscard]] constexpr auto idm_parameters() {
   return parameter_list(
       parameter("desired_speed", &P::desired_speed, "m/s", Range{0.1, 100}, "speed on a free road"),
       parameter("time_headway", &P::time_headway, "s", Range{0, 20}, "time gap kept to the leader"),
-      parameter("minimum_gap", &P::minimum_gap, "m", Range{0, 100}, "gap kept in standing traffic"),
+      parameter("minimum_gap", &P::minimum_gap, "m", Range{0, 100}, "gap kept at standstill"),
       parameter("maximum_acceleration", &P::maximum_acceleration, "m/s^2", Range{0.01, 20},
                 "acceleration from rest on a free road"),
       parameter("comfortable_deceleration", &P::comfortable_deceleration, "m/s^2", Range{0.01, 20},
@@ -44,7 +44,7 @@ template <class P>
                 "upper bound of the acceleration"));
 }
 
-/// These parameters alone: what a model holds beside its own, or assumes of others. Defaults are BARK's.
+/// The IDM parameters alone, for a model that holds them beside its own or assumes them of others. Defaults are BARK's.
 struct IdmParameters {
   double desired_speed = 15.0;
   double time_headway = 1.5;
@@ -57,13 +57,13 @@ struct IdmParameters {
 
   static constexpr char const* name = "idm";
   static constexpr char const* summary =
-      "the parameters of the Intelligent Driver Model, where a model holds them beside its own";
+      "the parameters of the Intelligent Driver Model, for models that hold them beside their own";
   static constexpr char const* source = "Treiber, Hennecke, Helbing 2000; defaults: BARK";
   static constexpr auto parameters() { return idm_parameters<IdmParameters>(); }
 };
 static_assert(HasIdmParameters<IdmParameters>);
 
-/// x to the power of `exponent`; IDM's usual 4 without `pow`.
+/// x to the power of `exponent`, without `pow` for IDM's usual 4.
 template <class Scalar>
 [[nodiscard]] Scalar idm_power(Scalar x, double exponent) {
   if (exponent == 4.0) return (x * x) * (x * x);
@@ -71,7 +71,10 @@ template <class Scalar>
   return pow(x, Scalar(exponent));
 }
 
-/// What depends on IDM's parameters alone, and the formula (Treiber, Hennecke, Helbing 2000, eq. 3 and 4).
+/// IDM's formula (Treiber, Hennecke, Helbing 2000, eq. 3 and 4) with all terms that depend on the parameters alone:
+///
+///   a  = a_max (1 - (v / v0)^exponent - (s* / s)^2)
+///   s* = s0 + max(0, v T + v (v - v_leader) / (2 sqrt(a_max b)))
 template <class Scalar>
 struct IdmTerms {
   template <HasIdmParameters P>
@@ -88,21 +91,21 @@ struct IdmTerms {
         high(Scalar(p.highest_acceleration)),
         exponent(p.exponent) {}
 
-  /// The part of the desired gap s* that depends on the speeds [m]; below 0 where a leader is that much faster: then it
-  /// does not count, lest a faster leader is mistaken for a close one.
+  /// Speed-dependent part of the desired gap s* [m]. Below 0 if the leader is much faster; it is then cut off at 0,
+  /// because the square in the formula would mistake a faster leader for a close one.
   [[nodiscard]] Scalar dynamic_gap(Scalar speed, Scalar leader_speed) const {
     return speed * (headway + (speed - leader_speed) * closing);
   }
-  /// The desired gap as a part of the gap there is.
+  /// Ratio of the desired gap to the actual gap, s* / s [-].
   [[nodiscard]] Scalar closeness(Scalar dynamic, Scalar inverse_gap) const {
     using std::max;
     return (minimum_gap + max(Scalar(0), dynamic)) * inverse_gap;
   }
-  /// What is left of the maximum acceleration on a free road, as a part of it.
+  /// Share of the maximum acceleration that a free road leaves, 1 - (v / v0)^exponent [-].
   [[nodiscard]] Scalar free(Scalar speed) const {
     return Scalar(1) - idm_power(Scalar(speed * inverse_desired_speed), exponent);
   }
-  /// Unbounded [m/s^2]. `gap` [m] bumper to bumper, above 0, infinite on a free road.
+  /// Acceleration without bounds [m/s^2]. `gap` [m] bumper to bumper, above 0, infinite on a free road.
   [[nodiscard]] Scalar unbounded(Scalar free, Scalar speed, Scalar gap, Scalar leader_speed) const {
     Scalar const close = closeness(dynamic_gap(speed, leader_speed), Scalar(1) / gap);
     return maximum * (free - close * close);
@@ -133,8 +136,8 @@ template <HasIdmParameters P, class Scalar>
   return terms.bounded(terms.unbounded(terms.free(speed), speed, gap, leader_speed));
 }
 
-/// The gap [m] at which followers at one speed keep it (Treiber, Hennecke, Helbing 2000, eq. 5); infinite at the
-/// desired speed.
+/// Gap [m] at which a platoon keeps `speed` [m/s] (Treiber, Hennecke, Helbing 2000, eq. 5); infinite at the desired
+/// speed.
 template <HasIdmParameters P>
 [[nodiscard]] double idm_equilibrium_gap(P const& p, double speed) {
   double const free = 1.0 - idm_power(speed / p.desired_speed, p.exponent);
@@ -142,7 +145,7 @@ template <HasIdmParameters P>
                    : (p.minimum_gap + speed * p.time_headway) / std::sqrt(free);
 }
 
-/// The speed [m/s] at which followers keep `gap` [m]: what the gap above belongs to. 0 below the minimum gap.
+/// Speed [m/s] at which a platoon keeps `gap` [m], the inverse of `idm_equilibrium_gap`. 0 below the minimum gap.
 template <HasIdmParameters P>
 [[nodiscard]] double idm_equilibrium_speed(P const& p, double gap) {
   double low = 0.0, high = p.desired_speed;
@@ -155,15 +158,15 @@ template <HasIdmParameters P>
 
 namespace detail {
 
-/// The acceleration of a follower and how it changes along its motion.
+/// Acceleration of a follower and its total derivative along the motion.
 template <class Scalar>
 struct IdmResponse {
   Scalar acceleration;  ///< [m/s^2]
-  Scalar jerk;          ///< [m/s^3], the leader keeping its speed; 0 at a bound
+  Scalar jerk;          ///< [m/s^3], with constant leader speed; 0 at a bound
   bool bounded;         ///< the acceleration is at a bound
 };
 
-/// IDM over a step in which the leader keeps its speed.
+/// IDM over a step with constant leader speed.
 template <class Scalar>
 class IdmStep {
  public:
@@ -210,14 +213,14 @@ class IdmStep {
   Scalar leader_speed_;
 };
 
-/// What a step of the scheme below came to.
+/// Result of one trial step of the integration scheme.
 template <class Scalar>
 struct IdmTrial {
   Scalar distance, speed;
   bool accurate;
 };
 
-/// One step over `step` [s], from a speed and a gap at which the model responds with `now`.
+/// One trial step over `step` [s], from speed `v` and `gap`, where the model responds with `now`.
 template <class Scalar>
 [[nodiscard]] IdmTrial<Scalar> try_idm_step(IdmStep<Scalar> const& response, IdmResponse<Scalar> const& now, Scalar v,
                                             Scalar gap, double step, double tolerance) {
@@ -238,22 +241,22 @@ template <class Scalar>
   Scalar next_speed = min(Scalar(v + h * (a1 + half * j1 + third)), Scalar(v + h * highest));
   Scalar distance = min(Scalar(h * (v + sixth * (a1 + Scalar(2) * a2))), Scalar(h * (v + half * highest)));
   bool const stops = stands || next_speed < Scalar(0) || middle_speed < Scalar(0);
-  if (stops) {  // constant deceleration until it stands
+  if (stops) {  // constant deceleration until it stops
     distance = stands ? Scalar(0) : min(Scalar(h * v), Scalar(v * v / (Scalar(2) * abs(a1))));
     next_speed = Scalar(0);
   }
   bool accurate = stops ? v <= Scalar(tolerance) && a2 <= Scalar(0) : square(third) <= largest_square;
-  Scalar const expected = a1 + h * j2;  // at the end, with a jerk that changes evenly
+  Scalar const expected = a1 + h * j2;  // at the end of the step, if the jerk changes linearly
   if (accurate && (bounded1 || bounded2 || expected < response.terms().low))
     accurate =
         square(response(next_speed, gap + h * leader_speed - distance).acceleration - expected) <= largest_square;
   return {distance, next_speed, accurate};
 }
 
-/// The steps of `idm_motion`: [s], shorter is never needed, longer might step over something.
+/// Bounds of the step of `idm_motion` [s]: a shorter one is never needed, a longer one might miss a change.
 inline constexpr double shortest_idm_step = 1e-3, longest_idm_step = 0.25;
 
-/// `idm_motion` where one step is not enough. Gets a copy, so that what is used elsewhere can stay in registers.
+/// `idm_motion` in more than one step. Takes its arguments by value so that the caller's can stay in registers.
 template <class Scalar>
 CAMBIUM_NOINLINE [[nodiscard]] LongitudinalMotion<Scalar> idm_motion_in_steps(IdmTerms<Scalar> terms, Scalar speed,
                                                                               Scalar gap, Scalar leader_speed,
@@ -277,7 +280,7 @@ CAMBIUM_NOINLINE [[nodiscard]] LongitudinalMotion<Scalar> idm_motion_in_steps(Id
   }
 }
 
-/// As `idm_motion` below, for terms that are computed already.
+/// As `idm_motion` below, for terms already computed.
 template <class Scalar>
 [[nodiscard]] LongitudinalMotion<Scalar> idm_motion(IdmTerms<Scalar> const& terms, Scalar speed, Scalar gap,
                                                     Scalar leader_speed, double dt, double tolerance) {
@@ -291,11 +294,11 @@ template <class Scalar>
 
 }  // namespace detail
 
-/// Motion over `dt` [s] of an IDM follower behind a leader that keeps its speed: the model's differential equation,
-/// solved by the two-derivative Runge-Kutta scheme of order 4 with two stages (Chan and Tsai 2010), which needs the
-/// jerk but only two evaluations. Its step is halved while the term of third order is larger than 2 sqrt(tolerance) m/s
-/// per second, which keeps the error in speed near `tolerance` [m/s per s]; and, where a bound of the acceleration is
-/// met, until that is met to within as much. Where the speed reaches 0 the vehicle stops, and stands until the model
+/// Motion over `dt` [s] of an IDM follower behind a leader of constant speed. Solves the model's differential equation
+/// by the two-derivative Runge-Kutta scheme of order 4 with two stages (Chan and Tsai 2010), which needs the jerk but
+/// only two evaluations. The step is halved while its third-order term exceeds 2 sqrt(tolerance) m/s per second, which
+/// keeps the error in speed near `tolerance` [m/s per s]; where the acceleration reaches a bound, the step is halved
+/// until it meets the bound with the same accuracy. A vehicle whose speed reaches 0 stops and stands until the model
 /// lets it start. `dt` > 0.
 template <HasIdmParameters P, class Scalar>
 [[nodiscard]] LongitudinalMotion<Scalar> idm_motion(P const& p, Scalar speed, Scalar gap, Scalar leader_speed,
@@ -303,7 +306,7 @@ template <HasIdmParameters P, class Scalar>
   return detail::idm_motion(IdmTerms<Scalar>(p), speed, gap, leader_speed, dt, tolerance);
 }
 
-/// A driver's car following by IDM at one speed [m/s].
+/// A driver's car following by IDM at one speed [m/s]: the law that answers constraints.
 class IdmLaw {
  public:
   static constexpr bool asks_acceleration = false;  ///< of leaders
@@ -315,10 +318,10 @@ class IdmLaw {
   IdmLaw(P const& p, double speed, double desired_speed)
       : terms_(p, desired_speed), speed_(speed), rest_(terms_.free(speed)) {}
 
-  /// [m/s^2], on a free road.
+  /// Acceleration on a free road [m/s^2].
   [[nodiscard]] double free() const { return terms_.bounded(terms_.maximum * rest_); }
 
-  /// [m/s^2], behind a leader.
+  /// Acceleration behind a leader [m/s^2].
   [[nodiscard]] double operator()(double gap, double leader_speed) const {
     if (!(gap > 0.0)) return terms_.low;
     return terms_.bounded(terms_.unbounded(rest_, speed_, gap, leader_speed));

@@ -9,8 +9,9 @@
 
 namespace cambium {
 
-/// Corridor position by which a vehicle on `number`, in its piece `piece`, must have changed lanes, or at least should
-/// have, for there its lane begins to merge; infinite where it may stay [m]. O(1).
+/// Corridor position [m] by which a vehicle on corridor `number`, in its piece `piece`, must have left its lane because
+/// the lane ends or leaves the route, or should have left it because the lane begins to merge; infinite if it may stay.
+/// O(1).
 template <class View>
 [[nodiscard]] double lane_end(View const& view, CorridorId number, PieceId piece) {
   auto const& corridor = view.road().corridors[number];
@@ -18,33 +19,34 @@ template <class View>
   return corridor.reaches_destination || !view.has_goal() ? end : std::min(end, corridor.length());
 }
 
-/// Whether a vehicle that has come to `end`, a finite `lane_end` of the corridor, must stop: a merge it may drive over.
+/// Whether a vehicle must stop at `end`, a finite `lane_end` of the corridor; it may drive over a merge.
 [[nodiscard]] inline bool is_dead_end(map::LaneCorridor const& corridor, double end) {
   return end >= corridor.length();
 }
 
-/// As `lane_end`, but infinite for a merge that may be driven over [m].
+/// As `lane_end` [m], but infinite for a merge, over which a vehicle may drive.
 template <class View>
 [[nodiscard]] double dead_end(View const& view, CorridorId number, PieceId piece) {
   double const end = lane_end(view, number, piece);
   return is_dead_end(view.road().corridors[number], end) ? end : std::numeric_limits<double>::infinity();
 }
 
-/// In which direction the lanes lie that go further than the own one, and how urgent a change to there is.
+/// To which side the lanes lie that go further than the own lane, and how urgent a change is.
 struct LaneUrgency {
-  double left{}, right{};  ///< of a change to that side, from -1 to 1; negative: leads away, or to where a lane ends
+  double left{}, right{};  ///< urgency of a change to that side, from -1 to 1; negative: leads away from these lanes,
+                           ///< or into a lane that ends
 };
 
 namespace detail {
 
-/// What is left of a lane corridor's lane `along` [m] behind the begin of one of its pieces [m].
+/// Length [m] that is left of a corridor's lane, from `along` [m] after the begin of one of its pieces.
 template <class View>
 [[nodiscard]] double remaining_from(View const& view, CorridorId number, PieceId piece, double along) {
   return lane_end(view, number, piece) - view.road().corridors[number].pieces[piece].begin - along;
 }
 
-/// How many lanes to the left (right) of a piece of a lane corridor the next one is that goes further than `remaining`
-/// [m] from the place `along` [m] behind its begin; 0: there is none.
+/// Number of lanes between a piece of a lane corridor and the nearest one on the left (right) that goes more than
+/// `remaining` [m] beyond the place `along` [m] after the piece's begin; 0 if there is none.
 template <class View>
 [[nodiscard]] int lanes_to_go(View const& view, CorridorId number, PieceId piece, double along, double remaining,
                               bool left) {
@@ -61,13 +63,13 @@ template <class View>
 
 }  // namespace detail
 
-/// How many lanes have to be crossed to one that goes further; both 0: there is none.
+/// Number of lanes to cross to the nearest lane that goes further; both 0 if there is none.
 struct LanesToCross {
-  int left{}, right{};  ///< to that side; only the nearer one counts, the other is 0
+  int left{}, right{};  ///< to that side; the farther side is 0
 };
 
-/// From the place `s` [m] on a lane corridor, in its piece `piece`, with a finite `lane_end`. The lane that goes
-/// further may begin later. O(lanes beside), at most at each piece up to the end.
+/// Lanes to cross from position `s` [m] on a lane corridor, in its piece `piece`, with a finite `lane_end`. The lane
+/// that goes further may begin later. O(lanes beside), at worst for each piece up to the end.
 template <class View>
 CAMBIUM_NOINLINE [[nodiscard]] LanesToCross lanes_to_cross(View const& view, CorridorId number, PieceId piece,
                                                            double s) {
@@ -85,9 +87,9 @@ CAMBIUM_NOINLINE [[nodiscard]] LanesToCross lanes_to_cross(View const& view, Cor
   return {};
 }
 
-/// How the ends of lanes, dead or merging, and the lane that the goal needs pull to a side: from `horizon` [m] before
-/// them for each lane to be crossed, increasingly. O(1) where no end is ahead, else O(lanes
-/// beside), at most at each piece up to the end.
+/// Urgency of a lane change because of lane ends, merges and the goal's lane. It grows from 0 to 1 over the last
+/// `horizon` [m] before the lane end for each lane to cross. O(1) without an end ahead, else O(lanes beside), at worst
+/// for each piece up to the end.
 template <class View>
 CAMBIUM_NOINLINE [[nodiscard]] LaneUrgency lane_urgency(View const& view, double horizon) {
   constexpr double infinite = std::numeric_limits<double>::infinity();

@@ -17,9 +17,11 @@
 
 namespace cambium {
 
-/// The highest speed [m/s] at `s` of a corridor that lets a driver who brakes by `deceleration` [m/s^2] be at each
-/// limit ahead 3 s in time, as car following comes down to a desired speed slowly; infinite where there is none.
-/// O(limits within the way to brake).
+namespace detail {
+
+/// Highest speed [m/s] at position `s` [m] of a corridor from which a driver who brakes by `deceleration` [m/s^2]
+/// reaches every lower speed limit ahead 3 s early, because car following approaches a desired speed slowly; infinite
+/// without limits. O(limits within the braking distance).
 CAMBIUM_NOINLINE [[nodiscard]] inline double permitted_speed(map::LaneCorridor const& corridor, double s, double speed,
                                                              double deceleration) {
   double permitted = corridor.speed_limit_at(s);
@@ -33,15 +35,16 @@ CAMBIUM_NOINLINE [[nodiscard]] inline double permitted_speed(map::LaneCorridor c
   return permitted;
 }
 
-/// What the bends within reach allow.
+/// What the bends within reach permit.
 struct BendsAhead {
   double highest;                    ///< speed in the sharpest of them [m/s]
-  LongitudinalMotion<double> bound;  ///< of a step: it goes no farther
+  LongitudinalMotion<double> bound;  ///< longest motion of a step
 };
 
-/// The bends that a vehicle of `speed` [m/s] at `s` [m] comes to within a step of `dt` [s] and its way to brake with
-/// `deceleration` [m/s^2]: so that its `lateral_acceleration` [m/s^2] in them is in bounds. It brakes up to `hardest`
-/// where it is too late; `desired_speed` [m/s] where there is none. O(log bends) and those within reach.
+/// What the bends within the step of `dt` [s] and the braking distance at `deceleration` [m/s^2] permit a vehicle of
+/// `speed` [m/s] at `s` [m], so that it takes each of them with at most `lateral_acceleration` [m/s^2]. It brakes up to
+/// `hardest` [m/s^2] if the bend is too close for that. Without bends `highest` is `desired_speed` [m/s]. O(log bends +
+/// bends within reach).
 [[nodiscard]] inline BendsAhead bends_ahead(map::LaneCorridor const& corridor, double s, double speed,
                                             double desired_speed, double lateral_acceleration, double deceleration,
                                             double hardest, double dt) {
@@ -59,15 +62,15 @@ struct BendsAhead {
   return ahead;
 }
 
-/// How far a vehicle may go [m] before a signal that stops it; infinite where none does.
+/// How far a vehicle may drive before signals that stop it.
 struct SignalStop {
   double distance = std::numeric_limits<double>::infinity();
-  bool is_light = false;  ///< a light is one of them
+  bool is_light = false;  ///< a traffic light is among them
 };
 
-/// The stop at signs and lights within `look_ahead` [m] of a vehicle with its front end at `front` [m]: at lights that
-/// are red, or yellow while it can stop by `deceleration` [m/s^2], and at stop signs, `margin` [m] before the line if
-/// it can. `stopped_at`: the last stop sign's line at which it has stopped [m], kept up to date. O(signals).
+/// Where a vehicle with its front end at `front` [m] must stop for signals within `look_ahead` [m]: red lights, yellow
+/// lights if it can stop by `deceleration` [m/s^2], and stop signs. It stops `margin` [m] before the line if it can.
+/// `stopped_at` [m] is updated: the line of the last stop sign at which the vehicle has stopped. O(signals).
 template <class View>
 [[nodiscard]] SignalStop stop_at_signals(View const& view, double front, double speed, double look_ahead, double margin,
                                          double deceleration, float& stopped_at) {
@@ -91,7 +94,7 @@ template <class View>
   return stop;
 }
 
-/// A neighbour as a constraint; its acceleration only where `Law` asks for it.
+/// A neighbour as a constraint, with its acceleration if `Law` asks for it.
 template <class Law, class View>
 [[nodiscard]] Constraint constraint_of(View const& view, RoadUser const& user) {
   Constraint constraint{user.gap, user.speed, 0.0};
@@ -100,12 +103,21 @@ template <class Law, class View>
   return constraint;
 }
 
-/// What a driver heeds on the road, beside the next vehicle: the same for all models that drive. A model asks for its
-/// desired speed, lets the rules add constraints to those that its law answers, and bounds the motion that comes of it.
+}  // namespace detail
+
+/// What a driver heeds on the road besides other road users, shared by all driver models. A model uses the rules in
+/// three places of its `plan`:
+///
+///   IdmLaw const law(idm, speed, rules.desired_speed(idm, view, speed));   // 1. speed limits lower the desired speed
+///   rules.heed(view, ahead);                                               // 2. leader and lane end are constraints
+///   rules.bound(view, idm, s, speed, law.motion(...), dt, memory);         // 3. bends and signals bound the motion
+///
+/// Bends and signals bound the motion instead of being constraints of the law, because a driver brakes for them evenly
+/// and exactly to a point, while IDM would keep a time headway to them.
 struct RoadRules {
   enum class LaneEnd {
     ignored,
-    before_destination,  ///< brakes where its lane ends or leads away before the route does
+    before_destination,  ///< brakes where its lane ends or leaves the route before the destination
     always,              ///< brakes before every end of its lane corridor, as BARK's option does
   };
 
@@ -122,46 +134,48 @@ struct RoadRules {
 
   static constexpr char const* name = "road_rules";
   static constexpr char const* summary =
-      "what a driver heeds beside the next vehicle: the end of its lane, speed limits, bends, lights and stop signs";
+      "what a driver heeds besides the next vehicle: the end of its lane, speed limits, bends, lights and stop signs";
   static constexpr char const* source = "own; lane end: BARK";
   static constexpr auto parameters() {
     using P = RoadRules;
     return parameter_list(
         choice("lane_end", &P::lane_end, "ignored|before_destination|always",
-               "which ends of its lane a driver brakes for"),
-        parameter("lane_end_distance", &P::lane_end_distance, "m", Range{0, 10'000},
-                  "from how far before the end; above about 15 m/s the default is too short to stop"),
+               "ends of its lane for which the driver brakes"),
+        parameter(
+            "lane_end_distance", &P::lane_end_distance, "m", Range{0, 10'000},
+            "distance from the end at which braking begins; the default is too short to stop from above about 15 m/s"),
         parameter("lane_end_offset", &P::lane_end_offset, "m", Range{0, 1000},
-                  "how far before the end the place is where it would stop"),
+                  "distance from the end at which it would stop"),
         parameter("obey_speed_limits", &P::obey_speed_limits, "-", Range{0, 1},
-                  "desire no more than the limit, and be there in time for a lower one ahead"),
+                  "desire no more than the limit, and slow down in time for a lower one ahead"),
         parameter("slow_for_bends", &P::slow_for_bends, "-", Range{0, 1}, "brake in time for bends"),
-        parameter("lateral_acceleration", &P::lateral_acceleration, "m/s^2", Range{0.1, 50}, "in bends, at most"),
+        parameter("lateral_acceleration", &P::lateral_acceleration, "m/s^2", Range{0.1, 50}, "highest in bends"),
         parameter("obey_signals", &P::obey_signals, "-", Range{0, 1}, "stop at red lights and stop signs"),
         parameter("stop_margin", &P::stop_margin, "m", Range{0, 20}, "from the front end to a line where it waits"),
         parameter("safe_deceleration", &P::safe_deceleration, "m/s^2", Range{0.1, 20},
-                  "who would have to brake harder does not stop at a light that has just turned yellow"),
+                  "a driver who would have to brake harder passes a light that has just turned yellow"),
         choice("merging", &P::merging, "counts|by_rule|ignored",
-               "those in lanes that are still to merge into the own one: followed, in junctions not, nowhere"));
+               "road users in lanes that merge into the own one: followed, followed except in junctions, ignored"));
   }
 
-  /// What a driver remembers of them.
+  /// What a driver remembers for the rules.
   struct Memory {
-    float stopped_at = -1.0f;  ///< corridor position of the last stop sign that it has stopped at [m]
+    float stopped_at = -1.0f;  ///< corridor position of the stop sign at which it stopped last [m]
 
     friend bool operator==(Memory const&, Memory const&) = default;
   };
 
-  /// What a driver of parameters `idm` desires where it is, at `speed` [m/s]: within the limits, if it obeys them.
+  /// Desired speed [m/s] of a driver with parameters `idm` at its place and `speed` [m/s]: within the limits if it
+  /// obeys them.
   template <HasIdmParameters P, class View>
   [[nodiscard]] double desired_speed(P const& idm, View const& view, double speed) const {
     if (!obey_speed_limits) [[likely]]
       return idm.desired_speed;
-    return std::clamp(permitted_speed(view.corridor(), view.place().s, speed, idm.comfortable_deceleration), 0.1,
-                      idm.desired_speed);
+    return std::clamp(detail::permitted_speed(view.corridor(), view.place().s, speed, idm.comfortable_deceleration),
+                      0.1, idm.desired_speed);
   }
 
-  /// The end of the lane, where there is one to brake for.
+  /// The end of the lane, if the driver has to brake for it.
   template <class View>
   [[nodiscard]] std::optional<Constraint> lane_end_ahead(View const& view) const {
     if (lane_end == LaneEnd::ignored) [[likely]]
@@ -173,10 +187,10 @@ struct RoadRules {
     return Constraint{std::max(0.0, left - lane_end_offset), 0.0, 0.0};
   }
 
-  /// Adds the next vehicle ahead, `next`, and the end of the lane.
+  /// Adds the next vehicle ahead, `next`, and the end of the lane to the constraints.
   template <class View, class Law>
   void heed(View const& view, std::optional<RoadUser> const& next, Strictest<Law>& ahead) const {
-    if (next) ahead.heed(constraint_of<Law>(view, *next));
+    if (next) ahead.heed(detail::constraint_of<Law>(view, *next));
     if (auto const end = lane_end_ahead(view)) ahead.heed(*end);
   }
   template <class View, class Law>
@@ -184,8 +198,8 @@ struct RoadRules {
     heed(view, view.ahead({.merging = merging}), ahead);
   }
 
-  /// The motion of a step of `dt` [s] from `s` [m] at `speed` [m/s], bounded so that bends and signals are heeded; a
-  /// driver of parameters `idm` brakes comfortably for them, and harder only where that is too late.
+  /// Bounds the `motion` of a step of `dt` [s] from `s` [m] at `speed` [m/s] by bends and signals. A driver with
+  /// parameters `idm` brakes comfortably for them, and harder only if that no longer suffices.
   template <class View, HasIdmParameters P>
   [[nodiscard]] LongitudinalMotion<double> bound(View const& view, P const& idm, double s, double speed,
                                                  LongitudinalMotion<double> const& motion, double dt,
@@ -194,7 +208,7 @@ struct RoadRules {
     bool const bends = slow_for_bends && fastest * fastest * view.corridor().sharpest_bend > lateral_acceleration;
     if (!bends && !obey_signals) [[likely]]
       return motion;
-    View const here = view;  // what is not inlined gets copies, so that the originals can stay in registers
+    View const here = view;  // functions that are not inlined get copies, so that the originals can stay in registers
     Memory changed = memory;
     auto const bounded =
         within_bounds(here, {idm.comfortable_deceleration, -idm.lowest_acceleration}, s, speed, motion, dt, changed);
@@ -216,13 +230,13 @@ struct RoadRules {
       if (other.distance < motion.distance) motion = other;
     };
     if (slow_for_bends)
-      bound_by(
-          bends_ahead(view.corridor(), s, speed, speed, lateral_acceleration, braking.comfortable, braking.hardest, dt)
-              .bound);
+      bound_by(detail::bends_ahead(view.corridor(), s, speed, speed, lateral_acceleration, braking.comfortable,
+                                   braking.hardest, dt)
+                   .bound);
     if (!obey_signals) return motion;
     double const look_ahead = speed * speed / (2.0 * braking.comfortable) + 20.0;
-    auto const stop = stop_at_signals(view, s + view.shape().front, speed, look_ahead, stop_margin, safe_deceleration,
-                                      memory.stopped_at);
+    auto const stop = detail::stop_at_signals(view, s + view.shape().front, speed, look_ahead, stop_margin,
+                                              safe_deceleration, memory.stopped_at);
     if (std::isfinite(stop.distance))
       bound_by(motion_before_stop(speed, stop.distance, braking.comfortable, braking.hardest, dt));
     return motion;

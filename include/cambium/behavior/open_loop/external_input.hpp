@@ -9,12 +9,13 @@
 
 namespace cambium {
 
-/// How an input is integrated.
+/// Integration scheme of an input.
 enum class InputScheme : std::uint8_t { rk4, euler };
 
-/// The plan of a vehicle whose driver does `asked` from now on for `dt` [s], by its own model and within that one's
-/// limits, in equal parts of at most `longest_substep` [s]. Never reverses: a braking vehicle stands from where it
-/// stops.
+namespace detail {
+
+/// The plan of a vehicle that applies the input `asked` for `dt` [s], within the limits of its own model, in equal
+/// parts of at most `longest_substep` [s]. Never reverses: a braking vehicle stays where it stops.
 template <class View>
 [[nodiscard]] Plan<View> plan_with_input(View const& view, Action const& asked, double dt, InputScheme scheme,
                                          double longest_substep) {
@@ -31,9 +32,11 @@ template <class View>
   return plan;
 }
 
-/// Drives as told from outside: a planner, a search or a learner sets the input (acceleration, steering) in the agent's
-/// memory by `World::memory`, and the vehicle model carries it out over the step. Heeds neither lanes nor others. Never
-/// reverses.
+}  // namespace detail
+
+/// Applies an input (acceleration, steering) from outside: a planner, a search or a learner sets it in the agent's
+/// memory by `World::memory`, and the vehicle model carries it out over the step. Ignores lanes and other road users.
+/// Never reverses.
 struct ExternalInput {
   /// The input until the next one is set.
   struct Memory {
@@ -43,9 +46,7 @@ struct ExternalInput {
     friend bool operator==(Memory const&, Memory const&) = default;
   };
 
-  using Scheme = InputScheme;
-
-  Scheme scheme = Scheme::rk4;
+  InputScheme scheme = InputScheme::rk4;
   double longest_substep = 0.1;
 
   static constexpr char const* name = "external_input";
@@ -55,12 +56,12 @@ struct ExternalInput {
   static constexpr auto parameters() {
     return parameter_list(choice("scheme", &ExternalInput::scheme, "rk4|euler", "integration of the vehicle model"),
                           parameter("longest_substep", &ExternalInput::longest_substep, "s", Range{1e-4, 10},
-                                    "a step is integrated in equal parts no longer than this"));
+                                    "a step is integrated in equal parts, each at most this long"));
   }
 
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory const& memory, double dt) const {
-    return plan_with_input(view, {memory.acceleration, memory.steering}, dt, scheme, longest_substep);
+    return detail::plan_with_input(view, {memory.acceleration, memory.steering}, dt, scheme, longest_substep);
   }
 };
 static_assert(BehaviorModel<ExternalInput>);

@@ -15,7 +15,7 @@
 
 namespace cambium {
 
-/// An input that a search may choose.
+/// An input of `MotionPrimitives`.
 struct MotionPrimitive {
   double acceleration = 0.0;  ///< [m/s^2]
   double steering = 0.0;      ///< steering angle, left positive [rad]
@@ -32,19 +32,19 @@ struct MotionPrimitive {
   friend bool operator==(MotionPrimitive const&, MotionPrimitive const&) = default;
 };
 
-/// Drives by one of a few inputs, held over each step and carried out by the vehicle model. A search or a learner sets
-/// which in the agent's memory (`World::memory`). Heeds neither lanes nor others. Never reverses.
+/// Applies one of a few inputs over each step through the vehicle model. A search or a learner chooses it in the
+/// agent's memory (`World::memory`). Ignores lanes and other road users. Never reverses.
 struct MotionPrimitives {
   static constexpr std::size_t capacity = 16;
-  static constexpr std::uint8_t nothing = 255;  ///< chosen instead of a primitive: it coasts straight on
+  static constexpr std::uint8_t nothing = 255;  ///< chosen instead of a primitive: coast straight on
 
   struct Memory {
-    std::uint8_t chosen = 0;  ///< place in the list, or `nothing`; another one fails
+    std::uint8_t chosen = 0;  ///< index in the list, or `nothing`; any other makes the plan fail
 
     friend bool operator==(Memory, Memory) = default;
   };
 
-  /// Those of a search that is told of no others. (Not a list in braces: g++ 12 takes that for uninitialised at -O2.)
+  /// The default primitives. (Not a braced list: g++ 12 reports that as uninitialised at -O2.)
   static constexpr MotionPrimitive usual[] = {{0, 0}, {2, 0}, {-3, 0}, {0, 0.1}, {0, -0.1}};
 
   /// 1 to `capacity` of them.
@@ -58,17 +58,17 @@ struct MotionPrimitives {
   static constexpr char const* source = "after BARK";
   static constexpr auto parameters() {
     using P = MotionPrimitives;
-    return parameter_list(parameter("primitives", &P::primitives, "-", {}, "what can be chosen, 1 to 16"),
+    return parameter_list(parameter("primitives", &P::primitives, "-", {}, "the inputs to choose from, 1 to 16"),
                           choice("scheme", &P::scheme, "rk4|euler", "integration of the vehicle model"),
                           parameter("longest_substep", &P::longest_substep, "s", Range{1e-4, 10},
-                                    "a step is integrated in equal parts no longer than this"));
+                                    "a step is integrated in equal parts, each at most this long"));
   }
 
   void check(std::string const& where) const {
     if (primitives.empty()) throw ParameterError(where + ".primitives", "has none", "give 1 to 16");
   }
 
-  /// With these primitives. Throws `ParameterError` for none, or more than `capacity`.
+  /// Creates the behaviour from a list of primitives. Throws `ParameterError` for none, or more than `capacity`.
   [[nodiscard]] static MotionPrimitives of(std::initializer_list<MotionPrimitive> list) {
     if (list.size() == 0 || list.size() > capacity)
       throw ParameterError(name, "has " + std::to_string(list.size()) + " primitives", "give 1 to 16");
@@ -85,7 +85,7 @@ struct MotionPrimitives {
       return failed;
     }
     auto const chosen = memory.chosen != nothing ? primitives[memory.chosen] : MotionPrimitive{};
-    return plan_with_input(view, {chosen.acceleration, chosen.steering}, dt, scheme, longest_substep);
+    return detail::plan_with_input(view, {chosen.acceleration, chosen.steering}, dt, scheme, longest_substep);
   }
 };
 static_assert(BehaviorModel<MotionPrimitives>);

@@ -15,9 +15,9 @@
 
 namespace cambium {
 
-/// Replays a recorded trajectory, shared by all copies: at each step's end the recorded state of that time, or between
-/// two of them linearly, the heading the shorter way round. Not in traffic before the first recorded time; expires in
-/// the step that would lead beyond the last. Heeds nobody.
+/// Replays a recorded trajectory, which all copies share. A step ends at the recorded state of that time, or between
+/// two of them by linear interpolation (of the heading along the shorter arc). The agent enters traffic at the first
+/// recorded time and expires in the step that would pass the last one. Ignores all others.
 struct StaticTrajectory {
   std::shared_ptr<std::vector<State> const> states;  ///< in order of time, at least one
 
@@ -27,13 +27,13 @@ struct StaticTrajectory {
 
   static constexpr char const* name = "static_trajectory";
   static constexpr char const* summary =
-      "replays recorded states, between two of them linearly; enters and leaves traffic with its recording";
+      "replays recorded states with linear interpolation; enters and leaves traffic with its recording";
   static constexpr char const* source = "interpolation";
   static constexpr auto parameters() {
     return parameter_list(parameter("states", &StaticTrajectory::states, "-", {}, "recorded, in order of time"));
   }
 
-  /// Throws `ParameterError` where there are no states, or their times do not ascend.
+  /// Throws `ParameterError` if there are no states or their times do not ascend.
   void check(std::string const& where) const {
     if (!states || states->empty()) throw ParameterError(where, "has no recorded states", "give at least one");
     for (std::size_t i = 1; i < states->size(); ++i)
@@ -42,12 +42,12 @@ struct StaticTrajectory {
                              "sort the recording by time");
   }
 
-  /// The first recorded time [s].
+  /// Time of the first state [s].
   [[nodiscard]] double start_time() const {
     return states && !states->empty() ? states->front().time : std::numeric_limits<double>::infinity();
   }
 
-  /// The recorded state at `time` [s], that of the nearer end beyond the ends. There must be states. O(log states).
+  /// Recorded state at `time` [s]; the first or last one beyond the ends. Requires at least one state. O(log states).
   [[nodiscard]] State at(double time) const {
     auto const after = std::lower_bound(states->begin(), states->end(), time - same_time,
                                         [](State const& state, double t) { return state.time < t; });

@@ -13,9 +13,9 @@
 
 namespace cambium {
 
-/// When one who walks goes across the lanes of others. A gap is accepted when it holds the time to cross and
-/// `time_margin`: as the Highway Capacity Manual 2000 (eq. 18-17) has it, where start-up and clearance are 3 s
-/// together; as others quote it, not compared with the manual.
+/// When a pedestrian crosses the lanes of vehicles. It accepts a gap that is longer than the time to cross plus
+/// `time_margin`, as in the Highway Capacity Manual 2000 (eq. 18-17), where start-up and clearance take 3 s together
+/// (quoted second-hand, not compared with the manual).
 struct CrossingParameters {
   double time_margin = 3.0;
   double margin_behind = 0.5;
@@ -26,26 +26,29 @@ struct CrossingParameters {
 
   static constexpr char const* name = "crossing";
   static constexpr char const* summary =
-      "crosses a lane when no vehicle comes before it is across and a margin is over, or when who comes can still stop";
+      "crosses a lane if no vehicle arrives before it is across and a margin is over, or if arriving vehicles can "
+      "still stop";
   static constexpr char const* source =
       "critical gap: Highway Capacity Manual 2000, eq. 18-17 (second-hand); the rest: own";
   static constexpr auto parameters() {
     using P = CrossingParameters;
     return parameter_list(
-        parameter("time_margin", &P::time_margin, "s", Range{0, 60}, "from leaving a lane to the next vehicle there"),
+        parameter("time_margin", &P::time_margin, "s", Range{0, 60},
+                  "from leaving a lane to the arrival of the next vehicle"),
         parameter("margin_behind", &P::margin_behind, "s", Range{0, 60},
-                  "from a vehicle's rear end to stepping into its lane"),
-        parameter("stop_margin", &P::stop_margin, "m", Range{0, 10}, "from the body to the lane when waiting"),
-        parameter("assumed_acceleration", &P::assumed_acceleration, "m/s^2", Range{0, 20}, "of vehicles that come"),
-        parameter("assumed_speed", &P::assumed_speed, "m/s", Range{0, 100}, "up to which they accelerate"),
+                  "from the passing of a vehicle's rear end to entering its lane"),
+        parameter("stop_margin", &P::stop_margin, "m", Range{0, 10}, "from the body to the lane while waiting"),
+        parameter("assumed_acceleration", &P::assumed_acceleration, "m/s^2", Range{0, 20}, "of arriving vehicles"),
+        parameter("assumed_speed", &P::assumed_speed, "m/s", Range{0, 100}, "up to which arriving vehicles accelerate"),
         parameter("demanded_deceleration", &P::demanded_deceleration, "m/s^2", Range{0, 20},
-                  "vehicles that can stop by braking so hard are walked in front of; 0: none, all go first"));
+                  "crosses in front of vehicles that can stop with this deceleration; 0: all vehicles go first"));
   }
 };
 
 namespace detail {
 
-/// Where one who walks `lateral` [m] beside its way's centre line is on the lane that it crosses [m].
+/// Stretch [m] along a crossed lane that a pedestrian occupies who walks `lateral` [m] beside the centre line of its
+/// way.
 struct CrossingStrip {
   double begin = std::numeric_limits<double>::infinity(), end = -begin;
 };
@@ -66,8 +69,8 @@ template <class View>
   return strip;
 }
 
-/// Whether the traffic of a lane that the own way crosses leaves no gap. `to_begin`, `to_end`: from the front and the
-/// rear of the body to the lane's borders [m]; `margin`: see `CrossingParameters::time_margin` [s].
+/// Whether the traffic of a crossed lane leaves no gap. `to_begin`, `to_end` [m]: from the front and the rear of the
+/// body to the borders of the lane; `margin` [s]: see `CrossingParameters::time_margin`.
 template <class View>
 [[nodiscard]] bool is_blocked(CrossingParameters const& p, SocialForceParameters const& social, View const& view,
                               map::LaneCrossing const& crossing, double speed, double to_begin, double to_end,
@@ -78,14 +81,14 @@ template <class View>
       std::max(0.0, to_end) / walking + social.relaxation_time * std::max(0.0, 1.0 - speed / walking);
   auto const strip = strip_of(view, crossing);
   bool blocked = false;
-  // `position`: on its way, counted from the begin of the lane that is crossed.
+  // `position`: along the vehicle's way, from the begin of the crossed lane.
   auto const heed = [&](RoadUser const& user, double position) {
     if (blocked || position - user.rear > strip.end || !view.signals_way(user, crossing.lane)) return;
     double const distance = strip.begin - position - user.front, theirs = std::max(0.0, user.speed);
     if (distance > 0.0 && theirs * theirs < 2.0 * p.demanded_deceleration * distance) return;
     double const first = time_to_cover(distance, theirs, p.assumed_acceleration, std::max(theirs, p.assumed_speed));
     double const way = strip.end - position + user.rear;
-    double const last = theirs > 0.1 ? way / theirs : std::numeric_limits<double>::infinity();
+    double const last = theirs > standing_speed ? way / theirs : std::numeric_limits<double>::infinity();
     blocked = first < clearance + margin && arrival < last + p.margin_behind;
   };
   for (auto const& way : crossing.ways)
@@ -94,18 +97,15 @@ template <class View>
   return blocked;
 }
 
-}  // namespace detail
-
-/// How far the reference point may go [m] for one who walks along its corridor at `speed` [m/s]: its front must not
-/// pass the border of a lane before there is a gap in it; infinite where it may go on. Lanes side by side are crossed
-/// at one go; who is on the way across goes on, unless a vehicle comes after all into a lane that is still ahead.
-/// O(vehicles that come).
+/// How far the reference point of a pedestrian at `speed` [m/s] may go along its corridor [m], so that its front does
+/// not pass the border of a lane without a gap; infinite if it may go on. Adjacent lanes are crossed in one go. A
+/// pedestrian on its way across goes on, unless a vehicle unexpectedly enters a lane still ahead. O(arriving vehicles).
 template <class View>
 [[nodiscard]] double distance_to_stop(CrossingParameters const& p, SocialForceParameters const& social,
                                       View const& view, double speed) {
   constexpr double infinite = std::numeric_limits<double>::infinity();
   constexpr double near = 5.0;  // [m]
-  constexpr double toe = 0.2;   // [m] who reaches over the kerb no farther has not begun to cross
+  constexpr double toe = 0.2;   // [m] a pedestrian that extends over the kerb by less has not begun to cross
   double const s = view.place().s, front = s + view.shape().front, rear = s - view.shape().rear;
   double row_begin = -infinite, row_end = -infinite;
   for (auto const& crossing : view.corridor().crossings) {
@@ -113,7 +113,7 @@ template <class View>
     if (is_next_row && crossing.begin > front + near) break;
     if (is_next_row) row_begin = crossing.begin;
     row_end = std::max(row_end, crossing.end);
-    if (crossing.end < rear || crossing.begin + toe < front) continue;  // behind it, or it is in there
+    if (crossing.end < rear || crossing.begin + toe < front) continue;  // behind it, or inside it
     bool const on_the_way = row_begin + toe < front;
     if (detail::is_blocked(p, social, view, crossing, speed, crossing.begin - front, crossing.end - rear,
                            on_the_way ? 0.0 : p.time_margin))
@@ -121,5 +121,7 @@ template <class View>
   }
   return infinite;
 }
+
+}  // namespace detail
 
 }  // namespace cambium

@@ -20,7 +20,7 @@ namespace cambium {
 
 namespace detail {
 
-/// Who and what is around one who walks: no heap.
+/// Road users and objects around a pedestrian, without heap.
 struct Surroundings {
   static constexpr std::size_t most = 32;
 
@@ -34,9 +34,9 @@ struct Surroundings {
   std::array<Other, most> others;
   std::array<geometry::Polygon const*, most> objects;
   std::size_t other_count = 0, object_count = 0;
-  double sight_cosine = 0.0;  ///< of half the angle in which others count fully
+  double sight_cosine = 0.0;  ///< cosine of half the angle in which others count fully
 
-  /// Takes it in; of too many the nearest stay.
+  /// Adds a road user; keeps the nearest ones if there are too many.
   void add(Other const& other) {
     if (other_count < most) {
       others[other_count++] = other;
@@ -50,13 +50,13 @@ struct Surroundings {
 
 }  // namespace detail
 
-/// One who walks along its road corridor by social forces (see `SocialForceParameters`): it wants to go on along the
-/// way at its desired speed, keeps off others, off the way's borders and off static objects, and crosses the lanes that
-/// its way crosses when their traffic leaves it a gap (see `CrossingParameters`). Between the frames the others go
-/// straight on. The way is a free corridor, or lanes for those on foot.
+/// A pedestrian that walks along its road corridor by social forces (see `SocialForceParameters`). It follows its way
+/// at its desired speed, keeps its distance from others, from the way's borders and from static objects, and crosses
+/// lanes when their traffic leaves a gap (see `CrossingParameters`). Others are assumed to move straight on within a
+/// step. The way is a free corridor, or lanes for pedestrians.
 ///
-/// What others do to it bends its course; a heading follows the velocity. It plans the motion of a point with mass, so
-/// that vehicle models do not matter to it (one that executes its plans through the dynamics wants `KinematicPoint`).
+/// The forces bend its course; its heading follows its velocity. It plans the motion of a point mass and ignores its
+/// vehicle model (to execute its plans through the dynamics, give it a `KinematicPoint`).
 struct Pedestrian {
   SocialForceParameters social{};
   CrossingParameters crossing{};
@@ -69,8 +69,8 @@ struct Pedestrian {
   static constexpr bool looks_around = true;
   static constexpr char const* name = "pedestrian";
   static constexpr char const* summary =
-      "walks along its way, a free corridor or lane, by social forces: off others, borders and objects; crosses lanes "
-      "in gaps of their traffic";
+      "walks along its way, a free corridor or lane, by social forces of others, borders and objects; crosses lanes in "
+      "gaps of their traffic";
   static constexpr char const* source = "Helbing, Molnár 1995";
   static constexpr auto parameters() {
     using P = Pedestrian;
@@ -79,12 +79,13 @@ struct Pedestrian {
         parameter("crossing", &P::crossing, "-", {}, "crossing lanes"),
         parameter("body_radius", &P::body_radius, "m", Range{0, 5},
                   "of its body; 0.25 to 0.35 in Helbing, Farkas, Vicsek 2000"),
-        parameter("look_ahead", &P::look_ahead, "m", Range{0.1, 50}, "where on its way it goes to"),
-        parameter("range", &P::range, "m", Range{0, 50}, "others and objects nearer than this are felt"),
+        parameter("look_ahead", &P::look_ahead, "m", Range{0.1, 50},
+                  "distance of the point on its way that it aims at"),
+        parameter("range", &P::range, "m", Range{0, 50}, "others and objects within this distance count"),
         parameter("fluctuation", &P::fluctuation, "m/s^1.5", Range{0, 10},
-                  "random part of its velocity: grows by this in a second"),
+                  "random part of its velocity: standard deviation after one second"),
         parameter("longest_substep", &P::longest_substep, "s", Range{0.001, 10},
-                  "of the integration; no more than 400 in a step"));
+                  "of the integration; at most 400 in a step"));
   }
 
   template <class View>
@@ -94,7 +95,7 @@ struct Pedestrian {
     gather(view, around);
     around.sight_cosine = std::cos(0.5 * social.sight_angle);
     Walk walk{{start.x, start.y}, velocity_of(start), view.place()};
-    double const stop = distance_to_stop(crossing, social, view, start.speed) + walk.at.s;
+    double const stop = detail::distance_to_stop(crossing, social, view, start.speed) + walk.at.s;
     double const substeps = std::clamp(std::ceil(dt / longest_substep), 1.0, 400.0), h = dt / substeps;
     auto const push = random_push(view, dt);
     for (int i = 0; i < static_cast<int>(substeps); ++i) advance(view, stop, push, h, around, walk);
@@ -120,7 +121,7 @@ struct Pedestrian {
     geometry::Point const own{view.state().x, view.state().y};
     view.around(range, [&](RoadUser const& other) {
       constexpr double largest_body = 1.0;    // [m]
-      auto const& state = view.state(other);  // a value where the observer is not perfect
+      auto const& state = view.state(other);  // a value if the observer is not perfect
       auto const& shape = view.shape(other);
       auto const box = geometry::box_of(shape, state);
       double const size = std::max(shape.length(), shape.width());
@@ -148,13 +149,13 @@ struct Pedestrian {
                Walk& walk) const {
     auto const& way = view.corridor();
     auto const sides = way.widths_at(walk.at.s, walk.at.segment);
-    // Towards a place ahead on the way, as far aside as it is, if that is on the way.
+    // It aims at a point ahead on the way with its own lateral offset, if that is within the way.
     double const aside =
         std::clamp(walk.at.lateral, -std::max(0.0, sides.right - body_radius), std::max(0.0, sides.left - body_radius));
     State aim;
     place_on_lane(way, walk.at.s + look_ahead, aside, 0.0, walk.at.segment, aim);
     Vector const ahead = Vector{aim.x, aim.y} - walk.position;
-    // So slowly that it does not overshoot where it is to stop: critically damped.
+    // Slow enough not to overshoot the place to stop: critically damped.
     double const room = std::max(0.0, stop - walk.at.s - crossing.stop_margin);
     double const speed = std::min(social.desired_speed, room / (4.0 * social.relaxation_time));
     double const distance = ahead.norm();
@@ -169,7 +170,7 @@ struct Pedestrian {
     }
   }
 
-  /// What is farther off than it can be felt does not matter: neither does a longer stride.
+  /// A stride ends at the range of the force, because nothing farther counts.
   [[nodiscard]] Vector stride_of(detail::Surroundings::Other const& other, Walk const& walk) const {
     Vector const velocity = social.relative_stride ? other.velocity - walk.velocity : other.velocity;
     return std::min(social.stride_time, range / std::max(1e-3, velocity.norm())) * velocity;
@@ -180,7 +181,7 @@ struct Pedestrian {
     return size > social.highest_acceleration ? (social.highest_acceleration / size) * force : force;
   }
 
-  /// By others and by objects.
+  /// Force of other road users and of objects.
   [[nodiscard]] Vector force_of(detail::Surroundings const& around, Vector const& ahead, Walk const& walk) const {
     Vector sum;
     geometry::Point const own{walk.position.x, walk.position.y};
@@ -208,7 +209,7 @@ struct Pedestrian {
     return sum;
   }
 
-  /// By the way's borders, and by the kerb where it is to stop.
+  /// Force of the way's borders, and of the kerb where it has to stop.
   [[nodiscard]] Vector borders(map::LaneCorridor const& way, map::SideWidths const& sides, double stop,
                                Walk const& walk) const {
     auto const& g = way.center.segments()[walk.at.segment];
@@ -221,7 +222,7 @@ struct Pedestrian {
 
   template <class View>
   [[nodiscard]] Plan<View> plan_to(View const& view, Walk const& walk, double dt) const {
-    constexpr double standing = 0.02;  // [m/s]: slower than this nobody turns
+    constexpr double standing = 0.02;  // [m/s] a slower pedestrian does not turn
     Plan<View> plan;
     auto next = view.state();
     double const before = next.speed;

@@ -8,7 +8,7 @@
 
 namespace cambium {
 
-/// A vector in the plane, in any scalar.
+/// A vector in the plane, over any scalar.
 template <class Scalar>
 struct PlaneVector {
   Scalar x{}, y{};
@@ -23,13 +23,15 @@ struct PlaneVector {
   }
 };
 
-/// The social force model's parameters, with the values of Helbing and Molnár 1995, "Social force model for pedestrian
-/// dynamics", Phys. Rev. E 51, 4282; those of the contact of bodies are of Helbing, Farkas, Vicsek 2000, "Simulating
-/// dynamical features of escape panic", Nature 407, 487 (2000 N for 80 kg, 0.08 m): in the first paper pedestrians are
-/// points. With `relative_stride` the way that another goes is seen from the own motion (as in Johansson, Helbing,
-/// Shukla 2007, "Specification of the social force pedestrian model by evolutionary adjustment to video tracking
-/// data"), without it over ground, as in 1995: then those behind push those ahead aside as oncoming ones do, and in a
-/// crowd that walks both ways no lanes of one direction form.
+/// The parameters of the social force model, with the values of Helbing and Molnár 1995, "Social force model for
+/// pedestrian dynamics", Phys. Rev. E 51, 4282. In that paper pedestrians are points; the parameters of body contact
+/// are those of Helbing, Farkas, Vicsek 2000, "Simulating dynamical features of escape panic", Nature 407, 487 (2000 N
+/// for 80 kg, 0.08 m).
+///
+/// `relative_stride` measures the stride of another pedestrian relative to the own motion (Johansson, Helbing, Shukla
+/// 2007, "Specification of the social force pedestrian model by evolutionary adjustment to video tracking data").
+/// Without it the stride is measured over ground, as in 1995; then pedestrians behind push those ahead aside as
+/// oncoming ones do, and a crowd that walks both ways forms no lanes of one direction.
 struct SocialForceParameters {
   double desired_speed = 1.34;
   double relaxation_time = 0.5;
@@ -49,8 +51,7 @@ struct SocialForceParameters {
   static constexpr char const* name = "social_force";
   static constexpr char const* summary =
       "v' = (v_desired e - v) / tau - grad V0 exp(-b / sigma) for each other - grad U0 exp(-r / R) for each border, "
-      "less "
-      "by what is behind; bodies do not touch";
+      "reduced for sources behind; bodies do not touch";
   static constexpr char const* source =
       "Helbing, Molnár 1995, eq. 1 to 11; relative stride: Johansson, Helbing, Shukla 2007; contact: Helbing, Farkas, "
       "Vicsek 2000";
@@ -58,33 +59,35 @@ struct SocialForceParameters {
     using P = SocialForceParameters;
     return parameter_list(
         parameter("desired_speed", &P::desired_speed, "m/s", Range{0.1, 20},
-                  "on a free way; in the paper normally distributed, 0.26 m/s wide"),
+                  "on a free way; in the paper normally distributed with a standard deviation of 0.26 m/s"),
         parameter("relaxation_time", &P::relaxation_time, "s", Range{0.01, 100},
-                  "tau: of the speed to the desired one"),
+                  "tau: of the approach to the desired speed"),
         parameter("highest_speed_ratio", &P::highest_speed_ratio, "-", Range{1, 10},
-                  "highest speed over the desired one"),
+                  "highest speed relative to the desired one"),
         parameter("repulsion", &P::repulsion, "m^2/s^2", Range{0, 1000}, "V0: potential at another pedestrian"),
         parameter("repulsion_range", &P::repulsion_range, "m", Range{0.01, 100}, "sigma: of that potential"),
-        parameter("stride_time", &P::stride_time, "s", Range{0, 100}, "way of the other that is kept clear of"),
+        parameter("stride_time", &P::stride_time, "s", Range{0, 100},
+                  "duration of the other's stride that is kept clear"),
         parameter("relative_stride", &P::relative_stride, "-", Range{0, 1},
-                  "that way is seen from the own motion, not over ground"),
+                  "the stride is measured relative to the own motion, not over ground"),
         parameter("border_repulsion", &P::border_repulsion, "m^2/s^2", Range{0, 1000}, "U0: potential at a border"),
         parameter("border_range", &P::border_range, "m", Range{0.01, 100}, "R: of that potential"),
         parameter("sight_angle", &P::sight_angle, "rad", Range{0, 2 * geometry::pi},
-                  "2 phi: in which others count fully"),
-        parameter("weight_behind", &P::weight_behind, "-", Range{0, 1}, "c: of those outside of it"),
+                  "2 phi: others within it count fully"),
+        parameter("weight_behind", &P::weight_behind, "-", Range{0, 1}, "c: of others outside it"),
         parameter("contact_acceleration", &P::contact_acceleration, "m/s^2", Range{0, 1000},
-                  "A / m: at touching bodies"),
-        parameter("contact_range", &P::contact_range, "m", Range{0.001, 10}, "B: over which it falls to 1 / e"),
+                  "A / m: where bodies touch"),
+        parameter("contact_range", &P::contact_range, "m", Range{0.001, 10},
+                  "B: distance over which it falls to 1 / e"),
         parameter("highest_acceleration", &P::highest_acceleration, "m/s^2", Range{0.1, 1000},
-                  "that others and borders can cause together"));
+                  "of all others and borders together"));
   }
 };
 
-/// Repulsion [m/s^2] of a pedestrian by another (Helbing and Molnár 1995, eqs. 3 and 4): minus the gradient of V0
-/// exp(-b / sigma), b being the small half-axis of the ellipse with foci at the other and where it will be a stride
-/// later. `apart`: from the other to the pedestrian [m]; `stride`: the way that the other goes in `stride_time` [m].
-/// Zero where the direction is undefined: at the foci, and on the line between them.
+/// Repulsion [m/s^2] of a pedestrian by another (Helbing and Molnár 1995, eqs. 3 and 4): the negative gradient of V0
+/// exp(-b / sigma), where b is the semi-minor axis of the ellipse whose foci are the other's present position and its
+/// position one stride later. `apart` [m]: from the other to the pedestrian; `stride` [m]: the other's way in
+/// `stride_time`. Zero where the direction is undefined, at the foci and on the line between them.
 template <class Scalar>
 [[nodiscard]] PlaneVector<Scalar> social_repulsion(SocialForceParameters const& p, PlaneVector<Scalar> const& apart,
                                                    PlaneVector<Scalar> const& stride) {
@@ -100,7 +103,7 @@ template <class Scalar>
   return size * ((Scalar(1.0) / now) * apart + (Scalar(1.0) / then) * later);
 }
 
-/// Size [m/s^2] of the repulsion by a border at `distance` [m] (eq. 5): U0 / R exp(-distance / R). Behind it as at it.
+/// Size [m/s^2] of the repulsion by a border at `distance` [m] (eq. 5): U0 / R exp(-distance / R); constant behind it.
 template <class Scalar>
 [[nodiscard]] Scalar border_repulsion(SocialForceParameters const& p, Scalar const& distance) {
   using std::exp;
@@ -109,7 +112,7 @@ template <class Scalar>
 }
 
 /// Size [m/s^2] of the repulsion between bodies whose surfaces are `distance` [m] apart (Helbing, Farkas, Vicsek 2000);
-/// where they overlap as where they touch; nothing beyond 20 times the range.
+/// constant where they overlap, 0 beyond 20 times the range.
 template <class Scalar>
 [[nodiscard]] Scalar contact_repulsion(SocialForceParameters const& p, Scalar const& distance) {
   using std::exp;
@@ -118,8 +121,8 @@ template <class Scalar>
   return Scalar(p.contact_acceleration) * exp(Scalar(-1.0 / p.contact_range) * max(Scalar(0.0), distance));
 }
 
-/// How much a force counts for one who wants to go towards `ahead` (eq. 8): fully where its source is in sight, by
-/// `weight_behind` elsewhere. Both vectors of any length. `sight_cosine`: of half the `sight_angle`.
+/// Weight of a force for a pedestrian that wants to go towards `ahead` (eq. 8): 1 if the force's source is in sight,
+/// otherwise `weight_behind`. Both vectors have any length. `sight_cosine`: cosine of half the `sight_angle`.
 template <class Scalar>
 [[nodiscard]] Scalar sight_weight(SocialForceParameters const& p, double sight_cosine, PlaneVector<Scalar> const& ahead,
                                   PlaneVector<Scalar> const& force) {
@@ -127,8 +130,8 @@ template <class Scalar>
   return seen ? Scalar(1.0) : Scalar(p.weight_behind);
 }
 
-/// The velocity [m/s] after `h` [s] of one who wants `desired` and is pushed by `force` [m/s^2] (eqs. 2 and 11): the
-/// driving force solved exactly for a constant force, no faster than `highest_speed_ratio` times the desired speed.
+/// Velocity [m/s] after `h` [s] of a pedestrian that desires velocity `desired` and is pushed by `force` [m/s^2] (eqs.
+/// 2 and 11): exact for a constant force, and at most `highest_speed_ratio` times the desired speed.
 [[nodiscard]] inline PlaneVector<double> social_velocity(SocialForceParameters const& p,
                                                          PlaneVector<double> const& velocity,
                                                          PlaneVector<double> const& desired,

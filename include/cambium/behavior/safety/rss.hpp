@@ -7,8 +7,14 @@
 
 namespace cambium {
 
-/// What Responsibility-Sensitive Safety assumes of road users: a response time, bounds of their accelerations until
-/// then, and how they brake from then on. Defaults are the example values of the documentation of ad-rss-lib 4.
+/// Assumptions of Responsibility-Sensitive Safety (RSS) about road users: a response time, bounds of their
+/// accelerations until then, and their braking afterwards. Defaults are the example values in the documentation of
+/// ad-rss-lib 4.
+///
+/// The idea: two vehicles are safe as long as, lengthwise or sideways, they stay apart even in the worst case. In this
+/// case both accelerate towards each other as hard as the bounds permit until the response time is over, and then brake
+/// as the proper response requires. Once both distances are unsafe, the situation is dangerous and the proper response
+/// applies.
 struct RssParameters {
   double response_time = 1.0;
   double maximum_acceleration = 3.5;
@@ -20,20 +26,23 @@ struct RssParameters {
   double lateral_margin = 0.1;
 
   static constexpr char const* name = "rss";
-  static constexpr char const* summary = "what is assumed of road users: response time, bounds of accelerations";
+  static constexpr char const* summary = "assumptions about road users: response time, bounds of accelerations";
   static constexpr char const* source = "Shalev-Shwartz, Shammah, Shashua 2017; defaults: ad-rss-lib 4";
   static constexpr auto parameters() {
     using P = RssParameters;
     constexpr Range rate{0.01, 50};
     return parameter_list(
-        parameter("response_time", &P::response_time, "s", Range{0, 10}, "until one responds to danger (rho)"),
-        parameter("maximum_acceleration", &P::maximum_acceleration, "m/s^2", Range{0, 50}, "until then"),
-        parameter("maximum_deceleration", &P::maximum_deceleration, "m/s^2", rate, "hardest braking of who is ahead"),
-        parameter("minimum_deceleration", &P::minimum_deceleration, "m/s^2", rate, "braking in response to danger"),
+        parameter("response_time", &P::response_time, "s", Range{0, 10}, "until a driver responds to danger (rho)"),
+        parameter("maximum_acceleration", &P::maximum_acceleration, "m/s^2", Range{0, 50},
+                  "highest before the response"),
+        parameter("maximum_deceleration", &P::maximum_deceleration, "m/s^2", rate,
+                  "hardest braking of a vehicle ahead"),
+        parameter("minimum_deceleration", &P::minimum_deceleration, "m/s^2", rate,
+                  "least braking in response to danger"),
         parameter("correct_deceleration", &P::correct_deceleration, "m/s^2", rate,
-                  "the same, of the one in its own lane when somebody comes towards it"),
+                  "the same for a vehicle in its own lane that meets an oncoming one"),
         parameter("lateral_acceleration", &P::lateral_acceleration, "m/s^2", Range{0, 50},
-                  "at most, until the response"),
+                  "highest before the response"),
         parameter("lateral_deceleration", &P::lateral_deceleration, "m/s^2", rate, "of lateral motion, in response"),
         parameter("lateral_margin", &P::lateral_margin, "m", Range{0, 10},
                   "lateral distance that fluctuations take up (mu)"));
@@ -47,8 +56,8 @@ struct RssParameters {
 
 namespace detail {
 
-/// Distance [m] until a vehicle stands that accelerates by `a` for `response` [s] and brakes by `b` then; negative for
-/// one that moves away all the time.
+/// Distance [m] until a vehicle stops that accelerates by `a` for `response` [s] and then brakes by `b`; negative for a
+/// vehicle that moves away all the time.
 template <class Scalar>
 [[nodiscard]] Scalar rss_stopping_distance(Scalar speed, double response, double a, double b) {
   using std::abs;
@@ -59,8 +68,8 @@ template <class Scalar>
 }  // namespace detail
 
 /// Safe distance [m], bumper to bumper, of a follower at `rear_speed` behind a vehicle at `front_speed` [m/s] in its
-/// direction (Shalev-Shwartz, Shammah, Shashua 2017, "On a formal model of safe and scalable self-driving cars",
-/// lemma 2). Speeds are not negative.
+/// direction (Shalev-Shwartz, Shammah, Shashua 2017, "On a formal model of safe and scalable self-driving cars", lemma
+/// 2). Speeds are not negative.
 template <class Scalar>
 [[nodiscard]] Scalar rss_same_direction(RssParameters const& p, Scalar rear_speed, Scalar front_speed) {
   using std::max;
@@ -69,16 +78,16 @@ template <class Scalar>
   return max(Scalar(0), rear - front_speed * front_speed / Scalar(2 * p.maximum_deceleration));
 }
 
-/// Safe distance [m] between a vehicle in its own lane at `speed` and one that comes towards it at `oncoming_speed`,
-/// both positive [m/s] (same, definition 2).
+/// Safe distance [m] between a vehicle in its own lane at `speed` and an oncoming one at `oncoming_speed`, both
+/// positive [m/s] (same paper, definition 2).
 template <class Scalar>
 [[nodiscard]] Scalar rss_opposite_direction(RssParameters const& p, Scalar speed, Scalar oncoming_speed) {
   return detail::rss_stopping_distance(speed, p.response_time, p.maximum_acceleration, p.correct_deceleration) +
          detail::rss_stopping_distance(oncoming_speed, p.response_time, p.maximum_acceleration, p.minimum_deceleration);
 }
 
-/// Safe lateral distance [m], side to side, of two vehicles with lateral speeds [m/s, positive to the left] (same,
-/// lemma 4, with the sign that its definition gives to a vehicle that still moves away when it begins to brake).
+/// Safe lateral distance [m], side to side, of two vehicles with lateral speeds [m/s, positive to the left] (same
+/// paper, lemma 4, with the sign of its definition for a vehicle that still moves away when it begins to brake).
 template <class Scalar>
 [[nodiscard]] Scalar rss_lateral(RssParameters const& p, Scalar left_ones_speed, Scalar right_ones_speed) {
   using std::max;
@@ -88,8 +97,8 @@ template <class Scalar>
   return Scalar(p.lateral_margin) + max(Scalar(0), closing(-left_ones_speed) + closing(right_ones_speed));
 }
 
-/// What a vehicle may do in a dangerous situation, by the longitudinal and lateral proper response (same, definitions
-/// 4 and 7): brake by `minimum_deceleration` at least, and come no closer to a side.
+/// The proper response to a dangerous situation (same paper, definitions 4 and 7): brake by at least
+/// `minimum_deceleration`, and come no closer to a side.
 struct RssResponse {
   bool brake = false;
   bool keep_off_left = false;
@@ -99,22 +108,22 @@ struct RssResponse {
   friend bool operator==(RssResponse const&, RssResponse const&) = default;
 };
 
-/// Another road user, lengthwise and sideways.
+/// The own vehicle and another road user, lengthwise and sideways.
 struct RssSituation {
-  double gap{};                  ///< lengthwise, bumper to bumper [m]; not above 0: beside each other
+  double gap{};                  ///< lengthwise, bumper to bumper [m]; ≤ 0: beside each other
   double speed{};                ///< own, along the lane [m/s]
-  double other_speed{};          ///< of the other along the same direction; negative where it comes towards one [m/s]
-  double side_gap{};             ///< side to side [m]; not above 0: in each other's way
+  double other_speed{};          ///< of the other along the same direction; negative if it is oncoming [m/s]
+  double side_gap{};             ///< side to side [m]; ≤ 0: in each other's path
   double lateral_speed{};        ///< own, to the left [m/s]
   double other_lateral_speed{};  ///< [m/s]
-  bool is_ahead = true;          ///< else behind, by the reference points
-  bool is_left = false;          ///< else on the right, by the reference points
-  bool in_own_lane = true;       ///< else in a lane for those who come towards it
+  bool is_ahead = true;          ///< otherwise behind, by the reference points
+  bool is_left = false;          ///< otherwise on the right, by the reference points
+  bool in_own_lane = true;       ///< otherwise in a lane for oncoming traffic
 };
 
-/// The proper response to one road user: none unless the distances are unsafe both lengthwise and sideways. Who is
-/// behind brakes, both do who come towards each other, unless they are beside each other; neither comes closer sideways
-/// where there is still room.
+/// The proper response to one road user: none unless the distances are unsafe both lengthwise and sideways. Of two
+/// vehicles in one direction, the rear one brakes; of two that meet, both brake. Vehicles beside each other do not
+/// brake, and no vehicle comes closer sideways while there is still room.
 [[nodiscard]] inline RssResponse rss_response(RssParameters const& p, RssSituation const& at) {
   double const own = std::max(0.0, at.speed), other = std::max(0.0, at.other_speed);
   bool const oncoming = at.other_speed < 0.0;

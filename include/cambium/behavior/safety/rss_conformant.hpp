@@ -17,15 +17,21 @@
 
 namespace cambium {
 
-/// Any behaviour, but for dangerous situations by Responsibility-Sensitive Safety (see rss.hpp) with those who are in
-/// the own lane, those beside and those of the own road that are driven the other way: there it brakes, or comes no
-/// closer to a side, as the proper response asks. It also keeps its accelerations within what others count on. Who has
-/// to brake stays on the course of the nominal behaviour; who has to keep off a side keeps its lateral place and drives
-/// on along the lane. The nominal behaviour plans in each step and remembers it, and is told how much of its course was
-/// not driven (`fell_short`). A plan that leads farther than its acceleration, as a recording that went on while its
-/// vehicle had to wait, is driven along its course by that acceleration. Plans may turn in sideways harder than
-/// `lateral_acceleration`: that a plan does not make a situation dangerous is asked of where it leads, as if the other
-/// did the same. Where a step is longer than `response_time`, its length counts. O(agents within some hundred metres).
+/// Any behaviour, overridden in dangerous situations by Responsibility-Sensitive Safety (see rss.hpp). In each step
+/// - the nominal behaviour plans;
+/// - the wrapper computes the proper response to all road users in the own lane, in the lanes beside and in the
+///   oncoming lanes of the own road;
+/// - it returns the nominal plan if that conforms to the response and to the bounds of acceleration that others rely
+///   on; otherwise it brakes, or comes no closer to a side, and tells the nominal behaviour how much of its course was
+///   not driven (`fell_short`).
+///
+/// If the vehicle must brake, it stays on the nominal course. If it must keep off a side, it keeps its lateral offset
+/// and follows the lane. A plan that leads farther than its acceleration, such as a recording that went on while its
+/// vehicle had to wait, is followed along its course with that acceleration.
+///
+/// Two assumptions: Plans may turn sideways harder than `lateral_acceleration`; whether they cause danger is decided by
+/// where they end, assuming that the other comes closer by as much. A step longer than `response_time` takes its place.
+/// O(agents within some hundred metres).
 template <BehaviorModel Nominal>
 struct RssConformant {
   Nominal nominal{};
@@ -33,13 +39,13 @@ struct RssConformant {
 
   static constexpr char const* name = "rss_conformant";
   static constexpr char const* summary =
-      "any behaviour; below the safe distances along and across it brakes, or comes no closer, as the proper response "
-      "asks";
+      "any behaviour; below the safe distances along and across the lane it brakes, or comes no closer, as the proper "
+      "response requires";
   static constexpr char const* source = "Shalev-Shwartz, Shammah, Shashua 2017";
   static constexpr auto parameters() {
     return parameter_list(
-        parameter("nominal", &RssConformant::nominal, "-", {}, "the behaviour where nothing is dangerous"),
-        parameter("rss", &RssConformant::rss, "-", {}, "what is dangerous, and the response"));
+        parameter("nominal", &RssConformant::nominal, "-", {}, "the behaviour when there is no danger"),
+        parameter("rss", &RssConformant::rss, "-", {}, "safe distances and the response"));
   }
 
   using Memory = MemoryOf<Nominal>;
@@ -62,8 +68,9 @@ struct RssConformant {
     return conform(view, nominal.plan(view, memory, dt, workspace), memory, dt);
   }
 
-  /// The proper response to all that is near, where the vehicle means to be in the state `end` after `dt` [s]: `brake`
-  /// where the situation is dangerous as it is, a side to keep off from where it would be, for coming closer.
+  /// The proper response to all road users nearby if the vehicle plans to be in state `end` after `dt` [s]. `brake`
+  /// depends on the present situation; a side to keep off depends on the situation at `end`, and only if that is
+  /// closer.
   template <class View>
   CAMBIUM_NOINLINE [[nodiscard]] RssResponse response(View const& view, typename View::State const& end,
                                                       double dt) const {
@@ -76,7 +83,7 @@ struct RssConformant {
     };
     for_each_oncoming(p, view, speed, visit);
     auto const& at = view.place();
-    /// Whether an object ahead is too close; those who are near are visited.
+    /// Whether an object ahead is too close; visits the agents nearby.
     auto const too_close = [&](map::LanePlace const& from) {
       bool is_close = false;
       view.around(from, farthest, [&](RoadUser const& other) {
@@ -103,14 +110,14 @@ struct RssConformant {
   static constexpr double rounding = 1e-9;
   static constexpr double farthest = 400.0;  // [m]
 
-  /// What is assumed where nobody responds before the next step.
+  /// The assumptions if nobody responds before the next step.
   [[nodiscard]] RssParameters within_steps(double dt) const {
     auto p = rss;
     p.response_time = std::max(p.response_time, dt);
     return p;
   }
 
-  /// The nominal behaviour's `plan`, or what is driven instead.
+  /// The nominal behaviour's `plan`, changed as far as the response demands.
   template <class View>
   [[nodiscard]] Plan<View> conform(View const& view, Plan<View> plan, Memory& memory, double dt) const {
     if (plan.status != PlanStatus::valid) return plan;
@@ -127,19 +134,19 @@ struct RssConformant {
     if (as_wanted && !keeps_off) return plan;
     while (!plan.trajectory.empty() && plan.trajectory.back().time >= end.state.time) plan.trajectory.pop_back();
     plan.trajectory.push_back(end.state);
-    double const way = course_length(plan, view.state());
+    double const way = detail::course_length(plan, view.state());
     auto motion = as_wanted ? LongitudinalMotion<double>{way, end.state.speed} : driven;
     if (acceleration < wanted) motion.distance = std::min(motion.distance, way);
     fell_short(memory, keeps_off ? way : way - motion.distance, keeps_off);
     bool const along_lane = keeps_off || reach == Reach::behind;
-    return along_lane ? plan_along_lane(view, motion, dt) : plan_along_course(view, plan, motion, dt);
+    return along_lane ? plan_along_lane(view, motion, dt) : detail::plan_along_course(view, plan, motion, dt);
   }
 
-  /// Where a plan leads, seen from what can be driven in the step. A recording goes on while its vehicle waits.
+  /// Where a plan ends compared with what can be driven in the step. A recording goes on while its vehicle waits.
   enum class Reach : std::uint8_t { within, beyond, behind };
 
-  /// That of a plan from `now` to `end` where `distance` [m] is driven. A way aside or outside in a bend is a bit
-  /// longer.
+  /// The reach of a plan from `now` to `end` if `distance` [m] is driven. Tolerates the slightly longer way sideways or
+  /// on the outside of a bend.
   template <MotionState S>
   [[nodiscard]] static Reach reach_of(S const& now, S const& end, double distance) {
     constexpr double share = 0.05, apart = 0.1;  // [-], [m]
@@ -148,7 +155,7 @@ struct RssConformant {
     return detail::way_between(now, end) <= (1.0 + share) * distance + apart ? Reach::within : Reach::beyond;
   }
 
-  /// False for who is too far away, whatever they are going to do.
+  /// False for a road user too far away to matter, whatever it does.
   template <class View>
   [[nodiscard]] static bool may_matter(RssParameters const& p, View const& view, RoadUser const& other, double speed) {
     auto const &own = view.state(), &state = view.state(other);
@@ -159,7 +166,7 @@ struct RssConformant {
     return apart <= far + 2.0 * (view.shape().radius() + view.shape(other).radius());
   }
 
-  /// Calls `f(RoadUser)` for those in the lanes of the own road that are driven the other way, beside and ahead.
+  /// Calls `f(RoadUser)` for the road users beside and ahead in the oncoming lanes of the own road.
   template <class View, class F>
   static void for_each_oncoming(RssParameters const& p, View const& view, double speed, F const& f) {
     constexpr double fast = 50.0, beside = 20.0;  // [m/s], [m]
@@ -186,10 +193,10 @@ struct RssConformant {
     }
   }
 
-  /// What a road user takes up across the own lane corridor, and how it moves there.
+  /// Place, extent and velocity of a road user relative to the own lane corridor.
   struct Across {
-    double s{}, front{}, rear{};       ///< along the corridor, and how far it reaches [m]
-    double middle{}, left{}, right{};  ///< of the reference point and the sides, left positive [m]
+    double s{}, front{}, rear{};       ///< position along the corridor, and extent ahead and behind [m]
+    double middle{}, left{}, right{};  ///< lateral positions of the reference point and the sides, left positive [m]
     double along{}, aside{};           ///< speeds [m/s]
   };
 
@@ -230,7 +237,7 @@ struct RssConformant {
     if (!(at.side_gap > 0.0)) return;
     double const closing = std::max(0.0, at.is_left ? then.left - now.left : now.right - then.right);
     if (!(closing > rounding)) return;
-    // As it will be, if the other comes closer by as much.
+    // The situation at the end of the plan if the other comes closer by as much.
     double const toward = std::max(closing / dt, at.is_left ? then.aside : -then.aside);
     at.lateral_speed = at.is_left ? toward : -toward;
     at.side_gap = std::max(at.side_gap - 2.0 * closing, rounding);

@@ -9,17 +9,17 @@
 
 namespace cambium {
 
-/// Brakes to standstill, and steers to the middle of the lane that it is in.
+/// Brakes to a standstill and steers to the middle of its lane.
 struct Safety {
   double deceleration = 4.0;
   LaneChangeCourse course{};
 
   static constexpr char const* name = "safety";
-  static constexpr char const* summary = "brakes to standstill in the middle of its lane";
+  static constexpr char const* summary = "brakes to a standstill in the middle of its lane";
   static constexpr char const* source = "own";
   static constexpr auto parameters() {
     return parameter_list(parameter("deceleration", &Safety::deceleration, "m/s^2", Range{0.01, 50}, "of the braking"),
-                          parameter("course", &Safety::course, "-", {}, "how it comes to the middle of its lane"));
+                          parameter("course", &Safety::course, "-", {}, "how it steers to the middle of its lane"));
   }
 
   using Memory = LaneChange;
