@@ -115,7 +115,7 @@ TEST_CASE("a file without fault is read as it is written, without a finding") {
   for (Diagnostic const& d : r.diagnostics) MESSAGE(to_string(d));
   CHECK(r.diagnostics.empty());
   CHECK(r.document.header.rev_minor == 6);
-  CHECK(r.document.header.west == 4.0);
+  CHECK(r.document.header.rest.find_attribute("west")->value == "4");
   REQUIRE(r.document.roads.size() == 2);
   opendrive::Road const& road = r.document.roads[0];
   CHECK(road.id == "1");
@@ -185,7 +185,8 @@ TEST_CASE("what is no OpenDRIVE file at all is an error that says where, what an
 
 namespace {
 
-/// A fault, and what is to be said and done about it.
+/// A fault, and what is to be said and done about it; more of them, with the maps that they lead to, are in
+/// malformed_files_test.cpp.
 struct Fault {
   char const* name;
   char const* from;   ///< this text of the good file ...
@@ -196,20 +197,11 @@ struct Fault {
 };
 
 Fault const faults[]{
-    {"no header", R"(<header revMajor="1" revMinor="6" name="test" north="1" south="2" east="3" west="4"/>)", "",
-     "the file has no header", 0},
     {"header without revision", R"(revMajor="1" revMinor="6")", "", "", 0},
-    {"section without lane 0", R"(<center><lane id="0" type="none" level="false"/></center>)", "", "has no lane 0", 14},
-    {"arc of curvature 0", R"(curvature="0.01")", R"(curvature="0")", "", 0},
-    {"spiral that is an arc", R"(curvEnd="0")", R"(curvEnd="0.01")", "", 0},
-    {"zero-length geometry", R"(length="40"><arc curvature="0.01"/></geometry>)",
-     R"(length="40"><arc curvature="0.01"/></geometry><geometry s="100" x="1" y="1" hdg="0" length="0"><line/></geometry>)",
-     "length 0 was left out", 9},
     {"tiny geometry", R"(length="40"><arc curvature="0.01"/></geometry>)",
      R"(length="40"><arc curvature="0.01"/></geometry><geometry s="100" x="1" y="1" hdg="0" length="1e-15"><line/></geometry>)",
      "98.1842 m and 0.4 rad off the end", 9},
     {"negative length", R"(length="60")", R"(length="-60")", "the length is negative", 8, 1},
-    {"unknown geometry", "<line/>", "<clothoidSpline/>", "none of line, arc, spiral", 8, 1},
     {"straight poly3", "<line/>", R"(<poly3 a="0" b="0" c="0" d="0"/>)", "", 0},
     {"poly3 without a coefficient", "<line/>", R"(<poly3 a="0" b="0" c="0"/>)", "attribute d is missing", 8, 1},
     {"straight paramPoly3", "<line/>",
@@ -219,48 +211,22 @@ Fault const faults[]{
      "the curve is 60.6 m long, its length attribute says 60 m", 8},
     {"paramPoly3 without a range", "<line/>",
      R"(<paramPoly3 aU="0" bU="60" cU="0" dU="0" aV="0" bV="0" cV="0" dV="0"/>)", "normalized was taken", 8},
-    {"paramPoly3 of nothing", "<line/>",
-     R"(<paramPoly3 pRange="normalized" aU="0" bU="0" cU="0" dU="0" aV="0" bV="0" cV="0" dV="0"/>)", "has no length", 8,
-     1},
     {"geometry without a kind", "<line/>", "", "none of line, arc, spiral", 8, 1},
-    {"empty plan view",
-     R"(<geometry s="0" x="95" y="8" hdg="0.4" length="10"><spiral curvStart="0.01" curvEnd="0"/></geometry>)", "",
-     "has no geometry", 39, 1},
-    {"userData before the kind", "<line/>", "<userData code=\"x\"/><line/>", "", 0},
-    {"userData behind the kind", "<line/>", "<line/><userData code=\"x\"/>", "", 0},
-    {"comment in a geometry", "<line/>", "<!-- <arc/> --><line/>", "", 0},
-    {"gap in the lane ids", R"(<lane id="-2")", R"(<lane id="-4")", "no lane between -1 and -4", 23},
     {"lane id that is no number", R"(<lane id="-2")", R"(<lane id="two")", "id=\"two\" is not a finite whole number",
      23},
     {"lane id twice", R"(<lane id="-2")", R"(<lane id="-1")", "lane id -1 is there twice", 23},
     {"lane on the wrong side", R"(<lane id="1")", R"(<lane id="-1")", "lane -1 is written as left", 43},
-    {"negative width", R"(a="3.5")", R"(a="-0.5")", "its width falls to -0.5 m", 17},
     {"wild width", R"(a="3.5" b="0")", R"(a="3.5" b="1e9")", "reaches 7e+10 m; it was left out", 17},
     {"jump in the plan view", R"(s="60" x="60")", R"(s="60" x="61")", "it starts 1 m and 0 rad off the end", 9},
     {"jump to another place", R"(s="60" x="60")", R"(s="60" x="6000")", "5940 m and 0 rad off the end", 9, 1},
     {"wild heading", R"(hdg="0" length="60")", R"(hdg="1e300" length="60")", "hdg is beyond", 8, 1},
     {"section before the road", R"(<laneSection s="0">)", R"(<laneSection s="-5">)", "counts from the road's start",
      14},
-    {"no width", R"(<width sOffset="0" a="2" b="0" c="0" d="0"/>)", "", "neither width nor border", 23},
-    {"width that is not a number", R"(a="3.5")", R"(a="NaN")", "a=\"NaN\" is not a finite number", 19},
-    {"infinite width", R"(a="3.5")", R"(a="inf")", "a=\"inf\" is not a finite number", 19},
-    {"comma in a number", R"(a="3.5")", R"(a="3,5")", "a=\"3,5\" is not a finite number", 19},
-    {"text in a number", R"(x="60")", R"(x="60 m")", "x=\"60 m\" is not a finite number", 9, 1},
     {"missing attribute", R"( hdg="0" length="60")", R"( length="60")", "attribute hdg is missing", 8, 1},
-    {"road longer than its geometry", R"(length="100")", R"(length="130")", "geometries end at 100 m", 4},
     {"road without length", R"( length="100")", "", "the length is missing", 4},
     {"geometries with a gap in s", R"(s="60" x="60")", R"(s="60.5" x="60")", "0.5 m behind the end", 9},
-    {"lane offset that starts late", R"(laneOffset s="0")", R"(laneOffset s="20")", "", 0},
-    {"width that starts late", R"(<width sOffset="0" a="2")", R"(<width sOffset="9" a="2")",
-     "first width record starts", 23},
-    {"road id twice", R"(id="2" junction="7")", R"(id="1" junction="7")", "id 1 is there twice", 37, 1},
     {"road without id", R"(id="2" junction="7")", R"(junction="7")", "it has no id", 37, 1},
-    {"link to a road that is not there", R"(elementId="2")", R"(elementId="55")", "no usable road 55", 5},
-    {"connection to a road that is not there", R"(connectingRoad="2")", R"(connectingRoad="99")",
-     "no usable road \"99\"", 48},
     {"junction that is not there", R"(junction="7")", R"(junction="8")", "no junction 8", 37},
-    {"no contact point", R"( contactPoint="start")", "", "contactPoint is missing", 5},
-    {"lane section behind the end", R"(<laneSection s="70">)", R"(<laneSection s="170">)", "behind the road's end", 26},
     {"lane link to a lane that is not there", R"(<successor id="-1"/>)", R"(<successor id="-8"/>)", "no lane -8", 17},
     {"no lane sections", R"(<laneSection s="0">
       <left>)",

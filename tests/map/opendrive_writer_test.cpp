@@ -16,6 +16,7 @@
 
 #include "../support/corpus.hpp"
 #include "cambium/core/distributions.hpp"
+#include "cambium/core/parameters.hpp"
 #include "cambium/core/random.hpp"
 #include "../support/maps.hpp"
 #include "cambium/map/opendrive.hpp"
@@ -55,7 +56,7 @@ std::string canonical(std::string value) {
   if (value == "true" || value == "yes") value = "1";
   if (value == "false" || value == "no" || value == "none" || value == "default" || value.empty()) value = "0";
   auto const number = cambium::map::detail::parse_number<double>(value);
-  return number ? cambium::map::detail::number_text(*number + 0.0) : value;
+  return number ? cambium::detail::number_text(*number + 0.0) : value;
 }
 
 void take_census(pugi::xml_node node, std::string const& parent, Census& census) {
@@ -231,7 +232,9 @@ TEST_CASE("numbers are written as short as they can be") {
 
 TEST_CASE("a section that spoke for one side is written for both, with records from its own start on") {
   auto text =
-      road_with("<line/>", "<roadMark sOffset=\"5\" type=\"solid\"/><roadMark sOffset=\"25\" type=\"broken\"/>");
+      road_with("<line/>",
+                "<roadMark sOffset=\"5\" type=\"solid\"/><roadMark sOffset=\"25\" type=\"broken\"/>"
+                "<access sOffset=\"0\"/><access sOffset=\"9\"/><rule sOffset=\"0\"/><access sOffset=\"25\"/><note/>");
   auto const end = text.find("</lanes>");
   text.insert(
       end,
@@ -251,6 +254,12 @@ TEST_CASE("a section that spoke for one side is written for both, with records f
   REQUIRE(lane->road_marks.size() == 2);
   CHECK(lane->road_marks[0].s_offset == 0.0);
   CHECK(lane->road_marks[1].s_offset == 5.0);
+  // What the library makes no use of, too: the access at 9 m is in force at the section's start.
+  std::vector<opendrive::Element> const expected{{"access", {{"sOffset", "0"}}, {}, ""},
+                                                 {"rule", {{"sOffset", "0"}}, {}, ""},
+                                                 {"access", {{"sOffset", "5"}}, {}, ""},
+                                                 {"note", {}, {}, ""}};
+  CHECK(lane->rest.elements == expected);
   CHECK(read(write_opendrive(document)) == document);
 }
 

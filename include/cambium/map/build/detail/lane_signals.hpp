@@ -55,8 +55,7 @@ class LaneSignals {
 
  private:
   /// `place` says where it counts: the signal itself, or a reference to it.
-  template <class Place>
-  void add(opendrive::Signal const& signal, Place const& place, Lane& lane) {
+  void add(opendrive::Signal const& signal, opendrive::Signal const& place, Lane& lane) {
     auto const kind = kind_of(signal);
     auto const way = lane.along_road ? opendrive::Orientation::along : opendrive::Orientation::against;
     if (!kind || (place.orientation != opendrive::Orientation::both && place.orientation != way)) return;

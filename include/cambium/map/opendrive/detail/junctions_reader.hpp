@@ -61,8 +61,6 @@ inline void read_road_links(XmlContext& context, pugi::xml_node road_node, opend
       junction.connections.push_back(read_connection(context, child));
     else if (name == "priority")
       append_leaf(context, child, junction.priorities);
-    else if (name == "controller")
-      append_leaf(context, child, junction.controllers);
     else
       keep_element(context, child, junction.rest);
   });

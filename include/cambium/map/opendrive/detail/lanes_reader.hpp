@@ -115,8 +115,6 @@ inline void read_lane_children(XmlContext& context, pugi::xml_node node, opendri
     if (name == "border") return append_cubic(context, child, "sOffset", lane.borders);
     if (name == "roadMark") return append_leaf(context, child, lane.road_marks);
     if (name == "height") return append_leaf(context, child, lane.heights);
-    if (name == "access") return append_leaf(context, child, lane.accesses);
-    if (name == "rule") return append_leaf(context, child, lane.rules);
     if (name == "speed") return append_lane_speed(context, child, lane.speeds);
     if (name != "link") keep_element(context, child, lane.rest);
   });
@@ -125,8 +123,6 @@ inline void read_lane_children(XmlContext& context, pugi::xml_node node, opendri
   sort_records(context, node, lane.road_marks, &opendrive::RoadMark::s_offset, "road marks");
   sort_records(context, node, lane.speeds, &opendrive::SpeedRecord::s, "speed records");
   sort_records(context, node, lane.heights, &opendrive::LaneHeight::s_offset, "height records");
-  sort_records(context, node, lane.accesses, &opendrive::LaneAccess::s_offset, "access records");
-  sort_records(context, node, lane.rules, &opendrive::LaneRule::s_offset, "rule records");
 }
 
 inline void check_lane_width(XmlContext& context, pugi::xml_node node, opendrive::Lane const& lane) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <charconv>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -9,12 +8,6 @@
 #include "cambium/core/error.hpp"
 
 namespace cambium::map::detail {
-
-/// The shortest text that spells the finite `value`, in the C locale.
-[[nodiscard]] inline std::string number_text(double value) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, value).ptr};
-}
 
 /// Grows an XML text element by element, indented by two blanks a level; where an element has text, nothing is added
 /// to what it holds.
