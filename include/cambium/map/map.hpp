@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -21,7 +20,6 @@
 #include "cambium/geometry/pose.hpp"
 #include "cambium/geometry/shape.hpp"
 #include "cambium/map/lanes/detail/find_lane.hpp"
-#include "cambium/map/lanes/detail/follow_lane.hpp"
 #include "cambium/map/lanes/lane.hpp"
 #include "cambium/map/lanes/lane_tree.hpp"
 #include "cambium/map/map_queries.hpp"

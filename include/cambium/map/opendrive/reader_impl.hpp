@@ -15,7 +15,7 @@
 #include "cambium/core/diagnostic.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
-#include "cambium/map/detail/likely_cause.hpp"
+#include "cambium/map/detail/findings.hpp"
 #include "cambium/map/detail/read_map_file.hpp"
 #include "cambium/map/opendrive/check.hpp"
 #include "cambium/map/opendrive/detail/junctions_reader.hpp"

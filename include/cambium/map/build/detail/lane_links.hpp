@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "cambium/core/diagnostic.hpp"
 #include "cambium/map/build/detail/road_links.hpp"
+#include "cambium/map/detail/findings.hpp"
 #include "cambium/map/lanes/lane.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/opendrive/document.hpp"
@@ -26,9 +25,8 @@ inline void join_lanes(Lane& from, Lane& to) {
 /// junctions) joins what is driven into that place with what is driven out of it; "elementDir" is not needed for that.
 class LaneLinker {
  public:
-  LaneLinker(RoadLinks const& links, std::vector<Lane>& lanes, std::string const& file,
-             std::vector<Diagnostic>& diagnostics)
-      : links_(links), roads_(links.roads()), lanes_(lanes), file_(file), diagnostics_(diagnostics) {}
+  LaneLinker(RoadLinks const& links, std::vector<Lane>& lanes, Findings& findings)
+      : links_(links), roads_(links.roads()), lanes_(lanes), findings_(findings) {}
 
   void link() {
     auto const& document = links_.document();
@@ -50,7 +48,7 @@ class LaneLinker {
   }
 
   void warn(int line, std::string element, std::string ids, std::string sentence) const {
-    diagnostics_.push_back({Severity::warning, file_, line, std::move(element), std::move(ids), std::move(sentence)});
+    findings_.add(Severity::warning, line, std::move(element), std::move(ids), std::move(sentence));
   }
 
   [[nodiscard]] bool is_written(SectionEnds const& ends, int number) const {
@@ -175,8 +173,7 @@ class LaneLinker {
   RoadLinks const& links_;
   std::vector<Road> const& roads_;
   std::vector<Lane>& lanes_;
-  std::string const& file_;
-  std::vector<Diagnostic>& diagnostics_;
+  Findings& findings_;
 };
 
 }  // namespace cambium::map::detail

@@ -1,15 +1,14 @@
 #pragma once
 
 #include <algorithm>
-#include <cstddef>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "cambium/core/diagnostic.hpp"
 #include "cambium/map/build/detail/lane_links.hpp"
 #include "cambium/map/build/detail/road_links.hpp"
+#include "cambium/map/detail/findings.hpp"
 #include "cambium/map/detail/network_check.hpp"
 #include "cambium/map/lanes/lane.hpp"
 #include "cambium/map/lanes/lane_network.hpp"
@@ -21,9 +20,8 @@ namespace cambium::map::detail {
 /// links of their roads (or that there are none) permit it.
 class MissingLinks {
  public:
-  MissingLinks(RoadLinks const& links, std::vector<Lane>& lanes, std::string const& file,
-               std::vector<Diagnostic>& diagnostics)
-      : links_(links), lanes_(lanes), file_(file), diagnostics_(diagnostics) {}
+  MissingLinks(RoadLinks const& links, std::vector<Lane>& lanes, Findings& findings)
+      : links_(links), lanes_(lanes), findings_(findings) {}
 
   /// Reports the possible links, and enters them when asked to. The lanes that were left as dead ends.
   [[nodiscard]] std::set<LaneId> find(bool infer) {
@@ -104,14 +102,13 @@ class MissingLinks {
   void report(Severity severity, Lane const& lane, std::string sentence) {
     auto const& road = links_.document().roads[index_of(lane.road)];
     auto const* written = road.lane_sections[lane.section].find(lane.number);
-    diagnostics_.push_back({severity, file_, written != nullptr ? static_cast<int>(written->line) : 0, "link",
-                            "road " + road.id + ", lane " + std::to_string(lane.number), std::move(sentence)});
+    findings_.add(severity, written != nullptr ? static_cast<int>(written->line) : 0, "link",
+                  "road " + road.id + ", lane " + std::to_string(lane.number), std::move(sentence));
   }
 
   RoadLinks const& links_;
   std::vector<Lane>& lanes_;
-  std::string const& file_;
-  std::vector<Diagnostic>& diagnostics_;
+  Findings& findings_;
 };
 
 }  // namespace cambium::map::detail

@@ -14,7 +14,6 @@
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/build/detail/document_index.hpp"
 #include "cambium/map/build/detail/make_road.hpp"
-#include "cambium/map/build/make_roads.hpp"
 #include "cambium/map/build/road_plan.hpp"
 #include "cambium/map/opendrive/document.hpp"
 #include "cambium/map/road/cubic.hpp"

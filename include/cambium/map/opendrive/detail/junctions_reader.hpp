@@ -2,7 +2,6 @@
 
 #include <optional>
 #include <string_view>
-#include <utility>
 
 #include "cambium/map/opendrive/detail/attribute_reader.hpp"
 #include "cambium/map/opendrive/document.hpp"
