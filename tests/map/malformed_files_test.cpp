@@ -2,7 +2,6 @@
 // error, or what is said and what the map then is.
 #include <doctest/doctest.h>
 
-#include <cmath>
 #include <cstddef>
 #include <filesystem>
 #include <fstream>

@@ -26,10 +26,8 @@ std::string refusal(cambium::Map const& map, double s, int number) {
 }  // namespace
 
 TEST_CASE("a map's bounds hold all its lanes, of any type, and nothing more") {
-  road_text::Road road;
-  road.x = 20;
-  road.y = -5;
-  road.sections[0].lanes = {{.id = 1}, {.id = -1}, {.id = -2, .type = "sidewalk", .width = 2.0}};
+  road_text::Road road{
+      .x = 20, .y = -5, .sections = {{.lanes = {{.id = 1}, {.id = -1}, {.id = -2, .type = "sidewalk", .width = 2.0}}}}};
   auto const loaded = road_text::load(road_text::file({road}));
   auto const& box = loaded.map->bounds();
   CHECK(box.min_x == doctest::Approx(20));
@@ -62,11 +60,10 @@ TEST_CASE("the bounds of curved lanes hold every point of their borders") {
 }
 
 TEST_CASE("who asks for a lane that is not there is told where it is") {
-  road_text::Road road;
-  road.sections = {{20, {{.id = 1}, {.id = -1}}},
-                   {30, {{.id = -1}, {.id = -2}}},
-                   {50, {{.id = -1}}},
-                   {70, {{.id = -1}, {.id = -2}}}};
+  road_text::Road road{.sections = {{20, {{.id = 1}, {.id = -1}}},
+                                    {30, {{.id = -1}, {.id = -2}}},
+                                    {50, {{.id = -1}}},
+                                    {70, {{.id = -1}, {.id = -2}}}}};
   auto const loaded = road_text::load(road_text::file({road}));
   auto const& map = *loaded.map;
   REQUIRE(map.roads()[0].sections.size() == 4);

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <limits>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "cambium/map/opendrive.hpp"
 #include "cambium/map/opendrive/reader.hpp"
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"
+#include "road_text.hpp"
 
 namespace {
 
@@ -18,6 +18,8 @@ using namespace cambium::map;
 using cambium::Diagnostic;
 using cambium::MapError;
 using cambium::Severity;
+using road_text::read;
+using road_text::Reading;
 
 /// Two roads and a junction without fault; tests change a place in it.
 std::string const good_file = R"(<?xml version="1.0"?>
@@ -76,24 +78,6 @@ std::string replaced(std::string text, std::string const& from, std::string cons
   std::size_t const at = text.find(from);
   REQUIRE_MESSAGE(at != text.npos, "the test's file has no " << from);
   return text.replace(at, from.size(), to);
-}
-
-struct Reading {
-  OpenDriveDocument document;
-  std::vector<Diagnostic> diagnostics;
-
-  /// The first finding whose sentence holds `words`.
-  [[nodiscard]] Diagnostic const* find(std::string const& words) const {
-    for (Diagnostic const& d : diagnostics)
-      if (d.sentence.find(words) != std::string::npos) return &d;
-    return nullptr;
-  }
-};
-
-Reading read(std::string const& text) {
-  Reading reading;
-  reading.document = cambium::map::read_opendrive_document(text, "test.xodr", reading.diagnostics);
-  return reading;
 }
 
 /// What the error says that reading `text` must end with.
@@ -346,29 +330,6 @@ TEST_CASE("a truncated or mutilated file never does worse than an error") {
     readable += error_of(text).empty() ? 1 : 0;
   }
   CHECK(readable > 1000);
-}
-
-TEST_CASE("every map of the corpus is read, or refused for a geometry that comes later") {
-  auto const folder = corpus::find("opendrive");
-  if (!folder) return;
-  auto const maps = corpus::maps(*folder);
-  CHECK(maps.size() == 28);
-  std::size_t roads = 0;
-  int refused = 0;
-  for (auto const& map : maps) {
-    std::vector<Diagnostic> diagnostics;
-    try {
-      roads +=
-          cambium::map::read_opendrive_document(corpus::read(map), map.filename().string(), diagnostics).roads.size();
-    } catch (MapError const& error) {
-      ++refused;
-      CHECK(contains(error.what(), "not supported yet"));
-    }
-    for (Diagnostic const& d : diagnostics) CHECK_FALSE(contains(d.sentence, "was left out"));
-  }
-  MESSAGE(roads << " roads of " << maps.size() << " maps, " << refused << " maps refused");
-  CHECK(roads >= 690);
-  CHECK(refused <= 2);
 }
 
 TEST_CASE("our own maps are read without a finding, and their lines go on without gap or kink") {

@@ -11,29 +11,13 @@
 #include "cambium/map/opendrive/reading_limits.hpp"
 #include "cambium/map/opendrive/writer.hpp"
 #include "../support/maps.hpp"
+#include "road_text.hpp"
 
 namespace {
 
 using namespace cambium::map;
-using cambium::Diagnostic;
 using opendrive::Orientation;
-
-struct Reading {
-  OpenDriveDocument document;
-  std::vector<Diagnostic> diagnostics;
-
-  [[nodiscard]] Diagnostic const* find(std::string const& words) const {
-    for (Diagnostic const& d : diagnostics)
-      if (d.sentence.find(words) != std::string::npos) return &d;
-    return nullptr;
-  }
-};
-
-Reading read(std::string const& text) {
-  Reading reading;
-  reading.document = cambium::map::read_opendrive_document(text, "test.xodr", reading.diagnostics);
-  return reading;
-}
+using road_text::read;
 
 /// A file with one road; a test says what it holds beside a plan view and lanes.
 std::string file_with(std::string const& in_road, std::string const& in_root = "", std::string const& in_lane = "") {

@@ -2,14 +2,12 @@
 
 #include <doctest/doctest.h>
 
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <limits>
 #include <map>
 #include <memory>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <pugixml.hpp>
@@ -33,13 +31,6 @@ using cambium::MapError;
 OpenDriveDocument read(std::string const& text) {
   std::vector<Diagnostic> diagnostics;
   return cambium::map::read_opendrive_document(text, "test.xodr", diagnostics);
-}
-
-std::vector<std::filesystem::path> all_maps() {
-  auto files = corpus::maps(std::filesystem::path(CAMBIUM_SOURCE_DIR) / "maps");
-  if (auto const folder = corpus::find("opendrive"))
-    for (auto const& file : corpus::maps(*folder)) files.push_back(file);
-  return files;
 }
 
 std::size_t count(std::string const& text, std::string const& words) {
@@ -93,7 +84,7 @@ std::string road_with(std::string const& planview, std::string const& in_lane = 
 }  // namespace
 
 TEST_CASE("every map that was read and written is read as the same document, and written as the same text") {
-  auto const maps = all_maps();
+  auto const maps = corpus::all_maps();
   CHECK(maps.size() >= 3);
   for (auto const& file : maps) {
     CAPTURE(file.string());
@@ -106,7 +97,7 @@ TEST_CASE("every map that was read and written is read as the same document, and
 }
 
 TEST_CASE("no element of a map gets lost by being read and written, and no attribute that says more than nothing") {
-  for (auto const& file : all_maps()) {
+  for (auto const& file : corpus::all_maps()) {
     CAPTURE(file.string());
     auto text = corpus::read(file);
     auto const before = census_of(text);

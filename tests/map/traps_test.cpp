@@ -238,8 +238,7 @@ TEST_CASE("lanes on either side of a gap in the ids are neighbours") {
 }
 
 TEST_CASE("a lane with several predecessors is entered from each of them") {
-  Road road;
-  road.sections = {{0.0, {{-1, {}, {-1}}, {-2, {}, {-1}}}}, {50.0, {{-1, {-1, -2}, {}}}}};
+  Road road{.sections = {{0.0, {{-1, {}, {-1}}, {-2, {}, {-1}}}}, {50.0, {{-1, {-1, -2}, {}}}}}};
   auto const loaded = load(file({road}), false);
   CHECK(leads(loaded, {"1", 10.0, -1}, {"1", 60.0, -1}));
   CHECK(leads(loaded, {"1", 10.0, -2}, {"1", 60.0, -1}));
@@ -268,8 +267,7 @@ TEST_CASE("a right lane's border that is given as a magnitude lies to the right"
 }
 
 TEST_CASE("a header without attributes, and words of any revision in any other, are read") {
-  Road road;
-  road.sections[0].lanes = {{1}, {.id = -1, .direction = "reversed"}};
+  Road road{.sections = {{.lanes = {{1}, {.id = -1, .direction = "reversed"}}}}};
   auto text = file({road});
   for (auto const* header : {"<header/>", "<header revMajor=\"1\" revMinor=\"1\"/>", "<header revMinor=\"99\"/>"}) {
     auto changed = text;
