@@ -20,6 +20,12 @@
 #include "cambium/map/lanes/lane.hpp"
 #include "cambium/map/lanes/overlaps.hpp"
 
+/// How overlaps are found. The paths of all drivable lanes become chords, straight to within 1 cm, and a tree of their
+/// boxes gives the pairs of chords that come closer than the clearance. Each such pair is a contact: a stretch on
+/// either lane. Contacts of the same two lanes that touch each other are joined, and the ends of what results are
+/// refined on the exact paths. Lanes are also close for harmless reasons, and those contacts are dropped: lanes of one
+/// road side by side, lanes one behind the other near their joint, and a bridge over a road. What is left is a merge, a
+/// split or a crossing, told apart by the angle between the lanes and by the lanes that they share at their ends.
 namespace cambium::map {
 
 namespace detail {

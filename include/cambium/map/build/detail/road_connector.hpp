@@ -21,6 +21,16 @@
 #include "cambium/map/road/reference_line.hpp"
 #include "cambium/map/road/road.hpp"
 
+/// Connecting roads. OpenDRIVE says in three places what follows what: in the link of a road, in the links of its
+/// lanes, and in the connections of junctions. `RoadConnector` makes one call of `MapBuilder::connect` enter all that
+/// belong together. Which ones these are depends on the two road ends:
+///
+///     both free                       road links and lane links, in both directions
+///     one is of a connecting road     the other road is linked to the junction, which gets connections
+///     one is linked elsewhere         a fork: the links that there are become connections of a direct junction
+///
+/// The functions before the class answer what it has to know of roads: which lanes leave an end, where their borders
+/// are there, and which lanes of two roads face each other.
 namespace cambium::map {
 
 namespace detail {

@@ -12,6 +12,17 @@
 #include "cambium/map/road/reference_line.hpp"
 #include "cambium/map/road/road.hpp"
 
+/// From exact roads to sampled lanes. The borders of a section's lanes are curves t(s) beside the reference line, given
+/// by cubics. All lanes of a section are sampled at the same stations, in cross-sections, so that neighbours share the
+/// points of their common border.
+///
+///     left border    o-----o-----------o---o--o       a cross-section is one column; where the road bends or a lane
+///     border         o-----o-----------o---o--o       widens, columns are closer together
+///     right border   o-----o-----------o---o--o
+///
+/// Where a geometry or a record begins, there is always a cross-section. Between two of these breaks the curves are
+/// smooth, and an interval is halved until every border and centre line keeps within the tolerances of its chord, in
+/// position and in heading. A step or a kink at a break gets a second cross-section a millimetre before it.
 namespace cambium::map::detail {
 
 /// The cross-section of a road at one station: the reference line and the t of every lane border, from left to right.

@@ -13,6 +13,13 @@
 #include "cambium/map/corridor/corridor.hpp"
 #include "cambium/map/map.hpp"
 
+/// Conflict zones: at which places two bodies touch, one on the corridor, the other on another lane.
+///
+/// Both bodies are put at places half a metre apart, as oriented boxes on the exact poses of their paths; a box that
+/// touches at least one box of the other lane contributes a zone from the first touched place to the last. Zones that
+/// leave no room to wait between them are joined (`add_zone`). Two complications remain. A body can reach beyond the
+/// end of its lane, where ways may part: then all of them count (`tracks`). And trying all pairs would be slow: from
+/// the distance of two boxes follows how many places cannot touch, and these are skipped (`places_apart`).
 namespace cambium::map::detail {
 
 /// Adds to `ways` those on from the end of lane `at` (`ahead`; else back from its begin), over `reach` [m] or to where

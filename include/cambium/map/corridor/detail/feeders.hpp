@@ -12,6 +12,18 @@
 #include "cambium/map/corridor/corridor.hpp"
 #include "cambium/map/map.hpp"
 
+/// Feeders: vehicles in other lanes that a driver on the corridor has to keep a gap to.
+///
+/// Car following needs one axis on which leader and follower have positions. A vehicle that is about to merge is not on
+/// the corridor, so it gets an image there: its distance from the point where the two lanes become one, laid off on the
+/// corridor, back from the same point. A feeder is a stretch of a lane with such images.
+///
+///     corridor  ----------[ image of the feeder ]+------------> s
+///                                               /
+///     ramp          =====[ feeder: merge_view ]'
+///
+/// There are three kinds: the overlaps with lanes that merge in or have just split off, the lanes behind the corridor's
+/// begin, and the lanes that lead to a merge. A stretch of a lane has one image only: a kind named earlier wins.
 namespace cambium::map::detail {
 
 /// Finds the feeders of a lane corridor whose `pieces` are there already, see `build_road_corridor`. No stretch of a
