@@ -141,7 +141,7 @@ TEST_CASE("joined lanes that do not meet are reported with their distance, those
   CHECK(load(two_roads(100, 0, 0, true)).diagnostics.empty());
   CHECK(load(two_roads(100, 0.009, 0, true)).diagnostics.empty());
   auto const gap = load(two_roads(100, 0.25, 0, true));
-  CHECK(count(gap, Severity::warning, "goes on 0.25 m away from where it ends") == 1);
+  CHECK(count(gap, Severity::warning, "continues 0.25 m away from where it ends") == 1);
   CHECK(leads(gap, {"1", 1, -1}, {"2", 1, -1}));
   auto const kink = load(two_roads(100, 0, 0.15, true));
   CHECK(count(kink, Severity::info, "0.15 rad off its direction") == 1);
@@ -193,7 +193,7 @@ TEST_CASE("a lane that ends although its own goes on behind the road's link is r
   // too far for a possible link
   Road b{.id = "2", .x = 101, .before = to_end("1")};
   auto const loaded = load(file({a, b}));
-  CHECK(count(loaded, Severity::warning, "it ends here, but lane -1 of road 2 goes on behind it") == 1);
+  CHECK(count(loaded, Severity::warning, "it ends here, but lane -1 of road 2 continues from there") == 1);
   b.sections[0].lanes[0].id = -2;
   b.sections[0].lanes.insert(b.sections[0].lanes.begin(), {.id = -1, .type = "sidewalk"});
   CHECK(count(load(file({a, b})), Severity::warning) == 0);

@@ -82,12 +82,7 @@ std::string replaced(std::string text, std::string const& from, std::string cons
 
 /// What the error says that reading `text` must end with.
 std::string error_of(std::string const& text) {
-  try {
-    (void)read(text);
-  } catch (MapError const& error) {
-    return error.what();
-  }
-  return "";
+  return support::error_of([&] { (void)read(text); });
 }
 
 bool contains(std::string const& text, std::string const& words) { return text.find(words) != std::string::npos; }
@@ -194,11 +189,11 @@ Fault const faults[]{
      R"(<paramPoly3 pRange="arcLength" aU="0" bU="1.01" cU="0" dU="0" aV="0" bV="0" cV="0" dV="0"/>)",
      "the curve is 60.6 m long, its length attribute says 60 m", 8},
     {"paramPoly3 without a range", "<line/>",
-     R"(<paramPoly3 aU="0" bU="60" cU="0" dU="0" aV="0" bV="0" cV="0" dV="0"/>)", "normalized was taken", 8},
-    {"geometry without a kind", "<line/>", "", "none of line, arc, spiral", 8, 1},
+     R"(<paramPoly3 aU="0" bU="60" cU="0" dU="0" aV="0" bV="0" cV="0" dV="0"/>)", "normalized is assumed", 8},
+    {"geometry without a kind", "<line/>", "", "not a line, arc, spiral", 8, 1},
     {"lane id that is no number", R"(<lane id="-2")", R"(<lane id="two")", "id=\"two\" is not a finite whole number",
      23},
-    {"lane id twice", R"(<lane id="-2")", R"(<lane id="-1")", "lane id -1 is there twice", 23},
+    {"lane id twice", R"(<lane id="-2")", R"(<lane id="-1")", "lane id -1 occurs twice", 23},
     {"lane on the wrong side", R"(<lane id="1")", R"(<lane id="-1")", "lane -1 is written as left", 43},
     {"wild width", R"(a="3.5" b="0")", R"(a="3.5" b="1e9")", "reaches 7e+10 m; it was left out", 17},
     {"jump in the plan view", R"(s="60" x="60")", R"(s="60" x="61")", "it starts 1 m and 0 rad off the end", 9},
@@ -208,17 +203,17 @@ Fault const faults[]{
      14},
     {"missing attribute", R"( hdg="0" length="60")", R"( length="60")", "attribute hdg is missing", 8, 1},
     {"road without length", R"( length="100")", "", "the length is missing", 4},
-    {"geometries with a gap in s", R"(s="60" x="60")", R"(s="60.5" x="60")", "0.5 m behind the end", 9},
+    {"geometries with a gap in s", R"(s="60" x="60")", R"(s="60.5" x="60")", "0.5 m beyond the end", 9},
     {"road without id", R"(id="2" junction="7")", R"(junction="7")", "it has no id", 37, 1},
     {"junction that is not there", R"(junction="7")", R"(junction="8")", "no junction 8", 37},
     {"lane link to a lane that is not there", R"(<successor id="-1"/>)", R"(<successor id="-8"/>)", "no lane -8", 17},
     {"no lane sections", R"(<laneSection s="0">
       <left>)",
      R"(<other s="0"><left>)", "XML", 0, 0},
-    {"unknown lane type", R"(type="shoulder")", R"(type="hovercraft")", "\"hovercraft\" is not known", 23},
-    {"unknown unit", R"(unit="mph")", R"(unit="knots")", "none of m/s, km/h, mph", 6},
+    {"unknown lane type", R"(type="shoulder")", R"(type="hovercraft")", "\"hovercraft\" is unknown", 23},
+    {"unknown unit", R"(unit="mph")", R"(unit="knots")", "not one of m/s, km/h, mph", 6},
     {"curl without end", R"(curvature="0.01")", R"(curvature="1e9")", "more than 100 rad", 9, 1},
-    {"unknown rule", R"(rule="LHT")", R"(rule="MIDDLE")", "none of RHT, LHT", 37},
+    {"unknown rule", R"(rule="LHT")", R"(rule="MIDDLE")", "not one of RHT, LHT", 37},
 };
 
 }  // namespace
@@ -276,12 +271,6 @@ TEST_CASE("geometries in the wrong order are sorted, with their lines") {
   CHECK(r.document.roads[0].geometry_length() == 100.0);
 }
 
-TEST_CASE("several predecessors of a lane are all kept") {
-  Reading const r =
-      read(replaced(good_file, R"(<predecessor id="-1"/>)", R"(<predecessor id="-1"/><predecessor id="-2"/>)"));
-  CHECK(r.document.roads[0].lane_sections[1].find(-1)->predecessors == std::vector{-1, -2});
-}
-
 TEST_CASE("speed limits are in m/s, none is infinite, undefined is empty") {
   auto const limit = [](char const* speed) {
     return read(replaced(good_file, R"(max="50" unit="mph")", speed)).document.roads[0].types[0].limit;
@@ -327,7 +316,7 @@ TEST_CASE("a truncated or mutilated file never does worse than an error") {
   for (std::size_t at = 60; at < good_file.size(); ++at) {  // one character goes: attributes, numbers and names are hit
     std::string text = good_file;
     text.erase(at, 1);
-    readable += error_of(text).empty() ? 1 : 0;
+    readable += error_of(text) == "no error" ? 1 : 0;
   }
   CHECK(readable > 1000);
 }
@@ -367,26 +356,4 @@ TEST_CASE("the merging map's ramp ends where the acceleration lane begins, and b
     double const lateral = std::cos(main.heading) * (p.y - main.y) - std::sin(main.heading) * (p.x - main.x);
     CHECK(lateral < -7.0);
   }
-}
-
-TEST_CASE("a section that speaks for one side leaves the other side's lanes as they go on") {
-  std::string const text = R"(<OpenDRIVE><header revMajor="1" revMinor="6"/><road id="1" length="100" junction="-1">
-    <planView><geometry s="0" x="0" y="0" hdg="0" length="100"><line/></geometry></planView><lanes>
-    <laneSection s="0"><left><lane id="1" type="driving"><width sOffset="0" a="3" b="0" c="0" d="0"/></lane></left>
-    <center><lane id="0" type="none"/></center><right>
-    <lane id="-1" type="driving"><width sOffset="0" a="2" b="0.01" c="0" d="0"/></lane></right></laneSection>
-    <laneSection s="40" singleSide="true"><left>
-    <lane id="2" type="driving"><link><successor id="1"/></link><width sOffset="0" a="1" b="0" c="0" d="0"/></lane>
-    <lane id="1" type="driving"><link><predecessor id="1"/></link><width sOffset="0" a="3" b="0" c="0" d="0"/></lane>
-    </left><center><lane id="0" type="none"/></center></laneSection></lanes></road></OpenDRIVE>)";
-  Reading const r = read(text);
-  auto const& sections = r.document.roads[0].lane_sections;
-  REQUIRE(sections.size() == 2);
-  auto const* lane = sections[1].find(-1);
-  REQUIRE(lane != nullptr);
-  CHECK(lane->predecessors == std::vector{-1});
-  CHECK(sections[0].find(-1)->successors == std::vector{-1});
-  CHECK(CubicProfile(lane->widths).value(30.0) == doctest::Approx(2.7));  // 70 m from the road's start
-  CHECK(sections[1].find(2) != nullptr);
-  CHECK(sections[1].find(-1)->widths.size() == 1);
 }

@@ -238,6 +238,8 @@ TEST_CASE("a section that spoke for one side is written for both, with records f
   CHECK_FALSE(section.single_side);
   auto const* const lane = section.find(-1);
   REQUIRE(lane);
+  CHECK(lane->predecessors == std::vector{-1});
+  CHECK(document.roads[0].lane_sections[0].find(-1)->successors == std::vector{-1});
   REQUIRE(lane->widths.size() == 1);
   CHECK(lane->widths[0].s == 0.0);
   CHECK(lane->widths[0].value(0.0) == doctest::Approx(3.2));

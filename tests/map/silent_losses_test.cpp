@@ -23,7 +23,8 @@ using Counts = std::map<std::string, int>;
 /// The elements and attributes of OpenDRIVE 1.8 that describe roads, those that the reader makes no use of too, and
 /// user data.
 char const* const everything = R"(<OpenDRIVE>
-<header revMajor="1" revMinor="8" name="everything" version="1" date="today" north="4" south="3" east="2" west="1" vendor="v"><geoReference>+proj=utm</geoReference><offset x="1" y="2" z="3" hdg="0"/></header>
+<header revMajor="1" revMinor="8" name="everything" version="1" date="today" north="4" south="3" east="2" west="1"
+    vendor="v"><geoReference>+proj=utm</geoReference><offset x="1" y="2" z="3" hdg="0"/></header>
 <road id="1" length="50" junction="-1" name="all" rule="LHT">
   <link><predecessor elementType="road" elementId="2" contactPoint="end"/>
         <successor elementType="junction" elementId="7"/></link>
@@ -38,41 +39,56 @@ char const* const everything = R"(<OpenDRIVE>
   </planView>
   <elevationProfile><elevation s="0" a="1" b="0" c="0" d="0"/></elevationProfile>
   <lateralProfile><superelevation s="0" a="0.01" b="0" c="0" d="0"/>
-    <crossfall s="0" a="0.01" b="0" c="0" d="0" side="left"/><shape s="0" t="0" a="0.1" b="0" c="0" d="0"/></lateralProfile>
+    <crossfall s="0" a="0.01" b="0" c="0" d="0" side="left"/><shape s="0" t="0" a="0.1" b="0" c="0" d="0"/>
+    </lateralProfile>
   <lanes><laneOffset s="0" a="0.5" b="0" c="0" d="0"/>
     <laneSection s="0">
       <left><lane id="1" type="driving" level="false"><border sOffset="0" a="3" b="0" c="0" d="0"/></lane></left>
       <center><lane id="0" type="none"><roadMark sOffset="0" type="solid"/></lane></center>
       <right><lane id="-1" type="driving"><link><predecessor id="-1"/><successor id="-1"/></link>
         <width sOffset="0" a="3" b="0" c="0" d="0"/>
-        <roadMark sOffset="0" type="solid" weight="bold" color="white" material="paint" width="0.3" laneChange="none" height="0.02"><type name="t"><line length="1"/></type></roadMark>
-        <height sOffset="0" inner="0.1" outer="0.1"/><access sOffset="0" rule="deny" restriction="bus"><restriction type="truck"/></access><rule sOffset="0" value="v"/>
+        <roadMark sOffset="0" type="solid" weight="bold" color="white" material="paint" width="0.3"
+            laneChange="none" height="0.02"><type name="t"><line length="1"/></type></roadMark>
+        <height sOffset="0" inner="0.1" outer="0.1"/><access sOffset="0" rule="deny" restriction="bus">
+        <restriction type="truck"/></access><rule sOffset="0" value="v"/>
         <speed sOffset="0" max="10" unit="m/s"/><material sOffset="0" surface="asphalt"/></lane></right>
     </laneSection>
   </lanes>
-  <objects><object id="o" name="n" type="building" subtype="b" s="1" t="1" zOffset="0.5" hdg="0.1" pitch="0.2" roll="0.3"
-      height="4" length="5" width="6" radius="7" orientation="none" validLength="8" dynamic="no" perpToRoad="true">
-      <repeat s="0" length="5" distance="1" tStart="1" tEnd="2" widthStart="1" widthEnd="2" heightStart="3" heightEnd="4"
-        zOffsetStart="0" zOffsetEnd="1" lengthStart="1" lengthEnd="2" radiusStart="1" radiusEnd="2"/>
-      <outlines><outline id="1" closed="true" fillType="grass" laneType="none"><cornerLocal u="0" v="1" z="2" height="3" id="4"/></outline>
+  <objects><object id="o" name="n" type="building" subtype="b" s="1" t="1" zOffset="0.5" hdg="0.1" pitch="0.2"
+        roll="0.3" height="4" length="5" width="6" radius="7" orientation="none" validLength="8" dynamic="no"
+        perpToRoad="true"><repeat s="0" length="5" distance="1" tStart="1" tEnd="2" widthStart="1" widthEnd="2"
+        heightStart="3" heightEnd="4" zOffsetStart="0" zOffsetEnd="1" lengthStart="1" lengthEnd="2" radiusStart="1"
+        radiusEnd="2"/>
+      <outlines><outline id="1" closed="true" fillType="grass" laneType="none"><cornerLocal u="0" v="1" z="2"
+          height="3" id="4"/></outline>
         <outline><cornerRoad s="0" t="1" dz="2" height="3" id="4"/></outline></outlines>
-      <material surface="s"/><parkingSpace access="all"/><markings><marking side="left"/></markings><borders><border type="t"/></borders>
+      <material surface="s"/><parkingSpace access="all"/><markings><marking side="left"/></markings><borders>
+      <border type="t"/></borders>
       <surface/><skeleton/><validity fromLane="-1" toLane="-1"/></object>
-    <objectReference id="o" s="2" t="1" zOffset="0" validLength="3" orientation="+"><validity fromLane="1" toLane="1"/></objectReference>
+    <objectReference id="o" s="2" t="1" zOffset="0" validLength="3" orientation="+">
+    <validity fromLane="1" toLane="1"/></objectReference>
     <bridge id="b" s="0" length="9" type="concrete"/><tunnel id="t" s="0" length="9" type="standard"/></objects>
-  <signals><signal id="s" name="n" dynamic="yes" orientation="+" s="1" t="1" zOffset="3" country="DE" countryRevision="2017" type="274" subtype="55"
-      value="50" unit="km/h" height="0.6" width="0.5" text="slow" hOffset="0.1" pitch="0.2" roll="0.3"><validity fromLane="-1" toLane="-1"/>
-      <dependency id="8" type="limitline"/><reference elementType="object" elementId="o"/><positionRoad roadId="1" s="2" t="3"/></signal>
-    <signalReference id="s" s="2" t="1" orientation="-"><validity fromLane="-1" toLane="-1"/></signalReference></signals>
+  <signals><signal id="s" name="n" dynamic="yes" orientation="+" s="1" t="1" zOffset="3" country="DE"
+      countryRevision="2017" type="274" subtype="55" value="50" unit="km/h" height="0.6" width="0.5" text="slow"
+      hOffset="0.1" pitch="0.2" roll="0.3"><validity fromLane="-1" toLane="-1"/>
+      <dependency id="8" type="limitline"/><reference elementType="object" elementId="o"/>
+      <positionRoad roadId="1" s="2" t="3"/></signal>
+    <signalReference id="s" s="2" t="1" orientation="-"><validity fromLane="-1" toLane="-1"/></signalReference>
+    </signals>
   <surface><CRG file="f"/></surface><railroad><switch id="w"/></railroad>
   <userData code="road"/>
 </road>
-<road id="2" length="10" junction="7" rule="LHT"><planView><geometry s="0" x="-10" y="0" hdg="0" length="10"><line/></geometry></planView>
+<road id="2" length="10" junction="7" rule="LHT"><planView><geometry s="0" x="-10" y="0" hdg="0" length="10">
+<line/></geometry></planView>
   <lanes><laneSection s="0"><center><lane id="0" type="none"/></center>
-    <right><lane id="-1" type="driving"><width sOffset="0" a="3" b="0" c="0" d="0"/></lane></right></laneSection></lanes></road>
+    <right><lane id="-1" type="driving"><width sOffset="0" a="3" b="0" c="0" d="0"/></lane></right></laneSection>
+    </lanes></road>
 <controller id="c" name="lights" sequence="2"><control signalId="s" type="t"/></controller>
-<junction id="7" name="j" type="virtual" mainRoad="1" sStart="3" sEnd="6" orientation="+"><connection id="0" incomingRoad="1" connectingRoad="2" contactPoint="end"><laneLink from="-1" to="-1" overlapZone="12.5"/>
-    </connection><connection id="1" type="virtual"><predecessor elementType="road" elementId="1" elementS="5" elementDir="+"/>
+<junction id="7" name="j" type="virtual" mainRoad="1" sStart="3" sEnd="6" orientation="+">
+<connection id="0" incomingRoad="1" connectingRoad="2" contactPoint="end"><laneLink from="-1" to="-1"
+    overlapZone="12.5"/>
+    </connection><connection id="1" type="virtual"><predecessor elementType="road" elementId="1" elementS="5"
+        elementDir="+"/>
     <successor elementType="road" elementId="1" elementS="9" elementDir="+"/></connection>
   <priority high="1" low="2"/><controller id="c" type="0" sequence="1"/><crossPath id="0"/></junction>
 <junctionGroup id="g" name="n" type="roundabout"><junctionReference junction="7"/></junctionGroup>
@@ -167,10 +183,10 @@ TEST_CASE("what the reader knows is written again, without a finding") {
   CHECK(counts_of(before.written) == counts_of(everything));
 }
 
-TEST_CASE("no element that is there twice gets lost without a finding") {
+TEST_CASE("no element that occurs twice gets lost without a finding") {
   check_elements([](pugi::xml_node node) {
     node.parent().insert_copy_after(node, node);
-    bool const is_side = !node.child("lane").empty();  // its lanes are there twice
+    bool const is_side = !node.child("lane").empty();  // its lanes occur twice
     return is_side ? "lane" : node.name();
   });
 }
@@ -249,7 +265,7 @@ TEST_CASE("attributes that nobody knows give one finding for each kind of elemen
   REQUIRE(diagnostics.size() == 2);
   CHECK(to_string(diagnostics[0]).find("like 1 more") != std::string::npos);
   CHECK(diagnostics[0].element == "speed");
-  CHECK(diagnostics[0].line == 6);
+  CHECK(diagnostics[0].line == 7);
   CHECK(diagnostics[1].element == "width");
 }
 

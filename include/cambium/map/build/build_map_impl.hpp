@@ -106,7 +106,7 @@ class MapBuild {
       throw MapError(findings_.file, "the map has no lane with a length" + likely_cause(findings_.list),
                      "give roads that have lanes beside lane 0");
     if (std::none_of(parts_.lanes.begin(), parts_.lanes.end(), [](Lane const& lane) { return lane.drivable(); }))
-      findings_.add(Severity::warning, 0, {}, {}, "there is no lane that one may drive on");
+      findings_.add(Severity::warning, 0, {}, {}, "the map has no drivable lane");
   }
 
   /// What follows on what, and what merges.
@@ -153,7 +153,7 @@ class MapBuild {
       if (!has_geometry(lane, cross_sections, column)) {
         findings_.add(Severity::warning, written.line, "lane",
                       "road " + road.name + ", section " + std::to_string(k) + ", lane " + std::to_string(written.id),
-                      "it has no length, or its numbers are out of all range; it was left out");
+                      "it has no length, or its numbers are out of range; it was left out");
         continue;
       }
       section.lanes[column].id = lane.id;

@@ -18,11 +18,11 @@ struct Findings {
   std::string file;
   std::vector<Diagnostic>& list;
 
-  /// Adds a finding, unless there are `most_diagnostics`: the last one says that there are more.
+  /// Adds a finding, unless there are `most_diagnostics`: the last of those says that there are more.
   [[gnu::cold]] void add(Severity severity, int line, std::string element, std::string ids, std::string sentence) {
     if (list.size() >= most_diagnostics) return;
     if (list.size() + 1 == most_diagnostics)
-      sentence = "there is more to say of this file than " + std::to_string(most_diagnostics) + " findings";
+      sentence = "the file has more than " + std::to_string(most_diagnostics) + " findings; the others were left out";
     list.push_back({severity, file, line, std::move(element), std::move(ids), std::move(sentence)});
   }
 };
@@ -40,7 +40,7 @@ struct Findings {
       if (finding.severity == Severity::info || !matters) continue;
       auto const says = [&finding](char const* what) { return finding.sentence.find(what) != std::string::npos; };
       if (says(words))
-        return " (" + to_string(before != nullptr && says("see the finding before") ? *before : finding) + ")";
+        return " (" + to_string(before != nullptr && says("see the previous finding") ? *before : finding) + ")";
       before = &finding;
     }
   }

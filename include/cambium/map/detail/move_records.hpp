@@ -18,7 +18,7 @@
 
 namespace cambium::map::detail {
 
-/// Moves records to a section that starts `shift` [m] later; what has ended before is dropped.
+/// Moves records to a section that starts `shift` [m] later, and drops those that end before it.
 template <class Record>
 void move_start(std::vector<Record>& records, double Record::*start, double shift) {
   std::size_t ended = 0;
@@ -33,7 +33,7 @@ void move_start(std::vector<Record>& records, double Record::*start, double shif
   }
 }
 
-/// Records of the rest, likewise: elements with an `sOffset`; each ends where the next one of its name begins.
+/// The same for records in the rest: elements with an `sOffset`. Each ends where the next one of its name begins.
 inline void move_start(std::vector<opendrive::Element>& elements, double shift) {
   std::map<std::string, double> begun;  // by name: where the last one begins that does so by the new start
   auto const has_ended = [&](opendrive::Element& element) {
@@ -52,7 +52,7 @@ inline void move_start(std::vector<opendrive::Element>& elements, double shift) 
   elements.assign(std::make_move_iterator(kept.rbegin()), std::make_move_iterator(kept.rend()));
 }
 
-/// All records of a lane, likewise.
+/// The same for all records of a lane.
 inline void move_records(opendrive::Lane& lane, double shift) {
   move_start(lane.widths, &CubicRecord::s, shift);
   move_start(lane.borders, &CubicRecord::s, shift);

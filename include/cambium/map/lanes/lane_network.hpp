@@ -12,7 +12,7 @@
 
 namespace cambium::map {
 
-/// What can be odd about how lanes hang together.
+/// What can be odd about the links between lanes.
 enum class NetworkFault : std::uint8_t {
   dangling,       ///< a successor or predecessor that is not in the map
   one_sided,      ///< a successor that does not have the lane as predecessor, or the other way round
@@ -48,13 +48,13 @@ struct NetworkTolerances {
   double link_direction = 0.2;  ///< of a possible link [rad]
 };
 
-/// What is odd about how the lanes hang together, lane by lane in the order of their ids. Links of all lanes are
-/// looked at; joints and ends only of drivable ones. Dead ends and lanes without a way in are no fault at the border
-/// of a map. The number of a lane must be its place in `lanes`. O(n log n).
+/// What is odd about the links between the lanes, in the order of the lanes' ids. It checks the links of all lanes, but
+/// joints and ends of drivable ones only. At the border of a map, dead ends and lanes without a way in are no fault.
+/// The number of a lane must be its place in `lanes`. O(n log n).
 [[nodiscard]] std::vector<NetworkFinding> check_lane_network(std::span<Lane const> lanes,
                                                              NetworkTolerances const& tolerances = {});
 
-/// As above, for a map, whoever built it.
+/// As above, for a map.
 [[nodiscard]] std::vector<NetworkFinding> check_lane_network(Map const& map, NetworkTolerances const& tolerances = {});
 
 }  // namespace cambium::map

@@ -53,7 +53,7 @@ class OverlapFinder {
     Stretch on_a, on_b;
   };
 
-  /// A lane that another one hangs together with, at a common joint.
+  /// A lane linked with another one, at a common joint.
   struct Linked {
     LaneId lane;
     double between;  ///< length of the lanes between the two [m]
@@ -66,7 +66,7 @@ class OverlapFinder {
     double between;             ///< as in `Linked`
   };
 
-  /// For each lane those that it hangs together with, those beside them included.
+  /// Finds the lanes that each lane is linked with, and those beside them.
   void find_related() {
     ahead_.assign(lanes_.size(), {});
     behind_ = ahead_;
@@ -87,7 +87,7 @@ class OverlapFinder {
       }
   }
 
-  /// The lanes of the same section of the road, oncoming ones too: they stand one behind the other in `lanes_`.
+  /// The lanes of the same section of the road, oncoming ones too; they are consecutive in `lanes_`.
   void add_cross_section(std::size_t lane, std::vector<LaneId>& beside) const {
     auto const is_same = [&](std::size_t i) {
       return lanes_[i].road == lanes_[lane].road && lanes_[i].section == lanes_[lane].section;
@@ -112,7 +112,7 @@ class OverlapFinder {
     return std::find(list.begin(), list.end(), id) != list.end();
   }
 
-  /// Whether the lanes are close because they hang together: the contact reaches their common joint, or nearly so.
+  /// Whether the lanes are close because they are linked: the contact reaches their common joint, or nearly so.
   [[nodiscard]] bool is_at_joint(Contact const& c) const { return is_at_joint(c.a, c.on_a, c.b, c.on_b); }
 
   [[nodiscard]] bool is_at_joint(std::uint32_t a, Stretch const& on_a, std::uint32_t b, Stretch const& on_b) const {

@@ -28,7 +28,7 @@ namespace detail {
 
 using cambium::detail::rounded_text;
 
-/// Looks at what single elements cannot show: double ids, links that lead nowhere, lengths that contradict each other.
+/// Checks what no single element shows: ids that occur twice, links that lead nowhere, contradictory lengths.
 class DocumentCheck {
  public:
   DocumentCheck(opendrive::Document& document, std::string file, std::vector<Diagnostic>& diagnostics)
@@ -40,7 +40,7 @@ class DocumentCheck {
     if (header.rev_major > 1 || (header.rev_major == 1 && header.rev_minor > 8))
       findings_.add(header.rev_major > 1 ? Severity::warning : Severity::info, header.line, "header", "",
                     "OpenDRIVE " + std::to_string(header.rev_major) + "." + std::to_string(header.rev_minor) +
-                        " is newer than what is known, up to 1.8; it was read as that");
+                        " is newer than the latest known revision, 1.8; it was read as 1.8");
     if (!is_bearable(document_->header.offset)) {
       findings_.add(Severity::warning, document_->header.line, "offset", "", "it is beyond any map; it was left out");
       document_->header.offset = {};
@@ -48,8 +48,8 @@ class DocumentCheck {
     std::erase_if(document_->roads, [this](opendrive::Road& road) {
       return !is_whole(road) || !GeometryCheck(road, findings_).is_continuous() || !has_lanes(road);
     });
-    index(document_->roads, roads_, "road", " is there twice; the second one was left out");
-    index(document_->junctions, junctions_, "junction", " is there twice; the second one was left out");
+    index(document_->roads, roads_, "road", " occurs twice; the second one was left out");
+    index(document_->junctions, junctions_, "junction", " occurs twice; the second one was left out");
     for (opendrive::Road& road : document_->roads) check(road);
     auto const walked = junctions_to_walk();
     for (opendrive::Junction const& junction : document_->junctions) {
@@ -134,11 +134,11 @@ class DocumentCheck {
       if (std::abs(gap) > 1e-3)
         findings_.add(
             Severity::warning, road.geometry_lines[i], "geometry", ids,
-            "s is " + rounded_text(gap) + " m behind the end of the geometry before; both are kept as written");
+            "s is " + rounded_text(gap) + " m beyond the end of the previous geometry; both are kept as written");
     }
   }
 
-  /// Geometries too short to be meant: they are kept, and harm nothing.
+  /// Geometries so short that they are probably a mistake; they are kept, and do no harm.
   void check_short_geometries(opendrive::Road const& road, std::string const& ids) {
     constexpr double short_one = 1e-9;  // [m]
     int count = 0, line = 0;
@@ -148,16 +148,16 @@ class DocumentCheck {
       findings_.add(Severity::warning, line, "geometry", ids,
                     "it is shorter than a millionth of a millimetre" +
                         (count > 1 ? " (and " + std::to_string(count - 1) + " more)" : std::string()) +
-                        "; that is kept, but hardly meant");
+                        "; it is kept, but probably not intended");
   }
 
-  /// False where all lane sections lie behind the road's end.
+  /// False where all lane sections lie beyond the road's end.
   [[nodiscard]] bool has_lanes(opendrive::Road const& road) {
     opendrive::LaneSection const& first = road.lane_sections.front();
     if (first.s <= road.geometry_length()) return true;
     findings_.add(
         Severity::warning, first.line, "laneSection", "road " + road.id,
-        "the first section starts at " + rounded_text(first.s) + " m, behind the road's end; the road was left out");
+        "the first section starts at " + rounded_text(first.s) + " m, beyond the road's end; the road was left out");
     return false;
   }
 
@@ -174,12 +174,12 @@ class DocumentCheck {
     return false;
   }
 
-  /// Leaves out sections behind the road's end (the first one always stays) and looks at the links between the others.
+  /// Leaves out sections beyond the road's end (the first one always stays) and looks at the links between the others.
   void check_sections(opendrive::Road& road, std::string const& ids) {
     while (road.lane_sections.size() > 1 && road.lane_sections.back().s > road.geometry_length() + 1e-9) {
       opendrive::LaneSection const& last = road.lane_sections.back();
       findings_.add(Severity::warning, last.line, "laneSection", ids,
-                    "the section starts at " + rounded_text(last.s) + " m, behind the road's end; it was left out");
+                    "the section starts at " + rounded_text(last.s) + " m, beyond the road's end; it was left out");
       road.lane_sections.pop_back();
     }
     for (opendrive::LaneSection& section : road.lane_sections) {
@@ -192,7 +192,7 @@ class DocumentCheck {
     if (road.lane_sections.front().s > 0.0)
       findings_.add(Severity::warning, road.lane_sections.front().line, "laneSection", ids,
                     "the first section starts at " + rounded_text(road.lane_sections.front().s) +
-                        " m, the road has no lanes before");
+                        " m; the road has no lanes before that");
     for (std::size_t i = 0; i + 1 < road.lane_sections.size(); ++i)
       check_lane_links(road.lane_sections[i], road.lane_sections[i + 1], ids, i);
   }
@@ -202,7 +202,7 @@ class DocumentCheck {
     auto const dangling = [&](opendrive::Lane const& lane, int to, std::size_t where, char const* element) {
       findings_.add(Severity::warning, lane.line, element,
                     ids + ", section " + std::to_string(where) + ", lane " + std::to_string(lane.id),
-                    "there is no lane " + std::to_string(to) + " in the section beside; the link leads nowhere");
+                    "there is no lane " + std::to_string(to) + " in the adjacent section; the link leads nowhere");
     };
     auto const ids_of = [](opendrive::LaneSection const& of) {
       std::vector<int> numbers;

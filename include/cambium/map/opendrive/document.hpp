@@ -13,9 +13,9 @@
 #include "cambium/map/road/cubic.hpp"
 #include "cambium/map/road/reference_line.hpp"
 
-/// An OpenDRIVE file as plain data: ids are the file's words, nothing is linked or sampled. The reader fills it;
-/// whoever builds a map, writes a file or checks one works on it. What has no field is kept in the `rest` of its
-/// element. Two documents are equal when they say the same; in which lines (`line`) does not count.
+/// An OpenDRIVE file as plain data: ids are text as in the file, and nothing is linked or sampled. The reader fills a
+/// document; checks, the writer and the map building work on it. What has no field is kept in the `rest` of its
+/// element. Two documents are equal when they say the same, no matter in which lines (`line`).
 namespace cambium::map::opendrive {
 
 /// Which end of a road a link touches; `none`: not written.

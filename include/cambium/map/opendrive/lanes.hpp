@@ -20,7 +20,7 @@ enum class LaneDirection { standard, reversed, both };
 /// The unit in which a speed limit is written.
 enum class SpeedUnit { metres_per_second, kilometres_per_hour, miles_per_hour };
 
-/// Speed limit from `s` (roads) or `s` behind the section's start (lanes) on, to the next one.
+/// Speed limit from `s` on, to the next one; of lanes, `s` counts from the section's start.
 struct SpeedRecord {
   double s{};                   ///< [m]
   std::optional<double> limit;  ///< [m/s], infinite for "no limit", empty for "undefined"

@@ -141,13 +141,13 @@ inline void read_signals(XmlContext& context, pugi::xml_node road_node, opendriv
 [[nodiscard]] inline bool read_road(XmlContext& context, pugi::xml_node node, opendrive::Road& road) {
   road.length = -1.0;  // missing
   if (!read_attributes(context, node, road)) {
-    context.report(Severity::warning, node, "the road was left out, for it has no id");
+    context.report(Severity::warning, node, "the road was left out because it has no id");
     return false;
   }
   read_road_links(context, node, road);
   read_road_types(context, node, road);
   if (!read_plan_view(context, node, road) || !read_lanes(context, node, road)) {
-    context.report(Severity::warning, node, "the road was left out, see the finding before");
+    context.report(Severity::warning, node, "the road was left out, see the previous finding");
     return false;
   }
   read_elevation(context, node, road);
@@ -161,7 +161,7 @@ inline void read_signals(XmlContext& context, pugi::xml_node road_node, opendriv
   return true;
 }
 
-/// The root element; throws when the text is no XML or its root is another one.
+/// The root element. Throws `MapError` when the text is not XML, or has another root.
 [[nodiscard]] inline pugi::xml_node parse_root(pugi::xml_document& xml, std::string_view text,
                                                std::string const& file) {
   require_readable(text.size(), file);

@@ -8,10 +8,10 @@
 /// Signs and traffic lights of an OpenDRIVE file, as far as lanes and maps need them.
 namespace cambium::map::opendrive {
 
-/// The direction of travel that a signal counts for: "+" along the road's s, "-" against it, "none" both.
+/// The direction of travel that a signal applies to: "+" along the road's s, "-" against it, "none" both.
 enum class Orientation { both, along, against };
 
-/// The range of lanes that a signal counts for, both ends included, in either order.
+/// The range of lanes that a signal applies to, both ends included, in either order.
 struct Validity {
   int from_lane = 0;
   int to_lane = 0;
@@ -20,7 +20,7 @@ struct Validity {
   friend bool operator==(Validity const&, Validity const&) = default;
 };
 
-/// A sign or a traffic light at a road, or a reference to one that stands at another road and counts here too.
+/// A sign or a traffic light at a road, or a reference to one at another road that applies here too.
 struct Signal {
   std::string id;  ///< of a reference: the signal's
   double s{};      ///< station on this road [m]

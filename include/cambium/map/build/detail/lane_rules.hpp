@@ -21,8 +21,8 @@
 /// What a document says about driving in lanes: how fast, where to change them, signs and lights.
 namespace cambium::map::detail {
 
-/// The limit of the last of `records` that begins at `s` or before [m/s]; nothing where that one gives none or
-/// nonsense.
+/// The limit of the last of `records` that begins at or before `s` [m/s]; nothing where that one has none, or none
+/// above 0.
 template <class Record>
 [[nodiscard]] std::optional<double> limit_in_force(std::vector<Record> const& records, double s) {
   auto const next =
@@ -111,7 +111,7 @@ class LaneChangeMarks {
     return borders;
   }
 
-  /// Whether the marks at `s` behind the section's start [m] let a vehicle change to the next higher (lower) lane.
+  /// Whether the marks at `s` [m] from the section's start let a vehicle change to the next higher (lower) lane.
   [[nodiscard]] static bool is_permitted(Borders const& borders, bool to_higher, double s) {
     using opendrive::LaneChange;
     for (auto const* border : borders) {

@@ -58,17 +58,17 @@ class LinkCheck {
     auto const& link = links_.link_at(r, end);
     if (!link || link->element_s) return;
     auto const others = links_.follow(link);
-    if (others.count == 0) return;
+    if (others.empty()) return;
     SectionEnd const at = links_.road_end(r, end);
     auto const& road = links_.document().roads[r];
-    auto const& back = links_.link_at(others.at[0].road, others.at[0].end);
+    auto const& back = links_.link_at(others[0].road, others[0].end);
     // The road before a junction names that, not the connecting roads; a direct junction may be named by one side only.
     if (back && back->element_type == opendrive::ElementType::junction) return;
     auto const returns = links_.follow(back);
     if (std::find(returns.begin(), returns.end(), at) != returns.end()) return;
     findings_.add(Severity::warning, link->line, end == ContactPoint::end ? "successor" : "predecessor",
                   "road " + road.id,
-                  "it names the " + std::string(others.at[0].end == ContactPoint::end ? "end" : "start") + " of road " +
+                  "it names the " + std::string(others[0].end == ContactPoint::end ? "end" : "start") + " of road " +
                       link->id + ", which " + (back ? "names another place" : "names nothing there") +
                       "; lanes are joined by what either side says");
   }
@@ -81,8 +81,8 @@ class LinkCheck {
     int line = 0;
     auto const check = [&](SectionEnd const& at, opendrive::Lane const& lane, std::vector<int> const& numbers) {
       auto const others = links_.beyond(at);
-      if (others.count != 1 || numbers.empty()) return;
-      auto const& other = others.at[0];
+      if (others.size() != 1 || numbers.empty()) return;
+      auto const& other = others[0];
       auto const& section = links_.document().roads[other.road].lane_sections[other.section];
       auto const returns = links_.beyond(other);
       if (std::find(returns.begin(), returns.end(), at) == returns.end()) return;  // the road's link is not known there
@@ -138,7 +138,7 @@ class LinkCheck {
         written != nullptr ? static_cast<int>(written->line) : 0, "link",
         "road " + name(lane) + ", section " + std::to_string(lane.section) + ", lane " + std::to_string(lane.number),
         "lane " + std::to_string(next.number) + " of road " + name(next) + ", section " + std::to_string(next.section) +
-            ", goes on " + what + others_text(count));
+            ", continues " + what + others_text(count));
   }
 
   RoadLinks const& links_;

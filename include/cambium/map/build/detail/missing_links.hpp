@@ -46,7 +46,7 @@ class MissingLinks {
     return dead_ends;
   }
 
-  /// Reports dead ends behind which, by the road's link, the lane of the same id goes on. To be asked after merging.
+  /// Reports dead ends where, by the road's link, the lane of the same id continues. Call it after merging.
   void report_dead_ends(std::set<LaneId> const& reported) {
     for (auto const& lane : lanes_) {
       if (!lane.drivable() || !lane.successors.empty() || reported.contains(lane.id)) continue;
@@ -73,7 +73,7 @@ class MissingLinks {
       if (link && link->element_type == opendrive::ElementType::junction) return touches(other, link->id);
     }
     auto const beyond = links_.beyond(at);
-    return beyond.count == 0 || std::find(beyond.begin(), beyond.end(), other) != beyond.end();
+    return beyond.empty() || std::find(beyond.begin(), beyond.end(), other) != beyond.end();
   }
 
   /// Whether a road's end is of a connecting road of the junction, or linked to it.
@@ -91,7 +91,7 @@ class MissingLinks {
       auto const& other = lanes_[index_of(beyond.id)];
       if (other.drivable() && entry_of(other) == next)
         report(Severity::warning, lane,
-               "it ends here, but " + describe(other) + " goes on behind it; is the link missing?");
+               "it ends here, but " + describe(other) + " continues from there; is the link missing?");
     }
   }
 

@@ -267,7 +267,7 @@ class RoadConnector {
   void dissolve(RoadEnd const& a, RoadEnd const& b, opendrive::Junction& into) const {
     if (!is_free_for(b, a))
       throw MapError("road " + a.road + " and road " + b.road, "only one of them is linked to the other",
-                     "mend that link of the document first");
+                     "repair that link in the document first");
     auto links = named_links(a, b);
     for (auto const& link : reversed(named_links(b, a)))
       if (!is_in(links, link)) links.push_back(link);

@@ -129,8 +129,8 @@ class SectionSampler {
     return cross;
   }
 
-  /// Where a line has a kink or a step at `s`, whose cross-section behind it is `behind`, adds a station a little
-  /// before: only on these last millimetres is what is interpolated that of neither side.
+  /// Where a line has a kink or a step at `s`, after which the cross-section is `behind`, adds a station a little
+  /// before `s`: so only these last millimetres are interpolated between the two sides.
   void add_before_break(double s, double last_break, CrossSection const& behind,
                         std::vector<CrossSection>& result) const {
     constexpr double little = 1e-3;  // [m]
@@ -194,7 +194,7 @@ class SectionSampler {
     return sharpest * (b.s - a.s) > 1.0;  // [rad]
   }
 
-  /// Whether the middle tells how far the heading is off: not where it winds about the straight line of its ends.
+  /// Whether the middle alone shows how far the heading is off; not where the curve winds about its chord.
   [[nodiscard]] bool bends_evenly(double inside) const {
     auto const kind = road_.reference_line.geometries()[road_.reference_line.locate(inside)].kind;
     return (kind == GeometryKind::line || kind == GeometryKind::arc) && has_linear_borders(inside);

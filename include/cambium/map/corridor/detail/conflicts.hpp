@@ -33,7 +33,7 @@
 /// across the borders of lane sections (`unite`).
 namespace cambium::map::detail {
 
-/// Finds the conflicts of a lane corridor whose centre line and pieces are there already, see `Conflict`.
+/// Finds the conflicts of a lane corridor whose centre line and pieces are known, see `Conflict`.
 class ConflictFinder {
  public:
   ConflictFinder(Map const& map, LaneCorridor const& corridor) : map_(map), corridor_(corridor) {}
@@ -68,7 +68,7 @@ class ConflictFinder {
   [[nodiscard]] geometry::Shape const& body(bool is_large) const {
     return is_large ? map_.options().large_conflict_shape : map_.options().conflict_shape;
   }
-  /// How far before and behind an overlap of paths the bodies may touch [m].
+  /// How far before and after an overlap of paths the bodies may touch [m].
   [[nodiscard]] double before() const { return body(true).length() + 8.0; }
   [[nodiscard]] double behind() const { return body(true).rear + 8.0; }
 

@@ -121,7 +121,7 @@ class RoadListSearch {
   }
 
  private:
-  /// A lane of the list's entry `step`; behind the last one, the end of it.
+  /// A lane of the list's entry `step`; one step further, the end of the list.
   struct Place {
     std::size_t step{};
     LaneId lane = none<LaneId>;

@@ -78,7 +78,8 @@ namespace cambium::map::detail {
   return LaneHit{lane.id, foot.s, foot.lateral, 0.0, foot.segment};
 }
 
-/// The lane of `previous`, or one behind, before or beside it, that holds `pose`: the first of these in this order.
+/// The lane that holds `pose`: that of `previous`, else one of its successors, predecessors or neighbours, in this
+/// order.
 [[nodiscard]] inline std::optional<LaneHit> follow_lane(std::span<Lane const> lanes, geometry::Pose const& pose,
                                                         LaneHit const& previous) {
   auto const& own = lanes[index_of(previous.lane)];

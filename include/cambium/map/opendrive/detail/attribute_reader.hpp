@@ -165,16 +165,16 @@ class AttributeReader {
   [[gnu::cold]] void report_no_truth(pugi::xml_attribute attribute) {
     context_->report(
         Severity::warning, node_,
-        std::string(attribute.name()) + "=\"" + attribute.value() + "\" is neither true nor false; false was taken");
+        std::string(attribute.name()) + "=\"" + attribute.value() + "\" is neither true nor false; false is assumed");
   }
   [[gnu::cold]] static void add_word(std::string& words, std::string_view word) {
     if (!word.empty()) words += (words.empty() ? "" : ", ") + std::string(word);
   }
   [[gnu::cold]] void report_unknown_word(pugi::xml_attribute attribute, std::string const& known,
                                          std::string_view taken) {
-    std::string const done = taken.empty() ? "" : "; " + std::string(taken) + " was taken";
+    std::string const done = taken.empty() ? "" : "; " + std::string(taken) + " is assumed";
     context_->report(Severity::warning, node_,
-                     std::string(attribute.name()) + "=\"" + attribute.value() + "\" is none of " + known + done);
+                     std::string(attribute.name()) + "=\"" + attribute.value() + "\" is not one of " + known + done);
   }
 
   XmlContext* context_;
@@ -206,7 +206,7 @@ template <class T>
 template <class T, class Take>
 [[nodiscard]] bool read_with(XmlContext& context, pugi::xml_node node, T& x, Take const& take) {
   if (!read_attributes(context, node, x)) {
-    context.report(Severity::warning, node, "it was left out for that, see the finding before");
+    context.report(Severity::warning, node, "it was left out, see the previous finding");
     return false;
   }
   for_each_child(node, [&](pugi::xml_node child, std::string_view name) {

@@ -20,7 +20,7 @@ namespace cambium::map::detail {
 /// An attribute with a number; throws `MapError` where it is not finite.
 inline void write_number(XmlText& xml, std::string_view name, double value) {
   if (!std::isfinite(value))
-    throw MapError("attribute " + std::string(name), "a number is not finite, which OpenDRIVE cannot say",
+    throw MapError("attribute " + std::string(name), "a number is not finite, which OpenDRIVE cannot express",
                    "give a finite number");
   xml.attribute(name, cambium::detail::number_text(value));
 }

@@ -17,13 +17,13 @@ namespace cambium::map::detail {
 
 using cambium::detail::rounded_text;
 
-/// Looks whether the geometries of a road go on in each other.
+/// Checks that the geometries of a road join.
 class GeometryCheck {
  public:
   GeometryCheck(opendrive::Road const& road, Findings& findings) : road_(road), findings_(findings) {}
 
-  /// Reports where a geometry does not go on where the one before ends. False where nobody could drive there: it is far
-  /// off, or what the curve does in the gap is beyond telling.
+  /// Reports geometries that do not begin where the previous one ends. False where the road is unusable: a geometry is
+  /// far off, or there is no telling what the curve does in the gap.
   [[nodiscard]] bool is_continuous() {
     if (!begins_and_ends()) return false;
     double widest = 0.0;  // of the slight ones
@@ -38,7 +38,7 @@ class GeometryCheck {
     }
     if (slight_ones > 0)
       warn(slight_line,
-           "it starts " + rounded_text(widest) + " m off the end of the geometry before" +
+           "it starts " + rounded_text(widest) + " m off the end of the previous geometry" +
                (slight_ones > 1 ? " (and " + std::to_string(slight_ones - 1) + " others a little less)" : ""));
     return true;
   }
@@ -92,7 +92,7 @@ class GeometryCheck {
     double const turn = std::abs(geometry::angle_difference(start.heading, end.heading));
     if (gap <= noticeable && turn <= noticeable) return gap;
     std::string const sentence =
-        "it starts " + rounded_text(gap) + " m and " + rounded_text(turn) + " rad off the end of the geometry before";
+        "it starts " + rounded_text(gap) + " m and " + rounded_text(turn) + " rad off the end of the previous geometry";
     if (gap > bearable) return nothing(sentence);
     warn(road_.geometry_lines[i], sentence);
     return 0.0;

@@ -52,7 +52,7 @@ inline void read_road_links(XmlContext& context, pugi::xml_node road_node, opend
 [[nodiscard]] inline std::optional<opendrive::Junction> read_junction(XmlContext& context, pugi::xml_node node) {
   opendrive::Junction junction;
   if (!read_attributes(context, node, junction)) {
-    context.report(Severity::warning, node, "the junction was left out, for it has no id");
+    context.report(Severity::warning, node, "the junction was left out because it has no id");
     return std::nullopt;
   }
   for_each_child(node, [&](pugi::xml_node child, std::string_view name) {

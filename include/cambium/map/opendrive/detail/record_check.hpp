@@ -72,7 +72,7 @@ class RecordCheck {
     });
   }
 
-  /// Removes the records for which `keep(record, those kept behind it)` says false.
+  /// Removes the records for which `keep(record, those kept after it)` is false.
   template <class Record, class Keep>
   void leave_out(std::vector<Record>& records, int line, char const* element, std::string const& ids,
                  Keep const& keep) {

@@ -120,7 +120,7 @@ class XmlContext {
   void report_losses() {
     for (Loss& loss : losses_)
       findings_.add(Severity::warning, loss.line, std::move(loss.element), std::move(loss.ids),
-                    loss.what + " is not known there; it was left out" +
+                    loss.what + " is unknown there; it was left out" +
                         (loss.count > 1 ? ", like " + std::to_string(loss.count - 1) +
                                               " more attributes and texts in such elements"
                                         : std::string()));
@@ -191,7 +191,7 @@ class XmlContext {
   std::vector<Loss> losses_;  ///< a handful
 };
 
-/// As `find_child`, of what may be there once: further ones are reported, for they are not read.
+/// As `find_child`, for what may occur once: further ones are reported, and not read.
 [[nodiscard]] inline pugi::xml_node find_only_child(XmlContext& context, pugi::xml_node parent, std::string_view name) {
   pugi::xml_node first;
   for_each_child(parent, name, [&](pugi::xml_node child) {
@@ -203,9 +203,9 @@ class XmlContext {
   return first;
 }
 
-/// Reports what stands in an element that has attributes only: it is not read.
+/// Reports content of an element that should have attributes only; it is not read.
 inline void report_content(XmlContext& context, pugi::xml_node node) {
-  if (node.first_child()) context.report(Severity::warning, node, "what stands in it was left out");
+  if (node.first_child()) context.report(Severity::warning, node, "its content was left out");
 }
 
 inline void lose_attribute(XmlContext& context, pugi::xml_node node, pugi::xml_attribute attribute) {

@@ -77,7 +77,7 @@ class XmlText {
   static void check_name(std::string_view name) {
     bool const begins_well = !name.empty() && name.find_first_of("-.0123456789") != 0;
     if (!begins_well || name.find_first_of(" \t\r\n\"'<>&/=!?\0", 0, 14) != name.npos)
-      throw MapError("\"" + std::string(name) + "\"", "it is no name that XML allows for an element or attribute",
+      throw MapError("\"" + std::string(name) + "\"", "XML does not allow this name for an element or attribute",
                      "name it with letters, digits, '_', '-', '.', ':'");
   }
 
