@@ -10,6 +10,8 @@
 #include "cambium/geometry/line.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/lanes/lane.hpp"
+#include "cambium/map/road/cubic.hpp"
+#include "cambium/map/road/reference_line.hpp"
 
 namespace cambium::map::detail {
 
