@@ -31,7 +31,7 @@ inline constexpr double goal_radius = 5.0;  ///< how far from a lane a start or 
   return "(" + cambium::detail::rounded_text(p.x()) + ", " + cambium::detail::rounded_text(p.y()) + ")";
 }
 
-/// The drivable lanes that hold `p`; where none does the nearest one.
+/// The drivable lanes that hold `p`; where none does, the nearest one.
 [[nodiscard]] inline std::vector<LaneStation> stations_at(Map const& map, geometry::Point const& p) {
   std::vector<LaneStation> stations;
   for (auto const& hit : map.lanes_near(p, goal_radius))
