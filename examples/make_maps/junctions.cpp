@@ -65,16 +65,12 @@ void add_lights(opendrive::Document& document) {
     opendrive::Signal light;
     light.id = "light " + arm.id;
     light.s = arm.length;
-    light.t = -7.5;
-    light.name = arm.name;
-    light.dynamic = true;
     light.orientation = opendrive::Orientation::along;
-    light.z_offset = 2.5;
-    light.country = "OpenDRIVE";
     light.type = "1000001";
-    light.subtype = "-1";
-    arm.signals.push_back(light);
-    document.controllers[i % 2].controls.push_back({.signal_id = light.id, .type = {}});
+    light.rest.attributes = {{"t", "-7.5"},      {"name", arm.name},       {"dynamic", "yes"},
+                             {"zOffset", "2.5"}, {"country", "OpenDRIVE"}, {"subtype", "-1"}};
+    document.controllers[i % 2].controls.push_back({.signal_id = light.id});
+    arm.signals.push_back(std::move(light));
   }
 }
 

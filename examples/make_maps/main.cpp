@@ -6,16 +6,15 @@
 // It shows how a map can be laid out in code: pieces of reference line, lanes with widths, junctions. The same program
 // always writes the same bytes.
 
-#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
-#include <limits>
 #include <string>
 #include <system_error>
 #include <utility>
 
 #include "cambium/core/write_file.hpp"
+#include "cambium/geometry/box.hpp"
 #include "cambium/map/opendrive/writer.hpp"
 
 #include "../common/command_line.hpp"
@@ -26,18 +25,16 @@ namespace {
 
 /// Bounds of the reference lines' joints, in whole metres.
 void set_bounds(opendrive::Document& document) {
-  auto& header = document.header;
-  header.north = header.east = -std::numeric_limits<double>::infinity();
-  header.south = header.west = std::numeric_limits<double>::infinity();
+  cambium::geometry::Box box;
   for (auto const& road : document.roads)
     for (auto const& g : road.geometries)
       for (double const ds : {0.0, g.length}) {
         auto const p = evaluate(g, ds);
-        header.north = std::max(header.north, std::round(p.y));
-        header.south = std::min(header.south, std::round(p.y));
-        header.east = std::max(header.east, std::round(p.x));
-        header.west = std::min(header.west, std::round(p.x));
+        box.add(p.x, p.y);
       }
+  auto const text = [](double metres) { return std::to_string(std::lround(metres)); };
+  document.header.rest.attributes = {
+      {"north", text(box.max_y)}, {"south", text(box.min_y)}, {"east", text(box.max_x)}, {"west", text(box.min_x)}};
 }
 
 std::string text_of(opendrive::Document document) {

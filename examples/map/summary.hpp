@@ -67,7 +67,9 @@ inline std::string document_text(odr::Document const& document) {
     sections += road.lane_sections.size();
     signals += road.signals.size();
     references += road.signal_references.size();
-    objects += road.objects.size();
+    for (auto const& element : road.rest.elements)
+      if (element.name == "objects")
+        for (auto const& child : element.children) objects += child.name == "object";
     left_hand += road.rule == odr::TrafficRule::left_hand;
   }
   constexpr char const* words[] = {"default", "direct", "virtual", "crossing", "other"};

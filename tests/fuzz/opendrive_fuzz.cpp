@@ -1,11 +1,10 @@
-// Fuzzes the OpenDRIVE reader with libFuzzer: whatever the text, there is a map without a number that is none, or a
-// MapError; what was read and written again is read as the same; and whatever the map, all that users do with one
-// works: look-ups, and for one text in sixteen routes, corridors, junctions and pictures. Damage is done to the XML
-// tree, not to bytes.
+// Fuzzes the OpenDRIVE reader with libFuzzer. Any text gives a map whose numbers are all finite, or a MapError. What
+// was read and written again is read as the same document. On any map everything that users do works: look-ups, and for
+// one text in sixteen also routes, corridors, junctions and pictures. The damage is done to the XML tree, not to bytes.
 //
-// For long (clang only): cmake --build build --target opendrive_fuzz, then, with a folder for what is found,
+// To run it for long (clang only): cmake --build build --target opendrive_fuzz, then, with a folder for its findings,
 //   build/tests/fuzz/opendrive_fuzz -max_len=20000 -timeout=20 -rss_limit_mb=4096 -max_total_time=3600 FOUND/ maps/
-// A file of a finding is given as the only argument to repeat it.
+// To repeat a finding, give its file as the only argument.
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -38,7 +37,7 @@ namespace cb = cambium;
   std::abort();
 }
 
-/// Large maps are only read: what there is to find can be found in small ones, a thousand times as often.
+/// Large maps are only read: small ones show the same faults, and a thousand times as often.
 bool is_small(cb::map::OpenDriveDocument const& document) {
   double area = 0.0, turn = 0.0;
   std::size_t records = 0;
@@ -53,7 +52,7 @@ bool is_small(cb::map::OpenDriveDocument const& document) {
   return area < 5e3 && turn < 200.0 && records < 100;
 }
 
-/// Whether XML may hold all characters of a text: others are replaced where it is written.
+/// Whether XML allows all characters of a text; the writer replaces the others.
 bool is_plain(std::string_view text) {
   auto const is_odd = [](char c) { return (c < ' ' && c != '\n' && c != '\t' && c != '\r') || c == 0x7f; };
   return std::none_of(text.begin(), text.end(), is_odd) && text.find("&#") == text.npos;
@@ -72,7 +71,7 @@ void check_written(cb::map::OpenDriveDocument const& document, std::string_view 
   if (!same) fail("what was written is read as something else:\n" + text);
 }
 
-/// Every lane is found on its own path, from nowhere and from where it was found.
+/// Every lane is found on its own path, with and without a previous hit.
 void check_queries(cb::Map const& map) {
   for (std::size_t i = 0; i < map.lanes().size(); i += 1 + map.lanes().size() / 3) {
     auto const& lane = map.lanes()[i];
@@ -89,7 +88,7 @@ void check_queries(cb::Map const& map) {
   }
 }
 
-/// One text in sixteen, always the same ones: all that users do takes thirty times as long as reading.
+/// One text in sixteen, always the same ones: doing all that users do takes thirty times as long as reading.
 bool is_used(std::string_view text) {
   std::uint32_t hash = 2166136261u;  // FNV-1a
   for (char const c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619u;
@@ -106,8 +105,8 @@ void check_map(cb::Map const& map, bool used) {
   if (auto const failure = map_use::first_failure(map); !failure.empty()) fail(failure);
 }
 
-/// The map of a text; null where it is refused, or too large to look at here. What was read makes a map, unless there
-/// is no lane in it.
+/// The map of a text; null where the text is refused, or too large to check here. A document that was read makes a map,
+/// unless it has no lane.
 std::shared_ptr<cb::Map const> map_in(std::string_view text, bool infer_links) {
   bool is_read = false;
   try {

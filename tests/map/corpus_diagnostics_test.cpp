@@ -1,6 +1,5 @@
 // What is found on each map of the corpus: new findings, and lost ones, are to be explained here.
 #include <algorithm>
-#include <cstddef>
 #include <iterator>
 #include <string>
 #include <vector>
@@ -9,6 +8,7 @@
 
 #include "cambium/map/opendrive.hpp"
 #include "../support/corpus.hpp"
+#include "../support/map_use.hpp"
 #include "../support/maps.hpp"
 
 namespace {
@@ -57,7 +57,8 @@ Expected const expected[]{
 TEST_CASE("the maps of the corpus have the findings that are known, and no other") {
   auto const folder = corpus::find("opendrive");
   if (!folder) return;
-  CHECK(std::size(expected) == 28);
+  CHECK(corpus::maps(*folder).size() == std::size(expected));
+  std::size_t roads = 0;
   for (auto const& e : expected) {
     CAPTURE(e.map);
     auto const loaded = cambium::load_opendrive((*folder / (std::string(e.map) + ".xodr")).string());
@@ -71,11 +72,13 @@ TEST_CASE("the maps of the corpus have the findings that are known, and no other
     CHECK(count(Severity::info) == e.infos);
     CHECK(count(Severity::warning) == e.warnings);
     CHECK((!e.must_warn || count(Severity::warning) > 0));
+    roads += loaded.map->roads().size();
     for (auto const& d : loaded.diagnostics) {
       CHECK(d.line > 0);
       CHECK_FALSE(d.sentence.empty());
     }
   }
+  CHECK(roads >= 690);
 }
 
 TEST_CASE("a road has a handful of findings, however often it is at fault") {
@@ -93,5 +96,17 @@ TEST_CASE("our own maps have no finding at all") {
   for (auto const& path : corpus::maps(std::filesystem::path(CAMBIUM_SOURCE_DIR) / "maps")) {
     auto const loaded = cambium::load_opendrive(path.string());
     CHECK_MESSAGE(loaded.diagnostics.empty(), to_string(loaded.diagnostics.front()));
+  }
+}
+
+// The same uses that the fuzzer makes of damaged maps.
+TEST_CASE("routes, corridors, junctions, look-ups and pictures work on our own maps and on maps of the corpus") {
+  auto files = corpus::maps(std::filesystem::path(CAMBIUM_SOURCE_DIR) / "maps");
+  for (std::string const name :
+       {"DR_DEU_Merging_MT_v01_shifted", "fabriksgatan", "multi_intersections", "virtual_junction_priority"})
+    if (auto const file = corpus::find("opendrive/" + name + ".xodr")) files.push_back(*file);
+  for (auto const& file : files) {
+    CAPTURE(file.string());
+    CHECK(map_use::first_failure(*cambium::load_opendrive(file.string()).map) == "");
   }
 }

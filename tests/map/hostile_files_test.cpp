@@ -6,7 +6,6 @@
 #include <exception>
 #include <filesystem>
 #include <string>
-#include <vector>
 
 #include <pugixml.hpp>
 

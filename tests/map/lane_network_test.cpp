@@ -34,11 +34,8 @@ NetworkFinding first(std::vector<NetworkFinding> const& findings, NetworkFault f
 
 /// Two roads of one lane, the second one at `x`, `y`; `linked` by both sides.
 std::string two_roads(double x, double y, double heading, bool linked) {
-  Road a, b;
-  b.id = "2";
-  b.x = x;
-  b.y = y;
-  b.heading = heading;
+  Road a;
+  Road b{.id = "2", .x = x, .y = y, .heading = heading};
   if (linked) {
     a.behind = to_start("2");
     b.before = to_end("1");
@@ -125,13 +122,9 @@ TEST_CASE("a missing link is reported; asked to, the map joins the lanes") {
 TEST_CASE("no link is inferred where the road's link leads elsewhere, or the lane runs the other way") {
   MapOptions options;
   options.infer_links = true;
-  Road a, b, c;
-  b.id = "2";
-  b.x = 100;
-  c.id = "3";
-  c.x = 100;
-  a.behind = to_start("3");
-  a.sections[0].lanes[0].behind = {};
+  Road a{.behind = to_start("3"), .sections = {{.lanes = {{.behind = {}}}}}};
+  Road b{.id = "2", .x = 100};
+  Road c{.id = "3", .x = 100};
   auto const elsewhere = load(file({a, b, c}), options);
   CHECK_FALSE(leads(elsewhere, {"1", 1, -1}, {"2", 1, -1}));
   CHECK(leads(elsewhere, {"1", 1, -1}, {"3", 1, -1}));
@@ -148,30 +141,25 @@ TEST_CASE("joined lanes that do not meet are reported with their distance, those
   CHECK(load(two_roads(100, 0, 0, true)).diagnostics.empty());
   CHECK(load(two_roads(100, 0.009, 0, true)).diagnostics.empty());
   auto const gap = load(two_roads(100, 0.25, 0, true));
-  CHECK(count(gap, Severity::warning, "goes on 0.25 m away from where it ends") == 1);
+  CHECK(count(gap, Severity::warning, "continues 0.25 m away from where it ends") == 1);
   CHECK(leads(gap, {"1", 1, -1}, {"2", 1, -1}));
   auto const kink = load(two_roads(100, 0, 0.15, true));
   CHECK(count(kink, Severity::info, "0.15 rad off its direction") == 1);
 }
 
 TEST_CASE("reference lines that do not meet are no fault where the lanes do") {
-  Road a, b;
-  a.behind = to_start("2");
-  a.sections[0].lanes[0].behind = {-1};
-  b.id = "2";
-  b.x = 100;
-  b.y = 3;
-  b.before = to_end("1");
-  b.lane_offset = "<laneOffset s=\"0\" a=\"-3\" b=\"0\" c=\"0\" d=\"0\"/>";
+  Road a{.behind = to_start("2"), .sections = {{.lanes = {{.behind = {-1}}}}}};
+  Road b{.id = "2",
+         .x = 100,
+         .y = 3,
+         .before = to_end("1"),
+         .lane_offset = "<laneOffset s=\"0\" a=\"-3\" b=\"0\" c=\"0\" d=\"0\"/>"};
   CHECK(load(file({a, b})).diagnostics.empty());
 }
 
 TEST_CASE("many gaps between two roads are one finding") {
-  Road a, b;
-  a.behind = to_start("2");
-  b.id = "2";
-  b.x = 100.1;
-  b.before = to_end("1");
+  Road a{.behind = to_start("2")};
+  Road b{.id = "2", .x = 100.1, .before = to_end("1")};
   a.sections[0].lanes.clear();
   for (int id = -1; id >= -4; --id) a.sections[0].lanes.push_back({.id = id, .behind = {id}});
   b.sections = a.sections;
@@ -181,13 +169,8 @@ TEST_CASE("many gaps between two roads are one finding") {
 }
 
 TEST_CASE("what one side only says is entered once, and reported where the other side says something else") {
-  Road a, b;
-  a.behind = to_start("2");
-  a.sections[0].lanes = {{.id = -1, .behind = {-1}}, {.id = -2, .behind = {-2}}};
-  b.id = "2";
-  b.x = 100;
-  b.before = to_end("1");
-  b.sections = a.sections;
+  Road a{.behind = to_start("2"), .sections = {{.lanes = {{.id = -1, .behind = {-1}}, {.id = -2, .behind = {-2}}}}}};
+  Road b{.id = "2", .x = 100, .before = to_end("1"), .sections = a.sections};
   b.sections[0].lanes[0].behind = b.sections[0].lanes[1].behind = {};
   auto const one_sided = load(file({a, b}));  // the lanes of road 2 name nothing
   CHECK(one_sided.diagnostics.empty());
@@ -206,45 +189,38 @@ TEST_CASE("what one side only says is entered once, and reported where the other
 }
 
 TEST_CASE("a lane that ends although its own goes on behind the road's link is reported") {
-  Road a, b;
-  a.behind = to_start("2");
-  b.id = "2";
-  b.x = 101;  // too far for a possible link
-  b.before = to_end("1");
+  Road a{.behind = to_start("2")};
+  // too far for a possible link
+  Road b{.id = "2", .x = 101, .before = to_end("1")};
   auto const loaded = load(file({a, b}));
-  CHECK(count(loaded, Severity::warning, "it ends here, but lane -1 of road 2 goes on behind it") == 1);
+  CHECK(count(loaded, Severity::warning, "it ends here, but lane -1 of road 2 continues from there") == 1);
   b.sections[0].lanes[0].id = -2;
   b.sections[0].lanes.insert(b.sections[0].lanes.begin(), {.id = -1, .type = "sidewalk"});
   CHECK(count(load(file({a, b})), Severity::warning) == 0);
 }
 
 TEST_CASE("links lead through sections that have no length") {
-  Road road;
-  road.sections = {{0, {{.id = -1, .behind = {-1}}}},
-                   {50, {{.id = -1, .before = {-1}, .behind = {-2}}}},
-                   {50 + 2e-7, {{.id = -1, .type = "shoulder"}, {.id = -2, .before = {-1}}}}};
+  Road road{.sections = {{0, {{.id = -1, .behind = {-1}}}},
+                         {50, {{.id = -1, .before = {-1}, .behind = {-2}}}},
+                         {50 + 2e-7, {{.id = -1, .type = "shoulder"}, {.id = -2, .before = {-1}}}}}};
   auto const loaded = load(file({road}));
   CHECK(loaded.map->lanes().size() == 3);
   CHECK(leads(loaded, {"1", 10, -1}, {"1", 90, -2}));
   CHECK(count(loaded, Severity::warning, "link") == 0);
   CHECK(count(loaded, Severity::info, "it has no length") == 1);
   // At the end of a road, to the next road.
-  Road next;
-  next.id = "2";
-  next.x = 100;
-  next.before = to_end("1");
+  Road next{.id = "2", .x = 100, .before = to_end("1")};
   road.behind = to_start("2");
   road.sections = {{0, {{.id = -1, .behind = {-1}}}}, {100 - 2e-7, {{.id = -1, .before = {-1}, .behind = {-1}}}}};
   CHECK(leads(load(file({road, next})), {"1", 10, -1}, {"2", 10, -1}));
 }
 
 TEST_CASE("a road that closes upon itself can be driven round and round") {
-  Road ring;
-  ring.length = 2 * cambium::geometry::pi * 50;
-  ring.curvature = 0.02;
-  ring.before = to_end("1");
-  ring.behind = to_start("1");
-  ring.sections[0].lanes = {{.id = -1, .before = {-1}, .behind = {-1}}};
+  Road ring{.length = 2 * cambium::geometry::pi * 50,
+            .before = to_end("1"),
+            .behind = to_start("1"),
+            .sections = {{.lanes = {{.id = -1, .before = {-1}, .behind = {-1}}}}},
+            .curvature = 0.02};
   auto const loaded = load(file({ring}));
   CHECK(loaded.diagnostics.empty());
   REQUIRE(loaded.map->lanes().size() == 2);
@@ -255,9 +231,8 @@ TEST_CASE("a road that closes upon itself can be driven round and round") {
 
 TEST_CASE("a lane for both directions is two lanes, oncoming to each other, and linked each in its own") {
   for (bool const by_type : {false, true}) {
-    Road a, b;
-    a.behind = to_start("2");
-    a.sections[0].lanes = {{.id = -1, .behind = {-1}}, {.id = -2, .behind = {-2}}};
+    Road a{.behind = to_start("2"), .sections = {{.lanes = {{.id = -1, .behind = {-1}}, {.id = -2, .behind = {-2}}}}}};
+    Road b;
     (by_type ? a.sections[0].lanes[0].type : a.sections[0].lanes[0].direction) = by_type ? "bidirectional" : "both";
     b = a;
     b.id = "2";
@@ -303,16 +278,9 @@ TEST_CASE("a lane for both directions is two lanes, oncoming to each other, and 
 }
 
 TEST_CASE("a direct junction joins its roads without a connecting road") {
-  Road main, on, off;
-  main.behind = to_junction("7");
-  main.sections[0].lanes = {{.id = -1}, {.id = -2}};
-  on.id = "2";
-  on.x = 100;
-  on.before = to_end("1");
-  off.id = "3";
-  off.x = 100;
-  off.y = -3.5;
-  off.before = to_end("1");
+  Road main{.behind = to_junction("7"), .sections = {{.lanes = {{.id = -1}, {.id = -2}}}}};
+  Road on{.id = "2", .x = 100, .before = to_end("1")};
+  Road off{.id = "3", .x = 100, .y = -3.5, .before = to_end("1")};
   auto const text = file({main, on, off}, junction("7",
                                                    connection("1", "2", "start", -1, -1, "linkedRoad") +
                                                        connection("1", "3", "start", -2, -1, "linkedRoad"),
@@ -325,8 +293,8 @@ TEST_CASE("a direct junction joins its roads without a connecting road") {
 }
 
 TEST_CASE("a connecting road of a virtual junction leaves the main road in its middle, which goes on") {
-  Road main, side;
-  main.sections[0].lanes = {{.id = 1}, {.id = -1}};
+  Road main{.sections = {{.lanes = {{.id = 1}, {.id = -1}}}}};
+  Road side;
   main.sections[0].lanes[1].widths = "<width sOffset=\"0\" a=\"3\" b=\"0.01\" c=\"0\" d=\"0\"/>";
   side.id = "2";
   side.x = 40;

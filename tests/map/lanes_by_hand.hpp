@@ -72,6 +72,16 @@ inline LaneId add_straight(std::vector<Lane>& lanes, Pose const& start, double l
   return add_lane(lanes, arc(start, 0.0, length, length), half_width);
 }
 
+/// A lane from (0, -3.5) along +x that swings onto the x axis between x = 40 and its end at x = 100.
+inline LaneId add_swinging(std::vector<Lane>& lanes) {
+  std::vector<LineSample> samples;
+  for (int i = 0; i <= 200; ++i) {
+    double const x = 0.5 * i, u = std::clamp((x - 40) / 60, 0.0, 1.0);
+    samples.push_back({x, -3.5 + 3.5 * u * u * (3 - 2 * u), std::atan(3.5 / 60 * 6 * u * (1 - u))});
+  }
+  return add_lane(lanes, samples);
+}
+
 inline void link(std::vector<Lane>& lanes, LaneId from, LaneId to) {
   lanes[index_of(from)].successors.push_back(to);
   lanes[index_of(to)].predecessors.push_back(from);

@@ -1,7 +1,6 @@
 // Every adjacency at road ends that two other readers found (the oracle's links tables) is in the map, and no other.
 #include <algorithm>
 #include <cstddef>
-#include <cstdint>
 #include <map>
 #include <set>
 #include <string>
@@ -10,7 +9,6 @@
 
 #include <doctest/doctest.h>
 
-#include "cambium/core/random.hpp"
 #include "cambium/map/build/build_map.hpp"
 #include "cambium/map/opendrive.hpp"
 #include "cambium/map/opendrive/reader.hpp"
@@ -142,48 +140,6 @@ void count_relations(Map const& map, std::vector<Row> const& rows, Ends const& e
     }
 }
 
-/// Lanes reached over the table's rows, the sections' links and lane changes: a closure that knows no map's successors
-/// but those within roads.
-class Reach {
- public:
-  Reach(Map const& map, std::vector<Row> const& rows, Ends const& ends) : steps_(map.lanes().size()) {
-    for (auto const& row : rows) {
-      auto const *a = ends.find(row.from), *b = ends.find(row.to);
-      if (a == nullptr || b == nullptr) continue;
-      bool const leaves_a = a->along_road == row.from.at_end, leaves_b = b->along_road == row.to.at_end;
-      if (leaves_a != leaves_b) leaves_a ? add(*a, *b) : add(*b, *a);
-    }
-    for (auto const& lane : map.lanes()) {
-      for (auto const next : lane.successors)
-        if (map.lane(next).road == lane.road || is_valid(lane.merges_into)) add(lane, map.lane(next));
-      for (auto const side : {lane.left_neighbor, lane.right_neighbor})
-        if (is_valid(side)) add(lane, map.lane(side));
-    }
-  }
-
-  [[nodiscard]] std::vector<bool> from(LaneId start) const {
-    std::vector<bool> seen(steps_.size());
-    std::vector<LaneId> open{start};
-    seen[index_of(start)] = true;
-    while (!open.empty()) {
-      auto const lane = open.back();
-      open.pop_back();
-      for (auto const next : steps_[index_of(lane)])
-        if (!seen[index_of(next)]) {
-          seen[index_of(next)] = true;
-          open.push_back(next);
-        }
-    }
-    return seen;
-  }
-
- private:
-  void add(Lane const& from, Lane const& to) {
-    if (from.drivable() && to.drivable()) steps_[index_of(from.id)].push_back(to.id);
-  }
-  std::vector<std::vector<LaneId>> steps_;
-};
-
 }  // namespace
 
 TEST_CASE("every row of the links tables is a link of the map, and every link between roads is a row") {
@@ -208,37 +164,6 @@ TEST_CASE("every row of the links tables is a link of the map, and every link be
                                  << c.merged << " of merging lanes");
   }
   CHECK(rows > 2800);
-}
-
-TEST_CASE("a route leads wherever the links tables lead, and nowhere else") {
-  auto const folder = corpus::find("opendrive");
-  if (!folder) return;
-  cambium::map::RouteOptions const options{.obey_lane_marks = false};  // the tables know nothing of marks
-  cambium::RandomStream next(1, 0, 0);
-  int reached = 0, not_reached = 0;
-  for (auto const& path : corpus::maps(*folder)) {
-    auto const map = cambium::load_opendrive(path.string()).map;
-    Reach const reach(*map, links_of(path), Ends(*map));
-    std::vector<LaneId> lanes;
-    for (auto const& lane : map->lanes())
-      if (lane.drivable()) lanes.push_back(lane.id);
-    std::size_t const most = 400;  // pairs a map
-    bool const all = lanes.size() * lanes.size() <= most;
-    std::size_t const pairs = all ? lanes.size() * lanes.size() : most;
-    std::vector<bool> seen;
-    for (std::size_t i = 0; i < pairs; ++i) {
-      LaneId const from = lanes[(all ? i : i / 20 * 20 * 7919) / (all ? lanes.size() : 1) % lanes.size()];
-      LaneId const to = lanes[all ? i % lanes.size() : next() % lanes.size()];
-      if (all || i % 20 == 0) seen = reach.from(from);
-      bool const has_route = map->shortest_route(from, to, options).has_value();
-      CHECK_MESSAGE(has_route == seen[index_of(to)], path.stem().string()
-                                                         << ": " << map->describe(from) << " to " << map->describe(to));
-      ++(has_route ? reached : not_reached);
-    }
-  }
-  MESSAGE(reached << " routes, " << not_reached << " pairs without");
-  CHECK(reached > 1000);
-  CHECK(not_reached > 1000);
 }
 
 TEST_CASE("lanes of one road are linked from section to section, over those without length, too") {

@@ -14,6 +14,7 @@
 #include "cambium/map/opendrive/check.hpp"
 #include "cambium/map/opendrive/writer.hpp"
 #include "../support/allocations.hpp"
+#include "../support/maps.hpp"
 #include "lanes_by_hand.hpp"
 
 using namespace by_hand;
@@ -46,15 +47,6 @@ bool leads(Map const& map, LaneId from, LaneId to) {
   bool const there = std::count(next.begin(), next.end(), to) == 1;
   CHECK(there == (std::count(before.begin(), before.end(), from) == 1));
   return there;
-}
-
-std::string what_of(auto const& run) {
-  try {
-    run();
-  } catch (MapError const& problem) {
-    return problem.what();
-  }
-  return "no error";
 }
 
 /// Lanes in a form that does not depend on ids, in order: for comparing maps. `mirror` -1: at the x axis, with left
@@ -262,14 +254,16 @@ TEST_CASE("what cannot be built is refused with a sentence") {
   builder.add_road(straight("1", {}, 100, 1, 1));
   builder.add_road(straight("2", {101, 0, 0}, 100, 1, 1));
   builder.add_junction("9");
-  CHECK(what_of([&] { builder.connect({"1", end}, {"7", start}); }).starts_with("road 7: there is none of that id"));
-  CHECK(what_of([&] {
+  CHECK(support::error_of([&] {
+          builder.connect({"1", end}, {"7", start});
+        }).starts_with("road 7: there is none of that id"));
+  CHECK(support::error_of([&] {
           builder.connect({"1", end}, {"2", start});
         }).find("they do not meet: there are 1 m") < std::string::npos);
-  CHECK(what_of([&] {
+  CHECK(support::error_of([&] {
           builder.connect({"1", end}, {"2", start}, {{-1, -2}});
         }).starts_with("road 2, start, lane -2: there is no such lane"));
-  CHECK(what_of([&] {
+  CHECK(support::error_of([&] {
           builder.add_turn("9", {"1", end}, {"2", start}, {.lanes = {{1, -1}}});
         }).find("the wrong way") < std::string::npos);
   CHECK_THROWS_AS(builder.connect({"1", ContactPoint::none}, {"2", start}), MapError);
@@ -312,7 +306,7 @@ TEST_CASE("what is wrong in a plan is named by its number") {
     auto plan = straight("1", {}, 100, 0, 2);
     plan.line = lay_from({}, {{40.0}, {30.0, 0.01, 0.01}, {30.0}});
     change(plan);
-    return what_of([&] { MapBuilder().add_road(plan); });
+    return support::error_of([&] { MapBuilder().add_road(plan); });
   };
   auto const has = [](std::string const& text, std::string const& part) {
     CHECK_MESSAGE(text.find(part) < text.size(), text);
@@ -333,23 +327,23 @@ TEST_CASE("what is wrong in a plan is named by its number") {
   };
   has(widths({{0, 3, 0, 0, 0}, {50, 3, 0, 0, 0}, {70, 3, 0, 0, 0}}), "no error");
   has(widths({{0, 3, 0, 0, 0}, {50, 3, 0, 0, 0}, {20, 3, 0, 0, 0}}),
-      "lane -2, width record 2 is at s 20 m, not behind the one before, at 50 m");
-  has(widths({{0, 3, 0, 0, 0}, {0, 4, 0, 0, 0}}), "width record 1 is at s 0 m, not behind the one before, at 0 m");
-  has(widths({{-1, 3, 0, 0, 0}}), "width record 0 is at s -1 m, not behind 0");
+      "lane -2, width record 2 is at s 20 m, not after the previous one, at 50 m");
+  has(widths({{0, 3, 0, 0, 0}, {0, 4, 0, 0, 0}}), "width record 1 is at s 0 m, not after the previous one, at 0 m");
+  has(widths({{-1, 3, 0, 0, 0}}), "width record 0 is at s -1 m, not after 0");
   has(widths({{0, 3, 0, 0, 0}, {50, NAN, 0, 0, 0}}), "width record 1 is not finite");
   has(complaint([](RoadPlan& p) {
         p.lane_offset = {{30, 0, 0, 0, 0}, {10, 1, 0, 0, 0}};
       }),
-      "lane offset record 1 is at s 10 m, not behind the one before, at 30 m");
+      "lane offset record 1 is at s 10 m, not after the previous one, at 30 m");
   has(complaint([](RoadPlan& p) { p.line.front().s = 0.004; }), "no error");  // rounded as in files
 }
 
 TEST_CASE("a map of nothing is refused with what to add, and no word about a file") {
-  CHECK(what_of([] { (void)MapBuilder("mine").build(); }) ==
+  CHECK(support::error_of([] { (void)MapBuilder("mine").build(); }) ==
         "map 'mine': no road has been added to it; call MapBuilder::add_road before build");
   MapBuilder bare;
   bare.add_road({.id = "1", .line = lay_from({}, {{50.0}}), .sections = {{}}});
-  auto const what = what_of([&] { (void)bare.build(); });
+  auto const what = support::error_of([&] { (void)bare.build(); });
   CHECK_MESSAGE(what.find("the map has no lane with a length") < what.size(), what);
   CHECK_MESSAGE(what.find("file") == what.npos, what);
 }
@@ -363,16 +357,16 @@ TEST_CASE("what fails changes nothing") {
   builder.connect({"4", end}, {"2", start});
   auto const fails = [&builder](auto const& run, std::string const& why) {
     auto const before = builder.document();
-    auto const what = what_of([&] { run(); });
+    auto const what = support::error_of([&] { run(); });
     CHECK_MESSAGE(what.find(why) < what.size(), what);
     CHECK(builder.document() == before);
   };
   // Where the turn begins, where it ends, its id:
   fails([&] { builder.add_turn("9", {"1", end}, {"2", start}); }, "it is linked to another road or junction");
   fails([&] { builder.add_turn("9", {"6", end}, {"2", start}); }, "it is linked to another road or junction");
-  fails([&] { builder.add_junction("-1"); }, "its id says none");
-  fails([&] { builder.add_road({.id = " ", .line = {}, .sections = {}}); }, "its id says none");
-  fails([&] { builder.add_turn("9", {"6", end}, {"3", start}, {.id = "5"}); }, "there is one of that id");
+  fails([&] { builder.add_junction("-1"); }, "its id means none");
+  fails([&] { builder.add_road({.id = " ", .line = {}, .sections = {}}); }, "its id means none");
+  fails([&] { builder.add_turn("9", {"6", end}, {"3", start}, {.id = "5"}); }, "this id is already in use");
   fails([&] { builder.connect({"1", end}, {"5", start}); }, "it is linked to a junction already");
   // A link that cannot be dissolved, for a lane that is not there:
   builder.document().roads[3].lane_sections[0].lanes[1].successors = {-7};
@@ -440,8 +434,10 @@ TEST_CASE("road ends where no lane goes on as a lane of the other are not connec
   builder.add_road(straight("2", {5000, 5000, 1}, 50, 0, 1));
   builder.add_road(straight("3", {50, 0, 0}, 50, 1, 1));
   auto const before = builder.document();
-  auto const why = [&](RoadEnd const& a, RoadEnd const& b) { return what_of([&] { builder.connect(a, b); }); };
-  std::string const none_faces = "no lane of the one goes on as a lane of the other";
+  auto const why = [&](RoadEnd const& a, RoadEnd const& b) {
+    return support::error_of([&] { builder.connect(a, b); });
+  };
+  std::string const none_faces = "no lane of one continues as a lane of the other";
   CHECK(why({"1", end}, {"2", end}).find(none_faces) != std::string::npos);
   CHECK(why({"1", end}, {"1", end}).find(none_faces) != std::string::npos);
   CHECK(why({"1", end}, {"2", start}).find("they do not meet") != std::string::npos);
@@ -475,7 +471,7 @@ TEST_CASE("a link that another road contradicts is not dissolved") {
   builder.connect({"1", end}, {"2", start});
   builder.document().roads[1].predecessor->id = "3";
   auto const before = builder.document();
-  auto const why = what_of([&] { builder.connect({"1", end}, {"3", start}); });
+  auto const why = support::error_of([&] { builder.connect({"1", end}, {"3", start}); });
   CHECK(why.find("only one of them is linked to the other") != std::string::npos);
   CHECK(builder.document() == before);
 }

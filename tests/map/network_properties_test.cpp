@@ -1,7 +1,6 @@
 // What is the same network written in another way gives the same map.
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <functional>
@@ -31,13 +30,6 @@ using geometry::Point;
 using geometry::Pose;
 
 using MapPointer = std::shared_ptr<Map const>;
-
-std::vector<std::filesystem::path> all_maps() {
-  auto files = corpus::maps(std::filesystem::path(CAMBIUM_SOURCE_DIR) / "maps");
-  if (auto const folder = corpus::find("opendrive"))
-    for (auto& file : corpus::maps(*folder)) files.push_back(std::move(file));
-  return files;
-}
 
 OpenDriveDocument document_of(std::filesystem::path const& path) {
   std::vector<Diagnostic> diagnostics;
@@ -162,7 +154,7 @@ bool always(Road const&) { return true; }
 
 TEST_CASE("a map in the mirror is the mirrored map, left-hand traffic for right-hand traffic") {
   int routes = 0;
-  for (auto const& path : all_maps()) {
+  for (auto const& path : corpus::all_maps()) {
     CAPTURE(path.filename().string());
     auto const document = document_of(path);
     auto const map = built(document), other = built(transformed::mirrored(document));
@@ -175,7 +167,7 @@ TEST_CASE("a map in the mirror is the mirrored map, left-hand traffic for right-
 
 TEST_CASE("a map whose header moves it is the moved map") {
   int routes = 0;
-  for (auto const& path : all_maps()) {
+  for (auto const& path : corpus::all_maps()) {
     CAPTURE(path.filename().string());
     auto const document = document_of(path);
     for (double const heading : {0.0, 1.0, -2.5}) {
@@ -195,7 +187,7 @@ TEST_CASE("a map whose header moves it is the moved map") {
 
 TEST_CASE("roads written from their other end give the same network") {
   int reversed = 0, routes = 0;
-  for (auto const& path : all_maps())
+  for (auto const& path : corpus::all_maps())
     for (int const every : {1, 2, 3}) {
       CAPTURE(path.filename().string());
       CAPTURE(every);
@@ -221,7 +213,7 @@ TEST_CASE("roads written from their other end give the same network") {
 }
 
 TEST_CASE("a map that is built twice is the same to the last bit") {
-  for (auto const& path : all_maps()) {
+  for (auto const& path : corpus::all_maps()) {
     CAPTURE(path.filename().string());
     auto const a = cambium::load_opendrive(path.string()), b = cambium::load_opendrive(path.string());
     CHECK(a.diagnostics == b.diagnostics);

@@ -4,13 +4,13 @@
 #include <cmath>
 #include <limits>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "cambium/map/opendrive.hpp"
 #include "cambium/map/opendrive/reader.hpp"
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"
+#include "road_text.hpp"
 
 namespace {
 
@@ -18,6 +18,8 @@ using namespace cambium::map;
 using cambium::Diagnostic;
 using cambium::MapError;
 using cambium::Severity;
+using road_text::read;
+using road_text::Reading;
 
 /// Two roads and a junction without fault; tests change a place in it.
 std::string const good_file = R"(<?xml version="1.0"?>
@@ -78,32 +80,9 @@ std::string replaced(std::string text, std::string const& from, std::string cons
   return text.replace(at, from.size(), to);
 }
 
-struct Reading {
-  OpenDriveDocument document;
-  std::vector<Diagnostic> diagnostics;
-
-  /// The first finding whose sentence holds `words`.
-  [[nodiscard]] Diagnostic const* find(std::string const& words) const {
-    for (Diagnostic const& d : diagnostics)
-      if (d.sentence.find(words) != std::string::npos) return &d;
-    return nullptr;
-  }
-};
-
-Reading read(std::string const& text) {
-  Reading reading;
-  reading.document = cambium::map::read_opendrive_document(text, "test.xodr", reading.diagnostics);
-  return reading;
-}
-
 /// What the error says that reading `text` must end with.
 std::string error_of(std::string const& text) {
-  try {
-    (void)read(text);
-  } catch (MapError const& error) {
-    return error.what();
-  }
-  return "";
+  return support::error_of([&] { (void)read(text); });
 }
 
 bool contains(std::string const& text, std::string const& words) { return text.find(words) != std::string::npos; }
@@ -115,7 +94,7 @@ TEST_CASE("a file without fault is read as it is written, without a finding") {
   for (Diagnostic const& d : r.diagnostics) MESSAGE(to_string(d));
   CHECK(r.diagnostics.empty());
   CHECK(r.document.header.rev_minor == 6);
-  CHECK(r.document.header.west == 4.0);
+  CHECK(r.document.header.rest.find_attribute("west")->value == "4");
   REQUIRE(r.document.roads.size() == 2);
   opendrive::Road const& road = r.document.roads[0];
   CHECK(road.id == "1");
@@ -185,7 +164,8 @@ TEST_CASE("what is no OpenDRIVE file at all is an error that says where, what an
 
 namespace {
 
-/// A fault, and what is to be said and done about it.
+/// A fault, and what is to be said and done about it; more of them, with the maps that they lead to, are in
+/// malformed_files_test.cpp.
 struct Fault {
   char const* name;
   char const* from;   ///< this text of the good file ...
@@ -196,20 +176,11 @@ struct Fault {
 };
 
 Fault const faults[]{
-    {"no header", R"(<header revMajor="1" revMinor="6" name="test" north="1" south="2" east="3" west="4"/>)", "",
-     "the file has no header", 0},
     {"header without revision", R"(revMajor="1" revMinor="6")", "", "", 0},
-    {"section without lane 0", R"(<center><lane id="0" type="none" level="false"/></center>)", "", "has no lane 0", 14},
-    {"arc of curvature 0", R"(curvature="0.01")", R"(curvature="0")", "", 0},
-    {"spiral that is an arc", R"(curvEnd="0")", R"(curvEnd="0.01")", "", 0},
-    {"zero-length geometry", R"(length="40"><arc curvature="0.01"/></geometry>)",
-     R"(length="40"><arc curvature="0.01"/></geometry><geometry s="100" x="1" y="1" hdg="0" length="0"><line/></geometry>)",
-     "length 0 was left out", 9},
     {"tiny geometry", R"(length="40"><arc curvature="0.01"/></geometry>)",
      R"(length="40"><arc curvature="0.01"/></geometry><geometry s="100" x="1" y="1" hdg="0" length="1e-15"><line/></geometry>)",
      "98.1842 m and 0.4 rad off the end", 9},
     {"negative length", R"(length="60")", R"(length="-60")", "the length is negative", 8, 1},
-    {"unknown geometry", "<line/>", "<clothoidSpline/>", "none of line, arc, spiral", 8, 1},
     {"straight poly3", "<line/>", R"(<poly3 a="0" b="0" c="0" d="0"/>)", "", 0},
     {"poly3 without a coefficient", "<line/>", R"(<poly3 a="0" b="0" c="0"/>)", "attribute d is missing", 8, 1},
     {"straight paramPoly3", "<line/>",
@@ -218,57 +189,31 @@ Fault const faults[]{
      R"(<paramPoly3 pRange="arcLength" aU="0" bU="1.01" cU="0" dU="0" aV="0" bV="0" cV="0" dV="0"/>)",
      "the curve is 60.6 m long, its length attribute says 60 m", 8},
     {"paramPoly3 without a range", "<line/>",
-     R"(<paramPoly3 aU="0" bU="60" cU="0" dU="0" aV="0" bV="0" cV="0" dV="0"/>)", "normalized was taken", 8},
-    {"paramPoly3 of nothing", "<line/>",
-     R"(<paramPoly3 pRange="normalized" aU="0" bU="0" cU="0" dU="0" aV="0" bV="0" cV="0" dV="0"/>)", "has no length", 8,
-     1},
-    {"geometry without a kind", "<line/>", "", "none of line, arc, spiral", 8, 1},
-    {"empty plan view",
-     R"(<geometry s="0" x="95" y="8" hdg="0.4" length="10"><spiral curvStart="0.01" curvEnd="0"/></geometry>)", "",
-     "has no geometry", 39, 1},
-    {"userData before the kind", "<line/>", "<userData code=\"x\"/><line/>", "", 0},
-    {"userData behind the kind", "<line/>", "<line/><userData code=\"x\"/>", "", 0},
-    {"comment in a geometry", "<line/>", "<!-- <arc/> --><line/>", "", 0},
-    {"gap in the lane ids", R"(<lane id="-2")", R"(<lane id="-4")", "no lane between -1 and -4", 23},
+     R"(<paramPoly3 aU="0" bU="60" cU="0" dU="0" aV="0" bV="0" cV="0" dV="0"/>)", "normalized is assumed", 8},
+    {"geometry without a kind", "<line/>", "", "not a line, arc, spiral", 8, 1},
     {"lane id that is no number", R"(<lane id="-2")", R"(<lane id="two")", "id=\"two\" is not a finite whole number",
      23},
-    {"lane id twice", R"(<lane id="-2")", R"(<lane id="-1")", "lane id -1 is there twice", 23},
+    {"lane id twice", R"(<lane id="-2")", R"(<lane id="-1")", "lane id -1 occurs twice", 23},
     {"lane on the wrong side", R"(<lane id="1")", R"(<lane id="-1")", "lane -1 is written as left", 43},
-    {"negative width", R"(a="3.5")", R"(a="-0.5")", "its width falls to -0.5 m", 17},
     {"wild width", R"(a="3.5" b="0")", R"(a="3.5" b="1e9")", "reaches 7e+10 m; it was left out", 17},
     {"jump in the plan view", R"(s="60" x="60")", R"(s="60" x="61")", "it starts 1 m and 0 rad off the end", 9},
     {"jump to another place", R"(s="60" x="60")", R"(s="60" x="6000")", "5940 m and 0 rad off the end", 9, 1},
     {"wild heading", R"(hdg="0" length="60")", R"(hdg="1e300" length="60")", "hdg is beyond", 8, 1},
     {"section before the road", R"(<laneSection s="0">)", R"(<laneSection s="-5">)", "counts from the road's start",
      14},
-    {"no width", R"(<width sOffset="0" a="2" b="0" c="0" d="0"/>)", "", "neither width nor border", 23},
-    {"width that is not a number", R"(a="3.5")", R"(a="NaN")", "a=\"NaN\" is not a finite number", 19},
-    {"infinite width", R"(a="3.5")", R"(a="inf")", "a=\"inf\" is not a finite number", 19},
-    {"comma in a number", R"(a="3.5")", R"(a="3,5")", "a=\"3,5\" is not a finite number", 19},
-    {"text in a number", R"(x="60")", R"(x="60 m")", "x=\"60 m\" is not a finite number", 9, 1},
     {"missing attribute", R"( hdg="0" length="60")", R"( length="60")", "attribute hdg is missing", 8, 1},
-    {"road longer than its geometry", R"(length="100")", R"(length="130")", "geometries end at 100 m", 4},
     {"road without length", R"( length="100")", "", "the length is missing", 4},
-    {"geometries with a gap in s", R"(s="60" x="60")", R"(s="60.5" x="60")", "0.5 m behind the end", 9},
-    {"lane offset that starts late", R"(laneOffset s="0")", R"(laneOffset s="20")", "", 0},
-    {"width that starts late", R"(<width sOffset="0" a="2")", R"(<width sOffset="9" a="2")",
-     "first width record starts", 23},
-    {"road id twice", R"(id="2" junction="7")", R"(id="1" junction="7")", "id 1 is there twice", 37, 1},
+    {"geometries with a gap in s", R"(s="60" x="60")", R"(s="60.5" x="60")", "0.5 m beyond the end", 9},
     {"road without id", R"(id="2" junction="7")", R"(junction="7")", "it has no id", 37, 1},
-    {"link to a road that is not there", R"(elementId="2")", R"(elementId="55")", "no usable road 55", 5},
-    {"connection to a road that is not there", R"(connectingRoad="2")", R"(connectingRoad="99")",
-     "no usable road \"99\"", 48},
     {"junction that is not there", R"(junction="7")", R"(junction="8")", "no junction 8", 37},
-    {"no contact point", R"( contactPoint="start")", "", "contactPoint is missing", 5},
-    {"lane section behind the end", R"(<laneSection s="70">)", R"(<laneSection s="170">)", "behind the road's end", 26},
     {"lane link to a lane that is not there", R"(<successor id="-1"/>)", R"(<successor id="-8"/>)", "no lane -8", 17},
     {"no lane sections", R"(<laneSection s="0">
       <left>)",
      R"(<other s="0"><left>)", "XML", 0, 0},
-    {"unknown lane type", R"(type="shoulder")", R"(type="hovercraft")", "\"hovercraft\" is not known", 23},
-    {"unknown unit", R"(unit="mph")", R"(unit="knots")", "none of m/s, km/h, mph", 6},
+    {"unknown lane type", R"(type="shoulder")", R"(type="hovercraft")", "\"hovercraft\" is unknown", 23},
+    {"unknown unit", R"(unit="mph")", R"(unit="knots")", "not one of m/s, km/h, mph", 6},
     {"curl without end", R"(curvature="0.01")", R"(curvature="1e9")", "more than 100 rad", 9, 1},
-    {"unknown rule", R"(rule="LHT")", R"(rule="MIDDLE")", "none of RHT, LHT", 37},
+    {"unknown rule", R"(rule="LHT")", R"(rule="MIDDLE")", "not one of RHT, LHT", 37},
 };
 
 }  // namespace
@@ -326,12 +271,6 @@ TEST_CASE("geometries in the wrong order are sorted, with their lines") {
   CHECK(r.document.roads[0].geometry_length() == 100.0);
 }
 
-TEST_CASE("several predecessors of a lane are all kept") {
-  Reading const r =
-      read(replaced(good_file, R"(<predecessor id="-1"/>)", R"(<predecessor id="-1"/><predecessor id="-2"/>)"));
-  CHECK(r.document.roads[0].lane_sections[1].find(-1)->predecessors == std::vector{-1, -2});
-}
-
 TEST_CASE("speed limits are in m/s, none is infinite, undefined is empty") {
   auto const limit = [](char const* speed) {
     return read(replaced(good_file, R"(max="50" unit="mph")", speed)).document.roads[0].types[0].limit;
@@ -377,32 +316,9 @@ TEST_CASE("a truncated or mutilated file never does worse than an error") {
   for (std::size_t at = 60; at < good_file.size(); ++at) {  // one character goes: attributes, numbers and names are hit
     std::string text = good_file;
     text.erase(at, 1);
-    readable += error_of(text).empty() ? 1 : 0;
+    readable += error_of(text) == "no error" ? 1 : 0;
   }
   CHECK(readable > 1000);
-}
-
-TEST_CASE("every map of the corpus is read, or refused for a geometry that comes later") {
-  auto const folder = corpus::find("opendrive");
-  if (!folder) return;
-  auto const maps = corpus::maps(*folder);
-  CHECK(maps.size() == 28);
-  std::size_t roads = 0;
-  int refused = 0;
-  for (auto const& map : maps) {
-    std::vector<Diagnostic> diagnostics;
-    try {
-      roads +=
-          cambium::map::read_opendrive_document(corpus::read(map), map.filename().string(), diagnostics).roads.size();
-    } catch (MapError const& error) {
-      ++refused;
-      CHECK(contains(error.what(), "not supported yet"));
-    }
-    for (Diagnostic const& d : diagnostics) CHECK_FALSE(contains(d.sentence, "was left out"));
-  }
-  MESSAGE(roads << " roads of " << maps.size() << " maps, " << refused << " maps refused");
-  CHECK(roads >= 690);
-  CHECK(refused <= 2);
 }
 
 TEST_CASE("our own maps are read without a finding, and their lines go on without gap or kink") {
@@ -440,26 +356,4 @@ TEST_CASE("the merging map's ramp ends where the acceleration lane begins, and b
     double const lateral = std::cos(main.heading) * (p.y - main.y) - std::sin(main.heading) * (p.x - main.x);
     CHECK(lateral < -7.0);
   }
-}
-
-TEST_CASE("a section that speaks for one side leaves the other side's lanes as they go on") {
-  std::string const text = R"(<OpenDRIVE><header revMajor="1" revMinor="6"/><road id="1" length="100" junction="-1">
-    <planView><geometry s="0" x="0" y="0" hdg="0" length="100"><line/></geometry></planView><lanes>
-    <laneSection s="0"><left><lane id="1" type="driving"><width sOffset="0" a="3" b="0" c="0" d="0"/></lane></left>
-    <center><lane id="0" type="none"/></center><right>
-    <lane id="-1" type="driving"><width sOffset="0" a="2" b="0.01" c="0" d="0"/></lane></right></laneSection>
-    <laneSection s="40" singleSide="true"><left>
-    <lane id="2" type="driving"><link><successor id="1"/></link><width sOffset="0" a="1" b="0" c="0" d="0"/></lane>
-    <lane id="1" type="driving"><link><predecessor id="1"/></link><width sOffset="0" a="3" b="0" c="0" d="0"/></lane>
-    </left><center><lane id="0" type="none"/></center></laneSection></lanes></road></OpenDRIVE>)";
-  Reading const r = read(text);
-  auto const& sections = r.document.roads[0].lane_sections;
-  REQUIRE(sections.size() == 2);
-  auto const* lane = sections[1].find(-1);
-  REQUIRE(lane != nullptr);
-  CHECK(lane->predecessors == std::vector{-1});
-  CHECK(sections[0].find(-1)->successors == std::vector{-1});
-  CHECK(CubicProfile(lane->widths).value(30.0) == doctest::Approx(2.7));  // 70 m from the road's start
-  CHECK(sections[1].find(2) != nullptr);
-  CHECK(sections[1].find(-1)->widths.size() == 1);
 }

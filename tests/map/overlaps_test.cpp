@@ -163,12 +163,7 @@ TEST_CASE("lanes that only touch end to begin do not overlap, and a stretch beyo
 TEST_CASE("neighbours overlap only where one swings onto the other") {
   std::vector<Lane> lanes;
   auto const stays = add_straight(lanes, {0, 0, 0}, 100);
-  std::vector<LineSample> samples;
-  for (int i = 0; i <= 200; ++i) {
-    double const x = 0.5 * i, u = std::clamp((x - 40) / 60, 0.0, 1.0);
-    samples.push_back({x, -3.5 + 3.5 * u * u * (3 - 2 * u), std::atan(3.5 / 60 * 6 * u * (1 - u))});
-  }
-  auto const swings = add_lane(lanes, samples);
+  auto const swings = add_swinging(lanes);
   put_beside(lanes, stays, swings);
   find(lanes);
   CHECK(lanes[index_of(stays)].overlaps.empty());

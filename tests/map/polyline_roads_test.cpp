@@ -12,6 +12,7 @@
 #include "cambium/map/build/center_line_csv.hpp"
 #include "cambium/map/build/map_builder.hpp"
 #include "lanes_by_hand.hpp"
+#include "../support/maps.hpp"
 
 using namespace by_hand;
 
@@ -33,15 +34,6 @@ std::vector<Point> points_of(At const& at, double step = 4.0) {
 double distance(geometry::Line const& line, Point const& p) {
   auto const foot = line.project(p);
   return std::hypot(foot.lateral, std::max({-foot.s, foot.s - line.length(), 0.0}));
-}
-
-std::string what_of(auto const& run) {
-  try {
-    run();
-  } catch (MapError const& problem) {
-    return problem.what();
-  }
-  return "no error";
 }
 
 }  // namespace
@@ -141,16 +133,16 @@ TEST_CASE("errors of polylines name the road and the point, and tell what is no 
   };
   CHECK(along({{0, 0}, {10, 0}, {nan, 5}}, "12") ==
         "road 12: point 2 (of 0 to 2) is not a finite number: nan, 5; give finite coordinates [m]");
-  CHECK(
-      along({{0, 0}, {10, 0}, {10, 0.0004}, {20, 0}}, "12") ==
-      "road 12: point 2 (of 0 to 3) is less than a millimetre from the one before: 0.0004 m; leave one of the two out");
+  CHECK(along({{0, 0}, {10, 0}, {10, 0.0004}, {20, 0}}, "12") ==
+        "road 12: point 2 (of 0 to 3) is less than a millimetre from the previous one: 0.0004 m; leave one of the two "
+        "out");
   CHECK(along({{0, 0}, {10, 0}, {10, 0}}) ==
-        "polyline: point 2 (of 0 to 2) is less than a millimetre from the one before: 0 m; leave one of the two out");
+        "polyline: point 2 (of 0 to 2) is less than a millimetre from the previous one: 0 m; leave one of the two out");
   CHECK(along({{0, far}, {10, far}}) ==
         "polyline: point 0 (of 0 to 1) is beyond 100 000 km: 0, 1e+09; give "
         "coordinates in metres");
   CHECK(along({{0, 0}, {2e6, 0}}) ==
-        "polyline: point 1 (of 0 to 1) is 2e+06 m from the one before; give points within 1000 km");
+        "polyline: point 1 (of 0 to 1) is 2e+06 m from the previous one; give points within 1000 km");
   CHECK(along({{0, 0}}, "a") == "road a: it has one point; give at least two");
   std::vector<Point> const line{{0, 0}, {10, 0}, {20, 1}};
   CHECK(said([&] {
@@ -214,32 +206,33 @@ TEST_CASE("a table as BARK's, with the borders, becomes a map of one lane and a 
 }
 
 TEST_CASE("a table that is none is refused, with the line") {
-  CHECK(what_of([] { (void)read_center_line_csv("x,y\n0,0\n10,0\n5,0\n20,0\n", "a.csv"); }) ==
+  CHECK(support::error_of([] { (void)read_center_line_csv("x,y\n0,0\n10,0\n5,0\n20,0\n", "a.csv"); }) ==
         "a.csv:4: the line turns back on itself here; give the points in the order in which they are passed");
-  CHECK(what_of([] { (void)read_center_line_csv("x,y\n0,0\n1,abc\n", "a.csv"); }) ==
+  CHECK(support::error_of([] { (void)read_center_line_csv("x,y\n0,0\n1,abc\n", "a.csv"); }) ==
         "a.csv:3: cell 2 is no finite number: \"abc\"; give a number with a decimal point");
-  CHECK(what_of([] {
+  CHECK(support::error_of([] {
           (void)read_center_line_csv("x,y\n0,0\n\n1\n", "a.csv");
         }).starts_with("a.csv:4: cell 2 is missing"));
-  CHECK(what_of([] {
+  CHECK(support::error_of([] {
           (void)read_center_line_csv("a,b\n0,0\n1,1", "a.csv");
         }).starts_with("a.csv:1: there are no columns"));
   for (auto const* text :
        {"", "\n\n", "x,y", "x,y\n1,1\n1,1\n", "1\n2\n", "0,0\nnan,1\n", "0,0\ninf,1\n", "0,0\n1e9,1\n",
         "0,0\n1e999,1\n", "0,0\n1,1x\n", ",,,\n", "x,y\n,\n", "x,y\n\"\",\"\"\n", "x,y,theta\n0,0,0\n1,1\n"})
-    CHECK_MESSAGE(what_of([&] { (void)read_center_line_csv(text); }) != "no error", text);
+    CHECK_MESSAGE(support::error_of([&] { (void)read_center_line_csv(text); }) != "no error", text);
   CHECK_THROWS_AS((void)load_center_line_csv("/no/such/file.csv"), MapError);
   CHECK_THROWS_AS((void)load_center_line_csv("/"), MapError);
 }
 
 TEST_CASE("a table that says two things is refused rather than read as one of them") {
-  CHECK(what_of([] { (void)read_center_line_csv("x;y\n0,5;0,5\n10,5;0,5\n", "a.csv"); }) ==
+  CHECK(support::error_of([] { (void)read_center_line_csv("x;y\n0,5;0,5\n10,5;0,5\n", "a.csv"); }) ==
         "a.csv:2: cell 1 is no finite number: \"0,5\"; give a number with a decimal point");
-  CHECK(what_of([] { (void)read_center_line_csv("x,y\n0,0\n10,0,5,6\n", "a.csv"); }) ==
+  CHECK(support::error_of([] { (void)read_center_line_csv("x,y\n0,0\n10,0,5,6\n", "a.csv"); }) ==
         "a.csv:3: it has 4 cells, the first row 2; give each row the same columns, and numbers a decimal point");
   for (auto const* text :
        {"x,y,theta\n0,0,45\n7,7,45\n14,14,45\n", "0,0,3.14\n10,0,3.14\n", "0,0,3.14\n10,0,0\n20,0,0\n"})
-    CHECK(what_of([&] { (void)read_center_line_csv(text); }).find("does not fit the way") != std::string::npos);
+    CHECK(support::error_of([&] { (void)read_center_line_csv(text); }).find("does not fit the direction") !=
+          std::string::npos);
   std::string laps = "x,y,theta\n";
   for (int i = 0; i <= 300; ++i)  // five laps, whose heading counts them
     laps += std::to_string(30 * std::sin(0.1 * i)) + ',' + std::to_string(30 - 30 * std::cos(0.1 * i)) + ',' +

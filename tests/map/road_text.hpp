@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <sstream>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
 
 #include "cambium/map/opendrive.hpp"
+#include "cambium/map/opendrive/reader.hpp"
 #include "../support/maps.hpp"
 
 /// OpenDRIVE texts put together in tests: what is not said is a straight road of 100 m with one lane of 3.5 m.
@@ -111,6 +111,25 @@ inline std::string junction(std::string const& id, std::string const& connection
 
 inline cambium::LoadedMap load(std::string const& text, cambium::MapOptions const& options = {}) {
   return cambium::parse_opendrive(text, options, "test.xodr");
+}
+
+/// What reading a text gives.
+struct Reading {
+  cambium::map::OpenDriveDocument document;
+  std::vector<cambium::Diagnostic> diagnostics;
+
+  /// The first finding whose sentence holds `words`.
+  [[nodiscard]] cambium::Diagnostic const* find(std::string const& words) const {
+    for (auto const& d : diagnostics)
+      if (d.sentence.find(words) != std::string::npos) return &d;
+    return nullptr;
+  }
+};
+
+inline Reading read(std::string const& text) {
+  Reading reading;
+  reading.document = cambium::map::read_opendrive_document(text, "test.xodr", reading.diagnostics);
+  return reading;
 }
 
 /// How many findings of the severity have `words` in their sentence.

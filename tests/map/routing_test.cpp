@@ -49,86 +49,47 @@ Lanes random_lanes(std::uint64_t seed, int count) {
   return lanes;
 }
 
-/// Costs from lane to lane without the last lane's length (Floyd, Warshall 1962).
-std::vector<std::vector<double>> costs_by_floyd_warshall(std::vector<Lane> const& lanes) {
-  auto const n = lanes.size();
-  std::vector<std::vector<double>> cost(n, std::vector<double>(n, infinity));
-  for (auto const& lane : lanes) {
-    auto& row = cost[index_of(lane.id)];
-    row[index_of(lane.id)] = 0.0;
-    for (auto const next : lane.successors) row[index_of(next)] = std::min(row[index_of(next)], lane.length());
-    for (auto const side : {lane.left_neighbor, lane.right_neighbor})
-      if (is_valid(side)) row[index_of(side)] = std::min(row[index_of(side)], lane_change);
-  }
-  for (std::size_t k = 0; k < n; ++k)
-    for (std::size_t i = 0; i < n; ++i)
-      for (std::size_t j = 0; j < n; ++j) cost[i][j] = std::min(cost[i][j], cost[i][k] + cost[k][j]);
-  return cost;
-}
-
-/// The route's cost by the lanes' links, infinite where it jumps.
-double cost_of(std::vector<Lane> const& lanes, Route const& route) {
-  double cost = 0.0;
-  for (std::size_t i = 0; i + 1 < route.lanes.size(); ++i) {
-    auto const& lane = lanes[index_of(route.lanes[i])];
-    auto const next = route.lanes[i + 1];
-    double step = infinity;
-    if (std::count(lane.successors.begin(), lane.successors.end(), next) > 0) step = lane.length();
-    if (lane.left_neighbor == next || lane.right_neighbor == next) step = std::min(step, lane_change);
-    cost += step;
-  }
-  return cost;
-}
-
-/// Costs of all simple paths from lane to lane, the last lane included, by trying every one; sorted.
-std::vector<double> all_costs(std::vector<Lane> const& lanes, LaneId from, LaneId to) {
-  std::vector<double> costs;
-  std::vector<bool> used(lanes.size());
-  auto const visit = [&](auto const& self, LaneId at, double cost) -> void {
-    if (at == to) {
-      costs.push_back(cost + lanes[index_of(to)].length());
-      return;
-    }
-    used[index_of(at)] = true;
-    auto const& lane = lanes[index_of(at)];
-    std::map<LaneId, double> steps;
-    auto const offer = [&](LaneId next, double step) {
-      if (is_valid(next) && (!steps.contains(next) || steps[next] > step)) steps[next] = step;
-    };
-    for (auto const next : lane.successors) offer(next, lane.length());
-    offer(lane.left_neighbor, lane_change);
-    offer(lane.right_neighbor, lane_change);
-    for (auto const& [next, step] : steps)
-      if (!used[index_of(next)]) self(self, next, cost + step);
-    used[index_of(at)] = false;
-  };
-  visit(visit, from, 0.0);
-  std::sort(costs.begin(), costs.end());
-  return costs;
-}
-
-/// Whether lane `from` leads to `to`, and at what cost, by what the lanes themselves say; infinite where it does not.
-double step_cost(Map const& map, LaneId from, LaneId to) {
+/// What it costs to go from lane `from` on to `to`, by what the lanes themselves say; infinite where it does not lead
+/// there.
+double step_cost(Map const& map, LaneId from, LaneId to, bool obey_marks = true) {
   auto const& lane = map.lane(from);
   if (lane.drivable() && !map.lane(to).drivable()) return infinity;
-  if (std::count(lane.successors.begin(), lane.successors.end(), to) > 0) return lane.length();
-  bool const left = lane.left_neighbor == to && !lane.left_changes.empty();
-  bool const right = lane.right_neighbor == to && !lane.right_changes.empty();
-  return left || right ? lane_change : infinity;
+  bool const follows = std::count(lane.successors.begin(), lane.successors.end(), to) > 0;
+  bool const left = lane.left_neighbor == to && !(obey_marks && lane.left_changes.empty());
+  bool const right = lane.right_neighbor == to && !(obey_marks && lane.right_changes.empty());
+  return std::min(follows ? lane.length() : infinity, left || right ? lane_change : infinity);
+}
+
+/// The lanes that `from` leads to, each once, with what that costs.
+std::map<LaneId, double> steps_from(Map const& map, LaneId from, bool obey_marks = true) {
+  auto const& lane = map.lane(from);
+  auto targets = lane.successors;
+  for (auto const side : {lane.left_neighbor, lane.right_neighbor})
+    if (is_valid(side)) targets.push_back(side);
+  std::map<LaneId, double> steps;
+  for (auto const to : targets)
+    if (double const cost = step_cost(map, from, to, obey_marks); cost < infinity) steps[to] = cost;
+  return steps;
+}
+
+/// The route's cost without its last lane, infinite where it jumps.
+double cost_of(Map const& map, Route const& route, bool obey_marks = true) {
+  double cost = 0.0;
+  for (std::size_t i = 0; i + 1 < route.lanes.size(); ++i)
+    cost += step_cost(map, route.lanes[i], route.lanes[i + 1], obey_marks);
+  return cost;
 }
 
 /// Costs from `from` to all lanes, the last one not counted (Bellman, Ford).
-std::vector<double> costs_by_relaxation(Map const& map, LaneId from) {
+std::vector<double> costs_by_relaxation(Map const& map, LaneId from, bool obey_marks = true) {
   std::vector<double> costs(map.lanes().size(), infinity);
   costs[index_of(from)] = 0.0;
   for (bool changed = true; changed;) {
     changed = false;
     for (auto const& lane : map.lanes()) {
-      auto targets = lane.successors;
-      for (auto const side : {lane.left_neighbor, lane.right_neighbor})
-        if (is_valid(side)) targets.push_back(side);
-      for (auto const to : targets) {
-        double const cost = costs[index_of(lane.id)] + step_cost(map, lane.id, to);
+      if (costs[index_of(lane.id)] == infinity) continue;
+      for (auto const& [to, step] : steps_from(map, lane.id, obey_marks)) {
+        double const cost = costs[index_of(lane.id)] + step;
         if (cost >= costs[index_of(to)] - 1e-9) continue;
         costs[index_of(to)] = cost;
         changed = true;
@@ -138,10 +99,20 @@ std::vector<double> costs_by_relaxation(Map const& map, LaneId from) {
   return costs;
 }
 
-bool follows_links(Map const& map, Route const& route) {
-  for (std::size_t i = 0; i + 1 < route.lanes.size(); ++i)
-    if (step_cost(map, route.lanes[i], route.lanes[i + 1]) == infinity) return false;
-  return true;
+/// Costs of all simple paths from lane to lane, the last lane included, by trying every one; sorted.
+std::vector<double> all_costs(Map const& map, LaneId from, LaneId to) {
+  std::vector<double> costs;
+  std::vector<bool> used(map.lanes().size());
+  auto const visit = [&](auto const& self, LaneId at, double cost) -> void {
+    if (at == to) return costs.push_back(cost + map.lane(to).length());
+    used[index_of(at)] = true;
+    for (auto const& [next, step] : steps_from(map, at))
+      if (!used[index_of(next)]) self(self, next, cost + step);
+    used[index_of(at)] = false;
+  };
+  visit(visit, from, 0.0);
+  std::sort(costs.begin(), costs.end());
+  return costs;
 }
 
 }  // namespace
@@ -152,11 +123,11 @@ TEST_CASE("a route is as short as the best of all routes, and is there when any 
     auto const made = random_lanes(seed, 30);
     auto const& lanes = made.all;
     auto const finder = made.map();
-    auto const best = costs_by_floyd_warshall(lanes);
-    for (auto const& from : lanes)
+    for (auto const& from : lanes) {
+      auto const best = costs_by_relaxation(*finder, from.id);
       for (auto const& to : lanes) {
         auto const route = finder->shortest_route(from.id, to.id);
-        double const expected = best[index_of(from.id)][index_of(to.id)];
+        double const expected = best[index_of(to.id)];
         REQUIRE(route.has_value() == (expected < infinity));
         if (!route) {
           ++none_there;
@@ -165,8 +136,9 @@ TEST_CASE("a route is as short as the best of all routes, and is there when any 
         ++routes;
         CHECK(route->lanes.front() == from.id);
         CHECK(route->lanes.back() == to.id);
-        CHECK(cost_of(lanes, *route) == doctest::Approx(expected));
+        CHECK(cost_of(*finder, *route) == doctest::Approx(expected));
       }
+    }
   }
   CHECK(routes > 1000);
   CHECK(none_there > 100);
@@ -230,7 +202,7 @@ TEST_CASE("the k shortest routes are those that listing all simple paths gives")
     auto const map = made.map();
     for (auto const& from : made.all)
       for (auto const& to : made.all) {
-        auto const expected = all_costs(made.all, from.id, to.id);
+        auto const expected = all_costs(*map, from.id, to.id);
         RouteOptions options;
         options.max_routes = 12;
         auto const found = map->routes(from.id, to.id, options);
@@ -238,7 +210,7 @@ TEST_CASE("the k shortest routes are those that listing all simple paths gives")
         std::set<std::vector<LaneId>> distinct;
         for (std::size_t i = 0; i < found.size(); ++i) {
           CHECK(found[i].cost == doctest::Approx(expected[i]));
-          CHECK(cost_of(made.all, found[i]) + to.length() == doctest::Approx(found[i].cost));
+          CHECK(cost_of(*map, found[i]) + to.length() == doctest::Approx(found[i].cost));
           CHECK(std::set<LaneId>(found[i].lanes.begin(), found[i].lanes.end()).size() == found[i].lanes.size());
           distinct.insert(found[i].lanes);
         }
@@ -395,12 +367,12 @@ TEST_CASE("reachable lanes are those within the budget, with what it costs to co
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
     auto const made = random_lanes(seed, 30);
     auto const map = made.map();
-    auto const best = costs_by_floyd_warshall(made.all);
-    for (auto const& from : made.all)
+    for (auto const& from : made.all) {
+      auto const best = costs_by_relaxation(*map, from.id);
       for (double const budget : {0.0, 100.0, infinity}) {
         std::vector<std::pair<double, LaneId>> expected;
         for (auto const& lane : made.all) {
-          double const cost = best[index_of(from.id)][index_of(lane.id)];
+          double const cost = best[index_of(lane.id)];
           if (cost <= budget && cost < infinity) expected.emplace_back(cost, lane.id);
         }
         std::sort(expected.begin(), expected.end());
@@ -412,6 +384,7 @@ TEST_CASE("reachable lanes are those within the budget, with what it costs to co
         }
         many += reached.size() > 10;
       }
+    }
   }
   CHECK(many > 100);
 }
@@ -453,7 +426,7 @@ TEST_CASE("options out of range and costs that are none are said to be so") {
   CHECK(map->routes(a, b, no_routes).empty());
 }
 
-TEST_CASE("on real maps routes cost what a plain relaxation says, go with the traffic, and obey the marks") {
+TEST_CASE("on real maps routes cost what a plain relaxation says, go with the traffic, and obey the marks or not") {
   auto const folder = corpus::find("opendrive");
   if (!folder) return;
   int routes = 0;
@@ -464,10 +437,11 @@ TEST_CASE("on real maps routes cost what a plain relaxation says, go with the tr
     ++maps;
     Numbers random{maps};
     auto const any = [&] { return static_cast<LaneId>(random(0, static_cast<double>(map->lanes().size()) - 1e-9)); };
-    for (int i = 0; i < 4; ++i) {
+    for (int i = 0; i < 8; ++i) {
+      RouteOptions const options{.obey_lane_marks = i < 4};
       auto const from = any();
-      auto const expected = costs_by_relaxation(*map, from);
-      auto const reached = map->reachable(from, infinity);
+      auto const expected = costs_by_relaxation(*map, from, options.obey_lane_marks);
+      auto const reached = map->reachable(from, infinity, options);
       std::size_t wrong = 0;
       for (auto const& r : reached) wrong += !(std::abs(r.cost - expected[index_of(r.lane)]) < 1e-6);
       CHECK(wrong == 0);
@@ -475,12 +449,12 @@ TEST_CASE("on real maps routes cost what a plain relaxation says, go with the tr
                                                                      [](double cost) { return cost < infinity; })));
       for (int j = 0; j < 5; ++j) {
         auto const to = j < 3 ? reached[static_cast<std::size_t>(any()) % reached.size()].lane : any();
-        for (auto const& route : map->routes(from, to, RouteOptions{})) {
+        for (auto const& route : map->routes(from, to, options)) {
           ++routes;
-          CHECK(follows_links(*map, route));
+          CHECK(cost_of(*map, route, options.obey_lane_marks) < infinity);
           CHECK(route.cost >= doctest::Approx(expected[index_of(to)] + map->lane(to).length()));
         }
-        auto const best = map->shortest_route(from, to);
+        auto const best = map->shortest_route(from, to, options);
         REQUIRE(best.has_value() == (expected[index_of(to)] < infinity));
         if (best) CHECK(best->cost == doctest::Approx(expected[index_of(to)] + map->lane(to).length()));
       }
@@ -494,11 +468,7 @@ TEST_CASE("a lane that the map does not have is named in the error") {
   Lanes lanes;
   auto const a = lanes.add(10);
   auto const finder = lanes.map();
-  try {
-    (void)finder->shortest_route(a, static_cast<LaneId>(17));
-    FAIL("no error");
-  } catch (MapError const& e) {
-    CHECK(std::string(e.what()).find("destination, lane 17") != std::string::npos);
-  }
+  auto const said = support::error_of([&] { (void)finder->shortest_route(a, static_cast<LaneId>(17)); });
+  CHECK_MESSAGE(said.find("destination, lane 17") != std::string::npos, said);
   CHECK_THROWS_AS((void)finder->shortest_route(none<LaneId>, a), MapError);
 }

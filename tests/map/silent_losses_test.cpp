@@ -20,13 +20,15 @@ namespace {
 
 using Counts = std::map<std::string, int>;
 
-/// Every element that the reader knows, and one that it does not know.
+/// The elements and attributes of OpenDRIVE 1.8 that describe roads, those that the reader makes no use of too, and
+/// user data.
 char const* const everything = R"(<OpenDRIVE>
-<header revMajor="1" revMinor="8"><geoReference>+proj=utm</geoReference><offset x="1" y="2" z="3" hdg="0"/></header>
-<road id="1" length="50" junction="-1" name="all">
+<header revMajor="1" revMinor="8" name="everything" version="1" date="today" north="4" south="3" east="2" west="1"
+    vendor="v"><geoReference>+proj=utm</geoReference><offset x="1" y="2" z="3" hdg="0"/></header>
+<road id="1" length="50" junction="-1" name="all" rule="LHT">
   <link><predecessor elementType="road" elementId="2" contactPoint="end"/>
         <successor elementType="junction" elementId="7"/></link>
-  <type s="0" type="town"><speed max="50" unit="km/h"/></type>
+  <type s="0" type="town" country="DE"><speed max="50" unit="km/h"/></type>
   <planView>
     <geometry s="0" x="0" y="0" hdg="0" length="10"><line/></geometry>
     <geometry s="10" x="10" y="0" hdg="0" length="10"><arc curvature="0"/></geometry>
@@ -37,33 +39,60 @@ char const* const everything = R"(<OpenDRIVE>
   </planView>
   <elevationProfile><elevation s="0" a="1" b="0" c="0" d="0"/></elevationProfile>
   <lateralProfile><superelevation s="0" a="0.01" b="0" c="0" d="0"/>
-    <crossfall s="0" a="0.01" b="0" c="0" d="0" side="left"/><shape s="0" t="0" a="0.1" b="0" c="0" d="0"/></lateralProfile>
+    <crossfall s="0" a="0.01" b="0" c="0" d="0" side="left"/><shape s="0" t="0" a="0.1" b="0" c="0" d="0"/>
+    </lateralProfile>
   <lanes><laneOffset s="0" a="0.5" b="0" c="0" d="0"/>
-    <laneSection s="0" singleSide="false">
+    <laneSection s="0">
       <left><lane id="1" type="driving" level="false"><border sOffset="0" a="3" b="0" c="0" d="0"/></lane></left>
       <center><lane id="0" type="none"><roadMark sOffset="0" type="solid"/></lane></center>
       <right><lane id="-1" type="driving"><link><predecessor id="-1"/><successor id="-1"/></link>
         <width sOffset="0" a="3" b="0" c="0" d="0"/>
-        <roadMark sOffset="0" type="solid"><type name="t"><line length="1"/></type></roadMark>
-        <height sOffset="0" inner="0.1" outer="0.1"/><access sOffset="0" restriction="bus"/><rule sOffset="0" value="v"/>
-        <speed sOffset="0" max="10"/><material sOffset="0" surface="asphalt"/></lane></right>
+        <roadMark sOffset="0" type="solid" weight="bold" color="white" material="paint" width="0.3"
+            laneChange="none" height="0.02"><type name="t"><line length="1"/></type></roadMark>
+        <height sOffset="0" inner="0.1" outer="0.1"/><access sOffset="0" rule="deny" restriction="bus">
+        <restriction type="truck"/></access><rule sOffset="0" value="v"/>
+        <speed sOffset="0" max="10" unit="m/s"/><material sOffset="0" surface="asphalt"/></lane></right>
     </laneSection>
   </lanes>
-  <objects><object id="o" s="1" t="1"><repeat s="0" length="5" distance="1"/><validity fromLane="-1" toLane="-1"/>
-      <outlines><outline id="1"><cornerLocal u="0" v="0"/></outline><outline><cornerRoad s="0" t="0"/></outline></outlines>
-    </object><objectReference id="o" s="2" t="1"><validity fromLane="1" toLane="1"/></objectReference></objects>
-  <signals><signal id="s" s="1" t="1"><validity fromLane="-1" toLane="-1"/></signal>
-    <signalReference id="s" s="2" t="1"><validity fromLane="-1" toLane="-1"/></signalReference></signals>
+  <objects><object id="o" name="n" type="building" subtype="b" s="1" t="1" zOffset="0.5" hdg="0.1" pitch="0.2"
+        roll="0.3" height="4" length="5" width="6" radius="7" orientation="none" validLength="8" dynamic="no"
+        perpToRoad="true"><repeat s="0" length="5" distance="1" tStart="1" tEnd="2" widthStart="1" widthEnd="2"
+        heightStart="3" heightEnd="4" zOffsetStart="0" zOffsetEnd="1" lengthStart="1" lengthEnd="2" radiusStart="1"
+        radiusEnd="2"/>
+      <outlines><outline id="1" closed="true" fillType="grass" laneType="none"><cornerLocal u="0" v="1" z="2"
+          height="3" id="4"/></outline>
+        <outline><cornerRoad s="0" t="1" dz="2" height="3" id="4"/></outline></outlines>
+      <material surface="s"/><parkingSpace access="all"/><markings><marking side="left"/></markings><borders>
+      <border type="t"/></borders>
+      <surface/><skeleton/><validity fromLane="-1" toLane="-1"/></object>
+    <objectReference id="o" s="2" t="1" zOffset="0" validLength="3" orientation="+">
+    <validity fromLane="1" toLane="1"/></objectReference>
+    <bridge id="b" s="0" length="9" type="concrete"/><tunnel id="t" s="0" length="9" type="standard"/></objects>
+  <signals><signal id="s" name="n" dynamic="yes" orientation="+" s="1" t="1" zOffset="3" country="DE"
+      countryRevision="2017" type="274" subtype="55" value="50" unit="km/h" height="0.6" width="0.5" text="slow"
+      hOffset="0.1" pitch="0.2" roll="0.3"><validity fromLane="-1" toLane="-1"/>
+      <dependency id="8" type="limitline"/><reference elementType="object" elementId="o"/>
+      <positionRoad roadId="1" s="2" t="3"/></signal>
+    <signalReference id="s" s="2" t="1" orientation="-"><validity fromLane="-1" toLane="-1"/></signalReference>
+    </signals>
+  <surface><CRG file="f"/></surface><railroad><switch id="w"/></railroad>
   <userData code="road"/>
 </road>
-<road id="2" length="10" junction="7"><planView><geometry s="0" x="-10" y="0" hdg="0" length="10"><line/></geometry></planView>
+<road id="2" length="10" junction="7" rule="LHT"><planView><geometry s="0" x="-10" y="0" hdg="0" length="10">
+<line/></geometry></planView>
   <lanes><laneSection s="0"><center><lane id="0" type="none"/></center>
-    <right><lane id="-1" type="driving"><width sOffset="0" a="3" b="0" c="0" d="0"/></lane></right></laneSection></lanes></road>
-<controller id="c"><control signalId="s"/></controller>
-<junction id="7"><connection id="0" incomingRoad="1" connectingRoad="2" contactPoint="end"><laneLink from="-1" to="-1"/>
-    </connection><connection id="1"><predecessor elementType="road" elementId="1" elementS="5" elementDir="+"/>
+    <right><lane id="-1" type="driving"><width sOffset="0" a="3" b="0" c="0" d="0"/></lane></right></laneSection>
+    </lanes></road>
+<controller id="c" name="lights" sequence="2"><control signalId="s" type="t"/></controller>
+<junction id="7" name="j" type="virtual" mainRoad="1" sStart="3" sEnd="6" orientation="+">
+<connection id="0" incomingRoad="1" connectingRoad="2" contactPoint="end"><laneLink from="-1" to="-1"
+    overlapZone="12.5"/>
+    </connection><connection id="1" type="virtual"><predecessor elementType="road" elementId="1" elementS="5"
+        elementDir="+"/>
     <successor elementType="road" elementId="1" elementS="9" elementDir="+"/></connection>
-  <priority high="1" low="2"/><controller id="c"/></junction>
+  <priority high="1" low="2"/><controller id="c" type="0" sequence="1"/><crossPath id="0"/></junction>
+<junctionGroup id="g" name="n" type="roundabout"><junctionReference junction="7"/></junctionGroup>
+<station id="st" name="n" type="small"><platform id="p"/></station>
 <userData code="root"/>
 </OpenDRIVE>)";
 
@@ -71,6 +100,7 @@ void count(pugi::xml_node node, Counts& counts) {
   for (auto const child : node)
     if (child.type() == pugi::node_element) {
       ++counts[child.name()];
+      for (auto const a : child.attributes()) ++counts[child.name() + std::string(" ") + a.name() + "=" + a.value()];
       count(child, counts);
     }
 }
@@ -153,10 +183,10 @@ TEST_CASE("what the reader knows is written again, without a finding") {
   CHECK(counts_of(before.written) == counts_of(everything));
 }
 
-TEST_CASE("no element that is there twice gets lost without a finding") {
+TEST_CASE("no element that occurs twice gets lost without a finding") {
   check_elements([](pugi::xml_node node) {
     node.parent().insert_copy_after(node, node);
-    bool const is_side = !node.child("lane").empty();  // its lanes are there twice
+    bool const is_side = !node.child("lane").empty();  // its lanes occur twice
     return is_side ? "lane" : node.name();
   });
 }
@@ -204,20 +234,22 @@ TEST_CASE("a value that nobody understands is kept in any attribute, or found, a
         after.findings = {node.name()};  // the only road is unusable
       }
       CHECK((after.is_found(node.name()) || after.written.find("\"yes please\"") != std::string::npos));
-      bool const is_read = node.name() != std::string("material");  // user data to the reader
-      if (is_read && (name == "sOffset" || name == "s")) CHECK(after.is_found(node.name()));
+      std::string const path = node.path();
+      bool is_raw = false;
+      for (char const* const raw : {"/objects/", "/positionRoad", "/access", "/rule", "/material"})
+        is_raw |= path.find(raw) != path.npos;
+      if (!is_raw && (name == "sOffset" || name == "s")) CHECK(after.is_found(node.name()));
       a = before.c_str();
     }
   });
 }
 
 TEST_CASE("a word that is neither true nor false is found") {
-  for (char const* const attribute : {"level=\"maybe\"", "level=\"twice\""}) {
+  for (char const* const attribute : {"singleSide=\"maybe\"", "singleSide=\"twice\""}) {
     auto text = std::string(everything);
-    std::string const sound = "level=\"false\"";
-    text.replace(text.find(sound), sound.size(), attribute);
+    text.insert(text.find("<laneSection") + 13, attribute + std::string(" "));
     auto const after = outcome_of(text);
-    CHECK(after.findings == std::vector<std::string>{"lane"});
+    CHECK(after.findings == std::vector<std::string>{"laneSection"});
     CHECK(after.written.find(attribute) != std::string::npos);
   }
 }
@@ -233,14 +265,14 @@ TEST_CASE("attributes that nobody knows give one finding for each kind of elemen
   REQUIRE(diagnostics.size() == 2);
   CHECK(to_string(diagnostics[0]).find("like 1 more") != std::string::npos);
   CHECK(diagnostics[0].element == "speed");
-  CHECK(diagnostics[0].line == 6);
+  CHECK(diagnostics[0].line == 7);
   CHECK(diagnostics[1].element == "width");
 }
 
 TEST_CASE("a record with a bad place is left out") {
   auto text = std::string(everything);
-  for (std::string const record : {"<roadMark sOffset=\"0\"", "<speed sOffset=\"0\"", "<type s=\"0\"",
-                                   "<height sOffset=\"0\"", "<access sOffset=\"0\"", "<rule sOffset=\"0\""}) {
+  for (std::string const record :
+       {"<roadMark sOffset=\"0\"", "<speed sOffset=\"0\"", "<type s=\"0\"", "<height sOffset=\"0\""}) {
     auto bad = record;
     bad.replace(bad.find("\"0\""), 3, "\"x\"");
     for (auto at = text.find(record); at != std::string::npos; at = text.find(record))
@@ -253,7 +285,5 @@ TEST_CASE("a record with a bad place is left out") {
     CHECK(lane.road_marks.empty());
     CHECK(lane.speeds.empty());
     CHECK(lane.heights.empty());
-    CHECK(lane.accesses.empty());
-    CHECK(lane.rules.empty());
   }
 }

@@ -215,15 +215,6 @@ TEST_CASE("widths of lane 0 are ignored") {
   CHECK(is_near(end_of(loaded.map->lanes()[0]), 100, -1.5));
 }
 
-TEST_CASE("the road's length is that of its geometries, whatever its attribute says") {
-  for (double const written : {99.8, 1600.0, 0.0}) {
-    auto const loaded = load(one_road(written, geometry(0, 0, 0, 0, 100), one_lane), false);
-    CHECK(count(loaded, Severity::warning, "but the geometries end at 100 m") == 1);
-    CHECK(loaded.map->roads()[0].length == 100.0);
-    CHECK(loaded.map->lanes()[0].length() == doctest::Approx(100.0));
-  }
-}
-
 TEST_CASE("lanes on either side of a gap in the ids are neighbours") {
   for (int const far : {-4, -1000000000}) {
     auto const loaded = load(
@@ -238,8 +229,7 @@ TEST_CASE("lanes on either side of a gap in the ids are neighbours") {
 }
 
 TEST_CASE("a lane with several predecessors is entered from each of them") {
-  Road road;
-  road.sections = {{0.0, {{-1, {}, {-1}}, {-2, {}, {-1}}}}, {50.0, {{-1, {-1, -2}, {}}}}};
+  Road road{.sections = {{0.0, {{-1, {}, {-1}}, {-2, {}, {-1}}}}, {50.0, {{-1, {-1, -2}, {}}}}}};
   auto const loaded = load(file({road}), false);
   CHECK(leads(loaded, {"1", 10.0, -1}, {"1", 60.0, -1}));
   CHECK(leads(loaded, {"1", 10.0, -2}, {"1", 60.0, -1}));
@@ -268,8 +258,7 @@ TEST_CASE("a right lane's border that is given as a magnitude lies to the right"
 }
 
 TEST_CASE("a header without attributes, and words of any revision in any other, are read") {
-  Road road;
-  road.sections[0].lanes = {{1}, {.id = -1, .direction = "reversed"}};
+  Road road{.sections = {{.lanes = {{1}, {.id = -1, .direction = "reversed"}}}}};
   auto text = file({road});
   for (auto const* header : {"<header/>", "<header revMajor=\"1\" revMinor=\"1\"/>", "<header revMinor=\"99\"/>"}) {
     auto changed = text;
@@ -279,15 +268,7 @@ TEST_CASE("a header without attributes, and words of any revision in any other, 
   }
 }
 
-TEST_CASE("a default namespace changes nothing") {
-  auto text = file({Road{}});
-  text.replace(text.find("<OpenDRIVE"), 10,
-               "<OpenDRIVE xmlns=\"http://code.asam.net/simulation/standard/opendrive_schema\"");
-  auto const loaded = load(text);
-  CHECK(loaded.map->lanes().size() == 1);
-}
-
-TEST_CASE("road marks and signals behind the road's end count for nothing") {
+TEST_CASE("road marks and signals beyond the road's end count for nothing") {
   auto const mark = [](double s, char const* change) {
     return "<roadMark sOffset=\"" + number(s) + "\" type=\"solid\" laneChange=\"" + change + "\"/>";
   };

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include <doctest/doctest.h>
@@ -46,6 +47,14 @@ inline std::vector<std::filesystem::path> maps(std::filesystem::path const& fold
   for (auto const& entry : std::filesystem::directory_iterator(folder, absent))
     if (entry.path().extension() == ".xodr") files.push_back(entry.path());
   std::sort(files.begin(), files.end());
+  return files;
+}
+
+/// The project's own maps, and those of the corpus where it is there.
+inline std::vector<std::filesystem::path> all_maps() {
+  auto files = maps(std::filesystem::path(CAMBIUM_SOURCE_DIR) / "maps");
+  if (auto const folder = find("opendrive"))
+    for (auto& file : maps(*folder)) files.push_back(std::move(file));
   return files;
 }
 

@@ -3,6 +3,7 @@
 #include <memory>
 #include <string>
 
+#include "cambium/core/error.hpp"
 #include "cambium/map/build/road_plan.hpp"
 #include "cambium/map/map.hpp"
 
@@ -23,5 +24,15 @@ std::shared_ptr<cambium::Map const> map_of(cambium::map::RoadPlan road);
 
 /// The map of an OpenDRIVE file of the corpus; null where there is no corpus (see `corpus::find`).
 std::shared_ptr<cambium::Map const> corpus_map(std::string const& name);
+
+/// The message of the `MapError` that `run` throws; "no error" where it throws none.
+std::string error_of(auto const& run) {
+  try {
+    run();
+  } catch (cambium::MapError const& error) {
+    return error.what();
+  }
+  return "no error";
+}
 
 }  // namespace support

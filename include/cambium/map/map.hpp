@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -21,7 +20,6 @@
 #include "cambium/geometry/pose.hpp"
 #include "cambium/geometry/shape.hpp"
 #include "cambium/map/lanes/detail/find_lane.hpp"
-#include "cambium/map/lanes/detail/follow_lane.hpp"
 #include "cambium/map/lanes/lane.hpp"
 #include "cambium/map/lanes/lane_tree.hpp"
 #include "cambium/map/map_queries.hpp"
@@ -83,7 +81,7 @@ struct Junction {
   std::vector<RoadPriority> priorities;  ///< as written in the file
 };
 
-/// Roads, lanes and how they hang together. Immutable, but that it remembers road corridors that were built
+/// Roads and lanes and the links between them. Immutable, except that it remembers the road corridors that were built
 /// (safe on many threads); made by `load_opendrive`, `MapBuilder` or `build_map`, shared by worlds.
 class Map {
  public:
@@ -181,9 +179,9 @@ class Map {
     return tree_.nearest_drivable(pose, radius);
   }
 
-  /// As above for something that moves: the lane of `previous` while that holds `pose` and runs that way, else one
-  /// behind, before or beside it that does, else as above. Lanes that cross or branch off are not changed to before the
-  /// own one ends. O(segments moved since), no allocation.
+  /// As above for something that moves: the lane of `previous` while that holds `pose` and runs that way, else a
+  /// successor, predecessor or neighbour that does, else as above. The result does not jump to lanes that cross or
+  /// branch off before the own one ends. O(segments moved since), no allocation.
   [[nodiscard]] std::optional<LaneHit> nearest_lane(geometry::Pose const& pose, LaneHit const& previous,
                                                     double radius = 5.0) const {
     CAMBIUM_ASSERT(index_of(previous.lane) < parts_.lanes.size(), "Map::nearest_lane: the map has no lane of that id");
@@ -214,9 +212,9 @@ class Map {
   /// True when a drivable lane holds the point. O(log n), no allocation.
   [[nodiscard]] bool on_drivable_lane(geometry::Point const& p) const { return tree_.any_drivable_at(p); }
 
-  /// The cheapest way from `from` to `to`; nothing if there is none. Where the start lies behind the destination on one
-  /// lane it leads round to it, if there is a way. Throws `MapError` for a lane that the map does not have, a station
-  /// that is not a number, and options out of range. O((V + E) log V) for V lanes and E links.
+  /// The cheapest way from `from` to `to`; nothing if there is none. Where the start lies past the destination on the
+  /// same lane, the route leads round to it, if there is a way. Throws `MapError` for a lane that the map does not
+  /// have, a station that is not a number, and options out of range. O((V + E) log V) for V lanes and E links.
   [[nodiscard]] std::optional<Route> shortest_route(LaneStation from, LaneStation to, RouteOptions options = {}) const {
     options.max_routes = 1;
     auto found = routes(from, to, options);

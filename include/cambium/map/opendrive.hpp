@@ -11,7 +11,7 @@
 #include "cambium/map/opendrive/reading_limits.hpp"
 
 #ifdef CAMBIUM_COMPILED_WITHOUT_READER
-#error "cambium::compiled holds no reader of OpenDRIVE, for CMake did not find pugixml: install it (libpugixml-dev)"
+#error "cambium::compiled has no OpenDRIVE reader because CMake did not find pugixml: install it (libpugixml-dev)"
 #endif
 
 namespace cambium::map {

@@ -13,23 +13,18 @@
 #include "cambium/core/diagnostic.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/map/build/build_map.hpp"
-#include "cambium/map/build/detail/exact_paths.hpp"
-#include "cambium/map/build/detail/junctions.hpp"
-#include "cambium/map/build/detail/lane_change_marks.hpp"
 #include "cambium/map/build/detail/lane_geometry.hpp"
 #include "cambium/map/build/detail/lane_links.hpp"
 #include "cambium/map/build/detail/lane_merges.hpp"
-#include "cambium/map/build/detail/lane_signals.hpp"
+#include "cambium/map/build/detail/lane_rules.hpp"
 #include "cambium/map/build/detail/link_check.hpp"
 #include "cambium/map/build/detail/missing_links.hpp"
 #include "cambium/map/build/detail/road_links.hpp"
 #include "cambium/map/build/detail/section_sampler.hpp"
-#include "cambium/map/build/detail/speed_limits.hpp"
 #include "cambium/map/build/detail/split_roads.hpp"
-#include "cambium/map/build/detail/unsampled_lane.hpp"
 #include "cambium/map/build/make_roads.hpp"
 #include "cambium/map/detail/findings.hpp"
-#include "cambium/map/detail/likely_cause.hpp"
+#include "cambium/map/detail/id_places.hpp"
 #include "cambium/map/detail/require_buildable.hpp"
 #include "cambium/map/lanes/overlaps.hpp"
 #include "cambium/map/map.hpp"
@@ -39,13 +34,56 @@ namespace cambium::map {
 
 namespace detail {
 
+[[nodiscard]] inline bool runs_both_ways(opendrive::Lane const& lane) {
+  return lane.direction == opendrive::LaneDirection::both || lane.type == LaneType::bidirectional;
+}
+
+/// A lane of a road's section `k` as it is driven, without id, geometry and links.
+[[nodiscard]] inline Lane unsampled_lane(opendrive::Lane const& written, Road const& road, std::size_t k) {
+  Lane lane;
+  lane.road = road.id;
+  lane.section = static_cast<std::uint32_t>(k);
+  lane.number = written.id;
+  lane.type = written.type;
+  lane.along_road = (written.id < 0) != road.left_hand_traffic;
+  if (written.direction == opendrive::LaneDirection::reversed) lane.along_road = !lane.along_road;
+  lane.road_begin = road.sections[k].begin;
+  lane.road_end = road.sections[k].end;
+  return lane;
+}
+
+/// The document's junctions, in its order (the roads' junction ids count so), with the roads and lanes that belong to
+/// them. Priorities between roads that are not in the map are left out.
+[[nodiscard]] inline std::vector<Junction> make_junctions(OpenDriveDocument const& document,
+                                                          std::span<Road const> roads, std::span<Lane const> lanes) {
+  IdPlaces ids;
+  for (auto const& road : roads) ids.emplace(road.name, index_of(road.id));
+  std::vector<Junction> junctions;
+  for (auto const& written : document.junctions) {
+    Junction junction;
+    junction.id = static_cast<JunctionId>(junctions.size());
+    junction.name = written.id;
+    for (auto const& priority : written.priorities)
+      if (ids.contains(priority.high) && ids.contains(priority.low))
+        junction.priorities.push_back(
+            {static_cast<RoadId>(ids.at(priority.high)), static_cast<RoadId>(ids.at(priority.low))});
+    junctions.push_back(std::move(junction));
+  }
+  for (auto const& road : roads)
+    if (is_valid(road.junction)) junctions[index_of(road.junction)].roads.push_back(road.id);
+  for (auto const& lane : lanes)
+    if (auto const id = roads[index_of(lane.road)].junction; is_valid(id))
+      junctions[index_of(id)].lanes.push_back(lane.id);
+  return junctions;
+}
+
 /// Turns a document, which must be buildable and have its roads split, into a map: roads, lanes with their geometry,
 /// links, merges, overlaps.
 class MapBuild {
  public:
   MapBuild(OpenDriveDocument const& document, MapOptions const& options, std::string file,
            std::vector<Diagnostic>& diagnostics)
-      : document_(document), file_(std::move(file)), diagnostics_(diagnostics) {
+      : document_(document), findings_{std::move(file), diagnostics} {
     parts_.options = options;
   }
 
@@ -65,21 +103,21 @@ class MapBuild {
       for (std::size_t k = 0; k < parts_.roads[i].sections.size(); ++k)
         add_section(document_.roads[i], parts_.roads[i], k);
     if (parts_.lanes.empty())
-      throw MapError(file_, "the map has no lane with a length" + likely_cause(diagnostics_),
+      throw MapError(findings_.file, "the map has no lane with a length" + likely_cause(findings_.list),
                      "give roads that have lanes beside lane 0");
     if (std::none_of(parts_.lanes.begin(), parts_.lanes.end(), [](Lane const& lane) { return lane.drivable(); }))
-      add_finding(diagnostics_, {Severity::warning, file_, 0, {}, {}, "there is no lane that one may drive on"});
+      findings_.add(Severity::warning, 0, {}, {}, "the map has no drivable lane");
   }
 
   /// What follows on what, and what merges.
   void link_lanes() {
     RoadLinks const links(document_, parts_.roads);
-    LaneLinker(links, parts_.lanes, file_, diagnostics_).link();
-    MissingLinks missing(links, parts_.lanes, file_, diagnostics_);
+    LaneLinker(links, parts_.lanes, findings_).link();
+    MissingLinks missing(links, parts_.lanes, findings_);
     auto const dead_ends = missing.find(parts_.options.infer_links);
     LaneMerger(parts_.roads, parts_.lanes, parts_.options, dead_ends).merge();
     missing.report_dead_ends(dead_ends);
-    LinkCheck check(links, file_, diagnostics_);
+    LinkCheck check(links, findings_);
     check.report_one_sided();
     check.report_joints(parts_.lanes);
   }
@@ -113,10 +151,9 @@ class MapBuild {
       Lane lane = unsampled_lane(written, road, k);
       lane.id = static_cast<LaneId>(parts_.lanes.size());
       if (!has_geometry(lane, cross_sections, column)) {
-        add_finding(diagnostics_,
-                    {Severity::warning, file_, written.line, "lane",
-                     "road " + road.name + ", section " + std::to_string(k) + ", lane " + std::to_string(written.id),
-                     "it has no length, or its numbers are out of all range; it was left out"});
+        findings_.add(Severity::warning, written.line, "lane",
+                      "road " + road.name + ", section " + std::to_string(k) + ", lane " + std::to_string(written.id),
+                      "it has no length, or its numbers are out of range; it was left out");
         continue;
       }
       section.lanes[column].id = lane.id;
@@ -171,8 +208,7 @@ class MapBuild {
   }
 
   OpenDriveDocument const& document_;
-  std::string file_;
-  std::vector<Diagnostic>& diagnostics_;
+  Findings findings_;
   Map::Parts parts_;
 };
 

@@ -137,7 +137,7 @@ class CenterLineReader {
     // Later ones may count laps; a first one beyond a turn is in degrees.
     if (std::abs(off) > 0.5 * geometry::pi || std::abs(result_.headings.front()) > 2.0 * geometry::pi)
       fail("the heading " + cambium::detail::rounded_text(theta) +
-               " does not fit the way between this point and the one before",
+               " does not fit the direction from the previous point to this one",
            "give headings in radians, in travel direction, or leave the column out");
   }
 

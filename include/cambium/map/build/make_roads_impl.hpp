@@ -1,8 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <string_view>
-#include <utility>
 #include <vector>
 
 #include "cambium/core/ids.hpp"
@@ -11,7 +9,6 @@
 #include "cambium/map/build/make_roads.hpp"
 #include "cambium/map/detail/id_places.hpp"
 #include "cambium/map/opendrive/document.hpp"
-#include "cambium/map/road/cubic.hpp"
 #include "cambium/map/road/road.hpp"
 
 namespace cambium::map {

@@ -39,7 +39,7 @@ class MapBuilder {
   explicit MapBuilder(std::string name = "map");
 
   /// Adds a road; gives its id. Throws `MapError` where the id is taken or says none, the line or the first section is
-  /// missing, a geometry does not begin where the one before ends (to 1 cm and 0.01 rad), sections or records are not
+  /// missing, a geometry does not begin where the previous one ends (to 1 cm and 0.01 rad), sections or records are not
   /// in order, or a width falls below 0. Linear in the plan.
   std::string add_road(RoadPlan plan);
 

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstdlib>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -39,7 +38,7 @@ CAMBIUM_COLD std::string MapBuilder::add_road(RoadPlan plan) {
   index_.update(document_);
   if (plan.id.empty()) plan.id = index_.free_id(document_);
   check_id("road", plan.id);
-  if (index_.has_road(plan.id)) throw MapError("road " + plan.id, "there is one of that id", "give another id");
+  if (index_.has_road(plan.id)) throw MapError("road " + plan.id, "this id is already in use", "give another id");
   if (!plan.junction.empty()) (void)index_.junction(document_, plan.junction);
   document_.roads.push_back(detail::RoadMaker(std::move(plan)).make());
   index_.update(document_);
@@ -50,7 +49,7 @@ CAMBIUM_COLD std::string MapBuilder::add_junction(std::string id, std::string na
   index_.update(document_);
   if (id.empty()) id = index_.free_id(document_);
   check_id("junction", id);
-  if (index_.has_junction(id)) throw MapError("junction " + id, "there is one of that id", "give another id");
+  if (index_.has_junction(id)) throw MapError("junction " + id, "this id is already in use", "give another id");
   opendrive::Junction junction;
   junction.id = id;
   junction.name = std::move(name);
@@ -75,7 +74,7 @@ CAMBIUM_COLD void MapBuilder::connect(RoadEnd const& a, RoadEnd const& b, std::v
   auto const& road_b = checked(b);
   if (links.empty()) links = detail::facing_lanes(road_a, a.end, road_b, b.end);
   if (links.empty())
-    throw MapError("road " + a.road + " and road " + b.road, "no lane of the one goes on as a lane of the other",
+    throw MapError("road " + a.road + " and road " + b.road, "no lane of one continues as a lane of the other",
                    "name the lanes, or turn one of the roads round");
   for (auto const& link : links) {
     auto const from = lane_pose(a, link.from), to = lane_pose(b, link.to);
@@ -138,7 +137,7 @@ CAMBIUM_COLD std::shared_ptr<Map const> MapBuilder::build(MapOptions const& opti
 
 CAMBIUM_COLD void MapBuilder::check_id(std::string const& what, std::string const& id) {
   if (id == "-1" || cambium::detail::trimmed(id) != id)
-    throw MapError(what + " '" + id + "'", "its id says none, or has blanks around it", "give another id, or none");
+    throw MapError(what + " '" + id + "'", "its id means none, or has blanks around it", "give another id, or none");
 }
 
 CAMBIUM_COLD RoadPlan MapBuilder::turn_plan(RoadEnd const& from, RoadEnd const& to,
@@ -167,7 +166,7 @@ CAMBIUM_COLD RoadPlan MapBuilder::turn_plan(RoadEnd const& from, RoadEnd const& 
 
 CAMBIUM_COLD opendrive::Road const& MapBuilder::checked(RoadEnd const& end) const {
   if (end.end == opendrive::ContactPoint::none)
-    throw MapError("road " + end.road, "it is not said which end of it is meant", "name start or end");
+    throw MapError("road " + end.road, "its end is not specified", "name start or end");
   return road(end.road);
 }
 

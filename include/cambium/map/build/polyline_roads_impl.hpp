@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <span>
 #include <string>
 #include <utility>
@@ -36,7 +35,7 @@ CAMBIUM_COLD RoadPlan lane_along(std::span<geometry::Point const> center, std::s
   if (widths.size() != 1 && widths.size() != center.size())
     throw MapError(
         where, "it has " + std::to_string(center.size()) + " points, but " + std::to_string(widths.size()) + " widths",
-        "give one, or one a point");
+        "give one, or one per point");
   RoadPlan plan;
   plan.line = curve_through(center, headings, where);
   auto const stations = detail::stations_of(plan.line);

@@ -1,20 +1,14 @@
 #pragma once
 
-#include <algorithm>
-#include <cmath>
 #include <cstddef>
-#include <cstdlib>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/map/build/road_plan.hpp"
 #include "cambium/map/detail/geometry_fault.hpp"
-#include "cambium/map/opendrive/document.hpp"
 #include "cambium/map/road/cubic.hpp"
 #include "cambium/map/road/lane_type.hpp"
 #include "cambium/map/road/reference_line.hpp"

@@ -19,20 +19,22 @@ namespace cambium::map {
 /// The road corridor along `route`: its lanes and all beside them, as lane corridors. Throws `MapError` where the route
 /// has no lane, names one that the map does not have, or jumps.
 ///
-/// A lane corridor follows successors while these are beside the route, at forks the route, else straight on; a lane
-/// that merges into its neighbour goes on there, so that two lane corridors may share their further lanes. A lane that
-/// opens beside the route begins a lane corridor of its own. Where consecutive lanes do not quite meet, the corridor
-/// bridges the gap within 1 m (or twice the gap). Feeders of a lane corridor, all of them lanes that are not in it:
+/// A lane corridor follows successors as long as these are beside the route: at forks it stays on the route if it can,
+/// else it goes straight on. A lane that merges into its neighbour continues there, so two lane corridors may share
+/// their further lanes. A lane that opens beside the route begins a lane corridor of its own. Where consecutive lanes
+/// do not quite meet, the corridor bridges the gap within 1 m (or twice the gap). The feeders of a lane corridor are
+/// lanes that are not in it:
 /// - lanes that merge into it: on the overlap, and from `MapOptions::merge_view` before it on, free until the overlap
 /// begins;
 /// - lanes that lead into one of its lanes without an overlap: likewise, free until that lane begins;
 /// - lanes that have just split off: on the overlap;
 /// - lanes that lead to its begin: 100 m back, with negative images (of a ring, the corridor's own last lanes too).
-/// Lanes that cross it are none; those are its conflicts, with lanes that merge with it in a junction. No stretch of a
-/// lane has two images, except by different corridors.
+/// Lanes that cross the corridor are no feeders but conflicts, and so are lanes that merge with it in a junction. No
+/// stretch of a lane has two images in one corridor.
 ///
-/// The map remembers those that are in use, and others: their routes give the same object again, at once. Whenever 8 MB
-/// of new ones have come, it forgets those not in use but for the last 8 MB that were asked for. Safe on many threads.
+/// The map remembers road corridors: the same route gives the same object again, at once, as long as it is in use or
+/// among the last 8 MB that were asked for. Older ones are dropped whenever 8 MB of new ones have come. Safe on many
+/// threads.
 [[nodiscard]] inline std::shared_ptr<RoadCorridor const> build_road_corridor(Map const& map, Route const& route) {
   return map.queries().road_corridor(map, route.lanes);
 }

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "cambium/core/ids.hpp"
@@ -26,8 +25,8 @@ struct CorridorPiece {
   PieceId left_piece{}, right_piece{};        ///< number of the neighbour's piece there; only with `left`, `right`
   double lane_offset{};                       ///< position on the lane's path = corridor position + lane_offset [m]
   std::uint32_t first_segment{}, segments{};  ///< of the corridor's centre line: where its own begin, and how many
-  /// Where at the latest a vehicle should have changed lanes, for there the next merge into a neighbour begins or,
-  /// where the corridor does not go as far as the route, the corridor ends; infinite where neither is ahead [m].
+  /// Where a vehicle must have changed lanes at the latest: where the next merge into a neighbour begins or, if the
+  /// corridor ends before the route does, where it ends; infinite where neither is ahead [m].
   double lane_end = std::numeric_limits<double>::infinity();
 
   /// Number of the corridor to the left or the right, and of its piece there.
@@ -74,7 +73,7 @@ struct CorridorSignal {
   friend bool operator==(CorridorSignal const&, CorridorSignal const&) = default;
 };
 
-/// A stretch of the map-wide lane coordinate (see `Lane::index_begin`) on the way to, through and behind a conflict.
+/// A stretch of the map-wide lane coordinate (see `Lane::index_begin`) on the way to, through and beyond a conflict.
 struct ConflictWay {
   double index_begin{}, index_end{};
   double begin{};  ///< of the way where the stretch begins: position on the other lane's path, negative before it [m]
@@ -177,7 +176,7 @@ struct LaneCorridor {
     return std::nullopt;
   }
 
-  /// What is left of the corridor behind `s` [m]; 0 beyond its end.
+  /// The length of the corridor ahead of `s` [m]; 0 beyond its end.
   [[nodiscard]] double length_until_end(double s) const { return std::max(0.0, length() - s); }
 
   /// The speed limit at `s`; infinite where there is none. [m/s], O(log steps).

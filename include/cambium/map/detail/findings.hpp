@@ -1,6 +1,10 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <span>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -9,12 +13,38 @@
 
 namespace cambium::map::detail {
 
-/// Adds a finding to those of a file, unless there are `most_diagnostics`: the last one says that there are more.
-[[gnu::cold]] inline void add_finding(std::vector<Diagnostic>& findings, Diagnostic finding) {
-  if (findings.size() >= most_diagnostics) return;
-  if (findings.size() + 1 == most_diagnostics)
-    finding.sentence = "there is more to say of this file than " + std::to_string(most_diagnostics) + " findings";
-  findings.push_back(std::move(finding));
+/// The findings about a file: its reader, the checks and the map building add to one list.
+struct Findings {
+  std::string file;
+  std::vector<Diagnostic>& list;
+
+  /// Adds a finding, unless there are `most_diagnostics`: the last of those says that there are more.
+  [[gnu::cold]] void add(Severity severity, int line, std::string element, std::string ids, std::string sentence) {
+    if (list.size() >= most_diagnostics) return;
+    if (list.size() + 1 == most_diagnostics)
+      sentence = "the file has more than " + std::to_string(most_diagnostics) + " findings; the others were left out";
+    list.push_back({severity, file, line, std::move(element), std::move(ids), std::move(sentence)});
+  }
+};
+
+/// " (finding)" for a message that no road or lane is left: the first warning by which a road, a lane or something was
+/// left out, or the one that this refers to; else the first warning about one of their elements; empty where there is
+/// none.
+[[nodiscard]] inline std::string likely_cause(std::span<Diagnostic const> findings) {
+  constexpr std::array<std::string_view, 11> carrying{"road",  "planView",   "geometry", "line", "arc",        "spiral",
+                                                      "poly3", "paramPoly3", "lanes",    "lane", "laneSection"};
+  for (char const* words : {"the road was left out", "the lane was left out", "left out", ""}) {
+    Diagnostic const* before = nullptr;
+    for (auto const& finding : findings) {
+      bool const matters = std::find(carrying.begin(), carrying.end(), finding.element) != carrying.end();
+      if (finding.severity == Severity::info || !matters) continue;
+      auto const says = [&finding](char const* what) { return finding.sentence.find(what) != std::string::npos; };
+      if (says(words))
+        return " (" + to_string(before != nullptr && says("see the previous finding") ? *before : finding) + ")";
+      before = &finding;
+    }
+  }
+  return {};
 }
 
 }  // namespace cambium::map::detail

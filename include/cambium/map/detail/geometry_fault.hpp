@@ -7,7 +7,7 @@
 
 namespace cambium::map::detail {
 
-/// Why nobody could drive on a geometry, or compute with it; null where nothing is wrong. One without a length is not.
+/// Why a geometry is unusable for driving or computing; null where nothing is wrong. Length 0 is no fault.
 [[nodiscard]] inline char const* fault_of(Geometry const& g) {
   constexpr double farthest = 1e8, longest = 1e6;  // [m]: beyond any map
   constexpr double most_turn = 100.0;              // [rad]: more than any ramp winds

@@ -2,17 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/box.hpp"
 #include "cambium/geometry/box_tree.hpp"
 #include "cambium/map/lanes/lane.hpp"
-#include "cambium/map/lanes/network_finding.hpp"
+#include "cambium/map/lanes/lane_network.hpp"
 #include "cambium/map/map.hpp"
 
 namespace cambium::map::detail {

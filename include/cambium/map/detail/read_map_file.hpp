@@ -27,7 +27,7 @@ inline void require_readable(std::size_t bytes, std::string const& name, char co
     throw MapError(name,
                    "it has " + (at_least + std::to_string(bytes)) + " bytes, more than the " +
                        std::to_string(largest_map_file) + " that are read",
-                   "split the map, or leave out what is not needed of it");
+                   "split the map, or remove what is not needed");
 }
 
 /// The bytes of a file. Throws `MapError` where it cannot be read, is empty, or larger than `largest_map_file` (before

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "cambium/core/error.hpp"
@@ -71,8 +70,8 @@ class RequireBuildable {
                                                  [](opendrive::Lane const& left, opendrive::Lane const& right) {
                                                    return left.id <= right.id;
                                                  }) == section.lanes.end();
-      require(is_ordered, "the lanes of a section do not stand from left to right, or one is there twice",
-              "sort them by falling id");
+      require(is_ordered, "the lanes of a section are not ordered from left to right, or one occurs twice",
+              "sort them by descending id");
       for (auto const& lane : section.lanes) check_lane(lane);
     }
   }
@@ -85,7 +84,7 @@ class RequireBuildable {
               "a lane's height is not finite", "give finite numbers");
     for (auto const& speed : lane.speeds) check_speed(speed.s, speed.limit, "of a lane");
     for (auto const& mark : lane.road_marks)
-      require(std::isfinite(mark.s_offset), "a road mark begins at no finite place", "give it in m");
+      require(std::isfinite(mark.s_offset), "the s offset of a road mark is not finite", "give it in m");
   }
 
   void check_speed(double s, std::optional<double> const& limit, char const* of) const {

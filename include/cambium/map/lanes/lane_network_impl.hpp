@@ -1,15 +1,9 @@
 #pragma once
 
-#include <algorithm>
-#include <cmath>
-#include <cstddef>
-#include <cstdint>
 #include <span>
-#include <string_view>
 #include <vector>
 
 #include "cambium/core/macros.hpp"
-#include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/box.hpp"
 #include "cambium/geometry/box_tree.hpp"
 #include "cambium/map/detail/network_check.hpp"

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <limits>
 #include <span>
 #include <tuple>
@@ -21,6 +20,12 @@
 #include "cambium/map/lanes/lane.hpp"
 #include "cambium/map/lanes/overlaps.hpp"
 
+/// How overlaps are found. The paths of all drivable lanes become chords, straight to within 1 cm, and a tree of their
+/// boxes gives the pairs of chords that come closer than the clearance. Each such pair is a contact: a stretch on
+/// either lane. Contacts of the same two lanes that touch each other are joined, and the ends of what results are
+/// refined on the exact paths. Lanes are also close for harmless reasons, and those contacts are dropped: lanes of one
+/// road side by side, lanes one behind the other near their joint, and a bridge over a road. What is left is a merge, a
+/// split or a crossing, told apart by the angle between the lanes and by the lanes that they share at their ends.
 namespace cambium::map {
 
 namespace detail {
@@ -48,7 +53,7 @@ class OverlapFinder {
     Stretch on_a, on_b;
   };
 
-  /// A lane that another one hangs together with, at a common joint.
+  /// A lane linked with another one, at a common joint.
   struct Linked {
     LaneId lane;
     double between;  ///< length of the lanes between the two [m]
@@ -61,7 +66,7 @@ class OverlapFinder {
     double between;             ///< as in `Linked`
   };
 
-  /// For each lane those that it hangs together with, those beside them included.
+  /// Finds the lanes that each lane is linked with, and those beside them.
   void find_related() {
     ahead_.assign(lanes_.size(), {});
     behind_ = ahead_;
@@ -82,7 +87,7 @@ class OverlapFinder {
       }
   }
 
-  /// The lanes of the same section of the road, oncoming ones too: they stand one behind the other in `lanes_`.
+  /// The lanes of the same section of the road, oncoming ones too; they are consecutive in `lanes_`.
   void add_cross_section(std::size_t lane, std::vector<LaneId>& beside) const {
     auto const is_same = [&](std::size_t i) {
       return lanes_[i].road == lanes_[lane].road && lanes_[i].section == lanes_[lane].section;
@@ -107,7 +112,7 @@ class OverlapFinder {
     return std::find(list.begin(), list.end(), id) != list.end();
   }
 
-  /// Whether the lanes are close because they hang together: the contact reaches their common joint, or nearly so.
+  /// Whether the lanes are close because they are linked: the contact reaches their common joint, or nearly so.
   [[nodiscard]] bool is_at_joint(Contact const& c) const { return is_at_joint(c.a, c.on_a, c.b, c.on_b); }
 
   [[nodiscard]] bool is_at_joint(std::uint32_t a, Stretch const& on_a, std::uint32_t b, Stretch const& on_b) const {

@@ -9,10 +9,10 @@
 namespace cambium::map {
 
 /// Checks a document as a whole and appends what it finds: double ids (the later element is removed), links and
-/// connections that lead nowhere (kept), lane sections behind the road's end (removed) or before its start (moved
-/// there), geometries that do not go on where the one before ends (kept; the road is removed where that is 100 m away),
-/// widths and lane offsets beyond 1 km, heights beyond 100 km, tilts beyond 10 rad, a header's offset beyond any map
-/// (removed), lengths that contradict the geometries (kept; the geometries count). O(n log n) in the size of the
+/// connections that lead nowhere (kept), lane sections beyond the road's end (removed) or before its start (moved
+/// there), geometries that do not go on where the previous one ends (kept; the road is removed where that is 100 m
+/// away), widths and lane offsets beyond 1 km, heights beyond 100 km, tilts beyond 10 rad, a header's offset beyond any
+/// map (removed), lengths that contradict the geometries (kept; the geometries count). O(n log n) in the size of the
 /// document.
 void check_opendrive_document(OpenDriveDocument& document, std::string file_name, std::vector<Diagnostic>& diagnostics);
 

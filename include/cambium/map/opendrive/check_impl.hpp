@@ -4,8 +4,6 @@
 #include <cmath>
 #include <cstddef>
 #include <string>
-#include <string_view>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -30,34 +28,34 @@ namespace detail {
 
 using cambium::detail::rounded_text;
 
-/// Looks at what single elements cannot show: double ids, links that lead nowhere, lengths that contradict each other.
+/// Checks what no single element shows: ids that occur twice, links that lead nowhere, contradictory lengths.
 class DocumentCheck {
  public:
   DocumentCheck(opendrive::Document& document, std::string file, std::vector<Diagnostic>& diagnostics)
-      : document_(&document), file_(std::move(file)), diagnostics_(&diagnostics) {}
+      : document_(&document), findings_{std::move(file), diagnostics} {}
 
   void run() {
-    if (document_->header.line == 0) report(Severity::warning, 0, "header", "", "the file has no header");
+    if (document_->header.line == 0) findings_.add(Severity::warning, 0, "header", "", "the file has no header");
     auto const& header = document_->header;
     if (header.rev_major > 1 || (header.rev_major == 1 && header.rev_minor > 8))
-      report(header.rev_major > 1 ? Severity::warning : Severity::info, header.line, "header", "",
-             "OpenDRIVE " + std::to_string(header.rev_major) + "." + std::to_string(header.rev_minor) +
-                 " is newer than what is known, up to 1.8; it was read as that");
+      findings_.add(header.rev_major > 1 ? Severity::warning : Severity::info, header.line, "header", "",
+                    "OpenDRIVE " + std::to_string(header.rev_major) + "." + std::to_string(header.rev_minor) +
+                        " is newer than the latest known revision, 1.8; it was read as 1.8");
     if (!is_bearable(document_->header.offset)) {
-      report(Severity::warning, document_->header.line, "offset", "", "it is beyond any map; it was left out");
+      findings_.add(Severity::warning, document_->header.line, "offset", "", "it is beyond any map; it was left out");
       document_->header.offset = {};
     }
     std::erase_if(document_->roads, [this](opendrive::Road& road) {
-      return !is_whole(road) || !GeometryCheck(road, file_, *diagnostics_).is_continuous() || !has_lanes(road);
+      return !is_whole(road) || !GeometryCheck(road, findings_).is_continuous() || !has_lanes(road);
     });
-    index(document_->roads, roads_, "road", " is there twice; the second one was left out");
-    index(document_->junctions, junctions_, "junction", " is there twice; the second one was left out");
+    index(document_->roads, roads_, "road", " occurs twice; the second one was left out");
+    index(document_->junctions, junctions_, "junction", " occurs twice; the second one was left out");
     for (opendrive::Road& road : document_->roads) check(road);
     auto const walked = junctions_to_walk();
     for (opendrive::Junction const& junction : document_->junctions) {
       if (junction.connections.empty() && !walked.contains(junction.id))
-        report(Severity::warning, junction.line, "junction", "junction " + junction.id,
-               "it has no connection; no lane leads through it");
+        findings_.add(Severity::warning, junction.line, "junction", "junction " + junction.id,
+                      "it has no connection; no lane leads through it");
       for (opendrive::Connection const& connection : junction.connections) check(junction, connection);
     }
   }
@@ -69,7 +67,7 @@ class DocumentCheck {
     std::vector<bool> is_second(elements.size());  // marked first: the keys are views of ids that must not move
     for (std::size_t i = 0; i < elements.size(); ++i) {
       is_second[i] = !ids.emplace(elements[i].id, i).second;
-      if (is_second[i]) report(Severity::warning, elements[i].line, kind, "", "id " + elements[i].id + sentence);
+      if (is_second[i]) findings_.add(Severity::warning, elements[i].line, kind, "", "id " + elements[i].id + sentence);
     }
     ids.clear();
     std::size_t kept = 0;
@@ -109,54 +107,57 @@ class DocumentCheck {
       if (!*link) continue;
       bool const is_road = (*link)->element_type == opendrive::ElementType::road;
       if (!(is_road ? roads_ : junctions_).contains((*link)->id))
-        report(Severity::warning, (*link)->line, link == &road.predecessor ? "predecessor" : "successor", ids,
-               std::string("there is no usable ") + (is_road ? "road " : "junction ") + (*link)->id +
-                   "; the link leads nowhere");
+        findings_.add(Severity::warning, (*link)->line, link == &road.predecessor ? "predecessor" : "successor", ids,
+                      std::string("there is no usable ") + (is_road ? "road " : "junction ") + (*link)->id +
+                          "; the link leads nowhere");
     }
     if (!road.junction.empty() && !junctions_.contains(road.junction))
-      report(Severity::warning, road.line, "road", ids,
-             "there is no junction " + road.junction + " that it could belong to");
+      findings_.add(Severity::warning, road.line, "road", ids,
+                    "there is no junction " + road.junction + " that it could belong to");
     check_sections(road, ids);
-    RecordCheck(road, file_, *diagnostics_).run();
+    RecordCheck(road, findings_).run();
   }
 
   void check_length(opendrive::Road& road, std::string const& ids) {
     double const length = road.geometry_length();
     if (road.length < 0.0) {
-      report(Severity::warning, road.line, "road", ids, "the length is missing or negative; the geometries' counts");
+      findings_.add(Severity::warning, road.line, "road", ids,
+                    "the length is missing or negative; the geometries' counts");
       road.length = length;
     } else if (std::abs(road.length - length) > 1e-3) {
-      report(Severity::warning, road.line, "road", ids,
-             "the length is " + rounded_text(road.length) + " m, but the geometries end at " + rounded_text(length) +
-                 " m; theirs counts");
+      findings_.add(Severity::warning, road.line, "road", ids,
+                    "the length is " + rounded_text(road.length) + " m, but the geometries end at " +
+                        rounded_text(length) + " m; theirs counts");
     }
     for (std::size_t i = 1; i < road.geometries.size(); ++i) {
       double const gap = road.geometries[i].s - road.geometries[i - 1].s - road.geometries[i - 1].length;
       if (std::abs(gap) > 1e-3)
-        report(Severity::warning, road.geometry_lines[i], "geometry", ids,
-               "s is " + rounded_text(gap) + " m behind the end of the geometry before; both are kept as written");
+        findings_.add(
+            Severity::warning, road.geometry_lines[i], "geometry", ids,
+            "s is " + rounded_text(gap) + " m beyond the end of the previous geometry; both are kept as written");
     }
   }
 
-  /// Geometries too short to be meant: they are kept, and harm nothing.
+  /// Geometries so short that they are probably a mistake; they are kept, and do no harm.
   void check_short_geometries(opendrive::Road const& road, std::string const& ids) {
     constexpr double short_one = 1e-9;  // [m]
     int count = 0, line = 0;
     for (std::size_t i = 0; i < road.geometries.size(); ++i)
       if (road.geometries[i].length < short_one && count++ == 0) line = road.geometry_lines[i];
     if (count > 0)
-      report(Severity::warning, line, "geometry", ids,
-             "it is shorter than a millionth of a millimetre" +
-                 (count > 1 ? " (and " + std::to_string(count - 1) + " more)" : std::string()) +
-                 "; that is kept, but hardly meant");
+      findings_.add(Severity::warning, line, "geometry", ids,
+                    "it is shorter than a millionth of a millimetre" +
+                        (count > 1 ? " (and " + std::to_string(count - 1) + " more)" : std::string()) +
+                        "; it is kept, but probably not intended");
   }
 
-  /// False where all lane sections lie behind the road's end.
+  /// False where all lane sections lie beyond the road's end.
   [[nodiscard]] bool has_lanes(opendrive::Road const& road) {
     opendrive::LaneSection const& first = road.lane_sections.front();
     if (first.s <= road.geometry_length()) return true;
-    report(Severity::warning, first.line, "laneSection", "road " + road.id,
-           "the first section starts at " + rounded_text(first.s) + " m, behind the road's end; the road was left out");
+    findings_.add(
+        Severity::warning, first.line, "laneSection", "road " + road.id,
+        "the first section starts at " + rounded_text(first.s) + " m, beyond the road's end; the road was left out");
     return false;
   }
 
@@ -168,29 +169,30 @@ class DocumentCheck {
                                                    : nullptr;
     for (std::size_t i = 0; i < road.geometries.size() && fault == nullptr; ++i) fault = fault_of(road.geometries[i]);
     if (fault == nullptr) return true;
-    report(Severity::warning, road.line, "road", "road " + road.id, std::string(fault) + "; the road was left out");
+    findings_.add(Severity::warning, road.line, "road", "road " + road.id,
+                  std::string(fault) + "; the road was left out");
     return false;
   }
 
-  /// Leaves out sections behind the road's end (the first one always stays) and looks at the links between the others.
+  /// Leaves out sections beyond the road's end (the first one always stays) and looks at the links between the others.
   void check_sections(opendrive::Road& road, std::string const& ids) {
     while (road.lane_sections.size() > 1 && road.lane_sections.back().s > road.geometry_length() + 1e-9) {
       opendrive::LaneSection const& last = road.lane_sections.back();
-      report(Severity::warning, last.line, "laneSection", ids,
-             "the section starts at " + rounded_text(last.s) + " m, behind the road's end; it was left out");
+      findings_.add(Severity::warning, last.line, "laneSection", ids,
+                    "the section starts at " + rounded_text(last.s) + " m, beyond the road's end; it was left out");
       road.lane_sections.pop_back();
     }
     for (opendrive::LaneSection& section : road.lane_sections) {
       if (section.s >= 0.0) break;
-      report(Severity::warning, section.line, "laneSection", ids,
-             "the section starts at " + rounded_text(section.s) + " m; it counts from the road's start on");
+      findings_.add(Severity::warning, section.line, "laneSection", ids,
+                    "the section starts at " + rounded_text(section.s) + " m; it counts from the road's start on");
       for (opendrive::Lane& lane : section.lanes) move_records(lane, -section.s);
       section.s = 0.0;
     }
     if (road.lane_sections.front().s > 0.0)
-      report(Severity::warning, road.lane_sections.front().line, "laneSection", ids,
-             "the first section starts at " + rounded_text(road.lane_sections.front().s) +
-                 " m, the road has no lanes before");
+      findings_.add(Severity::warning, road.lane_sections.front().line, "laneSection", ids,
+                    "the first section starts at " + rounded_text(road.lane_sections.front().s) +
+                        " m; the road has no lanes before that");
     for (std::size_t i = 0; i + 1 < road.lane_sections.size(); ++i)
       check_lane_links(road.lane_sections[i], road.lane_sections[i + 1], ids, i);
   }
@@ -198,9 +200,9 @@ class DocumentCheck {
   void check_lane_links(opendrive::LaneSection const& section, opendrive::LaneSection const& next,
                         std::string const& ids, std::size_t index) {
     auto const dangling = [&](opendrive::Lane const& lane, int to, std::size_t where, char const* element) {
-      report(Severity::warning, lane.line, element,
-             ids + ", section " + std::to_string(where) + ", lane " + std::to_string(lane.id),
-             "there is no lane " + std::to_string(to) + " in the section beside; the link leads nowhere");
+      findings_.add(Severity::warning, lane.line, element,
+                    ids + ", section " + std::to_string(where) + ", lane " + std::to_string(lane.id),
+                    "there is no lane " + std::to_string(to) + " in the adjacent section; the link leads nowhere");
     };
     auto const ids_of = [](opendrive::LaneSection const& of) {
       std::vector<int> numbers;
@@ -221,17 +223,12 @@ class DocumentCheck {
     if (connection.predecessor || connection.successor) return;
     for (std::string const* id : {&connection.incoming_road, &connection.entered_road()})
       if (!roads_.contains(*id))
-        report(Severity::warning, connection.line, "connection", "junction " + junction.id,
-               "there is no usable road \"" + *id + "\"; connection " + connection.id + " leads nowhere");
-  }
-
-  void report(Severity severity, int line, std::string element, std::string ids, std::string sentence) {
-    add_finding(*diagnostics_, {severity, file_, line, std::move(element), std::move(ids), std::move(sentence)});
+        findings_.add(Severity::warning, connection.line, "connection", "junction " + junction.id,
+                      "there is no usable road \"" + *id + "\"; connection " + connection.id + " leads nowhere");
   }
 
   opendrive::Document* document_;
-  std::string file_;
-  std::vector<Diagnostic>* diagnostics_;
+  Findings findings_;
   IdPlaces roads_, junctions_;
 };
 

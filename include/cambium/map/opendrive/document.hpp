@@ -9,13 +9,13 @@
 
 #include "cambium/map/opendrive/element.hpp"
 #include "cambium/map/opendrive/lanes.hpp"
-#include "cambium/map/opendrive/objects.hpp"
+#include "cambium/map/opendrive/signals.hpp"
 #include "cambium/map/road/cubic.hpp"
 #include "cambium/map/road/reference_line.hpp"
 
-/// An OpenDRIVE file as plain data: ids are the file's words, nothing is linked or sampled. The reader fills it;
-/// whoever builds a map, writes a file or checks one works on it. What has no field is kept in the `rest` of its
-/// element. Two documents are equal when they say the same; in which lines (`line`) does not count.
+/// An OpenDRIVE file as plain data: ids are text as in the file, and nothing is linked or sampled. The reader fills a
+/// document; checks, the writer and the map building work on it. What has no field is kept in the `rest` of its
+/// element. Two documents are equal when they say the same, no matter in which lines (`line`).
 namespace cambium::map::opendrive {
 
 /// Which end of a road a link touches; `none`: not written.
@@ -47,26 +47,21 @@ struct Header {
   int rev_minor = 0;
   std::string name;
   std::string vendor;
-  double north{};  ///< bounds as written [m]
-  double south{};
-  double east{};
-  double west{};
   HeaderOffset offset;
   std::string geo_reference;  ///< projection string, empty when absent
-  Rest rest;                  ///< version, date, user data, ...
+  Rest rest;                  ///< version, date, bounds, user data, ...
   Line line;                  ///< 0: the file has no header
 
   friend bool operator==(Header const&, Header const&) = default;
 };
 
-/// What lies before or behind a road, or a connection of a virtual junction. A road is touched at one of its ends, or,
-/// by a virtual junction, at the station `element_s` in the direction `element_direction`.
+/// What lies before or behind a road, or a connection of a virtual junction. The link meets a road at one of its ends,
+/// or, in a virtual junction, at the station `element_s`.
 struct RoadLink {
   ElementType element_type = ElementType::road;
   std::string id;
   ContactPoint contact_point = ContactPoint::none;  ///< always `none` for junctions
   std::optional<double> element_s{};                ///< [m]
-  Orientation element_direction = Orientation::both;
   Rest rest{};
   Line line{};
 
@@ -78,7 +73,6 @@ struct RoadType {
   std::string type;             ///< e.g. "motorway"
   std::optional<double> limit;  ///< [m/s], infinite for "no limit", empty when undefined or not written
   SpeedUnit unit{};
-  std::string country{};  ///< code of the country whose rules count, may be empty
   Rest rest{};
 
   friend bool operator==(RoadType const&, RoadType const&) = default;
@@ -127,10 +121,8 @@ struct Road {
   std::vector<CubicRecord> lane_offset;      ///< sorted; t of lane 0's line
   std::vector<LaneSection> lane_sections;    ///< sorted, at least one
   std::vector<Signal> signals;
-  std::vector<SignalReference> signal_references;
-  std::vector<Object> objects;
-  std::vector<ObjectReference> object_references;
-  Rest rest;  ///< surface, railroad, user data, ...; in "objects" bridges and tunnels
+  std::vector<Signal> signal_references;
+  Rest rest;  ///< objects, surface, railroad, user data, ...
   Line line;
 
   /// Where the last geometry ends [m].
@@ -144,7 +136,6 @@ struct Road {
 struct LaneLink {
   int from = 0;
   int to = 0;
-  std::optional<double> overlap_zone{};  ///< length over which both lanes lie on each other (direct junctions) [m]
   Rest rest{};
 
   friend bool operator==(LaneLink const&, LaneLink const&) = default;
@@ -157,7 +148,6 @@ struct Connection {
   std::string connecting_road;  ///< empty in direct junctions
   std::string linked_road;      ///< of direct junctions: the road that is entered without a connecting road
   ContactPoint contact_point = ContactPoint::none;
-  std::string type;  ///< "default", "virtual" or empty
   std::vector<LaneLink> lane_links;
   std::optional<RoadLink> predecessor;  ///< of virtual connections
   std::optional<RoadLink> successor;    ///< of virtual connections
@@ -181,28 +171,13 @@ struct Priority {
   friend bool operator==(Priority const&, Priority const&) = default;
 };
 
-/// A controller whose signals stand in the junction.
-struct JunctionController {
-  std::string id;
-  std::string type;
-  std::optional<int> sequence{};
-  Rest rest{};
-
-  friend bool operator==(JunctionController const&, JunctionController const&) = default;
-};
-
 struct Junction {
   std::string id;
   std::string name;
   JunctionType type = JunctionType::standard;
-  std::string main_road;          ///< of virtual junctions: the road that goes through
-  std::optional<double> s_start;  ///< where on the main road [m]
-  std::optional<double> s_end;    ///< [m]
-  Orientation orientation = Orientation::both;
   std::vector<Connection> connections;
   std::vector<Priority> priorities;
-  std::vector<JunctionController> controllers;
-  Rest rest;
+  Rest rest;  ///< controllers, crossing paths, the main road of a virtual junction, ...
   Line line;
 
   friend bool operator==(Junction const&, Junction const&) = default;

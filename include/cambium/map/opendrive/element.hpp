@@ -41,10 +41,11 @@ struct Element {
   }
 };
 
-/// What a file says in an element beyond what the document has fields for: user data, later revisions' elements, words
-/// that are not known. Kept in order, and written again. The rest of a mere container (`link`, `planView`,
-/// `elevationProfile`, `lateralProfile`, `lanes`, `left`, `center`, `right`, `objects`, `signals`, `outlines`) is an
-/// element of the container's name, with that rest only, in the rest of its parent.
+/// What a file says in an element beyond what the document has fields for: what the library makes no use of (objects,
+/// access, controllers of junctions, ...), user data, elements of later revisions, unknown words. It is kept in order
+/// and written again. The rest of a mere container (`link`, `planView`, `elevationProfile`, `lateralProfile`, `lanes`,
+/// `left`, `center`, `right`, `signals`) is an element of the container's name, with that rest only, in the rest of its
+/// parent.
 struct Rest {
   std::vector<Attribute> attributes;
   std::vector<Element> elements;

@@ -20,7 +20,7 @@ enum class LaneDirection { standard, reversed, both };
 /// The unit in which a speed limit is written.
 enum class SpeedUnit { metres_per_second, kilometres_per_hour, miles_per_hour };
 
-/// Speed limit from `s` (roads) or `s` behind the section's start (lanes) on, to the next one.
+/// Speed limit from `s` on, to the next one; of lanes, `s` counts from the section's start.
 struct SpeedRecord {
   double s{};                   ///< [m]
   std::optional<double> limit;  ///< [m/s], infinite for "no limit", empty for "undefined"
@@ -35,10 +35,8 @@ struct RoadMark {
   std::string color;
   double width{};  ///< [m], 0: not written
   LaneChange lane_change = LaneChange::unspecified;
-  std::string weight{};    ///< "standard", "bold" or empty
-  std::string material{};  ///< empty: not written
-  double height{};         ///< above the road [m], 0: not written
-  Rest rest{};             ///< the single lines, sway
+  std::string weight{};  ///< "standard", "bold" or empty
+  Rest rest{};           ///< the single lines, sway, material, height
 
   friend bool operator==(RoadMark const&, RoadMark const&) = default;
 };
@@ -53,29 +51,9 @@ struct LaneHeight {
   friend bool operator==(LaneHeight const&, LaneHeight const&) = default;
 };
 
-/// Who may use a lane.
-struct LaneAccess {
-  double s_offset{};        ///< from the section's start [m]
-  std::string rule;         ///< "allow", "deny" or empty
-  std::string restriction;  ///< whom, e.g. "bus"
-  Rest rest{};
-
-  friend bool operator==(LaneAccess const&, LaneAccess const&) = default;
-};
-
-/// A traffic rule of a lane in free words.
-struct LaneRule {
-  double s_offset{};  ///< from the section's start [m]
-  std::string value;
-  Rest rest{};
-
-  friend bool operator==(LaneRule const&, LaneRule const&) = default;
-};
-
 struct Lane {
   int id = 0;  ///< left > 0, right < 0, counted from the centre lane 0
   LaneType type = LaneType::none;
-  bool level = false;
   LaneDirection direction = LaneDirection::standard;
   std::vector<int> predecessors;     ///< lane ids at the section's start, as written
   std::vector<int> successors;       ///< lane ids at the section's end
@@ -84,9 +62,7 @@ struct Lane {
   std::vector<RoadMark> road_marks;  ///< of the outer border (lane 0: of the centre line), sorted
   std::vector<SpeedRecord> speeds;   ///< sorted; s counts from the section's start
   std::vector<LaneHeight> heights;   ///< sorted
-  std::vector<LaneAccess> accesses;  ///< sorted
-  std::vector<LaneRule> rules;       ///< sorted
-  Rest rest;                         ///< materials, user data, ...
+  Rest rest;                         ///< who may use it, rules, materials, user data, ...
   Line line;
 
   friend bool operator==(Lane const&, Lane const&) = default;

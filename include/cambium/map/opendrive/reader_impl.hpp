@@ -15,12 +15,11 @@
 #include "cambium/core/diagnostic.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
-#include "cambium/map/detail/likely_cause.hpp"
+#include "cambium/map/detail/findings.hpp"
 #include "cambium/map/detail/read_map_file.hpp"
 #include "cambium/map/opendrive/check.hpp"
 #include "cambium/map/opendrive/detail/junctions_reader.hpp"
 #include "cambium/map/opendrive/detail/lanes_reader.hpp"
-#include "cambium/map/opendrive/detail/objects_reader.hpp"
 #include "cambium/map/opendrive/detail/plan_view.hpp"
 #include "cambium/map/opendrive/detail/xml_context.hpp"
 #include "cambium/map/opendrive/detail/xml_limits.hpp"
@@ -61,17 +60,12 @@ inline void read_offset(XmlContext& context, pugi::xml_node node, opendrive::Hea
 inline void read_road_types(XmlContext& context, pugi::xml_node road_node, opendrive::Road& road) {
   for_each_child(road_node, "type", [&](pugi::xml_node node) {
     opendrive::RoadType& type = road.types.emplace_back();
-    if (!read_attributes(context, node, type)) {
-      road.types.pop_back();
-      return context.report(Severity::warning, node, "it was left out for that, see the finding before");
-    }
+    auto const is_speed = [](pugi::xml_node, std::string_view name) { return name == "speed"; };
+    if (!read_with(context, node, type, is_speed)) return road.types.pop_back();
     if (auto const speed = find_only_child(context, node, "speed")) {
       report_others(context, speed, {"max", "unit"});
       read_speed(context, speed, type);
     }
-    for_each_child(node, [&](pugi::xml_node child, std::string_view name) {
-      if (name != "speed") keep_element(context, child, type.rest);
-    });
   });
   sort_records(context, road_node, road.types, &opendrive::RoadType::s, "road types");
 }
@@ -133,32 +127,41 @@ inline void read_lateral_profile(XmlContext& context, pugi::xml_node road_node, 
   return !road.lane_sections.empty();
 }
 
+inline void read_signals(XmlContext& context, pugi::xml_node road_node, opendrive::Road& road) {
+  pugi::xml_node const node = find_only_child(context, road_node, "signals");
+  read_container(context, node, road.rest, [&](pugi::xml_node child, std::string_view name) {
+    if (name != "signal" && name != "signalReference") return false;
+    auto& signals = name == "signal" ? road.signals : road.signal_references;
+    append_with(context, child, signals, "validity", &opendrive::Signal::validities);
+    return true;
+  });
+}
+
 /// False when the road is unusable.
 [[nodiscard]] inline bool read_road(XmlContext& context, pugi::xml_node node, opendrive::Road& road) {
   road.length = -1.0;  // missing
   if (!read_attributes(context, node, road)) {
-    context.report(Severity::warning, node, "the road was left out, for it has no id");
+    context.report(Severity::warning, node, "the road was left out because it has no id");
     return false;
   }
   read_road_links(context, node, road);
   read_road_types(context, node, road);
   if (!read_plan_view(context, node, road) || !read_lanes(context, node, road)) {
-    context.report(Severity::warning, node, "the road was left out, see the finding before");
+    context.report(Severity::warning, node, "the road was left out, see the previous finding");
     return false;
   }
   read_elevation(context, node, road);
   read_lateral_profile(context, node, road);
-  read_objects(context, node, road);
   read_signals(context, node, road);
   constexpr std::string_view known[] = {"link",           "type",  "planView", "elevationProfile",
-                                        "lateralProfile", "lanes", "objects",  "signals"};
+                                        "lateralProfile", "lanes", "signals"};
   for_each_child(node, [&](pugi::xml_node child, std::string_view name) {
     if (std::find(std::begin(known), std::end(known), name) == std::end(known)) keep_element(context, child, road.rest);
   });
   return true;
 }
 
-/// The root element; throws when the text is no XML or its root is another one.
+/// The root element. Throws `MapError` when the text is not XML, or has another root.
 [[nodiscard]] inline pugi::xml_node parse_root(pugi::xml_document& xml, std::string_view text,
                                                std::string const& file) {
   require_readable(text.size(), file);
@@ -199,7 +202,7 @@ inline void read_top_level(XmlContext& context, pugi::xml_node node, std::string
     if (auto junction = read_junction(context, node)) document.junctions.push_back(std::move(*junction));
     context.junction = nullptr;
   } else if (name == "controller") {
-    append_controller(context, node, document.controllers);
+    append_with(context, node, document.controllers, "control", &opendrive::Controller::controls);
   } else {
     keep_element(context, node, document.rest);
   }

@@ -12,7 +12,6 @@
 #include "cambium/core/write_file.hpp"
 #include "cambium/map/opendrive/detail/attribute_writer.hpp"
 #include "cambium/map/opendrive/detail/lanes_writer.hpp"
-#include "cambium/map/opendrive/detail/objects_writer.hpp"
 #include "cambium/map/opendrive/document.hpp"
 #include "cambium/map/opendrive/writer.hpp"
 
@@ -119,6 +118,29 @@ inline void write_profiles(XmlText& xml, opendrive::Road const& road) {
   });
 }
 
+/// Elements with a list of parts.
+template <class T, class Part>
+void write_with(XmlText& xml, std::string_view name, std::vector<T> const& all, std::string_view part,
+                std::vector<Part> T::*parts) {
+  for (T const& x : all)
+    xml.element(name, [&] {
+      write_attributes(xml, x);
+      write_leaves(xml, part, x.*parts);
+      write_rest(xml, x.rest);
+    });
+}
+
+/// Objects, which are nothing but rest, stand before the signals.
+inline void write_objects_and_signals(XmlText& xml, opendrive::Road const& road) {
+  for (opendrive::Element const& element : road.rest.elements)
+    if (element.name == "objects") write_element(xml, element);
+  bool const needed = !road.signals.empty() || !road.signal_references.empty();
+  write_container(xml, "signals", road.rest, needed, [&] {
+    write_with(xml, "signal", road.signals, "validity", &opendrive::Signal::validities);
+    write_with(xml, "signalReference", road.signal_references, "validity", &opendrive::Signal::validities);
+  });
+}
+
 inline void write_road(XmlText& xml, opendrive::Road const& road) {
   xml.element("road", [&] {
     write_attributes(xml, road);
@@ -130,8 +152,7 @@ inline void write_road(XmlText& xml, opendrive::Road const& road) {
       write_cubics(xml, "laneOffset", "s", road.lane_offset);
       for (opendrive::LaneSection const& section : road.lane_sections) write_lane_section(xml, section);
     });
-    write_objects(xml, road);
-    write_signals(xml, road);
+    write_objects_and_signals(xml, road);
     write_rest(xml, road.rest,
                {"link", "planView", "elevationProfile", "lateralProfile", "lanes", "objects", "signals"});
   });
@@ -152,7 +173,6 @@ inline void write_junction(XmlText& xml, opendrive::Junction const& junction) {
     write_attributes(xml, junction);
     for (opendrive::Connection const& connection : junction.connections) write_connection(xml, connection);
     write_leaves(xml, "priority", junction.priorities);
-    write_leaves(xml, "controller", junction.controllers);
     write_rest(xml, junction.rest);
   });
 }
@@ -166,7 +186,7 @@ CAMBIUM_COLD std::string write_opendrive(OpenDriveDocument const& document) {
     if (document.header.line != 0 || !(document.header == opendrive::Header{}))
       detail::write_header(xml, document.header);
     for (opendrive::Road const& road : document.roads) detail::write_road(xml, road);
-    for (opendrive::Controller const& controller : document.controllers) detail::write_controller(xml, controller);
+    detail::write_with(xml, "controller", document.controllers, "control", &opendrive::Controller::controls);
     for (opendrive::Junction const& junction : document.junctions) detail::write_junction(xml, junction);
     detail::write_rest(xml, document.rest);
   });

@@ -8,7 +8,7 @@
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/road/reference_line.hpp"
 
-/// Lays out the plan view of roads: pieces one behind the other, curves between two poses, curves through points. All
+/// Lays out the plan view of roads: pieces in sequence, curves between two poses, curves through points. All
 /// of it meets to 1e-9 m and 1e-9 rad. Poses are rounded to 1e-10 m and 1e-13 rad before the next piece is laid out
 /// from them: so errors do not add up along a road, and every compiler's sine gives the same numbers. All functions
 /// throw `MapError` for numbers that are not finite, poses beyond 1e8 m or 1e4 rad, and pieces that are not longer
@@ -25,10 +25,10 @@ struct CurvePiece {
 /// Where the last of the geometries ends. Precondition: there is one.
 [[nodiscard]] geometry::Pose end_of(std::span<Geometry const> geometries);
 
-/// The pieces one behind the other, the first one from `start` on.
+/// The pieces in sequence, the first one beginning at `start`.
 [[nodiscard]] std::vector<Geometry> lay_from(geometry::Pose start, std::vector<CurvePiece> const& pieces);
 
-/// The pieces one behind the other, so that the last one ends at `end`.
+/// The pieces in sequence, the last one ending at `end`.
 [[nodiscard]] std::vector<Geometry> lay_to(geometry::Pose end, std::vector<CurvePiece> const& pieces);
 
 /// A smooth curve from one pose to another: straight on where `to` lies ahead; a corner (spiral, arc, spiral and at

@@ -6,7 +6,6 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "cambium/core/error.hpp"
@@ -173,7 +172,7 @@ inline void check_points(std::span<geometry::Point const> points, std::span<doub
   if (n < 2) fail(n == 0 ? "it has no points" : "it has one point", "give at least two");
   if (!headings.empty() && headings.size() != n)
     fail("it has " + std::to_string(n) + " points, but " + std::to_string(headings.size()) + " headings",
-         "give one heading a point, or none");
+         "give one heading per point, or none");
   for (std::size_t i = 0; i < n; ++i) {
     auto const point = [i, n] { return "point " + std::to_string(i) + " (of 0 to " + std::to_string(n - 1) + ") "; };
     double const x = points[i].x(), y = points[i].y();
@@ -186,9 +185,9 @@ inline void check_points(std::span<geometry::Point const> points, std::span<doub
     if (i == 0) continue;
     double const apart = (points[i] - points[i - 1]).norm();
     if (!(apart > 1e-3))
-      fail(point() + "is less than a millimetre from the one before: " + text(apart) + " m",
+      fail(point() + "is less than a millimetre from the previous one: " + text(apart) + " m",
            "leave one of the two out");
-    if (!(apart < 1e6)) fail(point() + "is " + text(apart) + " m from the one before", "give points within 1000 km");
+    if (!(apart < 1e6)) fail(point() + "is " + text(apart) + " m from the previous one", "give points within 1000 km");
   }
 }
 }  // namespace detail

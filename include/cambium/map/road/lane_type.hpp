@@ -7,7 +7,7 @@
 
 namespace cambium::map {
 
-/// What a lane is for: the types of OpenDRIVE 1.1 to 1.8. `other` stands for every word that is none of them.
+/// What a lane is for: the types of OpenDRIVE 1.1 to 1.8. `other` stands for every other word.
 enum class LaneType : std::uint8_t {
   none,
   driving,

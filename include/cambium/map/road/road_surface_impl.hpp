@@ -1,11 +1,6 @@
 #pragma once
 
-#include <algorithm>
 #include <cmath>
-#include <cstddef>
-#include <iterator>
-#include <limits>
-#include <vector>
 #include <Eigen/Core>
 
 #include "cambium/core/macros.hpp"

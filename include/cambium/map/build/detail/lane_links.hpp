@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "cambium/core/diagnostic.hpp"
 #include "cambium/map/build/detail/road_links.hpp"
+#include "cambium/map/detail/findings.hpp"
 #include "cambium/map/lanes/lane.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/opendrive/document.hpp"
@@ -26,9 +25,8 @@ inline void join_lanes(Lane& from, Lane& to) {
 /// junctions) joins what is driven into that place with what is driven out of it; "elementDir" is not needed for that.
 class LaneLinker {
  public:
-  LaneLinker(RoadLinks const& links, std::vector<Lane>& lanes, std::string const& file,
-             std::vector<Diagnostic>& diagnostics)
-      : links_(links), roads_(links.roads()), lanes_(lanes), file_(file), diagnostics_(diagnostics) {}
+  LaneLinker(RoadLinks const& links, std::vector<Lane>& lanes, Findings& findings)
+      : links_(links), roads_(links.roads()), lanes_(lanes), findings_(findings) {}
 
   void link() {
     auto const& document = links_.document();
@@ -50,7 +48,7 @@ class LaneLinker {
   }
 
   void warn(int line, std::string element, std::string ids, std::string sentence) const {
-    diagnostics_.push_back({Severity::warning, file_, line, std::move(element), std::move(ids), std::move(sentence)});
+    findings_.add(Severity::warning, line, std::move(element), std::move(ids), std::move(sentence));
   }
 
   [[nodiscard]] bool is_written(SectionEnds const& ends, int number) const {
@@ -118,9 +116,9 @@ class LaneLinker {
   void link_road(std::size_t r) {
     auto const& road = links_.document().roads[r];
     for (auto const* link : {&road.predecessor, &road.successor})
-      if (*link && (*link)->element_s && links_.find((*link)->id) && links_.follow(*link).count == 0)
+      if (*link && (*link)->element_s && links_.find((*link)->id) && links_.follow(*link).empty())
         warn((*link)->line, link == &road.predecessor ? "predecessor" : "successor", "road " + road.id,
-             "its elementS is no place in the middle of road " + (*link)->id + "; the link was left out");
+             "its elementS does not lie inside road " + (*link)->id + "; the link was left out");
     for (std::size_t k = 0; k < road.lane_sections.size(); ++k) {
       SectionEnd const start{r, k, ContactPoint::start}, end{r, k, ContactPoint::end};
       SectionEnds const before = links_.beyond(start), behind = links_.beyond(end);
@@ -134,16 +132,16 @@ class LaneLinker {
 
   void link_lane(SectionEnd const& at, opendrive::Lane const& lane, std::vector<int> const& numbers,
                  SectionEnds const& others) {
-    if (others.count == 0) return;
+    if (others.empty()) return;
     for (int const number : numbers) {
-      std::size_t const other = others.at[0].road;
+      std::size_t const other = others[0].road;
       // The reader says so of sections of one road.
       if (number != 0 && links_.is_road_end(at) && !is_written(others, number))
         warn(lane.line, "link",
              "road " + roads_[at.road].name + ", section " + std::to_string(at.section) + ", lane " +
                  std::to_string(lane.id),
              "it names lane " + std::to_string(number) + " of road " + roads_[other].name +
-                 ", which is not there; the link was left out");
+                 ", which does not exist; the link was left out");
       join(at, lane.id, others, number, lane.line);
     }
   }
@@ -153,7 +151,7 @@ class LaneLinker {
     if (!entry || !links_.find(connection.incoming_road)) return;  // the reader has said so
     std::string const ids = "junction " + junction.id + ", connection " + connection.id;
     auto const exits = links_.exits_of(junction, connection, *entry);
-    if (exits.count == 0) {
+    if (exits.empty()) {
       warn(connection.line, "connection", ids,
            "road " + connection.incoming_road +
                ((junction.type == opendrive::JunctionType::virtual_)
@@ -167,7 +165,7 @@ class LaneLinker {
         warn(connection.line, "laneLink", ids,
              "lane " + std::to_string(link.from) + " of road " + connection.incoming_road + " or lane " +
                  std::to_string(link.to) + " of road " + connection.entered_road() +
-                 " is not there; the link was left out");
+                 " does not exist; the link was left out");
       join(*entry, link.to, exits, link.from, connection.line);
     }
   }
@@ -175,8 +173,7 @@ class LaneLinker {
   RoadLinks const& links_;
   std::vector<Road> const& roads_;
   std::vector<Lane>& lanes_;
-  std::string const& file_;
-  std::vector<Diagnostic>& diagnostics_;
+  Findings& findings_;
 };
 
 }  // namespace cambium::map::detail

@@ -7,10 +7,8 @@
 #include <span>
 #include <string>
 #include <tuple>
-#include <utility>
 #include <vector>
 
-#include "cambium/core/diagnostic.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/map/build/detail/road_links.hpp"
 #include "cambium/map/detail/findings.hpp"
@@ -21,8 +19,7 @@ namespace cambium::map::detail {
 /// Reports links that only one side knows, and joined lanes that do not meet: a line for each pair of roads.
 class LinkCheck {
  public:
-  LinkCheck(RoadLinks const& links, std::string const& file, std::vector<Diagnostic>& diagnostics)
-      : links_(links), file_(file), diagnostics_(diagnostics) {}
+  LinkCheck(RoadLinks const& links, Findings& findings) : links_(links), findings_(findings) {}
 
   /// What the document says from one side only.
   void report_one_sided() {
@@ -56,27 +53,24 @@ class LinkCheck {
  private:
   using ContactPoint = opendrive::ContactPoint;
 
-  void report(Severity severity, int line, std::string element, std::string ids, std::string sentence) {
-    add_finding(diagnostics_, {severity, file_, line, std::move(element), std::move(ids), std::move(sentence)});
-  }
-
   /// A road's link must be known to the road that it leads to, or to the junction that lies there.
   void check_road_link(std::size_t r, ContactPoint end) {
     auto const& link = links_.link_at(r, end);
     if (!link || link->element_s) return;
     auto const others = links_.follow(link);
-    if (others.count == 0) return;
+    if (others.empty()) return;
     SectionEnd const at = links_.road_end(r, end);
     auto const& road = links_.document().roads[r];
-    auto const& back = links_.link_at(others.at[0].road, others.at[0].end);
+    auto const& back = links_.link_at(others[0].road, others[0].end);
     // The road before a junction names that, not the connecting roads; a direct junction may be named by one side only.
     if (back && back->element_type == opendrive::ElementType::junction) return;
     auto const returns = links_.follow(back);
     if (std::find(returns.begin(), returns.end(), at) != returns.end()) return;
-    report(Severity::warning, link->line, end == ContactPoint::end ? "successor" : "predecessor", "road " + road.id,
-           "it names the " + std::string(others.at[0].end == ContactPoint::end ? "end" : "start") + " of road " +
-               link->id + ", which " + (back ? "names another place" : "names nothing there") +
-               "; lanes are joined by what either side says");
+    findings_.add(Severity::warning, link->line, end == ContactPoint::end ? "successor" : "predecessor",
+                  "road " + road.id,
+                  "it names the " + std::string(others[0].end == ContactPoint::end ? "end" : "start") + " of road " +
+                      link->id + ", which " + (back ? "names another place" : "names nothing there") +
+                      "; lanes are joined by what either side says");
   }
 
   /// Lanes that name a lane which names others at that place.
@@ -87,8 +81,8 @@ class LinkCheck {
     int line = 0;
     auto const check = [&](SectionEnd const& at, opendrive::Lane const& lane, std::vector<int> const& numbers) {
       auto const others = links_.beyond(at);
-      if (others.count != 1 || numbers.empty()) return;
-      auto const& other = others.at[0];
+      if (others.size() != 1 || numbers.empty()) return;
+      auto const& other = others[0];
       auto const& section = links_.document().roads[other.road].lane_sections[other.section];
       auto const returns = links_.beyond(other);
       if (std::find(returns.begin(), returns.end(), at) == returns.end()) return;  // the road's link is not known there
@@ -110,7 +104,8 @@ class LinkCheck {
         check({r, k, ContactPoint::end}, lane, lane.successors);
       }
     if (count > 0)
-      report(Severity::info, line, "link", "road " + road.id, first + others_text(count) + "; the lanes were joined");
+      findings_.add(Severity::info, line, "link", "road " + road.id,
+                    first + others_text(count) + "; the lanes were joined");
   }
 
   void check_short_sections(std::size_t r) {
@@ -120,8 +115,8 @@ class LinkCheck {
       if (sections[k].end - sections[k].begin < shortest_section && count++ == 0)
         line = links_.document().roads[r].lane_sections[k].line;
     if (count > 0)
-      report(Severity::info, line, "laneSection", "road " + links_.roads()[r].name,
-             "it has no length" + others_text(count) + "; its lanes are not in the map, links lead through it");
+      findings_.add(Severity::info, line, "laneSection", "road " + links_.roads()[r].name,
+                    "it has no length" + others_text(count) + "; its lanes are not in the map, links lead through it");
   }
 
   [[nodiscard]] static std::string others_text(int count) {
@@ -138,16 +133,16 @@ class LinkCheck {
     if (finding.fault == NetworkFault::gap) what = size + " m away from where it ends";
     if (finding.fault == NetworkFault::border_step) what = "with a border " + size + " m away from its own";
     if (finding.fault == NetworkFault::kink) what = size + " rad off its direction";
-    report(finding.fault == NetworkFault::gap ? Severity::warning : Severity::info,
-           written != nullptr ? static_cast<int>(written->line) : 0, "link",
-           "road " + name(lane) + ", section " + std::to_string(lane.section) + ", lane " + std::to_string(lane.number),
-           "lane " + std::to_string(next.number) + " of road " + name(next) + ", section " +
-               std::to_string(next.section) + ", goes on " + what + others_text(count));
+    findings_.add(
+        finding.fault == NetworkFault::gap ? Severity::warning : Severity::info,
+        written != nullptr ? static_cast<int>(written->line) : 0, "link",
+        "road " + name(lane) + ", section " + std::to_string(lane.section) + ", lane " + std::to_string(lane.number),
+        "lane " + std::to_string(next.number) + " of road " + name(next) + ", section " + std::to_string(next.section) +
+            ", continues " + what + others_text(count));
   }
 
   RoadLinks const& links_;
-  std::string const& file_;
-  std::vector<Diagnostic>& diagnostics_;
+  Findings& findings_;
 };
 
 }  // namespace cambium::map::detail

@@ -1,8 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <string_view>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 

@@ -1,15 +1,14 @@
 #pragma once
 
 #include <algorithm>
-#include <cstddef>
 #include <set>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "cambium/core/diagnostic.hpp"
 #include "cambium/map/build/detail/lane_links.hpp"
 #include "cambium/map/build/detail/road_links.hpp"
+#include "cambium/map/detail/findings.hpp"
 #include "cambium/map/detail/network_check.hpp"
 #include "cambium/map/lanes/lane.hpp"
 #include "cambium/map/lanes/lane_network.hpp"
@@ -21,9 +20,8 @@ namespace cambium::map::detail {
 /// links of their roads (or that there are none) permit it.
 class MissingLinks {
  public:
-  MissingLinks(RoadLinks const& links, std::vector<Lane>& lanes, std::string const& file,
-               std::vector<Diagnostic>& diagnostics)
-      : links_(links), lanes_(lanes), file_(file), diagnostics_(diagnostics) {}
+  MissingLinks(RoadLinks const& links, std::vector<Lane>& lanes, Findings& findings)
+      : links_(links), lanes_(lanes), findings_(findings) {}
 
   /// Reports the possible links, and enters them when asked to. The lanes that were left as dead ends.
   [[nodiscard]] std::set<LaneId> find(bool infer) {
@@ -48,7 +46,7 @@ class MissingLinks {
     return dead_ends;
   }
 
-  /// Reports dead ends behind which, by the road's link, the lane of the same id goes on. To be asked after merging.
+  /// Reports dead ends where, by the road's link, the lane of the same id continues. Call it after merging.
   void report_dead_ends(std::set<LaneId> const& reported) {
     for (auto const& lane : lanes_) {
       if (!lane.drivable() || !lane.successors.empty() || reported.contains(lane.id)) continue;
@@ -75,7 +73,7 @@ class MissingLinks {
       if (link && link->element_type == opendrive::ElementType::junction) return touches(other, link->id);
     }
     auto const beyond = links_.beyond(at);
-    return beyond.count == 0 || std::find(beyond.begin(), beyond.end(), other) != beyond.end();
+    return beyond.empty() || std::find(beyond.begin(), beyond.end(), other) != beyond.end();
   }
 
   /// Whether a road's end is of a connecting road of the junction, or linked to it.
@@ -93,7 +91,7 @@ class MissingLinks {
       auto const& other = lanes_[index_of(beyond.id)];
       if (other.drivable() && entry_of(other) == next)
         report(Severity::warning, lane,
-               "it ends here, but " + describe(other) + " goes on behind it; is the link missing?");
+               "it ends here, but " + describe(other) + " continues from there; is the link missing?");
     }
   }
 
@@ -104,14 +102,13 @@ class MissingLinks {
   void report(Severity severity, Lane const& lane, std::string sentence) {
     auto const& road = links_.document().roads[index_of(lane.road)];
     auto const* written = road.lane_sections[lane.section].find(lane.number);
-    diagnostics_.push_back({severity, file_, written != nullptr ? static_cast<int>(written->line) : 0, "link",
-                            "road " + road.id + ", lane " + std::to_string(lane.number), std::move(sentence)});
+    findings_.add(severity, written != nullptr ? static_cast<int>(written->line) : 0, "link",
+                  "road " + road.id + ", lane " + std::to_string(lane.number), std::move(sentence));
   }
 
   RoadLinks const& links_;
   std::vector<Lane>& lanes_;
-  std::string const& file_;
-  std::vector<Diagnostic>& diagnostics_;
+  Findings& findings_;
 };
 
 }  // namespace cambium::map::detail

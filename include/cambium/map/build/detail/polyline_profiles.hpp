@@ -1,20 +1,17 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <limits>
 #include <span>
-#include <string>
 #include <utility>
 #include <vector>
 
-#include "cambium/core/error.hpp"
 #include "cambium/geometry/line.hpp"
 #include "cambium/geometry/pose.hpp"
-#include "cambium/map/build/road_plan.hpp"
 #include "cambium/map/lanes/lane.hpp"
-#include "cambium/map/road/curve_layout.hpp"
+#include "cambium/map/road/cubic.hpp"
+#include "cambium/map/road/reference_line.hpp"
 
 namespace cambium::map::detail {
 

@@ -14,7 +14,6 @@
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/build/detail/document_index.hpp"
 #include "cambium/map/build/detail/make_road.hpp"
-#include "cambium/map/build/make_roads.hpp"
 #include "cambium/map/build/road_plan.hpp"
 #include "cambium/map/opendrive/document.hpp"
 #include "cambium/map/road/cubic.hpp"
@@ -22,6 +21,16 @@
 #include "cambium/map/road/reference_line.hpp"
 #include "cambium/map/road/road.hpp"
 
+/// Connecting roads. OpenDRIVE says in three places what follows what: in the link of a road, in the links of its
+/// lanes, and in the connections of junctions. `RoadConnector` makes one call of `MapBuilder::connect` enter all that
+/// belong together. Which ones these are depends on the two road ends:
+///
+///     both free                       road links and lane links, in both directions
+///     one is of a connecting road     the other road is linked to the junction, which gets connections
+///     one is linked elsewhere         a fork: the links that there are become connections of a direct junction
+///
+/// The functions before the class answer what it has to know of roads: which lanes leave an end, where their borders
+/// are there, and which lanes of two roads face each other.
 namespace cambium::map {
 
 namespace detail {
@@ -258,7 +267,7 @@ class RoadConnector {
   void dissolve(RoadEnd const& a, RoadEnd const& b, opendrive::Junction& into) const {
     if (!is_free_for(b, a))
       throw MapError("road " + a.road + " and road " + b.road, "only one of them is linked to the other",
-                     "mend that link of the document first");
+                     "repair that link in the document first");
     auto links = named_links(a, b);
     for (auto const& link : reversed(named_links(b, a)))
       if (!is_in(links, link)) links.push_back(link);

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <cstddef>
 #include <optional>
-#include <string>
 #include <string_view>
 #include <vector>
 
@@ -26,13 +25,7 @@ struct SectionEnd {
 };
 
 /// The section ends that a link leads to: none, one, or where it meets a road in the middle the two that touch there.
-struct SectionEnds {
-  SectionEnd at[2];
-  std::size_t count = 0;
-
-  [[nodiscard]] SectionEnd const* begin() const { return at; }
-  [[nodiscard]] SectionEnd const* end() const { return at + count; }
-};
+using SectionEnds = std::vector<SectionEnd>;
 
 [[nodiscard]] constexpr opendrive::ContactPoint opposite(opendrive::ContactPoint end) {
   return end == opendrive::ContactPoint::start ? opendrive::ContactPoint::end : opendrive::ContactPoint::start;
@@ -77,20 +70,19 @@ class RoadLinks {
 
   /// Where a road link leads; nowhere where it names a junction (its connections say), no road, or no end of it.
   [[nodiscard]] SectionEnds follow(std::optional<opendrive::RoadLink> const& link) const {
-    SectionEnds ends;
-    if (!link || link->element_type != opendrive::ElementType::road) return ends;
+    if (!link || link->element_type != opendrive::ElementType::road) return {};
     auto const road = find(link->id);
-    if (!road) return ends;
+    if (!road) return {};
     if (link->element_s) return around(*road, *link->element_s);
-    if (link->contact_point != ContactPoint::none) ends.at[ends.count++] = road_end(*road, link->contact_point);
-    return ends;
+    if (link->contact_point == ContactPoint::none) return {};
+    return {road_end(*road, link->contact_point)};
   }
 
-  /// What lies behind the end of a section: the section beside, or at the road's end what its link leads to.
+  /// What follows the end of a section: the adjacent section, or at the road's end what its link leads to.
   [[nodiscard]] SectionEnds beyond(SectionEnd const& at) const {
     if (is_road_end(at)) return follow(link_at(at.road, at.end));
     bool const ahead = at.end == ContactPoint::end;
-    return one({at.road, ahead ? at.section + 1 : at.section - 1, opposite(at.end)});
+    return {{at.road, ahead ? at.section + 1 : at.section - 1, opposite(at.end)}};
   }
 
   /// The end at which a connection enters its road; none where that road is not there.
@@ -113,19 +105,17 @@ class RoadLinks {
       return link && link->element_type == opendrive::ElementType::junction && link->id == junction.id;
     };
     bool const at_end = touches(ContactPoint::end), at_start = touches(ContactPoint::start);
-    if (at_end != at_start) return one(road_end(*incoming, at_end ? ContactPoint::end : ContactPoint::start));
+    if (at_end != at_start) return {road_end(*incoming, at_end ? ContactPoint::end : ContactPoint::start)};
     auto const& link = link_at(entry.road, entry.end);
     SectionEnds const named = link && link->id == connection.incoming_road ? follow(link) : SectionEnds{};
     if (!at_end) return junction.type == opendrive::JunctionType::virtual_ ? named : SectionEnds{};
-    if (named.count == 1 && is_road_end(named.at[0])) return named;
+    if (named.size() == 1 && is_road_end(named[0])) return named;
     bool const by_end = distance(road_end(*incoming, ContactPoint::end), entry) <=
                         distance(road_end(*incoming, ContactPoint::start), entry);
-    return one(road_end(*incoming, by_end ? ContactPoint::end : ContactPoint::start));
+    return {road_end(*incoming, by_end ? ContactPoint::end : ContactPoint::start)};
   }
 
  private:
-  [[nodiscard]] static SectionEnds one(SectionEnd const& at) { return {{at, {}}, 1}; }
-
   /// Between the reference lines' ends [m].
   [[nodiscard]] double distance(SectionEnd const& a, SectionEnd const& b) const {
     auto const point = [this](SectionEnd const& at) {
@@ -140,10 +130,10 @@ class RoadLinks {
     SectionEnds ends;
     auto const& sections = roads_[road].sections;
     for (std::size_t k = 0; k < sections.size(); ++k) {
-      if (std::abs(sections[k].end - s) <= shortest_section && ends.count < 2)
-        ends.at[ends.count++] = {road, k, ContactPoint::end};
-      if (std::abs(sections[k].begin - s) <= shortest_section && ends.count < 2)
-        ends.at[ends.count++] = {road, k, ContactPoint::start};
+      if (std::abs(sections[k].end - s) <= shortest_section && ends.size() < 2)
+        ends.push_back({road, k, ContactPoint::end});
+      if (std::abs(sections[k].begin - s) <= shortest_section && ends.size() < 2)
+        ends.push_back({road, k, ContactPoint::start});
     }
     return ends;
   }

@@ -54,7 +54,7 @@ class RoadMaker {
     throw MapError(where_, what, remedy);
   }
 
-  /// Each geometry begins where the one before ends, up to the rounding of files.
+  /// Each geometry begins where the previous one ends, up to the rounding of files.
   void check_line() const {
     constexpr double tolerance = 0.01;  // [m], [rad]
     char const* const remedy = "lay out a line, see lay_from";
@@ -68,14 +68,14 @@ class RoadMaker {
       if (auto const* const fault = fault_of(g)) fail(which + ": " + fault, remedy);
       if (!(std::abs(g.s - end) <= tolerance))
         fail(which + " is at s " + cambium::detail::rounded_text(g.s) + " m instead of " +
-                 cambium::detail::rounded_text(end) + " m, where the one before ends",
+                 cambium::detail::rounded_text(end) + " m, where the previous one ends",
              remedy);
       auto const begin = evaluate(g, 0.0);
       double const gap = before ? std::hypot(begin.x - before->x, begin.y - before->y) : 0.0;
       double const turn = before ? std::abs(geometry::angle_difference(begin.heading, before->heading)) : 0.0;
       if (!(gap <= tolerance && turn <= tolerance))
         fail(which + " begins " + cambium::detail::rounded_text(gap) + " m and " + cambium::detail::rounded_text(turn) +
-                 " rad from where the one before ends",
+                 " rad from where the previous one ends",
              remedy);
       before = evaluate(g, g.length);
       end = g.s + g.length;
@@ -89,8 +89,8 @@ class RoadMaker {
       std::string const which = of + " record " + std::to_string(i);
       if (!is_finite(r)) fail(which + " is not finite", "give finite numbers");
       if (!(i > 0 ? r.s > records[i - 1].s : r.s >= 0.0))
-        fail(which + " is at s " + cambium::detail::rounded_text(r.s) + " m, not behind " +
-                 (i > 0 ? "the one before, at " + cambium::detail::rounded_text(records[i - 1].s) + " m" : "0"),
+        fail(which + " is at s " + cambium::detail::rounded_text(r.s) + " m, not after " +
+                 (i > 0 ? "the previous one, at " + cambium::detail::rounded_text(records[i - 1].s) + " m" : "0"),
              "give records in the order of s");
     }
   }
@@ -159,7 +159,7 @@ class RoadMaker {
         return other.id == wanted.value_or(lane.id) && (wanted || is_drivable(other.type) == is_drivable(lane.type));
       });
       if (target == next.lanes.end() && wanted)
-        fail("lane " + std::to_string(lane.id) + " of section " + std::to_string(k) + " is to go on as lane " +
+        fail("lane " + std::to_string(lane.id) + " of section " + std::to_string(k) + " should continue as lane " +
                  std::to_string(*wanted) + ", which the next section does not have",
              "name a lane that it has, or 0");
       if (target == next.lanes.end()) continue;

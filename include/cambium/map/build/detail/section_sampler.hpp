@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <span>
-#include <utility>
 #include <vector>
 
 #include "cambium/geometry/angle.hpp"
@@ -14,6 +12,17 @@
 #include "cambium/map/road/reference_line.hpp"
 #include "cambium/map/road/road.hpp"
 
+/// From exact roads to sampled lanes. The borders of a section's lanes are curves t(s) beside the reference line, given
+/// by cubics. All lanes of a section are sampled at the same stations, in cross-sections, so that neighbours share the
+/// points of their common border.
+///
+///     left border    o-----o-----------o---o--o       a cross-section is one column; where the road bends or a lane
+///     border         o-----o-----------o---o--o       widens, columns are closer together
+///     right border   o-----o-----------o---o--o
+///
+/// Where a geometry or a record begins, there is always a cross-section. Between two of these breaks the curves are
+/// smooth, and an interval is halved until every border and centre line keeps within the tolerances of its chord, in
+/// position and in heading. A step or a kink at a break gets a second cross-section a millimetre before it.
 namespace cambium::map::detail {
 
 /// The cross-section of a road at one station: the reference line and the t of every lane border, from left to right.
@@ -120,8 +129,8 @@ class SectionSampler {
     return cross;
   }
 
-  /// Where a line has a kink or a step at `s`, whose cross-section behind it is `behind`, adds a station a little
-  /// before: only on these last millimetres is what is interpolated that of neither side.
+  /// Where a line has a kink or a step at `s`, after which the cross-section is `behind`, adds a station a little
+  /// before `s`: so only these last millimetres are interpolated between the two sides.
   void add_before_break(double s, double last_break, CrossSection const& behind,
                         std::vector<CrossSection>& result) const {
     constexpr double little = 1e-3;  // [m]
@@ -185,7 +194,7 @@ class SectionSampler {
     return sharpest * (b.s - a.s) > 1.0;  // [rad]
   }
 
-  /// Whether the middle tells how far the heading is off: not where it winds about the straight line of its ends.
+  /// Whether the middle alone shows how far the heading is off; not where the curve winds about its chord.
   [[nodiscard]] bool bends_evenly(double inside) const {
     auto const kind = road_.reference_line.geometries()[road_.reference_line.locate(inside)].kind;
     return (kind == GeometryKind::line || kind == GeometryKind::arc) && has_linear_borders(inside);

@@ -13,10 +13,17 @@
 #include "cambium/map/corridor/corridor.hpp"
 #include "cambium/map/map.hpp"
 
+/// Conflict zones: at which places two bodies touch, one on the corridor, the other on another lane.
+///
+/// Both bodies are put at places half a metre apart, as oriented boxes on the two paths; a box that
+/// touches at least one box of the other lane contributes a zone from the first touched place to the last. Zones that
+/// leave no room to wait between them are joined (`add_zone`). Two complications remain. A body can reach beyond the
+/// end of its lane, where ways may part: then all of them count (`tracks`). And trying all pairs would be slow: from
+/// the distance of two boxes follows how many places cannot touch, and these are skipped (`places_apart`).
 namespace cambium::map::detail {
 
-/// Adds to `ways` those on from the end of lane `at` (`ahead`; else back from its begin), over `reach` [m] or to where
-/// no lane goes on. `way` is the one so far.
+/// Adds to `ways` all ways that continue from the end of lane `at` (`ahead`), or lead back from its begin, over `reach`
+/// [m] or as far as there are lanes. `way` is the one so far.
 inline void add_ways_on(Map const& map, LaneId at, bool ahead, double reach, std::vector<LaneId>& way,
                         std::vector<std::vector<LaneId>>& ways) {
   constexpr std::size_t most = 16;
@@ -30,8 +37,8 @@ inline void add_ways_on(Map const& map, LaneId at, bool ahead, double reach, std
   }
 }
 
-/// The place at `s` [m] of a lane's path, along the lanes of `way` where it lies beyond an end, and straight on where
-/// these end.
+/// The pose at `s` [m] of a lane's path; beyond an end of the path, along the lanes of `way`, and where these end,
+/// straight on.
 [[nodiscard]] inline geometry::Pose pose_on_way(Map const& map, LaneId id, std::vector<LaneId> const& way, double s) {
   auto const* lane = &map.lane(id);
   for (std::size_t i = 0; i < way.size() && s < 0.0; ++i) {
@@ -60,8 +67,8 @@ inline void add_ways_on(Map const& map, LaneId at, bool ahead, double reach, std
   return zone;
 }
 
-/// Adds a zone to a list of zones that lie apart on both ways, so that one can wait between any two of them. Those
-/// that do not become one: else two vehicles may each stand in a zone that the other waits for.
+/// Adds a zone to a list of zones with room to wait between any two of them, on both ways. Zones that are closer become
+/// one, else two vehicles could each stand in a zone that the other waits for.
 inline void add_zone(std::vector<ConflictZone>& zones, ConflictZone zone) {
   constexpr double room = 5.0;  // [m] for one who waits
   auto const is_one_with = [&zone](ConflictZone const& other) {
@@ -75,8 +82,8 @@ inline void add_zone(std::vector<ConflictZone>& zones, ConflictZone zone) {
   zones.push_back(zone);
 }
 
-/// Two bodies on lanes and the ways through them, of which is asked where they touch. Where ways part beyond a lane's
-/// ends all count, for both bodies: both sides find the same zones but for mere grazes.
+/// Finds where two bodies touch, each on its lane and the ways that lead on from it. Where ways part beyond a lane's
+/// end, all of them count, for both bodies. So both sides find the same zones, except where bodies barely graze.
 struct TouchingBodies {
   Map const& map;
   LaneCorridor const& corridor;  ///< of the first body

@@ -19,9 +19,21 @@
 #include "cambium/map/lanes/right_of_way.hpp"
 #include "cambium/map/map.hpp"
 
+/// Conflicts: where the traffic of a corridor and that of another lane need the same ground.
+///
+/// Overlaps tell which lanes come near each other, but by their paths, not by the bodies that drive there. So each
+/// overlap is first widened to the range in which bodies could touch at all. `TouchingBodies` then tries the small and
+/// the large body of `MapOptions` at places along that range, for each pair of sizes, and returns zones: an interval on
+/// the corridor and one on the other way. Lanes of a junction whose paths keep apart are tried as well, for long
+/// vehicles swing out in bends. The rest follows from the zones: `line`, where front ends enter; `hold`, where to wait
+/// before the first zone of the junction; and the ways by which the others come.
+///
+/// Drivers on the other lane see the same conflict from their corridor. Both sides must find the same zones, else two
+/// drivers may wait for each other for ever. That is why zones without room to wait between them become one, also
+/// across the borders of lane sections (`unite`).
 namespace cambium::map::detail {
 
-/// Finds the conflicts of a lane corridor whose centre line and pieces are there already, see `Conflict`.
+/// Finds the conflicts of a lane corridor whose centre line and pieces are known, see `Conflict`.
 class ConflictFinder {
  public:
   ConflictFinder(Map const& map, LaneCorridor const& corridor) : map_(map), corridor_(corridor) {}
@@ -56,7 +68,7 @@ class ConflictFinder {
   [[nodiscard]] geometry::Shape const& body(bool is_large) const {
     return is_large ? map_.options().large_conflict_shape : map_.options().conflict_shape;
   }
-  /// How far before and behind an overlap of paths the bodies may touch [m].
+  /// How far before and after an overlap of paths the bodies may touch [m].
   [[nodiscard]] double before() const { return body(true).length() + 8.0; }
   [[nodiscard]] double behind() const { return body(true).rear + 8.0; }
 

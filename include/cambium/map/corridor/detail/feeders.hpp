@@ -12,10 +12,21 @@
 #include "cambium/map/corridor/corridor.hpp"
 #include "cambium/map/map.hpp"
 
+/// Feeders: vehicles in other lanes that a driver on the corridor has to keep a gap to.
+///
+/// Car following needs one axis on which leader and follower have positions. A vehicle that is about to merge is not on
+/// the corridor, so it gets an image there: its distance from the point where the two lanes become one, laid off on the
+/// corridor, back from the same point. A feeder is a stretch of a lane with such images.
+///
+///     corridor  ----------[ image of the feeder ]+------------> s
+///                                               /
+///     ramp          =====[ feeder: merge_view ]'
+///
+/// There are three kinds: the overlaps with lanes that merge in or have just split off, the lanes upstream of the
+/// corridor, and the lanes that lead to a merge. A stretch of a lane has one image only: a kind named earlier wins.
 namespace cambium::map::detail {
 
-/// Finds the feeders of a lane corridor whose `pieces` are there already, see `build_road_corridor`. No stretch of a
-/// lane gets two images: what was found first stays, overlaps before lanes behind the begin before lanes that merge in.
+/// Finds the feeders of a lane corridor whose `pieces` are known, see `build_road_corridor`.
 class FeederFinder {
  public:
   FeederFinder(Map const& map, LaneCorridor& corridor) : map_(map), corridor_(corridor) {}
@@ -60,7 +71,7 @@ class FeederFinder {
     add({overlap.other, index + overlap.other_begin, index + overlap.other_end, begin, end, free_until});
   }
 
-  /// The merging lane before the overlap and the lanes behind it.
+  /// The merging lane upstream of the overlap, and the lanes that lead to it.
   void add_upstream_of(Overlap const& overlap, double begin) {
     double const view = map_.options().merge_view;
     auto const& other = map_.lane(overlap.other);

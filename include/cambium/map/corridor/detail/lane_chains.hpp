@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "cambium/core/error.hpp"
@@ -87,7 +85,7 @@ struct RouteStage {
   return stages;
 }
 
-/// Lanes one behind the other, the first in stage `begin` of the route.
+/// Lanes in sequence, the first one in stage `begin` of the route.
 struct LaneChain {
   std::size_t begin{};
   std::vector<LaneId> lanes;

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "cambium/core/error.hpp"
-#include "cambium/core/ids.hpp"
 #include "cambium/core/stable_sort.hpp"
 #include "cambium/geometry/line.hpp"
 #include "cambium/map/corridor/corridor.hpp"

@@ -1,9 +1,16 @@
 #pragma once
 
+#include <cmath>
+#include <cstdint>
+#include <optional>
+#include <span>
 #include <string>
 
 #include "cambium/core/error.hpp"
 #include "cambium/core/ids.hpp"
+#include "cambium/geometry/pose.hpp"
+#include "cambium/map/lanes/lane.hpp"
+#include "cambium/map/lanes/lane_tree.hpp"
 #include "cambium/map/road/road.hpp"
 
 namespace cambium::map::detail {
@@ -57,6 +64,37 @@ namespace cambium::map::detail {
   std::string const what = "there is no lane " + std::to_string(number) +
                            (stations.empty() ? ", nor elsewhere on the road" : "; the road has it " + stations);
   throw MapError(where, what, lanes.empty() ? "ask for another place: it has none here" : "ask for one of " + lanes);
+}
+
+/// Where `pose` is in `lane`, searched from segment `hint` of its path; nothing where the lane does not hold it or runs
+/// the other way.
+[[nodiscard]] inline std::optional<LaneHit> place_in(Lane const& lane, geometry::Pose const& pose, std::uint32_t hint) {
+  auto const foot = lane.path.project(pose.position(), hint);
+  if (foot.s < 0.0 || foot.s > lane.length()) return std::nullopt;
+  auto const widths = lane.widths_at(foot.s, foot.segment);
+  if (foot.lateral > widths.left || foot.lateral < -widths.right) return std::nullopt;
+  auto const& segment = lane.path.segments()[foot.segment];
+  if (segment.ux * std::cos(pose.heading) + segment.uy * std::sin(pose.heading) <= 0.0) return std::nullopt;
+  return LaneHit{lane.id, foot.s, foot.lateral, 0.0, foot.segment};
+}
+
+/// The lane that holds `pose`: that of `previous`, else one of its successors, predecessors or neighbours, in this
+/// order.
+[[nodiscard]] inline std::optional<LaneHit> follow_lane(std::span<Lane const> lanes, geometry::Pose const& pose,
+                                                        LaneHit const& previous) {
+  auto const& own = lanes[index_of(previous.lane)];
+  if (auto const hit = place_in(own, pose, previous.segment)) return hit;
+  constexpr std::uint32_t last = 0xffffffff;
+  for (auto const next : own.successors)
+    if (auto const hit = place_in(lanes[index_of(next)], pose, 0)) return hit;
+  for (auto const before : own.predecessors)
+    if (auto const hit = place_in(lanes[index_of(before)], pose, last)) return hit;
+  for (auto const side : {own.left_neighbor, own.right_neighbor})
+    if (is_valid(side)) {
+      auto const& lane = lanes[index_of(side)];
+      if (auto const hit = place_in(lane, pose, lane.path.find(previous.s * lane.length() / own.length()))) return hit;
+    }
+  return std::nullopt;
 }
 
 }  // namespace cambium::map::detail

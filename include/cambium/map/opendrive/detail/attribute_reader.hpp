@@ -6,13 +6,11 @@
 #include <string>
 #include <string_view>
 #include <type_traits>
-#include <utility>
 #include <vector>
 
 #include <pugixml.hpp>
 
 #include "cambium/map/opendrive/detail/fields.hpp"
-#include "cambium/map/opendrive/detail/object_fields.hpp"
 #include "cambium/map/opendrive/detail/xml_context.hpp"
 #include "cambium/map/opendrive/element.hpp"
 
@@ -83,7 +81,6 @@ class AttributeReader {
     id(name, field);
     if (field == nothing) field.clear();
   }
-  void yes_no(std::string_view name, bool& field) { optional(name, field); }
   /// A bad one makes the element unusable.
   void place(std::string_view name, double& field) {
     if (pugi::xml_attribute const found = find(name)) good_ = read(found, field) && good_;
@@ -168,16 +165,16 @@ class AttributeReader {
   [[gnu::cold]] void report_no_truth(pugi::xml_attribute attribute) {
     context_->report(
         Severity::warning, node_,
-        std::string(attribute.name()) + "=\"" + attribute.value() + "\" is neither true nor false; false was taken");
+        std::string(attribute.name()) + "=\"" + attribute.value() + "\" is neither true nor false; false is assumed");
   }
   [[gnu::cold]] static void add_word(std::string& words, std::string_view word) {
     if (!word.empty()) words += (words.empty() ? "" : ", ") + std::string(word);
   }
   [[gnu::cold]] void report_unknown_word(pugi::xml_attribute attribute, std::string const& known,
                                          std::string_view taken) {
-    std::string const done = taken.empty() ? "" : "; " + std::string(taken) + " was taken";
+    std::string const done = taken.empty() ? "" : "; " + std::string(taken) + " is assumed";
     context_->report(Severity::warning, node_,
-                     std::string(attribute.name()) + "=\"" + attribute.value() + "\" is none of " + known + done);
+                     std::string(attribute.name()) + "=\"" + attribute.value() + "\" is not one of " + known + done);
   }
 
   XmlContext* context_;
@@ -204,21 +201,42 @@ template <class T>
   return read_attributes(context, node, x, &x.rest);
 }
 
-/// Fills `x` from the element, with all its children in the rest. False when something that it needs is missing or bad.
-template <class T>
-[[nodiscard]] bool read_leaf(XmlContext& context, pugi::xml_node node, T& x) {
+/// Fills `x` from the element; children that `take(child, name)` does not take (false) go to the rest. False when
+/// something that it needs is missing or bad.
+template <class T, class Take>
+[[nodiscard]] bool read_with(XmlContext& context, pugi::xml_node node, T& x, Take const& take) {
   if (!read_attributes(context, node, x)) {
-    context.report(Severity::warning, node, "it was left out for that, see the finding before");
+    context.report(Severity::warning, node, "it was left out, see the previous finding");
     return false;
   }
-  for_each_child(node, [&](pugi::xml_node child, std::string_view) { keep_element(context, child, x.rest); });
+  for_each_child(node, [&](pugi::xml_node child, std::string_view name) {
+    if (!take(child, name)) keep_element(context, child, x.rest);
+  });
   return true;
+}
+
+/// As above, with all children in the rest.
+template <class T>
+[[nodiscard]] bool read_leaf(XmlContext& context, pugi::xml_node node, T& x) {
+  return read_with(context, node, x, [](pugi::xml_node, std::string_view) { return false; });
 }
 
 /// Appends the element as `read_leaf` gives it.
 template <class T>
 void append_leaf(XmlContext& context, pugi::xml_node node, std::vector<T>& list) {
   if (!read_leaf(context, node, list.emplace_back())) list.pop_back();
+}
+
+/// Appends the element with its children of the name `part` in the list `parts`.
+template <class T, class Part>
+void append_with(XmlContext& context, pugi::xml_node node, std::vector<T>& list, std::string_view part,
+                 std::vector<Part> T::*parts) {
+  T& x = list.emplace_back();
+  bool const is_read = read_with(context, node, x, [&](pugi::xml_node child, std::string_view name) {
+    if (name == part) append_leaf(context, child, x.*parts);
+    return name == part;
+  });
+  if (!is_read) list.pop_back();
 }
 
 /// Calls `take(child, name)` for every child of a container, a null node included; what it does not take (false), and

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "cambium/core/error.hpp"
+#include "cambium/core/parameters.hpp"
 #include "cambium/map/opendrive/detail/fields.hpp"
-#include "cambium/map/opendrive/detail/object_fields.hpp"
 #include "cambium/map/opendrive/detail/xml_text.hpp"
 #include "cambium/map/opendrive/element.hpp"
 
@@ -20,9 +20,9 @@ namespace cambium::map::detail {
 /// An attribute with a number; throws `MapError` where it is not finite.
 inline void write_number(XmlText& xml, std::string_view name, double value) {
   if (!std::isfinite(value))
-    throw MapError("attribute " + std::string(name), "a number is not finite, which OpenDRIVE cannot say",
+    throw MapError("attribute " + std::string(name), "a number is not finite, which OpenDRIVE cannot express",
                    "give a finite number");
-  xml.attribute(name, number_text(value));
+  xml.attribute(name, cambium::detail::number_text(value));
 }
 
 /// A visitor of `fields` that writes them as attributes, but for those that the rest has.
@@ -47,7 +47,6 @@ class AttributeWriter {
   void id_or(std::string_view name, std::string const& value, std::string_view nothing) {
     always(name, value.empty() ? std::string(nothing) : value);
   }
-  void yes_no(std::string_view name, bool value) { always(name, std::string(value ? "yes" : "no")); }
 
  private:
   void write(std::string_view name, std::string const& value) { xml_->attribute(name, value); }

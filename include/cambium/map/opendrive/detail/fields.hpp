@@ -15,7 +15,6 @@
 ///   visit.always(name, field)         written even if it has its default value
 ///   visit.optional(name, field)       left out where it has the type's default value
 ///   visit.id(name, string)            as optional; the reader takes white space off its ends
-///   visit.yes_no(name, bool)          as optional, in these words
 namespace cambium::map::detail {
 
 template <class T, class Struct>
@@ -85,10 +84,6 @@ void fields(auto& visit, Of<opendrive::Header> auto& x) {
   visit.always("revMajor", x.rev_major);
   visit.always("revMinor", x.rev_minor);
   visit.always("name", x.name);
-  visit.always("north", x.north);
-  visit.always("south", x.south);
-  visit.always("east", x.east);
-  visit.always("west", x.west);
   visit.optional("vendor", x.vendor);
 }
 
@@ -112,13 +107,11 @@ void fields(auto& visit, Of<opendrive::RoadLink> auto& x) {
   visit.needed("elementId", x.id);
   visit.optional("contactPoint", x.contact_point);
   visit.optional("elementS", x.element_s);
-  visit.optional("elementDir", x.element_direction);
 }
 
 void fields(auto& visit, Of<opendrive::RoadType> auto& x) {
   visit.place("s", x.s);
   visit.always("type", x.type);
-  visit.optional("country", x.country);
 }
 
 void fields(auto& visit, Of<Geometry> auto& x) {
@@ -137,7 +130,6 @@ void fields(auto& visit, Of<opendrive::LaneSection> auto& x) {
 void fields(auto& visit, Of<opendrive::Lane> auto& x) {
   visit.needed("id", x.id);
   visit.always("type", x.type);
-  visit.always("level", x.level);
   visit.optional("direction", x.direction);
 }
 
@@ -146,10 +138,8 @@ void fields(auto& visit, Of<opendrive::RoadMark> auto& x) {
   visit.always("type", x.type);
   visit.optional("weight", x.weight);
   visit.optional("color", x.color);
-  visit.optional("material", x.material);
   visit.optional("width", x.width);
   visit.optional("laneChange", x.lane_change);
-  visit.optional("height", x.height);
 }
 
 void fields(auto& visit, Of<opendrive::LaneHeight> auto& x) {
@@ -158,30 +148,14 @@ void fields(auto& visit, Of<opendrive::LaneHeight> auto& x) {
   visit.always("outer", x.outer);
 }
 
-void fields(auto& visit, Of<opendrive::LaneAccess> auto& x) {
-  visit.place("sOffset", x.s_offset);
-  visit.optional("rule", x.rule);
-  visit.optional("restriction", x.restriction);
-}
-
-void fields(auto& visit, Of<opendrive::LaneRule> auto& x) {
-  visit.place("sOffset", x.s_offset);
-  visit.always("value", x.value);
-}
-
 void fields(auto& visit, Of<opendrive::Junction> auto& x) {
   visit.optional("name", x.name);
   visit.needed("id", x.id);
   visit.optional("type", x.type);
-  visit.id("mainRoad", x.main_road);
-  visit.optional("sStart", x.s_start);
-  visit.optional("sEnd", x.s_end);
-  visit.optional("orientation", x.orientation);
 }
 
 void fields(auto& visit, Of<opendrive::Connection> auto& x) {
   visit.always("id", x.id);
-  visit.optional("type", x.type);
   visit.id("incomingRoad", x.incoming_road);
   visit.id("connectingRoad", x.connecting_road);
   visit.id("linkedRoad", x.linked_road);
@@ -191,7 +165,6 @@ void fields(auto& visit, Of<opendrive::Connection> auto& x) {
 void fields(auto& visit, Of<opendrive::LaneLink> auto& x) {
   visit.needed("from", x.from);
   visit.needed("to", x.to);
-  visit.optional("overlapZone", x.overlap_zone);
 }
 
 void fields(auto& visit, Of<opendrive::Priority> auto& x) {
@@ -199,10 +172,20 @@ void fields(auto& visit, Of<opendrive::Priority> auto& x) {
   visit.id("low", x.low);
 }
 
-void fields(auto& visit, Of<opendrive::JunctionController> auto& x) {
+void fields(auto& visit, Of<opendrive::Signal> auto& x) {
+  visit.needed("s", x.s);
   visit.needed("id", x.id);
+  visit.optional("orientation", x.orientation);
   visit.optional("type", x.type);
-  visit.optional("sequence", x.sequence);
 }
+
+void fields(auto& visit, Of<opendrive::Validity> auto& x) {
+  visit.needed("fromLane", x.from_lane);
+  visit.needed("toLane", x.to_lane);
+}
+
+void fields(auto& visit, Of<opendrive::Controller> auto& x) { visit.needed("id", x.id); }
+
+void fields(auto& visit, Of<opendrive::Control> auto& x) { visit.needed("signalId", x.signal_id); }
 
 }  // namespace cambium::map::detail

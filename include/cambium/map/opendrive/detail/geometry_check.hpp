@@ -6,9 +6,7 @@
 #include <optional>
 #include <string>
 #include <utility>
-#include <vector>
 
-#include "cambium/core/diagnostic.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/map/detail/findings.hpp"
@@ -19,14 +17,13 @@ namespace cambium::map::detail {
 
 using cambium::detail::rounded_text;
 
-/// Looks whether the geometries of a road go on in each other.
+/// Checks that the geometries of a road join.
 class GeometryCheck {
  public:
-  GeometryCheck(opendrive::Road const& road, std::string const& file, std::vector<Diagnostic>& diagnostics)
-      : road_(road), file_(file), diagnostics_(diagnostics) {}
+  GeometryCheck(opendrive::Road const& road, Findings& findings) : road_(road), findings_(findings) {}
 
-  /// Reports where a geometry does not go on where the one before ends. False where nobody could drive there: it is far
-  /// off, or what the curve does in the gap is beyond telling.
+  /// Reports geometries that do not begin where the previous one ends. False where the road is unusable: a geometry is
+  /// far off, or there is no telling what the curve does in the gap.
   [[nodiscard]] bool is_continuous() {
     if (!begins_and_ends()) return false;
     double widest = 0.0;  // of the slight ones
@@ -40,9 +37,9 @@ class GeometryCheck {
       slight_line = road_.geometry_lines[i];
     }
     if (slight_ones > 0)
-      report(Severity::warning, slight_line,
-             "it starts " + rounded_text(widest) + " m off the end of the geometry before" +
-                 (slight_ones > 1 ? " (and " + std::to_string(slight_ones - 1) + " others a little less)" : ""));
+      warn(slight_line,
+           "it starts " + rounded_text(widest) + " m off the end of the previous geometry" +
+               (slight_ones > 1 ? " (and " + std::to_string(slight_ones - 1) + " others a little less)" : ""));
     return true;
   }
 
@@ -51,7 +48,7 @@ class GeometryCheck {
   static constexpr double most_turn = 200.0;  // [rad]: more than any ramp winds, little enough for looking at all laps
 
   bool lose(std::size_t geometry, std::string const& what) {
-    report(Severity::warning, road_.geometry_lines[geometry], what + "; the road was left out");
+    warn(road_.geometry_lines[geometry], what + "; the road was left out");
     return false;
   }
 
@@ -63,9 +60,8 @@ class GeometryCheck {
     if (turn_beyond(road_.geometries.front(), 0.0, first_s) > 1.0)
       return lose(0, "the road has no geometry before " + rounded_text(first_s) + " m");
     if (std::abs(first_s) > slight)
-      report(
-          Severity::warning, road_.geometry_lines[0],
-          "the first geometry starts at " + rounded_text(first_s) + " m, not at 0; the road starts at 0 all the same");
+      warn(road_.geometry_lines[0],
+           "the first geometry starts at " + rounded_text(first_s) + " m, not at 0; the road starts at 0 all the same");
     double heading = 0.0, least = 0.0, most = 0.0;
     for (auto const& g : road_.geometries) {
       heading += 0.5 * (g.curvature_start + g.curvature_end) * g.length;
@@ -96,9 +92,9 @@ class GeometryCheck {
     double const turn = std::abs(geometry::angle_difference(start.heading, end.heading));
     if (gap <= noticeable && turn <= noticeable) return gap;
     std::string const sentence =
-        "it starts " + rounded_text(gap) + " m and " + rounded_text(turn) + " rad off the end of the geometry before";
+        "it starts " + rounded_text(gap) + " m and " + rounded_text(turn) + " rad off the end of the previous geometry";
     if (gap > bearable) return nothing(sentence);
-    report(Severity::warning, road_.geometry_lines[i], sentence);
+    warn(road_.geometry_lines[i], sentence);
     return 0.0;
   }
 
@@ -109,13 +105,12 @@ class GeometryCheck {
     return distance > 0.0 ? distance * (curvature + 0.5 * rate * distance) : 0.0;
   }
 
-  void report(Severity severity, int line, std::string sentence) {
-    add_finding(diagnostics_, {severity, file_, line, "geometry", "road " + road_.id, std::move(sentence)});
+  void warn(int line, std::string sentence) {
+    findings_.add(Severity::warning, line, "geometry", "road " + road_.id, std::move(sentence));
   }
 
   opendrive::Road const& road_;
-  std::string const& file_;
-  std::vector<Diagnostic>& diagnostics_;
+  Findings& findings_;
 };
 
 }  // namespace cambium::map::detail

@@ -2,7 +2,6 @@
 
 #include <optional>
 #include <string_view>
-#include <utility>
 
 #include "cambium/map/opendrive/detail/attribute_reader.hpp"
 #include "cambium/map/opendrive/document.hpp"
@@ -53,7 +52,7 @@ inline void read_road_links(XmlContext& context, pugi::xml_node road_node, opend
 [[nodiscard]] inline std::optional<opendrive::Junction> read_junction(XmlContext& context, pugi::xml_node node) {
   opendrive::Junction junction;
   if (!read_attributes(context, node, junction)) {
-    context.report(Severity::warning, node, "the junction was left out, for it has no id");
+    context.report(Severity::warning, node, "the junction was left out because it has no id");
     return std::nullopt;
   }
   for_each_child(node, [&](pugi::xml_node child, std::string_view name) {
@@ -61,8 +60,6 @@ inline void read_road_links(XmlContext& context, pugi::xml_node road_node, opend
       junction.connections.push_back(read_connection(context, child));
     else if (name == "priority")
       append_leaf(context, child, junction.priorities);
-    else if (name == "controller")
-      append_leaf(context, child, junction.controllers);
     else
       keep_element(context, child, junction.rest);
   });

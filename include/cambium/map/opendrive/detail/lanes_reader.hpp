@@ -17,7 +17,7 @@
 
 namespace cambium::map::detail {
 
-/// Sorts by `key` (a member) and reports when the file's order was another one.
+/// Sorts records by `key` (a member), and reports where the file has them in another order.
 template <class Record, class Key>
 void sort_records(XmlContext& context, pugi::xml_node parent, std::vector<Record>& records, Key key, char const* what) {
   if (records.size() > 1 && cambium::detail::stable_sort(records, key))
@@ -82,7 +82,7 @@ void read_speed(XmlContext& context, pugi::xml_node node, Record& record) {
       return;
     }
   context.report(Severity::warning, node,
-                 "unit \"" + std::string(unit) + "\" is none of m/s, km/h, mph; no limit was read");
+                 "unit \"" + std::string(unit) + "\" is not one of m/s, km/h, mph; no limit was read");
 }
 
 /// A speed record, left out where its place is bad.
@@ -91,7 +91,7 @@ inline void append_lane_speed(XmlContext& context, pugi::xml_node node, std::vec
   opendrive::SpeedRecord record;
   if (pugi::xml_attribute const place = node.attribute("sOffset")) {
     std::optional<double> const s = context.number<double>(node, place);
-    if (!s) return context.report(Severity::warning, node, "it was left out for that, see the finding before");
+    if (!s) return context.report(Severity::warning, node, "it was left out, see the previous finding");
     record.s = *s;
   }
   read_speed(context, node, record);
@@ -115,8 +115,6 @@ inline void read_lane_children(XmlContext& context, pugi::xml_node node, opendri
     if (name == "border") return append_cubic(context, child, "sOffset", lane.borders);
     if (name == "roadMark") return append_leaf(context, child, lane.road_marks);
     if (name == "height") return append_leaf(context, child, lane.heights);
-    if (name == "access") return append_leaf(context, child, lane.accesses);
-    if (name == "rule") return append_leaf(context, child, lane.rules);
     if (name == "speed") return append_lane_speed(context, child, lane.speeds);
     if (name != "link") keep_element(context, child, lane.rest);
   });
@@ -125,8 +123,6 @@ inline void read_lane_children(XmlContext& context, pugi::xml_node node, opendri
   sort_records(context, node, lane.road_marks, &opendrive::RoadMark::s_offset, "road marks");
   sort_records(context, node, lane.speeds, &opendrive::SpeedRecord::s, "speed records");
   sort_records(context, node, lane.heights, &opendrive::LaneHeight::s_offset, "height records");
-  sort_records(context, node, lane.accesses, &opendrive::LaneAccess::s_offset, "access records");
-  sort_records(context, node, lane.rules, &opendrive::LaneRule::s_offset, "rule records");
 }
 
 inline void check_lane_width(XmlContext& context, pugi::xml_node node, opendrive::Lane const& lane) {
@@ -137,22 +133,22 @@ inline void check_lane_width(XmlContext& context, pugi::xml_node node, opendrive
     context.report(Severity::info, node, "the lane has widths and borders; the widths count");
   if (!lane.widths.empty() && lane.widths.front().s > 0.0)
     context.report(Severity::warning, node,
-                   "the first width record starts behind the section's start; its first value counts before it too");
+                   "the first width record starts after the section's start; its first value also counts before it");
 }
 
 /// False when the lane's id is unusable.
 [[nodiscard]] inline bool read_lane(XmlContext& context, pugi::xml_node node, opendrive::Lane& lane) {
   if (!read_attributes(context, node, lane)) {
-    context.report(Severity::warning, node, "the lane was left out, for it has no usable id");
+    context.report(Severity::warning, node, "the lane was left out because it has no usable id");
     return false;
   }
   context.lane = lane.id;
   pugi::xml_attribute const type = node.attribute("type");
   if (lane.type == LaneType::none && lane.id != 0 && *type.value() == '\0')
-    context.report(Severity::warning, node, "attribute type is missing; none was taken");
+    context.report(Severity::warning, node, "attribute type is missing; none is assumed");
   if (lane.type == LaneType::other)
     context.report(Severity::info, node,
-                   "lane type \"" + std::string(type.value()) + "\" is not known; nobody will drive there");
+                   "lane type \"" + std::string(type.value()) + "\" is unknown; nobody will drive there");
   read_lane_links(context, node, lane);
   read_lane_children(context, node, lane);
   check_lane_width(context, node, lane);
@@ -169,7 +165,7 @@ inline void order_lanes(XmlContext& context, pugi::xml_node node, opendrive::Lan
   auto const is_double = [&](opendrive::Lane const& before, opendrive::Lane const& lane) {
     if (before.id != lane.id) return false;
     context.report(Severity::warning, lane.line, "lane",
-                   "lane id " + std::to_string(lane.id) + " is there twice; the second one was left out");
+                   "lane id " + std::to_string(lane.id) + " occurs twice; the second one was left out");
     return true;
   };
   lanes.erase(std::unique(lanes.begin(), lanes.end(), is_double), lanes.end());
@@ -206,7 +202,7 @@ inline void read_side(XmlContext& context, pugi::xml_node node, std::string_view
 /// False when the section's start is unusable.
 [[nodiscard]] inline bool read_lane_section(XmlContext& context, pugi::xml_node node, opendrive::LaneSection& section) {
   if (!read_attributes(context, node, section)) {
-    context.report(Severity::warning, node, "the lane section was left out, for its s is unusable");
+    context.report(Severity::warning, node, "the lane section was left out because its s is unusable");
     return false;
   }
   std::size_t count = 0;

@@ -65,9 +65,7 @@ inline void write_lane(XmlText& xml, opendrive::Lane const& lane) {
         write_number(xml, "sOffset", speed.s);
         write_limit(xml, speed.limit, speed.unit);
       });
-    write_leaves(xml, "access", lane.accesses);
     write_leaves(xml, "height", lane.heights);
-    write_leaves(xml, "rule", lane.rules);
     write_rest(xml, lane.rest, {"link"});
   });
 }

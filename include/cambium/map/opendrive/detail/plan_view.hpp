@@ -4,7 +4,6 @@
 #include <cmath>
 #include <iterator>
 #include <memory>
-#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -55,7 +54,7 @@ using cambium::detail::rounded_text;
   if (!(g.length > 0.0)) return true;
   std::string_view const range = node.attribute("pRange").value();
   if (range != "arcLength" && range != "normalized")
-    context.report(Severity::warning, node, "pRange is neither arcLength nor normalized; normalized was taken");
+    context.report(Severity::warning, node, "pRange is neither arcLength nor normalized; normalized is assumed");
   g.kind = GeometryKind::cubic;
   g.cubic = std::make_shared<ParametricCubic const>(u, v, range == "arcLength" ? g.length : 1.0);
   return has_usable_cubic(context, node, g);
@@ -85,7 +84,7 @@ inline void report_curve(XmlContext& context, pugi::xml_node node, std::string_v
   report_others(context, node, {"aU", "bU", "cU", "dU", "aV", "bV", "cV", "dV", "pRange"});
 }
 
-/// The curve of a geometry element: the child that says its kind may stand anywhere among other children.
+/// The curve of a geometry element: the child that names its kind may stand anywhere among the others.
 [[nodiscard]] inline bool read_curve(XmlContext& context, pugi::xml_node node, Geometry& g, opendrive::Rest& rest) {
   constexpr std::string_view kinds[] = {"line", "arc", "spiral", "poly3", "paramPoly3"};
   bool is_found = false, good = true;
@@ -93,12 +92,12 @@ inline void report_curve(XmlContext& context, pugi::xml_node node, std::string_v
     if (std::find(std::begin(kinds), std::end(kinds), name) == std::end(kinds))
       return keep_element(context, child, rest);
     if (std::exchange(is_found, true))
-      return context.report(Severity::warning, child, "the geometry has a curve before; this one was left out");
+      return context.report(Severity::warning, child, "the geometry has a curve already; this one was left out");
     report_curve(context, child, name);
     good = read_kind(context, child, name, g);
   });
   if (!is_found)
-    context.report(Severity::warning, node, "the geometry is none of line, arc, spiral, poly3, paramPoly3");
+    context.report(Severity::warning, node, "the geometry is not a line, arc, spiral, poly3 or paramPoly3");
   return is_found && good;
 }
 
@@ -109,7 +108,7 @@ struct ReadGeometry {
   opendrive::Rest rest;
 };
 
-/// False when the geometry is unusable, and the road with it. One of length 0 is left out, which harms nothing.
+/// False when the geometry, and with it the road, is unusable. A geometry of length 0 is left out without harm.
 [[nodiscard]] inline bool read_geometry(XmlContext& context, pugi::xml_node node, std::vector<ReadGeometry>& all) {
   ReadGeometry read;
   Geometry& g = read.geometry;

@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "cambium/core/diagnostic.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/map/detail/findings.hpp"
 #include "cambium/map/opendrive/document.hpp"
@@ -19,8 +18,7 @@ namespace cambium::map::detail {
 /// Looks at a road's records along s: leaves out, and reports, those that are beyond any road.
 class RecordCheck {
  public:
-  RecordCheck(opendrive::Road& road, std::string const& file, std::vector<Diagnostic>& diagnostics)
-      : road_(road), file_(file), diagnostics_(diagnostics), ids_("road " + road.id) {}
+  RecordCheck(opendrive::Road& road, Findings& findings) : road_(road), findings_(findings), ids_("road " + road.id) {}
 
   /// Negative widths are reported, too.
   void run() {
@@ -74,7 +72,7 @@ class RecordCheck {
     });
   }
 
-  /// Removes the records for which `keep(record, those kept behind it)` says false.
+  /// Removes the records for which `keep(record, those kept after it)` is false.
   template <class Record, class Keep>
   void leave_out(std::vector<Record>& records, int line, char const* element, std::string const& ids,
                  Keep const& keep) {
@@ -111,12 +109,11 @@ class RecordCheck {
   }
 
   void report(int line, char const* element, std::string ids, std::string sentence) {
-    add_finding(diagnostics_, {Severity::warning, file_, line, element, std::move(ids), std::move(sentence)});
+    findings_.add(Severity::warning, line, element, std::move(ids), std::move(sentence));
   }
 
   opendrive::Road& road_;
-  std::string const& file_;
-  std::vector<Diagnostic>& diagnostics_;
+  Findings& findings_;
   std::string ids_;
 };
 

@@ -89,17 +89,17 @@ void for_each_child(pugi::xml_node parent, std::string_view name, Visit const& v
 class XmlContext {
  public:
   XmlContext(std::string_view text, std::string file, std::vector<Diagnostic>& diagnostics)
-      : lines_(text), file_(std::move(file)), diagnostics_(&diagnostics) {}
+      : lines_(text), findings_{std::move(file), diagnostics} {}
 
   [[nodiscard]] int line(pugi::xml_node node) { return lines_.line(node.offset_debug()); }
-  [[nodiscard]] std::string const& file() const { return file_; }
+  [[nodiscard]] std::string const& file() const { return findings_.file; }
 
   // What reports is rare: out of the way, the rest of the reader fits into the processor's instruction cache.
   [[gnu::cold]] void report(Severity severity, pugi::xml_node node, std::string sentence) {
     report(severity, line(node), std::string(local_name(node)), std::move(sentence));
   }
   [[gnu::cold]] void report(Severity severity, int line, std::string element, std::string sentence) {
-    add_finding(*diagnostics_, {severity, file_, line, std::move(element), ids(), std::move(sentence)});
+    findings_.add(severity, line, std::move(element), ids(), std::move(sentence));
   }
 
   [[gnu::cold]] void report_missing(pugi::xml_node node, std::string_view attribute) {
@@ -119,11 +119,11 @@ class XmlContext {
   /// Reports what `lose` has noted, once for each kind of element.
   void report_losses() {
     for (Loss& loss : losses_)
-      diagnostics_->push_back({Severity::warning, file_, loss.line, std::move(loss.element), std::move(loss.ids),
-                               loss.what + " is not known there; it was left out" +
-                                   (loss.count > 1 ? ", like " + std::to_string(loss.count - 1) +
-                                                         " more attributes and texts in such elements"
-                                                   : std::string())});
+      findings_.add(Severity::warning, loss.line, std::move(loss.element), std::move(loss.ids),
+                    loss.what + " is unknown there; it was left out" +
+                        (loss.count > 1 ? ", like " + std::to_string(loss.count - 1) +
+                                              " more attributes and texts in such elements"
+                                        : std::string()));
     losses_.clear();
   }
 
@@ -187,12 +187,11 @@ class XmlContext {
   }
 
   LineTable lines_;
-  std::string file_;
-  std::vector<Diagnostic>* diagnostics_;
+  Findings findings_;
   std::vector<Loss> losses_;  ///< a handful
 };
 
-/// As `find_child`, of what may be there once: further ones are reported, for they are not read.
+/// As `find_child`, for what may occur once: further ones are reported, and not read.
 [[nodiscard]] inline pugi::xml_node find_only_child(XmlContext& context, pugi::xml_node parent, std::string_view name) {
   pugi::xml_node first;
   for_each_child(parent, name, [&](pugi::xml_node child) {
@@ -204,9 +203,9 @@ class XmlContext {
   return first;
 }
 
-/// Reports what stands in an element that has attributes only: it is not read.
+/// Reports content of an element that should have attributes only; it is not read.
 inline void report_content(XmlContext& context, pugi::xml_node node) {
-  if (node.first_child()) context.report(Severity::warning, node, "what stands in it was left out");
+  if (node.first_child()) context.report(Severity::warning, node, "its content was left out");
 }
 
 inline void lose_attribute(XmlContext& context, pugi::xml_node node, pugi::xml_attribute attribute) {

@@ -50,14 +50,14 @@ class XmlCounter {
       step(file);
       if (depth_ > deepest_element)
         throw MapError(place(file),
-                       "the elements lie " + std::to_string(depth_) + " deep here; at most " +
+                       "elements are nested " + std::to_string(depth_) + " deep here; at most " +
                            std::to_string(deepest_element) + " are read, and OpenDRIVE's own are less than 20 deep",
                        "repair the file there, or export it again");
       if (count_ > most_elements)
         throw MapError(place(file),
                        "up to here there are " + std::to_string(count_) + " elements and attributes; at most " +
                            std::to_string(most_elements) + " are read",
-                       "split the map, or leave out what is not needed of it");
+                       "split the map, or remove what is not needed");
     }
   }
 

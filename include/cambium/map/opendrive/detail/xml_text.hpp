@@ -1,6 +1,5 @@
 #pragma once
 
-#include <charconv>
 #include <cstddef>
 #include <string>
 #include <string_view>
@@ -9,12 +8,6 @@
 #include "cambium/core/error.hpp"
 
 namespace cambium::map::detail {
-
-/// The shortest text that spells the finite `value`, in the C locale.
-[[nodiscard]] inline std::string number_text(double value) {
-  char text[32];
-  return {text, std::to_chars(text, text + sizeof text, value).ptr};
-}
 
 /// Grows an XML text element by element, indented by two blanks a level; where an element has text, nothing is added
 /// to what it holds.
@@ -84,7 +77,7 @@ class XmlText {
   static void check_name(std::string_view name) {
     bool const begins_well = !name.empty() && name.find_first_of("-.0123456789") != 0;
     if (!begins_well || name.find_first_of(" \t\r\n\"'<>&/=!?\0", 0, 14) != name.npos)
-      throw MapError("\"" + std::string(name) + "\"", "it is no name that XML allows for an element or attribute",
+      throw MapError("\"" + std::string(name) + "\"", "XML does not allow this name for an element or attribute",
                      "name it with letters, digits, '_', '-', '.', ':'");
   }
 

@@ -2,13 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstddef>
 #include <iterator>
 #include <limits>
-#include <vector>
 #include <Eigen/Core>
 
-#include "cambium/geometry/angle.hpp"
 #include "cambium/map/road/road.hpp"
 
 namespace cambium::map::detail {
