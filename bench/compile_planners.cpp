@@ -7,11 +7,11 @@ namespace cb = cambium;
 using Predicted =
     cb::World<cb::BehaviorSet<cb::MacroActions, cb::IdmProposal, cb::IdmClassic, cb::ConstantAcceleration>,
               cb::InterpolateExecution, cb::SingleTrack>;
-using Mcts = cb::MctsSingleAgent<Predicted>;
+using Search = cb::Mcts<Predicted>;
 using PolicyTree = cb::PolicyTreePlanner<Predicted>;
 using Proposal = cb::ProposalPlanner<Predicted>;
 using Frenet = cb::FrenetPlanner<Predicted>;
-using World = Predicted::WithBehaviors<cb::BehaviorSet<Mcts, PolicyTree, Proposal, Frenet, cb::IdmClassic>>;
+using World = Predicted::WithBehaviors<cb::BehaviorSet<Search, PolicyTree, Proposal, Frenet, cb::IdmClassic>>;
 
 template <class Planner>
 std::size_t think(World& world, cb::AgentId ego, Planner const& planner) {
@@ -21,7 +21,7 @@ std::size_t think(World& world, cb::AgentId ego, Planner const& planner) {
 }
 
 std::size_t think(World& world, cb::AgentId ego) {
-  return think(world, ego, Mcts{}) + think(world, ego, PolicyTree{}) + think(world, ego, Proposal{}) +
+  return think(world, ego, Search{}) + think(world, ego, PolicyTree{}) + think(world, ego, Proposal{}) +
          think(world, ego, Frenet{});
 }
 

@@ -12,7 +12,7 @@
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/map/opendrive.hpp"
-#include "cambium/planner/mcts/mcts_single_agent.hpp"
+#include "cambium/planner/mcts/mcts.hpp"
 #include "cambium/planner/search/parallel_tree_search.hpp"
 #include "cambium/world/world.hpp"
 

@@ -10,7 +10,7 @@
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/map/build/map_builder.hpp"
 #include "cambium/map/build/polyline_roads.hpp"
-#include "cambium/planner/mcts/mcts_single_agent.hpp"
+#include "cambium/planner/mcts/mcts.hpp"
 #include "cambium/world/world.hpp"
 
 #include "common/command_line.hpp"
@@ -39,7 +39,7 @@ namespace {
 // [embed
 namespace cb = cambium;
 using World = cb::World<cb::BehaviorSet<cb::MacroActions, cb::IdmClassic>, cb::InterpolateExecution, cb::SingleTrack>;
-using Planner = cb::MctsSingleAgent<World>;
+using Planner = cb::Mcts<World>;
 
 /// Once per map: borders of the lanes from left to right, in travel direction.
 std::shared_ptr<cb::Map const> map_of(std::vector<std::vector<stack::Point>> const& borders) {
@@ -106,10 +106,10 @@ void plan() {
 
   std::printf("%zu iterations, %zu nodes\n\n  visits   return  action\n", report.result.iterations,
               report.result.nodes);
-  for (std::size_t i = 0; i < report.actions.size(); ++i) {
+  for (std::size_t i = 0; i < report.candidates.size(); ++i) {
     auto const& arm = report.result.of(0)[i];
-    std::printf("%8u %8.2f  %s%s\n", arm.visits, arm.mean_return, report.actions[i].c_str(),
-                i == report.result.best[0] ? "   <- chosen" : "");
+    std::printf("%8u %8.2f  %s%s\n", arm.visits, arm.mean_return, report.candidates[i].name.c_str(),
+                i == report.chosen ? "   <- chosen" : "");
   }
   std::printf("\nexpected course of all\n    time");
   for (auto const id : report.agents) std::printf("          agent %-8s", to_string(id).c_str());

@@ -14,8 +14,8 @@
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/map/road/curve_layout.hpp"
-#include "cambium/planner/mcts/mcts_hypothesis.hpp"
-#include "cambium/planner/mcts/mcts_single_agent.hpp"
+#include "cambium/planner/mcts/mcts.hpp"
+#include "cambium/planner/mcts/mcts.hpp"
 #include "cambium/world/world.hpp"
 
 /// The lane change of Bernhard, Esterle, Hart, Kessler 2020 ("BARK: Open behavior benchmarking in multi-agent
@@ -39,9 +39,9 @@ struct SameActionRollout {
   }
 };
 
-using PaperPlanner = cb::MctsSingleAgent<Prediction, cb::MacroActions, cb::TrafficReward, cb::IdmClassic,
-                                         cb::MctsOptions<cb::Ucb1, SameActionRollout>>;
-using OwnPlanner = cb::MctsHypothesis<Prediction>;
+using PaperPlanner = cb::Mcts<Prediction, cb::MacroActions, cb::TrafficReward, cb::IdmClassic,
+                              cb::MctsOptions<cb::Ucb1, SameActionRollout>>;
+using OwnPlanner = cb::Mcts<Prediction, cb::MacroActions, cb::TrafficReward, cb::IdmHypotheses>;
 using Sim =
     cb::World<cb::BehaviorSet<PaperPlanner, OwnPlanner, cb::IdmClassic>, cb::InterpolateExecution, cb::SingleTrack>;
 

@@ -55,10 +55,7 @@ std::vector<Model> planners() {
   using Set =
       cb::BehaviorSet<cb::MacroActions, cb::IdmClassic, cb::IdmHypotheses, cb::IdmProposal, cb::ConstantAcceleration>;
   using World = cb::World<Set, cb::InterpolateExecution, cb::SingleTrack>;
-  return {model<cb::MctsSingleAgent<World>>("MctsSingleAgent<PredictionWorld>"),
-          model<cb::MctsCooperative<World>>("MctsCooperative<PredictionWorld>"),
-          model<cb::MctsHypothesis<World>>("MctsHypothesis<PredictionWorld>"),
-          model<cb::MctsRiskConstrained<World>>("MctsRiskConstrained<PredictionWorld>"),
+  return {model<cb::Mcts<World>>("Mcts<PredictionWorld>"),
           model<cb::ProposalPlanner<World>>("ProposalPlanner<PredictionWorld>"),
           model<cb::PolicyTreePlanner<World>>("PolicyTreePlanner<PredictionWorld>"),
           model<cb::FrenetPlanner<World>>("FrenetPlanner<PredictionWorld>")};
@@ -78,6 +75,7 @@ std::vector<Model> parts() {
           model<cb::MctsOptions<>>("MctsOptions<>"),
           model<cb::TreeSearchParameters>("TreeSearchParameters"),
           model<cb::IterationBudget>("IterationBudget"),
+          model<cb::NoBudget>("NoBudget"),
           model<cb::TimeBudget>("TimeBudget"),
           model<cb::Widening>("Widening"),
           model<cb::CostConstraint>("CostConstraint"),

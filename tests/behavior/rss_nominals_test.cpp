@@ -14,7 +14,7 @@ using namespace cambium;
 namespace {
 
 using PredictionWorld = World<BehaviorSet<MacroActions, IdmClassic>, InterpolateExecution, SingleTrack>;
-using Search = MctsSingleAgent<PredictionWorld>;
+using Search = Mcts<PredictionWorld>;
 template <class Nominal>
 using Safe = RssConformant<Nominal>;
 using Sim = World<BehaviorSet<IdmClassic, ConstantAcceleration, Safe<StaticTrajectory>, Search, Safe<Search>,

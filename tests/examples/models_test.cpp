@@ -71,7 +71,7 @@ TEST_CASE("every model, goal, driver and shape in the headers is in its room's t
     return Kind{rooms / folder, std::regex(declaration), least};
   };
   for (auto const& one : {kind("behavior", "\nstatic_assert\\((?:BehaviorModel|CorridorFilter)<(\\w+)[<>]", 19),
-                          kind("planner", "\nstruct (Mcts(?!Options|Report)\\w+|\\w+Planner) \\{", 7),
+                          kind("planner", "\nstruct (Mcts|\\w+Planner) \\{", 4),
                           kind("dynamics", "\nstatic_assert\\(DynamicModel<(\\w+)[<>]", 4),
                           kind("execution", "\nstatic_assert\\(ExecutionModel<(\\w+)[<>]", 3),
                           kind("observer", "\nstatic_assert\\(ObserverModel<(\\w+)[<>]", 4),

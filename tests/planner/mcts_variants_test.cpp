@@ -6,8 +6,8 @@
 #include <string>
 
 #include "cambium/execution/interpolate.hpp"
-#include "cambium/planner/mcts/mcts_cooperative.hpp"
-#include "cambium/planner/mcts/mcts_single_agent.hpp"
+#include "cambium/planner/mcts/mcts.hpp"
+#include "cambium/planner/mcts/mcts.hpp"
 #include "cambium/planner/search/puct.hpp"
 #include "cambium/world/world.hpp"
 #include "support/maps.hpp"
@@ -28,7 +28,7 @@ struct Expecting : TrafficReward {
 
 using PredictionWorld = World<BehaviorSet<MacroActions, IdmClassic, ExternalInput>, InterpolateExecution, SingleTrack>;
 template <class Options, class Reward = TrafficReward, class Actions = MacroActions>
-using Single = MctsSingleAgent<PredictionWorld, Actions, Reward, IdmClassic, Options>;
+using Single = Mcts<PredictionWorld, Actions, Reward, IdmClassic, Options>;
 
 using Plain = Single<MctsOptions<>>;
 using Truncated = Single<MctsOptions<Ucb1, TruncatedRollout<RandomRollout>>>;
@@ -91,9 +91,8 @@ TEST_CASE("a course that is cut off is worth what the reward says, the others' b
   world.add({.position = {30, -1.75}, .speed = 12, .behavior = IdmClassic{}});
   world.add({.position = {60, -1.75}, .speed = 10, .behavior = IdmClassic{}});
   for (double const lookahead : {2.0, 0.0}) {
-    using Cooperative =
-        MctsCooperative<PredictionWorld, MacroActions, TrafficReward, IdmClassic, MctsOptions<Ucb1, NoRollout>>;
-    Cooperative planner;
+    using Cooperative = Mcts<PredictionWorld, MacroActions, TrafficReward, IdmClassic, MctsOptions<Ucb1, NoRollout>>;
+    Cooperative planner{.most_agents = 4};
     planner.actions = MacroActions::of({{MacroAction::Kind::stay, 0.0}});
     planner.reward.progress = 1.0;
     planner.reward.lookahead = lookahead;
@@ -125,7 +124,7 @@ TEST_CASE("a user's prior leads the search of traffic, and is checked") {
   Expected::Workspace workspace;
   auto const report = planner.think(world.observe(ego), {}, workspace);
   CHECK(report.result.choice(0).share > 0.3);
-  CHECK(report.actions[report.result.best[0]].find("stay -") == 0);
+  CHECK(report.candidates[*report.chosen].name.starts_with("stay -"));
   planner.reward.braking = -1.0;
   CHECK_THROWS_AS((void)planner.think(world.observe(ego), {}, workspace), SearchError);
 }

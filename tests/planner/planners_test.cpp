@@ -1,30 +1,188 @@
-// Laws that hold for every planner that simulates or samples courses.
+// Laws that hold for every planner, the shipped ones and one of a user's own, made of what is public.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <optional>
+#include <set>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
 
 #include "cambium/behavior/following/idm_classic.hpp"
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/observer/parametric.hpp"
 #include "cambium/planner/frenet/frenet_planner.hpp"
+#include "cambium/planner/mcts/mcts.hpp"
 #include "cambium/planner/planner_model.hpp"
 #include "cambium/planner/policy/policy_tree_planner.hpp"
 #include "cambium/planner/policy/proposal_planner.hpp"
 #include "cambium/world/world.hpp"
+#include "support/allocations.hpp"
 #include "support/maps.hpp"
 
 using namespace cambium;
 
 namespace {
 
+/// Actions of a user's own: speeds to come to. What carries them out is a behaviour of the user's own, too.
+struct ReachSpeed {
+  struct Memory {
+    float target = 10.0f;
+    friend bool operator==(Memory, Memory) = default;
+  };
+  static constexpr auto parameters() { return parameter_list(); }
+  template <class View>
+  [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
+    double const speed = view.state().speed, target = static_cast<double>(memory.target);
+    return plan_along_lane(view, ConstantAcceleration{std::clamp(target - speed, -3.0, 1.5)}.motion(speed, dt), dt);
+  }
+};
+
+struct Speeds {
+  double highest = 12.0;
+  static constexpr auto parameters() {
+    return parameter_list(parameter("highest", &Speeds::highest, "m/s", Range{0, 50}, "of 4 speeds"));
+  }
+};
+
+}  // namespace
+
+template <>
+struct cambium::ActionSet<Speeds> {
+  using Behavior = ReachSpeed;
+  using Choice = int;
+  static constexpr std::size_t capacity = 4;
+
+  static Behavior behavior(Speeds const&) { return {}; }
+  template <class View>
+  static std::size_t list(Speeds const&, View const&, Behavior::Memory, std::span<Choice> out) {
+    for (int i = 0; i < 4; ++i) out[static_cast<std::size_t>(i)] = i;
+    return 4;
+  }
+  static void set(Behavior::Memory& memory, Choice choice) { memory.target = 4.0f * static_cast<float>(choice); }
+  static double action(Speeds const& speeds, Choice choice) { return speeds.highest * choice / 3.0; }
+  static Choice usual(Speeds const&) { return 3; }
+  static std::string text(Speeds const&, Choice choice) { return "speed " + std::to_string(choice); }
+  static bool goes_on_alike(Behavior::Memory, Behavior::Memory) { return true; }
+};
+
+namespace {
+
 using PredictionWorld =
-    World<BehaviorSet<MacroActions, IdmProposal, IdmClassic, ConstantAcceleration>, InterpolateExecution, SingleTrack>;
+    World<BehaviorSet<MacroActions, IdmProposal, IdmClassic, IdmHypotheses, ConstantAcceleration, ReachSpeed>,
+          InterpolateExecution, SingleTrack>;
+
+/// A planner of a user's own: of a few constant accelerations the one that gets farthest and hits nobody.
+struct Greedy {
+  struct Memory {
+    friend bool operator==(Memory, Memory) = default;
+  };
+  struct Workspace {};
+
+  double horizon = 3.0;
+  double step = 0.2;
+  IterationBudget budget{4};
+
+  static constexpr auto parameters() {
+    return parameter_list(parameter("horizon", &Greedy::horizon, "s", Range{0.2, 60}, "of the predictions"),
+                          parameter("step", &Greedy::step, "s", Range{0.01, 1}, "of the predictions"),
+                          parameter("budget", &Greedy::budget, "-", {}, "how many accelerations are tried"));
+  }
+
+  template <class View>
+  [[nodiscard]] PlannerReport<PredictionWorld, Memory> think(View const& view, Memory const&, Workspace&) const {
+    check_parameters(*this);
+    PlannerReport<PredictionWorld, Memory> report;
+    for (double const acceleration : {0.0, -5.0, -2.0, 1.5}) {
+      if (!budget.goes_on(report.candidates.size())) {
+        report.is_cut_short = true;
+        break;
+      }
+      std::optional<Slot> ego;
+      auto world = predicted_for<PredictionWorld>(view, ConstantAcceleration{acceleration, 15.0}, IdmClassic{}, ego);
+      if (!ego) throw SearchError("agent " + to_string(view.id()), "is not in traffic", "plan for agents that drive");
+      std::vector<typename PredictionWorld::FrameType> course{world.frame()};
+      auto end = CourseEnd::none;
+      while (static_cast<int>(course.size()) <= std::lround(horizon / step)) {
+        (void)world.step(step);
+        course.push_back(world.frame());
+        if (end == CourseEnd::none) end = course_end(world, *ego);
+      }
+      bool const is_free = end == CourseEnd::none || end == CourseEnd::over;
+      report.candidates.push_back({"accelerate by " + std::to_string(acceleration),
+                                   course.back().agents[*ego].lane.s - course.front().agents[*ego].lane.s,
+                                   is_free ? "" : "ends badly"});
+      auto const number = report.candidates.size() - 1;
+      if (report.course.empty() ||
+          (is_free && (!report.chosen || report.candidates[number].score > report.candidates[*report.chosen].score)))
+        report.course = std::move(course);
+      if (is_free && (!report.chosen || report.candidates[number].score > report.candidates[*report.chosen].score))
+        report.chosen = number;
+      report.agents.clear();
+      for (auto const& agent : world.roster().agents) report.agents.push_back(agent.id);
+    }
+    report.decidedness = decidedness(report.candidates, report.chosen);
+    return report;
+  }
+
+  template <class View>
+  [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt, Workspace& workspace) const {
+    Plan<View> plan;
+    plan.status = PlanStatus::failed;
+    if constexpr (requires { view.predict(predict_all_as<typename PredictionWorld::Behaviors>(IdmClassic{})); }) {
+      auto const report = think(view, memory, workspace);
+      auto const ego = std::ranges::find(report.agents, view.id()) - report.agents.begin();
+      for (auto const& frame : report.course)
+        if (frame.time > view.time() && frame.time < view.time() + dt + 1e-9)
+          plan.trajectory.push_back(frame.agents[static_cast<Slot>(ego)].state);
+      plan.status = PlanStatus::valid;
+      go_straight_on(view, view.time() + dt, plan);
+    }
+    return plan;
+  }
+};
+
+using Search = Mcts<PredictionWorld>;
+using Learning = Mcts<PredictionWorld, MacroActions, TrafficReward, IdmHypotheses>;
+using OwnActions = Mcts<PredictionWorld, Speeds>;
+using Proposal = ProposalPlanner<PredictionWorld>;
+using PolicyTree = PolicyTreePlanner<PredictionWorld>;
+using Frenet = FrenetPlanner<PredictionWorld>;
+#define ALL_PLANNERS Search, Learning, OwnActions, Proposal, PolicyTree, Frenet, Greedy
+
+/// One that is quick.
+template <class P>
+P quick() {
+  P planner;
+  if constexpr (requires { planner.options; }) {
+    planner.options.budget.iterations = 100;
+    planner.reward.progress = 1.0;
+  }
+  return planner;
+}
+
+/// Step and horizon of a planner [s].
+template <class P>
+std::pair<double, double> times(P const& planner) {
+  if constexpr (requires { planner.options; })
+    return {planner.options.step, planner.options.step * planner.options.search.horizon};
+  else if constexpr (requires { planner.layers; })
+    return {planner.step, planner.layers * planner.layer_duration};
+  else
+    return {planner.step, planner.horizon};
+}
 
 template <class Planner, class Observer = PerfectObserver>
 using Sim = World<BehaviorSet<Planner, IdmClassic>, InterpolateExecution, SingleTrack, Observer>;
 
 constexpr AgentId ego{0};
+#define COMMA ,
 
 /// On two lanes of a wide bend: ego on the right one, six others about it.
 template <class World, class Planner>
@@ -46,16 +204,15 @@ World traffic(std::uint64_t seed, Planner const& planner, typename World::Observ
   return world;
 }
 
-template <class Planner>
-constexpr bool is_planner = PlannerModel<Planner, typename Sim<Planner>::View>;
-static_assert(is_planner<FrenetPlanner<PredictionWorld>> && is_planner<PolicyTreePlanner<PredictionWorld>> &&
-              is_planner<ProposalPlanner<PredictionWorld>>);
+template <class... Planners>
+constexpr bool are_planners = (PlannerModel<Planners, typename Sim<Planners>::View> && ...);
+static_assert(are_planners<ALL_PLANNERS>);
+static_assert(!PlannerModel<IdmClassic, Sim<Search>::View>);
 
 }  // namespace
 
 TEST_CASE_TEMPLATE("in random traffic it hits nobody, stays on the road and gets on, whatever the step", Planner,
-                   ProposalPlanner<PredictionWorld>, PolicyTreePlanner<PredictionWorld>,
-                   FrenetPlanner<PredictionWorld>) {
+                   Proposal, PolicyTree, Frenet) {
   for (std::uint64_t seed = 0; seed < 6; ++seed) {
     CAPTURE(seed);
     double const dt = seed % 3 == 0 ? 0.1 : seed % 3 == 1 ? 0.2 : 0.5;
@@ -72,8 +229,7 @@ TEST_CASE_TEMPLATE("in random traffic it hits nobody, stays on the road and gets
 }
 
 TEST_CASE_TEMPLATE("it can be what a prediction assumes, of itself and of others, and then comes true", Planner,
-                   ProposalPlanner<PredictionWorld>, PolicyTreePlanner<PredictionWorld>,
-                   FrenetPlanner<PredictionWorld>) {
+                   Proposal, PolicyTree, Frenet) {
   auto world = traffic<Sim<Planner>>(1, Planner{});
   using Set = typename Sim<Planner>::Behaviors;
   for (auto const& agent : world.roster().agents) world.set_behavior(agent.id, Planner{});
@@ -86,8 +242,7 @@ TEST_CASE_TEMPLATE("it can be what a prediction assumes, of itself and of others
     CHECK(world.frame().agents[i].state == prediction.frame().agents[i].state);
 }
 
-TEST_CASE_TEMPLATE("where it sees with noise it plans all the same", Planner, ProposalPlanner<PredictionWorld>,
-                   PolicyTreePlanner<PredictionWorld>, FrenetPlanner<PredictionWorld>) {
+TEST_CASE_TEMPLATE("where it sees with noise it plans all the same", Planner, Proposal, PolicyTree, Frenet) {
   ObservationNoise const noise{.along = 0.2, .across = 0.05, .heading = 0.01, .speed = 0.2};
   auto world = traffic<Sim<Planner, ParametricObserver>>(2, Planner{}, {.own = noise, .others = noise});
   for (int i = 0; i < 50; ++i) {
@@ -95,4 +250,156 @@ TEST_CASE_TEMPLATE("where it sees with noise it plans all the same", Planner, Pr
     REQUIRE_FALSE(Collision{}(world, world.slot_of(ego)));
   }
   CHECK(world.state(ego).speed > 2.0);
+}
+
+TEST_CASE_TEMPLATE("it changes to the lane of its goal among others", Planner, PolicyTree, Frenet) {
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    CAPTURE(seed);
+    auto const map = support::straight_road(2, 600.0);
+    Sim<Planner> world(map, {.seed = seed});
+    auto const left = map->nearest_lane({20, -1.75, 0})->lane;
+    world.add({.position = {60, -5.25},
+               .speed = 12,
+               .behavior = Planner{},
+               .goal = LaneLimits{.lane = left, .left = 0.5, .right = 0.5, .heading_error = 0.08}});
+    for (int i = 0; i < 4; ++i)
+      world.add({.position = {20.0 + 28.0 * i + 3.0 * static_cast<double>(seed), -1.75},
+                 .speed = 12.5,
+                 .behavior = IdmClassic{.desired_speed = 14.0}});
+    world.add({.position = {95.0, -5.25}, .speed = 9, .behavior = IdmClassic{.desired_speed = 9.0}});
+    for (int i = 0; i < 120 && !world.reached_goal(ego); ++i) REQUIRE(world.step(0.2));
+    CHECK(world.reached_goal(ego));
+  }
+}
+
+TEST_CASE_TEMPLATE("it goes the same way again, as a copy too", Planner, ALL_PLANNERS) {
+  auto world = traffic<Sim<Planner>>(1, quick<Planner>()), again = traffic<Sim<Planner>>(1, quick<Planner>());
+  for (int i = 0; i < 6; ++i) REQUIRE(world.step(0.2));
+  auto copy = world;
+  for (int i = 0; i < 6; ++i) {
+    REQUIRE(world.step(0.2));
+    REQUIRE(copy.step(0.2));
+  }
+  for (int i = 0; i < 12; ++i) REQUIRE(again.step(0.2));
+  CHECK(world.frame() == copy.frame());
+  CHECK(world.frame() == again.frame());
+}
+
+TEST_CASE_TEMPLATE("once warm, little but the prediction allocates", Planner, Proposal, PolicyTree, Frenet) {
+  auto world = traffic<Sim<Planner>>(1, Planner{});
+  for (int i = 0; i < 8; ++i) REQUIRE(world.step(0.2));
+  auto const before = support::allocations();
+  REQUIRE(world.step(0.2));
+  CHECK(support::allocations() - before < 40);  // dozens of simulations
+}
+
+TEST_CASE_TEMPLATE("its report has a course up to the horizon, and says why", Planner, ALL_PLANNERS) {
+  auto const planner = quick<Planner>();
+  auto const [step, horizon] = times(planner);
+  for (std::uint64_t seed = 0; seed < 4; ++seed) {
+    CAPTURE(seed);
+    auto world = traffic<Sim<Planner>>(seed, planner);
+    typename Planner::Workspace workspace;
+    auto const report = planner.think(world.observe(ego), {}, workspace);
+    REQUIRE(report.course.size() > 1);
+    CHECK(report.course.front().time == world.time());
+    CHECK(report.course.back().time == doctest::Approx(world.time() + horizon));
+    for (std::size_t k = 1; k < report.course.size(); ++k)
+      CHECK(report.course[k].time == doctest::Approx(report.course[k - 1].time + step));
+    CHECK(report.agents.size() == world.size());
+    for (auto const& frame : report.course) CHECK(frame.agents.size() == report.agents.size());
+    CHECK(report.candidates.size() > 1);
+    CHECK_FALSE(report.is_cut_short);
+    std::set<std::string> names;
+    for (auto const& candidate : report.candidates) {
+      CHECK(std::isfinite(candidate.score));
+      CHECK_FALSE(candidate.name.empty());
+      names.insert(candidate.name);
+    }
+    CHECK(names.size() == report.candidates.size());
+    REQUIRE(report.chosen);
+    CHECK(report.candidates[*report.chosen].refused.empty());
+    CHECK(report.decidedness >= 0.0);
+    CHECK(report.decidedness <= 1.0);
+    // What it drives is how that begins, and what it then remembers is what the report says.
+    REQUIRE(world.step(step));
+    auto const slot = world.slot_of(ego);
+    auto planned = report.course[1].agents[slot].state;
+    planned.time = world.state(ego).time;
+    CHECK(world.state(ego) == planned);
+    CHECK(world.template memory<Planner>(ego) == report.memory);
+  }
+}
+
+TEST_CASE_TEMPLATE("where there is nothing to plan, or a parameter is no number, it says so", Planner, ALL_PLANNERS) {
+  Sim<Planner> world(support::straight_road(1, 600.0));
+  auto planner = quick<Planner>();
+  world.add({.position = {590.0, -1.75}, .speed = 12, .behavior = planner});
+  typename Planner::Workspace workspace;
+  for (int i = 0; i < 4; ++i) CHECK(world.step(0.5).failed == 0);
+  REQUIRE(world.status(ego) != AgentStatus::driving);
+  CHECK_THROWS_AS((void)planner.think(world.observe(ego), {}, workspace), SearchError);
+  Sim<Planner> road(support::straight_road(1, 600.0));
+  road.add({.position = {60.0, -1.75}, .speed = 12, .behavior = planner});
+  if constexpr (requires { planner.options; })
+    planner.options.step = std::nan("");
+  else
+    planner.step = std::nan("");
+  CHECK_THROWS_AS((void)planner.think(road.observe(ego), {}, workspace), ParameterError);
+  CHECK_THROWS_AS(road.add({.position = {90.0, -1.75}, .behavior = planner}), ParameterError);
+}
+
+TEST_CASE_TEMPLATE("a budget cuts it short, and it plans with what it has", Planner,
+                   ProposalPlanner<PredictionWorld COMMA ConstantAcceleration COMMA IterationBudget>,
+                   PolicyTreePlanner<PredictionWorld COMMA IterationBudget>,
+                   FrenetPlanner<PredictionWorld COMMA ConstantAcceleration COMMA IterationBudget>, Greedy) {
+  Planner planner;
+  auto world = traffic<Sim<Planner>>(1, planner);
+  auto const weighed = [&](std::size_t most) {
+    planner.budget.iterations = most;
+    typename Planner::Workspace workspace;
+    auto const report = planner.think(world.observe(ego), {}, workspace);
+    CHECK(report.is_cut_short == (most < 1000 && !std::is_same_v<Planner, Greedy> ? true : most < 4));
+    CHECK(report.course.size() > 1);
+    return std::ranges::count_if(report.candidates, [](auto const& c) { return c.refused != "unchecked"; });
+  };
+  CHECK(weighed(1) == 1);
+  CHECK(weighed(3) == 3);
+  CHECK(weighed(1'000'000) > 3);
+  planner.budget.iterations = 2;
+  for (auto const& agent : world.roster().agents) world.set_behavior(agent.id, planner);
+  for (int i = 0; i < 5; ++i) REQUIRE(world.step(0.2));
+}
+
+TEST_CASE_TEMPLATE("under a budget of hardly any time it weighs one candidate, and plans", Planner,
+                   Mcts<PredictionWorld COMMA MacroActions COMMA TrafficReward COMMA IdmClassic COMMA
+                            MctsOptions<Ucb1 COMMA RandomRollout COMMA TimeBudget>>,
+                   ProposalPlanner<PredictionWorld COMMA ConstantAcceleration COMMA TimeBudget>,
+                   PolicyTreePlanner<PredictionWorld COMMA TimeBudget>,
+                   FrenetPlanner<PredictionWorld COMMA ConstantAcceleration COMMA TimeBudget>) {
+  Planner planner;
+  if constexpr (requires { planner.options; })
+    planner.options.budget.duration = 1e-6;
+  else
+    planner.budget.duration = 1e-6;
+  auto world = traffic<Sim<Planner>>(1, planner);
+  typename Planner::Workspace workspace;
+  auto const report = planner.think(world.observe(ego), {}, workspace);
+  if constexpr (requires { report.result; })
+    CHECK(report.result.iterations == 1);
+  else
+    CHECK(report.is_cut_short);
+  CHECK(report.course.back().time > world.time() + 1.0);
+  for (int i = 0; i < 5; ++i) REQUIRE(world.step(0.2));
+}
+
+TEST_CASE("a choice stands out by the gap between its score and the next, as a part of their range") {
+  std::vector<PlannerCandidate> candidates{{"a", 1.0}, {"b", 4.0}, {"c", 5.0}, {"d", 9.0, "collision"}};
+  CHECK(decidedness(candidates, 2) == doctest::Approx(0.25));
+  CHECK(decidedness(candidates, 1) == 0.0);
+  CHECK(decidedness(candidates, std::nullopt) == 0.0);
+  candidates[1].score = 5.0;
+  CHECK(decidedness(candidates, 2) == 0.0);
+  candidates[0].refused = candidates[1].refused = "off road";
+  CHECK(decidedness(candidates, 2) == 1.0);
 }

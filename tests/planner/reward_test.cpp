@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "cambium/execution/interpolate.hpp"
-#include "cambium/planner/mcts/mcts_single_agent.hpp"
+#include "cambium/planner/mcts/mcts.hpp"
 #include "cambium/world/world.hpp"
 #include "support/maps.hpp"
 
@@ -37,7 +37,7 @@ struct OnTheLeft {
 
 using Own = Reward<OnTheLeft, TooClose>;
 using PredictionWorld = World<BehaviorSet<MacroActions, IdmClassic>, InterpolateExecution, SingleTrack>;
-using Planner = MctsSingleAgent<PredictionWorld, MacroActions, Own>;
+using Planner = Mcts<PredictionWorld, MacroActions, Own>;
 using Sim = World<BehaviorSet<Planner, IdmClassic>, InterpolateExecution, SingleTrack>;
 
 constexpr Slot ego{};

@@ -635,12 +635,11 @@ TEST_CASE("under a constraint who was hardly tried is not taken to be safe") {
   CHECK(detail::final_choice<int>(arms, ReturnScale{}, FinalMove::most_visits, 0.05) == 0);
 }
 
-TEST_CASE("a wall-clock budget ends a search, after 64 iterations at the least") {
+TEST_CASE("a wall-clock budget ends a search after the iteration in which its time is over, one at the least") {
   TreeSearch<Crossing, Ucb1, RandomRollout, TimeBudget> search({}, {.horizon = 12}, {}, {}, {1e-6, 100'000});
   auto const& result = search.run({}, 1);
-  CHECK(result.iterations >= 64);
-  CHECK(result.iterations % 64 == 0);
-  CHECK(result.iterations < 100'000);
+  CHECK(result.iterations >= 1);
+  CHECK(result.iterations < 100);
 }
 
 namespace {

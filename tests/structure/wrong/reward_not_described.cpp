@@ -1,7 +1,7 @@
 // expect: describe Reward's parameters, as cambium::TrafficReward does
 // also: cambium::TreeSearch<Domain>: Domain must be a game
 #include <cambium/execution/interpolate.hpp>
-#include <cambium/planner/mcts/mcts_single_agent.hpp>
+#include <cambium/planner/mcts/mcts.hpp>
 #include <cambium/world/world.hpp>
 
 struct Fast {
@@ -12,4 +12,4 @@ struct Fast {
 };
 using Predicted = cambium::World<cambium::BehaviorSet<cambium::MacroActions, cambium::IdmClassic>,
                                  cambium::InterpolateExecution, cambium::SingleTrack>;
-cambium::MctsSingleAgent<Predicted, cambium::MacroActions, Fast>::Workspace workspace;
+cambium::Mcts<Predicted, cambium::MacroActions, Fast>::Workspace workspace;

@@ -1,6 +1,6 @@
 // expect: cambium::Reward<Evaluators...>: each must have `template <class World> auto operator()(World&, Slot) const`
 #include "cambium/execution/interpolate.hpp"
-#include "cambium/planner/mcts/mcts_single_agent.hpp"
+#include "cambium/planner/mcts/mcts.hpp"
 #include "cambium/world/world.hpp"
 
 struct Mood {

@@ -11,7 +11,7 @@
 namespace cambium {
 
 /// An IDM driver whose time headway is unknown but lies in one of a few regions of equal width: a planner's belief
-/// about another driver, see `MctsHypothesis`. The assumed headway is its memory, which a search draws anew.
+/// about another driver, see `Mcts`. The assumed headway is its memory, which a search draws anew.
 struct IdmHypotheses {
   static constexpr std::size_t most_regions = 8;
 

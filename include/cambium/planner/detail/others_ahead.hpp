@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "cambium/planner/detail/predicted.hpp"
+#include "cambium/planner/predicted.hpp"
 
 namespace cambium::detail {
 

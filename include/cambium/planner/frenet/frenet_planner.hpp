@@ -19,40 +19,42 @@
 #include "cambium/behavior/law/lane_ends.hpp"
 #include "cambium/core/stable_sort.hpp"
 #include "cambium/planner/detail/others_ahead.hpp"
-#include "cambium/planner/detail/predicted.hpp"
+#include "cambium/planner/planner_model.hpp"
+#include "cambium/planner/predicted.hpp"
+#include "cambium/planner/search/search_budget.hpp"
 #include "cambium/planner/frenet/frenet_candidate.hpp"
 #include "cambium/planner/search/search_result.hpp"
 
 namespace cambium {
 
-/// What a `FrenetPlanner` thought.
+/// Of a `FrenetPlanner`'s course at the vehicle, so that the next one goes on without a jerk.
+struct FrenetMemory {
+  float acceleration = 0.0f;  ///< [m/s^2]
+  float curvature = 0.0f;     ///< [1/m]
+
+  void fell_short(double, bool left_course) {
+    if (left_course) *this = {};
+  }
+  friend bool operator==(FrenetMemory const&, FrenetMemory const&) = default;
+};
+
+/// What a `FrenetPlanner` reports: its candidates are the courses, their scores less their costs; the first valid one
+/// is chosen. In the frames of its course only ego's state is planned; the rest of its records is that of a prediction.
 template <class World>
-struct FrenetReport {
-  std::vector<FrenetCandidate> candidates;            ///< cheapest first, all checked
-  std::optional<std::size_t> best;                    ///< the first valid one; none: it brakes
-  std::vector<typename World::State> course;          ///< of the best, step by step; empty where it brakes
-  std::vector<typename World::FrameType> prediction;  ///< the others, now and step by step, ego as one of them
-  std::vector<AgentId> agents;                        ///< of the frames' records
+struct FrenetReport : PlannerReport<World, FrenetMemory> {
+  std::vector<FrenetCandidate> courses;  ///< cheapest first, all checked unless the budget was over
 };
 
 /// Plans by sampling courses in the Frenet frames of its lane and those beside: quintic polynomials across, quartic or
 /// quintic ones along, to several speeds, or behind who is ahead, over several durations. The cheapest one that is
 /// drivable, stays on the road and keeps clear of the others, predicted once as `Others`, is driven; where there is
 /// none it brakes. `PredictionWorld` must have `Others` in its behaviour set.
-template <class PredictionWorld, class Others = ConstantAcceleration>
+template <class PredictionWorld, class Others = ConstantAcceleration, SearchBudget Budget = NoBudget>
 struct FrenetPlanner {
   static_assert(detail::check_planner<PredictionWorld, Others>());
 
-  /// Of the course at the vehicle, so that the next one goes on without a jerk.
-  struct Memory {
-    float acceleration = 0.0f;  ///< [m/s^2]
-    float curvature = 0.0f;     ///< [1/m]
-
-    void fell_short(double, bool left_course) {
-      if (left_course) *this = {};
-    }
-    friend bool operator==(Memory const&, Memory const&) = default;
-  };
+  using Memory = FrenetMemory;
+  using Report = FrenetReport<PredictionWorld>;
 
   struct Workspace {
     detail::OthersAhead<PredictionWorld> others;
@@ -72,6 +74,7 @@ struct FrenetPlanner {
   double horizon = 5.0;
   double step = 0.2;
   double low_speed = 4.0;
+  Budget budget{};
 
   static constexpr char const* name = "frenet_planner";
   static constexpr char const* summary =
@@ -91,7 +94,8 @@ struct FrenetPlanner {
         parameter("time_headway", &P::time_headway, "s", Range{0, 20}, "kept on top of it to who drives ahead"),
         parameter("horizon", &P::horizon, "s", Range{0.1, 60}, "up to which courses are checked"),
         parameter("step", &P::step, "s", Range{0.01, 2}, "between two checks"),
-        parameter("low_speed", &P::low_speed, "m/s", Range{0.1, 50}, "below which offsets change with the way driven"));
+        parameter("low_speed", &P::low_speed, "m/s", Range{0.1, 50}, "below which offsets change with the way driven"),
+        parameter("budget", &P::budget, "-", {}, "how many courses are checked, the cheapest first"));
   }
 
   void check(std::string const& where) const {
@@ -105,35 +109,49 @@ struct FrenetPlanner {
     plan.status = PlanStatus::failed;
     if constexpr (detail::Predicts<View, typename PredictionWorld::Behaviors, PredictionWorld>) {
       if (sample(view, memory, workspace) != SearchProblem::none) return plan;
-      for (auto const& candidate : workspace.candidates)
-        if (verdict(view, candidate, workspace) == FrenetVerdict::valid) return follow(view, candidate, memory, dt);
+      auto clock = budget;
+      clock.start();
+      for (std::size_t i = 0; i < workspace.candidates.size() && clock.goes_on(i); ++i)
+        if (auto const& candidate = workspace.candidates[i];
+            verdict(view, candidate, workspace) == FrenetVerdict::valid)
+          return follow(view, candidate, memory, dt);
       float bend = 0.0f;
       double const speed = std::max(0.0, view.state().speed);
-      memory = {static_cast<float>(speed > 0.0 ? limits.lowest_acceleration : 0.0), 0.0f};
+      memory = braking(view);
       return plan_to_center(view, bend, ConstantAcceleration{limits.lowest_acceleration}.motion(speed, dt), dt);
     }
     return plan;
   }
 
-  /// What it thinks of what `view` shows, on a course as `memory` says. Throws `ParameterError` where a parameter is
-  /// out of its range, `SearchError` where there is nothing to plan.
+  /// See `PlannerModel`. Unlike `plan`, it checks all courses.
   template <class View>
-  [[nodiscard]] FrenetReport<PredictionWorld> think(View const& view, Memory const& memory,
-                                                    Workspace& workspace) const {
+  [[nodiscard]] Report think(View const& view, Memory const& memory, Workspace& workspace) const {
     check_parameters(*this);
     throw_if(sample(view, memory, workspace));
-    FrenetReport<PredictionWorld> report;
+    Report report;
+    auto clock = budget;
+    clock.start();
     for (auto& candidate : workspace.candidates) {
-      candidate.verdict = verdict(view, candidate, workspace);
-      if (!report.best && candidate.verdict == FrenetVerdict::valid)
-        report.best = static_cast<std::size_t>(&candidate - workspace.candidates.data());
+      auto const number = report.candidates.size();
+      if (!report.is_cut_short) report.is_cut_short = !clock.goes_on(number);
+      if (!report.is_cut_short) candidate.verdict = verdict(view, candidate, workspace);
+      bool const is_valid = candidate.verdict == FrenetVerdict::valid;
+      if (is_valid && !report.chosen) report.chosen = number;
+      report.candidates.push_back(
+          {text(view, candidate), -candidate.cost, is_valid ? "" : to_string(candidate.verdict)});
     }
-    report.candidates = workspace.candidates;
-    report.prediction = workspace.others.frames;
-    for (auto const& agent : workspace.others.world->roster().agents) report.agents.push_back(agent.id);
-    if (!report.best) return report;
-    for (std::size_t k = 0; k < report.prediction.size(); ++k)
-      report.course.push_back(state_at(view, report.candidates[*report.best], static_cast<double>(k) * step).state);
+    report.decidedness = decidedness(report.candidates, report.chosen);
+    report.courses = workspace.candidates;
+    report.course = workspace.others.frames;
+    auto const& roster = workspace.others.world->roster();
+    for (auto const& agent : roster.agents) report.agents.push_back(agent.id);
+    auto const ego = *roster.slot_of(view.id());
+    for (std::size_t k = 1; k < report.course.size(); ++k) {
+      double const time = static_cast<double>(k) * step;
+      report.course[k].agents[ego].state = report.chosen ? state_at(view, report.courses[*report.chosen], time).state
+                                                         : braking_state(view, -limits.lowest_acceleration, time);
+    }
+    report.memory = report.chosen ? memory_of(state_at(view, report.courses[*report.chosen], step)) : braking(view);
     return report;
   }
 
@@ -146,10 +164,32 @@ struct FrenetPlanner {
     FrenetMotion<double> frenet;
   };
 
+  /// What it remembers while it brakes.
+  template <class View>
+  [[nodiscard]] Memory braking(View const& view) const {
+    return {static_cast<float>(view.state().speed > 0.0 ? limits.lowest_acceleration : 0.0), 0.0f};
+  }
+
+  template <class State>
+  [[nodiscard]] static Memory memory_of(Driven<State> const& driven) {
+    return {static_cast<float>(driven.course.acceleration), static_cast<float>(driven.course.curvature)};
+  }
+
+  /// "follow in 3 s, 12 m/s at 0.7 m, left lane".
+  template <class View>
+  [[nodiscard]] static std::string text(View const& view, FrenetCandidate const& c) {
+    auto const& piece = view.corridor().pieces[view.place().piece];
+    std::string words = c.kind == FrenetCandidate::Kind::follow ? "follow" : "keep speed";
+    words += " in " + detail::rounded_text(c.duration) + " s, " + detail::rounded_text(c.speed) + " m/s at " +
+             detail::rounded_text(c.offset) + " m";
+    if (c.corridor != view.place().corridor) words += c.corridor == piece.left ? ", left lane" : ", right lane";
+    return words;
+  }
+
   template <class View>
   [[nodiscard]] SearchProblem sample(View const& view, Memory const& memory, Workspace& workspace) const {
     std::optional<Slot> ego;
-    auto world = detail::predicted_for<PredictionWorld>(view, others, others, ego);
+    auto world = predicted_for<PredictionWorld>(view, others, others, ego);
     if (!ego) return SearchProblem::not_in_world;
     workspace.others.predict(std::move(world), *ego, horizon, step);
     workspace.candidates.clear();
@@ -267,7 +307,7 @@ struct FrenetPlanner {
     for (int i = 1; i <= parts; ++i) {
       auto const driven = state_at(view, candidate, dt * i / parts);
       plan.trajectory.push_back(driven.state);
-      memory = {static_cast<float>(driven.course.acceleration), static_cast<float>(driven.course.curvature)};
+      memory = memory_of(driven);
     }
     plan.action.acceleration = (plan.trajectory.front().speed - view.state().speed) * parts / dt;
     return plan;

@@ -14,10 +14,13 @@
 
 namespace cambium {
 
-/// How beliefs change with what is observed.
+/// How a planner learns what others are like from what they do.
 struct BeliefParameters {
   double forgetting = 0.02;
   double floor = 1e-3;
+  double speed_deviation = 0.05;
+  double range = 60.0;
+  double interval = 0.2;
 
   static constexpr char const* name = "belief";
   static constexpr char const* summary =
@@ -27,7 +30,13 @@ struct BeliefParameters {
     return parameter_list(
         parameter("forgetting", &P::forgetting, "-", Range{0, 1},
                   "share that goes back to all hypotheses alike before each observation: intentions change"),
-        parameter("floor", &P::floor, "-", Range{0, 0.5}, "no hypothesis becomes less likely than this, by number"));
+        parameter("floor", &P::floor, "-", Range{0, 0.5}, "no hypothesis becomes less likely than this, by number"),
+        parameter("speed_deviation", &P::speed_deviation, "m/s", Range{1e-3, 10},
+                  "standard deviation of a speed after a step, from what a hypothesis predicts"),
+        parameter("range", &P::range, "m", non_negative,
+                  "the 6 nearest agents within it are learnt about; all that is possible of the others is as likely"),
+        parameter("interval", &P::interval, "s", Range{0.01, 60},
+                  "between two calls of `think`; as a behaviour it looks in each step"));
   }
 };
 

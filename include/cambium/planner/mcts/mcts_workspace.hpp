@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -10,7 +11,8 @@
 #include <vector>
 
 #include "cambium/behavior/behavior_model.hpp"
-#include "cambium/planner/detail/predicted.hpp"
+#include "cambium/planner/planner_model.hpp"
+#include "cambium/planner/predicted.hpp"
 #include "cambium/planner/mcts/traffic_domain.hpp"
 #include "cambium/planner/search/parallel_tree_search.hpp"
 #include "cambium/planner/search/tree_search.hpp"
@@ -32,7 +34,7 @@ struct MctsOptions {
   double step = 0.2;
   int threads = 1;
 
-  static constexpr char const* name = "mcts";
+  static constexpr char const* name = "mcts_options";
   static constexpr char const* summary = "how a search of traffic goes about it";
   static constexpr auto parameters() {
     using P = MctsOptions;
@@ -46,17 +48,11 @@ struct MctsOptions {
   }
 };
 
-/// What a search of traffic thought.
-template <class Domain>
-struct MctsReport {
-  using World = typename Domain::World;
-
+/// What a search of traffic reports: its candidates are ego's actions at the root.
+template <class Domain, class Memory>
+struct MctsReport : PlannerReport<typename Domain::World, Memory> {
   SearchResult<typename Domain::Action> result;
-  std::vector<AgentId> choosing;                  ///< the agents of the result, ego first
-  std::vector<std::string> actions;               ///< ego's actions at the root, in words
-  std::vector<typename World::FrameType> course;  ///< the principal variation: all agents, now and step by step
-  std::vector<AgentId> agents;                    ///< of the frames' records
-  typename Domain::Memory memory{};  ///< ego's after one step of the search: for the next `think`, where that is done
+  std::vector<AgentId> choosing;  ///< the agents of the result, ego first
 };
 
 /// A search of traffic and its memory: what a planner works with.
@@ -131,21 +127,27 @@ class MctsWorkspace {
     }
   }
 
-  /// What the last run thought.
-  [[nodiscard]] MctsReport<Domain> report() {
+  /// What the last run, which must have had no problem, found; all but ego's memory.
+  template <class Memory>
+  [[nodiscard]] MctsReport<Domain, Memory> report() {
     auto& domain = this->domain();
     auto const& world = domain.world();
-    MctsReport<Domain> report;
+    MctsReport<Domain, Memory> report;
     report.result = trees_.result();
     for (auto const slot : domain.slots()) report.choosing.push_back(world.roster().agents[slot].id);
     for (auto const& agent : world.roster().agents) report.agents.push_back(agent.id);
-    if (report.result.problem != SearchProblem::none) return report;
-    using Set = detail::ActionSet<std::remove_cvref_t<decltype(domain.action_set())>>;
-    for (auto const& arm : report.result.of(0)) report.actions.push_back(Set::text(domain.action_set(), arm.action));
+    using Set = ActionSet<std::remove_cvref_t<decltype(domain.action_set())>>;
+    double second = 0.0;  // share of the visits
+    for (auto const& arm : report.result.of(0)) {
+      if (report.candidates.size() != report.result.best[0]) second = std::max(second, arm.share);
+      report.candidates.push_back(
+          {Set::text(domain.action_set(), arm.action), arm.mean_return, arm.visits > 0 ? "" : "not tried"});
+    }
+    report.chosen = report.result.best[0];
+    report.decidedness = std::max(0.0, report.result.choice(0).share - second);
     report.course.push_back(world.frame());
-    double const steps = static_cast<double>(report.result.variation.size() / domain.agents());
-    play(world.time() + steps * domain.dt(), [&](auto const& frame) { report.course.push_back(frame); });
-    report.memory = *std::get_if<Domain::behavior_index>(&report.course[1].agents[domain.slots()[0]].memory);
+    play(world.time() + search().parameters().horizon * domain.dt(),
+         [&](auto const& frame) { report.course.push_back(frame); });
     return report;
   }
 

@@ -13,7 +13,7 @@
 #include "cambium/geometry/angle.hpp"
 #include "cambium/planner/detail/same_scene.hpp"
 #include "cambium/planner/mcts/belief.hpp"
-#include "cambium/planner/mcts/traffic_actions.hpp"
+#include "cambium/planner/mcts/action_set.hpp"
 #include "cambium/planner/mcts/traffic_reward.hpp"
 #include "cambium/planner/search/search_domain.hpp"
 
@@ -24,7 +24,10 @@ namespace cambium {
 /// ends for one of those that choose.
 template <class PredictionWorld, class Actions, class Reward>
 class TrafficDomain {
-  using Set = detail::ActionSet<Actions>;
+  static_assert(SearchActions<Actions>,
+                "cambium::TrafficDomain<World, Actions, Reward>: Actions must be described and have a "
+                "cambium::ActionSet<Actions>, as MacroActions, MotionPrimitives and SampledInputs have");
+  using Set = ActionSet<Actions>;
   using Behavior = typename Set::Behavior;
   static_assert(
       PredictionWorld::Behaviors::template contains<Behavior>,

@@ -9,8 +9,10 @@
 #include <vector>
 
 #include "cambium/behavior/behavior_model.hpp"
-#include "cambium/planner/detail/predicted.hpp"
-#include "cambium/planner/mcts/traffic_actions.hpp"
+#include "cambium/planner/planner_model.hpp"
+#include "cambium/planner/predicted.hpp"
+#include "cambium/planner/search/search_budget.hpp"
+#include "cambium/planner/mcts/action_set.hpp"
 #include "cambium/planner/policy/policy_tree.hpp"
 #include "cambium/planner/search/search_result.hpp"
 
@@ -26,15 +28,12 @@ struct PolicyBranch {
   double cost{};            ///< of both: what it is chosen by
 };
 
-/// What a `PolicyTreePlanner` thought.
+/// What a `PolicyTreePlanner` reports: its candidates are the branches, their scores less their costs. The course is
+/// that of the best branch where all others keep their lanes.
 template <class World>
-struct PolicyTreeReport {
+struct PolicyTreeReport : PlannerReport<World, MacroActions::Memory> {
   std::vector<PolicyBranch> branches;
-  std::size_t best{};
-  std::vector<std::string> actions;               ///< ego's, in words
-  std::vector<IntentionBranch> intentions;        ///< of the others, that were asked for
-  std::vector<typename World::FrameType> course;  ///< of the best where all others keep their lanes: all agents
-  std::vector<AgentId> agents;                    ///< of the frames' records
+  std::vector<IntentionBranch> intentions;  ///< of the others, that were asked for
 };
 
 /// Plans by a tree of sequences of semantic actions with one change at most, each simulated closed loop under what the
@@ -42,7 +41,7 @@ struct PolicyTreeReport {
 /// the scenarios are weighed by how likely they are. EUDM (Ding, Zhang, Chen, Shen 2020, "Efficient uncertainty-aware
 /// decision-making for automated driving using guided branching"). `PredictionWorld` must have `MacroActions` in its
 /// behaviour set.
-template <class PredictionWorld>
+template <class PredictionWorld, SearchBudget Budget = NoBudget>
 struct PolicyTreePlanner {
   static_assert(detail::check_planner<PredictionWorld>());
   static_assert(PredictionWorld::Behaviors::template contains<MacroActions>,
@@ -50,6 +49,7 @@ struct PolicyTreePlanner {
                 "cambium::MacroActions, which carries out ego's actions and the others' intentions");
 
   using Memory = MacroActions::Memory;  ///< the ongoing action
+  using Report = PolicyTreeReport<PredictionWorld>;
 
   struct Workspace {
     std::optional<PredictionWorld> world;
@@ -59,6 +59,7 @@ struct PolicyTreePlanner {
     std::vector<PolicyBranch> branches;
     std::vector<IntentionBranch> intentions;
     std::size_t best{};
+    bool is_cut_short = false;
   };
 
   MacroActions actions = semantic_actions();
@@ -70,6 +71,7 @@ struct PolicyTreePlanner {
   double step = 0.2;
   int most_agents = 4;
   double range = 60.0;
+  Budget budget{};
 
   static constexpr char const* name = "policy_tree_planner";
   static constexpr char const* summary =
@@ -87,7 +89,8 @@ struct PolicyTreePlanner {
         parameter("layer_duration", &P::layer_duration, "s", Range{0.1, 20}, "of each"),
         parameter("step", &P::step, "s", Range{0.01, 1}, "of the simulations"),
         parameter("most_agents", &P::most_agents, "-", Range{0, 32}, "nearest others whose intentions are asked for"),
-        parameter("range", &P::range, "m", non_negative, "within which these are"));
+        parameter("range", &P::range, "m", non_negative, "within which these are"),
+        parameter("budget", &P::budget, "-", {}, "how many sequences are simulated, the ongoing action first"));
   }
 
   template <class View>
@@ -97,26 +100,29 @@ struct PolicyTreePlanner {
     if constexpr (detail::Predicts<View, typename PredictionWorld::Behaviors, PredictionWorld>) {
       if (grow(view, memory, workspace) != SearchProblem::none) return plan;
       begin(workspace, memory, workspace.branches[workspace.best].sequence.first, nullptr);
-      detail::drive_predicted(*workspace.world, workspace.ego, dt, step, plan);
+      drive_predicted(*workspace.world, workspace.ego, dt, step, plan);
       memory = *std::get_if<index>(&workspace.world->frame().agents[workspace.ego].memory);
     }
     return plan;
   }
 
-  /// What it thinks of what `view` shows, while it does what `memory` says. Throws `ParameterError` where a parameter
-  /// is out of its range, `SearchError` where there is nothing to plan.
+  /// See `PlannerModel`.
   template <class View>
-  [[nodiscard]] PolicyTreeReport<PredictionWorld> think(View const& view, Memory const& memory,
-                                                        Workspace& workspace) const {
+  [[nodiscard]] Report think(View const& view, Memory const& memory, Workspace& workspace) const {
     check_parameters(*this);
     throw_if(grow(view, memory, workspace));
-    PolicyTreeReport<PredictionWorld> report{workspace.branches, workspace.best, {}, workspace.intentions, {}, {}};
-    for (std::size_t i = 0; i < actions.size(); ++i)
-      report.actions.push_back(detail::ActionSet<MacroActions>::text(actions, static_cast<std::uint8_t>(i)));
+    Report report;
+    report.branches = workspace.branches;
+    report.intentions = workspace.intentions;
+    report.chosen = workspace.best;
+    report.is_cut_short = workspace.is_cut_short;
+    for (auto const& branch : report.branches) report.candidates.push_back({text(branch.sequence), -branch.cost});
+    report.decidedness = decidedness(report.candidates, report.chosen);
     for (auto const& agent : workspace.world->roster().agents) report.agents.push_back(agent.id);
     report.course.push_back(workspace.start);
-    (void)simulate(workspace, memory, report.branches[report.best].sequence, nullptr,
-                   [&](auto const& frame) { report.course.push_back(frame); });
+    (void)simulate<true>(workspace, memory, report.branches[workspace.best].sequence, nullptr,
+                         [&](auto const& frame) { report.course.push_back(frame); });
+    report.memory = *std::get_if<index>(&report.course[1].agents[workspace.ego].memory);
     return report;
   }
 
@@ -125,6 +131,14 @@ struct PolicyTreePlanner {
 
   [[nodiscard]] static bool is_change(MacroAction const& action, int side) {
     return action.kind == (side > 0 ? MacroAction::Kind::change_left : MacroAction::Kind::change_right);
+  }
+
+  /// "keep_gap for 2 s, then change_left 0".
+  [[nodiscard]] std::string text(PolicySequence const& sequence) const {
+    auto const words = [&](std::uint8_t action) { return ActionSet<MacroActions>::text(actions, action); };
+    if (sequence.first == sequence.then) return words(sequence.first);
+    return words(sequence.first) + " for " + detail::rounded_text(sequence.layers_of_first * layer_duration) +
+           " s, then " + words(sequence.then);
   }
 
   /// The ongoing action: after a change is done, keeping the lane at its acceleration.
@@ -142,7 +156,7 @@ struct PolicyTreePlanner {
   template <class View>
   [[nodiscard]] SearchProblem grow(View const& view, Memory const& memory, Workspace& workspace) const {
     std::optional<Slot> ego;
-    workspace.world = detail::predicted_for<PredictionWorld>(view, actions, intended_actions(others), ego);
+    workspace.world = predicted_for<PredictionWorld>(view, actions, intended_actions(others), ego);
     if (!ego) return SearchProblem::not_in_world;
     workspace.ego = *ego;
     workspace.start = workspace.world->frame();
@@ -151,9 +165,13 @@ struct PolicyTreePlanner {
     workspace.branches.clear();
     workspace.best = 0;
     auto const now = ongoing(memory);
+    auto clock = budget;
+    clock.start();
     for (auto const& sequence : policy_sequences(actions.size(), now, static_cast<std::size_t>(layers))) {
       bool const is_under_way = sequence.first == now && !memory.is_new;
       if (!is_under_way && !actions.available(view, sequence.first, memory.change)) continue;
+      workspace.is_cut_short = !clock.goes_on(workspace.branches.size());
+      if (workspace.is_cut_short) break;
       auto& branch = workspace.branches.emplace_back();
       branch.sequence = sequence;
       weigh(workspace, memory, branch);
@@ -173,7 +191,7 @@ struct PolicyTreePlanner {
     auto const sides = corridor.widths_at(at.s, at.segment);
     double const width = sides.left + sides.right;
     workspace.intentions.clear();
-    for (auto const slot : detail::nearest_agents(world, workspace.ego, static_cast<std::size_t>(most_agents), range)) {
+    for (auto const slot : nearest_agents(world, workspace.ego, static_cast<std::size_t>(most_agents), range)) {
       auto const& other = world.frame().agents[slot];
       auto const foot = corridor.center.project({other.state.x, other.state.y}, at.segment);
       double const aside = std::abs(foot.lateral);
@@ -198,7 +216,7 @@ struct PolicyTreePlanner {
     };
     double sum = 0.0;
     auto const add = [&](IntentionBranch const* deviation, double odds) {
-      auto const cost = simulate(workspace, memory, sequence, deviation, [](auto const&) {});
+      auto const cost = simulate<false>(workspace, memory, sequence, deviation, [](auto const&) {});
       double const total = weights.total(cost);
       if (branch.scenarios++ == 0) branch.worst = total;
       if (odds >= weights.least_odds) branch.worst = std::max(branch.worst, total);
@@ -236,7 +254,8 @@ struct PolicyTreePlanner {
           .choose(static_cast<std::size_t>(deviation->intention));
   }
 
-  template <class F>
+  /// Up to where ego's course is over, or, for `all`, to the horizon.
+  template <bool all, class F>
   [[nodiscard]] PolicyCost simulate(Workspace& workspace, Memory const& memory, PolicySequence const& sequence,
                                     IntentionBranch const* deviation, F&& visit) const {
     auto& world = *workspace.world;
@@ -245,19 +264,23 @@ struct PolicyTreePlanner {
     int const steps = std::max(1, static_cast<int>(std::lround(layers * layer_duration / step)));
     int const change = static_cast<int>(std::lround(sequence.layers_of_first * layer_duration / step));
     PolicyCost cost;
-    for (int k = 0; k < steps; ++k) {
-      if (k == change) world.template memory<MacroActions>(id).choose(sequence.then);
+    bool is_over = false;
+    for (int k = 0; k < steps && (all || !is_over); ++k) {
+      if (k == change && !is_over) world.template memory<MacroActions>(id).choose(sequence.then);
       (void)world.step(step);
       visit(world.frame());
+      if (is_over) continue;
       auto const end = course_end(world, workspace.ego);
-      if (end == CourseEnd::over || (workspace.has_goal && world.reached_goal(id))) break;
-      if (end != CourseEnd::none) {  // the sooner, the worse
+      if (end == CourseEnd::over || (workspace.has_goal && world.reached_goal(workspace.ego)))
+        is_over = true;
+      else if (end != CourseEnd::none) {  // the sooner, the worse
         double const left = static_cast<double>(steps - k) / steps;
         cost.safety += weights.collision * (1.0 + left);
         cost.efficiency += left;
-        break;
+        is_over = true;
+      } else {
+        add_step(workspace, id, 1.0 / steps, cost);
       }
-      add_step(workspace, id, 1.0 / steps, cost);
     }
     return cost;
   }

@@ -15,7 +15,9 @@
 #include "cambium/behavior/following/constant_acceleration.hpp"
 #include "cambium/behavior/lane_change/idm_proposal.hpp"
 #include "cambium/geometry/angle.hpp"
-#include "cambium/planner/detail/predicted.hpp"
+#include "cambium/planner/planner_model.hpp"
+#include "cambium/planner/predicted.hpp"
+#include "cambium/planner/search/search_budget.hpp"
 #include "cambium/planner/search/search_result.hpp"
 
 namespace cambium {
@@ -73,14 +75,12 @@ struct ProposalScore {
   double score{};                                                       ///< in all, 0 to 1
 };
 
-/// What a `ProposalPlanner` thought.
+/// What a `ProposalPlanner` reports: its candidates are the proposals. It chooses none, and brakes, where even the best
+/// meets with an infraction too soon.
 template <class World>
-struct ProposalReport {
+struct ProposalReport : PlannerReport<World, IdmProposal::Memory> {
   std::vector<ProposalScore> proposals;  ///< in order of preference
-  std::size_t best{};
-  bool brakes = false;                            ///< the best meets with an infraction too soon
-  std::vector<typename World::FrameType> course;  ///< of the best: all agents, now and step by step
-  std::vector<AgentId> agents;                    ///< of the frames' records
+  std::size_t best{};                    ///< of the proposals
 };
 
 /// Simulates IDM drivers at several speeds and offsets from the middle of its lane, closed loop, among others who
@@ -88,7 +88,7 @@ struct ProposalReport {
 /// "Parting with misconceptions about learning-based vehicle motion planning"). Brakes where that meets with an
 /// infraction too soon. `PredictionWorld` must have `IdmProposal` and `Others` in its behaviour set. Keeps its lane; at
 /// its goal it drives on.
-template <class PredictionWorld, class Others = ConstantAcceleration>
+template <class PredictionWorld, class Others = ConstantAcceleration, SearchBudget Budget = NoBudget>
 struct ProposalPlanner {
   static_assert(detail::check_planner<PredictionWorld, Others>());
   static_assert(PredictionWorld::Behaviors::template contains<IdmProposal>,
@@ -96,6 +96,7 @@ struct ProposalPlanner {
                 "cambium::IdmProposal, who is simulated");
 
   using Memory = IdmProposal::Memory;  ///< the proposal that is driven
+  using Report = ProposalReport<PredictionWorld>;
 
   struct Workspace {
     std::optional<PredictionWorld> world;
@@ -104,6 +105,7 @@ struct ProposalPlanner {
     std::vector<Slot> counting;  ///< whom it has to look out for
     std::vector<ProposalScore> proposals;
     std::size_t best{};
+    bool is_cut_short = false;
   };
 
   IdmProposal driver{};
@@ -115,6 +117,7 @@ struct ProposalPlanner {
   double step = 0.1;
   double emergency_time = 2.0;
   double emergency_deceleration = 6.0;
+  Budget budget{};
 
   static constexpr char const* name = "proposal_planner";
   static constexpr char const* summary =
@@ -133,7 +136,8 @@ struct ProposalPlanner {
         parameter("horizon", &P::horizon, "s", Range{0.1, 60}, "of the simulations"),
         parameter("step", &P::step, "s", Range{0.01, 1}, "of the simulations"),
         parameter("emergency_time", &P::emergency_time, "s", non_negative, "to an infraction, below which it brakes"),
-        parameter("emergency_deceleration", &P::emergency_deceleration, "m/s^2", Range{0.01, 50}, "then"));
+        parameter("emergency_deceleration", &P::emergency_deceleration, "m/s^2", Range{0.01, 50}, "then"),
+        parameter("budget", &P::budget, "-", {}, "how many proposals are simulated, in order of preference"));
   }
 
   void check(std::string const& where) const {
@@ -154,25 +158,39 @@ struct ProposalPlanner {
                               best.offset);
       }
       begin(workspace, best, memory);
-      detail::drive_predicted(*workspace.world, workspace.ego, dt, step, plan);
+      drive_predicted(*workspace.world, workspace.ego, dt, step, plan);
       memory = *std::get_if<index>(&workspace.world->frame().agents[workspace.ego].memory);
     }
     return plan;
   }
 
-  /// What it thinks of what `view` shows, while it drives as `memory` says. Throws `ParameterError` where a parameter
-  /// is out of its range, `SearchError` where there is nothing to plan.
+  /// See `PlannerModel`.
   template <class View>
-  [[nodiscard]] ProposalReport<PredictionWorld> think(View const& view, Memory const& memory,
-                                                      Workspace& workspace) const {
+  [[nodiscard]] Report think(View const& view, Memory const& memory, Workspace& workspace) const {
     check_parameters(*this);
     throw_if(propose(view, memory, workspace));
-    ProposalReport<PredictionWorld> report{workspace.proposals, workspace.best, false, {workspace.start}, {}};
-    auto const& best = report.proposals[report.best];
-    report.brakes = best.time_to_infraction < emergency_time;
+    Report report;
+    report.proposals = workspace.proposals;
+    report.best = workspace.best;
+    report.is_cut_short = workspace.is_cut_short;
+    for (auto const& p : report.proposals)
+      report.candidates.push_back(
+          {detail::rounded_text(p.speed_share) + " of the desired speed at " + detail::rounded_text(p.offset) + " m",
+           p.score,
+           p.collides      ? "collision"
+           : p.leaves_road ? "off road"
+                           : ""});
     for (auto const& agent : workspace.world->roster().agents) report.agents.push_back(agent.id);
-    auto again = best;
-    simulate(workspace, again, memory, [&](auto const& frame) { report.course.push_back(frame); });
+    report.course.push_back(workspace.start);
+    auto again = report.proposals[report.best];
+    simulate<true>(workspace, again, memory, [&](auto const& frame) { report.course.push_back(frame); });
+    report.memory = *std::get_if<index>(&report.course[1].agents[workspace.ego].memory);
+    if (report.proposals[report.best].time_to_infraction < emergency_time)
+      for (auto& frame : report.course)
+        frame.agents[workspace.ego].state = braking_state(view, emergency_deceleration, frame.time - view.time());
+    else
+      report.chosen = report.best;
+    report.decidedness = decidedness(report.candidates, report.chosen);
     return report;
   }
 
@@ -182,18 +200,22 @@ struct ProposalPlanner {
   template <class View>
   [[nodiscard]] SearchProblem propose(View const& view, Memory const& memory, Workspace& workspace) const {
     std::optional<Slot> ego;
-    workspace.world = detail::predicted_for<PredictionWorld>(view, driver, others, ego);
+    workspace.world = predicted_for<PredictionWorld>(view, driver, others, ego);
     if (!ego) return SearchProblem::not_in_world;
     workspace.ego = *ego;
     workspace.start = workspace.world->frame();
     detail::choose_counting(*workspace.world, *ego, workspace.counting);
     workspace.proposals.clear();
+    auto clock = budget;
+    clock.start();
     for (double const offset : offsets)
       for (double const share : speed_shares) {
+        workspace.is_cut_short = !clock.goes_on(workspace.proposals.size());
+        if (workspace.is_cut_short) return choose(workspace);
         auto& proposal = workspace.proposals.emplace_back();
         proposal.speed_share = share;
         proposal.offset = offset;
-        simulate(workspace, proposal, memory, [](auto const&) {});
+        simulate<false>(workspace, proposal, memory, [](auto const&) {});
       }
     return choose(workspace);
   }
@@ -206,7 +228,8 @@ struct ProposalPlanner {
         static_cast<float>(proposal.speed_share), static_cast<float>(proposal.offset), memory.bend};
   }
 
-  template <class F>
+  /// Up to an infraction or the end of the course, or, for `all`, to the horizon.
+  template <bool all, class F>
   void simulate(Workspace& workspace, ProposalScore& proposal, Memory const& memory, F&& visit) const {
     auto& world = *workspace.world;
     auto const ego = workspace.ego;
@@ -236,6 +259,11 @@ struct ProposalPlanner {
       too_fast += now.state.speed > corridor.speed_limit_at(now.lane.s) + 1e-3 ? 1 : 0;
     }
     proposal.speed_limit = 1.0 - static_cast<double>(too_fast) / std::max(1, driven);
+    if constexpr (all)
+      for (++driven; driven < steps; ++driven) {
+        (void)world.step(step);
+        visit(world.frame());
+      }
   }
 
   /// Time to collision and comfort of a step from `before`.

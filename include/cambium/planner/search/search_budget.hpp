@@ -4,6 +4,7 @@
 #include <chrono>
 #include <concepts>
 #include <cstddef>
+#include <limits>
 
 #include "cambium/core/parameters.hpp"
 
@@ -18,9 +19,10 @@ namespace detail {
 
 }  // namespace detail
 
-/// How long a search goes on: `most()`, the iterations that it never exceeds; `start()`; `goes_on(done)`, whether there
-/// is to be another one after `done`; `part(i, n)`: what the `i`th of `n` searches that share it gets. It may have
-/// `expected()`, how many to make room for from the start: for `most()`, where it does not.
+/// How long a planner goes on. An iteration is one of a tree search, or one candidate of a planner that weighs a list.
+/// `most()`: iterations that it never exceeds; `start()`; `goes_on(done)`: whether there is to be another one after
+/// `done`; `part(i, n)`: what the `i`th of `n` searches that share it gets. It may have `expected()`: how many to make
+/// room for from the start (else for `most()`).
 template <class B>
 concept SearchBudget = std::copyable<B> && requires(B budget, B const fixed, std::size_t done) {
   { fixed.most() } -> std::same_as<std::size_t>;
@@ -47,8 +49,8 @@ struct IterationBudget {
 };
 static_assert(SearchBudget<IterationBudget>);
 
-/// So much time of the wall clock, looked at every 64 iterations, so that there are 64 at least: results depend on the
-/// machine and its load. Trees grow as they must: a search allocates where none before it came as far.
+/// So much time of the wall clock: the clock is read before each iteration but the first, which is always there.
+/// Results depend on the machine and its load. A tree that grows larger than any before it allocates.
 struct TimeBudget {
   double duration = 0.01;
   std::size_t iterations = 1'000'000;
@@ -68,7 +70,7 @@ struct TimeBudget {
   }
   void start() { begin = std::chrono::steady_clock::now(); }
   [[nodiscard]] bool goes_on(std::size_t done) const {
-    if (done == 0 || done % 64 != 0) return done < iterations;
+    if (done == 0) return true;
     std::chrono::duration<double> const spent = std::chrono::steady_clock::now() - begin;
     return done < iterations && spent.count() < duration;
   }
@@ -76,5 +78,18 @@ struct TimeBudget {
   std::chrono::steady_clock::time_point begin{};  ///< of the search
 };
 static_assert(SearchBudget<TimeBudget>);
+
+/// Every candidate is weighed: for planners that weigh a list. A tree search needs a budget that ends.
+struct NoBudget {
+  static constexpr char const* name = "no_budget";
+  static constexpr char const* summary = "every candidate is weighed";
+  static constexpr auto parameters() { return parameter_list(); }
+
+  [[nodiscard]] std::size_t most() const { return std::numeric_limits<std::size_t>::max(); }
+  void start() {}
+  [[nodiscard]] NoBudget part(std::size_t, std::size_t) const { return {}; }
+  [[nodiscard]] bool goes_on(std::size_t) const { return true; }
+};
+static_assert(SearchBudget<NoBudget>);
 
 }  // namespace cambium

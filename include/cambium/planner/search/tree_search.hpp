@@ -7,6 +7,7 @@
 #include <limits>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -39,6 +40,9 @@ class TreeSearch {
   static_assert(!SearchDomain<Domain> || RolloutPolicy<Rollout, Domain>,
                 "cambium::TreeSearch<Domain, Selection, Rollout>: Rollout must be a roll-out policy such as "
                 "cambium::RandomRollout (see RolloutPolicy)");
+  static_assert(!std::is_same_v<Budget, NoBudget>,
+                "cambium::TreeSearch: a tree search has no end of its own; take cambium::IterationBudget or "
+                "cambium::TimeBudget");
   static_assert(!SearchDomain<Domain> || detail::fewer_actions_than<Domain, 65536>,
                 "cambium::TreeSearch<Domain>: Domain::max_actions must be 1 to 65535");
 

@@ -34,13 +34,37 @@ struct SampledInputs {
   }
 };
 
-namespace detail {
-
-/// How a search gives an agent its actions: `Behavior`, what carries them out; `Choice`, what an action is; `list`, or
-/// `sample`; `set`, which writes one into the behaviour's memory; `action`, what a choice stands for; `goes_on_alike`,
-/// whether the same manoeuvre is under way in two memories.
+/// How a search uses `Actions`, a struct that describes what an agent may do. Specialise it for actions of your own:
+///
+/// - `Behavior`: the model that carries actions out, of the behaviour set of the prediction;
+///   `static Behavior const& behavior(Actions const&)`.
+/// - `Choice`: what stands for an action in the tree, comparable by ==;
+///   `static void set(Behavior::Memory&, Choice)` tells the behaviour to do it from now on.
+/// - `static std::size_t list(Actions const&, View const&, Behavior::Memory const&, std::span<Choice> out)` writes the
+///   choices that are available into `out` and returns how many, at most `static constexpr std::size_t capacity`. Or,
+///   for a continuum: `static Choice sample(Actions const&, RandomStream&)`.
+/// - `static Choice usual(Actions const&)`: what a driver does who does nothing in particular.
+/// - `static auto action(Actions const&, Choice)`: what a choice stands for, as `RewardModel::prior` gets it;
+///   `static std::string text(Actions const&, Choice)`: in words.
+/// - `static bool goes_on_alike(Behavior::Memory const&, Behavior::Memory const&)`: whether the same manoeuvre is under
+///   way in both; a kept tree goes on only then.
+///
+/// `Actions` itself must be described.
 template <class Actions>
 struct ActionSet;
+
+/// Whether there is an `ActionSet<Actions>`.
+template <class Actions>
+concept SearchActions = Described<Actions> &&
+    requires(Actions const& actions, typename ActionSet<Actions>::Choice choice,
+             typename ActionSet<Actions>::Behavior::Memory& memory) {
+  ActionSet<Actions>::behavior(actions);
+  ActionSet<Actions>::set(memory, choice);
+  { ActionSet<Actions>::usual(actions) } -> std::same_as<typename ActionSet<Actions>::Choice>;
+  ActionSet<Actions>::action(actions, choice);
+  { ActionSet<Actions>::text(actions, choice) } -> std::same_as<std::string>;
+  { ActionSet<Actions>::goes_on_alike(memory, memory) } -> std::same_as<bool>;
+};
 
 template <>
 struct ActionSet<MacroActions> {
@@ -122,11 +146,14 @@ struct ActionSet<SampledInputs> {
   }
 };
 
+static_assert(SearchActions<MacroActions> && SearchActions<MotionPrimitives> && SearchActions<SampledInputs>);
+
+namespace detail {
+/// Whether the actions are a list rather than a continuum.
 template <class Actions>
 concept ListsChoices = requires {
   ActionSet<Actions>::capacity;
 };
-
 }  // namespace detail
 
 }  // namespace cambium

@@ -8,12 +8,16 @@
 #include <type_traits>
 #include <vector>
 
+#include "cambium/behavior/following/constant_acceleration.hpp"
+#include "cambium/behavior/law/follow_lane.hpp"
 #include "cambium/core/plan.hpp"
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/evaluation/course_end.hpp"
 #include "cambium/world/prediction.hpp"
 
-namespace cambium::detail {
+namespace cambium {
+
+namespace detail {
 
 /// Whether a view can be asked for predictions: `ViewArchetype` cannot.
 template <class View, class Set, class Other>
@@ -67,17 +71,21 @@ template <class PredictionWorld, class Predicted>
   return true;
 }
 
-/// The world that is predicted; the place of the agent itself there in `ego`, nothing where it is not in traffic.
+}  // namespace detail
+
+/// The world that a planner predicts for the agent of `view`: that agent behaves as `behavior`, all others as `others`,
+/// both of the behaviour set of `PredictionWorld`. `ego`: the agent's slot there; none where it is not in traffic.
 template <class PredictionWorld, class Ego, class Others, class View>
 [[nodiscard]] PredictionWorld predicted_for(View const& view, Ego const& behavior, Others const& others,
                                             std::optional<Slot>& ego) {
   auto world = view.predict(predict_as<typename PredictionWorld::Behaviors>(behavior, others));
-  static_assert(check_prediction_world<PredictionWorld, decltype(world)>());
+  static_assert(detail::check_prediction_world<PredictionWorld, decltype(world)>());
   ego = world.roster().slot_of(view.id());
   return world;
 }
 
-/// Where a plan ends before `end` [s], as one does that leaves the map, it goes on at its last speed and heading.
+/// Lets a plan that ends before the time `end` [s], such as one that leaves the map, go on at its last speed and
+/// heading.
 template <class View>
 void go_straight_on(View const& view, double end, Plan<View>& plan) {
   auto state = plan.trajectory.empty() ? view.state() : plan.trajectory.back();
@@ -90,8 +98,7 @@ void go_straight_on(View const& view, double end, Plan<View>& plan) {
   plan.trajectory.push_back(state);
 }
 
-/// What the agent at `slot` does in `world` over the next `dt` [s], in equal steps of at most `step` [s], becomes its
-/// plan.
+/// Steps `world` by `dt` [s], in equal steps of at most `step` [s]; what the agent at `slot` does becomes its plan.
 template <class World, class S>
 void drive_predicted(World& world, Slot slot, double dt, double step, BasicPlan<S>& plan) {
   auto const steps = std::max(1, static_cast<int>(std::ceil(dt / step - 1e-9)));
@@ -106,7 +113,16 @@ void drive_predicted(World& world, Slot slot, double dt, double step, BasicPlan<
   plan.status = PlanStatus::valid;
 }
 
-/// The agents of `world` next to the one at `ego`, at most `count` of them within `range` [m], nearest first.
+/// Where the agent is after `time` [s] of braking with `deceleration` [m/s^2], along its lane and as far beside its
+/// middle as it is now.
+template <class View>
+[[nodiscard]] typename View::State braking_state(View const& view, double deceleration, double time) {
+  double const speed = std::max(0.0, view.state().speed);
+  if (!(time > 0.0)) return view.state();
+  return follow_lane(view, ConstantAcceleration{-deceleration}.motion(speed, time), time);
+}
+
+/// The agents nearest to the one at `ego`, at most `count` of them and within `range` [m], nearest first. O(n log n).
 template <class World>
 [[nodiscard]] std::vector<Slot> nearest_agents(World const& world, Slot ego, std::size_t count, double range) {
   auto const& agents = world.frame().agents;
@@ -123,6 +139,8 @@ template <class World>
   slots.resize(std::min(slots.size(), count));
   return slots;
 }
+
+namespace detail {
 
 /// How far `other` lies ahead of the reference point of `ego`, along ego's heading [m].
 template <MotionState S>
@@ -194,4 +212,6 @@ template <class World>
   return 0;
 }
 
-}  // namespace cambium::detail
+}  // namespace detail
+
+}  // namespace cambium

@@ -1,0 +1,235 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "cambium/behavior/behavior_model.hpp"
+#include "cambium/behavior/following/idm_classic.hpp"
+#include "cambium/behavior/following/idm_hypotheses.hpp"
+#include "cambium/core/distributions.hpp"
+#include "cambium/planner/mcts/belief.hpp"
+#include "cambium/planner/mcts/mcts_workspace.hpp"
+#include "cambium/planner/planner_model.hpp"
+#include "cambium/planner/predicted.hpp"
+
+namespace cambium {
+
+namespace detail {
+
+/// What an `Mcts` believes of one other agent.
+struct TrackedAgent {
+  AgentId id = none<AgentId>;
+  Belief belief{};
+  std::array<float, IdmHypotheses::most_regions> expected{};  ///< speed at the next look, by region [m/s]
+
+  friend bool operator==(TrackedAgent const&, TrackedAgent const&) = default;
+};
+
+}  // namespace detail
+
+/// What an `Mcts` remembers that learns about others.
+template <class CourseMemory>
+struct BeliefMemory {
+  /// Those about whom something is believed.
+  static constexpr std::size_t capacity = 6;
+
+  std::array<detail::TrackedAgent, capacity> tracked{};
+  double expected_at = -1.0;  ///< when their speeds are expected [s]
+  CourseMemory course{};      ///< the manoeuvre under way
+
+  /// What is believed of an agent; null where nothing is.
+  [[nodiscard]] Belief const* belief(AgentId id) const {
+    auto const at = std::ranges::find(tracked, id, &detail::TrackedAgent::id);
+    return is_valid(id) && at != tracked.end() ? &at->belief : nullptr;
+  }
+  friend bool operator==(BeliefMemory const&, BeliefMemory const&) = default;
+};
+
+/// Plans by Monte Carlo tree search over `Actions` in predicted worlds, for what `Reward` says; the other agents behave
+/// as `Others`. `PredictionWorld` is the world's own type with a behaviour set that holds the model that carries
+/// actions out and `Others`. As a behaviour it searches anew in each step, for a copied world has no tree.
+///
+/// By its fields and template arguments it is
+/// - single-agent search (UCT: Kocsis, Szepesvari 2006): the defaults;
+/// - cooperative search (decoupled UCT: Tak, Lanctot, Winands 2014; Lenz, Kessler, Knoll 2016), with `most_agents`
+///   above 1: the agents nearest to ego choose at the same time as it does, each for its own reward plus `cooperation`
+///   times the others'. Their goals are not known: let the reward say what everybody wants, such as speed and no
+///   collision;
+/// - search under a chance constraint (CC-POMCP: Lee et al. 2018), with `options.search.constraint.limit` below 1: the
+///   best reward among courses that collide with at most that probability, as far as the search can tell; where there
+///   is none, the least probable collision. The search learns what a collision weighs (a Lagrange multiplier), so the
+///   reward need not;
+/// - search with hypotheses about the others (RSBG: Bernhard, Knoll 2020), where `Others` is `IdmHypotheses`: their
+///   time headways are not known. Each lies in one of a few regions, with a probability that follows what the agent
+///   does (Bayes); each iteration draws all headways anew (root sampling: Silver, Veness 2010), so that nodes stand for
+///   ego's actions only.
+///
+/// All of these go together.
+template <class PredictionWorld, class Actions = MacroActions, class Reward = TrafficReward, class Others = IdmClassic,
+          class Options = MctsOptions<>>
+struct Mcts {
+  static_assert(detail::check_planner<PredictionWorld, Others>());
+  static_assert(Described<Others>,
+                "cambium: a planner's Others must be a behaviour with described parameters, as cambium::IdmClassic; "
+                "where it has none: `static constexpr auto parameters() { return cambium::parameter_list(); }`");
+
+  /// Whether it learns what the others are like.
+  static constexpr bool learns = std::is_same_v<Others, IdmHypotheses>;
+
+  using CourseMemory = detail::ActionMemory<Actions>;
+  using Memory = std::conditional_t<learns, BeliefMemory<CourseMemory>, CourseMemory>;
+  using Domain = std::conditional_t<learns, HypothesisDomain<PredictionWorld, Actions, Reward>,
+                                    TrafficDomain<PredictionWorld, Actions, Reward>>;
+  using Workspace = MctsWorkspace<Domain, Options>;
+  using Report = MctsReport<Domain, Memory>;
+
+  Actions actions{};
+  Others others{};
+  Reward reward{};
+  Options options{};
+  int most_agents = 1;
+  double range = 50.0;
+  double cooperation = 0.5;
+  BeliefParameters belief{};
+
+  static constexpr char const* name = "mcts";
+  static constexpr char const* summary =
+      "tree search (decoupled UCT) over ego's actions in predicted worlds; by its fields with agents that choose at "
+      "once, a limit of risk, and beliefs about the others";
+  static constexpr char const* source =
+      "Kocsis, Szepesvari 2006; Lenz, Kessler, Knoll 2016; Lee et al. 2018; Bernhard, Knoll 2020";
+  static constexpr auto parameters() {
+    using P = Mcts;
+    return parameter_list(
+        parameter("actions", &P::actions, "-", {}, "what ego, and whoever chooses with it, may do"),
+        parameter("others", &P::others, "-", {}, "how the others are expected to behave"),
+        parameter("reward", &P::reward, "-", {}, "what ego wants, and each of those who choose with it"),
+        parameter("options", &P::options, "-", {}, "how it is searched"),
+        parameter("most_agents", &P::most_agents, "-", Range{1, 32}, "who choose, ego among them"),
+        parameter("range", &P::range, "m", non_negative, "agents farther away do not choose"),
+        parameter("cooperation", &P::cooperation, "-", Range{0, 1}, "weight of the others' rewards in one's own"),
+        parameter("belief", &P::belief, "-", {}, "how it learns about others that are idm_hypotheses"));
+  }
+
+  template <class View>
+  [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt, Workspace& workspace) const {
+    return detail::plan_by_search<PredictionWorld>(
+        view, course_of(memory), workspace, dt, [&](auto& w) -> auto const& { return search(view, memory, dt, w); });
+  }
+
+  /// See `PlannerModel`. The report's course is the principal variation, and from its end on what agents do without any
+  /// manoeuvre; a candidate's score is its mean return, and `decidedness` the gap between the shares of visits of the
+  /// chosen action and the next. After `workspace.keep()` it builds on the last tree: see there.
+  template <class View>
+  [[nodiscard]] Report think(View const& view, Memory const& memory, Workspace& workspace) const {
+    check_parameters(*this);
+    Memory next = memory;
+    detail::throw_if(search(view, next, belief.interval, workspace), workspace, view.id());
+    auto report = workspace.template report<Memory>();
+    auto const& after = report.course[1].agents[workspace.domain().slots()[0]];
+    course_of(next) = *std::get_if<Domain::behavior_index>(&after.memory);
+    report.memory = next;
+    return report;
+  }
+
+ private:
+  [[nodiscard]] static CourseMemory& course_of(Memory& memory) {
+    if constexpr (learns)
+      return memory.course;
+    else
+      return memory;
+  }
+
+  template <class View>
+  [[nodiscard]] SearchResult<typename Domain::Action> const& search(View const& view, Memory& memory, double dt,
+                                                                    Workspace& workspace) const {
+    std::vector<Slot> slots;
+    auto world = detail::world_to_search<PredictionWorld>(view, actions, course_of(memory), others, slots);
+    if (most_agents > 1 && !slots.empty())
+      for (auto const slot : nearest_agents(world, slots[0], static_cast<std::size_t>(most_agents - 1), range)) {
+        if (reward.judge(world, slot, options.step).ends) continue;  // its course is over
+        world.set_behavior(world.roster().agents[slot].id, ActionSet<Actions>::behavior(actions));
+        slots.push_back(slot);
+      }
+    double const weight = most_agents > 1 ? cooperation : 0.0;
+    auto const seed = view.random(detail::search_purpose)();
+    if constexpr (learns) {
+      std::vector<typename Domain::Unknown> unknowns;
+      if (!slots.empty()) unknowns = learn(world, slots[0], memory, dt);
+      Domain domain(std::move(world), slots, actions, reward, options.step, weight);
+      domain.set_unknowns(unknowns, others);
+      return workspace.run(std::move(domain), options, seed);
+    } else {
+      return workspace.run(Domain(std::move(world), slots, actions, reward, options.step, weight), options, seed);
+    }
+  }
+
+  [[nodiscard]] static IdmHypotheses::Memory* headway_at(typename PredictionWorld::FrameType& frame, Slot slot) {
+    return std::get_if<PredictionWorld::Behaviors::template index<IdmHypotheses>>(&frame.agents[slot].memory);
+  }
+
+  /// Takes in what the others did since the last look, and notes what they are expected to do until the next one, in
+  /// `dt` [s]. Returns what is believed of each.
+  [[nodiscard]] auto learn(PredictionWorld const& world, Slot ego, Memory& memory, double dt) const {
+    constexpr double same_time = 1e-6;  // [s]
+    auto frame = world.frame();
+    auto near = nearest_agents(world, ego, Memory::capacity, belief.range);
+    std::erase_if(near, [&](Slot slot) { return headway_at(frame, slot) == nullptr; });  // they choose
+    auto const regions = static_cast<std::size_t>(others.regions);
+    bool const was_expected = std::abs(memory.expected_at - world.time()) < same_time;
+    decltype(memory.tracked) tracked{};
+    std::vector<typename Domain::Unknown> unknowns;
+    for (std::size_t i = 0; i < near.size(); ++i) {
+      auto const id = world.roster().agents[near[i]].id;
+      auto const known = std::ranges::find(memory.tracked, id, &detail::TrackedAgent::id);
+      bool const is_known = known != memory.tracked.end() && known->belief.size() == regions;
+      tracked[i] = is_known ? *known : detail::TrackedAgent{id, Belief(regions), {}};
+      if (is_known && was_expected) observe(tracked[i], frame.agents[near[i]].state.speed);
+      unknowns.push_back({near[i], tracked[i].belief});
+    }
+    // Of the rest nothing is known.
+    for (Slot slot{}; index_of(slot) < world.size(); ++slot)
+      if (headway_at(frame, slot) != nullptr && std::ranges::find(near, slot) == near.end())
+        unknowns.push_back({slot, Belief(regions)});
+    memory.tracked = tracked;
+    expect(world, near, memory, dt);
+    return unknowns;
+  }
+
+  void observe(detail::TrackedAgent& other, double speed) const {
+    std::array<double, IdmHypotheses::most_regions> likelihoods{};
+    double nearest = 1e300;
+    auto const regions = static_cast<std::size_t>(others.regions);
+    for (std::size_t r = 0; r < regions; ++r) {
+      double const off = (speed - static_cast<double>(other.expected[r])) / belief.speed_deviation;
+      likelihoods[r] = 0.5 * off * off;
+      nearest = std::min(nearest, likelihoods[r]);
+    }
+    // Relative to the best: where no headway explains what was seen, they would all vanish.
+    for (std::size_t r = 0; r < regions; ++r) likelihoods[r] = detail::portable_exp(nearest - likelihoods[r]);
+    other.belief.update({likelihoods.data(), regions}, belief);
+  }
+
+  /// Notes the speed of each of `slots` after `dt` [s] under each hypothesis.
+  void expect(PredictionWorld const& world, std::span<Slot const> slots, Memory& memory, double dt) const {
+    PredictionWorld trial = world;
+    for (std::size_t r = 0; r < static_cast<std::size_t>(others.regions); ++r) {
+      auto frame = world.frame();
+      for (auto const slot : slots) headway_at(frame, slot)->time_headway = static_cast<float>(others.headway(r, 0.5));
+      trial.exchange(frame);
+      (void)trial.step(dt);
+      for (std::size_t i = 0; i < slots.size(); ++i)
+        memory.tracked[i].expected[r] = static_cast<float>(trial.frame().agents[slots[i]].state.speed);
+    }
+    memory.expected_at = world.time() + dt;
+  }
+};
+
+}  // namespace cambium
