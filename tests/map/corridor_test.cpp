@@ -677,8 +677,10 @@ TEST_CASE("a road corridor is found along roads in either direction") {
       CHECK(map.lane(found->route.front()).along_road == (direction == RoadDirection::forward));
     });
   });
-  CHECK(several > 20);
-  CHECK(backward > 20);
+  if (corpus::root()) {
+    CHECK(several > 20);
+    CHECK(backward > 20);
+  }
   auto const map =
       cambium::load_opendrive((std::filesystem::path(CAMBIUM_SOURCE_DIR) / "maps" / "merging.xodr").string()).map;
   std::vector<std::string> const none_there{"77"}, back{"1", "2"};

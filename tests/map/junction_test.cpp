@@ -179,8 +179,10 @@ TEST_CASE("on real maps junctions know their roads, and their area holds every b
       CHECK(outside == 0);
     }
   });
-  CHECK(junctions > 50);
-  CHECK(without > 0);
+  if (corpus::root()) {
+    CHECK(junctions > 50);
+    CHECK(without > 0);
+  }
 }
 
 TEST_CASE("on real maps conflicts are those overlaps of lanes that lie in one junction, with ground of both lanes") {
@@ -212,7 +214,9 @@ TEST_CASE("on real maps conflicts are those overlaps of lanes that lie in one ju
       CHECK(wrong == 0);
     }
   });
-  CHECK(crossings > 100);
-  CHECK(merges > 100);
-  CHECK(splits > 100);
+  if (corpus::root()) {
+    CHECK(crossings > 100);
+    CHECK(merges > 100);
+    CHECK(splits > 100);
+  }
 }

@@ -162,7 +162,7 @@ TEST_CASE("a map in the mirror is the mirrored map, left-hand traffic for right-
     compare(*map, *other, twins, [](Pose const& p) { return Pose{p.x, -p.y, -p.heading}; }, {1e-6, true});
     routes += compare_routes(*map, *other, twins, 1e-5);
   }
-  CHECK(routes > 300);
+  if (corpus::root()) CHECK(routes > 300);
 }
 
 TEST_CASE("a map whose header moves it is the moved map") {
@@ -182,7 +182,7 @@ TEST_CASE("a map whose header moves it is the moved map") {
       routes += compare_routes(*map, *other, twins, 1e-5);
     }
   }
-  CHECK(routes > 900);
+  if (corpus::root()) CHECK(routes > 900);
 }
 
 TEST_CASE("roads written from their other end give the same network") {
@@ -208,8 +208,8 @@ TEST_CASE("roads written from their other end give the same network") {
       compare(*map, *other, twins, [](Pose const& p) { return p; }, {1e-3, false, 0.03});
       routes += compare_routes(*map, *other, twins, 0.1);
     }
-  CHECK(reversed > 1000);
-  CHECK(routes > 900);
+  if (corpus::root()) CHECK(reversed > 1000);
+  if (corpus::root()) CHECK(routes > 900);
 }
 
 TEST_CASE("a map that is built twice is the same to the last bit") {
