@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <string>
@@ -62,11 +63,16 @@ struct FrenetPlanner {
     std::vector<FrenetTarget> targets;
   };
 
+  // Not lists in braces: g++ 12 takes these for uninitialised at -O2.
+  static constexpr double usual_speed_shares[] = {1.0, 0.8, 0.6, 0.4, 0.2, 0.0},
+                          usual_durations[] = {2.0, 3.0, 4.0, 5.0}, usual_offsets[] = {0.0, -0.7, 0.7};
+
   Others others{};
   double desired_speed = 15.0;
-  boost::container::static_vector<double, 16> speed_shares{1.0, 0.8, 0.6, 0.4, 0.2, 0.0};
-  boost::container::static_vector<double, 8> durations{2.0, 3.0, 4.0, 5.0};
-  boost::container::static_vector<double, 8> offsets{0.0, -0.7, 0.7};
+  boost::container::static_vector<double, 16> speed_shares{std::begin(usual_speed_shares),
+                                                           std::end(usual_speed_shares)};
+  boost::container::static_vector<double, 8> durations{std::begin(usual_durations), std::end(usual_durations)};
+  boost::container::static_vector<double, 8> offsets{std::begin(usual_offsets), std::end(usual_offsets)};
   FrenetCosts costs{};
   FrenetLimits limits{};
   double minimum_gap = 2.0;

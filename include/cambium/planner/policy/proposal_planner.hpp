@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <limits>
 #include <optional>
 #include <string>
@@ -108,10 +109,13 @@ struct ProposalPlanner {
     bool is_cut_short = false;
   };
 
+  // Not lists in braces: g++ 12 takes these for uninitialised at -O2.
+  static constexpr double usual_speed_shares[] = {1.0, 0.8, 0.6, 0.4, 0.2}, usual_offsets[] = {0.0, -1.0, 1.0};
+
   IdmProposal driver{};
   Others others{};
-  boost::container::static_vector<double, 8> speed_shares{1.0, 0.8, 0.6, 0.4, 0.2};
-  boost::container::static_vector<double, 8> offsets{0.0, -1.0, 1.0};
+  boost::container::static_vector<double, 8> speed_shares{std::begin(usual_speed_shares), std::end(usual_speed_shares)};
+  boost::container::static_vector<double, 8> offsets{std::begin(usual_offsets), std::end(usual_offsets)};
   ProposalScoring scoring{};
   double horizon = 4.0;
   double step = 0.1;
