@@ -201,7 +201,7 @@ TEST_CASE("a tree that grows as it must is the one that had room from the start"
 TEST_CASE("a search that is given little time does not spend it on room for a million nodes") {
   auto const before = support::allocated_bytes();
   TreeSearch<TicTacToe, Ucb1, RandomRollout, TimeBudget> search({}, {.horizon = 9}, {}, {}, {.duration = 1e-6});
-  CHECK(search.run({}, 1).iterations == 64);
+  CHECK(search.run({}, 1).iterations < 64);
   CHECK(support::allocated_bytes() - before < 1'000'000);
 }
 
