@@ -34,9 +34,9 @@
 /// onto the centre line near the previous place, so that no search over the map is necessary.
 ///
 ///     corridor 1   |---- lane 21 ----|---- lane 24 ----|            route -->
-///                                    ^ lateral
+///                                       ^ lateral offset
 ///     corridor 0   |---- lane 20 ----|--*-- lane 23 ---|
-///                  0 ----------------s->
+///                  0 -------- s -------->
 ///
 /// **The traffic index.** Every lane of the map owns a range of one map-wide lane coordinate. `TrafficIndex` keeps all
 /// agents in one list, sorted by this coordinate, and repairs the order once a step. The leader in the same lane is the

@@ -162,9 +162,8 @@ class Sight {
 /// rectangles of vehicles and the outlines of objects. An agent that overlaps the observer's middle is visible.
 /// O(agents + edges of objects) for each hidden part; for static objects, times their edges.
 ///
-///     eye >--------------- [truck] - - - - -     hidden: [a], behind the truck
-///         \                                 [a]
-///          `------------------------> [b]        visible: its directions are not covered
+///     eye >------------- [truck] - - - [a]     a is hidden behind the truck
+///         `---------------------> [b]           b is visible: nothing covers its directions
 struct OccludedObserver {
   double range = 150.0;
   double field_of_view = 2 * geometry::pi;
