@@ -24,7 +24,7 @@ namespace detail {
 /// An agent in traffic as the broad phase sees it: a circle about its reference point.
 struct Circle {
   double x, y, radius;
-  double low;  ///< where it begins, once sorted
+  double low;  ///< lower bound along the sorted axis
   Slot slot;
 
   [[nodiscard]] bool meets(Circle const& other) const {
@@ -38,7 +38,7 @@ template <class World>
   auto const& shape = world.roster().agents[slot].shape;
   auto const& state = world.frame().agents[slot].state;
   double const along = std::max(shape.front, shape.rear), across = std::max(shape.left, shape.right);
-  return {state.x, state.y, along + across, 0.0, slot};  // the sum of the legs: no root, and never too small
+  return {state.x, state.y, along + across, 0.0, slot};  // the sum of the legs bounds the diagonal without a root
 }
 
 template <class World>
@@ -53,21 +53,22 @@ template <class World>
 
 }  // namespace detail
 
-/// Whom or what an agent touches: an agent, or a static object.
+/// What an agent touches: another agent or a static object.
 struct Contact {
   AgentId agent = none<AgentId>;
   ObjectId object = none<ObjectId>;
 };
 
-/// Whether an agent, while it takes part in traffic, touches another one or a static object, or comes within `margin`
-/// [m] of it: its box, larger by so much to all sides, touches it. O(agents + objects).
+/// Whether an agent in traffic touches another agent or a static object. With a `margin` [m], the agent's box is
+/// enlarged by it on all sides. O(agents + objects).
 struct Collision {
   double margin = 0.0;
 
   static constexpr char const* name = "collision";
   static constexpr char const* summary = "touches another agent or a static object";
   static constexpr auto parameters() {
-    return parameter_list(parameter("margin", &Collision::margin, "m", Range{0, 100}, "coming so close counts, too"));
+    return parameter_list(
+        parameter("margin", &Collision::margin, "m", Range{0, 100}, "a smaller distance counts as contact"));
   }
 
   template <class World>
@@ -75,7 +76,7 @@ struct Collision {
     return contact(world, slot).has_value();
   }
 
-  /// The first one touched: of the agents, in the order of their ids, then of the objects.
+  /// The first contact: agents in the order of their ids, then objects.
   template <class World>
   [[nodiscard]] std::optional<Contact> contact(World const& world, Slot slot) const {
     if (!detail::in_traffic(world, slot)) return std::nullopt;
@@ -101,16 +102,16 @@ struct Collision {
   }
 };
 
-/// Whether an agent is to blame for a collision: it touches an object, or one that is not behind it, and does not stand
+/// Whether an agent causes a collision: it is moving, and touches a static object or an agent that is not behind it
 /// (after the at-fault collisions of Dauner et al. 2023). O(agents + objects).
 struct AtFaultCollision {
-  double standing_speed = 0.05;  ///< slower is standing [m/s]
+  double standing_speed = 0.05;  ///< a slower vehicle counts as stopped [m/s]
 
   static constexpr char const* name = "at_fault_collision";
-  static constexpr char const* summary = "touches an object, or one that is not behind it, and does not stand";
+  static constexpr char const* summary = "touches an object, or an agent not behind it, while moving";
   static constexpr auto parameters() {
-    return parameter_list(
-        parameter("standing_speed", &AtFaultCollision::standing_speed, "m/s", Range{0, 10}, "slower is standing"));
+    return parameter_list(parameter("standing_speed", &AtFaultCollision::standing_speed, "m/s", Range{0, 10},
+                                    "a slower vehicle counts as stopped"));
   }
 
   template <class World>
@@ -132,19 +133,19 @@ struct AtFaultCollision {
   }
 };
 
-/// Whether any two agents that take part in traffic, or one and a static object, touch. O(n log n); allocates only for
-/// more than 1024 agents.
+/// Whether any two agents in traffic touch each other, or an agent touches a static object. O(n log n); allocates only
+/// for more than 1024 agents.
 struct AnyCollision {
-  /// Two that touch; the second is none for an object.
+  /// Two agents in contact; `second` is none if the contact is with an object.
   struct Pair {
     AgentId first = none<AgentId>, second = none<AgentId>;
   };
 
   static constexpr char const* name = "any_collision";
-  static constexpr char const* summary = "any two touch, or one and an object";
+  static constexpr char const* summary = "any two agents touch, or an agent and an object";
   static constexpr auto parameters() { return parameter_list(); }
 
-  /// Whoever it is: the slot does not matter.
+  /// The same for every slot.
   template <class World>
   [[nodiscard]] bool operator()(World const& world, Slot = {}) const {
     return pair(world).has_value();
@@ -161,8 +162,8 @@ struct AnyCollision {
  private:
   static constexpr std::size_t few = 32;
 
-  /// The first pair that touches, in the order of the agents. Each is compared with each, in loops that become SIMD
-  /// code: less work than sorting so few.
+  /// The first pair in contact, in the order of the agents. Compares every pair in loops that become SIMD code: for few
+  /// agents, this is faster than sorting.
   template <class World>
   [[nodiscard]] static std::optional<Pair> compare_all(World const& world) {
     std::array<double, few> x, y, radius, heading, sin, cos;
@@ -205,7 +206,7 @@ struct AnyCollision {
     return std::nullopt;
   }
 
-  /// The first pair that touches, along the axis on which they are spread wider.
+  /// The first pair in contact along the axis with the wider spread (sweep and prune).
   template <class World>
   [[nodiscard]] static std::optional<Pair> sweep(World const& world) {
     boost::container::small_vector<detail::Circle, 1024> circles;
@@ -246,7 +247,7 @@ struct AnyCollision {
     return {agents[std::min(a, b)].id, agents[std::max(a, b)].id};
   }
 
-  /// Sorts by where circles begin along x, or y, which then becomes x: distances do not mind.
+  /// Sorts the circles by their lower bounds along x, or along y after swapping the axes; distances do not change.
   template <class Circles>
   static void sort_along(Circles& circles, bool y) {
     for (auto& c : circles) {

@@ -12,14 +12,14 @@ namespace cambium {
 /// How an agent's course ends.
 enum class CourseEnd : std::uint8_t {
   none,       ///< it goes on
-  over,       ///< it has come to the end of its route or of the map, or its behaviour has no more to do
-  collision,  ///< it touches somebody or something
-  off_road,   ///< it has left the road or its route, drives in an oncoming lane, or could not be moved on
+  over,       ///< it reached the end of its route or of the map, or its behaviour expired
+  collision,  ///< it touches an agent or an object
+  off_road,   ///< it left the road or its route, drives in an oncoming lane, or its step failed
 };
 
-/// Whether an agent's course is over, and how: the one place that says so, for runs, rewards and planners. `collides`:
-/// what says that it counts as a collision, an evaluator; `heeds_road`: whether it matters that it stays on the road.
-/// O(those).
+/// Whether and how an agent's course ends: the common definition for runs, rewards and planners. `collides` is the
+/// evaluator that decides what counts as a collision; `heeds_road` says whether leaving the road ends the course. Costs
+/// as much as these evaluators.
 template <class World, class Collides = Collision>
 [[nodiscard]] CourseEnd course_end(World const& world, Slot slot, Collides const& collides = {},
                                    bool heeds_road = true) {

@@ -11,7 +11,7 @@
 
 namespace cambium {
 
-/// Whether an agent is at its goal; never without one.
+/// Whether an agent is at its goal; false without a goal.
 struct AtGoal {
   static constexpr char const* name = "at_goal";
   static constexpr char const* summary = "is at its goal";
@@ -23,10 +23,10 @@ struct AtGoal {
   }
 };
 
-/// How fast an agent goes along its lane [m/s].
+/// An agent's speed along its lane [m/s].
 struct Progress {
   static constexpr char const* name = "progress";
-  static constexpr char const* summary = "how fast it goes along its lane [m/s]";
+  static constexpr char const* summary = "speed along its lane [m/s]";
   static constexpr auto parameters() { return parameter_list(); }
 
   template <class World>
@@ -36,15 +36,15 @@ struct Progress {
   }
 };
 
-/// How far the agent's speed is from what it should be [m/s].
+/// Absolute difference between the agent's speed and the desired speed [m/s].
 struct SpeedDeviation {
   double desired_speed = 15.0;  ///< [m/s]
 
   static constexpr char const* name = "speed_deviation";
-  static constexpr char const* summary = "how far its speed is from what it should be [m/s]";
+  static constexpr char const* summary = "difference between its speed and the desired speed [m/s]";
   static constexpr auto parameters() {
     return parameter_list(
-        parameter("desired_speed", &SpeedDeviation::desired_speed, "m/s", Range{0, 200}, "what it should be"));
+        parameter("desired_speed", &SpeedDeviation::desired_speed, "m/s", Range{0, 200}, "speed to compare with"));
   }
 
   template <class World>
@@ -53,10 +53,10 @@ struct SpeedDeviation {
   }
 };
 
-/// How far the agent is from the middle of its lane [m].
+/// The agent's distance from the centre line of its lane [m].
 struct LaneOffset {
   static constexpr char const* name = "lane_offset";
-  static constexpr char const* summary = "how far it is from the middle of its lane [m]";
+  static constexpr char const* summary = "distance from the centre line of its lane [m]";
   static constexpr auto parameters() { return parameter_list(); }
 
   template <class World>
@@ -65,7 +65,7 @@ struct LaneOffset {
   }
 };
 
-/// Its acceleration over the last step, along its heading [m/s^2].
+/// The agent's acceleration over the last step, along its heading [m/s^2].
 struct Acceleration {
   static constexpr char const* name = "acceleration";
   static constexpr char const* summary = "over the last step [m/s^2]";
@@ -77,14 +77,15 @@ struct Acceleration {
   }
 };
 
-/// Whether it has braked harder than so much.
+/// Whether the agent braked harder than `deceleration` in the last step.
 struct HardBraking {
   double deceleration = 4.0;  ///< [m/s^2]
 
   static constexpr char const* name = "hard_braking";
-  static constexpr char const* summary = "has braked harder than so much";
+  static constexpr char const* summary = "braked harder than a threshold";
   static constexpr auto parameters() {
-    return parameter_list(parameter("deceleration", &HardBraking::deceleration, "m/s^2", Range{0, 50}, "what is hard"));
+    return parameter_list(
+        parameter("deceleration", &HardBraking::deceleration, "m/s^2", Range{0, 50}, "harder braking counts"));
   }
 
   template <class World>
@@ -93,8 +94,8 @@ struct HardBraking {
   }
 };
 
-/// Its acceleration across its heading, left positive [m/s^2]: by how much it has turned over the last step. Of worlds
-/// that keep a history (`World::keep_history`); 0 before there is one.
+/// The agent's acceleration across its heading, left positive [m/s^2], from the turn over the last step. Needs a world
+/// that keeps a history (`World::keep_history`); 0 without one.
 struct LateralAcceleration {
   static constexpr char const* name = "lateral_acceleration";
   static constexpr char const* summary = "over the last step, left positive [m/s^2]; needs a history";
@@ -109,11 +110,11 @@ struct LateralAcceleration {
   }
 };
 
-/// How its acceleration has changed since the step before [m/s^3]. Of worlds that keep a history; 0 before there is
-/// one.
+/// The change of the agent's acceleration since the previous step [m/s^3]. Needs a world that keeps a history; 0
+/// without one.
 struct Jerk {
   static constexpr char const* name = "jerk";
-  static constexpr char const* summary = "change of the acceleration since the step before [m/s^3]; needs a history";
+  static constexpr char const* summary = "change of the acceleration since the previous step [m/s^3]; needs a history";
   static constexpr auto parameters() { return parameter_list(); }
 
   template <class World>
@@ -125,10 +126,10 @@ struct Jerk {
   }
 };
 
-/// The free road to the next one ahead along its lane corridor, bumper to bumper [m]; infinite where there is none.
+/// The gap to the next road user ahead along the lane corridor, bumper to bumper [m]; infinite without one.
 struct Gap {
   static constexpr char const* name = "gap";
-  static constexpr char const* summary = "free road to the next one ahead [m]";
+  static constexpr char const* summary = "gap to the next road user ahead [m]";
   static constexpr auto parameters() { return parameter_list(); }
 
   template <class World>
@@ -138,11 +139,11 @@ struct Gap {
   }
 };
 
-/// When it would run into the next one ahead along its lane corridor if both kept their speeds [s]; infinite where it
-/// would not.
+/// Time until the agent hits the next road user ahead along its lane corridor if both keep their speeds [s]; infinite
+/// if they do not close in.
 struct TimeToCollision {
   static constexpr char const* name = "time_to_collision";
-  static constexpr char const* summary = "to the next one ahead, at constant speeds [s]";
+  static constexpr char const* summary = "to the next road user ahead, at constant speeds [s]";
   static constexpr auto parameters() { return parameter_list(); }
 
   template <class World>

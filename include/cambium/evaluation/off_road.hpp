@@ -15,8 +15,8 @@
 
 namespace cambium {
 
-/// Whether an agent, while it takes part in traffic, has left the drivable lanes of the map: a corner of its box or the
-/// middle of a side lies in none. O(log lanes); O(1) well inside the own lane.
+/// Whether an agent in traffic has left the drivable lanes of the map: a corner of its box, or the middle of a side,
+/// lies in no drivable lane. O(log lanes); O(1) well inside its own lane.
 struct OffRoad {
   static constexpr char const* name = "off_road";
   static constexpr char const* summary = "a corner, or the middle of a side, of its box is in no drivable lane";
@@ -38,8 +38,8 @@ struct OffRoad {
   }
 
  private:
-  /// A box within the narrower of the widths at its rear, middle and front, and straight enough, is inside: of its own
-  /// lane, with those beside it where they go along with it all the way. [m, rad]
+  /// Quick test: a box is inside if it fits into the narrowest of the widths at its rear, middle and front, and the
+  /// lane bends little. The widths include the adjacent lanes if these run along the whole box. [m, rad]
   template <class World>
   [[nodiscard]] static bool inside_lanes(World const& world, Slot slot) {
     auto const& agent = world.roster().agents[slot];
@@ -50,7 +50,7 @@ struct OffRoad {
     double const rear = at.s - shape.rear, front = at.s + shape.front;
     if (rear < 0 || front > corridor.length()) return false;
     double const reach = std::max(shape.front, shape.rear);
-    double bend = 0.0;  // all turns between rear and front, to whichever side
+    double bend = 0.0;  // sum of all turns between rear and front, left or right
     auto const segments = corridor.center.segments();
     auto at_rear = at.segment;
     corridor.center.segment_at(rear, at_rear);
@@ -72,7 +72,7 @@ struct OffRoad {
     return true;
   }
 
-  /// Of the lane beside a piece at the same share of its length; 0 where there is none to drive on.
+  /// Width of the lane beside a piece at the same share of its length; 0 without a drivable lane.
   [[nodiscard]] static double width_beside(map::RoadCorridor const& road, map::CorridorPiece const& from,
                                            CorridorId number, PieceId piece, double s) {
     if (number == none<CorridorId>) return 0.0;
@@ -82,7 +82,8 @@ struct OffRoad {
     return beside.width_at(to.begin + (s - from.begin) / (from.end - from.begin) * (to.end - to.begin));
   }
 
-  /// In no lane; past the end of the agent's own road does not count: the map ends there, not the road.
+  /// Whether the point is in no lane. Points beyond the end of the agent's road do not count: the map ends there, not
+  /// the real road.
   template <class World>
   [[nodiscard]] static bool beyond_road(World const& world, Slot slot, geometry::Point const& p) {
     if (world.map().on_drivable_lane(p)) return false;
@@ -97,7 +98,7 @@ struct OffRoad {
 
 namespace detail {
 
-/// Whether the middle of `box` is in a lane that runs the other way, and in none that runs its way.
+/// Whether the middle of `box` is in a lane of the opposite direction, and in no lane of its own direction.
 [[nodiscard]] inline bool is_against_traffic(Map const& map, geometry::OrientedBox const& box) {
   auto const hit = map.nearest_lane({box.x, box.y, std::atan2(box.sin, box.cos)}, 0.0);
   if (!hit) return false;
@@ -107,7 +108,7 @@ namespace detail {
 
 }  // namespace detail
 
-/// Whether an agent that takes part in traffic and is in no lane of its route drives in a lane of oncoming traffic.
+/// Whether an agent in traffic drives in a lane of oncoming traffic, outside all lanes of its route.
 struct OncomingLane {
   static constexpr char const* name = "oncoming_lane";
   static constexpr char const* summary = "drives in a lane of oncoming traffic";

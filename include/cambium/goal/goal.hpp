@@ -14,12 +14,12 @@ struct AllGoals;
 struct AnyGoal;
 struct GoalSequence;
 
-/// What an agent wants to reach; decides its route where none is given. A value: combinations hold their parts. Any
-/// struct of your own that is a `GoalModel` converts to it, and can be a part like any other.
+/// An agent's goal; it also determines the route of an agent without one. A value: combinations hold their parts. Every
+/// `GoalModel` struct of your own converts to it and can be a part of a combination.
 using Goal = std::variant<NoGoal, ReachPolygon, ReachLane, StateLimits, LaneLimits, ReachLaneEnd, ReachLaneBeside,
                           AllGoals, AnyGoal, GoalSequence, OwnGoal>;
 
-/// Reached when all of its parts are, at the same time; without parts never.
+/// Reached when all parts are reached at the same time; never without parts.
 struct AllGoals {
   std::vector<Goal> parts;
 
@@ -29,7 +29,7 @@ struct AllGoals {
   [[nodiscard]] bool at_goal(GoalSituation const& at) const;
 };
 
-/// Reached when one of its parts is.
+/// Reached when at least one part is reached.
 struct AnyGoal {
   std::vector<Goal> parts;
 
@@ -39,9 +39,10 @@ struct AnyGoal {
   [[nodiscard]] bool at_goal(GoalSituation const& at) const;
 };
 
-/// Reached when its parts have been, one after the other; a part is reached where the agent is at the end of a step, or
-/// where it enters, and several may be there. How many it has passed is in its record (`AgentRecord::goals_passed`), so
-/// that copies and snapshots of a world go on from there. At most 255 parts, and not within another goal.
+/// Reached when its parts have been reached one after the other. The world tests the parts when the agent enters and at
+/// the end of each step; one test may pass several parts. The agent's record counts the passed parts
+/// (`AgentRecord::goals_passed`), so that copies and snapshots of a world continue from there. At most 255 parts.
+/// Cannot be a part of another goal.
 struct GoalSequence {
   std::vector<Goal> parts;
 
@@ -50,7 +51,7 @@ struct GoalSequence {
 
   [[nodiscard]] bool at_goal(GoalSituation const& at) const { return at.passed >= parts.size() && !parts.empty(); }
 
-  /// How many parts are passed, the agent being at `at`.
+  /// The number of parts passed once the agent is at `at`.
   [[nodiscard]] std::size_t pass(GoalSituation const& at) const;
 };
 

@@ -10,7 +10,7 @@
 
 namespace cambium {
 
-/// Where an agent is, as goals ask it.
+/// An agent's situation: the input of a goal.
 struct GoalSituation {
   geometry::Pose pose;
   geometry::Shape shape;
@@ -21,8 +21,8 @@ struct GoalSituation {
   double heading_error{};                   ///< from the lane corridor's direction [rad]
   map::RoadCorridor const* road = nullptr;  ///< the lanes of its route
   CorridorId corridor = none<CorridorId>;   ///< number of its lane corridor there
-  double s{};                               ///< along that [m]
-  std::size_t passed{};                     ///< parts of its `GoalSequence` that it has reached
+  double s{};                               ///< position along that corridor [m]
+  std::size_t passed{};                     ///< number of parts of its `GoalSequence` already reached
 };
 
 }  // namespace cambium

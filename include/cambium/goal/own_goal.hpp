@@ -21,16 +21,16 @@ concept HasAtGoal = requires(G const goal, GoalSituation const& at) {
 };
 }  // namespace detail
 
-/// A goal: a copyable struct of parameters with one pure function, `bool at_goal(GoalSituation const&) const`. May
-/// have:
-/// - `parameters()`: then they are checked where an agent enters, and compared (else by ==);
-/// - `std::vector<LaneId> lanes(Map const&) const`: lanes that a route to the goal may end in, the best first. An agent
-///   without a route of its own is led to the first that it can reach; where there are no lanes, straight on;
-/// - `void check(std::string const& where) const`: throws an `Error` where the goal can never be reached.
+/// A goal: a copyable struct of parameters with one pure function, `bool at_goal(GoalSituation const&) const`.
+/// Optional members:
+/// - `parameters()`: checked when an agent enters, and used for comparison (otherwise ==);
+/// - `std::vector<LaneId> lanes(Map const&) const`: lanes in which a route to the goal may end, best first. An agent
+///   without a route gets one to the first lane that it can reach, or straight on if the list is empty;
+/// - `void check(std::string const& where) const`: throws an `Error` if the goal can never be reached.
 template <class G>
 concept GoalModel = detail::HasAtGoal<G> && std::copyable<G>;
 
-/// A goal of a type of the user's own, as an alternative of `Goal`. Copies share the struct, which never changes.
+/// Holds a goal of a user-defined type as an alternative of `Goal`. Copies share the immutable struct.
 class OwnGoal {
  public:
   template <class G>
@@ -39,10 +39,10 @@ class OwnGoal {
 
   [[nodiscard]] bool at_goal(GoalSituation const& at) const { return operations_->at_goal(goal_.get(), at); }
 
-  /// Lanes where a route to it may end; none where it names none.
+  /// Lanes in which a route to it may end; empty if it names none.
   [[nodiscard]] std::vector<LaneId> lanes(Map const& map) const { return operations_->lanes(goal_.get(), map); }
 
-  /// Throws an `Error` where a parameter is out of its range, or the goal can never be reached.
+  /// Throws an `Error` if a parameter is out of range or the goal can never be reached.
   void check(std::string const& where) const { operations_->check(goal_.get(), where); }
 
   /// The struct, if it is a `G`, else null.

@@ -18,30 +18,30 @@
 namespace cambium {
 
 namespace detail {
-/// Every number, and infinity.
+/// All numbers, infinity included.
 inline constexpr Range any_number{-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
-/// Throws `ParameterError` where no place between `from` and `to` [m] is left.
+/// Throws `ParameterError` if no position lies between `from` and `to` [m].
 inline void check_stretch(double from, double to, std::string const& where) {
   if (!(from <= to)) throw ParameterError(where, "its goal's stretch of lane ends before it begins", "give from <= to");
 }
 
-/// Likewise of speeds [m/s].
+/// Throws `ParameterError` if no speed [m/s] lies between the limits.
 inline void check_speeds(double lowest, double highest, std::string const& where) {
   if (!(lowest <= highest))
-    throw ParameterError(where, "lowest_speed is above highest_speed: the goal is never reached", "swap them");
+    throw ParameterError(where, "lowest_speed is above highest_speed: the goal can never be reached", "swap them");
 }
 
 }  // namespace detail
 
-/// Drives straight on: without a route of its own for 2 km (see `map::straight_route`), or until a lane would come
-/// again.
+/// No goal. Without a given route, the agent drives straight on for 2 km (see `map::straight_route`), or until the
+/// route would return to one of its lanes.
 struct NoGoal {
   static constexpr char const* name = "no_goal";
   static constexpr char const* summary = "never reached; the route goes straight on";
   [[nodiscard]] bool at_goal(GoalSituation const&) const { return false; }
 };
 
-/// Reached with the whole shape inside of `area` (map frame).
+/// Reached when the agent's whole shape is inside `area` (map frame).
 struct ReachPolygon {
   static constexpr char const* name = "reach_polygon";
   static constexpr char const* summary = "the whole shape is within a polygon";
@@ -51,7 +51,7 @@ struct ReachPolygon {
   }
 };
 
-/// Reached with the reference point in `lane`, between `from` and `to` [m] along its path.
+/// Reached when the reference point is in `lane`, between `from` and `to` [m] along its path.
 struct ReachLane {
   LaneId lane = none<LaneId>;
   double from = 0.0;
@@ -60,9 +60,10 @@ struct ReachLane {
   static constexpr char const* name = "reach_lane";
   static constexpr char const* summary = "the reference point is in a lane, between two positions along its path";
   static constexpr auto parameters() {
-    return parameter_list(parameter("lane", &ReachLane::lane, "-", {}, "of the map"),
-                          parameter("from", &ReachLane::from, "m", detail::any_number, "along the path of the lane"),
-                          parameter("to", &ReachLane::to, "m", detail::any_number, "likewise, not below from"));
+    return parameter_list(
+        parameter("lane", &ReachLane::lane, "-", {}, "of the map"),
+        parameter("from", &ReachLane::from, "m", detail::any_number, "along the path of the lane"),
+        parameter("to", &ReachLane::to, "m", detail::any_number, "along the path of the lane, at least from"));
   }
   void check(std::string const& where) const { detail::check_stretch(from, to, where); }
 
@@ -71,8 +72,8 @@ struct ReachLane {
   }
 };
 
-/// Reached with heading and speed within limits, ends included; names no place. Headings are turned through counter-
-/// clockwise from the first to the second, over the wrap where need be; a turn of 2 pi or more leaves them free.
+/// Reached when heading and speed are within limits, bounds included, at any position. The headings run
+/// counter-clockwise from `heading_from` to `heading_to`, also across pi; a range of 2 pi or more allows all headings.
 struct StateLimits {
   double heading_from = -geometry::pi;                             ///< [rad], any turn
   double heading_to = geometry::pi;                                ///< [rad], not below `heading_from`, or a turn less
@@ -80,14 +81,14 @@ struct StateLimits {
   double highest_speed = std::numeric_limits<double>::infinity();  ///< [m/s]
 
   static constexpr char const* name = "state_limits";
-  static constexpr char const* summary = "heading (over the wrap where need be) and speed within limits";
+  static constexpr char const* summary = "heading (also across pi) and speed within limits";
   static constexpr auto parameters() {
     using P = StateLimits;
     return parameter_list(
         parameter("heading_from", &P::heading_from, "rad", any_finite, "counter-clockwise from here"),
-        parameter("heading_to", &P::heading_to, "rad", any_finite, "to here; a turn of 2 pi leaves headings free"),
-        parameter("lowest_speed", &P::lowest_speed, "m/s", detail::any_number, "of the speed"),
-        parameter("highest_speed", &P::highest_speed, "m/s", detail::any_number, "of the speed"));
+        parameter("heading_to", &P::heading_to, "rad", any_finite, "to here; a range of 2 pi allows all headings"),
+        parameter("lowest_speed", &P::lowest_speed, "m/s", detail::any_number, "lower bound of the speed"),
+        parameter("highest_speed", &P::highest_speed, "m/s", detail::any_number, "upper bound of the speed"));
   }
   void check(std::string const& where) const {
     detail::check_speeds(lowest_speed, highest_speed, where);
@@ -110,37 +111,37 @@ struct StateLimits {
   }
 };
 
-/// Reached when driving along a lane within limits of its Frenet frame, ends included. `lane`: none for whichever the
-/// agent is in.
+/// Reached when the agent drives along a lane within limits in its Frenet frame, bounds included. `lane` none means the
+/// agent's current lane.
 struct LaneLimits {
   LaneId lane = none<LaneId>;
   double from = 0.0;                                               ///< along the lane's path [m]
   double to = std::numeric_limits<double>::infinity();             ///< [m]
   double left = std::numeric_limits<double>::infinity();           ///< farthest to the left of the path [m]
-  double right = std::numeric_limits<double>::infinity();          ///< and to its right [m]
+  double right = std::numeric_limits<double>::infinity();          ///< farthest to the right of the path [m]
   double heading_error = geometry::pi;                             ///< largest angle to the path, either way [rad]
   double lowest_speed = -std::numeric_limits<double>::infinity();  ///< [m/s]
   double highest_speed = std::numeric_limits<double>::infinity();  ///< [m/s]
 
   static constexpr char const* name = "lane_limits";
-  static constexpr char const* summary = "within limits of the Frenet frame of a lane, or of whichever the agent is in";
+  static constexpr char const* summary = "within limits in the Frenet frame of a lane, or of the agent's current lane";
   static constexpr auto parameters() {
     using P = LaneLimits;
     return parameter_list(
-        parameter("lane", &P::lane, "-", {}, "of the map; none: whichever the agent is in"),
+        parameter("lane", &P::lane, "-", {}, "a lane of the map; none: the agent's current lane"),
         parameter("from", &P::from, "m", detail::any_number, "along the path of the lane"),
-        parameter("to", &P::to, "m", detail::any_number, "likewise, not below from"),
+        parameter("to", &P::to, "m", detail::any_number, "along the path of the lane, at least from"),
         parameter("left", &P::left, "m", detail::any_number, "farthest to the left of the path"),
-        parameter("right", &P::right, "m", detail::any_number, "and to its right"),
+        parameter("right", &P::right, "m", detail::any_number, "farthest to the right of the path"),
         parameter("heading_error", &P::heading_error, "rad", non_negative, "largest angle to the path, either way"),
-        parameter("lowest_speed", &P::lowest_speed, "m/s", detail::any_number, "of the speed"),
-        parameter("highest_speed", &P::highest_speed, "m/s", detail::any_number, "of the speed"));
+        parameter("lowest_speed", &P::lowest_speed, "m/s", detail::any_number, "lower bound of the speed"),
+        parameter("highest_speed", &P::highest_speed, "m/s", detail::any_number, "upper bound of the speed"));
   }
   void check(std::string const& where) const {
     detail::check_stretch(from, to, where);
     detail::check_speeds(lowest_speed, highest_speed, where);
     if (!(-right <= left))
-      throw ParameterError(where, "left and right leave no room: the goal is never reached", "give left >= -right");
+      throw ParameterError(where, "left and right leave no room: the goal can never be reached", "give left >= -right");
   }
 
   [[nodiscard]] bool at_goal(GoalSituation const& at) const {
@@ -150,8 +151,8 @@ struct LaneLimits {
   }
 };
 
-/// Reached within `distance` [m] of the end of the lane corridor that the agent is in: where its lane, with all that
-/// goes on from it on the route, ends.
+/// Reached within `distance` [m] of the end of the agent's current lane corridor: where its lane, with its successors
+/// on the route, ends.
 struct ReachLaneEnd {
   double distance = 10.0;
 
@@ -167,8 +168,8 @@ struct ReachLaneEnd {
   }
 };
 
-/// Reached in the lane corridor beside that of lane `from`, on its left or right, and within `tolerance` [m] of its
-/// centre line. `from`: none for the lane that the agent enters in, which `World::add` fills in.
+/// Reached in the lane corridor to the left or right of the corridor of lane `from`, within `tolerance` [m] of its
+/// centre line. `from` none means the lane in which the agent enters; `World::add` fills it in.
 struct ReachLaneBeside {
   enum class Side : std::uint8_t { left, right };
 
@@ -178,12 +179,12 @@ struct ReachLaneBeside {
 
   static constexpr char const* name = "reach_lane_beside";
   static constexpr char const* summary =
-      "in the lane corridor to the left or right of the one that it entered in: a lane change";
+      "in the lane corridor to the left or right of the one where it entered: a lane change";
   static constexpr auto parameters() {
     using P = ReachLaneBeside;
     return parameter_list(
-        choice("side", &P::side, "left|right", "of the lane corridor that it counts from"),
-        parameter("from", &P::from, "-", {}, "beside this lane of the map; none: the one that the agent enters in"),
+        choice("side", &P::side, "left|right", "side of the lane corridor of `from`"),
+        parameter("from", &P::from, "-", {}, "reference lane of the map; none: the lane in which the agent enters"),
         parameter("tolerance", &P::tolerance, "m", non_negative, "from the centre line of that corridor"));
   }
 

@@ -8,12 +8,14 @@
 
 namespace cambium {
 
-/// Perceives states and accelerations of some steps ago, at most `LongestDelay`, which costs 48 bytes of each record
-/// and step. An agent that has entered since is seen as it entered. Who is there at all, and who is next to whom, is
-/// seen at once.
+/// Perceives states and accelerations with a delay of some steps, at most `LongestDelay`. Each record grows by 48 bytes
+/// per step of `LongestDelay`. An agent that entered within the delay is seen in the state in which it entered. The
+/// delay does not apply to which agents are present and in which order they follow each other.
 template <std::size_t LongestDelay>
 struct DelayedObserver {
-  static_assert(LongestDelay > 0, "cambium::DelayedObserver<LongestDelay>: see at least one step late, or perfectly");
+  static_assert(
+      LongestDelay > 0,
+      "cambium::DelayedObserver<LongestDelay>: give a delay of at least one step, or use cambium::PerfectObserver");
 
   int others = static_cast<int>(LongestDelay);
   int own = 0;
@@ -21,13 +23,13 @@ struct DelayedObserver {
   static constexpr bool perfect = false;
   static constexpr std::size_t past_steps = LongestDelay;
   static constexpr char const* name = "delayed";
-  static constexpr char const* summary = "sees the states of some steps ago";
+  static constexpr char const* summary = "sees the states with a delay of some steps";
   static constexpr char const* source = "own";
   static constexpr auto parameters() {
     constexpr Range steps{0, static_cast<double>(LongestDelay)};
     return parameter_list(
-        parameter("others", &DelayedObserver::others, "-", steps, "steps after which others are seen"),
-        parameter("own", &DelayedObserver::own, "-", steps, "steps after which the agent knows where itself is"));
+        parameter("others", &DelayedObserver::others, "-", steps, "delay of the others' states, in steps"),
+        parameter("own", &DelayedObserver::own, "-", steps, "delay of its own state, in steps"));
   }
 
   [[nodiscard]] std::size_t steps_back(bool is_own) const {

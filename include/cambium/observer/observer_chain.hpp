@@ -10,15 +10,15 @@
 
 namespace cambium {
 
-/// Several observers in one: each perceives what the one before it has made of the truth. Only who is seen by all is
-/// seen; delays add up.
+/// Applies several observers in sequence: each observes the result of the previous one. An agent is visible only if all
+/// stages see it; delays add up.
 template <ObserverModel... Observers>
 struct ObserverChain {
   std::tuple<Observers...> stages{};
 
   static constexpr char const* name = "observer_chain";
   static constexpr char const* summary =
-      "one observer after the other: errors and delays add up, who is hidden to one is hidden";
+      "one observer after the other: errors and delays add up; an agent hidden from one is hidden";
 
   static constexpr bool perfect = (Observers::perfect && ...);
   static constexpr std::size_t past_steps = (past_steps_of<Observers> + ... + 0);
@@ -52,7 +52,7 @@ struct ObserverChain {
     return std::apply([&](auto const&... stage) { return (by(stage) && ...); }, stages);
   }
 
-  /// By value; the truth itself where all stages are perfect.
+  /// Returns a value, or a reference to the true state if all stages are perfect.
   template <MotionState S>
   [[nodiscard]] decltype(auto) observe(S const& truth, bool own, RandomStream const& random) const {
     if constexpr (perfect) {

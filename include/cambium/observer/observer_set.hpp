@@ -11,7 +11,7 @@
 
 namespace cambium {
 
-/// One of several observers: for worlds whose agents perceive differently.
+/// One of several observer models, for worlds whose agents perceive differently.
 template <ObserverModel... Observers>
 struct ObserverSet : OneOf<Observers...> {
   using OneOf<Observers...>::OneOf;

@@ -21,19 +21,19 @@ namespace cambium {
 
 namespace detail {
 
-/// What a convex body covers of the view from a point, as seen towards another: directions [rad] from the middle of
-/// that one, counter-clockwise. `from` > `to`: nothing.
+/// The interval of directions that a convex body covers in the view from the eye [rad], counter-clockwise from the
+/// direction of the target's middle. Empty if `from` > `to`.
 struct ViewInterval {
   double from = 1.0, to = -1.0;
 
   [[nodiscard]] bool empty() const { return !(from <= to); }
 };
 
-/// The directions in which the hull of `corners` lies from `eye`, counted from `axis` (a unit vector). The eye is
-/// outside of the hull; of a body all around behind it the part at the back is cut off.
+/// The directions in which the hull of `corners` appears from `eye`, relative to `axis` (a unit vector). The eye must
+/// be outside the hull. If the body extends around behind the eye, the part at the back is cut off.
 [[nodiscard]] inline ViewInterval interval_of(std::span<geometry::Point const> corners, geometry::Point const& eye,
                                               geometry::Point const& axis) {
-  // Relative to the first corner, so that none lies more than half a turn away from another.
+  // Angles relative to the first corner differ by at most half a turn.
   auto const direction = [&](geometry::Point const& p, geometry::Point const& from) {
     return std::atan2(from.x() * p.y() - from.y() * p.x(), from.x() * p.x() + from.y() * p.y());
   };
@@ -48,7 +48,7 @@ struct ViewInterval {
   return interval;
 }
 
-/// How far the hull of `corners` is from `eye` in direction `ray` (a unit vector) [m]; infinite where it is not there.
+/// Distance from `eye` to the hull of `corners` in direction `ray` (a unit vector) [m]; infinite if the ray misses it.
 [[nodiscard]] inline double distance_along(std::span<geometry::Point const> corners, geometry::Point const& eye,
                                            geometry::Point const& ray) {
   double nearest = std::numeric_limits<double>::infinity();
@@ -63,7 +63,7 @@ struct ViewInterval {
   return nearest;
 }
 
-/// The look at one convex body of up to four corners: a vehicle, or an edge of a static object.
+/// The view of one convex target of up to four corners: a vehicle, or an edge of a static object.
 class Sight {
  public:
   Sight(geometry::Point const& eye, geometry::OrientedBox const& target)
@@ -78,11 +78,11 @@ class Sight {
     look();
   }
 
-  /// The direction that angles are counted from [rad], map frame.
+  /// The reference direction of all angles [rad], map frame.
   [[nodiscard]] double axis() const { return std::atan2(axis_.y(), axis_.x()); }
 
-  /// Calls `f(ViewInterval)` for the parts that are left of it until that returns true; returns whether it did.
-  /// `each_cover(g)` calls `g(ViewInterval)` for what lies in front.
+  /// Calls `f(ViewInterval)` for each visible part of the target until `f` returns true; returns whether it did.
+  /// `each_cover(g)` calls `g(ViewInterval)` for each body in front.
   template <class EachCover, class F>
   bool any_clear_part(EachCover const& each_cover, F const& f) const {
     double at = seen_.from;
@@ -107,14 +107,14 @@ class Sight {
     return false;
   }
 
-  /// False where a vehicle is clearly not between the eye and the target.
+  /// False if a vehicle is clearly not between the eye and the target.
   template <MotionState S>
   [[nodiscard]] bool may_cover(geometry::Shape const& shape, S const& state) const {
     double const reach = std::max(shape.front, shape.rear) + std::max(shape.left, shape.right);
     return geometry::distance_to_segment({state.x, state.y}, eye_, center_) <= reach + radius_;
   }
 
-  /// What a body within `radius` of `middle` covers; nothing unless it is between the eye and the target.
+  /// The interval that a body within `radius` of `middle` covers; empty unless it is between the eye and the target.
   [[nodiscard]] ViewInterval cover_of(std::span<geometry::Point const> corners, geometry::Point const& middle,
                                       double radius) const {
     if (geometry::distance_to_segment(middle, eye_, center_) > radius + radius_) return {};
@@ -122,7 +122,7 @@ class Sight {
     for (double const turn : {-2 * geometry::pi, 0.0, 2 * geometry::pi}) {
       double const from = std::max(body.from + turn, seen_.from), to = std::min(body.to + turn, seen_.to);
       if (!(from < to)) continue;
-      // Of two convex bodies that do not meet the same one is in front wherever both are seen.
+      // Of two disjoint convex bodies, the same one is in front in all directions that they share.
       auto const [sin, cos] = geometry::sin_cos(0.5 * (from + to));
       geometry::Point const ray{axis_.x() * cos - axis_.y() * sin, axis_.x() * sin + axis_.y() * cos};
       if (distance_along(corners, eye_, ray) < distance_along(corners_of_target(), eye_, ray)) return body;
@@ -130,7 +130,7 @@ class Sight {
     return {};
   }
 
-  /// What lies outside of a field of view about `heading`.
+  /// The directions outside a field of view centred on `heading`.
   [[nodiscard]] ViewInterval outside(double heading, double field_of_view) const {
     double const half = geometry::pi - 0.5 * field_of_view;
     if (!(half > 0.0)) return {};
@@ -156,11 +156,14 @@ class Sight {
 
 }  // namespace detail
 
-/// Sees by line of sight from the middle of its vehicle: whoever is within `range` and of whom some part, `resolution`
-/// wide at least, lies in its field of view and is hidden neither by a vehicle nor by a static object. Those it sees as
-/// they are, the others not at all; static objects likewise. Exact for the rectangles of vehicles and the outlines of
-/// objects. Who overlaps with the observer's middle is seen. O(agents + edges of objects) for each part that is hidden,
-/// and for static objects times their edges.
+/// Sees along lines of sight from the middle of its vehicle. An agent or static object is visible if it is within
+/// `range` and a part of it, at least `resolution` wide, lies in the field of view and is not hidden by a vehicle or a
+/// static object. The observer sees visible road users in their true states and the others not at all. Exact for the
+/// rectangles of vehicles and the outlines of objects. An agent that overlaps the observer's middle is visible.
+/// O(agents + edges of objects) for each hidden part; for static objects, times their edges.
+///
+///     eye >------------- [truck] - - - [a]     a is hidden behind the truck
+///         `---------------------> [b]           b is visible: nothing covers its directions
 struct OccludedObserver {
   double range = 150.0;
   double field_of_view = 2 * geometry::pi;
@@ -177,12 +180,13 @@ struct OccludedObserver {
   static constexpr auto parameters() {
     using P = OccludedObserver;
     return parameter_list(
-        parameter("range", &P::range, "m", Range{0, 1e6}, "to the nearest point of a vehicle"),
-        parameter("field_of_view", &P::field_of_view, "rad", Range{0, 7}, "about the own heading; 2 pi: all around"),
-        parameter("resolution", &P::resolution, "rad", Range{0, 1}, "what appears smaller is not seen"),
-        parameter("behind_vehicles", &P::behind_vehicles, "-", Range{0, 1}, "vehicles do not hide others"),
-        parameter("behind_objects", &P::behind_objects, "-", Range{0, 1}, "static objects do not hide others"),
-        parameter("objects_known", &P::objects_known, "-", Range{0, 1}, "static objects are known, as the map is"));
+        parameter("range", &P::range, "m", Range{0, 1e6}, "largest distance to the nearest point of a vehicle"),
+        parameter("field_of_view", &P::field_of_view, "rad", Range{0, 7},
+                  "angle centred on the heading; 2 pi: all around"),
+        parameter("resolution", &P::resolution, "rad", Range{0, 1}, "smallest visible angle"),
+        parameter("behind_vehicles", &P::behind_vehicles, "-", Range{0, 1}, "sees through vehicles"),
+        parameter("behind_objects", &P::behind_objects, "-", Range{0, 1}, "sees through static objects"),
+        parameter("objects_known", &P::objects_known, "-", Range{0, 1}, "knows all static objects, as if from a map"));
   }
 
   template <MotionState S>
@@ -208,7 +212,7 @@ struct OccludedObserver {
     auto const& outline = scene.objects()[object].outline;
     if (geometry::distance(outline, eye) > range) return false;
     if (outline.contains(eye)) return true;
-    // Clear parts of its edges that adjoin are one.
+    // Adjacent visible parts of its edges count as one part.
     return any_clear_edge(scene, own, object, eye, [&](detail::ViewInterval part) {
       bool grows = part.to - part.from < resolution;
       while (grows) {
@@ -229,8 +233,8 @@ struct OccludedObserver {
  private:
   static constexpr Slot nobody = none<Slot>;
 
-  /// Calls `f(ViewInterval)`, map frame, for the parts of the object's edges that nothing else hides until that returns
-  /// true; returns whether it did.
+  /// Calls `f(ViewInterval)`, map frame, for each visible part of the object's edges until `f` returns true; returns
+  /// whether it did.
   template <class Scene, class F>
   bool any_clear_edge(Scene const& scene, Slot own, Slot object, geometry::Point const& eye, F const& f) const {
     auto const& outline = scene.objects()[object].outline;
@@ -248,7 +252,7 @@ struct OccludedObserver {
     return false;
   }
 
-  /// Calls `cover(ViewInterval)` for all that hides the target of `sight`: agent `other`, or object `object`.
+  /// Calls `cover(ViewInterval)` for each body that hides the target of `sight`: agent `other`, or object `object`.
   template <class Scene, class Cover>
   void cover_all(Scene const& scene, Slot own, Slot other, Slot object, detail::Sight const& sight,
                  geometry::Point const& eye, Cover const& cover) const {

@@ -15,8 +15,8 @@
 
 namespace cambium {
 
-/// Normally distributed errors of a perceived state: means, standard deviations and correlations of what is added along
-/// and across its heading, to its heading and to its speed.
+/// Normally distributed errors of a perceived state: means, standard deviations and correlations of the errors along
+/// and across the heading, of the heading and of the speed.
 struct ObservationNoise {
   double mean_along = 0.0;
   double mean_across = 0.0;
@@ -40,23 +40,24 @@ struct ObservationNoise {
   static constexpr auto parameters() {
     using P = ObservationNoise;
     constexpr Range one{-1, 1}, metres{-1000, 1000}, spread{0, 1000};
-    return parameter_list(parameter("mean_along", &P::mean_along, "m", metres, "mean error along the heading"),
-                          parameter("mean_across", &P::mean_across, "m", metres, "mean error to the left of it"),
-                          parameter("mean_heading", &P::mean_heading, "rad", Range{-4, 4}, "mean error of the heading"),
-                          parameter("mean_speed", &P::mean_speed, "m/s", metres, "mean error of the speed"),
-                          parameter("along", &P::along, "m", spread, "standard deviation along the heading"),
-                          parameter("across", &P::across, "m", spread, "standard deviation across it"),
-                          parameter("heading", &P::heading, "rad", Range{0, 4}, "standard deviation of the heading"),
-                          parameter("speed", &P::speed, "m/s", spread, "standard deviation of the speed"),
-                          parameter("along_across", &P::along_across, "-", one, "correlation"),
-                          parameter("along_heading", &P::along_heading, "-", one, "correlation"),
-                          parameter("along_speed", &P::along_speed, "-", one, "correlation"),
-                          parameter("across_heading", &P::across_heading, "-", one, "correlation"),
-                          parameter("across_speed", &P::across_speed, "-", one, "correlation"),
-                          parameter("heading_speed", &P::heading_speed, "-", one, "correlation"));
+    return parameter_list(
+        parameter("mean_along", &P::mean_along, "m", metres, "mean error along the heading"),
+        parameter("mean_across", &P::mean_across, "m", metres, "mean error across the heading, left positive"),
+        parameter("mean_heading", &P::mean_heading, "rad", Range{-4, 4}, "mean error of the heading"),
+        parameter("mean_speed", &P::mean_speed, "m/s", metres, "mean error of the speed"),
+        parameter("along", &P::along, "m", spread, "standard deviation along the heading"),
+        parameter("across", &P::across, "m", spread, "standard deviation across the heading"),
+        parameter("heading", &P::heading, "rad", Range{0, 4}, "standard deviation of the heading"),
+        parameter("speed", &P::speed, "m/s", spread, "standard deviation of the speed"),
+        parameter("along_across", &P::along_across, "-", one, "correlation"),
+        parameter("along_heading", &P::along_heading, "-", one, "correlation"),
+        parameter("along_speed", &P::along_speed, "-", one, "correlation"),
+        parameter("across_heading", &P::across_heading, "-", one, "correlation"),
+        parameter("across_speed", &P::across_speed, "-", one, "correlation"),
+        parameter("heading_speed", &P::heading_speed, "-", one, "correlation"));
   }
 
-  /// Throws `ParameterError` where no four quantities can be correlated like that.
+  /// Throws `ParameterError` if the correlation matrix is not positive semidefinite.
   void check(std::string const& where) const {
     auto const l = factor();
     auto const c = correlations();
@@ -65,14 +66,14 @@ struct ObservationNoise {
         double product = 0.0;
         for (std::size_t k = 0; k <= j; ++k) product += l[i][k] * l[j][k];
         if (!(std::abs(product - c[i][j]) <= 1e-9))
-          throw ParameterError(where, "has correlations that contradict each other",
+          throw ParameterError(where, "its correlations contradict each other",
                                "choose them so that their matrix is positive semidefinite");
       }
   }
 
   using Vector = std::array<double, 4>;  ///< along, across, heading, speed
 
-  /// The error that four independent standard normal numbers make.
+  /// The error that results from four independent standard normal numbers.
   [[nodiscard]] Vector error(Vector const& z) const {
     auto const l = factor();
     Vector const deviation{along, across, heading, speed};
@@ -92,7 +93,7 @@ struct ObservationNoise {
              {along_speed, across_speed, heading_speed, 1}}};
   }
 
-  /// Lower triangular factor of the correlation matrix (Cholesky); a pivot that vanishes leaves its column empty.
+  /// Lower triangular factor of the correlation matrix (Cholesky); a zero pivot leaves its column empty.
   [[nodiscard]] Matrix factor() const {
     constexpr double vanishing = 1e-12;
     auto const c = correlations();
@@ -112,11 +113,13 @@ struct ObservationNoise {
   }
 };
 
-/// Perceives with errors, `own` about itself and `others` about the others, for each pair of agents independent of all
-/// else. Errors may last: every `lasting` steps new ones are drawn, and on the way the old numbers z turn into the new
-/// ones as z_old cos(a) + z_new sin(a), a going from 0 to a quarter turn, so that an error is at each step distributed
-/// as the parameters say. Steps a and b of one way are correlated by the cosine of the angle between them; steps
-/// `2 * lasting` apart are independent. 1: new ones at each step. Speeds may come out negative.
+/// Perceives states with normally distributed errors: `own` applies to the agent itself, `others` to all other agents.
+/// The errors of each pair of agents are independent of those of other pairs.
+///
+/// Errors may last. Every `lasting` steps the observer draws new standard normal numbers. In between, the old numbers
+/// turn into the new ones as z_old cos(a) + z_new sin(a), with a from 0 to a quarter turn, so that the error keeps its
+/// distribution in every step. Two steps in one interval are correlated by the cosine of the angle between them; steps
+/// `2 * lasting` apart are independent. With `lasting` 1, each step has new errors. Perceived speeds may be negative.
 struct ParametricObserver {
   ObservationNoise own{};
   ObservationNoise others{};
@@ -129,9 +132,9 @@ struct ParametricObserver {
   static constexpr char const* source = "normal distribution; after BARK";
   static constexpr auto parameters() {
     using P = ParametricObserver;
-    return parameter_list(parameter("own", &P::own, "-", {}, "errors about itself"),
-                          parameter("others", &P::others, "-", {}, "errors about others"),
-                          parameter("lasting", &P::lasting, "-", Range{1, 1e6}, "steps until errors are new ones"));
+    return parameter_list(parameter("own", &P::own, "-", {}, "errors of its own state"),
+                          parameter("others", &P::others, "-", {}, "errors of the others' states"),
+                          parameter("lasting", &P::lasting, "-", Range{1, 1e6}, "steps between new errors"));
   }
 
   template <MotionState S>

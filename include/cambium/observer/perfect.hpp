@@ -4,7 +4,7 @@
 
 namespace cambium {
 
-/// Sees the truth.
+/// Sees all agents and objects in their true states.
 struct PerfectObserver {
   static constexpr bool perfect = true;
   static constexpr char const* name = "perfect";

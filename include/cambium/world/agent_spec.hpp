@@ -18,8 +18,8 @@ namespace cambium {
 namespace detail {
 enum class SpecPart { behavior, goal, id };
 
-/// A part of an `AgentSpecOf`, of type `Value`. It can be made of any type, so that a wrong one is an error with a
-/// sentence (and not with the compiler's, which names no part).
+/// A part of an `AgentSpecOf`, of type `Value`. It accepts any type, so that a wrong type yields our message, which
+/// names the part, and not the compiler's, which does not.
 template <class Value, SpecPart part>
 struct Given : Value {
   Given() = default;
@@ -36,7 +36,7 @@ struct Given : Value {
   [[nodiscard]] static Value converted(T&& value) {
     constexpr bool fits = std::is_convertible_v<T, Value>;
     static_assert(fits || part != SpecPart::behavior,
-                  "cambium::World::AgentSpec::behavior: this type is none of the Models of the world's "
+                  "cambium::World::AgentSpec::behavior: this type is not one of the Models of the world's "
                   "cambium::BehaviorSet<Models...>; add it there");
     static_assert(fits || part != SpecPart::goal,
                   "cambium::World::AgentSpec::goal: this type is no goal; give one of cambium/goal.hpp, or a copyable "
@@ -52,22 +52,22 @@ struct Given : Value {
 };
 }  // namespace detail
 
-/// An agent that is to enter a world: see `World::AgentSpec`.
+/// Describes an agent for `World::add`: see `World::AgentSpec`.
 template <class Behavior, class Execution, class Dynamics, class Observer>
 struct AgentSpecOf {
   geometry::Point position{std::numeric_limits<double>::quiet_NaN(),
                            std::numeric_limits<double>::quiet_NaN()};  ///< of the reference point [m]
-  std::optional<double> heading{};                                     ///< [rad]; along the lane where not given
+  std::optional<double> heading{};                                     ///< [rad]; default: along the lane
   double speed = 0.0;                                                  ///< [m/s]
-  geometry::Shape shape{};                                             ///< a car where not given
+  geometry::Shape shape{};                                             ///< default: a car
   detail::Given<Behavior, detail::SpecPart::behavior> behavior{};
   detail::Given<Goal, detail::SpecPart::goal> goal{};
-  std::optional<map::Route> route{};                ///< else the shortest to the goal; without a goal straight on
+  std::optional<map::Route> route{};                ///< default: the shortest to the goal; straight on without a goal
   std::shared_ptr<map::RoadCorridor const> road{};  ///< instead of a route: see `map::build_free_corridor`
   Execution execution{};
   Dynamics dynamics{};
   Observer observer{};
-  detail::Given<std::optional<AgentId>, detail::SpecPart::id> id{};  ///< else the next free one
+  detail::Given<std::optional<AgentId>, detail::SpecPart::id> id{};  ///< default: the next free id
 };
 
 }  // namespace cambium

@@ -12,18 +12,18 @@
 
 namespace cambium {
 
-/// Whether an agent takes part in traffic, and if not, why not. Only those that drive are seen by others, and moved.
+/// Whether an agent takes part in traffic, and if not, why. Only driving agents move and are visible to others.
 enum class AgentStatus : std::uint8_t {
   driving,
   not_started,  ///< its behaviour has not begun
   arrived,      ///< passed the end of its route
-  off_route,    ///< passed the last place where its lane was beside the route, as at a fork; the road goes on
+  off_route,    ///< its lane has left the route for good, as at a fork, and the road goes on
   left_map,     ///< passed the end of the road
   expired,      ///< its behaviour has nothing more to do
-  failed,       ///< its behaviour or execution gave no valid next state; it keeps the last valid one
+  failed,       ///< its behaviour or execution returned no valid next state; it keeps its last valid state
 };
 
-/// As in messages.
+/// The status as text for messages.
 [[nodiscard]] constexpr char const* to_string(AgentStatus status) {
   constexpr char const* names[] = {"driving",      "not started", "arrived", "off its route",
                                    "left the map", "expired",     "failed"};
@@ -31,23 +31,23 @@ enum class AgentStatus : std::uint8_t {
   return number < std::size(names) ? names[number] : "unknown";
 }
 
-/// What a step changes of one agent. `ExecutionMemory`: what its execution model remembers; `Past`: what observers that
-/// see late need of it.
+/// The part of an agent that a step changes. `ExecutionMemory` is the memory of its execution model; `Past` holds the
+/// earlier states that delayed observers read.
 template <MotionState S, class Memory, class ExecutionMemory = NoMemory, class Past = NoPast>
 struct AgentRecord {
   S state;
   map::LanePlace lane;
-  Action action;  ///< of the step that led here
+  Action action;  ///< of the last step
   Memory memory;
   AgentStatus status = AgentStatus::driving;
-  std::uint8_t goals_passed = 0;  ///< parts of its `GoalSequence` that it has reached
+  std::uint8_t goals_passed = 0;  ///< number of parts of its `GoalSequence` already reached
   [[no_unique_address]] ExecutionMemory execution{};
   [[no_unique_address]] Past past{};
 
   friend bool operator==(AgentRecord const&, AgentRecord const&) = default;
 };
 
-/// What a step changes: time and one record per agent, in the order of the roster, in one buffer.
+/// The part of a world that a step changes: time and one record per agent, in the order of the roster, in one buffer.
 template <MotionState S, class Memory, class ExecutionMemory = NoMemory, class Past = NoPast>
 struct Frame {
   using Record = AgentRecord<S, Memory, ExecutionMemory, Past>;
@@ -55,9 +55,9 @@ struct Frame {
   double time = 0.0;       ///< [s]
   std::uint64_t step = 0;  ///< steps made since the world began
   IdVector<Record, Slot> agents;
-  std::uint32_t roster_revision = 0;  ///< of the roster that the records belong to: see `RosterBase::revision`
+  std::uint32_t roster_revision = 0;  ///< revision of the matching roster: see `RosterBase::revision`
 
-  /// Whether both show the same at the same time, however often their rosters have changed.
+  /// Compares time, step and records; ignores the roster revision.
   friend bool operator==(Frame const& a, Frame const& b) {
     return a.time == b.time && a.step == b.step && a.agents == b.agents;
   }

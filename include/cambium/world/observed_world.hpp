@@ -21,10 +21,12 @@
 
 namespace cambium {
 
-/// What one agent sees of its world: a view of a few pointers, valid until the world changes. States, and with them
-/// gaps, neighbours' speeds and the own lane position, pass through the agent's observer model; who is next to whom is
-/// the truth, but for those that the observer does not see. It shows states, shapes, the map, neighbours and the
-/// agent's own route; never what the others intend: `predict` asks for a model of that.
+/// What one agent sees of its world: a view of a few pointers, valid until the world changes. It shows states, shapes,
+/// neighbours, the map and the agent's own route, never the others' intentions; `predict` takes a model of those.
+///
+/// The agent's observer model shapes what the view shows. It alters states, and therefore gaps, neighbours' speeds and
+/// the agent's own lane position. It may hide agents and objects. It does not alter the order of the visible road users
+/// along a lane, which the view takes from the true positions.
 template <class World>
 class ObservedWorld {
  public:
@@ -57,22 +59,22 @@ class ObservedWorld {
   }
   [[nodiscard]] map::LaneCorridor const& corridor() const { return road().corridors[place().corridor]; }
 
-  /// Numbers of the agent's own for this step: the same whatever the order of agents, threads or copies. `purpose`
-  /// below 2^31 - 1.
+  /// The agent's random numbers for this step, independent of the order of agents, of threads and of copies. `purpose`
+  /// distinguishes several streams in one step; it is below 2^31 - 1.
   [[nodiscard]] RandomStream random(std::uint32_t purpose) const {
     return {world_->roster().seed, static_cast<std::uint32_t>(id()), static_cast<std::uint32_t>(world_->frame().step),
             purpose};
   }
 
-  /// Where the agent is on lane corridor `number` of its road. O(1) for the own one and those next to it, else O(lanes
-  /// of the corridor).
+  /// The agent's place on lane corridor `number` of its road. O(1) for its own corridor and the adjacent ones, else
+  /// O(lanes of the corridor).
   [[nodiscard]] map::LanePlace place(CorridorId number) const {
     auto const& at = place();
     return number == at.corridor ? at : detail::locate_beside(map(), road(), at, number, pose_of(state()));
   }
 
-  /// Next road user along the own lane corridor, ahead and behind; nothing where there is none within
-  /// `Look::distance`. O(1) while the next one is in the same lane.
+  /// Next road user ahead (behind) along the agent's own lane corridor; nothing if none is within `Look::distance`.
+  /// O(1) if that road user is in the same lane.
   [[nodiscard]] std::optional<RoadUser> ahead(Look const& look = {}) const {
     return seen(world_->traffic().front(corridor(), query(record_->lane, look), objects_on_lanes(), in_traffic()), 1);
   }
@@ -80,7 +82,7 @@ class ObservedWorld {
     return seen(world_->traffic().rear(corridor(), query(record_->lane, look), objects_on_lanes(), in_traffic()), -1);
   }
 
-  /// Next road user ahead of a place on a lane corridor of the own road, or behind it, as if the agent were there.
+  /// Next road user ahead of (behind) a place on any lane corridor of the agent's road, as if the agent were there.
   /// O(log n).
   [[nodiscard]] std::optional<RoadUser> ahead(map::LanePlace const& from, Look const& look = {}) const {
     auto const& along = road().corridors[from.corridor];
@@ -91,15 +93,15 @@ class ObservedWorld {
     return seen(world_->traffic().rear(along, query(truth(from), look), objects_on_lanes(), false), -1);
   }
 
-  /// Of the agents in lanes that are still to merge into the own corridor at `merge` (see `Feeder::free_until`), the
-  /// foremost that is not beyond corridor position `limit`. O(feeders), plus a search in each.
+  /// The foremost agent, not beyond corridor position `limit`, in the lanes that merge into the agent's own corridor at
+  /// `merge` (see `Feeder::free_until`). O(feeders), plus a search in each.
   [[nodiscard]] std::optional<RoadUser> merging(double merge, double limit) const {
     return seen(world_->traffic().merging(corridor(), merge, limit, query(record_->lane, {})), 1);
   }
 
-  /// Calls `f(RoadUser)` for every agent that is on the lane corridor of a place, or reaches into it, within `distance`
-  /// [m] of it, at most `Look::horizon`; for some of them more than once; and then for the next objects ahead and
-  /// behind. O(log n + agents found).
+  /// Calls `f(RoadUser)` for every agent on the lane corridor of a place, or reaching into it, within `distance` [m] of
+  /// the place (at most `Look::horizon`), then for the next static object ahead and the next one behind. Some agents
+  /// are reported more than once. O(log n + agents found).
   template <class F>
   void around(map::LanePlace const& from, double distance, F&& f) const {
     auto const& along = road().corridors[from.corridor];
@@ -126,16 +128,16 @@ class ObservedWorld {
     if (object_behind) f(*object_behind);
   }
 
-  /// Calls `f(RoadUser)` for every other agent in traffic of which a circle about its reference point that holds it
-  /// comes within `distance` [m] of the own one, whatever lane it is on. In worlds of which a behaviour says that it
-  /// looks around O(agents found), in an order that does not depend on the lanes; else O(agents), in that of their ids.
+  /// Calls `f(RoadUser)` for every other agent in traffic near the agent, regardless of lanes: its bounding circle
+  /// (about the reference point) comes within `distance` [m] of the agent's own. If a behaviour of the world's set
+  /// looks around, O(agents found), in an order that does not depend on lanes; else O(agents), in the order of ids.
   template <class F>
   void around(double distance, F&& f) const {
     detail::for_each_around(*world_, slot_, distance, [&](Slot slot) { f(user(slot)); });
   }
 
-  /// Calls `f(RoadUser)` for those who reach into lane coordinates `index_begin` to `index_end` of one lane (see
-  /// `Lane::index_begin`), the agent itself left out; their `s` is the lane coordinate. O(log n) and those near.
+  /// Calls `f(RoadUser)` for every other road user that reaches into lane coordinates `index_begin` to `index_end` of
+  /// one lane (see `Lane::index_begin`); `s` is then the lane coordinate. O(log n + road users near).
   template <class F>
   void on_lane(double index_begin, double index_end, F&& f) const {
     world_->traffic().for_each_in(index_begin, index_end, objects_on_lanes(), [&](auto const& entry, bool is_object) {
@@ -145,19 +147,19 @@ class ObservedWorld {
     });
   }
 
-  /// Calls `f(id, outline)`, an `ObjectId` and a `geometry::Polygon`, for the static objects that are seen, in the
-  /// order of their ids.
+  /// Calls `f(id, outline)`, with an `ObjectId` and a `geometry::Polygon`, for each visible static object, in the order
+  /// of ids.
   template <class F>
   void for_each_object(F&& f) const {
     detail::for_each_object(*world_, slot_, f);
   }
 
-  /// Of another agent, as observed. O(1). Not of objects.
+  /// Another agent's state, as observed. O(1). Asserts that the road user is an agent.
   [[nodiscard]] decltype(auto) state(RoadUser const& agent) const { return observed(slot_of(agent)); }
   [[nodiscard]] geometry::Shape const& shape(RoadUser const& agent) const {
     return world_->roster().agents[index_of(slot_of(agent))].shape;
   }
-  /// Over the last step, along its heading [m/s^2]: what brake lights tell.
+  /// Another agent's acceleration over the last step, along its heading [m/s^2], as brake lights would show it.
   [[nodiscard]] double acceleration(RoadUser const& agent) const {
     return detail::seen_acceleration(*world_, slot_, slot_of(agent));
   }
@@ -166,30 +168,31 @@ class ObservedWorld {
     return world_->roster().objects[index_of(object.slot)].outline;
   }
 
-  /// Whether it matters in which lane the route ends.
+  /// Whether the agent has a goal, so that the lane in which its route ends matters.
   [[nodiscard]] bool has_goal() const { return !std::holds_alternative<NoGoal>(goal()); }
 
-  /// What a traffic light shows now; `off` where it has no plan (see `World::set_light`). O(1).
+  /// The present color of a traffic light; `off` if it has no phases (see `World::set_light`). O(1).
   [[nodiscard]] map::LightColor light(LightId id) const {
     auto const& lights = world_->roster().lights;
     return index_of(id) < lights.size() ? lights[index_of(id)].at(time()) : map::LightColor::off;
   }
 
-  /// Whether an agent's turn signals say that it will come by `lane`, or it is there: the way ahead is all that they
-  /// tell. Objects go nowhere. O(lanes of its road).
+  /// Whether an agent's route passes `lane`, as its turn signals show it: the only knowledge about another agent's
+  /// route that the view gives. False for objects. O(lanes of its road).
   [[nodiscard]] bool signals_way(RoadUser const& user, LaneId lane) const {
     if (!is_valid(user.agent)) return false;
     return world_->roster().agents[index_of(user.slot)].road->corridor_of(lane) != none<CorridorId>;
   }
 
-  /// A world of its own, as this agent sees it, in which everybody behaves as `prediction` says: to be stepped, copied
-  /// and judged. History, observers and true behaviours stay behind. O(agents), allocates: do it once, then copy.
+  /// Returns a separate world, as this agent sees it, in which all agents behave as `prediction` says. Step, copy and
+  /// judge it. It contains no history, no observer models and no true behaviours. O(agents); allocates, so predict
+  /// once, then copy.
   template <class Set>
   [[nodiscard]] typename World::template WithBehaviors<Set> predict(Prediction<Set> const& prediction) const {
     return predicted_world<Set>(*world_, slot_, prediction);
   }
 
-  /// Says what is missing where a bare behaviour is given.
+  /// Reports a call with a behaviour in place of a `Prediction`, with a remedy.
   template <class Behavior>
   void predict(Behavior const&) const {
     static_assert(std::is_void_v<Behavior>,
@@ -198,14 +201,14 @@ class ObservedWorld {
   }
 
  private:
-  /// An agent that is not on its lane has no place in the index: it is searched for.
+  /// Whether the index has an entry for the agent; without one, a query searches for its place.
   [[nodiscard]] bool in_traffic() const { return world_->traffic().has(slot_); }
   [[nodiscard]] auto const& record(Slot slot) const { return world_->frame().agents[index_of(slot)]; }
   [[nodiscard]] std::span<TrafficEntry const> objects_on_lanes() const { return world_->roster().object_entries; }
 
   [[nodiscard]] decltype(auto) observed(Slot slot) const { return detail::seen_state(*world_, slot_, slot); }
 
-  /// The place as it is, not as the observer shows it.
+  /// The true place for an observed one.
   [[nodiscard]] decltype(auto) truth(map::LanePlace const& at) const {
     if constexpr (perfect) {
       return (at);
@@ -240,7 +243,7 @@ class ObservedWorld {
     return agent.slot;
   }
 
-  /// An agent that is asked for by itself, not along a lane corridor.
+  /// An agent found without a lane corridor.
   [[nodiscard]] RoadUser user(Slot slot) const {
     auto const& agent = world_->roster().agents[index_of(slot)];
     return {.agent = agent.id,
@@ -251,7 +254,7 @@ class ObservedWorld {
             .speed = observed(slot).speed};
   }
 
-  /// One found ahead (`sign` 1), behind (-1) or on a lane (0), as observed.
+  /// A road user found ahead (`sign` 1), behind (-1) or on a lane (0), as observed.
   [[nodiscard]] RoadUser seen(RoadUser found, int sign) const {
     if constexpr (!perfect) {
       found.gap -= sign * shift(slot_);
@@ -268,7 +271,7 @@ class ObservedWorld {
     return found ? std::optional(seen(*found, sign)) : std::nullopt;
   }
 
-  /// How far the observer moves an agent along its lane [m].
+  /// The observer's position error of an agent, along the agent's lane [m].
   [[nodiscard]] double shift(Slot slot) const {
     auto const& truth = record(slot).state;
     auto const& seen = observed(slot);

@@ -12,15 +12,16 @@
 
 namespace cambium {
 
-/// Who is where in the plane, whatever lane that is: for those who go across the lanes. Agents are entered in the cells
-/// of a grid that the boxes around them meet; the cells are hashed, so that no map is too large.
+/// Finds agents by their position in the plane, regardless of lanes, for behaviours that look around, such as those of
+/// pedestrians. A grid holds each agent in every cell that its bounding box meets. The cells are hashed into buckets,
+/// so the memory depends on the number of agents, not on the size of the map.
 class PlaneIndex {
  public:
   /// Side of a cell [m].
   static constexpr double cell = 4.0;
 
-  /// Takes in `count` agents: `box_of(slot)` is the box around each, empty for those who are not to be found. No
-  /// allocation once warm. O(count).
+  /// Rebuilds the index for `count` agents. `box_of(slot)` returns an agent's bounding box; an empty box leaves the
+  /// agent out. No allocation once warm. O(count).
   template <class BoxOf>
   void refresh(std::size_t count, BoxOf const& box_of) {
     ranges_.resize(count);
@@ -43,14 +44,15 @@ class PlaneIndex {
       });
   }
 
-  /// Calls `f(slot)` once for each agent whose cells meet `box`: all whose own boxes do, and some nearby, in an order
-  /// that depends on their places and slots alone. O(cells of the box + agents there), at most O(agents + 4096).
+  /// Calls `f(slot)` once for each agent that shares a cell with `box`: every agent whose bounding box meets `box`, and
+  /// some nearby. The order depends only on positions and slots. O(cells of the box + agents there), at most
+  /// O(agents + 4096).
   template <class F>
   void for_each_near(geometry::Box const& box, F&& f) const {
     if (ranges_.empty() || !(box.min_x <= box.max_x)) return;
     auto const asked = range_of(box);
     auto const side = [](std::int32_t from, std::int32_t to) { return static_cast<double>(to) - from + 1.0; };
-    if (side(asked.min_x, asked.max_x) * side(asked.min_y, asked.max_y) > 4096.0) {  // more than to look at everybody
+    if (side(asked.min_x, asked.max_x) * side(asked.min_y, asked.max_y) > 4096.0) {  // testing all agents is cheaper
       for (Slot slot{}; index_of(slot) < ranges_.size(); ++slot)
         if (meet(ranges_[slot], asked)) f(slot);
       return;
@@ -61,7 +63,7 @@ class PlaneIndex {
         auto const& entry = entries_[i];
         if (entry.x != x || entry.y != y) continue;
         auto const& range = ranges_[entry.slot];
-        // Of several cells that it is in, the first one of those asked for counts.
+        // Report an agent in several cells only once: in the first cell that it shares with the box.
         if (x == std::max(range.min_x, asked.min_x) && y == std::max(range.min_y, asked.min_y)) f(entry.slot);
       }
     });
@@ -82,7 +84,7 @@ class PlaneIndex {
   [[nodiscard]] static Range range_of(geometry::Box const& box) {
     return {cell_of(box.min_x), cell_of(box.min_y), cell_of(box.max_x), cell_of(box.max_y)};
   }
-  /// Cells that a box of this side can meet.
+  /// Largest number of cells that this side [m] of a box can meet.
   [[nodiscard]] static std::size_t at_most(double side) {
     return side >= 0.0 ? static_cast<std::size_t>(side / cell) + 2 : 0;
   }
@@ -102,7 +104,7 @@ class PlaneIndex {
   }
 
   IdVector<Range, Slot> ranges_;       ///< by slot
-  std::vector<std::uint32_t> begins_;  ///< of each bucket's entries, and the end
+  std::vector<std::uint32_t> begins_;  ///< index of each bucket's first entry, and the end
   std::vector<std::uint32_t> next_;
   std::vector<Entry> entries_;  ///< by bucket, then slot
 };

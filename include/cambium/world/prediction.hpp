@@ -19,46 +19,46 @@
 
 namespace cambium {
 
-/// What a planner assumes: how itself and how the others will behave, as alternatives of a behaviour set.
+/// A planner's assumptions: the behaviours of its own agent and of all others, from one behaviour set.
 template <class Set>
 struct Prediction {
   static_assert(is_behavior_set<Set>, "cambium::Prediction<Set>: Set must be cambium::BehaviorSet<Models...>");
   typename Set::Any ego;
   typename Set::Any others;
-  /// Of the predicted world; by default drawn for (world, observer, step): not the true one.
+  /// Seed of the predicted world. By default drawn from (world, observer, step), so that it differs from the true seed.
   std::optional<std::uint64_t> seed{};
 };
 
-/// The stream purpose of execution models: that for observing no agent.
+/// The purpose of the execution models' random streams: the one for observing no agent.
 inline constexpr std::uint32_t execution_purpose = observation_purpose(none<AgentId>);
 
-/// The agent behaves as `ego`, the others as `others`: behaviours of `Set`.
+/// Assumes that the agent itself behaves as `ego` and all others as `others`, both from `Set`.
 template <class Set, class Ego, class Others>
 [[nodiscard]] Prediction<Set> predict_as(Ego const& ego, Others const& others) {
   if constexpr (is_behavior_set<Set>)
     static_assert(std::convertible_to<Ego, typename Set::Any> && std::convertible_to<Others, typename Set::Any>,
-                  "cambium::Prediction<Set>: the behaviour that is to be assumed must be one of the Models of Set");
+                  "cambium::Prediction<Set>: the assumed behaviour must be one of the Models of Set");
   return {ego, others, {}};
 }
 
-/// Everybody behaves as `behavior`, one of the behaviours of `Set`.
+/// Assumes that all agents, the predicting one included, behave as `behavior`, from `Set`.
 template <class Set, class Behavior>
 [[nodiscard]] Prediction<Set> predict_all_as(Behavior const& behavior) {
   return predict_as<Set>(behavior, behavior);
 }
 
-/// The world that agent number `slot` of `world` expects: states as it observes them, behaviours as `prediction` says.
-/// The others keep their routes, as if they signalled them, but not their goals. Agents that are not in traffic, or not
-/// seen, are left out; what is seen late counts as the present. Throws `ParameterError` where a parameter of an assumed
-/// behaviour is out of its range, and `WorldError` where one heeds conflicts and the agent is too large for them, as
-/// `World::add`.
+/// The world that the agent at `slot` expects: states as it observes them, behaviours as `prediction` says. The other
+/// agents keep their routes, as if they signalled them, but lose their goals. Agents out of traffic and hidden agents
+/// are missing; a delayed observation counts as the present state. As `World::add`, throws `ParameterError` if a
+/// parameter of an assumed behaviour is out of range, and `WorldError` if that behaviour respects conflicts and the
+/// agent is too large for them.
 template <class Set, class World>
 [[nodiscard]] typename World::template WithBehaviors<Set> predicted_world(World const& world, Slot slot,
                                                                           Prediction<Set> const& prediction) {
   using Predicted = typename World::template WithBehaviors<Set>;
   static_assert(
       std::is_trivially_copyable_v<typename Predicted::Record> || !std::is_trivially_copyable_v<typename Set::Memory>,
-      "a prediction's records are copied as memory when what its behaviours remember is");
+      "a prediction's records must be trivially copyable if the memories of its behaviours are");
   auto const& roster = world.roster();
   auto const& frame = world.frame();
   auto const& observer = roster.agents[slot];

@@ -18,23 +18,24 @@
 
 namespace cambium {
 
-/// A free corridor as it was given, and as the world has it: with lane coordinates of its own, behind those of the map.
+/// A free corridor as the user gave it, and a copy whose lane coordinates follow those of the map.
 struct FreeRoad {
   std::shared_ptr<map::RoadCorridor const> given, numbered;
 };
 
-/// What a world's roster holds whatever its models are.
+/// The part of a roster that does not depend on the world's models.
 struct RosterBase {
   std::uint64_t seed = 0;
-  std::uint32_t revision = 0;  ///< changes after which frames from before do not fit: agents, roads, kinds of behaviour
+  std::uint32_t revision =
+      0;  ///< counts the changes that make earlier frames invalid: agents, roads, models of behaviour
   std::uint32_t next_agent_id = 0;
   std::uint32_t next_object_id = 0;
   IdVector<Goal, Slot> goals;          ///< by slot
-  bool has_sequences = false;          ///< one of them is, or was, a `GoalSequence`
-  std::vector<map::LightPlan> lights;  ///< by `LightId`; off beyond its end
+  bool has_sequences = false;          ///< a goal is, or was, a `GoalSequence`
+  std::vector<map::LightPlan> lights;  ///< by `LightId`; lights beyond the end are off
   IdVector<StaticObject, Slot> objects;
-  std::vector<TrafficEntry> object_entries;  ///< objects on the lanes that they stand in; slot: place in `objects`
-  std::vector<FreeRoad> free_roads;          ///< those that agents have entered on
+  std::vector<TrafficEntry> object_entries;  ///< lanes that objects stand in; `slot` indexes `objects`
+  std::vector<FreeRoad> free_roads;          ///< free corridors that agents have entered on
 
   RosterBase();
   RosterBase(RosterBase const&);
@@ -43,16 +44,16 @@ struct RosterBase {
   RosterBase& operator=(RosterBase&&) noexcept;
   ~RosterBase();
 
-  /// Takes in a static object, with `entries` for the lanes that it stands in; returns its id. O(objects).
+  /// Adds a static object, with `entries` for the lanes that it stands in; returns its id. O(objects).
   ObjectId insert(StaticObject object, std::vector<TrafficEntry> const& entries);
 
-  /// Takes the object at `place` out. O(objects).
+  /// Removes the object at index `place`. O(objects).
   void erase_object(Slot place);
 
-  /// Takes over the goal at `slot` of another roster, or where that is null none, as the next one's.
+  /// Appends the goal at `slot` of another roster; `NoGoal` if `other` is null.
   void assume_goal(RosterBase const* other, Slot slot);
 
-  /// Takes over those of the static objects of another roster that are `seen`, with their places on lanes.
+  /// Copies the `seen` static objects of another roster, with their lane entries.
   void assume_objects(RosterBase const& other, IdVector<std::uint8_t, Slot> const& seen);
 
  protected:
@@ -61,8 +62,8 @@ struct RosterBase {
   void keep_goals(std::vector<Slot> const& slots);
 };
 
-/// Who the agents of a world are: what does not change while nobody enters or leaves. Shared by copies of the world,
-/// copied on write. Agents are in order of their ids; an agent's place there is its slot, the same as in the frame.
+/// The agents of a world, with everything about them that a step does not change. Copies of the world share the roster;
+/// it is copied on write. Agents are sorted by id; an agent's index is its slot, the same as in the frame.
 template <class Behavior, class Execution, class Dynamics, class Observer>
 struct Roster : RosterBase {
   struct Agent {
@@ -77,7 +78,7 @@ struct Roster : RosterBase {
 
   IdVector<Agent, Slot> agents;
 
-  /// The agent's slot; nothing if there is no such agent. O(log n).
+  /// The agent's slot; nothing if the roster has no such agent. O(log n).
   [[nodiscard]] std::optional<Slot> slot_of(AgentId id) const {
     auto const slot = place_of(id);
     if (index_of(slot) == agents.size() || agents[slot].id != id) return std::nullopt;
@@ -85,7 +86,7 @@ struct Roster : RosterBase {
   }
 
   using RosterBase::insert;
-  /// Takes in an agent whose id nobody has; returns its slot. O(n).
+  /// Adds an agent with an unused id; returns its slot. O(n).
   Slot insert(Agent agent, Goal goal) {
     auto const slot = place_of(agent.id);
     next_agent_id = std::max(next_agent_id, static_cast<std::uint32_t>(agent.id) + 1);
@@ -94,13 +95,13 @@ struct Roster : RosterBase {
     return slot;
   }
 
-  /// Takes the agent at `slot` out. O(n).
+  /// Removes the agent at `slot`. O(n).
   void erase(Slot slot) {
     agents.erase(agents.begin() + static_cast<std::ptrdiff_t>(slot));
     erase_goal(slot);
   }
 
-  /// Takes all out but those at `slots`, which ascend. O(n).
+  /// Removes all agents except those at `slots` (ascending). O(n).
   void keep(std::vector<Slot> const& slots) {
     for (std::size_t to = 0; to < slots.size(); ++to)
       if (to != index_of(slots[to])) agents[to] = std::move(agents[slots[to]]);
@@ -109,7 +110,7 @@ struct Roster : RosterBase {
   }
 
  private:
-  /// Where `id` is, or belongs.
+  /// The position of `id` in the sorted agents, or the position at which to insert it.
   [[nodiscard]] Slot place_of(AgentId id) const {
     std::size_t begin = 0, end = agents.size();
     while (begin < end) {

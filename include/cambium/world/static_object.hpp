@@ -7,10 +7,9 @@
 
 namespace cambium {
 
-/// Something that stands in the way and never moves. Behaviours meet it as a neighbour of speed 0, evaluators as an
-/// obstacle.
+/// An obstacle that never moves. Behaviours see it as a neighbour of speed 0; evaluators report contact with it.
 struct StaticObject {
-  ObjectId id = none<ObjectId>;  ///< given by the world
+  ObjectId id = none<ObjectId>;  ///< assigned by the world
   geometry::Polygon outline;     ///< map frame
 };
 

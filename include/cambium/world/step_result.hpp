@@ -6,22 +6,22 @@
 
 namespace cambium {
 
-/// Why a step, or an agent's part in it, was not valid.
+/// Why a step failed, as a whole or for one agent.
 enum class StepProblem : std::uint8_t {
   none,
-  bad_duration,  ///< dt is not a number above 0 and up to `World::longest_step`: nothing happened
-  no_plan,       ///< a behaviour failed
-  no_execution,  ///< a plan does not reach the end of the step, or its execution failed
-  not_finite,    ///< the next state would not have been a finite number
-  bad_speed,     ///< the next speed would have been negative, or above 1000 m/s
+  bad_duration,  ///< dt is not above 0 and at most `World::longest_step`: the world is unchanged
+  no_plan,       ///< a behaviour returned no plan
+  no_execution,  ///< a plan ends before the step does, or its execution failed
+  not_finite,    ///< the next state is not finite
+  bad_speed,     ///< the next speed is negative, or above 1000 m/s
 };
 
-/// What became of a step. Agents with a problem keep their last valid state and leave traffic; all others have moved.
+/// The result of a step. Agents with a problem keep their last valid state and leave traffic; all others have moved.
 struct [[nodiscard("a step that is not valid may not have moved the world: check the result")]] StepResult {
-  StepProblem problem = StepProblem::none;  ///< the first
-  AgentId agent = none<AgentId>;            ///< who had it
-  std::uint32_t failed = 0;                 ///< agents with a problem
-  std::uint32_t left = 0;                   ///< agents that arrived, left the map or expired in this step
+  StepProblem problem = StepProblem::none;  ///< the first problem
+  AgentId agent = none<AgentId>;            ///< the agent that had it
+  std::uint32_t failed = 0;                 ///< number of agents with a problem
+  std::uint32_t left = 0;                   ///< number of agents that left traffic without a problem in this step
 
   [[nodiscard]] bool valid() const { return problem == StepProblem::none; }
   explicit operator bool() const { return valid(); }

@@ -16,15 +16,15 @@
 
 namespace cambium {
 
-/// From where to where a lane goes, in lane coordinates [m].
+/// A lane's range of the lane coordinate [m].
 struct LaneStretch {
   double begin = 0.0, end = 0.0;
 };
 
-/// Entries of agents in lanes that they reach into.
+/// Extra entries of agents, one for each further lane that an agent reaches into.
 struct ReachingEntries {
   std::vector<TrafficEntry> entries;
-  double over_begin = 0.0, over_end = 0.0;  ///< how far one reaches at most over the begin, the end of its lane [m]
+  double over_begin = 0.0, over_end = 0.0;  ///< largest extent of an agent beyond the begin (end) of its lane [m]
 
   void clear() {
     entries.clear();
@@ -38,19 +38,29 @@ struct ReachingEntries {
   }
 };
 
-/// Who is where on the lanes, sorted, so that the next road user along a corridor is the next in the list.
+/// All agents on the lanes, sorted, so that the next road user along a corridor is usually the next entry of a list.
 ///
-/// Agents are kept in one list by lane coordinate; the order of the last step is repaired, not rebuilt (insertion sort;
-/// where it is far off, a full sort). Agents that reach over their lane's border are in it once more, in the
-/// neighbour's lane; static objects are in a list of their own, in parts. Of all whose reference points (of objects:
-/// whose parts' middles) are ahead of the asker's, or behind it, on the corridor itself or on its feeders (lanes that
-/// merge in, or have just split off), the one with the smallest gap is the neighbour. Mostly that is the next in the
-/// list; where somebody stands beside another, those farther on are looked at, too.
+/// Each lane owns a range of the map-wide lane coordinate (see `Lane::index_begin`), so one sorted list holds all
+/// lanes:
+///
+///     lane coordinate   0 --------- lane 0 --------- 120 --------- lane 1 --------- 260 ---
+///     agents                  a         b                     c   d          e
+///     corridor of `a` = pieces [lane 0][lane 4]: its leader is b; the leader of b is the first entry in lane 4
+///
+/// The list is repaired once a step by insertion sort, because agents rarely overtake within a lane; if the order has
+/// changed a lot, it is sorted anew. An agent that reaches over its lane's border has a second entry, in the
+/// neighbouring lane. Static objects have a list of their own, cut into short parts.
+///
+/// The neighbour ahead (behind) is the road user with the smallest gap among those whose reference point is ahead of
+/// (behind) the searching agent's. For objects, the middle of each part counts as the reference point. The search
+/// covers the corridor and its feeders: lanes that merge in, or have just split off. Usually the next entry has the
+/// smallest gap. If vehicles of different lengths stand side by side, a later entry may reach nearer (`crowded_`), and
+/// the search continues as far as any vehicle reaches back.
 class TrafficIndex {
  public:
-  /// Takes in `count` agents. `entry_of(slot, list)` gives each one's `TrafficEntry` (position +infinity: on no lane of
-  /// its own) and appends entries in other lanes that it is in to the list; `lane_of(slot)` gives its own
-  /// `LaneStretch`. No allocation once warm. O(count) when little has changed.
+  /// Updates the index for `count` agents. `entry_of(slot, list)` returns the agent's `TrafficEntry` (position
+  /// +infinity: on no lane of its own) and appends its entries in other lanes to the list; `lane_of(slot)` returns the
+  /// `LaneStretch` of its own lane. No allocation once warm. O(count) if the order has hardly changed.
   template <class EntryOf, class LaneOf>
   void refresh(std::size_t count, EntryOf const& entry_of, LaneOf const& lane_of) {
     if (rank_.size() != count) {
@@ -64,7 +74,7 @@ class TrafficIndex {
     Reach reach;
     std::size_t own = 0;
     for (std::size_t i = 0; i < agents_.size(); ++i) {
-      if (!is_own(i)) continue;  // of the last time
+      if (!is_own(i)) continue;  // an extra entry of the last step
       agents_[own] = entry_of(agents_[i].slot, reaching_);
       reach.note(agents_[own++]);
     }
@@ -77,7 +87,7 @@ class TrafficIndex {
     crowded_ = !reach_.all_alike() && anybody_hides(lane_of);
   }
 
-  /// An entry as those who ask see it: `gap` [m] away, at `s` [m].
+  /// The road user of an entry, at gap `gap` [m] and corridor position `s` [m].
   [[nodiscard]] static RoadUser user_of(TrafficEntry const& e, bool is_object, double gap, double s) {
     return {.agent = is_object ? none<AgentId> : static_cast<AgentId>(e.id),
             .object = is_object ? static_cast<ObjectId>(e.id) : none<ObjectId>,
@@ -89,13 +99,13 @@ class TrafficIndex {
             .speed = e.speed};
   }
 
-  /// Whether an agent is on a lane of its own.
+  /// Whether the agent has an entry in its own lane.
   [[nodiscard]] bool has(Slot slot) const {
     return agents_[rank_[index_of(slot)]].position < std::numeric_limits<double>::infinity();
   }
 
-  /// Next ahead of the asker on `corridor`. `own`: the asker's own entry lies on this corridor's piece (saves a
-  /// search).
+  /// Next road user ahead on `corridor`. `own` says that the searching agent's own entry lies on this corridor's piece,
+  /// which saves a binary search.
   template <class Query>
   [[nodiscard]] std::optional<RoadUser> front(map::LaneCorridor const& corridor, Query const& query,
                                               std::span<TrafficEntry const> objects, bool own) const {
@@ -103,7 +113,7 @@ class TrafficIndex {
                       corridor, query, objects);
   }
 
-  /// Next behind the asker on `corridor`.
+  /// Next road user behind on `corridor`; `own` as in `front`.
   template <class Query>
   [[nodiscard]] std::optional<RoadUser> rear(map::LaneCorridor const& corridor, Query const& query,
                                              std::span<TrafficEntry const> objects, bool own) const {
@@ -111,13 +121,13 @@ class TrafficIndex {
                      query, objects);
   }
 
-  /// Where in the list of agents the asker's place is: one search for `front_from` and `rear_from`. O(log n).
+  /// The query's position in the list of agents: one search that serves `front_from` and `rear_from`. O(log n).
   [[nodiscard]] std::size_t find(map::LaneCorridor const& corridor, TrafficQuery const& query) const {
     return lower(agents(), key(corridor, query), query.slot);
   }
 
-  /// Calls `f(entry, is_object)` for all that reach into lane coordinates `begin` to `end` of one lane, also from
-  /// another one; agents in the order of their positions, objects last. O(log n) and those near.
+  /// Calls `f(entry, is_object)` for every road user that reaches into lane coordinates `begin` to `end` of one lane,
+  /// also from another lane: agents in the order of their positions, then objects. O(log n + road users near).
   template <class F>
   void for_each_in(double begin, double end, std::span<TrafficEntry const> objects, F&& f) const {
     auto const visit = [&](List list, bool is_object) {
@@ -130,7 +140,7 @@ class TrafficIndex {
     visit(objects, true);
   }
 
-  /// Next ahead; among the agents, entry `start` is the first candidate on the asker's piece.
+  /// Next road user ahead; entry `start` of the agents is the first candidate on the query's piece.
   template <class Query>
   [[nodiscard]] std::optional<RoadUser> front_from(std::size_t start, map::LaneCorridor const& corridor,
                                                    Query const& query, std::span<TrafficEntry const> objects) const {
@@ -141,7 +151,7 @@ class TrafficIndex {
     return hit(best, objects);
   }
 
-  /// Next behind; among the agents, candidates lie before entry `start`.
+  /// Next road user behind; the candidates among the agents lie before entry `start`.
   template <class Query>
   [[nodiscard]] std::optional<RoadUser> rear_from(std::size_t start, map::LaneCorridor const& corridor,
                                                   Query const& query, std::span<TrafficEntry const> objects) const {
@@ -152,8 +162,8 @@ class TrafficIndex {
     return hit(best, objects);
   }
 
-  /// Of the agents in lanes that are still to merge into `corridor` at `merge`, the one with the foremost image on the
-  /// corridor not beyond `limit`. Whom `query` skips is passed over. O(feeders), plus a search in each.
+  /// The foremost agent in the lanes that merge into `corridor` at `merge`, measured by its image on the corridor and
+  /// not beyond `limit`. Ignores agents that `query` skips. O(feeders), plus a search in each.
   template <class Query>
   [[nodiscard]] std::optional<RoadUser> merging(map::LaneCorridor const& corridor, double merge, double limit,
                                                 Query const& query) const {
@@ -183,10 +193,10 @@ class TrafficIndex {
 
   [[nodiscard]] List agents() const { return {agents_.data(), size_}; }
 
-  /// Objects are entered in parts no longer than this [m].
+  /// Largest length of an object's part [m].
   static constexpr double longest_object = 10.0;
 
-  /// How far agents reach forward and back from their reference points [m].
+  /// Bounds of the agents' extents in front of and behind their reference points [m].
   struct Reach {
     double longest_front = 0.0, longest_rear = 0.0;
     double shortest_front = std::numeric_limits<double>::infinity();
@@ -202,7 +212,7 @@ class TrafficIndex {
     [[nodiscard]] bool all_alike() const { return !(shortest_front < longest_front || shortest_rear < longest_rear); }
   };
 
-  /// The nearest so far: small enough to be handed over in registers.
+  /// The nearest entry so far: small enough to stay in registers.
   struct Nearest {
     double gap = std::numeric_limits<double>::infinity();  ///< [m]
     double s{};                                            ///< on the corridor [m]
@@ -228,11 +238,11 @@ class TrafficIndex {
 
   template <class Query>
   [[nodiscard]] static double key(map::LaneCorridor const& corridor, Query const& query) {
-    auto const& piece = corridor.pieces[query.piece];  // beyond the corridor's ends other lanes' coordinates begin
+    auto const& piece = corridor.pieces[query.piece];  // other lanes own the coordinates beyond the corridor's ends
     return std::min(std::max(query.s, piece.begin - 1.0), piece.end + 1.0) + piece.index_offset;
   }
 
-  /// First entry that sorts behind (position, slot).
+  /// First entry that sorts after (position, slot).
   [[nodiscard]] static std::size_t upper(List list, double position, Slot slot) {
     auto i = first_at(list, position);
     while (i < list.size() && list[i].position == position && list[i].slot <= slot) ++i;
@@ -245,7 +255,7 @@ class TrafficIndex {
     return i;
   }
 
-  /// First entry at `position` or beyond: a binary search without branches to mispredict.
+  /// First entry at or beyond `position`: a binary search without unpredictable branches.
   [[nodiscard]] static std::size_t first_at(List list, double position) {
     TrafficEntry const* base = list.data();
     std::size_t left = list.size();
@@ -258,7 +268,7 @@ class TrafficIndex {
     return static_cast<std::size_t>(base - list.data()) + (base->position < position ? 1 : 0);
   }
 
-  /// Of the agents on the corridor the next ahead by reference point.
+  /// Next agent ahead on the corridor by reference point.
   template <class Query>
   void front_on_corridor(map::LaneCorridor const& corridor, Query const& query, std::size_t start,
                          Nearest& best) const {
@@ -266,7 +276,7 @@ class TrafficIndex {
     auto const& pieces = corridor.pieces;
     for (std::size_t p = index_of(query.piece), i = start;;) {
       while (i < list.size() && query.skips(list[i], list[i].position - pieces[p].index_offset - query.s))
-        ++i;  // the asker's own, reached over from another lane
+        ++i;  // the searching agent's own entry in another lane
       if (i < list.size() && list[i].position <= pieces[p].end + 1.0 + pieces[p].index_offset) {
         double const s = list[i].position - pieces[p].index_offset;
         if (s - query.s <= query.distance) best.offer(list[i], s, s - list[i].rear - (query.s + query.front));
@@ -294,8 +304,8 @@ class TrafficIndex {
     }
   }
 
-  /// Of those on the corridor who is nearest ahead, though another may be next by reference point: looks on as far as
-  /// anybody reaches back, `longest` [m] at most.
+  /// Smallest gap ahead on the corridor, even if another entry is next by reference point: searches on as far as any
+  /// entry can reach back, at most `longest` [m].
   template <class Query>
   static void nearest_front(List list, bool is_object, double longest, map::LaneCorridor const& corridor,
                             Query const& query, std::size_t start, Nearest& best) {
@@ -315,7 +325,7 @@ class TrafficIndex {
     }
   }
 
-  /// The same behind.
+  /// The counterpart behind.
   template <class Query>
   static void nearest_rear(List list, bool is_object, double longest, map::LaneCorridor const& corridor,
                            Query const& query, std::size_t start, Nearest& best) {
@@ -336,9 +346,9 @@ class TrafficIndex {
     }
   }
 
-  /// Next ahead among static objects and all in lanes that merge; and, where it is crowded, among those who are farther
-  /// by reference point but may reach nearer. Out of line: few steps need it, and it is large. It gets copies, so that
-  /// what is searched for elsewhere can stay in registers.
+  /// Next road user ahead among static objects and road users on feeders; if `crowded_`, also among agents farther away
+  /// by reference point that may reach nearer. Not inlined, because it is large and rarely needed; `query` is a copy,
+  /// so that the caller's can stay in registers.
   template <class Query>
   CAMBIUM_NOINLINE Nearest front_of_others(std::size_t start, map::LaneCorridor const& corridor, Query const& query,
                                            List objects, Nearest best) const {
@@ -348,7 +358,7 @@ class TrafficIndex {
     for (auto const& feeder : corridor.feeders) {
       if (feeder.begin > query.s + std::min(query.distance, best.gap + query.front + reach_.longest_rear) &&
           objects.empty())
-        break;  // nobody there is closer
+        break;  // no agent there is closer
       if (feeder.begin > query.s + query.distance) break;
       if (feeder.end < query.s || (query.merging == Merging::ignored && feeder.is_still_to_merge())) continue;
       front_on_feeder(agents(), false, feeder, query, best);
@@ -357,7 +367,7 @@ class TrafficIndex {
     return best;
   }
 
-  /// The same behind.
+  /// The counterpart behind.
   template <class Query>
   CAMBIUM_NOINLINE Nearest rear_of_others(std::size_t start, map::LaneCorridor const& corridor, Query const& query,
                                           List objects, Nearest best) const {
@@ -368,7 +378,7 @@ class TrafficIndex {
       if (feeder.begin > query.s) break;
       if (feeder.end < query.s - std::min(query.distance, best.gap + query.rear + reach_.longest_front) &&
           objects.empty())
-        continue;  // nobody there is closer
+        continue;  // no agent there is closer
       if (feeder.end < query.s - query.distance || (query.merging == Merging::ignored && feeder.is_still_to_merge()))
         continue;
       rear_on_feeder(agents(), false, feeder, query, best);
@@ -381,7 +391,7 @@ class TrafficIndex {
   void front_on_feeder(List list, bool is_object, map::Feeder const& feeder, Query const& query, Nearest& best) const {
     double const longest = is_object ? longest_object : reach_.longest_rear;
     double const from = query.s <= feeder.begin ? feeder.index_begin : feeder.index_at(query.s);
-    // Rounding of the mapping must not lose an entry: start early, then go on to the first that is ahead.
+    // Rounding of the mapping must not lose an entry: start early, then skip entries that are not ahead.
     for (auto i = first_at(list, from - 1e-6); i < list.size() && list[i].position <= feeder.index_end; ++i) {
       auto const& entry = list[i];
       if (entry.position < feeder.index_begin) continue;
@@ -416,11 +426,11 @@ class TrafficIndex {
     }
   }
 
-  /// Whether an entry is the one in the agent's own lane, not in another that it reaches into.
+  /// Whether entry `i` lies in its agent's own lane, not in another lane that the agent reaches into.
   [[nodiscard]] bool is_own(std::size_t i) const { return rank_[index_of(agents_[i].slot)] == i; }
 
-  /// Whether somebody may be farther by reference point than another, but reach nearer: then two who are next to each
-  /// other in the list are so, or one reaches over an end of its lane farther than the shortest would.
+  /// Whether an agent may be farther away by reference point than another one, but reach nearer. Then two consecutive
+  /// entries of the list show it, or an agent reaches beyond an end of its lane farther than the shortest agent would.
   template <class LaneOf>
   [[nodiscard]] bool anybody_hides(LaneOf const& lane_of) const {
     auto const list = agents();
@@ -440,7 +450,7 @@ class TrafficIndex {
     return false;
   }
 
-  /// Sorts the entries in other lanes in among the first `count`, from behind; notes where everybody is.
+  /// Merges the extra entries into the first `count`, from the back, and records each agent's rank.
   void merge_reaching(std::size_t count) {
     auto const& reaching = reaching_.entries;
     auto left = reaching.size();
@@ -455,7 +465,7 @@ class TrafficIndex {
     while (left-- > 0) agents_[left] = reaching[left];
   }
 
-  /// Insertion sort, linear when the order has hardly changed; gives up for a full sort where it has.
+  /// Insertion sort: linear if the order has hardly changed. Switches to a full sort after too many moves.
   static void sort_nearly_sorted(std::vector<TrafficEntry>& list) {
     std::size_t moves = 0;
     for (std::size_t i = 1; i < list.size(); ++i) {
@@ -472,8 +482,8 @@ class TrafficIndex {
   }
 
   std::vector<TrafficEntry> agents_;
-  std::size_t size_ = 0;  ///< of that list, for which a vector has to divide
-  bool crowded_ = false;  ///< somebody may be farther by reference point than another, but reach nearer
+  std::size_t size_ = 0;  ///< size of `agents_`, stored because `vector::size` divides
+  bool crowded_ = false;  ///< a later entry may reach nearer: see `anybody_hides`
   ReachingEntries reaching_;
   std::vector<std::uint32_t> rank_;
   Reach reach_;

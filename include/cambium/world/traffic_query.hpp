@@ -6,9 +6,10 @@
 
 namespace cambium {
 
-/// A road user on the lanes: `position` in the map-wide lane coordinate (see `Lane::index_begin`), how far it reaches
-/// from there forward and back [m], its speed along the lane [m/s]. `slot` is its place among the agents or the
-/// objects, `id` the value of its AgentId or ObjectId. Sorted by position, then slot.
+/// A road user on a lane: the `position` of its reference point in the map-wide lane coordinate (see
+/// `Lane::index_begin`), its extent in front of and behind that point [m] and its speed along the lane [m/s]. `slot`
+/// numbers it among the agents or the objects; `id` is the value of its AgentId or ObjectId. Entries sort by position,
+/// then slot.
 struct TrafficEntry {
   double position{};
   double front{}, rear{};
@@ -21,28 +22,28 @@ struct TrafficEntry {
   }
 };
 
-/// Who asks for neighbours: a position `s` on a lane corridor, the asker's extent, and what counts. `slot` breaks ties
-/// and is never found.
+/// A search for neighbours: the searching agent's position `s` on a lane corridor, its extent, and which road users
+/// count. `slot` is the searching agent's own: it breaks ties, and its entries are never found.
 struct TrafficQuery {
   Slot slot{};
   double s{};
   double front{}, rear{};
   PieceId piece{};
   Merging merging = Merging::counts;
-  double distance = Look::horizon;  ///< reference points farther away are not found [m]
+  double distance = Look::horizon;  ///< largest distance between reference points [m]
 
-  /// Whether an entry, `way` [m] away, is passed over: it is the asker's own.
+  /// Whether the search skips an entry `way` [m] away: here, the searching agent's own entries.
   [[nodiscard]] bool skips(TrafficEntry const& entry, double /*way*/) const { return entry.slot == slot; }
-  /// The same of a static object.
+  /// Whether the search skips a static object.
   [[nodiscard]] bool skips_object(TrafficEntry const&, double) const { return false; }
 };
 
-/// One who does not see everybody: `sees(entry, way)` says whom, `sees_object(slot)` which objects.
+/// A query that finds only visible road users: `sees(entry, way)` tests agents, `sees_object(slot)` static objects.
 template <class Sees, class SeesObject>
 struct SightedQuery : TrafficQuery {
   Sees sees;
   SeesObject sees_object;
-  double far = Look::horizon;  ///< who is farther ends the search, seen or not [m]
+  double far = Look::horizon;  ///< an entry farther away ends the search, visible or not [m]
 
   [[nodiscard]] bool skips(TrafficEntry const& entry, double way) const {
     return entry.slot == slot || (way <= far && !sees(entry, way));

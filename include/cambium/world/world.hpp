@@ -39,16 +39,16 @@
 namespace cambium {
 
 struct WorldOptions {
-  std::uint64_t seed = 0;  ///< of all randomness in the world
-  double time = 0.0;       ///< the world begins at [s]
+  std::uint64_t seed = 0;  ///< for all random numbers in the world
+  double time = 0.0;       ///< start time [s]
 };
 
-/// Whether an agent whose state is set keeps its route or gets one from there: see `World::set_state`.
+/// Whether `World::set_state` keeps the agent's route or finds a new one from the new position.
 enum class Reroute : std::uint8_t { no, yes };
 
-/// Interacting road traffic on a map: a value. Copies are independent, share the map and the roster, and cost one copy
-/// of the frame; copying into a world that has been used before allocates nothing. Reading from several threads is
-/// safe; `step`, `observe` and all that changes the world need it for themselves.
+/// Interacting road traffic on a map: a value. Copies are independent; they share the map and the roster, and a copy
+/// costs as much as copying the frame. Copying into a world that was used before allocates nothing. Several threads may
+/// read one world; `step`, `observe` and all functions that change the world need exclusive access.
 template <class Set, class ExecutionType, class DynamicModelType, class ObserverType = PerfectObserver>
 class World {
   static_assert(is_behavior_set<Set>, "cambium::World<Set, ...>: Set must be cambium::BehaviorSet<Models...>");
@@ -78,12 +78,12 @@ class World {
   template <class OtherSet>
   using WithBehaviors = World<OtherSet, Execution, Dynamics, PerfectObserver>;
 
-  /// An agent that is to enter.
+  /// Describes an agent for `add`.
   using AgentSpec = AgentSpecOf<Behavior, Execution, Dynamics, Observer>;
 
   /// An empty world on `map`. Throws `WorldError` without a map.
   explicit World(std::shared_ptr<Map const> map, WorldOptions const& options = {}) : map_(std::move(map)) {
-    if (!map_) throw WorldError("World", "there is no map", "pass what load_opendrive returned");
+    if (!map_) throw WorldError("World", "there is no map", "pass the map that load_opendrive returned");
     if (!(std::abs(options.time) <= latest_time))
       throw WorldError("World", "its time is not a number of seconds up to 1e9", "set WorldOptions::time");
     auto roster = std::make_shared<RosterType>();
@@ -92,8 +92,8 @@ class World {
     frame_.time = options.time;
   }
 
-  /// A world from its parts, as predictions, searches and snapshots make it. Throws `WorldError` without a map or a
-  /// roster, or where `frame` is not one of `roster`.
+  /// Builds a world from its parts, as predictions, searches and snapshots do. Throws `WorldError` if the map or the
+  /// roster is missing, or if `frame` does not belong to `roster`.
   World(std::shared_ptr<Map const> map, std::shared_ptr<RosterType const> roster, FrameType frame)
       : map_(std::move(map)), roster_(std::move(roster)) {
     if (!map_ || !roster_) throw WorldError("World", "there is no map or no roster", "take them from another world");
@@ -108,8 +108,8 @@ class World {
 
   World& operator=(World const& other) {
     if (this == &other) return *this;
-    frame_ = other.frame_;  // first: what follows cannot fail
-    // The usual copy is between worlds that share both: no reference count moves.
+    frame_ = other.frame_;  // first, because the rest cannot fail
+    // Most copies are between worlds that share map and roster: they touch no reference count.
     if (map_ != other.map_) map_ = other.map_;
     if (roster_ != other.roster_) roster_ = other.roster_;
     scratch_ = other.scratch_;
@@ -124,25 +124,26 @@ class World {
   [[nodiscard]] double time() const { return frame_.time; }
   [[nodiscard]] std::size_t size() const { return frame_.agents.size(); }
 
-  /// Puts a frame of this world, or of a copy with the same roster, (back) into place: what a search does at its nodes.
-  /// Throws `WorldError` (the world is unchanged) for a frame from before an agent entered, left, was re-routed or got
-  /// another model of behaviour. No allocation once warm.
+  /// Replaces the current frame by a frame of this world, or of a copy with the same roster. A search does this at its
+  /// nodes. Throws `WorldError` (the world is unchanged) if an agent has entered, left, got another route or another
+  /// model of behaviour since the frame was taken. No allocation once warm.
   void restore(FrameType const& frame) {
     detail::require_same_roster(frame.agents.size(), frame.roster_revision, size(), roster_->revision);
     frame_ = frame;
     scratch_.forget();
   }
 
-  /// Swaps the world's frame for one of the same roster, as `restore` without a copy; that it is one is asserted. O(1).
+  /// Swaps the world's frame with another frame of the same roster: `restore` without a copy. Asserts that the frame
+  /// belongs to the roster. O(1).
   void exchange(FrameType& frame) {
     CAMBIUM_ASSERT(frame.agents.size() == size() && frame.roster_revision == roster_->revision,
-                   "World::exchange: the frame is not one of this roster");
+                   "World::exchange: the frame does not belong to this roster");
     std::swap(frame_, frame);
     scratch_.forget();
   }
 
-  /// From now on the agent behaves as `behavior`, remembering nothing: how a planner says what it assumes of somebody.
-  /// Throws `WorldError` or `ParameterError` (the world is unchanged) as `add`.
+  /// Gives the agent another behaviour, with an empty memory. A planner uses this to assume a behaviour of one agent.
+  /// Throws `WorldError` or `ParameterError` (the world is unchanged) as `add` does.
   void set_behavior(AgentId id, Behavior const& behavior) {
     auto const slot = slot_of(id);
     auto const where = detail::name_of(id);
@@ -155,18 +156,18 @@ class World {
     if (is_other_model) scratch_.forget();
   }
 
-  /// Says what a behaviour that is none of the set is missing.
+  /// Reports a behaviour that is not in the set, with a remedy.
   template <class B>
   requires(!std::is_convertible_v<B const&, Behavior>) void set_behavior(AgentId, B const&) {
     static_assert(std::is_void_v<B>,
-                  "cambium::World::set_behavior: this type is none of the Models of the world's "
+                  "cambium::World::set_behavior: this type is not one of the Models of the world's "
                   "cambium::BehaviorSet<Models...>; add it there");
   }
 
-  /// Adds an agent; returns its id. Throws `WorldError` or `ParameterError` (the world is unchanged) where its lane,
-  /// its route or its parameters are no good, and for what `set_state` refuses, too: a number that is not finite, a
-  /// speed that is not from 0 to 1000 m/s (measured ones down to -0.1 count as 0), a place more than 5 m outside of the
-  /// nearest lane (with a route of its own: of those on it), a heading against its direction. O(agents), plus routing.
+  /// Adds an agent; returns its id. Throws `WorldError` or `ParameterError` (the world is unchanged) if its lane, route
+  /// or parameters are invalid, if a number is not finite, if the speed is outside 0 to 1000 m/s (measured speeds down
+  /// to -0.1 count as 0), if the position is more than 5 m outside the nearest lane (of the route, if the agent brings
+  /// one), or if the heading points against the lane's direction. O(agents), plus routing.
   AgentId add(AgentSpec const& spec) {
     AgentId const id = spec.id.value_or(static_cast<AgentId>(roster_->next_agent_id));
     auto entrant = detail::entrant<World>(*map_, *roster_, spec, id, frame_.time);
@@ -187,8 +188,8 @@ class World {
     scratch_.forget();
   }
 
-  /// Removes the agents that no longer take part in traffic; returns how many. They stay until then, with their last
-  /// state. O(agents).
+  /// Removes the agents that no longer take part in traffic; returns their number. Until then they stay readable, with
+  /// their last state. O(agents).
   std::size_t remove_departed() {
     std::vector<Slot> staying;
     for (Slot slot{}; index_of(slot) < size(); ++slot)
@@ -204,8 +205,8 @@ class World {
     return departed;
   }
 
-  /// Sets the phases of a traffic light of the map; until then it is off. Throws `WorldError` for a light that the map
-  /// does not have and for numbers that are no plan. O(lights).
+  /// Sets the phases of a traffic light of the map. A light without phases is off. Throws `WorldError` if the map has
+  /// no such light or the phases are invalid. O(lights).
   void set_light(LightId id, map::LightPlan const& plan) {
     detail::require_light_plan(*map_, id, plan);
     auto& lights = writable_roster().lights;
@@ -238,13 +239,13 @@ class World {
   [[nodiscard]] State const& state(AgentId id) const { return record(id).state; }
   [[nodiscard]] AgentStatus status(AgentId id) const { return record(id).status; }
 
-  /// The agent's situation as goals ask it. Throws as `slot_of`.
+  /// The agent's situation, as goals see it. Throws as `slot_of`.
   [[nodiscard]] GoalSituation situation(AgentId id) const {
     auto const slot = slot_of(id);
     return detail::situation_of(roster_->agents[slot], frame_.agents[slot]);
   }
 
-  /// The lane that the agent is in, by its lane corridor. Throws as `slot_of`.
+  /// The agent's current lane in its lane corridor. Throws as `slot_of`.
   [[nodiscard]] LaneId lane_of(AgentId id) const { return situation(id).lane; }
 
   /// True when the agent is at its goal. Throws as `slot_of`.
@@ -253,8 +254,8 @@ class World {
     return at_goal(roster_->goals[slot], detail::situation_of(roster_->agents[slot], frame_.agents[slot]));
   }
 
-  /// What the agent's behaviour `B` remembers, to set it from outside. Throws `WorldError` where its behaviour is
-  /// another.
+  /// The memory of the agent's behaviour `B`, for setting it from outside. Throws `WorldError` if the agent has another
+  /// behaviour.
   template <class B>
   [[nodiscard]] MemoryOf<B>& memory(AgentId id) {
     static_assert(
@@ -267,15 +268,14 @@ class World {
     return *std::get_if<place>(&frame_.agents[slot].memory);
   }
 
-  /// Sets the agent's state, as a planner does with what it perceives, and puts it (back) into traffic. It stays on its
-  /// route: where it was, if that fits, else in the lane corridor that comes nearest. With `Reroute::yes` it gets the
-  /// route that `add` would give it there, to what is left of its goal (straight on where nothing is), and its
-  /// behaviour forgets what it remembers, which is of the old route. Throws `WorldError` (the world is unchanged) where
-  /// the agent is unknown, and for what `add` refuses, too: a number that is not finite, a speed that is not from 0 to
-  /// 1000 m/s (measured ones down to -0.1 count as 0: speeds along the heading are never negative), a place more than 5
-  /// m outside the lanes of its route, a heading against their direction; with `Reroute::yes` also where there is no
-  /// route to the goal, and for an agent on a free corridor. O(lanes of the route); with `Reroute::yes` O(agents), plus
-  /// routing.
+  /// Sets the agent's state, for example to a perceived one, and puts the agent (back) into traffic. The agent stays on
+  /// its route: in its lane corridor if the position fits, else in the nearest one. With `Reroute::yes` it gets the
+  /// route that `add` would find there, to the rest of its goal (straight on without one), and its behaviour's memory
+  /// is reset, because it refers to the old route. Throws `WorldError` (the world is unchanged) if the agent is
+  /// unknown, if a number is not finite, if the speed is outside 0 to 1000 m/s (measured speeds down to -0.1 count as
+  /// 0: speeds along the heading are never negative), if the position is more than 5 m outside the lanes of the route,
+  /// or if the heading points against their direction; with `Reroute::yes` also if no route leads to the goal, or if
+  /// the agent is on a free corridor. O(lanes of the route); with `Reroute::yes` O(agents), plus routing.
   void set_state(AgentId id, State state, Reroute reroute = Reroute::no) {
     auto const slot = slot_of(id);
     auto const where = detail::name_of(id);
@@ -315,7 +315,7 @@ class World {
     return View(*this, slot);
   }
 
-  /// Says so where the world may not change.
+  /// Reports a call on a const world or a temporary, with a remedy.
   template <bool may_change = false>
   View observe(AgentId) const& {
     static_assert(may_change,
@@ -326,17 +326,17 @@ class World {
   /// The traffic index; views use it. Up to date after `observe` and within a step.
   [[nodiscard]] TrafficIndex const& traffic() const { return scratch_.traffic; }
 
-  /// The index of the plane, likewise; only where behaviours look around.
+  /// The plane index, also up to date after `observe` and within a step. Empty unless a behaviour looks around.
   [[nodiscard]] PlaneIndex const& plane() const { return scratch_.plane; }
 
-  /// The largest time that a world may begin at [s]: steps are exact to well below a microsecond there.
+  /// Latest start time of a world [s]. Up to it, time resolves well below a microsecond.
   static constexpr double latest_time = 1e9;
 
-  /// The longest step that a world takes [s].
+  /// Longest step [s].
   static constexpr double longest_step = 3600.0;
 
-  /// Moves the world by `dt` [s]: every agent plans on this frame, then the next frame appears. No allocation once
-  /// warm, no exception of its own; what goes wrong is in the result. O(agents).
+  /// Advances the world by `dt` [s]: every agent plans on the current frame, then the next frame replaces it. Does not
+  /// allocate once warm and throws nothing itself; the result reports problems. O(agents).
   StepResult step(double dt) {
     StepResult result;
     if (!(dt > 0 && dt <= longest_step)) {
@@ -360,26 +360,27 @@ class World {
     return result;
   }
 
-  /// Keeps the last `frames` frames from now on (0: none, as at the beginning). Copies and predictions do not take them
-  /// along; they end where an agent enters, leaves, is re-routed or gets another model of behaviour. Throws
-  /// `WorldError` for more than a million.
+  /// Keeps the last `frames` frames from now on (0, the default: none). Copies and predictions start without history.
+  /// The history is cleared when an agent enters, leaves, or gets another route or another model of behaviour. Throws
+  /// `WorldError` for more than a million frames.
   void keep_history(std::size_t frames) {
-    if (frames > 1'000'000) throw WorldError("history", "a million frames are kept at most", "record what you need");
+    if (frames > 1'000'000)
+      throw WorldError("history", "a world keeps at most a million frames", "ask for fewer, or record what you need");
     scratch_.keep(frames);
   }
 
-  /// Frames kept so far, before the current one.
+  /// Number of frames kept before the current one.
   [[nodiscard]] std::size_t history_size() const { return scratch_.kept; }
 
-  /// The frame `steps_back` steps ago, 1 being the last one; its records hold the actions too. At most
-  /// `history_size()`.
+  /// The frame `steps_back` steps ago, from 1 (the previous frame) to `history_size()`. Its records include the
+  /// actions. Throws `WorldError` outside this range.
   [[nodiscard]] FrameType const& history(std::size_t steps_back) const {
     detail::require_kept(steps_back, scratch_.kept);
     return scratch_.back(steps_back);
   }
 
  private:
-  /// Notes which parts of a sequence of goals an agent in traffic has reached.
+  /// Records which parts of its goal sequence an agent in traffic has reached.
   void pass_goals(Slot slot, Record& record) const {
     auto const* const sequence = std::get_if<GoalSequence>(&roster_->goals[slot]);
     if (sequence && record.status != AgentStatus::not_started)
@@ -388,14 +389,13 @@ class World {
   }
 
   [[nodiscard]] RosterType& writable_roster() {
-    // A roster that only this world holds may change in place; the cast is sound because every roster is created
-    // non-const.
+    // A roster without other owners may change in place. The cast is sound because every roster is created non-const.
     if (roster_.use_count() != 1) roster_ = std::make_shared<RosterType>(*roster_);
-    std::atomic_thread_fence(std::memory_order_acquire);  // what other holders read before they let go
+    std::atomic_thread_fence(std::memory_order_acquire);  // orders the reads of former owners before our writes
     return const_cast<RosterType&>(*roster_);
   }
 
-  /// For changes after which frames from before no longer fit.
+  /// The roster, for changes that make earlier frames invalid.
   [[nodiscard]] RosterType& revised_roster() {
     auto& roster = writable_roster();
     frame_.roster_revision = ++roster.revision;
@@ -409,7 +409,7 @@ class World {
     scratch_.fresh = true;
   }
 
-  /// All in one function; with observers that would take minutes to compile.
+  /// Inlines the whole step into one function. With other observers this would take minutes to compile.
   CAMBIUM_FLATTEN void advance_all_inlined(double dt, double end, IdVector<Record, Slot>& next, StepResult& result) {
     advance_all(dt, end, next, result);
   }
@@ -430,9 +430,9 @@ class World {
     }
   }
 
-  static constexpr double rounding = 1e-6;  ///< of speeds that come to 0 [m/s]
+  static constexpr double rounding = 1e-6;  ///< tolerance below zero speed [m/s]
 
-  /// Plans and drives: all of the agent's next record but where on its road it has come to.
+  /// Plans and executes: fills the agent's next record except for its place on the road, which `place_all` finds.
   void advance(Slot slot, double dt, double end, Record& next, StepResult& result) {
     Record const& now = frame_.agents[slot];
     next = now;
@@ -457,8 +457,8 @@ class World {
     if (now.status != AgentStatus::driving) detail::forget_past(next);
   }
 
-  /// Where those who drive have come to on their roads. In a loop of its own: a processor works on several agents at a
-  /// time where little is to be done for each.
+  /// Finds the new places of the driving agents on their roads. A separate loop, because its short body lets the
+  /// processor overlap several agents.
   CAMBIUM_FLATTEN void place_all(double dt, IdVector<Record, Slot>& next, StepResult& result) {
     for (Slot slot{}; index_of(slot) < next.size(); ++slot) {
       auto& record = next[slot];

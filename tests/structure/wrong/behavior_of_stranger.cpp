@@ -1,4 +1,4 @@
-// expect: cambium::World::AgentSpec::behavior: this type is none of the Models of the world's cambium::BehaviorSet<Models...>
+// expect: cambium::World::AgentSpec::behavior: this type is not one of the Models of the world's cambium::BehaviorSet<Models...>
 #include <cambium/behavior/following/constant_acceleration.hpp>
 #include <cambium/behavior/following/idm_classic.hpp>
 #include <cambium/dynamics/single_track.hpp>

@@ -1,4 +1,4 @@
-// expect: cambium::Prediction<Set>: the behaviour that is to be assumed must be one of the Models of Set
+// expect: cambium::Prediction<Set>: the assumed behaviour must be one of the Models of Set
 #include <cambium/behavior/following/constant_acceleration.hpp>
 #include <cambium/behavior/open_loop/external_input.hpp>
 #include <cambium/world/prediction.hpp>

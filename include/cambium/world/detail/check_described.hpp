@@ -9,8 +9,7 @@
 
 namespace cambium::detail {
 
-/// Throws `ParameterError` where a parameter of a described struct, or of the one that a set holds, is out of its
-/// range.
+/// Throws `ParameterError` if a parameter of a described struct, or of the struct that a set holds, is out of range.
 template <class Parameters>
 void check_if_described(Parameters const& parameters, std::string const& where) {
   if constexpr (Described<Parameters>) check_parameters(parameters, where);
@@ -18,7 +17,7 @@ void check_if_described(Parameters const& parameters, std::string const& where) 
     std::visit([&where](auto const& one) { check_if_described(one, where); }, parameters);
 }
 
-/// As above for an observer, or for those that it is made of.
+/// The same for an observer, or for the stages of a chain.
 template <class Observer>
 void check_observer(Observer const& observer, std::string const& where) {
   if constexpr (requires { observer.stages; })

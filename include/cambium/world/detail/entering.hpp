@@ -23,10 +23,10 @@
 
 namespace cambium::detail {
 
-/// Times no farther apart are the same [s].
+/// Times that differ by at most this count as equal [s].
 inline constexpr double same_time = 1e-9;
 
-/// What of an agent that is to enter does not depend on the world's models.
+/// The part of an entering agent that does not depend on the world's models.
 struct EnteringSpec {
   geometry::Point position;
   std::optional<double> heading;
@@ -43,14 +43,14 @@ struct Entrance {
   map::LanePlace place;
 };
 
-/// Throws `WorldError` or `ParameterError` where position, heading or shape are no good.
+/// Throws `WorldError` or `ParameterError` if position, heading or shape are invalid.
 void check_numbers(EnteringSpec const& spec, std::string const& where);
 
-/// Where an agent of `spec` enters. Throws `WorldError` where its lane, its route or its road is no good.
+/// The place and road where an agent of `spec` enters. Throws `WorldError` if its lane, route or road is invalid.
 [[nodiscard]] Entrance entrance(Map const& map, RosterBase const& roster, EnteringSpec const& spec,
                                 std::string const& where);
 
-/// As above for an agent that begins anew, with the parts of its goal that are not `passed` yet.
+/// The same for an agent that gets a new route, to the parts of its goal after the first `passed` ones.
 [[nodiscard]] Entrance entrance_again(Map const& map, RosterBase const& roster, EnteringSpec const& spec,
                                       std::size_t passed, std::string const& where);
 
@@ -59,21 +59,21 @@ void check_numbers(EnteringSpec const& spec, std::string const& where);
 /// range, limits that leave nothing between them, or a lane or stretch that the map does not have.
 [[nodiscard]] Goal entering_goal(Map const& map, Goal const& goal, LaneId lane, std::string const& where);
 
-/// Notes a free corridor that nobody has entered on before, and which objects stand on it.
+/// Registers a free corridor when its first agent enters, with the objects that stand on it.
 void enter_free_road(RosterBase& roster, std::shared_ptr<map::RoadCorridor const> const& given,
                      std::shared_ptr<map::RoadCorridor const> const& numbered);
 
-/// Throws `WorldError` for an outline that is no object's.
+/// Throws `WorldError` if the outline is invalid.
 void check_outline(geometry::Polygon const& outline);
 
-/// Puts a static object in the way; see `World::add_object`.
+/// Adds a static object; see `World::add_object`.
 ObjectId enter_object(Map const& map, RosterBase& roster, geometry::Polygon outline);
 
-/// Whether `shape` is larger than those that conflicts are found for, and there are some on `road`.
+/// Whether `road` has conflicts and `shape` is larger than the largest shape for which the map has computed them.
 [[nodiscard]] bool is_too_large(Map const& map, geometry::Shape const& shape, map::RoadCorridor const& road);
 [[noreturn]] void refuse_too_large(std::string const& where);
 
-/// Whether `behavior` heeds the conflicts on its road and `shape` is larger than those they are found for.
+/// Whether `behavior` respects the conflicts on its road and `shape` is too large for them.
 template <class Behavior>
 [[nodiscard]] bool is_too_large(Map const& map, Behavior const& behavior, geometry::Shape const& shape,
                                 map::RoadCorridor const& road) {
@@ -82,10 +82,10 @@ template <class Behavior>
   return heeds && is_too_large(map, shape, road);
 }
 
-/// Throws `WorldError` where no agent of that id can enter.
+/// Throws `WorldError` if no agent with this id can enter.
 void check_id(AgentId id, bool is_taken, std::string const& where);
 
-/// An agent about to enter: all that a world takes in of it.
+/// An entering agent: everything that a world stores of it.
 template <class World>
 struct Entrant {
   typename World::RosterType::Agent agent;
@@ -93,8 +93,8 @@ struct Entrant {
   typename World::Record record;
 };
 
-/// The agent of `spec`, of identity `id`, that enters at `time` [s]. Throws `WorldError` or `ParameterError` where its
-/// numbers, its id, its lane, its route or its parameters are no good. O(agents), plus routing.
+/// The agent of `spec`, with id `id`, entering at `time` [s]. Throws `WorldError` or `ParameterError` if its numbers,
+/// id, lane, route or parameters are invalid. O(agents), plus routing.
 template <class World>
 [[nodiscard]] Entrant<World> entrant(Map const& map, typename World::RosterType const& roster,
                                      typename World::AgentSpec const& spec, AgentId id, double time) {

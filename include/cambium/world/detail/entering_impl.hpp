@@ -74,7 +74,7 @@ namespace cambium::detail {
   auto at = map::locate(road, CorridorId{}, {spec.position.x(), spec.position.y(), spec.heading.value_or(0.0)});
   if (!(distance_outside(road, at) <= entering_radius))
     throw WorldError(where, "its position is more than " + rounded_text(entering_radius) + " m from its road",
-                     "enter on it");
+                     "give a position on that road");
   if (!spec.heading) at.heading_error = 0.0;
   return at;
 }
@@ -110,7 +110,7 @@ CAMBIUM_COLD Entrance entrance(Map const& map, RosterBase const& roster, Enterin
 CAMBIUM_COLD Entrance entrance_again(Map const& map, RosterBase const& roster, EnteringSpec const& spec,
                                      std::size_t passed, std::string const& where) {
   if (!is_valid(spec.road->corridors.front().pieces.front().lane))
-    throw WorldError(where, "it is on a free corridor, which no route leads on from",
+    throw WorldError(where, "it is on a free corridor, where no route begins",
                      "remove the agent and add it with another road");
   Goal left = spec.goal;
   if (auto* const sequence = std::get_if<GoalSequence>(&left)) {
@@ -154,15 +154,14 @@ CAMBIUM_COLD bool is_too_large(Map const& map, geometry::Shape const& shape, map
 }
 
 CAMBIUM_COLD void refuse_too_large(std::string const& where) {
-  throw WorldError(where, "its shape is larger than the one that conflicts on its way are found for",
-                   "load the map with a MapOptions::large_conflict_shape that holds it");
+  throw WorldError(where, "its shape is too large for the conflicts computed on its road",
+                   "load the map with a MapOptions::large_conflict_shape at least as large");
 }
 
 CAMBIUM_COLD void check_id(AgentId id, bool is_taken, std::string const& where) {
-  if (!is_valid(id))
-    throw WorldError(where, "there is no such id, or no further one is free", "give an id that nobody has");
+  if (!is_valid(id)) throw WorldError(where, "there is no such id, or no further one is free", "give an unused id");
   if (is_taken)
-    throw WorldError(where, "the world has an agent of that id already", "leave the id out to get a free one");
+    throw WorldError(where, "the world already has an agent with this id", "leave the id out to get a free one");
 }
 
 }  // namespace cambium::detail

@@ -50,7 +50,7 @@ namespace cambium::detail {
     throw WorldError(
         where,
         "no lane of its route comes within " + rounded_text(entering_radius) + " m of its position, in its direction",
-        "begin the route there");
+        "give a route that begins at the position");
   return best;
 }
 
@@ -96,7 +96,7 @@ inline void check_stretch_of(Map const& map, LaneId lane, double from, double to
   if (auto const* const own = std::get_if<OwnGoal>(&goal)) own->check(where);
   auto const complete = [&](std::vector<Goal>& parts) {
     if (parts.empty())
-      throw WorldError(where, "its goal is made of no parts: it is never reached", "give it parts, or NoGoal");
+      throw WorldError(where, "its goal has no parts and can never be reached", "give it parts, or NoGoal");
     for (auto& part : parts) part = complete_goal(map, std::move(part), lane, where, false);
   };
   if (auto* const all = std::get_if<AllGoals>(&goal)) complete(all->parts);

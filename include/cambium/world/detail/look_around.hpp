@@ -16,7 +16,7 @@ void for_each_other(World const& world, Slot own, Visit const& visit) {
     if (i != own && world.frame().agents[i].status == AgentStatus::driving && is_seen(world, own, i)) visit(i);
 }
 
-/// See `ObservedWorld::for_each_around`; calls `visit(slot)`.
+/// See `ObservedWorld::around`; calls `visit(slot)`.
 template <class World, class Visit>
 void for_each_around(World const& world, Slot own, double distance, Visit const& visit) {
   auto const& here = world.frame().agents[own].state;
@@ -36,7 +36,7 @@ void for_each_around(World const& world, Slot own, double distance, Visit const&
   }
 }
 
-/// Calls `f(id, outline)` for the static objects that the agent in slot `own` sees, in the order of their ids.
+/// Calls `f(id, outline)` for each static object that the agent in slot `own` sees, in the order of their ids.
 template <class World, class F>
 void for_each_object(World const& world, Slot own, F&& f) {
   auto const& objects = world.roster().objects;

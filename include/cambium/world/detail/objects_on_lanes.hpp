@@ -17,7 +17,7 @@
 
 namespace cambium::detail {
 
-/// A polygon's corners and points between them, at most `spacing` [m] apart.
+/// A polygon's corners, with points between them at most `spacing` [m] apart.
 [[nodiscard]] inline std::vector<geometry::Point> points_around(geometry::Polygon const& outline, double spacing) {
   std::vector<geometry::Point> points;
   for (std::size_t i = 0; i < outline.size(); ++i) {
@@ -28,7 +28,7 @@ namespace cambium::detail {
   return points;
 }
 
-/// A stretch of a lane that an object is in [m].
+/// The stretch of a lane that an object covers [m].
 struct ObjectStretch {
   double begin = std::numeric_limits<double>::infinity(), end = -std::numeric_limits<double>::infinity();
 

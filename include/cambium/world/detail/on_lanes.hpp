@@ -18,18 +18,19 @@
 
 namespace cambium::detail {
 
-/// The square that holds all places within `distance` [m] of an agent, however it is turned.
+/// A square that contains all points within `distance` [m] of an agent, whatever its heading.
 template <class State>
 [[nodiscard]] geometry::Box box_around(geometry::Shape const& shape, State const& state, double distance) {
   double const reach = distance + std::max(shape.front, shape.rear) + std::max(shape.left, shape.right);
   return {state.x - reach, state.y - reach, state.x + reach, state.y + reach};
 }
 
-/// An agent this close to its path follows it, whatever the borders do: the path of an ending lane crosses one [m].
+/// An agent this close to its path stays in its lane even across a border, because the path of an ending lane crosses
+/// one [m].
 inline constexpr double on_path = 0.3;
 
-/// Where beside `at` a lane corridor that is next is about, `piece` being the piece of it that is beside: lanes of one
-/// section are mostly sampled at the same stations.
+/// An approximate place beside `at` on the adjacent lane corridor, for use as a hint. Lanes of one section are mostly
+/// sampled at the same stations.
 [[nodiscard]] inline map::LanePlace hint_beside(map::RoadCorridor const& road, map::LanePlace const& at,
                                                 map::CorridorPiece const& from, CorridorId number) {
   map::LanePlace hint;
@@ -41,7 +42,7 @@ inline constexpr double on_path = 0.3;
   return hint;
 }
 
-/// As `locate_beside`, for a lane corridor that is not next to that of `at`.
+/// As `locate_beside`, for a lane corridor not adjacent to that of `at`.
 CAMBIUM_NOINLINE [[nodiscard]] inline map::LanePlace locate_farther_beside(Map const& map,
                                                                            map::RoadCorridor const& road,
                                                                            map::LanePlace const& at, CorridorId number,
@@ -63,9 +64,9 @@ CAMBIUM_NOINLINE [[nodiscard]] inline map::LanePlace locate_farther_beside(Map c
   return map::locate(road, number, pose);
 }
 
-/// The place beside `at` on lane corridor `number` of the same road, for an agent at `pose`: found from the lanes
-/// beside, for a corridor may come by the same place twice. O(1) for a corridor that is next, else O(lanes of the
-/// corridor).
+/// The place beside `at` on lane corridor `number` of the same road, for an agent at `pose`. The search starts from the
+/// adjacent lanes, because a corridor may pass the same position twice. O(1) for an adjacent corridor, else O(lanes of
+/// the corridor).
 [[nodiscard]] inline map::LanePlace locate_beside(Map const& map, map::RoadCorridor const& road,
                                                   map::LanePlace const& at, CorridorId number,
                                                   geometry::Pose const& pose) {
@@ -75,8 +76,8 @@ CAMBIUM_NOINLINE [[nodiscard]] inline map::LanePlace locate_farther_beside(Map c
   return locate_farther_beside(map, road, at, number, pose);
 }
 
-/// Finds the new place of an agent that has driven `distance` [m] on its road: in its lane corridor, or in the next one
-/// once it has crossed the border.
+/// Finds the new place of an agent that has driven `distance` [m] on its road: in its lane corridor or, once it has
+/// crossed the border, in the adjacent one.
 template <class Record>
 void move_on_lane(Map const& map, map::RoadCorridor const& road, double distance, Record& next) {
   geometry::Pose const pose{next.state.x, next.state.y, next.state.heading};
@@ -102,13 +103,13 @@ void move_on_lane(Map const& map, map::RoadCorridor const& road, double distance
                                                : AgentStatus::off_route;
 }
 
-/// How far the place is from its lane corridor [m].
+/// The distance of a place from its lane corridor [m].
 [[nodiscard]] inline double distance_from(map::RoadCorridor const& road, map::LanePlace const& at) {
   return std::hypot(at.lateral, std::max({-at.s, at.s - road.corridors[at.corridor].length(), 0.0}));
 }
 
-/// The place of `pose` on `road` for an agent that was last at `last`: there, if that fits, else where a lane corridor
-/// comes nearest, a radian off its direction counting as 3 m.
+/// The place of `pose` on `road` for an agent that was at `last`: in the same lane corridor if the pose fits, else on
+/// the nearest one, where each radian of heading error counts as 3 m.
 [[nodiscard]] inline map::LanePlace relocate(map::RoadCorridor const& road, map::LanePlace const& last,
                                              geometry::Pose const& pose) {
   constexpr double near = 2.0;  // [m]
@@ -124,23 +125,23 @@ void move_on_lane(Map const& map, map::RoadCorridor const& road, double distance
   return best;
 }
 
-/// Cosine of an angle that is mostly small, as between a vehicle and its lane.
+/// Cosine of an angle that is usually small, such as a heading error.
 [[nodiscard]] inline double cosine_of_small(double angle) {
   return std::abs(angle) <= geometry::slight_angle ? geometry::sin_cos_slight(angle).cos : geometry::sin_cos(angle).cos;
 }
 
-/// An agent that follows its path is within its lane when it is no wider than twice this and stands no more aslant than
-/// that [m, rad]: where two paths come too close for it, the lanes overlap and the index knows.
+/// An agent on its path is within its lane if its half width and its heading error do not exceed these bounds [m, rad].
+/// Where two paths come closer than that, the lanes overlap, and the index covers the overlap.
 inline constexpr double usual_half_width = 1.5, usual_heading_error = 0.05;
 
-/// The first lane coordinate that no lane has: there those of free corridors begin. [m]
+/// The first lane coordinate beyond all lanes, where the ranges of free corridors begin [m].
 [[nodiscard]] inline double lane_coordinate_end(Map const& map) {
   if (map.lanes().empty()) return 0.0;
   auto const& last = map.lanes().back();
   return last.index_begin + std::ceil(last.length() + 10.0);  // agents beyond its end still count as in it
 }
 
-/// A road user's body on its road.
+/// A road user's extent on its road.
 struct BodyOnRoad {
   geometry::Shape const& shape;
   map::RoadCorridor const& road;
@@ -149,12 +150,12 @@ struct BodyOnRoad {
   double speed;  ///< [m/s]
 };
 
-/// Adds an entry to the list for each lane that the agent reaches into: the lanes beside, or where there is none of its
-/// direction, a lane of oncoming traffic. Returns false where it has left its own lane: then for the drivable lane that
-/// it is in, if there is one. `entry` is that of its own lane.
+/// Adds an entry to the list for each further lane that the agent reaches into: an adjacent lane, or an oncoming lane
+/// if no adjacent one has its direction. If the agent has left its own lane, adds entries for the drivable lanes that
+/// it is in and returns false. `entry` is the entry of its own lane.
 [[nodiscard]] bool straddle(Map const& map, BodyOnRoad const& body, TrafficEntry const& entry, ReachingEntries& list);
 
-/// Brings the index up to date with the agents of a frame.
+/// Updates the traffic index for the agents of a frame.
 template <class Roster, class Frame>
 void refresh_traffic(TrafficIndex& index, Map const& map, Roster const& roster, Frame const& frame) {
   constexpr double nowhere = std::numeric_limits<double>::infinity();
@@ -184,7 +185,7 @@ void refresh_traffic(TrafficIndex& index, Map const& map, Roster const& roster, 
   });
 }
 
-/// Brings the index of the plane up to date with the agents of a frame.
+/// Updates the plane index for the agents of a frame.
 template <class Roster, class Frame>
 void refresh_plane(PlaneIndex& index, Roster const& roster, Frame const& frame) {
   index.refresh(frame.agents.size(), [&](Slot slot) {

@@ -9,12 +9,12 @@
 
 namespace cambium::detail {
 
-/// A world's working memory: neither copied nor compared, and kept when the world is assigned to.
+/// A world's working memory: never copied or compared; assignment to the world keeps its allocations.
 template <class Frame, class Workspaces>
 struct Scratch {
   TrafficIndex traffic;
-  PlaneIndex plane;    ///< only where behaviours look around
-  bool fresh = false;  ///< the traffic index is that of the current frame
+  PlaneIndex plane;    ///< only used if a behaviour looks around
+  bool fresh = false;  ///< the traffic index matches the current frame
   IdVector<typename Frame::Record, Slot> next;
   Workspaces workspaces;       ///< of behaviours
   std::vector<Frame> history;  ///< ring of frames
@@ -47,7 +47,7 @@ struct Scratch {
     kept = std::min(kept + 1, history.size());
   }
 
-  /// The frame `steps_back` steps ago, 1 being the last one; 1 to `kept`.
+  /// The frame `steps_back` steps ago, from 1 (the previous frame) to `kept`.
   [[nodiscard]] Frame const& back(std::size_t steps_back) const {
     return history[(newest + history.size() - (steps_back - 1)) % history.size()];
   }

@@ -14,12 +14,12 @@
 
 namespace cambium {
 
-/// The stream purpose for observing `agent`: apart from those that behaviours use.
+/// The random stream's purpose for observing `agent`; distinct from the purposes that behaviours use.
 [[nodiscard]] constexpr std::uint32_t observation_purpose(AgentId agent) {
   return 0x80000000u | static_cast<std::uint32_t>(agent);
 }
 
-/// What observers that do not see everybody ask of a world, agents by slot.
+/// The parts of a world that observers with limited sight read; agents by slot.
 template <class World>
 class ObserverScene {
  public:
@@ -37,7 +37,7 @@ class ObserverScene {
 
 namespace detail {
 
-/// What records keep for observers of type `Observer`.
+/// The past states that records keep for observers of type `Observer`.
 template <class State, class Observer>
 struct PastFor {
   using type = NoPast;
@@ -49,7 +49,7 @@ requires(past_steps_of<Observer> > 0) struct PastFor<State, Observer> {
 template <class State, class Observer>
 using PastOf = typename PastFor<State, Observer>::type;
 
-/// An agent appears: it has always been there.
+/// Resets the past of an agent that appears, as if it had always been there.
 template <class Record>
 void forget_past(Record& record) {
   if constexpr (requires { record.past.fill(record.state); }) record.past.fill(record.state);
@@ -62,7 +62,7 @@ inline constexpr bool hides = requires(typename World::Observer const observer, 
   observer.sees(scene, slot, slot);
 };
 
-/// Whether the agent in slot `own` perceives that in slot `other`.
+/// Whether the agent in slot `own` perceives the agent in slot `other`.
 template <class World>
 [[nodiscard]] bool is_seen(World const& world, Slot own, Slot other) {
   if constexpr (hides<World>)
@@ -75,7 +75,7 @@ template <class World>
 template <class World>
 inline constexpr bool hides_objects = LimitedSightOfObjects<typename World::Observer, ObserverScene<World>>;
 
-/// Whether the agent in slot `own` perceives the static object in place `object`.
+/// Whether the agent in slot `own` perceives the static object with index `object`.
 template <class World>
 [[nodiscard]] bool is_object_seen(World const& world, Slot own, Slot object) {
   if constexpr (hides_objects<World>)
@@ -84,8 +84,8 @@ template <class World>
     return true;
 }
 
-/// The state that the agent in slot `own` believes that in slot `other` to have. A perfect observer's is the truth
-/// itself.
+/// The state of the agent in slot `other` as the agent in slot `own` observes it. A perfect observer returns the true
+/// state.
 template <class World>
 [[nodiscard]] decltype(auto) seen_state(World const& world, Slot own, Slot other) {
   auto const& observer = world.roster().agents[own].observer;
@@ -103,11 +103,11 @@ template <class World>
   }
 }
 
-/// Moves a plan that goes on from the state that an agent believes to be in to the one that it is in: turned and
-/// shifted as a whole, and faster or slower by the error of its speed.
+/// Moves a plan that starts in the agent's believed state so that it starts in the true state: rotates and shifts the
+/// whole trajectory, and corrects its speeds by the error of the believed speed.
 template <class Plan, class State>
 void carry_over(Plan& plan, State const& believed, State const& truth) {
-  if (believed == truth) return;  // to the bit what a perfect observer's agent does
+  if (believed == truth) return;  // bit-equal to the result with a perfect observer
   double const turn = truth.heading - believed.heading, faster = truth.speed - believed.speed;
   auto const [sin, cos] = geometry::sin_cos(turn);
   for (auto& state : plan.trajectory) {
@@ -122,7 +122,7 @@ void carry_over(Plan& plan, State const& believed, State const& truth) {
   }
 }
 
-/// And the acceleration [m/s^2].
+/// The other agent's acceleration as observed [m/s^2].
 template <class World>
 [[nodiscard]] double seen_acceleration(World const& world, Slot own, Slot other) {
   auto const& record = world.frame().agents[other];

@@ -6,7 +6,7 @@
 
 namespace cambium::detail {
 
-/// An agent's situation as goals ask it: `agent` of the roster, its `record` in the frame.
+/// An agent's situation as goals see it, from `agent` in the roster and its `record` in the frame.
 template <class Agent, class Record>
 [[nodiscard]] GoalSituation situation_of(Agent const& agent, Record const& record) {
   auto const& [state, lane] = std::tie(record.state, record.lane);

@@ -8,15 +8,15 @@
 
 namespace cambium::detail {
 
-/// Where on its road an agent is whose turn comes soon: loaded ahead, where a world does not fit into the cache.
-/// (Compilers drop calls to functions that do nothing but prefetch.)
+/// The centre line segment under an agent, for a prefetch before the step reaches that agent. Returns the address
+/// instead of prefetching it, because compilers drop calls to functions that only prefetch.
 template <class Roster, class Frame>
 [[nodiscard]] geometry::Line::Segment const* road_under(Roster const& roster, Frame const& frame, Slot slot) {
   auto const& at = frame.agents[slot].lane;
   return roster.agents[slot].road->corridors[at.corridor].center.segments().data() + at.segment;
 }
 
-/// The same on the lane to the left (right) of it; where there is none, its own place.
+/// The same for the lane to the left (right); the agent's own segment if no such lane exists.
 template <class Roster, class Frame>
 [[nodiscard]] geometry::Line::Segment const* road_beside(Roster const& roster, Frame const& frame, Slot slot,
                                                          bool left) {
