@@ -6,6 +6,7 @@
 
 #include "../world/fixtures.hpp"
 #include "cambium/core/error.hpp"
+#include "cambium/evaluation/driving.hpp"
 
 using namespace fixtures;
 
@@ -246,6 +247,8 @@ TEST_CASE("a goal of one's own is reached as its function says, alone and as a p
   auto copy = world;
   for (int i = 0; i < 6; ++i) REQUIRE(copy.step(0.5));
   CHECK(copy.reached_goal(fast));
+  CHECK(cb::AtGoal{}(copy, copy.slot_of(fast)));
+  CHECK_FALSE(cb::AtGoal{}(copy, copy.slot_of(slow)));
   CHECK_FALSE(copy.reached_goal(slow));
   CHECK_FALSE(copy.reached_goal(bare));
   CHECK(copy.reached_goal(both));

@@ -102,13 +102,13 @@ struct Collision {
   }
 };
 
-/// Whether an agent causes a collision: it is moving, and touches a static object or an agent that is not behind it
+/// Whether an agent causes a collision: it touches a static object, or while it moves an agent that is not behind it
 /// (after the at-fault collisions of Dauner et al. 2023). O(agents + objects).
 struct AtFaultCollision {
   double standing_speed = 0.05;  ///< a slower vehicle counts as stopped [m/s]
 
   static constexpr char const* name = "at_fault_collision";
-  static constexpr char const* summary = "touches an object, or an agent not behind it, while moving";
+  static constexpr char const* summary = "touches an object, or while it moves an agent that is not behind it";
   static constexpr auto parameters() {
     return parameter_list(parameter("standing_speed", &AtFaultCollision::standing_speed, "m/s", Range{0, 10},
                                     "a slower vehicle counts as stopped"));
