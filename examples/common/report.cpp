@@ -81,7 +81,8 @@ Json head(examples::Settings const& settings, examples::Facts const& facts,
     json["intervals"][name] = {interval.low, interval.high};
   }
   json["units"] = units(words);
-  json["thresholds"] = {{"hard_braking", {{"acceleration_below", examples::hard_braking}, {"unit", "m/s^2"}}}};
+  json["thresholds"] = {
+      {"hard_braking", {{"acceleration_below", -examples::hard_braking.deceleration}, {"unit", "m/s^2"}}}};
   json["collisions"] = collisions(outcomes);
   return json;
 }
@@ -155,7 +156,7 @@ void examples::print_table(Settings const& settings, Totals const& t, double sec
   share("ego off-road", t.off_road);
   std::printf("  %-14s %.2f m/s\n  %-14s %.2f per scenario (harder than %.0f m/s^2)\n", "mean speed",
               t.speed_sum / std::max(1.0, steps), "hard brakings", static_cast<double>(t.hard_brakings) / n,
-              -hard_braking);
+              hard_braking.deceleration);
   for (std::size_t k = 0; k < t.counts.size(); ++k)
     std::printf("  %-14s %.2f per scenario\n", words.counts[k].name.c_str(), static_cast<double>(t.counts[k]) / n);
   std::printf("  %-14s %.3g in %.2f s: %.3g per second on %llu thread%s, sampling and judging included\n",

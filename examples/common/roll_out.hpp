@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "cambium/evaluation/collision.hpp"
+#include "cambium/evaluation/driving.hpp"
 #include "cambium/evaluation/off_road.hpp"
+#include "cambium/goal/goal.hpp"
 #include "cambium/viewer/record_world.hpp"
 #include "cambium/world/frame.hpp"
 
@@ -20,8 +22,8 @@
 
 namespace examples {
 
-inline constexpr double dt = 0.2;             // [s]
-inline constexpr double hard_braking = -4.0;  // [m/s^2]; one hard braking lasts while an agent brakes harder than this
+inline constexpr double dt = 0.2;                                         // [s]
+inline constexpr cambium::HardBraking hard_braking{.deceleration = 4.0};  // counts once while it lasts
 
 /// What came of one scenario.
 struct Outcome {
@@ -63,25 +65,27 @@ void append_rows(std::string& rows, std::uint64_t scenario, World const& world, 
 /// Adds the last step's agent-steps, speeds and hard brakings; `braking` remembers who brakes hard.
 template <class World>
 void count_agents(World const& world, std::vector<bool>& braking, Outcome& outcome) {
-  for (std::size_t i = 0; i < world.size(); ++i) {
-    auto const& r = world.frame().agents[i];
+  for (cambium::Slot slot{}; index_of(slot) < world.size(); ++slot) {
+    auto const& r = world.frame().agents[slot];
     if (r.status != cambium::AgentStatus::driving) continue;
     ++outcome.agent_steps;
     outcome.speed_sum += r.state.speed;
-    outcome.lowest_acceleration = std::min(outcome.lowest_acceleration, r.action.acceleration);
-    bool const hard = r.action.acceleration < hard_braking;
-    outcome.hard_brakings += hard && !braking[i];
-    braking[i] = hard;
+    outcome.lowest_acceleration = std::min(outcome.lowest_acceleration, cambium::Acceleration{}(world, slot));
+    bool const is_hard = hard_braking(world, slot);
+    outcome.hard_brakings += is_hard && !braking[index_of(slot)];
+    braking[index_of(slot)] = is_hard;
   }
 }
 
-/// What there was to see of a scenario, as a recording for the viewers.
+/// A run as a recording for the viewers: the ego, the agents that have a goal and those that collided have colours.
 class Film {
  public:
-  template <class Scenario>
-  explicit Film(Scenario const& scenario) : recorder_(scenario.world) {
-    for (auto const id : scenario.marked) recorder_.show_as(id, cambium::RecordedAgentKind::merging);
-    recorder_.show_as(scenario.ego, cambium::RecordedAgentKind::ego, "ego");
+  template <class World>
+  Film(World const& world, cambium::AgentId ego) : recorder_(world) {
+    for (cambium::Slot slot{}; index_of(slot) < world.size(); ++slot)
+      if (!std::holds_alternative<cambium::NoGoal>(world.roster().goals[slot]))
+        recorder_.show_as(world.roster().agents[slot].id, cambium::RecordedAgentKind::merging);
+    recorder_.show_as(ego, cambium::RecordedAgentKind::ego, "ego");
   }
 
   template <class World>
@@ -99,24 +103,26 @@ class Film {
   cambium::WorldRecorder recorder_;
 };
 
-/// Rolls one scenario forward until it is done, something collides, or time is up; fills `recording` and adds to `rows`
-/// of the trajectories if there are such.
+/// Rolls one scenario forward until its task is done, something collides or time is up; fills `recording`, and adds to
+/// `rows` of the trajectories, where these are given.
 ///
-/// A `Site` is what an example's scenarios have in common; beside it stand `sample_scenario(site, seed, number)`, whose
-/// result has a `world`, an `ego` and `marked`, the agents that the replay shows in a colour of their own, and
-/// `is_done(scenario)`, which says after each step whether what was to be done is done. A scenario may have `counts`,
-/// which `is_done` keeps up to date.
-template <class Site>
-[[nodiscard]] Outcome run_scenario(Site const& site, Settings const& settings, std::uint64_t number,
+/// A `Task` says what an example's scenarios are and what has to be done in them:
+///   `sample(seed, number)`   a `cambium::Scenario`
+///   `watch(world, ego)`      judges a run: called with the world after each step, it returns whether the task is done;
+///                            it may have `counts`, which add up over the steps
+///   `facts()`                what the summary says about the place
+template <class Task>
+[[nodiscard]] Outcome run_scenario(Task const& task, Settings const& settings, std::uint64_t number,
                                    std::string* rows = nullptr, cambium::Recording* recording = nullptr) {
-  auto scenario = sample_scenario(site, settings.seed, static_cast<std::uint32_t>(number));
-  auto& world = scenario.world;
+  auto const scenario = task.sample(settings.seed, static_cast<std::uint32_t>(number));
+  auto world = scenario.make_world();
   Outcome outcome;
   outcome.agents = static_cast<std::uint32_t>(world.size());
   outcome.ego = scenario.ego;
   auto const ego = world.slot_of(scenario.ego);
+  auto watch = task.watch(world, ego);
   std::optional<Film> film;
-  if (recording != nullptr) film.emplace(scenario);
+  if (recording != nullptr) film.emplace(world, scenario.ego);
   std::vector<bool> braking(world.size(), false);
   if (rows != nullptr) append_rows(*rows, number, world, scenario.ego);
   for (bool is_over = false; !is_over;) {
@@ -132,21 +138,21 @@ template <class Site>
     outcome.off_road = outcome.off_road || cambium::OffRoad{}(world, ego);
     if (collision)
       std::tie(outcome.collided_first, outcome.collided_second) = std::tie(collision->first, collision->second);
-    bool const done = is_done(scenario);
+    bool const done = watch(world);
     if (collision)
       outcome.kind = Outcome::Kind::collision;
     else if (done)
       outcome.kind = Outcome::Kind::success;
     is_over = collision || done || outcome.steps >= settings.steps;
   }
-  if constexpr (requires { scenario.counts; }) outcome.counts = scenario.counts;
+  if constexpr (requires { watch.counts; }) outcome.counts.assign(watch.counts.begin(), watch.counts.end());
   if (film) *recording = film->develop(outcome);
   return outcome;
 }
 
 /// Runs all scenarios; the trajectories of the first ones go into `file` meanwhile. Neither depends on the threads.
-template <class Site>
-[[nodiscard]] std::vector<Outcome> run_all(Site const& site, Settings const& settings, PartFile& file) {
+template <class Task>
+[[nodiscard]] std::vector<Outcome> run_all(Task const& task, Settings const& settings, PartFile& file) {
   std::vector<Outcome> outcomes(settings.scenarios);
   file.append(trajectory_columns);
   RowsInOrder in_order(file, 4 * settings.threads);
@@ -154,7 +160,7 @@ template <class Site>
     try {
       std::string rows;
       bool const is_written = i < settings.trajectories;
-      outcomes[i] = run_scenario(site, settings, i, is_written ? &rows : nullptr);
+      outcomes[i] = run_scenario(task, settings, i, is_written ? &rows : nullptr);
       if (is_written) in_order.put(i, std::move(rows));
     } catch (...) {
       in_order.give_up();

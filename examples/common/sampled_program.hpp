@@ -35,12 +35,12 @@ namespace examples {
 }
 
 /// Simulates the replayed scenario once more and writes its replay, and its trajectory unless that is written already.
-template <class Site>
-void write_replay(std::filesystem::path const& file, Site const& site, Settings const& settings, Words const& words,
+template <class Task>
+void write_replay(std::filesystem::path const& file, Task const& task, Settings const& settings, Words const& words,
                   std::uint64_t shown, PartFile& trajectories) {
   cambium::Recording recording;
   std::string rows;
-  auto const replayed = run_scenario(site, settings, shown, &rows, &recording);
+  auto const replayed = run_scenario(task, settings, shown, &rows, &recording);
   if (shown >= settings.trajectories) trajectories.append(rows);
   recording.title = words.title + " on " + std::filesystem::path(settings.map_file).filename().string() +
                     ", scenario " + std::to_string(shown);
@@ -49,10 +49,10 @@ void write_replay(std::filesystem::path const& file, Site const& site, Settings 
   cambium::write_html_replay(file, recording);
 }
 
-/// Runs all scenarios of a site (see `run_scenario`), prints the table and writes the files. What goes wrong in a
+/// Runs all scenarios of a task (see `run_scenario`), prints the table and writes the files. What goes wrong in a
 /// scenario is a matter of the map: `MapError`.
-template <class Site>
-void sample_and_report(Site const& site, Settings const& settings, Words const& words) {
+template <class Task>
+void sample_and_report(Task const& task, Settings const& settings, Words const& words) {
   std::filesystem::path const folder(settings.out);
   if (settings.replay && *settings.replay >= settings.scenarios)
     throw cambium::Error("--replay " + std::to_string(*settings.replay),
@@ -63,7 +63,7 @@ void sample_and_report(Site const& site, Settings const& settings, Words const& 
   auto const begin = std::chrono::steady_clock::now();
   auto const outcomes = [&] {
     try {
-      return run_all(site, settings, trajectories);
+      return run_all(task, settings, trajectories);
     } catch (cambium::WorldError const& problem) {
       throw cambium::MapError(settings.map_file, problem.what(), "look at it with examples/run map --picture");
     }
@@ -72,9 +72,9 @@ void sample_and_report(Site const& site, Settings const& settings, Words const& 
   auto totals = total(outcomes);
   if (settings.replay) totals.replayed = *settings.replay;
 
-  write_replay(folder / "replay.html", site, settings, words, totals.replayed, trajectories);
+  write_replay(folder / "replay.html", task, settings, words, totals.replayed, trajectories);
   trajectories.finish();
-  write_summary(folder / "summary.json", settings, facts_of(site), outcomes, totals, words);
+  write_summary(folder / "summary.json", settings, task.facts(), outcomes, totals, words);
   print_table(settings, totals, seconds, words);
   std::cout << "  " << (folder / "replay.html").string() << "       plays scenario " << totals.replayed << " ("
             << why_interesting(settings, outcomes[totals.replayed]) << ") in a browser\n  "

@@ -2,16 +2,68 @@
 // Intelligent Driver Model and change lanes by MOBIL, keep right and find their exits; judges each scenario, and writes
 // figures, trajectories and a replay that plays in a browser.
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "cambium/evaluation/driving.hpp"
+#include "cambium/scenario/highway_site.hpp"
+
 #include "../common/map_file.hpp"
 #include "../common/sampled_program.hpp"
-#include "scenario.hpp"
 
 namespace {
 
+using Simulation = cambium::HighwaySite::World;
+
+/// Counts lane changes. The ego is done on its exit, or without one after 500 m or near the end.
+class Watch {
+ public:
+  Watch(Simulation const& world, cambium::Slot ego) : ego_(ego), start_(position(world)) {
+    for (auto const& record : world.frame().agents) lanes_.push_back(record.lane.corridor);
+  }
+
+  bool operator()(Simulation const& world) {
+    for (std::size_t i = 0; i < world.size(); ++i) {
+      auto const corridor = world.frame().agents[i].lane.corridor;
+      counts[0] += corridor != lanes_[i];
+      lanes_[i] = corridor;
+    }
+    if (!std::holds_alternative<cambium::NoGoal>(world.roster().goals[ego_])) return cambium::AtGoal{}(world, ego_);
+    auto const& lane = world.frame().agents[ego_].lane;
+    auto const& corridor = world.roster().agents[ego_].road->corridors[lane.corridor];
+    return corridor.length_until_end(lane.s) < 30.0 || (position(world) - start_).norm() > 500.0;
+  }
+
+  std::array<std::uint64_t, 1> counts{};  ///< lane changes of all agents
+
+ private:
+  [[nodiscard]] cambium::geometry::Point position(Simulation const& world) const {
+    auto const& state = world.frame().agents[ego_].state;
+    return {state.x, state.y};
+  }
+
+  cambium::Slot ego_;
+  cambium::geometry::Point start_;
+  std::vector<cambium::CorridorId> lanes_;  ///< lane corridor of each agent, by slot
+};
+
+/// The ego has to drive on or to take its exit: see `examples::run_scenario`.
+struct Task {
+  cambium::HighwaySite site;
+
+  [[nodiscard]] auto sample(std::uint64_t seed, std::uint32_t number) const { return site.sample(seed, number); }
+  [[nodiscard]] Watch watch(Simulation const& world, cambium::Slot ego) const { return {world, ego}; }
+  [[nodiscard]] examples::Facts facts() const { return {{"lanes", site.lanes.size()}, {"exits", site.exits.size()}}; }
+};
+
 void run(examples::Settings const& settings) {
-  auto const site = highway::find_site(examples::load_map(settings.map_file), settings.map_file);
-  std::string const success = site.exits.empty() ? "the ego came to the end" : "the ego took its exit";
-  examples::sample_and_report(site, settings, {"Highway", success, {{"lane changes"}}});
+  Task const task{cambium::find_highway_site(examples::load_map(settings.map_file), settings.map_file)};
+  std::string const success = task.site.exits.empty() ? "the ego came to the end" : "the ego took its exit";
+  examples::sample_and_report(task, settings, {"Highway", success, {{"lane changes"}}});
 }
 
 }  // namespace

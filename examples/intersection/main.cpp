@@ -1,10 +1,50 @@
 // Traffic crosses: samples situations before the junctions of an OpenDRIVE map, where everybody heeds the right of way,
 // rolls them forward, judges each, and writes figures, trajectories and a replay that plays in a browser.
 
+#include <cstdint>
+
+#include "cambium/evaluation/driving.hpp"
+#include "cambium/scenario/junction_site.hpp"
+
 #include "../common/command_line.hpp"
 #include "../common/map_file.hpp"
 #include "../common/sampled_program.hpp"
-#include "scenario.hpp"
+
+namespace {
+
+/// Everybody has to get through: see `examples::run_scenario`.
+struct Task {
+  cambium::JunctionSite site;
+  cambium::JunctionTraffic traffic;
+
+  [[nodiscard]] auto sample(std::uint64_t seed, std::uint32_t number) const {
+    return site.sample(seed, number, traffic);
+  }
+
+  template <class World>
+  [[nodiscard]] auto watch(World const&, cambium::Slot) const {
+    return [](World const& world) {
+      for (cambium::Slot slot{}; index_of(slot) < world.size(); ++slot)
+        if (!cambium::PastJunctions{}(world, slot)) return false;
+      return true;
+    };
+  }
+
+  [[nodiscard]] examples::Facts facts() const {
+    return {{"entrances", site.entrances.size()}, {"lights", traffic.lights ? 1 : 0}};
+  }
+};
+
+void run(examples::Settings const& settings, bool lights) {
+  Task const task{cambium::find_junction_site(examples::load_map(settings.map_file), settings.map_file),
+                  {.lights = lights}};
+  if (lights && task.site.map->lights().empty())
+    throw cambium::MapError(settings.map_file, "this map has no traffic lights",
+                            "leave out --lights or give a map with some, such as maps/intersection_4way.xodr");
+  examples::sample_and_report(task, settings, {"Intersection", "everybody got through"});
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
   examples::Settings settings;
@@ -16,12 +56,5 @@ int main(int argc, char** argv) {
   bool lights = false;
   program.add_flag("--lights", lights,
                    "switch the map's traffic lights on; else signs and who comes from the right count");
-  return examples::run_program(program, argc, argv, [&] {
-    auto site = intersection::find_site(examples::load_map(settings.map_file), settings.map_file);
-    site.lights = lights;
-    if (lights && site.map->lights().empty())
-      throw cambium::MapError(settings.map_file, "this map has no traffic lights",
-                              "leave out --lights or give a map with some, such as maps/intersection_4way.xodr");
-    examples::sample_and_report(site, settings, {"Intersection", "everybody got through"});
-  });
+  return examples::run_program(program, argc, argv, [&] { run(settings, lights); });
 }

@@ -1,16 +1,14 @@
 // Traffic merges: samples dense situations at the on-ramp or lane drop of an OpenDRIVE map, rolls them forward with the
 // Intelligent Driver Model, judges each, and writes figures, trajectories and a replay that plays in a browser.
 
-#include "../common/map_file.hpp"
 #include "../common/sampled_program.hpp"
-#include "scenario.hpp"
+#include "task.hpp"
 
 namespace {
 
 void run(examples::Settings const& settings) {
-  auto const site = merging::find_site(examples::load_map(settings.map_file), settings.map_file);
-  merging::warn_of_crossings(site, "merging: " + settings.map_file);
-  examples::sample_and_report(site, settings, {"Merging", "the ego merged"});
+  merging::Task const task{merging::find_site(settings, "merging")};
+  examples::sample_and_report(task, settings, {"Merging", "the ego merged"});
 }
 
 }  // namespace

@@ -2,17 +2,16 @@
 // lane in before them; counts how often two of one lane go one after the other, and writes figures, trajectories and a
 // replay that plays in a browser.
 
-#include "../common/map_file.hpp"
 #include "../common/sampled_program.hpp"
-#include "scenario.hpp"
+#include "../merging/task.hpp"
+#include "task.hpp"
 
 namespace {
 
 void run(examples::Settings const& settings) {
-  auto const site = zip_merge::Site{merging::find_site(examples::load_map(settings.map_file), settings.map_file)};
-  merging::warn_of_crossings(site, "zip_merge: " + settings.map_file);
+  zip_merge::Task const task{merging::find_site(settings, "zip_merge")};
   examples::sample_and_report(
-      site, settings,
+      task, settings,
       {"Zip merge",
        "the ego merged",
        {{"pairs at merge", "two who come to the merge one after the other, while others still come on both lanes"},

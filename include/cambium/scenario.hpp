@@ -1,4 +1,7 @@
-/// The room `scenario`: random traffic to begin with.
+/// The room `scenario`: situations to start from. `Scenario` is the value; `LaneTraffic` draws vehicles on a lane.
+/// Whole situations come from the headers that are included by name, as they make maps or worlds:
+/// scenario/merging_site.hpp, highway_site.hpp, junction_site.hpp and ring_road.hpp.
 #pragma once
 
 #include "cambium/scenario/lane_traffic.hpp"
+#include "cambium/scenario/scenario.hpp"

@@ -13,13 +13,14 @@
 #include <utility>
 #include <vector>
 
-#include "../../examples/intersection/scenario.hpp"
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"
 #include "cambium/behavior/following/constant_acceleration.hpp"
 #include "cambium/evaluation/collision.hpp"
+#include "cambium/evaluation/driving.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/collision.hpp"
+#include "cambium/scenario/junction_site.hpp"
 
 using namespace cambium;
 
@@ -38,7 +39,7 @@ struct Tally {
 };
 
 /// Height of the road below an agent [m]: evaluators know none, and on some maps bridges cross roads.
-double height(intersection::Simulation const& world, Slot slot) {
+double height(JunctionSite::World const& world, Slot slot) {
   auto const& at = world.frame().agents[slot].lane;
   auto const& corridor = world.roster().agents[slot].road->corridors[at.corridor];
   auto const place = corridor.lane_at(at.s);
@@ -46,7 +47,7 @@ double height(intersection::Simulation const& world, Slot slot) {
   return world.map().road(lane.road).elevation.value(lane.station_at(std::min(place.s, lane.length())));
 }
 
-bool collides(intersection::Simulation const& world) {
+bool collides(JunctionSite::World const& world) {
   if (!AnyCollision{}(world)) return false;
   for (Slot i{}; index_of(i) < world.size(); ++i)
     for (Slot k{}; k < i; ++k)
@@ -56,13 +57,13 @@ bool collides(intersection::Simulation const& world) {
   return false;
 }
 
-void remove_those_through(intersection::Simulation& world) {
-  for (std::size_t slot = world.size(); slot-- > 0;)
-    if (intersection::is_through(world, slot)) world.remove(world.roster().agents[slot].id);
+void remove_those_through(JunctionSite::World& world) {
+  for (std::size_t i = world.size(); i-- > 0;)
+    if (PastJunctions{}(world, static_cast<Slot>(i))) world.remove(world.roster().agents[i].id);
 }
 
 /// How many vehicles cross a red light's stop line in a step of `world`, whose positions before it were `before`.
-std::uint32_t crossed_on_red(intersection::Simulation const& world, std::vector<double> const& before) {
+std::uint32_t crossed_on_red(JunctionSite::World const& world, std::vector<double> const& before) {
   std::uint32_t count = 0;
   for (std::size_t i = 0; i < world.size(); ++i) {
     auto const& agent = world.roster().agents[i];
@@ -78,16 +79,15 @@ std::uint32_t crossed_on_red(intersection::Simulation const& world, std::vector<
 }
 
 /// Seeds and numbers are scattered over their ranges.
-void run(intersection::Site const& site, std::uint32_t number, Tally& tally) {
-  auto scenario = intersection::sample_scenario(site, 17 + 0x9e3779b97f4a7c15u * (number % 7), number * 2654435761u);
-  auto& world = scenario.world;
+void run(JunctionSite const& site, JunctionTraffic const& traffic, std::uint32_t number, Tally& tally) {
+  auto world = site.sample(17 + 0x9e3779b97f4a7c15u * (number % 7), number * 2654435761u, traffic).make_world();
   tally.agents += world.size();
   bool hit = false;
   for (int step = 0; step < 1500 && world.size() > 0 && !hit; ++step) {
     std::vector<double> before;
     for (auto const& agent : world.frame().agents) before.push_back(agent.lane.s);
     REQUIRE(world.step(0.2));
-    if (site.lights) tally.on_red += crossed_on_red(world, before);
+    if (traffic.lights) tally.on_red += crossed_on_red(world, before);
     remove_those_through(world);
     hit = collides(world);
   }
@@ -99,19 +99,12 @@ void run(intersection::Site const& site, std::uint32_t number, Tally& tally) {
     tally.first = "run " + std::to_string(number) + " at " + std::to_string(world.time()) + " s";
 }
 
-struct Kind {
-  bool lights = false;
-  double bicycles = 0.0;
-};
-
 void check_all_pass(std::shared_ptr<Map const> const& map, std::string const& name, std::uint32_t count,
-                    Kind const& kind = {}) {
-  auto site = intersection::find_site(map, name);
-  site.lights = kind.lights;
-  site.bicycles = kind.bicycles;
-  site.scattered_ids = true;
+                    JunctionTraffic traffic = {}) {
+  traffic.scattered_ids = true;
+  auto const site = find_junction_site(map, name);
   Tally tally;
-  for (std::uint32_t number = 0; number < count; ++number) run(site, number, tally);
+  for (std::uint32_t number = 0; number < count; ++number) run(site, traffic, number, tally);
   CAPTURE(name);
   CAPTURE(tally.first);
   CHECK(tally.collisions == 0);
@@ -137,7 +130,7 @@ TEST_CASE("so it is under traffic lights, and nobody crosses a stop line on red"
 
 TEST_CASE("so it is among bicycles, which ride as cars drive, in sampled traffic") {
   for (char const* name : {"intersection_3way.xodr", "intersection_4way.xodr", "roundabout.xodr"})
-    check_all_pass(support::own_map(name), name + std::string(" with bicycles"), runs(1000), {.bicycles = 0.3});
+    check_all_pass(support::own_map(name), name + std::string(" with bicycles"), runs(1000), {.bicycle_share = 0.3});
 }
 
 TEST_CASE("so it is at the junctions of the corpus") {
@@ -149,16 +142,15 @@ TEST_CASE("so it is at the junctions of the corpus") {
 }
 
 TEST_CASE("a vehicle larger than those that conflicts are found for is refused with a sentence") {
-  auto const site = intersection::find_site(support::own_map("intersection_4way.xodr"), "map");
-  auto scenario = intersection::sample_scenario(site, 1, 1);
+  auto const site = find_junction_site(support::own_map("intersection_4way.xodr"));
   RandomStream random(1, 0, 0);
   auto const pose = site.map->lane(site.entrances[0]).path.pose(20.0);
   auto const add = [&](geometry::Shape const& shape) {
-    intersection::Simulation world(site.map);
+    JunctionSite::World world(site.map);
     world.add({.position = pose.position(),
                .shape = shape,
                .behavior = Intersection{},
-               .route = intersection::random_route(*site.map, site.entrances[0], random)});
+               .route = site.random_route(site.entrances[0], random)});
   };
   CHECK_NOTHROW(add(geometry::bus()));
   CHECK_THROWS_WITH_AS(add(geometry::articulated_truck()), doctest::Contains("large_conflict_shape"), WorldError);
@@ -169,19 +161,18 @@ TEST_CASE("a vehicle larger than those that conflicts are found for is refused w
   auto const large = world.add({.position = pose.position(),
                                 .shape = geometry::articulated_truck(),
                                 .behavior = ConstantAcceleration{},
-                                .route = intersection::random_route(*site.map, site.entrances[0], random)});
+                                .route = site.random_route(site.entrances[0], random)});
   CHECK_NOTHROW(static_cast<void>(world.observe(large).predict(predict_all_as<Set>(ConstantAcceleration{}))));
   CHECK_THROWS_WITH_AS(static_cast<void>(world.observe(large).predict(predict_all_as<Set>(Intersection{}))),
                        doctest::Contains("large_conflict_shape"), WorldError);
 }
 
 TEST_CASE("nobody drives through a bend with more than the lateral acceleration it is given") {
-  auto const site = intersection::find_site(support::own_map("intersection_4way.xodr"), "map");
+  auto const site = find_junction_site(support::own_map("intersection_4way.xodr"));
   double const dt = 0.2;
   double fastest = 0.0;
   for (std::uint32_t number = 0; number < 20; ++number) {
-    auto scenario = intersection::sample_scenario(site, 3, number);
-    auto& world = scenario.world;
+    auto world = site.sample(3, number).make_world();
     for (int step = 0; step < 300; ++step) {
       std::vector<std::pair<AgentId, double>> before;
       for (std::size_t i = 0; i < world.size(); ++i)

@@ -8,6 +8,7 @@
 #include "cambium/core/parameters.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/shape.hpp"
+#include "cambium/world/frame.hpp"
 
 namespace cambium {
 
@@ -20,6 +21,23 @@ struct AtGoal {
   template <class World>
   [[nodiscard]] bool operator()(World const& world, Slot slot) const {
     return world.reached_goal(slot);
+  }
+};
+
+/// Whether an agent's rear has passed the last junction on its route, or the agent has left traffic.
+struct PastJunctions {
+  static constexpr char const* name = "past_junctions";
+  static constexpr char const* summary = "has passed the last junction on its route";
+  static constexpr auto parameters() { return parameter_list(); }
+
+  template <class World>
+  [[nodiscard]] bool operator()(World const& world, Slot slot) const {
+    auto const& record = world.frame().agents[slot];
+    if (record.status != AgentStatus::driving) return true;
+    auto const& agent = world.roster().agents[slot];
+    double const rear = record.lane.s - agent.shape.rear;
+    return std::ranges::none_of(agent.road->corridors[record.lane.corridor].conflicts,
+                                [rear](auto const& conflict) { return conflict.hull().end > rear; });
   }
 };
 

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cambium/core/error.hpp"
+#include "cambium/core/ids.hpp"
+#include "cambium/map/map.hpp"
+#include "cambium/map/lanes/signals.hpp"
+
+namespace cambium {
+
+namespace detail {
+inline void require_map(std::shared_ptr<Map const> const& map, std::string const& where) {
+  if (!map) throw MapError(where, "there is no map", "pass the map that load_opendrive returned");
+}
+}  // namespace detail
+
+/// A situation to start from, as a value: the map, the agents, and the agent it is about. `WorldType` says which
+/// behaviours, executions and vehicle models the agents may have.
+template <class WorldType>
+struct Scenario {
+  std::shared_ptr<Map const> map;
+  std::uint64_t seed = 0;                               ///< of the world's random numbers
+  std::vector<typename WorldType::AgentSpec> agents{};  ///< in the order in which they enter, each with its id
+  AgentId ego = none<AgentId>;                          ///< one of the agents; none if all are alike
+  std::vector<map::LightPlan> lights{};                 ///< of the map's first traffic lights; the others are off
+
+  /// A world with all agents in it. Throws `WorldError` if an agent or a light plan is invalid, if two agents have the
+  /// same id, or if the ego is not among the agents. O(agents^2) for the checks of entering.
+  [[nodiscard]] WorldType make_world() const {
+    WorldType world(map, {.seed = seed});
+    for (std::size_t i = 0; i < lights.size(); ++i) world.set_light(static_cast<LightId>(i), lights[i]);
+    for (auto const& agent : agents) world.add(agent);
+    bool const has_ego =
+        std::ranges::any_of(world.roster().agents, [this](auto const& agent) { return agent.id == ego; });
+    if (is_valid(ego) && !has_ego)
+      throw WorldError("Scenario", "its ego, agent " + to_string(ego) + ", is not among its agents",
+                       "set Scenario::ego to the id of one of them");
+    return world;
+  }
+};
+
+/// The same scenario for worlds of another type: `behavior(spec)` returns what drives each agent there. Executions and
+/// vehicle models are kept; observers are `OtherWorld`'s default. O(agents).
+template <class OtherWorld, class WorldType, class ToBehavior>
+[[nodiscard]] Scenario<OtherWorld> with_behaviors(Scenario<WorldType> const& scenario, ToBehavior const& behavior) {
+  Scenario<OtherWorld> other{
+      .map = scenario.map, .seed = scenario.seed, .ego = scenario.ego, .lights = scenario.lights};
+  other.agents.reserve(scenario.agents.size());
+  for (auto const& spec : scenario.agents)
+    other.agents.push_back({.position = spec.position,
+                            .heading = spec.heading,
+                            .speed = spec.speed,
+                            .shape = spec.shape,
+                            .behavior = behavior(spec),
+                            .goal = spec.goal.given(),
+                            .route = spec.route,
+                            .road = spec.road,
+                            .execution = spec.execution,
+                            .dynamics = spec.dynamics,
+                            .id = spec.id.given()});
+  return other;
+}
+
+}  // namespace cambium

@@ -1,0 +1,208 @@
+// Sampled situations: the same laws for merges, highways and junctions.
+#include <doctest/doctest.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "../support/maps.hpp"
+#include "cambium/behavior/following/constant_acceleration.hpp"
+#include "cambium/evaluation/collision.hpp"
+#include "cambium/evaluation/driving.hpp"
+#include "cambium/evaluation/off_road.hpp"
+#include "cambium/map/build/map_builder.hpp"
+#include "cambium/scenario/highway_site.hpp"
+#include "cambium/scenario/junction_site.hpp"
+#include "cambium/scenario/merging_site.hpp"
+
+using namespace cambium;
+
+namespace {
+
+template <class SiteType>
+struct Found;
+
+template <>
+struct Found<MergingSite> {
+  static constexpr char const *own_map = "merging.xodr", *unfit = "highway.xodr";
+  static MergingSite on(std::shared_ptr<Map const> map, std::string const& where) {
+    return find_merging_site(std::move(map), where);
+  }
+};
+
+template <>
+struct Found<HighwaySite> {
+  static constexpr char const *own_map = "highway_exit.xodr", *unfit = "roundabout.xodr";
+  static HighwaySite on(std::shared_ptr<Map const> map, std::string const& where) {
+    return find_highway_site(std::move(map), where);
+  }
+};
+
+template <>
+struct Found<JunctionSite> {
+  static constexpr char const *own_map = "intersection_4way.xodr", *unfit = "highway.xodr";
+  static JunctionSite on(std::shared_ptr<Map const> map, std::string const& where) {
+    return find_junction_site(std::move(map), where);
+  }
+};
+
+/// All that a step can depend on, in the bits of the numbers.
+template <class World>
+std::string text_of(World const& world) {
+  std::string text;
+  for (auto const& agent : world.roster().agents) {
+    auto const& state = world.state(agent.id);
+    std::visit([&](auto const& behavior) { text += std::to_string(hash_parameters(behavior)); }, agent.behavior);
+    text += ' ' + to_string(agent.id);
+    for (double const value : {state.x, state.y, state.heading, state.speed, agent.shape.front, agent.shape.rear}) {
+      char bits[32];
+      std::snprintf(bits, sizeof bits, " %a", value);
+      text += bits;
+    }
+  }
+  return text;
+}
+
+/// A straight road of `lanes` lanes, too short for traffic.
+std::shared_ptr<Map const> short_road(double length, std::size_t lanes) {
+  map::MapBuilder builder("short");
+  builder.add_road({.id = "1",
+                    .line = map::lay_from({}, {{length, 0.0, 0.0}}),
+                    .sections = {{.right = map::equal_lanes(lanes, 3.5)}}});
+  return builder.build();
+}
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("a seed and a number give one situation, others another", Site, MergingSite, HighwaySite,
+                   JunctionSite) {
+  auto const site = Found<Site>::on(support::own_map(Found<Site>::own_map), "map");
+  auto const text = [&](std::uint64_t seed, std::uint32_t number) {
+    return text_of(site.sample(seed, number).make_world());
+  };
+  auto const first = text(3, 5);
+  static_cast<void>(text(3, 6));
+  CHECK(text(3, 5) == first);
+  CHECK(text(3, 6) != first);
+  CHECK(text(4, 5) != first);
+}
+
+TEST_CASE_TEMPLATE("a sampled situation begins without contact, on the road, with an ego among others", Site,
+                   MergingSite, HighwaySite, JunctionSite) {
+  auto const site = Found<Site>::on(support::own_map(Found<Site>::own_map), "map");
+  std::size_t agents = 0;
+  for (std::uint32_t number = 0; number < 50; ++number) {
+    CAPTURE(number);
+    auto const scenario = site.sample(11, number);
+    auto world = scenario.make_world();
+    REQUIRE(world.size() == scenario.agents.size());
+    REQUIRE(world.size() >= 2);
+    agents += world.size();
+    CHECK(world.roster().seed == 11);
+    CHECK(world.slot_of(scenario.ego) < Slot(world.size()));
+    CHECK_FALSE(AnyCollision{}(world));
+    for (Slot slot{}; index_of(slot) < world.size(); ++slot) {
+      CHECK_FALSE(OffRoad{}(world, slot));
+      CHECK(world.roster().agents[slot].id == *scenario.agents[index_of(slot)].id);
+    }
+  }
+  CHECK(agents > 50 * 4);
+}
+
+TEST_CASE_TEMPLATE("another world takes the same situation with behaviours of its own", Site, MergingSite, HighwaySite,
+                   JunctionSite) {
+  using Other = World<BehaviorSet<ConstantAcceleration>, InterpolateExecution, SingleTrack>;
+  auto const site = Found<Site>::on(support::own_map(Found<Site>::own_map), "map");
+  auto const scenario = site.sample(1, 2);
+  std::size_t asked = 0;
+  auto const other = with_behaviors<Other>(scenario, [&](auto const& agent) {
+    asked += is_valid(*agent.id);
+    return ConstantAcceleration{.acceleration = 0.5};
+  });
+  CHECK(asked == scenario.agents.size());
+  CHECK(other.ego == scenario.ego);
+  auto const here = scenario.make_world();
+  auto world = other.make_world();
+  REQUIRE(world.size() == here.size());
+  for (Slot slot{}; index_of(slot) < world.size(); ++slot) {
+    auto const& a = here.roster().agents[slot];
+    auto const& b = world.roster().agents[slot];
+    CHECK(a.id == b.id);
+    CHECK(a.shape == b.shape);
+    CHECK(a.road->route == b.road->route);
+    CHECK(here.roster().goals[slot].index() == world.roster().goals[slot].index());
+    CHECK(here.frame().agents[slot].state.speed == world.frame().agents[slot].state.speed);
+    CHECK(here.frame().agents[slot].state.x == world.frame().agents[slot].state.x);
+  }
+  REQUIRE(world.step(0.2));
+  CHECK(world.state(other.ego).speed == doctest::Approx(here.state(other.ego).speed + 0.1));
+}
+
+TEST_CASE_TEMPLATE("a map without such a place, or no map, is an error that names the file and the remedy", Site,
+                   MergingSite, HighwaySite, JunctionSite) {
+  using Finding = Found<Site>;
+  CHECK_THROWS_WITH_AS(static_cast<void>(Finding::on(support::own_map(Finding::unfit), "my.xodr")),
+                       doctest::Contains("my.xodr"), MapError);
+  CHECK_THROWS_WITH_AS(static_cast<void>(Finding::on(support::own_map(Finding::unfit), "my.xodr")),
+                       doctest::Contains("give a map"), MapError);
+  CHECK_THROWS_WITH_AS(static_cast<void>(Finding::on(nullptr, "my.xodr")), doctest::Contains("there is no map"),
+                       MapError);
+  CHECK_THROWS_AS(static_cast<void>(Finding::on(short_road(30.0, 2), "short")), MapError);
+}
+
+TEST_CASE("vehicles on the ramp have the lane behind the merge as their goal, and the ego is one of them") {
+  auto const site = find_merging_site(support::own_map("merging.xodr"));
+  auto const& ramp = site.entrances[site.ramp];
+  CHECK(ramp.merges());
+  CHECK(ramp.gives_up_lane);
+  for (std::uint32_t number = 0; number < 20; ++number) {
+    auto const scenario = site.sample(5, number);
+    for (auto const& agent : scenario.agents) {
+      bool const merges = agent.route->lanes == ramp.route.lanes;
+      CHECK(std::holds_alternative<ReachLane>(agent.goal) == merges);
+      if (*agent.id == scenario.ego) CHECK(merges);
+    }
+  }
+}
+
+TEST_CASE("traffic at junctions has the shares that are asked for, and lights in turn") {
+  auto const site = find_junction_site(support::own_map("intersection_4way.xodr"));
+  auto const count = [&](JunctionTraffic const& traffic, geometry::Shape const& shape) {
+    std::size_t found = 0;
+    for (std::uint32_t number = 0; number < 50; ++number)
+      for (auto const& agent : site.sample(5, number, traffic).agents) found += agent.shape == shape;
+    return found;
+  };
+  CHECK(count({.bicycle_share = 0.0}, geometry::bicycle()) == 0);
+  CHECK(count({.bicycle_share = 0.5}, geometry::bicycle()) > 50);
+  CHECK(count({.truck_share = 0.0}, geometry::truck()) == 0);
+  CHECK(count({.truck_share = 0.5}, geometry::truck()) > 50);
+
+  auto const world = site.sample(5, 1, {.lights = true}).make_world();
+  REQUIRE(world.map().lights().size() == 2);
+  auto const color = [&](std::size_t light, double time) { return world.roster().lights[light].at(time); };
+  CHECK(color(0, 5.0) == map::LightColor::green);
+  CHECK(color(1, 5.0) == map::LightColor::red);
+  CHECK(color(0, 25.0) == map::LightColor::red);
+  CHECK(color(1, 25.0) == map::LightColor::green);
+  CHECK_THROWS_WITH_AS(static_cast<void>(site.sample(5, 1, {.truck_share = 1.5})), doctest::Contains("truck_share"),
+                       ParameterError);
+}
+
+TEST_CASE("a scenario whose ego is missing or whose ids repeat makes no world") {
+  auto const site = find_highway_site(support::own_map("highway_exit.xodr"));
+  auto scenario = site.sample(1, 1);
+  scenario.ego = AgentId{4711};
+  CHECK_THROWS_WITH_AS(static_cast<void>(scenario.make_world()), doctest::Contains("4711"), WorldError);
+  scenario.ego = none<AgentId>;
+  CHECK_NOTHROW(static_cast<void>(scenario.make_world()));
+  scenario.agents[1].id = *scenario.agents[0].id;
+  CHECK_THROWS_AS(static_cast<void>(scenario.make_world()), WorldError);
+  scenario.map = nullptr;
+  CHECK_THROWS_WITH_AS(static_cast<void>(scenario.make_world()), doctest::Contains("there is no map"), WorldError);
+}
