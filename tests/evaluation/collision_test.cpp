@@ -225,3 +225,24 @@ TEST_CASE("to blame is who drives into somebody or something, not who is hit whi
   world.add_object(rectangle(20, -2, 1, 1));
   CHECK(at_fault(world, world.slot_of(rear)));
 }
+
+TEST_CASE("with a look-ahead, a driver is to blame for whom it will hit if all keep their velocities") {
+  Sim world(straight_road(2, 300));
+  auto const rear = world.slot_of(world.add({.position = {20, -1.75}, .speed = 10}));
+  auto const front = world.slot_of(world.add({.position = {40, -1.75}, .speed = 2}));
+  auto const beside = world.slot_of(world.add({.position = {20, -5.25}, .speed = 10}));
+  double const gap = 20.0 - cb::geometry::car().length();
+  CHECK_FALSE(cb::AtFaultCollision{}(world, rear));
+  CHECK_FALSE(cb::AtFaultCollision{.look_ahead = gap / 8.0 - 0.05}(world, rear));
+  cb::AtFaultCollision const soon{.look_ahead = gap / 8.0 + 0.05};
+  CHECK(soon(world, rear));
+  CHECK_FALSE(soon(world, front));  // hit from behind
+  CHECK_FALSE(soon(world, beside));
+  cb::Slot const others[] = {beside};
+  CHECK_FALSE(soon.among(world, rear, others));
+  cb::Slot const all[] = {beside, front};
+  CHECK(soon.among(world, rear, all));
+  CHECK_FALSE(cb::AtFaultCollision{.standing_speed = 10.5, .look_ahead = 5.0}(world, rear));
+  world.add_object(rectangle(60, -2, 1, 1));
+  CHECK(cb::AtFaultCollision{.look_ahead = 4.0}.among(world, rear, {}));
+}

@@ -68,6 +68,50 @@ TEST_CASE("motion is judged along and across the lane") {
   CHECK(cb::Jerk{}(world, ego) == doctest::Approx(0.0));
 }
 
+TEST_CASE("speed counts as excess above the limit of the lane, and never without a limit") {
+  Sim world(support::own_map("lane_drop.xodr"));
+  auto const& lane = world.map().lane(world.map().nearest_lane({50.0, -1.75, 0.0})->lane);
+  double const limit = lane.speed_limit_at(50.0);
+  REQUIRE(std::isfinite(limit));
+  auto const slow = world.slot_of(world.add({.position = {30, -1.75}, .speed = limit - 1.0}));
+  auto const fast = world.slot_of(world.add({.position = {60, -1.75}, .speed = limit + 2.5}));
+  CHECK(cb::SpeedLimitExcess{}(world, slow) == 0.0);
+  CHECK(cb::SpeedLimitExcess{}(world, fast) == doctest::Approx(2.5));
+  Sim free(straight_road(1, 300));
+  CHECK(cb::SpeedLimitExcess{}(free, free.slot_of(free.add({.position = {30, -1.75}, .speed = 90.0}))) == 0.0);
+}
+
+TEST_CASE("a vehicle is past its junctions when its rear is, or when it has left traffic") {
+  Sim world(support::own_map("intersection_4way.xodr"));
+  for (auto const& lane : world.map().lanes())
+    if (lane.drivable() && lane.predecessors.empty() && lane.length() > 20.0) {
+      auto const pose = lane.path.pose(15.0);
+      world.add({.position = pose.position(),
+                 .heading = pose.heading,
+                 .speed = 10.0,
+                 .behavior = cb::ConstantAcceleration{}});
+      break;
+    }
+  REQUIRE(world.size() == 1);
+  auto const& conflicts = world.roster().agents[0].road->corridors[0].conflicts;
+  REQUIRE_FALSE(conflicts.empty());
+  double end = 0.0;
+  for (auto const& conflict : conflicts) end = std::max(end, conflict.hull().end);
+  int before = 0, after = 0;
+  for (int i = 0; i < 300; ++i) {
+    REQUIRE(world.step(0.2));
+    auto const& record = world.frame().agents[0];
+    bool const drives = record.status == cb::AgentStatus::driving;
+    bool const expected = !drives || record.lane.s - cb::geometry::car().rear >= end;
+    CHECK(cb::PastJunctions{}(world, cb::Slot{0}) == expected);
+    before += !expected;
+    after += expected && drives;
+  }
+  CHECK(before > 10);
+  CHECK(after > 5);
+  CHECK(world.frame().agents[0].status != cb::AgentStatus::driving);  // it left the map at last
+}
+
 TEST_CASE("the lateral acceleration is that of the curve driven") {
   auto const map = support::map_of({.id = "1",
                                     .line = cb::map::lay_from({}, {{200.0, 0.02, 0.02}}),

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 
 #include <boost/container/small_vector.hpp>
 
@@ -44,6 +45,24 @@ template <class World>
 template <class World>
 [[nodiscard]] geometry::OrientedBox box_at(World const& world, Slot slot) {
   return geometry::box_of(world.roster().agents[slot].shape, world.frame().agents[slot].state);
+}
+
+/// The box of the agent at `slot` after `time` [s] at constant velocity.
+template <class World>
+[[nodiscard]] geometry::OrientedBox box_after(World const& world, Slot slot, double time) {
+  auto box = box_at(world, slot);
+  double const way = world.frame().agents[slot].state.speed * time;
+  box.x += way * box.cos;
+  box.y += way * box.sin;
+  return box;
+}
+
+/// How far the middle of `other` lies ahead of the reference point of the agent at `slot`, along its heading [m].
+template <class World>
+[[nodiscard]] double distance_ahead(World const& world, Slot slot, geometry::OrientedBox const& other) {
+  auto const& state = world.frame().agents[slot].state;
+  auto const along = geometry::sin_cos(state.heading);
+  return (other.x - state.x) * along.cos + (other.y - state.y) * along.sin;
 }
 
 template <class World>
@@ -103,33 +122,56 @@ struct Collision {
 };
 
 /// Whether an agent causes a collision: it touches a static object, or while it moves an agent that is not behind it
-/// (after the at-fault collisions of Dauner et al. 2023). O(agents + objects).
+/// (after the at-fault collisions of Dauner et al. 2023). With a `look_ahead`, whether it will, if all keep their
+/// velocities; then only agents count that are ahead of its reference point now. O(agents + objects).
 struct AtFaultCollision {
-  double standing_speed = 0.05;  ///< a slower vehicle counts as stopped [m/s]
+  double standing_speed = 0.05;
+  double look_ahead = 0.0;
 
   static constexpr char const* name = "at_fault_collision";
   static constexpr char const* summary = "touches an object, or while it moves an agent that is not behind it";
   static constexpr auto parameters() {
-    return parameter_list(parameter("standing_speed", &AtFaultCollision::standing_speed, "m/s", Range{0, 10},
-                                    "a slower vehicle counts as stopped"));
+    using P = AtFaultCollision;
+    return parameter_list(
+        parameter("standing_speed", &P::standing_speed, "m/s", Range{0, 10}, "a slower vehicle counts as stopped"),
+        parameter("look_ahead", &P::look_ahead, "s", Range{0, 60}, "time from now, at constant velocities"));
   }
 
   template <class World>
   [[nodiscard]] bool operator()(World const& world, Slot slot) const {
     if (!detail::in_traffic(world, slot)) return false;
-    auto const& ego = world.frame().agents[slot].state;
-    double const rear = world.roster().agents[slot].shape.rear;
-    auto const own = detail::box_at(world, slot);
-    for (auto const& object : world.roster().objects)
-      if (geometry::intersects(own, object.outline)) return true;
-    if (ego.speed < standing_speed) return false;
-    for (Slot i{}; index_of(i) < world.size(); ++i) {
-      if (i == slot || !detail::in_traffic(world, i)) continue;
-      auto const box = detail::box_at(world, i);
-      double const ahead = (box.x - ego.x) * own.cos + (box.y - ego.y) * own.sin;
-      if (ahead > -rear && geometry::intersects(own, box)) return true;
-    }
+    if (hits_object(world, slot)) return true;
+    for (Slot other{}; index_of(other) < world.size(); ++other)
+      if (other != slot && hits(world, slot, other)) return true;
     return false;
+  }
+
+  /// The same, but of the other agents only those at the slots `others` count.
+  template <class World>
+  [[nodiscard]] bool among(World const& world, Slot slot, std::span<Slot const> others) const {
+    return detail::in_traffic(world, slot) && (hits_object(world, slot) || std::ranges::any_of(others, [&](Slot other) {
+                                                 return hits(world, slot, other);
+                                               }));
+  }
+
+ private:
+  template <class World>
+  [[nodiscard]] bool hits_object(World const& world, Slot slot) const {
+    if (world.roster().objects.empty()) return false;
+    auto const own = detail::box_after(world, slot, look_ahead);
+    auto const around = own.bounding_box();
+    return std::ranges::any_of(world.roster().objects, [&](auto const& object) {
+      return around.intersects(object.outline.bounding_box()) && geometry::intersects(own, object.outline);
+    });
+  }
+
+  template <class World>
+  [[nodiscard]] bool hits(World const& world, Slot slot, Slot other) const {
+    if (world.frame().agents[slot].state.speed < standing_speed || !detail::in_traffic(world, other)) return false;
+    double const behind = look_ahead > 0.0 ? 0.0 : -world.roster().agents[slot].shape.rear;
+    return detail::distance_ahead(world, slot, detail::box_at(world, other)) > behind &&
+           geometry::intersects(detail::box_after(world, slot, look_ahead),
+                                detail::box_after(world, other, look_ahead));
   }
 };
 

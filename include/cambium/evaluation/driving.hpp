@@ -6,6 +6,7 @@
 
 #include "cambium/core/ids.hpp"
 #include "cambium/core/parameters.hpp"
+#include "cambium/core/state.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/shape.hpp"
 #include "cambium/world/frame.hpp"
@@ -71,6 +72,20 @@ struct SpeedDeviation {
   }
 };
 
+/// How much faster than the speed limit of its lane the agent drives [m/s]; 0 within the limit, or without one.
+struct SpeedLimitExcess {
+  static constexpr char const* name = "speed_limit_excess";
+  static constexpr char const* summary = "speed above the limit of its lane [m/s]";
+  static constexpr auto parameters() { return parameter_list(); }
+
+  template <class World>
+  [[nodiscard]] double operator()(World const& world, Slot slot) const {
+    auto const& record = world.frame().agents[slot];
+    auto const& corridor = world.roster().agents[slot].road->corridors[record.lane.corridor];
+    return std::max(0.0, record.state.speed - corridor.speed_limit_at(record.lane.s));
+  }
+};
+
 /// The agent's distance from the centre line of its lane [m].
 struct LaneOffset {
   static constexpr char const* name = "lane_offset";
@@ -122,7 +137,12 @@ struct LateralAcceleration {
   template <class World>
   [[nodiscard]] double operator()(World const& world, Slot slot) const {
     if (world.history_size() == 0) return 0.0;
-    auto const &now = world.frame().agents[slot].state, &before = world.history(1).agents[slot].state;
+    return between(world.history(1).agents[slot].state, world.frame().agents[slot].state);
+  }
+
+  /// The same for two states of an agent, one step apart.
+  template <MotionState S>
+  [[nodiscard]] static double between(S const& before, S const& now) {
     double const dt = now.time - before.time;
     return dt > 0.0 ? now.speed * geometry::angle_difference(now.heading, before.heading) / dt : 0.0;
   }

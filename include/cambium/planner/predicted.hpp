@@ -142,55 +142,19 @@ template <class World>
 
 namespace detail {
 
-/// How far `other` lies ahead of the reference point of `ego`, along ego's heading [m].
-template <MotionState S>
-[[nodiscard]] double distance_ahead(S const& ego, geometry::OrientedBox const& other) {
-  return (other.x - ego.x) * std::cos(ego.heading) + (other.y - ego.y) * std::sin(ego.heading);
-}
-
-/// The box of the agent at `slot` after `time` [s] at constant velocity.
-template <class World>
-[[nodiscard]] geometry::OrientedBox box_after(World const& world, Slot slot, double time) {
-  auto box = box_at(world, slot);
-  double const way = world.frame().agents[slot].state.speed * time;
-  box.x += way * box.cos;
-  box.y += way * box.sin;
-  return box;
-}
-
 /// The others that the agent at `ego` has to look out for: not those who follow behind in the strip that it drives in,
 /// who have to keep clear themselves. O(agents).
 template <class World>
 void choose_counting(World const& world, Slot ego, std::vector<Slot>& counting) {
   counting.clear();
-  auto const& state = world.frame().agents[ego].state;
   double const rear = world.roster().agents[ego].shape.rear;
   auto const own = box_at(world, ego);
   for (Slot i{}; index_of(i) < world.size(); ++i) {
     auto const box = box_at(world, i);
     double const aside = own.cos * (box.y - own.y) - own.sin * (box.x - own.x);
     bool const beside = std::abs(aside) > own.half_width + box.half_width;
-    if (i != ego && (beside || distance_ahead(state, box) > -rear)) counting.push_back(i);
+    if (i != ego && (beside || distance_ahead(world, ego, box) > -rear)) counting.push_back(i);
   }
-}
-
-/// Whether the agent at `slot` touches an object, or one of the agents `counting` for which it is to blame: not one
-/// that drives into it while it stands, or from behind (after the at-fault collisions of Dauner et al. 2023). Asked
-/// `time` [s] ahead, with constant velocities, only those count who are ahead now. O(agents).
-template <class World>
-[[nodiscard]] bool is_at_fault(World const& world, Slot slot, std::vector<Slot> const& counting, double time = 0.0) {
-  constexpr double standing = 0.05;  // [m/s]
-  auto const& ego = world.frame().agents[slot].state;
-  auto const own = box_after(world, slot, time);
-  auto const around = own.bounding_box();
-  for (auto const& object : world.roster().objects)
-    if (around.intersects(object.outline.bounding_box()) && geometry::intersects(own, object.outline)) return true;
-  if (ego.speed < standing) return false;
-  double const behind = time > 0.0 ? 0.0 : -world.roster().agents[slot].shape.rear;
-  return std::ranges::any_of(counting, [&](Slot i) {
-    return in_traffic(world, i) && geometry::intersects(own, box_after(world, i, time)) &&
-           distance_ahead(ego, box_at(world, i)) > behind;
-  });
 }
 
 /// How many lane changes it takes from `piece` of lane corridor `number` to one that the route ends in; 0 where none

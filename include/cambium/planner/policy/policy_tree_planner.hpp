@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "cambium/behavior/behavior_model.hpp"
+#include "cambium/evaluation/driving.hpp"
 #include "cambium/planner/planner_model.hpp"
 #include "cambium/planner/predicted.hpp"
 #include "cambium/planner/search/search_budget.hpp"
@@ -289,7 +290,7 @@ struct PolicyTreePlanner {
   void add_step(Workspace& workspace, AgentId id, double share, PolicyCost& cost) const {
     auto const view = workspace.world->observe(id);
     double const speed = view.state().speed, desired = actions.idm.desired_speed;
-    cost.efficiency += share * std::abs(speed - desired) / desired;
+    cost.efficiency += share * SpeedDeviation{desired}(*workspace.world, workspace.ego) / desired;
     auto const front = view.ahead(), rear = view.behind();
     bool const unsafe = (front && front->gap < weights.safe_gap(speed, front->speed)) ||
                         (rear && rear->gap < weights.safe_gap(rear->speed, speed));

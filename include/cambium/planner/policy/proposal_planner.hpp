@@ -15,6 +15,7 @@
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/following/constant_acceleration.hpp"
 #include "cambium/behavior/lane_change/idm_proposal.hpp"
+#include "cambium/evaluation/driving.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/planner/planner_model.hpp"
 #include "cambium/planner/predicted.hpp"
@@ -249,7 +250,7 @@ struct ProposalPlanner {
       proposal.progress += 0.5 * step * (before.state.speed + now.state.speed) *
                            std::cos(0.5 * (before.lane.heading_error + now.lane.heading_error));
       auto const end = course_end(world, ego, [&](auto const& predicted, Slot slot) {
-        return detail::is_at_fault(predicted, slot, workspace.counting);
+        return AtFaultCollision{}.among(predicted, slot, workspace.counting);
       });
       if (end == CourseEnd::over) break;
       proposal.collides = end == CourseEnd::collision;
@@ -259,8 +260,7 @@ struct ProposalPlanner {
         break;
       }
       judge(workspace, before.state, last_acceleration, proposal);
-      auto const& corridor = world.roster().agents[ego].road->corridors[now.lane.corridor];
-      too_fast += now.state.speed > corridor.speed_limit_at(now.lane.s) + 1e-3 ? 1 : 0;
+      too_fast += SpeedLimitExcess{}(world, ego) > 1e-3 ? 1 : 0;
     }
     proposal.speed_limit = 1.0 - static_cast<double>(too_fast) / std::max(1, driven);
     if constexpr (all)
@@ -277,11 +277,14 @@ struct ProposalPlanner {
     auto const& world = *workspace.world;
     auto const ego = workspace.ego;
     auto const& now = world.frame().agents[ego].state;
-    for (double const part : {1.0 / 3, 2.0 / 3, 1.0})
-      if (now.speed > 0.05 && detail::is_at_fault(world, ego, workspace.counting, part * scoring.look_ahead))
+    AtFaultCollision at_fault;
+    for (double const part : {1.0 / 3, 2.0 / 3, 1.0}) {
+      at_fault.look_ahead = part * scoring.look_ahead;
+      if (now.speed > at_fault.standing_speed && at_fault.among(world, ego, workspace.counting))
         proposal.time_to_collision = 0.0;
+    }
     double const along = (now.speed - before.speed) / step;
-    double const across = now.speed * geometry::angle_difference(now.heading, before.heading) / step;
+    double const across = LateralAcceleration::between(before, now);
     bool const jerks = std::abs(along - last_acceleration) > scoring.jerk * step;  // not where there was none before
     if (along < scoring.lowest_acceleration || along > scoring.highest_acceleration || jerks ||
         std::abs(across) > scoring.lateral_acceleration)
