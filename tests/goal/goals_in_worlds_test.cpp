@@ -297,4 +297,7 @@ TEST_CASE("a goal of one's own is checked by its description and its own check, 
   REQUIRE(goal.get<PassFast>() != nullptr);
   CHECK(goal.get<PassFast>()->x == 5.0);
   CHECK(goal.get<NeverAgain>() == nullptr);
+  cb::Goal from = goal;
+  cb::Goal const to = std::move(from);
+  CHECK(std::get<cb::OwnGoal>(to) == std::get<cb::OwnGoal>(from));  // what was moved from is still a goal
 }

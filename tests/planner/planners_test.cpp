@@ -148,6 +148,13 @@ struct Greedy {
   }
 };
 
+/// A goal of a user's own.
+struct OwnLimits {
+  LaneLimits limits;
+  [[nodiscard]] std::vector<LaneId> lanes(Map const&) const { return {limits.lane}; }
+  [[nodiscard]] bool at_goal(GoalSituation const& at) const { return cambium::at_goal(Goal(limits), at); }
+};
+
 using Search = Mcts<PredictionWorld>;
 using Learning = Mcts<PredictionWorld, MacroActions, TrafficReward, IdmHypotheses>;
 using OwnActions = Mcts<PredictionWorld, Speeds>;
@@ -270,6 +277,34 @@ TEST_CASE_TEMPLATE("it changes to the lane of its goal among others", Planner, P
     for (int i = 0; i < 120 && !world.reached_goal(ego); ++i) REQUIRE(world.step(0.2));
     CHECK(world.reached_goal(ego));
   }
+}
+
+TEST_CASE_TEMPLATE("it plans for a goal of a user's own as for the same shipped one", Planner, ALL_PLANNERS) {
+  auto const report = [](auto const& wrapped) {
+    auto const map = support::straight_road(2, 600.0);
+    LaneLimits const limits{.lane = map->nearest_lane({20, -1.75, 0})->lane, .left = 0.5, .right = 0.5};
+    Sim<Planner> world(map, {.seed = 1});
+    world.add({.position = {60, -5.25}, .speed = 12, .behavior = quick<Planner>(), .goal = wrapped(limits)});
+    for (double const x : {20.0, 48.0, 85.0}) world.add({.position = {x, -1.75}, .speed = 12.5});
+    typename Planner::Workspace workspace;
+    return quick<Planner>().think(world.observe(ego), {}, workspace);
+  };
+  auto const shipped = report([](LaneLimits const& limits) { return Goal(limits); });
+  auto const own = report([](LaneLimits const& limits) { return Goal(OwnLimits{limits}); });
+  auto const none = report([](LaneLimits const&) { return Goal(); });
+  REQUIRE(own.candidates.size() == shipped.candidates.size());
+  bool is_other = none.candidates.size() != own.candidates.size();
+  for (std::size_t i = 0; i < own.candidates.size(); ++i) {
+    CHECK(own.candidates[i].name == shipped.candidates[i].name);
+    CHECK(own.candidates[i].score == shipped.candidates[i].score);
+    is_other = is_other || none.candidates[i].score != own.candidates[i].score;
+  }
+  CHECK(own.chosen == shipped.chosen);
+  CHECK(own.course.back() == shipped.course.back());
+  // The others cannot change lanes, or know nothing of goals.
+  if (std::is_same_v<Planner, Search> || std::is_same_v<Planner, Learning> || std::is_same_v<Planner, PolicyTree> ||
+      std::is_same_v<Planner, Frenet>)
+    CHECK(is_other);
 }
 
 TEST_CASE_TEMPLATE("it goes the same way again, as a copy too", Planner, ALL_PLANNERS) {

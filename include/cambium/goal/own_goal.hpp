@@ -37,6 +37,11 @@ class OwnGoal {
   requires(!std::is_same_v<G, OwnGoal> && GoalModel<G>) OwnGoal(G goal)
       : goal_(std::make_shared<G const>(std::move(goal))), operations_(&operations_of<G>) {}
 
+  // No moves, which would leave a goal without its struct.
+  OwnGoal(OwnGoal const&) = default;
+  OwnGoal& operator=(OwnGoal const&) = default;
+  ~OwnGoal() = default;
+
   [[nodiscard]] bool at_goal(GoalSituation const& at) const { return operations_->at_goal(goal_.get(), at); }
 
   /// Lanes in which a route to it may end; empty if it names none.
