@@ -609,10 +609,10 @@ TEST_CASE("actions that are none or too many are found in roll-outs too, and a r
       TreeSearch<Walk> costly(Walk{2, cost}, {.horizon = 10}, {}, {}, {iterations});
       CHECK(costly.run(iterations == 1 ? 0 : 5, 1).problem == SearchProblem::cost_out_of_range);
       CHECK_THROWS_WITH_AS((void)costly.result().choice(0),
-                           iterations == 1 ? "search, at step 6: a cost is not within 0 to 1; give the "
-                                             "probability of what must not happen, 1 where it happened"
-                                           : "search, at step 1: a cost is not within 0 to 1; give the "
-                                             "probability of what must not happen, 1 where it happened",
+                           iterations == 1 ? "search, at step 6: a cost is not between 0 and 1; return the probability "
+                                             "of the event that must not happen, or 1 once it happened"
+                                           : "search, at step 1: a cost is not between 0 and 1; return the probability "
+                                             "of the event that must not happen, or 1 once it happened",
                            SearchError);
     }
   }
