@@ -119,7 +119,7 @@ TEST_CASE("one unlucky outcome does not decide the value of an action") {
   CHECK(wrong <= 10);
 }
 
-TEST_CASE("ego crosses where the others keep their gap") {
+TEST_CASE("ego crosses if the others keep their gap") {
   int reached = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     Crossing const game{2};
@@ -222,7 +222,7 @@ TEST_CASE("a tree has its root with all arms, however little memory it gets") {
   CHECK(search.result().nodes == 1);
 }
 
-TEST_CASE("a kept tree is continued where it holds and dropped where it does not") {
+TEST_CASE("a kept tree is continued if it still holds, else dropped") {
   TicTacToe const game;
   TreeSearch<TicTacToe> search(game, {.horizon = 9, .discount = 1.0}, {}, {}, {5000});
   TicTacToe::State state;
@@ -571,7 +571,7 @@ TEST_CASE("priors guide a search and are checked") {
 
 namespace {
 
-/// A walk to the right; `listed` actions from 5 on, where there is room for 2, at `cost`.
+/// A walk to the right. From 5 on, it claims to have `listed` actions where there is room for 2, and a step has `cost`.
 struct Walk {
   using State = int;
   using Action = int;

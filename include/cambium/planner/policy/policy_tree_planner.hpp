@@ -262,7 +262,7 @@ struct PolicyTreePlanner {
           .choose(static_cast<std::size_t>(deviation->intention));
   }
 
-  /// The cost of a simulation to the end of ego's course; with `all` it goes on to the horizon, without further cost.
+  /// The cost of a simulation to the end of ego's course; with `all` it continues to the horizon, at no further cost.
   template <bool all, class F>
   [[nodiscard]] PolicyCost simulate(Workspace& workspace, Memory const& memory, PolicySequence const& sequence,
                                     IntentionBranch const* deviation, F&& visit) const {

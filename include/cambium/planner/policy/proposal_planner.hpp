@@ -238,7 +238,8 @@ struct ProposalPlanner {
         static_cast<float>(proposal.speed_share), static_cast<float>(proposal.offset), memory.bend};
   }
 
-  /// Simulates a proposal until it collides, leaves the road or ends; with `all` the world goes on to the horizon.
+  /// Simulates a proposal until it collides, leaves the road or ends; with `all` the world is then stepped to the
+  /// horizon.
   template <bool all, class F>
   void simulate(Workspace& workspace, ProposalScore& proposal, Memory const& memory, F&& visit) const {
     auto& world = *workspace.world;

@@ -16,9 +16,9 @@ namespace cambium {
 template <SearchDomain Domain>
 struct RolloutRun {
   Domain& domain;
-  typename Domain::State& state;  ///< where the roll-out begins; advanced by it
+  typename Domain::State& state;  ///< start of the roll-out, which advances it
   RandomStream& random;
-  int steps;                                    ///< at most so many, up to the search's horizon
+  int steps;                                    ///< greatest number, up to the search's horizon
   double discount;                              ///< per step
   std::span<double> returns;                    ///< out: per agent, from `state` on
   std::span<double> costs;                      ///< out

@@ -32,7 +32,8 @@ inline void throw_if(SearchProblem problem, int steps = 0) {
     case SearchProblem::no_agents:
       throw SearchError("search", "no agent chooses", "let SearchDomain::agents be at least 1");
     case SearchProblem::no_actions:
-      throw SearchError(where, "an agent has no action, or more than max_actions, in a state where the game goes on",
+      throw SearchError(where,
+                        "an agent has no action, or more than max_actions, in a state where the game is not over",
                         "list at least one, such as doing nothing, or let step say that the game is over");
     case SearchProblem::no_budget:
       throw SearchError("search", "its budget is 0 iterations", "give it at least 1");

@@ -29,7 +29,7 @@ namespace cambium {
 /// An iteration has four phases:
 ///
 ///     select      walk down from the root; at each node every agent chooses an arm by `Selection`     choose, descend
-///     expand      where the agents' actions lead to no node yet, step the domain and add one          descend
+///     expand      step the domain by the first joint action that has no node yet, and add its node    descend
 ///     roll out    play on to the horizon by `Rollout`                                                 roll_out
 ///     back up     add the discounted return to the chosen arms, from the last step to the root        back_up
 ///
