@@ -72,12 +72,11 @@ struct ProposalScore {
   double progress{};     ///< along the lane [m]
   bool collides = false;
   bool leaves_road = false;
-  double time_to_infraction =
-      std::numeric_limits<double>::infinity();  ///< time until it collides or leaves the road [s]
-  double time_to_collision = 1.0;               ///< mark, 0 or 1
-  double comfort = 1.0;                         ///< mark, 0 or 1
-  double speed_limit = 1.0;                     ///< mark: share of the time within the limit
-  double score{};                               ///< total, 0 to 1
+  double time_to_infraction = std::numeric_limits<double>::infinity();  ///< until one of these [s]
+  double time_to_collision = 1.0;                                       ///< mark, 0 or 1
+  double comfort = 1.0;                                                 ///< mark, 0 or 1
+  double speed_limit = 1.0;                                             ///< mark: share of the time within the limit
+  double score{};                                                       ///< total, 0 to 1
 };
 
 /// What a `ProposalPlanner` reports. Its candidates are the proposals. It chooses none and brakes if even the best soon
@@ -289,8 +288,7 @@ struct ProposalPlanner {
         proposal.time_to_collision = 0.0;
     double const along = (now.speed - before.speed) / step;
     double const across = now.speed * geometry::angle_difference(now.heading, before.heading) / step;
-    bool const jerks =
-        std::abs(along - last_acceleration) > scoring.jerk * step;  // false while there is no previous value
+    bool const jerks = std::abs(along - last_acceleration) > scoring.jerk * step;  // false in the first step (NaN)
     if (along < scoring.lowest_acceleration || along > scoring.highest_acceleration || jerks ||
         std::abs(across) > scoring.lateral_acceleration)
       proposal.comfort = 0.0;
