@@ -1,4 +1,54 @@
-/// The room `planner`: tree search over copied worlds, and over any game; planners that simulate or sample courses.
+/// # The planner room
+///
+/// A planner is a behaviour that predicts. It tries out in copies of the world what its own vehicle, *ego*, could do,
+/// and drives the best of it. A *course* is what all agents do from now to the planner's horizon, step by step.
+///
+///                  now            +0.2 s          +0.4 s            horizon
+///
+///     what   predict     keep_gap        keep_gap
+///     ego  --------> [node]----------[node]----------[node] . . roll-out . . > return 12.3
+///     sees              \               \   change_left
+///                        \               '-----------[node] . . . . . . . . > return  9.1
+///                         \ change_left
+///                          '---------[node] . . . . . . . . . . . . . . . . > return  8.7
+///
+///     report:  candidates keep_gap (score 10.7, chosen) and change_left (8.7), the course, the memory
+///
+/// **Prediction world.** The world that the planner steps instead of the true one (`PredictionWorld`). `view.predict`
+/// fills it with what ego sees. In it, ego carries out the actions under test and all others follow the model that the
+/// planner assumes (`Others`), because nobody sees another agent's behaviour. A planner makes it once per plan; from
+/// then on it only copies frames.
+///
+/// **Node.** A point of the search tree: the frame after all actions on the way from the root. The arms of a node are
+/// the actions that an agent can choose there, each with its visits and its mean return. Where the tree ends, a
+/// roll-out continues the course to the horizon. If the others' parameters are drawn anew in every iteration
+/// (`IdmHypotheses`), a node has no frame of its own and stands only for the actions.
+///
+/// **Macro action** (`MacroAction`). What an agent chooses at a node: keep the gap to the leader, stay in the lane at
+/// some acceleration, change left or right. A behaviour of the prediction world, `MacroActions`, carries it out. A lane
+/// change takes longer than one step, so that behaviour's memory says how far it has come.
+///
+/// **Candidate** (`PlannerCandidate`). One option that the planner compares, with its score, or the reason why it is
+/// refused. These are ego's actions at the root for `Mcts`, IDM drivers for `ProposalPlanner`, sequences of actions for
+/// `PolicyTreePlanner`, and polynomial courses for `FrenetPlanner`.
+///
+/// **Think and plan.** Every planner has both. `think` explains, for a stack that calls the planner itself; `plan` is
+/// what a world calls when the planner is an agent's behaviour.
+///
+///     view (what ego sees now) --------.
+///     workspace (buffers, the tree) ---+--> think --> report --> decide, draw, log
+///     memory ({} at first) ------------'                |
+///        ^------------------- report.memory ------------'
+///
+/// The memory is a small value: the lane change under way, or what was learnt about others. The workspace only saves
+/// allocations, except after `MctsWorkspace::keep`: then the next search continues the tree.
+///
+/// **Report** (`PlannerReport`). All candidates, the chosen one, how clearly it won, the course, and the memory for the
+/// next call. Every planner adds what only it knows.
+///
+/// The folders: `search/` is tree search for any game and knows no traffic; `mcts/` makes a game of traffic
+/// (`TrafficDomain`); `policy/` simulates a list of candidates; `frenet/` samples polynomials. Start with
+/// `planner_model.hpp`, `search/search_domain.hpp` and `mcts/traffic_domain.hpp`.
 #pragma once
 
 // First: it says which language and flags cambium needs.

@@ -49,11 +49,12 @@ TEST_CASE("derivatives and the integral of the squared jerk agree with finite di
     CHECK((course.at(t + h).acceleration - course.at(t - h).acceleration) / (2 * h) == doctest::Approx(course.jerk(t)));
   }
   CHECK(course.squared_jerk(3.0) == doctest::Approx(sum));
-  // No course between the same ends has less of it: add what vanishes at both with two derivatives.
+  // No other course between the same ends has a smaller integral. Vary it by a function that vanishes at both ends,
+  // with its first two derivatives.
   for (double const more : {-1e-3, 1e-3}) {
     double other = 0.0;
     for (int i = 0; i < parts; ++i) {
-      double const t = 3.0 * (i + 0.5) / parts, u = t - 3.0;  // (t u)^3 has the third derivative below
+      double const t = 3.0 * (i + 0.5) / parts, u = t - 3.0;  // the third derivative of (t u)^3 is below
       double const bump = 6.0 * u * u * u + 54.0 * t * u * u + 54.0 * t * t * u + 6.0 * t * t * t;
       double const jerk = course.jerk(t) + more * bump;
       other += jerk * jerk * 3.0 / parts;
@@ -68,14 +69,14 @@ struct XY {
   double x, y;
 };
 
-/// A line whose curvature grows evenly: the point at `s`, by fine steps.
+/// The point at `s` of a line whose curvature grows linearly, integrated in small steps.
 struct Clothoid {
   double curvature, change;
   [[nodiscard]] double heading(double s) const { return s * (curvature + 0.5 * change * s); }
   [[nodiscard]] XY point(double s, double offset) const {
     XY p{0.0, 0.0};
     int const steps = 2000;
-    for (int i = 0; i < steps; ++i) {  // Simpson
+    for (int i = 0; i < steps; ++i) {  // Simpson's rule
       double const a = s * i / steps, b = s * (i + 1) / steps, m = 0.5 * (a + b);
       p.x += (b - a) / 6 * (std::cos(heading(a)) + 4 * std::cos(heading(m)) + std::cos(heading(b)));
       p.y += (b - a) / 6 * (std::sin(heading(a)) + 4 * std::sin(heading(m)) + std::sin(heading(b)));

@@ -24,7 +24,7 @@ static_assert(BehaviorModel<Planner>);
 
 constexpr AgentId ego{0};
 
-/// Ego, number 0, in the right one of `lanes` lanes.
+/// A road of `lanes` lanes with ego, agent 0, in the right one.
 Sim road(int lanes, std::uint64_t seed, double speed = 12.0, double curvature = 0.0, Planner const& planner = {}) {
   Sim world(support::straight_road(lanes, 600.0, curvature), {.seed = seed});
   double const radius = curvature == 0.0 ? 0.0 : 1.0 / curvature, y = -3.5 * lanes + 1.75, turn = 40.0 * curvature;
@@ -35,12 +35,12 @@ Sim road(int lanes, std::uint64_t seed, double speed = 12.0, double curvature = 
   return world;
 }
 
-/// A rectangle in a lane whose middle is at `y`, from `right` to `left` of that.
+/// A rectangle in the lane whose middle is at `y`, from `right` to `left` relative to it.
 geometry::Polygon obstacle(double x, double y, double right, double left) {
   return geometry::Polygon({{x, y + right}, {x + 4, y + right}, {x + 4, y + left}, {x, y + left}});
 }
 
-/// Steps it for a while: nobody may fail, ego may touch nobody, nor leave the road.
+/// Steps the world for a while and checks that no agent fails and ego touches nothing and stays on the road.
 void drive(Sim& world, int steps, double dt = 0.2) {
   for (int i = 0; i < steps; ++i) {
     auto const result = world.step(dt);
@@ -52,7 +52,7 @@ void drive(Sim& world, int steps, double dt = 0.2) {
 
 }  // namespace
 
-TEST_CASE("it follows a slower leader, and stands behind one that stands") {
+TEST_CASE("it follows a slower leader and stops behind a standing one") {
   for (std::uint64_t seed = 0; seed < 6; ++seed) {
     CAPTURE(seed);
     double const slow = 2.0 * static_cast<double>(seed);
@@ -64,7 +64,7 @@ TEST_CASE("it follows a slower leader, and stands behind one that stands") {
   }
 }
 
-TEST_CASE("it stops before what blocks the road, and passes what leaves room") {
+TEST_CASE("it stops at an object that blocks the road and passes one that leaves room") {
   auto blocked = road(1, 0);
   blocked.add_object(obstacle(140, -1.75, -1.75, 1.75));
   drive(blocked, 150);
@@ -85,14 +85,14 @@ TEST_CASE("it stops before what blocks the road, and passes what leaves room") {
   }
 }
 
-TEST_CASE("it overtakes whom it would have to follow") {
+TEST_CASE("it overtakes a slower leader") {
   auto world = road(2, 0);
   world.add({.position = {90, -5.25}, .speed = 5, .behavior = ConstantAcceleration{}});
   drive(world, 100);
   CHECK(world.state(ego).x > world.state(AgentId{1}).x + 20.0);
 }
 
-TEST_CASE("what it drives is as smooth as its courses, in curves too") {
+TEST_CASE("it drives as smoothly as its courses, in curves too") {
   for (double const curvature : {0.0, 0.01, -0.01}) {
     CAPTURE(curvature);
     auto world = road(2, 0, 10.0, curvature);
@@ -112,7 +112,7 @@ TEST_CASE("what it drives is as smooth as its courses, in curves too") {
   }
 }
 
-TEST_CASE("all courses are judged, cheapest first; the first valid one is driven") {
+TEST_CASE("all courses are checked, cheapest first, and the first valid one is driven") {
   auto world = road(2, 3);
   world.add({.position = {75, -5.25}, .speed = 4, .behavior = ConstantAcceleration{}});
   Planner::Workspace workspace;
@@ -131,7 +131,7 @@ TEST_CASE("all courses are judged, cheapest first; the first valid one is driven
   CHECK(report.courses[*report.chosen].verdict == FrenetVerdict::valid);
 }
 
-TEST_CASE("courses into a lane of oncoming traffic are not valid") {
+TEST_CASE("courses into an oncoming lane are not valid") {
   Sim world(support::two_way_road(600.0));
   world.add({.position = {40, -1.75}, .speed = 12, .behavior = IdmClassic{}});
   Planner planner;
@@ -146,7 +146,7 @@ TEST_CASE("courses into a lane of oncoming traffic are not valid") {
   CHECK(oncoming > 5);
 }
 
-TEST_CASE("courses into who drives beside are not valid") {
+TEST_CASE("courses into a vehicle alongside are not valid") {
   for (bool const beside : {false, true}) {
     auto world = road(2, 0);
     if (beside) world.add({.position = {37, -1.75}, .speed = 12, .behavior = ConstantAcceleration{}});
@@ -165,9 +165,9 @@ TEST_CASE("courses into who drives beside are not valid") {
   }
 }
 
-TEST_CASE("a course that is not finite is not valid; another one is driven") {
+TEST_CASE("a course that is not finite is not valid, and another one is driven") {
   Planner planner;
-  planner.costs.jerk = 1e308;  // whoever changes speed or offset costs more than there are numbers
+  planner.costs.jerk = 1e308;  // the cost of a course that changes speed or offset overflows
   planner.desired_speed = 12.0;
   auto world = road(1, 0, 12.0, 0.0, planner);
   Planner::Workspace workspace;
@@ -182,7 +182,7 @@ TEST_CASE("a course that is not finite is not valid; another one is driven") {
   CHECK(drivable(planner.limits, {0.0, std::nan(""), 10.0, 0.0}, {}, 20.0) == FrenetVerdict::not_finite);
 }
 
-TEST_CASE("where no course is valid it brakes as hard as it may") {
+TEST_CASE("it brakes as hard as it may if no course is valid") {
   auto world = road(1, 0, 20.0);
   world.add_object(obstacle(70, -1.75, -1.75, 1.75));
   Planner::Workspace workspace;
@@ -193,7 +193,7 @@ TEST_CASE("where no course is valid it brakes as hard as it may") {
   CHECK(world.record(ego).action.acceleration == doctest::Approx(-6.0));
 }
 
-TEST_CASE("what cannot be sampled is said") {
+TEST_CASE("faulty parameters are reported") {
   auto world = road(1, 0);
   Planner planner;
   planner.durations.clear();

@@ -10,14 +10,14 @@
 #include "cambium/core/distributions.hpp"
 #include "cambium/planner/search/search_domain.hpp"
 
-// Small known games, to be searched.
+// Small games with known solutions, to test searches.
 
 namespace games {
 
 using cambium::AgentOutcome;
 using cambium::RandomStream;
 
-/// Two players, one simultaneous move; the first gets `payoff[row][column]`, the second what is left of 1.
+/// Two players, one simultaneous move. The first gets p = `payoff[row][column]`, the second 1 - p.
 struct MatrixGame {
   static constexpr bool is_deterministic = true;
   static constexpr std::size_t max_actions = 3;
@@ -44,12 +44,12 @@ struct MatrixGame {
 };
 
 inline MatrixGame const matching_pennies{2, 2, {{{1, 0}, {0, 1}}}};
-/// Rows are indifferent where 1 q + 0.25 (1 - q) = 0.5 (1 - q), so q = 0.2; columns where 1 - p = 0.5 + 0.25 p, p =
-/// 0.4.
+/// Mixed equilibrium: the row player is indifferent at 1 q + 0.25 (1 - q) = 0.5 (1 - q), so q = 0.2; the column player
+/// at 1 - p = 0.5 + 0.25 p, so p = 0.4.
 inline MatrixGame const uneven{2, 2, {{{1.0, 0.25}, {0.0, 0.5}}}};
 inline MatrixGame const rock_paper_scissors{3, 3, {{{0.5, 0, 1}, {1, 0.5, 0}, {0, 1, 0.5}}}};
 
-/// Noughts and crosses: players 0 and 1 in turn; who is not to move has one action that does nothing (-1).
+/// Noughts and crosses: players 0 and 1 alternate. The player not to move has a single action without effect (-1).
 struct TicTacToe {
   static constexpr bool is_deterministic = true;
   static constexpr std::size_t max_actions = 9;
@@ -91,7 +91,7 @@ struct TicTacToe {
     return won != 0 || s.moves == 9;
   }
 
-  /// What the game is worth to player 0 if both play perfectly.
+  /// Value of the game for player 0 under perfect play.
   static int solution(State const& s) {
     if (int const won = winner(s); won != 0) return won;
     if (s.moves == 9) return 0;
@@ -108,8 +108,8 @@ struct TicTacToe {
   }
 };
 
-/// One agent on a grid of 4 x 3 with a wall, a goal (+1) and a pit (-1); a step slips to either side with 10 % each
-/// (Russell, Norvig, "Artificial Intelligence", 17.1) and costs 0.04.
+/// One agent on a 4 x 3 grid with a wall, a goal (+1) and a pit (-1). A step costs 0.04 and slips to either side with a
+/// probability of 10 % each (Russell, Norvig, "Artificial Intelligence", 17.1).
 struct GridWorld {
   static constexpr std::size_t max_actions = 4;
   static constexpr int width = 4, height = 3;
@@ -161,9 +161,9 @@ struct GridWorld {
   }
 };
 
-/// The crossing of mamcts (Bernhard; default parameters of its CrossingState<int>): ego and others move on lines that
-/// all cross at 11; ego moves by -1 to 2 and is to pass 12, others by -3 to 3 so as to stay a gap of 4 to 6 behind
-/// ego, each drawn anew for every step.
+/// The crossing of mamcts (Bernhard; default parameters of its CrossingState<int>). Ego and the others move on lines
+/// that all cross at 11. Ego moves by -1 to 2 per step and has to pass 12. The others move by -3 to 3 to keep a gap of
+/// 4 to 6 behind ego; the gap is drawn anew in every step.
 struct Crossing {
   static constexpr bool is_deterministic = false;
   static constexpr std::size_t max_actions = 4, most_others = 4;

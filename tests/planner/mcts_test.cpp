@@ -29,8 +29,8 @@ using Search = Mcts<PredictionWorld>;
 using Learning = Mcts<PredictionWorld, MacroActions, TrafficReward, IdmHypotheses>;
 using Sim = World<BehaviorSet<Search, Learning, IdmClassic>, InterpolateExecution, SingleTrack>;
 
-/// Ego, number 0, behind a slow vehicle in the right one of two lanes; its goal is the middle of the left one, where
-/// four others drive.
+/// Ego, agent 0, drives behind a slow vehicle in the right one of two lanes. Its goal is the middle of the left lane,
+/// where four other vehicles drive.
 Sim lane_change(std::uint64_t seed, Sim::Behavior const& planner) {
   auto const map = support::straight_road(2, 600.0);
   Sim world(map, {.seed = seed});
@@ -47,7 +47,7 @@ Sim lane_change(std::uint64_t seed, Sim::Behavior const& planner) {
   return world;
 }
 
-/// Few iterations, random actions held for a second.
+/// The planner with few iterations; roll-outs hold random actions for a second.
 template <class Planner>
 Planner quick(Planner planner, std::size_t iterations = 300) {
   planner.options.budget.iterations = iterations;
@@ -57,7 +57,7 @@ Planner quick(Planner planner, std::size_t iterations = 300) {
 
 constexpr AgentId ego{0};
 
-/// Two opposite lanes from x = -80 to 80 m that share their place where |x| < 10 m.
+/// Two opposite lanes from x = -80 to 80 m that occupy the same place where |x| < 10 m.
 std::shared_ptr<Map const> narrowing() {
   map::MapBuilder builder;
   for (double const direction : {1.0, -1.0}) {
@@ -74,7 +74,7 @@ std::shared_ptr<Map const> narrowing() {
   return builder.build();
 }
 
-/// Drives on, speeds up or brakes; searches for as many agents.
+/// Drives on, speeds up or brakes; up to `most_agents` agents choose in the search.
 Search through_the_narrowing(int most_agents) {
   auto planner = quick(Search{}, 1000);
   planner.most_agents = most_agents;
@@ -90,7 +90,7 @@ Search through_the_narrowing(int most_agents) {
 
 }  // namespace
 
-TEST_CASE("searches in traffic change into a gap in the other lane") {
+TEST_CASE("a search in traffic changes into a gap in the other lane") {
   auto cooperative = quick(Search{}, 600), careful = quick(Search{});
   cooperative.most_agents = 3;
   cooperative.reward.speed_deviation = -0.1;
@@ -113,7 +113,7 @@ TEST_CASE("searches in traffic change into a gap in the other lane") {
   }
 }
 
-TEST_CASE("a narrowing where each waits for the other is solved by searching for both") {
+TEST_CASE("a narrowing at which each waits for the other is solved by searching for both") {
   auto const map = narrowing();
   auto cooperative = through_the_narrowing(4);
   cooperative.cooperation = 1.0;
@@ -131,11 +131,11 @@ TEST_CASE("a narrowing where each waits for the other is solved by searching for
   };
   for (std::uint64_t seed = 0; seed < 2; ++seed) {
     CHECK(solved(cooperative, seed));
-    CHECK_FALSE(solved(through_the_narrowing(1), seed));  // the other is expected to drive on
+    CHECK_FALSE(solved(through_the_narrowing(1), seed));  // it expects the other to drive on
   }
 }
 
-TEST_CASE("in a bend it keeps to its lane, however long the steps of the search are") {
+TEST_CASE("it stays in its lane in a bend, however long the steps of the search are") {
   for (double const step : {0.1, 0.25, 0.4}) {
     CAPTURE(step);
     auto planner = quick(Search{}, 50);
@@ -152,7 +152,7 @@ TEST_CASE("in a bend it keeps to its lane, however long the steps of the search 
   }
 }
 
-TEST_CASE("a planner says what it thought") {
+TEST_CASE("a planner reports what it found") {
   auto world = lane_change(0, quick(Search{}));
   Search::Workspace workspace;
   auto const report = quick(Search{}, 500).think(world.observe(ego), {}, workspace);
@@ -174,19 +174,19 @@ TEST_CASE("a planner says what it thought") {
     REQUIRE(predicted.step(0.2));
     CHECK(predicted.frame().agents == report.course[i + 1].agents);
   }
-  // What it does is how that begins.
+  // As a behaviour, it drives the start of that course.
   auto stepping = lane_change(0, quick(Search{}, 500));
   REQUIRE(stepping.step(0.2));
   CHECK(stepping.state(ego) == report.course[1].agents[0].state);
 }
 
-TEST_CASE("a search goes on from what it knows where the world came out as it was predicted") {
+TEST_CASE("a search continues its tree if the world turns out as predicted") {
   for (int const threads : {1, 2}) {
     CAPTURE(threads);
     auto planner = quick(Search{}, 600);
     planner.options.threads = threads;
     for (bool const surprised : {false, true}) {
-      // The stack's own world: ego is moved as planned, the others do as predicted, or one does not.
+      // The stack's own world: ego moves as planned; the others move as predicted, or one does not.
       auto world = lane_change(0, IdmClassic{});
       for (auto const& agent : world.roster().agents)
         if (agent.id != ego) world.set_behavior(agent.id, IdmClassic{});
@@ -212,7 +212,7 @@ TEST_CASE("a search goes on from what it knows where the world came out as it wa
   }
 }
 
-TEST_CASE("nothing is kept where anything has changed, or without being asked") {
+TEST_CASE("nothing is kept if anything has changed, or without a call of keep") {
   using Memory = Search::Memory;
   auto const kept_nodes = [](bool keep, auto const& change) {
     auto world = lane_change(0, IdmClassic{});
@@ -248,7 +248,7 @@ TEST_CASE("nothing is kept where anything has changed, or without being asked") 
           state.heading += 0.1;
           world.set_state(ego, state);
         }) == 0);
-  CHECK(kept_nodes(true, [](auto& world, auto&, auto&) {  // another one in the same place
+  CHECK(kept_nodes(true, [](auto& world, auto&, auto&) {  // another agent in the same place
           auto const state = world.state(AgentId{3});
           auto const shape = world.roster().agents[3].shape;
           world.remove(AgentId{3});
@@ -263,7 +263,7 @@ TEST_CASE("nothing is kept where anything has changed, or without being asked") 
         }) == 0);
 }
 
-TEST_CASE("one whose course is over does not choose, and does not keep ego from planning") {
+TEST_CASE("an agent whose course is over does not choose, and does not prevent ego from planning") {
   auto world = lane_change(0, IdmClassic{});
   auto planner = quick(Search{}, 100);
   planner.most_agents = 4;
@@ -278,7 +278,7 @@ TEST_CASE("one whose course is over does not choose, and does not keep ego from 
   CHECK(std::ranges::count(after, before[1]) == 0);
 }
 
-TEST_CASE("with threads a planner does the same again, as a behaviour too") {
+TEST_CASE("with threads a planner repeats its results, also as a behaviour") {
   auto planner = quick(Search{}, 301);
   planner.options.threads = 3;
   auto world = lane_change(0, planner), again = lane_change(0, planner);
@@ -305,7 +305,7 @@ TEST_CASE("with threads a planner does the same again, as a behaviour too") {
   CHECK_THROWS_AS((void)planner.think(world.observe(ego), {}, other), ParameterError);
 }
 
-TEST_CASE("searches in a warm world allocate nothing") {
+TEST_CASE("searches in a warm world do not allocate") {
   using Domain = TrafficDomain<PredictionWorld, MacroActions, TrafficReward>;
   PredictionWorld world(support::straight_road(2, 600.0));
   world.add({.position = {60, -5.25}, .speed = 12, .behavior = MacroActions{}});
@@ -325,10 +325,10 @@ TEST_CASE("searches in a warm world allocate nothing") {
   auto copy = domain;
   auto const copied = support::allocations();
   (void)workspace.run(std::move(copy), {.budget = {300}}, 1);
-  CHECK(support::allocations() - copied < 8);  // a root, and what the new domain's world works with
+  CHECK(support::allocations() - copied < 8);  // a root, and the working memory of the new domain's world
 }
 
-TEST_CASE("beliefs find the headway of the one behind whom it drives") {
+TEST_CASE("beliefs find the headway of the leader") {
   for (double const headway : {0.8, 3.2}) {
     auto const map = support::straight_road(1, 2000.0);
     Sim world(map);
@@ -343,7 +343,7 @@ TEST_CASE("beliefs find the headway of the one behind whom it drives") {
   }
 }
 
-TEST_CASE("it learns about those who do not choose while others choose with it, under a limit of risk") {
+TEST_CASE("it learns about agents that do not choose while others choose with it, under a limit on risk") {
   auto planner = quick(Learning{}, 200);
   planner.most_agents = 3;
   planner.options.search.constraint.limit = 0.2;
@@ -358,7 +358,7 @@ TEST_CASE("it learns about those who do not choose while others choose with it, 
   }
 }
 
-TEST_CASE("beliefs in another number of headways are begun anew") {
+TEST_CASE("beliefs start anew if the number of headway regions changes") {
   auto world = lane_change(0, IdmClassic{});
   auto planner = quick(Learning{}, 20);
   planner.others.regions = 8;
@@ -374,7 +374,7 @@ TEST_CASE("beliefs in another number of headways are begun anew") {
   }
 }
 
-TEST_CASE("the end of the map is none that a search would brake for") {
+TEST_CASE("a search does not brake for the end of the map") {
   auto const speed_before_end = [](double x) {
     Sim world(support::straight_road(1, 600.0));
     auto planner = quick(Search{});
@@ -387,7 +387,7 @@ TEST_CASE("the end of the map is none that a search would brake for") {
   CHECK(speed_before_end(540.0) == doctest::Approx(speed_before_end(100.0)).epsilon(0.3));
 }
 
-TEST_CASE("at its goal ego does nothing in particular, whatever comes first among its actions") {
+TEST_CASE("at its goal ego drives on without a manoeuvre, whatever its first action is") {
   auto const map = support::straight_road(2, 600.0);
   constexpr MacroAction left{MacroAction::Kind::change_left, 0.0}, right{MacroAction::Kind::change_right, 0.0},
       on{MacroAction::Kind::stay, 0.0}, brake{MacroAction::Kind::stay, -5.0};
@@ -406,7 +406,7 @@ TEST_CASE("at its goal ego does nothing in particular, whatever comes first amon
   }
 }
 
-TEST_CASE("of whom nothing is known any headway is drawn") {
+TEST_CASE("headways of unknown agents are drawn uniformly") {
   Sim world(support::straight_road(1, 2000.0));
   world.add({.position = {60, -1.75}, .speed = 12, .behavior = IdmClassic{}});
   for (int i = 1; i <= 9; ++i)  // six near, three far away
@@ -437,7 +437,7 @@ TEST_CASE("of whom nothing is known any headway is drawn") {
 
 namespace {
 
-/// Every metre counts; each step faster than 13 m/s risks something.
+/// Rewards every metre; each step faster than 13 m/s carries a risk.
 struct Hurry {
   template <class World>
   [[nodiscard]] Judgement judge(World const& world, Slot slot, double dt) const {
@@ -449,7 +449,7 @@ struct Hurry {
 
 }  // namespace
 
-TEST_CASE("a constraint on risk gives up what the reward alone would do") {
+TEST_CASE("a constraint on risk overrules the reward") {
   using Hurried = Mcts<PredictionWorld, MacroActions, Hurry>;
   using HurriedSim = World<BehaviorSet<Hurried>, InterpolateExecution, SingleTrack>;
   auto const driven = [](double risk) {
@@ -471,7 +471,7 @@ TEST_CASE("a constraint on risk gives up what the reward alone would do") {
   CHECK(careful > 10.0);
 }
 
-TEST_CASE("what cannot be planned is said") {
+TEST_CASE("faulty parameters and missing agents are reported") {
   auto world = lane_change(0, quick(Search{}));
   Search::Workspace workspace;
   auto planner = quick(Search{});
@@ -483,7 +483,7 @@ TEST_CASE("what cannot be planned is said") {
   CHECK_THROWS_AS(world.add({.position = {300, -1.75}, .speed = 12, .behavior = planner}), ParameterError);
   CHECK_THROWS_AS((void)planner.think(world.observe(ego), {}, workspace), ParameterError);
   CHECK_THROWS_AS((void)world.observe(AgentId{77}), WorldError);
-  // One that has left the map is not there to be planned for.
+  // There is nothing to plan for an agent that has left the map.
   auto state = world.state(ego);
   state.x = 595.0;
   world.set_state(ego, state);
@@ -495,7 +495,7 @@ TEST_CASE("what cannot be planned is said") {
                        SearchError);
 }
 
-TEST_CASE("think checks the planner's own parameters, and whether the course is over") {
+TEST_CASE("think checks the planner's parameters and whether the course is over") {
   auto world = lane_change(0, quick(Search{}));
   Search::Workspace workspace;
   auto planner = quick(Search{});
@@ -504,7 +504,7 @@ TEST_CASE("think checks the planner's own parameters, and whether the course is 
   planner = quick(Search{});
   planner.most_agents = 0;
   CHECK_THROWS_AS((void)planner.think(world.observe(ego), {}, workspace), ParameterError);
-  // In the lane of its goal already.
+  // Already in the lane of its goal.
   auto state = world.state(ego);
   state.y = -1.75;
   world.set_state(ego, state);
@@ -522,14 +522,14 @@ TEST_CASE("think checks the planner's own parameters, and whether the course is 
   };
   says_why(95.0, -5.25, "agent 0 touches agent 5");
   says_why(60.0, -9.5, "agent 0 is off the road");
-  // No lane on the left of it.
+  // There is no lane to its left.
   planner = quick(Search{});
   planner.actions = MacroActions::of({{MacroAction::Kind::change_left}});
   planner.reward.goal = 0.0;
   CHECK_THROWS_AS((void)planner.think(world.observe(ego), {}, workspace), SearchError);
 }
 
-TEST_CASE("a planner that leaves the map within a step, or steps for a moment, does not fail") {
+TEST_CASE("a planner does not fail if it leaves the map within a step or steps for an instant") {
   for (double const dt : {20.0, 1e-6, 1e-9}) {
     Sim world(support::straight_road(1, 200.0));
     auto planner = quick(Search{}, 20);
@@ -540,7 +540,7 @@ TEST_CASE("a planner that leaves the map within a step, or steps for a moment, d
   }
 }
 
-TEST_CASE("who drives in a lane of oncoming traffic has left the road") {
+TEST_CASE("an agent in an oncoming lane has left the road") {
   PredictionWorld world(support::two_way_road(300.0));
   TrafficReward const reward{.off_road = -10.0, .progress = 0.1};
   world.add({.position = {60, -1.75}, .heading = 0.0, .speed = 10});
@@ -550,7 +550,7 @@ TEST_CASE("who drives in a lane of oncoming traffic has left the road") {
   CHECK(reward.judge(world, cambium::Slot{}, 0.2).ends);
 }
 
-TEST_CASE("a lane change goes on from search to search, and the lane is kept behind the goal") {
+TEST_CASE("a lane change continues from search to search, and ego keeps its lane past the goal") {
   auto const map = support::straight_road(2, 600.0);
   auto planner = quick(Search{});
   planner.actions.course = {.duration = 2.0, .shortest_duration = 1.5};

@@ -16,7 +16,7 @@ using namespace cambium;
 
 namespace {
 
-/// A user's own: what pays is as in `TrafficReward`; of the actions it expects the brakes.
+/// A user's reward: as `TrafficReward`, with a prior that favours braking.
 struct Expecting : TrafficReward {
   double braking = 3.0;
 
@@ -44,7 +44,7 @@ constexpr AgentId ego{0};
 template <class Planner>
 Planner careful() {
   Planner planner;
-  planner.others.desired_speed = 0.1;  // as who stands there
+  planner.others.desired_speed = 0.1;  // like the vehicle that stands there
   planner.reward.goal = 0.0;
   planner.reward.progress = 1.0;
   planner.options.budget.iterations = 300;
@@ -60,13 +60,13 @@ Planner careful() {
 
 }  // namespace
 
-TEST_CASE("however it is searched, ego stops behind who stands") {
+TEST_CASE("every variant of the search stops behind a standing vehicle") {
   auto lower_bound = careful<Plain>();
   lower_bound.options.search.final_move = FinalMove::lower_bound;
   auto truncated = careful<Truncated>();
   truncated.options.rollout.base = {.hold = 5, .steps = 12};
   auto timed = careful<Timed>();
-  timed.options.budget.duration = 60.0;  // ends by its iterations
+  timed.options.budget.duration = 60.0;  // so large that the iterations end it
   auto sampled = careful<Sampled>();
   sampled.actions.largest_steering = 0.0;
   Sim::Behavior const planners[] = {lower_bound, truncated, careful<Policy>(), timed, careful<Expected>(), sampled};
@@ -86,7 +86,7 @@ TEST_CASE("however it is searched, ego stops behind who stands") {
   }
 }
 
-TEST_CASE("a course that is cut off is worth what the reward says, the others' by the cooperation") {
+TEST_CASE("a course that is cut off has the reward's value, with the others' weighted by the cooperation") {
   Sim world(support::straight_road(1, 300.0));
   world.add({.position = {30, -1.75}, .speed = 12, .behavior = IdmClassic{}});
   world.add({.position = {60, -1.75}, .speed = 10, .behavior = IdmClassic{}});
@@ -103,7 +103,7 @@ TEST_CASE("a course that is cut off is worth what the reward says, the others' b
     CHECK(report.result.choice(0).mean_return == doctest::Approx(own + 0.5 * other));
     CHECK(report.result.choice(1).mean_return == doctest::Approx(other + 0.5 * own));
   }
-  // And where a roll-out is: one step in the tree, 4 beyond it, then 2 s.
+  // Likewise after a roll-out: one step in the tree, 4 beyond it, then 2 s.
   auto planner = careful<Truncated>();
   planner.actions = MacroActions::of({{MacroAction::Kind::stay, 0.0}});
   planner.options.search = {.horizon = 20, .discount = 1.0};
@@ -114,7 +114,7 @@ TEST_CASE("a course that is cut off is worth what the reward says, the others' b
   CHECK(report.result.choice(0).mean_return == doctest::Approx(12.0 * (5 * 0.2 + 2.0)));
 }
 
-TEST_CASE("a user's prior leads the search of traffic, and is checked") {
+TEST_CASE("a user's prior guides a search in traffic and is checked") {
   Sim world(support::straight_road(1, 300.0));
   world.add({.position = {30, -1.75}, .speed = 12, .behavior = IdmClassic{}});
   auto planner = careful<Expected>();

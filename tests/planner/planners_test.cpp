@@ -1,4 +1,4 @@
-// Laws that hold for every planner, the shipped ones and one of a user's own, made of what is public.
+// Laws that hold for every planner: the shipped ones and a user's own, written with the public interface only.
 #include <doctest/doctest.h>
 
 #include <algorithm>
@@ -30,7 +30,7 @@ using namespace cambium;
 
 namespace {
 
-/// Actions of a user's own: speeds to come to. What carries them out is a behaviour of the user's own, too.
+/// A user's actions: speeds to reach. A user's behaviour carries them out.
 struct ReachSpeed {
   struct Memory {
     float target = 10.0f;
@@ -78,7 +78,7 @@ using PredictionWorld =
     World<BehaviorSet<MacroActions, IdmProposal, IdmClassic, IdmHypotheses, ConstantAcceleration, ReachSpeed>,
           InterpolateExecution, SingleTrack>;
 
-/// A planner of a user's own: of a few constant accelerations the one that gets farthest and hits nobody.
+/// A user's planner: among a few constant accelerations it picks the one that gets farthest without a collision.
 struct Greedy {
   struct Memory {
     friend bool operator==(Memory, Memory) = default;
@@ -90,8 +90,8 @@ struct Greedy {
   IterationBudget budget{4};
 
   static constexpr auto parameters() {
-    return parameter_list(parameter("horizon", &Greedy::horizon, "s", Range{0.2, 60}, "of the predictions"),
-                          parameter("step", &Greedy::step, "s", Range{0.01, 1}, "of the predictions"),
+    return parameter_list(parameter("horizon", &Greedy::horizon, "s", Range{0.2, 60}, "duration of the predictions"),
+                          parameter("step", &Greedy::step, "s", Range{0.01, 1}, "time step of the predictions"),
                           parameter("budget", &Greedy::budget, "-", {}, "how many accelerations are tried"));
   }
 
@@ -163,7 +163,7 @@ using PolicyTree = PolicyTreePlanner<PredictionWorld>;
 using Frenet = FrenetPlanner<PredictionWorld>;
 #define ALL_PLANNERS Search, Learning, OwnActions, Proposal, PolicyTree, Frenet, Greedy
 
-/// One that is quick.
+/// A planner with settings for quick tests.
 template <class P>
 P quick() {
   P planner;
@@ -191,7 +191,7 @@ using Sim = World<BehaviorSet<Planner, IdmClassic>, InterpolateExecution, Single
 constexpr AgentId ego{0};
 #define COMMA ,
 
-/// On two lanes of a wide bend: ego on the right one, six others about it.
+/// Two lanes in a wide bend, with ego on the right one and six other agents around it.
 template <class World, class Planner>
 World traffic(std::uint64_t seed, Planner const& planner, typename World::Observer const& observer = {}) {
   constexpr double curvature = 0.004, radius = 1.0 / curvature;
@@ -218,8 +218,8 @@ static_assert(!PlannerModel<IdmClassic, Sim<Search>::View>);
 
 }  // namespace
 
-TEST_CASE_TEMPLATE("in random traffic it hits nobody, stays on the road and gets on, whatever the step", Planner,
-                   Proposal, PolicyTree, Frenet) {
+TEST_CASE_TEMPLATE("in random traffic it makes progress without a collision and on the road, whatever the step",
+                   Planner, Proposal, PolicyTree, Frenet) {
   for (std::uint64_t seed = 0; seed < 6; ++seed) {
     CAPTURE(seed);
     double const dt = seed % 3 == 0 ? 0.1 : seed % 3 == 1 ? 0.2 : 0.5;
@@ -235,8 +235,8 @@ TEST_CASE_TEMPLATE("in random traffic it hits nobody, stays on the road and gets
   }
 }
 
-TEST_CASE_TEMPLATE("it can be what a prediction assumes, of itself and of others, and then comes true", Planner,
-                   Proposal, PolicyTree, Frenet) {
+TEST_CASE_TEMPLATE("a prediction can assume it for ego and for others, and then comes true", Planner, Proposal,
+                   PolicyTree, Frenet) {
   auto world = traffic<Sim<Planner>>(1, Planner{});
   using Set = typename Sim<Planner>::Behaviors;
   for (auto const& agent : world.roster().agents) world.set_behavior(agent.id, Planner{});
@@ -249,7 +249,7 @@ TEST_CASE_TEMPLATE("it can be what a prediction assumes, of itself and of others
     CHECK(world.frame().agents[i].state == prediction.frame().agents[i].state);
 }
 
-TEST_CASE_TEMPLATE("where it sees with noise it plans all the same", Planner, Proposal, PolicyTree, Frenet) {
+TEST_CASE_TEMPLATE("it plans under noisy observation", Planner, Proposal, PolicyTree, Frenet) {
   ObservationNoise const noise{.along = 0.2, .across = 0.05, .heading = 0.01, .speed = 0.2};
   auto world = traffic<Sim<Planner, ParametricObserver>>(2, Planner{}, {.own = noise, .others = noise});
   for (int i = 0; i < 50; ++i) {
@@ -259,7 +259,7 @@ TEST_CASE_TEMPLATE("where it sees with noise it plans all the same", Planner, Pr
   CHECK(world.state(ego).speed > 2.0);
 }
 
-TEST_CASE_TEMPLATE("it changes to the lane of its goal among others", Planner, PolicyTree, Frenet) {
+TEST_CASE_TEMPLATE("it changes to the lane of its goal in traffic", Planner, PolicyTree, Frenet) {
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
     CAPTURE(seed);
     auto const map = support::straight_road(2, 600.0);
@@ -307,7 +307,7 @@ TEST_CASE_TEMPLATE("it plans for a goal of a user's own as for the same shipped 
     CHECK(is_other);
 }
 
-TEST_CASE_TEMPLATE("it goes the same way again, as a copy too", Planner, ALL_PLANNERS) {
+TEST_CASE_TEMPLATE("it repeats its motion exactly, also in a copied world", Planner, ALL_PLANNERS) {
   auto world = traffic<Sim<Planner>>(1, quick<Planner>()), again = traffic<Sim<Planner>>(1, quick<Planner>());
   for (int i = 0; i < 6; ++i) REQUIRE(world.step(0.2));
   auto copy = world;
@@ -320,15 +320,15 @@ TEST_CASE_TEMPLATE("it goes the same way again, as a copy too", Planner, ALL_PLA
   CHECK(world.frame() == again.frame());
 }
 
-TEST_CASE_TEMPLATE("once warm, little but the prediction allocates", Planner, Proposal, PolicyTree, Frenet) {
+TEST_CASE_TEMPLATE("once warm, hardly anything but the prediction allocates", Planner, Proposal, PolicyTree, Frenet) {
   auto world = traffic<Sim<Planner>>(1, Planner{});
   for (int i = 0; i < 8; ++i) REQUIRE(world.step(0.2));
   auto const before = support::allocations();
   REQUIRE(world.step(0.2));
-  CHECK(support::allocations() - before < 40);  // dozens of simulations
+  CHECK(support::allocations() - before < 40);  // for dozens of simulations
 }
 
-TEST_CASE_TEMPLATE("its report has a course up to the horizon, and says why", Planner, ALL_PLANNERS) {
+TEST_CASE_TEMPLATE("its report has a course up to the horizon, and the reasons", Planner, ALL_PLANNERS) {
   auto const planner = quick<Planner>();
   auto const [step, horizon] = times(planner);
   for (std::uint64_t seed = 0; seed < 4; ++seed) {
@@ -356,7 +356,7 @@ TEST_CASE_TEMPLATE("its report has a course up to the horizon, and says why", Pl
     CHECK(report.candidates[*report.chosen].refused.empty());
     CHECK(report.decidedness >= 0.0);
     CHECK(report.decidedness <= 1.0);
-    // What it drives is how that begins, and what it then remembers is what the report says.
+    // It drives the start of that course; afterwards its memory equals that of the report.
     REQUIRE(world.step(step));
     auto const slot = world.slot_of(ego);
     auto planned = report.course[1].agents[slot].state;
@@ -366,7 +366,7 @@ TEST_CASE_TEMPLATE("its report has a course up to the horizon, and says why", Pl
   }
 }
 
-TEST_CASE_TEMPLATE("where there is nothing to plan, or a parameter is no number, it says so", Planner, ALL_PLANNERS) {
+TEST_CASE_TEMPLATE("it reports when there is nothing to plan or a parameter is not a number", Planner, ALL_PLANNERS) {
   Sim<Planner> world(support::straight_road(1, 600.0));
   auto planner = quick<Planner>();
   world.add({.position = {590.0, -1.75}, .speed = 12, .behavior = planner});
@@ -384,7 +384,7 @@ TEST_CASE_TEMPLATE("where there is nothing to plan, or a parameter is no number,
   CHECK_THROWS_AS(road.add({.position = {90.0, -1.75}, .behavior = planner}), ParameterError);
 }
 
-TEST_CASE_TEMPLATE("a budget cuts it short, and it plans with what it has", Planner,
+TEST_CASE_TEMPLATE("a budget cuts it short, and it plans with what it has found", Planner,
                    ProposalPlanner<PredictionWorld COMMA ConstantAcceleration COMMA IterationBudget>,
                    PolicyTreePlanner<PredictionWorld COMMA IterationBudget>,
                    FrenetPlanner<PredictionWorld COMMA ConstantAcceleration COMMA IterationBudget>, Greedy) {
@@ -406,7 +406,7 @@ TEST_CASE_TEMPLATE("a budget cuts it short, and it plans with what it has", Plan
   for (int i = 0; i < 5; ++i) REQUIRE(world.step(0.2));
 }
 
-TEST_CASE_TEMPLATE("under a budget of hardly any time it weighs one candidate, and plans", Planner,
+TEST_CASE_TEMPLATE("with hardly any time it scores one candidate and plans", Planner,
                    Mcts<PredictionWorld COMMA MacroActions COMMA TrafficReward COMMA IdmClassic COMMA
                             MctsOptions<Ucb1 COMMA RandomRollout COMMA TimeBudget>>,
                    ProposalPlanner<PredictionWorld COMMA ConstantAcceleration COMMA TimeBudget>,
@@ -428,7 +428,7 @@ TEST_CASE_TEMPLATE("under a budget of hardly any time it weighs one candidate, a
   for (int i = 0; i < 5; ++i) REQUIRE(world.step(0.2));
 }
 
-TEST_CASE("a choice stands out by the gap between its score and the next, as a part of their range") {
+TEST_CASE("decidedness is the lead over the next best score as a share of their range") {
   std::vector<PlannerCandidate> candidates{{"a", 1.0}, {"b", 4.0}, {"c", 5.0}, {"d", 9.0, "collision"}};
   CHECK(decidedness(candidates, 2) == doctest::Approx(0.25));
   CHECK(decidedness(candidates, 1) == 0.0);

@@ -25,14 +25,14 @@ static_assert(BehaviorModel<Planner>);
 
 constexpr AgentId ego{0};
 
-/// Ego, number 0, in the right one of `lanes` lanes.
+/// A road of `lanes` lanes with ego, agent 0, in the right one.
 Sim road(int lanes, std::uint64_t seed, double speed = 12.0, Planner const& planner = {}) {
   Sim world(support::straight_road(lanes, 600.0), {.seed = seed});
   world.add({.position = {40, -3.5 * lanes + 1.75}, .speed = speed, .behavior = planner});
   return world;
 }
 
-/// Steps it for a while: nobody may fail, ego may touch nobody, nor leave the road.
+/// Steps the world for a while and checks that no agent fails and ego touches nothing and stays on the road.
 void drive(Sim& world, int steps, double dt = 0.2) {
   for (int i = 0; i < steps; ++i) {
     auto const result = world.step(dt);
@@ -44,7 +44,7 @@ void drive(Sim& world, int steps, double dt = 0.2) {
 
 }  // namespace
 
-TEST_CASE("the tree has each sequence with one change at most, once") {
+TEST_CASE("the tree has each sequence with at most one change exactly once") {
   for (std::size_t const actions : {1, 2, 9})
     for (std::size_t const layers : {1, 2, 5})
       for (std::size_t ongoing = 0; ongoing < actions; ++ongoing) {
@@ -63,7 +63,7 @@ TEST_CASE("the tree has each sequence with one change at most, once") {
       }
 }
 
-TEST_CASE("a lateral speed tells a lane change by Bayes' rule") {
+TEST_CASE("the probability of a lane change follows from the lateral speed by Bayes' rule") {
   IntentionPrior const prior;
   auto const still = change_probabilities(prior, 0.0);
   CHECK(still.left == still.right);
@@ -79,7 +79,7 @@ TEST_CASE("a lateral speed tells a lane change by Bayes' rule") {
   }
 }
 
-TEST_CASE("it follows a slower leader, and stands behind one that stands") {
+TEST_CASE("it follows a slower leader and stops behind a standing one") {
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     CAPTURE(seed);
     double const slow = 2.5 * static_cast<double>(seed);
@@ -91,7 +91,7 @@ TEST_CASE("it follows a slower leader, and stands behind one that stands") {
   }
 }
 
-TEST_CASE("it stops before what blocks the road, and changes lanes before what blocks its own") {
+TEST_CASE("it stops if the road is blocked and changes lanes if only its own lane is") {
   for (int const lanes : {1, 2}) {
     auto world = road(lanes, 0);
     double const y = -3.5 * lanes + 1.75;
@@ -106,7 +106,7 @@ TEST_CASE("it stops before what blocks the road, and changes lanes before what b
 
 TEST_CASE("branches are simulated under the intentions that matter to them") {
   auto world = road(2, 0);
-  world.add({.position = {52, -1.75}, .speed = 11, .behavior = ConstantAcceleration{}});  // may come in
+  world.add({.position = {52, -1.75}, .speed = 11, .behavior = ConstantAcceleration{}});  // may cut in
   world.add({.position = {28, -1.75}, .speed = 13, .behavior = ConstantAcceleration{}});  // may not yield
   Planner::Workspace workspace;
   auto const report = Planner{}.think(world.observe(ego), {}, workspace);
@@ -123,12 +123,12 @@ TEST_CASE("branches are simulated under the intentions that matter to them") {
     CHECK(branch.worst >= branch.expected);
     CHECK(branch.cost >= branch.expected);
     CHECK(branch.cost >= report.branches[*report.chosen].cost);
-    CHECK(kind(branch.sequence.first) != MacroAction::Kind::change_right);  // there is no lane
+    CHECK(kind(branch.sequence.first) != MacroAction::Kind::change_right);  // there is no lane on the right
   }
   CHECK(changes > 10);
 }
 
-TEST_CASE("one who comes into the lane is expected there, and let in") {
+TEST_CASE("it expects a vehicle that is cutting in and lets it in") {
   auto const speed_beside = [](double heading) {
     auto world = road(2, 0);
     world.add({.position = {54, -2.6}, .heading = heading, .speed = 9, .behavior = ConstantAcceleration{}});
@@ -141,7 +141,7 @@ TEST_CASE("one who comes into the lane is expected there, and let in") {
   CHECK(speed_beside(-0.09) < speed_beside(0.0) - 0.5);
 }
 
-TEST_CASE("it overtakes whom it would have to follow, and does not dither") {
+TEST_CASE("it overtakes a slower leader and does not dither") {
   for (double const slow : {3.0, 5.0, 7.0}) {
     auto world = road(2, 0);
     auto const leader = world.add({.position = {90, -5.25}, .speed = slow, .behavior = ConstantAcceleration{}});
@@ -156,11 +156,11 @@ TEST_CASE("it overtakes whom it would have to follow, and does not dither") {
     }
     CAPTURE(slow);
     CHECK(world.state(ego).x > world.state(leader).x + 10.0);
-    CHECK(turns <= 2);  // over, and perhaps back
+    CHECK(turns <= 2);  // to the left, and perhaps back
   }
 }
 
-TEST_CASE("a lane change into the outermost lane stays one of its choices until it is done") {
+TEST_CASE("a lane change into the outermost lane remains available until it is completed") {
   auto world = road(2, 0);
   world.add({.position = {90, -5.25}, .speed = 5, .behavior = ConstantAcceleration{}});
   Planner::Workspace workspace;
@@ -179,8 +179,8 @@ TEST_CASE("a lane change into the outermost lane stays one of its choices until 
   CHECK(crossing > 0);
 }
 
-TEST_CASE("the weight of the worst case changes what is dared") {
-  // Behind a slow one, with a faster one coming up on the left.
+TEST_CASE("the weight of the worst case decides which risk is taken") {
+  // Ego is behind a slow vehicle; a faster one approaches on the left.
   auto const best_changes = [](double not_yield, double worst_case, double least_odds = 0.0) {
     auto world = road(2, 0, 10.0);
     world.add({.position = {80, -5.25}, .speed = 6, .behavior = ConstantAcceleration{}});
@@ -189,7 +189,7 @@ TEST_CASE("the weight of the worst case changes what is dared") {
     planner.intentions.not_yield = not_yield;
     planner.weights.worst_case = worst_case;
     planner.weights.least_odds = least_odds;
-    planner.weights.reaction_time = 0.0;  // near is not unsafe, but collisions are
+    planner.weights.reaction_time = 0.0;  // small gaps are safe, collisions are not
     planner.weights.braking = 50.0;
     Planner::Workspace workspace;
     auto const report = planner.think(world.observe(ego), {}, workspace);
@@ -202,7 +202,7 @@ TEST_CASE("the weight of the worst case changes what is dared") {
   CHECK_FALSE(best_changes(0.9, 0.0));
 }
 
-TEST_CASE("what cannot be planned is said") {
+TEST_CASE("faulty parameters are reported") {
   auto world = road(1, 0);
   Planner planner;
   planner.actions.actions.clear();

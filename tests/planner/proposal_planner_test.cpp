@@ -26,19 +26,19 @@ static_assert(BehaviorModel<Planner>);
 
 constexpr AgentId ego{0};
 
-/// Ego, number 0, in the right one of two lanes.
+/// Two lanes with ego, agent 0, in the right one.
 Sim two_lanes(std::uint64_t seed, double speed = 12.0, Planner const& planner = {}) {
   Sim world(support::straight_road(2, 600.0), {.seed = seed});
   world.add({.position = {40, -5.25}, .speed = speed, .behavior = planner});
   return world;
 }
 
-/// A rectangle across the right lane, from `right` to `left` of its middle.
+/// A rectangle in the right lane from `right` to `left`, relative to the lane's middle.
 geometry::Polygon obstacle(double x, double right, double left) {
   return geometry::Polygon({{x, -5.25 + right}, {x + 4, -5.25 + right}, {x + 4, -5.25 + left}, {x, -5.25 + left}});
 }
 
-/// Steps it for a while: nobody may fail, ego may touch nobody.
+/// Steps the world for a while and checks that no agent fails and ego touches nothing.
 void drive(Sim& world, int steps, double dt = 0.2) {
   for (int i = 0; i < steps; ++i) {
     auto const result = world.step(dt);
@@ -49,7 +49,7 @@ void drive(Sim& world, int steps, double dt = 0.2) {
 
 }  // namespace
 
-TEST_CASE("it follows a slower leader, and stands behind one that stands") {
+TEST_CASE("it follows a slower leader and stops behind a standing one") {
   for (std::uint64_t seed = 0; seed < 6; ++seed) {
     CAPTURE(seed);
     double const slow = 2.0 * static_cast<double>(seed);
@@ -62,7 +62,7 @@ TEST_CASE("it follows a slower leader, and stands behind one that stands") {
   }
 }
 
-TEST_CASE("it brakes in time for a bend, whatever the score has to say") {
+TEST_CASE("it brakes in time for a bend, whatever the score") {
   auto const map = support::map_of({.id = "1",
                                     .line = map::lay_from({}, {{150.0}, {30.0, 0.05, 0.05}, {150.0}}),
                                     .sections = {{.right = map::equal_lanes(1)}}});
@@ -87,7 +87,7 @@ TEST_CASE("it brakes in time for a bend, whatever the score has to say") {
   }
 }
 
-TEST_CASE("it stops before what blocks its lane, and passes what leaves room") {
+TEST_CASE("it stops at an object that blocks its lane and passes one that leaves room") {
   auto blocked = two_lanes(0);
   blocked.add_object(obstacle(120, -1.75, 1.75));
   drive(blocked, 150);
@@ -106,11 +106,11 @@ TEST_CASE("it stops before what blocks its lane, and passes what leaves room") {
     }
     CHECK(world.state(ego).x > 200.0);
     CHECK(farthest > 0.3);
-    CHECK(std::abs(world.state(ego).y + 5.25) < 0.2);  // and comes back
+    CHECK(std::abs(world.state(ego).y + 5.25) < 0.2);  // and returns to the middle
   }
 }
 
-TEST_CASE("a scored proposal says what came of it; the best is driven") {
+TEST_CASE("a scored proposal reports its outcome, and the best is driven") {
   auto world = two_lanes(3);
   world.add({.position = {75, -5.25}, .speed = 4, .behavior = ConstantAcceleration{}});
   world.add_object(obstacle(90, -3.5, -1.0));
@@ -128,8 +128,7 @@ TEST_CASE("a scored proposal says what came of it; the best is driven") {
   CHECK(report.chosen == report.best);
 }
 
-TEST_CASE(
-    "an offset towards who drives beside collides, by its own fault; who drives into it from behind does not count") {
+TEST_CASE("an offset towards a vehicle alongside is a collision at fault; a hit from behind is not") {
   auto world = two_lanes(0);
   world.add({.position = {41, -3.4}, .speed = 12, .behavior = ConstantAcceleration{}});
   Planner::Workspace workspace;
@@ -140,12 +139,12 @@ TEST_CASE(
   for (auto const& p : Planner{}.think(pushed.observe(ego), {}, workspace).proposals) CHECK_FALSE(p.collides);
 }
 
-TEST_CASE("however indifferent it is, it does not drive into somebody where it need not") {
+TEST_CASE("whatever its indifference, it avoids a collision that it can avoid") {
   auto world = two_lanes(0);
   world.add({.position = {41, -3.4}, .speed = 12, .behavior = ConstantAcceleration{}});
   Planner planner;
   planner.scoring.indifference = 1.0;
-  planner.offsets = {1.0, 0.0};  // towards the other one first
+  planner.offsets = {1.0, 0.0};  // towards the other vehicle first
   Planner::Workspace workspace;
   auto const report = planner.think(world.observe(ego), {}, workspace);
   CHECK(report.proposals[0].collides);
@@ -153,7 +152,7 @@ TEST_CASE("however indifferent it is, it does not drive into somebody where it n
   CHECK(report.proposals[report.best].offset == 0.0);
 }
 
-TEST_CASE("at an offset that leads off the road a proposal scores nothing") {
+TEST_CASE("a proposal that leads off the road scores 0") {
   auto world = two_lanes(0);
   Planner planner;
   planner.offsets = {0.0, -2.0};
@@ -164,7 +163,7 @@ TEST_CASE("at an offset that leads off the road a proposal scores nothing") {
   }
 }
 
-TEST_CASE("an offset that leads into oncoming traffic's lane scores nothing") {
+TEST_CASE("a proposal that leads into an oncoming lane scores 0") {
   Sim world(support::two_way_road(600.0));
   world.add({.position = {40, -1.75}, .speed = 12, .behavior = IdmClassic{}});
   Planner planner;
@@ -174,7 +173,7 @@ TEST_CASE("an offset that leads into oncoming traffic's lane scores nothing") {
     if (p.speed_share == 1.0) CHECK((p.score == 0.0) == (p.offset > 0.0));
 }
 
-TEST_CASE("it brakes as hard as it may where all proposals soon collide") {
+TEST_CASE("it brakes as hard as it may if all proposals soon collide") {
   auto world = two_lanes(0, 20.0);
   world.add_object(obstacle(65, -1.75, 5.25));
   Planner::Workspace workspace;
@@ -185,7 +184,7 @@ TEST_CASE("it brakes as hard as it may where all proposals soon collide") {
   CHECK(world.record(ego).action.acceleration == doctest::Approx(-6.0));
 }
 
-TEST_CASE("what cannot be proposed is said") {
+TEST_CASE("faulty parameters are reported") {
   auto world = two_lanes(0);
   Planner planner;
   planner.offsets.clear();

@@ -1,4 +1,4 @@
-// Rewards made of evaluators, a user's own among them.
+// Rewards composed of evaluators, including a user's own.
 #include <doctest/doctest.h>
 
 #include <cmath>
@@ -12,7 +12,7 @@ using namespace cambium;
 
 namespace {
 
-/// A user's own: how much nearer than `comfortable` it is to the next one ahead [m], seen through a view.
+/// A user's evaluator: by how much [m] the gap to the leader falls short of `comfortable`. It uses a view.
 struct TooClose {
   double comfortable = 30.0;
 
@@ -26,7 +26,7 @@ struct TooClose {
   }
 };
 
-/// Whether it is in the left one of the lanes.
+/// Whether the agent is in the left lane.
 struct OnTheLeft {
   static constexpr auto parameters() { return parameter_list(); }
   template <class World>
@@ -44,7 +44,7 @@ constexpr Slot ego{};
 
 }  // namespace
 
-TEST_CASE("a reward is the sum of its terms, by the second where it says so, until a course ends") {
+TEST_CASE("a reward is the sum of its terms, some per second, until a course ends") {
   PredictionWorld world(support::straight_road(2, 600.0));
   world.add({.position = {60, -5.25}, .speed = 12, .behavior = IdmClassic{}});
   world.add({.position = {80, -5.25}, .speed = 12, .behavior = IdmClassic{}});
@@ -62,11 +62,11 @@ TEST_CASE("a reward is the sum of its terms, by the second where it says so, unt
   auto const left = reward.judge(world, ego, 0.2);
   CHECK(left.ends);
   CHECK(left.outcome.reward == doctest::Approx(1.2 + 5.0));
-  world.set_state(AgentId{0}, {.x = 78, .y = -5.25, .speed = 12});  // a collision: what it wants does not matter
+  world.set_state(AgentId{0}, {.x = 78, .y = -5.25, .speed = 12});  // a collision: the user's terms no longer count
   CHECK(reward.judge(world, ego, 0.2).outcome.reward == reward.traffic().collision);
 }
 
-TEST_CASE("a planner goes by an evaluator of a user's own") {
+TEST_CASE("a planner heeds a user's evaluator") {
   for (double const weight : {20.0, -20.0}) {
     Sim world(support::straight_road(2, 600.0), {.seed = 3});
     Planner planner;
@@ -80,7 +80,7 @@ TEST_CASE("a planner goes by an evaluator of a user's own") {
   }
 }
 
-TEST_CASE("the parameters of a reward's terms are checked and compared with the rest") {
+TEST_CASE("the parameters of a reward's terms are checked and compared like all others") {
   Own a, b;
   CHECK(equal_parameters(a, b));
   b.rest.first.evaluator.comfortable = 20.0;

@@ -51,7 +51,7 @@ TEST_CASE("regret matching and Exp3 play the mixed equilibria of matrix games") 
   }
 }
 
-TEST_CASE_TEMPLATE("perfect play in noughts and crosses", Selection, Ucb1, Ucb1Tuned, Puct, RegretMatching) {
+TEST_CASE_TEMPLATE("searches play noughts and crosses perfectly", Selection, Ucb1, Ucb1Tuned, Puct, RegretMatching) {
   RandomStream random(3, 0, 0);
   TicTacToe const game;
   for (int position = 0; position < 30; ++position) {
@@ -77,7 +77,7 @@ TEST_CASE_TEMPLATE("perfect play in noughts and crosses", Selection, Ucb1, Ucb1T
   }
 }
 
-TEST_CASE("the values of a grid world are those of value iteration") {
+TEST_CASE("the values of a grid world match value iteration") {
   for (GridWorld::State const from : {GridWorld::State{2, 2}, {2, 1}, {1, 2}, {2, 0}, {0, 2}}) {
     TreeSearchParameters const parameters{.horizon = 60, .discount = 0.95};
     TreeSearch<GridWorld> search({}, parameters, {}, {}, {200'000});
@@ -93,7 +93,7 @@ TEST_CASE("the values of a grid world are those of value iteration") {
 
 namespace {
 
-/// A sure half, or 1 with a chance of 70 %.
+/// Either 0.5 for sure, or 1 with a probability of 70 %.
 struct Gamble {
   static constexpr std::size_t max_actions = 2;
   using State = int;
@@ -110,7 +110,7 @@ struct Gamble {
 
 }  // namespace
 
-TEST_CASE("one unlucky outcome does not settle what an action is worth") {
+TEST_CASE("one unlucky outcome does not decide the value of an action") {
   int wrong = 0;
   for (std::uint64_t seed = 0; seed < 200; ++seed) {
     TreeSearch<Gamble> search({}, {.horizon = 1}, {}, {}, {1000});
@@ -119,7 +119,7 @@ TEST_CASE("one unlucky outcome does not settle what an action is worth") {
   CHECK(wrong <= 10);
 }
 
-TEST_CASE("ego crosses where the others keep their gap") {
+TEST_CASE("ego crosses if the others keep their gap") {
   int reached = 0;
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     Crossing const game{2};
@@ -136,7 +136,7 @@ TEST_CASE("ego crosses where the others keep their gap") {
   CHECK(reached == 20);
 }
 
-TEST_CASE("a search is a function of state, parameters and seed, and allocates nothing once warm") {
+TEST_CASE("a search is a function of state, parameters and seed and does not allocate once warm") {
   Crossing const game{3};
   TreeSearch<Crossing> search(game, {.horizon = 12}, {}, {}, {3000});
   auto const first = search.run({}, 7);
@@ -160,7 +160,7 @@ TEST_CASE("a search is a function of state, parameters and seed, and allocates n
   CHECK(support::allocations() == warm);
 }
 
-TEST_CASE("a tree that may not grow is searched on") {
+TEST_CASE("a search continues on a tree that cannot grow") {
   Crossing const game{2};
   TreeSearch<Crossing> small(game, {.horizon = 12, .memory = 20'000}, {}, {}, {5000});
   TreeSearch<Crossing> large(game, {.horizon = 12}, {}, {}, {5000});
@@ -175,7 +175,7 @@ TEST_CASE("a tree that may not grow is searched on") {
 
 namespace {
 
-/// As `IterationBudget`, with little room at first.
+/// An `IterationBudget` for which the tree reserves little memory at first.
 struct GrowingBudget : IterationBudget {
   std::size_t expected() const { return 2; }
   GrowingBudget part(std::size_t i, std::size_t n) const { return {IterationBudget::part(i, n)}; }
@@ -183,7 +183,7 @@ struct GrowingBudget : IterationBudget {
 
 }  // namespace
 
-TEST_CASE("a tree that grows as it must is the one that had room from the start") {
+TEST_CASE("a tree that grows on demand equals one that had room from the start") {
   Crossing const game{2};
   TreeSearch<Crossing> ready(game, {.horizon = 12}, {}, {}, {5000});
   TreeSearch<Crossing, Ucb1, RandomRollout, GrowingBudget> growing(game, {.horizon = 12}, {}, {}, {{5000}});
@@ -198,14 +198,14 @@ TEST_CASE("a tree that grows as it must is the one that had room from the start"
   }
 }
 
-TEST_CASE("a search that is given little time does not spend it on room for a million nodes") {
+TEST_CASE("a search with little time does not spend it on reserving a million nodes") {
   auto const before = support::allocated_bytes();
   TreeSearch<TicTacToe, Ucb1, RandomRollout, TimeBudget> search({}, {.horizon = 9}, {}, {}, {.duration = 1e-6});
   CHECK(search.run({}, 1).iterations < 64);
   CHECK(support::allocated_bytes() - before < 1'000'000);
 }
 
-TEST_CASE("a tree has its root with all arms, however little memory it is given") {
+TEST_CASE("a tree has its root with all arms, however little memory it gets") {
   for (std::size_t memory = 4096; memory < 9000; memory += 64) {
     TreeSearch<TicTacToe> search({}, {.horizon = 9, .memory = memory}, {}, {}, {300});
     auto const& result = search.run({}, 1);
@@ -222,7 +222,7 @@ TEST_CASE("a tree has its root with all arms, however little memory it is given"
   CHECK(search.result().nodes == 1);
 }
 
-TEST_CASE("a kept tree goes on where it holds, and is dropped where it does not") {
+TEST_CASE("a kept tree is continued if it still holds, else dropped") {
   TicTacToe const game;
   TreeSearch<TicTacToe> search(game, {.horizon = 9, .discount = 1.0}, {}, {}, {5000});
   TicTacToe::State state;
@@ -239,7 +239,7 @@ TEST_CASE("a kept tree goes on where it holds, and is dropped where it does not"
   std::uint32_t sum = 0;
   for (auto const& arm : next.of(1)) sum += arm.visits;
   CHECK(sum == visits - 1 + 5000);  // the first visit made the node
-  // Every move leads on from there: the tree is the one of the position, not of the one before.
+  // All its moves are legal here: the tree belongs to this position, not to the one before.
   for (auto const& arm : next.of(1)) CHECK(state.board[static_cast<std::size_t>(arm.action)] == 0);
   REQUIRE(search.keep(std::array<int, 2>{-1, next.choice(1).action}));
   CHECK(search.run({}, 3).kept_nodes == 0);
@@ -247,7 +247,7 @@ TEST_CASE("a kept tree goes on where it holds, and is dropped where it does not"
   CHECK_FALSE(search.keep(std::array<int, 1>{0}));
 }
 
-TEST_CASE("of several outcomes of the same actions the one that came is kept, and may grow") {
+TEST_CASE("the outcome that came true is kept among several of the same actions, and may grow") {
   TreeSearch<Crossing> search(Crossing{2}, {.horizon = 12}, {}, {}, {1900});
   int most_visited = 0;
   for (std::size_t outcome = 0;; ++outcome) {
@@ -277,7 +277,7 @@ TEST_CASE("of several outcomes of the same actions the one that came is kept, an
   CHECK(search.run(other, 2).kept_nodes == 0);
 }
 
-TEST_CASE("trees grown at once keep each its own") {
+TEST_CASE("parallel trees each keep their own subtree") {
   ParallelTreeSearch parallel(TreeSearch<TicTacToe>({}, {.horizon = 9}, {}, {}, {3000}), 3);
   TicTacToe::State state;
   auto const move = parallel.run(state, 1).choice(0).action;
@@ -294,19 +294,19 @@ TEST_CASE("trees grown at once keep each its own") {
   CHECK(sum == kept);
 }
 
-TEST_CASE("all that a tree reserves stays within its memory") {
+TEST_CASE("a tree reserves no more than its memory limit") {
   for (std::size_t const memory : {std::size_t{1} << 16, std::size_t{1} << 20, std::size_t{5} << 20}) {
     CAPTURE(memory);
     TreeSearch<TicTacToe> search({}, {.horizon = 9, .memory = memory}, {}, {}, {200'000});
     auto const before = support::allocated_bytes();
     auto const& result = search.run({}, 1);
-    CHECK(support::allocated_bytes() - before <= memory + 4096);  // and what a run works with, whatever the tree
+    CHECK(support::allocated_bytes() - before <= memory + 4096);  // plus the working memory of a run
     CHECK(result.is_full);
     CHECK(result.nodes > memory / 1500);
   }
 }
 
-TEST_CASE("so does one that is kept from move to move") {
+TEST_CASE("a tree kept from move to move reserves no more than its memory limit") {
   for (std::size_t const memory : {std::size_t{1} << 16, std::size_t{1} << 20}) {
     CAPTURE(memory);
     TicTacToe const game;
@@ -330,7 +330,7 @@ TEST_CASE("so does one that is kept from move to move") {
   }
 }
 
-TEST_CASE("warm searches with kept trees allocate nothing") {
+TEST_CASE("warm searches with kept trees do not allocate") {
   TicTacToe const game;
   TreeSearch<TicTacToe> search(game, {.horizon = 9}, {}, {}, {2000});
   std::uint64_t counted = 0;
@@ -350,12 +350,12 @@ TEST_CASE("warm searches with kept trees allocate nothing") {
   CHECK(counted == 0);
 }
 
-TEST_CASE("trees grown at once are merged by visits, the same on every run") {
+TEST_CASE("parallel trees are merged by visits, with the same result on every run") {
   Crossing const game{2};
   TreeSearch<Crossing> const search(game, {.horizon = 12}, {}, {}, {4000});
   ParallelTreeSearch<TreeSearch<Crossing>> parallel(search, 3);
   auto const first = parallel.run({}, 5);
-  CHECK(first.iterations == 4000);  // shared, whatever the number of trees
+  CHECK(first.iterations == 4000);  // the trees share the budget
   std::array<std::uint32_t, 4> visits{};
   double total = 0.0;
   for (auto const& each : parallel.searches())
@@ -379,7 +379,7 @@ TEST_CASE("trees grown at once are merged by visits, the same on every run") {
   CHECK(few.run({}, 5).iterations == 2);
 }
 
-TEST_CASE("what is wrong with a search is said") {
+TEST_CASE("a faulty game or search is reported") {
   struct Broken : Crossing {
     int fault = 0;
     std::size_t agents() const { return fault == 1 ? 0 : 1; }
@@ -438,7 +438,7 @@ struct Riches {
   }
 };
 
-/// One choice between two rewards.
+/// A single choice between two rewards.
 struct TwoPrices {
   static constexpr bool is_deterministic = true;
   static constexpr std::size_t max_actions = 2;
@@ -456,12 +456,12 @@ struct TwoPrices {
 
 }  // namespace
 
-TEST_CASE("rewards that add up to more than there are numbers for are a problem") {
+TEST_CASE("a return that overflows is a problem") {
   TreeSearch<Riches, Ucb1, NoRollout> search({}, {.horizon = 5, .discount = 1.0}, {}, {}, {100});
   CHECK(search.run(0, 1).problem == SearchProblem::not_finite);
 }
 
-TEST_CASE("so are those that would over the iterations, or are too far apart; nothing is kept of such a search") {
+TEST_CASE("returns whose total or difference overflows are a problem, and such a search keeps nothing") {
   for (auto const& [low, high] : {std::pair{-1e308, 1e308}, {5e307, 1e308}, {-1e308, 0.0}}) {
     TreeSearch<TwoPrices, Ucb1, NoRollout> search({low, high}, {.horizon = 1}, {}, {}, {100});
     CHECK(search.run(0, 1).problem == SearchProblem::not_finite);
@@ -471,7 +471,7 @@ TEST_CASE("so are those that would over the iterations, or are too far apart; no
   CHECK(search.run(0, 1).choice(0).action == 1);
 }
 
-TEST_CASE("parameters that are refused leave a search as it was") {
+TEST_CASE("refused parameters leave a search unchanged") {
   TreeSearch<TicTacToe> search({}, {.horizon = 9}, {}, {}, {300});
   auto const nodes = search.run({}, 1).nodes;
   CHECK_THROWS_AS(search.set({.horizon = -1}, {}, {}, {300}), ParameterError);
@@ -481,7 +481,7 @@ TEST_CASE("parameters that are refused leave a search as it was") {
 
 namespace {
 
-/// One throw at a target on [0, 1] x 3 steps; actions from a continuum.
+/// Two throws at a target on [0, 1]; actions from a continuum.
 struct Target {
   static constexpr bool is_deterministic = true;
   struct State {
@@ -498,7 +498,7 @@ struct Target {
   }
 };
 
-/// Left wins 1 if the coin that is drawn for each iteration shows heads (80 %), else loses 2; right wins 0.25.
+/// A coin is drawn for each iteration. Left wins 1 on heads (80 %) and loses 2 on tails; right always wins 0.25.
 struct Coin {
   static constexpr std::size_t max_actions = 2;
   struct State {
@@ -522,7 +522,7 @@ struct Coin {
 
 }  // namespace
 
-TEST_CASE("actions of a continuum are tried out bit by bit") {
+TEST_CASE("actions from a continuum are added gradually") {
   TreeSearch<Target> search({}, {.horizon = 2, .discount = 1.0, .action_widening = {1.0, 0.5}}, {0.2}, {}, {10'000});
   auto const& result = search.run({}, 4);
   CHECK(result.of(0).size() == 100);
@@ -534,7 +534,7 @@ TEST_CASE("actions of a continuum are tried out bit by bit") {
   CHECK(merged.of(0).size() == parallel.searches()[0].result().of(0).size());
 }
 
-TEST_CASE("what is not known of the root is drawn anew for each iteration") {
+TEST_CASE("what is unknown about the root is drawn anew for each iteration") {
   TreeSearch<Coin> search({}, {.horizon = 1}, {}, {}, {20'000});
   auto const& result = search.run({}, 1);
   CHECK(result.of(0)[0].mean_return == doctest::Approx(0.4).epsilon(0.1));
@@ -543,7 +543,7 @@ TEST_CASE("what is not known of the root is drawn anew for each iteration") {
   CHECK_FALSE(search.keep(std::array<int, 1>{0}));
 }
 
-TEST_CASE("a constraint on costs rules out what pays but costs too much") {
+TEST_CASE("a cost constraint rules out actions that pay but cost too much") {
   for (double const limit : {0.1, 0.3}) {
     TreeSearch<Coin> search({}, {.horizon = 1, .constraint = {.limit = limit}}, {}, {}, {5000});
     auto const& result = search.run({}, 1);
@@ -553,7 +553,7 @@ TEST_CASE("a constraint on costs rules out what pays but costs too much") {
   }
 }
 
-TEST_CASE("priors lead a search, and are checked") {
+TEST_CASE("priors guide a search and are checked") {
   struct Guided : TicTacToe {
     double weight = 50.0;
     void priors(State const&, std::size_t, std::span<int const> actions, std::span<double> out) const {
@@ -571,7 +571,7 @@ TEST_CASE("priors lead a search, and are checked") {
 
 namespace {
 
-/// A walk to the right; `listed` actions from 5 on, where there is room for 2, at `cost`.
+/// A walk to the right. From 5 on, it claims to have `listed` actions where there is room for 2, and a step has `cost`.
 struct Walk {
   using State = int;
   using Action = int;
@@ -596,7 +596,7 @@ struct Walk {
 
 }  // namespace
 
-TEST_CASE("actions that are none or too many are found in roll-outs too, and a result with a problem has no choice") {
+TEST_CASE("missing or too many actions are found in roll-outs too, and a faulty result has no choice") {
   for (int const listed : {0, 3, -1}) {
     TreeSearch<Walk> search(Walk{listed}, {.horizon = 10}, {}, {}, {1});
     auto const& result = search.run(0, 1);
@@ -609,17 +609,17 @@ TEST_CASE("actions that are none or too many are found in roll-outs too, and a r
       TreeSearch<Walk> costly(Walk{2, cost}, {.horizon = 10}, {}, {}, {iterations});
       CHECK(costly.run(iterations == 1 ? 0 : 5, 1).problem == SearchProblem::cost_out_of_range);
       CHECK_THROWS_WITH_AS((void)costly.result().choice(0),
-                           iterations == 1 ? "search, at step 6: a cost is not within 0 to 1; give the "
-                                             "probability of what must not happen, 1 where it happened"
-                                           : "search, at step 1: a cost is not within 0 to 1; give the "
-                                             "probability of what must not happen, 1 where it happened",
+                           iterations == 1 ? "search, at step 6: a cost is not between 0 and 1; return the probability "
+                                             "of the event that must not happen, or 1 once it happened"
+                                           : "search, at step 1: a cost is not between 0 and 1; return the probability "
+                                             "of the event that must not happen, or 1 once it happened",
                            SearchError);
     }
   }
   TreeSearch<Walk> search(Walk{}, {.horizon = 10}, {}, {}, {20});
   CHECK(search.run(0, 1).choice(0).action == 1);
   CHECK_THROWS_WITH_AS((void)search.result().of(1), "search result: has no agent 1; it has 1", SearchError);
-  // A run that fails leaves no tree of the one before.
+  // A failed run removes the tree of the previous one.
   TreeSearch<TicTacToe> game({}, {.horizon = 9}, {}, {}, {50});
   (void)game.run({}, 1);
   TicTacToe::State won;
@@ -630,12 +630,12 @@ TEST_CASE("actions that are none or too many are found in roll-outs too, and a r
   CHECK(tree_as_json(game).find("\"id\"") == std::string::npos);
 }
 
-TEST_CASE("under a constraint who was hardly tried is not taken to be safe") {
+TEST_CASE("under a constraint an arm with few visits does not count as safe") {
   std::array<RootArm<int>, 2> const arms{{{0, 97, 1.0, 0.06, 0.97}, {1, 3, -10.0, 0.0, 0.03}}};
   CHECK(detail::final_choice<int>(arms, ReturnScale{}, FinalMove::most_visits, 0.05) == 0);
 }
 
-TEST_CASE("a wall-clock budget ends a search after the iteration in which its time is over, one at the least") {
+TEST_CASE("a time budget ends a search after the iteration in which its time runs out, at least one") {
   TreeSearch<Crossing, Ucb1, RandomRollout, TimeBudget> search({}, {.horizon = 12}, {}, {}, {1e-6, 100'000});
   auto const& result = search.run({}, 1);
   CHECK(result.iterations >= 1);
@@ -644,7 +644,7 @@ TEST_CASE("a wall-clock budget ends a search after the iteration in which its ti
 
 namespace {
 
-/// Ends by itself: no number of iterations is the most.
+/// Ends by itself, without an upper limit on the number of iterations.
 struct Endless {
   void start() {}
   std::size_t most() const { return std::numeric_limits<std::size_t>::max(); }
@@ -654,14 +654,14 @@ struct Endless {
 
 }  // namespace
 
-TEST_CASE("a budget without a limit lets the tree grow as far as its memory goes") {
+TEST_CASE("under an unlimited budget the tree grows to its memory limit") {
   TreeSearch<TicTacToe, Ucb1, RandomRollout, Endless> search({}, {.horizon = 9, .memory = 1u << 20});
   auto const& result = search.run({}, 1);
   CHECK(result.iterations == 500);
   CHECK(result.nodes > 300);
 }
 
-TEST_CASE("trees are written down") {
+TEST_CASE("trees are exported as JSON and DOT") {
   TreeSearch<TicTacToe> search({}, {.horizon = 9}, {}, {}, {50});
   (void)search.run({}, 1);
   auto const json = tree_as_json(search);
@@ -701,7 +701,7 @@ TEST_CASE("beliefs follow Bayes' rule") {
   for (int i = 0; i < 30'000; ++i) ++counts[belief.sample(random)];
   CHECK(counts[0] == doctest::Approx(20'000).epsilon(0.03));
   for (int i = 0; i < 50; ++i) belief.update(std::array<double, 3>{0, 0, 1});
-  CHECK(belief.probability(0) > 1e-4);  // and can come back
+  CHECK(belief.probability(0) > 1e-4);  // the hypothesis can recover
   for (int i = 0; i < 5; ++i) belief.update(std::array<double, 3>{1, 0, 0.01});
   CHECK(belief.most_likely() == 0);
 }

@@ -13,34 +13,34 @@
 
 namespace cambium {
 
-/// One of the courses that a planner has weighed.
+/// One of the options that a planner compares.
 struct PlannerCandidate {
   std::string name;       ///< what ego would do, in words
-  double score = 0.0;     ///< by the planner's own measure; the higher, the better
-  std::string refused{};  ///< why ego may not drive it; empty where it may
+  double score = 0.0;     ///< on the planner's own scale; higher is better
+  std::string refused{};  ///< why ego may not drive it; empty if it may
 };
 
-/// What every planner reports: what it plans, and why. `World` is the world that it predicts with, `Memory` what it
-/// remembers from one plan to the next. The report of a planner adds what only that planner knows.
+/// What every planner reports: its plan and the reasons. `World` is its prediction world, `Memory` what it remembers
+/// from one plan to the next. Each planner's report adds what only that planner knows.
 template <class World, class MemoryType>
 struct PlannerReport {
   using Memory = MemoryType;
 
   std::vector<PlannerCandidate> candidates;
-  std::optional<std::size_t> chosen;  ///< among the candidates; none: none may be driven, and ego brakes
-  /// By how much the choice stands out, from 0 (another candidate is as good) to 1 (nothing comes close).
+  std::optional<std::size_t> chosen;  ///< among the candidates; empty if none may be driven: ego brakes
+  /// How clearly the choice wins, from 0 (another candidate is as good) to 1 (nothing comes close).
   double decidedness = 0.0;
-  bool is_cut_short = false;                      ///< the budget was over before all candidates were weighed
-  std::vector<typename World::FrameType> course;  ///< all agents, now and step by step up to the horizon, as planned
-  std::vector<AgentId> agents;                    ///< of the frames' records
+  bool is_cut_short = false;                      ///< the budget ended before all candidates were scored
+  std::vector<typename World::FrameType> course;  ///< all agents as planned, step by step from now to the horizon
+  std::vector<AgentId> agents;                    ///< to whom the records of each frame belong
   Memory memory{};                                ///< after the first step of the course: for the next `think`
 };
 
-/// A planner: a behaviour that searches, and that can be asked. `think(view, memory, workspace)` plans for the agent
-/// that `view` belongs to, and reports the plan and why. It is pure: `memory` is that of the last report, or {}, and
-/// `workspace` holds only what is worth using again, such as buffers. It takes as long as its budget says (see
-/// `SearchBudget`). Throws `SearchError` where there is nothing to plan, `ParameterError` where a parameter is out of
-/// its range.
+/// A planner: a behaviour that can also be called directly. `think(view, memory, workspace)` plans for the agent of
+/// `view` and reports the plan and its reasons. It is pure: pass the `memory` of the last report, or {} at first; the
+/// `workspace` only holds what is worth reusing, such as buffers. Its budget limits how long it takes (see
+/// `SearchBudget`). Throws `SearchError` if there is nothing to plan, and `ParameterError` if a parameter is out of
+/// range.
 template <class P, class View>
 concept PlannerModel = std::copyable<P> && std::default_initializable<typename P::Memory> &&
     std::default_initializable<typename P::Workspace> &&
@@ -53,8 +53,8 @@ concept PlannerModel = std::copyable<P> && std::default_initializable<typename P
   { planner.think(view, memory, workspace).decidedness } -> std::convertible_to<double>;
 };
 
-/// How far the chosen candidate's score is above the best of the others that may be driven, as a part of the range of
-/// their scores; 1 where there is no other, 0 where none is chosen. O(candidates).
+/// The lead of the chosen candidate's score over the best of the others that may be driven, as a share of the range of
+/// all these scores. 1 if there is no other, 0 if none is chosen. O(candidates).
 [[nodiscard]] inline double decidedness(std::span<PlannerCandidate const> candidates,
                                         std::optional<std::size_t> chosen) {
   if (!chosen) return 0.0;

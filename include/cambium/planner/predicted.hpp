@@ -19,14 +19,14 @@ namespace cambium {
 
 namespace detail {
 
-/// Whether a view can be asked for predictions: `ViewArchetype` cannot.
+/// Whether a view can predict; `ViewArchetype` cannot.
 template <class View, class Set, class Other>
 concept Predicts = requires(View const view, Prediction<Set> const prediction) {
   view.predict(prediction);
   typename Other::FrameType;
 };
 
-/// Whether `W` is a `cambium::World`, or derived from one.
+/// Whether `W` is a `cambium::World` or derived from one.
 template <class W>
 inline constexpr bool is_world = requires {
   typename W::Behaviors;
@@ -35,7 +35,7 @@ inline constexpr bool is_world = requires {
   typename W::View;
 };
 
-/// True; says in a sentence what the `PredictionWorld` of a planner lacks to predict with behaviours `Others`.
+/// True. Else a compile error says what a planner's `PredictionWorld` lacks to predict behaviours `Others`.
 template <class PredictionWorld, class... Others>
 [[nodiscard]] constexpr bool check_planner() {
   static_assert(is_world<PredictionWorld>,
@@ -43,12 +43,12 @@ template <class PredictionWorld, class... Others>
                 "World::WithBehaviors<BehaviorSet<...>> of the world that it plans in");
   if constexpr (is_world<PredictionWorld>)
     static_assert((PredictionWorld::Behaviors::template contains<Others> && ...),
-                  "cambium: the behaviour set of a planner's PredictionWorld must contain its Others, as which the "
-                  "others are predicted");
+                  "cambium: the behaviour set of a planner's PredictionWorld must contain its Others, the "
+                  "model by which all agents but ego are predicted");
   return true;
 }
 
-/// True; says in a sentence where `PredictionWorld` differs from the world that is `Predicted`.
+/// True. Else a compile error says how `PredictionWorld` differs from the world type `Predicted`.
 template <class PredictionWorld, class Predicted>
 [[nodiscard]] constexpr bool check_prediction_world() {
   if constexpr (!std::is_same_v<PredictionWorld, Predicted>) {
@@ -65,7 +65,7 @@ template <class PredictionWorld, class Predicted>
                   "cambium: a planner's PredictionWorld must have cambium::PerfectObserver; "
                   "take World::WithBehaviors<BehaviorSet<...>> of the world that it plans in");
     static_assert(!same_execution || !same_dynamics || !same_observer,
-                  "cambium: a planner's PredictionWorld must be a cambium::World itself, no class derived from one; "
+                  "cambium: a planner's PredictionWorld must be a cambium::World itself, not derived from one; "
                   "take World::WithBehaviors<BehaviorSet<...>> of the world that it plans in");
   }
   return true;
@@ -73,8 +73,9 @@ template <class PredictionWorld, class Predicted>
 
 }  // namespace detail
 
-/// The world that a planner predicts for the agent of `view`: that agent behaves as `behavior`, all others as `others`,
-/// both of the behaviour set of `PredictionWorld`. `ego`: the agent's slot there; none where it is not in traffic.
+/// The prediction world for the agent of `view`. That agent behaves as `behavior`, all others as `others`; both models
+/// must be in the behaviour set of `PredictionWorld`. Sets `ego` to the agent's slot there, or to none if it is not in
+/// traffic.
 template <class PredictionWorld, class Ego, class Others, class View>
 [[nodiscard]] PredictionWorld predicted_for(View const& view, Ego const& behavior, Others const& others,
                                             std::optional<Slot>& ego) {
@@ -84,7 +85,7 @@ template <class PredictionWorld, class Ego, class Others, class View>
   return world;
 }
 
-/// Lets a plan that ends before the time `end` [s], such as one that leaves the map, go on at its last speed and
+/// Extends a plan that ends before the time `end` [s], for example at the end of the map, at its last speed and
 /// heading.
 template <class View>
 void go_straight_on(View const& view, double end, Plan<View>& plan) {
@@ -98,7 +99,7 @@ void go_straight_on(View const& view, double end, Plan<View>& plan) {
   plan.trajectory.push_back(state);
 }
 
-/// Steps `world` by `dt` [s], in equal steps of at most `step` [s]; what the agent at `slot` does becomes its plan.
+/// Steps `world` by `dt` [s] in equal steps of at most `step` [s] and records the agent at `slot` as `plan`.
 template <class World, class S>
 void drive_predicted(World& world, Slot slot, double dt, double step, BasicPlan<S>& plan) {
   auto const steps = std::max(1, static_cast<int>(std::ceil(dt / step - 1e-9)));
@@ -113,8 +114,7 @@ void drive_predicted(World& world, Slot slot, double dt, double step, BasicPlan<
   plan.status = PlanStatus::valid;
 }
 
-/// Where the agent is after `time` [s] of braking with `deceleration` [m/s^2], along its lane and as far beside its
-/// middle as it is now.
+/// The agent's state after braking for `time` [s] with `deceleration` [m/s^2], along its lane at its present offset.
 template <class View>
 [[nodiscard]] typename View::State braking_state(View const& view, double deceleration, double time) {
   double const speed = std::max(0.0, view.state().speed);
@@ -122,7 +122,7 @@ template <class View>
   return follow_lane(view, ConstantAcceleration{-deceleration}.motion(speed, time), time);
 }
 
-/// The agents nearest to the one at `ego`, at most `count` of them and within `range` [m], nearest first. O(n log n).
+/// Up to `count` agents nearest to the one at `ego`, within `range` [m], nearest first. O(n log n) in the agents.
 template <class World>
 [[nodiscard]] std::vector<Slot> nearest_agents(World const& world, Slot ego, std::size_t count, double range) {
   auto const& agents = world.frame().agents;
@@ -142,8 +142,8 @@ template <class World>
 
 namespace detail {
 
-/// The others that the agent at `ego` has to look out for: not those who follow behind in the strip that it drives in,
-/// who have to keep clear themselves. O(agents).
+/// The agents with whom the agent at `ego` has to avoid contact: all but those behind it in the strip of road that it
+/// covers. Those have to keep clear themselves. O(agents).
 template <class World>
 void choose_counting(World const& world, Slot ego, std::vector<Slot>& counting) {
   counting.clear();
@@ -157,8 +157,8 @@ void choose_counting(World const& world, Slot ego, std::vector<Slot>& counting) 
   }
 }
 
-/// How many lane changes it takes from `piece` of lane corridor `number` to one that the route ends in; 0 where none
-/// is beside. O(lanes).
+/// Number of lane changes from `piece` of lane corridor `number` to a corridor that reaches the destination; 0 if none
+/// can be reached from there. O(lanes).
 [[nodiscard]] inline int lanes_to_destination(map::RoadCorridor const& road, CorridorId number, PieceId piece) {
   constexpr int most = 16;
   if (road.corridors[number].reaches_destination) return 0;

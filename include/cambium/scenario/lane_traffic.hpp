@@ -13,16 +13,16 @@
 
 namespace cambium {
 
-/// A vehicle to be put on a lane corridor.
+/// A vehicle sampled for a lane corridor.
 struct LaneVehicle {
-  double s{};      ///< of its reference point [m]
+  double s{};      ///< corridor position of its reference point [m]
   double speed{};  ///< [m/s]
   geometry::Shape shape;
   IdmClassic driver;
 };
 
-/// Random traffic on a stretch of a lane: speeds, headways, drivers and sizes are drawn for each vehicle, gaps so that
-/// every follower can stay behind its leader by comfortable braking.
+/// Random traffic on a stretch of a lane corridor. Draws speed, headway, driver and size of each vehicle. Every gap is
+/// large enough for the follower to stay behind its leader by comfortable braking.
 struct LaneTraffic {
   double begin = 0.0;
   double end = 200.0;
@@ -39,29 +39,32 @@ struct LaneTraffic {
     using P = LaneTraffic;
     return parameter_list(
         parameter("begin", &P::begin, "m", Range{-1e6, 1e6}, "first position on the corridor that a vehicle may cover"),
-        parameter("end", &P::end, "m", Range{-1e6, 1e6}, "last position"),
-        parameter("lowest_speed", &P::lowest_speed, "m/s", Range{0, 100}, "of the initial speeds"),
-        parameter("highest_speed", &P::highest_speed, "m/s", Range{0, 100}, "of the initial speeds"),
-        parameter("lowest_desired_speed", &P::lowest_desired_speed, "m/s", Range{0.1, 100}, "of the drivers"),
-        parameter("highest_desired_speed", &P::highest_desired_speed, "m/s", Range{0.1, 100}, "of the drivers"),
+        parameter("end", &P::end, "m", Range{-1e6, 1e6}, "last position that a vehicle may cover"),
+        parameter("lowest_speed", &P::lowest_speed, "m/s", Range{0, 100}, "lowest initial speed"),
+        parameter("highest_speed", &P::highest_speed, "m/s", Range{0, 100}, "highest initial speed"),
+        parameter("lowest_desired_speed", &P::lowest_desired_speed, "m/s", Range{0.1, 100},
+                  "of the drivers; trucks: 85 % of it"),
+        parameter("highest_desired_speed", &P::highest_desired_speed, "m/s", Range{0.1, 100},
+                  "of the drivers; trucks: 85 % of it"),
         parameter("shortest_headway", &P::shortest_headway, "s", Range{0, 60},
-                  "time gap to the leader at the beginning"),
-        parameter("longest_headway", &P::longest_headway, "s", Range{0, 60}, "time gap to the leader at the beginning"),
-        parameter("truck_share", &P::truck_share, "-", Range{0, 1}, "part of the vehicles that are trucks"));
+                  "shortest initial time gap to the leader"),
+        parameter("longest_headway", &P::longest_headway, "s", Range{0, 60}, "longest initial time gap to the leader"),
+        parameter("truck_share", &P::truck_share, "-", Range{0, 1}, "share of trucks"));
   }
 
+  /// Throws `ParameterError` if a lowest or shortest value is above its highest or longest.
   void check(std::string const& where) const {
     if (!(lowest_speed <= highest_speed && lowest_desired_speed <= highest_desired_speed &&
           shortest_headway <= longest_headway))
       throw ParameterError(where, "a lowest or shortest value is above its highest or longest", "swap them");
   }
 
-  /// Vehicles from the front of the stretch to its rear. Throws `ParameterError` where a parameter is no good.
-  /// O(vehicles).
+  /// Samples vehicles from the front of the stretch to its rear. Throws `ParameterError` if a parameter is out of
+  /// range. O(vehicles).
   [[nodiscard]] std::vector<LaneVehicle> sample(RandomStream& random) const {
     check_parameters(*this);
     std::vector<LaneVehicle> vehicles;
-    double front_end = end;  // where the next vehicle's front end may be at most
+    double front_end = end;  // the next vehicle must stay behind this position
     double leader_speed = highest_speed;
     while (true) {
       LaneVehicle v;
@@ -82,8 +85,8 @@ struct LaneTraffic {
     }
   }
 
-  /// Gap [m] from which a follower stays behind a leader that keeps its speed with no more than its comfortable
-  /// deceleration.
+  /// Gap [m] at which the follower can stay behind a leader of constant speed by braking no harder than its comfortable
+  /// deceleration. `headway` [s]: additional time gap.
   [[nodiscard]] static double safe_gap(IdmClassic const& driver, double speed, double leader_speed, double headway) {
     double const closing = std::max(0.0, speed - leader_speed);
     return driver.minimum_gap + speed * headway + closing * closing / (2 * driver.comfortable_deceleration);

@@ -9,14 +9,14 @@
 
 namespace cambium {
 
-/// A closed lane, as a circle driven counter-clockwise, with a route that goes round it for some laps: what traffic is
-/// studied on that has neither beginning nor end.
+/// A circular one-lane road, driven counter-clockwise, with a route of several laps. It serves to study traffic without
+/// boundary effects.
 struct RingRoad {
   std::shared_ptr<Map const> map;
   map::Route route;
-  double length{};  ///< once round, along the middle of the lane [m]
+  double length{};  ///< of one lap along the middle of the lane [m]
 
-  /// The middle of the lane, `s` [m] from its start; beyond the first lap too.
+  /// Pose on the middle of the lane, `s` [m] from its start; `s` may exceed a lap.
   [[nodiscard]] geometry::Pose pose(double s) const {
     auto const& first = map->lane(route.lanes[0]);
     s -= length * std::floor(s / length);
@@ -25,8 +25,8 @@ struct RingRoad {
   }
 };
 
-/// A ring of `length` [m] whose route is `laps` times round it. Throws `MapError` for a ring of less than 100 m or more
-/// than 100 km, or for no lap or more than 1000. O(laps).
+/// Makes a ring of `length` [m] with a route of `laps` laps. Throws `MapError` unless the length is between 100 m and
+/// 100 km and there are 1 to 1000 laps. O(laps).
 [[nodiscard]] RingRoad make_ring_road(double length, int laps);
 
 }  // namespace cambium

@@ -14,10 +14,12 @@
 namespace cambium {
 
 CAMBIUM_COLD RingRoad make_ring_road(double length, int laps) {
-  if (!(length >= 100.0 && length <= 1e5)) throw MapError("ring", "its length is not a number from 100 to 100 000 m");
-  if (!(laps >= 1 && laps <= 1000)) throw MapError("ring", "its laps are not a number from 1 to 1000");
+  if (!(length >= 100.0 && length <= 1e5))
+    throw MapError("ring", "its length is not between 100 and 100 000 m", "choose a length in this range");
+  if (!(laps >= 1 && laps <= 1000))
+    throw MapError("ring", "its number of laps is not between 1 and 1000", "choose a number in this range");
   constexpr double lane_width = 3.5;
-  double const radius = length / (2 * geometry::pi) - lane_width / 2;  // of the line left of the lane
+  double const radius = length / (2 * geometry::pi) - lane_width / 2;  // of the reference line, left of the lane
   double const curvature = 1.0 / radius, half = geometry::pi * radius;
   map::MapBuilder builder("ring");
   map::RoadEnd const end_1{"1", map::opendrive::ContactPoint::end}, start_1{"1", map::opendrive::ContactPoint::start},

@@ -12,16 +12,16 @@
 
 namespace cambium::detail {
 
-/// The others as predicted once, step by step, whatever ego does.
+/// A prediction of the other agents, made once, step by step. It does not depend on what ego does.
 template <class World>
 struct OthersAhead {
   std::optional<World> world;
   std::vector<typename World::FrameType> frames;  ///< now and after each step
-  std::vector<geometry::OrientedBox> boxes;       ///< of those who count, step by step
-  std::vector<Slot> counting;                     ///< who these are
+  std::vector<geometry::OrientedBox> boxes;       ///< of the agents in `counting`, step by step
+  std::vector<Slot> counting;                     ///< agents that ego has to keep clear of, see `choose_counting`
   double step{};                                  ///< [s]
 
-  /// Predicts from `now` up to `horizon` [s].
+  /// Predicts from `now` to `horizon` [s] in steps of `length` [s].
   void predict(World now, Slot ego, double horizon, double length) {
     world = std::move(now);
     step = length;
@@ -40,7 +40,7 @@ struct OthersAhead {
     }
   }
 
-  /// Whether `box` touches one of those who count after step `k`, or an object. O(agents + objects).
+  /// Whether `box` touches an object, or, after step `k`, an agent in `counting`. O(agents + objects).
   [[nodiscard]] bool touched(geometry::OrientedBox const& box, std::size_t k) const {
     for (std::size_t i = 0; i < counting.size(); ++i)
       if (geometry::intersects(box, boxes[k * counting.size() + i])) return true;
@@ -48,7 +48,8 @@ struct OthersAhead {
                                [&](auto const& object) { return geometry::intersects(box, object.outline); });
   }
 
-  /// How far an agent has come after `time` [s], and its speed then; beyond the horizon it keeps that. O(steps).
+  /// Distance [m] that an agent covers in `time` [s], and its speed then; the speed is constant past the horizon.
+  /// O(steps).
   [[nodiscard]] std::pair<double, double> way_of(Slot slot, double time) const {
     double way = 0.0, speed = frames[0].agents[slot].state.speed, left = time;
     for (std::size_t k = 1; k < frames.size() && left > 0.0; ++k, left -= step) {
@@ -60,13 +61,13 @@ struct OthersAhead {
   }
 };
 
-/// Whether `box`, at corridor position `s` and `offset` [m], reaches beyond the lane and any other drivable one, or is
-/// in one of oncoming traffic. Past the corridor's ends there is no saying.
+/// Whether `box`, at corridor position `s` and `offset` [m], reaches beyond the drivable lanes or into an oncoming
+/// lane. False past the ends of the corridor, where the road is unknown.
 [[nodiscard]] inline bool leaves_road(Map const& map, map::LaneCorridor const& corridor, double s, double offset,
                                       geometry::OrientedBox const& box) {
   if (s < 0.0 || s > corridor.length()) return false;
   auto const sides = corridor.widths_at(s);
-  double const reach = box.half_width + 0.1;  // [m], for headings a little off the lane's
+  double const reach = box.half_width + 0.1;  // [m], allows for a small heading error
   if (offset + reach < sides.left && -offset + reach < sides.right) return false;
   if ((offset > sides.left || -offset > sides.right) && is_against_traffic(map, box)) return true;
   return std::ranges::any_of(box.corners(), [&](geometry::Point const& corner) {

@@ -12,7 +12,7 @@
 
 namespace cambium::detail {
 
-/// Whether two values mean the same, as far as they tell: by description, by ==, or because there is nothing in them.
+/// Whether two values are known to be equal: by their description, by ==, or because their type is empty.
 template <class T>
 [[nodiscard]] bool is_same_value(T const& a, T const& b) {
   if constexpr (Described<T>)
@@ -23,7 +23,7 @@ template <class T>
     return std::is_empty_v<T>;
 }
 
-/// The same of goals and of behaviours: variants.
+/// The same for variants: goals and behaviours.
 template <class Variant>
 [[nodiscard]] bool is_same_choice(Variant const& a, Variant const& b) {
   auto const is_same_as_other = [&b]<class Model>(Model const& model) {
@@ -42,9 +42,8 @@ template <class Variant>
 /// Whether goals, lights and objects are the same.
 [[nodiscard]] bool is_same_besides_agents(RosterBase const& a, RosterBase const& b);
 
-/// Whether all that steps depend on, but the frame, is the same in two worlds: map, agents with their roads and
-/// behaviours, goals, lights and objects; and frames of the one fit the other. O(agents, and the lanes of their
-/// routes).
+/// Whether two worlds step alike from equal frames: they share map, agents with their roads and behaviours, goals,
+/// lights and objects. Then frames of one world also fit the other. O(agents + lanes of their routes).
 template <class World>
 [[nodiscard]] bool is_same_scene(World const& a, World const& b) {
   auto const &p = a.roster(), &q = b.roster();

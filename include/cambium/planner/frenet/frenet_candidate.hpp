@@ -12,7 +12,7 @@
 
 namespace cambium {
 
-/// What a course beside a lane costs (Werling, Ziegler, Kammel, Thrun 2010, sections V and VI).
+/// Weights of the cost of a course (Werling, Ziegler, Kammel, Thrun 2010, sections V and VI).
 struct FrenetCosts {
   double jerk = 0.1;
   double time = 0.1;
@@ -23,20 +23,24 @@ struct FrenetCosts {
 
   static constexpr char const* name = "frenet_costs";
   static constexpr char const* summary =
-      "of jerk, time, and deviations at the end, as Werling 2010; of lanes off the route";
+      "weights of jerk, duration and deviations at the end, as Werling 2010, and of lane changes to the destination";
   static constexpr auto parameters() {
     using P = FrenetCosts;
     return parameter_list(
-        parameter("jerk", &P::jerk, "s^5/m^2", non_negative, "of the integral of its square"),
-        parameter("time", &P::time, "1/s", non_negative, "of the time until it drives evenly"),
-        parameter("offset", &P::offset, "1/m^2", non_negative, "of the squared offset from the lane's middle then"),
-        parameter("speed", &P::speed, "s^2/m^2", non_negative, "of the squared deviation from the desired speed then"),
-        parameter("lateral", &P::lateral, "-", non_negative, "of all that is across the lane, against all along it"),
-        parameter("route", &P::route, "-", non_negative, "of each lane between it and the one that the route ends in"));
+        parameter("jerk", &P::jerk, "s^5/m^2", non_negative, "weight of the integral of the squared jerk"),
+        parameter("time", &P::time, "1/s", non_negative, "weight of the duration"),
+        parameter("offset", &P::offset, "1/m^2", non_negative,
+                  "weight of the squared offset from the lane's middle at the end"),
+        parameter("speed", &P::speed, "s^2/m^2", non_negative,
+                  "weight of the squared deviation from the desired speed at the end"),
+        parameter("lateral", &P::lateral, "-", non_negative,
+                  "weight of the lateral motion relative to the longitudinal one"),
+        parameter("route", &P::route, "-", non_negative,
+                  "cost of each lane change still needed to reach the destination"));
   }
 };
 
-/// What a vehicle can do, or its passengers bear.
+/// Limits of the vehicle or of comfort, and the clearance to others.
 struct FrenetLimits {
   double lowest_acceleration = -6.0;
   double highest_acceleration = 3.0;
@@ -45,24 +49,24 @@ struct FrenetLimits {
   double clearance = 0.3;
 
   static constexpr char const* name = "frenet_limits";
-  static constexpr char const* summary = "what a vehicle can do, or its passengers bear";
+  static constexpr char const* summary = "limits of the vehicle or of comfort, and the clearance to others";
   static constexpr auto parameters() {
     using P = FrenetLimits;
     return parameter_list(
         parameter("lowest_acceleration", &P::lowest_acceleration, "m/s^2", Range{-50, -0.1},
-                  "of valid courses, and where none is valid"),
+                  "of valid courses, and for braking if none is valid"),
         parameter("highest_acceleration", &P::highest_acceleration, "m/s^2", Range{0.1, 50}, "of valid courses"),
         parameter("lateral_acceleration", &P::lateral_acceleration, "m/s^2", Range{0.1, 50}, "of valid courses"),
         parameter("highest_curvature", &P::highest_curvature, "1/m", Range{1e-3, 10}, "of valid courses"),
-        parameter("clearance", &P::clearance, "m", Range{0, 10}, "to all sides"));
+        parameter("clearance", &P::clearance, "m", Range{0, 10}, "distance kept on all sides"));
   }
 };
 
-/// What a course is found to be.
+/// The result of checking a course: valid, or why not.
 enum class FrenetVerdict : std::uint8_t {
   unchecked,
   valid,
-  not_finite,  ///< its cost, or how it is to be driven, is no number
+  not_finite,  ///< its cost or its motion is not a finite number
   reverses,
   speed,
   acceleration,
@@ -78,23 +82,23 @@ enum class FrenetVerdict : std::uint8_t {
   return names[static_cast<std::size_t>(verdict)];
 }
 
-/// A course along a lane: for `duration` by two polynomials, then evenly.
+/// A course along a lane: two polynomials for `duration`, then constant speed at a constant offset.
 struct FrenetCandidate {
-  enum class Kind : std::uint8_t { keep_speed, follow };  ///< following what stands is stopping
+  enum class Kind : std::uint8_t { keep_speed, follow };  ///< to follow a standing leader is to stop
 
-  CorridorId corridor = none<CorridorId>;  ///< along whose centre line
+  CorridorId corridor = none<CorridorId>;  ///< the lane corridor along whose centre line it runs
   Kind kind = Kind::keep_speed;
-  bool by_way = false;       ///< the offset changes with the way, not with time: at low speed
+  bool by_way = false;       ///< at low speed: the offset depends on the distance, not on time
   double duration{};         ///< [s]
   double offset{};           ///< at the end [m]
   double speed{};            ///< at the end [m/s]
-  Quintic<double> along{};   ///< of time
-  Quintic<double> across{};  ///< of time or, by way, of the way driven
-  double way{};              ///< until the offset is reached [m]
+  Quintic<double> along{};   ///< `s` over time
+  Quintic<double> across{};  ///< offset over time or, if `by_way`, over the distance
+  double way{};              ///< distance at which the offset is reached [m]
   double cost{};
   FrenetVerdict verdict = FrenetVerdict::unchecked;
 
-  /// Where it is after `time` [s].
+  /// The motion after `time` [s].
   [[nodiscard]] FrenetMotion<double> at(double time) const {
     double const t = std::min(time, duration);
     auto const s = along.at(t);
@@ -119,18 +123,19 @@ struct FrenetCandidate {
   }
 };
 
-/// A place to be at some time: what the end of a course is chosen by.
+/// What the end of a course aims at.
 struct FrenetTarget {
-  double position{};  ///< of the reference point; infinite where only the speed counts [m]
+  double position{};  ///< of the reference point; infinite if only the speed matters [m]
   double speed{};     ///< [m/s]
 };
 
-/// The course from `start` to `target` at `offset` after `duration` [s], with its cost, but for the route's. Slower
-/// than `low_speed` [m/s] at either end, its offset changes with the way.
+/// The course from `start` that reaches `target` at `offset` after `duration` [s], with its cost except that of the
+/// route. If either end is slower than `low_speed` [m/s], its offset depends on the distance (`by_way`), because a
+/// vehicle moves sideways only while it drives.
 [[nodiscard]] inline FrenetCandidate frenet_candidate(FrenetMotion<double> const& start, FrenetTarget const& target,
                                                       double offset, double duration, double desired_speed,
                                                       double low_speed, FrenetCosts const& costs) {
-  constexpr double shortest_way = 10.0;  // [m] on which a vehicle can move aside
+  constexpr double shortest_way = 10.0;  // [m] in which a vehicle can move sideways
   FrenetCandidate c;
   c.duration = duration;
   c.offset = offset;
@@ -153,10 +158,11 @@ struct FrenetTarget {
   return c;
 }
 
-/// Whether a vehicle can drive as `course`, no faster than `fastest` [m/s], where that has `frenet`; else why not.
+/// `valid` if a vehicle can drive the motion, given as `course` and as `frenet`, within `limits` and no faster than
+/// `fastest` [m/s]; else the first limit that it violates.
 [[nodiscard]] inline FrenetVerdict drivable(FrenetLimits const& limits, CourseMotion<double> const& course,
                                             FrenetMotion<double> const& frenet, double fastest) {
-  constexpr double standing = -0.02;  // [m/s], for rounding
+  constexpr double standing = -0.02;  // [m/s], allows for rounding
   if (!std::isfinite(course.speed) || !std::isfinite(course.acceleration) || !std::isfinite(course.curvature))
     return FrenetVerdict::not_finite;
   if (frenet.speed < standing) return FrenetVerdict::reverses;

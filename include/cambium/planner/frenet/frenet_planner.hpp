@@ -28,7 +28,7 @@
 
 namespace cambium {
 
-/// Of a `FrenetPlanner`'s course at the vehicle, so that the next one goes on without a jerk.
+/// Acceleration and curvature where the last course has taken the vehicle, so that the next one continues smoothly.
 struct FrenetMemory {
   float acceleration = 0.0f;  ///< [m/s^2]
   float curvature = 0.0f;     ///< [1/m]
@@ -39,17 +39,18 @@ struct FrenetMemory {
   friend bool operator==(FrenetMemory const&, FrenetMemory const&) = default;
 };
 
-/// What a `FrenetPlanner` reports: its candidates are the courses, their scores less their costs; the first valid one
-/// is chosen. In the frames of its course only ego's state is planned; the rest of its records is that of a prediction.
+/// What a `FrenetPlanner` reports. Its candidates are the courses; a score is a negative cost. It chooses the first
+/// valid one. In the frames of the report's course, only ego's state is planned; the rest of ego's record is predicted.
 template <class World>
 struct FrenetReport : PlannerReport<World, FrenetMemory> {
-  std::vector<FrenetCandidate> courses;  ///< cheapest first, all checked unless the budget was over
+  std::vector<FrenetCandidate> courses;  ///< cheapest first; all checked unless the budget ended
 };
 
-/// Plans by sampling courses in the Frenet frames of its lane and those beside: quintic polynomials across, quartic or
-/// quintic ones along, to several speeds, or behind who is ahead, over several durations. The cheapest one that is
-/// drivable, stays on the road and keeps clear of the others, predicted once as `Others`, is driven; where there is
-/// none it brakes. `PredictionWorld` must have `Others` in its behaviour set.
+/// Plans by sampling courses in the Frenet frames of its lane and the lanes beside it. A course is a quintic polynomial
+/// across the lane and a quartic or quintic one along it, to one of several speeds or to a place behind the leader,
+/// over one of several durations. The planner drives the cheapest course that is drivable, stays on the road and keeps
+/// clear of the others, whose motion it predicts once as `Others`. If there is none, it brakes. `PredictionWorld` must
+/// have `Others` in its behaviour set.
 template <class PredictionWorld, class Others = ConstantAcceleration, SearchBudget Budget = NoBudget>
 struct FrenetPlanner {
   static_assert(detail::check_planner<PredictionWorld, Others>());
@@ -84,23 +85,27 @@ struct FrenetPlanner {
 
   static constexpr char const* name = "frenet_planner";
   static constexpr char const* summary =
-      "samples quintic courses in the Frenet frames of its lane and those beside, and drives the cheapest valid one";
+      "samples quintic courses in the Frenet frames of its lane and the lanes beside it, and drives the cheapest valid "
+      "one";
   static constexpr char const* source = "Werling, Ziegler, Kammel, Thrun 2010";
   static constexpr auto parameters() {
     using P = FrenetPlanner;
     return parameter_list(
         parameter("others", &P::others, "-", {}, "how the others are expected to behave"),
         parameter("desired_speed", &P::desired_speed, "m/s", Range{0.1, 100}, "on a free road"),
-        parameter("speed_shares", &P::speed_shares, "-", Range{0, 2}, "of it, that courses end with"),
-        parameter("durations", &P::durations, "s", Range{0.5, 30}, "of courses until they go on evenly"),
-        parameter("offsets", &P::offsets, "m", Range{-10, 10}, "from the lane's middle that courses end at"),
-        parameter("costs", &P::costs, "-", {}, "what is preferred"),
-        parameter("limits", &P::limits, "-", {}, "what is valid"),
-        parameter("minimum_gap", &P::minimum_gap, "m", Range{0, 100}, "kept to what stands"),
-        parameter("time_headway", &P::time_headway, "s", Range{0, 20}, "kept on top of it to who drives ahead"),
-        parameter("horizon", &P::horizon, "s", Range{0.1, 60}, "up to which courses are checked"),
-        parameter("step", &P::step, "s", Range{0.01, 2}, "between two checks"),
-        parameter("low_speed", &P::low_speed, "m/s", Range{0.1, 50}, "below which offsets change with the way driven"),
+        parameter("speed_shares", &P::speed_shares, "-", Range{0, 2},
+                  "shares of the desired speed that courses end with"),
+        parameter("durations", &P::durations, "s", Range{0.5, 30},
+                  "of the polynomials; then a course keeps its speed and offset"),
+        parameter("offsets", &P::offsets, "m", Range{-10, 10}, "from the lane's middle, at which courses end"),
+        parameter("costs", &P::costs, "-", {}, "weights that make a course cheap"),
+        parameter("limits", &P::limits, "-", {}, "what makes a course valid"),
+        parameter("minimum_gap", &P::minimum_gap, "m", Range{0, 100}, "gap to a standing leader"),
+        parameter("time_headway", &P::time_headway, "s", Range{0, 20}, "additional gap to a moving leader"),
+        parameter("horizon", &P::horizon, "s", Range{0.1, 60}, "time for which courses are checked"),
+        parameter("step", &P::step, "s", Range{0.01, 2}, "time between two checks"),
+        parameter("low_speed", &P::low_speed, "m/s", Range{0.1, 50},
+                  "below this speed, offsets depend on the distance driven"),
         parameter("budget", &P::budget, "-", {}, "how many courses are checked, the cheapest first"));
   }
 
@@ -162,7 +167,7 @@ struct FrenetPlanner {
   }
 
  private:
-  /// A state on a course, and how the course bends there.
+  /// A state on a course, with its motion along the course and in the Frenet frame.
   template <class State>
   struct Driven {
     State state;
@@ -170,7 +175,7 @@ struct FrenetPlanner {
     FrenetMotion<double> frenet;
   };
 
-  /// What it remembers while it brakes.
+  /// The memory while it brakes.
   template <class View>
   [[nodiscard]] Memory braking(View const& view) const {
     return {static_cast<float>(view.state().speed > 0.0 ? limits.lowest_acceleration : 0.0), 0.0f};
@@ -232,7 +237,8 @@ struct FrenetPlanner {
     }
   }
 
-  /// The ends of courses of `duration` [s]: speeds, and behind who is ahead or before the lane's end.
+  /// Sets the targets of courses of `duration` [s]: the speeds, a place behind the leader, a stop before the lane's
+  /// end.
   template <class View>
   void set_targets(View const& view, CorridorId number, map::LanePlace const& at, double wanted, double duration,
                    Workspace& workspace) const {
@@ -248,7 +254,7 @@ struct FrenetPlanner {
       targets.push_back({end - view.shape().front - minimum_gap, 0.0});
   }
 
-  /// Where ego follows `leader` at the time gap, `time` [s] from now.
+  /// The place and speed at which ego follows `leader` with the desired gap, `time` [s] from now.
   [[nodiscard]] FrenetTarget behind(detail::OthersAhead<PredictionWorld> const& ahead, RoadUser const& leader, double s,
                                     double time) const {
     double const contact = s + leader.gap;
@@ -295,7 +301,7 @@ struct FrenetPlanner {
     return FrenetVerdict::valid;
   }
 
-  /// Whether it ends nearer to who is ahead than following would, unless it passes.
+  /// Whether the course ends nearer to the leader than following would, and the leader leaves no room to pass.
   template <class View>
   [[nodiscard]] bool comes_too_near(View const& view, FrenetCandidate const& candidate,
                                     detail::OthersAhead<PredictionWorld> const& ahead) const {

@@ -4,7 +4,7 @@
 
 namespace cambium {
 
-/// A quantity and how it changes in time.
+/// A quantity and its first two derivatives in time.
 template <class Scalar>
 struct PointMotion {
   Scalar position{};      ///< [m]
@@ -12,7 +12,7 @@ struct PointMotion {
   Scalar acceleration{};  ///< [m/s^2]
 };
 
-/// A polynomial of time of order 5.
+/// A polynomial of degree 5 in time.
 template <class Scalar>
 struct Quintic {
   std::array<Scalar, 6> c{};  ///< c[0] + c[1] t + ... + c[5] t^5
@@ -23,7 +23,7 @@ struct Quintic {
             Scalar(2) * c[2] + t * (Scalar(6) * c[3] + t * (Scalar(12) * c[4] + t * Scalar(20) * c[5]))};
   }
 
-  /// [m/s^3]
+  /// Third derivative [m/s^3].
   [[nodiscard]] Scalar jerk(Scalar t) const {
     return Scalar(6) * c[3] + t * (Scalar(24) * c[4] + t * Scalar(60) * c[5]);
   }
@@ -36,13 +36,13 @@ struct Quintic {
   }
 };
 
-/// The course of the least squared jerk from `start` to `end` in `duration` > 0 [s] (Takahashi, Hongo, Ninomiya,
-/// Sugimoto 1989).
+/// The motion from `start` to `end` in `duration` > 0 [s] with the smallest integral of squared jerk (Takahashi, Hongo,
+/// Ninomiya, Sugimoto 1989).
 template <class Scalar>
 [[nodiscard]] Quintic<Scalar> quintic(PointMotion<Scalar> const& start, PointMotion<Scalar> const& end,
                                       Scalar duration) {
   Scalar const T = duration, T2 = T * T;
-  // What is left to be done beyond constant acceleration.
+  // Differences from a motion at the initial acceleration, scaled by powers of T to lengths.
   Scalar const way = end.position - (start.position + T * (start.speed + Scalar(0.5) * T * start.acceleration));
   Scalar const change = (end.speed - (start.speed + T * start.acceleration)) * T;
   Scalar const bend = (end.acceleration - start.acceleration) * T2;
@@ -52,8 +52,8 @@ template <class Scalar>
            (Scalar(6) * way - Scalar(3) * change + Scalar(0.5) * bend) / (T2 * T2 * T)}};
 }
 
-/// The same to the speed and acceleration of `end`, wherever that is: a polynomial of order 4 (Werling, Ziegler,
-/// Kammel, Thrun 2010, section V.C).
+/// Like `quintic`, but with a free end position: reaches the speed and acceleration of `end` by a polynomial of degree
+/// 4 (Werling, Ziegler, Kammel, Thrun 2010, section V.C).
 template <class Scalar>
 [[nodiscard]] Quintic<Scalar> quartic(PointMotion<Scalar> const& start, PointMotion<Scalar> const& end,
                                       Scalar duration) {

@@ -13,8 +13,8 @@
 
 namespace cambium {
 
-/// Accelerations and steering angles from a continuum, for a search with progressive widening; carried out by
-/// `ExternalInput`, which must be in the prediction's behaviour set.
+/// Accelerations and steering angles from a continuum, for a search with progressive widening. `ExternalInput`, which
+/// must be in the behaviour set of the prediction world, carries them out.
 struct SampledInputs {
   double lowest_acceleration = -5.0;
   double highest_acceleration = 3.0;
@@ -22,32 +22,32 @@ struct SampledInputs {
   ExternalInput model{};
 
   static constexpr char const* name = "sampled_inputs";
-  static constexpr char const* summary = "acceleration and steering, each uniform in its range";
+  static constexpr char const* summary = "acceleration and steering, each drawn uniformly from its range";
   static constexpr char const* source = "-";
   static constexpr auto parameters() {
     using P = SampledInputs;
     return parameter_list(
         parameter("lowest_acceleration", &P::lowest_acceleration, "m/s^2", Range{-50, 0}, "hardest braking"),
         parameter("highest_acceleration", &P::highest_acceleration, "m/s^2", Range{0, 50}, "strongest acceleration"),
-        parameter("largest_steering", &P::largest_steering, "rad", Range{0, 1.5}, "to either side"),
-        parameter("model", &P::model, "-", {}, "how they are carried out"));
+        parameter("largest_steering", &P::largest_steering, "rad", Range{0, 1.5}, "largest angle to either side"),
+        parameter("model", &P::model, "-", {}, "carries out the inputs"));
   }
 };
 
-/// How a search uses `Actions`, a struct that describes what an agent may do. Specialise it for actions of your own:
+/// How a search uses `Actions`, a struct that describes what an agent may do. Specialise it for your own actions:
 ///
-/// - `Behavior`: the model that carries actions out, of the behaviour set of the prediction;
-///   `static Behavior const& behavior(Actions const&)`.
-/// - `Choice`: what stands for an action in the tree, comparable by ==;
-///   `static void set(Behavior::Memory&, Choice)` tells the behaviour to do it from now on.
+/// - `Behavior`: the model that carries out the actions; it must be in the behaviour set of the prediction world.
+///   `static Behavior const& behavior(Actions const&)` returns it.
+/// - `Choice`: represents an action in the tree; comparable by ==. `static void set(Behavior::Memory&, Choice)` makes
+///   the behaviour carry it out from now on.
 /// - `static std::size_t list(Actions const&, View const&, Behavior::Memory const&, std::span<Choice> out)` writes the
-///   choices that are available into `out` and returns how many, at most `static constexpr std::size_t capacity`. Or,
-///   for a continuum: `static Choice sample(Actions const&, RandomStream&)`.
-/// - `static Choice usual(Actions const&)`: what a driver does who does nothing in particular.
-/// - `static auto action(Actions const&, Choice)`: what a choice stands for, as `RewardModel::prior` gets it;
-///   `static std::string text(Actions const&, Choice)`: in words.
-/// - `static bool goes_on_alike(Behavior::Memory const&, Behavior::Memory const&)`: whether the same manoeuvre is under
-///   way in both; a kept tree goes on only then.
+///   available choices to `out` and returns their number, at most `static constexpr std::size_t capacity`. For a
+///   continuum instead: `static Choice sample(Actions const&, RandomStream&)`.
+/// - `static Choice usual(Actions const&)`: the choice of a driver without any manoeuvre in mind.
+/// - `static auto action(Actions const&, Choice)`: the action behind a choice, as passed to `RewardModel::prior`.
+///   `static std::string text(Actions const&, Choice)`: the same in words.
+/// - `static bool goes_on_alike(Behavior::Memory const&, Behavior::Memory const&)`: whether both are in the middle of
+///   the same manoeuvre. A kept tree is continued only then.
 ///
 /// `Actions` itself must be described.
 template <class Actions>
@@ -86,7 +86,7 @@ struct ActionSet<MacroActions> {
   static bool goes_on_alike(MacroActions::Memory const& a, MacroActions::Memory const& b) {
     return a.change.target == b.change.target;
   }
-  /// What a driver does who does nothing in particular.
+  /// `keep_gap` if it is in the list, else `MacroActions::nothing`: keep lane and speed.
   static Choice usual(MacroActions const& actions) {
     for (std::size_t i = 0; i < actions.size(); ++i)
       if (actions.actions[i].kind == MacroAction::Kind::keep_gap) return static_cast<Choice>(i);

@@ -14,7 +14,7 @@
 
 namespace cambium {
 
-/// How a planner learns what others are like from what they do.
+/// How a planner updates its beliefs about others by observation.
 struct BeliefParameters {
   double forgetting = 0.02;
   double floor = 1e-3;
@@ -23,31 +23,30 @@ struct BeliefParameters {
   double interval = 0.2;
 
   static constexpr char const* name = "belief";
-  static constexpr char const* summary =
-      "how beliefs about others change with what is observed: Bayes' rule, and forgetting";
+  static constexpr char const* summary = "how beliefs about others follow observations: Bayes' rule with forgetting";
   static constexpr auto parameters() {
     using P = BeliefParameters;
     return parameter_list(
         parameter("forgetting", &P::forgetting, "-", Range{0, 1},
-                  "share that goes back to all hypotheses alike before each observation: intentions change"),
-        parameter("floor", &P::floor, "-", Range{0, 0.5}, "no hypothesis becomes less likely than this, by number"),
+                  "share spread evenly over all hypotheses before each observation, because intentions change"),
+        parameter("floor", &P::floor, "-", Range{0, 0.5},
+                  "lower bound of each probability, times the number of hypotheses"),
         parameter("speed_deviation", &P::speed_deviation, "m/s", Range{1e-3, 10},
-                  "standard deviation of a speed after a step, from what a hypothesis predicts"),
+                  "standard deviation of an observed speed from the one that a hypothesis predicts"),
         parameter("range", &P::range, "m", non_negative,
-                  "the 6 nearest agents within it are learnt about; all that is possible of the others is as likely"),
+                  "it learns about the 6 nearest agents within; for all others the hypotheses stay equally likely"),
         parameter("interval", &P::interval, "s", Range{0.01, 60},
-                  "between two calls of `think`; as a behaviour it looks in each step"));
+                  "time between two calls of `think`; a behaviour observes in every step instead"));
   }
 };
 
-/// How likely each of up to 8 hypotheses about another agent is: Bayes' rule on the likelihoods of what was observed.
-/// A value, of fixed size.
+/// Probabilities of up to 8 hypotheses about another agent, updated by Bayes' rule. A value of fixed size.
 class Belief {
  public:
   static constexpr std::size_t capacity = 8;
 
   Belief() = default;
-  /// All of `hypotheses`, 1 to `capacity`, are as likely. Throws `ParameterError` for another number.
+  /// Equal probabilities for `hypotheses` hypotheses. Throws `ParameterError` unless there are 1 to `capacity`.
   explicit Belief(std::size_t hypotheses) : size_(static_cast<std::uint8_t>(hypotheses)) {
     if (hypotheses < 1 || hypotheses > capacity)
       throw ParameterError("belief", "has " + std::to_string(hypotheses) + " hypotheses", "give 1 to 8");
@@ -60,15 +59,15 @@ class Belief {
     return static_cast<std::size_t>(std::max_element(weights_.begin(), weights_.begin() + size_) - weights_.begin());
   }
 
-  /// Takes in an observation: `likelihoods`, one per hypothesis, of it under each; any common factor cancels. Does
-  /// nothing where they are all zero, or one is no finite number: then the observation tells nothing. Throws
-  /// `ParameterError` for another number of them.
+  /// Updates the probabilities by an observation. `likelihoods`: that of the observation under each hypothesis; a
+  /// common factor cancels. Does nothing if all are zero, or one is negative or not finite. Throws `ParameterError`
+  /// unless there is one for each hypothesis.
   void update(std::span<double const> likelihoods, BeliefParameters const& parameters = {}) {
     if (likelihoods.size() != size_)
-      throw ParameterError("belief",
-                           "is given " + std::to_string(likelihoods.size()) + " likelihoods for " +
-                               std::to_string(size_) + " hypotheses",
-                           "give one for each");
+      throw ParameterError(
+          "belief",
+          "got " + std::to_string(likelihoods.size()) + " likelihoods for " + std::to_string(size_) + " hypotheses",
+          "give one for each");
     std::array<double, capacity> posterior{};
     double sum = 0.0;
     for (std::size_t h = 0; h < size_; ++h) {
@@ -86,7 +85,7 @@ class Belief {
     for (std::size_t h = 0; h < size_; ++h) weights_[h] = static_cast<float>(posterior[h] / total);
   }
 
-  /// One of the hypotheses, as likely as it is.
+  /// A hypothesis, drawn by its probability.
   template <BitStream Stream>
   [[nodiscard]] std::size_t sample(Stream& stream) const {
     double left = uniform01(stream);

@@ -23,28 +23,28 @@ namespace cambium {
 
 namespace detail {
 
-/// What an `Mcts` believes of one other agent.
+/// What an `Mcts` believes about one other agent.
 struct TrackedAgent {
   AgentId id = none<AgentId>;
   Belief belief{};
-  std::array<float, IdmHypotheses::most_regions> expected{};  ///< speed at the next look, by region [m/s]
+  std::array<float, IdmHypotheses::most_regions> expected{};  ///< next observed speed, by hypothesis [m/s]
 
   friend bool operator==(TrackedAgent const&, TrackedAgent const&) = default;
 };
 
 }  // namespace detail
 
-/// What an `Mcts` remembers that learns about others.
+/// Memory of an `Mcts` that learns about others.
 template <class CourseMemory>
 struct BeliefMemory {
-  /// Those about whom something is believed.
+  /// Greatest number of agents about whom it learns.
   static constexpr std::size_t capacity = 6;
 
   std::array<detail::TrackedAgent, capacity> tracked{};
-  double expected_at = -1.0;  ///< when their speeds are expected [s]
+  double expected_at = -1.0;  ///< time for which `TrackedAgent::expected` holds [s]
   CourseMemory course{};      ///< the manoeuvre under way
 
-  /// What is believed of an agent; null where nothing is.
+  /// The belief about an agent; null if there is none.
   [[nodiscard]] Belief const* belief(AgentId id) const {
     auto const at = std::ranges::find(tracked, id, &detail::TrackedAgent::id);
     return is_valid(id) && at != tracked.end() ? &at->belief : nullptr;
@@ -52,35 +52,36 @@ struct BeliefMemory {
   friend bool operator==(BeliefMemory const&, BeliefMemory const&) = default;
 };
 
-/// Plans by Monte Carlo tree search over `Actions` in predicted worlds, for what `Reward` says; the other agents behave
-/// as `Others`. `PredictionWorld` is the world's own type with a behaviour set that holds the model that carries
-/// actions out and `Others`. As a behaviour it searches anew in each step, for a copied world has no tree.
+/// Plans by Monte Carlo tree search over `Actions` in predicted worlds and maximises `Reward`; the other agents behave
+/// as `Others`. `PredictionWorld` is the type of the world in which it plans, with a behaviour set that contains
+/// `Others` and the model that carries out the actions. As a behaviour it searches anew in each step, because a copied
+/// world has no tree.
 ///
-/// By its fields and template arguments it is
-/// - single-agent search (UCT: Kocsis, Szepesvari 2006): the defaults;
-/// - cooperative search (decoupled UCT: Tak, Lanctot, Winands 2014; Lenz, Kessler, Knoll 2016), with `most_agents`
-///   above 1: the agents nearest to ego choose at the same time as it does, each for its own reward plus `cooperation`
-///   times the others'. Their goals are not known: let the reward say what everybody wants, such as speed and no
-///   collision;
-/// - search under a chance constraint (CC-POMCP: Lee et al. 2018), with `options.search.constraint.limit` below 1: the
-///   best reward among courses that collide with at most that probability, as far as the search can tell; where there
-///   is none, the least probable collision. The search learns what a collision weighs (a Lagrange multiplier), so the
-///   reward need not;
-/// - search with hypotheses about the others (RSBG: Bernhard, Knoll 2020), where `Others` is `IdmHypotheses`: their
-///   time headways are not known. Each lies in one of a few regions, with a probability that follows what the agent
-///   does (Bayes); each iteration draws all headways anew (root sampling: Silver, Veness 2010), so that nodes stand for
-///   ego's actions only.
+/// Its fields and template arguments select the variant; all of them combine:
 ///
-/// All of these go together.
+/// - Single-agent search (UCT: Kocsis, Szepesvari 2006): the defaults.
+/// - Cooperative search (decoupled UCT: Tak, Lanctot, Winands 2014; Lenz, Kessler, Knoll 2016): `most_agents` above 1.
+///   The agents nearest to ego choose at the same time, each for its own reward plus `cooperation` times the rewards of
+///   the others. Their goals are unknown, so the reward should hold what everybody wants, such as speed and no
+///   collision.
+/// - Search under a chance constraint (CC-POMCP: Lee et al. 2018): `options.search.constraint.limit` below 1. It
+///   maximises the reward among courses whose estimated probability of a collision is within the limit; if there is
+///   none, it minimises that probability. It learns the weight of a collision (a Lagrange multiplier), so the reward
+///   needs none.
+/// - Search with hypotheses about the others (RSBG: Bernhard, Knoll 2020): `Others` is `IdmHypotheses`. The time
+///   headways of the others are unknown. Each lies in one of a few regions, whose probabilities follow from what the
+///   agent does (Bayes). Each iteration draws all headways anew (root sampling: Silver, Veness 2010), so nodes stand
+///   for ego's actions only.
 template <class PredictionWorld, class Actions = MacroActions, class Reward = TrafficReward, class Others = IdmClassic,
           class Options = MctsOptions<>>
 struct Mcts {
   static_assert(detail::check_planner<PredictionWorld, Others>());
-  static_assert(Described<Others>,
-                "cambium: a planner's Others must be a behaviour with described parameters, as cambium::IdmClassic; "
-                "where it has none: `static constexpr auto parameters() { return cambium::parameter_list(); }`");
+  static_assert(
+      Described<Others>,
+      "cambium: a planner's Others must be a behaviour with described parameters, such as cambium::IdmClassic; "
+      "if it has none: `static constexpr auto parameters() { return cambium::parameter_list(); }`");
 
-  /// Whether it learns what the others are like.
+  /// Whether it learns about the others.
   static constexpr bool learns = std::is_same_v<Others, IdmHypotheses>;
 
   using CourseMemory = detail::ActionMemory<Actions>;
@@ -101,21 +102,21 @@ struct Mcts {
 
   static constexpr char const* name = "mcts";
   static constexpr char const* summary =
-      "tree search (decoupled UCT) over ego's actions in predicted worlds; by its fields with agents that choose at "
-      "once, a limit of risk, and beliefs about the others";
+      "tree search (decoupled UCT) over ego's actions in predicted worlds; optionally with other agents that choose at "
+      "the same time, a limit on risk, and beliefs about the others";
   static constexpr char const* source =
       "Kocsis, Szepesvari 2006; Lenz, Kessler, Knoll 2016; Lee et al. 2018; Bernhard, Knoll 2020";
   static constexpr auto parameters() {
     using P = Mcts;
     return parameter_list(
-        parameter("actions", &P::actions, "-", {}, "what ego, and whoever chooses with it, may do"),
+        parameter("actions", &P::actions, "-", {}, "what ego and the agents that choose with it may do"),
         parameter("others", &P::others, "-", {}, "how the others are expected to behave"),
-        parameter("reward", &P::reward, "-", {}, "what ego wants, and each of those who choose with it"),
-        parameter("options", &P::options, "-", {}, "how it is searched"),
-        parameter("most_agents", &P::most_agents, "-", Range{1, 32}, "who choose, ego among them"),
+        parameter("reward", &P::reward, "-", {}, "what ego and each agent that chooses with it wants"),
+        parameter("options", &P::options, "-", {}, "settings of the search"),
+        parameter("most_agents", &P::most_agents, "-", Range{1, 32}, "number of agents that choose, including ego"),
         parameter("range", &P::range, "m", non_negative, "agents farther away do not choose"),
-        parameter("cooperation", &P::cooperation, "-", Range{0, 1}, "weight of the others' rewards in one's own"),
-        parameter("belief", &P::belief, "-", {}, "how it learns about others that are idm_hypotheses"));
+        parameter("cooperation", &P::cooperation, "-", Range{0, 1}, "weight of the others' rewards in an agent's own"),
+        parameter("belief", &P::belief, "-", {}, "how it learns about the others if they are idm_hypotheses"));
   }
 
   template <class View>
@@ -124,9 +125,9 @@ struct Mcts {
         view, course_of(memory), workspace, dt, [&](auto& w) -> auto const& { return search(view, memory, dt, w); });
   }
 
-  /// See `PlannerModel`. The report's course is the principal variation, and from its end on what agents do without any
-  /// manoeuvre; a candidate's score is its mean return, and `decidedness` the gap between the shares of visits of the
-  /// chosen action and the next. After `workspace.keep()` it builds on the last tree: see there.
+  /// See `PlannerModel`. The report's course is the principal variation; after its end, all agents drive on without a
+  /// manoeuvre. A candidate's score is its mean return; `decidedness` is the share of visits of the chosen action minus
+  /// that of the next best. After `workspace.keep()` the search continues the last tree, see there.
   template <class View>
   [[nodiscard]] Report think(View const& view, Memory const& memory, Workspace& workspace) const {
     check_parameters(*this);
@@ -154,7 +155,7 @@ struct Mcts {
     auto world = detail::world_to_search<PredictionWorld>(view, actions, course_of(memory), others, slots);
     if (most_agents > 1 && !slots.empty())
       for (auto const slot : nearest_agents(world, slots[0], static_cast<std::size_t>(most_agents - 1), range)) {
-        if (reward.judge(world, slot, options.step).ends) continue;  // its course is over
+        if (reward.judge(world, slot, options.step).ends) continue;  // its own course is over
         world.set_behavior(world.roster().agents[slot].id, ActionSet<Actions>::behavior(actions));
         slots.push_back(slot);
       }
@@ -175,13 +176,13 @@ struct Mcts {
     return std::get_if<PredictionWorld::Behaviors::template index<IdmHypotheses>>(&frame.agents[slot].memory);
   }
 
-  /// Takes in what the others did since the last look, and notes what they are expected to do until the next one, in
-  /// `dt` [s]. Returns what is believed of each.
+  /// Updates the beliefs by what the others did since the last observation, and predicts what they will do until the
+  /// next one, in `dt` [s]. Returns the belief about each.
   [[nodiscard]] auto learn(PredictionWorld const& world, Slot ego, Memory& memory, double dt) const {
     constexpr double same_time = 1e-6;  // [s]
     auto frame = world.frame();
     auto near = nearest_agents(world, ego, Memory::capacity, belief.range);
-    std::erase_if(near, [&](Slot slot) { return headway_at(frame, slot) == nullptr; });  // they choose
+    std::erase_if(near, [&](Slot slot) { return headway_at(frame, slot) == nullptr; });  // they choose themselves
     auto const regions = static_cast<std::size_t>(others.regions);
     bool const was_expected = std::abs(memory.expected_at - world.time()) < same_time;
     decltype(memory.tracked) tracked{};
@@ -194,7 +195,7 @@ struct Mcts {
       if (is_known && was_expected) observe(tracked[i], frame.agents[near[i]].state.speed);
       unknowns.push_back({near[i], tracked[i].belief});
     }
-    // Of the rest nothing is known.
+    // Nothing is known about the rest.
     for (Slot slot{}; index_of(slot) < world.size(); ++slot)
       if (headway_at(frame, slot) != nullptr && std::ranges::find(near, slot) == near.end())
         unknowns.push_back({slot, Belief(regions)});
@@ -212,12 +213,12 @@ struct Mcts {
       likelihoods[r] = 0.5 * off * off;
       nearest = std::min(nearest, likelihoods[r]);
     }
-    // Relative to the best: where no headway explains what was seen, they would all vanish.
+    // Relative to the best; otherwise all would underflow to 0 if no headway explains the observation.
     for (std::size_t r = 0; r < regions; ++r) likelihoods[r] = detail::portable_exp(nearest - likelihoods[r]);
     other.belief.update({likelihoods.data(), regions}, belief);
   }
 
-  /// Notes the speed of each of `slots` after `dt` [s] under each hypothesis.
+  /// Predicts the speed of each of `slots` after `dt` [s] under each hypothesis.
   void expect(PredictionWorld const& world, std::span<Slot const> slots, Memory& memory, double dt) const {
     PredictionWorld trial = world;
     for (std::size_t r = 0; r < static_cast<std::size_t>(others.regions); ++r) {

@@ -19,7 +19,7 @@
 
 namespace cambium {
 
-/// How a search of traffic goes about it. Under a `TimeBudget` what comes out depends on the machine and its load.
+/// Settings of a tree search in traffic. Under a `TimeBudget` the result depends on the machine and its load.
 template <SelectionPolicy SelectionType = Ucb1, class RolloutType = RandomRollout,
           SearchBudget BudgetType = IterationBudget>
 struct MctsOptions {
@@ -35,27 +35,27 @@ struct MctsOptions {
   int threads = 1;
 
   static constexpr char const* name = "mcts_options";
-  static constexpr char const* summary = "how a search of traffic goes about it";
+  static constexpr char const* summary = "settings of a tree search in traffic";
   static constexpr auto parameters() {
     using P = MctsOptions;
     return parameter_list(parameter("search", &P::search, "-", {}, "the tree"),
-                          parameter("budget", &P::budget, "-", {}, "how long it grows"),
-                          parameter("selection", &P::selection, "-", {}, "how agents choose at its nodes"),
-                          parameter("rollout", &P::rollout, "-", {}, "how courses go on from its leaves"),
-                          parameter("step", &P::step, "s", Range{0.01, 10}, "between decisions"),
+                          parameter("budget", &P::budget, "-", {}, "how long the tree grows"),
+                          parameter("selection", &P::selection, "-", {}, "how agents choose at the nodes"),
+                          parameter("rollout", &P::rollout, "-", {}, "how courses continue from the leaves"),
+                          parameter("step", &P::step, "s", Range{0.01, 10}, "time between decisions"),
                           parameter("threads", &P::threads, "-", Range{1, 64},
-                                    "trees that share the budget, each grown by a thread of its own, and are merged"));
+                                    "number of trees that share the budget, one per thread, merged at the end"));
   }
 };
 
-/// What a search of traffic reports: its candidates are ego's actions at the root.
+/// What a tree search in traffic reports. Its candidates are ego's actions at the root.
 template <class Domain, class Memory>
 struct MctsReport : PlannerReport<typename Domain::World, Memory> {
   SearchResult<typename Domain::Action> result;
-  std::vector<AgentId> choosing;  ///< the agents of the result, ego first
+  std::vector<AgentId> choosing;  ///< the agents that choose, as in `result`; ego first
 };
 
-/// A search of traffic and its memory: what a planner works with.
+/// The trees of an `Mcts` and the memory that it reuses.
 template <class DomainType, class Options>
 class MctsWorkspace {
   static_assert(
@@ -76,7 +76,7 @@ class MctsWorkspace {
   using Search = TreeSearch<Domain, typename Options::Selection, typename Options::Rollout, typename Options::Budget>;
   using Result = SearchResult<Action>;
 
-  /// Searches from the domain's world. Throws `ParameterError` where an option is out of its range.
+  /// Searches from the domain's world. Throws `ParameterError` if an option is out of range.
   Result const& run(Domain domain, Options const& options, std::uint64_t seed) {
     if (std::exchange(keeps_, false) && !domain.is_same_game(this->domain())) trees_.forget();
     auto const root = domain.root();
@@ -85,20 +85,19 @@ class MctsWorkspace {
     return trees_.run(root, seed);
   }
 
-  /// Keeps, for the next `think`, what is known of where the best actions lead; returns whether there is anything. To
-  /// be asked when the world is about to go on for one step of the search (`MctsOptions::step`). The next `think`, of a
-  /// planner with the last report's `memory`, builds on it where the world came out as predicted, at the time that was
-  /// predicted (`TrafficDomain::same_state`), and nothing else has changed, in the world, the reward or the actions
-  /// (`TrafficDomain::is_same_game`); `result.kept_nodes` says whether it did. Who fills a new world for each think has
-  /// to set its time (`WorldOptions::time`). Not where hypotheses are drawn for each iteration: there nodes have no
-  /// states.
+  /// Keeps the subtree below the best actions for the next `think`; returns whether there is one. Call it before the
+  /// world advances by one step of the search (`MctsOptions::step`). The next `think`, with the `memory` of the last
+  /// report, continues the subtree if the world turns out as predicted, at the predicted time
+  /// (`TrafficDomain::same_state`), and nothing else has changed in the world, the reward or the actions
+  /// (`TrafficDomain::is_same_game`). `result.kept_nodes` tells whether it did. If you fill a new world for each
+  /// `think`, set its time (`WorldOptions::time`). Impossible with `IdmHypotheses`, because then nodes have no states.
   bool keep() {
     auto const& result = trees_.result();
     keeps_ = !result.variation.empty() && trees_.keep({result.variation.data(), result.agents});
     return keeps_;
   }
 
-  /// The search after a run; with threads the first one.
+  /// The search after a run; the first one if there are several threads. Throws `SearchError` before the first run.
   [[nodiscard]] Search& search() {
     if (trees_.searches().empty())
       throw SearchError("workspace", "nothing has been searched yet", "call `think` first");
@@ -106,8 +105,8 @@ class MctsWorkspace {
   }
   [[nodiscard]] Domain& domain() { return search().domain(); }
 
-  /// Plays the principal variation until `end` [s], and beyond its end what agents do without any manoeuvre; calls
-  /// `f(frame)` after each step of the search, and at `end`.
+  /// Plays the principal variation until the time `end` [s]; if it is shorter, all agents then drive on without a
+  /// manoeuvre. Calls `f(frame)` after each step of the search, and at `end`.
   template <class F>
   void play(double end, F&& f) {
     auto& domain = this->domain();
@@ -120,14 +119,14 @@ class MctsWorkspace {
       for (std::size_t k = 0; k < agents; ++k)
         joint_[k] = (step + 1) * agents <= result.variation.size() ? result.variation[step * agents + k]
                                                                    : domain.policy_action(state_, k, none);
-      // A plan ends where it is asked for: between two steps of the search the course need not be straight.
+      // `end` may lie between two steps. The course may bend there: take a shorter step instead of interpolating.
       double const left = end - state_.frame.time;
       domain.advance(state_, joint_, left < domain.dt() - 1e-9 ? left : domain.dt());
       f(std::as_const(state_.frame));
     }
   }
 
-  /// What the last run, which must have had no problem, found; all but ego's memory.
+  /// The report on the last run, except ego's memory. Precondition: the run had no problem.
   template <class Memory>
   [[nodiscard]] MctsReport<Domain, Memory> report() {
     auto& domain = this->domain();
@@ -153,22 +152,22 @@ class MctsWorkspace {
 
  private:
   ParallelTreeSearch<Search> trees_;
-  bool keeps_ = false;  ///< the next run may build on what was found
+  bool keeps_ = false;  ///< the next run may continue the tree
   typename Domain::State state_;
   std::vector<Action> joint_;
 };
 
 namespace detail {
 
-/// The purpose of the random numbers of a search in traffic.
+/// Purpose of the random stream that seeds a search in traffic.
 inline constexpr std::uint32_t search_purpose = 0x3c75;
 
-/// What carries out the actions: its memory, as of a lane change under way, lasts from one search to the next.
+/// Memory of the behaviour that carries out the actions, such as a lane change under way. It outlasts a search.
 template <class Actions>
 using ActionMemory = typename ActionSet<Actions>::Behavior::Memory;
 
-/// The world that is predicted where ego may choose, in the middle of what `memory` says; slot of ego there first in
-/// `slots`, or empty.
+/// The prediction world in which ego chooses, in the middle of the manoeuvre that `memory` describes. Sets `slots` to
+/// ego's slot there; empty if ego is not in traffic.
 template <class PredictionWorld, class Actions, class Others, class View>
 [[nodiscard]] PredictionWorld world_to_search(View const& view, Actions const& actions,
                                               ActionMemory<Actions> const& memory, Others const& others,
@@ -183,7 +182,7 @@ template <class PredictionWorld, class Actions, class Others, class View>
   return world;
 }
 
-/// What ego does over the next `dt` [s] by the principal variation, and what it remembers then.
+/// Fills `plan` with what ego does in the next `dt` [s] by the principal variation, and `memory` with its memory then.
 template <class View, class Workspace, class Memory>
 void take_course(View const& view, Workspace& workspace, double dt, Plan<View>& plan, Memory& memory) {
   auto const slot = workspace.domain().slots()[0];
@@ -196,7 +195,7 @@ void take_course(View const& view, Workspace& workspace, double dt, Plan<View>& 
   go_straight_on(view, view.time() + dt, plan);
 }
 
-/// Why a course is over, of the first of `slots` whose is; else that the reward says so.
+/// Why the course of an agent in `slots` is over, in words, for the first agent to which that applies.
 template <class World>
 [[nodiscard]] std::string what_is_over(World const& world, std::span<Slot const> slots) {
   for (auto const slot : slots) {
@@ -209,10 +208,10 @@ template <class World>
     if (OncomingLane{}(world, slot)) return who + "is in a lane of oncoming traffic";
     if (world.reached_goal(slot)) return who + "is at its goal";
   }
-  return "the reward (`judge`) says so";
+  return "the reward (`judge`) ends it";
 }
 
-/// Throws `SearchError`, in words of traffic, where `ego` could not be planned for.
+/// Throws `SearchError` in terms of traffic, unless the search had no problem.
 template <class Action, class Workspace>
 void throw_if(SearchResult<Action> const& result, Workspace& workspace, AgentId ego) {
   auto const problem = result.problem;
@@ -221,12 +220,11 @@ void throw_if(SearchResult<Action> const& result, Workspace& workspace, AgentId 
   if (problem == SearchProblem::no_agents || problem == SearchProblem::not_in_world)
     throw SearchError(where, "it is not in the predicted world, or not in traffic", "plan for agents that drive");
   if (problem == SearchProblem::not_finite)
-    throw SearchError(where,
-                      "its reward (`judge`), its cost or the value of a course is not a finite number, or beyond 1e290",
-                      "check what the reward gives in such states");
+    throw SearchError(where, "its reward (`judge`), its cost or the value of a course is not finite, or exceeds 1e290",
+                      "check what the reward returns in such states");
   if (problem == SearchProblem::no_actions)
-    throw SearchError(where, "none of its actions is available in a state that the search came to",
-                      "give it one that always is, such as keep_gap or stay");
+    throw SearchError(where, "none of its actions is available in a state that the search reached",
+                      "add one that always is, such as keep_gap or stay");
   if (problem == SearchProblem::terminal_root)
     throw SearchError(
         where,
@@ -235,9 +233,9 @@ void throw_if(SearchResult<Action> const& result, Workspace& workspace, AgentId 
   cambium::throw_if(problem, result.problem_steps);
 }
 
-/// The plan that `search(workspace)`, which says what was found, leads to for the next `dt` [s]. Where ego's course is
-/// over already, at its goal as after a collision, it drives on without any manoeuvre. Nothing is kept for the next
-/// one: a copy of the world would not have it.
+/// The plan for the next `dt` [s] by the result of `search(workspace)`. If ego's course is over already, at its goal or
+/// after a collision, ego drives on without a manoeuvre. It keeps no tree for the next plan, because a copy of the
+/// world would not have it.
 template <class PredictionWorld, class View, class Memory, class Workspace, class Search>
 [[nodiscard]] Plan<View> plan_by_search(View const& view, Memory& memory, Workspace& workspace, double dt,
                                         Search&& search) {

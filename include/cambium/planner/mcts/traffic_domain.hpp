@@ -19,14 +19,17 @@
 
 namespace cambium {
 
-/// Traffic as a game: a predicted world in which some agents, ego first, choose actions for each step of `dt` [s],
-/// while the others behave as predicted. States are frames; the roster is shared by all. A course ends for all where it
-/// ends for one of those that choose.
+/// Traffic as a game: a prediction world in which some agents, ego first, choose an action for each step of `dt` [s],
+/// while the others behave as predicted. A state is a frame; all states share the roster. When the course of one
+/// choosing agent ends, the game is over for all.
+///
+/// `step` copies nothing: it exchanges the state's frame with that of the one world, steps the world, judges it, and
+/// exchanges the frames again.
 template <class PredictionWorld, class Actions, class Reward>
 class TrafficDomain {
   static_assert(SearchActions<Actions>,
                 "cambium::TrafficDomain<World, Actions, Reward>: Actions must be described and have a "
-                "cambium::ActionSet<Actions>, as MacroActions, MotionPrimitives and SampledInputs have");
+                "cambium::ActionSet<Actions>, like MacroActions, MotionPrimitives and SampledInputs");
   using Set = ActionSet<Actions>;
   using Behavior = typename Set::Behavior;
   static_assert(
@@ -39,14 +42,14 @@ class TrafficDomain {
   static_assert(
       Described<Reward>,
       "cambium::TrafficDomain<World, Actions, Reward>: describe Reward's parameters, as cambium::TrafficReward "
-      "does; where it has none: `static constexpr auto parameters() { return cambium::parameter_list(); }`");
+      "does; if it has none: `static constexpr auto parameters() { return cambium::parameter_list(); }`");
 
  public:
   using World = PredictionWorld;
   using Action = typename Set::Choice;
-  using Memory = typename Behavior::Memory;                                                  ///< of who chooses
-  static constexpr std::size_t behavior_index = World::Behaviors::template index<Behavior>;  ///< of who chooses
-  /// World randomness is keyed by its seed, agent and step: the same actions lead to the same frame.
+  using Memory = typename Behavior::Memory;                                                  ///< of choosing agents
+  static constexpr std::size_t behavior_index = World::Behaviors::template index<Behavior>;  ///< of choosing agents
+  /// The world draws random numbers by seed, agent and step, so the same actions lead to the same frame.
   static constexpr bool is_deterministic = true;
 
   struct State {
@@ -54,11 +57,11 @@ class TrafficDomain {
     bool over = false;
   };
 
-  /// Nobody chooses; to be assigned to.
+  /// A placeholder in which no agent chooses; assign another domain to it.
   explicit TrafficDomain(World world) : world_(std::move(world)) {}
 
-  /// `slots`: who chooses, ego first; they must have the behaviour that carries out `actions`. `cooperation`: what the
-  /// rewards of the others count to each of them (Lenz, Kessler, Knoll 2016), 0 to 1.
+  /// `slots`: the agents that choose, ego first; each must have the behaviour that carries out `actions`.
+  /// `cooperation`, 0 to 1: weight of the other choosing agents' rewards in an agent's own (Lenz, Kessler, Knoll 2016).
   TrafficDomain(World world, std::span<Slot const> slots, Actions const& actions, Reward const& reward, double dt,
                 double cooperation = 0.0)
       : world_(std::move(world)),
@@ -68,7 +71,7 @@ class TrafficDomain {
         dt_(dt),
         cooperation_(cooperation) {}
 
-  /// The world's own frame as a root; over where the reward says that a course ends there.
+  /// The world's frame as the root state. The game is over there if the reward ends a course.
   [[nodiscard]] State root() {
     return {world_.frame(),
             std::ranges::any_of(slots_, [&](auto slot) { return reward_.judge(world_, slot, dt_).ends; })};
@@ -101,7 +104,7 @@ class TrafficDomain {
     return Set::sample(actions_, random);
   }
 
-  /// All drive on as they do without any manoeuvre.
+  /// The action of a driver without any manoeuvre in mind.
   [[nodiscard]] Action policy_action(State const&, std::size_t, RandomStream&) const { return Set::usual(actions_); }
 
   bool step(State& state, std::span<Action const> joint, RandomStream&, std::span<AgentOutcome> outcomes) {
@@ -119,7 +122,7 @@ class TrafficDomain {
     return state.over;
   }
 
-  /// What the reward says that the rest of a course is worth, the others' by the cooperation.
+  /// The reward's value of the rest of the course, plus that of the other choosing agents weighted by the cooperation.
   [[nodiscard]] double value(State const& state, std::size_t agent) requires detail::ValuesCourses<Reward, World> {
     return in_world(state, [&] {
       double sum = 0.0;
@@ -130,7 +133,7 @@ class TrafficDomain {
     });
   }
 
-  /// How much the reward expects of each action beforehand.
+  /// The reward's prior weight of each action.
   void priors(State const& state, std::size_t agent, std::span<Action const> actions,
               std::span<double> out) requires detail::HasPrior<Reward, World, Set> {
     in_world(state, [&] {
@@ -139,14 +142,14 @@ class TrafficDomain {
     });
   }
 
-  /// All drive on for `duration` [s], at most `dt`, and nobody judges it.
+  /// Steps `state` by `duration` [s], at most `dt`, without judging it.
   void advance(State& state, std::span<Action const> joint, double duration) {
     enter(state, joint, duration);
     world_.exchange(state.frame);
   }
 
-  /// Whether what was seen comes close to what was predicted: half a metre, half a metre per second and 0.05 rad, for
-  /// everybody; and whether those who choose are in the middle of the same manoeuvre.
+  /// Whether `seen` is close to `predicted`: for every agent within 0.5 m, 0.5 m/s and 0.05 rad, at the same time; and
+  /// whether the choosing agents are in the middle of the same manoeuvres.
   [[nodiscard]] bool same_state(State const& predicted, State const& seen) const {
     auto const is_near = [](auto const& a, auto const& b) {
       return a.status == b.status && a.lane.corridor == b.lane.corridor && std::abs(a.lane.s - b.lane.s) < 0.5 &&
@@ -163,8 +166,8 @@ class TrafficDomain {
            std::ranges::all_of(slots_, goes_on_alike);
   }
 
-  /// Whether what is known of states of another one holds for this one: the same agents choose among the same actions
-  /// at the same times and for the same reward, and nothing differs in their worlds but the states.
+  /// Whether results for states of `other` hold here as well: the same agents choose among the same actions, at the
+  /// same time step and for the same reward, and the worlds differ only in their frames.
   [[nodiscard]] bool is_same_game(TrafficDomain const& other) const {
     return std::ranges::equal(slots_, other.slots_) && equal_parameters(actions_, other.actions_) && dt_ == other.dt_ &&
            cooperation_ == other.cooperation_ && detail::is_same_value(reward_, other.reward_) &&
@@ -176,7 +179,7 @@ class TrafficDomain {
   }
 
  private:
-  /// What `f()` finds with the world in `state`, which is given back as it was.
+  /// Returns `f()`, called while the world is in `state`. Puts both frames back afterwards, even if `f` throws.
   template <class F>
   decltype(auto) in_world(State const& state, F&& f) {
     struct Visit {
@@ -189,7 +192,7 @@ class TrafficDomain {
     return f();
   }
 
-  /// Steps the world from `state`, and leaves it there.
+  /// Steps the world from `state`; the result stays in the world until the frames are exchanged again.
   void enter(State& state, std::span<Action const> joint, double duration) {
     for (std::size_t k = 0; k < slots_.size(); ++k)
       Set::set(*std::get_if<behavior_index>(&state.frame.agents[slots_[k]].memory), joint[k]);
@@ -211,8 +214,8 @@ class TrafficDomain {
   double cooperation_ = 0.0;
 };
 
-/// The same where the others' time headways are drawn anew for each iteration, by what is believed of each: nodes stand
-/// for ego's actions whatever the others do.
+/// Traffic in which each iteration draws the others' time headways anew by the belief about each. Nodes then stand only
+/// for the actions of the choosing agents, not for states.
 template <class PredictionWorld, class Actions, class Reward>
 class HypothesisDomain : public TrafficDomain<PredictionWorld, Actions, Reward> {
   using Base = TrafficDomain<PredictionWorld, Actions, Reward>;
@@ -223,7 +226,7 @@ class HypothesisDomain : public TrafficDomain<PredictionWorld, Actions, Reward> 
 
   using Base::Base;
 
-  /// What is believed of the agent at `slot`, whose behaviour must be `hypotheses`.
+  /// The belief about the agent at `slot`, whose behaviour must be `IdmHypotheses`.
   struct Unknown {
     Slot slot;
     Belief belief;

@@ -11,21 +11,26 @@
 
 namespace cambium {
 
-/// What a step brought an agent, and whether its course ends there.
+/// The outcome of a step for one agent, and whether its course ends there.
 struct Judgement {
   AgentOutcome outcome{};
   bool ends = false;
 };
 
-/// Judges, for a search, where a step of `dt` [s] led the agent at `slot` of `world`: a copyable, described struct
-/// (`static constexpr auto parameters()`, see `TrafficReward`) with
-///   `template <class World> Judgement judge(World& world, Slot slot, double dt) const`
-/// and, where it likes,
-///   `double value(World& world, Slot slot, double dt) const`: what a course that is cut off there would
-///     still bring, for `TruncatedRollout` and `NoRollout`;
-///   `double prior(World& world, Slot slot, MacroAction const& action) const`: how likely the action is
-///     the best, a weight of at least 0, for `Puct` (a `MotionPrimitive` or an `ExternalInput::Memory` likewise).
-/// Pure: what it judges is in the frame; its parts are evaluators. No allocation.
+/// Judges, for a search, the state of the agent at `slot` of `world` after a step of `dt` [s]. A copyable, described
+/// struct (`static constexpr auto parameters()`, see `TrafficReward`) with
+///
+/// - `template <class World> Judgement judge(World& world, Slot slot, double dt) const`.
+///
+/// Optional members:
+///
+/// - `double value(World& world, Slot slot, double dt) const`: the expected further return of a course that is cut off
+///   there, for `TruncatedRollout` and `NoRollout`.
+/// - `double prior(World& world, Slot slot, MacroAction const& action) const`: a weight of at least 0, the higher the
+///   more likely the action is the best, for `Puct`. The action is a `MotionPrimitive` or an `ExternalInput::Memory` if
+///   the search uses these.
+///
+/// A reward is pure: everything that it judges is in the frame. No allocation.
 template <class R, class World>
 concept RewardModel = std::copyable<R> && requires(R const reward, World& world) {
   { reward.judge(world, Slot{}, double{}) } -> std::same_as<Judgement>;
@@ -45,8 +50,8 @@ concept HasPrior = requires(R const reward, World& world, typename Set::Choice c
 
 }  // namespace detail
 
-/// Evaluators with weights: what ends a course (collision, leaving the road, goal), and what happens on the way. A
-/// collision costs 1 in the second channel too.
+/// A weighted sum of evaluators: events that end a course (collision, leaving the road, goal) and terms for driving. A
+/// collision also counts as a cost of 1, see `AgentOutcome`.
 struct TrafficReward {
   double goal = 100.0;
   double collision = -1000.0;
@@ -65,19 +70,21 @@ struct TrafficReward {
     using P = TrafficReward;
     return parameter_list(
         parameter("goal", &P::goal, "-", any_finite, "for reaching the goal, which ends the course"),
-        parameter("collision", &P::collision, "-", any_finite, "for touching somebody or something, likewise"),
+        parameter("collision", &P::collision, "-", any_finite,
+                  "for a collision with an agent or object, which ends the course"),
         parameter("off_road", &P::off_road, "-", any_finite,
-                  "for leaving the road or the route, or driving in an oncoming lane, likewise; the map's end is none"),
-        parameter("progress", &P::progress, "1/m", any_finite, "for each metre along the lane"),
+                  "for leaving the road or the route, or driving in an oncoming lane, which ends the course; the end "
+                  "of the map does not count"),
+        parameter("progress", &P::progress, "1/m", any_finite, "per metre along the lane"),
         parameter("speed_deviation", &P::speed_deviation, "1/m", any_finite,
-                  "for each second, times the deviation from the desired speed"),
-        parameter("desired_speed", &P::desired_speed, "m/s", Range{0, 200}, "see there"),
+                  "per second, times the deviation from the desired speed"),
+        parameter("desired_speed", &P::desired_speed, "m/s", Range{0, 200}, "for speed_deviation"),
         parameter("acceleration", &P::acceleration, "s^3/m^2", any_finite,
-                  "for each second, times the square of the acceleration"),
+                  "per second, times the squared acceleration"),
         parameter("lateral_offset", &P::lateral_offset, "1/(m s)", any_finite,
-                  "for each second, times the distance from the lane's centre"),
+                  "per second, times the distance from the lane's centre"),
         parameter("lookahead", &P::lookahead, "s", Range{0, 1000},
-                  "for which a course that is cut off counts as going on as it is; of truncated roll-outs, or none"));
+                  "time for which a course that is cut off counts as unchanged; for TruncatedRollout and NoRollout"));
   }
 
   template <class World>
@@ -96,7 +103,7 @@ struct TrafficReward {
     return {{on_the_way(world, slot, dt) + (there ? goal : 0.0), 0.0}, there};
   }
 
-  /// What is on the way, for `lookahead`.
+  /// The terms for driving, as if nothing changed during `lookahead`.
   template <class World>
   [[nodiscard]] double value(World const& world, Slot slot, double) const {
     return on_the_way(world, slot, lookahead);
@@ -115,7 +122,7 @@ struct TrafficReward {
   }
 };
 
-/// A term of a reward: what an evaluator says after a step, times a weight.
+/// A term of a reward: an evaluator's value after a step, times a weight.
 template <class E>
 struct Weighted {
   static_assert(
@@ -131,10 +138,11 @@ struct Weighted {
   static constexpr auto parameters() {
     using P = Weighted;
     return parameter_list(
-        parameter("evaluator", &P::evaluator, "-", {}, "what judges"),
-        parameter("weight", &P::weight, "-", any_finite, "of what it says"),
-        parameter("per_second", &P::per_second, "-", Range{0, 1}, "it counts for as long as the step takes"),
-        parameter("ends", &P::ends, "-", Range{0, 1}, "a course ends where it says anything but 0"));
+        parameter("evaluator", &P::evaluator, "-", {}, "returns a bool or a number"),
+        parameter("weight", &P::weight, "-", any_finite, "factor on its value"),
+        parameter("per_second", &P::per_second, "-", Range{0, 1},
+                  "whether the term is multiplied by the duration of the step"),
+        parameter("ends", &P::ends, "-", Range{0, 1}, "whether a value other than 0 ends the course"));
   }
 
   template <class World>
@@ -149,7 +157,7 @@ struct Weighted {
   }
 };
 
-/// What `TrafficReward` says, and terms of a user's own: one for each evaluator.
+/// `TrafficReward` plus one weighted term for each evaluator. If the rest ends the course, a term no longer counts.
 template <class... Evaluators>
 struct Reward;
 
@@ -163,11 +171,12 @@ struct Reward<First, Rest...> {
 
   static constexpr char const* name = "reward";
   static constexpr auto parameters() {
-    return parameter_list(parameter("first", &Reward::first, "-", {}, "the first term"),
-                          parameter("rest", &Reward::rest, "-", {}, "the further ones, at last those of traffic"));
+    return parameter_list(
+        parameter("first", &Reward::first, "-", {}, "the first term"),
+        parameter("rest", &Reward::rest, "-", {}, "the other terms; the last of them are those of TrafficReward"));
   }
 
-  /// Those of traffic.
+  /// The `TrafficReward` at the end of the list.
   [[nodiscard]] TrafficReward& traffic() {
     if constexpr (sizeof...(Rest) == 0)
       return rest;

@@ -12,8 +12,9 @@
 
 namespace cambium {
 
-/// Keep the lane, change left, change right; each at constant speed, faster, slower; never faster than car following
-/// allows (Ding, Zhang, Chen, Shen 2020, section IV).
+/// Nine actions: keep the lane, change left or change right, each at constant speed, faster or slower, but never faster
+/// than car following permits (Ding, Zhang, Chen, Shen 2020, section IV). `faster` and `slower` are accelerations
+/// [m/s^2].
 [[nodiscard]] inline MacroActions semantic_actions(double faster = 1.5, double slower = -2.0) {
   using Kind = MacroAction::Kind;
   MacroActions result;
@@ -23,18 +24,18 @@ namespace cambium {
   return result;
 }
 
-/// What another driver may be about to do, by its number among `intended_actions`.
+/// What another driver may be about to do. The value is the number of its action in `intended_actions`.
 enum class Intention : std::uint8_t {
-  keep_lane,     ///< keeps its speed, slower behind others
-  not_yield,     ///< keeps its speed whoever comes in front of it
-  change_left,   ///< slower behind others
+  keep_lane,     ///< keeps its speed, but slows down behind others
+  not_yield,     ///< keeps its speed even if somebody cuts in
+  change_left,   ///< changes lanes; slows down behind others
   change_right,  ///< likewise
 };
 
-/// The others' actions, one per `Intention`; `idm`: how they keep gaps.
+/// The others' actions, one for each `Intention`. `idm`: how they keep gaps; its desired speed is ignored.
 [[nodiscard]] inline MacroActions intended_actions(IdmParameters idm) {
   using Kind = MacroAction::Kind;
-  idm.desired_speed = 100.0;  // they keep theirs
+  idm.desired_speed = 100.0;  // no pull towards a desired speed: they keep the speed that they have
   MacroActions result;
   result.actions = {{Kind::stay, 0.0, true},
                     {Kind::stay, 0.0, false},
@@ -44,7 +45,7 @@ enum class Intention : std::uint8_t {
   return result;
 }
 
-/// What is assumed of intentions before, and of what they look like.
+/// Prior probabilities of the others' intentions, and the lateral speeds by which a lane change is recognised.
 struct IntentionPrior {
   double change = 0.05;
   double not_yield = 0.2;
@@ -52,24 +53,27 @@ struct IntentionPrior {
   double deviation = 0.3;
 
   static constexpr char const* name = "intention_prior";
-  static constexpr char const* summary = "lane changes are seen by the lateral speed, normal about its mean";
+  static constexpr char const* summary =
+      "a lane change shows in the lateral speed, normally distributed about its mean";
   static constexpr char const* source = "own";
   static constexpr auto parameters() {
     using P = IntentionPrior;
     return parameter_list(
-        parameter("change", &P::change, "-", Range{0, 0.45}, "probability of a change to one side"),
-        parameter("not_yield", &P::not_yield, "-", Range{0, 1}, "of not yielding to who comes in front of it"),
-        parameter("lateral_speed", &P::lateral_speed, "m/s", Range{0.01, 10}, "mean in a change; 0 in the lane"),
-        parameter("deviation", &P::deviation, "m/s", Range{0.01, 10}, "standard deviation of it"));
+        parameter("change", &P::change, "-", Range{0, 0.45}, "prior probability of a change to one side"),
+        parameter("not_yield", &P::not_yield, "-", Range{0, 1},
+                  "probability that it does not yield to somebody who cuts in"),
+        parameter("lateral_speed", &P::lateral_speed, "m/s", Range{0.01, 10},
+                  "mean during a change; it is 0 in the lane"),
+        parameter("deviation", &P::deviation, "m/s", Range{0.01, 10}, "standard deviation of the lateral speed"));
   }
 };
 
-/// Probabilities of changing lanes.
+/// Probabilities that an agent is changing lanes.
 struct ChangeProbabilities {
   double left{}, right{};
 };
 
-/// By Bayes' rule from a lateral speed in its lane, left positive [m/s].
+/// The probabilities, by Bayes' rule, given the lateral speed in its lane [m/s], left positive.
 [[nodiscard]] inline ChangeProbabilities change_probabilities(IntentionPrior const& prior, double lateral_speed) {
   auto const exponent = [&](double mean) {
     double const off = (lateral_speed - mean) / prior.deviation;
@@ -83,7 +87,7 @@ struct ChangeProbabilities {
   return {l / (l + r + k), r / (l + r + k)};
 }
 
-/// A sequence of ego's actions: `first` for some layers of the tree, then `then` for the rest.
+/// A sequence of ego's actions: `first` for `layers_of_first` layers of the tree, `then` for the rest.
 struct PolicySequence {
   std::uint8_t first{}, then{};
   std::uint8_t layers_of_first{};
@@ -91,8 +95,8 @@ struct PolicySequence {
   friend bool operator==(PolicySequence, PolicySequence) = default;
 };
 
-/// The sequences with one change at most from the `ongoing` action, over `layers` >= 1: the domain-specific closed-loop
-/// policy tree of Ding et al. 2020. (actions - 1) layers + 1 of them; the ongoing action alone is first.
+/// All sequences over `layers` >= 1 that leave the `ongoing` action at most once: the domain-specific closed-loop
+/// policy tree of Ding et al. 2020. There are (actions - 1) layers + 1; the first keeps the ongoing action throughout.
 [[nodiscard]] inline std::vector<PolicySequence> policy_sequences(std::size_t actions, std::size_t ongoing,
                                                                   std::size_t layers) {
   auto const first = static_cast<std::uint8_t>(ongoing);
@@ -105,22 +109,22 @@ struct PolicySequence {
   return sequences;
 }
 
-/// Another's intention, other than to keep its lane and yield, as far as it matters to ego.
+/// An intention of another agent that matters to ego: anything but to keep its lane and yield.
 struct IntentionBranch {
   Slot slot{};
   Intention intention{};
   double probability{};
-  int side = 0;  ///< matters only to sequences that change to the left (1), to the right (-1), or to all (0)
+  int side = 0;  ///< matters to sequences that change to the left (1), to the right (-1), or to all (0)
 };
 
-/// What a course costs by its parts: 0 is best.
+/// The cost of a course in parts; 0 is best.
 struct PolicyCost {
-  double efficiency{};  ///< mean share of the desired speed that it lacks or exceeds
-  double safety{};      ///< share of the time with unsafe gaps; collisions and leaving the road on top
-  double navigation{};  ///< mean number of lanes between it and the one that the route ends in
+  double efficiency{};  ///< mean deviation from the desired speed, as a share of it
+  double safety{};      ///< share of the time with unsafe gaps, plus collisions and leaving the road
+  double navigation{};  ///< mean number of lane changes still needed to reach the destination
 };
 
-/// How a `PolicyTreePlanner` weighs these.
+/// How a `PolicyTreePlanner` weighs the parts of the cost, and what it takes for a safe gap.
 struct PolicyWeights {
   double efficiency = 1.0;
   double safety = 1.0;
@@ -135,31 +139,34 @@ struct PolicyWeights {
 
   static constexpr char const* name = "policy_weights";
   static constexpr char const* summary =
-      "cost of a sequence: (1 - worst_case) expected + worst_case of the worst scenario that is not too unlikely";
+      "cost of a sequence: (1 - worst_case) expected + worst_case times the worst scenario that is not too unlikely";
   static constexpr char const* source = "after Ding et al. 2020";
   static constexpr auto parameters() {
     using P = PolicyWeights;
     return parameter_list(
-        parameter("efficiency", &P::efficiency, "-", non_negative, "of the deviation from the desired speed"),
-        parameter("safety", &P::safety, "-", non_negative, "of unsafe gaps"),
-        parameter("navigation", &P::navigation, "-", non_negative, "of not being in the lane that the route ends in"),
-        parameter("collision", &P::collision, "-", non_negative, "and of leaving the road, in units of safety"),
-        parameter("change", &P::change, "-", non_negative, "of giving up the ongoing action now"),
+        parameter("efficiency", &P::efficiency, "-", non_negative, "weight of the deviation from the desired speed"),
+        parameter("safety", &P::safety, "-", non_negative, "weight of unsafe gaps"),
+        parameter("navigation", &P::navigation, "-", non_negative,
+                  "weight of the lane changes still needed to reach the destination"),
+        parameter("collision", &P::collision, "-", non_negative,
+                  "cost of a collision, or of leaving the road, in units of safety"),
+        parameter("change", &P::change, "-", non_negative, "cost of leaving the ongoing action now"),
         parameter("worst_case", &P::worst_case, "-", Range{0, 1},
-                  "weight of the worst of the scenarios with odds of least_odds, against the mean"),
+                  "weight of the worst scenario, against the mean over all"),
         parameter("least_odds", &P::least_odds, "-", non_negative,
-                  "of another's intention against its keeping the lane: less likely ones count in the mean only"),
-        parameter("reaction_time", &P::reaction_time, "s", Range{0, 10}, "of safe gaps"),
-        parameter("braking", &P::braking, "m/s^2", Range{0.1, 50}, "of both at safe gaps"),
-        parameter("minimum_gap", &P::minimum_gap, "m", Range{0, 100}, "of safe gaps"));
+                  "a scenario less likely than this, relative to all keeping their lanes, counts in the mean only"),
+        parameter("reaction_time", &P::reaction_time, "s", Range{0, 10}, "of the follower, in a safe gap"),
+        parameter("braking", &P::braking, "m/s^2", Range{0.1, 50}, "deceleration of both vehicles, in a safe gap"),
+        parameter("minimum_gap", &P::minimum_gap, "m", Range{0, 100}, "left at standstill, in a safe gap"));
   }
 
-  /// The gap [m] that a follower at `speed` behind one at `leader_speed` [m/s] needs to stop behind it.
+  /// Gap [m] with which a follower at `speed` can stop behind a leader that brakes from `leader_speed` [m/s].
   [[nodiscard]] double safe_gap(double speed, double leader_speed) const {
     double const ways = (speed * speed - leader_speed * leader_speed) / (2.0 * braking);
     return minimum_gap + reaction_time * speed + std::max(0.0, ways);
   }
 
+  /// The weighted sum of the parts.
   [[nodiscard]] double total(PolicyCost const& cost) const {
     return efficiency * cost.efficiency + safety * cost.safety + navigation * cost.navigation;
   }

@@ -19,29 +19,34 @@
 
 namespace cambium {
 
-/// A sequence of ego's actions, and what it is expected to cost.
+/// A sequence of ego's actions and its cost.
 struct PolicyBranch {
   PolicySequence sequence{};
-  std::size_t scenarios{};  ///< of the others' intentions that it was simulated in
-  PolicyCost mean{};        ///< expected
-  double expected{};        ///< in all
-  double worst{};           ///< of the scenarios that are not too unlikely, no less than the expected one
-  double cost{};            ///< of both: what it is chosen by
+  std::size_t scenarios{};  ///< number of simulations, one for each intention of the others that matters
+  PolicyCost mean{};        ///< over the scenarios, weighted by their probabilities
+  double expected{};        ///< total of `mean`
+  double worst{};           ///< total of the worst scenario that is not too unlikely; at least `expected`
+  double cost{};            ///< the mix of both by which the planner chooses
 };
 
-/// What a `PolicyTreePlanner` reports: its candidates are the branches, their scores less their costs. The course is
-/// that of the best branch where all others keep their lanes.
+/// What a `PolicyTreePlanner` reports. Its candidates are the branches; a score is a negative cost. The course is that
+/// of the best branch if all others keep their lanes.
 template <class World>
 struct PolicyTreeReport : PlannerReport<World, MacroActions::Memory> {
   std::vector<PolicyBranch> branches;
-  std::vector<IntentionBranch> intentions;  ///< of the others, that were asked for
+  std::vector<IntentionBranch> intentions;  ///< of the others, as simulated
 };
 
-/// Plans by a tree of sequences of semantic actions with one change at most, each simulated closed loop under what the
-/// others near it may intend: all keep their lanes, or one of them does otherwise, where that matters to the sequence;
-/// the scenarios are weighed by how likely they are. EUDM (Ding, Zhang, Chen, Shen 2020, "Efficient uncertainty-aware
-/// decision-making for automated driving using guided branching"). `PredictionWorld` must have `MacroActions` in its
-/// behaviour set.
+/// EUDM (Ding, Zhang, Chen, Shen 2020, "Efficient uncertainty-aware decision-making for automated driving using guided
+/// branching"): plans by a tree of sequences of semantic actions with at most one change. It simulates each sequence
+/// closed loop in several scenarios: all others keep their lanes, or one of them deviates in a way that matters to the
+/// sequence. Scenarios count by their probabilities. `PredictionWorld` must have `MacroActions` in its behaviour set.
+///
+///     layer       1          2          3            scenarios, each where it matters
+///     ongoing    keep ----- keep ----- keep           all others keep their lanes
+///     later      keep ----- keep ----- left           agent 4, on the left, does not yield
+///     soon       keep ----- left ----- left           agent 7, on the right, changes left
+///     now        left ----- left ----- left
 template <class PredictionWorld, SearchBudget Budget = NoBudget>
 struct PolicyTreePlanner {
   static_assert(detail::check_planner<PredictionWorld>());
@@ -49,7 +54,7 @@ struct PolicyTreePlanner {
                 "cambium::PolicyTreePlanner<PredictionWorld>: the behaviour set of PredictionWorld must contain "
                 "cambium::MacroActions, which carries out ego's actions and the others' intentions");
 
-  using Memory = MacroActions::Memory;  ///< the ongoing action
+  using Memory = MacroActions::Memory;  ///< the ongoing action and its lane change
   using Report = PolicyTreeReport<PredictionWorld>;
 
   struct Workspace {
@@ -76,21 +81,22 @@ struct PolicyTreePlanner {
 
   static constexpr char const* name = "policy_tree_planner";
   static constexpr char const* summary =
-      "simulates sequences of semantic actions with one change at most, under the others' intentions that matter to "
-      "them, and drives the best of mean and worst case";
+      "simulates sequences of semantic actions with at most one change, under those intentions of the others that "
+      "matter to each, and drives the one with the best mix of mean and worst case";
   static constexpr char const* source = "Ding, Zhang, Chen, Shen 2020 (EUDM)";
   static constexpr auto parameters() {
     using P = PolicyTreePlanner;
     return parameter_list(
-        parameter("actions", &P::actions, "-", {}, "ego's"),
+        parameter("actions", &P::actions, "-", {}, "what ego may do"),
         parameter("others", &P::others, "-", {}, "how the others keep gaps"),
-        parameter("intentions", &P::intentions, "-", {}, "what they may be about to do"),
-        parameter("weights", &P::weights, "-", {}, "what a good sequence is"),
-        parameter("layers", &P::layers, "-", Range{1, 32}, "of the tree"),
-        parameter("layer_duration", &P::layer_duration, "s", Range{0.1, 20}, "of each"),
-        parameter("step", &P::step, "s", Range{0.01, 1}, "of the simulations"),
-        parameter("most_agents", &P::most_agents, "-", Range{0, 32}, "nearest others whose intentions are asked for"),
-        parameter("range", &P::range, "m", non_negative, "within which these are"),
+        parameter("intentions", &P::intentions, "-", {}, "what the others may be about to do"),
+        parameter("weights", &P::weights, "-", {}, "what makes a sequence good"),
+        parameter("layers", &P::layers, "-", Range{1, 32}, "decisions in a sequence"),
+        parameter("layer_duration", &P::layer_duration, "s", Range{0.1, 20}, "time between decisions"),
+        parameter("step", &P::step, "s", Range{0.01, 1}, "time step of the simulations"),
+        parameter("most_agents", &P::most_agents, "-", Range{0, 32},
+                  "number of nearest others whose intentions are simulated"),
+        parameter("range", &P::range, "m", non_negative, "agents farther away keep their lanes"),
         parameter("budget", &P::budget, "-", {}, "how many sequences are simulated, the ongoing action first"));
   }
 
@@ -142,7 +148,7 @@ struct PolicyTreePlanner {
            " s, then " + words(sequence.then);
   }
 
-  /// The ongoing action: after a change is done, keeping the lane at its acceleration.
+  /// The ongoing action. After a completed lane change, that is to keep the lane at the same acceleration.
   [[nodiscard]] std::size_t ongoing(Memory const& memory) const {
     std::size_t const chosen = memory.chosen < actions.size() ? memory.chosen : 0;
     auto const& action = actions.actions[chosen];
@@ -183,7 +189,8 @@ struct PolicyTreePlanner {
     return workspace.branches.empty() ? SearchProblem::no_actions : SearchProblem::none;
   }
 
-  /// Those beside ego may come into its lane from where they are ahead, and not let it into theirs from behind.
+  /// The intentions that matter. Agents in the lanes beside ego may change into its lane if they are not behind, and
+  /// may refuse to let it into theirs if they are not ahead.
   void set_intentions(Workspace& workspace) const {
     auto const& world = *workspace.world;
     auto const& own = world.roster().agents[workspace.ego];
@@ -208,7 +215,8 @@ struct PolicyTreePlanner {
     }
   }
 
-  /// Simulates a branch where all others keep their lanes, and where one of them deviates, weighed by the odds.
+  /// Simulates a branch with all others in their lanes, and then with each deviation of one of them; weighs the costs
+  /// by the odds of each scenario.
   void weigh(Workspace& workspace, Memory const& memory, PolicyBranch& branch) const {
     auto const& sequence = branch.sequence;
     auto const matters = [&](IntentionBranch const& other) {
@@ -227,7 +235,7 @@ struct PolicyTreePlanner {
       sum += odds;
     };
     add(nullptr, 1.0);
-    constexpr double most = 0.99;  // odds against all that is likely are finite
+    constexpr double most = 0.99;  // keeps the odds finite
     for (auto const& other : workspace.intentions)
       if (other.probability > 0.0 && matters(other)) {
         double const p = std::min(other.probability, most);
@@ -239,7 +247,7 @@ struct PolicyTreePlanner {
     branch.cost = (1.0 - weights.worst_case) * branch.expected + weights.worst_case * branch.worst;
   }
 
-  /// Puts the predicted world to its start, with ego about to do `action`.
+  /// Resets the prediction world to its start, with ego about to do `action`, and one agent about to deviate if given.
   void begin(Workspace& workspace, Memory const& memory, std::uint8_t action, IntentionBranch const* deviation) const {
     auto& world = *workspace.world;
     world.restore(workspace.start);
@@ -255,7 +263,7 @@ struct PolicyTreePlanner {
           .choose(static_cast<std::size_t>(deviation->intention));
   }
 
-  /// Up to where ego's course is over, or, for `all`, to the horizon.
+  /// The cost of a simulation to the end of ego's course; with `all` it continues to the horizon, at no further cost.
   template <bool all, class F>
   [[nodiscard]] PolicyCost simulate(Workspace& workspace, Memory const& memory, PolicySequence const& sequence,
                                     IntentionBranch const* deviation, F&& visit) const {
@@ -274,7 +282,7 @@ struct PolicyTreePlanner {
       auto const end = course_end(world, workspace.ego);
       if (end == CourseEnd::over || (workspace.has_goal && world.reached_goal(workspace.ego)))
         is_over = true;
-      else if (end != CourseEnd::none) {  // the sooner, the worse
+      else if (end != CourseEnd::none) {  // the earlier, the worse
         double const left = static_cast<double>(steps - k) / steps;
         cost.safety += weights.collision * (1.0 + left);
         cost.efficiency += left;
@@ -286,7 +294,7 @@ struct PolicyTreePlanner {
     return cost;
   }
 
-  /// The costs of `share` of the time.
+  /// Adds the cost of the present state, which stands for `share` of the horizon.
   void add_step(Workspace& workspace, AgentId id, double share, PolicyCost& cost) const {
     auto const view = workspace.world->observe(id);
     double const speed = view.state().speed, desired = actions.idm.desired_speed;

@@ -24,7 +24,7 @@
 
 namespace cambium {
 
-/// How a `ProposalPlanner` weighs what a proposal is like, and what it finds comfortable.
+/// How a `ProposalPlanner` scores a proposal: the weights of its marks, and the limits of comfort.
 struct ProposalScoring {
   double progress = 5.0;
   double time_to_collision = 5.0;
@@ -39,22 +39,25 @@ struct ProposalScoring {
 
   static constexpr char const* name = "proposal_scoring";
   static constexpr char const* summary =
-      "0 where it collides by its own fault or leaves the road, else the weighted mean of its marks, 0 to 1 each";
+      "0 if it collides by its own fault or leaves the road, else the weighted mean of its marks, each from 0 to 1";
   static constexpr char const* source = "Dauner et al. 2023; Karnchanachari et al. 2024 (nuPlan)";
   static constexpr auto parameters() {
     using P = ProposalScoring;
     return parameter_list(
-        parameter("progress", &P::progress, "-", non_negative, "weight of the way along the lane, over the longest"),
-        parameter("time_to_collision", &P::time_to_collision, "-", non_negative, "of no collision within look_ahead"),
-        parameter("speed_limit", &P::speed_limit, "-", non_negative, "of the share of time within the limit"),
-        parameter("comfort", &P::comfort, "-", non_negative, "of staying within the limits below"),
-        parameter("look_ahead", &P::look_ahead, "s", Range{0, 10}, "at constant velocities"),
-        parameter("lowest_acceleration", &P::lowest_acceleration, "m/s^2", Range{-50, 0}, "comfortable"),
-        parameter("highest_acceleration", &P::highest_acceleration, "m/s^2", Range{0, 50}, "comfortable"),
-        parameter("lateral_acceleration", &P::lateral_acceleration, "m/s^2", Range{0, 50}, "comfortable"),
-        parameter("jerk", &P::jerk, "m/s^3", non_negative, "comfortable, along the course"),
+        parameter("progress", &P::progress, "-", non_negative,
+                  "weight of the distance along the lane, relative to the longest"),
+        parameter("time_to_collision", &P::time_to_collision, "-", non_negative,
+                  "weight of no collision within look_ahead"),
+        parameter("speed_limit", &P::speed_limit, "-", non_negative, "weight of the share of time within the limit"),
+        parameter("comfort", &P::comfort, "-", non_negative, "weight of staying within the limits below"),
+        parameter("look_ahead", &P::look_ahead, "s", Range{0, 10},
+                  "time to collision is tested this far, at constant velocities"),
+        parameter("lowest_acceleration", &P::lowest_acceleration, "m/s^2", Range{-50, 0}, "limit of comfort"),
+        parameter("highest_acceleration", &P::highest_acceleration, "m/s^2", Range{0, 50}, "limit of comfort"),
+        parameter("lateral_acceleration", &P::lateral_acceleration, "m/s^2", Range{0, 50}, "limit of comfort"),
+        parameter("jerk", &P::jerk, "m/s^3", non_negative, "limit of comfort, along the course"),
         parameter("indifference", &P::indifference, "-", Range{0, 1},
-                  "an offset farther from the lane's middle, or a lower speed, must be better by more than this"));
+                  "a later proposal in the order of preference must score better by more than this"));
   }
 
   void check(std::string const& where) const {
@@ -63,39 +66,39 @@ struct ProposalScoring {
   }
 };
 
-/// A proposal, and what came of it.
+/// A proposal and the outcome of its simulation.
 struct ProposalScore {
   double speed_share{};  ///< of the desired speed
   double offset{};       ///< from the middle of the lane [m]
   double progress{};     ///< along the lane [m]
   bool collides = false;
   bool leaves_road = false;
-  double time_to_infraction = std::numeric_limits<double>::infinity();  ///< until either [s]
+  double time_to_infraction = std::numeric_limits<double>::infinity();  ///< until one of these [s]
   double time_to_collision = 1.0;                                       ///< mark, 0 or 1
   double comfort = 1.0;                                                 ///< mark, 0 or 1
-  double speed_limit = 1.0;                                             ///< mark: share of the time
-  double score{};                                                       ///< in all, 0 to 1
+  double speed_limit = 1.0;                                             ///< mark: share of the time within the limit
+  double score{};                                                       ///< total, 0 to 1
 };
 
-/// What a `ProposalPlanner` reports: its candidates are the proposals. It chooses none, and brakes, where even the best
-/// meets with an infraction too soon.
+/// What a `ProposalPlanner` reports. Its candidates are the proposals. It chooses none and brakes if even the best soon
+/// collides or leaves the road.
 template <class World>
 struct ProposalReport : PlannerReport<World, IdmProposal::Memory> {
   std::vector<ProposalScore> proposals;  ///< in order of preference
-  std::size_t best{};                    ///< of the proposals
+  std::size_t best{};                    ///< among the proposals
 };
 
-/// Simulates IDM drivers at several speeds and offsets from the middle of its lane, closed loop, among others who
-/// behave as `Others`, scores them, and drives as the best: PDM-Closed (Dauner, Hallgarten, Geiger, Chitta 2023,
-/// "Parting with misconceptions about learning-based vehicle motion planning"). Brakes where that meets with an
-/// infraction too soon. `PredictionWorld` must have `IdmProposal` and `Others` in its behaviour set. Keeps its lane; at
-/// its goal it drives on.
+/// PDM-Closed (Dauner, Hallgarten, Geiger, Chitta 2023, "Parting with misconceptions about learning-based vehicle
+/// motion planning"): simulates IDM drivers at several speeds and offsets from the middle of its lane, closed loop,
+/// while the others behave as `Others`. It scores them and drives like the best. It brakes if that one collides or
+/// leaves the road within `emergency_time`. It keeps its lane and drives on at its goal. `PredictionWorld` must have
+/// `IdmProposal` and `Others` in its behaviour set.
 template <class PredictionWorld, class Others = ConstantAcceleration, SearchBudget Budget = NoBudget>
 struct ProposalPlanner {
   static_assert(detail::check_planner<PredictionWorld, Others>());
   static_assert(PredictionWorld::Behaviors::template contains<IdmProposal>,
                 "cambium::ProposalPlanner<PredictionWorld>: the behaviour set of PredictionWorld must contain "
-                "cambium::IdmProposal, who is simulated");
+                "cambium::IdmProposal, the driver that is simulated");
 
   using Memory = IdmProposal::Memory;  ///< the proposal that is driven
   using Report = ProposalReport<PredictionWorld>;
@@ -104,7 +107,7 @@ struct ProposalPlanner {
     std::optional<PredictionWorld> world;
     typename PredictionWorld::FrameType start;
     Slot ego{};
-    std::vector<Slot> counting;  ///< whom it has to look out for
+    std::vector<Slot> counting;  ///< agents that ego has to keep clear of
     std::vector<ProposalScore> proposals;
     std::size_t best{};
     bool is_cut_short = false;
@@ -126,22 +129,24 @@ struct ProposalPlanner {
 
   static constexpr char const* name = "proposal_planner";
   static constexpr char const* summary =
-      "simulates IDM drivers over speeds and lateral offsets, and drives as the one that scores best; brakes where "
-      "that "
-      "soon collides";
+      "simulates IDM drivers at several speeds and lateral offsets and drives like the one that scores best; brakes if "
+      "that one soon collides";
   static constexpr char const* source = "Dauner, Hallgarten, Geiger, Chitta 2023 (PDM-Closed)";
   static constexpr auto parameters() {
     using P = ProposalPlanner;
     return parameter_list(
-        parameter("driver", &P::driver, "-", {}, "who is proposed"),
+        parameter("driver", &P::driver, "-", {}, "the driver that is simulated"),
         parameter("others", &P::others, "-", {}, "how the others are expected to behave"),
-        parameter("speed_shares", &P::speed_shares, "-", Range{0, 2}, "of the desired speed; preferred one first"),
-        parameter("offsets", &P::offsets, "m", Range{-10, 10}, "from the lane's middle; preferred one first"),
-        parameter("scoring", &P::scoring, "-", {}, "what a good proposal is"),
-        parameter("horizon", &P::horizon, "s", Range{0.1, 60}, "of the simulations"),
-        parameter("step", &P::step, "s", Range{0.01, 1}, "of the simulations"),
-        parameter("emergency_time", &P::emergency_time, "s", non_negative, "to an infraction, below which it brakes"),
-        parameter("emergency_deceleration", &P::emergency_deceleration, "m/s^2", Range{0.01, 50}, "then"),
+        parameter("speed_shares", &P::speed_shares, "-", Range{0, 2},
+                  "shares of the desired speed, in order of preference"),
+        parameter("offsets", &P::offsets, "m", Range{-10, 10}, "from the lane's middle, in order of preference"),
+        parameter("scoring", &P::scoring, "-", {}, "what makes a proposal good"),
+        parameter("horizon", &P::horizon, "s", Range{0.1, 60}, "duration of the simulations"),
+        parameter("step", &P::step, "s", Range{0.01, 1}, "time step of the simulations"),
+        parameter("emergency_time", &P::emergency_time, "s", non_negative,
+                  "it brakes if the best proposal fails sooner than this"),
+        parameter("emergency_deceleration", &P::emergency_deceleration, "m/s^2", Range{0.01, 50},
+                  "with which it then brakes"),
         parameter("budget", &P::budget, "-", {}, "how many proposals are simulated, in order of preference"));
   }
 
@@ -225,7 +230,7 @@ struct ProposalPlanner {
     return choose(workspace);
   }
 
-  /// Puts the predicted world where the proposal begins.
+  /// Resets the prediction world to its start, with ego about to drive the proposal.
   void begin(Workspace& workspace, ProposalScore const& proposal, Memory const& memory) const {
     auto& world = *workspace.world;
     world.restore(workspace.start);
@@ -233,7 +238,8 @@ struct ProposalPlanner {
         static_cast<float>(proposal.speed_share), static_cast<float>(proposal.offset), memory.bend};
   }
 
-  /// Up to an infraction or the end of the course, or, for `all`, to the horizon.
+  /// Simulates a proposal until it collides, leaves the road or ends; with `all` the world is then stepped to the
+  /// horizon.
   template <bool all, class F>
   void simulate(Workspace& workspace, ProposalScore& proposal, Memory const& memory, F&& visit) const {
     auto& world = *workspace.world;
@@ -270,7 +276,7 @@ struct ProposalPlanner {
       }
   }
 
-  /// Time to collision and comfort of a step from `before`.
+  /// Sets the marks for time to collision and comfort after a step from `before`.
   template <class State>
   void judge(Workspace const& workspace, State const& before, double& last_acceleration,
              ProposalScore& proposal) const {
@@ -285,7 +291,7 @@ struct ProposalPlanner {
     }
     double const along = (now.speed - before.speed) / step;
     double const across = LateralAcceleration::between(before, now);
-    bool const jerks = std::abs(along - last_acceleration) > scoring.jerk * step;  // not where there was none before
+    bool const jerks = std::abs(along - last_acceleration) > scoring.jerk * step;  // false in the first step (NaN)
     if (along < scoring.lowest_acceleration || along > scoring.highest_acceleration || jerks ||
         std::abs(across) > scoring.lateral_acceleration)
       proposal.comfort = 0.0;
@@ -308,7 +314,7 @@ struct ProposalPlanner {
       p.score = p.collides || p.leaves_road ? 0.0 : sum / weights;
       if (!std::isfinite(p.score)) return SearchProblem::not_finite;
       auto const& best = proposals[workspace.best];
-      // Without an infraction first, or with the latest; then by the score.
+      // First whoever stays clear, or fails last; then the better score.
       bool const both_free = std::isinf(p.time_to_infraction) && std::isinf(best.time_to_infraction);
       if (both_free ? p.score > best.score + scoring.indifference : p.time_to_infraction > best.time_to_infraction)
         workspace.best = i;

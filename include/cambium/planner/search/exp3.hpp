@@ -10,9 +10,9 @@
 
 namespace cambium {
 
-/// Exp3 (Auer, Cesa-Bianchi, Freund, Schapire 2002): an arm is played in proportion to exp(gamma G / K), where G is
-/// what it has brought, divided by how likely it was played; gamma is the share of choices at random. Makes no
-/// assumption on how the others play.
+/// Exp3 (Auer, Cesa-Bianchi, Freund, Schapire 2002): plays one of K arms in proportion to exp(gamma G / K). G sums the
+/// arm's scores, each divided by the probability with which it was played; gamma is the share of random choices. Makes
+/// no assumption about how the others play.
 struct Exp3 {
   struct Statistics {
     double gain = 0.0;  ///< G
@@ -25,7 +25,7 @@ struct Exp3 {
   static constexpr char const* source = "Auer 2002 (nonstochastic)";
   static constexpr auto parameters() {
     return parameter_list(parameter("exploration", &Exp3::exploration, "-", Range{1e-6, 1},
-                                    "share of choices at random, gamma in the paper"));
+                                    "share of random choices, gamma in the paper"));
   }
 
   template <class Arms, class Random>
@@ -58,7 +58,7 @@ struct Exp3 {
     return {best, sum};
   }
 
-  /// Relative to the best arm's: never overflows.
+  /// Weight of the arm, relative to that of the best one so that it does not overflow.
   template <class Arm>
   [[nodiscard]] double weight(Arm const& arm, double best, std::size_t arms) const {
     return detail::portable_exp(exploration * (arm.statistics.gain - best) / static_cast<double>(arms));

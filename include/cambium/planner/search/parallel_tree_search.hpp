@@ -17,10 +17,10 @@
 
 namespace cambium {
 
-/// Several trees of one search, grown at once on threads of their own, and merged at the root: visits and returns of
-/// the same action are added (root parallelisation: Chaslot, Winands, van den Herik 2008). The trees share the budget
-/// and the memory. The result is a pure function of state, parameters, seed and number of trees. Each run starts its
-/// threads anew; one tree alone needs none, and is as the search itself.
+/// Several independent trees, one per thread, merged at the root: visits and returns of the same action are added (root
+/// parallelisation: Chaslot, Winands, van den Herik 2008). The trees share the budget and the memory. Under an
+/// iteration budget, the result is a pure function of state, parameters, seed and number of trees. Each run starts new
+/// threads. A single tree needs none and equals the plain search.
 template <class Search>
 class ParallelTreeSearch {
  public:
@@ -29,23 +29,22 @@ class ParallelTreeSearch {
   using Result = typename Search::Result;
   using Domain = std::remove_cvref_t<decltype(std::declval<Search&>().domain())>;
 
-  /// No tree: first `set`, then `run`.
+  /// Without trees; call `set` before `run`.
   ParallelTreeSearch() = default;
 
-  /// As `search`, by `trees` trees. Throws as `set`.
+  /// Copies domain and parameters of `search`. Throws as `set`.
   ParallelTreeSearch(Search const& search, std::size_t trees) {
     set(search.domain(), search.parameters(), search.selection(), search.rollout(), search.budget(), trees);
   }
 
-  /// Searches `domain` by these parameters from now on, by `trees` trees, but no more than there are iterations; keeps
-  /// their memory, and what `keep` has kept. Throws `ParameterError` for no tree, more than 1024, or where a parameter
-  /// is out of its range.
+  /// Replaces domain and parameters, and uses `trees` trees, but at most one per iteration. Keeps memory and kept trees
+  /// as `TreeSearch::set`. Throws `ParameterError` if `trees` is not from 1 to 1024 or a parameter is out of range.
   template <class Selection, class Rollout, class Budget>
   void set(Domain domain, TreeSearchParameters parameters, Selection const& selection, Rollout const& rollout,
            Budget const& budget, std::size_t trees) {
     if (trees == 0 || trees > 1024)
       throw ParameterError("ParallelTreeSearch", "has " + std::to_string(trees) + " trees",
-                           "give 1 to 1024, no more than there are cores");
+                           "give 1 to 1024, at most one per core");
     auto const count = std::min(trees, std::max<std::size_t>(1, budget.most()));
     if (count > 1) parameters.memory = std::max<std::size_t>(4096, parameters.memory / count);
     searches_.reserve(count);
@@ -62,7 +61,7 @@ class ParallelTreeSearch {
     }
   }
 
-  /// As `TreeSearch::keep` and `forget`, each tree its own.
+  /// As `TreeSearch::keep` and `forget`, for each tree. `keep` returns whether any tree kept something.
   bool keep(std::span<Action const> joint) {
     bool any = false;
     for (auto& search : searches_) any = search.keep(joint) || any;
@@ -72,8 +71,8 @@ class ParallelTreeSearch {
     for (auto& search : searches_) search.forget();
   }
 
-  /// As `TreeSearch::run`. The principal variation is that of the tree that knows most about the best actions. Passes
-  /// on what a domain throws.
+  /// As `TreeSearch::run`. The principal variation comes from the tree that agrees with the best actions and visited
+  /// them most. Rethrows what a domain throws.
   Result const& run(State const& root, std::uint64_t seed) {
     if (searches_.empty()) throw SearchError("ParallelTreeSearch", "has no domain yet", "call `set` before `run`");
     if (searches_.size() == 1) return searches_[0].run(root, seed);
@@ -101,7 +100,7 @@ class ParallelTreeSearch {
   [[nodiscard]] std::vector<Search> const& searches() const { return searches_; }
 
  private:
-  /// Waits for its threads, also where not all could be started.
+  /// Joins its threads, even if not all could be started.
   struct Crew {
     std::vector<std::thread> threads;
     ~Crew() {
@@ -111,7 +110,7 @@ class ParallelTreeSearch {
 
   void merge() {
     for (auto const& search : searches_)
-      if (search.result().problem != SearchProblem::none) {  // which makes it empty
+      if (search.result().problem != SearchProblem::none) {  // a problem makes the result empty
         result_ = search.result();
         return;
       }
@@ -137,7 +136,7 @@ class ParallelTreeSearch {
     take_variation();
   }
 
-  /// Adds what another tree knows of the same actions, and appends those that are its own.
+  /// Adds the arms of another tree to those with the same action, and appends the rest.
   void add_arms(Result const& other) {
     std::vector<RootArm<Action>> arms;
     std::vector<std::size_t> first;
@@ -182,7 +181,7 @@ class ParallelTreeSearch {
       most = own.choice(0).visits;
       result_.variation = own.variation;
     }
-    if (most == 0)  // no tree has chosen like all together
+    if (most == 0)  // no tree agrees with the merged choice
       for (std::size_t k = 0; k < result_.agents; ++k) result_.variation.push_back(result_.choice(k).action);
   }
 

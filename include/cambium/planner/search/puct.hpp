@@ -9,12 +9,12 @@
 
 namespace cambium {
 
-/// PUCT (Rosin 2011, as in Silver 2017): the arm of the greatest score plus exploration P sqrt(N) / (1 + n), where P is
-/// its prior probability: `SearchDomain::priors`, normalised over the node's actions, else the same for all. An arm
-/// that nobody has tried counts with the mean score of its node.
+/// PUCT (Rosin 2011, as in Silver 2017): selects the arm with the highest score plus exploration P sqrt(N) / (1 + n). P
+/// is its prior probability: `SearchDomain::priors`, normalised over the node's actions, or uniform without them. An
+/// untried arm has the mean score of its node.
 struct Puct {
   struct Statistics {
-    double prior = 1.0;  ///< set by the search; a weight, its sum over the node need not be 1
+    double prior = 1.0;  ///< set by the search; the sum over a node need not be 1
   };
 
   double exploration = 1.25;
@@ -24,7 +24,7 @@ struct Puct {
   static constexpr char const* source = "Rosin 2011; Silver 2017";
   static constexpr auto parameters() {
     return parameter_list(
-        parameter("exploration", &Puct::exploration, "-", Range{0, 100}, "weight of the prior against what was found"));
+        parameter("exploration", &Puct::exploration, "-", Range{0, 100}, "weight of the prior against the score"));
   }
 
   template <class Arms, class Random>

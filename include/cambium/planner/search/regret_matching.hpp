@@ -10,10 +10,10 @@
 
 namespace cambium {
 
-/// Regret matching for simultaneous moves (Hart, Mas-Colell 2000; in trees: Lanctot, Lisy, Winands 2014): an arm is
-/// played in proportion to the regret of not having played it; in zero-sum games the visits tend to a mixed
-/// equilibrium, where `Ucb1` may go round in circles. What the arms that were not played would have brought is
-/// estimated from the one that was, with their means as control variates (Schmid et al. 2019).
+/// Regret matching for simultaneous moves (Hart, Mas-Colell 2000; in trees: Lanctot, Lisy, Winands 2014): plays an arm
+/// in proportion to the regret of not having played it. In zero-sum games the visits converge to a mixed equilibrium,
+/// where `Ucb1` may cycle. It sees only the score of the arm that it played; it estimates those of the others with
+/// their means as control variates (Schmid et al. 2019).
 struct RegretMatching {
   struct Statistics {
     double regret = 0.0;
@@ -26,7 +26,7 @@ struct RegretMatching {
   static constexpr char const* source = "Hart 2000; Lanctot 2014";
   static constexpr auto parameters() {
     return parameter_list(
-        parameter("exploration", &RegretMatching::exploration, "-", Range{1e-6, 1}, "share of choices at random"));
+        parameter("exploration", &RegretMatching::exploration, "-", Range{1e-6, 1}, "share of random choices"));
   }
 
   template <class Arms, class Random>
@@ -59,13 +59,13 @@ struct RegretMatching {
     return sum;
   }
 
-  /// What regret alone says.
+  /// Probability of arm `i` by regret alone.
   template <class Arms>
   [[nodiscard]] static double probability(Arms const& arms, std::size_t i, double regrets) {
     return regrets > 0.0 ? std::max(0.0, arms[i].statistics.regret) / regrets : 1.0 / static_cast<double>(arms.size());
   }
 
-  /// What is played.
+  /// Probability with which arm `i` is played: by regret, mixed with uniform exploration.
   template <class Arms>
   [[nodiscard]] double mixed(Arms const& arms, std::size_t i, double regrets) const {
     return exploration / static_cast<double>(arms.size()) + (1.0 - exploration) * probability(arms, i, regrets);

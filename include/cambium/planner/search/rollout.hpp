@@ -12,25 +12,25 @@
 
 namespace cambium {
 
-/// What a roll-out works with; belongs to the search.
+/// The input, output and working memory of one roll-out. The search owns it all.
 template <SearchDomain Domain>
 struct RolloutRun {
   Domain& domain;
-  typename Domain::State& state;  ///< moved along
+  typename Domain::State& state;  ///< start of the roll-out, which advances it
   RandomStream& random;
-  int steps;                                    ///< at most, to the search's horizon
+  int steps;                                    ///< greatest number, up to the search's horizon
   double discount;                              ///< per step
   std::span<double> returns;                    ///< out: per agent, from `state` on
   std::span<double> costs;                      ///< out
   std::span<typename Domain::Action> joint;     ///< working memory, one per agent
   std::span<AgentOutcome> outcomes;             ///< likewise
   std::span<typename Domain::Action> options;   ///< likewise, `max_actions`
-  int played = 0;                               ///< out: how many steps there were
-  SearchProblem problem = SearchProblem::none;  ///< out: of the last one
+  int played = 0;                               ///< out: number of steps
+  SearchProblem problem = SearchProblem::none;  ///< out: of the last step
 };
 
-/// How a course is judged from where the tree ends: a copyable struct of parameters with `roll_out(run)`, which fills
-/// in `run.returns` and `run.costs` (zero at first) and says whether the game ended on the way. No allocation.
+/// How a course is valued beyond the tree: a copyable struct of parameters with `roll_out(run)`, which adds to
+/// `run.returns` and `run.costs` (initially zero) and returns whether the game ended. No allocation.
 template <class R, class Domain>
 concept RolloutPolicy = std::copyable<R> && requires(R const rollout, RolloutRun<Domain>& run) {
   { rollout.roll_out(run) } -> std::same_as<bool>;
@@ -38,8 +38,8 @@ concept RolloutPolicy = std::copyable<R> && requires(R const rollout, RolloutRun
 
 namespace detail {
 
-/// Plays up to `steps` steps in which agent k does `choose(k)`; returns the discount that is left, 0 where the game is
-/// over.
+/// Plays up to `steps` steps; in each, agent k takes the action `choose(k, step)`. Returns the discount factor after
+/// the last one, or 0 if the game is over.
 template <class Run, class Choose>
 [[nodiscard]] double play(Run& run, int steps, Choose&& choose) {
   double weight = 1.0;
@@ -61,7 +61,7 @@ template <class Run, class Choose>
   return weight;
 }
 
-/// One of the agent's actions, each as likely.
+/// A random action of the agent, uniformly distributed.
 template <class Run>
 [[nodiscard]] auto random_action(Run& run, std::size_t agent) {
   if constexpr (ListsActions<std::remove_reference_t<decltype(run.domain)>>) {
@@ -76,8 +76,8 @@ template <class Run>
 
 }  // namespace detail
 
-/// Random actions to the horizon, each held for `hold` steps; more than one is for games in which what may be done now
-/// may be done again.
+/// Takes random actions to the horizon and holds each for `hold` steps. More than one step suits games in which an
+/// available action remains available.
 struct RandomRollout {
   int hold = 1;
   int steps = 1'000'000;
@@ -87,8 +87,8 @@ struct RandomRollout {
   static constexpr char const* source = "-";
   static constexpr auto parameters() {
     return parameter_list(
-        parameter("hold", &RandomRollout::hold, "-", Range{1, 1'000'000}, "steps for which an action is kept"),
-        parameter("steps", &RandomRollout::steps, "-", Range{1, 1'000'000}, "no longer than this"));
+        parameter("hold", &RandomRollout::hold, "-", Range{1, 1'000'000}, "steps for which an action is held"),
+        parameter("steps", &RandomRollout::steps, "-", Range{1, 1'000'000}, "greatest number of steps"));
   }
 
   template <class Run>
@@ -99,7 +99,7 @@ struct RandomRollout {
   }
 };
 
-/// All act to the horizon as the domain's `policy_action` says: behaviour models, in traffic.
+/// Follows the domain's `policy_action` to the horizon; in traffic, that is a behaviour model.
 struct PolicyRollout {
   int steps = 1'000'000;
 
@@ -107,13 +107,14 @@ struct PolicyRollout {
   static constexpr char const* summary = "the domain's own policy to the horizon";
   static constexpr char const* source = "-";
   static constexpr auto parameters() {
-    return parameter_list(parameter("steps", &PolicyRollout::steps, "-", Range{1, 1'000'000}, "no longer than this"));
+    return parameter_list(
+        parameter("steps", &PolicyRollout::steps, "-", Range{1, 1'000'000}, "greatest number of steps"));
   }
 
   template <class Run>
   bool roll_out(Run& run) const {
     static_assert(detail::HasPolicy<std::remove_reference_t<decltype(run.domain)>>,
-                  "cambium::PolicyRollout: the domain must say how agents act: "
+                  "cambium::PolicyRollout: the domain must have a policy: "
                   "`Action policy_action(State const&, std::size_t agent, RandomStream&)`");
     return detail::play(run, std::min(run.steps, steps), [&](std::size_t agent, int) {
              return run.domain.policy_action(run.state, agent, run.random);
@@ -121,21 +122,21 @@ struct PolicyRollout {
   }
 };
 
-/// `Base` for its number of steps, then the domain's `value` of where that led.
+/// Rolls out `Base` for its number of steps, then adds the domain's `value` of the state that it reached.
 template <class Base>
 struct TruncatedRollout {
   Base base{};
 
   static constexpr char const* name = "truncated_rollout";
-  static constexpr char const* summary = "another roll-out's first steps, then the domain's value";
+  static constexpr char const* summary = "the first steps of another roll-out, then the domain's value";
   static constexpr auto parameters() {
-    return parameter_list(parameter("base", &TruncatedRollout::base, "-", {}, "what is done, and for how many steps"));
+    return parameter_list(parameter("base", &TruncatedRollout::base, "-", {}, "the roll-out, and its number of steps"));
   }
 
   template <class Run>
   bool roll_out(Run& run) const {
     static_assert(detail::HasValue<std::remove_reference_t<decltype(run.domain)>>,
-                  "cambium::TruncatedRollout: the domain must say what a state is worth: "
+                  "cambium::TruncatedRollout: the domain must value a state: "
                   "`double value(State const&, std::size_t agent)`");
     int const steps = std::min(run.steps, base.steps);
     if (base.roll_out(run)) return true;
@@ -145,10 +146,10 @@ struct TruncatedRollout {
   }
 };
 
-/// No steps: the domain's `value` of the leaf where it has one, else 0.
+/// Takes no steps. The return is the domain's `value` of the leaf, or 0 for a domain without one.
 struct NoRollout {
   static constexpr char const* name = "no_rollout";
-  static constexpr char const* summary = "the domain's value of the leaf, else 0";
+  static constexpr char const* summary = "the domain's value of the leaf, or 0 without one";
   static constexpr char const* source = "-";
   static constexpr auto parameters() { return parameter_list(); }
 

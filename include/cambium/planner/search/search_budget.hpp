@@ -12,17 +12,21 @@ namespace cambium {
 
 namespace detail {
 
-/// The `i`th part of `whole` things dealt out to `n`.
+/// The `i`th of `n` nearly equal parts of `whole`.
 [[nodiscard]] constexpr std::size_t part_of(std::size_t whole, std::size_t i, std::size_t n) {
   return whole / n + (i < whole % n ? 1 : 0);
 }
 
 }  // namespace detail
 
-/// How long a planner goes on. An iteration is one of a tree search, or one candidate of a planner that weighs a list.
-/// `most()`: iterations that it never exceeds; `start()`; `goes_on(done)`: whether there is to be another one after
-/// `done`; `part(i, n)`: what the `i`th of `n` searches that share it gets. It may have `expected()`: how many to make
-/// room for from the start (else for `most()`).
+/// How long a planner continues. An iteration is one of a tree search, or one candidate of a planner that compares a
+/// list.
+///
+/// - `most()`: upper limit of the number of iterations.
+/// - `start()`: called when planning begins.
+/// - `goes_on(done)`: whether another iteration follows after `done` of them.
+/// - `part(i, n)`: the share of the `i`th of `n` searches that share the budget.
+/// - `expected()`, optional: number of iterations for which memory is reserved at the start; `most()` by default.
 template <class B>
 concept SearchBudget = std::copyable<B> && requires(B budget, B const fixed, std::size_t done) {
   { fixed.most() } -> std::same_as<std::size_t>;
@@ -31,15 +35,14 @@ concept SearchBudget = std::copyable<B> && requires(B budget, B const fixed, std
   { fixed.part(done, done) } -> std::same_as<B>;
 };
 
-/// So many iterations: the search is a pure function of state, parameters and seed.
+/// A fixed number of iterations. The search is then a pure function of state, parameters and seed.
 struct IterationBudget {
   std::size_t iterations = 1000;
 
   static constexpr char const* name = "iteration_budget";
-  static constexpr char const* summary = "so many iterations";
+  static constexpr char const* summary = "a fixed number of iterations";
   static constexpr auto parameters() {
-    return parameter_list(
-        parameter("iterations", &IterationBudget::iterations, "-", Range{1, 1e9}, "how many there are"));
+    return parameter_list(parameter("iterations", &IterationBudget::iterations, "-", Range{1, 1e9}, "their number"));
   }
 
   [[nodiscard]] std::size_t most() const { return iterations; }
@@ -49,18 +52,18 @@ struct IterationBudget {
 };
 static_assert(SearchBudget<IterationBudget>);
 
-/// So much time of the wall clock: the clock is read before each iteration but the first, which is always there.
-/// Results depend on the machine and its load. A tree that grows larger than any before it allocates.
+/// A limit on wall-clock time. The clock is read before every iteration except the first, which always runs. Results
+/// depend on the machine and its load. A tree that outgrows all previous ones allocates.
 struct TimeBudget {
   double duration = 0.01;
   std::size_t iterations = 1'000'000;
 
   static constexpr char const* name = "time_budget";
-  static constexpr char const* summary = "so much time of the wall clock";
+  static constexpr char const* summary = "a limit on wall-clock time";
   static constexpr auto parameters() {
     return parameter_list(
         parameter("duration", &TimeBudget::duration, "s", Range{1e-6, 86'400}, "time for one search"),
-        parameter("iterations", &TimeBudget::iterations, "-", Range{1, 1e9}, "never more than so many"));
+        parameter("iterations", &TimeBudget::iterations, "-", Range{1, 1e9}, "greatest number of iterations"));
   }
 
   [[nodiscard]] std::size_t most() const { return iterations; }
@@ -75,14 +78,14 @@ struct TimeBudget {
     return done < iterations && spent.count() < duration;
   }
 
-  std::chrono::steady_clock::time_point begin{};  ///< of the search
+  std::chrono::steady_clock::time_point begin{};  ///< of the current search
 };
 static_assert(SearchBudget<TimeBudget>);
 
-/// Every candidate is weighed: for planners that weigh a list. A tree search needs a budget that ends.
+/// No limit: planners that compare a list score every candidate. A tree search needs a budget that ends.
 struct NoBudget {
   static constexpr char const* name = "no_budget";
-  static constexpr char const* summary = "every candidate is weighed";
+  static constexpr char const* summary = "no limit: every candidate is scored";
   static constexpr auto parameters() { return parameter_list(); }
 
   [[nodiscard]] std::size_t most() const { return std::numeric_limits<std::size_t>::max(); }

@@ -10,7 +10,7 @@
 
 namespace cambium {
 
-/// What is wrong with a search.
+/// Why a search has no result. `throw_if` puts it in words.
 enum class SearchProblem : std::uint8_t {
   none,
   no_agents,
@@ -23,9 +23,9 @@ enum class SearchProblem : std::uint8_t {
   not_in_world,
 };
 
-/// What a joint step brought one agent. `reward`: any finite number, to be maximised. `cost`, 0 to 1: of the second
-/// channel, as the probability, or the fact, of a collision; the costs along one course are summed without discount, up
-/// to 1.
+/// What a joint step yields for one agent. `reward`: any finite number, to be maximised. `cost`, from 0 to 1: a second
+/// channel, for example the probability of a collision, or 1 for a collision. The search sums the costs along a course
+/// without discount and caps the sum at 1.
 struct AgentOutcome {
   double reward = 0.0;
   double cost = 0.0;
@@ -83,7 +83,7 @@ inline constexpr bool fewer_actions_than = [] {
     return true;
 }();
 
-/// Whether the same actions in the same state always lead to the same state, as far as the domain says so.
+/// Whether the domain promises that the same actions in the same state always lead to the same state.
 template <class D>
 inline constexpr bool is_deterministic = [] {
   if constexpr (requires { D::is_deterministic; })
@@ -94,28 +94,36 @@ inline constexpr bool is_deterministic = [] {
 
 }  // namespace detail
 
-/// A game that can be searched: agents that choose at once, a state, and a joint step.
-///   `State`, copyable: what a node stores. `Action`, copyable, with ==.
-///   `agents()`: how many agents choose, at least one, the same in all states.
-///   `is_terminal(state)`: whether the game is over; asked of the root only.
-///   `step(state, actions, random, outcomes)`: all agents act at once, one action each; changes the state, adds to the
-///     outcomes (one per agent, zero at first), and says whether the game is over. All that is random in it comes from
-///     `random`.
-/// Either a list of actions: `max_actions`, and `actions(state, agent, out)`, which fills in those that the agent has
-/// and says how many (a player who is not to move has one that does nothing). Or actions from a continuum:
-/// `sample_action(state, agent, random)`; they are tried out bit by bit, see `TreeSearchParameters::action_widening`.
-/// A domain may say more:
-///   `static constexpr bool is_deterministic = true`: `step` does not use `random`; else the states that the same
-///     actions lead to become several nodes, see `outcome_widening`.
-///   `sample_root(state, random)`: draws what is not known of the root (the others' intentions) anew for each
-///     iteration; then nodes stand for sequences of actions, and every iteration steps from the root. What actions
-///     there are may depend only on what is known, for a node has those of the first draw.
-///   `priors(state, agent, actions, out)`: weights for `Puct`; `value(state, agent)`: the expected return from here,
-///   for
-///     `TruncatedRollout` and `NoRollout`; `policy_action(state, agent, random)`: for `PolicyRollout`;
-///     `same_state(predicted, observed)`: whether a kept tree still holds, by default ==; `heap_bytes(state)`: what a
-///     state holds beyond its own size.
-/// A search has a domain of its own, by value: it may keep working memory, but no answer may depend on that.
+/// A game that can be searched: a state, agents that choose at the same time, and a joint step.
+///
+/// - `State`, copyable: what a node stores. `Action`, copyable, with ==.
+/// - `agents()`: the number of agents that choose, at least one, constant throughout the game.
+/// - `is_terminal(state)`: whether the game is over. The search calls it for the root only.
+/// - `step(state, actions, random, outcomes)`: every agent takes one action, all at once. Changes the state, adds to
+///   the outcomes (one per agent, initially zero) and returns whether the game is over. All randomness comes from
+///   `random`.
+///
+/// The actions are either a list or a continuum:
+///
+/// - List: `max_actions`, and `actions(state, agent, out)`, which writes the agent's actions to `out` and returns their
+///   number. In a turn-based game, a player who is not to move has one action that does nothing.
+/// - Continuum: `sample_action(state, agent, random)`. The search adds samples gradually, see
+///   `TreeSearchParameters::action_widening`.
+///
+/// Optional members:
+///
+/// - `static constexpr bool is_deterministic = true`: `step` does not use `random`. Otherwise the same actions may lead
+///   to several states, each with a node of its own, see `outcome_widening`.
+/// - `sample_root(state, random)`: draws what is unknown about the root, such as the others' intentions, anew for each
+///   iteration (root sampling). Nodes then stand for sequences of actions, and every iteration steps from the root. The
+///   available actions must not depend on what is drawn, because a node keeps those of the first draw.
+/// - `priors(state, agent, actions, out)`: weights of the actions, for `Puct`.
+/// - `value(state, agent)`: the expected return from here, for `TruncatedRollout` and `NoRollout`.
+/// - `policy_action(state, agent, random)`: for `PolicyRollout`.
+/// - `same_state(predicted, observed)`: whether a kept tree still holds; == by default.
+/// - `heap_bytes(state)`: memory of a state beyond its size.
+///
+/// A search owns its domain by value. A domain may keep working memory, but no result may depend on it.
 template <class D>
 concept SearchDomain = std::copy_constructible<D> && std::copyable<typename D::State> &&
     std::default_initializable<typename D::State> && std::copyable<typename D::Action> &&

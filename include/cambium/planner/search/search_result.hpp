@@ -18,12 +18,12 @@
 
 namespace cambium {
 
-/// A search cannot be done.
+/// Thrown if a search is impossible or its game is faulty.
 struct SearchError : Error {
   using Error::Error;
 };
 
-/// Throws `SearchError` unless `problem` is none; it arose `steps` steps from the root.
+/// Throws `SearchError`, unless `problem` is `none`. `steps`: from the root to where it arose.
 inline void throw_if(SearchProblem problem, int steps = 0) {
   auto const where = "search" + (steps > 0 ? ", at step " + std::to_string(steps) : std::string());
   switch (problem) {
@@ -32,28 +32,29 @@ inline void throw_if(SearchProblem problem, int steps = 0) {
     case SearchProblem::no_agents:
       throw SearchError("search", "no agent chooses", "let SearchDomain::agents be at least 1");
     case SearchProblem::no_actions:
-      throw SearchError(where, "an agent has no action, or more than max_actions, in a state where the game goes on",
+      throw SearchError(where,
+                        "an agent has no action, or more than max_actions, in a state where the game is not over",
                         "list at least one, such as doing nothing, or let step say that the game is over");
     case SearchProblem::no_budget:
       throw SearchError("search", "its budget is 0 iterations", "give it at least 1");
     case SearchProblem::terminal_root:
-      throw SearchError("search", "the game is over at the root", "ask is_terminal before you search");
+      throw SearchError("search", "the game is over at the root", "call is_terminal before the search");
     case SearchProblem::not_finite:
-      throw SearchError(where, "a reward, a cost or a value is not a finite number, or a return is beyond 1e290",
-                        "check what step, value and the evaluators give");
+      throw SearchError(where, "a reward, a cost or a value is not finite, or a return exceeds 1e290",
+                        "check what step, value and the evaluators return");
     case SearchProblem::cost_out_of_range:
-      throw SearchError(where, "a cost is not within 0 to 1",
-                        "give the probability of what must not happen, 1 where it happened");
+      throw SearchError(where, "a cost is not between 0 and 1",
+                        "return the probability of the event that must not happen, or 1 once it happened");
     case SearchProblem::bad_priors:
       throw SearchError(where, "the priors of a node are negative, not finite or all zero",
-                        "give weights of at least 0, one of them positive");
+                        "return weights of at least 0, at least one of them positive");
     case SearchProblem::not_in_world:
-      throw SearchError("search", "the agent that is to plan is not in the predicted world, or not in traffic",
-                        "ask for an agent that drives");
+      throw SearchError("search", "the agent to plan for is not in the predicted world, or not in traffic",
+                        "plan for an agent that drives");
   }
 }
 
-/// What a search found about one action of one agent at the root.
+/// The result for one action of one agent at the root.
 template <class Action>
 struct RootArm {
   Action action{};
@@ -63,25 +64,25 @@ struct RootArm {
   double share = 0.0;  ///< of the visits: the agent's mixed strategy
 };
 
-/// What a search found.
+/// The result of a search.
 template <class Action>
 struct SearchResult {
   SearchProblem problem = SearchProblem::none;
   int problem_steps = 0;  ///< from the root to where it arose
   std::uint64_t seed = 0;
   std::size_t iterations = 0;
-  std::size_t nodes = 0;       ///< in the tree, with those that were kept
-  std::size_t kept_nodes = 0;  ///< of the search before
-  bool is_full = false;        ///< memory ran out; the search went on without new nodes
+  std::size_t nodes = 0;       ///< in the tree, including kept ones
+  std::size_t kept_nodes = 0;  ///< taken over from the previous search
+  bool is_full = false;        ///< memory ran out; the search continued without new nodes
 
   std::size_t agents = 0;
-  std::vector<RootArm<Action>> arms;   ///< of the first agent, then of the next, ...
-  std::vector<std::size_t> first_arm;  ///< per agent, and the end of `arms`
-  std::vector<std::size_t> best;       ///< per agent: the action to take, among its arms
+  std::vector<RootArm<Action>> arms;   ///< of the first agent, then the second, ...
+  std::vector<std::size_t> first_arm;  ///< start in `arms` for each agent, then the end of `arms`
+  std::vector<std::size_t> best;       ///< for each agent, the number of its best arm
   std::vector<Action> variation;       ///< principal variation: all agents' actions, step by step
-  std::vector<std::uint32_t> depths;   ///< by steps: how many iterations left the tree there
+  std::vector<std::uint32_t> depths;   ///< number of iterations that left the tree, by depth
 
-  /// The agent's actions at the root. Throws `SearchError` where there is a problem, or no such agent.
+  /// The agent's actions at the root. Throws `SearchError` if the search had a problem or the agent does not exist.
   [[nodiscard]] std::span<RootArm<Action> const> of(std::size_t agent) const {
     throw_if(problem, problem_steps);
     if (agent >= agents)
@@ -89,10 +90,10 @@ struct SearchResult {
                         agents == 0 ? "run the search first" : "it has " + std::to_string(agents));
     return {arms.data() + first_arm[agent], first_arm[agent + 1] - first_arm[agent]};
   }
-  /// What the agent is to do, and what is expected of it. Throws as `of`.
+  /// The agent's best action. Throws as `of`.
   [[nodiscard]] RootArm<Action> const& choice(std::size_t agent) const { return of(agent)[best[agent]]; }
 
-  /// Empties it, but keeps its memory; makes room for the longest variation.
+  /// Empties the result, keeps its memory, and reserves room for the longest variation.
   void clear(std::uint64_t new_seed, std::size_t horizon, std::size_t choosing) {
     problem = SearchProblem::none;
     problem_steps = 0;
@@ -110,8 +111,8 @@ struct SearchResult {
 
 namespace detail {
 
-/// Which of `arms` to take: of those that cost no more than they may, the best by `final_move`; else the cheapest.
-/// Costs are estimated by Laplace's rule of succession: who was hardly tried is not taken to be safe.
+/// The arm to take: the best by `final_move` among those within the cost limit, or the cheapest if none is. Laplace's
+/// rule of succession estimates the costs, so an arm with few visits does not count as safe.
 template <class Action>
 [[nodiscard]] std::size_t final_choice(std::span<RootArm<Action> const> arms, ReturnScale scale, FinalMove final_move,
                                        double cost_limit) {
@@ -126,7 +127,7 @@ template <class Action>
   scale.multiplier = 0.0;
   auto const merit = [&](RootArm<Action> const& arm) {
     double const score = scale.score(arm.mean_return, 0.0);
-    if (final_move == FinalMove::most_visits) return arm.visits + 0.5 * score;  // equally visited: the better one
+    if (final_move == FinalMove::most_visits) return arm.visits + 0.5 * score;  // the score breaks ties
     return final_move == FinalMove::best_return ? score : score - std::sqrt(log_visits / arm.visits);
   };
   return best_arm(arms, [&](RootArm<Action> const& arm) {
@@ -134,7 +135,7 @@ template <class Action>
   });
 }
 
-/// Follows what all agents do: at the root their best actions, below it those most visited.
+/// Fills in the principal variation: the agents' best actions at the root, then the most visited ones.
 template <class Tree, class Action>
 void fill_variation(Tree const& tree, std::span<std::uint16_t> joint, SearchResult<Action>& result) {
   for (std::uint32_t node = 0; node != no_node && tree.has_arms(node);) {
@@ -144,13 +145,13 @@ void fill_variation(Tree const& tree, std::span<std::uint16_t> joint, SearchResu
           node == 0 ? result.best[k] : best_arm(arms, [](auto const& arm) { return double(arm.visits); }));
     }
     auto const child = tree.find(node, joint);
-    if (child == no_node && node != 0) break;  // their best actions need not have been tried together
+    if (child == no_node && node != 0) break;  // at the root, the best actions may never have been tried together
     for (std::size_t k = 0; k < tree.agents(); ++k) result.variation.push_back(tree.arms(node, k)[joint[k]].action);
     node = child;
   }
 }
 
-/// Fills in what the tree says: arms, best ones, principal variation.
+/// Fills in the result of a tree: arms, best arms, principal variation.
 template <class Tree, class Action>
 void fill_result(Tree const& tree, std::span<ReturnScale const> scales, TreeSearchParameters const& parameters,
                  std::span<std::uint16_t> joint, SearchResult<Action>& result) {

@@ -12,12 +12,13 @@
 
 namespace cambium {
 
-/// What a search knows of one action of one agent at one node. `Statistics`: what a selection policy keeps beside it.
+/// What a search knows about one action of one agent at one node. `Statistics`: additional data of the selection
+/// policy.
 template <class Action, class Statistics>
 struct Arm {
   Action action{};
   std::uint32_t visits = 0;
-  double total_return = 0.0;  ///< of the courses that began with it
+  double total_return = 0.0;  ///< over all courses that took it here
   double total_cost = 0.0;
   [[no_unique_address]] Statistics statistics{};
 
@@ -25,8 +26,8 @@ struct Arm {
   [[nodiscard]] double mean_cost() const { return visits > 0 ? total_cost / visits : 0.0; }
 };
 
-/// Maps an agent's returns and costs to scores in [0, 1]: the return by the least and greatest that the search has seen
-/// so far, less `multiplier` times the cost.
+/// Maps an agent's returns and costs to scores in [0, 1]. It scales the return by the lowest and the highest seen so
+/// far, then subtracts `multiplier` times the cost and scales the result to [0, 1] again.
 struct ReturnScale {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
@@ -37,10 +38,10 @@ struct ReturnScale {
     high = std::max(high, value);
   }
 
-  /// Whether the sum of 2^32 such returns, and their differences, are finite.
+  /// Whether sums of 2^32 such returns, and differences of them, are finite.
   [[nodiscard]] bool can_be_summed() const { return low >= -1e290 && high <= 1e290; }
 
-  /// 0.5 as long as all returns are equal.
+  /// The score; without a multiplier it is 0.5 as long as all returns are equal.
   [[nodiscard]] double score(double value, double cost) const {
     double const share = high > low ? (value - low) / (high - low) : 0.5;
     return multiplier > 0.0 ? (share + multiplier * (1.0 - cost)) / (1.0 + multiplier) : share;
@@ -52,13 +53,15 @@ struct ReturnScale {
   }
 };
 
-/// How an agent chooses at a node: a bandit. A copyable struct of parameters with
-///   `Statistics`, default constructible: what it keeps for each arm;
-///   `select(arms, visits, scale, random)`: the arm to try; `visits`: the sum over the arms, of which there is one at
-///     least;
-///   `update(arms, chosen, score, scale)`: learns the score of the arm that it selected, before that arm's own visits
-///     and totals count it.
-/// O(arms) each; no allocation, no exception.
+/// How an agent chooses at a node: a multi-armed bandit. A copyable struct of parameters with
+///
+/// - `Statistics`, default constructible: what it keeps for each arm;
+/// - `select(arms, visits, scale, random)`: returns the number of the arm to try. `visits` is the sum over all arms;
+///   there is at least one arm.
+/// - `update(arms, chosen, score, scale)`: learns the score of the arm that it selected. It is called before that arm's
+///   visits and totals include the score.
+///
+/// Each is O(arms), does not allocate and does not throw.
 template <class P>
 concept SelectionPolicy = std::copyable<P> && std::default_initializable<typename P::Statistics> &&
     requires(P const policy, std::span<Arm<int, typename P::Statistics>> arms,
@@ -69,7 +72,7 @@ concept SelectionPolicy = std::copyable<P> && std::default_initializable<typenam
 
 namespace detail {
 
-/// One of the arms that nobody has tried yet, each as likely; their number where there is none.
+/// A random arm among those not tried yet, or `arms.size()` if all have been tried.
 template <class Arms, class Random>
 [[nodiscard]] std::size_t untried_arm(Arms const& arms, Random& random) {
   auto const is_untried = [](auto const& arm) { return arm.visits == 0; };
@@ -81,7 +84,7 @@ template <class Arms, class Random>
   return i;
 }
 
-/// The arm of which `score(arm)` is greatest, the first of equals.
+/// The arm with the highest `score(arm)`; the first one if several are equal.
 template <class Arms, class Score>
 [[nodiscard]] std::size_t best_arm(Arms const& arms, Score&& score) {
   std::size_t best = 0;

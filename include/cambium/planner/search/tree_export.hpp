@@ -11,7 +11,7 @@ namespace cambium {
 
 namespace detail {
 
-/// `to_string(action)` where there is such a function, a number as itself, else the arm's place.
+/// The action as text: a number, its `to_string`, or else "#" and the arm's number. Escaped for a quoted string.
 template <class Action>
 [[nodiscard]] std::string action_text(Action const& action, std::size_t place) {
   std::string text;
@@ -29,14 +29,14 @@ template <class Action>
   return quoted;
 }
 
-/// Calls `f(number, node)` for those of a tree that came to be visited `least` times, parents first.
+/// Calls `f(number, node)` for the root and every node with at least `least` visits, parents first.
 template <class Tree, class F>
 void for_each_visited(Tree const& tree, std::uint32_t least, F&& f) {
   for (std::uint32_t n = 0; n < tree.size(); ++n)
     if (n == 0 || tree.node(n).visits >= least) f(n, tree.node(n));
 }
 
-/// How an agent came from a node's parent to the node.
+/// The arm by which an agent came to a node from its parent.
 template <class Tree>
 [[nodiscard]] auto const& arm_to(Tree const& tree, std::uint32_t node, std::size_t agent) {
   return tree.arms(tree.node(node).parent, agent)[tree.joint(node)[agent]];
@@ -45,8 +45,8 @@ template <class Tree>
 }  // namespace detail
 
 /// A search's tree as JSON: `{"seed", "iterations", "nodes": [{"id", "parent", "visits", "terminal", "agents":
-/// [{"action", "reward", "cost", "visits", "return"}]}]}`; an agent's visits and mean return are of its action at the
-/// parent. Nodes that were visited less than `least_visits` times are left out. Actions are named by their `to_string`.
+/// [{"action", "reward", "cost", "visits", "return"}]}]}`. An agent's visits and mean return belong to its action at
+/// the parent. Leaves out nodes with fewer than `least_visits` visits. Actions are named by their `to_string`.
 template <class Search>
 [[nodiscard]] std::string tree_as_json(Search const& search, std::uint32_t least_visits = 1) {
   auto const& tree = search.tree();
@@ -70,7 +70,7 @@ template <class Search>
   return text + "\n]}\n";
 }
 
-/// The same as a graph for Graphviz (`dot -Tsvg`): nodes with their visits, edges with all agents' actions.
+/// The same tree as a graph for Graphviz (`dot -Tsvg`). Nodes show their visits, edges the actions of all agents.
 template <class Search>
 [[nodiscard]] std::string tree_as_dot(Search const& search, std::uint32_t least_visits = 1) {
   auto const& tree = search.tree();

@@ -23,12 +23,21 @@
 
 namespace cambium {
 
-/// Monte Carlo tree search in which all agents choose at once, each by a bandit of its own at every node (decoupled
+/// Monte Carlo tree search in which all agents choose at the same time, each by its own bandit at every node (decoupled
 /// UCT with `Ucb1`: Tak, Lanctot, Winands 2014). With one agent it is UCT (Kocsis, Szepesvari 2006).
 ///
-/// Each iteration walks down from the root by `Selection`, adds a node, plays on by `Rollout` to the horizon and notes
-/// the returns on the way back, scaled to [0, 1] by the bounds seen. Under an `IterationBudget` the result is a pure
-/// function of state, parameters and seed. Once warm, a search allocates nothing. O(horizon) steps an iteration.
+/// An iteration has four phases:
+///
+///     select      walk down from the root; at each node every agent chooses an arm by `Selection`     choose, descend
+///     expand      step the domain by the first joint action that has no node yet, and add its node    descend
+///     roll out    play on to the horizon by `Rollout`                                                 roll_out
+///     back up     add the discounted return to the chosen arms, from the last step to the root        back_up
+///
+/// Selection policies see returns scaled to [0, 1] by the bounds seen so far. A node stores its state, so walking down
+/// costs no steps; only a domain that draws its root anew (`sample_root`) steps from the root in every iteration.
+///
+/// Under an `IterationBudget` the result is a pure function of state, parameters and seed. Once warm, a search
+/// allocates nothing. O(horizon) steps per iteration.
 template <class Domain, SelectionPolicy Selection = Ucb1, class Rollout = RandomRollout,
           SearchBudget Budget = IterationBudget>
 class TreeSearch {
@@ -41,7 +50,7 @@ class TreeSearch {
                 "cambium::TreeSearch<Domain, Selection, Rollout>: Rollout must be a roll-out policy such as "
                 "cambium::RandomRollout (see RolloutPolicy)");
   static_assert(!std::is_same_v<Budget, NoBudget>,
-                "cambium::TreeSearch: a tree search has no end of its own; take cambium::IterationBudget or "
+                "cambium::TreeSearch: a tree search does not end by itself; use cambium::IterationBudget or "
                 "cambium::TimeBudget");
   static_assert(!SearchDomain<Domain> || detail::fewer_actions_than<Domain, 65536>,
                 "cambium::TreeSearch<Domain>: Domain::max_actions must be 1 to 65535");
@@ -53,15 +62,15 @@ class TreeSearch {
   using Tree = detail::SearchTree<State, ArmType>;
   using Result = SearchResult<Action>;
 
-  /// Throws `ParameterError` where a parameter is out of its range.
+  /// Throws `ParameterError` if a parameter is out of range.
   explicit TreeSearch(Domain domain, TreeSearchParameters const& parameters = {}, Selection const& selection = {},
                       Rollout const& rollout = {}, Budget const& budget = {})
       : domain_(std::move(domain)), parameters_(parameters), selection_(selection), rollout_(rollout), budget_(budget) {
     check(parameters, selection, rollout, budget);
   }
 
-  /// Searches by these parameters from now on; keeps its memory, and what `keep` has kept where `parameters` are the
-  /// same. Throws as the constructor; then all is as before.
+  /// Replaces the parameters. Keeps the memory, and a kept tree if `parameters` are equal. If it throws (as the
+  /// constructor), nothing has changed.
   void set(TreeSearchParameters const& parameters, Selection const& selection, Rollout const& rollout,
            Budget const& budget) {
     check(parameters, selection, rollout, budget);
@@ -72,8 +81,8 @@ class TreeSearch {
     budget_ = budget;
   }
 
-  /// Searches from `root`. What is wrong with the domain or the state is said in `problem`; then the result is empty.
-  /// `tree` tells apart searches of one seed that are to be merged. The result is the search's own, until its next run.
+  /// Searches from `root`. If the domain or the state is faulty, the result is empty except for its `problem`. `tree`
+  /// distinguishes searches with the same seed that will be merged. The result is valid until the next run.
   Result const& run(State const& root, std::uint64_t seed, std::uint32_t tree = 0) {
     budget_.start();
     start(root, seed);
@@ -86,9 +95,9 @@ class TreeSearch {
     return result_;
   }
 
-  /// Keeps, for the next run, what is known of the states that `joint`, one action per agent, leads to from the root;
-  /// returns whether there is any. The next run builds on the one that the domain finds the same as the state that it
-  /// gets, if one is. Not where the domain draws its root anew for each iteration: there nodes have no states.
+  /// Keeps the subtree below `joint`, one action per agent, for the next run; returns whether there is one. The next
+  /// run continues it if its root has a state that the domain considers the same (`same_state`). Impossible if the
+  /// domain draws its root anew for each iteration, because then nodes have no states.
   bool keep(std::span<Action const> joint) {
     forget();
     if (result_.problem != SearchProblem::none) return false;
@@ -103,7 +112,7 @@ class TreeSearch {
     return kept_ != detail::no_node;
   }
 
-  /// The next run begins anew.
+  /// Lets the next run start with an empty tree.
   void forget() { kept_ = detail::no_node; }
 
   [[nodiscard]] Result const& result() const { return result_; }
@@ -116,7 +125,7 @@ class TreeSearch {
   [[nodiscard]] Rollout const& rollout() const { return rollout_; }
   [[nodiscard]] Budget& budget() { return budget_; }
   [[nodiscard]] Budget const& budget() const { return budget_; }
-  /// By agent: the bounds of the returns, and the multipliers of the costs, that the last run ended with.
+  /// The bounds of the returns and the multipliers of the costs at the end of the last run, for each agent.
   [[nodiscard]] std::span<ReturnScale const> scales() const { return scales_; }
 
  private:
@@ -203,7 +212,7 @@ class TreeSearch {
     }
   }
 
-  /// Of what was kept, the node of the state that came; none where it is another one.
+  /// The kept node with the same state as `root`, or none.
   [[nodiscard]] std::uint32_t kept_outcome(State const& root) {
     if (kept_ != detail::no_node && tree_.agents() != static_cast<std::size_t>(domain_.agents())) forget();
     auto node = kept_;
@@ -262,7 +271,7 @@ class TreeSearch {
     back_up(depth);
   }
 
-  /// Lets every agent choose an arm at the node; false where there is no room for its arms.
+  /// Lets every agent choose an arm at the node; false if its arms do not fit into memory.
   bool choose(std::uint32_t node, State const& state, RandomStream& random) {
     auto const chosen_before = visits(node);
     for (std::size_t k = 0; k < tree_.agents(); ++k) {
@@ -279,13 +288,14 @@ class TreeSearch {
     return true;
   }
 
-  /// How often agents have chosen at a node.
+  /// How often the agents have chosen at a node.
   [[nodiscard]] std::uint32_t visits(std::uint32_t node) const {
     std::uint32_t sum = 0;
     for (auto const& arm : tree_.arms(node, 0)) sum += arm.visits;
     return sum;
   }
 
+  /// Gives the agent its listed actions as arms at the node; false if they are faulty or do not fit into memory.
   bool list_arms(std::uint32_t node, std::size_t agent, State const& state) {
     auto const count = static_cast<std::size_t>(domain_.actions(state, agent, options_));
     if (count == 0 || count > options_.size()) {
@@ -301,6 +311,7 @@ class TreeSearch {
     return true;
   }
 
+  /// Samples another action for the agent if the widening permits; false if it then has no arm at all.
   bool widen(std::uint32_t node, std::size_t agent, State const& state, std::uint32_t chosen_before) {
     auto const count = tree_.arms(node, agent).size();
     if (!more_actions_.allow(count, chosen_before + 1)) return true;
@@ -308,7 +319,7 @@ class TreeSearch {
       result_.is_full = true;
       return count > 0;
     }
-    // The same at the root of all trees that are merged.
+    // Independent of the tree's number: trees to be merged try the same actions at the root.
     RandomStream random(seed_, static_cast<std::uint32_t>(agent), static_cast<std::uint32_t>(count),
                         root_purpose + node * 2);
     tree_.add_arm(node, agent, 4).action = domain_.sample_action(state, agent, random);
@@ -333,8 +344,8 @@ class TreeSearch {
     }
   }
 
-  /// The node that the chosen actions lead to from `node`, made where there is room, else none; `work_` is the state
-  /// where it was stepped to.
+  /// The node to which the chosen actions lead from `node`; adds it if necessary, or returns none if there is no room.
+  /// If it stepped the domain, `work_` is the state reached.
   std::uint32_t descend(std::uint32_t node, int depth, bool& over, bool& is_new, RandomStream& random) {
     auto const agents = tree_.agents();
     std::copy(chosen_.begin(), chosen_.end(), path_arms_.begin() + depth * static_cast<std::ptrdiff_t>(agents));
@@ -366,7 +377,7 @@ class TreeSearch {
     return tree_.add(node, chosen_, outcomes, over, work_);
   }
 
-  /// Whether there are to be more outcomes of the same actions than those from `first` on.
+  /// Whether the widening permits another outcome of the same actions; `first` is the first one known.
   [[nodiscard]] bool wants_outcome(std::uint32_t first) const {
     std::uint32_t visits = 1;
     std::size_t count = 0;
@@ -374,7 +385,8 @@ class TreeSearch {
     return more_outcomes_.allow(count, visits);
   }
 
-  /// One of those, as likely as steps led to it. (Not as often as it was visited: that would reinforce itself.)
+  /// A random outcome among these, with a probability in proportion to the steps that led to it. (Visits instead would
+  /// reinforce themselves.)
   [[nodiscard]] std::uint32_t known_outcome(std::uint32_t first, RandomStream& random) const {
     std::uint32_t draws = 0;
     for (auto n = first; n != detail::no_node; n = tree_.node(n).next_outcome) draws += tree_.node(n).draws;
@@ -414,14 +426,14 @@ class TreeSearch {
         arm.total_cost += costs_[k];
       }
     }
-    for (auto const& scale : scales_)  // it has all returns
+    for (auto const& scale : scales_)  // the scale has seen all returns
       if (!scale.can_be_summed()) return stop(SearchProblem::not_finite);
     ++tree_.node(0).visits;
     if (parameters_.constraint.limit < 1.0) update_multipliers();
   }
 
-  /// A step of gradient ascent on the Lagrangian (Lee et al. 2018, CC-POMCP): dearer as long as what looks best costs
-  /// more than it may.
+  /// A step of gradient ascent on the Lagrangian (Lee et al. 2018, CC-POMCP): raises the multiplier while the best arm
+  /// exceeds the cost limit, else lowers it.
   void update_multipliers() {
     double const step = parameters_.constraint.step / std::sqrt(static_cast<double>(tree_.node(0).visits));
     for (std::size_t k = 0; k < tree_.agents(); ++k) {
@@ -445,12 +457,12 @@ class TreeSearch {
   Budget budget_;
   Tree tree_;
   Result result_;
-  std::uint32_t kept_ = detail::no_node;  ///< the first outcome of what is kept
-  int depth_ = 0;                         ///< of what an iteration has come to
+  std::uint32_t kept_ = detail::no_node;  ///< first outcome of the kept subtree
+  int depth_ = 0;                         ///< steps from the root, for messages
   std::uint64_t seed_ = 0;
   State root_{}, work_{};
   detail::WideningSchedule more_actions_, more_outcomes_;
-  std::vector<ReturnScale> scales_;  ///< by agent, as what follows
+  std::vector<ReturnScale> scales_;  ///< by agent, like the next ones
   std::vector<std::uint16_t> chosen_;
   std::vector<Action> joint_, options_;
   std::vector<double> returns_, costs_, priors_;

@@ -11,8 +11,8 @@
 
 namespace cambium {
 
-/// How many children a node may have after N visits: coefficient N^exponent, one at least (progressive widening: Coulom
-/// 2007; of actions and of outcomes: Couetoux et al. 2011).
+/// Progressive widening (Coulom 2007; of actions and of outcomes: Couetoux et al. 2011): after N visits, a node may
+/// have coefficient N^exponent children, at least one.
 struct Widening {
   double coefficient = 1.0;
   double exponent = 0.5;
@@ -28,11 +28,11 @@ struct Widening {
 
 namespace detail {
 
-/// From how many visits on a node may have how many children: a widening, worked out beforehand.
+/// A widening as a table: how many visits a node needs for each further child.
 struct WideningSchedule {
   static constexpr std::size_t longest = 4096;  ///< no node has more children
 
-  std::vector<double> from;  ///< visits that the second child needs, the third, ...
+  std::vector<double> from;  ///< visits needed for the second child, the third, ...
 
   void set(Widening const& widening, std::size_t most_visits) {
     from.clear();
@@ -44,7 +44,7 @@ struct WideningSchedule {
     }
   }
 
-  /// Whether a node of `children` may have another one.
+  /// Whether a node with `children` children may get another one.
   [[nodiscard]] bool allow(std::size_t children, std::uint32_t visits) const {
     return children == 0 || (children <= from.size() && static_cast<double>(visits) >= from[children - 1]);
   }
@@ -52,31 +52,31 @@ struct WideningSchedule {
 
 }  // namespace detail
 
-/// That the expected cost of the chosen course stays below a limit: a chance constraint, where costs are 1 for what
-/// must not happen. The search weighs costs by a Lagrange multiplier, which it learns (Lee et al. 2018, CC-POMCP).
+/// Keeps the expected cost of the chosen course below a limit. If an event that must not happen costs 1, this is a
+/// chance constraint. The search weighs costs by a Lagrange multiplier, which it learns (Lee et al. 2018, CC-POMCP).
 struct CostConstraint {
   double limit = 1.0;
   double step = 1.0;
 
   static constexpr char const* name = "cost_constraint";
   static constexpr char const* summary =
-      "the expected cost of the chosen course stays below a limit, by a Lagrange multiplier";
+      "keeps the expected cost of the chosen course below a limit, by a Lagrange multiplier";
   static constexpr auto parameters() {
     return parameter_list(
         parameter("limit", &CostConstraint::limit, "-", Range{0, 1}, "greatest expected cost; 1: costs do not count"),
         parameter("step", &CostConstraint::step, "-", Range{0, 1e3},
-                  "how fast the multiplier is learnt, divided by the root of the iterations"));
+                  "step size of the multiplier, divided by the square root of the iterations"));
   }
 };
 
-/// Which of an agent's actions at the root is the best.
+/// How an agent's best action at the root is determined.
 enum class FinalMove : std::uint8_t {
   most_visits,
   best_return,
-  lower_bound,  ///< the greatest score less sqrt(ln N / n)
+  lower_bound,  ///< highest score minus sqrt(ln N / n)
 };
 
-/// What every tree search goes by.
+/// Parameters of every tree search.
 struct TreeSearchParameters {
   int horizon = 20;
   double discount = 0.95;
@@ -89,28 +89,28 @@ struct TreeSearchParameters {
   CostConstraint constraint{};
 
   static constexpr char const* name = "tree_search";
-  static constexpr char const* summary = "what every tree search goes by";
+  static constexpr char const* summary = "parameters of every tree search";
   static constexpr auto parameters() {
     using P = TreeSearchParameters;
     return parameter_list(
-        parameter("horizon", &P::horizon, "-", Range{1, 10'000}, "steps that a course has, in the tree and after it"),
-        parameter("discount", &P::discount, "-", Range{0, 1}, "what a reward one step later is worth"),
+        parameter("horizon", &P::horizon, "-", Range{1, 10'000}, "steps of a course, in the tree and beyond it"),
+        parameter("discount", &P::discount, "-", Range{0, 1}, "worth of a reward one step later"),
         parameter("lowest_return", &P::lowest_return, "-", Range{-1e290, 1e290},
-                  "counts as seen from the beginning, where returns are scaled by the bounds seen"),
+                  "counts as a return seen before the search: returns are scaled by the bounds seen"),
         parameter("highest_return", &P::highest_return, "-", Range{-1e290, 1e290},
-                  "likewise; equal to the lowest: only what is seen counts"),
+                  "likewise; if equal to the lowest, only returns seen count"),
         parameter("memory", &P::memory, "B", Range{4096, 1e12},
-                  "the tree grows no larger, but for the moment in which its arrays move, where time is its budget; "
-                  "then the search goes on without new nodes"),
+                  "limit of the tree; a full tree gets no new nodes, but the search continues; under a time budget its "
+                  "arrays briefly take more while they grow"),
         choice("final_move", &P::final_move, "most_visits|best_return|lower_bound",
-               "what the move that is made has most of"),
-        parameter("action_widening", &P::action_widening, "-", {}, "how many of a continuum of actions are tried"),
+               "how the move is chosen at the end"),
+        parameter("action_widening", &P::action_widening, "-", {}, "number of actions tried from a continuum"),
         parameter("outcome_widening", &P::outcome_widening, "-", {},
-                  "how many outcomes of the same actions become nodes, where steps are random"),
-        parameter("constraint", &P::constraint, "-", {}, "what the chosen course may cost"));
+                  "number of outcomes of the same actions that become nodes, if steps are random"),
+        parameter("constraint", &P::constraint, "-", {}, "limit on the cost of the chosen course"));
   }
 
-  /// Throws `ParameterError` where the bounds of the returns are in the wrong order.
+  /// Throws `ParameterError` if the bounds of the returns are in the wrong order.
   void check(std::string const& where) const {
     if (!(lowest_return <= highest_return))
       throw ParameterError(where, "has its highest return below the lowest", "swap the two");

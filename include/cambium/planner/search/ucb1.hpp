@@ -12,8 +12,8 @@
 
 namespace cambium {
 
-/// UCB1 (Auer, Cesa-Bianchi, Fischer 2002; in trees: Kocsis, Szepesvari 2006): the arm of the greatest score plus
-/// exploration sqrt(ln N / n). Arms that nobody has tried come first, in random order.
+/// UCB1 (Auer, Cesa-Bianchi, Fischer 2002; in trees: Kocsis, Szepesvari 2006): selects the arm with the highest score
+/// plus exploration sqrt(ln N / n), for n visits of the arm and N of all. Untried arms come first, in random order.
 struct Ucb1 {
   struct Statistics {};
 
@@ -24,7 +24,7 @@ struct Ucb1 {
   static constexpr char const* source = "Auer 2002; Kocsis 2006";
   static constexpr auto parameters() {
     return parameter_list(parameter("exploration", &Ucb1::exploration, "-", Range{0, 100},
-                                    "weight of what is little known; sqrt(2) in the paper, for scores in [0, 1]"));
+                                    "weight of the uncertainty; sqrt(2) in the paper, for scores in [0, 1]"));
   }
 
   template <class Arms, class Random>
@@ -41,11 +41,11 @@ struct Ucb1 {
 };
 static_assert(SelectionPolicy<Ucb1>);
 
-/// UCB1-tuned (Auer, Cesa-Bianchi, Fischer 2002, section 4): explores arms of little variance less.
+/// UCB1-tuned (Auer, Cesa-Bianchi, Fischer 2002, section 4): explores arms with little variance less.
 struct Ucb1Tuned {
   struct Statistics {
     double squares = 0.0;  ///< sum of the squared scores
-    double scores = 0.0;   ///< their sum: scales move, so means of returns do not fit the squares
+    double scores = 0.0;   ///< sum of the scores: the scale moves, so mean returns would not match `squares`
   };
 
   double exploration = 1.0;
@@ -55,7 +55,7 @@ struct Ucb1Tuned {
   static constexpr char const* source = "Auer 2002";
   static constexpr auto parameters() {
     return parameter_list(parameter("exploration", &Ucb1Tuned::exploration, "-", Range{0, 100},
-                                    "weight of what is little known; 1 in the paper"));
+                                    "weight of the uncertainty; 1 in the paper"));
   }
 
   template <class Arms, class Random>

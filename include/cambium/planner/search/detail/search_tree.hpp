@@ -15,44 +15,54 @@ namespace cambium::detail {
 
 inline constexpr std::uint32_t no_node = std::numeric_limits<std::uint32_t>::max();
 
-/// A search's nodes and arms in a few flat arrays, addressed by 32-bit numbers. A node stands for what all agents did
-/// at its parent; a child's number is greater than its parent's. Memory is kept from search to search: states of
-/// former searches are assigned to, so what they hold is used again.
+/// The nodes and arms of a search, in a few flat arrays, addressed by 32-bit numbers. A node stands for the joint
+/// action of all agents at its parent. A child's number is greater than its parent's.
+///
+///     nodes_    [root][  1 ][  2 ][  3 ]...       parent, visits; states_[n] and, per agent, joints_ and outcomes_
+///                  |                              (which arms led here, and what they brought)
+///     blocks_   [a0 a1][a0 a1]...                 per node and agent: where its arms are
+///                 |  '---------.
+///     arms_     [a0: 7 arms ...][a1: 7 arms ...]...
+///
+///     table_    hash of (parent, joint action) -> first node; `next_outcome` chains the other outcomes of that action
+///
+/// Memory is kept from search to search. States of former searches are assigned to rather than destroyed, so the heap
+/// memory that they own is reused as well.
 template <class State, class Arm>
 class SearchTree {
  public:
   struct Node {
     std::uint32_t parent = no_node;
-    std::uint32_t next_outcome = no_node;  ///< another state that the same actions led to
-    std::uint32_t visits = 0;              ///< courses that came through
-    std::uint32_t draws = 1;               ///< how often a step led here
+    std::uint32_t next_outcome = no_node;  ///< next of the other states to which the same actions led
+    std::uint32_t visits = 0;              ///< number of courses through this node
+    std::uint32_t draws = 1;               ///< number of steps that led here
     bool terminal = false;
   };
 
-  /// How large a tree may become.
+  /// The maximum size of a tree.
   struct Limits {
     std::size_t agents = 1, nodes = 1, bytes = 0;
-    std::size_t first_nodes = nodes;  ///< room for so many is made from the start
-    std::size_t arms_per_node = 1;    ///< about as many as there will be
-    std::size_t state_bytes = 0;      ///< of one node; 0: nodes have no states
+    std::size_t first_nodes = nodes;  ///< number of nodes reserved at the start
+    std::size_t arms_per_node = 1;    ///< estimate, for all agents together
+    std::size_t state_bytes = 0;      ///< per node; 0: nodes have no states
   };
 
-  /// Forgets all nodes.
+  /// Removes all nodes and reserves memory for a new tree.
   void reset(Limits const& limits) {
     clear();
     reserve(limits);
     begin_epoch();
   }
 
-  /// Has no nodes any more.
+  /// Removes all nodes, including the root.
   void clear() {
     nodes_.clear();
     arms_.clear();
   }
 
-  /// Makes room, keeping the nodes that there are; `limits.agents` as before. All that it reserves stays within
-  /// `limits.bytes`, but for a root alone, nodes that are kept from a larger tree, and the moment of growing; where not
-  /// all fits, arms get no more of it than nodes.
+  /// Reserves memory and keeps the nodes; `limits.agents` must not change. The reserved memory stays within
+  /// `limits.bytes`, with three exceptions: a root alone, nodes kept from a larger tree, and arrays while they grow. If
+  /// not everything fits, arms get at most as much memory as nodes.
   void reserve(Limits const& limits) {
     limits_ = limits;
     agents_ = limits.agents;
@@ -71,7 +81,7 @@ class SearchTree {
   [[nodiscard]] State const& state(std::uint32_t n) const { return states_[n]; }
   [[nodiscard]] bool stores_states() const { return limits_.state_bytes > 0; }
 
-  /// The arms that the agents took to come here, and what that brought them.
+  /// The arms that the agents took to get here, and the outcomes of that step.
   [[nodiscard]] std::span<std::uint16_t const> joint(std::uint32_t n) const {
     return {joints_.data() + n * agents_, agents_};
   }
@@ -88,16 +98,16 @@ class SearchTree {
     return {arms_.data() + block.first, block.count};
   }
 
-  /// The node's agents have their arms: they get them in order, and memory may run out on the way.
+  /// Whether all agents have their arms at the node. They get them in order, so the last one tells.
   [[nodiscard]] bool has_arms(std::uint32_t n) const { return blocks_[n * agents_ + agents_ - 1].count > 0; }
 
-  /// Whether a node, or `count` arms, still fit. A root alone always gets its arms.
+  /// Whether another node, or `count` more arms, fit into memory. A root alone always gets its arms.
   [[nodiscard]] bool has_room() const { return nodes_.size() < limits_.nodes; }
   [[nodiscard]] bool has_room_for_arms(std::size_t count) const {
     return nodes_.size() == 1 || arms_.size() + count <= most_arms_;
   }
 
-  /// Adds a node; the first is the root. Only where there is room.
+  /// Adds a node; the first one is the root. Precondition: `has_room()`.
   std::uint32_t add(std::uint32_t parent, std::span<std::uint16_t const> joint, std::span<AgentOutcome const> outcomes,
                     bool terminal, State const& state) {
     auto const n = static_cast<std::uint32_t>(nodes_.size());
@@ -116,10 +126,10 @@ class SearchTree {
     return n;
   }
 
-  /// Adds an arm to what the agent has at the node.
+  /// Adds an arm for the agent at the node. `expected`: the number of arms that it will probably get.
   Arm& add_arm(std::uint32_t n, std::size_t agent, std::size_t expected) {
     auto& block = blocks_[n * agents_ + agent];
-    if (block.count == block.room) {  // a block that is full moves to the end, twice as large
+    if (block.count == block.room) {  // a full block moves to the end and doubles
       auto const room = std::max<std::size_t>(expected, 2u * block.room);
       auto const first = arms_.size();
       if (auto const capacity = arms_.capacity(); first + room > capacity)
@@ -132,7 +142,7 @@ class SearchTree {
     return arms_[block.first + block.count++];
   }
 
-  /// The first of the nodes that the agents' choices `joint` at `parent` led to; `no_node` if they did not yet. O(1).
+  /// The first node to which the joint action `joint` led from `parent`, or `no_node`. Expected O(1).
   [[nodiscard]] std::uint32_t find(std::uint32_t parent, std::span<std::uint16_t const> joint) const {
     for (auto at = hash(parent, joint) & (table_.size() - 1); table_[at].epoch == epoch_;
          at = (at + 1) & (table_.size() - 1))
@@ -141,7 +151,8 @@ class SearchTree {
     return no_node;
   }
 
-  /// Makes node `root` the root and drops all that is not below it. O(n log n) in the nodes, no allocation once warm.
+  /// Makes node `root` the root and drops everything that is not below it. O(n log n) in the nodes; no allocation once
+  /// warm.
   void keep_below(std::uint32_t root) {
     moved_to_.assign(nodes_.size(), no_node);
     std::uint32_t kept = 0;
@@ -180,7 +191,7 @@ class SearchTree {
     return static_cast<std::size_t>(h * 0xD6E8FEB86659FD93u >> 17);
   }
 
-  /// Enters a node into the table, or behind the other outcomes of the same actions.
+  /// Enters a node into the table, or appends it to the outcomes of the same actions.
   void link(std::uint32_t n) {
     if (auto first = find(nodes_[n].parent, joint(n)); first != no_node) {
       while (nodes_[first].next_outcome != no_node) first = nodes_[first].next_outcome;
@@ -192,7 +203,7 @@ class SearchTree {
     table_[at] = {n, epoch_};
   }
 
-  /// For `nodes` nodes and their arms.
+  /// Reserves memory for `nodes` nodes and their arms.
   void make_room(std::size_t nodes) {
     room_ = nodes;
     nodes_.reserve(nodes);
@@ -206,7 +217,7 @@ class SearchTree {
     if (table_.size() < entries) rehash(entries);
   }
 
-  /// To `size`, and no more.
+  /// Resizes a list to at least `size`, without spare capacity.
   template <class T>
   static void grow(std::vector<T>& list, std::size_t size) {
     if (size <= list.size()) return;
@@ -214,10 +225,10 @@ class SearchTree {
     list.resize(size);
   }
 
-  /// The entries of former searches count no more.
+  /// Invalidates all entries of the table in O(1): only those of the current epoch count.
   void begin_epoch() {
     if (++epoch_ != 0) return;
-    std::fill(table_.begin(), table_.end(), Entry{});  // those of 2^32 searches ago would count as new
+    std::fill(table_.begin(), table_.end(), Entry{});  // the counter wrapped: old entries would seem new
     epoch_ = 1;
   }
 
@@ -242,7 +253,7 @@ class SearchTree {
     if (stores_states() && from != to) std::swap(states_[to], states_[from]);
   }
 
-  /// Moves the arms of all nodes together.
+  /// Closes the gaps between the arms of all nodes.
   void pack_arms() {
     packed_.clear();
     packed_.reserve(blocks_.size());
@@ -264,10 +275,10 @@ class SearchTree {
   std::size_t agents_ = 1, room_ = 0, most_arms_ = 0;
   std::uint32_t epoch_ = 0;
   std::vector<Node> nodes_;
-  std::vector<std::uint16_t> joints_;  ///< by node and agent, as the next two
+  std::vector<std::uint16_t> joints_;  ///< by node and agent, like the next two
   std::vector<AgentOutcome> outcomes_;
   std::vector<Block> blocks_;
-  std::vector<State> states_;  ///< by node; behind them those of former searches
+  std::vector<State> states_;  ///< by node; beyond `nodes_.size()`, states of former searches
   std::vector<Arm> arms_;
   std::vector<Entry> table_;  ///< open addressing, at most half full
   std::vector<std::uint32_t> moved_to_, packed_;
