@@ -93,7 +93,7 @@ struct ZipMerge {
   /// merge is, so that the gap opens gradually, and includes most of what a faster vehicle opens by itself. It never
   /// exceeds the larger of `gap` and the distance to the merge.
   [[nodiscard]] static double gap_to_open(double to_merge, double gap, double speed, double other_speed) {
-    constexpr double share = 0.3, trust = 0.7;
+    constexpr double share = 0.2, trust = 0.7;
     if (!(to_merge > 0.0)) return gap;
     double const opening = trust * (other_speed - speed) * to_merge / std::max(speed, 1.0);
     return std::min(gap + std::max(share * to_merge, opening), std::max(gap, to_merge));

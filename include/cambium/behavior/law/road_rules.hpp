@@ -193,9 +193,19 @@ struct RoadRules {
     if (next) ahead.heed(detail::constraint_of<Law>(view, *next));
     if (auto const end = lane_end_ahead(view)) ahead.heed(*end);
   }
+  /// The same with the next vehicle in the own lane and in each lane that merges into it.
   template <class View, class Law>
   void heed(View const& view, Strictest<Law>& ahead) const {
-    heed(view, view.ahead({.merging = merging}), ahead);
+    if (view.corridor().feeders.empty()) return heed(view, view.ahead({.merging = merging}), ahead);
+    heed_merging(view, ahead);
+    if (auto const end = lane_end_ahead(view)) ahead.heed(*end);
+  }
+
+  /// Adds the next vehicle in the own lane and in each lane that merges into it to the constraints.
+  template <class View, class Law>
+  CAMBIUM_NOINLINE void heed_merging(View const& view, Strictest<Law>& ahead) const {
+    view.each_ahead({.merging = merging},
+                    [&](RoadUser const& next) { ahead.heed(detail::constraint_of<Law>(view, next)); });
   }
 
   /// Bounds the `motion` of a step of `dt` [s] from `s` [m] at `speed` [m/s] by bends and signals. A driver with
