@@ -99,7 +99,11 @@ template <class Law, class View>
 [[nodiscard]] Constraint constraint_of(View const& view, RoadUser const& user) {
   Constraint constraint{user.gap, user.speed, 0.0};
   if constexpr (Law::asks_acceleration)
-    if (is_valid(user.agent)) constraint.acceleration = view.acceleration(user);
+    if (is_valid(user.agent)) {
+      constraint.acceleration = view.acceleration(user);
+      double const gap = user.s - user.rear - view.place().s - view.shape().front;
+      if (user.gap > gap + 0.1) constraint.acceleration = std::min(constraint.acceleration, -1.0);  // the gap has to open
+    }
   return constraint;
 }
 
