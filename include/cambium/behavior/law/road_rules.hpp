@@ -102,7 +102,8 @@ template <class Law, class View>
     if (is_valid(user.agent)) {
       constraint.acceleration = view.acceleration(user);
       double const gap = user.s - user.rear - view.place().s - view.shape().front;
-      if (user.gap > gap + 0.1) constraint.acceleration = std::min(constraint.acceleration, -1.0);  // the gap has to open
+      if (user.gap > gap + 0.1)
+        constraint.acceleration = std::min(constraint.acceleration, -1.0);  // the gap has to open
     }
   return constraint;
 }
