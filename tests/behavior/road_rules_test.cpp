@@ -7,7 +7,10 @@
 #include <memory>
 #include <string>
 
+#include "../support/maps.hpp"
+#include "cambium/map/corridor/build_corridor.hpp"
 #include "cambium/map/opendrive.hpp"
+#include "cambium/scenario/merging_site.hpp"
 #include "lane_traffic_fixtures.hpp"
 
 using namespace lane_traffic;
@@ -74,6 +77,36 @@ TEST_CASE("of a leader and the lane's end, the one that requires more braking co
   world.set_state(ahead, {.x = 265, .y = -1.75});
   auto const near = world.observe(id);
   CHECK(strictest(near).gap == near.ahead()->gap);
+}
+
+TEST_CASE("a driver keeps its leader's gap although a vehicle that merges is nearer, and faster") {
+  World world(support::own_map("merging.xodr"));
+  auto const site = cb::find_merging_site(support::own_map("merging.xodr"));
+  // A place on the main lane 60 m before the merge: the ramp's vehicles are beside it.
+  auto const& through =
+      *std::ranges::find_if(site.entrances, [](auto const& e) { return e.merges() && !e.gives_up_lane; });
+  auto const& ramp = site.entrances[site.ramp];
+  auto const place = [&](cb::MergingSite::Entrance const& entrance, double before_merge, double speed, double desired) {
+    auto const road = cb::map::build_road_corridor(*site.map, entrance.route);
+    auto const pose = road->corridors[road->main].center.pose(entrance.merge_at - before_merge);
+    return world.add({.position = pose.position(),
+                      .heading = pose.heading,
+                      .speed = speed,
+                      .behavior = cb::IdmClassic{.desired_speed = desired},
+                      .route = entrance.route});
+  };
+  auto const id = place(through, 80.0, 12.0, 15.0), leader = place(through, 58.0, 9.9, 9.9);
+  auto const own_alone = world;
+  auto const merging = place(ramp, 58.0, 15.0, 15.0);
+  auto view = world.observe(id);
+  REQUIRE(view.ahead());
+  REQUIRE(view.ahead()->agent == merging);
+  REQUIRE(view.ahead({.merging = cb::Merging::ignored})->agent == leader);
+  auto alone = own_alone, both = world;
+  REQUIRE(alone.step(0.2));
+  REQUIRE(both.step(0.2));
+  CHECK(alone.record(id).action.acceleration < -0.5);
+  CHECK(both.record(id).action.acceleration <= alone.record(id).action.acceleration);
 }
 
 TEST_CASE("the permitted speed is the limit, or a speed that still meets lower limits ahead") {

@@ -327,11 +327,39 @@ std::vector<Somebody> everybody(Sim const& world) {
 }
 
 struct Count {
-  std::size_t compared = 0;  ///< neighbours
-  std::size_t reaching = 0;  ///< of them in another lane than their own
-  std::size_t objects = 0;   ///< of them
-  std::size_t hidden = 0;    ///< of them not the nearest by reference point on the corridor
+  std::size_t compared = 0;                      ///< neighbours
+  std::size_t reaching = 0;                      ///< of them in another lane than their own
+  std::size_t objects = 0;                       ///< of them
+  std::size_t hidden = 0;                        ///< of them not the nearest by reference point on the corridor
+  std::size_t lane_by_lane = 0, on_feeders = 0;  ///< see `compare_each_ahead`
 };
+
+/// Compares whom an agent finds ahead lane by lane with all road users on its corridor's feeders, asked one by one.
+template <class View>
+void compare_each_ahead(View const& view, Count& count) {
+  std::vector<cb::RoadUser> each;
+  view.each_ahead({}, [&](cb::RoadUser const& user) { each.push_back(user); });
+  auto const next = view.ahead();
+  REQUIRE(each.empty() == !next.has_value());
+  if (!next) return;
+  auto const nearest =
+      std::min_element(each.begin(), each.end(), [](auto const& a, auto const& b) { return a.gap < b.gap; });
+  CHECK(nearest->gap == next->gap);
+  count.lane_by_lane += each.size();
+  double const s = view.place().s, front = s + view.shape().front;
+  for (auto const& feeder : view.corridor().feeders)
+    view.on_lane(feeder.index_begin, feeder.index_end, [&](cb::RoadUser const& user) {
+      double const image = feeder.image(user.s);
+      if (user.s < feeder.index_begin || user.s > feeder.index_end || image <= s || image > s + cb::Look::horizon)
+        return;
+      double const gap = cb::map::gap_before_merge(front, image - user.rear, feeder.free_until);
+      bool const is_covered = std::ranges::any_of(each, [&](cb::RoadUser const& found) {
+        return found.gap <= gap + 1e-6 && found.s >= feeder.begin - 1e-6 && found.s <= feeder.end + 1e-6;
+      });
+      CHECK(is_covered);
+      ++count.on_feeders;
+    });
+}
 
 /// Compares all agents' neighbours on their own corridors and on those beside.
 void compare(Sim& world, Count& count) {
@@ -342,6 +370,7 @@ void compare(Sim& world, Count& count) {
     if (asker.kind != Kind::driving) continue;
     auto const& agent = world.roster().agents[asker.slot];
     auto const view = world.observe(agent.id);
+    compare_each_ahead(view, count);
     for (cb::CorridorId k{}; index_of(k) < agent.road->corridors.size(); ++k) {
       auto const& corridor = agent.road->corridors[k];
       auto const& twin = twins.try_emplace(&corridor, map, corridor).first->second;
@@ -409,6 +438,8 @@ TEST_CASE("front and rear neighbours equal those of a brute-force twin on thousa
     CHECK(count.reaching > 500);
     CHECK(count.objects > 500);
     CHECK(count.hidden > 200);
+    CHECK(count.lane_by_lane > 5000);
+    if (std::string(name) != "highway.xodr") CHECK(count.on_feeders > 500);
   }
 }
 

@@ -66,6 +66,10 @@ struct ViewArchetype {
   [[nodiscard]] map::LanePlace place(CorridorId corridor) const;         ///< its place in another one
   [[nodiscard]] std::optional<RoadUser> ahead(Look const& = {}) const;   ///< next road user along the own lane corridor
   [[nodiscard]] std::optional<RoadUser> behind(Look const& = {}) const;  ///< next one behind
+  /// Calls `f(RoadUser)` for the next road user along the own lane corridor, then for the next one in each lane that
+  /// merges into it or has just split off: all to whom a driver keeps a gap.
+  template <class F>
+  void each_ahead(Look const& look, F&& f) const;
   /// The next road user ahead of (behind) a place on a lane corridor of the road, as if the agent were there.
   [[nodiscard]] std::optional<RoadUser> ahead(map::LanePlace const& place, Look const& = {}) const;
   [[nodiscard]] std::optional<RoadUser> behind(map::LanePlace const& place, Look const& = {}) const;

@@ -39,6 +39,7 @@ struct MergingSite {
   std::size_t ramp{};        ///< the entrance whose vehicles merge
   std::size_t crossings{};   ///< places where routes cross or meet at an angle; car following gives way at none of them
   double free_speed = 13.9;  ///< [m/s]: the speed limit at the ramp, else 50 km/h
+  double truck_share = 0.1;  ///< part of the vehicles that are trucks
 
   /// Scenario `number` of a seed: cars and trucks on all entrances, with gaps that leave time to brake, merging traffic
   /// included. The goal of all vehicles on the ramp is the lane behind the merge; the ego is the one in their middle.

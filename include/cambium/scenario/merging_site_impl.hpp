@@ -151,6 +151,7 @@ CAMBIUM_COLD LaneTraffic traffic_from(MergingSite const& site, MergingSite::Entr
   traffic.highest_speed = std::min(1.2 * share, 1.0) * site.free_speed;
   traffic.lowest_desired_speed = 0.85 * site.free_speed;
   traffic.highest_desired_speed = 1.15 * site.free_speed;
+  traffic.truck_share = site.truck_share;
   return traffic;
 }
 

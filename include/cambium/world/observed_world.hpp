@@ -82,6 +82,15 @@ class ObservedWorld {
     return seen(world_->traffic().rear(corridor(), query(record_->lane, look), objects_on_lanes(), in_traffic()), -1);
   }
 
+  /// Calls `f(RoadUser)` for the next road user ahead in the agent's own lane corridor, and for the next one in each
+  /// lane that merges into it or has just split off: `ahead` is the one with the smallest gap, but not always the one
+  /// that demands the most caution. O(1) if there are no such lanes, else O(feeders), plus a search in each.
+  template <class F>
+  void each_ahead(Look const& look, F&& f) const {
+    world_->traffic().each_front(corridor(), query(record_->lane, look), objects_on_lanes(), in_traffic(),
+                                 [&](RoadUser const& found) { f(seen(found, 1)); });
+  }
+
   /// Next road user ahead of (behind) a place on any lane corridor of the agent's road, as if the agent were there.
   /// O(log n).
   [[nodiscard]] std::optional<RoadUser> ahead(map::LanePlace const& from, Look const& look = {}) const {

@@ -113,6 +113,24 @@ class TrafficIndex {
                       corridor, query, objects);
   }
 
+  /// Calls `f(RoadUser)` for the next road user ahead on `corridor` itself, then for the next one on each of its
+  /// feeders; `own` as in `front`.
+  template <class Query, class F>
+  void each_front(map::LaneCorridor const& corridor, Query const& query, std::span<TrafficEntry const> objects,
+                  bool own, F&& f) const {
+    auto const start = own ? rank_[index_of(query.slot)] + 1 : upper(agents(), key(corridor, query), query.slot);
+    Nearest best;
+    front_on_corridor(corridor, query, start, best);
+    if (crowded_ || !objects.empty()) best = front_in_crowd(start, corridor, query, objects, best);
+    if (best.entry) f(*hit(best, objects));
+    for (auto const& feeder : corridor.feeders) {
+      if (feeder.begin > query.s + query.distance) break;
+      Nearest next;
+      front_on_feeder(feeder, query, objects, next);
+      if (next.entry) f(*hit(next, objects));
+    }
+  }
+
   /// Next road user behind on `corridor`; `own` as in `front`.
   template <class Query>
   [[nodiscard]] std::optional<RoadUser> rear(map::LaneCorridor const& corridor, Query const& query,
@@ -346,23 +364,29 @@ class TrafficIndex {
     }
   }
 
-  /// Next road user ahead among static objects and road users on feeders; if `crowded_`, also among agents farther away
-  /// by reference point that may reach nearer. Not inlined, because it is large and rarely needed; `query` is a copy,
+  /// Next road user ahead among static objects on the corridor; if `crowded_`, also among agents farther away by
+  /// reference point that may reach nearer.
+  template <class Query>
+  [[nodiscard]] Nearest front_in_crowd(std::size_t start, map::LaneCorridor const& corridor, Query const& query,
+                                       List objects, Nearest best) const {
+    if (crowded_ && best.entry) nearest_front(agents(), false, reach_.longest_rear, corridor, query, start, best);
+    if (!objects.empty())
+      nearest_front(objects, true, longest_object, corridor, query, upper(objects, key(corridor, query), Slot{}), best);
+    return best;
+  }
+
+  /// Likewise, and among road users on feeders. Not inlined, because it is large and rarely needed; `query` is a copy,
   /// so that the caller's can stay in registers.
   template <class Query>
   CAMBIUM_NOINLINE Nearest front_of_others(std::size_t start, map::LaneCorridor const& corridor, Query const& query,
                                            List objects, Nearest best) const {
-    if (crowded_ && best.entry) nearest_front(agents(), false, reach_.longest_rear, corridor, query, start, best);
-    if (!objects.empty())
-      nearest_front(objects, true, longest_object, corridor, query, upper(objects, key(corridor, query), Slot{}), best);
+    best = front_in_crowd(start, corridor, query, objects, best);
     for (auto const& feeder : corridor.feeders) {
       if (feeder.begin > query.s + std::min(query.distance, best.gap + query.front + reach_.longest_rear) &&
           objects.empty())
         break;  // no agent there is closer
       if (feeder.begin > query.s + query.distance) break;
-      if (feeder.end < query.s || (query.merging == Merging::ignored && feeder.is_still_to_merge())) continue;
-      front_on_feeder(agents(), false, feeder, query, best);
-      if (!objects.empty()) front_on_feeder(objects, true, feeder, query, best);
+      front_on_feeder(feeder, query, objects, best);
     }
     return best;
   }
@@ -385,6 +409,14 @@ class TrafficIndex {
       if (!objects.empty()) rear_on_feeder(objects, true, feeder, query, best);
     }
     return best;
+  }
+
+  /// Next road user ahead on a feeder, if the query looks there.
+  template <class Query>
+  void front_on_feeder(map::Feeder const& feeder, Query const& query, List objects, Nearest& best) const {
+    if (feeder.end < query.s || (query.merging == Merging::ignored && feeder.is_still_to_merge())) return;
+    front_on_feeder(agents(), false, feeder, query, best);
+    if (!objects.empty()) front_on_feeder(objects, true, feeder, query, best);
   }
 
   template <class Query>

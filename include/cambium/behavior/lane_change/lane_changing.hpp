@@ -122,6 +122,8 @@ struct LaneChanging {
         ahead = ahead_while_changing(view, law, leader, memory.change);
       }
     }
+    if (!view.corridor().feeders.empty())
+      heed_merging(view, rules, leader, memory.change.active() && memory.change.target != home, ahead);
     if (auto const end = rules.lane_end_ahead(view)) ahead.heed(*end);
     auto const motion = law.motion(ahead.constraint(), dt, tolerance);
     return plan_lane_change(view, memory.change,
@@ -255,6 +257,18 @@ struct LaneChanging {
     if (!leader) return;
     double const room = is_object(*leader) && has_side ? out_of_lane * course.least_length(shape) : 0.0;
     ahead.heed({leader->gap - room, leader->speed});
+  }
+
+  /// Adds the vehicles that merge, and the next one in the own lane: not only the nearest of them all, `leader`. A
+  /// vehicle that leaves its lane passes those that stand there.
+  template <class View>
+  CAMBIUM_NOINLINE static void heed_merging(View const& view, RoadRules const& rules,
+                                            std::optional<RoadUser> const& leader, bool leaves,
+                                            Strictest<IdmLaw>& ahead) {
+    view.each_ahead({.merging = rules.merging}, [&](RoadUser const& next) {
+      if ((leader && next.slot == leader->slot) || (leaves && next.speed < 0.5)) return;
+      ahead.heed({next.gap, next.speed});
+    });
   }
 
   static void add_stop(Strictest<IdmLaw>& ahead, double way) {

@@ -93,7 +93,7 @@ struct ZipMerge {
   /// merge is, so that the gap opens gradually, and includes most of what a faster vehicle opens by itself. It never
   /// exceeds the larger of `gap` and the distance to the merge.
   [[nodiscard]] static double gap_to_open(double to_merge, double gap, double speed, double other_speed) {
-    constexpr double share = 0.3, trust = 0.7;
+    constexpr double share = 0.2, trust = 0.7;
     if (!(to_merge > 0.0)) return gap;
     double const opening = trust * (other_speed - speed) * to_merge / std::max(speed, 1.0);
     return std::min(gap + std::max(share * to_merge, opening), std::max(gap, to_merge));
@@ -164,25 +164,34 @@ struct ZipMerge {
     auto const coming = [&](RoadUser const& other) {
       return Coming{std::max(0.0, other.speed), merge - other.s - other.front, other.length()};
     };
-    // The next vehicle of the other lane goes first even though it is not its turn.
-    auto const insists = [&](std::optional<RoadUser> const& next) { return next && !gives_way(coming(*next), own); };
+    auto first = whose_turn(view, memory, leader, merge, own, coming);
+    // Vehicles behind it go first, too, even though it is not their turn, if they do not give way.
+    for (auto next = view.merging(merge, first ? first->s - first->rear : infinite);
+         next && (!first || next->s < first->s) && !gives_way(coming(*next), own);
+         next = view.merging(merge, first->s - first->rear))
+      first = next;
+    return first;
+  }
+
+  /// The vehicle of the other lane that is next by turns, unless it is the own turn.
+  template <class View, class Measure>
+  [[nodiscard]] std::optional<RoadUser> whose_turn(View const& view, Memory& memory,
+                                                   std::optional<RoadUser> const& leader, double merge,
+                                                   Coming const& own, Measure const& coming) const {
     if (!leader) {  // without a leader, the vehicle closer to the merge goes first
       auto const other = view.merging(merge, infinite);
       constexpr double equal = 0.5;  // [m]
-      if (other && coming(*other).to_merge < own.to_merge + (other->agent < view.id() ? equal : -equal)) return other;
-      return std::nullopt;
+      bool const is_first =
+          other && coming(*other).to_merge < own.to_merge + (other->agent < view.id() ? equal : -equal);
+      return is_first ? other : std::nullopt;
     }
-    double const rear_of_leader = front + leader->gap;
+    double const rear_of_leader = merge - own.to_merge + leader->gap;
     if (rear_of_leader < merge && is_on_path(view, *leader, rear_of_leader)) memory.ahead = leader->agent;
-    if (leader->agent != memory.ahead) {  // the other lane has had its turn
-      auto const next = view.merging(merge, infinite);
-      return insists(next) ? next : std::nullopt;
-    }
+    if (leader->agent != memory.ahead) return std::nullopt;  // the other lane has had its turn
     auto const other = view.merging(merge, rear_of_leader);
     if (!other || !gives_way(own, coming(*other))) return std::nullopt;
-    if (memory.stood > patience && coming(*other).to_merge > own.to_merge) return std::nullopt;
-    auto const next = view.merging(merge, other->s - other->rear);
-    return insists(next) && next->agent != other->agent ? next : other;
+    bool const is_impatient = memory.stood > patience && coming(*other).to_merge > own.to_merge;
+    return is_impatient ? std::nullopt : other;
   }
 };
 static_assert(BehaviorModel<ZipMerge>);

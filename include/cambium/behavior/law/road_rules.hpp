@@ -99,7 +99,12 @@ template <class Law, class View>
 [[nodiscard]] Constraint constraint_of(View const& view, RoadUser const& user) {
   Constraint constraint{user.gap, user.speed, 0.0};
   if constexpr (Law::asks_acceleration)
-    if (is_valid(user.agent)) constraint.acceleration = view.acceleration(user);
+    if (is_valid(user.agent)) {
+      constraint.acceleration = view.acceleration(user);
+      double const gap = user.s - user.rear - view.place().s - view.shape().front;
+      if (user.gap > gap + 0.1)
+        constraint.acceleration = std::min(constraint.acceleration, -1.0);  // the gap has to open
+    }
   return constraint;
 }
 
@@ -193,9 +198,19 @@ struct RoadRules {
     if (next) ahead.heed(detail::constraint_of<Law>(view, *next));
     if (auto const end = lane_end_ahead(view)) ahead.heed(*end);
   }
+  /// The same with the next vehicle in the own lane and in each lane that merges into it.
   template <class View, class Law>
   void heed(View const& view, Strictest<Law>& ahead) const {
-    heed(view, view.ahead({.merging = merging}), ahead);
+    if (view.corridor().feeders.empty()) return heed(view, view.ahead({.merging = merging}), ahead);
+    heed_merging(view, ahead);
+    if (auto const end = lane_end_ahead(view)) ahead.heed(*end);
+  }
+
+  /// Adds the next vehicle in the own lane and in each lane that merges into it to the constraints.
+  template <class View, class Law>
+  CAMBIUM_NOINLINE void heed_merging(View const& view, Strictest<Law>& ahead) const {
+    view.each_ahead({.merging = merging},
+                    [&](RoadUser const& next) { ahead.heed(detail::constraint_of<Law>(view, next)); });
   }
 
   /// Bounds the `motion` of a step of `dt` [s] from `s` [m] at `speed` [m/s] by bends and signals. A driver with

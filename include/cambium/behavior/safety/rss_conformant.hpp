@@ -92,7 +92,7 @@ struct RssConformant {
       });
       return is_close;
     };
-    all.brake = too_close(at) || all.brake;
+    all.brake = too_close(at) || all.brake || lets_merge_first(p, view, speed);
     for (bool const left : {true, false}) {
       auto const& piece = view.corridor().pieces[at.piece];
       auto const side = piece.beside(left);
@@ -108,7 +108,8 @@ struct RssConformant {
 
  private:
   static constexpr double rounding = 1e-9;
-  static constexpr double farthest = 400.0;  // [m]
+  static constexpr double farthest = 400.0;     // [m]
+  static constexpr double before_merge = 15.0;  // [m]: bodies touch before lanes are one
 
   /// The assumptions if nobody responds before the next step.
   [[nodiscard]] RssParameters within_steps(double dt) const {
@@ -153,6 +154,27 @@ struct RssConformant {
     auto const ahead = geometry::sin_cos(now.heading);
     if ((end.x - now.x) * ahead.cos + (end.y - now.y) * ahead.sin < -apart) return Reach::behind;
     return detail::way_between(now, end) <= (1.0 + share) * distance + apart ? Reach::within : Reach::beyond;
+  }
+
+  /// Whether the vehicle must brake because lanes become one ahead. Sideways, traffic in the other lane is at a safe
+  /// distance until then, but there is no room to respond to it afterwards. So of two vehicles without a safe distance
+  /// lengthwise, the one farther from the merge stays able to stop before it. O(feeders + agents on them).
+  template <class View>
+  CAMBIUM_NOINLINE [[nodiscard]] static bool lets_merge_first(RssParameters const& p, View const& view, double speed) {
+    double const s = view.place().s, front = s + view.shape().front;
+    double const stop = front + rss_same_direction(p, speed, 0.0);
+    bool lets = false;
+    for (auto const& feeder : view.corridor().feeders) {
+      if (feeder.begin > stop + farthest || lets) break;
+      if (!feeder.is_still_to_merge() || feeder.free_until < front || stop < feeder.free_until - before_merge) continue;
+      view.on_lane(feeder.index_begin, feeder.index_end, [&](RoadUser const& other) {
+        if (!is_valid(other.agent) || other.s < feeder.index_begin || other.s > feeder.index_end) return;
+        double const place = feeder.image(other.s), gap = place - other.rear - front;
+        bool const is_ahead = place > s || (place == s && other.agent < view.id());
+        lets = lets || (is_ahead && gap < rss_same_direction(p, speed, std::max(0.0, other.speed)));
+      });
+    }
+    return lets;
   }
 
   /// False for a road user too far away to matter, whatever it does.

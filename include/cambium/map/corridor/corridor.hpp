@@ -61,7 +61,7 @@ struct Feeder {
 [[nodiscard]] inline double gap_before_merge(double follower_front, double leader_rear, double merge) {
   double const gap = leader_rear - follower_front, to_merge = merge - follower_front;
   if (to_merge <= 0.0) return gap;
-  return std::min(gap + 0.5 * to_merge, std::max(gap, to_merge));
+  return std::min(gap + 0.2 * to_merge, std::max(gap, to_merge));
 }
 
 /// A stop sign or a light for the corridor's traffic.
