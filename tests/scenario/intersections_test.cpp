@@ -20,6 +20,7 @@
 #include "cambium/evaluation/driving.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/collision.hpp"
+#include "cambium/planner/policy/proposal_planner.hpp"
 #include "cambium/scenario/junction_site.hpp"
 
 using namespace cambium;
@@ -154,17 +155,29 @@ TEST_CASE("a vehicle larger than those that conflicts are found for is refused w
   };
   CHECK_NOTHROW(add(geometry::bus()));
   CHECK_THROWS_WITH_AS(add(geometry::articulated_truck()), doctest::Contains("large_conflict_shape"), WorldError);
+}
 
-  // Who heeds no conflicts may be larger, but not in a prediction in which it does.
-  using Set = BehaviorSet<Intersection, ConstantAcceleration>;
-  World<Set, InterpolateExecution, SingleTrack> world(site.map);
-  auto const large = world.add({.position = pose.position(),
-                                .shape = geometry::articulated_truck(),
-                                .behavior = ConstantAcceleration{},
-                                .route = site.random_route(site.entrances[0], random)});
-  CHECK_NOTHROW(static_cast<void>(world.observe(large).predict(predict_all_as<Set>(ConstantAcceleration{}))));
-  CHECK_THROWS_WITH_AS(static_cast<void>(world.observe(large).predict(predict_all_as<Set>(Intersection{}))),
-                       doctest::Contains("large_conflict_shape"), WorldError);
+TEST_CASE("a planner that expects everybody to heed conflicts plans among vehicles too large for them") {
+  using Predicted = BehaviorSet<IdmProposal, Intersection>;
+  using Prediction = World<Predicted, InterpolateExecution, SingleTrack>;
+  using Planner = ProposalPlanner<Prediction, Intersection>;
+  auto const site = find_junction_site(support::own_map("intersection_4way.xodr"));
+  World<BehaviorSet<Planner, ConstantAcceleration>, InterpolateExecution, SingleTrack> world(site.map);
+  RandomStream random(1, 0, 0);
+  auto const enter = [&](std::size_t entrance, geometry::Shape const& shape, auto const& behavior) {
+    auto const pose = site.map->lane(site.entrances[entrance]).path.pose(20.0);
+    return world.add({.position = pose.position(),
+                      .speed = 3.0,
+                      .shape = shape,
+                      .behavior = behavior,
+                      .route = site.random_route(site.entrances[entrance], random)});
+  };
+  enter(0, geometry::car(), Planner{});
+  enter(1, geometry::articulated_truck(), ConstantAcceleration{});
+  for (int i = 0; i < 50; ++i) REQUIRE(world.step(0.2));
+  auto prediction = world.observe(world.roster().agents[0].id).predict(predict_all_as<Predicted>(Intersection{}));
+  REQUIRE(prediction.size() == 2);
+  for (int i = 0; i < 50; ++i) REQUIRE(prediction.step(0.2));
 }
 
 TEST_CASE("nobody drives through a bend with more than the lateral acceleration it is given") {

@@ -49,9 +49,9 @@ template <class Set, class Behavior>
 
 /// The world that the agent at `slot` expects: states as it observes them, behaviours as `prediction` says. The other
 /// agents keep their routes, as if they signalled them, but lose their goals. Agents out of traffic and hidden agents
-/// are missing; a delayed observation counts as the present state. As `World::add`, throws `ParameterError` if a
-/// parameter of an assumed behaviour is out of range, and `WorldError` if that behaviour respects conflicts and the
-/// agent is too large for them.
+/// are missing; a delayed observation counts as the present state. An agent that is larger than the map's conflicts
+/// allow for is predicted all the same, with the zones of `MapOptions::large_conflict_shape` and what it is longer. As
+/// `World::add`, throws `ParameterError` if a parameter of an assumed behaviour is out of range.
 template <class Set, class World>
 [[nodiscard]] typename World::template WithBehaviors<Set> predicted_world(World const& world, Slot slot,
                                                                           Prediction<Set> const& prediction) {
@@ -85,8 +85,6 @@ template <class Set, class World>
     auto const& record = frame.agents[i];
     if (record.status != AgentStatus::driving || !detail::is_seen(world, slot, i)) continue;
     auto const& behavior = i == slot ? prediction.ego : prediction.others;
-    if (detail::is_too_large(world.map(), behavior, agent.shape, *agent.road))
-      detail::refuse_too_large("prediction: " + detail::name_of(agent.id));
     assumed->agents.push_back(
         {agent.id, agent.shape, agent.road, behavior, agent.execution, agent.dynamics, PerfectObserver{}});
     assumed->assume_goal(i == slot ? &roster : nullptr, i);
