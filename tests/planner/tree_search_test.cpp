@@ -680,6 +680,51 @@ TEST_CASE("trees are exported as JSON and DOT") {
   CHECK(count(dot, "->") + 1 == count(dot, "[label=\"") - count(dot, "->"));
 }
 
+TEST_CASE("UCB1 selects the arm that its published formula names") {
+  using Arm = cambium::Arm<int, Ucb1::Statistics>;
+  RandomStream random(7, 0, 0);
+  int not_greedy = 0;
+  for (int trial = 0; trial < 3000; ++trial) {
+    std::vector<Arm> arms(2 + uniform_index(random, 6));
+    ReturnScale scale;
+    scale.include(-20.0);
+    scale.include(30.0);
+    std::uint32_t all = 0;
+    for (auto& arm : arms) {
+      arm.visits = 1 + uniform_index(random, 200);
+      arm.total_return = arm.visits * Uniform{-20.0, 30.0}(random);
+      all += arm.visits;
+    }
+    Ucb1 const policy{.exploration = Uniform{0.1, 2.0}(random)};
+    std::size_t best = 0, greedy = 0;
+    double highest = -1e300, highest_mean = -1e300;
+    for (std::size_t i = 0; i < arms.size(); ++i) {
+      double const n = arms[i].visits, mean = arms[i].total_return / n;
+      double const index =
+          (mean + 20.0) / 50.0 + policy.exploration * std::sqrt(std::log(static_cast<double>(all)) / n);
+      if (index > highest) best = i;
+      if (mean > highest_mean) greedy = i;
+      highest = std::max(highest, index);
+      highest_mean = std::max(highest_mean, mean);
+    }
+    CHECK(policy.select(std::span<Arm const>(arms), all, scale, random) == best);
+    not_greedy += best != greedy;
+  }
+  CHECK(not_greedy > 500);
+}
+
+TEST_CASE("beliefs forget at their rate, towards equal probabilities") {
+  Belief belief(4);
+  belief.update(std::array<double, 4>{0.7, 0.1, 0.1, 0.1}, {.forgetting = 0.0, .floor = 0.0});
+  double expected = 0.7;
+  for (int i = 0; i < 20; ++i) {
+    belief.update(std::array<double, 4>{1.0, 1.0, 1.0, 1.0}, {.forgetting = 0.1, .floor = 0.0});
+    expected = 0.9 * expected + 0.1 / 4;
+    CHECK(belief.probability(0) == doctest::Approx(expected).epsilon(1e-5));
+  }
+  CHECK(expected < 0.35);
+}
+
 TEST_CASE("beliefs follow Bayes' rule") {
   Belief belief(3);
   BeliefParameters const exact{0.0, 0.0};

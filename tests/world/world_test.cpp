@@ -510,6 +510,28 @@ TEST_CASE("a frame is put back, as a search does, and only one that fits") {
   CHECK(says(error_of([&] { Sim bad(nullptr, world.shared_roster(), root); }), "no map"));
 }
 
+TEST_CASE("after an assignment, and after a frame is put back, neighbours are those of the new frame") {
+  Sim near(straight_road(1, 500));
+  auto const id = near.add({.position = {100, -1.75}}), leader = near.add({.position = {130, -1.75}});
+  Sim far = near;
+  far.set_state(leader, {.x = 190, .y = -1.75});
+  auto const gap = [&](Sim& world) { return world.observe(id).ahead()->gap; };
+  double const small = gap(near), large = gap(far);
+  REQUIRE(large > small + 50.0);
+  Sim world = near;
+  CHECK(gap(world) == small);  // its index is built
+  world = far;
+  CHECK(gap(world) == large);
+  world = near;
+  CHECK(gap(world) == small);
+  world.restore(far.frame());
+  CHECK(gap(world) == large);
+  world.restore(near.frame());
+  CHECK(gap(world) == small);
+  Sim moved = std::move(world);
+  CHECK(gap(moved) == small);
+}
+
 TEST_CASE("frames are exchanged: each world goes on where the other's frame was, as if it had been put there") {
   Sim world(straight_road(1, 500), {.seed = 3});
   world.add({.position = {10, -1.75}, .speed = 10});

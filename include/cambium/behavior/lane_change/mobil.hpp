@@ -41,8 +41,8 @@ template <class P>
 ///
 /// It changes to the side with the largest incentive if that is also safe. `LaneChanging` defines what is safe and
 /// carries out the change. `bias` and `keep_right` shift the incentive between the sides, `route_bias` towards the
-/// lanes that go further. A driver who must leave its lane adapts its speed to the lane that it needs. A side that
-/// cannot be worthwhile for the driver and its old follower is rejected before the new follower is looked up.
+/// lanes that go further. A driver who must leave its lane adapts its speed to the lane that it needs. Without
+/// `keep_right`, a gain of the new follower does not count: nobody cuts in to keep a vehicle from braking for another.
 ///
 /// `Filters`: further conditions, see `corridor_filters.hpp`; `Mobil` has none.
 template <class... Filters>
@@ -182,6 +182,8 @@ struct BasicMobil {
         situation.old_follower = situation.old_follower_after = 0.0;
       else
         situation.new_follower = situation.new_follower_after = 0.0;
+    } else if (situation.new_follower_after > situation.new_follower) {
+      situation.new_follower_after = situation.new_follower;  // so that `best_side` may reject without knowing it
     }
     return mobil_incentive(*this, situation);
   }
