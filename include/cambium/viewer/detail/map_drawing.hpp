@@ -94,15 +94,15 @@ class MapDrawing {
     for (auto const type : types) entries.push_back({LegendShape::area, type, "lane of type " + std::string(type)});
     if (options_.arrows) entries.push_back({LegendShape::arrow, "", "travel direction"});
     add(options_.links && has_link, {LegendShape::link, "", "leads to"});
-    add(options_.links && has_begin, {LegendShape::dot, "begin", "begins, no way in"});
-    add(options_.links && has_end, {LegendShape::dot, "end", "ends, no way on"});
+    add(options_.links && has_begin, {LegendShape::dot, "begin", "starts, no predecessor"});
+    add(options_.links && has_end, {LegendShape::dot, "end", "ends, no successor"});
     auto const overlaps = [&](map::OverlapKind kind) {
       return options_.overlaps && has_overlap[static_cast<std::size_t>(kind)];
     };
     add(overlaps(map::OverlapKind::crossing), {LegendShape::stretch, "crossing", "crosses another lane"});
     add(overlaps(map::OverlapKind::merge), {LegendShape::stretch, "merge", "merges with another"});
     add(overlaps(map::OverlapKind::split), {LegendShape::stretch, "split", "splits from another"});
-    if (options_.conflicts && has_junction) entries.push_back({LegendShape::conflict, "", "shared ground"});
+    if (options_.conflicts && has_junction) entries.push_back({LegendShape::conflict, "", "shared area"});
     return map_legend(entries, width);
   }
 
@@ -206,7 +206,7 @@ class MapDrawing {
       for (auto const& conflict : conflict_areas(map_, junction.id)) {
         if (!conflict.area || !is_shown(conflict.first)) continue;
         auto const &first = map_.lane(conflict.first), &second = map_.lane(conflict.second);
-        out_ += "<path d=\"" + path(conflict.area->points()) + "Z\"><title>ground of " + name_of(first) + " and " +
+        out_ += "<path d=\"" + path(conflict.area->points()) + "Z\"><title>area shared by " + name_of(first) + " and " +
                 name_of(second);
         if (auto const road = goes_first(junction, first.road, second.road))
           out_ += "; road " + escape_markup(map_.road(*road).name) + " goes first";
