@@ -1,5 +1,5 @@
-// cambium inside of a planner stack of its own: lanes as polylines from its map, objects from its perception, no
-// OpenDRIVE file. The part between the two marks is all that the stack needs; the rest stands for the stack.
+// cambium inside an existing planner stack: lanes come as polylines from the stack's map, objects from its perception;
+// no OpenDRIVE file is needed. The code between the two marks is all that the stack needs; the rest imitates the stack.
 
 #include <cmath>
 #include <cstdio>
@@ -21,13 +21,13 @@ struct Point {
   double x, y;
 };
 
-/// What perception tracks: the middle of a box, m, rad, m/s.
+/// An object that perception tracks: centre of its box, in m, rad, m/s.
 struct TrackedObject {
   unsigned id;
   double x, y, yaw, speed, length, width;
 };
 
-/// Where the localisation has the vehicle: the middle of its rear axle.
+/// The vehicle's pose and speed from localisation, at the middle of its rear axle.
 struct Ego {
   double x, y, yaw, speed;
 };
@@ -41,7 +41,7 @@ namespace cb = cambium;
 using World = cb::World<cb::BehaviorSet<cb::MacroActions, cb::IdmClassic>, cb::InterpolateExecution, cb::SingleTrack>;
 using Planner = cb::Mcts<World>;
 
-/// Once per map: borders of the lanes from left to right, in travel direction.
+/// Called once per map. `borders`: of the lanes, from left to right, in travel direction.
 std::shared_ptr<cb::Map const> map_of(std::vector<std::vector<stack::Point>> const& borders) {
   std::vector<std::vector<cb::geometry::Point>> lines;
   for (auto const& border : borders) {
@@ -53,7 +53,7 @@ std::shared_ptr<cb::Map const> map_of(std::vector<std::vector<stack::Point>> con
   return builder.build();
 }
 
-/// Once per cycle: ego is agent 0.
+/// Called once per planning cycle. The ego is agent 0.
 World world_of(std::shared_ptr<cb::Map const> const& map, stack::Ego const& ego,
                std::vector<stack::TrackedObject> const& objects, cb::Goal const& goal) {
   World world(map);
@@ -73,7 +73,7 @@ World world_of(std::shared_ptr<cb::Map const> const& map, stack::Ego const& ego,
 }
 // embed]
 
-/// The stack's own knowledge: a bend to the left with two lanes of 3.5 m, a slow truck ahead, a car beside.
+/// The stack's map: a bend to the left with two lanes of 3.5 m. On it, a slow truck ahead and a car beside the ego.
 std::vector<std::vector<stack::Point>> borders() {
   std::vector<std::vector<stack::Point>> lines;
   for (double const radius : {300.0, 303.5, 307.0}) {
@@ -111,7 +111,7 @@ void plan() {
     std::printf("%8u %8.2f  %s%s\n", arm.visits, arm.mean_return, report.candidates[i].name.c_str(),
                 i == report.chosen ? "   <- chosen" : "");
   }
-  std::printf("\nexpected course of all\n    time");
+  std::printf("\nexpected motion of all agents\n    time");
   for (auto const id : report.agents) std::printf("          agent %-8s", to_string(id).c_str());
   std::printf("\n");
   for (auto const& frame : report.course) {
@@ -125,7 +125,7 @@ void plan() {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App program("Puts a tree search into a planner stack that has a map and objects of its own.",
+  CLI::App program("Embeds a tree search in a planner stack that has a map and objects of its own.",
                    "embed_in_planner");
   return examples::run_program(program, argc, argv, plan);
 }

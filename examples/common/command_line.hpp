@@ -20,7 +20,7 @@
 
 namespace examples {
 
-/// Accepts whole numbers from `low` to `high`. (CLI11's own range lets numbers pass that no integer holds.)
+/// Accepts whole numbers from `low` to `high`. (CLI11's own range check accepts numbers that overflow the integer.)
 [[nodiscard]] inline CLI::Validator whole_number(std::uint64_t low, std::uint64_t high) {
   auto const check = [low, high](std::string const& word) -> std::string {
     auto const value = cambium::detail::parse_number<std::uint64_t>(word);
@@ -41,7 +41,7 @@ namespace examples {
   return CLI::Validator(check, "");
 }
 
-/// An option that takes a list, as 1,2,3, of what `each` accepts; what is named twice counts once.
+/// An option that takes a comma-separated list of values that `each` accepts. Duplicates are dropped.
 template <class Number>
 CLI::Option* add_list(CLI::App& program, std::string const& name, std::vector<Number>& target, CLI::Validator each,
                       std::string const& sentence) {
@@ -75,16 +75,16 @@ CLI::Option* add_list(CLI::App& program, std::string const& name, std::vector<Nu
       ->default_str(usual);
 }
 
-/// Accepts any text but none.
+/// Accepts any text except an empty one.
 [[nodiscard]] inline CLI::Validator not_empty() {
   return CLI::Validator(
       [](std::string const& word) {
-        return word.empty() ? std::string("needs a name, not an empty text") : std::string();
+        return word.empty() ? std::string("needs a name, but got an empty text") : std::string();
       },
       "");
 }
 
-/// 0, or 2 with a line on the error stream where the standard output did not take all that was printed.
+/// Flushes the standard output. Returns 0, or 2 with a line on the error stream if the output could not be written.
 [[nodiscard]] inline int finish_output(std::string const& program) {
   if (std::fflush(stdout) == 0 && std::cout.flush()) return 0;
   std::cerr << program << ": the standard output cannot be written\n";
@@ -99,8 +99,8 @@ CLI::Option* add_list(CLI::App& program, std::string const& name, std::vector<Nu
   return names;
 }
 
-/// Reads the command line, then runs `body`; what is thrown becomes one line on the error stream and exit code 2. What
-/// `body` returns, if anything, is the exit code.
+/// Parses the command line, then runs `body`, whose return value, if any, is the exit code. An exception becomes one
+/// line on the error stream and exit code 2.
 template <class Body>
 int run_program(CLI::App& program, int argc, char** argv, Body const& body) {
   auto const refuse = [&program](std::string const& what) {

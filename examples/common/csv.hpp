@@ -14,7 +14,7 @@
 
 namespace examples {
 
-/// `text` as a cell that `CsvTable` reads back: in quotes where it must be (RFC 4180).
+/// `text` as a CSV cell that `CsvTable` reads back, quoted if necessary (RFC 4180).
 [[nodiscard]] inline std::string csv_cell(std::string const& text) {
   bool const has_blank_end = !text.empty() && (text.front() == ' ' || text.back() == ' ');
   if (!has_blank_end && text.find_first_of(",\"\r\n") == text.npos) return text;
@@ -23,12 +23,12 @@ namespace examples {
   return cell + '"';
 }
 
-/// A table of comma-separated values, whose first line may name its columns. Cells may be in quotes, but end in their
-/// line.
+/// A table of comma-separated values. The first line may name the columns. Cells may be quoted, but must not contain
+/// line breaks.
 class CsvTable {
  public:
-  /// Reads the columns `names` of `file`: by these names where the first line has them (in any order, among others),
-  /// else the first ones. Throws `cambium::Error` with file and line.
+  /// Reads the columns `names` of `file`. If the first line contains these names, in any order and among others, they
+  /// select the columns; else the first columns count. Throws `cambium::Error` with file and line.
   CsvTable(std::string file, std::vector<std::string> names) : file_(std::move(file)), names_(std::move(names)) {
     std::ifstream in(file_);
     if (!in) fail(0, "it cannot be opened", "check the path");
@@ -47,15 +47,15 @@ class CsvTable {
   [[nodiscard]] std::size_t size() const { return rows_.size(); }
   [[nodiscard]] std::string const& word(std::size_t row, std::size_t column) const { return rows_[row].cells[column]; }
 
-  /// The cell as a finite number. Throws `cambium::Error` where it is none.
+  /// The cell as a finite number. Throws `cambium::Error` if it is not one.
   template <class Number>
   [[nodiscard]] Number number(std::size_t row, std::size_t column) const {
     if (auto const value = cambium::detail::parse_number<Number>(word(row, column))) return *value;
-    fail(rows_[row].line, names_[column] + " is '" + word(row, column) + "', which is no finite number of its kind",
-         "write it like 12.5, the lane like -1");
+    fail(rows_[row].line, names_[column] + " is '" + word(row, column) + "', which is not a valid finite number",
+         "write numbers like 12.5 and lanes like -1");
   }
 
-  /// Throws `cambium::Error` that names the row's line.
+  /// Throws `cambium::Error` with the file and line of the row.
   [[noreturn]] void fail_at(std::size_t row, std::string const& what, std::string const& remedy) const {
     fail(rows_[row].line, what, remedy);
   }
@@ -66,7 +66,7 @@ class CsvTable {
     std::vector<std::string> cells;
   };
 
-  /// Where the cell that begins at `begin` ends: at its comma or the end of the line; npos where its quote stays open.
+  /// The end of the cell that begins at `begin`: its comma or the end of the line; npos if a quote is not closed.
   [[nodiscard]] static std::size_t end_of_cell(std::string_view line, std::size_t begin) {
     std::size_t const first = line.find_first_not_of(' ', begin);
     if (first == line.npos || line[first] != '"') return std::min(line.find(',', begin), line.size());
@@ -78,7 +78,7 @@ class CsvTable {
     return is_open ? line.npos : line.size();
   }
 
-  /// What a cell says, without the blanks around it and without its quotes.
+  /// The content of a cell, without surrounding blanks and quotes.
   [[nodiscard]] static std::string content(std::string_view cell) {
     cell = cambium::detail::trimmed(cell, " ");
     if (cell.size() < 2 || cell.front() != '"' || cell.back() != '"') return std::string(cell);
@@ -91,7 +91,7 @@ class CsvTable {
     std::vector<std::string> cells;
     for (std::size_t begin = 0; begin <= line.size();) {
       std::size_t const end = end_of_cell(line, begin);
-      if (end == line.npos) fail(number, "a quote in it is not closed", "close it in its line");
+      if (end == line.npos) fail(number, "a quote in it is not closed", "close it on the same line");
       cells.push_back(content(line.substr(begin, end - begin)));
       begin = end + 1;
     }
@@ -139,7 +139,7 @@ class CsvTable {
   std::vector<Row> rows_;
 };
 
-/// The 17 digits that read back as the same number.
+/// `value` with 17 digits, which read back as the same number.
 [[nodiscard]] inline std::string digits(double value) {
   char text[40];
   return {text, std::to_chars(text, text + sizeof text, value, std::chars_format::general, 17).ptr};

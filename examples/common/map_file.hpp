@@ -7,8 +7,8 @@
 
 namespace examples {
 
-/// The map of an OpenDRIVE file, or of the table of a centre line (.csv), which becomes a road of one lane; what is odd
-/// about it goes to the error stream, a line each. Throws `cambium::MapError`.
+/// Loads an OpenDRIVE file, or a centre line from a table (.csv), which becomes a road of one lane. Prints warnings and
+/// errors of the file to the error stream, one per line. Throws `cambium::MapError`.
 std::shared_ptr<cambium::Map const> load_map(std::string const& file);
 
 }  // namespace examples

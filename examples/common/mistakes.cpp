@@ -8,7 +8,7 @@
 namespace examples {
 namespace {
 
-/// How many letters must be changed, added or taken away (Levenshtein 1966).
+/// Edit distance: the number of letters to change, add or remove (Levenshtein 1966).
 std::size_t distance(std::string const& a, std::string const& b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -23,7 +23,7 @@ std::size_t distance(std::string const& a, std::string const& b) {
   return row.back();
 }
 
-/// The options that may be meant by `word`, nearest first.
+/// The options that `word` may stand for, nearest first, at most three.
 std::vector<std::string> near_options(std::vector<std::string> const& options, std::string const& word) {
   std::vector<std::pair<std::size_t, std::string>> found;
   for (auto const& name : options) {
@@ -41,7 +41,7 @@ std::vector<std::string> near_options(std::vector<std::string> const& options, s
 }  // namespace
 
 std::string unknown_words(std::vector<std::string> const& words, std::vector<std::string> const& options) {
-  // What follows an unknown option was meant for it.
+  // Words after an unknown option are probably its values, so report the option.
   auto const unknown =
       std::find_if(words.begin(), words.end(), [](std::string const& word) { return word.rfind('-', 0) == 0; });
   if (unknown == words.end())

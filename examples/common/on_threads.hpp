@@ -13,10 +13,10 @@
 
 namespace examples {
 
-/// "  120 of 600, 14.2/s, 34 s left": how far a work is after `seconds`.
+/// Progress after `seconds` of work: "  120 of 600, 14.2/s, 34 s left".
 [[nodiscard]] std::string progress_text(std::uint64_t done, std::uint64_t total, double seconds);
 
-/// Keeps a line on a terminal up to date; silent elsewhere. `what` begins the line: "cell 2 of 12:".
+/// Shows a progress line on a terminal; silent elsewhere. `what` is the start of the line, such as "cell 2 of 12:".
 class Progress {
  public:
   explicit Progress(std::uint64_t total, std::string what = {});
@@ -34,8 +34,8 @@ class Progress {
   bool shown_, drawn_ = false;
 };
 
-/// Calls `run(i)` for all i below `count`; each thread takes the next one that nobody has. Where one throws, no further
-/// one begins, and that comes out. Where the system gives fewer threads, those do the work. `what`: see `Progress`.
+/// Calls `run(i)` for all i below `count`; each thread takes the next free i. If a call throws, no further call starts,
+/// and the exception is rethrown. Makes do with fewer threads if the system gives fewer. `what`: see `Progress`.
 template <class Run>
 void run_on_threads(std::uint64_t count, std::uint64_t threads, Run const& run, std::string const& what = {}) {
   std::atomic<std::uint64_t> next{0};

@@ -17,7 +17,7 @@
 namespace examples {
 namespace {
 
-/// What a signal handler may touch: plain memory, made before.
+/// A part file for the signal handler, which may only touch memory that was prepared before.
 struct Pending {
   std::atomic<bool> is_used{false}, is_kept{false};
   char path[4096] = "", message[8400] = "";
@@ -38,7 +38,7 @@ extern "C" void on_interruption(int signal) {
 }
 
 std::string kept_message(std::filesystem::path const& path, std::filesystem::path const& part) {
-  return "what was done is in " + part.string() + "; " + path.string() + " has not been touched\n";
+  return "what was done is in " + part.string() + "; " + path.string() + " is unchanged\n";
 }
 
 std::size_t look_after(std::filesystem::path const& path, std::filesystem::path const& part) {
@@ -64,7 +64,7 @@ void prepare_folder(std::filesystem::path const& folder) {
   std::error_code problem;
   std::filesystem::create_directories(folder, problem);
   if (problem)
-    throw cambium::Error(folder.string(), "this folder cannot be made (" + problem.message() + ")",
+    throw cambium::Error(folder.string(), "this folder cannot be created (" + problem.message() + ")",
                          "choose another --out");
   auto const probe = folder / ".probe";
   try {
@@ -82,7 +82,7 @@ PartFile::PartFile(std::filesystem::path path, Unfinished fate)
   namespace fs = std::filesystem;
   std::error_code none;
   if (fs::is_directory(path_, none)) fail(EISDIR);
-  is_special_ = fs::exists(path_, none) && !fs::is_regular_file(path_, none);  // /dev/stdout leads to what has no path
+  is_special_ = fs::exists(path_, none) && !fs::is_regular_file(path_, none);  // such as /dev/stdout or a pipe
   auto const target = !is_special_ && fs::is_symlink(path_, none) ? fs::weakly_canonical(path_, none) : path_;
   if (is_special_) {
     part_ = target;
@@ -118,7 +118,7 @@ void PartFile::append(std::string_view text, std::string_view closing) {
   closing_ = closing;
   if (closing.empty()) return;
   if (!is_special_) write(closing);
-  if (std::fflush(file_) != 0) fail(errno);  // to be there, whatever ends the program
+  if (std::fflush(file_) != 0) fail(errno);  // so that the rows survive however the program ends
   if (place_ < pending.size()) pending[place_].is_kept = is_kept();
 }
 

@@ -8,14 +8,14 @@
 
 namespace examples {
 
-/// Makes the folder and finds out now, not after the work, whether it takes files. Older results stay until there are
-/// new ones.
+/// Creates the folder and checks that files can be written there, before the work starts. Earlier results stay until
+/// new ones replace them.
 void prepare_folder(std::filesystem::path const& folder);
 
-/// A file that grows while a program works, beside `path`, whose place it takes once it is whole: until then an earlier
-/// file stays as it is. Straight into what is no regular file. Whoever interrupts the program (SIGINT, SIGTERM, SIGHUP)
-/// loses the part, unless it is to be kept and has something in it: then a message says where it is. All throw
-/// `cambium::Error`.
+/// A file written piece by piece under a temporary name next to `path`. `finish` moves it to `path`; until then an
+/// earlier file there stays unchanged. If `path` exists and is no regular file (a pipe, /dev/stdout), it is written
+/// directly. If the program is interrupted (SIGINT, SIGTERM, SIGHUP), the part is removed; with `Unfinished::kept` it
+/// stays once it has content, and a message says where it is. All functions throw `cambium::Error`.
 class PartFile {
  public:
   enum class Unfinished { removed, kept };
@@ -25,7 +25,8 @@ class PartFile {
   PartFile(PartFile const&) = delete;
   PartFile& operator=(PartFile const&) = delete;
 
-  /// Adds `text`. `closing` ends the file for now, as a bracket does: what is added next replaces it.
+  /// Adds `text`, then `closing`, such as a bracket that makes the file valid so far. The next call overwrites
+  /// `closing`.
   void append(std::string_view text, std::string_view closing = {});
 
   /// Moves the file to its place.
@@ -41,7 +42,7 @@ class PartFile {
   std::string closing_;
   Unfinished fate_;
   bool is_special_ = false;
-  std::size_t place_;  ///< among those that an interruption looks after
+  std::size_t place_;  ///< index among the files known to the signal handler
 };
 
 }  // namespace examples

@@ -22,10 +22,10 @@ std::string in_one_word(std::string text) {
 
 double mean(double sum, std::uint64_t n) { return n > 0 ? sum / static_cast<double>(n) : 0.0; }
 
-/// [s], without the last digits of a sum.
+/// The time of a number of steps [s], rounded to 1 microsecond.
 double time_of(std::uint64_t steps) { return std::round(1e6 * static_cast<double>(steps) * examples::dt) / 1e6; }
 
-/// What the figures are measured in and what they mean.
+/// Units and meaning of the figures.
 Json units(examples::Words const& words) {
   Json json{{"dt", "s"},
             {"success", "share of the scenarios"},
@@ -114,7 +114,7 @@ void examples::write_summary(std::filesystem::path const& file, Settings const& 
 std::string examples::explained(Words const& words) {
   std::string text = "  success: " + words.success +
                      " in time, and nobody collided\n"
-                     "  ego off-road: a part of the ego was beyond the drivable lanes, as that of a truck may be in\n"
+                     "  ego off-road: a part of the ego was outside the drivable lanes, as can happen to a truck in\n"
                      "    a tight bend, where its rear axle keeps to the lane\n"
                      "  in brackets: the 95 % interval of the share (Wilson)\n";
   for (auto const& count : words.counts)
@@ -124,7 +124,7 @@ std::string examples::explained(Words const& words) {
 
 std::string examples::share_text(std::uint64_t count, std::uint64_t total) {
   auto const interval = wilson(count, total);
-  // As many digits as it takes to tell the interval's ends apart.
+  // Enough digits to tell the ends of the interval apart.
   int const digits = interval.high - interval.low > 0.01 ? 1 : interval.high - interval.low > 0.001 ? 2 : 3;
   char text[96];
   std::snprintf(text, sizeof text, "%*.*f %% (%.*f-%.*f)", digits + 4, digits,

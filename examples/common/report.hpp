@@ -45,21 +45,20 @@ struct Totals {
   return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
 }
 
-/// What there is to say about a site, by name: how many entrances it has.
+/// Facts about a site by name, such as its number of entrances.
 using Facts = std::vector<std::pair<std::string, std::size_t>>;
 
-/// Writes the figures, who collided with whom, and each scenario's outcome, with the units and thresholds, as JSON.
+/// Writes the figures, the collisions and each scenario's outcome as JSON, with units and thresholds.
 void write_summary(std::filesystem::path const& file, Settings const& settings, Facts const& facts,
                    std::vector<Outcome> const& outcomes, Totals const& totals, Words const& words);
 
 /// "99.990 % (99.984-99.993)": a share and its 95 % interval (Wilson). `total` > 0.
 [[nodiscard]] std::string share_text(std::uint64_t count, std::uint64_t total);
 
-/// "success     199979 of 200000   99.990 % (99.984-99.993)": a count, its share and the share's 95 % interval
-/// (Wilson).
+/// "success     199979 of 200000   99.990 % (99.984-99.993)": a count, its share, and the 95 % interval of the share.
 [[nodiscard]] std::string share_line(std::string const& name, std::uint64_t count, std::uint64_t total);
 
-/// The table of results, on the standard output.
+/// Prints the table of results.
 void print_table(Settings const& settings, Totals const& totals, double seconds, Words const& words);
 
 }  // namespace examples

@@ -23,9 +23,9 @@
 namespace examples {
 
 inline constexpr double dt = 0.2;                                         // [s]
-inline constexpr cambium::HardBraking hard_braking{.deceleration = 4.0};  // counts once while it lasts
+inline constexpr cambium::HardBraking hard_braking{.deceleration = 4.0};  // each braking counts once
 
-/// What came of one scenario.
+/// The outcome of one scenario.
 struct Outcome {
   enum class Kind { success, collision, time_out } kind = Kind::time_out;
   bool off_road = false;
@@ -34,18 +34,18 @@ struct Outcome {
   cambium::AgentId collided_first = cambium::none<cambium::AgentId>, collided_second = collided_first;
   std::uint64_t steps = 0, agent_steps = 0, hard_brakings = 0;
   double speed_sum = 0.0;
-  double lowest_acceleration = 0.0;   // [m/s^2], of anybody
-  std::vector<std::uint64_t> counts;  // what the scenario counts, see `Words::counts`
+  double lowest_acceleration = 0.0;   // of all agents [m/s^2]
+  std::vector<std::uint64_t> counts;  // events counted, see `Words::counts`
 
-  /// How much there is to see, most first: a collision, a time-out, the ego off-road, the closest call, which is the
-  /// hardest braking, and then the most of it. `why_interesting` says it in words.
+  /// Ranks outcomes for the replay: a collision before a time-out before the ego off-road; then the hardest braking,
+  /// then the most hard brakings. `why_interesting` says it in words.
   [[nodiscard]] std::tuple<int, double, std::uint64_t> interest() const {
     int const rank = kind == Kind::collision ? 3 : kind == Kind::time_out ? 2 : off_road ? 1 : 0;
     return {rank, -lowest_acceleration, hard_brakings};
   }
 };
 
-/// The vehicles of the world as it is now, a line each.
+/// Appends a line for each vehicle of the world at its current time.
 template <class World>
 void append_rows(std::string& rows, std::uint64_t scenario, World const& world, cambium::AgentId ego) {
   auto const& map = world.map();
@@ -62,7 +62,7 @@ void append_rows(std::string& rows, std::uint64_t scenario, World const& world, 
   }
 }
 
-/// Adds the last step's agent-steps, speeds and hard brakings; `braking` remembers who brakes hard.
+/// Adds the last step's agent-steps, speeds and hard brakings. `braking` remembers by slot which agents brake hard.
 template <class World>
 void count_agents(World const& world, std::vector<bool>& braking, Outcome& outcome) {
   for (cambium::Slot slot{}; index_of(slot) < world.size(); ++slot) {
@@ -77,7 +77,7 @@ void count_agents(World const& world, std::vector<bool>& braking, Outcome& outco
   }
 }
 
-/// A run as a recording for the viewers: the ego, the agents that have a goal and those that collided have colours.
+/// Records a run for the viewers. The ego, agents with a goal and agents that collided get colours of their own.
 class Film {
  public:
   template <class World>
@@ -103,14 +103,14 @@ class Film {
   cambium::WorldRecorder recorder_;
 };
 
-/// Rolls one scenario forward until its task is done, something collides or time is up; fills `recording`, and adds to
-/// `rows` of the trajectories, where these are given.
+/// Simulates one scenario until its task is done, two agents collide or time is up. Fills `recording` and appends the
+/// trajectories to `rows`, unless these are null.
 ///
-/// A `Task` says what an example's scenarios are and what has to be done in them:
-///   `sample(seed, number)`   a `cambium::Scenario`
-///   `watch(world, ego)`      judges a run: called with the world after each step, it returns whether the task is done;
-///                            it may have `counts`, which add up over the steps
-///   `facts()`                what the summary says about the place
+/// A `Task` defines an example's scenarios and what has to be done in them:
+///   `sample(seed, number)`   returns a `cambium::Scenario`
+///   `watch(world, ego)`      returns a function object that judges a run: called with the world after each step, it
+///                            returns whether the task is done; its `counts`, if any, add up over the steps
+///   `facts()`                returns facts about the site for the summary
 template <class Task>
 [[nodiscard]] Outcome run_scenario(Task const& task, Settings const& settings, std::uint64_t number,
                                    std::string* rows = nullptr, cambium::Recording* recording = nullptr) {
@@ -150,7 +150,8 @@ template <class Task>
   return outcome;
 }
 
-/// Runs all scenarios; the trajectories of the first ones go into `file` meanwhile. Neither depends on the threads.
+/// Runs all scenarios and writes the trajectories of the first ones to `file`. The results do not depend on the number
+/// of threads.
 template <class Task>
 [[nodiscard]] std::vector<Outcome> run_all(Task const& task, Settings const& settings, PartFile& file) {
   std::vector<Outcome> outcomes(settings.scenarios);

@@ -16,7 +16,7 @@
 
 namespace examples {
 
-/// Why of all scenarios this one is replayed.
+/// Why this scenario was chosen for the replay.
 [[nodiscard]] inline char const* why_interesting(Settings const& settings, Outcome const& outcome) {
   if (settings.replay) return "as --replay says";
   if (outcome.kind == Outcome::Kind::collision) return "a collision";
@@ -34,7 +34,7 @@ namespace examples {
   return name(outcome.collided_first) + ", and " + name(outcome.collided_second) + " collide";
 }
 
-/// Simulates the replayed scenario once more and writes its replay, and its trajectory unless that is written already.
+/// Simulates the chosen scenario again and writes its replay, and its trajectories unless they are written already.
 template <class Task>
 void write_replay(std::filesystem::path const& file, Task const& task, Settings const& settings, Words const& words,
                   std::uint64_t shown, PartFile& trajectories) {
@@ -49,8 +49,8 @@ void write_replay(std::filesystem::path const& file, Task const& task, Settings 
   cambium::write_html_replay(file, recording);
 }
 
-/// Runs all scenarios of a task (see `run_scenario`), prints the table and writes the files. What goes wrong in a
-/// scenario is a matter of the map: `MapError`.
+/// Runs all scenarios of a task (see `run_scenario`), prints the table and writes the files. A scenario that fails is
+/// reported as a `MapError`, because the map is the usual cause.
 template <class Task>
 void sample_and_report(Task const& task, Settings const& settings, Words const& words) {
   std::filesystem::path const folder(settings.out);
@@ -79,7 +79,7 @@ void sample_and_report(Task const& task, Settings const& settings, Words const& 
   std::cout << "  " << (folder / "replay.html").string() << "       plays scenario " << totals.replayed << " ("
             << why_interesting(settings, outcomes[totals.replayed]) << ") in a browser\n  "
             << (folder / "summary.json").string()
-            << "      these figures, each scenario's outcome, and who collided\n  "
+            << "      these figures, each scenario's outcome, and the collisions\n  "
             << (folder / "trajectories.csv").string()
             << "  paths of the first scenarios' vehicles and of the replayed one's\n";
 }

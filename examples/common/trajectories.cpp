@@ -46,7 +46,7 @@ void append_row(std::string& rows, cambium::Map const& map, TrajectoryRow const&
 
 void RowsInOrder::put(std::uint64_t number, std::string rows) {
   std::unique_lock lock(mutex_);
-  moved_.wait(lock, [&] { return given_up_ || number < next_ + ahead_; });  // true of the next one, whoever has it
+  moved_.wait(lock, [&] { return given_up_ || number < next_ + ahead_; });  // scenario next_ never waits: no deadlock
   if (given_up_) return;
   waiting_.emplace(number, std::move(rows));
   for (auto first = waiting_.begin(); first != waiting_.end() && first->first == next_; first = waiting_.begin()) {

@@ -14,9 +14,9 @@
 
 namespace examples {
 
-/// Columns of the trajectories: x, y are of the reference point (centre of the rear axle), front and rear how far the
-/// vehicle reaches from there; acceleration is that of the step that led here; road and lane are as in the map's file;
-/// ego is 1 for the ego, else 0.
+/// Columns of the trajectories: x and y of the reference point (centre of the rear axle); front and rear, the distances
+/// from there to the bumpers; acceleration of the step that led here; road and lane as in the map's file; ego, 1 for
+/// the ego, else 0.
 inline constexpr char const* trajectory_columns =
     "scenario,time [s],agent,x [m],y [m],heading [rad],speed [m/s],acceleration [m/s^2],front [m],rear [m],width [m],"
     "road,lane,class,behavior,ego\n";
@@ -28,27 +28,27 @@ struct TrajectoryRow {
   cambium::AgentId agent;
   double x, y, heading, speed, acceleration;
   cambium::geometry::Shape const& shape;
-  cambium::map::Lane const* lane;  ///< null off the map's lanes
+  cambium::map::Lane const* lane;  ///< null outside the map's lanes
   char const* behavior;
   bool is_ego;
 };
 
-/// The shipped shape that is nearest to `shape`: "car", "truck", ...
+/// Name of the shipped shape most similar to `shape`: "car", "truck", ...
 [[nodiscard]] char const* class_of(cambium::geometry::Shape const& shape);
 
 /// Adds a line of CSV.
 void append_row(std::string& rows, cambium::Map const& map, TrajectoryRow const& row);
 
-/// Writes the scenarios' rows in their order, though they come from many threads: whoever is more than `ahead`
-/// scenarios ahead of the file waits, so that memory stays bounded.
+/// Writes the rows of the scenarios in order, although they come from several threads. A thread that is more than
+/// `ahead` scenarios ahead of the file waits, so that memory stays bounded.
 class RowsInOrder {
  public:
   RowsInOrder(PartFile& file, std::uint64_t ahead) : file_(file), ahead_(ahead) {}
 
-  /// The rows of scenario `number`; each from 0 on comes once.
+  /// Hands over the rows of scenario `number`. Each number from 0 on must come exactly once.
   void put(std::uint64_t number, std::string rows);
 
-  /// Nobody waits any longer: one of the scenarios will not come.
+  /// Releases all waiting threads, because a scenario has failed and its rows will not come.
   void give_up();
 
  private:

@@ -10,7 +10,7 @@ struct Interval {
   double low, high;
 };
 
-/// Of a share, 95 % (Wilson 1927). `n` > 0.
+/// 95 % confidence interval of a share (Wilson 1927). `n` > 0.
 [[nodiscard]] inline Interval wilson(std::uint64_t count, std::uint64_t n) {
   constexpr double z = 1.959963984540054;
   auto const total = static_cast<double>(n);

@@ -1,6 +1,6 @@
-// Traffic on a highway: cars and trucks on several lanes, drivers by the presets of the literature, who follow by the
-// Intelligent Driver Model and change lanes by MOBIL, keep right and find their exits; judges each scenario, and writes
-// figures, trajectories and a replay that plays in a browser.
+// Highway traffic: cars and trucks on several lanes. The drivers have parameters from the literature, follow by the
+// Intelligent Driver Model, change lanes by MOBIL, keep right and take their exits. The program samples scenarios,
+// judges each, and writes figures, trajectories and a replay for the browser.
 
 #include <array>
 #include <cstddef>
@@ -19,7 +19,7 @@ namespace {
 
 using Simulation = cambium::HighwaySite::World;
 
-/// Counts lane changes. The ego is done on its exit, or without one after 500 m or near the end.
+/// Counts lane changes. The ego is done when it has reached its exit; without an exit, after 500 m or near the end.
 class Watch {
  public:
   Watch(Simulation const& world, cambium::Slot ego) : ego_(ego), start_(position(world)) {
@@ -51,7 +51,7 @@ class Watch {
   std::vector<cambium::CorridorId> lanes_;  ///< lane corridor of each agent, by slot
 };
 
-/// The ego has to drive on or to take its exit: see `examples::run_scenario`.
+/// The task: the ego takes its exit or, without one, drives to the end. See `examples::run_scenario`.
 struct Task {
   cambium::HighwaySite site;
 
@@ -62,7 +62,7 @@ struct Task {
 
 void run(examples::Settings const& settings) {
   Task const task{cambium::find_highway_site(examples::load_map(settings.map_file), settings.map_file)};
-  std::string const success = task.site.exits.empty() ? "the ego came to the end" : "the ego took its exit";
+  std::string const success = task.site.exits.empty() ? "the ego reached the end" : "the ego took its exit";
   examples::sample_and_report(task, settings, {"Highway", success, {{"lane changes"}}});
 }
 
@@ -72,7 +72,7 @@ int main(int argc, char** argv) {
   examples::Settings settings;
   settings.map_file = CAMBIUM_SOURCE_DIR "/maps/highway_exit.xodr";
   settings.out = "out/highway";
-  examples::Program const program{"highway", "Samples traffic on a highway of several lanes, simulates and judges it.",
+  examples::Program const program{"highway", "Samples traffic on a multi-lane highway, simulates and judges it.",
                                   "OpenDRIVE map with a road of several lanes"};
   return examples::run_sampled(program, settings, argc, argv, [&] { run(settings); });
 }

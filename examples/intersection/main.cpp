@@ -1,5 +1,5 @@
-// Traffic crosses: samples situations before the junctions of an OpenDRIVE map, where everybody heeds the right of way,
-// rolls them forward, judges each, and writes figures, trajectories and a replay that plays in a browser.
+// Crossing traffic: samples scenarios before the junctions of an OpenDRIVE map, in which all drivers obey the right of
+// way, simulates and judges each, and writes figures, trajectories and a replay for the browser.
 
 #include <cstdint>
 
@@ -12,7 +12,7 @@
 
 namespace {
 
-/// Everybody has to get through: see `examples::run_scenario`.
+/// The task: all vehicles get through the junctions. See `examples::run_scenario`.
 struct Task {
   cambium::JunctionSite site;
   cambium::JunctionTraffic traffic;
@@ -55,6 +55,6 @@ int main(int argc, char** argv) {
   examples::add_options(program, settings, "OpenDRIVE map with an intersection");
   bool lights = false;
   program.add_flag("--lights", lights,
-                   "switch the map's traffic lights on; else signs and who comes from the right count");
+                   "switch on the map's traffic lights; otherwise signs and right before left apply");
   return examples::run_program(program, argc, argv, [&] { run(settings, lights); });
 }

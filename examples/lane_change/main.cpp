@@ -1,5 +1,5 @@
-// The experiment of BARK's paper (Bernhard et al. 2020, Fig. 5): ego changes lanes in dense traffic by tree search,
-// whose prediction of the others is wrong by some measure. Prints the table, writes a plot.
+// The experiment of BARK's paper (Bernhard et al. 2020, Fig. 5): the ego changes lanes in dense traffic by tree search,
+// while its prediction of the others is wrong by a given amount. Prints a table and writes a plot.
 
 #include <chrono>
 #include <cmath>
@@ -46,7 +46,7 @@ std::shared_ptr<cambium::Map const> two_lanes() {
   return builder.build();
 }
 
-/// All scenarios of a cell; the outcomes do not depend on the threads.
+/// Runs all scenarios of a cell. The outcomes do not depend on the number of threads.
 std::vector<Outcome> run(std::shared_ptr<cambium::Map const> const& map, Cell const& cell, Settings const& settings,
                          std::string const& what) {
   std::vector<Outcome> outcomes(settings.scenarios);
@@ -95,11 +95,11 @@ void print(lane_change::Row const& row) {
 void run_grid(Settings const& settings) {
   std::filesystem::path const folder(settings.out);
   examples::prepare_folder(folder);
-  std::optional<examples::PartFile> json;  // finds out now whether it can be written
+  std::optional<examples::PartFile> json;  // opened now, so that a bad path fails before the work
   if (!settings.json.empty()) json.emplace(settings.json, examples::PartFile::Unfinished::kept);
   auto const map = two_lanes();
   std::printf(
-      "%llu scenarios a cell: how many, and their share with its 95 %% interval (Wilson); steps: mean of the\n"
+      "%llu scenarios per cell: counts, and shares with their 95 %% intervals (Wilson); steps: mean of the\n"
       "successes; iterations/s: of one thread\n\n"
       "%-8s %6s  %6s        %-26s%-26s%-26s  %5s   %s\n",
       static_cast<unsigned long long>(settings.scenarios), "preset", "iter.", "var.", "success", "collision",
@@ -119,7 +119,7 @@ void run_grid(Settings const& settings) {
   if (json) json->finish();
   auto const picture = folder / (settings.preset + ".svg");
   cambium::write_file(picture, lane_change::plot(rows));
-  std::printf("\n%s  the same as a plot\n", picture.c_str());
+  std::printf("\n%s  a plot of this table\n", picture.c_str());
 }
 
 void add_options(CLI::App& program, Settings& settings) {
@@ -130,20 +130,20 @@ void add_options(CLI::App& program, Settings& settings) {
         ->check(examples::whole_number(low, high))
         ->capture_default_str();
   };
-  number("--scenarios", settings.scenarios, 1, 1'000'000, "of each cell");
-  number("--seed", settings.seed, 0, ~std::uint64_t{0} >> 1, "of all random numbers");
-  number("--threads", settings.threads, 1, 1024, "to run them on; outcomes do not depend on it");
+  number("--scenarios", settings.scenarios, 1, 1'000'000, "number of scenarios per cell");
+  number("--seed", settings.seed, 0, ~std::uint64_t{0} >> 1, "seed of all random numbers");
+  number("--threads", settings.threads, 1, 1024, "number of threads; the outcomes do not depend on it");
   examples::add_list(program, "--iterations", settings.iterations, examples::whole_number(1, 100'000'000),
-                     "of a search, a column each")
+                     "numbers of iterations of a search, a cell each")
       ->type_name("N,...");
   examples::add_list(program, "--variation", settings.variations, examples::number(0.0, 0.99),
-                     "by how much others keep shorter headways than predicted")
+                     "by how much the others' headways are shorter than predicted, a cell each")
       ->type_name("SHARE,...");
   program.add_option("--preset", settings.preset, "the paper's choices, or cambium's")
       ->check(CLI::IsMember({"paper", "cambium"}))
       ->capture_default_str();
   program
-      .add_option("--json", settings.json, "a row a cell, written once all are done; until then they are in FILE.part")
+      .add_option("--json", settings.json, "write a row per cell, once all are done; until then they are in FILE.part")
       ->type_name("FILE")
       ->check(examples::not_empty());
   program.add_option("--out", settings.out, "folder for the plot")
@@ -156,8 +156,7 @@ void add_options(CLI::App& program, Settings& settings) {
 
 int main(int argc, char** argv) {
   Settings settings;
-  CLI::App program("Repeats the lane change of BARK's paper: tree search with a prediction that is wrong.",
-                   "lane_change");
+  CLI::App program("Repeats the lane change of BARK's paper: tree search with a wrong prediction.", "lane_change");
   add_options(program, settings);
   return examples::run_program(program, argc, argv, [&] { run_grid(settings); });
 }

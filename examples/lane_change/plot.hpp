@@ -13,24 +13,24 @@
 
 #include "../common/wilson.hpp"
 
-/// The results of the grid: intervals, JSON, and bars over the variations.
+/// The results of the experiment: JSON, and bar charts over the variations.
 namespace lane_change {
 
 using cambium::detail::svg_number;
 
-/// What came of a cell.
+/// The result of a cell.
 struct Row {
   std::string preset;
   std::size_t iterations = 0;
   double variation = 0.0;
   std::uint64_t scenarios = 0, success = 0, collision = 0, time_out = 0;
-  double mean_steps = 0.0;             ///< of the successes; NaN without
+  double mean_steps = 0.0;             ///< of the successes; NaN if there are none
   double iterations_per_second = 0.0;  ///< of one thread
 };
 
 using examples::wilson;
 
-/// Counts, and shares with their 95 % intervals.
+/// A row as JSON: counts, and shares with their 95 % intervals.
 inline nlohmann::ordered_json as_json(Row const& row) {
   nlohmann::ordered_json json{{"preset", row.preset},
                               {"iterations", row.iterations},
@@ -53,7 +53,7 @@ inline nlohmann::ordered_json as_json(Row const& row) {
   return json;
 }
 
-/// Where the bar of each cell stands: those of one variation beside each other.
+/// Horizontal positions of the cells' bars [px]; those of one variation are side by side.
 struct Slots {
   std::vector<double> begin;
   double width = 0.0, end = 0.0;
@@ -112,7 +112,7 @@ inline std::string panel(std::vector<Row> const& rows, double top, std::string c
   return svg;
 }
 
-/// All three shares, one below the other, as SVG text.
+/// Bar charts of all three shares, one below the other, as SVG text.
 inline std::string plot(std::vector<Row> const& rows) {
   auto const width = svg_number(std::max(500.0, slots_of(rows, 70).end + 20));
   return "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 " + width +
@@ -121,7 +121,7 @@ inline std::string plot(std::vector<Row> const& rows) {
          panel(rows, 30, "success [%], preset " + rows.front().preset, "#2e7d32", &Row::success) +
          panel(rows, 240, "collision [%]", "#c62828", &Row::collision) +
          panel(rows, 450, "time-out [%]", "#1565c0", &Row::time_out) +
-         text(70, 642, std::to_string(rows.front().scenarios) + " scenarios a cell; black: 95 % intervals (Wilson)",
+         text(70, 642, std::to_string(rows.front().scenarios) + " scenarios per cell; black: 95 % intervals (Wilson)",
               "font-size=\"10\" fill=\"#666\"") +
          "</svg>\n";
 }

@@ -19,7 +19,7 @@
 #include "cambium/world/world.hpp"
 
 /// The lane change of Bernhard, Esterle, Hart, Kessler 2020 ("BARK: Open behavior benchmarking in multi-agent
-/// environments", section V-A), with the numbers of BARK's configuration where the paper gives none.
+/// environments", section V-A). Numbers that the paper does not give are those of BARK's configuration.
 namespace lane_change {
 
 namespace cb = cambium;
@@ -27,8 +27,8 @@ namespace cb = cambium;
 using PredictionSet = cb::BehaviorSet<cb::MacroActions, cb::IdmClassic, cb::IdmHypotheses>;
 using Prediction = cb::World<PredictionSet, cb::InterpolateExecution, cb::SingleTrack>;
 
-/// As the planner of the paper rolls out: its "random" heuristic drew the same action in every step, because each draw
-/// began anew with one seed; with the paper's five actions that is number 3, the lane change.
+/// The roll-out of the paper's planner. Its "random" heuristic drew the same action in every step, because each draw
+/// started from the same seed; with the paper's five actions this is number 3, the lane change.
 struct SameActionRollout {
   static constexpr char const* name = "same_action_rollout";
   static constexpr auto parameters() { return cb::parameter_list(); }
@@ -46,15 +46,15 @@ using Sim =
     cb::World<cb::BehaviorSet<PaperPlanner, OwnPlanner, cb::IdmClassic>, cb::InterpolateExecution, cb::SingleTrack>;
 
 inline constexpr double step = 0.2;     // [s]
-inline constexpr double way = 186.0;    // [m], of the paper's road; ours goes on, so that nobody vanishes
-inline constexpr double headway = 3.0;  // [s], of the others as the planner takes them to be
+inline constexpr double way = 186.0;    // length of the paper's road [m]; ours goes on, so that no vehicle vanishes
+inline constexpr double headway = 3.0;  // of the others, as the planner assumes [s]
 inline constexpr int most_steps = 30;
 
-/// A cell of the grid.
+/// A cell of the experiment's grid.
 struct Cell {
   bool is_paper = false;
   std::size_t iterations = 2000;
-  double variation = 0.0;  ///< by how much the others' headways are shorter than the planner takes them to be
+  double variation = 0.0;  ///< by how much the others' headways are shorter than the planner assumes, as a share
 };
 
 inline cb::IdmClassic driver(double time_headway) {
@@ -66,7 +66,7 @@ inline cb::IdmClassic driver(double time_headway) {
           .lowest_acceleration = -15.0};
 }
 
-/// A brisk lane change: who takes 4 s has no time left to find a gap.
+/// A brisk lane change. One of 4 s would leave no time to find a gap.
 inline constexpr cb::LaneChangeCourse course{.duration = 2.0, .shortest_duration = 1.5};
 
 using Kind = cb::MacroAction::Kind;
@@ -78,7 +78,8 @@ inline cb::MacroActions paper_actions() {
   return actions;
 }
 
-/// With brakes: the others may brake hard where they are cut in upon.
+/// More actions than the paper's: harder braking in the lane, because others may brake hard when someone cuts in, and
+/// accelerating and braking during the lane change.
 inline cb::MacroActions own_actions() {
   auto actions = cb::MacroActions::of({{Kind::stay, 0.0},
                                        {Kind::stay, 1.5},
@@ -106,10 +107,10 @@ inline Sim::Behavior planner(Cell const& cell) {
   }
   OwnPlanner own{.actions = own_actions()};
   own.options.selection.exploration = 0.3;
-  own.reward.desired_speed = 14.0;  // the goal counts at 11 to 17 m/s only
+  own.reward.desired_speed = 14.0;  // the goal requires 11 to 17 m/s
   own.reward.speed_deviation = -5.0;
   own.others = {.driver = driver(headway), .shortest_headway = 0.5, .longest_headway = 3.5, .regions = 4};
-  // Decisions twice as long as a step of the world: the same 6 s, with half the depth.
+  // A decision lasts two steps of the world: the same 6 s at half the depth.
   own.options.step = 2.0 * step;
   own.options.search = {.horizon = most_steps / 2, .discount = 0.9};
   own.options.rollout.hold = 3;
@@ -122,7 +123,7 @@ struct Scenario {
   cb::AgentId ego;
 };
 
-/// Vehicles on one lane: gaps of 20 to 30 m, 11 to 17 m/s.
+/// Fills a lane with vehicles: gaps of 20 to 30 m, speeds of 11 to 17 m/s.
 inline std::vector<cb::AgentId> fill_lane(Sim& world, double begin, double end, double y, Cell const& cell,
                                           cb::RandomStream& random) {
   std::vector<cb::AgentId> ids;
@@ -136,7 +137,7 @@ inline std::vector<cb::AgentId> fill_lane(Sim& world, double begin, double end, 
   return ids;
 }
 
-/// Scenario `number`: the same traffic for all cells of one variation.
+/// Samples scenario `number`. All cells of one variation get the same traffic.
 inline Scenario sample(std::shared_ptr<cb::Map const> const& map, Cell const& cell, std::uint64_t seed,
                        std::uint32_t number) {
   cb::RandomStream random(seed, 0, number);
@@ -146,7 +147,7 @@ inline Scenario sample(std::shared_ptr<cb::Map const> const& map, Cell const& ce
   auto const right = fill_lane(world, 0.2 * way, 0.5 * way, -5.25, cell, random);
   scenario.ego = right[cb::uniform_index(random, static_cast<std::uint32_t>(right.size()))];
   auto const left = map->nearest_lane({0.5 * way, -1.75, 0.0})->lane;
-  // Ego enters once more, with its planner and its goal.
+  // The ego enters again, with its planner and its goal.
   auto const state = world.state(scenario.ego);
   auto const shape = world.roster().agents[world.slot_of(scenario.ego)].shape;
   world.remove(scenario.ego);
@@ -172,7 +173,8 @@ struct Outcome {
   int steps = 0;
 };
 
-/// Plays a scenario to its end. A collision of ego, or its leaving the road, counts before the goal.
+/// Simulates a scenario to its end. If the ego collides or leaves the road in the step that reaches the goal, this
+/// counts as a collision.
 inline Outcome play(Scenario scenario) {
   auto& world = scenario.world;
   auto const ego = world.slot_of(scenario.ego);

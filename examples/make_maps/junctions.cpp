@@ -17,13 +17,15 @@ LanePlan median(double width, double end_width) {
   return {.type = LaneType::median, .width = width, .end_width = end_width};
 }
 
-/// A pose given as seen from the middle of a junction, `angle` east-north-wise.
+/// A pose given in the frame of an arm: origin in the middle of the junction, x axis at `angle`, counter-clockwise from
+/// east.
 Pose seen_at(double angle, Pose const& local) {
   auto const p = cambium::geometry::to_map({0.0, 0.0, angle}, {local.x, local.y});
   return {p.x(), p.y(), local.heading + angle};
 }
 
-/// An arm that leads straight to the junction's middle and ends `distance` before it; `angle`: where it comes from.
+/// An arm that leads straight towards the middle of the junction and ends `distance` [m] before it. `angle`: the
+/// direction that it comes from, counter-clockwise from east.
 RoadPlan straight_arm(std::string id, std::string name, double angle, double distance, double length) {
   return {.id = std::move(id),
           .name = std::move(name),
@@ -34,8 +36,8 @@ RoadPlan straight_arm(std::string id, std::string name, double angle, double dis
 
 }  // namespace
 
-// Arms 1 (east), 2 (north), 3 (west), 4 (south). From each the inner lane leads to the left, both straight on and the
-// outer one to the right.
+// Arms 1 (east), 2 (north), 3 (west), 4 (south). On each arm, the inner lane leads left and straight on, the outer one
+// straight on and right.
 MapBuilder intersection_4way() {
   MapBuilder builder("intersection 4-way");
   std::array<std::string, 4> const names{"east", "north", "west", "south"};
@@ -55,7 +57,7 @@ MapBuilder intersection_4way() {
   return builder;
 }
 
-// Arms opposite to each other have green together.
+// Opposite arms have green at the same time.
 void add_lights(opendrive::Document& document) {
   document.controllers.resize(2);
   document.controllers[0].id = "east-west";
@@ -74,8 +76,8 @@ void add_lights(opendrive::Document& document) {
   }
 }
 
-// The main road comes from east (1) and west (2), the side road from the south (3). From the east there is a lane of
-// its own to turn left; in the west an island keeps its width free.
+// The main road comes from the east (1) and west (2), the side road from the south (3). The east arm has a separate
+// lane for turning left; on the west arm an island takes up the same width.
 MapBuilder intersection_3way() {
   constexpr double width = 3.25, distance = 16.0, length = 120.0, opens = 50.0, open = 80.0;
   MapBuilder builder("intersection 3-way");
@@ -103,7 +105,8 @@ MapBuilder intersection_3way() {
   builder.add_turn("100", {"2", end}, {"3", end}, {"21", "west to the right", {{-1, 1}}, kmh(25.0)});
   builder.add_turn("100", {"3", end}, {"1", end}, {"30", "south to the right", {{-1, 1}}, kmh(25.0)});
   builder.add_turn("100", {"3", end}, {"2", end}, {"31", "south to the left", {{-1, 2}}, kmh(30.0)});
-  // The main road goes before the side road, and on the main road who goes straight on or right before who turns left.
+  // The main road has priority over the side road. On the main road, going straight on or right has priority over
+  // turning left.
   auto& priorities = builder.document().junctions.back().priorities;
   for (auto const& [high, low] :
        {std::pair{"10", "31"}, {"11", "31"}, {"20", "11"}, {"20", "30"}, {"20", "31"}, {"21", "11"}})
@@ -111,12 +114,12 @@ MapBuilder intersection_3way() {
   return builder;
 }
 
-// Arms 1 to 4 with the junctions 100, 200, ... in the ring. Arm 1's: the ways 101 on in the ring, 102 out, 103 in; from
-// there ring road 11 leads to the next arm.
+// Arms 1 to 4 join the ring in junctions 100, 200, ... Junction 100 has the roads 101 (stays in the ring), 102 (leaves
+// it) and 103 (enters it); ring road 11 leads from there to the next arm.
 MapBuilder roundabout() {
   constexpr double radius = 20.0, ring_width = 4.5, width = 3.5, island = 1.0;  // [m]
   constexpr double distance = 32.0, length = 90.0;                              // [m]
-  constexpr double half = 32.0 * pi / 180.0;  // of the ring before and behind an arm's middle [rad]
+  constexpr double half = 32.0 * pi / 180.0;  // half the angle that a junction takes up in the ring [rad]
   MapBuilder builder("roundabout");
   auto const ring = [&](std::string id, std::string name, double from, double angle) {
     RoadPlan road{.id = std::move(id), .name = std::move(name), .type = "town", .speed_limit = kmh(30.0)};

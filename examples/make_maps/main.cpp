@@ -3,8 +3,8 @@
 //
 //   examples/run make_maps --out maps
 //
-// It shows how a map can be laid out in code: pieces of reference line, lanes with widths, junctions. The same program
-// always writes the same bytes.
+// It shows how to lay out a map in code: pieces of reference line, lanes with widths, junctions. It always writes the
+// same bytes.
 
 #include <cmath>
 #include <filesystem>
@@ -23,7 +23,7 @@
 namespace make_maps {
 namespace {
 
-/// Bounds of the reference lines' joints, in whole metres.
+/// Sets the header's bounds to those of the ends of all geometries, in whole metres.
 void set_bounds(opendrive::Document& document) {
   cambium::geometry::Box box;
   for (auto const& road : document.roads)
@@ -51,7 +51,7 @@ void write_all(std::filesystem::path const& folder) {
     char const* name;
     MapBuilder (*make)();
   };
-  std::error_code ignored;  // a folder that cannot be made shows as files that cannot be written
+  std::error_code ignored;  // if the folder cannot be created, writing the files reports it
   std::filesystem::create_directories(folder, ignored);
   for (auto const& [name, make] :
        {Entry{"highway.xodr", highway}, Entry{"lane_drop.xodr", lane_drop}, Entry{"merging.xodr", merging},
@@ -71,7 +71,7 @@ void write_all(std::filesystem::path const& folder) {
 int main(int argc, char** argv) {
   std::string folder = "maps";
   CLI::App program("Writes cambium's own maps.", "make_maps");
-  program.add_option("--out", folder, "folder to write into, made if it is not there")
+  program.add_option("--out", folder, "folder to write to; created if it does not exist")
       ->type_name("DIR")
       ->capture_default_str();
   return examples::run_program(program, argc, argv, [&] { make_maps::write_all(folder); });

@@ -16,11 +16,11 @@ MapBuilder highway();            ///< three lanes, winding
 MapBuilder lane_drop();          ///< three lanes become two
 MapBuilder merging();            ///< an on-ramp with an acceleration lane
 MapBuilder highway_exit();       ///< a deceleration lane and an off-ramp
-MapBuilder intersection_3way();  ///< a side road meets a main road with a lane to turn left
-MapBuilder intersection_4way();  ///< two roads of two lanes a direction cross, with traffic lights, see `add_lights`
+MapBuilder intersection_3way();  ///< a side road meets a main road that has a lane for turning left
+MapBuilder intersection_4way();  ///< two roads with two lanes per direction cross; for traffic lights see `add_lights`
 MapBuilder roundabout();         ///< one lane, four arms
 
-/// Gives the map of `intersection_4way` its traffic lights.
+/// Adds traffic lights to the map of `intersection_4way`.
 void add_lights(cambium::map::opendrive::Document& document);
 
 }  // namespace make_maps

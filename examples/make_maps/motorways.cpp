@@ -16,15 +16,15 @@ SectionPlan carriageway(double s, std::size_t count, double width) {
   return section;
 }
 
-/// Three sections of a carriageway that loses its outermost lane `-count`: whole up to `begin`, tapering up to `end`,
-/// gone. The tapering lane has no successor; the outer shoulder takes over its number.
+/// Three sections of a carriageway that loses its outermost lane `-count`: full width up to `begin`, tapering up to
+/// `end`, then without it. The tapering lane has no successor; the outer shoulder takes over its number.
 std::vector<SectionPlan> ending_lane(std::size_t count, double width, LaneType type, double begin, double end) {
   std::vector<SectionPlan> sections{carriageway(0.0, count, width), carriageway(begin, count, width),
                                     carriageway(end, count - 1, width)};
   for (std::size_t i : {0u, 1u}) sections[i].right[count - 1].type = type;
   auto& right = sections[1].right;
   right[count - 1].end_width = 0.0;
-  // Only inwards: from the ending lane, never into it.
+  // Lane changes are allowed out of the ending lane, but not into it.
   right[count - 2].mark = make_mark("broken", LaneChange::increase);
   right[count].next = -static_cast<int>(count);
   return sections;
@@ -34,7 +34,7 @@ RoadPlan motorway(std::string id, std::string name, double limit) {
   return {.id = std::move(id), .name = std::move(name), .type = "motorway", .speed_limit = kmh(limit)};
 }
 
-/// The main road 10 in junction 100, without a shoulder where the ramp comes or leaves.
+/// The main road 10 in junction 100, without a shoulder on the side of the ramp.
 RoadPlan through_junction(double limit, std::vector<Geometry> line, std::size_t count, double width) {
   RoadPlan road = motorway("10", "main through junction", limit);
   road.line = std::move(line);
@@ -73,8 +73,8 @@ MapBuilder lane_drop() {
   return builder;
 }
 
-// The main road 1, the ramp 2, junction 100 with the ways 10 (main) and 11 (ramp), and road 3 behind it, whose lane -3
-// is the acceleration lane.
+// Main road 1, ramp 2, junction 100 with the roads 10 (main) and 11 (ramp), and road 3 after it, whose lane -3 is the
+// acceleration lane.
 MapBuilder merging() {
   constexpr double left = 1.0 / 640.0, right = -1.0 / 800.0, ramp_right = -1.0 / 250.0;
   MapBuilder builder("merging");
@@ -90,7 +90,7 @@ MapBuilder merging() {
       lay_from(end_of(through.line), {{280.0}, {60.0, 0.0, right}, {120.0, right, right}, {60.0, right, 0.0}, {130.0}});
   after.sections = ending_lane(3, lane_width, LaneType::entry, 200.0, 260.0);
 
-  // The ramp's way ends where the acceleration lane begins, and stays clear of the main lanes.
+  // The ramp ends where the acceleration lane begins, and stays clear of the main lanes.
   auto const begin = end_of(through.line);
   auto const corner = cambium::geometry::to_map(begin, {0.0, -2.0 * lane_width});
   SectionPlan const ramp_lanes{0.0, {}, {{.type = LaneType::on_ramp, .width = lane_width}, shoulder(outer_shoulder)}};
@@ -113,8 +113,8 @@ MapBuilder merging() {
   return builder;
 }
 
-// The main road 1, whose lane -4 is the deceleration lane, junction 100 with the ways 10 (main) and 11 (ramp), road 3
-// behind it, and the ramp 2.
+// Main road 1, whose lane -4 is the deceleration lane, junction 100 with the roads 10 (main) and 11 (ramp), road 3
+// after it, and ramp 2.
 MapBuilder highway_exit() {
   constexpr double left = 1.0 / 900.0, ramp_right = -1.0 / 120.0, width = 3.75;
   MapBuilder builder("highway exit");

@@ -1,4 +1,4 @@
-// Reads a map: says what it contains and what is odd about it, draws it, and answers queries.
+// Reads a map: summarises its content, reports problems, draws it, and answers queries.
 
 #include <algorithm>
 #include <filesystem>
@@ -29,15 +29,15 @@ struct Settings {
   bool infer_links = false, in_space = false, network = false, strict = false;
 };
 
-/// Throws where files would be overwritten that are read, or one by the other, or not be written at all.
+/// Throws `Error` if an output would overwrite an input or another output, or if no output is requested for `--out`.
 void check_files(Settings const& settings) {
   namespace fs = std::filesystem;
   if (!settings.out.empty() && settings.poses.empty() && settings.nearest.empty())
     throw cambium::Error("--out", "there is nothing to write", "give --poses or --nearest too");
   if (!settings.sketch.empty() && fs::path(settings.sketch).extension() != ".svg")
-    throw cambium::Error("--sketch " + settings.sketch, "it is no .svg", "name a file that ends in .svg");
+    throw cambium::Error("--sketch " + settings.sketch, "it is not an .svg file", "name a file that ends in .svg");
   auto const real = [](std::string const& name) {
-    std::error_code problem;  // what cannot be looked at cannot be opened either
+    std::error_code problem;  // such a path cannot be opened either, which is reported later
     auto path = fs::weakly_canonical(name, problem);
     return problem ? fs::path(name) : path;
   };
@@ -88,22 +88,22 @@ int run(Settings const& settings) {
   return settings.strict && example::is_odd(opened) ? 1 : 0;
 }
 
-/// The options, and what `--help` says of them.
+/// Adds the options with their help texts.
 void describe(CLI::App& program, Settings& settings) {
   program.add_option("FILE", settings.file, "OpenDRIVE map (.xodr), or columns x,y: a lane's centre line (.csv)")
       ->type_name("")
       ->required();
   auto* const picture =
       program.add_option("--picture", settings.picture, "draw the map (.svg, or .html that zooms)")->type_name("OUT");
-  program.add_option("--part", settings.part, "draw only what lies in this box of the map")
+  program.add_option("--part", settings.part, "draw only this box of the map")
       ->type_name("XMIN YMIN XMAX YMAX")
       ->expected(4)
       ->needs(picture);
-  program.add_option("--sketch", settings.sketch, "draw it small, with a close-up, for a document (.svg)")
+  program.add_option("--sketch", settings.sketch, "draw a small picture with a close-up, for documents (.svg)")
       ->type_name("OUT");
-  program.add_flag("--network", settings.network, "list gaps, kinks, dead ends and one-sided links of lanes");
+  program.add_flag("--network", settings.network, "list gaps, kinks, dead ends and one-sided links between lanes");
   program
-      .add_option("--junction", settings.junction, "list where its lanes get in each other's way, and who goes first")
+      .add_option("--junction", settings.junction, "list where lanes of this junction conflict, and who has priority")
       ->type_name("ID");
   program.add_option("--route", settings.route, "print the shortest route between two places, and its lanes")
       ->type_name("FROM TO")
@@ -111,39 +111,42 @@ void describe(CLI::App& program, Settings& settings) {
   program.add_option("--reachable", settings.reachable, "list the lanes that can be reached within a distance")
       ->type_name("FROM METRES")
       ->expected(2);
-  auto* const poses = program.add_option("--poses", settings.poses, "columns road,s,lane: where these lanes are");
+  auto* const poses =
+      program.add_option("--poses", settings.poses, "read columns road,s,lane; compute the poses of these lanes");
   auto* const nearest =
-      program.add_option("--nearest", settings.nearest, "columns x,y: the lanes that hold the points");
-  auto* const out = program.add_option("--out", settings.out, "what --poses or --nearest write")->type_name("OUT.csv");
+      program.add_option("--nearest", settings.nearest, "read columns x,y; find the lanes that contain these points");
+  auto* const out =
+      program.add_option("--out", settings.out, "file that --poses or --nearest writes")->type_name("OUT.csv");
   poses->type_name("IN.csv")->needs(out)->excludes(nearest);
   nearest->type_name("IN.csv")->needs(out);
-  program.add_flag("--surface", settings.in_space, "--poses on the road's surface in space, too")->needs(poses);
+  program.add_flag("--surface", settings.in_space, "with --poses, add the points on the road's surface in space")
+      ->needs(poses);
   program.add_option("--links", settings.links, "write which lanes meet at the ends of roads")->type_name("OUT.csv");
   auto const is_said = [](std::string const& word) { return std::string(word.empty() ? "needs a word, not ''" : ""); };
   for (auto* const option : program.get_options())
     if (option->get_expected_max() == 1) option->check(is_said, "");
-  program.add_flag("--infer-links", settings.infer_links, "join lanes whose ends meet where the file forgot the link");
-  program.add_flag("--strict", settings.strict, "exit code 1 where there is a warning, an error or a road left out");
+  program.add_flag("--infer-links", settings.infer_links, "link lanes whose ends meet where the file lacks the link");
+  program.add_flag("--strict", settings.strict, "exit code 1 if there is a warning, an error or a road left out");
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
   Settings settings;
-  CLI::App program("Reads a road map: what it contains, what is odd about it, pictures, queries.", "map");
+  CLI::App program("Reads a road map, summarises it, reports problems, draws it and answers queries.", "map");
   describe(program, settings);
   program.footer(
-      "A place (FROM, TO) is road:lane:s, s in m along the road, say 12:-1:30.5; in a lane for both directions\n"
-      "12:-1:30.5:backward is that against the road. --route takes x,y,heading and x,y, too.\n"
-      "Columns that are written, in m and rad:\n"
+      "A place (FROM, TO) is road:lane:s, with s in m along the road, such as 12:-1:30.5. In a lane for both "
+      "directions,\n"
+      "12:-1:30.5:backward selects the one against the road. --route also takes x,y,heading and x,y.\n"
+      "Columns of the written files, in m and rad:\n"
       "  --poses    road,s,lane,x,y,hdg,width,t,rx,ry,rhdg,rk: the lane's middle, the reference line (r...)\n"
       "             with --surface also sx,sy,sz: the lane's middle in space\n"
-      "  --nearest  road,lane,s,t,distance,query: query is the number of the point from 0; a point in no lane gives "
-      "no\n"
-      "             row\n"
+      "  --nearest  road,lane,s,t,distance,query: query is the number of the point, from 0; a point in no lane\n"
+      "             has no row\n"
       "  --links    road,end,lane,next_road,next_contact,next_lane,via: as written in the file\n"
-      "Exit code: 0 where there is a map, whatever is odd about it; 1 with --strict where a warning, an error or a "
-      "road\n"
-      "left out is; 2 where there is no map, or another error.");
+      "Exit code: 0 if the map could be built, even with warnings; 1 with --strict if there is a warning, an error or "
+      "a\n"
+      "road left out; 2 if there is no map, or another error.");
   return examples::run_program(program, argc, argv, [&] { return run(settings); });
 }

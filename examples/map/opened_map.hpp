@@ -14,14 +14,14 @@
 
 namespace map_example {
 
-/// A map's file, as written and as a map.
+/// A map file: its content, the map built from it, and the diagnostics.
 struct OpenedMap {
   cambium::map::OpenDriveDocument document;
   std::shared_ptr<cambium::Map const> map;
   std::vector<cambium::Diagnostic> diagnostics;
 };
 
-/// Reads an OpenDRIVE file, or the table of a centre line (.csv), which becomes a road of one lane. Throws
+/// Reads an OpenDRIVE file, or a centre line from a table (.csv), which becomes a road of one lane. Throws
 /// `cambium::MapError`.
 inline OpenedMap open_map(std::string const& file, cambium::MapOptions const& options) {
   OpenedMap opened;

@@ -22,10 +22,10 @@
 
 namespace map_example {
 
-/// A lane as the map describes it, fit for a terminal.
+/// The map's description of a lane, safe to print on a terminal.
 inline std::string lane_name(cb::Map const& map, cb::LaneId lane) { return cb::detail::printable(map.describe(lane)); }
 
-/// What is odd about how lanes hang together, a finding a line.
+/// Problems of the lane network, one per line.
 inline std::string network(cb::Map const& map) {
   using cb::map::NetworkFault;
   std::string text;
@@ -39,10 +39,10 @@ inline std::string network(cb::Map const& map) {
     if (is_valid(finding.other)) text += " and " + lane_name(map, finding.other);
     text += '\n';
   }
-  return text.empty() ? "  the lanes hang together\n" : text;
+  return text.empty() ? "  no problems in the lane network\n" : text;
 }
 
-/// Where lanes of the junction `name` get in each other's way, and whose road goes first, a line each.
+/// Conflicts between the lanes of the junction `name`, and which road has priority, one per line.
 inline std::string junction(cb::Map const& map, std::string const& name) {
   cb::map::Junction const* found = nullptr;
   std::string names;
@@ -79,7 +79,7 @@ inline std::string junction(cb::Map const& map, std::string const& name) {
 /// A place of the command line, "road:lane:s" or "road:lane:s:direction"; the road's id may have colons itself.
 inline cb::map::LaneStation find_place(cb::Map const& map, std::string const& option, std::string const& word) {
   std::string rest = word;
-  auto const take = [&rest] {  // what is behind the last colon
+  auto const take = [&rest] {  // removes and returns the part after the last colon
     auto const colon = rest.rfind(':');
     if (colon == rest.npos) return std::string();
     std::string last = rest.substr(colon + 1);
@@ -94,12 +94,12 @@ inline cb::map::LaneStation find_place(cb::Map const& map, std::string const& op
   auto const s = cb::detail::parse_number<double>(last);
   auto const lane = cb::detail::parse_number<int>(take());
   if (!s || !lane)
-    throw cb::Error(option, "'" + word + "' is no place", "write it as road:lane:s, say 12:-1:30.5, or see --help");
+    throw cb::Error(option, "'" + word + "' is no place", "write it as road:lane:s, such as 12:-1:30.5; see --help");
   auto const id = direction ? map.find_lane(rest, *s, *lane, *direction) : map.find_lane(rest, *s, *lane);
   return {id, map.lane(id).position_at(*s)};
 }
 
-/// "50 km/h, from 40 m on 30 km/h".
+/// A lane's speed limits: "50 km/h, from 40 m on 30 km/h".
 inline std::string limits(cb::map::Lane const& lane) {
   auto const speed = [](double limit) {
     return std::isfinite(limit) ? metres(3.6 * limit) + " km/h" : std::string("no limit");
@@ -110,7 +110,7 @@ inline std::string limits(cb::map::Lane const& lane) {
   return text;
 }
 
-/// How many lanes of the corridor are beside `lane` on one side.
+/// Number of the corridor's lanes beside `lane` on one side.
 inline int count_beside(cb::Map const& map, cb::map::RoadCorridor const& corridor, cb::LaneId lane,
                         cb::LaneId cb::map::Lane::*side) {
   int count = 0;
@@ -119,7 +119,7 @@ inline int count_beside(cb::Map const& map, cb::map::RoadCorridor const& corrido
   return count;
 }
 
-/// The lanes of a corridor's route, a line each.
+/// The lanes of a corridor's route, one per line.
 inline std::string corridor_text(cb::Map const& map, cb::map::RoadCorridor const& corridor) {
   std::string text;
   for (auto const id : corridor.route) {
@@ -143,7 +143,7 @@ inline std::string corridor_text(cb::Map const& map, cb::map::RoadCorridor const
   return text + (main.continues ? ", and the road goes on\n" : ", where the road ends\n");
 }
 
-/// The numbers of "x,y" or "x,y,heading"; none where it is neither.
+/// The numbers in "x,y" or "x,y,heading"; empty if `word` is neither.
 inline std::vector<double> coordinates(std::string const& word) {
   std::vector<double> numbers;
   for (auto const part : cb::detail::split(word, ",")) {
@@ -154,8 +154,7 @@ inline std::vector<double> coordinates(std::string const& word) {
   return numbers;
 }
 
-/// The shortest way between two places, and the lanes along it. The places are on lanes, or `from` is a pose and `to` a
-/// point.
+/// The shortest route between two places, and its lanes. The places are on lanes, or `from` is a pose and `to` a point.
 inline std::string route(cb::Map const& map, std::string const& from, std::string const& to) {
   if (auto const a = coordinates(from), b = coordinates(to); a.size() == 3 && b.size() == 2) {
     auto const corridor = build_road_corridor(map, {a[0], a[1], a[2]}, cb::geometry::Point(b[0], b[1]));
@@ -168,7 +167,7 @@ inline std::string route(cb::Map const& map, std::string const& from, std::strin
          corridor_text(map, *build_road_corridor(map, *found));
 }
 
-/// What can be reached from a place within so many metres, lane by lane.
+/// The lanes that can be reached from a place within `distance` [m], one per line.
 inline std::string reachable(cb::Map const& map, std::string const& from, std::string const& distance) {
   auto const budget = cb::detail::parse_number<double>(distance);
   if (!budget || *budget < 0.0)

@@ -58,7 +58,7 @@ inline std::string header_text(odr::Header const& header) {
   return cb::detail::printable(text);
 }
 
-/// What is written in the file.
+/// Summary of the file: what is written in it.
 inline std::string document_text(odr::Document const& document) {
   std::map<std::string, std::size_t> geometries, junctions;
   std::size_t sections = 0, signals = 0, references = 0, objects = 0, connections = 0, left_hand = 0;
@@ -90,7 +90,7 @@ inline std::string document_text(odr::Document const& document) {
   return text;
 }
 
-/// Where lanes get in each other's way.
+/// Counts of overlaps between lanes.
 inline std::string overlaps_text(cb::Map const& map) {
   std::map<std::string, std::size_t> overlaps;
   constexpr char const* kinds[] = {"merges", "splits", "crossings"};
@@ -108,20 +108,20 @@ inline std::string overlaps_text(cb::Map const& map) {
          std::to_string(ruled);
 }
 
-/// Whether one could drive along somewhere: a lane whose widths are no numbers, or all 0, leads nowhere.
+/// Whether the lane has a positive, finite width somewhere; otherwise nobody can drive on it.
 inline bool has_width(cb::map::Lane const& lane) {
   return std::any_of(lane.widths.begin(), lane.widths.end(),
                      [](auto const& sides) { return std::isfinite(sides.left) && sides.left + sides.right > 0.0; });
 }
 
-/// Whether somebody should look at the file: a warning, an error, or a road that is not in the map.
+/// Whether the file needs attention: a warning, an error, or a road that is not in the map.
 inline bool is_odd(OpenedMap const& opened) {
   return opened.map->roads().size() < opened.document.roads.size() ||
          std::any_of(opened.diagnostics.begin(), opened.diagnostics.end(),
                      [](auto const& diagnostic) { return diagnostic.severity != cb::Severity::info; });
 }
 
-/// What the map has.
+/// Summary of the map built from the file.
 inline std::string map_text(cb::Map const& map) {
   std::map<std::string, std::size_t> types, faults;
   std::size_t merging = 0;
@@ -145,7 +145,7 @@ inline std::string map_text(cb::Map const& map) {
   return text + line("overlaps", overlaps_text(map)) + line("network", list(faults));
 }
 
-/// What the file contains and how much is odd about it.
+/// Summary of the file and the map, and counts of the diagnostics.
 inline std::string summary(OpenedMap const& opened, std::string const& file) {
   std::map<std::string, std::size_t> severities;
   for (auto const& diagnostic : opened.diagnostics) ++severities[std::string(to_string(diagnostic.severity))];

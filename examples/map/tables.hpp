@@ -30,8 +30,8 @@ inline cb::map::Road const& road_of(cb::Map const& map, examples::CsvTable const
   }
 }
 
-/// Where lanes are: for each row road,s,lane of `file` the lane's centre, width and lateral offset, and the reference
-/// line; `in_space` also the centre on the road's surface, which rises and leans.
+/// Poses of lanes: for each row road,s,lane of `file`, the lane's centre, width and lateral offset, and the pose of the
+/// reference line. With `in_space`, also the centre on the road's surface, with elevation and superelevation.
 inline std::string poses(cb::Map const& map, std::string const& file, bool in_space) {
   examples::CsvTable const rows(file, {"road", "s", "lane"});
   std::string text = "road,s,lane,x,y,hdg,width,t,rx,ry,rhdg,rk" + std::string(in_space ? ",sx,sy,sz\n" : "\n");
@@ -42,7 +42,7 @@ inline std::string poses(cb::Map const& map, std::string const& file, bool in_sp
     auto const p = lane_point(road, s, lane);
     if (!p)
       rows.fail_at(i, "road " + road.name + " has no lane " + std::to_string(lane) + " at s " + rows.word(i, 1),
-                   "name a lane it has there, other than lane 0");
+                   "name a lane that exists there, other than lane 0");
     text += csv_cell(road.name) + ',' + digits(s) + ',' + std::to_string(lane);
     for (double const value :
          {p->center.x, p->center.y, cb::geometry::normalize_angle(p->center.heading), p->width, p->t, p->reference.x,
@@ -55,8 +55,8 @@ inline std::string poses(cb::Map const& map, std::string const& file, bool in_sp
   return text;
 }
 
-/// The lanes that hold the points x,y of `file`: for each point those whose centre is nearest first. `query` is the
-/// number of the point, from 0.
+/// The lanes that contain the points x,y of `file`, for each point sorted by the distance to the lane's centre. `query`
+/// is the number of the point, from 0.
 inline std::string nearest(cb::Map const& map, std::string const& file) {
   examples::CsvTable const rows(file, {"x", "y"});
   std::string text = "road,lane,s,t,distance,query\n";
@@ -67,7 +67,7 @@ inline std::string nearest(cb::Map const& map, std::string const& file) {
   return text;
 }
 
-/// Which lanes meet at the ends of roads.
+/// The links between lanes at the ends of roads.
 inline std::string links(cb::map::OpenDriveDocument const& document) {
   auto const word = [](cb::map::opendrive::ContactPoint end) {
     return end == cb::map::opendrive::ContactPoint::end ? "end" : "start";

@@ -14,7 +14,7 @@
 
 namespace merging {
 
-/// The ego has to merge: see `examples::run_scenario`.
+/// The task: the ego merges. See `examples::run_scenario`.
 struct Task {
   cambium::MergingSite site;
 
@@ -28,14 +28,13 @@ struct Task {
   [[nodiscard]] examples::Facts facts() const { return {{"entrances", site.entrances.size()}}; }
 };
 
-/// The merge of the map that the settings name; warns of crossings, where nobody gives way.
+/// The merging site of the map in the settings. Warns of crossings, because these drivers do not give way there.
 [[nodiscard]] inline cambium::MergingSite find_site(examples::Settings const& settings, std::string const& program) {
   auto site = cambium::find_merging_site(examples::load_map(settings.map_file), settings.map_file);
   if (site.crossings > 0)
-    std::cerr
-        << program << ": " << settings.map_file << ": " << site.crossings
-        << (site.crossings == 1 ? " place" : " places")
-        << " where the traffic's routes cross or meet at an angle; nobody gives way there, so expect collisions\n";
+    std::cerr << program << ": " << settings.map_file << ": " << site.crossings
+              << (site.crossings == 1 ? " place" : " places")
+              << " where routes cross or meet at an angle; these drivers do not give way there, so expect collisions\n";
   return site;
 }
 

@@ -1,5 +1,5 @@
-// Which models there are: their laws, sources and parameters, as Markdown, from the descriptions in the code itself.
-// The tables of the rooms' READMEs (include/cambium/behavior, ...) are this program's output.
+// Lists all models with their laws, sources and parameters as Markdown, generated from the descriptions in the code.
+// The tables in the READMEs below include/cambium are this program's output.
 
 #include <cstdio>
 #include <iostream>
@@ -50,7 +50,7 @@ std::vector<Model> behaviors() {
           model<cb::IdmProposal>("IdmProposal")};
 }
 
-/// Planners are behaviours too, on a world that they predict.
+/// Planners are behaviours, too; they search in a predicted world.
 std::vector<Model> planners() {
   using Set =
       cb::BehaviorSet<cb::MacroActions, cb::IdmClassic, cb::IdmHypotheses, cb::IdmProposal, cb::ConstantAcceleration>;
@@ -169,7 +169,7 @@ void print_one(std::string const& name) {
       }
       known += " " + model.name;
     }
-  throw cb::Error(name, "there is no such model", "there are:" + known);
+  throw cb::Error(name, "there is no such model", "choose one of" + known);
 }
 
 }  // namespace
@@ -177,8 +177,8 @@ void print_one(std::string const& name) {
 
 int main(int argc, char** argv) {
   std::string name;
-  CLI::App program("Prints which models there are, with law, source and parameters, as Markdown.", "models");
-  program.add_option("NAME", name, "a model, for all of its parameters with ranges and meanings; none: all models");
+  CLI::App program("Lists all models with law, source and parameters, as Markdown.", "models");
+  program.add_option("NAME", name, "show all parameters of this model, with ranges and meanings; default: all models");
   return examples::run_program(program, argc, argv,
                                [&] { name.empty() ? models::print_all() : models::print_one(name); });
 }

@@ -11,7 +11,7 @@ namespace models {
 
 namespace cb = cambium;
 
-/// A model's source; "-" where it does not say one.
+/// A model's source; "-" if it names none.
 template <class M>
 [[nodiscard]] std::string source_of() {
   if constexpr (requires { M::source; })
@@ -20,7 +20,8 @@ template <class M>
     return "-";
 }
 
-/// "33.33 m/s": numbers to four digits; "3 *window*": how many there are in a list of structs; "1 m, 2 m".
+/// A parameter's value as text: a number with four digits ("33.33 m/s"), the size of a list of structs ("3 *window*"),
+/// or the elements of another list ("1 m, 2 m").
 template <class Value>
 [[nodiscard]] std::string value_text(Value const& value, cb::ParameterInfo const& info) {
   if constexpr (cb::detail::ParameterList<Value>) {
@@ -41,7 +42,7 @@ template <class Value>
   }
 }
 
-/// As Markdown shows it: a star is a star.
+/// Escapes the asterisks in `text` for Markdown.
 [[nodiscard]] inline std::string markdown(std::string const& text) {
   std::string result;
   for (char const c : text) result += c == '*' ? std::string("\\*") : std::string(1, c);
@@ -90,7 +91,7 @@ template <class M>
     return "-";
 }
 
-/// All that can be said of one model: its law, its source and the table of its parameters with ranges and meanings.
+/// The page of one model: its law, its source, and a table of its parameters with ranges and meanings.
 template <class M>
 [[nodiscard]] std::string page_of(std::string const& type) {
   std::string text =

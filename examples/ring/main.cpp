@@ -1,5 +1,5 @@
-// Traffic on a ring road: flow against density beside the curve of theory, and stop-and-go waves where theory says that
-// they must come; a table, a summary, a picture of both, and a replay of the waves.
+// Traffic on a ring road: measures flow against density and compares it with theory, and shows stop-and-go waves at
+// densities where theory predicts them. Writes a table, a summary, a picture and a replay of the waves.
 
 #include <algorithm>
 #include <cmath>
@@ -40,17 +40,17 @@ cb::IdmParameters driver_of(std::string const& name) {
     if (preset.name == name) return preset.parameters;
     known += std::string(known.empty() ? "" : ", ") + preset.name;
   }
-  throw cb::Error("--driver " + name, "there is no such driver", "there are " + known);
+  throw cb::Error("--driver " + name, "there is no such driver", "choose one of " + known);
 }
 
-/// A density, what theory says of it and what came of it.
+/// Results at one density: theory and measurement.
 struct Row {
   int vehicles{};
   Equilibrium expected;
   Measured measured;
 };
 
-/// Densities from loose traffic to 95 % of what fits on the ring.
+/// Measures at densities from light traffic to 95 % of what fits on the ring.
 std::vector<Row> sweep(cb::RingRoad const& road, cb::IdmParameters const& driver, double duration) {
   double const closest = driver.minimum_gap + cb::geometry::car().length();
   std::vector<Row> rows;
@@ -70,7 +70,7 @@ DensityPoint point_of(double length, Row const& row) {
   return {1000.0 * row.vehicles / length, 3600 * row.measured.flow, 3600 * row.expected.flow, row.expected.is_stable};
 }
 
-/// The theory's curve, finer than the measurements.
+/// The theoretical curve, with finer steps than the measurements.
 std::vector<DensityPoint> theory(cb::IdmParameters const& driver) {
   std::vector<DensityPoint> curve;
   double const length = 2000.0;
@@ -81,7 +81,7 @@ std::vector<DensityPoint> theory(cb::IdmParameters const& driver) {
   }
 }
 
-/// Drives the traffic of one density and keeps the course of its first 15 minutes.
+/// Simulates the traffic at one density and records at most its first 15 minutes.
 void record_waves(cb::RingRoad const& road, cb::IdmParameters const& driver, Settings const& settings, Shown& shown,
                   cb::Recording& recording) {
   int const vehicles = static_cast<int>(std::lround(static_cast<double>(settings.density) * road.length / 1000.0));
@@ -150,7 +150,7 @@ void run(Settings const& settings) {
   cb::write_file(folder / "ring.svg", picture(shown));
   cb::write_html_replay(folder / "replay.html", recording);
   print_table(settings, road, rows);
-  std::cout << "  " << (folder / "ring.svg").string() << "      these flows over the densities, and the waves at "
+  std::cout << "  " << (folder / "ring.svg").string() << "      flow over density, and the waves at "
             << settings.density << " vehicles/km\n  " << (folder / "replay.html").string()
             << "   plays the waves in a browser\n  " << (folder / "summary.json").string() << "  these figures\n";
 }
@@ -160,7 +160,7 @@ void run(Settings const& settings) {
 
 int main(int argc, char** argv) {
   ring::Settings settings;
-  CLI::App program("Drives traffic round a ring and compares it with the theory of traffic flow.", "ring");
+  CLI::App program("Simulates traffic on a ring road and compares it with the theory of traffic flow.", "ring");
   auto const number = [&](char const* name, std::uint64_t& target, std::uint64_t low, std::uint64_t high,
                           char const* sentence) {
     program.add_option(name, target, sentence)
@@ -171,9 +171,9 @@ int main(int argc, char** argv) {
   program.add_option("--driver", settings.driver, "one of the presets, such as treiber_2000 or kesting_2010_car")
       ->type_name("NAME")
       ->capture_default_str();
-  number("--length", settings.length, 500, 20'000, "of the ring [m]");
-  number("--density", settings.density, 2, 120, "of the traffic whose waves are drawn [vehicles/km]");
-  number("--minutes", settings.minutes, 1, 120, "to drive at each density");
+  number("--length", settings.length, 500, 20'000, "length of the ring [m]");
+  number("--density", settings.density, 2, 120, "density at which the waves are drawn [vehicles/km]");
+  number("--minutes", settings.minutes, 1, 120, "simulated time at each density");
   program.add_option("--out", settings.out, "folder for summary.json, ring.svg and replay.html")
       ->type_name("DIR")
       ->capture_default_str();

@@ -51,7 +51,7 @@ struct Diagram {
 /// Polylines as one SVG path, to a tenth of a pixel.
 class Path {
  public:
-  /// From one point to another [px]; goes on where the last one ended.
+  /// Adds a line from one point to another [px]; continues the last line if it ended there.
   void add(double x1, double y1, double x2, double y2) {
     if (auto const from = point(x1, y1); from != last_) data_ += 'M' + from;
     last_ = point(x2, y2);
@@ -74,16 +74,16 @@ struct DensityPoint {
   bool is_stable{};
 };
 
-/// A vehicle at a time [s], its place on the ring [m], and speed [m/s].
+/// A vehicle at one time [s]: its position on the ring [m] and its speed [m/s].
 struct TracePoint {
   double time{}, place{}, speed{};
 };
 
 struct Shown {
   std::string driver;
-  std::vector<DensityPoint> curve, points;      ///< of the theory, and measured
-  std::vector<std::vector<TracePoint>> traces;  ///< of each vehicle
-  double length{}, density{}, end{};            ///< of the traces [m], [1/km], [s]
+  std::vector<DensityPoint> curve, points;      ///< theory; measurements
+  std::vector<std::vector<TracePoint>> traces;  ///< of every other vehicle
+  double length{}, density{}, end{};            ///< of the ring and the traces [m], [1/km], [s]
 };
 
 /// Flow against density: theory as a line, dashed where it is unstable; measurements as dots.
@@ -112,13 +112,13 @@ inline std::string draw_fundamental_diagram(Shown const& shown, Diagram const& d
   return svg;
 }
 
-/// The colour of a speed, from red at rest by yellow to green at `fastest`, in one of 6 classes.
+/// The colour of one of 6 classes of speed, from red (stopped) through yellow to green (fastest).
 inline std::string color_of_class(int number) {
   char const* const colors[] = {"#b71c1c", "#e64a19", "#f9a825", "#c0ca33", "#66bb6a", "#2e7d32"};
   return colors[number];
 }
 
-/// Where every vehicle was when: its way round the ring over time, coloured by speed.
+/// Space-time diagram: positions on the ring over time, coloured by speed.
 inline std::string draw_space_time(Shown const& shown, Diagram const& d, double fastest) {
   constexpr int classes = 6;
   std::vector<Path> paths(classes);
@@ -131,7 +131,7 @@ inline std::string draw_space_time(Shown const& shown, Diagram const& d, double 
         path.add(d.px(a.time), d.py(a.place), d.px(b.time), d.py(b.place));
         continue;
       }
-      double const share = (shown.length - a.place) / (shown.length - a.place + b.place);  // it has passed the start
+      double const share = (shown.length - a.place) / (shown.length - a.place + b.place);  // it passed the start
       double const between = d.px(a.time + share * (b.time - a.time));
       path.add(d.px(a.time), d.py(a.place), between, d.py(shown.length));
       path.add(between, d.py(0), d.px(b.time), d.py(b.place));
@@ -141,9 +141,9 @@ inline std::string draw_space_time(Shown const& shown, Diagram const& d, double 
     svg += paths[static_cast<std::size_t>(i)].svg("stroke-width=\"1\" stroke=\"" + color_of_class(i) + "\"");
   svg += d.axes(120, 500,
                 "Waves at " + svg_number(shown.density, 0) +
-                    " vehicles/km: ways of every other vehicle, red (standing) to green (" +
+                    " vehicles/km: paths of every other vehicle, red (stopped) to green (" +
                     svg_number(3.6 * fastest, 0) + " km/h)",
-                "time [s]", "place on the ring [m]");
+                "time [s]", "position on the ring [m]");
   return svg;
 }
 

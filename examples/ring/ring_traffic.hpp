@@ -15,19 +15,19 @@
 #include "cambium/scenario/ring_road.hpp"
 #include "cambium/world/world.hpp"
 
-/// Traffic on a ring: how it begins, what theory says of it, and what is measured.
+/// Traffic on a ring: initial state, theory and measurement.
 namespace ring {
 
 namespace cb = cambium;
 
 using Sim = cb::World<cb::BehaviorSet<cb::IdmClassic>, cb::InterpolateExecution, cb::SingleTrack>;
 
-/// Steady following of `vehicles` of one kind on a ring of `length` [m].
+/// Equilibrium of identical vehicles on a ring: all follow with the same gap and speed.
 struct Equilibrium {
   double gap{}, speed{};  ///< [m], [m/s]
   double flow{};          ///< [1/s]
-  double growth{};        ///< of the small wave that grows fastest on the ring, below 0 where all decay [1/s]
-  bool is_stable{};       ///< by string stability, on a road of any length
+  double growth{};        ///< growth rate of the fastest growing small wave on the ring; below 0 if all decay [1/s]
+  bool is_stable{};       ///< whether traffic is string stable, on a road of any length
 };
 
 inline Equilibrium equilibrium(cb::IdmParameters const& driver, double length, int vehicles) {
@@ -39,13 +39,13 @@ inline Equilibrium equilibrium(cb::IdmParameters const& driver, double length, i
   auto const linear = cb::linear_following(law, e.speed, e.gap);
   e.is_stable = linear.is_string_stable();
   e.growth = -std::numeric_limits<double>::infinity();
-  for (int m = 1; m < vehicles; ++m)  // m = 0 would be one more vehicle, or one less
+  for (int m = 1; m < vehicles; ++m)  // m = 0 would change the number of vehicles
     e.growth = std::max(e.growth, linear.growth_rate(2 * cb::geometry::pi * m / vehicles));
   return e;
 }
 
-/// Vehicles in equilibrium all round the ring, but each as far ahead of its place as `ahead(number)` [m] says, and
-/// faster by `faster(number)` [m/s]. Number i + 1 follows number i.
+/// A ring of vehicles in equilibrium, each shifted ahead by `ahead(number)` [m] and faster by `faster(number)` [m/s].
+/// Vehicle i + 1 follows vehicle i.
 template <class Ahead, class Faster>
 Sim start(cb::RingRoad const& road, cb::IdmParameters const& driver, int vehicles, Ahead const& ahead,
           Faster const& faster) {
@@ -62,20 +62,20 @@ Sim start(cb::RingRoad const& road, cb::IdmParameters const& driver, int vehicle
   return world;
 }
 
-/// The same, with one vehicle 1 m/s slower than the others.
+/// A ring of vehicles in equilibrium, except that one is 1 m/s slower than the others.
 inline Sim start_disturbed(cb::RingRoad const& road, cb::IdmParameters const& driver, int vehicles) {
   return start(
       road, driver, vehicles, [](int) { return 0.0; }, [](int i) { return i == 0 ? -1.0 : 0.0; });
 }
 
-/// What was seen of a ring's traffic over some time.
+/// Measurements of a ring's traffic over some time.
 struct Measured {
-  double flow{};                ///< mean over the ring [1/s] (Edie 1963: way driven by all, over length and time)
+  double flow{};                ///< mean over the ring [1/s] (Edie 1963: total distance driven over length and time)
   double slowest{}, fastest{};  ///< speeds at the end [m/s]
-  bool drove = true;            ///< nobody failed, left the ring or touched the one ahead
+  bool drove = true;            ///< no vehicle failed, left the ring or touched its leader
 };
 
-/// Steps `world` on by `duration` [s] in steps of `dt`, and calls `watch(world)` behind each.
+/// Simulates `duration` [s] in steps of `dt` [s], and calls `watch(world)` after each step.
 template <class Watch>
 Measured measure(Sim& world, double length, double duration, double dt, Watch const& watch) {
   auto const total_way = [&world] {

@@ -1,6 +1,6 @@
-// Zip merge: the dense situations of the example merging, at a lane drop, with drivers who let one vehicle of the other
-// lane in before them; counts how often two of one lane go one after the other, and writes figures, trajectories and a
-// replay that plays in a browser.
+// Zip merge: the dense scenarios of the example merging, at a lane drop, with drivers who each let one vehicle from the
+// other lane in. Counts how often two vehicles from the same lane merge in a row, and writes figures, trajectories and
+// a replay for the browser.
 
 #include "../common/sampled_program.hpp"
 #include "../merging/task.hpp"
@@ -14,8 +14,8 @@ void run(examples::Settings const& settings) {
       task, settings,
       {"Zip merge",
        "the ego merged",
-       {{"pairs at merge", "two who come to the merge one after the other, while others still come on both lanes"},
-        {"of one lane", "those of these pairs who came on the same lane; a perfect zip has none"}}});
+       {{"pairs at merge", "two vehicles in a row at the merge, while others still approach in the other lane"},
+        {"of one lane", "those of these pairs that came from the same lane; a perfect zip has none"}}});
 }
 
 }  // namespace
@@ -26,7 +26,7 @@ int main(int argc, char** argv) {
   settings.out = "out/zip_merge";
   examples::Program const program{
       "zip_merge",
-      "Samples dense situations before a merge where drivers let one another in, simulates and judges them.",
+      "Samples dense scenarios before a merge where drivers let one another in, simulates and judges them.",
       "OpenDRIVE map with a merge"};
   return examples::run_sampled(program, settings, argc, argv, [&] { run(settings); });
 }

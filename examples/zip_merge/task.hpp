@@ -24,7 +24,7 @@ namespace zip_merge {
 using Simulation =
     cambium::World<cambium::BehaviorSet<cambium::ZipMerge>, cambium::InterpolateExecution, cambium::SingleTrack>;
 
-/// The same driver as a zip merger.
+/// A zip merge driver with the parameters of `driver`.
 [[nodiscard]] inline cambium::ZipMerge zip(cambium::IdmClassic const& driver) {
   cambium::ZipMerge result;
   result.idm = {.desired_speed = driver.desired_speed,
@@ -35,7 +35,7 @@ using Simulation =
   return result;
 }
 
-/// Counts pairs of vehicles that reach the merge one after the other while others still come on both lanes.
+/// Counts pairs of vehicles that reach the merge in a row while other vehicles are still coming in the other lane.
 class Watch {
  public:
   Watch(Simulation const& world, cambium::Slot ego, cambium::MergingSite const& site) : ego_(ego) {
@@ -45,7 +45,7 @@ class Watch {
           coming_.push_back({slot, k, site.entrances[k].merge_at});
   }
 
-  /// Notes who reached the merge in the last step; whether the ego has merged.
+  /// Counts the vehicles that reached the merge in the last step. Returns whether the ego has merged.
   bool operator()(Simulation const& world) {
     auto const& agents = world.frame().agents;
     auto const beyond = [&](Coming const& one) { return agents[one.slot].lane.s - one.merge_at; };
@@ -63,14 +63,14 @@ class Watch {
     return cambium::AtGoal{}(world, ego_);
   }
 
-  std::array<std::uint64_t, 2> counts{};  ///< pairs at the merge, and those of one lane
+  std::array<std::uint64_t, 2> counts{};  ///< pairs at the merge; those from the same lane
 
  private:
   /// A vehicle on its way to the merge.
   struct Coming {
     cambium::Slot slot{};
     std::size_t entrance{};
-    double merge_at{};  ///< along its lane corridor [m]
+    double merge_at{};  ///< corridor position of the merge [m]
   };
 
   cambium::Slot ego_;
@@ -78,7 +78,7 @@ class Watch {
   std::optional<std::size_t> last_;  ///< entrance of the vehicle that reached the merge last
 };
 
-/// The ego has to merge in dense traffic of drivers who merge like a zip: see `examples::run_scenario`.
+/// The task: the ego merges in dense traffic of drivers who merge like a zip. See `examples::run_scenario`.
 struct Task {
   cambium::MergingSite site;
 

@@ -1,4 +1,4 @@
-/// The room `viewer`: recordings of worlds, replays in a browser and pictures.
+/// The room `viewer`: recordings of worlds, replays in a browser, and pictures of maps and traffic.
 #pragma once
 
 #include "cambium/viewer/html_replay.hpp"

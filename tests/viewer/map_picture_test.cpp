@@ -62,9 +62,9 @@ TEST_CASE("the legend names what the picture has, and nothing else") {
   CHECK(count(cambium::html_map_picture(*loaded.map), "class=\"legend\"") == 1);
   auto const junction = cambium::load_opendrive(CAMBIUM_SOURCE_DIR "/maps/intersection_4way.xodr");
   auto const crossing = cambium::svg_map_picture(*junction.map);
-  CHECK(has(crossing, "shared ground"));
+  CHECK(has(crossing, "shared area"));
   CHECK(has(crossing, ">leads to<"));
-  CHECK(count(crossing, "<title>ground of ") == 52);
+  CHECK(count(crossing, "<title>area shared by ") == 52);
 }
 
 TEST_CASE("the legend names those overlaps and ends that are drawn") {
@@ -76,8 +76,8 @@ TEST_CASE("the legend names those overlaps and ends that are drawn") {
     for (auto const& [entry, drawn] : {std::pair("crosses another lane", ": crossing with "),
                                        {"merges with another", ": merge with "},
                                        {"splits from another", ": split with "},
-                                       {"begins, no way in", " begins here<"},
-                                       {"ends, no way on", " ends here<"}}) {
+                                       {"starts, no predecessor", " begins here<"},
+                                       {"ends, no successor", " ends here<"}}) {
       CAPTURE(entry);
       bool const is_drawn = has(picture, drawn);
       CHECK(count(picture, std::string(">") + entry + "<") == (is_drawn ? 1 : 0));

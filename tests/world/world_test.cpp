@@ -446,7 +446,7 @@ TEST_CASE("an agent that is re-routed in the middle of a lane change has forgott
   CHECK(world.memory<cb::Mobil>(id) == cb::Mobil::Memory{});
   for (int i = 0; i < 20; ++i) REQUIRE(world.step(0.1));
   CHECK(world.state(id).y == doctest::Approx(1.75));
-  CHECK(says(error_of([&] { world.restore(before); }), "the frame is from before an agent changed"));
+  CHECK(says(error_of([&] { world.restore(before); }), "the frame is from before an agent entered, left"));
 }
 
 TEST_CASE("frames from before another model of behaviour do not fit, those from before other parameters do") {

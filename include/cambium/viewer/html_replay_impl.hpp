@@ -23,8 +23,9 @@ namespace cambium {
 
 namespace detail {
 
-/// Writes a recording as the JSON object that the replay page reads. Positions are relative to `origin`, which is a
-/// whole number of kilometres, so that maps in national coordinates keep short numbers (and small maps their own).
+/// Writes a recording as the JSON object that the replay page reads. Positions are relative to `origin`, a point near
+/// the map rounded to whole kilometres: maps in national coordinates get short numbers, and small maps near (0, 0) keep
+/// theirs.
 class ReplayData {
  public:
   explicit ReplayData(Recording const& recording) : recording_(recording) {
@@ -105,7 +106,7 @@ class ReplayData {
     out_ += ',' + (is_valid(line.light) ? to_string(line.light) : "-1") + ']';
   }
 
-  // One digit for each light, and only in frames where one has changed: [frame, "0123"].
+  // One digit per light, and only for frames in which a light has changed: [frame, "0123"].
   void lights() {
     std::vector<std::pair<std::size_t, std::string>> changes;
     for (std::size_t k = 0; k < recording_.frames.size(); ++k) {
@@ -130,7 +131,7 @@ class ReplayData {
     });
   }
 
-  // An agent that is away is a 0, and so is one whose place is no number: there is nothing to draw.
+  // An agent that is absent, or whose pose is not finite, is written as 0: there is nothing to draw.
   void poses(RecordedFrame const& frame) {
     each(
         frame.poses,
@@ -169,7 +170,7 @@ class ReplayData {
   std::string out_;
 };
 
-/// The page's header: title, size of the recording, and notes.
+/// The page's header: title, numbers of agents and frames, duration, and notes.
 inline std::string replay_header(Recording const& recording) {
   std::size_t const frames = recording.frames.size();
   std::string text = "<header><div class=\"head\"><h1>" + escape_markup(recording.title) +

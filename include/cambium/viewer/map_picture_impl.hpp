@@ -30,7 +30,7 @@ CAMBIUM_COLD void write_map_picture(std::filesystem::path const& path, Map const
                                     MapPictureOptions const& options) {
   auto const ending = path.extension();
   if (ending != ".svg" && ending != ".html")
-    throw Error(path.string(), "a map's picture is an .svg or an .html file", "name one with such an ending");
+    throw Error(path.string(), "a map's picture is an .svg or an .html file", "give a path with one of these endings");
   write_file(path, ending == ".svg" ? svg_map_picture(map, options) : html_map_picture(map, options));
 }
 

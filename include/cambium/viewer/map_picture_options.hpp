@@ -12,13 +12,13 @@ struct MapPictureOptions {
   double width =
       1600.0;  ///< of the picture [px], 1 to 100 000; its height follows from the map, up to 4 times the width
   std::string title{};
-  std::optional<geometry::Box> part{};  ///< only what lies in this box [m]; else all
+  std::optional<geometry::Box> part{};  ///< shows only this box [m]; default: the whole map
   bool arrows = true;                   ///< travel directions
-  bool labels = true;                   ///< road:lane
-  bool links = true;      ///< from each lane to its successors; dots where a drivable lane ends or begins without one
+  bool labels = true;                   ///< lane ids, as road:lane
+  bool links = true;      ///< arrows to successors; dots where a drivable lane starts or ends without a connection
   bool overlaps = true;   ///< where lanes cross, merge and split
-  bool conflicts = true;  ///< the ground of a junction that two lanes share where they do
-  bool legend = true;     ///< what the colours mean, below the map (of a page: on it)
+  bool conflicts = true;  ///< areas in junctions that two lanes share
+  bool legend = true;     ///< the meaning of the colours, below the map (on a page: in its panel)
 };
 
 }  // namespace cambium

@@ -14,21 +14,20 @@ namespace cambium {
 
 struct StaticObject;
 
-/// The lanes of a map as a recording shows them.
+/// The lanes of a map, for a recording.
 [[nodiscard]] std::vector<RecordedLane> recorded_lanes(Map const& map);
 
-/// The stop lines of a map (see `map::stop_lines`) as a recording shows them.
+/// The stop lines of a map (see `map::stop_lines`), for a recording.
 [[nodiscard]] std::vector<RecordedStopLine> recorded_stop_lines(Map const& map);
 
-/// A free corridor as a recording shows it: beside the lanes; where it crosses them they are drawn over it.
+/// A free corridor, for a recording: a strip drawn below the lanes.
 [[nodiscard]] RecordedLane recorded_way(map::LaneCorridor const& way);
 
-/// A static object as a recording shows it: the rectangle around its outline that has the direction of its longest
-/// side.
+/// A static object, for a recording: the rectangle around its outline that is aligned with its longest side.
 [[nodiscard]] std::pair<RecordedAgent, RecordedPose> recorded_object(StaticObject const& object);
 
-/// Writes a world's course into a recording: lanes, stop lines, agents and objects as they are now; then a frame for
-/// each call of `record`. Agents that enter later are not shown.
+/// Records a world. The constructor takes lanes, stop lines, agents, objects and the first frame; each call of `record`
+/// adds a frame. Agents and objects that enter later are not recorded.
 class WorldRecorder {
  public:
   template <class World>
@@ -49,7 +48,7 @@ class WorldRecorder {
     record(world);
   }
 
-  /// How an agent is shown.
+  /// Sets an agent's colour class and label. No effect if the recording has no such agent.
   void show_as(AgentId id, RecordedAgentKind kind, std::string label = {}) {
     for (auto& agent : recording_.agents)
       if (agent.id == id) {
@@ -65,7 +64,7 @@ class WorldRecorder {
     for (auto const& light : world.roster().lights) frame.lights.push_back(light.at(frame.time));
     auto const& agents = world.roster().agents;
     std::size_t slot = 0;
-    for (std::size_t i = 0; i < agents_; ++i) {  // both are in order of the ids
+    for (std::size_t i = 0; i < agents_; ++i) {  // both lists are sorted by id
       while (slot < agents.size() && agents[slot].id < recording_.agents[i].id) ++slot;
       if (slot == agents.size()) break;
       if (agents[slot].id != recording_.agents[i].id) continue;
@@ -86,7 +85,7 @@ class WorldRecorder {
 
  private:
   Recording recording_;
-  std::size_t agents_ = 0;             ///< of the world; its objects come after them
+  std::size_t agents_ = 0;             ///< number of the world's agents; its objects follow them
   std::vector<RecordedPose> objects_;  ///< the same in every frame
 };
 

@@ -19,7 +19,7 @@ namespace cambium {
 
 CAMBIUM_COLD std::vector<RecordedLane> recorded_lanes(Map const& map) {
   std::vector<RecordedLane> lanes;
-  for (bool const drivable : {false, true})  // shoulders first, lanes over them: what is drawn last is seen
+  for (bool const drivable : {false, true})  // drivable lanes last, so that they are drawn on top
     for (auto const& lane : map.lanes()) {
       if (lane.drivable() != drivable || lane.left.empty() || lane.right.empty()) continue;
       auto const& road = map.road(lane.road);

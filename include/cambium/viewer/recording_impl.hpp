@@ -18,7 +18,7 @@ CAMBIUM_COLD void check_recording(Recording const& recording) {
       throw Error(where,
                   "has " + std::to_string(frame.poses.size()) + " poses for " +
                       std::to_string(recording.agents.size()) + " agents",
-                  "give one pose for each agent, with present = false where it is away");
+                  "give one pose for each agent, with present = false while it is absent");
     bool const ascends = k == 0 || frame.time > recording.frames[k - 1].time;
     if (!std::isfinite(frame.time) || !ascends)
       throw Error(where, "its time " + std::to_string(frame.time) + " s does not come after the frame before",

@@ -12,16 +12,16 @@ namespace cambium {
 
 /// What `svg_picture` shows.
 struct SvgOptions {
-  double width = 1200.0;                   ///< of the picture [px], at least 100; its height follows from the map
+  double width = 1200.0;                   ///< width of the picture [px], at least 100; the height follows from the map
   bool labels = true;                      ///< title, lane labels and scale bars
   std::optional<std::size_t> frame{};      ///< draws the vehicles of this frame
-  std::optional<geometry::Point> focus{};  ///< middle of the close-up [m]; absent: the ego, a junction, or a short lane
+  std::optional<geometry::Point> focus{};  ///< middle of the close-up [m]; default: the ego, a junction or a short lane
 };
 
-/// A picture of the map, and of the vehicles of one frame where `options.frame` names one, as SVG text. North is up. A
-/// map too long to show its lanes at this width gets a close-up below, turned along the road, with its place outlined
-/// in the overview. The same recording and options give the same bytes. Throws `Error` as `check_recording` does, and
-/// for a frame that is not in the recording or a width below 100 px.
+/// A picture of the map as SVG text, with the vehicles of frame `options.frame` if that is set. North is up. If the map
+/// is too long to show its lanes at this width, a close-up is added below, turned along the road and outlined in the
+/// overview. The same recording and options give the same bytes. Throws `Error` as `check_recording` does, and if the
+/// recording has no such frame or the width is below 100 px.
 [[nodiscard]] std::string svg_picture(Recording const& recording, SvgOptions const& options = {});
 
 /// Writes `svg_picture(recording, options)` to `path`; the file appears only when it is complete. Throws `Error` naming

@@ -24,7 +24,7 @@ namespace cambium {
 
 namespace detail {
 
-/// Draws one recording as SVG. The map is written once, in metres, and shown by each panel through its own transform.
+/// Draws a recording as SVG. The map is written once, in metres; each panel shows it through a transform of its own.
 class SvgPicture {
  public:
   SvgPicture(Recording const& recording, SvgOptions const& options) : recording_(recording), options_(options) {
@@ -53,10 +53,10 @@ class SvgPicture {
 
  private:
   static constexpr double margin_ = 12.0;   // [px]
-  static constexpr double readable_ = 3.0;  // [px/m] below which a close-up is added
-  static constexpr double close_up_ = 7.0;  // [px/m] of a close-up in a picture of 1200 px
+  static constexpr double readable_ = 3.0;  // scale below which a close-up is added [px/m]
+  static constexpr double close_up_ = 7.0;  // scale of the close-up in a picture 1200 px wide [px/m]
 
-  // The map is written relative to the middle of its bounding box, so that its numbers are short.
+  // Coordinates are relative to the middle of the map's bounding box, which keeps the numbers short.
   [[nodiscard]] std::string place(geometry::Point const& p) const {
     return svg_number(p.x() - middle_.x()) + ',' + svg_number(p.y() - middle_.y());
   }
@@ -106,7 +106,7 @@ class SvgPicture {
     return panels;
   }
 
-  /// Centres the close-up on its focus and turns it along the road there.
+  /// Centres the close-up on its focus and turns it along the nearest driving lane.
   void aim(SvgPanel& close) const {
     if (options_.focus)
       close.middle = *options_.focus;
@@ -183,7 +183,7 @@ class SvgPicture {
     double const length = agent.shape.front + agent.shape.rear, width = agent.shape.left + agent.shape.right;
     double const rear = -agent.shape.rear, right = -agent.shape.right;
     out_ += "<g transform=\"" + turned({pose.x, pose.y}, pose.heading) + "\">";
-    bool const walks = std::max(length, width) < 1.2;  // round, and without a windscreen
+    bool const walks = std::max(length, width) < 1.2;  // a pedestrian: round, without a windscreen
     double const round = walks ? 0.5 * width : std::min(0.28 * width, 0.12 * length);
     out_ += svg_box(rear, right, length, width,
                     "rx=\"" + svg_number(kind == 3 ? 0.0 : round) + "\" fill=\"" + colours[kind] + '"');
@@ -219,7 +219,7 @@ class SvgPicture {
     if (options_.labels) out_ += svg_scale_bar(panel);
   }
 
-  /// Each label stands on its lane, as near to the left of the panel as the lane gets.
+  /// Writes each label on its lane, as far left in the panel as the lane reaches.
   void lane_labels(SvgPanel const& panel) {
     for (std::size_t i = 0; i < areas_.size(); ++i) {
       if (areas_[i].empty() || recording_.lanes[i].label.empty()) continue;
@@ -261,12 +261,12 @@ class SvgPicture {
 CAMBIUM_COLD std::string svg_picture(Recording const& recording, SvgOptions const& options) {
   check_recording(recording);
   if (!(options.width >= 100.0) || !std::isfinite(options.width))
-    throw Error("SvgOptions::width", "is not a number of at least 100", "give the picture's width in pixels");
+    throw Error("SvgOptions::width", "it is not a finite number of at least 100", "give the picture's width in pixels");
   if (options.frame && *options.frame >= recording.frames.size())
     throw Error(
         "SvgOptions::frame",
         "there is no frame " + std::to_string(*options.frame) + " in " + std::to_string(recording.frames.size()),
-        "count frames from 0");
+        "frames count from 0");
   return detail::SvgPicture(recording, options).text();
 }
 

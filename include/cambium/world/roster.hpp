@@ -34,7 +34,7 @@ struct RosterBase {
   bool has_sequences = false;          ///< a goal is, or was, a `GoalSequence`
   std::vector<map::LightPlan> lights;  ///< by `LightId`; lights beyond the end are off
   IdVector<StaticObject, Slot> objects;
-  std::vector<TrafficEntry> object_entries;  ///< lanes that objects stand in; `slot` indexes `objects`
+  std::vector<TrafficEntry> object_entries;  ///< objects on lanes; `slot` indexes `objects`
   std::vector<FreeRoad> free_roads;          ///< free corridors that agents have entered on
 
   RosterBase();
@@ -44,7 +44,7 @@ struct RosterBase {
   RosterBase& operator=(RosterBase&&) noexcept;
   ~RosterBase();
 
-  /// Adds a static object, with `entries` for the lanes that it stands in; returns its id. O(objects).
+  /// Adds a static object, with `entries` for the lanes that it lies on; returns its id. O(objects).
   ObjectId insert(StaticObject object, std::vector<TrafficEntry> const& entries);
 
   /// Removes the object at index `place`. O(objects).
@@ -110,7 +110,7 @@ struct Roster : RosterBase {
   }
 
  private:
-  /// The position of `id` in the sorted agents, or the position at which to insert it.
+  /// The slot of `id`, or the slot at which to insert it to keep the agents sorted.
   [[nodiscard]] Slot place_of(AgentId id) const {
     std::size_t begin = 0, end = agents.size();
     while (begin < end) {

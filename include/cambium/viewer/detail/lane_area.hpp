@@ -22,8 +22,8 @@ inline double distance_to_line(geometry::Point const& p, PointList const& line) 
   return best;
 }
 
-/// The polyline without the points that it can spare at `tolerance` [m] (Douglas, Peucker 1973), and without points
-/// that are not on Earth (not finite, or beyond 1e8 m).
+/// The polyline simplified to `tolerance` [m] (Douglas, Peucker 1973). Points that are not finite or beyond 1e8 m are
+/// dropped.
 inline PointList simplified(PointList const& line, double tolerance) {
   PointList points;
   for (geometry::Point const& p : line)
@@ -65,7 +65,7 @@ inline geometry::Point point_at(PointList const& line, double fraction) {
   return line.back();
 }
 
-/// A lane ready to draw: borders simplified to 1 cm, and their bounding box.
+/// A lane prepared for drawing: borders simplified to 1 cm, outline and bounding box.
 struct LaneArea {
   PointList left;
   PointList right;
@@ -90,8 +90,8 @@ struct LaneArea {
 
   [[nodiscard]] bool empty() const { return left.empty(); }
 
-  /// True when `p` lies inside the outline (even-odd rule). O(points) within the bounding box, of which most are passed
-  /// over 16 at a time, else O(1).
+  /// Whether `p` lies inside the outline (even-odd rule). O(1) outside the bounding box, else O(points); most points
+  /// are skipped in runs of 16.
   [[nodiscard]] bool contains(geometry::Point const& p) const {
     if (empty() || p.x() < low.x() || p.y() < low.y() || p.x() > high.x() || p.y() > high.y()) return false;
     bool inside = false;
@@ -119,7 +119,7 @@ struct LaneArea {
 
   [[nodiscard]] geometry::Point const& before(std::size_t i) const { return i > 0 ? outline[i - 1] : outline.back(); }
 
-  std::vector<Range> heights_;  ///< of each run of edges; edge i comes to point i [m]
+  std::vector<Range> heights_;  ///< range of y of each run of edges [m]; edge i ends at point i
 };
 
 /// A direction arrow on a lane.
@@ -128,8 +128,7 @@ struct LaneArrow {
   double heading = 0.0;  ///< [rad]
 };
 
-/// Arrows in the direction of traffic, one about every `spacing` [m] of each driving lane that is wide enough to show
-/// one.
+/// Arrows in the direction of traffic, about one every `spacing` [m], on driving lanes that are long and wide enough.
 inline std::vector<LaneArrow> lane_arrows(std::vector<RecordedLane> const& lanes, std::vector<LaneArea> const& areas,
                                           double spacing) {
   std::vector<LaneArrow> arrows;

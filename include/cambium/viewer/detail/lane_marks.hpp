@@ -19,11 +19,11 @@ namespace cambium::detail {
 
 /// How a piece of a lane border is painted.
 enum class MarkStyle : std::uint32_t {
-  edge = 0,     ///< solid: the rim of the road or of the driven lanes
+  edge = 0,     ///< solid: the edge of the road or of its driving lanes
   divider = 1,  ///< dashed: between lanes of one direction
   centre = 2,   ///< between opposite directions
-  hidden = 3,   ///< not painted: the neighbour paints it, or the lane has no width
-  covered = 4,  ///< not painted: within another lane
+  hidden = 3,   ///< not painted: the neighbour paints it, or the lane has no width here
+  covered = 4,  ///< not painted: inside another lane
 };
 
 /// One painted line.
@@ -32,8 +32,8 @@ struct LaneMark {
   PointList points{};
 };
 
-/// The marks, of which one that begins where one of its style ends goes on in that one: dashes keep their rhythm from
-/// lane to lane. O(n (log n + marks that begin at the same x)).
+/// Joins marks of the same style end to end, so that dashes keep their rhythm from lane to lane.
+/// O(n (log n + marks that begin at the same x)).
 inline std::vector<LaneMark> joined(std::vector<LaneMark> const& marks) {
   constexpr double joint = 0.1;  // [m]
   std::size_t const none = marks.size();
@@ -51,7 +51,7 @@ inline std::vector<LaneMark> joined(std::vector<LaneMark> const& marks) {
     }
   }
   std::vector<LaneMark> result;
-  for (bool const is_ring : {false, true})  // rings have no begin
+  for (bool const is_ring : {false, true})  // open lines from their begin, then closed rings from anywhere
     for (std::size_t first = 0; first < marks.size(); ++first) {
       if (is_taken[first] || (has_before[first] && !is_ring)) continue;
       LaneMark& line = result.emplace_back(LaneMark{marks[first].style});
@@ -64,8 +64,11 @@ inline std::vector<LaneMark> joined(std::vector<LaneMark> const& marks) {
   return result;
 }
 
-/// Finds the style of every piece of every border from what lies beyond it. The borders of neighbours need not have the
-/// same points: short pieces are compared by place and direction.
+/// Decides how to paint every lane border. A recording does not say which lanes are neighbours, and the borders of
+/// neighbours need not have the same points. So each border is cut into short pieces, and each piece is compared by
+/// place and direction with the pieces near it: a border shared with another lane is a divider, a centre line or the
+/// edge of a shoulder, and only one of the two lanes paints it. A border with nothing beyond it is the edge of the
+/// road. A piece inside another lane, as in a junction, is not painted.
 class LaneMarker {
  public:
   LaneMarker(std::vector<RecordedLane> const& lanes, std::vector<LaneArea> const& areas)
@@ -88,7 +91,7 @@ class LaneMarker {
     std::vector<LaneMark> result;
     for (std::size_t i = 0; i < pieces_.size(); ++i) {
       Piece const& piece = pieces_[i];
-      // In a junction, lanes are parted only where no way crosses their border.
+      // In a junction, a border with another lane is painted only if no lane crosses it anywhere.
       if (styles[i] != MarkStyle::edge && is_crossed[piece.border]) styles[i] = MarkStyle::hidden;
       if (styles[i] >= MarkStyle::hidden) continue;
       bool const goes_on = i > 0 && pieces_[i - 1].border == piece.border && styles[i - 1] == styles[i];
@@ -102,11 +105,11 @@ class LaneMarker {
 
  private:
   static constexpr double cell_ = 4.0;            // [m] of the look-up grid
-  static constexpr double near_ = 0.3;            // [m] within which two borders are one
-  static constexpr double beyond_ = 0.05;         // [m] from a border to what is beside it
-  static constexpr double slit_ = 0.5;            // [m] of ground between ways of a junction that needs no rim
+  static constexpr double near_ = 0.3;            // [m] borders closer than this are one
+  static constexpr double beyond_ = 0.05;         // [m] from a border to the point that tests what lies beyond
+  static constexpr double slit_ = 0.5;            // [m] widest gap between lanes of a junction without edge marks
   static constexpr double piece_ = 3.0;           // [m] longest piece
-  static constexpr double junction_piece_ = 0.5;  // [m] the same in junctions, where lanes cross
+  static constexpr double junction_piece_ = 0.5;  // [m] longest piece in junctions, where lanes cross
 
   struct Piece {
     geometry::Point from, to;
@@ -164,7 +167,7 @@ class LaneMarker {
       bool const is_copy = other.inward.dot(piece.inward) > 0.0;
       if (!runs_by(other, middle, is_copy && !other.thin ? beyond_ : near_)) continue;
       beside.push_back(other.lane);
-      if (other.thin) continue;  // a lane without width borders on nothing
+      if (other.thin) continue;  // a lane without width here is no neighbour
       if (other.lane < piece.lane) style = MarkStyle::hidden;
       if (style != MarkStyle::hidden && !is_copy) style = style_between(piece.lane, other.lane, same_way);
     }
@@ -193,9 +196,9 @@ class LaneMarker {
     });
   }
 
-  /// Whether a point lies beside the piece, no farther off than `distance` [m].
+  /// Whether a point lies beside the piece, at most `distance` [m] away.
   [[nodiscard]] static bool runs_by(Piece const& piece, geometry::Point const& p, double distance) {
-    constexpr double joint = 0.02;  // [m] that the next piece may begin farther on, as in a bend
+    constexpr double joint = 0.02;  // tolerance at both ends for gaps between pieces in bends [m]
     geometry::Point const step = piece.to - piece.from;
     double const length = step.norm(), along = (p - piece.from).dot(step) / length;
     return std::abs((p - piece.from).dot(piece.inward)) <= distance && along >= -joint && along <= length + joint;
@@ -222,8 +225,8 @@ class LaneMarker {
   std::vector<Piece> pieces_;
   std::unordered_map<std::uint64_t, std::vector<std::size_t>> grid_;
   std::size_t borders_ = 0;
-  std::vector<std::size_t> coverers_;  ///< lanes that others' borders may lie in
-  geometry::BoxTree coverer_tree_;     ///< of their areas
+  std::vector<std::size_t> coverers_;  ///< lanes that may cover borders of others
+  geometry::BoxTree coverer_tree_;     ///< boxes of their areas
 };
 
 }  // namespace cambium::detail

@@ -31,7 +31,8 @@ class MapDrawing {
  public:
   MapDrawing(Map const& map, MapPictureOptions const& options) : map_(map), options_(options) {
     if (!(options.width >= 1.0 && options.width <= 1e5))
-      throw Error("map picture", "it cannot be " + rounded_text(options.width) + " px wide", "give 1 to 100 000 px");
+      throw Error("map picture", "it cannot be " + rounded_text(options.width) + " px wide",
+                  "give a width from 1 to 100 000 px");
     if (options.part) {
       lanes_ = map.lanes_in(box_ = checked(*options.part));
     } else {
@@ -44,7 +45,7 @@ class MapDrawing {
     box_ = {box_.min_x - aside, box_.min_y - above, box_.max_x + aside, box_.max_y + above};
   }
 
-  /// The picture; what its colours mean below the map, where `with_legend`.
+  /// The picture as SVG text, with the legend below the map if `with_legend` is set.
   [[nodiscard]] std::string text(bool with_legend) {
     double const width = box_.max_x - box_.min_x, height = box_.max_y - box_.min_y;
     double const scale = options_.width / width;
@@ -70,7 +71,7 @@ class MapDrawing {
     return out_ + "</svg>\n";
   }
 
-  /// What the colours mean that the picture has, as SVG in pixels.
+  /// The legend of the colours that occur in the picture, as SVG in pixels.
   [[nodiscard]] MapLegend legend(double width) const {
     std::vector<LegendEntry> entries;
     std::set<std::string_view> types;
@@ -93,15 +94,15 @@ class MapDrawing {
     for (auto const type : types) entries.push_back({LegendShape::area, type, "lane of type " + std::string(type)});
     if (options_.arrows) entries.push_back({LegendShape::arrow, "", "travel direction"});
     add(options_.links && has_link, {LegendShape::link, "", "leads to"});
-    add(options_.links && has_begin, {LegendShape::dot, "begin", "begins, no way in"});
-    add(options_.links && has_end, {LegendShape::dot, "end", "ends, no way on"});
+    add(options_.links && has_begin, {LegendShape::dot, "begin", "starts, no predecessor"});
+    add(options_.links && has_end, {LegendShape::dot, "end", "ends, no successor"});
     auto const overlaps = [&](map::OverlapKind kind) {
       return options_.overlaps && has_overlap[static_cast<std::size_t>(kind)];
     };
     add(overlaps(map::OverlapKind::crossing), {LegendShape::stretch, "crossing", "crosses another lane"});
     add(overlaps(map::OverlapKind::merge), {LegendShape::stretch, "merge", "merges with another"});
     add(overlaps(map::OverlapKind::split), {LegendShape::stretch, "split", "splits from another"});
-    if (options_.conflicts && has_junction) entries.push_back({LegendShape::conflict, "", "shared ground"});
+    if (options_.conflicts && has_junction) entries.push_back({LegendShape::conflict, "", "shared area"});
     return map_legend(entries, width);
   }
 
@@ -109,7 +110,7 @@ class MapDrawing {
   [[nodiscard]] static geometry::Box const& checked(geometry::Box const& part) {
     double const width = part.max_x - part.min_x, height = part.max_y - part.min_y;
     if (width > 0.0 && height > 0.0 && std::isfinite(width + height)) return part;
-    throw Error("map picture", "the part to show has no area, or no end", "give a box with min < max");
+    throw Error("map picture", "the part to show has no area or is not finite", "give a box with min < max");
   }
 
   template <class Draw>
@@ -148,12 +149,12 @@ class MapDrawing {
   [[nodiscard]] std::string label_of(map::Lane const& lane) const {
     return escape_markup(map_.road(lane.road).name) + ':' + std::to_string(lane.number);
   }
-  /// As the label; of a lane for both directions with that.
+  /// The label; for a lane that is driven both ways, with the direction.
   [[nodiscard]] std::string name_of(map::Lane const& lane) const {
     return label_of(lane) + (!is_valid(lane.opposite) ? "" : lane.along_road ? ", forward" : ", backward");
   }
 
-  /// The ids that the page's search looks for.
+  /// Attributes with the ids that the page's search looks for.
   [[nodiscard]] std::string search_keys(map::Lane const& lane) const {
     auto const junction = map_.road(lane.road).junction;
     return " data-lane=\"" + label_of(lane) + '"' +
@@ -205,7 +206,7 @@ class MapDrawing {
       for (auto const& conflict : conflict_areas(map_, junction.id)) {
         if (!conflict.area || !is_shown(conflict.first)) continue;
         auto const &first = map_.lane(conflict.first), &second = map_.lane(conflict.second);
-        out_ += "<path d=\"" + path(conflict.area->points()) + "Z\"><title>ground of " + name_of(first) + " and " +
+        out_ += "<path d=\"" + path(conflict.area->points()) + "Z\"><title>area shared by " + name_of(first) + " and " +
                 name_of(second);
         if (auto const road = goes_first(junction, first.road, second.road))
           out_ += "; road " + escape_markup(map_.road(*road).name) + " goes first";
@@ -268,7 +269,7 @@ class MapDrawing {
     }
   }
 
-  /// A bar of a round length, some 120 px long.
+  /// A bar of a round length, at most 120 px long.
   void draw_scale_bar(double scale, double height) {
     double const wanted = 120.0 / scale, power = std::pow(10.0, std::floor(std::log10(wanted)));
     double const length = wanted >= 5 * power ? 5 * power : wanted >= 2 * power ? 2 * power : power;
@@ -282,7 +283,7 @@ class MapDrawing {
   Map const& map_;
   MapPictureOptions const& options_;
   geometry::Box box_;
-  std::vector<LaneId> lanes_;  ///< those shown, sorted
+  std::vector<LaneId> lanes_;  ///< lanes shown, sorted
   std::string out_;
 };
 

@@ -11,22 +11,22 @@
 
 namespace cambium::detail {
 
-/// How an entry of a map's legend is drawn: as what it stands for.
+/// The kind of map element that a legend entry shows.
 enum class LegendShape : std::uint8_t { area, arrow, link, dot, stretch, conflict };
 
 struct LegendEntry {
   LegendShape shape;
-  std::string_view name;  ///< the classes of its colour
+  std::string_view name;  ///< CSS classes that give its colour
   std::string text;
 };
 
-/// What a map picture's colours mean: SVG in pixels, and how high it is [px].
+/// The legend of a map picture: SVG in pixels, and its height [px].
 struct MapLegend {
   std::string text;
   double height = 0.0;
 };
 
-/// A sample of 3 m by 1.5 m of the map's layers.
+/// A sample of the entry's map element, 3 m by 1.5 m.
 [[nodiscard]] inline std::string legend_sample(LegendEntry const& entry) {
   std::string const name(entry.name);
   std::string const lane = "<g class=\"areas\"><path class=\"driving\" d=\"M0 0H3V1.5H0Z\"/></g>";

@@ -10,7 +10,7 @@
 
 namespace cambium::detail {
 
-/// The look of a map's picture; the classes of areas are OpenDRIVE's words for lane types.
+/// Style sheet of a map picture. The classes of areas are OpenDRIVE's lane types.
 inline constexpr std::string_view map_picture_style =
     ".ground{fill:#eef1ec}"
     ".areas path{fill:#cdd6c6;stroke:#fff;stroke-width:.12}"
@@ -29,7 +29,8 @@ inline constexpr std::string_view map_picture_style =
     ".labels text{fill:#101820;text-anchor:middle;pointer-events:none}"
     ".legend text{fill:#101820}.scale{fill:#101820}";
 
-/// The look of the page around the picture, and its colours by night; `body` makes a rule win over the picture's own.
+/// Style sheet of the page around the picture, with its colours in dark mode. The selector `body` gives a rule
+/// precedence over the picture's own style.
 inline constexpr std::string_view map_page_style = R"css(
 :root {
   color-scheme: light dark;
@@ -83,7 +84,7 @@ kbd { padding: 0 4px; border: 1px solid var(--line); border-radius: 4px; font: i
 [hidden] { display: none !important; }
 )css";
 
-/// The form that finds roads, lanes and junctions, and says what it found.
+/// The search form for roads, lanes and junctions, and its result line.
 inline constexpr std::string_view map_page_search =
     "<form role=\"search\"><input type=\"search\" id=\"find\" placeholder=\"road, road:lane or junction\" "
     "aria-label=\"Find a road, a lane or a junction by its id\" autocomplete=\"off\" spellcheck=\"false\">"
@@ -94,7 +95,7 @@ inline constexpr std::string_view map_page_keys =
     "<details id=\"keys\"><summary>keys</summary><kbd>←</kbd> <kbd>→</kbd> <kbd>↑</kbd> <kbd>↓</kbd> pan, "
     "<kbd>+</kbd> <kbd>-</kbd> zoom, <kbd>0</kbd> fits the map, <kbd>/</kbd> finds, <kbd>Esc</kbd> unmarks</details>";
 
-/// A page around a map's picture, with its legend of `width` [px].
+/// The page around a map picture. `width`: of the legend [px].
 [[nodiscard]] inline std::string map_page(std::string_view title, std::string const& picture, double width,
                                           MapLegend const& legend) {
   std::string const name = escape_markup(title);

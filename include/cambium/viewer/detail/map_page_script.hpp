@@ -4,9 +4,9 @@
 
 namespace cambium::detail {
 
-/// Moves and searches a map's page. The picture's view box always has the shape of the window, so that `view` says all:
-/// the place in the middle, in the picture's metres, and the pixels per metre. The address may end in `#at=X,Y,WIDTH`
-/// (map coordinates) or `#find=ID`.
+/// The script of a map's page: pan, zoom, search and layers. The picture's view box always has the aspect ratio of the
+/// window, so that `view` alone defines what is shown: the point in the middle, in the picture's metres, and the pixels
+/// per metre. The address may end in `#at=X,Y,WIDTH` (map coordinates) or `#find=ID`.
 inline constexpr std::string_view map_page_script = R"js((() => {
 'use strict';
 const element = id => document.getElementById(id);

@@ -4,9 +4,9 @@
 
 namespace cambium::detail {
 
-/// Second half of the replay page's script: what is shown beside the map, the controls, and `window.replay` for tests.
+/// Second half of the replay page's script: the displays around the map, the controls, and `window.replay` for tests.
 /// The address may end in `#frame=12`, `#play`, `#select=id`, `#follow=0`, `#fit`, `#probe=x,y;x,y` (map coordinates),
-/// and several of them joined by `&`.
+/// or several of them joined by `&`.
 inline constexpr std::string_view replay_controls_script = R"js(
 const number = (value, digits) => value.toFixed(digits).replace('-', '\u2212');
 function drawTip() {

@@ -4,8 +4,8 @@
 
 namespace cambium::detail {
 
-/// Style sheet of the replay page. The canvas takes its colours from the variables here, so that light and dark are
-/// decided in one place.
+/// Style sheet of the replay page. The canvas reads its colours from these variables, so that light and dark mode are
+/// defined in one place.
 inline constexpr std::string_view replay_style = R"css(
 :root {
   color-scheme: light dark;
@@ -111,7 +111,7 @@ input[type=checkbox] { width: 16px; height: 16px; margin: 0; accent-color: var(-
 }
 )css";
 
-/// Body of the replay page between its header and its data: the stage and the controls.
+/// Body of the replay page between its header and its data: the canvas and the controls.
 inline constexpr std::string_view replay_body = R"html(<main>
 <canvas id="view" tabindex="0"
   aria-label="Map with vehicles. Drag to move, wheel or pinch to zoom, click a vehicle for its values."></canvas>

@@ -5,7 +5,7 @@
 namespace cambium::detail {
 
 /// First half of the replay page's script: the data, the pose of an agent at any time, the camera and the drawing.
-/// Coordinates in here are metres relative to the recording's origin; `at` counts frames and may lie between two.
+/// Coordinates are metres relative to the recording's origin. `at` is a frame number, fractional between two frames.
 inline constexpr std::string_view replay_scene_script = R"js(
 'use strict';
 const data = JSON.parse(document.getElementById('recording').textContent);

@@ -8,14 +8,14 @@
 
 namespace cambium::detail {
 
-/// `value` as an SVG attribute takes it.
+/// `value` as text for an SVG attribute.
 inline std::string svg_number(double value, int decimals = 2) {
   std::string text;
   append_number(text, value, decimals);
   return text;
 }
 
-/// A rectangle [px or m] with further attributes in `more`.
+/// An SVG rectangle [px or m]; `more`: further attributes.
 inline std::string svg_box(double x, double y, double width, double height, std::string const& more) {
   return "<rect x=\"" + svg_number(x) + "\" y=\"" + svg_number(y) + "\" width=\"" + svg_number(width) + "\" height=\"" +
          svg_number(height) + "\" " + more + "/>";
@@ -25,8 +25,8 @@ inline std::string svg_box(double x, double y, double width, double height, std:
 struct SvgPanel {
   double left, top, width, height;  // [px]
   double scale;                     // [px/m]
-  geometry::Point middle;           // the place of the map in the middle of the panel [m]
-  double heading = 0.0;             // the map direction that points to the right [rad]
+  geometry::Point middle;           // map point in the middle of the panel [m]
+  double heading = 0.0;             // map direction that points to the right in the panel [rad]
 
   [[nodiscard]] geometry::Point on_picture(geometry::Point const& p) const {
     geometry::Point const d = p - middle;
@@ -34,14 +34,14 @@ struct SvgPanel {
     return {left + width / 2 + scale * (c * d.x() + s * d.y()), top + height / 2 - scale * (c * d.y() - s * d.x())};
   }
 
-  /// True where a short text in the middle of `picture` lies within the panel.
+  /// Whether a short text centred at `picture` [px] fits into the panel.
   [[nodiscard]] bool has_room(geometry::Point const& picture) const {
     return std::abs(picture.x() - left - width / 2) < width / 2 - 30.0 &&
            std::abs(picture.y() - top - height / 2) < height / 2 - 8.0;
   }
 };
 
-/// A bar of a round length in the panel's lower right corner, and that length.
+/// A scale bar of a round length in the panel's lower right corner, with its label.
 inline std::string svg_scale_bar(SvgPanel const& panel) {
   double const most = 150.0 / panel.scale, power = std::pow(10.0, std::floor(std::log10(most)));
   double const metres = power * (most >= 5 * power ? 5.0 : most >= 2 * power ? 2.0 : 1.0);

@@ -9,8 +9,8 @@
 
 namespace cambium::detail {
 
-/// Appends `value` rounded to `decimals` places, without trailing zeros and independent of the locale; `null` where it
-/// is not a finite number. "-0" is written "0".
+/// Appends `value` rounded to `decimals` places, without trailing zeros, regardless of the locale. A value that is not
+/// finite becomes `null`, "-0" becomes "0".
 inline void append_number(std::string& out, double value, int decimals) {
   if (!std::isfinite(value)) {
     out += "null";
@@ -26,8 +26,8 @@ inline void append_number(std::string& out, double value, int decimals) {
   out += text == "-0" ? std::string_view("0") : text;
 }
 
-/// Bytes of the UTF-8 character that `text` begins with; 0 where it begins with none (RFC 3629, without its tables for
-/// overlong forms of three and four bytes, which browsers replace themselves).
+/// Number of bytes of the UTF-8 character that `text` begins with; 0 if it begins with none (RFC 3629, except its
+/// checks for overlong forms of three and four bytes, which browsers replace themselves).
 inline std::size_t utf8_length(std::string_view text) {
   auto const lead = static_cast<unsigned char>(text.front());
   std::size_t const length = lead < 0x80   ? 1
@@ -42,8 +42,8 @@ inline std::size_t utf8_length(std::string_view text) {
   return length;
 }
 
-/// `text` with each character mapped: control characters become blanks, bytes that are no UTF-8 become U+FFFD, and an
-/// ASCII character for which `replacement` gives a non-empty text becomes that text.
+/// Escapes `text`: an ASCII character for which `replacement` returns a non-empty text becomes that text, other control
+/// characters become blanks, and bytes that are not UTF-8 become U+FFFD.
 template <class Replacement>
 [[nodiscard]] std::string escape(std::string_view text, Replacement const& replacement) {
   std::string out;
@@ -65,7 +65,7 @@ template <class Replacement>
   return out;
 }
 
-/// `text` as it can stand in HTML or XML, between tags and in quoted attributes.
+/// `text` escaped for HTML and XML, between tags and in quoted attributes.
 [[nodiscard]] inline std::string escape_markup(std::string_view text) {
   return escape(text, [](char c) -> std::string_view {
     switch (c) {
@@ -85,7 +85,7 @@ template <class Replacement>
   });
 }
 
-/// `text` as a JSON string with its quotes, which can stand inside a `<script>` element: it has no `<`, `>` or `&`.
+/// `text` as a quoted JSON string that is safe inside a `<script>` element: it contains no `<`, `>` or `&`.
 [[nodiscard]] inline std::string json_string(std::string_view text) {
   return '"' +
          escape(text,

@@ -46,20 +46,20 @@ struct Entrance {
 /// Throws `WorldError` or `ParameterError` if position, heading or shape are invalid.
 void check_numbers(EnteringSpec const& spec, std::string const& where);
 
-/// The place and road where an agent of `spec` enters. Throws `WorldError` if its lane, route or road is invalid.
+/// The road and place where an agent of `spec` enters. Throws `WorldError` if its lane, route or road is invalid.
 [[nodiscard]] Entrance entrance(Map const& map, RosterBase const& roster, EnteringSpec const& spec,
                                 std::string const& where);
 
-/// The same for an agent that gets a new route, to the parts of its goal after the first `passed` ones.
+/// The same for an agent that is re-routed. The new route leads to the goal without its first `passed` parts.
 [[nodiscard]] Entrance entrance_again(Map const& map, RosterBase const& roster, EnteringSpec const& spec,
                                       std::size_t passed, std::string const& where);
 
-/// The agent's goal, complete: lanes beside count from the one that it enters in. Throws `WorldError` for a sequence
-/// that is too long, or within another goal, or for one without parts, and `ParameterError` for a number out of its
-/// range, limits that leave nothing between them, or a lane or stretch that the map does not have.
+/// Completes the agent's goal: a `ReachLaneBeside` without a start counts lanes from the lane the agent enters in.
+/// Throws `WorldError` if a goal names a lane or stretch that the map lacks, has no parts, or nests a sequence, or if a
+/// sequence is too long. Throws `ParameterError` if a number is out of range or limits leave nothing between them.
 [[nodiscard]] Goal entering_goal(Map const& map, Goal const& goal, LaneId lane, std::string const& where);
 
-/// Registers a free corridor when its first agent enters, with the objects that stand on it.
+/// Registers a free corridor when its first agent enters, and adds index entries for the static objects on it.
 void enter_free_road(RosterBase& roster, std::shared_ptr<map::RoadCorridor const> const& given,
                      std::shared_ptr<map::RoadCorridor const> const& numbered);
 
@@ -85,7 +85,7 @@ template <class Behavior>
 /// Throws `WorldError` if no agent with this id can enter.
 void check_id(AgentId id, bool is_taken, std::string const& where);
 
-/// An entering agent: everything that a world stores of it.
+/// An entering agent: everything that a world stores about it.
 template <class World>
 struct Entrant {
   typename World::RosterType::Agent agent;

@@ -25,7 +25,7 @@
 
 namespace cambium::detail {
 
-/// Where on `road` an agent of `spec` enters, in lane `lane`: in the main corridor if that holds the lane.
+/// The place in lane `lane` where an agent of `spec` enters `road`, on the main corridor if that contains the lane.
 [[nodiscard]] inline map::LanePlace entering_position(Map const& map, EnteringSpec const& spec,
                                                       map::RoadCorridor const& road, LaneId lane,
                                                       std::string const& where) {
@@ -33,8 +33,9 @@ namespace cambium::detail {
   auto const& main = road.corridors[road.main].pieces;
   auto const number = std::any_of(main.begin(), main.end(), holds) ? road.main : road.corridor_of(lane);
   if (number == none<CorridorId>)
-    throw WorldError(where, "its route does not hold the lane it enters in (" + map.describe(lane) + ")");
-  // A corridor may come by the same place twice: the search begins in the lane.
+    throw WorldError(where, "its route does not contain the lane that it enters in (" + map.describe(lane) + ")",
+                     "give a route through that lane, or another position");
+  // A corridor may pass the same position twice, so the search starts in the lane.
   auto const& corridor = road.corridors[number];
   auto const piece = std::find_if(corridor.pieces.begin(), corridor.pieces.end(), holds);
   double const in_lane = map.lane(lane).path.project(spec.position).s;
@@ -48,8 +49,8 @@ namespace cambium::detail {
   return at;
 }
 
-/// The free corridor `given` as a world of `map` has it, which has met `known` before: with lane coordinates of its
-/// own. Throws `WorldError` where it has lanes.
+/// The free corridor `given` with a range of lane coordinates of its own, beyond those of the map and of the free
+/// corridors `known` to the world. Throws `WorldError` if `given` contains lanes.
 [[nodiscard]] inline std::shared_ptr<map::RoadCorridor const> numbered_road(
     Map const& map, std::span<FreeRoad const> known, std::shared_ptr<map::RoadCorridor const> const& given,
     std::string const& where) {
@@ -62,13 +63,14 @@ namespace cambium::detail {
   }
   if (given->corridors.size() != 1 || given->corridors.front().pieces.size() != 1 ||
       is_valid(given->corridors.front().pieces.front().lane))
-    throw WorldError(where, "its road is no free corridor", "give the route, or what build_free_corridor returned");
+    throw WorldError(where, "its road is not a free corridor", "give the route, or what build_free_corridor returned");
   auto road = std::make_shared<map::RoadCorridor>(*given);
   road->corridors.front().pieces.front().index_offset = begin;
   return road;
 }
 
-/// Where on the free corridor `road` an agent of `spec` enters. Throws `WorldError` where that is far.
+/// The place where an agent of `spec` enters the free corridor `road`. Throws `WorldError` if its position is too far
+/// from the corridor.
 [[nodiscard]] inline map::LanePlace entering_free(EnteringSpec const& spec, map::RoadCorridor const& road,
                                                   std::string const& where) {
   auto at = map::locate(road, CorridorId{}, {spec.position.x(), spec.position.y(), spec.heading.value_or(0.0)});
@@ -81,7 +83,8 @@ namespace cambium::detail {
 
 CAMBIUM_COLD void check_numbers(EnteringSpec const& spec, std::string const& where) {
   if (!spec.position.allFinite() || (spec.heading && !std::isfinite(*spec.heading)))
-    throw WorldError(where, "its position or heading is missing or not a finite number");
+    throw WorldError(where, "its position or heading is missing or not a finite number",
+                     "give a position in metres and a heading in radians");
   check_parameters(spec.shape, where);
   if (!(spec.shape.length() > 0 && spec.shape.width() > 0))
     throw WorldError(where, "its shape has no length or no width", "leave the shape out to get a car");
@@ -99,7 +102,7 @@ CAMBIUM_COLD Entrance entrance(Map const& map, RosterBase const& roster, Enterin
   auto const road = map::build_road_corridor(map, route);
   auto const at = entering_position(map, spec, *road, lane, where);
   if (!spec.route || distance_outside(*road, at) == 0.0) return {road, lane, at};
-  // It stands beside its route: in the lane there, if the route's road has it.
+  // The agent is beside the lanes of its route. The road also has the parallel lanes: take the one it is in.
   auto beside = spec.heading ? map::nearest_corridor(*road, {spec.position.x(), spec.position.y(), *spec.heading})
                              : map::nearest_corridor(*road, spec.position);
   if (!(distance_outside(*road, beside) < distance_outside(*road, at))) return {road, lane, at};
@@ -110,7 +113,7 @@ CAMBIUM_COLD Entrance entrance(Map const& map, RosterBase const& roster, Enterin
 CAMBIUM_COLD Entrance entrance_again(Map const& map, RosterBase const& roster, EnteringSpec const& spec,
                                      std::size_t passed, std::string const& where) {
   if (!is_valid(spec.road->corridors.front().pieces.front().lane))
-    throw WorldError(where, "it is on a free corridor, where no route begins",
+    throw WorldError(where, "it is on a free corridor and cannot get a new route",
                      "remove the agent and add it with another road");
   Goal left = spec.goal;
   if (auto* const sequence = std::get_if<GoalSequence>(&left)) {
@@ -159,7 +162,7 @@ CAMBIUM_COLD void refuse_too_large(std::string const& where) {
 }
 
 CAMBIUM_COLD void check_id(AgentId id, bool is_taken, std::string const& where) {
-  if (!is_valid(id)) throw WorldError(where, "there is no such id, or no further one is free", "give an unused id");
+  if (!is_valid(id)) throw WorldError(where, "there is no such id, or all ids are taken", "give an unused id");
   if (is_taken)
     throw WorldError(where, "the world already has an agent with this id", "leave the id out to get a free one");
 }

@@ -21,9 +21,9 @@
 
 namespace cambium::detail {
 
-/// The lane of `route` whose path comes nearest to `position`, a radian off `heading` counting as 3 m: a path that
-/// swings over to its neighbour counts as its own lane there. Throws `WorldError` where `position` is more than
-/// `entering_radius` outside of all of them, or all are against `heading`.
+/// The lane of `route` whose path is nearest to `position`, where each radian of heading error counts as 3 m. The path
+/// decides and not the borders, because a merging lane's path leaves the lane. Throws `WorldError` if each lane is more
+/// than `entering_radius` away or runs against `heading`.
 [[nodiscard]] inline LaneId entering_lane(Map const& map, geometry::Point const& position,
                                           std::optional<double> heading, map::Route const& route,
                                           std::string const& where) {
@@ -50,11 +50,12 @@ namespace cambium::detail {
     throw WorldError(
         where,
         "no lane of its route comes within " + rounded_text(entering_radius) + " m of its position, in its direction",
-        "give a route that begins at the position");
+        "give a route that starts at the position");
   return best;
 }
 
-/// The drivable lane at `position`; without a heading the nearest one. Throws `WorldError` where there is none.
+/// The drivable lane at `position` that fits `heading`; without a heading, the nearest one. Throws `WorldError` if
+/// there is none within `entering_radius`.
 [[nodiscard]] inline LaneId entering_lane(Map const& map, geometry::Point const& position,
                                           std::optional<double> heading, std::string const& where) {
   if (heading) {
@@ -64,24 +65,24 @@ namespace cambium::detail {
       if (map.lane(hit.lane).drivable()) return hit.lane;
   }
   throw WorldError(where, "no drivable lane within " + rounded_text(entering_radius) + " m of its position",
-                   "enter on a lane and along its direction");
+                   "give a position on a lane and a heading along it");
 }
 
-/// Throws `WorldError` where the map has no lane of that id.
+/// Throws `WorldError` if the map has no such lane.
 inline void check_lane_of_goal(Map const& map, LaneId lane, std::string const& where) {
   if (index_of(lane) >= map.lanes().size())
     throw WorldError(where, "its goal names lane " + to_string(lane) + ", which the map does not have",
                      "use Map::find_lane");
 }
 
-/// Throws `WorldError` where the map has no lane of that id, or the lane is not between `from` and `to` [m].
+/// Throws `WorldError` if the map has no such lane, or if the stretch from `from` to `to` [m] lies outside it.
 inline void check_stretch_of(Map const& map, LaneId lane, double from, double to, std::string const& where) {
   check_lane_of_goal(map, lane, where);
   if (double const length = map.lane(lane).length(); from > length || to < 0.0)
-    throw WorldError(where,
-                     "its goal's stretch of lane is not on lane " + to_string(lane) + ", which is " +
-                         rounded_text(length) + " m long",
-                     "give from and to along the lane's path");
+    throw WorldError(
+        where,
+        "its goal's stretch lies outside lane " + to_string(lane) + ", which is " + rounded_text(length) + " m long",
+        "give from and to as arc lengths on the lane's path");
 }
 
 /// See `entering_goal`.
@@ -102,7 +103,8 @@ inline void check_stretch_of(Map const& map, LaneId lane, double from, double to
   if (auto* const all = std::get_if<AllGoals>(&goal)) complete(all->parts);
   if (auto* const any = std::get_if<AnyGoal>(&goal)) complete(any->parts);
   if (auto* const sequence = std::get_if<GoalSequence>(&goal)) {
-    if (!is_outer) throw WorldError(where, "its goal has a sequence within another goal", "put the sequence outside");
+    if (!is_outer)
+      throw WorldError(where, "its goal has a sequence within another goal", "make the sequence the outermost goal");
     if (sequence->parts.size() > 255)
       throw WorldError(where, "its goal is a sequence of more than 255 parts", "leave some out");
     complete(sequence->parts);
@@ -110,7 +112,7 @@ inline void check_stretch_of(Map const& map, LaneId lane, double from, double to
   return goal;
 }
 
-/// Lanes where a goal's route may end, collected from its parts.
+/// Collects the lanes where the route to a goal may end.
 class Destinations {
  public:
   Destinations(Map const& map, std::string const& where) : map_(&map), where_(&where) {}
@@ -135,7 +137,7 @@ class Destinations {
     return {goal.lane};
   }
 
-  /// Of goals to be reached at once the first place counts.
+  /// If several goals must hold at once, the route leads to the first one that names lanes.
   [[nodiscard]] std::vector<LaneId> lanes(AllGoals const& goal) const {
     std::vector<LaneId> first;
     for (auto const& part : goal.parts)
@@ -165,7 +167,7 @@ class Destinations {
           lanes.push_back(hit.lane);
     if (lanes.empty())
       throw WorldError(*where_, "its goal, a polygon, is not near a drivable lane",
-                       "give a goal on a lane, or a route to add the agent with");
+                       "give a goal on a lane, or add the agent with a route");
     return lanes;
   }
 
@@ -173,17 +175,17 @@ class Destinations {
   std::string const* where_;
 };
 
-/// The way from `start` to the first of `ends` that it leads to. Throws `WorldError` where there is none.
+/// The shortest route from `start` to the first reachable lane of `ends`. Throws `WorldError` if none is reachable.
 [[nodiscard]] inline map::Route route_to_one(Map const& map, LaneId start, std::vector<LaneId> const& ends,
                                              std::string const& where) {
   for (auto const end : ends)
     if (auto route = map.shortest_route(start, end)) return *route;
   throw WorldError(where, "there is no route from " + map.describe(start) + " to " + map.describe(ends.front()),
-                   "choose a goal that the lane leads to");
+                   "choose a goal that can be reached from that lane");
 }
 
-/// The route from `start`: as given, else to the goal, by way of all places of a sequence, else straight on. Throws
-/// `WorldError` where there is none.
+/// The route from `start`: the given one; else the one to the goal, through all parts of a sequence; without a goal,
+/// straight on. Throws `WorldError` if no route leads to the goal.
 [[nodiscard]] inline map::Route entering_route(Map const& map, LaneId start, std::optional<map::Route> const& given,
                                                Goal const& goal, std::string const& where) {
   if (given) return *given;

@@ -17,7 +17,7 @@
 
 namespace cambium::detail {
 
-/// A polygon's corners, with points between them at most `spacing` [m] apart.
+/// Points along a polygon's outline, its corners among them, at most `spacing` [m] apart.
 [[nodiscard]] inline std::vector<geometry::Point> points_around(geometry::Polygon const& outline, double spacing) {
   std::vector<geometry::Point> points;
   for (std::size_t i = 0; i < outline.size(); ++i) {
@@ -37,8 +37,9 @@ struct ObjectStretch {
     end = std::max(end, s);
   }
 
-  /// Adds its entries, where the lane's coordinate begins at `index`: in parts of at most 10 m: each is ahead or
-  /// behind by its middle, and none may reach farther than those who look for it look on.
+  /// Adds index entries for the stretch on a lane whose coordinates begin at `index`. Long stretches are split into
+  /// parts of at most 10 m, because the index sorts entries by their middle and searches only a limited reach around
+  /// it.
   void enter(double index, StaticObject const& object, Slot slot, std::vector<TrafficEntry>& entries) const {
     if (!(begin <= end)) return;
     int const parts = std::max(1, static_cast<int>(std::ceil((end - begin) / 10.0)));
@@ -49,7 +50,7 @@ struct ObjectStretch {
   }
 };
 
-/// Adds the index entries of a static object on a free corridor that it stands in. `slot`: its place in the list of
+/// Adds index entries for a static object on a free corridor, if it lies there. `slot`: its index in the list of
 /// objects.
 inline void enter_object(map::LaneCorridor const& way, StaticObject const& object, Slot slot,
                          std::vector<TrafficEntry>& entries) {
@@ -60,19 +61,19 @@ inline void enter_object(map::LaneCorridor const& way, StaticObject const& objec
     if (foot.lateral <= sides.left && -foot.lateral <= sides.right && foot.s >= 0.0 && foot.s <= way.length())
       stretch.add(foot.s);
   }
-  for (double s = 0.0; s <= way.length(); s += 0.5)  // where the outline is wider than the way
+  for (double s = 0.0; s <= way.length(); s += 0.5)  // an outline wider than the corridor
     if (object.outline.contains(way.center.pose(s).position())) stretch.add(s);
   stretch.enter(way.pieces.front().index_offset, object, slot, entries);
 }
 
-/// Index entries of a static object in each lane, and each free corridor, whose borders it reaches across. `slot`: its
-/// place in the list of objects.
+/// Index entries of a static object, for each lane and free corridor that it lies on. `slot`: its index in the list of
+/// objects.
 [[nodiscard]] inline std::vector<TrafficEntry> object_entries(Map const& map, std::span<FreeRoad const> free_roads,
                                                               StaticObject const& object, Slot slot) {
   std::vector<ObjectStretch> stretches(map.lanes().size());
   for (auto const& p : points_around(object.outline, 0.1))
     for (auto const& hit : map.lanes_near(p, 0.0)) stretches[index_of(hit.lane)].add(hit.s);
-  for (auto const& lane : map.lanes()) {  // ends of lanes within the outline
+  for (auto const& lane : map.lanes()) {  // lane ends inside the outline
     if (lane.path.empty()) continue;
     for (double const s : {0.0, lane.length()})
       if (object.outline.contains(lane.path.pose(s).position())) stretches[index_of(lane.id)].add(s);

@@ -25,8 +25,8 @@ template <class State>
   return {state.x - reach, state.y - reach, state.x + reach, state.y + reach};
 }
 
-/// An agent this close to its path stays in its lane even across a border, because the path of an ending lane crosses
-/// one [m].
+/// Lateral offset [m] up to which an agent stays in its lane even beyond the lane's border: the path of an ending lane
+/// crosses that border.
 inline constexpr double on_path = 0.3;
 
 /// An approximate place beside `at` on the adjacent lane corridor, for use as a hint. Lanes of one section are mostly
@@ -42,7 +42,7 @@ inline constexpr double on_path = 0.3;
   return hint;
 }
 
-/// As `locate_beside`, for a lane corridor not adjacent to that of `at`.
+/// `locate_beside` for a lane corridor that is not adjacent to that of `at`.
 CAMBIUM_NOINLINE [[nodiscard]] inline map::LanePlace locate_farther_beside(Map const& map,
                                                                            map::RoadCorridor const& road,
                                                                            map::LanePlace const& at, CorridorId number,
@@ -130,8 +130,8 @@ void move_on_lane(Map const& map, map::RoadCorridor const& road, double distance
   return std::abs(angle) <= geometry::slight_angle ? geometry::sin_cos_slight(angle).cos : geometry::sin_cos(angle).cos;
 }
 
-/// An agent on its path is within its lane if its half width and its heading error do not exceed these bounds [m, rad].
-/// Where two paths come closer than that, the lanes overlap, and the index covers the overlap.
+/// An agent on its path counts as within its lane up to this half width [m] and heading error [rad]. Lanes whose paths
+/// are closer than that overlap, and the index covers overlaps anyway.
 inline constexpr double usual_half_width = 1.5, usual_heading_error = 0.05;
 
 /// The first lane coordinate beyond all lanes, where the ranges of free corridors begin [m].
@@ -141,7 +141,7 @@ inline constexpr double usual_half_width = 1.5, usual_heading_error = 0.05;
   return last.index_begin + std::ceil(last.length() + 10.0);  // agents beyond its end still count as in it
 }
 
-/// A road user's extent on its road.
+/// A road user's shape, place and motion on its road.
 struct BodyOnRoad {
   geometry::Shape const& shape;
   map::RoadCorridor const& road;
@@ -150,9 +150,9 @@ struct BodyOnRoad {
   double speed;  ///< [m/s]
 };
 
-/// Adds an entry to the list for each further lane that the agent reaches into: an adjacent lane, or an oncoming lane
-/// if no adjacent one has its direction. If the agent has left its own lane, adds entries for the drivable lanes that
-/// it is in and returns false. `entry` is the entry of its own lane.
+/// Adds an entry for each further lane that the agent's body reaches into: the adjacent lane, or, where there is none,
+/// an oncoming lane. If the agent has left its own lane, adds an entry for the lane it is in and returns false: its own
+/// entry no longer counts. `entry` is the entry of its own lane.
 [[nodiscard]] bool straddle(Map const& map, BodyOnRoad const& body, TrafficEntry const& entry, ReachingEntries& list);
 
 /// Updates the traffic index for the agents of a frame.

@@ -17,7 +17,7 @@
 
 namespace cambium::detail {
 
-/// The entry of an agent in lane `lane`, at its foot point there: with its speed along that lane, and its reach.
+/// The agent's entry in `lane`, at its foot point `s` [m]: its speed along that lane and its extent ahead and behind.
 [[nodiscard]] inline TrafficEntry entry_in(map::Lane const& lane, double s, BodyOnRoad const& body,
                                            TrafficEntry entry) {
   double const turn = body.pose.heading - lane.path.pose(s).heading;
@@ -34,7 +34,8 @@ inline void add_in(map::Lane const& lane, TrafficEntry const& entry, ReachingEnt
   list.add(entry, {lane.index_begin, lane.index_begin + lane.length()});
 }
 
-/// Adds an entry to the list for each drivable lane that the agent reaches into, whatever its own is.
+/// Adds an entry for each drivable lane that the agent's body reaches into. For agents on paths that are no drivable
+/// lanes, such as free corridors.
 inline void enter_touched(Map const& map, BodyOnRoad const& body, TrafficEntry const& entry, ReachingEntries& list) {
   auto const& shape = body.shape;
   geometry::Point const at = body.pose.position();
@@ -49,7 +50,7 @@ inline void enter_touched(Map const& map, BodyOnRoad const& body, TrafficEntry c
     auto const widths = lane.widths_at(std::clamp(hit.s, 0.0, lane.length()), hit.segment);
     bool const is_beside = hit.lateral - aside.negative > widths.left || hit.lateral + aside.positive < -widths.right;
     if (is_beside || hit.s + found.front < 0.0 || hit.s - found.rear > lane.length()) return;
-    auto const is_there = [&](TrafficEntry const& other) {  // by another foot point
+    auto const is_there = [&](TrafficEntry const& other) {  // added for another foot point on the same lane
       return other.position >= lane.index_begin && other.position <= lane.index_begin + lane.length();
     };
     if (std::none_of(list.entries.begin() + first, list.entries.end(), is_there)) add_in(lane, found, list);

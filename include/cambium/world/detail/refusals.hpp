@@ -16,7 +16,7 @@ namespace cambium::detail {
 inline constexpr double entering_radius = 5.0;
 /// Largest accepted speed [m/s].
 inline constexpr double fastest = 1000.0;
-/// Measurement noise: speeds down to minus this count as 0 [m/s].
+/// Measurement noise [m/s]: negative speeds of at most this size count as 0.
 inline constexpr double standstill_noise = 0.1;
 
 /// Returns `speed` [m/s], with negative noise at standstill replaced by 0. Throws `WorldError` if it is not a number,
@@ -36,7 +36,7 @@ void check_set_place(Map const& map, map::RoadCorridor const& road, map::LanePla
 /// Throws `WorldError` if the map has no such light or the phases are invalid.
 void require_light_plan(Map const& map, LightId id, map::LightPlan const& plan);
 
-/// Throws `WorldError` if a frame with `records` records and roster revision `is` does not match a roster with `agents`
+/// Throws `WorldError` unless a frame with `records` records and roster revision `is` fits a roster with `agents`
 /// agents and revision `now`.
 void require_same_roster(std::size_t records, std::uint32_t is, std::size_t agents, std::uint32_t now);
 

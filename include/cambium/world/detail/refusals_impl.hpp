@@ -54,7 +54,7 @@ CAMBIUM_COLD void require_light_plan(Map const& map, LightId id, map::LightPlan 
   if (index_of(id) >= map.lights().size())
     throw WorldError(where, "the map has no such traffic light", "see Map::lights for those it has");
   if (!plan.is_possible())
-    throw WorldError(where, "its plan has a negative phase, or one of more than a day",
+    throw WorldError(where, "its plan has a phase that is negative or longer than a day",
                      "give green_begin <= green_end within the cycle");
 }
 
@@ -63,9 +63,9 @@ CAMBIUM_COLD void require_same_roster(std::size_t records, std::uint32_t is, std
   throw WorldError("World",
                    records != agents ? "the frame has " + std::to_string(records) + " records, the roster " +
                                            std::to_string(agents) + " agents"
-                                     : "the frame is from before an agent changed places, route or model of behaviour",
-                   "restore frames of this world from since the last agent entered, left, was re-routed or got another "
-                   "model of behaviour");
+                                     : "the frame is from before an agent entered, left, was re-routed or got another "
+                                       "model of behaviour",
+                   "restore a frame of this world recorded since then");
 }
 
 CAMBIUM_COLD void require_kept(std::size_t steps_back, std::size_t kept) {
