@@ -11,9 +11,8 @@ namespace cambium {
 ///   - `State`, with the fields of `BasicState` and maybe more; `add_scaled(state, derivative, h)` must exist for it;
 ///   - `derivative`, pure: no allocation, no hidden state;
 ///   - `limited`, which restricts an input to what the vehicle can do in its state;
-///   - `input`, which translates a driver's action (acceleration, steering angle) to an input within the same limits,
-///   so
-///     that behaviours and controllers can drive any model;
+///   - `input`, which translates a driver's action (acceleration, steering angle) to an input within the same limits;
+///     with it, behaviours and controllers can drive any model;
 ///   - optionally `wheel_base` [m], see `wheel_base_of`, and, for `drive`, the fields `double highest_speed` [m/s] and
 ///     `double response_time` [s], above 0, or a function `driven(state, action, dt)`.
 template <class M>
