@@ -37,7 +37,7 @@ struct Actuation {
     return parameter_list(
         parameter("period", &Actuation::period, "s", Range{1e-3, 1}, "the controller acts at least this often"),
         parameter("delay", &Actuation::delay, "s", Range{0, 5},
-                  "from a command to its effect: at most 4 periods, none below 4 ms; the first delay has no command"),
+                  "from a command to its effect: at most 4 periods, none below 4 ms; no command holds before that"),
         parameter("acceleration_noise", &Actuation::acceleration_noise, "m/s^2", {},
                   "added to the acceleration, drawn once a step"),
         parameter("steering_noise", &Actuation::steering_noise, "rad", {},
