@@ -1,5 +1,15 @@
-/// The room `core`: ids, states, plans, random streams and distributions, parameter structs, errors, version. What
-/// reads numbers from texts and writes files is included by name: `core/text.hpp`, `core/write_file.hpp`.
+/// The room `core`: ids, states, plans, random streams and distributions, parameter structs, errors, version.
+///
+/// **Parameters.** A parameter struct lists its fields once, in `parameters()`. Everything else reads that list: range
+/// checks, printing, comparing, hashing, file formats and the tables in the READMEs (`core/described.hpp`).
+///
+/// **Random numbers.** A `RandomStream` is a counter-based generator: its bits are a pure function of (seed, agent,
+/// step, purpose). Results therefore depend neither on the order of agents nor on threads.
+///
+/// **Errors.** Loading and building throw `Error`s; the step path does not throw. `CAMBIUM_ASSERT` guards invariants.
+///
+/// `core/text.hpp` (parses numbers), `core/write_file.hpp`, `core/stable_sort.hpp` and `core/state_vector.hpp` (Eigen)
+/// are included by name.
 #pragma once
 
 // First: it says which language and flags cambium needs.

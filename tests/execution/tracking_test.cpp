@@ -257,7 +257,7 @@ TEST_CASE(
 TEST_CASE("a delay of more than four periods is an error that says which period it takes") {
   CHECK_NOTHROW(cb::check_parameters(cb::LqrExecution{.actuation = {.period = 0.05, .delay = 0.2}}));
   CHECK_THROWS_WITH_AS(cb::check_parameters(cb::LqrExecution{.actuation = {.period = 0.05, .delay = 0.4}}),
-                       "lqr.actuation.delay: is longer than 4 periods: so many commands wait at most; give a period of "
-                       "at least 0.1 s",
+                       "lqr.actuation.delay: is longer than 4 periods, but at most 4 commands can wait; give a period "
+                       "of at least 0.1 s",
                        cb::ParameterError);
 }

@@ -14,15 +14,17 @@
 #include "cambium/core/macros.hpp"
 #include "cambium/core/parameters.hpp"
 
-// The same stream gives the same bits on every platform with IEEE doubles (no -ffast-math): only +, -, *, /, sqrt and
-// fma are used, which are correctly rounded everywhere, and no product feeds an addition outside std::fma, so a
-// compiler that contracts products and sums into fused operations has nothing to contract.
+// The same stream gives the same bits on every platform with IEEE doubles (no -ffast-math). Two rules make this so:
+//   - The code uses only +, -, *, /, sqrt and fma, which are correctly rounded everywhere. The library has its own log
+//     and exp, because those of libm differ between platforms.
+//   - No product feeds an addition outside std::fma, so compilers find nothing to contract into fused operations.
 //
-// Draws never throw. `check_parameters(distribution)`, once, outside the step path, throws `ParameterError`.
+// Draws never throw. To check parameters, call `check_parameters(distribution)` once, outside the step path; it throws
+// `ParameterError`.
 
 namespace cambium {
 
-/// A source of 64 random bits, all of them uniform: `RandomStream`, or a standard engine of that width.
+/// A source of 64 uniform random bits: `RandomStream` or a 64-bit standard engine.
 template <class Stream>
 concept BitStream = requires(Stream stream) {
   { stream() } -> std::same_as<std::uint64_t>;
@@ -30,14 +32,14 @@ concept BitStream = requires(Stream stream) {
   == 0 && Stream::max() == std::numeric_limits<std::uint64_t>::max();
 };
 
-/// Uniform in [0, 1), a multiple of 2^-53.
+/// A uniform number in [0, 1), a multiple of 2^-53.
 template <BitStream Stream>
 [[nodiscard]] constexpr double uniform01(Stream& stream) {
   return static_cast<double>(stream() >> 11) * 0x1p-53;
 }
 
-/// Uniform integer in [0, n), without bias (Lemire 2019, "Fast random integer generation in an interval"). `n` > 0.
-/// Takes one draw, and rarely another (probability below n / 2^32).
+/// A uniform integer in [0, n) without bias (Lemire 2019, "Fast random integer generation in an interval"). `n` > 0.
+/// Takes one draw; needs another with a probability below n / 2^32.
 template <BitStream Stream>
 [[nodiscard]] constexpr std::uint32_t uniform_index(Stream& stream, std::uint32_t n) {
   CAMBIUM_ASSERT(n > 0, "uniform_index: n must be positive");
@@ -51,7 +53,7 @@ template <BitStream Stream>
 
 namespace detail {
 
-/// c + d x + e x^2 + ... by Horner's rule in fused operations.
+/// c + d x + e x^2 + ... by Horner's rule with fused multiply-add.
 template <class... Rest>
 [[nodiscard]] inline double fused_polynomial(double x, double c, Rest... rest) {
   if constexpr (sizeof...(rest) == 0) {
@@ -61,8 +63,9 @@ template <class... Rest>
   }
 }
 
-/// Natural logarithm of a positive normal number, the same bits everywhere; error below 2 units in the last place.
-/// x = m 2^e with m in [sqrt(1/2), sqrt(2)); ln m = 2 artanh(f), f = (m - 1) / (m + 1), as its power series.
+/// Natural logarithm of a positive normal number, with the same bits on every platform; error below 2 units in the last
+/// place. Method: x = m 2^e with m in [sqrt(1/2), sqrt(2)); ln m = 2 artanh(f), f = (m - 1) / (m + 1), as a power
+/// series.
 [[nodiscard]] inline double portable_log(double x) {
   constexpr double ln2_high = 0x1.62e42fefa3800p-1;  // 45 bits: exact times any exponent
   constexpr double ln2_low = 0x1.ef35793c76730p-45;
@@ -79,9 +82,8 @@ template <class... Rest>
   return std::fma(exponent, ln2_high, std::fma(exponent, ln2_low, log_m));
 }
 
-/// e^x, the same bits everywhere; error below 2 units in the last place, or one subnormal step.
-/// x = k ln 2 + r with r in [-ln(2)/2, ln(2)/2];
-/// e^r as its power series.
+/// e^x, with the same bits on every platform; error below 2 units in the last place, or one subnormal step.
+/// Method: x = k ln 2 + r with r in [-ln(2)/2, ln(2)/2]; e^r as a power series.
 [[nodiscard]] inline double portable_exp(double x) {
   constexpr double ln2_high = 0x1.62e42fefa3800p-1, ln2_low = 0x1.ef35793c76730p-45;
   if (!(x > -746.0)) return x <= -746.0 ? 0.0 : x;  // NaN
@@ -97,7 +99,7 @@ template <class... Rest>
   return exp_r * power_of_2(half) * power_of_2(exponent - half);
 }
 
-/// x^n for n >= 0, by O(log n) multiplications.
+/// x^n with O(log n) multiplications.
 [[nodiscard]] constexpr double integer_power(double x, unsigned n) {
   double result = 1.0;
   for (; n > 0; n /= 2, x *= x)
@@ -105,7 +107,8 @@ template <class... Rest>
   return result;
 }
 
-/// x^y for normal x > 0, the same bits everywhere; the whole part of y >= 0 by multiplication.
+/// x^y for normal x > 0, with the same bits on every platform. For y in [0, 4096), the integer part of y is computed by
+/// multiplication.
 [[nodiscard]] inline double portable_power(double x, double y) {
   if (!(y >= 0.0 && y < 4096.0)) return portable_exp(y * portable_log(x));
   auto const whole = static_cast<unsigned>(y);
@@ -113,7 +116,7 @@ template <class... Rest>
   return integer_power(x, whole) * (rest > 0.0 ? portable_exp(rest * portable_log(x)) : 1.0);
 }
 
-/// The two tails of `normal_quantile`, near (to 1e-11) and far.
+/// The tails of `normal_quantile`: near (probabilities down to about 1e-11) and far.
 [[nodiscard]] inline double normal_quantile_near(double r) {
   return fused_polynomial(r, 1.42343711074968357734e0, 4.63033784615654529590e0, 5.76949722146069140550e0,
                           3.64784832476320460504e0, 1.27045825245236838258e0, 2.41780725177450611770e-1,
@@ -131,8 +134,8 @@ template <class... Rest>
                           2.04426310338993978564e-15);
 }
 
-/// Inverse of the standard normal distribution function for p in (0, 1), relative error 1e-16 (Wichura 1988, algorithm
-/// AS 241, PPND16).
+/// Quantile (inverse distribution function) of the standard normal distribution for p in (0, 1), relative error 1e-16
+/// (Wichura 1988, algorithm AS 241, PPND16).
 [[nodiscard]] inline double normal_quantile(double p) {
   double const q = p - 0.5;
   if (std::abs(q) <= 0.425) {
@@ -151,13 +154,13 @@ template <class... Rest>
 
 }  // namespace detail
 
-/// Uniform in [low, high]; the upper end is reached only by rounding.
+/// Uniform distribution on [low, high]; the upper end occurs only by rounding.
 struct Uniform {
   double low = 0.0;
   double high = 1.0;
 
   static constexpr char const* name = "uniform";
-  static constexpr char const* summary = "each value between two ends as likely";
+  static constexpr char const* summary = "every value between two ends is equally likely";
   static constexpr char const* source = "-";
   static constexpr auto parameters() {
     return parameter_list(parameter("low", &Uniform::low, "-", any_finite, "Lower end."),
@@ -166,7 +169,7 @@ struct Uniform {
   /// Throws `ParameterError` unless `low` <= `high` with a finite difference; called by `check_parameters`.
   void check(std::string const& where) const {
     if (low <= high && std::isfinite(high - low)) return;
-    if (low <= high) throw ParameterError(where, "is wider than a double can be", "bring the two ends closer");
+    if (low <= high) throw ParameterError(where, "is wider than the range of doubles", "bring the two ends closer");
     throw ParameterError(where, "has high = " + detail::number_text(high) + " below low = " + detail::number_text(low),
                          "swap the two ends");
   }
@@ -177,13 +180,13 @@ struct Uniform {
   }
 };
 
-/// Normal (Gaussian), one draw each, by inversion: a larger random number never gives a smaller value.
+/// Normal (Gaussian) distribution by inversion: takes one draw, and a larger random number never gives a smaller value.
 struct Normal {
   double mean = 0.0;
   double deviation = 1.0;
 
   static constexpr char const* name = "normal";
-  static constexpr char const* summary = "mean and standard deviation; by inversion";
+  static constexpr char const* summary = "Gaussian with mean and standard deviation; sampled by inversion";
   static constexpr char const* source = "-";
   static constexpr auto parameters() {
     return parameter_list(parameter("mean", &Normal::mean, "-", any_finite, "Mean."),
@@ -197,7 +200,7 @@ struct Normal {
   }
 };
 
-/// Exponential: the time until the next event of a Poisson process.
+/// Exponential distribution: the time until the next event of a Poisson process.
 struct Exponential {
   double rate = 1.0;
 
@@ -232,13 +235,13 @@ template <BitStream Stream>
   return last;
 }
 
-/// A choice among up to 16 alternatives with given weights, stored inline: trivially copyable, no heap.
+/// A random choice among up to 16 weighted alternatives. The weights are stored inline: trivially copyable, no heap.
 class Discrete {
  public:
   static constexpr std::size_t capacity = 16;
 
-  /// Throws `ParameterError` naming `where` for no weight, more than `capacity`, a negative or non-finite one, or a sum
-  /// that is zero.
+  /// Throws `ParameterError` naming `where` if there is no weight or more than `capacity`, if one is negative or not
+  /// finite, or if their sum is zero or not finite.
   explicit Discrete(std::span<double const> weights, std::string const& where = "discrete") : size_(weights.size()) {
     if (weights.empty() || weights.size() > capacity) {
       throw ParameterError(where, "has " + std::to_string(weights.size()) + " weights", "give 1 to 16");
@@ -260,7 +263,7 @@ class Discrete {
 
   [[nodiscard]] std::span<double const> weights() const { return {weights_.data(), size_}; }
 
-  /// The chosen alternative's index.
+  /// Index of the chosen alternative.
   template <BitStream Stream>
   [[nodiscard]] std::size_t operator()(Stream& stream) const {
     return discrete_index(stream, weights());

@@ -8,17 +8,17 @@ namespace cambium {
 
 namespace detail {
 
-/// A number for messages: six digits, no trailing zeros.
+/// A number for messages: six significant digits, no trailing zeros.
 [[nodiscard]] std::string rounded_text(double value);
 
-/// `text` with its control characters (ASCII's, and U+0080 to U+009F) spelled as \x1b: words of a file may hold what
-/// a terminal would obey.
+/// `text` with control characters (ASCII and U+0080 to U+009F) escaped as \x1b, because text from a file may contain
+/// terminal commands.
 [[nodiscard]] std::string printable(std::string_view text);
 
 }  // namespace detail
 
-/// Root of everything the library throws, and only outside the step path. `what()` reads "where: what; remedy", with
-/// control characters spelled out (\x1b).
+/// Base class of everything the library throws. The step path never throws. `what()` reads "where: what; remedy", with
+/// control characters escaped (\x1b).
 class Error : public std::runtime_error {
  public:
   /// `where`: file, line, element, key or id; `what`: one clause; `remedy`: what the user can do (may be empty).
@@ -35,13 +35,12 @@ struct ParameterError : Error {
   using Error::Error;
 };
 
-/// A map cannot be read or built, or a query names something that it does not have.
+/// A map cannot be read or built, or a query names something that the map does not contain.
 struct MapError : Error {
   using Error::Error;
 };
 
-/// A world was asked for something that it cannot do: an unknown agent, a position off the map, a route that does not
-/// exist.
+/// A world cannot do what it was asked to: an unknown agent, a position off the map, a route that does not exist.
 struct WorldError : Error {
   using Error::Error;
 };

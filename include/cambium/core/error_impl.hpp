@@ -34,7 +34,7 @@ CAMBIUM_COLD std::string printable(std::string_view text) {
   return result;
 }
 
-/// "where: what; remedy", printable.
+/// "where: what; remedy", with control characters escaped.
 [[nodiscard]] inline std::string error_text(std::string_view where, std::string_view what, std::string_view remedy) {
   std::string text(where);
   if (!where.empty()) text += ": ";

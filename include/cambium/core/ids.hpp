@@ -9,11 +9,12 @@
 
 namespace cambium {
 
-/// Names an agent for its whole life. Ids that a world gives are never used again after the agent left.
+/// Names an agent for its whole life. A world never reuses an id after the agent has left.
 enum class AgentId : std::uint32_t {};
 /// Names a static object of a world.
 enum class ObjectId : std::uint32_t {};
-/// Place of an agent among the agents of a world, or of an object among its objects; others move up where one leaves.
+/// Index of an agent among the agents of a world, or of an object among its objects. When one leaves, those behind it
+/// move up.
 enum class Slot : std::uint32_t {};
 /// Dense index of a road in its `Map`. The file's own id is `Road::name`.
 enum class RoadId : std::uint32_t {};
@@ -26,18 +27,18 @@ enum class LightId : std::uint32_t {};
 
 /// Number of a lane corridor in its `map::RoadCorridor`.
 enum class CorridorId : std::uint16_t {};
-/// Number of a lane's stretch in its `map::LaneCorridor`.
+/// Number of a piece (one lane's stretch) in its `map::LaneCorridor`.
 enum class PieceId : std::uint16_t {};
 
 template <class Id>
 concept StrongId = std::is_enum_v<Id> &&(std::is_same_v<std::underlying_type_t<Id>, std::uint32_t> ||
                                          std::is_same_v<std::underlying_type_t<Id>, std::uint16_t>);
 
-/// The value that names nothing.
+/// The invalid id, which names nothing.
 template <StrongId Id>
 inline constexpr Id none = static_cast<Id>(std::numeric_limits<std::underlying_type_t<Id>>::max());
 
-/// The id's number, to index arrays with.
+/// The id's number, as an array index.
 template <StrongId Id>
 [[nodiscard]] constexpr std::size_t index_of(Id id) {
   return static_cast<std::size_t>(id);
@@ -48,13 +49,13 @@ template <StrongId Id>
   return id != none<Id>;
 }
 
-/// The next number.
+/// Moves to the next number.
 template <StrongId Id>
 constexpr Id& operator++(Id& id) {
   return id = static_cast<Id>(index_of(id) + 1);
 }
 
-/// A vector that ids of one type index, too.
+/// A vector that can also be indexed by ids of one type.
 template <class T, StrongId Id>
 struct IdVector : std::vector<T> {
   using std::vector<T>::vector;

@@ -7,7 +7,7 @@
 
 namespace cambium {
 
-/// The memory of a model that remembers nothing between steps: takes no room in a frame.
+/// The memory of a model that keeps nothing between steps; takes no space in a frame.
 struct NoMemory {
   friend bool operator==(NoMemory, NoMemory) = default;
 };
@@ -20,16 +20,16 @@ inline constexpr bool all_different<T, Ts...> = (!std::is_same_v<T, Ts> && ...) 
 
 template <class... Ts>
 void take_variant(std::variant<Ts...> const&);
-/// Whether `T` is a `std::variant`, or derived from one, as `OneOf`.
+/// Whether `T` is a `std::variant` or derived from one, like `OneOf`.
 template <class T>
 concept Variant = requires(T const& any) {
   detail::take_variant(any);
 };
 }  // namespace detail
 
-/// A value of one of `Models`, each named once: what an agent has of the models that its world admits. It is a
-/// `std::variant` (`std::get_if`, `std::holds_alternative` and `std::visit` take it) with a dispatch for the step path.
-/// Trivially copyable where all models are.
+/// A value of one of `Models`, which are all different: the model that an agent has, of those that its world admits. It
+/// is a `std::variant` with a faster `visit` for the step path; `std::get_if`, `std::holds_alternative` and
+/// `std::visit` accept it. Trivially copyable if all models are.
 template <class... Models>
 struct OneOf : std::variant<Models...> {
   using std::variant<Models...>::variant;
@@ -40,7 +40,7 @@ struct OneOf : std::variant<Models...> {
   template <class M>
   static constexpr bool contains = (std::is_same_v<M, Models> || ...);
 
-  /// The place of `M` among them; `size` where it is none of them.
+  /// The index of `M` among them; `size` if it is not one of them.
   template <class M>
   static constexpr std::size_t place = [] {
     bool const same[] = {std::is_same_v<M, Models>..., true};
@@ -49,8 +49,8 @@ struct OneOf : std::variant<Models...> {
     return i;
   }();
 
-  /// Calls `f(model)` or, where it takes that, `f(model, place)`, the place as a `std::integral_constant`. As std::visit
-  /// without its table of functions and its exception: one well-predicted branch for each model.
+  /// Calls `f(model)` or, if `f` accepts it, `f(model, index)` with the index as a `std::integral_constant`. Like
+  /// `std::visit`, but without function table and exception: one well-predicted branch per model.
   template <class F>
   [[nodiscard]] constexpr decltype(auto) visit(F const& f) const {
     return visit_from<0>(f);

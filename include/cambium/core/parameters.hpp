@@ -14,17 +14,17 @@ namespace detail {
 /// Shortest text that reads back as the same number.
 [[nodiscard]] std::string number_text(double value);
 
-/// As above; of a choice its name, of nothing's id "none".
+/// The value as text: a number as above, a choice by its name, an id by its number or "none".
 [[nodiscard]] std::string value_text(ParameterInfo const& info, ParameterValue const& value);
 
 /// "15 m/s"; no unit for "-" and "".
 [[nodiscard]] std::string with_unit(std::string number, char const* unit);
 
-/// "[0, 70]", "(0, inf)"; the bounds of the open ranges are shown as what they mean; of a choice its names.
+/// The valid values as text: "[0, 70]", "(0, inf)"; the names of a choice.
 [[nodiscard]] std::string range_text(ParameterInfo const& info);
 
-// What is said once of all structs. Each shows its reader the struct that it is given, and a second one if that is not
-// null.
+// The functions below serve all structs. They do not know the type of `object`; `read` does, and passes its fields to
+// a reader, side by side with those of `other` if that is not null.
 using ReadStruct = void (*)(void const* object, void const* other, ParameterPath const* own, ListElements lists,
                             ParameterReader& reader);
 void check_values(char const* name, void const* object, ReadStruct read, std::string const& where);
@@ -42,8 +42,8 @@ void read_struct(void const* object, void const* other, ParameterPath const* own
 }  // namespace detail
 
 /// Throws `ParameterError` unless every field is within its range (NaN never is). The message names `where` (a file, an
-/// agent), the struct and key, the value and the range. Calls the own `check` of the struct, and of those in it, where
-/// they have one, after their fields.
+/// agent), the struct and key, the value and the range. If the struct or a nested one has a member `check`, calls it
+/// after the checks of its fields.
 template <Described T>
 void check_parameters(T const& object, std::string const& where = {}) {
   detail::check_values(detail::struct_name<T>(), &object, &detail::read_struct<T>, where);
@@ -55,8 +55,8 @@ template <Described T>
   return detail::parameters_equal(&a, &b, &detail::read_struct<T>);
 }
 
-/// The parameters of T as a Markdown table with header: name, default, unit, range, meaning. For a list what each of
-/// its elements has.
+/// The parameters of T as a Markdown table with header: name, default, unit, range, meaning. A list is shown by the
+/// rows of one element.
 template <Described T>
 [[nodiscard]] std::string describe_parameters() {
   T const defaults{};
@@ -69,8 +69,8 @@ template <Described T>
   return detail::parameters_line(detail::struct_name<T>(), &object, &detail::read_struct<T>);
 }
 
-/// Hash over the struct's name, its keys and the bits of its values (FNV-1a, 64 bit): the same on every platform and in
-/// every run; changes when a field is renamed. Equal parameters have equal hashes.
+/// Hash of the struct's name, its keys and the bits of its values (FNV-1a, 64 bit). It is the same on every platform
+/// and in every run, and changes when a field is renamed. Equal parameters have equal hashes.
 template <Described T>
 [[nodiscard]] std::uint64_t hash_parameters(T const& object) {
   return detail::parameters_hash(detail::struct_name<T>(), &object, &detail::read_struct<T>);

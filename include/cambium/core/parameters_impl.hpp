@@ -30,7 +30,7 @@ template <class Number>
 
 CAMBIUM_COLD std::string number_text(double value) { return shortest_text(value); }
 
-/// Name number `index` of "rk4|euler"; empty where there are not so many.
+/// Name number `index` of "rk4|euler"; empty if there are fewer names.
 [[nodiscard]] inline std::string_view choice_name(std::string_view names, std::uint64_t index) {
   for (; index > 0; --index) {
     auto const end = names.find('|');
@@ -157,7 +157,7 @@ CAMBIUM_COLD std::uint64_t parameters_hash(char const* name, void const* object,
       add_name(info.name);
       bool const is_real =
           value.kind == ParameterValue::Kind::number || value.kind == ParameterValue::Kind::single_precision;
-      add_bits(is_real ? std::bit_cast<std::uint64_t>(value.number + 0.0) : value.bits);  // -0 becomes 0
+      add_bits(is_real ? std::bit_cast<std::uint64_t>(value.number + 0.0) : value.bits);  // + 0.0 turns -0 into 0
     }
   } hash;
   hash.add_name(name);

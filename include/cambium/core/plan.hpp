@@ -9,7 +9,7 @@
 
 namespace cambium {
 
-/// What an agent does over a step: recorded, and seen by nobody but the agent itself and evaluators.
+/// What an agent does over a step. It is recorded; only the agent itself and evaluators see it.
 struct Action {
   double acceleration{};  ///< along the heading [m/s^2]
   double steering{};      ///< steering angle at the front axle, left positive [rad]; 0 where the model has none
@@ -17,34 +17,34 @@ struct Action {
   friend bool operator==(Action const&, Action const&) = default;
 };
 
-/// States that a trajectory holds without heap.
+/// Number of states that a trajectory holds without heap memory.
 inline constexpr std::size_t inline_states = 12;
 
-/// States in order of time. The first `inline_states` need no heap: the models that need no search never ask for more.
+/// States in order of time. It allocates only beyond `inline_states`, which models without a search never exceed.
 template <MotionState S>
 using Trajectory = boost::container::small_vector<S, inline_states>;
 
-/// How a behaviour's plan is to be taken.
+/// Whether a behaviour's plan can be executed, and if not, why.
 enum class PlanStatus : std::uint8_t {
-  valid,        ///< covers the time asked for
-  not_started,  ///< the agent is not there yet
+  valid,        ///< covers the requested time
+  not_started,  ///< the agent has not entered yet
   expired,      ///< the agent has nothing more to do and leaves
   failed,       ///< the behaviour found no plan
 };
 
-/// What a behaviour wants: states over at least the next `dt`, in order of time (the current state need not be among
-/// them), and the action that begins them.
+/// A behaviour's plan: states in order of time that cover at least the next `dt` (the current state may be left out),
+/// and the first action.
 template <MotionState S>
 struct BasicPlan {
   Trajectory<S> trajectory;
   Action action;
   PlanStatus status = PlanStatus::valid;
-  /// The states are places on the map whatever the agent believes of itself, as recorded ones. Others go on from where
-  /// it believes to be: they are carried out from where it is.
+  /// True if the states are fixed places on the map, such as recorded ones. Otherwise they continue from where the
+  /// agent believes it is, and are shifted to start from its true state.
   bool is_absolute = false;
 };
 
-/// The plan type that goes with a view.
+/// The plan type of a view.
 template <class View>
 using Plan = BasicPlan<typename View::State>;
 

@@ -9,7 +9,7 @@ using PhiloxCounter = std::array<std::uint32_t, 4>;
 using PhiloxKey = std::array<std::uint32_t, 2>;
 
 /// Philox4x32 with 10 rounds (Salmon, Moraes, Dror, Shaw 2011, "Parallel random numbers: as easy as 1, 2, 3"): 128
-/// random bits as a pure function of a counter and a key. Passes BigCrush; nothing to seed, warm up or carry along.
+/// random bits as a pure function of a counter and a key. Passes BigCrush; needs no seeding, warm-up or stored state.
 [[nodiscard]] constexpr PhiloxCounter philox4x32(PhiloxCounter counter, PhiloxKey key) {
   constexpr int rounds = 10;
   for (int round = 0; round < rounds; ++round) {
@@ -24,10 +24,10 @@ using PhiloxKey = std::array<std::uint32_t, 2>;
   return counter;
 }
 
-/// Random bits that belong to (seed, agent, step): made where they are needed, at no cost until the first draw, and the
-/// same whatever was drawn elsewhere, on any thread, after any copy. Different keys give independent streams. `purpose`
-/// separates uses within one agent and step (a behaviour, an observer, a generator), so that one that draws more does
-/// not shift another. A `std::uniform_random_bit_generator` of 64 bits; a stream repeats after 2^33 draws. For use with
+/// A stream of random bits keyed by (seed, agent, step, purpose). Its bits depend on nothing else: not on other draws,
+/// threads or copies. Different keys give independent streams. `purpose` separates uses within one agent and step (a
+/// behaviour, an observer, a generator), so that extra draws in one do not shift another. Making a stream costs nothing
+/// until the first draw. Models `std::uniform_random_bit_generator` with 64 bits; repeats after 2^33 draws. Use it with
 /// the library's own distributions: those of the standard library differ between platforms.
 class RandomStream {
  public:
@@ -40,10 +40,10 @@ class RandomStream {
   [[nodiscard]] static constexpr result_type min() { return 0; }
   [[nodiscard]] static constexpr result_type max() { return ~result_type{0}; }
 
-  /// The step that the numbers belong to.
+  /// The step of the key.
   [[nodiscard]] constexpr std::uint32_t step() const { return counter_[2]; }
 
-  /// The stream of the same owner and purpose that belongs to `step`.
+  /// The stream with the same seed, agent and purpose for another step, from its beginning.
   [[nodiscard]] constexpr RandomStream at_step(std::uint32_t step) const {
     RandomStream other = *this;
     other.counter_ = {0, counter_[1], step, counter_[3]};
@@ -51,7 +51,8 @@ class RandomStream {
     return other;
   }
 
-  /// Part `number` of this stream, below 256: for models made of several, each with numbers of its own. 2^25 draws.
+  /// Substream `number` (below 256) of this stream, good for 2^25 draws. Gives each part of a composite model its own
+  /// numbers.
   [[nodiscard]] constexpr RandomStream part(std::uint32_t number) const {
     RandomStream other = *this;
     other.counter_[0] += number << 24;

@@ -7,7 +7,7 @@
 
 namespace cambium::detail {
 
-/// A list of whatever type, as a sort sees it.
+/// A list of any element type, as the sort sees it: comparing and swapping by index.
 struct SortedList {
   void const* list;
   std::size_t size;
@@ -15,11 +15,11 @@ struct SortedList {
   void (*swap)(void const* list, std::size_t l, std::size_t r);
 };
 
-/// Sorts, equal elements keep their order; true when they were not sorted before. One sort for all types: what is
-/// sorted rarely need not be compiled quick to run. O(n log n) comparisons, O(n) swaps, allocates n numbers.
+/// Sorts stably; returns whether the order changed. Compiled once for all element types, which saves compile time
+/// where sorting is rare. O(n log n) comparisons, O(n) swaps, allocates n numbers.
 bool stable_sort(SortedList const& sorted);
 
-/// Sorts by `is_earlier(l, r)`, equal elements keep their order; true when they were not sorted before.
+/// Sorts stably by `is_earlier(l, r)`; returns whether the order changed.
 template <class Element, class Compare>
 bool stable_sort_by(std::vector<Element>& elements, Compare const& is_earlier) {
   struct List {
@@ -37,7 +37,7 @@ bool stable_sort_by(std::vector<Element>& elements, Compare const& is_earlier) {
   return stable_sort({&list, elements.size(), compare, exchange});
 }
 
-/// The same by `key(element)`, which gives a value.
+/// Sorts stably by `key(element)`, a value or a pointer to a member; returns whether the order changed.
 template <class Element, class Key>
 bool stable_sort(std::vector<Element>& elements, Key const& key) {
   return stable_sort_by(

@@ -33,8 +33,8 @@ struct BasicState {
 
 using State = BasicState<double>;
 
-/// A state that a world can move: trivially copyable, with the named fields of `BasicState` and whatever the dynamics
-/// add.
+/// A state that a world can step: trivially copyable, with the named fields of `BasicState` and any fields that the
+/// dynamics add.
 template <class S>
 concept MotionState = std::copyable<S> && std::is_trivially_copyable_v<S> && requires(S s) {
   s.time;
@@ -45,10 +45,10 @@ concept MotionState = std::copyable<S> && std::is_trivially_copyable_v<S> && req
 };
 static_assert(MotionState<State>);
 
-/// True when each of the fields of `BasicState` is a finite number.
+/// True if all fields of `BasicState` are finite.
 template <MotionState S>
 [[nodiscard]] bool is_finite(S const& s) {
-  // One sum instead of five tests: it is finite exactly when no term is infinite or NaN (no state is near overflow).
+  // One sum instead of five tests: it is finite if and only if every term is, because no state is near overflow.
   return std::isfinite(s.time + s.x + s.y + s.heading + s.speed);
 }
 

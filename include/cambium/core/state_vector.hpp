@@ -6,7 +6,7 @@
 
 namespace cambium {
 
-/// (time, x, y, heading, speed) as a fixed-size vector for numerics.
+/// (time, x, y, heading, speed) as a fixed-size Eigen vector.
 template <class Scalar>
 [[nodiscard]] Eigen::Matrix<Scalar, 5, 1> to_vector(BasicState<Scalar> const& state) {
   return {state.time, state.x, state.y, state.heading, state.speed};

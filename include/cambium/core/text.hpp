@@ -10,14 +10,14 @@
 #include <type_traits>
 #include <vector>
 
-/// Words and numbers in texts of users.
+/// Parsing of words and numbers in user text.
 namespace cambium::detail {
 
 /// `text` without the `blank` characters at its ends.
 [[nodiscard]] constexpr std::string_view trimmed(std::string_view text, std::string_view blank = " \t\r\n") {
   auto const is_blank = [blank](char c) {
     bool found = false;
-    for (char const b : blank) found |= b == c;  // for a few characters faster than a search
+    for (char const b : blank) found |= b == c;  // faster than a search for a few characters
     return found;
   };
   while (!text.empty() && is_blank(text.front())) text.remove_prefix(1);
@@ -25,7 +25,7 @@ namespace cambium::detail {
   return text;
 }
 
-/// The parts of `text` between any of the `separators`: one more than there are of those.
+/// Splits `text` at each character that is one of `separators`. n separators give n + 1 parts, some maybe empty.
 [[nodiscard]] inline std::vector<std::string_view> split(std::string_view text, std::string_view separators) {
   std::vector<std::string_view> parts;
   for (std::size_t begin = 0; begin <= text.size();) {
@@ -36,16 +36,16 @@ namespace cambium::detail {
   return parts;
 }
 
-/// Whether a number that is out of the range of doubles is too small for it, not too large. One whose exponent is
-/// outweighed by hundreds of digits before it counts by its exponent.
+/// Whether a number outside the range of doubles is too small rather than too large. The sign of the exponent decides,
+/// even if hundreds of digits before it outweigh it.
 [[nodiscard]] constexpr bool is_underflow(std::string_view number) {
   if (auto const exponent = number.find_first_of("eE"); exponent != number.npos)
     return number.substr(exponent + 1).starts_with('-');
   return number.find_first_not_of("-0") == number.find('.');
 }
 
-/// The finite number that the whole of `text`, but for white space at its ends, spells in decimal digits, whatever the
-/// locale; a leading '+' is allowed, and what is closer to 0 than any double is 0.
+/// Parses all of `text` as a finite decimal number, independent of the locale; nothing if it is not one. White space
+/// at the ends and a leading '+' are allowed. A number too small for a double becomes 0.
 template <class Number>
 [[nodiscard]] std::optional<Number> parse_number(std::string_view text) {
   text = trimmed(text);

@@ -11,9 +11,9 @@
 
 namespace cambium {
 
-/// Writes `text` to `path` by way of a new file beside it, so that a reader never meets half a file and a failure
-/// leaves what was there; follows links, and writes straight into what is no regular file. Throws `Error` naming the
-/// path and the system's reason.
+/// Writes `text` to `path` atomically: it writes a new file in the same folder and renames it, so readers never see
+/// half a file, and a failure keeps the old one. Follows symbolic links; writes directly to anything that is not a
+/// regular file, such as a pipe. Throws `Error` with the path and the system's reason.
 inline void write_file(std::filesystem::path const& path, std::string_view text) {
   std::error_code none;
   auto const fail = [&path, &none](std::error_code const& reason) {

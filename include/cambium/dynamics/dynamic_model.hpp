@@ -7,12 +7,14 @@
 
 namespace cambium {
 
-/// A vehicle model: how inputs move a state. `derivative` is pure: no allocation, no hidden state. `State` has the
-/// fields of `BasicState` and may add more; `add_scaled(state, derivative, h)` must exist for it. `limited` brings an
-/// input within what the vehicle can do in that state. `input` is what a driver's action (acceleration, steering angle)
-/// means for this vehicle, within the same limits: with it behaviours and controllers drive any model. It may have
-/// `wheel_base` [m], see `wheel_base_of`; and, see `drive`, the fields `double highest_speed` [m/s] and `double
-/// response_time` [s], above 0, or a function `driven(state, action, dt)`.
+/// A vehicle model: how inputs change a state. A model has
+///   - `State`, with the fields of `BasicState` and maybe more; `add_scaled(state, derivative, h)` must exist for it;
+///   - `derivative`, pure: no allocation, no hidden state;
+///   - `limited`, which restricts an input to what the vehicle can do in its state;
+///   - `input`, which translates a driver's action (acceleration, steering angle) to an input within the same limits;
+///     with it, behaviours and controllers can drive any model;
+///   - optionally `wheel_base` [m], see `wheel_base_of`, and, for `drive`, the fields `double highest_speed` [m/s] and
+///     `double response_time` [s], above 0, or a function `driven(state, action, dt)`.
 template <class M>
 concept DynamicModel = std::copyable<M> && MotionState<typename M::State> && std::copyable<typename M::Input> &&
     requires(M const model, typename M::State const x, typename M::Input const u, Action const action, double h) {
@@ -31,8 +33,8 @@ template <class Scalar>
           state.heading + s * derivative.heading, state.speed + s * derivative.speed};
 }
 
-/// How far ahead of the reference point a vehicle is steered [m]: the model's `wheel_base`, a field or a function; that
-/// of a car where it has none.
+/// Distance from the reference point forward to the steered axle [m]: the model's `wheel_base`, a field or a function;
+/// if it has none, that of a car.
 template <class M>
 [[nodiscard]] double wheel_base_of(M const& model) {
   if constexpr (requires { model.wheel_base(); })
@@ -43,8 +45,8 @@ template <class M>
     return 2.7;
 }
 
-/// What a driver did whose `asked` action became `input`: the input itself where that is an acceleration and a steering
-/// angle, else what was asked.
+/// The action that a driver carried out after `asked` was translated to `input`: the input itself if it consists of an
+/// acceleration and a steering angle, else `asked`.
 template <class Input>
 [[nodiscard]] Action action_of(Input const& input, Action const& asked) {
   if constexpr (requires { Action{input.acceleration, input.steering}; })

@@ -8,9 +8,9 @@
 
 namespace cambium {
 
-/// One of a closed set of vehicle models with the same state, so that trucks and pedestrians are in one world: each
-/// agent has the one that it is given (by default the first), as in `DynamicSet<SingleTrack,
-/// KinematicPoint>(KinematicPoint{})`. Its input is the driver's action.
+/// One of a closed set of vehicle models with the same state, so that trucks and pedestrians can share a world. Each
+/// agent holds one model, by default the first: `DynamicSet<SingleTrack, KinematicPoint>(KinematicPoint{})`. The input
+/// is the driver's action.
 template <class First, class... Others>
 struct DynamicSet : OneOf<First, Others...> {
   static_assert(DynamicModel<First> && (DynamicModel<Others> && ...),
@@ -34,7 +34,7 @@ struct DynamicSet : OneOf<First, Others...> {
   }
 };
 
-/// As above, of the model that the set holds: it moves as it does alone.
+/// `drive` with the model that the set holds; the result is the same as without the set.
 template <bool euler = false, class... Models>
 [[nodiscard]] typename DynamicSet<Models...>::State drive(DynamicSet<Models...> const& set,
                                                           typename DynamicSet<Models...>::State const& x,

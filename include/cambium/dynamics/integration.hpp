@@ -7,14 +7,14 @@
 
 namespace cambium {
 
-/// One explicit Euler step over `dt` [s] under a constant input: order 1. State and input may be of any scalar that the
-/// model takes.
+/// One explicit Euler step over `dt` [s] with a constant input; order 1. State and input may have any scalar type that
+/// the model takes.
 template <class Model, class State = typename Model::State, class Input = typename Model::Input>
 [[nodiscard]] State euler_step(Model const& model, State const& x, Input const& u, double dt) {
   return add_scaled(x, model.derivative(x, u), dt);
 }
 
-/// One classical Runge-Kutta step over `dt` [s] under a constant input: order 4.
+/// One classical Runge-Kutta step over `dt` [s] with a constant input; order 4.
 template <class Model, class State = typename Model::State, class Input = typename Model::Input>
 [[nodiscard]] State rk4_step(Model const& model, State const& x, Input const& u, double dt) {
   auto const k1 = model.derivative(x, u);
@@ -26,6 +26,7 @@ template <class Model, class State = typename Model::State, class Input = typena
 
 namespace detail {
 
+/// One step of `drive`. It is cut in two where the speed would exceed the model's `highest_speed` or fall below 0.
 template <bool euler, class Model>
 [[nodiscard]] typename Model::State drive_step(Model const& model, typename Model::State x, Action const& action,
                                                double dt) {
@@ -61,10 +62,10 @@ template <bool euler, class Model>
 
 }  // namespace detail
 
-/// Where a vehicle is after `dt` [s] whose driver holds `action`, within the model's limits: one Runge-Kutta step, or
-/// Euler step; of models with a `response_time`, in equal steps no longer than that. A model that has `driven(state,
-/// action, dt)` moves by that instead. It never reverses: one that brakes to standstill within the step stands from
-/// then on; one that reaches the model's `highest_speed` holds no acceleration above 0 from then on.
+/// State of a vehicle after its driver has held `action` for `dt` [s], within the model's limits. Takes one Runge-Kutta
+/// (or Euler) step; for a model with a `response_time`, several equal steps no longer than that. A model with a
+/// function `driven(state, action, dt)` uses that instead. The vehicle never reverses: after braking to a standstill it
+/// stays there, and after reaching the model's `highest_speed` it accelerates no further.
 template <bool euler = false, DynamicModel Model>
 [[nodiscard]] typename Model::State drive(Model const& model, typename Model::State x, Action const& action,
                                           double dt) {

@@ -15,9 +15,9 @@ struct KinematicPointInput {
   Scalar yaw_rate{};      ///< counter-clockwise [rad/s]
 };
 
-/// A point that faces where it goes (a pedestrian, a simple planner's vehicle): x' = v cos(heading), y' = v
-/// sin(heading), heading' = yaw rate, v' = acceleration. It turns on the spot. A driver's steering
-/// angle turns it as that of a vehicle of `wheel_base` would.
+/// A point that moves along its heading and can turn on the spot, for pedestrians and simple planners:
+/// x' = v cos(heading), y' = v sin(heading), heading' = yaw rate, v' = acceleration. A driver's steering angle gives
+/// the yaw rate of a single track with `wheel_base`.
 struct KinematicPoint {
   using State = cambium::State;
   using Input = KinematicPointInput<double>;
@@ -36,13 +36,14 @@ struct KinematicPoint {
   static constexpr auto parameters() {
     using Self = KinematicPoint;
     return parameter_list(
-        parameter("wheel_base", &Self::wheel_base, "m", Range{0.1, 20}, "of the vehicle that steers the same course"),
-        parameter("yaw_rate_limit", &Self::yaw_rate_limit, "rad/s", Range{0, 100}, "how fast it turns at most"),
+        parameter("wheel_base", &Self::wheel_base, "m", Range{0.1, 20},
+                  "translates the driver's steering angle to curvature"),
+        parameter("yaw_rate_limit", &Self::yaw_rate_limit, "rad/s", Range{0, 100}, "highest yaw rate"),
         parameter("lowest_acceleration", &Self::lowest_acceleration, "m/s^2", Range{-50, 0}, "hardest braking"),
-        parameter("highest_acceleration", &Self::highest_acceleration, "m/s^2", Range{0, 50}, "fastest start"),
+        parameter("highest_acceleration", &Self::highest_acceleration, "m/s^2", Range{0, 50}, "strongest acceleration"),
         parameter("lateral_acceleration_limit", &Self::lateral_acceleration_limit, "m/s^2", Range{0.1, 1000},
-                  "speed times yaw rate"),
-        parameter("highest_speed", &Self::highest_speed, "m/s", Range{0.1, 200}, "it accelerates no further"));
+                  "limit on speed times yaw rate"),
+        parameter("highest_speed", &Self::highest_speed, "m/s", Range{0.1, 200}, "accelerates only up to this speed"));
   }
 
   template <class Scalar>

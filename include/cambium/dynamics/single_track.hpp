@@ -10,30 +10,31 @@
 
 namespace cambium {
 
-/// What a driver does over a step.
+/// Input of the single-track model: the driver's action, held over a step.
 template <class Scalar>
 struct SingleTrackInput {
   Scalar acceleration{};  ///< [m/s^2]
-  Scalar steering{};      ///< steering angle of the front axle, left positive [rad]
+  Scalar steering{};      ///< steering angle at the front axle, left positive [rad]
 };
 
-/// The largest steering angle [rad] up to `limit` at which the lateral acceleration v^2 tan(steering) / wheel base
-/// stays within its limit [m/s^2].
+/// The largest steering angle [rad], at most `limit`, that keeps the lateral acceleration v^2 tan(steering) / wheel
+/// base within its limit [m/s^2].
 [[nodiscard]] inline double steering_within_grip(double limit, double lateral_acceleration_limit, double wheel_base,
                                                  double speed) {
-  // atan is concave: it lies above its chord, and without it, or a division, most cases are decided.
+  // atan is concave and atan(1) > 0.785, so atan(t) >= 0.785 t on [0, 1]. This bound decides most cases without atan or
+  // division.
   double const across = lateral_acceleration_limit * wheel_base, square = speed * speed;
   if (limit <= 0.785 && limit * square <= 0.785 * across) return limit;
   return std::min(limit, std::atan(across / square));
 }
 
-/// Sine and cosine in any scalar.
+/// Sine and cosine of any scalar type.
 template <class Scalar>
 struct Direction {
   Scalar sin, cos;
 };
 
-/// Sine and cosine of `angle` [rad] in any scalar; for `double` by `geometry::sin_cos`.
+/// Sine and cosine of `angle` [rad] for any scalar type; `double` uses `geometry::sin_cos`.
 template <class Scalar>
 [[nodiscard]] Direction<Scalar> direction_of(Scalar const& angle) {
   if constexpr (std::is_same_v<Scalar, double>) {
@@ -46,7 +47,7 @@ template <class Scalar>
   }
 }
 
-/// Curvature [1/m] of the course of a vehicle's reference point on the rear axle under a steering angle below 1e5 rad.
+/// Curvature [1/m] of the path of the rear axle's centre at a steering angle, |steering| <= 1e5 rad.
 template <class Scalar>
 [[nodiscard]] Scalar steering_curvature(Scalar const& steering, double wheel_base) {
   if constexpr (std::is_same_v<Scalar, double>) {
@@ -59,9 +60,9 @@ template <class Scalar>
   }
 }
 
-/// Kinematic single-track ("bicycle") model about the centre of the rear axle (Rajamani 2012, Vehicle Dynamics and
-/// Control, section 2.2, with the reference point at the rear): x' = v cos(heading), y' = v sin(heading), heading' = v
-/// tan(steering) / wheel base.
+/// Kinematic single-track ("bicycle") model with the reference point at the centre of the rear axle (after Rajamani
+/// 2012, Vehicle Dynamics and Control, section 2.2): x' = v cos(heading), y' = v sin(heading),
+/// heading' = v tan(steering) / wheel base, v' = acceleration.
 struct SingleTrack {
   using State = cambium::State;
   using Input = SingleTrackInput<double>;
@@ -85,10 +86,10 @@ struct SingleTrack {
         parameter("highest_acceleration", &SingleTrack::highest_acceleration, "m/s^2", Range{0, 50},
                   "fullest throttle"),
         parameter("lateral_acceleration_limit", &SingleTrack::lateral_acceleration_limit, "m/s^2", Range{0.1, 1000},
-                  "speed^2 times curvature; steering is kept within it"));
+                  "limit on speed^2 times curvature, which bounds the steering"));
   }
 
-  /// Change per second, in any scalar: `double`, `float`, one that differentiates.
+  /// Derivative of the state, for any scalar type: `double`, `float`, automatic differentiation.
   template <class Scalar>
   [[nodiscard]] BasicState<Scalar> derivative(BasicState<Scalar> const& x,
                                               SingleTrackInput<std::type_identity_t<Scalar>> const& u) const {
@@ -109,8 +110,8 @@ struct SingleTrack {
 };
 static_assert(DynamicModel<SingleTrack>);
 
-/// The Runge-Kutta step of the single track: the general one's result, but for rounding, with less work. The headings
-/// of all stages are known beforehand: small turns from the first one.
+/// Runge-Kutta step of the single track: the general result up to rounding, with less work. Under a constant input, the
+/// speeds and headings of all stages are known beforehand; the headings are small turns from the first one.
 [[nodiscard]] inline State rk4_step(SingleTrack const& model, State const& x, SingleTrackInput<double> const& u,
                                     double dt) {
   double const half = dt / 2, sixth = dt * (1.0 / 6);
@@ -121,8 +122,9 @@ static_assert(DynamicModel<SingleTrack>);
   auto const first = geometry::sin_cos(x.heading);
   auto const second = slight ? geometry::sin_cos_slight(turn_2) : geometry::sin_cos(turn_2);
   auto const third = slight ? geometry::sin_cos_slight(turn_3) : geometry::sin_cos(turn_3);
-  double const sin_4 = 2.0 * third.sin * third.cos, cos_4 = 1.0 - 2.0 * third.sin * third.sin;  // twice the third turn
-  // In the frame of the first heading.
+  // The fourth turn is twice the third one: double-angle formulas.
+  double const sin_4 = 2.0 * third.sin * third.cos, cos_4 = 1.0 - 2.0 * third.sin * third.sin;
+  // Weighted sum of the stage velocities, along and across the first heading.
   double const along = x.speed + 2.0 * middle * (second.cos + third.cos) + end * cos_4;
   double const across = 2.0 * middle * (second.sin + third.sin) + end * sin_4;
   return {x.time + dt, x.x + sixth * (first.cos * along - first.sin * across),

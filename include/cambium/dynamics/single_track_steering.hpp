@@ -9,11 +9,11 @@
 
 namespace cambium {
 
-/// A motion state with the angle that the front wheels have.
+/// A motion state with the steering angle of the front wheels.
 template <class Scalar>
 struct BasicSteeringState {
-  Scalar time{}, x{}, y{}, heading{}, speed{};  ///< as of `BasicState`
-  Scalar steering{};                            ///< angle of the front axle, left positive [rad]
+  Scalar time{}, x{}, y{}, heading{}, speed{};  ///< as in `BasicState`
+  Scalar steering{};                            ///< angle at the front axle, left positive [rad]
 
   friend bool operator==(BasicSteeringState const&, BasicSteeringState const&) = default;
 };
@@ -32,9 +32,9 @@ struct SteeringRateInput {
   Scalar steering_rate{};  ///< [rad/s]
 };
 
-/// The kinematic single-track model whose wheels turn at a limited rate: `SingleTrack` with the steering angle as a
-/// state. A driver's steering angle is reached as a first-order lag of `response_time` reaches it, no faster than the
-/// rate's limit; integrate in steps no longer than that.
+/// Kinematic single-track model with the steering angle as a state: the wheels turn at a limited rate. The steering
+/// angle follows the driver's with a first-order lag of `response_time`, at most at the rate limit. Integrate in steps
+/// no longer than `response_time`.
 struct SingleTrackSteering {
   using State = BasicSteeringState<double>;
   using Input = SteeringRateInput<double>;
@@ -57,13 +57,13 @@ struct SingleTrackSteering {
         parameter("steering_limit", &Self::steering_limit, "rad", Range{0, 1.5},
                   "largest steering angle to either side"),
         parameter("steering_rate_limit", &Self::steering_rate_limit, "rad/s", Range{0.01, 100},
-                  "how fast the steering angle changes at most"),
+                  "highest rate of the steering angle"),
         parameter("response_time", &Self::response_time, "s", Range{0.01, 10},
-                  "of the steering to what the driver asks for"),
+                  "time constant of the steering's response to the driver"),
         parameter("lowest_acceleration", &Self::lowest_acceleration, "m/s^2", Range{-50, 0}, "hardest braking"),
         parameter("highest_acceleration", &Self::highest_acceleration, "m/s^2", Range{0, 50}, "fullest throttle"),
         parameter("lateral_acceleration_limit", &Self::lateral_acceleration_limit, "m/s^2", Range{0.1, 1000},
-                  "speed^2 times curvature that a driver's action is kept within"));
+                  "limit on speed^2 times curvature, applied to the driver's action"));
   }
 
   template <class Scalar>
@@ -75,7 +75,7 @@ struct SingleTrackSteering {
             u.acceleration,      u.steering_rate};
   }
 
-  /// At the limit of the angle the wheels turn no further.
+  /// At the angle limit, the wheels turn no further.
   [[nodiscard]] Input limited(Input const& u, State const& x) const {
     double rate = std::clamp(u.steering_rate, -steering_rate_limit, steering_rate_limit);
     if (std::abs(x.steering) >= steering_limit && rate * x.steering > 0.0) rate = 0.0;

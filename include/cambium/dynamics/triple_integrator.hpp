@@ -12,9 +12,9 @@ namespace cambium {
 /// A motion state with its acceleration.
 template <class Scalar>
 struct BasicAcceleratedState {
-  Scalar time{}, x{}, y{}, heading{}, speed{};  ///< as of `BasicState`
+  Scalar time{}, x{}, y{}, heading{}, speed{};  ///< as in `BasicState`
   Scalar acceleration{};                        ///< along the heading [m/s^2]
-  Scalar lateral_acceleration{};                ///< to the left of it [m/s^2]
+  Scalar lateral_acceleration{};                ///< across the heading, left positive [m/s^2]
 
   friend bool operator==(BasicAcceleratedState const&, BasicAcceleratedState const&) = default;
 };
@@ -32,16 +32,20 @@ template <class Scalar>
           a.lateral_acceleration + s * derivative.lateral_acceleration};
 }
 
-/// Change of the acceleration's vector in the map frame.
+/// Jerk, the rate of change of the acceleration vector, in the map frame.
 template <class Scalar>
 struct JerkInput {
   Scalar x{}, y{};  ///< [m/s^3]
 };
 
-/// Jerk in the plane: x''' and y''' are the input, the state is kept as heading, speed and the acceleration along and
-/// across it (the same motion, in the coordinates of the path). Below `lowest_turning_speed` the heading stays, and
-/// with it the lateral acceleration has no effect. A driver's braking never makes it faster: what the jerk cannot turn
-/// along with a slow vehicle of its lateral acceleration is lost.
+/// Planar triple integrator: the input is the jerk, x''' and y'''. The state holds heading, speed and the accelerations
+/// along and across the path, which describe the same motion in path coordinates.
+///
+/// The acceleration is a vector in the map frame. While the vehicle turns, part of the jerk is spent on turning this
+/// vector along with the path; otherwise lateral acceleration would become acceleration along the path. At low speed,
+/// the path turns so fast that the limited jerk cannot keep up. The model then gives up lateral acceleration
+/// (`held_lateral`), so that a braking vehicle never speeds up. Below `lowest_turning_speed`, the heading stays
+/// constant and lateral acceleration has no effect.
 struct TripleIntegrator {
   using State = BasicAcceleratedState<double>;
   using Input = JerkInput<double>;
@@ -60,18 +64,19 @@ struct TripleIntegrator {
   static constexpr auto parameters() {
     using Self = TripleIntegrator;
     return parameter_list(
-        parameter("jerk_limit", &Self::jerk_limit, "m/s^3", Range{0.01, 1000}, "length of the jerk at most"),
+        parameter("jerk_limit", &Self::jerk_limit, "m/s^3", Range{0.01, 1000}, "largest magnitude of the jerk"),
         parameter("response_time", &Self::response_time, "s", Range{0.01, 10},
-                  "of the acceleration to what the driver asks for"),
-        parameter("wheel_base", &Self::wheel_base, "m", Range{0.1, 20}, "of the vehicle that a driver steers"),
+                  "time constant of the acceleration's response to the driver"),
+        parameter("wheel_base", &Self::wheel_base, "m", Range{0.1, 20},
+                  "translates the driver's steering angle to curvature"),
         parameter("lowest_acceleration", &Self::lowest_acceleration, "m/s^2", Range{-50, 0},
-                  "hardest braking that a driver's action is kept within"),
+                  "hardest braking by the driver"),
         parameter("highest_acceleration", &Self::highest_acceleration, "m/s^2", Range{0, 50},
-                  "fullest throttle that a driver's action is kept within"),
+                  "fullest throttle by the driver"),
         parameter("lateral_acceleration_limit", &Self::lateral_acceleration_limit, "m/s^2", Range{0.1, 1000},
-                  "that a driver's action is kept within"),
+                  "largest lateral acceleration by the driver"),
         parameter("lowest_turning_speed", &Self::lowest_turning_speed, "m/s", Range{1e-6, 10},
-                  "the heading changes above it"));
+                  "the heading is constant up to this speed"));
   }
 
   template <class Scalar>
@@ -94,8 +99,8 @@ struct TripleIntegrator {
     return {u.x * (jerk_limit / length), u.y * (jerk_limit / length)};
   }
 
-  /// The jerk that brings the acceleration along and across the path to what the action asks for. What turns it along
-  /// with the vehicle comes first, so that braking stays braking.
+  /// The jerk that brings the accelerations along and across the path to the action's. Turning the acceleration vector
+  /// along with the vehicle has priority within the jerk limit, so that braking stays braking.
   [[nodiscard]] Input input(Action const& action, State const& x) const {
     double const tangent = std::tan(std::clamp(action.steering, -steepest, steepest));
     double const wanted = std::clamp(action.acceleration, lowest_acceleration, highest_acceleration);
@@ -110,9 +115,9 @@ struct TripleIntegrator {
     return limited({along_jerk * cos - across_jerk * sin, along_jerk * sin + across_jerk * cos}, x);
   }
 
-  /// Where a driver's action leads in `dt` [s], not longer than `response_time`: the acceleration along and across the
-  /// path changes evenly, so the speed is a parabola and stops where that reaches 0; heading and place by Simpson's
-  /// rule.
+  /// State after the driver has held `action` for `dt` [s], which must not exceed `response_time`. The accelerations
+  /// along and across the path change linearly, so the speed is a parabola; the vehicle stops where it reaches 0.
+  /// Heading and position follow by Simpson's rule.
   [[nodiscard]] State driven(State x, Action const& action, double dt) const {
     x.lateral_acceleration = held_lateral(x.lateral_acceleration, x.speed, x.acceleration);
     auto const rate = derivative(x, input(action, x));
@@ -143,17 +148,17 @@ struct TripleIntegrator {
     return x;
   }
 
-  /// One that stands is not accelerated any more.
+  /// The state without acceleration, as for a vehicle that has stopped.
   [[nodiscard]] State stopped(State x) const {
     x.acceleration = x.lateral_acceleration = 0.0;
     return x;
   }
 
  private:
-  static constexpr double steepest = 1.5;  // [rad] steering angle of a driver's action at most
+  static constexpr double steepest = 1.5;  // largest steering angle of a driver's action [rad]
 
-  /// What of a lateral acceleration a driver can have: a turn no tighter than by the steepest steering, and none in
-  /// which more than half of the jerk is needed to turn the acceleration along with the vehicle.
+  /// Limits a lateral acceleration so that the turn is no tighter than at the steepest steering and at most half of the
+  /// jerk is needed to turn the acceleration vector along with the vehicle.
   [[nodiscard]] double held_lateral(double lateral, double speed, double acceleration) const {
     if (!(speed > lowest_turning_speed)) return 0.0;
     // a_lat sqrt(a_lat^2 + a^2) / v = jerk / 2, solved for a_lat^2.
@@ -163,7 +168,8 @@ struct TripleIntegrator {
     return std::clamp(lateral, -most, most);
   }
 
-  /// The largest share of (x, y) up to 1 that may be added to (along, across) within the limit of the jerk.
+  /// The largest factor up to 1 by which (x, y) may be scaled so that (along, across) plus it stays within the jerk
+  /// limit.
   [[nodiscard]] double share_within(double along, double across, double x, double y) const {
     double const square = x * x + y * y, inner = along * x + across * y;
     double const room = jerk_limit * jerk_limit - along * along - across * across;
@@ -172,7 +178,7 @@ struct TripleIntegrator {
     return std::clamp((std::sqrt(inner * inner + room * square) - inner) / square, 0.0, 1.0);
   }
 
-  /// When a speed with the acceleration `a` that changes by `change` [m/s^3] falls to 0, at most `longest` [s].
+  /// Time until the speed reaches 0, at most `longest` [s]; `a` is the acceleration and `change` its rate [m/s^3].
   [[nodiscard]] static double time_to_stand(double speed, double a, double change, double longest) {
     if (!(speed > 0.0)) return a > 0.0 || (a == 0.0 && change > 0.0) ? longest : 0.0;
     double const discriminant = a * a - 2.0 * change * speed;

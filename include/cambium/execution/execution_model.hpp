@@ -10,11 +10,11 @@
 
 namespace cambium {
 
-/// What became of a plan.
+/// The result of executing a plan.
 template <MotionState S>
 struct Executed {
   S state{};
-  bool valid = false;  ///< false: the plan does not say what happens at the time asked for
+  bool valid = false;  ///< false: the plan does not reach the requested time
 };
 
 namespace detail {
@@ -29,15 +29,15 @@ struct ExecutionMemoryOf<E, State> {
 };
 }  // namespace detail
 
-/// What execution model `E` remembers between steps of vehicles of `State`: its `Memory<State>`, or
-/// `NoMemory`.
+/// The memory of execution model `E` between steps, for vehicles with `State`: its `Memory<State>`, or `NoMemory`.
 template <class E, class State>
 using ExecutionMemoryOf = typename detail::ExecutionMemoryOf<E, State>::type;
 
-/// Turns a plan into the state at `time` [s], for vehicles of the model `Dynamics`: exactly, or with the errors of a
-/// controller. Pure, no allocation. One that remembers something (a delay, what it tracked last) or draws random
-/// numbers has a template `Memory<State>`, which begins as `{}`, lives in the frame and is copied with it; `execute`
-/// then takes the agent's memory and a stream of its own for this step too.
+/// An execution model: turns a plan into the state at `time` [s] of a vehicle with the model `Dynamics`, exactly or
+/// with the errors of a controller. `execute` is pure and does not allocate. A model that keeps something between steps
+/// (such as waiting commands) or draws random numbers has a member template `Memory<State>`. The memory starts as `{}`,
+/// lives in the frame and is copied with it. `execute` then also takes the agent's memory and its random stream for the
+/// step.
 template <class E, class Dynamics = SingleTrack>
 concept ExecutionModel = std::copyable<E> &&(
     requires(E const model, BasicPlan<typename Dynamics::State> const plan, typename Dynamics::State const x,
@@ -51,7 +51,7 @@ concept ExecutionModel = std::copyable<E> &&(
       { model.execute(plan, x, dynamics, time, memory, random) } -> std::same_as<Executed<typename Dynamics::State>>;
     });
 
-/// Executes with the memory and the random numbers (`random()` makes the stream) that the model takes, if it does.
+/// Calls `model.execute`, with memory and random stream if the model takes them; `random()` makes the stream.
 template <class E, MotionState S, class Dynamics, class Memory, class Random>
 [[nodiscard]] Executed<S> execute(E const& model, BasicPlan<S> const& plan, S const& now, Dynamics const& dynamics,
                                   double time, Memory& memory, Random const& random) {

@@ -7,8 +7,8 @@
 
 namespace cambium {
 
-/// One of a closed set of execution models, so that agents of one world differ in it: as in
-/// `ExecutionSet<InterpolateExecution, StanleyExecution>(StanleyExecution{})`. By default the first of them.
+/// One of a closed set of execution models, so that the agents of one world may use different ones:
+/// `ExecutionSet<InterpolateExecution, StanleyExecution>(StanleyExecution{})`. The default is the first.
 template <class... Models>
 struct ExecutionSet : OneOf<Models...> {
   using OneOf<Models...>::OneOf;

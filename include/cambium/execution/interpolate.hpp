@@ -9,13 +9,13 @@
 
 namespace cambium {
 
-/// Perfect execution: the plan's own state at the time asked for; between its samples, or between now and the first of
-/// them, every field linearly (by the `add_scaled` of the vehicle model), the heading the short way. Never
-/// extrapolates: a plan that does not reach that time is invalid.
+/// Perfect execution: returns the plan's state at the requested time. Between two samples, or between now and the first
+/// sample, it interpolates every field linearly (with the vehicle model's `add_scaled`), the heading the short way
+/// round. It never extrapolates: a plan that does not reach the requested time is invalid.
 struct InterpolateExecution {
   static constexpr char const* name = "interpolate";
   static constexpr char const* summary =
-      "the plan's own state at the time asked for, between two of them linearly; never beyond the plan";
+      "the plan's state at the requested time, linear between samples; never extrapolates";
   static constexpr char const* source = "interpolation";
   static constexpr auto parameters() { return parameter_list(); }
 
@@ -34,7 +34,7 @@ struct InterpolateExecution {
   }
 
  private:
-  static constexpr double exact = 1e-9;  // [s] times closer than this are the same
+  static constexpr double exact = 1e-9;  // times closer than this count as equal [s]
 
   template <MotionState S>
   [[nodiscard]] static Executed<S> between(S const& a, S const& b, double time) {

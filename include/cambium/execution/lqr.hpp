@@ -8,10 +8,10 @@
 
 namespace cambium {
 
-/// Follows the plan by the linear-quadratic regulators of its errors, across (offset and heading, by the steering) and
-/// along (lag and speed, by the acceleration), discrete in time, the one across for the speed that the step begins
-/// with, or 1 m/s where that is less: slower than that it comes to the path slowly. The weights are relative to those
-/// of the inputs.
+/// Tracks the plan with two discrete-time linear-quadratic regulators. The lateral one corrects offset and heading by
+/// steering, the longitudinal one lag and speed by acceleration. The lateral gain belongs to the speed at the beginning
+/// of the step, but at least 1 m/s; a slower vehicle therefore converges slowly. Only the ratios of the error weights
+/// to the input weight matter.
 struct LqrExecution {
   double offset_weight = 1.0;
   double heading_weight = 1.0;
@@ -23,33 +23,33 @@ struct LqrExecution {
 
   static constexpr char const* name = "lqr";
   static constexpr char const* summary =
-      "u = -K x with K from the discrete Riccati equation, across for (offset, heading error), along for (lag, speed "
-      "error)";
+      "u = -K x, K from the discrete Riccati equation; lateral: x = (offset, heading error), longitudinal: x = (lag, "
+      "speed error)";
   static constexpr char const* source = "linear-quadratic regulator; solver: Chu, Fan, Lin, Wang 2004";
   static constexpr auto parameters() {
     using Self = LqrExecution;
     constexpr Range weight{0, 1e6}, of_input{1e-6, 1e6};
     return parameter_list(
-        parameter("offset_weight", &Self::offset_weight, "1/m^2", weight, "of the offset from the plan, squared"),
-        parameter("heading_weight", &Self::heading_weight, "1/rad^2", weight, "of the heading's error, squared"),
-        parameter("steering_weight", &Self::steering_weight, "1/rad^2", of_input, "of the steering, squared"),
-        parameter("lag_weight", &Self::lag_weight, "1/m^2", weight, "of the way that it lags behind, squared"),
-        parameter("speed_weight", &Self::speed_weight, "s^2/m^2", weight, "of the speed's error, squared"),
+        parameter("offset_weight", &Self::offset_weight, "1/m^2", weight, "of the squared offset from the plan"),
+        parameter("heading_weight", &Self::heading_weight, "1/rad^2", weight, "of the squared heading error"),
+        parameter("steering_weight", &Self::steering_weight, "1/rad^2", of_input, "of the squared steering angle"),
+        parameter("lag_weight", &Self::lag_weight, "1/m^2", weight, "of the squared lag behind the plan"),
+        parameter("speed_weight", &Self::speed_weight, "s^2/m^2", weight, "of the squared speed error"),
         parameter("acceleration_weight", &Self::acceleration_weight, "s^4/m^2", of_input,
-                  "of the acceleration, squared"),
-        parameter("actuation", &Self::actuation, "-", {}, "how commands are carried out"));
+                  "of the squared acceleration"),
+        parameter("actuation", &Self::actuation, "-", {}, "delay and noise of the commands"));
   }
 
   template <MotionState S>
   using Memory = TrackingMemory<S>;
 
-  /// Gain of the steering on (offset, heading error) at `speed` [m/s], commands being held for `h` [s].
+  /// Gain from (offset, heading error) to steering at `speed` [m/s]; commands are held for `h` [s].
   [[nodiscard]] LqrGain lateral_gain(double speed, double wheel_base, double h) const {
     double const v = std::max(1.0, speed), turn = v * h / wheel_base;
     return lqr_gain({1.0, v * h, 0.0, 1.0}, 0.5 * v * h * turn, turn, offset_weight, heading_weight, steering_weight);
   }
 
-  /// Gain of the acceleration on (lag, speed error).
+  /// Gain from (lag, speed error) to acceleration; commands are held for `h` [s].
   [[nodiscard]] LqrGain longitudinal_gain(double h) const {
     return lqr_gain({1.0, h, 0.0, 1.0}, 0.5 * h * h, h, lag_weight, speed_weight, acceleration_weight);
   }

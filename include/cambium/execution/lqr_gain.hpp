@@ -5,7 +5,7 @@
 
 namespace cambium {
 
-/// A matrix of two rows and two columns: all that LQR needs, and quicker to compile than a library of matrices.
+/// A 2 x 2 matrix: all that LQR needs here, and faster to compile than a matrix library.
 struct Matrix2 {
   double a{}, b{}, c{}, d{};  ///< first row (a, b), second row (c, d)
 
@@ -16,7 +16,7 @@ struct Matrix2 {
     return {l.a * r.a + l.b * r.c, l.a * r.b + l.b * r.d, l.c * r.a + l.d * r.c, l.c * r.b + l.d * r.d};
   }
   [[nodiscard]] constexpr Matrix2 transposed() const { return {a, c, b, d}; }
-  /// Precondition: its determinant is not 0.
+  /// Precondition: the determinant is not 0.
   [[nodiscard]] constexpr Matrix2 inverse() const {
     double const k = 1.0 / (a * d - b * c);
     return {k * d, -k * b, -k * c, k * a};
@@ -24,14 +24,15 @@ struct Matrix2 {
   [[nodiscard]] double largest() const { return std::max({std::abs(a), std::abs(b), std::abs(c), std::abs(d)}); }
 };
 
-/// Gain (k1, k2) of the input u = -(k1 x1 + k2 x2).
+/// Gain (k1, k2) of the feedback u = -(k1 x1 + k2 x2).
 struct LqrGain {
   double first{}, second{};
 };
 
-/// The gain that minimises the sum of x'Qx + r u^2, Q diagonal, for x(k+1) = A x + (b1, b2) u: the discrete algebraic
-/// Riccati equation, solved by the structure-preserving doubling algorithm (Chu, Fan, Lin, Wang 2004), which squares
-/// its error in every iteration. A, B stabilisable, q1, q2 not negative, r positive. No allocation.
+/// The gain that minimises the sum of x'Qx + r u^2 over time for x(k+1) = A x + (b1, b2) u, with Q = diag(q1, q2).
+/// Solves the discrete algebraic Riccati equation by the structure-preserving doubling algorithm (Chu, Fan, Lin, Wang
+/// 2004), which converges quadratically; H converges to the solution. Preconditions: (A, B) stabilisable, q1 and q2 not
+/// negative, r positive. No allocation.
 [[nodiscard]] inline LqrGain lqr_gain(Matrix2 A, double b1, double b2, double q1, double q2, double r) {
   Matrix2 const start = A;
   Matrix2 G{b1 * b1 / r, b1 * b2 / r, b1 * b2 / r, b2 * b2 / r}, H{q1, 0.0, 0.0, q2};

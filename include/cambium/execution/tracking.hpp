@@ -14,9 +14,14 @@
 
 namespace cambium {
 
-/// How a vehicle carries out what its controller commands: late, and not quite. Where there is a delay, the controller
-/// acts four times in its course, and each command takes effect when the fourth after it is given. As it acts at least
-/// once a period, a delay may be four periods long.
+/// Delay and noise between a controller's commands and the vehicle. With a delay, the controller acts four times per
+/// delay, and a command takes effect when the fourth one after it is given:
+///
+///     commands   c0    c1    c2    c3    c4    c5 ...
+///     in effect  none  none  none  none  c0    c1 ...
+///                |<------- delay ------->|
+///
+/// The controller acts at least once per period, so the delay is at most four periods.
 struct Actuation {
   static constexpr int waiting = 4;
 
@@ -26,13 +31,13 @@ struct Actuation {
   Normal steering_noise{0.0, 0.0};
 
   static constexpr char const* name = "actuation";
-  static constexpr char const* summary = "delay of the commands, normal noise of acceleration and steering";
+  static constexpr char const* summary = "delayed commands; normal noise on acceleration and steering";
   static constexpr char const* source = "own";
   static constexpr auto parameters() {
     return parameter_list(
         parameter("period", &Actuation::period, "s", Range{1e-3, 1}, "the controller acts at least this often"),
         parameter("delay", &Actuation::delay, "s", Range{0, 5},
-                  "from a command to its effect; at first there is none; below 4 ms at once; up to 4 periods"),
+                  "from a command to its effect: at most 4 periods, none below 4 ms; no command holds before that"),
         parameter("acceleration_noise", &Actuation::acceleration_noise, "m/s^2", {},
                   "added to the acceleration, drawn once a step"),
         parameter("steering_noise", &Actuation::steering_noise, "rad", {},
@@ -41,35 +46,36 @@ struct Actuation {
 
   void check(std::string const& where) const {
     if (!(delay <= waiting * period * (1.0 + 1e-9)))
-      throw ParameterError(where + ".delay", "is longer than 4 periods: so many commands wait at most",
+      throw ParameterError(where + ".delay", "is longer than 4 periods, but at most 4 commands can wait",
                            "give a period of at least " + detail::with_unit(detail::number_text(delay / waiting), "s"));
   }
 
-  /// How long each waiting command is in effect [s]; 0 where none waits.
+  /// Time that each delayed command is in effect [s]; 0 if there is no delay.
   [[nodiscard]] double slot() const {
     constexpr double shortest = 1e-3;
     return delay / waiting < shortest ? 0.0 : delay / waiting;
   }
 
-  /// From one command to the next in a step of `duration` [s]: equal parts of it, or a waiting command's time [s].
+  /// Time from one command to the next [s] in a step of `duration` [s]: `slot()`, or without delay an equal part of the
+  /// step.
   [[nodiscard]] double interval(double duration) const {
     return slot() > 0.0 ? slot() : duration / std::max(1.0, std::ceil(duration / period - 1e-9));
   }
 };
 
-/// What is to be tracked at a moment.
+/// Motion to track at one moment.
 struct Reference {
   double x{}, y{}, heading{}, speed{};
-  double curvature{};     ///< of the course [1/m]
+  double curvature{};     ///< of the path [1/m]
   double acceleration{};  ///< [m/s^2]
 };
 
-/// Where a vehicle is relative to its reference.
+/// Deviation of a vehicle from its reference.
 struct TrackingError {
-  double along{};    ///< how far it is ahead [m]
-  double left{};     ///< how far to the left [m]
-  double heading{};  ///< its heading minus that of the reference [rad]
-  double speed{};    ///< its speed minus that of the reference [m/s]
+  double along{};    ///< ahead of the reference [m]
+  double left{};     ///< to the left of the reference [m]
+  double heading{};  ///< heading minus that of the reference [rad]
+  double speed{};    ///< speed minus that of the reference [m/s]
 };
 
 template <MotionState S>
@@ -80,10 +86,10 @@ template <MotionState S>
           x.speed - reference.speed};
 }
 
-/// What a tracking controller remembers: where the last plan ended, and the commands on their way.
+/// The memory of a tracking controller: the reference at the end of the last step, and the waiting commands.
 template <MotionState S>
 struct TrackingMemory {
-  static constexpr std::size_t slots = Actuation::waiting + 1;  ///< one in effect, the others waiting
+  static constexpr std::size_t slots = Actuation::waiting + 1;  ///< the first in effect, the others waiting
 
   S reference{};
   float acceleration[slots]{}, steering[slots]{};
@@ -92,7 +98,7 @@ struct TrackingMemory {
 
   friend bool operator==(TrackingMemory const&, TrackingMemory const&) = default;
 
-  /// Gives a command; the oldest one that waits comes into effect.
+  /// Adds a command; the oldest waiting one takes effect.
   void give(Action const& command) {
     std::copy(acceleration + 1, acceleration + slots, acceleration);
     std::copy(steering + 1, steering + slots, steering);
@@ -104,14 +110,14 @@ struct TrackingMemory {
 
 namespace detail {
 
-/// The reference at `time` on the way from `a` to `b`, an arc.
+/// The reference at `time` on the arc from `a` to `b`.
 template <MotionState S>
 [[nodiscard]] Reference reference_between(S const& a, S const& b, double time) {
   double const duration = b.time - a.time, u = std::clamp((time - a.time) / duration, 0.0, 1.0);
   double const dx = b.x - a.x, dy = b.y - a.y, squared = dx * dx + dy * dy;
   double const turn = std::remainder(b.heading - a.heading, 2.0 * geometry::pi);
   double const curvature = squared > 1e-4 ? turn / std::sqrt(squared) : 0.0;
-  double const bulge = -0.5 * u * (1.0 - u) * turn;  // of the arc over its chord, per chord length
+  double const bulge = -0.5 * u * (1.0 - u) * turn;  // height of the arc over its chord, per chord length
   return {a.x + u * dx - bulge * dy,
           a.y + u * dy + bulge * dx,
           a.heading + u * turn,
@@ -120,7 +126,7 @@ template <MotionState S>
           (b.speed - a.speed) / duration};
 }
 
-/// The plan's reference at `time`; `start` is where it begins if its first sample is later.
+/// The plan's reference at `time`. `start` is the state that precedes the plan's first sample.
 template <MotionState S>
 [[nodiscard]] Reference reference_at(BasicPlan<S> const& plan, S const& start, double time) {
   S const* before = &start;
@@ -133,10 +139,10 @@ template <MotionState S>
 
 }  // namespace detail
 
-/// Tracks a plan through the vehicle model from `now` to `time` [s] by a controller
-/// `law(Reference, TrackingError, state, interval)` that returns an `Action` to be held for `interval` [s]. The
-/// reference runs through the plan's states, from the end of the last plan on; a plan that does not reach `time` is
-/// invalid. O(control periods).
+/// Tracks a plan through the vehicle model from `now` to `time` [s]. The controller
+/// `law(Reference, TrackingError, state, interval)` returns an `Action` to hold for `interval` [s]. The reference runs
+/// through the plan's states and continues that of the last step, so that an error does not vanish with each new plan.
+/// A plan that does not reach `time` is invalid. O(control periods).
 template <class Law, MotionState S, class Dynamics>
 [[nodiscard]] Executed<S> track(Actuation const& actuation, Law const& law, BasicPlan<S> const& plan, S const& now,
                                 Dynamics const& dynamics, double time, TrackingMemory<S>& memory,
@@ -168,7 +174,7 @@ template <class Law, MotionState S, class Dynamics>
     x = drive(dynamics, x, {command.acceleration + noise.acceleration, command.steering + noise.steering}, h);
   }
   auto const end = detail::reference_at(plan, start, time);
-  memory.reference = plan.trajectory.back();  // whatever the state holds beside its motion
+  memory.reference = plan.trajectory.back();  // for the fields that the dynamics add to the state
   memory.reference.x = end.x;
   memory.reference.y = end.y;
   memory.reference.heading = end.heading;

@@ -17,18 +17,18 @@ inline constexpr double pi = 3.14159265358979323846;
 
 namespace detail {
 
-/// `x` minus the nearest multiple of a quarter turn, in [-pi/4, pi/4] up to rounding, and that multiple.
+/// An angle split into the nearest number of quarter turns and the rest, in [-pi/4, pi/4] up to rounding.
 struct QuarterTurns {
   double rest;
   std::int64_t count;
 };
 
-/// For |x| <= 1e5: pi/2 is cut into parts of 33 bits, so that their products with the count are exact (Cody, Waite
-/// 1980).
+/// Splits `x`, |x| <= 1e5, into quarter turns and rest. pi/2 is held in parts of 33 bits, so that their products with
+/// the count are exact (Cody, Waite 1980).
 [[nodiscard]] inline QuarterTurns reduce_by_quarter_turns(double x) {
   constexpr double two_over_pi = 0x1.45f306dc9c883p-1;
   constexpr double part_1 = 0x1.921fb544p+0, part_2 = 0x1.0b4611a6p-34, part_3 = 0x1.3198a2e037073p-69;
-  constexpr double shifter = 0x1.8p52;  // adding it rounds to the nearest integer, left in the low bits
+  constexpr double shifter = 0x1.8p52;  // adding it rounds to the nearest integer, which appears in the low bits
   double const shifted = x * two_over_pi + shifter;
   double const count = shifted - shifter;
   auto const bits = std::bit_cast<std::int64_t>(shifted) - std::bit_cast<std::int64_t>(shifter);
@@ -37,14 +37,15 @@ struct QuarterTurns {
 
 }  // namespace detail
 
-/// Both at once, see `sin_cos`.
+/// Sine and cosine of one angle, see `sin_cos`.
 struct SinCos {
   double sin, cos;
 };
 
 namespace detail {
 
-/// c[0] + c[1] x + c[2] x^2 + ... by pairs (Estrin 1960): few operations wait for each other.
+/// c[0] + c[1] x + c[2] x^2 + ... by Estrin's scheme (1960): evaluates in pairs, so that few operations depend on each
+/// other.
 template <std::size_t n>
 [[nodiscard]] constexpr double polynomial(double x, std::array<double, n> const& c) {
   if constexpr (n == 1) {
@@ -59,7 +60,7 @@ template <std::size_t n>
   }
 }
 
-/// The same of coefficients c, d, e, ...
+/// The same with the coefficients as arguments.
 template <class... Rest>
 [[nodiscard]] constexpr double polynomial(double x, double c, Rest... rest) {
   return polynomial(x, std::array{c, rest...});
@@ -67,9 +68,9 @@ template <class... Rest>
 
 }  // namespace detail
 
-/// As `sin_cos`, for |x| <= pi/4 only: without a branch or a library call.
+/// Like `sin_cos`, but for |x| <= pi/4 only, without branches and library calls.
 [[nodiscard]] inline SinCos sin_cos_small(double x) {
-  // Taylor series from the third term on: the first one left out is below 5e-17 on [-pi/4, pi/4].
+  // Taylor series; the first omitted term is below 5e-17 on [-pi/4, pi/4].
   double const q = x * x;
   double const sine_series = detail::polynomial(q, -1.0 / 6, 1.0 / 120, -1.0 / 5040, 1.0 / 362880, -1.0 / 39916800,
                                                 1.0 / 6227020800, -1.0 / 1307674368000);
@@ -78,10 +79,10 @@ template <class... Rest>
   return {x + x * (q * sine_series), 1.0 - (0.5 * q - q * q * cosine_series)};
 }
 
-/// Angles up to this [rad] have shorter series.
+/// Up to this angle [rad], shorter series suffice.
 inline constexpr double slight_angle = 0.125;
 
-/// As `sin_cos`, for |x| <= `slight_angle` only.
+/// Like `sin_cos`, but for |x| <= `slight_angle` only.
 [[nodiscard]] inline SinCos sin_cos_slight(double x) {
   double const q = x * x;
   double const sine_series = detail::polynomial(q, -1.0 / 6, 1.0 / 120, -1.0 / 5040, 1.0 / 362880);
@@ -89,26 +90,27 @@ inline constexpr double slight_angle = 0.125;
   return {x + x * (q * sine_series), 1.0 - (0.5 * q - q * q * cosine_series)};
 }
 
-/// Tangent of x for |x| <= `slight_angle` only: the first term that is left out is below 1e-17 of it.
+/// Tangent of x for |x| <= `slight_angle` only. The first omitted term is below 1e-17 of the result.
 [[nodiscard]] inline double tangent_slight(double x) {
   double const q = x * x;
   return x + x * (q * detail::polynomial(q, 1.0 / 3, 2.0 / 15, 17.0 / 315, 62.0 / 2835, 1382.0 / 155925,
                                          21844.0 / 6081075, 929569.0 / 638512875));
 }
 
-/// Arc tangent: inline where it is small, as in steering it is.
+/// Arc tangent; inline for small arguments, which are the usual case in steering.
 [[nodiscard]] inline double arc_tangent(double t) {
   if (!(std::abs(t) <= 0.125)) return std::atan(t);
   double const q = t * t;
   return t * (1.0 - q * detail::polynomial(q, 1.0 / 3, -1.0 / 5, 1.0 / 7, -1.0 / 9, 1.0 / 11, -1.0 / 13, 1.0 / 15));
 }
 
-/// As `sin_cos`, for |x| <= 1e5 only: without a branch or a library call, so that a loop over it becomes SIMD code.
+/// Like `sin_cos`, but for |x| <= 1e5 only, without branches and library calls, so that compilers vectorise loops over
+/// it.
 [[nodiscard]] inline SinCos sin_cos_bounded(double x) {
   auto const [rest, count] = detail::reduce_by_quarter_turns(x);
   auto const [sine, cosine] = sin_cos_small(rest);
-  // Quarter turn 1 maps (sin, cos) to (cos, -sin), 2 to (-sin, -cos), 3 to (-cos, sin).
-  // By masks: the quadrant of a random angle is no branch to predict.
+  // Quarter turn 1 maps (sin, cos) to (cos, -sin), 2 to (-sin, -cos), 3 to (-cos, sin). Done with bit masks, because a
+  // branch on the quadrant would be hard to predict.
   auto const sine_bits = std::bit_cast<std::uint64_t>(sine), cosine_bits = std::bit_cast<std::uint64_t>(cosine);
   auto const turns = static_cast<std::uint64_t>(count);
   std::uint64_t const swapped = (sine_bits ^ cosine_bits) & (0 - (turns & 1));
@@ -117,8 +119,8 @@ inline constexpr double slight_angle = 0.125;
           std::bit_cast<double>(cosine_bits ^ swapped ^ sign_of_cos)};
 }
 
-/// Sine and cosine of `x` [rad]: absolute error below 2.5e-16, inline and faster than the library's two calls for
-/// |x| <= 1e5; by the standard library beyond, and NaN for what is not finite.
+/// Sine and cosine of `x` [rad]. For |x| <= 1e5 the absolute error is below 2.5e-16, and it is inline and faster than
+/// two calls of the standard library; larger values go to the standard library. NaN if `x` is not finite.
 [[nodiscard]] inline SinCos sin_cos(double x) {
   if (std::abs(x) <= 1e5) [[likely]] {
     return sin_cos_bounded(x);
@@ -126,9 +128,9 @@ inline constexpr double slight_angle = 0.125;
   return {std::sin(x), std::cos(x)};
 }
 
-/// The same direction in (-pi, pi]; -pi becomes pi. Unchanged, to the bit, when it is there already. Reduces by the
-/// true pi: absolute error below 1e-15 for |angle| <= 1e5, and as good as the standard library's sine beyond. NaN for
-/// what is not finite.
+/// The same direction in (-pi, pi]; -pi becomes pi. An angle already in that range is returned unchanged, to the bit.
+/// Reduces by the exact pi: the absolute error is below 1e-15 for |angle| <= 1e5; beyond, it is that of the standard
+/// library's sine. NaN if `angle` is not finite.
 [[nodiscard]] inline double normalize_angle(double angle) {
   if (angle > -pi && angle <= pi) [[likely]] {
     return angle;
@@ -144,7 +146,7 @@ inline constexpr double slight_angle = 0.125;
   return wrapped > pi ? wrapped - 2.0 * pi : (wrapped <= -pi ? pi : wrapped);
 }
 
-/// The turn from direction `b` to direction `a`, `a - b` in (-pi, pi]: positive when `a` lies counter-clockwise of `b`.
+/// The turn from direction `b` to direction `a`: `a - b` in (-pi, pi], positive if `a` lies counter-clockwise of `b`.
 [[nodiscard]] inline double angle_difference(double a, double b) { return normalize_angle(a - b); }
 
 }  // namespace cambium::geometry

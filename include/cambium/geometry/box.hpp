@@ -7,12 +7,12 @@
 
 namespace cambium::geometry {
 
-/// An axis-parallel rectangle in the map frame [m], borders included; empty as made by default.
+/// An axis-aligned rectangle in the map frame [m], borders included. A default one is empty.
 struct Box {
   double min_x = std::numeric_limits<double>::infinity(), min_y = std::numeric_limits<double>::infinity();
   double max_x = -std::numeric_limits<double>::infinity(), max_y = -std::numeric_limits<double>::infinity();
 
-  /// Grows to hold the point.
+  /// Grows to include the point.
   void add(double x, double y) {
     min_x = std::min(min_x, x);
     min_y = std::min(min_y, y);

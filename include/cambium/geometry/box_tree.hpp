@@ -16,7 +16,7 @@ namespace cambium::geometry {
 
 namespace detail {
 
-/// Place of the cell (x, y), each below 2^16, on Hilbert's curve: cells near to each other are mostly near on the
+/// Index of the cell (x, y), each below 2^16, on the Hilbert curve. Cells close in the plane are mostly close on the
 /// curve.
 [[nodiscard]] inline std::uint32_t hilbert_index(std::uint32_t x, std::uint32_t y) {
   std::uint32_t index = 0;
@@ -35,14 +35,21 @@ namespace detail {
 
 }  // namespace detail
 
-/// A static R-tree in flat arrays: boxes in the order of Hilbert's curve, eight to a node, nodes of 128 B level by
-/// level (Kamel, Faloutsos 1993). Corners are kept in float, rounded outwards: a query may visit a box that it misses
-/// by that.
+/// A static R-tree in flat arrays (packed Hilbert R-tree; Kamel, Faloutsos 1993). Boxes are sorted along the Hilbert
+/// curve of their centres, so that neighbours share a node. Eight consecutive boxes form a leaf, eight consecutive
+/// nodes a node of the next level:
+///
+///     level 1                [    root    ]
+///     level 0       [ node 0 ][ node 1 ] ... [ node 7 ]      128 B each
+///     boxes         b0 ... b7  b8 ... b15                    in Hilbert order
+///
+/// Child j of node i is number 8 i + j of the level below, so nodes need no pointers. Corners are stored as float and
+/// rounded outwards: a query may also visit boxes that it misses by that rounding.
 class BoxTree {
  public:
   BoxTree() = default;
 
-  /// O(n log n). Boxes must not be empty.
+  /// Builds the tree in O(n log n). No box may be empty.
   explicit BoxTree(std::span<Box const> boxes) {
     if (boxes.empty()) return;
     Box all;
@@ -62,8 +69,8 @@ class BoxTree {
     } while (children > 1);
   }
 
-  /// Calls `visit(index of the box)` for every box that meets `query`, borders included, until that returns true; says
-  /// whether it did. O(log n) and those found; no allocation.
+  /// Calls `visit(index of the box)` for every box that meets `query`, borders included, until `visit` returns true;
+  /// returns whether it did. O(log n + number of boxes found); no allocation.
   template <class Visit>
   bool visit(Box const& query, Visit const& visit) const {
     if (nodes_.empty()) return false;
@@ -93,7 +100,7 @@ class BoxTree {
 
  private:
   static constexpr std::size_t width = 8;
-  static constexpr std::size_t max_levels = 11;  // 8^11 boxes are more than an index can name
+  static constexpr std::size_t max_levels = 11;  // 8^11 exceeds the range of a box index
 
   struct alignas(64) Node {
     std::array<float, width> min_x, min_y, max_x, max_y;
@@ -104,7 +111,7 @@ class BoxTree {
 
   static constexpr float largest = std::numeric_limits<float>::max();
 
-  // Within the finite floats: an infinite query must not meet the nodes' unused places.
+  // Clamped to finite floats: unused places of a node are at infinity, and an infinite query must not meet them.
   [[nodiscard]] static float below(double v) {
     auto const f = static_cast<float>(std::clamp<double>(v, -largest, largest));
     return static_cast<double>(f) <= v || f == -largest ? f : std::nextafter(f, -largest);
@@ -130,7 +137,7 @@ class BoxTree {
     for (std::size_t i = 0; i < keys.size(); ++i) order_[i] = static_cast<std::uint32_t>(keys[i]);
   }
 
-  /// Adds the nodes over `children` boxes (on the first level) or nodes of the level before.
+  /// Adds the level of nodes above `children` boxes (for the first level) or nodes of the level below.
   void add_level(std::span<Box const> boxes, std::size_t children) {
     constexpr float infinity = std::numeric_limits<float>::infinity();
     auto const first_child = level_begin_.empty() ? 0 : level_begin_.back();
@@ -160,7 +167,7 @@ class BoxTree {
 
   std::vector<Node> nodes_;
   std::vector<std::size_t> level_begin_;  ///< first node of each level, leaves first
-  std::vector<std::uint32_t> order_;      ///< index of the box at each leaf place
+  std::vector<std::uint32_t> order_;      ///< original index of each box, in Hilbert order
   double origin_x_ = 0.0, origin_y_ = 0.0;
 };
 

@@ -9,13 +9,13 @@
 #include "cambium/geometry/polygon.hpp"
 #include "cambium/geometry/pose.hpp"
 
-// All regions are closed: what touches intersects, and what touches the border from inside is contained. Rounding
-// decides within about 1e-15 of the coordinates' size. Nothing here allocates.
+// All regions are closed: touching regions intersect, and a region may touch the border of one that contains it.
+// Results are exact up to rounding, about 1e-15 of the size of the coordinates. Nothing here allocates.
 
 namespace cambium::geometry {
 
-/// Do two rectangles share a point? By the separating-axis theorem: they are apart exactly when one of their four side
-/// directions keeps them apart. A few nanoseconds, less when they are far apart.
+/// Whether two rectangles share a point. By the separating-axis theorem, they are disjoint if and only if their
+/// projections on one of their four side directions are. Takes a few nanoseconds, fewer if they are far apart.
 [[nodiscard]] inline bool intersects(OrientedBox const& a, OrientedBox const& b) {
   double const dx = b.x - a.x, dy = b.y - a.y;
   double const reach = a.half_length + a.half_width + b.half_length + b.half_width;
@@ -32,12 +32,13 @@ namespace cambium::geometry {
 
 namespace detail {
 
-/// Does the segment a-b share a point with the rectangle? `closed` false: with its inside only, not the border.
+/// Whether the segment a-b shares a point with the rectangle; if `closed` is false, with its interior. Uses separating
+/// axes: the two directions of the rectangle and the normal of the segment.
 template <bool closed>
 [[nodiscard]] inline bool segment_meets_box(Point const& a, Point const& b, OrientedBox const& box) {
   auto const within = [](double value, double bound) { return closed ? value <= bound : value < bound; };
   double const ax = a.x() - box.x, ay = a.y() - box.y, bx = b.x() - box.x, by = b.y() - box.y;
-  // Middle and half of the segment, along and across the rectangle.
+  // Midpoint and half vector of the segment, along and across the rectangle.
   double const mx = 0.5 * (ax + bx), my = 0.5 * (ay + by), hx = 0.5 * (bx - ax), hy = 0.5 * (by - ay);
   double const middle = box.cos * mx + box.sin * my, aside = box.cos * my - box.sin * mx;
   double const half = box.cos * hx + box.sin * hy, half_aside = box.cos * hy - box.sin * hx;
@@ -58,7 +59,7 @@ template <bool closed>
 
 }  // namespace detail
 
-/// Do a rectangle and a polygon share a point? O(corners of the polygon).
+/// Whether a rectangle and a polygon share a point. O(corners of the polygon).
 [[nodiscard]] inline bool intersects(OrientedBox const& box, Polygon const& polygon) {
   if (!polygon.bounding_box().intersects(box.bounding_box())) return false;
   return detail::border_meets_box<true>(polygon, box) || polygon.contains(box.center());
@@ -68,8 +69,7 @@ template <bool closed>
   return intersects(box, polygon);
 }
 
-/// Do two polygons share a point? O(n m) in the worst case; only edges near the other's bounding box cost more than
-/// O(1).
+/// Whether two polygons share a point. O(n m) in the worst case; edges away from the other's bounding box cost O(1).
 [[nodiscard]] inline bool intersects(Polygon const& a, Polygon const& b) {
   if (!a.bounding_box().intersects(b.bounding_box())) return false;
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -85,9 +85,9 @@ template <bool closed>
   return a.contains(b.points()[0]) || b.contains(a.points()[0]);
 }
 
-/// Does the whole rectangle lie in the polygon? O(corners of the polygon).
+/// Whether the whole rectangle lies in the polygon. O(corners of the polygon).
 [[nodiscard]] inline bool contains(Polygon const& polygon, OrientedBox const& box) {
-  // Where no border passes through the rectangle's inside, all of it is on the side on which its centre is.
+  // If no border passes through the rectangle's interior, all of it lies on the same side as its centre.
   return polygon.contains(box.center()) && !detail::border_meets_box<false>(polygon, box);
 }
 
@@ -99,7 +99,7 @@ template <bool closed>
   return std::sqrt(along * along + across * across);
 }
 
-/// The point of the rectangle that is nearest to `p`; `p` itself inside.
+/// The point of the rectangle nearest to `p`; `p` itself if it lies inside.
 [[nodiscard]] inline Point nearest_point(OrientedBox const& box, Point const& p) {
   double const dx = p.x() - box.x, dy = p.y() - box.y;
   double const along = std::clamp(box.cos * dx + box.sin * dy, -box.half_length, box.half_length);
@@ -107,17 +107,17 @@ template <bool closed>
   return {box.x + box.cos * along - box.sin * across, box.y + box.sin * along + box.cos * across};
 }
 
-/// Distance [m] between two rectangles, 0 when they intersect.
+/// Distance [m] between two rectangles, 0 if they intersect.
 [[nodiscard]] inline double distance(OrientedBox const& a, OrientedBox const& b) {
   if (intersects(a, b)) return 0.0;
-  // Of two convex shapes apart, a corner of one is nearest to the other.
+  // Between disjoint convex polygons, the shortest distance is attained at a corner of one of them.
   double nearest = std::numeric_limits<double>::infinity();
   for (auto const& corner : a.corners()) nearest = std::min(nearest, distance(b, corner));
   for (auto const& corner : b.corners()) nearest = std::min(nearest, distance(a, corner));
   return nearest;
 }
 
-/// The point of the polygon's border that is nearest to `p`, also from inside. O(n).
+/// The point of the polygon's border nearest to `p`, which may lie outside or inside. O(n).
 [[nodiscard]] inline Point nearest_border_point(Polygon const& polygon, Point const& p) {
   Point best = polygon.points()[0];
   for (std::size_t i = 0; i < polygon.size(); ++i) {

@@ -11,8 +11,8 @@
 
 namespace cambium::geometry {
 
-/// The corners of the smallest convex polygon that holds `points`, counter-clockwise, without those on straight sides
-/// (Andrew 1979). Fewer than three where the points lie on one line. The numbers must be finite. O(n log n).
+/// The corners of the convex hull of `points`, counter-clockwise, without points on straight sides (Andrew 1979). Fewer
+/// than three if all points lie on one line. All coordinates must be finite. O(n log n).
 [[nodiscard]] inline std::vector<Point> convex_hull(std::vector<Point> points) {
   auto const before = [](Point const& a, Point const& b) {
     return std::tuple(a.x(), a.y()) < std::tuple(b.x(), b.y());
@@ -25,15 +25,15 @@ namespace cambium::geometry {
     while (hull.size() >= least && turn(hull[hull.size() - 2], hull.back(), p) <= 0.0) hull.pop_back();
     hull.push_back(p);
   };
-  for (auto const& p : points) add(p, 2);  // the lower side from left to right, then the upper one back
+  for (auto const& p : points) add(p, 2);  // the lower side from left to right, then the upper side back
   std::size_t const lower = hull.size() + 1;
   for (auto p = points.rbegin() + 1; p != points.rend(); ++p) add(*p, lower);
   hull.pop_back();
   return hull;
 }
 
-/// What two convex polygons have in common: the corners of a convex polygon, counter-clockwise; none where they are
-/// apart (Sutherland, Hodgman 1974). Both counter-clockwise. O(n m).
+/// The intersection of two convex polygons (Sutherland, Hodgman 1974). Arguments and result are corners,
+/// counter-clockwise; the result is empty if the polygons are disjoint. O(n m).
 [[nodiscard]] inline std::vector<Point> convex_intersection(std::vector<Point> subject,
                                                             std::vector<Point> const& clip) {
   for (std::size_t i = 0; i < clip.size() && !subject.empty(); ++i) {

@@ -15,31 +15,40 @@
 
 namespace cambium::geometry {
 
-/// A sample of a curve: where it passes [m] and its direction there [rad].
+/// A sample of a curve: position [m] and direction [rad].
 using LineSample = Pose;
 
-/// Whether a line that is to be driven goes on from `last` to `next`: not to the same place, nor to one a little behind
-/// it, as lines beside a kink fold. Nobody gets past a line that goes back.
+/// Whether `next` continues a drivable line from `last`. False if it is the same place or less than 1 m away and not
+/// ahead: offset lines fold back like that beside a kink, and no vehicle gets past such a fold.
 [[nodiscard]] inline bool goes_on(LineSample const& last, LineSample const& next) {
   constexpr double fold = 1.0;  // [m]
   double const dx = next.x - last.x, dy = next.y - last.y, distance = std::hypot(dx, dy);
   return distance >= fold || (distance >= 1e-6 && dx * std::cos(last.heading) + dy * std::sin(last.heading) > 0.0);
 }
 
-/// Where a point lies relative to a `Line`.
+/// Position of a point relative to a `Line`.
 struct Projection {
   double s{};        ///< arc length of the foot point [m]; below 0 or beyond the length on the extended end segments
   double lateral{};  ///< signed offset from the line, left positive [m]
-  std::uint32_t segment{};  ///< segment of the foot point: the hint for the next query nearby
+  std::uint32_t segment{};  ///< segment of the foot point; the hint for the next query nearby
 };
 
-/// An arc-length parametrised polyline with a heading along it. Immutable.
+/// An immutable polyline, parametrised by arc length, with a heading.
 ///
-/// Positions are interpolated linearly. The heading is that of the chords (`from_points`: constant on each segment) or
-/// is interpolated between the headings of the samples (`from_samples`). The first and the last segment extend to
-/// infinity, so a vehicle that has passed the end still has a position. Queries take a `cursor`: the segment of the
-/// last query; with a query nearby they cost O(1), else O(number of segments between). One segment is one cache line
-/// (64 B).
+/// Positions are interpolated linearly. The heading is either that of the chords, constant on each segment
+/// (`from_points`), or interpolated between the headings of the samples (`from_samples`). The first and the last
+/// segment extend to infinity, so a vehicle that has passed the end still has a position.
+///
+/// Queries take a `cursor`, the segment of the previous query. They cost O(number of segments between the two): O(1)
+/// for a vehicle that moves along the line. One segment is one cache line (64 B).
+///
+/// Projecting a point with a hint walks from segment to segment until the point lies between the bisectors at the
+/// segment's ends; then its foot point is on that segment.
+///
+///                :      p    :              p lies between the bisectors (dotted) at the ends of segment i, so its
+///                :      |    :              foot point f lies on this segment, ends included
+///     o----------o------f----o---------o
+///     segment i - 1  segment i   segment i + 1
 class Line {
  public:
   struct Segment {
@@ -52,8 +61,8 @@ class Line {
 
   Line() = default;
 
-  /// Through `points`; repeated points are dropped. Throws `MapError` with fewer than two distinct points or a number
-  /// that is not finite. O(n).
+  /// The line through `points`; repeated points are dropped. Throws `MapError` if there are fewer than two distinct
+  /// points or a number is not finite. O(n).
   [[nodiscard]] static Line from_points(std::span<Point const> points) {
     Line line;
     line.reserve(points.size());
@@ -62,8 +71,8 @@ class Line {
     return line;
   }
 
-  /// Through `samples`, with their headings interpolated; samples less than 1e-9 m apart are dropped. Throws as
-  /// `from_points`. O(n).
+  /// The line through `samples` with interpolated headings; samples closer than 1e-9 m to the previous one are dropped.
+  /// Throws like `from_points`. O(n).
   [[nodiscard]] static Line from_samples(std::span<LineSample const> samples) {
     Line line;
     line.reserve(samples.size());
@@ -82,7 +91,7 @@ class Line {
   [[nodiscard]] double length() const { return length_; }
   [[nodiscard]] std::span<Segment const> segments() const { return segments_; }
 
-  /// The vertices, one more than there are segments.
+  /// The vertices: one more than segments.
   [[nodiscard]] std::vector<Point> points() const {
     std::vector<Point> result;
     result.reserve(segments_.size() + 1);
@@ -91,7 +100,7 @@ class Line {
     return result;
   }
 
-  /// The samples that make this line again by `from_samples`.
+  /// Samples from which `from_samples` makes the same line.
   [[nodiscard]] std::vector<LineSample> samples() const {
     std::vector<LineSample> result;
     result.reserve(segments_.size() + 1);
@@ -104,13 +113,14 @@ class Line {
     return result;
   }
 
-  /// The segment that holds `s`, searched from `cursor` and kept there. The line must not be empty.
+  /// The segment that contains `s`, searched from `cursor` on, which is set to it. The line must not be empty.
   Segment const& segment_at(double s, std::uint32_t& cursor) const {
     CAMBIUM_ASSERT(!empty(), "a query on an empty line");
     auto const* const first = segments_.data();
     auto const* at = first + std::min(cursor, last_);
     auto const* const end = first + last_;
-    at += at < end ? static_cast<std::ptrdiff_t>(s >= at[1].s) : 0;  // often, and never predictably: added
+    // Steps to the next segment are frequent but hard to predict, so the first one is added without a branch.
+    at += at < end ? static_cast<std::ptrdiff_t>(s >= at[1].s) : 0;
     while (at < end && s >= at[1].s) ++at;
     while (at > first && s < at->s) --at;
     cursor = static_cast<std::uint32_t>(at - first);
@@ -125,16 +135,16 @@ class Line {
     return {g.x + g.ux * ds, g.y + g.uy * ds, g.heading + g.curvature * inside};
   }
 
-  /// As above, by binary search. O(log n).
+  /// The same by binary search. O(log n).
   [[nodiscard]] Pose pose(double s) const {
     auto cursor = find(s);
     return pose(s, cursor);
   }
 
-  /// Curvature (left positive) of the interpolated heading at `s` [1/m]; 0 on a line made `from_points`. O(log n).
+  /// Curvature (left positive) of the interpolated heading at `s` [1/m]; 0 for a line from `from_points`. O(log n).
   [[nodiscard]] double curvature(double s) const { return segments_[find(s)].curvature; }
 
-  /// Index of the segment that holds `s`. O(log n).
+  /// Index of the segment that contains `s`. O(log n).
   [[nodiscard]] std::uint32_t find(double s) const {
     CAMBIUM_ASSERT(!empty(), "a query on an empty line");
     auto const next = std::upper_bound(segments_.begin(), segments_.end(), s,
@@ -142,7 +152,7 @@ class Line {
     return next == segments_.begin() ? 0 : static_cast<std::uint32_t>(next - segments_.begin() - 1);
   }
 
-  /// The nearest point of the line, exactly; of equally near ones the first. O(n).
+  /// The exact nearest point of the line, the first of several. O(n).
   [[nodiscard]] Projection project(Point const& p) const {
     CAMBIUM_ASSERT(!empty(), "a query on an empty line");
     std::uint32_t best = 0;
@@ -157,19 +167,19 @@ class Line {
     return foot(best, p);
   }
 
-  /// The foot point near segment `hint`: descends along the line to the nearest local minimum of the distance. Equals
-  /// the exact one, whatever the hint, while the point is closer to the line than the line's radius of curvature and
-  /// the line does not come near it twice. O(segments passed).
+  /// The foot point near segment `hint`: walks along the line to the nearest local minimum of the distance. For any
+  /// hint, it equals the exact projection if the point is closer to the line than the line's radius of curvature and
+  /// the line does not pass near it twice. O(segments passed).
   [[nodiscard]] Projection project(Point const& p, std::uint32_t hint) const {
     CAMBIUM_ASSERT(!empty(), "a query on an empty line");
     auto const i = std::min(hint, last());
-    // Well inside a segment there is nothing to decide: the usual case for something that follows the line.
+    // Usual case for a vehicle that follows the line: the foot point is well inside this segment or the next one.
     for (auto const next : {i, i + 1}) {
       if (next > last()) break;
       auto const& g = segments_[next];
       double const dx = p.x() - g.x, dy = p.y() - g.y;
       double const along = dx * g.ux + dy * g.uy, across = g.ux * dy - g.uy * dx;
-      double const margin = sharpest_ * std::abs(across);  // where the bisectors at its ends may be
+      double const margin = sharpest_ * std::abs(across);  // the bisectors at its ends are within this distance of them
       if (along < margin) break;
       if (along <= g.length - margin) return {g.s + along, across, next};
     }
@@ -198,15 +208,15 @@ class Line {
     double const across = g.ux * dy - g.uy * dx;
     bool const before = along < 0.0 && i > 0, beyond = along > g.length && i < last();
     if (!before && !beyond) return {g.s + along, across, i};
-    // The foot point is an inner vertex: the offset is the distance to it.
+    // The foot point is an inner vertex, so the offset is the distance to it.
     double const excess = before ? along : along - g.length;
     return {before ? g.s : g.s + g.length, std::copysign(std::hypot(across, excess), across), i};
   }
 
-  /// The nearest local minimum of the distance to `p`, from segment `i` on.
+  /// The nearest local minimum of the distance to `p`, starting at segment `i`.
   CAMBIUM_NOINLINE [[nodiscard]] Projection descend(Point const& p, std::uint32_t i) const {
     double along = along_of(segments_[i], p);
-    // The bisector at a vertex parts the points nearer to the segment before it from those nearer to the one behind.
+    // The bisector at a vertex separates the points nearer to the segment before it from those nearer to the next one.
     if (along > 0.5 * segments_[i].length) {
       while (i < last()) {
         double const next = along_of(segments_[i + 1], p);
@@ -229,7 +239,7 @@ class Line {
     if (points > 1) segments_.reserve(points - 1);
   }
 
-  /// Adds a vertex unless it repeats the last one; says whether it did.
+  /// Adds a vertex unless it repeats the last one; returns whether it was added.
   bool append(double x, double y) {
     if (!std::isfinite(x) || !std::isfinite(y)) throw MapError("line", "a point is not a finite number");
     if (!has_first_) {
@@ -274,7 +284,7 @@ class Line {
   }
 
   std::vector<Segment> segments_;
-  std::uint32_t last_ = 0;  ///< segment
+  std::uint32_t last_ = 0;  ///< index of the last segment
   double sharpest_ = 0.0;   ///< tangent of half the sharpest turn at a vertex
   double length_ = 0.0;
   double end_x_ = 0.0, end_y_ = 0.0;

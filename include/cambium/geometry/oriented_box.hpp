@@ -11,15 +11,15 @@
 
 namespace cambium::geometry {
 
-/// A turned rectangle in the map frame: centre, half side lengths [m], and the direction of its length. 48 bytes.
+/// A rotated rectangle in the map frame: centre, half side lengths [m], and heading. 48 bytes.
 struct OrientedBox {
   double x, y;
   double half_length, half_width;
-  double cos, sin;  ///< of the heading: the unit vector along the length
+  double cos, sin;  ///< of the heading; the unit vector along the length
 
   [[nodiscard]] Point center() const { return {x, y}; }
 
-  /// Counter-clockwise: front left, rear left, rear right, front right.
+  /// The corners, counter-clockwise: front left, rear left, rear right, front right.
   [[nodiscard]] std::array<Point, 4> corners() const {
     double const lx = half_length * cos, ly = half_length * sin;
     double const wx = -half_width * sin, wy = half_width * cos;
@@ -27,7 +27,7 @@ struct OrientedBox {
             Point{x + lx - wx, y + ly - wy}};
   }
 
-  /// The smallest axis-parallel rectangle around it.
+  /// The smallest axis-aligned rectangle around it.
   [[nodiscard]] Box bounding_box() const {
     double const dx = half_length * std::abs(cos) + half_width * std::abs(sin);
     double const dy = half_length * std::abs(sin) + half_width * std::abs(cos);
@@ -41,7 +41,7 @@ struct OrientedBox {
   }
 };
 
-/// The rectangle of `shape` whose reference point is at (x, y) with the heading's cosine and sine given.
+/// The rectangle of `shape` with its reference point at (x, y) and the cosine and sine of its heading.
 [[nodiscard]] inline OrientedBox box_of(Shape const& shape, double x, double y, double cos, double sin) {
   double const ahead = shape.center_offset(), aside = shape.center_offset_left();
   return {x + cos * ahead - sin * aside,
@@ -52,13 +52,13 @@ struct OrientedBox {
           sin};
 }
 
-/// The rectangle of `shape` at a pose of its reference point.
+/// The rectangle of `shape` with its reference point at `pose`.
 [[nodiscard]] inline OrientedBox box_of(Shape const& shape, Pose const& pose) {
   auto const [sin, cos] = sin_cos(pose.heading);
   return box_of(shape, pose.x, pose.y, cos, sin);
 }
 
-/// The rectangle of `shape` at a motion state of its reference point.
+/// The rectangle of `shape` with its reference point in `state`.
 template <MotionState S>
 [[nodiscard]] OrientedBox box_of(Shape const& shape, S const& state) {
   return box_of(shape, Pose{state.x, state.y, state.heading});

@@ -16,7 +16,7 @@
 
 namespace cambium::geometry {
 
-/// Twice the signed area of the triangle a, b, c [m^2]: positive when c lies left of the line from a to b.
+/// Twice the signed area of the triangle a, b, c [m^2]: positive if c lies to the left of the line from a to b.
 [[nodiscard]] inline double turn(Point const& a, Point const& b, Point const& c) {
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
 }
@@ -30,12 +30,12 @@ namespace cambium::geometry {
   return std::hypot(px - t * ex, py - t * ey);
 }
 
-/// A simple closed ring of points in the map frame [m], counter-clockwise, with its inside and its border. Need not be
-/// convex. Immutable. That it does not cross itself is a precondition, see `is_simple`.
+/// An immutable simple polygon in the map frame [m]: a closed ring of corners, counter-clockwise, not necessarily
+/// convex. Its border belongs to it. Precondition: the ring does not cross itself, see `is_simple`.
 class Polygon {
  public:
-  /// Takes the corners in either direction; repeated points, and a last one that closes the ring, are dropped. Throws
-  /// `Error` naming `where` with fewer than three distinct points, a number that is not finite, or no area. O(n).
+  /// Takes the corners in either direction. Drops repeated points and a last point that closes the ring. Throws `Error`
+  /// naming `where` if there are fewer than three distinct points, a number is not finite, or the area is zero. O(n).
   explicit Polygon(std::span<Point const> points, std::string const& where = "polygon") {
     points_.reserve(points.size());
     for (auto const& p : points) {
@@ -56,7 +56,7 @@ class Polygon {
     set_convex();
   }
 
-  /// As above, from corners written out: `Polygon({{0, 0}, {4, 0}, {4, 2}})`.
+  /// The same from a list: `Polygon({{0, 0}, {4, 0}, {4, 2}})`.
   explicit Polygon(std::initializer_list<Point> points, std::string const& where = "polygon")
       : Polygon(std::span<Point const>(points.begin(), points.size()), where) {}
 
@@ -65,7 +65,7 @@ class Polygon {
   [[nodiscard]] std::size_t size() const { return points_.size(); }
   [[nodiscard]] double area() const { return area_; }  ///< [m^2]
   [[nodiscard]] Box const& bounding_box() const { return box_; }
-  /// True when no corner turns right. O(1).
+  /// True if no corner turns right. O(1).
   [[nodiscard]] bool is_convex() const { return convex_; }
 
   /// Edge i, from corner i to the next.
@@ -73,7 +73,7 @@ class Polygon {
     return {points_[i], points_[i + 1 < points_.size() ? i + 1 : 0]};
   }
 
-  /// True inside and on the border (up to rounding there). O(n).
+  /// True inside and on the border (on the border up to rounding). O(n).
   [[nodiscard]] bool contains(Point const& p) const {
     if (!box_.contains(p)) return false;
     bool inside = false;
@@ -88,7 +88,7 @@ class Polygon {
     return inside;
   }
 
-  /// Distance [m] to the nearest point of the border, also from inside. O(n).
+  /// Distance [m] to the nearest point of the border, from outside or inside. O(n).
   [[nodiscard]] double distance_to_border(Point const& p) const {
     double distance = distance_to_segment(p, points_.back(), points_.front());
     for (std::size_t i = 0; i + 1 < points_.size(); ++i) {
@@ -97,7 +97,7 @@ class Polygon {
     return distance;
   }
 
-  /// The polygon, given as seen from `frame` (x forward, y left), in the map frame. O(n).
+  /// This polygon, taken as local to `frame` (x forward, y left), in the map frame. O(n).
   [[nodiscard]] Polygon transformed(Pose const& frame) const {
     auto const [sin, cos] = sin_cos(frame.heading);
     Polygon result = *this;
@@ -108,7 +108,7 @@ class Polygon {
     return result;
   }
 
-  /// True when no two edges cross or touch but neighbours in their common corner. O(n^2): for checking input.
+  /// True if no two edges cross or touch, except neighbours in their common corner. O(n^2), meant for checking input.
   [[nodiscard]] bool is_simple() const;
 
   friend bool operator==(Polygon const& a, Polygon const& b) { return a.points_ == b.points_; }
@@ -119,7 +119,7 @@ class Polygon {
            p.y() <= std::max(a.y(), b.y());
   }
 
-  /// Relative to the first corner, so that rings far from the origin lose no digits.
+  /// Computed relative to the first corner, so that rings far from the origin lose no precision.
   [[nodiscard]] double signed_area() const {
     double twice = 0.0;
     for (std::size_t i = 1; i + 1 < points_.size(); ++i) twice += turn(points_[0], points_[i], points_[i + 1]);
@@ -148,7 +148,7 @@ class Polygon {
   bool convex_ = false;
 };
 
-/// True when the closed segments a-b and c-d have a point in common.
+/// True if the closed segments a-b and c-d share a point.
 [[nodiscard]] inline bool segments_intersect(Point const& a, Point const& b, Point const& c, Point const& d) {
   auto const apart = [](double a1, double a2, double b1, double b2) {
     return std::max(a1, a2) < std::min(b1, b2) || std::max(b1, b2) < std::min(a1, a2);
@@ -176,7 +176,7 @@ inline bool Polygon::is_simple() const {
   return true;
 }
 
-/// The rectangle as a polygon. Throws `Error` when it has no area.
+/// The rectangle as a polygon. Throws `Error` if its area is zero.
 [[nodiscard]] inline Polygon polygon_of(OrientedBox const& box) { return Polygon(box.corners()); }
 
 }  // namespace cambium::geometry

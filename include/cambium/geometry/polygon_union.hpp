@@ -8,7 +8,7 @@
 
 namespace cambium::geometry {
 
-/// A connected piece of ground.
+/// A connected area with holes.
 struct Area {
   Polygon outer;
   std::vector<Polygon> holes;
@@ -22,8 +22,8 @@ struct Area {
   }
 };
 
-/// The union of polygons: connected pieces with their holes. By Boost.Geometry. O(n log n) for n corners and a constant
-/// number of polygons over each place.
+/// The union of polygons as connected areas with holes (by Boost.Geometry). O(n log n) for n corners if only a bounded
+/// number of polygons overlap anywhere.
 [[nodiscard]] std::vector<Area> union_of(std::span<Polygon const> polygons);
 
 }  // namespace cambium::geometry

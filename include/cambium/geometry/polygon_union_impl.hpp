@@ -17,7 +17,7 @@ namespace cambium::geometry {
 CAMBIUM_COLD std::vector<Area> union_of(std::span<Polygon const> polygons) {
   std::vector<detail::BoostArea> parts;
   for (auto const& polygon : polygons) parts.push_back({detail::to_boost(polygon)});
-  for (; parts.size() > 1;) {  // in pairs, so that most unions are of few corners
+  for (; parts.size() > 1;) {  // in pairs, so that most unions have few corners
     std::vector<detail::BoostArea> joined((parts.size() + 1) / 2);
     for (std::size_t i = 0; i < parts.size(); i += 2) {
       if (i + 1 < parts.size())

@@ -6,15 +6,15 @@
 
 namespace cambium::geometry {
 
-/// A vector of two doubles that is not a `Point`, such as Eigen's: it has `x()`, `y()`, and its size as a constant.
+/// A vector of two doubles from another library, such as Eigen: it has `x()`, `y()` and a constant size.
 template <class V>
 concept ForeignVector = requires(V const& v) {
   requires static_cast<int>(V::SizeAtCompileTime) == 2;
   { v.x() + v.y() } -> std::same_as<double>;
 };
 
-/// A point, or the way between two, in the map frame [m]. Converts from and to `Eigen::Vector2d` (and vectors like it),
-/// whose words it has: headers that need no more of Eigen do not include it.
+/// A point, or the vector between two points, in the map frame [m]. Converts from and to `Eigen::Vector2d` (and similar
+/// types) and uses the same member names, so that most headers need not include Eigen.
 class Point {
  public:
   constexpr Point() = default;
@@ -62,7 +62,7 @@ struct Pose {
   double x{}, y{}, heading{};
 
   Pose() = default;
-  /// All three: two numbers are a point, not a pose of heading 0.
+  /// Requires all three: two numbers are a point, not a pose with heading 0.
   constexpr Pose(double x_, double y_, double heading_) : x(x_), y(y_), heading(heading_) {}
 
   [[nodiscard]] Point position() const { return {x, y}; }
@@ -70,13 +70,13 @@ struct Pose {
   friend bool operator==(Pose const&, Pose const&) = default;
 };
 
-/// The map point that lies at `local` (x forward, y left) as seen from `frame`.
+/// Transforms `local` (x forward, y left, relative to `frame`) to the map frame.
 [[nodiscard]] inline Point to_map(Pose const& frame, Point const& local) {
   double const c = std::cos(frame.heading), s = std::sin(frame.heading);
   return {frame.x + c * local.x() - s * local.y(), frame.y + s * local.x() + c * local.y()};
 }
 
-/// Where the map point `p` lies as seen from `frame` (x forward, y left). Inverse of `to_map`.
+/// Transforms the map point `p` to coordinates relative to `frame` (x forward, y left). Inverse of `to_map`.
 [[nodiscard]] inline Point to_local(Pose const& frame, Point const& p) {
   double const c = std::cos(frame.heading), s = std::sin(frame.heading);
   double const dx = p.x() - frame.x, dy = p.y() - frame.y;

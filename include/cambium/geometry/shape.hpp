@@ -6,8 +6,8 @@
 
 namespace cambium::geometry {
 
-/// A rectangle around a road user, given by the distances [m] of its sides from the reference point, whose pose is the
-/// agent's. Vehicles: the reference point is the centre of the rear axle, on the ground.
+/// A rectangle around a road user, given by the distances [m] of its sides from the reference point. The agent's pose
+/// is that of the reference point: for vehicles, the centre of the rear axle on the ground.
 struct Shape {
   double front = 3.6;
   double rear = 0.9;
@@ -26,14 +26,14 @@ struct Shape {
 
   [[nodiscard]] constexpr double length() const { return front + rear; }
   [[nodiscard]] constexpr double width() const { return left + right; }
-  /// How far the rectangle's centre lies ahead of the reference point [m].
+  /// Distance of the rectangle's centre ahead of the reference point [m].
   [[nodiscard]] constexpr double center_offset() const { return 0.5 * (front - rear); }
-  /// How far the rectangle's centre lies to the left of the reference point [m]; 0 for symmetric vehicles.
+  /// Distance of the rectangle's centre to the left of the reference point [m]; 0 for symmetric vehicles.
   [[nodiscard]] constexpr double center_offset_left() const { return 0.5 * (left - right); }
-  /// Radius [m] of the circle through the corners, about the rectangle's centre.
+  /// Radius [m] of the circumscribed circle.
   [[nodiscard]] double radius() const { return 0.5 * std::sqrt(length() * length() + width() * width()); }
 
-  /// Whether `other` fits in, reference point on reference point.
+  /// Whether `other` fits inside when the reference points coincide.
   [[nodiscard]] constexpr bool holds(Shape const& other) const {
     return other.front <= front && other.rear <= rear && other.left <= left && other.right <= right;
   }
@@ -41,13 +41,13 @@ struct Shape {
   friend bool operator==(Shape const&, Shape const&) = default;
 };
 
-/// How far a shape reaches along a direction [m], measured from the reference point.
+/// Extent of a shape along an axis [m], measured from the reference point.
 struct Extent {
-  double positive;  ///< with the direction
-  double negative;  ///< against it, also counted positive
+  double positive;  ///< in the direction of the axis
+  double negative;  ///< in the opposite direction, also a positive number
 };
 
-/// Reach of a shape, whose heading makes an angle (given by `cos` and `sin`) with an axis, along that axis.
+/// Extent of a shape along an axis. `cos` and `sin` belong to the angle from the axis to the shape's heading.
 [[nodiscard]] constexpr Extent extent_along(Shape const& shape, double cos, double sin) {
   auto const reach = [&shape](double c, double s) {
     return (c >= 0.0 ? c * shape.front : -c * shape.rear) + (s <= 0.0 ? -s * shape.left : s * shape.right);
@@ -55,7 +55,7 @@ struct Extent {
   return {reach(cos, sin), reach(-cos, -sin)};
 }
 
-// Presets: outer dimensions without mirrors. Reference points on the rear axle, of twin axles between the two.
+// Presets: outer dimensions without mirrors. The reference point is on the rear axle; midway between twin axles.
 
 /// Compact to medium car, 4.5 m x 1.8 m, wheel base 2.7 m, rear overhang 0.9 m (size of a VW Golf or BMW 3 series,
 /// rounded).
@@ -64,12 +64,12 @@ struct Extent {
 /// Delivery van, 6.0 m x 2.0 m, wheel base 3.7 m, rear overhang 1.3 m (size of a long Mercedes Sprinter, rounded).
 [[nodiscard]] constexpr Shape van() { return {4.7, 1.3, 1.0, 1.0}; }
 
-/// Rigid truck, 10.0 m x 2.55 m, wheel base 5.8 m, rear overhang 2.8 m. 2.55 m is the widest, 12 m the longest that EU
-/// Directive 96/53/EC (annex I) permits.
+/// Rigid truck, 10.0 m x 2.55 m, wheel base 5.8 m, rear overhang 2.8 m. EU Directive 96/53/EC (annex I) permits at most
+/// 2.55 m in width and 12 m in length.
 [[nodiscard]] constexpr Shape truck() { return {7.2, 2.8, 1.275, 1.275}; }
 
-/// Articulated truck as one rectangle, 16.5 m x 2.55 m: the longest that EU Directive 96/53/EC (annex I) permits. The
-/// reference point is the middle axle of the trailer, 4.0 m from the rear end.
+/// Articulated truck as one rectangle, 16.5 m x 2.55 m, the longest that EU Directive 96/53/EC (annex I) permits. The
+/// reference point is on the middle axle of the trailer, 4.0 m from the rear end.
 [[nodiscard]] constexpr Shape articulated_truck() { return {12.5, 4.0, 1.275, 1.275}; }
 
 /// City bus, 12.0 m x 2.55 m, wheel base 5.9 m, rear overhang 3.4 m (size of a Mercedes Citaro, rounded).
@@ -78,11 +78,11 @@ struct Extent {
 /// Motorcycle with rider, 2.2 m x 0.8 m, wheel base 1.5 m (size of a BMW R 1250 without cases, rounded).
 [[nodiscard]] constexpr Shape motorcycle() { return {1.85, 0.35, 0.4, 0.4}; }
 
-/// Bicycle with rider, 1.8 m x 0.65 m, wheel base 1.1 m (a touring bicycle, as wide as its handlebar).
+/// Bicycle with rider, 1.8 m x 0.65 m, wheel base 1.1 m (a touring bicycle, with the width of its handlebar).
 [[nodiscard]] constexpr Shape bicycle() { return {1.45, 0.35, 0.325, 0.325}; }
 
-/// Pedestrian, a square of 0.6 m about the reference point: the longer axis, 0.61 m, of the body ellipse by which
-/// Fruin 1971, "Pedestrian planning and design", measures room (0.61 m x 0.46 m), as a body may turn on the spot.
+/// Pedestrian, a square of 0.6 m about the reference point. The side is the longer axis of Fruin's body ellipse (1971,
+/// "Pedestrian planning and design", 0.61 m x 0.46 m), because a pedestrian may turn on the spot.
 [[nodiscard]] constexpr Shape pedestrian() { return {0.3, 0.3, 0.3, 0.3}; }
 
 }  // namespace cambium::geometry

@@ -40,16 +40,16 @@ template <ParameterList F>
 template <ParameterList F>
 using ElementOf = std::remove_cv_t<typename decltype(elements_of(std::declval<F const&>()))::element_type>;
 
-/// A key's path from the outermost struct, made into text only when somebody reads it.
+/// A key's path from the outermost struct, such as "source.ids[2]". It becomes text only on request.
 struct ParameterPath {
   static constexpr std::size_t no_list = std::numeric_limits<std::size_t>::max(), any_element = no_list - 1;
 
   ParameterPath const* outer;
   char const* name;
-  std::size_t element = no_list;  ///< place in the list
+  std::size_t element = no_list;  ///< index in the list
 
   [[nodiscard]] std::string text() const;
-  /// Whether it leads through some element of a list.
+  /// Whether any part of the path stands for all elements of a list ("[]").
   [[nodiscard]] bool is_any_element() const {
     return element == any_element || (outer != nullptr && outer->is_any_element());
   }
@@ -69,8 +69,8 @@ struct ParameterValue {
   enum class Kind : std::uint8_t { boolean, id, choice, signed_integer, unsigned_integer, single_precision, number };
 
   Kind kind;
-  double number;       ///< what ranges are about
-  std::uint64_t bits;  ///< of an integer, a choice or an id: the value modulo 2^64
+  double number;       ///< compared with the range
+  std::uint64_t bits;  ///< the value of an integer, a choice or an id modulo 2^64; else 0
 
   template <class Value>
   explicit constexpr ParameterValue(Value value)
@@ -95,22 +95,23 @@ struct ParameterValue {
   }
 };
 
-/// What reads parameters without knowing their structs: checks, texts, tables, hashes, comparisons.
+/// Reads parameters without knowing their structs. Checks, texts, tables, hashes and comparisons derive from it, so
+/// that each is compiled once instead of once per struct.
 class ParameterReader {
  public:
-  /// `other`: the same field of the second struct, where two are read side by side; else null.
+  /// One field. `other`: the same field of the second struct if two are read side by side, else null.
   virtual void value(ParameterPath const& path, ParameterInfo const& info, ParameterValue const& value,
                      ParameterValue const* other) = 0;
-  /// The second struct has another number of elements in a list, which is passed over.
+  /// A list has a different length in the second struct; its elements are skipped.
   virtual void other_length() {}
-  /// After the fields of a struct that has a check of its own: `check(object, where)` throws.
+  /// Called after the fields of a nested struct that has a member `check`; `check(object, where)` calls it.
   virtual void own_check(ParameterPath const&, void const*, void (*)(void const*, std::string const&)) {}
 
  protected:
   ~ParameterReader() = default;
 };
 
-/// Which elements of lists are read: each of them or, to show what elements are, a default one.
+/// Which elements of a list are read: each one, or a single default element that shows what elements look like.
 enum class ListElements : bool { one_default, each };
 
 template <class Value>
@@ -131,14 +132,14 @@ void read_value(ParameterPath const& path, ParameterInfo const& info, Value cons
     static_assert(
         std::is_arithmetic_v<Value> || std::is_enum_v<Value>,
         "cambium::parameter: a field must be a number, a bool, an enum, an id, another described struct, or a "
-        "list of these.");
+        "list of these");
     ParameterValue const of_other(other != nullptr ? *other : value);
     reader.value(path, info, ParameterValue(value), other != nullptr ? &of_other : nullptr);
   }
 }
 
-/// Shows `reader` each field that is a plain value, those of nested structs and of lists included. `own`: the path of
-/// the struct itself; none: its fields have none above.
+/// Passes every plain value to `reader`, including those in nested structs and lists. `own`: the path of the struct
+/// itself; null if keys start with its fields.
 template <Described T>
 void read_parameters(T const& object, T const* other, ParameterPath const* own, ListElements lists,
                      ParameterReader& reader) {

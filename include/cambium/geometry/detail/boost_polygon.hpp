@@ -9,7 +9,7 @@
 #include "cambium/geometry/polygon.hpp"
 #include "cambium/geometry/pose.hpp"
 
-// g++ 12 takes parts of Boost.Geometry for uninitialised; clang 19 rejects an enumeration of Boost 1.74.
+// g++ 12 wrongly warns that parts of Boost.Geometry are uninitialised; clang 19 rejects an enumeration of Boost 1.74.
 #if defined(__clang__)
 #pragma clang diagnostic push
 #if __has_warning("-Wenum-constexpr-conversion")
@@ -42,7 +42,7 @@ using BoostArea = boost::geometry::model::multi_polygon<BoostPolygon>;
   return result;
 }
 
-/// Adds a ring as a polygon unless it has no area worth the name (less than a square centimetre).
+/// Adds a ring as a polygon unless its area is negligible (below one square centimetre).
 template <class Ring>
 void add_ring(Ring const& ring, std::vector<Polygon>& polygons) {
   std::vector<Point> points;
