@@ -307,3 +307,26 @@ TEST_CASE("crossing a junction allocates nothing and is repeatable, in the world
       CHECK(copy.frame().agents[i].state.x == each->frame().agents[i].state.x);
   }
 }
+
+TEST_CASE("a driver keeps the junction clear if there is no room behind it, unless told not to") {
+  Crossing const crossing;
+  auto const route = crossing.route(1, 0);
+  for (bool const keep_clear : {true, false}) {
+    Sim world(crossing.map);
+    auto const id = add_before(world, route, 30.0, 6.0);
+    world.set_behavior(id, Intersection{.idm = {.desired_speed = 10.0}, .keep_clear = keep_clear});
+    // A queue that hardly moves begins right behind the junction.
+    std::size_t behind = 1;
+    while (!is_valid(crossing.map->road(crossing.map->lane(route.lanes[behind]).road).junction)) ++behind;
+    while (is_valid(crossing.map->road(crossing.map->lane(route.lanes[behind]).road).junction)) ++behind;
+    auto const pose = crossing.map->lane(route.lanes[behind]).path.pose(2.0);
+    world.add({.position = pose.position(), .heading = pose.heading, .behavior = IdmClassic{.desired_speed = 0.1}});
+    bool entered = false;
+    for (int i = 0; i < 100; ++i) {
+      REQUIRE(world.step(0.2));
+      entered = entered || is_valid(crossing.map->road(crossing.map->lane(world.lane_of(id)).road).junction);
+    }
+    CAPTURE(keep_clear);
+    CHECK(entered == !keep_clear);
+  }
+}

@@ -109,6 +109,20 @@ TEST_CASE("a driver keeps its leader's gap although a vehicle that merges is nea
   CHECK(both.record(id).action.acceleration <= alone.record(id).action.acceleration);
 }
 
+TEST_CASE("the strictest constraint is found whenever the law's response is asked for") {
+  cb::IdmLaw const law(cb::IdmParameters{}, 10.0);
+  cb::Strictest ahead(law);
+  CHECK(ahead.acceleration() == law.free());
+  ahead.heed({20.0, 0.0});
+  CHECK(ahead.acceleration() == law(20.0, 0.0));
+  ahead.heed({100.0, 9.0});
+  CHECK(ahead.constraint().gap == 20.0);
+  CHECK(ahead.acceleration() == law(20.0, 0.0));
+  ahead.heed({15.0, 0.0});
+  CHECK(ahead.constraint().gap == 15.0);
+  CHECK(ahead.acceleration() == law(15.0, 0.0));
+}
+
 TEST_CASE("the permitted speed is the limit, or a speed that still meets lower limits ahead") {
   cb::map::LaneCorridor corridor;
   corridor.speed_limits = {{0.0, 30.0}, {200.0, 10.0}, {400.0, 20.0}};

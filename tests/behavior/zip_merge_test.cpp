@@ -163,3 +163,23 @@ TEST_CASE("ramp and main road alternate at a merge in a junction, without collis
     CHECK(passed.lanes.size() + 2 >= from.size());
   }
 }
+
+TEST_CASE("a driver loses its patience with a vehicle that stands, and only then goes") {
+  using Blocked = Traffic<cb::ZipMerge, cb::IdmClassic, cb::ConstantAcceleration>;
+  auto const start_of = [](double patience) {
+    Blocked world(own_map("lane_drop.xodr"));
+    auto driver = zip(14.0);
+    driver.patience = patience;
+    auto const leader = add(world, 2, 372.0, 8.0, cb::IdmClassic{.desired_speed = 14.0});
+    auto const id = add(world, 2, 362.0, 0.0, driver);
+    add(world, 3, 360.0, 0.0, cb::ConstantAcceleration{});  // its turn, but it never starts
+    static_cast<void>(leader);
+    while (world.time() < 40.0 && world.state(id).speed < 1.0) REQUIRE(world.step(0.2));
+    return world.time();
+  };
+  double const soon = start_of(2.0), late = start_of(12.0);
+  CHECK(soon > 2.0);
+  CHECK(soon < 8.0);
+  CHECK(late > 12.0);
+  CHECK(late < 18.0);
+}

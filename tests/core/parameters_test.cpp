@@ -156,17 +156,17 @@ TEST_CASE("lists and ids are parameters like others: compared, hashed, shown and
     return std::make_shared<std::vector<Window> const>(std::vector<Window>{window});
   };
   std::vector<Timetable> const different{{},
-                                    {.weights = {0.5, 2.5}},
-                                    {.weights = {2.0, 0.5}},
-                                    {.windows = {}},
-                                    {.windows = {{1.0, 2.0}}},
-                                    {.windows = {{1.0, 2.0}, {3.0, 4.0}, {3.0, 4.0}}},
-                                    {.windows = {{1.0, 2.0}, {3.0, 4.5}}},
-                                    {.windows = {{3.0, 4.0}, {1.0, 2.0}}},
-                                    {.shared = shared({5.0, 6.0})},
-                                    {.shared = shared({5.0, 7.0})},
-                                    {.lane = LaneId{0}},
-                                    {.lane = LaneId{7}}};
+                                         {.weights = {0.5, 2.5}},
+                                         {.weights = {2.0, 0.5}},
+                                         {.windows = {}},
+                                         {.windows = {{1.0, 2.0}}},
+                                         {.windows = {{1.0, 2.0}, {3.0, 4.0}, {3.0, 4.0}}},
+                                         {.windows = {{1.0, 2.0}, {3.0, 4.5}}},
+                                         {.windows = {{3.0, 4.0}, {1.0, 2.0}}},
+                                         {.shared = shared({5.0, 6.0})},
+                                         {.shared = shared({5.0, 7.0})},
+                                         {.lane = LaneId{0}},
+                                         {.lane = LaneId{7}}};
   std::set<std::uint64_t> hashes;
   std::set<std::string> lines;
   for (auto const& one : different) {

@@ -2,14 +2,21 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
+#include <memory>
+#include <utility>
+#include <vector>
 
 #include "../support/maps.hpp"
 #include "../world/fixtures.hpp"
+#include "cambium/behavior/open_loop/static_trajectory.hpp"
 #include "cambium/evaluation/course_end.hpp"
 #include "cambium/evaluation/evaluator.hpp"
 #include "cambium/map/road/curve_layout.hpp"
+#include "cambium/map/corridor/build_corridor.hpp"
+#include "cambium/map/routing/route.hpp"
+#include "cambium/observer/parametric.hpp"
 
 using namespace fixtures;
 
@@ -93,10 +100,12 @@ TEST_CASE("a vehicle is past its junctions when its rear is, or when it has left
       break;
     }
   REQUIRE(world.size() == 1);
-  auto const& conflicts = world.roster().agents[0].road->corridors[0].conflicts;
-  REQUIRE_FALSE(conflicts.empty());
+  auto const& corridor = world.roster().agents[0].road->corridors[0];
   double end = 0.0;
-  for (auto const& conflict : conflicts) end = std::max(end, conflict.hull().end);
+  for (auto const& piece : corridor.pieces)
+    if (cb::is_valid(world.map().road(world.map().lane(piece.lane).road).junction)) end = std::max(end, piece.end);
+  for (auto const& conflict : corridor.conflicts) end = std::max(end, conflict.hull().end);
+  REQUIRE(end > 0.0);
   int before = 0, after = 0;
   for (int i = 0; i < 300; ++i) {
     REQUIRE(world.step(0.2));
@@ -110,6 +119,28 @@ TEST_CASE("a vehicle is past its junctions when its rear is, or when it has left
   CHECK(before > 10);
   CHECK(after > 5);
   CHECK(world.frame().agents[0].status != cb::AgentStatus::driving);  // it left the map at last
+}
+
+TEST_CASE("before a junction nobody is past it, whatever lane leads there") {
+  for (auto const* name :
+       {"intersection_4way.xodr", "intersection_3way.xodr", "roundabout.xodr", "highway_exit.xodr"}) {
+    auto const map = support::own_map(name);
+    int junctions = 0;
+    for (auto const& lane : map->lanes()) {
+      if (!lane.drivable() || lane.length() < 15.0 || cb::is_valid(map->road(lane.road).junction)) continue;
+      auto const route = cb::map::straight_route(*map, lane.id);
+      auto const is_inside = [&](cb::LaneId id) { return cb::is_valid(map->road(map->lane(id).road).junction); };
+      bool const leads_there = std::ranges::any_of(route.lanes, is_inside);
+      auto const pose = lane.path.pose(10.0);
+      Sim world(map);
+      auto const ego = world.slot_of(
+          world.add({.position = pose.position(), .heading = pose.heading, .speed = 5.0, .route = route}));
+      if (leads_there) CHECK_FALSE(cb::PastJunctions{}(world, ego));
+      junctions += leads_there;
+    }
+    CAPTURE(name);
+    CHECK(junctions > 1);
+  }
 }
 
 TEST_CASE("the lateral acceleration is that of the curve driven") {
@@ -130,15 +161,47 @@ TEST_CASE("the lateral acceleration is that of the curve driven") {
 TEST_CASE("gaps and times to collision are those of the next one ahead; one's own evaluator looks likewise") {
   Sim world(straight_road(1, 300));
   auto const ego = world.slot_of(world.add({.position = {40, -1.75}, .speed = 10}));
-  CHECK(std::isinf(cb::Gap{}(world, ego)));
-  CHECK(std::isinf(cb::TimeToCollision{}(world, ego)));
+  CHECK(cb::Gap{}(world, ego) == cb::Look::horizon);
+  CHECK(cb::TimeToCollision{}(world, ego) == 60.0);
+  CHECK(cb::TimeToCollision{.longest = 5.0}(world, ego) == 5.0);
   auto const ahead = world.add({.position = {80, -1.75}, .speed = 6});
   double const gap = 40.0 - cb::geometry::car().front - cb::geometry::car().rear;
   CHECK(cb::Gap{}(world, ego) == doctest::Approx(gap));
   CHECK(cb::TimeToCollision{}(world, ego) == doctest::Approx(gap / 4.0));
   CHECK(TimeHeadway{}(world, ego) == doctest::Approx(gap / 10.0));
   world.set_state(ahead, {.x = 80, .y = -1.75, .speed = 12});
-  CHECK(std::isinf(cb::TimeToCollision{}(world, ego)));
+  CHECK(cb::TimeToCollision{}(world, ego) == 60.0);
+  CHECK(cb::Gap{.farthest = 10.0}(world, ego) == 10.0);
+}
+
+TEST_CASE("a gap is the true one, whatever the agent sees") {
+  using Noisy = cb::World<Sim::Behaviors, cb::InterpolateExecution, cb::SingleTrack, cb::ParametricObserver>;
+  Noisy world(straight_road(1, 300), {.seed = 4});
+  cb::ObservationNoise const noise{.along = 3.0, .speed = 2.0};
+  auto const ego =
+      world.slot_of(world.add({.position = {40, -1.75}, .speed = 10, .observer = {.own = noise, .others = noise}}));
+  world.add({.position = {60, -1.75}, .speed = 5});
+  double const gap = 20.0 - cb::geometry::car().length();
+  REQUIRE(std::abs(world.observe(ego).ahead()->gap - gap) > 0.01);
+  CHECK(cb::Gap{}(world, ego) == doctest::Approx(gap));
+  CHECK(cb::TimeToCollision{}(world, ego) == doctest::Approx(gap / 5.0));
+}
+
+TEST_CASE("a course that has not begun is not over, and what asks a view can end one") {
+  using Late = cb::World<cb::BehaviorSet<cb::StaticTrajectory, cb::ConstantAcceleration>, cb::InterpolateExecution,
+                         cb::SingleTrack>;
+  Late world(straight_road(1, 300));
+  auto const ego = world.slot_of(world.add({.position = {40, -1.75}, .speed = 10}));
+  world.add({.position = {60, -1.75}, .speed = 5});
+  auto const is_near = [](auto& at, cb::Slot slot) { return TimeHeadway{}(at, slot) < 2.0; };
+  CHECK(cb::course_end(world, ego) == cb::CourseEnd::none);
+  CHECK(cb::course_end(world, ego, is_near) == cb::CourseEnd::collision);
+  std::vector<cb::State> recording;
+  for (int i = 0; i < 10; ++i)
+    recording.push_back({.time = 1.0 + 0.2 * i, .x = 100.0 + 2.0 * i, .y = -1.75, .heading = 0.0, .speed = 10.0});
+  auto const late = world.slot_of(world.add({.position = {100, -1.75}, .behavior = cb::StaticTrajectory{recording}}));
+  REQUIRE(world.frame().agents[late].status == cb::AgentStatus::not_started);
+  CHECK(cb::course_end(world, late) == cb::CourseEnd::none);
 }
 
 TEST_CASE("a course ends by a collision, off the road, in an oncoming lane, off its route, or where the map ends") {

@@ -246,3 +246,30 @@ TEST_CASE("where a bend is followed by one to the other side, too") {
   CHECK(count.off > 5000);
   CHECK(count.on > 5000);
 }
+
+TEST_CASE("a vehicle between two lanes is on the road up to the end of the map") {
+  for (auto const* name : {"highway.xodr", "intersection_4way.xodr", "merging.xodr"}) {
+    Sim world(support::own_map(name));
+    int tried = 0;
+    for (auto const& lane : world.map().lanes()) {
+      if (!lane.drivable() || !lane.successors.empty() || lane.length() < 30.0 || !cb::is_valid(lane.left_neighbor) ||
+          cb::is_valid(lane.merges_into) || !world.map().lane(lane.left_neighbor).drivable() ||
+          cb::is_valid(world.map().lane(lane.left_neighbor).merges_into) ||
+          world.map().lane(lane.left_neighbor).along_road != lane.along_road)
+        continue;
+      for (double const left : {10.0, 5.0, 3.0, 1.0}) {
+        auto const pose = lane.path.pose(lane.length() - left);
+        double const aside = lane.widths.back().left;
+        auto const ego = world.slot_of(
+            world.add({.position = {pose.x - aside * std::sin(pose.heading), pose.y + aside * std::cos(pose.heading)},
+                       .heading = pose.heading}));
+        CAPTURE(name);
+        CAPTURE(left);
+        CHECK_FALSE(cb::OffRoad{}(world, ego));
+        world.remove(world.roster().agents[ego].id);
+        ++tried;
+      }
+    }
+    CHECK(tried > 0);
+  }
+}

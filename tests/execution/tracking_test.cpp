@@ -246,8 +246,9 @@ TEST_CASE(
       auto twin = start;
       for (double t = 0.0; t < step - 1e-9; t += interval) {
         double const lag = twin.x - 10.0 * t, faster = twin.speed - 10.0;
-        twin = cb::drive(car, twin, {-along.first * lag - along.second * faster, -gain.first * twin.y - gain.second * twin.heading},
-                         interval);
+        twin = cb::drive(
+            car, twin, {-along.first * lag - along.second * faster, -gain.first * twin.y - gain.second * twin.heading},
+            interval);
       }
       CHECK(end.y == doctest::Approx(twin.y).epsilon(1e-9));
       CHECK(end.heading == doctest::Approx(twin.heading).epsilon(1e-9));

@@ -85,6 +85,17 @@ TEST_CASE("it stops at an object that blocks the road and passes one that leaves
   }
 }
 
+TEST_CASE("it follows at its time headway") {
+  auto const gap_at = [](double headway) {
+    auto world = road(1, 0, 8.0, 0.0, {.time_headway = headway});
+    auto const leader = world.add({.position = {90, -1.75}, .speed = 8.0, .behavior = ConstantAcceleration{}});
+    drive(world, 200);
+    CHECK(world.state(ego).speed == doctest::Approx(8.0).epsilon(0.02));
+    return world.state(leader).x - world.state(ego).x;
+  };
+  CHECK(gap_at(2.4) - gap_at(0.8) == doctest::Approx(1.6 * 8.0).epsilon(0.1));
+}
+
 TEST_CASE("it overtakes a slower leader") {
   auto world = road(2, 0);
   world.add({.position = {90, -5.25}, .speed = 5, .behavior = ConstantAcceleration{}});

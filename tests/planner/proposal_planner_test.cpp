@@ -182,6 +182,22 @@ TEST_CASE("it brakes as hard as it may if all proposals soon collide") {
   CHECK(report.course.back().agents[0].state.speed == 0.0);
   REQUIRE(world.step(0.2));
   CHECK(world.record(ego).action.acceleration == doctest::Approx(-6.0));
+  for (auto const& candidate : report.candidates) CHECK(candidate.refused == "collision");
+}
+
+TEST_CASE("an emergency stop is reported as it is driven") {
+  auto world = two_lanes(0, 20.0);
+  world.set_state(ego, {.x = 40, .y = -4.9, .heading = 0.02, .speed = 20.0});
+  world.add_object(obstacle(65, -1.75, 5.25));
+  Planner::Workspace workspace;
+  auto const report = Planner{}.think(world.observe(ego), {}, workspace);
+  REQUIRE_FALSE(report.chosen);
+  REQUIRE(world.step(Planner{}.step));
+  auto const planned = report.course[1].agents[0].state;
+  CHECK(world.state(ego).x == doctest::Approx(planned.x));
+  CHECK(world.state(ego).y == doctest::Approx(planned.y));
+  CHECK(world.state(ego).heading == doctest::Approx(planned.heading));
+  CHECK(world.memory<Planner>(ego) == report.memory);
 }
 
 TEST_CASE("faulty parameters are reported") {

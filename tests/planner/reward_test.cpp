@@ -80,6 +80,34 @@ TEST_CASE("a planner heeds a user's evaluator") {
   }
 }
 
+TEST_CASE_TEMPLATE("every shipped evaluator can be a term of a reward that a search plans by", Evaluator, Collision,
+                   AtFaultCollision, AnyCollision, OffRoad, OncomingLane, AtGoal, PastJunctions, Progress,
+                   SpeedDeviation, SpeedLimitExcess, LaneOffset, Acceleration, HardBraking, Gap, TimeToCollision) {
+  using Term = Reward<Evaluator>;
+  using TermPlanner = Mcts<PredictionWorld, MacroActions, Term>;
+  World<BehaviorSet<TermPlanner, IdmClassic>, InterpolateExecution, SingleTrack> world(
+      support::straight_road(2, 600.0));
+  TermPlanner planner;
+  planner.options.budget.iterations = 50;
+  planner.reward.first = {.weight = 1.0, .per_second = true};
+  auto const id = world.add({.position = {60, -5.25}, .speed = 12, .behavior = planner});
+  typename TermPlanner::Workspace workspace;
+  for (auto const& candidate : planner.think(world.observe(id), {}, workspace).candidates)
+    CHECK(std::isfinite(candidate.score));
+  REQUIRE(world.step(0.2));
+}
+
+TEST_CASE("a course that is cut off counts the terms per second for the lookahead, the user's too") {
+  PredictionWorld world(support::straight_road(2, 600.0));
+  world.add({.position = {60, -5.25}, .speed = 12, .behavior = IdmClassic{}});
+  Reward<SpeedDeviation> reward;
+  reward.first = {.evaluator = {.desired_speed = 15.0}, .weight = -2.0, .per_second = true};
+  reward.traffic() = {.progress = 0.5, .lookahead = 4.0};
+  CHECK(reward.value(world, ego, 0.2) == doctest::Approx(4.0 * (0.5 * 12.0 - 2.0 * 3.0)));
+  reward.first.per_second = false;
+  CHECK(reward.value(world, ego, 0.2) == doctest::Approx(4.0 * 0.5 * 12.0));
+}
+
 TEST_CASE("the parameters of a reward's terms are checked and compared like all others") {
   Own a, b;
   CHECK(equal_parameters(a, b));

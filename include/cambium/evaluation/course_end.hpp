@@ -21,11 +21,12 @@ enum class CourseEnd : std::uint8_t {
 /// evaluator that decides what counts as a collision; `heeds_road` says whether leaving the road ends the course. Costs
 /// as much as these evaluators.
 template <class World, class Collides = Collision>
-[[nodiscard]] CourseEnd course_end(World const& world, Slot slot, Collides const& collides = {},
-                                   bool heeds_road = true) {
+[[nodiscard]] CourseEnd course_end(World& world, Slot slot, Collides const& collides = {}, bool heeds_road = true) {
   switch (world.frame().agents[slot].status) {
     case AgentStatus::driving:
       break;
+    case AgentStatus::not_started:
+      return CourseEnd::none;
     case AgentStatus::off_route:
     case AgentStatus::failed:
       return CourseEnd::off_road;

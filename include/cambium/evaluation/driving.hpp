@@ -2,14 +2,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <optional>
 
 #include "cambium/core/ids.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/state.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/shape.hpp"
+#include "cambium/behavior/view.hpp"
 #include "cambium/world/frame.hpp"
+#include "cambium/world/traffic_query.hpp"
 
 namespace cambium {
 
@@ -25,7 +27,8 @@ struct AtGoal {
   }
 };
 
-/// Whether an agent's rear has passed the last junction on its route, or the agent has left traffic.
+/// Whether an agent's rear has passed the junctions and the conflicts on its way, or the agent has left traffic. The
+/// lanes of its corridor count, and those beyond it on its route. O(lanes of the route + conflicts).
 struct PastJunctions {
   static constexpr char const* name = "past_junctions";
   static constexpr char const* summary = "has passed the last junction on its route";
@@ -36,9 +39,18 @@ struct PastJunctions {
     auto const& record = world.frame().agents[slot];
     if (record.status != AgentStatus::driving) return true;
     auto const& agent = world.roster().agents[slot];
+    auto const& corridor = agent.road->corridors[record.lane.corridor];
     double const rear = record.lane.s - agent.shape.rear;
-    return std::ranges::none_of(agent.road->corridors[record.lane.corridor].conflicts,
-                                [rear](auto const& conflict) { return conflict.hull().end > rear; });
+    auto const is_in_junction = [&](LaneId id) {
+      return is_valid(id) && is_valid(world.map().road(world.map().lane(id).road).junction);
+    };
+    for (auto const& piece : corridor.pieces)
+      if (piece.end > rear && is_in_junction(piece.lane)) return false;
+    for (auto const& conflict : corridor.conflicts)
+      if (conflict.hull().end > rear) return false;
+    auto const& route = agent.road->route;
+    auto const last = std::ranges::find(route, corridor.pieces.back().lane);
+    return corridor.reaches_destination || last == route.end() || std::none_of(last, route.end(), is_in_junction);
   }
 };
 
@@ -130,6 +142,7 @@ struct HardBraking {
 /// The agent's acceleration across its heading, left positive [m/s^2], from the turn over the last step. Needs a world
 /// that keeps a history (`World::keep_history`); 0 without one.
 struct LateralAcceleration {
+  static constexpr bool needs_history = true;
   static constexpr char const* name = "lateral_acceleration";
   static constexpr char const* summary = "over the last step, left positive [m/s^2]; needs a history";
   static constexpr auto parameters() { return parameter_list(); }
@@ -151,6 +164,7 @@ struct LateralAcceleration {
 /// The change of the agent's acceleration since the previous step [m/s^3]. Needs a world that keeps a history; 0
 /// without one.
 struct Jerk {
+  static constexpr bool needs_history = true;
   static constexpr char const* name = "jerk";
   static constexpr char const* summary = "change of the acceleration since the previous step [m/s^3]; needs a history";
   static constexpr auto parameters() { return parameter_list(); }
@@ -164,32 +178,55 @@ struct Jerk {
   }
 };
 
-/// The gap to the next road user ahead along the lane corridor, bumper to bumper [m]; infinite without one.
+namespace detail {
+
+/// The next road user ahead of an agent along its lane corridor, as it truly is.
+template <class World>
+[[nodiscard]] std::optional<RoadUser> next_ahead(World& world, Slot slot) {
+  static_cast<void>(world.observe(slot));  // brings the index up to date
+  auto const& agent = world.roster().agents[slot];
+  auto const& at = world.frame().agents[slot].lane;
+  TrafficQuery const query{slot, at.s, agent.shape.front, agent.shape.rear, at.piece};
+  return world.traffic().front(agent.road->corridors[at.corridor], query, world.roster().object_entries, false);
+}
+
+}  // namespace detail
+
+/// The gap to the next road user ahead along the lane corridor, bumper to bumper, at most `farthest` [m].
 struct Gap {
+  double farthest = Look::horizon;
+
   static constexpr char const* name = "gap";
   static constexpr char const* summary = "gap to the next road user ahead [m]";
-  static constexpr auto parameters() { return parameter_list(); }
+  static constexpr auto parameters() {
+    return parameter_list(parameter("farthest", &Gap::farthest, "m", Range{0, Look::horizon},
+                                    "gap where nobody is ahead, or farther away"));
+  }
 
   template <class World>
   [[nodiscard]] double operator()(World& world, Slot slot) const {
-    auto const next = world.observe(slot).ahead();
-    return next ? next->gap : std::numeric_limits<double>::infinity();
+    auto const next = detail::next_ahead(world, slot);
+    return next ? std::min(next->gap, farthest) : farthest;
   }
 };
 
-/// Time until the agent hits the next road user ahead along its lane corridor if both keep their speeds [s]; infinite
-/// if they do not close in.
+/// Time until the agent hits the next road user ahead along its lane corridor if both keep their speeds, at most
+/// `longest` [s].
 struct TimeToCollision {
+  double longest = 60.0;
+
   static constexpr char const* name = "time_to_collision";
   static constexpr char const* summary = "to the next road user ahead, at constant speeds [s]";
-  static constexpr auto parameters() { return parameter_list(); }
+  static constexpr auto parameters() {
+    return parameter_list(parameter("longest", &TimeToCollision::longest, "s", Range{0, 1e6},
+                                    "time where the two do not close in, or meet later"));
+  }
 
   template <class World>
   [[nodiscard]] double operator()(World& world, Slot slot) const {
-    auto const view = world.observe(slot);
-    auto const next = view.ahead();
-    double const closing = next ? view.state().speed - next->speed : 0.0;
-    return closing > 0.0 ? std::max(0.0, next->gap) / closing : std::numeric_limits<double>::infinity();
+    auto const next = detail::next_ahead(world, slot);
+    double const closing = next ? world.frame().agents[slot].state.speed - next->speed : 0.0;
+    return closing > 0.0 ? std::clamp(next->gap / closing, 0.0, longest) : longest;
   }
 };
 

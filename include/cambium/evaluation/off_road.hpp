@@ -91,8 +91,14 @@ struct OffRoad {
     auto const& corridor = world.roster().agents[slot].road->corridors[at.corridor];
     auto const foot = corridor.center.project(p, at.segment);
     if (foot.s > 0.0 && foot.s < corridor.length()) return true;
-    auto const end = foot.s <= 0.0 ? corridor.widths.front() : corridor.widths.back();
-    return foot.lateral > end.left || foot.lateral < -end.right;
+    bool const is_before = foot.s <= 0.0;
+    auto const end = is_before ? corridor.widths.front() : corridor.widths.back();
+    if (foot.lateral <= end.left && foot.lateral >= -end.right) return false;
+    // It may be beyond the end of a lane beside.
+    constexpr double inside = 0.01;  // [m]
+    auto const at_end = corridor.center.pose(is_before ? inside : corridor.length() - inside);
+    auto const along = geometry::sin_cos(at_end.heading);
+    return !world.map().on_drivable_lane({at_end.x - foot.lateral * along.sin, at_end.y + foot.lateral * along.cos});
   }
 };
 

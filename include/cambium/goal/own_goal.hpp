@@ -35,7 +35,19 @@ class OwnGoal {
  public:
   template <class G>
   requires(!std::is_same_v<G, OwnGoal> && GoalModel<G>) OwnGoal(G goal)
-      : goal_(std::make_shared<G const>(std::move(goal))), operations_(&operations_of<G>) {}
+      : goal_(std::make_shared<G const>(std::move(goal))), operations_(&operations_of<G>) {
+    static_assert(
+        !requires { requires std::is_member_function_pointer_v<decltype(&G::lanes)>; } ||
+            requires(G const own, Map const& map) {
+              { own.lanes(map) } -> std::same_as<std::vector<LaneId>>;
+            },
+        "cambium::Goal: your goal's `lanes` would be ignored; write `std::vector<cambium::LaneId> lanes(cambium::Map "
+        "const&) const`");
+    static_assert(
+        !requires { requires std::is_member_function_pointer_v<decltype(&G::check)>; } || requires(G const own, std::string const& where) { own.check(where); },
+        "cambium::Goal: your goal's `check` would be ignored; write `void check(std::string const& where) "
+        "const`");
+  }
 
   // No moves, which would leave a goal without its struct.
   OwnGoal(OwnGoal const&) = default;

@@ -140,6 +140,11 @@ CAMBIUM_COLD Scenario<HighwaySite::World> draw_highway(HighwaySite const& site, 
 }  // namespace detail
 
 CAMBIUM_COLD Scenario<HighwaySite::World> HighwaySite::sample(std::uint64_t seed, std::uint32_t number) const {
+  detail::require_lanes(map, lanes, "HighwaySite::lanes", "find_highway_site");
+  detail::require_lanes(map, exits.empty() ? lanes : exits, "HighwaySite::exits", "find_highway_site");
+  if (lanes.size() < 2 || !(length > 0.0 && length < 1e7))
+    throw WorldError("HighwaySite", "it has less than two lanes, or no length in metres",
+                     "take it as find_highway_site returns it");
   for (std::uint32_t attempt = 0; attempt < 100; ++attempt) {
     auto scenario = detail::draw_highway(*this, seed, number, attempt);
     if (is_valid(scenario.ego)) return scenario;

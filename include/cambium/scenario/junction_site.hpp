@@ -34,7 +34,12 @@ struct JunctionTraffic {
         parameter("bicycle_share", &P::bicycle_share, "-", Range{0, 1}, "part of the vehicles that are bicycles"),
         parameter("lights", &P::lights, "-", Range{0, 1},
                   "1: traffic lights are on, green for 15 s one after the other; 0: they are off"),
-        parameter("scattered_ids", &P::scattered_ids, "-", Range{0, 1}, "1: random agent ids; 0: 0, 1, 2, ..."));
+        parameter("scattered_ids", &P::scattered_ids, "-", Range{0, 1}, "1: random agent ids; 0: ascending ones"));
+  }
+
+  void check(std::string const& where) const {
+    if (!(truck_share + bicycle_share <= 1.0))
+      throw ParameterError(where, "truck_share and bicycle_share are more than 1 in all", "lower one of them");
   }
 };
 

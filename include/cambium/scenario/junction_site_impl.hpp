@@ -112,6 +112,7 @@ CAMBIUM_COLD std::vector<map::LightPlan> lights_in_turn(Map const& map) {
 }  // namespace detail
 
 CAMBIUM_COLD map::Route JunctionSite::random_route(LaneId from, RandomStream& random) const {
+  detail::require_lanes(map, {from}, "JunctionSite::random_route: from", "find_junction_site");
   cambium::map::Route route{{from}, map->lane(from).length()};
   while (route.length < 400.0 || detail::in_junction(*map, route.lanes.back())) {
     std::vector<LaneId> next;
@@ -128,6 +129,7 @@ CAMBIUM_COLD map::Route JunctionSite::random_route(LaneId from, RandomStream& ra
 CAMBIUM_COLD Scenario<JunctionSite::World> JunctionSite::sample(std::uint64_t seed, std::uint32_t number,
                                                                 JunctionTraffic const& traffic) const {
   check_parameters(traffic);
+  detail::require_lanes(map, entrances, "JunctionSite::entrances", "find_junction_site");
   Scenario<World> scenario{.map = map, .seed = seed};
   if (traffic.lights) scenario.lights = detail::lights_in_turn(*map);
   World world(map);

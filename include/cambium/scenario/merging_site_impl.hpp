@@ -17,6 +17,7 @@
 #include "cambium/core/macros.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/evaluation/collision.hpp"
+#include "cambium/evaluation/off_road.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/goal/goal.hpp"
 #include "cambium/map/corridor/build_corridor.hpp"
@@ -128,7 +129,7 @@ CAMBIUM_COLD ReachLane behind_merge(Map const& map, MergingSite::Entrance const&
 /// included.
 CAMBIUM_COLD bool enters_safely(MergingSite::World& world, AgentId id) {
   constexpr double headway = 0.6;  // [s]
-  if (Collision{}(world, world.slot_of(id))) return false;
+  if (Collision{}(world, world.slot_of(id)) || OffRoad{}(world, world.slot_of(id))) return false;
   auto const view = world.observe(id);
   auto const driver = [&](AgentId agent) {
     return std::get<IdmClassic>(world.roster().agents[world.slot_of(agent)].behavior);
@@ -194,6 +195,10 @@ CAMBIUM_COLD Scenario<MergingSite::World> draw_merging(MergingSite const& site, 
 }  // namespace detail
 
 CAMBIUM_COLD Scenario<MergingSite::World> MergingSite::sample(std::uint64_t seed, std::uint32_t number) const {
+  for (auto const& entrance : entrances)
+    detail::require_lanes(map, entrance.route.lanes, "MergingSite::entrances", "find_merging_site");
+  if (ramp >= entrances.size())
+    throw WorldError("MergingSite", "its ramp is none of its entrances", "take it as find_merging_site returns it");
   for (std::uint32_t attempt = 0; attempt < 100; ++attempt) {
     auto scenario = detail::draw_merging(*this, seed, number, attempt);
     if (is_valid(scenario.ego)) return scenario;

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -18,6 +19,15 @@ namespace cambium {
 namespace detail {
 inline void require_map(std::shared_ptr<Map const> const& map, std::string const& where) {
   if (!map) throw MapError(where, "there is no map", "pass the map that load_opendrive returned");
+}
+
+/// Throws `WorldError` unless there is a map and it has the lanes of a site, of which there is at least one.
+inline void require_lanes(std::shared_ptr<Map const> const& map, std::vector<LaneId> const& lanes, char const* what,
+                          char const* function) {
+  auto const is_known = [&](LaneId lane) { return index_of(lane) < map->lanes().size(); };
+  if (!map || lanes.empty() || !std::ranges::all_of(lanes, is_known))
+    throw WorldError(what, "there are none, or some that the map does not have",
+                     std::string("take the site as ") + function + " returns it");
 }
 }  // namespace detail
 
@@ -50,6 +60,14 @@ struct Scenario {
 /// vehicle models are kept; observers are `OtherWorld`'s default. O(agents).
 template <class OtherWorld, class WorldType, class ToBehavior>
 [[nodiscard]] Scenario<OtherWorld> with_behaviors(Scenario<WorldType> const& scenario, ToBehavior const& behavior) {
+  static_assert(
+      requires { typename OtherWorld::AgentSpec; },
+      "cambium::with_behaviors<OtherWorld>: OtherWorld must be a cambium::World<BehaviorSet<...>, ...>");
+  static_assert(
+      std::is_convertible_v<typename WorldType::Execution, typename OtherWorld::Execution> &&
+          std::is_convertible_v<typename WorldType::Dynamics, typename OtherWorld::Dynamics>,
+      "cambium::with_behaviors<OtherWorld>: OtherWorld must take the scenario's executions and vehicle models: "
+      "the same types, or an ExecutionSet and a DynamicSet that contain them");
   Scenario<OtherWorld> other{
       .map = scenario.map, .seed = scenario.seed, .ego = scenario.ego, .lights = scenario.lights};
   other.agents.reserve(scenario.agents.size());

@@ -73,7 +73,7 @@ struct BasicIdmStochastic {
         parameter("yielding", &Self::yielding, "-", {}, "when it lets others in"),
         parameter("rules", &Self::rules, "-", {}, "what it heeds besides other road users"),
         parameter("exponent", &Self::exponent, "-", Range{1, 100}, "as in IDM"),
-        parameter("lowest_acceleration", &Self::lowest_acceleration, "m/s^2", Range{-50, 0}, "as in IDM"),
+        parameter("lowest_acceleration", &Self::lowest_acceleration, "m/s^2", Range{-50, -0.01}, "as in IDM"),
         parameter("highest_acceleration", &Self::highest_acceleration, "m/s^2", Range{0, 50}, "as in IDM"),
         parameter("tolerance", &Self::tolerance, "m/s^2", Range{1e-12, 1}, "as in IdmClassic"));
   }

@@ -26,6 +26,8 @@ class Strictest {
       double const a = (*law_)(other);
       if (!(a < acceleration() || (a == acceleration() && other.gap < constraint_.gap))) return;
       acceleration_ = a;
+    } else {
+      acceleration_ = not_asked;  // that of the free road may have been asked for
     }
     constraint_ = other;
   }

@@ -39,7 +39,7 @@ template <class P>
                 "braking that the driver finds normal"),
       parameter("exponent", &P::exponent, "-", Range{1, 100},
                 "how late the acceleration falls off towards the desired speed"),
-      parameter("lowest_acceleration", &P::lowest_acceleration, "m/s^2", Range{-50, 0}, "hardest braking"),
+      parameter("lowest_acceleration", &P::lowest_acceleration, "m/s^2", Range{-50, -0.01}, "hardest braking"),
       parameter("highest_acceleration", &P::highest_acceleration, "m/s^2", Range{0, 50},
                 "upper bound of the acceleration"));
 }

@@ -51,7 +51,8 @@ template <class World>
     bool const is_same_road =
         one.road == other.road || (!one.road->route.empty() && one.road->route == other.road->route);
     return one.id == other.id && one.shape == other.shape && is_same_road &&
-           is_same_choice(one.behavior, other.behavior) && is_same_value(one.dynamics, other.dynamics);
+           is_same_choice(one.behavior, other.behavior) && is_same_value(one.dynamics, other.dynamics) &&
+           is_same_value(one.execution, other.execution);
   };
   if (&a.map() != &b.map() || p.revision != q.revision || p.agents.size() != q.agents.size() ||
       !is_same_besides_agents(p, q))

@@ -119,9 +119,9 @@ struct FrenetPlanner {
     Plan<View> plan;
     plan.status = PlanStatus::failed;
     if constexpr (detail::Predicts<View, typename PredictionWorld::Behaviors, PredictionWorld>) {
-      if (sample(view, memory, workspace) != SearchProblem::none) return plan;
       auto clock = budget;
       clock.start();
+      if (sample(view, memory, workspace) != SearchProblem::none) return plan;
       for (std::size_t i = 0; i < workspace.candidates.size() && clock.goes_on(i); ++i)
         if (auto const& candidate = workspace.candidates[i];
             verdict(view, candidate, workspace) == FrenetVerdict::valid)
@@ -138,10 +138,10 @@ struct FrenetPlanner {
   template <class View>
   [[nodiscard]] Report think(View const& view, Memory const& memory, Workspace& workspace) const {
     check_parameters(*this);
-    throw_if(sample(view, memory, workspace));
-    Report report;
     auto clock = budget;
     clock.start();
+    throw_if(sample(view, memory, workspace));
+    Report report;
     for (auto& candidate : workspace.candidates) {
       auto const number = report.candidates.size();
       if (!report.is_cut_short) report.is_cut_short = !clock.goes_on(number);

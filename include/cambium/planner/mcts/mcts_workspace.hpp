@@ -141,6 +141,7 @@ class MctsWorkspace {
       if (report.candidates.size() != report.result.best[0]) second = std::max(second, arm.share);
       report.candidates.push_back(
           {Set::text(domain.action_set(), arm.action), arm.mean_return, arm.visits > 0 ? "" : "not tried"});
+      report.is_cut_short = report.is_cut_short || arm.visits == 0;
     }
     report.chosen = report.result.best[0];
     report.decidedness = std::max(0.0, report.result.choice(0).share - second);

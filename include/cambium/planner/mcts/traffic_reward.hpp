@@ -1,6 +1,7 @@
 #pragma once
 
 #include <concepts>
+#include <utility>
 
 #include "cambium/core/parameters.hpp"
 #include "cambium/evaluation/course_end.hpp"
@@ -129,6 +130,10 @@ struct Weighted {
       Described<E>,
       "cambium::Reward<Evaluators...>: describe each evaluator's parameters, as cambium::Collision does; where "
       "it has none: `static constexpr auto parameters() { return cambium::parameter_list(); }`");
+  static_assert(
+      !requires { E::needs_history; },
+      "cambium::Reward<Evaluators...>: this evaluator needs a history, and predictions keep none: it would "
+      "always be 0; judge by cambium::Acceleration or the state instead");
   E evaluator{};
   double weight = 0.0;
   bool per_second = false;
@@ -151,6 +156,7 @@ struct Weighted {
         EvaluatorFor<E, World>,
         "cambium::Reward<Evaluators...>: each must have `template <class World> auto operator()(World&, Slot) "
         "const` that returns a bool or a number (see EvaluatorFor)");
+    if (weight == 0.0 && !ends) return;
     auto const value = static_cast<double>(evaluator(world, slot));
     all.outcome.reward += weight * value * (per_second ? dt : 1.0);
     all.ends = all.ends || (ends && value != 0.0);
@@ -177,7 +183,8 @@ struct Reward<First, Rest...> {
   }
 
   /// The `TrafficReward` at the end of the list.
-  [[nodiscard]] TrafficReward& traffic() {
+  [[nodiscard]] TrafficReward& traffic() { return const_cast<TrafficReward&>(std::as_const(*this).traffic()); }
+  [[nodiscard]] TrafficReward const& traffic() const {
     if constexpr (sizeof...(Rest) == 0)
       return rest;
     else
@@ -190,9 +197,12 @@ struct Reward<First, Rest...> {
     if (!all.ends) first.judge(world, slot, dt, all);
     return all;
   }
+  /// That of `TrafficReward`, and the terms per second as if nothing changed during its `lookahead`.
   template <class World>
   [[nodiscard]] double value(World& world, Slot slot, double dt) const {
-    return rest.value(world, slot, dt);
+    Judgement own;
+    if (first.per_second) first.judge(world, slot, traffic().lookahead, own);
+    return rest.value(world, slot, dt) + own.outcome.reward;
   }
 };
 

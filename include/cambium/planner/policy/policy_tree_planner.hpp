@@ -162,6 +162,8 @@ struct PolicyTreePlanner {
 
   template <class View>
   [[nodiscard]] SearchProblem grow(View const& view, Memory const& memory, Workspace& workspace) const {
+    auto clock = budget;
+    clock.start();
     std::optional<Slot> ego;
     workspace.world = predicted_for<PredictionWorld>(view, actions, intended_actions(others), ego);
     if (!ego) return SearchProblem::not_in_world;
@@ -172,8 +174,6 @@ struct PolicyTreePlanner {
     workspace.branches.clear();
     workspace.best = 0;
     auto const now = ongoing(memory);
-    auto clock = budget;
-    clock.start();
     for (auto const& sequence : policy_sequences(actions.size(), now, static_cast<std::size_t>(layers))) {
       bool const is_under_way = sequence.first == now && !memory.is_new;
       if (!is_under_way && !actions.available(view, sequence.first, memory.change)) continue;

@@ -162,11 +162,7 @@ struct ProposalPlanner {
     if constexpr (detail::Predicts<View, typename PredictionWorld::Behaviors, PredictionWorld>) {
       if (propose(view, memory, workspace) != SearchProblem::none) return plan;
       auto const& best = workspace.proposals[workspace.best];
-      if (best.time_to_infraction < emergency_time) {
-        double const speed = std::max(0.0, view.state().speed);
-        return plan_to_center(view, memory.bend, ConstantAcceleration{-emergency_deceleration}.motion(speed, dt), dt,
-                              best.offset);
-      }
+      if (best.time_to_infraction < emergency_time) return brake(view, best, memory, dt);
       begin(workspace, best, memory);
       drive_predicted(*workspace.world, workspace.ego, dt, step, plan);
       memory = *std::get_if<index>(&workspace.world->frame().agents[workspace.ego].memory);
@@ -187,28 +183,43 @@ struct ProposalPlanner {
       report.candidates.push_back(
           {detail::rounded_text(p.speed_share) + " of the desired speed at " + detail::rounded_text(p.offset) + " m",
            p.score,
-           p.collides      ? "collision"
-           : p.leaves_road ? "off road"
-                           : ""});
+           p.time_to_infraction >= emergency_time ? ""
+           : p.collides                           ? "collision"
+                                                  : "off road"});
     for (auto const& agent : workspace.world->roster().agents) report.agents.push_back(agent.id);
     report.course.push_back(workspace.start);
     auto again = report.proposals[report.best];
     simulate<true>(workspace, again, memory, [&](auto const& frame) { report.course.push_back(frame); });
     report.memory = *std::get_if<index>(&report.course[1].agents[workspace.ego].memory);
-    if (report.proposals[report.best].time_to_infraction < emergency_time)
-      for (auto& frame : report.course)
-        frame.agents[workspace.ego].state = braking_state(view, emergency_deceleration, frame.time - view.time());
-    else
+    auto const& best = report.proposals[report.best];
+    if (best.time_to_infraction >= emergency_time) {
       report.chosen = report.best;
+    } else {
+      for (auto& frame : report.course) {
+        auto then = memory;
+        if (frame.time > view.time())
+          frame.agents[workspace.ego].state = brake(view, best, then, frame.time - view.time()).trajectory.back();
+        if (&frame == &report.course[1]) report.memory = then;
+      }
+    }
     report.decidedness = decidedness(report.candidates, report.chosen);
     return report;
   }
 
  private:
+  /// An emergency stop over the next `dt` [s], at the offset of a proposal.
+  template <class View>
+  [[nodiscard]] Plan<View> brake(View const& view, ProposalScore const& proposal, Memory& memory, double dt) const {
+    auto const motion = ConstantAcceleration{-emergency_deceleration}.motion(std::max(0.0, view.state().speed), dt);
+    return plan_to_center(view, memory.bend, motion, dt, proposal.offset);
+  }
+
   static constexpr auto index = PredictionWorld::Behaviors::template index<IdmProposal>;
 
   template <class View>
   [[nodiscard]] SearchProblem propose(View const& view, Memory const& memory, Workspace& workspace) const {
+    auto clock = budget;
+    clock.start();
     std::optional<Slot> ego;
     workspace.world = predicted_for<PredictionWorld>(view, driver, others, ego);
     if (!ego) return SearchProblem::not_in_world;
@@ -216,8 +227,6 @@ struct ProposalPlanner {
     workspace.start = workspace.world->frame();
     detail::choose_counting(*workspace.world, *ego, workspace.counting);
     workspace.proposals.clear();
-    auto clock = budget;
-    clock.start();
     for (double const offset : offsets)
       for (double const share : speed_shares) {
         workspace.is_cut_short = !clock.goes_on(workspace.proposals.size());
