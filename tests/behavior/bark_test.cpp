@@ -85,6 +85,10 @@ struct RowView {
   [[nodiscard]] Dynamics const& dynamics() const { return model; }
   [[nodiscard]] cb::map::LaneCorridor const& corridor() const { return *lane; }
   [[nodiscard]] cb::map::LanePlace const& place() const { return at; }
+  template <class F>
+  void each_ahead(cb::Look const& look, F&& f) const {
+    if (auto const next = ahead(look)) f(*next);
+  }
   [[nodiscard]] std::optional<cb::RoadUser> ahead(cb::Look const& = {}) const {
     if (leader == nullptr) return std::nullopt;
     return cb::RoadUser{.agent = cb::AgentId{1}, .gap = row->front_gap, .speed = row->front_speed};
