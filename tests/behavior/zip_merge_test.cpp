@@ -170,9 +170,9 @@ TEST_CASE("a driver loses its patience with a vehicle that stands, and only then
     Blocked world(own_map("lane_drop.xodr"));
     auto driver = zip(14.0);
     driver.patience = patience;
-    auto const leader = add(world, 2, 372.0, 8.0, cb::IdmClassic{.desired_speed = 14.0});
-    auto const id = add(world, 2, 362.0, 0.0, driver);
-    add(world, 3, 360.0, 0.0, cb::ConstantAcceleration{});  // its turn, but it never starts
+    auto const leader = add(world, 2, 438.0, 8.0, cb::IdmClassic{.desired_speed = 14.0});
+    auto const id = add(world, 2, 428.0, 0.0, driver);
+    add(world, 3, 424.0, 0.0, cb::ConstantAcceleration{});  // its turn, but it never starts
     static_cast<void>(leader);
     while (world.time() < 40.0 && world.state(id).speed < 1.0) REQUIRE(world.step(0.2));
     return world.time();

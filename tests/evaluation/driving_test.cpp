@@ -188,7 +188,7 @@ TEST_CASE("a gap is the true one, whatever the agent sees") {
 }
 
 TEST_CASE("a course that has not begun is not over, and what asks a view can end one") {
-  using Late = cb::World<cb::BehaviorSet<cb::StaticTrajectory, cb::ConstantAcceleration>, cb::InterpolateExecution,
+  using Late = cb::World<cb::BehaviorSet<cb::ConstantAcceleration, cb::StaticTrajectory>, cb::InterpolateExecution,
                          cb::SingleTrack>;
   Late world(straight_road(1, 300));
   auto const ego = world.slot_of(world.add({.position = {40, -1.75}, .speed = 10}));
