@@ -31,6 +31,20 @@ struct TimeHeadway {
     return next ? next->gap / view.state().speed : 1e9;
   }
 };
+/// A user's own behaviour, which says only where it drives.
+struct Stops {
+  template <class View>
+  [[nodiscard]] cb::Plan<View> plan(View const& view, cb::NoMemory&, double dt) const {
+    auto state = view.state();
+    double const next = std::max(0.0, state.speed - 8.0 * dt);
+    state.x += 0.5 * (state.speed + next) * dt;
+    state.speed = next;
+    state.time += dt;
+    cb::Plan<View> plan;
+    plan.trajectory.push_back(state);
+    return plan;
+  }
+};
 static_assert(cb::EvaluatorFor<TimeHeadway, Sim> && cb::EvaluatorFor<cb::Collision, Sim const>);
 
 }  // namespace
@@ -172,6 +186,14 @@ TEST_CASE("gaps and times to collision are those of the next one ahead; one's ow
   world.set_state(ahead, {.x = 80, .y = -1.75, .speed = 12});
   CHECK(cb::TimeToCollision{}(world, ego) == 60.0);
   CHECK(cb::Gap{.farthest = 10.0}(world, ego) == 10.0);
+}
+
+TEST_CASE("braking is seen although a behaviour does not report it") {
+  cb::World<cb::BehaviorSet<Stops>, cb::InterpolateExecution, cb::SingleTrack> world(straight_road(1, 300));
+  auto const ego = world.slot_of(world.add({.position = {40, -1.75}, .speed = 10}));
+  REQUIRE(world.step(0.2));
+  CHECK(cb::Acceleration{}(world, ego) == doctest::Approx(-8.0));
+  CHECK(cb::HardBraking{}(world, ego));
 }
 
 TEST_CASE("a gap is the true one, whatever the agent sees") {

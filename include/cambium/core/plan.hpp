@@ -33,7 +33,7 @@ enum class PlanStatus : std::uint8_t {
 };
 
 /// A behaviour's plan: states in order of time that cover at least the next `dt` (the current state may be left out),
-/// and the first action.
+/// and the first action. If the action's acceleration is 0, that of the executed motion is recorded.
 template <MotionState S>
 struct BasicPlan {
   Trajectory<S> trajectory;

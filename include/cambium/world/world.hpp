@@ -454,7 +454,10 @@ class World {
     next.status = AgentStatus::driving;
     next.state = executed.state;
     next.action = plan.action;
-    if (now.status != AgentStatus::driving) detail::forget_past(next);
+    if (now.status != AgentStatus::driving)
+      detail::forget_past(next);
+    else if (plan.action.acceleration == 0.0)  // the behaviour may not have said it
+      next.action.acceleration = (executed.state.speed - now.state.speed) / dt;
   }
 
   /// Finds the new places of the driving agents on their roads. A separate loop, because its short body lets the
