@@ -109,6 +109,39 @@ TEST_CASE("a driver keeps its leader's gap although a vehicle that merges is nea
   CHECK(both.record(id).action.acceleration <= alone.record(id).action.acceleration);
 }
 
+TEST_CASE_TEMPLATE("vehicles that merge count, or are ignored, as the rules say", Behavior, cb::IdmClassic,
+                   cb::AdaptiveCruiseControl, cb::IdmLaneTracking, cb::IdmStochastic, cb::Mobil, cb::IdmProposal) {
+  using Sim = cb::World<cb::BehaviorSet<Behavior, cb::ConstantAcceleration>, cb::InterpolateExecution, cb::SingleTrack>;
+  auto const site = cb::find_merging_site(support::own_map("merging.xodr"));
+  auto const acceleration = [&](bool has_ramp, cb::Merging merging) {
+    Behavior behavior;
+    if constexpr (std::is_same_v<Behavior, cb::IdmProposal>)
+      behavior.driver.rules.merging = merging;
+    else
+      behavior.rules.merging = merging;
+    Sim world(site.map);
+    auto const place = [&](cb::MergingSite::Entrance const& entrance, double before_merge,
+                           typename Sim::Behavior const& driver) {
+      auto const road = cb::map::build_road_corridor(*site.map, entrance.route);
+      auto const pose = road->corridors[road->main].center.pose(entrance.merge_at - before_merge);
+      return world.add({.position = pose.position(),
+                        .heading = pose.heading,
+                        .speed = 12.0,
+                        .behavior = driver,
+                        .route = entrance.route});
+    };
+    auto const& through =
+        *std::ranges::find_if(site.entrances, [](auto const& e) { return e.merges() && !e.gives_up_lane; });
+    auto const id = place(through, 60.0, behavior);
+    if (has_ramp) place(site.entrances[site.ramp], 36.0, cb::ConstantAcceleration{});
+    REQUIRE(world.step(0.2));
+    return world.record(id).action.acceleration;
+  };
+  double const alone = acceleration(false, cb::Merging::counts);
+  CHECK(acceleration(true, cb::Merging::ignored) == alone);
+  CHECK(acceleration(true, cb::Merging::counts) < alone - 0.3);
+}
+
 TEST_CASE("the strictest constraint is found whenever the law's response is asked for") {
   cb::IdmLaw const law(cb::IdmParameters{}, 10.0);
   cb::Strictest ahead(law);

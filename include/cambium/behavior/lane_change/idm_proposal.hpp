@@ -45,7 +45,13 @@ struct IdmProposal {
     double const share = static_cast<double>(memory.speed_share);
     IdmLaw const law(driver, speed, std::max(0.1, share * driver.rules.desired_speed(driver, view, speed)));
     Strictest ahead(law);
-    driver.rules.heed(view, detail::next_in_way(view, offset, clearance), ahead);
+    auto const merging = driver.rules.merging;
+    driver.rules.heed(view, detail::next_in_way(view, offset, clearance, merging), ahead);
+    if (!view.corridor().feeders.empty())
+      detail::for_each_on_feeders(view, Look::horizon, merging, [&](RoadUser const& other) {
+        if (!detail::leaves_room(view, view.place().corridor, other, offset, clearance))
+          ahead.heed({other.gap, other.speed});
+      });
     auto const motion = driver.rules.bound(view, driver, view.place().s, speed,
                                            law.motion(ahead.constraint(), dt, driver.tolerance), dt, memory.rules);
     return plan_to_center(view, memory.bend, motion, dt, offset);

@@ -67,11 +67,12 @@ template <class View>
 /// Calls `f(RoadUser)` for the road users ahead in lanes that merge into the own corridor, or have just split off it,
 /// if these begin less than `distance` [m] ahead. Gaps as in `ViewArchetype::ahead`. O(feeders + their agents).
 template <class View, class F>
-CAMBIUM_NOINLINE void for_each_on_feeders(View const& view, double distance, F const& f) {
+CAMBIUM_NOINLINE void for_each_on_feeders(View const& view, double distance, Merging merging, F const& f) {
   double const s = view.place().s, front = s + view.shape().front;
   for (auto const& feeder : view.corridor().feeders) {
     if (feeder.begin > s + distance) break;
-    if (feeder.end < s) continue;
+    bool const is_ignored = merging == Merging::ignored || (merging == Merging::by_rule && feeder.by_rule);
+    if (feeder.end < s || (is_ignored && feeder.is_still_to_merge())) continue;
     double const from = s <= feeder.begin ? feeder.index_begin : feeder.index_at(s);
     view.on_lane(from, feeder.index_end, [&](RoadUser const& user) {
       if (user.s < feeder.index_begin || user.s > feeder.index_end) return;  // it only extends into the stretch
@@ -90,8 +91,9 @@ CAMBIUM_NOINLINE void for_each_on_feeders(View const& view, double distance, F c
 /// `clearance` [m] to both sides. It passes road users in the lane that are beside this path, except those that are
 /// still to merge. O(agents nearby) if it passes anybody.
 template <class View>
-[[nodiscard]] std::optional<RoadUser> next_in_way(View const& view, double offset, double clearance) {
-  auto next = view.ahead();
+[[nodiscard]] std::optional<RoadUser> next_in_way(View const& view, double offset, double clearance,
+                                                  Merging merging = Merging::counts) {
+  auto next = view.ahead({.merging = merging});
   auto const& at = view.place();
   if (!next || !leaves_room(view, at.corridor, *next, offset, clearance)) return next;
   auto const& line = view.corridor().center;
@@ -116,7 +118,7 @@ template <class View>
     auto const reach = lane_reach(line, outline, at.segment);
     if (reach.begin < front + farthest) consider(reach, {.object = id}, 0.0);
   });
-  for_each_on_feeders(view, farthest, [&](RoadUser const& other) {
+  for_each_on_feeders(view, farthest, merging, [&](RoadUser const& other) {
     if ((!next || other.gap < next->gap) && !leaves_room(view, at.corridor, other, offset, clearance)) next = other;
   });
   return next;
