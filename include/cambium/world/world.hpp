@@ -454,9 +454,9 @@ class World {
     next.status = AgentStatus::driving;
     next.state = executed.state;
     next.action = plan.action;
-    if (now.status != AgentStatus::driving)
+    if (now.status != AgentStatus::driving) [[unlikely]]
       detail::forget_past(next);
-    else if (plan.action.acceleration == 0.0)  // the behaviour may not have said it
+    else if (plan.action.acceleration == 0.0) [[unlikely]]  // the behaviour may not have said it
       next.action.acceleration = (executed.state.speed - now.state.speed) / dt;
   }
 

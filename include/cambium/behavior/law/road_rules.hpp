@@ -201,8 +201,11 @@ struct RoadRules {
   /// The same with the next vehicle in the own lane and in each lane that merges into it.
   template <class View, class Law>
   void heed(View const& view, Strictest<Law>& ahead) const {
-    if (view.corridor().feeders.empty()) return heed(view, view.ahead({.merging = merging}), ahead);
-    heed_merging(view, ahead);
+    if (view.corridor().feeders.empty()) [[likely]] {
+      if (auto const next = view.ahead({.merging = merging})) ahead.heed(detail::constraint_of<Law>(view, *next));
+    } else {
+      heed_merging(view, ahead);
+    }
     if (auto const end = lane_end_ahead(view)) ahead.heed(*end);
   }
 
