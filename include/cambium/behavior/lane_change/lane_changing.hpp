@@ -122,8 +122,9 @@ struct LaneChanging {
         ahead = ahead_while_changing(view, law, leader, memory.change);
       }
     }
-    if (!view.corridor().feeders.empty())
-      heed_merging(view, rules, leader, memory.change.active() && memory.change.target != home, ahead);
+    if (!view.corridor().feeders.empty()) [[unlikely]]
+      ahead = with_merging(View(view), rules.merging, leader, memory.change.active() && memory.change.target != home,
+                           Strictest<IdmLaw>(ahead));
     if (auto const end = rules.lane_end_ahead(view)) ahead.heed(*end);
     auto const motion = law.motion(ahead.constraint(), dt, tolerance);
     return plan_lane_change(view, memory.change,
@@ -259,16 +260,18 @@ struct LaneChanging {
     ahead.heed({leader->gap - room, leader->speed});
   }
 
-  /// Adds the vehicles that merge, and the next one in the own lane: not only the nearest of them all, `leader`. A
-  /// vehicle that leaves its lane passes those that stand there.
+  /// `ahead` with the vehicles that merge, and the next one in the own lane: not only the nearest of them all,
+  /// `leader`. A vehicle that leaves its lane passes those that stand there. It takes copies, so that the originals can
+  /// stay in registers.
   template <class View>
-  CAMBIUM_NOINLINE static void heed_merging(View const& view, RoadRules const& rules,
-                                            std::optional<RoadUser> const& leader, bool leaves,
-                                            Strictest<IdmLaw>& ahead) {
-    view.each_ahead({.merging = rules.merging}, [&](RoadUser const& next) {
+  CAMBIUM_NOINLINE [[nodiscard]] static Strictest<IdmLaw> with_merging(View view, Merging merging,
+                                                                       std::optional<RoadUser> leader, bool leaves,
+                                                                       Strictest<IdmLaw> ahead) {
+    view.each_ahead({.merging = merging}, [&](RoadUser const& next) {
       if ((leader && next.slot == leader->slot) || (leaves && next.speed < 0.5)) return;
       ahead.heed({next.gap, next.speed});
     });
+    return ahead;
   }
 
   static void add_stop(Strictest<IdmLaw>& ahead, double way) {
