@@ -78,7 +78,8 @@ using PredictionWorld =
     World<BehaviorSet<MacroActions, IdmProposal, IdmClassic, IdmHypotheses, ConstantAcceleration, ReachSpeed>,
           InterpolateExecution, SingleTrack>;
 
-/// A user's planner: among a few constant accelerations it picks the one that gets farthest without a collision.
+/// A user's planner: among a few constant accelerations it picks the one that gets farthest without a collision, or
+/// brakes by the first one.
 struct Greedy {
   struct Memory {
     friend bool operator==(Memory, Memory) = default;
@@ -89,6 +90,7 @@ struct Greedy {
   double step = 0.2;
   IterationBudget budget{4};
 
+  static constexpr char const* name = "greedy";
   static constexpr auto parameters() {
     return parameter_list(parameter("horizon", &Greedy::horizon, "s", Range{0.2, 60}, "duration of the predictions"),
                           parameter("step", &Greedy::step, "s", Range{0.01, 1}, "time step of the predictions"),
@@ -99,7 +101,7 @@ struct Greedy {
   [[nodiscard]] PlannerReport<PredictionWorld, Memory> think(View const& view, Memory const&, Workspace&) const {
     check_parameters(*this);
     PlannerReport<PredictionWorld, Memory> report;
-    for (double const acceleration : {0.0, -5.0, -2.0, 1.5}) {
+    for (double const acceleration : {-5.0, 0.0, -2.0, 1.5}) {
       if (!budget.goes_on(report.candidates.size())) {
         report.is_cut_short = true;
         break;

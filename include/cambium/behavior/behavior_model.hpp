@@ -93,7 +93,24 @@ concept MisspellsConstants = requires {
 || requires { B::look_around; }
 || requires { B::looks_arround; }
 || requires { B::heed_conflicts; }
+|| requires { B::heed_conflict; }
 || requires { B::heeds_conflict; };
+
+/// Whether `B` has a `start_time` that worlds would ignore.
+template <class B>
+concept HidesStartTime = requires {
+  &B::start_time;
+}
+&&!requires(B const behavior) {
+  { behavior.start_time() } -> std::convertible_to<double>;
+};
+
+/// Whether `B` has `parameters` that nobody could ask without an object: they would not be checked.
+template <class B>
+concept HidesParameters = requires {
+  &B::parameters;
+}
+&&!requires { B::parameters(); };
 
 /// Whether the constants that `B` has are `static constexpr bool` and spelled correctly.
 template <class B>
@@ -148,6 +165,14 @@ template <class B>
     static_assert(has_good_constants<B>(),
                   "cambium::BehaviorSet<...>: what a behaviour says to worlds is `static constexpr bool looks_beside`, "
                   "looks_around or heeds_conflicts: spell it so, and as such a constant");
+  if constexpr (is_copyable) {
+    static_assert(!HidesStartTime<B>,
+                  "cambium::BehaviorSet<...>: a behaviour's start_time would be ignored; write "
+                  "`double start_time() const`");
+    static_assert(!HidesParameters<B>,
+                  "cambium::BehaviorSet<...>: a behaviour's parameters would not be checked; write "
+                  "`static constexpr auto parameters()`");
+  }
   if constexpr (!BehaviorModel<B> && is_copyable && remembers) {
     constexpr bool has_plan = names_plan<B>(), plans = Plans<B>, plans_const = Plans<B const>;
     static_assert(has_plan,

@@ -316,8 +316,8 @@ class World {
   }
 
   /// Reports a call on a const world or a temporary, with a remedy.
-  template <bool may_change = false>
-  View observe(AgentId) const& {
+  template <class Id, bool may_change = false>
+  View observe(Id) const& {
     static_assert(may_change,
                   "cambium::World::observe brings the traffic index up to date: call it on a world that is neither "
                   "const nor a temporary, or on a copy");
