@@ -4,12 +4,12 @@
 #include <cmath>
 #include <optional>
 
+#include "cambium/behavior/view.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/state.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/shape.hpp"
-#include "cambium/behavior/view.hpp"
 #include "cambium/world/frame.hpp"
 #include "cambium/world/traffic_query.hpp"
 
@@ -37,6 +37,7 @@ struct PastJunctions {
   template <class World>
   [[nodiscard]] bool operator()(World const& world, Slot slot) const {
     auto const& record = world.frame().agents[slot];
+    if (record.status == AgentStatus::not_started) return false;
     if (record.status != AgentStatus::driving) return true;
     auto const& agent = world.roster().agents[slot];
     auto const& corridor = agent.road->corridors[record.lane.corridor];
@@ -48,9 +49,13 @@ struct PastJunctions {
       if (piece.end > rear && is_in_junction(piece.lane)) return false;
     for (auto const& conflict : corridor.conflicts)
       if (conflict.hull().end > rear) return false;
+    if (corridor.reaches_destination) return true;
     auto const& route = agent.road->route;
-    auto const last = std::ranges::find(route, corridor.pieces.back().lane);
-    return corridor.reaches_destination || last == route.end() || std::none_of(last, route.end(), is_in_junction);
+    auto const last = corridor.pieces.back().lane;
+    auto const is_beside = [&](LaneId id) { return world.map().lane(id).road == world.map().lane(last).road; };
+    auto from = std::ranges::find(route, last);
+    if (from == route.end()) from = std::ranges::find_if(route, is_beside);
+    return std::none_of(from, route.end(), is_in_junction);
   }
 };
 
