@@ -7,8 +7,11 @@
 #include <utility>
 #include <vector>
 
+#include "../support/maps.hpp"
 #include "cambium/map/build/road_plan.hpp"
+#include "cambium/map/corridor/build_corridor.hpp"
 #include "cambium/map/road/curve_layout.hpp"
+#include "cambium/scenario/merging_site.hpp"
 #include "lane_traffic_fixtures.hpp"
 
 using namespace lane_traffic;
@@ -535,4 +538,40 @@ TEST_CASE("on a lane drop MOBIL drivers leave the lane that ends") {
     drive_safely(world, 500);
     for (auto const& record : world.frame().agents) CHECK(record.status != cb::AgentStatus::off_route);
   }
+}
+
+TEST_CASE("a merging vehicle never hides an object, whatever the ids") {
+  using Sim =
+      cb::World<cb::BehaviorSet<cb::Mobil, cb::ConstantAcceleration>, cb::InterpolateExecution, cb::SingleTrack>;
+  auto const map = support::own_map("merging.xodr");
+  auto const site = cb::find_merging_site(map);
+  auto const through =
+      *std::ranges::find_if(site.entrances, [](auto const& e) { return e.merges() && !e.gives_up_lane; });
+  auto const pose_before = [&](auto const& entrance, double distance) {
+    auto const road = cb::map::build_road_corridor(*map, entrance.route);
+    return road->corridors[road->main].center.pose(entrance.merge_at - distance);
+  };
+  auto const acceleration = [&](cb::AgentId merging) {
+    Sim world(map);
+    auto const at = pose_before(through, 25.0);
+    world.add_object(cb::geometry::Polygon(
+        {{at.x - 1, at.y - 1}, {at.x + 1, at.y - 1}, {at.x + 1, at.y + 1}, {at.x - 1, at.y + 1}}));
+    auto const add = [&](auto const& entrance, double distance, Sim::Behavior const& behavior, cb::AgentId id) {
+      auto const pose = pose_before(entrance, distance);
+      return world.add({.position = pose.position(),
+                        .heading = pose.heading,
+                        .speed = 12.0,
+                        .behavior = behavior,
+                        .route = entrance.route,
+                        .id = id});
+    };
+    cb::Mobil driver;
+    driver.threshold = 10.0;  // it stays in its lane
+    auto const id = add(through, 60.0, driver, cb::AgentId{5});
+    add(site.entrances[site.ramp], 34.0, cb::ConstantAcceleration{}, merging);
+    REQUIRE(world.step(0.2));
+    return world.record(id).action.acceleration;
+  };
+  CHECK(acceleration(cb::AgentId{1}) == acceleration(cb::AgentId{9}));
+  CHECK(acceleration(cb::AgentId{1}) < -4.0);
 }

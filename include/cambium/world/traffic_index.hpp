@@ -429,7 +429,7 @@ class TrafficIndex {
       if (entry.position < feeder.index_begin) continue;
       double const s = feeder.image(entry.position);
       if (skips(query, entry, is_object, s - query.s)) continue;
-      if (query.merging == Merging::by_rule && feeder.by_rule && s + entry.front < feeder.free_until) continue;
+      if (query.merging == Merging::by_rule && feeder.is_up_to_rule(s + entry.front)) continue;
       bool const ahead = s > query.s || (s == query.s && entry.slot > query.slot);
       if (!ahead) continue;
       double const own_front = query.s + query.front;
@@ -448,7 +448,7 @@ class TrafficIndex {
       if (entry.position > feeder.index_end) continue;
       double const s = feeder.image(entry.position);
       if (skips(query, entry, is_object, query.s - s)) continue;
-      if (query.merging == Merging::by_rule && feeder.by_rule && s + entry.front < feeder.free_until) continue;
+      if (query.merging == Merging::by_rule && feeder.is_up_to_rule(s + entry.front)) continue;
       bool const behind = s < query.s || (s == query.s && entry.slot < query.slot);
       if (!behind) continue;
       double const own_rear = query.s - query.rear;

@@ -268,7 +268,8 @@ struct LaneChanging {
                                                                        std::optional<RoadUser> leader, bool leaves,
                                                                        Strictest<IdmLaw> ahead) {
     view.each_ahead({.merging = merging}, [&](RoadUser const& next) {
-      if ((leader && next.slot == leader->slot) || (leaves && next.speed < 0.5)) return;
+      if ((leader && next.agent == leader->agent && next.object == leader->object) || (leaves && next.speed < 0.5))
+        return;
       ahead.heed({next.gap, next.speed});
     });
     return ahead;

@@ -71,13 +71,12 @@ CAMBIUM_NOINLINE void for_each_on_feeders(View const& view, double distance, Mer
   double const s = view.place().s, front = s + view.shape().front;
   for (auto const& feeder : view.corridor().feeders) {
     if (feeder.begin > s + distance) break;
-    bool const is_ignored = merging == Merging::ignored || (merging == Merging::by_rule && feeder.by_rule);
-    if (feeder.end < s || (is_ignored && feeder.is_still_to_merge())) continue;
+    if (feeder.end < s || (merging == Merging::ignored && feeder.is_still_to_merge())) continue;
     double const from = s <= feeder.begin ? feeder.index_begin : feeder.index_at(s);
     view.on_lane(from, feeder.index_end, [&](RoadUser const& user) {
       if (user.s < feeder.index_begin || user.s > feeder.index_end) return;  // it only extends into the stretch
       double const position = feeder.image(user.s);
-      if (position <= s) return;
+      if (position <= s || (merging == Merging::by_rule && feeder.is_up_to_rule(position + user.front))) return;
       double const gap = map::gap_before_merge(front, position - user.rear, feeder.free_until);
       auto ahead = user;
       ahead.gap = gap;
