@@ -196,7 +196,7 @@ TEST_CASE("a driver that obeys speed limits keeps them on a town's roads") {
 
 #define DRIVERS                                                                                                   \
   cb::IdmClassic, cb::AdaptiveCruiseControl, cb::IdmLaneTracking, cb::IdmStochastic, cb::Mobil, cb::Intersection, \
-      cb::LaneChangeRuleBased, cb::ZipMerge, cb::RssConformant<cb::IdmClassic>
+      cb::LaneChangeRuleBased, cb::ZipMerge, cb::MacroActions, cb::RssConformant<cb::IdmClassic>
 
 template <class Behavior>
 cb::RoadRules& rules_of(Behavior& behavior) {
@@ -268,5 +268,45 @@ TEST_CASE_TEMPLATE("every driver brakes comfortably and in time for a bend if th
     if (slows) CHECK(fastest > 0.9 * allowed);
     CHECK(hardest > -2.5);
   }
+}
+
+TEST_CASE_TEMPLATE("every driver meets a lower speed limit in time if the rules say so", Behavior, DRIVERS) {
+  auto const map = cb::parse_opendrive(
+                       "<OpenDRIVE><road id='0' length='600' junction='-1'><type s='0' type='town'><speed max='10' "
+                       "unit='m/s'/></type><type s='300' type='town'><speed max='6' unit='m/s'/></type>"
+                       "<planView><geometry s='0' x='0' y='0' hdg='0' length='600'><line/></geometry></planView>"
+                       "<lanes><laneSection s='0'><center><lane id='0'/></center><right><lane id='-1' type='driving'>"
+                       "<width sOffset='0' a='3.5' b='0' c='0' d='0'/></lane></right></laneSection></lanes></road>"
+                       "</OpenDRIVE>")
+                       .map;
+  for (bool const obeys : {true, false}) {
+    Behavior driver{};
+    rules_of(driver).obey_speed_limits = obeys;
+    Traffic<Behavior> world(map);
+    auto const id = world.add({.position = {20, -1.75}, .speed = 15.0, .behavior = driver});
+    double before = 0.0, behind = 0.0, hardest = 0.0;
+    for (int k = 0; k < 300 && world.status(id) == cb::AgentStatus::driving && world.state(id).x < 580.0; ++k) {
+      REQUIRE(world.step(0.2));
+      auto const& state = world.state(id);
+      if (state.x > 100.0 && state.x < 290.0) before = std::max(before, state.speed);
+      if (state.x > 302.0) behind = std::max(behind, state.speed);
+      if (state.x > 100.0) hardest = std::min(hardest, world.record(id).action.acceleration);
+    }
+    INFO("before ", before, ", behind ", behind, ", hardest ", hardest);
+    CHECK((before < 10.3) == obeys);
+    CHECK((behind > 0.0 && behind < 6.3) == obeys);
+    if (obeys) CHECK(before > 9.0);
+    CHECK(hardest > -2.5);
+  }
+}
+
+TEST_CASE("where no limit is posted, macro actions keep their speed if they obey limits") {
+  cb::MacroActions driver;
+  driver.rules.obey_speed_limits = true;
+  Traffic<cb::MacroActions> world(support::straight_road());
+  auto const id = world.add({.position = {20, -1.75}, .speed = 30.0, .behavior = driver});
+  world.memory<cb::MacroActions>(id).choose(cb::MacroActions::nothing);
+  for (int k = 0; k < 20; ++k) REQUIRE(world.step(0.2));
+  CHECK(world.state(id).speed == doctest::Approx(30.0));
 }
 #undef DRIVERS

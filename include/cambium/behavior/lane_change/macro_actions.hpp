@@ -16,6 +16,7 @@
 #include "cambium/behavior/lane_change/lane_change.hpp"
 #include "cambium/behavior/law/idm.hpp"
 #include "cambium/behavior/law/lane_ends.hpp"
+#include "cambium/behavior/law/road_rules.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/parameters.hpp"
 
@@ -61,17 +62,20 @@ struct MacroAction {
   return "unknown";
 }
 
-/// Drives by one of a few manoeuvres along its lanes. A search or a learner chooses one in the agent's memory
-/// (`World::memory<MacroActions>(id).choose(number)`); it continues until the next is chosen. A lane change in progress
-/// is completed whatever is chosen meanwhile, except a change back. If a manoeuvre is not `available` when chosen, the
-/// vehicle keeps its lane at the manoeuvre's acceleration. The plan fails if the number does not exist.
+/// Drives by one of a few manoeuvres along its lanes, within its `rules`: speed limits, bends and signals bound a
+/// manoeuvre's acceleration where the rules say so, by default nowhere. A search or a learner chooses a manoeuvre in
+/// the agent's memory (`World::memory<MacroActions>(id).choose(number)`); it continues until the next is chosen. A lane
+/// change in progress is completed whatever is chosen meanwhile, except a change back. If a manoeuvre is not
+/// `available` when chosen, the vehicle keeps its lane at the manoeuvre's acceleration. The plan fails if the number
+/// does not exist.
 struct MacroActions {
   using Kind = MacroAction::Kind;
   static constexpr std::size_t capacity = 16;
   static constexpr std::uint8_t nothing = 255;  ///< chosen instead of an action: keep the lane and the speed
 
   struct Memory {
-    LaneChange change{};      ///< towards the target corridor
+    LaneChange change{};  ///< towards the target corridor
+    RoadRules::Memory rules{};
     std::uint8_t chosen = 0;  ///< number of the action
     bool is_new = true;       ///< it has not begun yet
 
@@ -95,6 +99,7 @@ struct MacroActions {
   double highest_speed = 50.0;
   double minimum_remaining = 20.0;
   IdmParameters idm{};
+  RoadRules rules{};
   LaneChangeCourse course{};
   double tolerance = 1e-4;
 
@@ -112,6 +117,7 @@ struct MacroActions {
                   "no change into a lane that ends, or begins to merge into its neighbour, within this distance; "
                   "longer vehicles need more, as in their course"),
         parameter("idm", &P::idm, "-", {}, "how gaps are kept"),
+        parameter("rules", &P::rules, "-", {}, "what each action heeds besides other road users"),
         parameter("course", &P::course, "-", {}, "how long a change takes"),
         parameter("tolerance", &P::tolerance, "m/s^2", Range{1e-12, 1}, "integration error in speed, per second"));
   }
@@ -158,7 +164,9 @@ struct MacroActions {
       }
     }
     memory.is_new = false;
-    return plan_lane_change(view, memory.change, motion(view, memory.change, action, speed, dt), dt);
+    auto const wanted = motion(view, memory.change, action, speed, dt);
+    return plan_lane_change(view, memory.change,
+                            rules.bound(view, idm, view.place().s, speed, wanted, dt, memory.rules), dt);
   }
 
  private:
@@ -181,15 +189,22 @@ struct MacroActions {
   template <class View>
   [[nodiscard]] LongitudinalMotion<double> motion(View const& view, LaneChange const& change, MacroAction const& action,
                                                   double speed, double dt) const {
-    auto const wanted = ConstantAcceleration{action.acceleration, highest_speed}.motion(speed, dt);
+    double const desired = rules.desired_speed(idm, view, speed);
+    auto wanted = ConstantAcceleration{action.acceleration, highest_speed}.motion(speed, dt);
+    if (rules.obey_speed_limits) {
+      auto limit = idm;
+      limit.desired_speed = highest_speed;
+      double const braking = idm.comfortable_deceleration;
+      auto const slower = motion_before_bend(speed, 0.0, rules.desired_speed(limit, view, speed), braking, braking, dt);
+      if (slower.speed < wanted.speed) wanted = slower;
+    }
     if (action.kind != Kind::keep_gap && !action.keeps_gap) return wanted;
-    IdmLaw const law(idm, speed);
+    IdmLaw const law(idm, speed, desired);
     Strictest ahead(law);
-    auto const heed = [&](std::optional<RoadUser> const& leader) {
-      if (leader) ahead.heed({leader->gap, leader->speed});
-    };
-    heed(view.ahead());
-    if (change.active() && change.target != view.place().corridor) heed(view.ahead(view.place(change.target)));
+    rules.heed(view, ahead);
+    if (change.active() && change.target != view.place().corridor)
+      if (auto const next = view.ahead(view.place(change.target), {.merging = rules.merging}))
+        ahead.heed({next->gap, next->speed});
     auto const allowed = law.motion(ahead.constraint(), dt, tolerance);
     return action.kind == Kind::keep_gap || allowed.speed < wanted.speed ? allowed : wanted;
   }

@@ -234,6 +234,14 @@ struct RoadRules {
     return bounded;
   }
 
+  /// The signals that stop a driver with its front end at `front` [m] within `look_ahead` [m].
+  template <class View>
+  [[nodiscard]] detail::SignalStop signals_ahead(View const& view, double front, double speed, double look_ahead,
+                                                 Memory& memory) const {
+    if (!obey_signals) return {};
+    return detail::stop_at_signals(view, front, speed, look_ahead, stop_margin, safe_deceleration, memory.stopped_at);
+  }
+
  private:
   struct Braking {
     double comfortable, hardest;  // [m/s^2]
@@ -251,10 +259,8 @@ struct RoadRules {
       bound_by(detail::bends_ahead(view.corridor(), s, speed, speed, lateral_acceleration, braking.comfortable,
                                    braking.hardest, dt)
                    .bound);
-    if (!obey_signals) return motion;
-    double const look_ahead = speed * speed / (2.0 * braking.comfortable) + 20.0;
-    auto const stop = detail::stop_at_signals(view, s + view.shape().front, speed, look_ahead, stop_margin,
-                                              safe_deceleration, memory.stopped_at);
+    double const look_ahead = speed * (dt + speed / (2.0 * braking.comfortable)) + 20.0;
+    auto const stop = signals_ahead(view, s + view.shape().front, speed, look_ahead, memory);
     if (std::isfinite(stop.distance))
       bound_by(motion_before_stop(speed, stop.distance, braking.comfortable, braking.hardest, dt));
     return motion;
