@@ -148,11 +148,15 @@ TEST_CASE("conflicts are in the order in which one has to wait for them, and kno
       double hold = -std::numeric_limits<double>::infinity(), end = hold;
       for (auto const& conflict : passage.corridor->conflicts) {
         end = std::max(end, conflict.hull().end);
-        CHECK(conflict.hold[1] >= hold);
-        CHECK(conflict.hold[1] <= conflict.hold[0]);
-        CHECK(conflict.hold[1] <= conflict.hull().begin);
+        CHECK(conflict.hold[1][1] >= hold);
+        for (std::size_t i : {0u, 1u}) {
+          CHECK(conflict.hold[1][i] <= conflict.hold[0][i]);
+          CHECK(conflict.hold[i][1] <= conflict.hold[i][0]);
+          CHECK(conflict.hold[i][0] <= conflict.zones[i][0].begin);
+        }
+        CHECK(conflict.hold[1][1] <= conflict.hull().begin);
         CHECK(conflict.farthest_end == end);
-        hold = conflict.hold[1];
+        hold = conflict.hold[1][1];
       }
     }
 }

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "cambium/behavior/law/braking.hpp"
 #include "cambium/behavior/view.hpp"
@@ -16,6 +18,8 @@ namespace detail {
 
 /// A vehicle slower than this at a junction has hardly begun to move, or is about to stop [m/s].
 inline constexpr double starting_speed = 2.5;
+/// A slow vehicle so close to its line has just started, or is about to stop there [m].
+inline constexpr double short_way = 15.0;
 /// A vehicle that stands at its line is not beyond it, whatever the rounding [m].
 inline constexpr double over_line = 0.1;
 
@@ -30,6 +34,7 @@ struct ConflictUser {
   RoadUser const& user;
   double at;
   ExtraReach reach;
+  bool is_behind_slow = false;  ///< behind a slow vehicle that is not in the junction yet
 
   /// Whether it is inside the junction already.
   [[nodiscard]] bool is_inside(map::Conflict const& conflict, map::ConflictZone const& zone) const {
@@ -50,36 +55,97 @@ template <class View>
   return {std::max(0.0, front - known.front), std::max(0.0, rear - known.rear)};
 }
 
+/// When a vehicle stopped before a junction, as another driver there remembers it.
+enum class Arrival : std::uint8_t { earlier, together, later };
+
+/// The vehicles that stood before a junction when a driver stopped there. It holds the lower halves of seven ids; where
+/// more stood, unknown vehicles count as earlier.
+class StandingAgents {
+ public:
+  [[nodiscard]] Arrival arrival_of(AgentId id) const {
+    auto const at = find(id);
+    if (at == size_) return size_ < ids_.size() ? Arrival::later : Arrival::earlier;
+    return (together_ >> at & 1) != 0 ? Arrival::together : Arrival::earlier;
+  }
+  void add(AgentId id) {
+    if (find(id) == size_ && size_ < ids_.size()) ids_[size_++] = lower_half(id);
+  }
+  /// Marks those that `before`, a step ago, did not hold: they stopped in the same step as the driver.
+  void mark_new(StandingAgents const& before) {
+    for (std::uint8_t i = 0; i < size_; ++i)
+      if (std::find(before.ids_.begin(), before.ids_.begin() + before.size_, ids_[i]) ==
+          before.ids_.begin() + before.size_)
+        together_ = static_cast<std::uint8_t>(together_ | 1u << i);
+  }
+  friend bool operator==(StandingAgents const&, StandingAgents const&) = default;
+
+ private:
+  [[nodiscard]] static std::uint16_t lower_half(AgentId id) { return static_cast<std::uint16_t>(id); }
+  [[nodiscard]] std::size_t find(AgentId id) const {
+    return static_cast<std::size_t>(std::find(ids_.begin(), ids_.begin() + size_, lower_half(id)) - ids_.begin());
+  }
+
+  std::array<std::uint16_t, 7> ids_{};
+  std::uint8_t size_{}, together_{};
+};
+
 /// The own vehicle before a conflict.
 struct ConflictAsker {
-  double s{}, front{};  ///< corridor positions of its reference point and its front end [m]
-  double speed{};       ///< [m/s]
-  double waited{};      ///< time at a standstill there [s]
-  double patience{};    ///< see `Intersection::patience` [s]
+  double s{}, front{};                     ///< corridor positions of its reference point and its front end [m]
+  double speed{};                          ///< [m/s]
+  double waited{};                         ///< time at a standstill there [s]
+  double patience{};                       ///< see `Intersection::patience` [s]
+  StandingAgents const* stopped_before{};  ///< those that stood there when it stopped
 
   [[nodiscard]] bool is_inside(map::Conflict const& conflict, map::ConflictZone const& zone) const {
     return front > zone.line + over_line && s < conflict.lane_end;
   }
 };
 
+/// Whether neither priorities nor lights say who goes first.
+template <class View>
+[[nodiscard]] bool is_by_arrival(View const& view, map::Conflict const& conflict) {
+  auto const is_off = [&](LightId light) { return !is_valid(light) || view.light(light) == map::LightColor::off; };
+  if (conflict.is_signed) return false;
+  return conflict.right_of_way == map::RightOfWay::equal || (is_off(conflict.light) && is_off(conflict.other_light));
+}
+
+/// Whether lights let both go at the same time, as those that turn left and oncoming traffic.
+template <class View>
+[[nodiscard]] bool go_together(View const& view, map::Conflict const& conflict) {
+  auto const goes = [&](LightId light) {
+    if (!is_valid(light)) return false;
+    auto const color = view.light(light);
+    return color == map::LightColor::green || color == map::LightColor::yellow;
+  };
+  return goes(conflict.light) && goes(conflict.other_light);
+}
+
 /// Whether the own vehicle goes before `other`, where both can still stop before the zone, `own_way` and `way` [m]
-/// ahead of them. Both drivers must find the same answer without communication, so it depends only on what both can
-/// see. The first rule that applies decides:
-/// - Patience: a driver that has waited too long for a standing vehicle goes. Only here may the two disagree.
-/// - A vehicle inside the junction goes before one outside. Of two inside, the nearer one goes.
+/// ahead of them. The first rule that applies decides:
+/// - First come, first served: where neither priorities nor lights say who goes first, a driver that stands at its line
+///   goes before one that stopped there later or has yet to stop. With right before left alone, four drivers would wait
+///   for each other again and again.
+/// - Patience: a driver that has waited too long for a standing vehicle goes.
+/// - At green, oncoming traffic goes before a vehicle that waits in the junction to turn across it.
+/// - A vehicle inside the junction goes before one outside. Of two inside, the one that can leave it first goes.
 /// - A vehicle before a red light waits.
 /// - A standing driver lets a vehicle go that has just started close to its line.
 /// - Right of way by map, signs and rules (`map::right_of_way`).
 /// - Without right of way, the nearer vehicle goes; at about equal distance, the one with the smaller id.
 ///
+/// Two drivers disagree only by the first two rules, which ask how long a driver has stood: both may go at once. Then
+/// the first to reach the zone has it, and the other one stops before it, as it can.
+///
 /// O(1).
 template <class View>
 [[nodiscard]] bool goes_first(View const& view, map::Conflict const& conflict, map::ConflictZone const& zone,
                               ConflictUser const& other, double way, double own_way, ConflictAsker const& own) {
-  constexpr double short_way = 15.0;  // [m] from the junction: a slow vehicle within it has just started
-  constexpr double spread = 8.0;      // [s] range over which ids spread the end of patience
-  constexpr double later = 20.0;      // [s] more for the larger id, and if only one of the two is in the junction
-  auto const& [user, at, reach] = other;
+  constexpr double spread = 8.0;     // [s] range over which ids spread the end of patience
+  constexpr double later = 20.0;     // [s] more for the larger id, and if only one of the two is in the junction
+  constexpr double in_order = 10.0;  // [s] more where those who came earlier go first
+  constexpr double pull_away = 1.0;  // [m/s^2]
+  auto const& [user, at, reach, is_behind_slow] = other;
   bool const stands = user.speed < standing_speed, own_stands = own.speed < standing_speed;
   // Two drivers must not lose their patience together. Of two that wait for each other, the smaller id goes long before
   // the other; the golden ratio spreads the ids of a ring of waiting drivers.
@@ -87,14 +153,29 @@ template <class View>
   double const share = 0.6180339887498949 * static_cast<double>(static_cast<std::uint32_t>(view.id()));
   double const turn = spread * (share - std::floor(share)) + (is_smaller ? 0.0 : later);  // [s]
   bool const inside = other.is_inside(conflict, zone), own_inside = own.is_inside(conflict, zone);
-  if (stands && own.waited >= own.patience + turn + (inside != own_inside ? later : 0.0)) return true;
-  if (inside != own_inside) return own_inside;
+  bool const by_arrival = !inside && !own_inside && own.waited >= own.patience && is_by_arrival(view, conflict);
+  double const to_line = zone.other_line - at - user.front;
+  auto const arrival = own.stopped_before->arrival_of(user.agent);
+  bool const has_to_stop = is_behind_slow || (user.speed < starting_speed && to_line < short_way);
+  if (by_arrival && arrival == Arrival::later && has_to_stop) return true;
+  double const extra = inside != own_inside ? later : by_arrival && arrival == Arrival::earlier ? in_order : 0.0;
+  if (stands && own.waited >= own.patience + turn + extra) return true;
+  bool const has_way = conflict.right_of_way == map::RightOfWay::first;
+  bool const is_decided = conflict.right_of_way != map::RightOfWay::equal;
+  bool const at_green = is_decided && go_together(view, conflict);
+  if (inside != own_inside) return at_green && own_inside != has_way ? has_way : own_inside;
   if (!inside && is_valid(conflict.other_light) && view.light(conflict.other_light) == map::LightColor::red)
     return true;
-  if (inside) return own_way != way ? own_way < way : is_smaller;
-  if (own_stands && !stands && user.speed < starting_speed && zone.other_line - at - user.front < short_way)
-    return false;
-  if (conflict.right_of_way != map::RightOfWay::equal) return conflict.right_of_way == map::RightOfWay::first;
+  if (inside) {
+    // Both drivers find the same two times, which keep their order once one of the two brakes and the other does not.
+    constexpr double highest = std::numeric_limits<double>::infinity();
+    double const later_by = time_to_cover(conflict.other_lane_end - at, user.speed, pull_away, highest) -
+                            time_to_cover(conflict.lane_end - own.s, own.speed, pull_away, highest);
+    return std::abs(later_by) > 1e-6 ? later_by > 0.0 : is_smaller;
+  }
+  if (by_arrival && arrival == Arrival::earlier && to_line < short_way) return false;
+  if (own_stands && !stands && !at_green && user.speed < starting_speed && to_line < short_way) return false;
+  if (is_decided) return has_way;
   return std::abs(own_way - way) > 2.0 ? own_way < way : is_smaller;
 }
 

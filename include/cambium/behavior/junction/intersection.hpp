@@ -2,9 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
+#include <utility>
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/junction/conflict_order.hpp"
@@ -30,15 +31,17 @@ namespace cambium {
 /// strongest claim bounds the step so that the vehicle can stop at its line.
 ///
 /// The driver enters a junction when all its conflicts are its own and there is room behind them. It then goes before
-/// all vehicles that are still outside. It stops at red lights (`World::set_light`) and stop signs, and slows down for
-/// bends. In a deadlock one driver after the other loses its `patience` and goes. Static objects count where they
-/// extend into the own lane, as for `IdmClassic`.
+/// all vehicles that are still outside. At green it also enters to turn left, and waits inside for oncoming traffic.
+/// It stops at red lights (`World::set_light`) and stop signs, and slows down for bends. Where neither priorities nor
+/// lights say who goes first, those who have stopped go in the order in which they came. In a deadlock one driver after
+/// the other loses its `patience` and goes. Static objects count where they extend into the own lane, as for
+/// `IdmClassic`.
 ///
 /// Guarantee: as long as the vehicle can stop before a conflict, it does not enter while another vehicle is inside or
-/// can no longer stop. Of two vehicles that can both stop, both drivers let the same one go first. So vehicles that all
-/// follow this model do not collide. A collision remains possible with vehicles that change lanes in a junction, ignore
-/// its rules, or are observed where they are not. Conflicts depend on the sizes of the two vehicles, see
-/// `MapOptions::conflict_shape`.
+/// can no longer stop. Of two vehicles that can both stop, one goes first, or both until one of them can no longer
+/// stop. So vehicles that all follow this model do not collide. A collision remains possible with vehicles that change
+/// lanes in a junction, ignore its rules, or are observed where they are not. Conflicts depend on the sizes of the two
+/// vehicles, see `MapOptions::conflict_shape`.
 struct Intersection {
   IdmParameters idm{};
   RoadRules rules{.obey_speed_limits = true, .slow_for_bends = true, .obey_signals = true, .merging = Merging::by_rule};
@@ -52,8 +55,10 @@ struct Intersection {
   static constexpr bool heeds_conflicts = true;  ///< agents must not exceed the shapes of the map's conflicts
   static constexpr char const* name = "intersection";
   static constexpr char const* summary =
-      "IDM; stops at red lights and stop signs; gives way by priorities of the map, signs, right before left, oncoming "
-      "before turning; stops for vehicles predicted to come too close in time; resolves deadlocks; slows for bends";
+      "IDM; stops at red lights and stop signs; gives way by priorities of the map, signs, order of arrival, right "
+      "before "
+      "left, oncoming before turning; stops for vehicles predicted to come too close in time; resolves deadlocks; "
+      "slows for bends";
   static constexpr char const* source = "rules of the road (StVO sections 8 and 9); prediction: own";
   static constexpr auto parameters() {
     using P = Intersection;
@@ -65,16 +70,18 @@ struct Intersection {
         parameter("time_margin", &P::time_margin, "s", Range{0, 20}, "between two vehicles in one place"),
         parameter("assumed_acceleration", &P::assumed_acceleration, "m/s^2", Range{0, 20},
                   "of others on their way to the conflict"),
-        parameter("patience", &P::patience, "s", Range{0, 600},
-                  "a driver that has stood for this time, and up to 48 s more by its id, goes before another one that "
-                  "stands, whatever the rules"),
+        parameter(
+            "patience", &P::patience, "s", Range{0, 600},
+            "a driver that has stood for this time goes before those that stopped later where nobody has priority; "
+            "after up to 58 s more, by its id, before any other one that stands"),
         parameter("keep_clear", &P::keep_clear, "-", Range{0, 1}, "do not stop within the junction"),
         parameter("tolerance", &P::tolerance, "m/s^2", Range{1e-12, 1}, "integration error in speed, per second"));
   }
 
   struct Memory {
-    float waited{};            ///< time at a standstill before a junction [s]
-    float stopped_at = -1.0f;  ///< corridor position of the stop sign at which it stopped last [m]
+    float waited{};                           ///< time at a standstill before a junction, red lights apart [s]
+    detail::StandingAgents stopped_before{};  ///< those that stood there when it stopped, or that stand there now
+    RoadRules::Memory rules{};
 
     friend bool operator==(Memory const&, Memory const&) = default;
   };
@@ -90,29 +97,22 @@ struct Intersection {
     own.front = own.s + view.shape().front;
     own.is_large = detail::is_large(view, view.shape());
     own.highest = own.idm.desired_speed;
-    if (rules.slow_for_bends) {
-      auto const bends = detail::bends_ahead(view.corridor(), own.s, own.speed, own.highest, rules.lateral_acceleration,
-                                             own.idm.comfortable_deceleration, hardest(own), dt);
-      own.highest = bends.highest;
-      own.bound = bends.bound;
-    }
+    if (rules.slow_for_bends)
+      own.highest = detail::bends_ahead(view.corridor(), own.s, own.speed, own.highest, rules.lateral_acceleration,
+                                        own.idm.comfortable_deceleration, hardest(own), dt)
+                        .highest;
     own.waited = memory.waited;
     own.patience = patience;
+    own.stopped_before = &memory.stopped_before;
     IdmLaw const law(own.idm, own.speed);
     Strictest ahead(law);
     rules.heed(view, ahead);
     heed_conflicts(view, own, ahead, dt);
-    detail::SignalStop signals;
-    if (rules.obey_signals)
-      signals = detail::stop_at_signals(view, own.front, own.speed, own.look_ahead, rules.stop_margin,
-                                        rules.safe_deceleration, memory.stopped_at);
-    if (std::isfinite(signals.distance)) bound(own, signals.distance, own.idm.comfortable_deceleration, dt);
-    if (signals.is_light || own.speed > starting || (own.speed >= standing_speed && own.at_line))
-      memory.waited = 0.0f;
-    else if (own.at_line)
-      memory.waited += static_cast<float>(dt);
+    auto const signals = rules.signals_ahead(view, own.front, own.speed, own.look_ahead, memory.rules);
+    remember(memory, own, signals.is_light, dt);
     auto motion = law.motion(ahead.constraint(), dt, tolerance);
-    if (own.bound.distance < motion.distance) motion = own.bound;
+    if (auto const& bound = own.wait().bound; bound.distance < motion.distance) motion = bound;
+    motion = rules.bound(view, own.idm, own.s, own.speed, motion, dt, memory.rules);
     return plan_along_lane(view, motion, dt);
   }
 
@@ -120,8 +120,15 @@ struct Intersection {
   using Other = detail::ConflictUser;
 
   static constexpr double starting = detail::starting_speed;
-  static constexpr double air = 0.3;  // [m] distance kept to a conflict
+  static constexpr double at_line_within = 2.0;  // [m] from where a driver waits: it has arrived there
+  static constexpr double air = 0.3;             // [m] distance kept to a conflict
   static constexpr double infinite = std::numeric_limits<double>::infinity();
+
+  /// Where one waits.
+  struct Wait {
+    LongitudinalMotion<double> bound{infinite, infinite};  ///< longest motion of this step
+    bool at_line = false;                                  ///< has arrived there
+  };
 
   /// The own vehicle: its place, and its motion as bounded so far.
   struct Own : detail::ConflictAsker {
@@ -129,9 +136,26 @@ struct Intersection {
     double look_ahead{};  ///< [m]
     double highest{};     ///< highest speed within `look_ahead` [m/s]
     bool is_large = false;
-    LongitudinalMotion<double> bound{infinite, infinite};  ///< longest motion of this step
-    bool at_line = false;                                  ///< has arrived where it waits
+    std::array<Wait, 2> waits{};        ///< by whether it has to leave room for large vehicles
+    bool meets_large = false;           ///< a large vehicle is on its way to one of the conflicts
+    detail::StandingAgents standing{};  ///< others that stand at their lines
+    bool is_near_line = false;          ///< comes to a line within `detail::short_way`
+    bool is_inside_junction = false;
+
+    [[nodiscard]] Wait const& wait() const { return waits[meets_large]; }
   };
+
+  /// Counts the time at a standstill. A driver that has begun to creep keeps its place in the order.
+  static void remember(Memory& memory, Own const& own, bool is_red, double dt) {
+    if (own.is_inside_junction || (own.speed > starting && !own.is_near_line)) memory.waited = 0.0f;
+    bool const stands = own.speed < standing_speed && own.wait().at_line && !is_red;
+    if (memory.waited == 0.0f) {
+      auto const before = std::exchange(memory.stopped_before, own.standing);
+      if (stands) memory.stopped_before.mark_new(before);
+    }
+    if (!stands) return;
+    memory.waited += static_cast<float>(dt);
+  }
 
   /// What a conflict demands, in ascending order.
   enum class Claim : std::uint8_t {
@@ -157,34 +181,62 @@ struct Intersection {
     auto const is_behind = [&](map::Conflict const& c) { return c.farthest_end < own.s; };
     for (auto at = std::partition_point(conflicts.begin(), conflicts.end(), is_behind); at != conflicts.end(); ++at) {
       auto const& conflict = *at;
-      if (conflict.hold[1] > own.front + own.look_ahead) break;
+      if (conflict.hold[1][1] > own.front + own.look_ahead) break;
       if (conflict.hull().end < own.s) continue;
       auto const& zones = conflict.zones[own.is_large];
+      own.is_near_line = own.is_near_line || zones[0].line - own.front < detail::short_way;
+      own.is_inside_junction = own.is_inside_junction || own.is_inside(conflict, zones[0]);
       auto claims = claims_of(view, conflict, own, ahead);
       if (!zones[0].empty() && claims[0] < Claim::yield && is_full_behind(view, zones[0], own, ahead.constraint()))
         claims[0] = Claim::yield;
       for (std::size_t other = 0; other < 2; ++other)
-        if (claims[other] != Claim::free) obey(claims[other], zones[other], conflict.hold[own.is_large], own, dt);
+        if (claims[other] != Claim::free) obey(claims[other], conflict, zones[other], view, own, dt);
     }
   }
 
   [[nodiscard]] static double hardest(Own const& own) { return -own.idm.lowest_acceleration; }
 
-  void bound(Own& own, double to_stop, double braking, double dt) const {
-    auto const motion = motion_before_stop(own.speed, to_stop, braking, hardest(own), dt);
-    if (motion.distance < own.bound.distance) own.bound = motion;
-  }
-
   /// Bounds the step's motion by the claim on a conflict.
-  void obey(Claim claim, map::ConflictZone const& zone, double hold, Own& own, double dt) const {
+  template <class View>
+  void obey(Claim claim, map::Conflict const& conflict, map::ConflictZone const& zone, View const& view, Own& own,
+            double dt) const {
     double const to_conflict = zone.begin - air - own.s;
     if (to_conflict + air < 0.0) return;  // it is inside already
-    double const to_hold = std::min(zone.line - own.front, hold - own.s);
-    double const to_stop = distance_to_stop(claim, to_hold, own, to_conflict);
-    if (claim == Claim::yield && !can_stop(own.speed, to_stop)) return;
-    double const braking = claim == Claim::watch ? rules.safe_deceleration : own.idm.comfortable_deceleration;
-    bound(own, to_stop, braking, dt);
-    own.at_line = own.at_line || to_stop < 2.0;
+    double const inside = conflict.right_of_way == map::RightOfWay::yields && detail::go_together(view, conflict)
+                              ? place_inside(view, zone, own) - own.s
+                              : -infinite;
+    for (std::size_t others : {0u, 1u}) {
+      double const outside = std::min(zone.line - own.front, conflict.hold[own.is_large][others] - own.s);
+      double const to_stop = distance_to_stop(claim, std::max(outside, inside), own, to_conflict);
+      if (claim == Claim::yield && !can_stop(own.speed, to_conflict + air)) continue;
+      double const braking = claim == Claim::watch ? rules.safe_deceleration : own.idm.comfortable_deceleration;
+      auto const motion = motion_before_stop(own.speed, to_stop, braking, hardest(own), dt);
+      auto& wait = own.waits[others];
+      if (motion.distance < wait.bound.distance) wait.bound = motion;
+      wait.at_line = wait.at_line || to_stop < at_line_within;
+    }
+  }
+
+  /// Where the vehicle waits at green for oncoming traffic that has green too: inside the junction, before the zones of
+  /// all who go before it now [corridor position, m].
+  template <class View>
+  [[nodiscard]] static double place_inside(View const& view, map::ConflictZone const& zone, Own const& own) {
+    double place = zone.begin - air;
+    auto const covers = [&place](map::ConflictZone const& z) { return z.begin - air < place && place <= z.end; };
+    auto const& conflicts = view.corridor().conflicts;
+    for (bool is_covered = true; is_covered;) {
+      is_covered = false;
+      for (auto const& c : conflicts)
+        for (std::size_t const other : {0u, 1u}) {
+          auto const& z = c.zones[own.is_large][other];
+          if ((other == 1 && !own.meets_large) || !covers(z) || c.right_of_way != map::RightOfWay::yields ||
+              !detail::go_together(view, c))
+            continue;
+          place = z.begin - air;
+          is_covered = true;
+        }
+    }
+    return place;
   }
 
   /// Distance to where it waits [m]: before the line if it can still stop there, otherwise before the conflict.
@@ -199,27 +251,50 @@ struct Intersection {
   /// The strongest claims of the normal and of the large vehicles on their way to the conflict. Adds merging leaders to
   /// the constraints.
   template <class View>
-  [[nodiscard]] std::array<Claim, 2> claims_of(View const& view, map::Conflict const& conflict, Own const& own,
+  [[nodiscard]] std::array<Claim, 2> claims_of(View const& view, map::Conflict const& conflict, Own& own,
                                                Strictest<IdmLaw>& ahead) const {
     std::array<Claim, 2> claims{Claim::free, Claim::free};
+    auto const first = own.speed < starting ? first_before(view, conflict, own) : std::nullopt;
+    if (first && first->speed < standing_speed && view.signals_way(*first, conflict.other))
+      own.standing.add(first->agent);
     for (auto const& way : conflict.ways)
       view.on_lane(way.index_begin, way.index_end, [&](RoadUser const& user) {
         if (user.s < way.index_begin || user.s > way.index_end || !is_valid(user.agent)) return;
         bool const large = detail::is_large(view, view.shape(user));
         auto const& zone = conflict.zones[own.is_large][large];
         if (zone.empty()) return;
+        own.meets_large = own.meets_large || large;
         Other const other{user, way.begin + user.s - way.index_begin,
-                          detail::extra_reach(view, large, user.front, user.rear)};
+                          detail::extra_reach(view, large, user.front, user.rear),
+                          first && first->speed < starting && first->agent != user.agent};
         claims[large] = std::max(claims[large], claim_of(view, conflict, zone, other, own, ahead));
       });
     return claims;
+  }
+
+  /// The vehicle that is next to enter the junction on the conflict's way, at most `detail::short_way` before its line.
+  template <class View>
+  [[nodiscard]] static std::optional<RoadUser> first_before(View const& view, map::Conflict const& conflict,
+                                                            Own const& own) {
+    std::optional<RoadUser> first;
+    double nearest = detail::short_way;
+    for (auto const& way : conflict.ways)
+      view.on_lane(way.index_begin, way.index_end, [&](RoadUser const& user) {
+        if (user.s < way.index_begin || user.s > way.index_end || !is_valid(user.agent)) return;
+        double const line = conflict.zones[own.is_large][detail::is_large(view, view.shape(user))].other_line;
+        double const to_line = line - (way.begin + user.s - way.index_begin) - user.front;
+        if (to_line < -detail::over_line || to_line > nearest) return;
+        nearest = to_line;
+        first = user;
+      });
+    return first;
   }
 
   /// The claim of one vehicle on its way.
   template <class View>
   [[nodiscard]] Claim claim_of(View const& view, map::Conflict const& conflict, map::ConflictZone const& zone,
                                Other const& other, Own const& own, Strictest<IdmLaw>& ahead) const {
-    auto const& [user, at, reach] = other;
+    auto const& [user, at, reach, behind_slow] = other;
     if (at > zone.other_end + reach.rear) return Claim::free;
     double const way = zone.other_begin - reach.front - at;
     if (at < 0.0 && !view.signals_way(user, conflict.other)) return Claim::free;
@@ -232,7 +307,10 @@ struct Intersection {
     }
     if (own_is_in) return Claim::free;
     if (is_in || !can_stop(user.speed, way)) {
-      double const out = (zone.other_end + reach.rear - at) / std::max(user.speed, standing_speed);
+      double end = zone.other_end + reach.rear;  // where it leaves room for the own vehicle
+      if (conflict.kind == map::OverlapKind::merge)
+        end = std::min(end, zone.begin + view.shape().front + own.idm.minimum_gap + user.rear - conflict.shift);
+      double const out = (end - at) / std::max(user.speed, standing_speed);
       return out + 0.5 * time_margin < arrival(own, own_way) ? Claim::watch : Claim::blocked;
     }
     if (detail::goes_first(view, conflict, zone, other, way, own_way, own)) return Claim::free;
@@ -242,7 +320,7 @@ struct Intersection {
   /// The claim of a vehicle that goes first and arrives at the zone after `way` [m].
   [[nodiscard]] Claim claim_in_time(map::Conflict const& conflict, map::ConflictZone const& zone, Other const& other,
                                     double way, double own_way, Own const& own) const {
-    auto const& [user, at, reach] = other;
+    auto const& [user, at, reach, behind_slow] = other;
     Window const theirs{
         time_to_cover(way, user.speed, assumed_acceleration, std::max(user.speed, own.idm.desired_speed)),
         (way + zone.other_end - zone.other_begin + reach.front + reach.rear) / std::max(user.speed, standing_speed)};

@@ -102,14 +102,16 @@ struct Conflict {
   LaneId other = none<LaneId>;
   OverlapKind kind = OverlapKind::crossing;
   RightOfWay right_of_way = RightOfWay::equal;  ///< of this corridor's traffic
+  bool is_signed = false;                       ///< priorities or signs say who goes first, or both have priority
   ConflictZones zones;                          ///< that of two large ones holds all others and is not empty
-  /// Corridor position, by the size of the corridor's vehicle, up to which reference points are in no zone of the
-  /// junction: there one waits. No farther for large ones [m].
-  std::array<double, 2> hold{};
+  /// Corridor position up to which reference points are in no zone of the junction, by the size of the corridor's
+  /// vehicle and whether large vehicles are among the others: there one waits. No farther for large ones [m].
+  std::array<std::array<double, 2>, 2> hold{};
   double lane_end{}, other_lane_end{};  ///< where the two lanes end: corridor position, and on the other's way [m]
 
   [[nodiscard]] ConflictZone const& hull() const { return zones[1][1]; }
   double farthest_end{};                ///< of the hulls of this one and those before it in the corridor [m]
+  LightId light = none<LightId>;        ///< that stops the corridor's traffic
   LightId other_light = none<LightId>;  ///< that stops the other's traffic
   double shift{};  ///< where they merge or part: corridor position = position on the way + shift [m]
   double meet = std::numeric_limits<double>::infinity();  ///< where lanes that merge come together [m]
@@ -139,7 +141,7 @@ struct LaneCorridor {
   geometry::Line left, right;               ///< borders
   IdVector<CorridorPiece, PieceId> pieces;  ///< sorted by `begin`, gapless
   std::vector<Feeder> feeders;              ///< sorted by `begin`
-  std::vector<Conflict> conflicts;          ///< sorted by `hold[1]`
+  std::vector<Conflict> conflicts;          ///< sorted by `hold[1][1]`
   std::vector<Bend> bends;                  ///< sharper than 1 km of radius, sorted by `begin`
   double sharpest_bend = 0.0;               ///< the curvature of the sharpest of them [1/m]
   std::vector<CorridorSignal> signals;      ///< sorted by `line`

@@ -79,10 +79,9 @@ struct Approach {
 
 }  // namespace detail
 
-/// Who goes first where `overlap` of lane `id` lies: by the junction's priorities, else by signs, else right before
-/// left; where traffic keeps to the left, left before right. For the other lane's overlap the answer is the opposite
-/// one.
-[[nodiscard]] inline RightOfWay right_of_way(Map const& map, LaneId id, Overlap const& overlap) {
+/// Who goes first where `overlap` of lane `id` lies, by the junction's priorities, else by signs; nothing where neither
+/// says.
+[[nodiscard]] inline std::optional<RightOfWay> signed_right_of_way(Map const& map, LaneId id, Overlap const& overlap) {
   auto const &lane = map.lane(id), &other = map.lane(overlap.other);
   auto const &road = map.road(lane.road), &other_road = map.road(other.road);
   if (is_valid(road.junction) && road.junction == other_road.junction)
@@ -90,8 +89,18 @@ struct Approach {
       return *first == lane.road ? RightOfWay::first : RightOfWay::yields;
   int const rank = detail::signs_before(map, lane).rank, other_rank = detail::signs_before(map, other).rank;
   if (rank != other_rank) return rank > other_rank ? RightOfWay::first : RightOfWay::yields;
+  return std::nullopt;
+}
+
+/// Who goes first where `overlap` of lane `id` lies: by the junction's priorities, else by signs, else right before
+/// left; where traffic keeps to the left, left before right. For the other lane's overlap the answer is the opposite
+/// one.
+[[nodiscard]] inline RightOfWay right_of_way(Map const& map, LaneId id, Overlap const& overlap) {
+  if (auto const by_signs = signed_right_of_way(map, id, overlap)) return *by_signs;
+  auto const &lane = map.lane(id), &other = map.lane(overlap.other);
   return detail::right_before_left(detail::approach_of(map, lane, overlap.begin),
-                                   detail::approach_of(map, other, overlap.other_begin), road.left_hand_traffic);
+                                   detail::approach_of(map, other, overlap.other_begin),
+                                   map.road(lane.road).left_hand_traffic);
 }
 
 }  // namespace cambium::map

@@ -51,7 +51,8 @@ class ConflictFinder {
       set_lines(number, conflict);
       conflicts.push_back(std::move(conflict));
     }
-    set_holds(conflicts);
+    for (std::size_t own : {0u, 1u})
+      for (std::size_t others : {0u, 1u}) set_holds(conflicts, own, others);
     sort(conflicts);
     return conflicts;
   }
@@ -82,11 +83,14 @@ class ConflictFinder {
     conflict.other = overlap.other;
     conflict.kind = kind_of(map_.lane(piece.lane), overlap);
     conflict.right_of_way = right_of_way(map_, piece.lane, overlap);
+    conflict.is_signed = signed_right_of_way(map_, piece.lane, overlap).has_value() ||
+                         signs_before(map_, map_.lane(piece.lane)).rank > 0;
     double const begin = position(overlap.begin), end = position(overlap.end);
     conflict.shift = conflict.kind == OverlapKind::split ? begin - overlap.other_begin : end - overlap.other_end;
     if (overlap.kind == OverlapKind::merge) conflict.meet = begin;
     conflict.lane_end = piece.end;
     conflict.other_lane_end = map_.lane(overlap.other).length();
+    conflict.light = signs_before(map_, map_.lane(piece.lane)).light;
     conflict.other_light = signs_before(map_, map_.lane(overlap.other)).light;
     for (auto const& hull : zones_in(number, range_of(overlap, begin, end, conflict.kind), conflict, true, true))
       for (auto const& zones : zones_by_size(number, hull, conflict)) {
@@ -263,7 +267,7 @@ class ConflictFinder {
         zone.line = std::min(zone.begin + body(own).front, begin);
         zone.other_line = std::min(zone.other_begin + body(other).front, other_begin);
       }
-    conflict.hold.fill(begin);
+    conflict.hold = {{{begin, begin}, {begin, begin}}};
     double const view = conflict.kind == OverlapKind::split ? 0.0 : map_.options().merge_view;
     conflict.ways =
         ways_through(map_, map_.lane(conflict.other), conflict.hull().other_begin - view, conflict.hull().other_end);
@@ -271,7 +275,7 @@ class ConflictFinder {
 
   static void sort(std::vector<Conflict>& conflicts) {
     auto const key = [](Conflict const& c) {
-      return std::tuple(c.hold[1], c.hull().begin, c.other, c.hull().other_begin, c.lane_end, c.zones[0][0].begin,
+      return std::tuple(c.hold[1][1], c.hull().begin, c.other, c.hull().other_begin, c.lane_end, c.zones[0][0].begin,
                         c.zones[0][1].begin, c.zones[1][0].begin);
     };
     cambium::detail::stable_sort_by(conflicts,
@@ -280,29 +284,33 @@ class ConflictFinder {
     for (auto& conflict : conflicts) conflict.farthest_end = end = std::max(end, conflict.hull().end);
   }
 
-  /// Sets the places to wait from where, as yet, the junctions begin: before the first zone of the same junction, or of
-  /// one before it that reaches so far.
-  static void set_holds(std::vector<Conflict>& conflicts) {
+  /// Sets the places to wait, by size of the own vehicle and the others, from where, as yet, the junctions begin:
+  /// before the first zone of the same junction, or of one before it that reaches so far.
+  static void set_holds(std::vector<Conflict>& conflicts, std::size_t own, std::size_t others) {
     constexpr double near = 2.0;  // [m] one may wait so much earlier
-    std::map<double, std::array<double, 2>> holds;
-    auto const first_zone = [](Conflict const& conflict, std::size_t own) {
-      return std::min(conflict.zones[own][0].begin, conflict.zones[own][1].begin);
+    auto const first_zone = [=](Conflict const& conflict) {
+      auto const& zones = conflict.zones[own];
+      return others == 0 ? zones[0].begin : std::min(zones[0].begin, zones[1].begin);
     };
-    for (auto const& conflict : conflicts)
-      for (std::size_t own : {0u, 1u}) {
-        auto& hold = holds.emplace(conflict.hold[own], conflict.hold).first->second[own];
-        hold = std::min(hold, first_zone(conflict, own));
-      }
+    auto const last_end = [=](Conflict const& conflict) {
+      auto const& zones = conflict.zones[own];
+      return others == 0 ? zones[0].end : std::max(zones[0].end, zones[1].end);
+    };
+    std::map<double, double> holds;  // by where the junction begins
+    for (auto const& conflict : conflicts) {
+      double const begin = conflict.hold[own][others];
+      auto& hold = holds.emplace(begin, begin).first->second;
+      hold = std::min(hold, first_zone(conflict));
+    }
     for (auto& [begin, hold] : holds)
       for (auto const& before : conflicts)
-        for (std::size_t own : {0u, 1u})
-          if (before.hold[own] < begin && before.kind == OverlapKind::crossing &&
-              std::max(before.zones[own][0].end, before.zones[own][1].end) > hold[own] - near)
-            hold[own] = std::min(hold[own], holds.at(before.hold[own])[own]);
-    for (auto& conflict : conflicts)
-      for (std::size_t own : {0u, 1u})
-        conflict.hold[own] =
-            std::isfinite(conflict.hold[own]) ? holds.at(conflict.hold[own])[own] : first_zone(conflict, own);
+        if (double const from = before.hold[own][others];
+            from < begin && before.kind == OverlapKind::crossing && last_end(before) > hold - near)
+          hold = std::min(hold, holds.at(from));
+    for (auto& conflict : conflicts) {
+      double& hold = conflict.hold[own][others];
+      hold = std::isfinite(hold) ? holds.at(hold) : first_zone(conflict);
+    }
   }
 
   Map const& map_;
