@@ -1,9 +1,9 @@
 #pragma once
 
 #include <cstddef>
-#include <variant>
 #include <vector>
 
+#include "cambium/core/one_of.hpp"
 #include "cambium/goal/goal_situation.hpp"
 #include "cambium/goal/own_goal.hpp"
 #include "cambium/goal/simple_goals.hpp"
@@ -16,8 +16,8 @@ struct GoalSequence;
 
 /// An agent's goal; it also determines the route of an agent without one. A value: combinations hold their parts. Every
 /// `GoalModel` struct of your own converts to it and can be a part of a combination.
-using Goal = std::variant<NoGoal, ReachPolygon, ReachLane, StateLimits, LaneLimits, ReachLaneEnd, ReachLaneBeside,
-                          AllGoals, AnyGoal, GoalSequence, OwnGoal>;
+using Goal = OneOf<NoGoal, ReachPolygon, ReachLane, StateLimits, LaneLimits, ReachLaneEnd, ReachLaneBeside, AllGoals,
+                   AnyGoal, GoalSequence, OwnGoal>;
 
 /// Reached when all parts are reached at the same time; never without parts.
 struct AllGoals {

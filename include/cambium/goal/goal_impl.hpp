@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <variant>
 
 #include "cambium/core/macros.hpp"
 #include "cambium/goal/goal.hpp"
@@ -10,7 +9,7 @@
 namespace cambium {
 
 CAMBIUM_NOINLINE CAMBIUM_COLD bool at_goal(Goal const& goal, GoalSituation const& situation) {
-  return std::visit([&](auto const& g) { return g.at_goal(situation); }, goal);
+  return goal.visit([&](auto const& g) { return g.at_goal(situation); });
 }
 
 CAMBIUM_NOINLINE CAMBIUM_COLD bool AllGoals::at_goal(GoalSituation const& at) const {

@@ -118,7 +118,7 @@ class Destinations {
   Destinations(Map const& map, std::string const& where) : map_(&map), where_(&where) {}
 
   [[nodiscard]] std::vector<LaneId> of(Goal const& goal) const {
-    return std::visit([this](auto const& g) { return lanes(g); }, goal);
+    return goal.visit([this](auto const& g) { return lanes(g); });
   }
 
  private:
