@@ -1,6 +1,7 @@
 #pragma once
 
 #include "cambium/behavior/law/idm.hpp"
+#include "cambium/behavior/law/road_rules.hpp"
 #include "cambium/dynamics/kinematic_point.hpp"
 #include "cambium/dynamics/single_track.hpp"
 
@@ -72,6 +73,10 @@ namespace cambium::presets {
           .comfortable_deceleration = 1.5,
           .lowest_acceleration = -5.0};
 }
+
+/// The rules of a cyclist, for any driver model: it keeps to the side of its lane. Drivers pass it within the lane
+/// where that is wide enough, see `RoadRules`.
+[[nodiscard]] constexpr RoadRules cyclist_rules() { return {.keep_to_side = true}; }
 
 /// Vehicle model of a bicycle (`geometry::bicycle`). It is a single track, because a bicycle steers and cannot turn on
 /// the spot. It brakes by at most 5 m/s^2, before its rear wheel lifts off (centre of mass 1.1 m high, 0.6 m behind the

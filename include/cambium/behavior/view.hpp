@@ -83,6 +83,10 @@ struct ViewArchetype {
   template <class F>
   void around(double distance, F&& f) const;  ///< for agents nearby, in any lane or none
   template <class F>
+  void off_lanes(double distance, F&& f) const;    ///< for agents nearby that are on no drivable lane of their own
+  [[nodiscard]] bool anybody_off_lanes() const;    ///< there are such agents in the world
+  [[nodiscard]] bool anybody_leaves_room() const;  ///< an agent drives aside in its lane: others may fit beside it
+  template <class F>
   void on_lane(double index_begin, double index_end, F&& f) const;  ///< for agents that overlap a stretch of a lane
   template <class F>
   void for_each_object(F&& f) const;  ///< `f(id, outline)` for each static object; the outline is a polygon

@@ -145,6 +145,19 @@ class ObservedWorld {
     detail::for_each_around(*world_, slot_, distance, [&](Slot slot) { f(user(slot)); });
   }
 
+  /// Calls `f(RoadUser)` for every other agent within `distance` [m], measured as in `around`, that is on no drivable
+  /// lane of its own, such as a pedestrian on a free corridor, in the order of ids. O(such agents in the world).
+  template <class F>
+  void off_lanes(double distance, F&& f) const {
+    for (Slot const slot : world_->traffic().off_lanes())
+      if (detail::is_near(*world_, slot_, slot, distance)) f(user(slot));
+  }
+  /// Whether there are such agents in the world, seen or not. O(1).
+  [[nodiscard]] bool anybody_off_lanes() const { return !world_->traffic().off_lanes().empty(); }
+  /// Whether an agent of the world drives aside from the middle of its lane and leaves `TrafficIndex::room_to_pass`
+  /// beside itself. O(1).
+  [[nodiscard]] bool anybody_leaves_room() const { return world_->traffic().anybody_leaves_room(); }
+
   /// Calls `f(RoadUser)` for every other road user that reaches into lane coordinates `index_begin` to `index_end` of
   /// one lane (see `Lane::index_begin`); `s` is then the lane coordinate. O(log n + road users near).
   template <class F>

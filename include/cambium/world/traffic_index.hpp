@@ -21,14 +21,19 @@ struct LaneStretch {
   double begin = 0.0, end = 0.0;
 };
 
-/// Extra entries of agents, one for each further lane that an agent reaches into.
+/// What the index keeps of agents that do not drive in the middle of a lane. Extra entries: one for each further lane
+/// that an agent reaches into.
 struct ReachingEntries {
   std::vector<TrafficEntry> entries;
   double over_begin = 0.0, over_end = 0.0;  ///< largest extent of an agent beyond the begin (end) of its lane [m]
+  bool leaves_room = false;                 ///< an agent in its lane leaves `TrafficIndex::room_to_pass` beside itself
+  std::vector<Slot> off_lanes;              ///< agents on no drivable lane of their own
 
   void clear() {
     entries.clear();
     over_begin = over_end = 0.0;
+    leaves_room = false;
+    off_lanes.clear();
   }
 
   void add(TrafficEntry const& entry, LaneStretch const& lane) {
@@ -67,6 +72,7 @@ class TrafficIndex {
       rank_.resize(count);
       agents_.reserve(3 * count);
       reaching_.entries.reserve(2 * count);
+      reaching_.off_lanes.reserve(count);
       agents_.resize(count);
       for (std::uint32_t i = 0; i < count; ++i) agents_[rank_[i] = i].slot = Slot{i};
     }
@@ -83,6 +89,7 @@ class TrafficIndex {
     agents_.resize(count);
     sort_nearly_sorted(agents_);
     std::sort(reaching_.entries.begin(), reaching_.entries.end());
+    std::sort(reaching_.off_lanes.begin(), reaching_.off_lanes.end());
     merge_reaching(count);
     crowded_ = !reach_.all_alike() && anybody_hides(lane_of);
   }
@@ -103,6 +110,16 @@ class TrafficIndex {
   [[nodiscard]] bool has(Slot slot) const {
     return agents_[rank_[index_of(slot)]].position < std::numeric_limits<double>::infinity();
   }
+
+  /// Free width [m] beside an agent in its lane from which on another one might pass it there: a bicycle's, with 1.3 m.
+  static constexpr double room_to_pass = 2.0;
+
+  /// Whether an agent drives aside from the middle of its lane and leaves `room_to_pass` beside itself.
+  [[nodiscard]] bool anybody_leaves_room() const { return reaching_.leaves_room; }
+
+  /// The agents on no drivable lane of their own, such as pedestrians on free corridors, in the order of their slots.
+  /// An agent in the middle of a sidewalk or another lane that is not drivable is not among them.
+  [[nodiscard]] std::span<Slot const> off_lanes() const { return reaching_.off_lanes; }
 
   /// Next road user ahead on `corridor`. `own` says that the searching agent's own entry lies on this corridor's piece,
   /// which saves a binary search.

@@ -74,6 +74,9 @@ class AccLaw {
     return terms_.bounded(acc_blend(idm, cah_acceleration(speed, leader, terms_.maximum), comfortable_, coolness_));
   }
 
+  [[nodiscard]] double speed() const { return speed_; }                                      ///< [m/s]
+  [[nodiscard]] double desired_speed() const { return 1.0 / terms_.inverse_desired_speed; }  ///< [m/s]
+
   /// Motion over `dt` [s] behind a leader of constant speed.
   [[nodiscard]] LongitudinalMotion<double> motion(Constraint const& leader, double dt) const {
     return follow_motion(*this, speed_, leader, dt);
@@ -113,9 +116,9 @@ struct AdaptiveCruiseControl {
     p.desired_speed = rules.desired_speed(idm, view, speed);
     AccLaw const law(p, coolness, speed);
     Strictest ahead(law);
-    rules.heed(view, ahead);
+    rules.heed(view, ahead, memory);
     auto const motion = law.motion(ahead.constraint(), dt);
-    return plan_along_lane(view, rules.bound(view, idm, view.place().s, speed, motion, dt, memory), dt);
+    return rules.along_lane(view, rules.bound(view, idm, view.place().s, speed, motion, dt, memory), dt, memory);
   }
 };
 static_assert(BehaviorModel<AdaptiveCruiseControl>);

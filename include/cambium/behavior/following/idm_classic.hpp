@@ -42,9 +42,9 @@ struct IdmClassic {
     double const speed = std::max(0.0, view.state().speed);
     IdmLaw const law(*this, speed, rules.desired_speed(*this, view, speed));
     Strictest ahead(law);
-    rules.heed(view, ahead);
+    rules.heed(view, ahead, memory);
     auto const motion = law.motion(ahead.constraint(), dt, tolerance);
-    return plan_along_lane(view, rules.bound(view, *this, view.place().s, speed, motion, dt, memory), dt);
+    return rules.along_lane(view, rules.bound(view, *this, view.place().s, speed, motion, dt, memory), dt, memory);
   }
 };
 static_assert(BehaviorModel<IdmClassic>);

@@ -78,7 +78,7 @@ struct IdmLaneTracking {
     p.desired_speed = rules.desired_speed(idm, view, speed);
     AccLaw const law(p, coolness, speed);
     Strictest ahead(law);
-    rules.heed(view, ahead);
+    rules.heed(view, ahead, memory);
     return drive_along(view, p, ahead.constraint(), memory, dt);
   }
 
@@ -94,6 +94,7 @@ struct IdmLaneTracking {
   template <class View>
   [[nodiscard]] Plan<View> drive_along(View const& view, IdmParameters const& p, Constraint leader, Memory& memory,
                                        double dt) const {
+    constexpr double gentle = 0.3;  // [m] it moves aside as if it were no farther from where it wants to be
     auto const& model = view.dynamics();
     auto const& line = view.corridor().center;
     double const wheel_base = wheel_base_of(model);
@@ -106,7 +107,9 @@ struct IdmLaneTracking {
     Plan<View> plan;
     for (int i = 0; i < steps; ++i) {
       auto const motion = rules.bound(view, p, s, x.speed, longitudinal(p, x.speed, leader, h), h, memory);
-      double const angle = steering(front_axle(line, x, wheel_base, segment), x.speed, wheel_base, h);
+      auto axle = front_axle(line, x, wheel_base, segment);
+      if (memory.aside != 0.0f) axle.offset = std::clamp(axle.offset - memory.aside, -gentle, gentle);
+      double const angle = steering(axle, x.speed, wheel_base, h);
       Action const action{(motion.speed - x.speed) / h, angle};
       if (i == 0) plan.action = action_of(model.input(action, x), action);
       leader.gap += h * leader.speed - motion.distance;

@@ -106,14 +106,14 @@ struct Intersection {
     own.stopped_before = &memory.stopped_before;
     IdmLaw const law(own.idm, own.speed);
     Strictest ahead(law);
-    rules.heed(view, ahead);
+    rules.heed(view, ahead, memory.rules);
     heed_conflicts(view, own, ahead, dt);
     auto const signals = rules.signals_ahead(view, own.front, own.speed, own.look_ahead, memory.rules);
     remember(memory, own, signals.is_light, dt);
     auto motion = law.motion(ahead.constraint(), dt, tolerance);
     if (auto const& bound = own.wait().bound; bound.distance < motion.distance) motion = bound;
     motion = rules.bound(view, own.idm, own.s, own.speed, motion, dt, memory.rules);
-    return plan_along_lane(view, motion, dt);
+    return rules.along_lane(view, motion, dt, memory.rules);
   }
 
  private:

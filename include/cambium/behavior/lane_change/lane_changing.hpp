@@ -100,7 +100,8 @@ struct LaneChanging {
                                  double tolerance, double dt, Choose const& choose) const {
     double const speed = std::max(0.0, view.state().speed);
     IdmLaw const law(idm, speed, rules.desired_speed(idm, view, speed));
-    auto const leader = view.ahead({.merging = rules.merging});
+    auto const leader = memory.change.active() ? view.ahead({.merging = rules.merging})
+                                               : rules.next_in_way(view, law, memory.rules, passes_in_lane(view));
     auto const home = view.place().corridor;
     memory.rest = std::max(0.0f, memory.rest - static_cast<float>(dt));
     course.renew(memory.change, view.shape(), speed);
@@ -127,8 +128,12 @@ struct LaneChanging {
                            Strictest<IdmLaw>(ahead));
     if (auto const end = rules.lane_end_ahead(view)) ahead.heed(*end);
     auto const motion = law.motion(ahead.constraint(), dt, tolerance);
-    return plan_lane_change(view, memory.change,
-                            rules.bound(view, idm, view.place().s, speed, motion, dt, memory.rules), dt);
+    auto const bounded = rules.bound(view, idm, view.place().s, speed, motion, dt, memory.rules);
+    if (memory.rules.aside != 0.0f) [[unlikely]] {
+      if (!memory.change.active()) return plan_in_lane(view, rules, bounded, dt, memory);
+      memory.rules.aside = 0.0f;
+    }
+    return plan_lane_change(view, memory.change, bounded, dt);
   }
 
   /// The car following that this driver assumes of a follower.
@@ -174,6 +179,19 @@ struct LaneChanging {
   }
 
  private:
+  /// Whether it may pass slower ones within its lane: not where lanes merge in, whose traffic counts as a whole.
+  template <class View>
+  [[nodiscard]] static bool passes_in_lane(View const& view) {
+    return view.corridor().feeders.empty();
+  }
+
+  template <class View>
+  [[nodiscard]] static Plan<View> plan_in_lane(View const& view, RoadRules const& rules,
+                                               LongitudinalMotion<double> const& motion, double dt, Memory& memory) {
+    memory.change.bend = 0.0f;
+    return rules.along_lane(view, motion, dt, memory.rules);
+  }
+
   static constexpr double infinite = std::numeric_limits<double>::infinity();
   /// Share of a change after which the vehicle has left its old lane.
   static constexpr double out_of_lane = 0.7;

@@ -99,7 +99,7 @@ struct MacroActions {
   double highest_speed = 50.0;
   double minimum_remaining = 20.0;
   IdmParameters idm{};
-  RoadRules rules{};
+  RoadRules rules{.crossing_time = 0.0};
   LaneChangeCourse course{};
   double tolerance = 1e-4;
 

@@ -68,7 +68,8 @@ struct ZipMerge {
     IdmLaw const law(idm, speed, rules.desired_speed(idm, view, speed));
     Strictest ahead(law);
     double const merge = next_merge(view);
-    auto const leader = view.ahead({.merging = merge < infinite ? Merging::ignored : rules.merging});
+    auto const leader =
+        merge < infinite ? view.ahead({.merging = Merging::ignored}) : rules.next_in_way(view, law, memory.rules);
     rules.heed(view, leader, ahead);
     if (merge < infinite) {
       if (auto const other = let_in(view, memory, leader, merge)) {
@@ -80,8 +81,12 @@ struct ZipMerge {
       memory.ahead = leader->agent;
     }
     auto const motion = law.motion(ahead.constraint(), dt, tolerance);
-    return plan_to_center(view, memory.bend, rules.bound(view, idm, view.place().s, speed, motion, dt, memory.rules),
-                          dt);
+    auto const bounded = rules.bound(view, idm, view.place().s, speed, motion, dt, memory.rules);
+    if (memory.rules.aside != 0.0f) [[unlikely]] {
+      memory.bend = 0.0f;
+      return rules.along_lane(view, bounded, dt, memory.rules);
+    }
+    return plan_to_center(view, memory.bend, bounded, dt);
   }
 
  private:

@@ -32,6 +32,7 @@ class Strictest {
     constraint_ = other;
   }
 
+  [[nodiscard]] Law const& law() const { return *law_; }
   [[nodiscard]] Constraint const& constraint() const { return constraint_; }
 
   /// The law's response [m/s^2].

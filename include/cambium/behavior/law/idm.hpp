@@ -331,8 +331,9 @@ class IdmLaw {
     return leader ? (*this)(leader->gap, leader->speed) : free();
   }
 
-  [[nodiscard]] double speed() const { return speed_; }                    ///< [m/s]
-  [[nodiscard]] double minimum_gap() const { return terms_.minimum_gap; }  ///< [m]
+  [[nodiscard]] double speed() const { return speed_; }                                      ///< [m/s]
+  [[nodiscard]] double desired_speed() const { return 1.0 / terms_.inverse_desired_speed; }  ///< [m/s]
+  [[nodiscard]] double minimum_gap() const { return terms_.minimum_gap; }                    ///< [m]
 
   /// See `idm_motion`.
   [[nodiscard]] LongitudinalMotion<double> motion(Constraint const& c, double dt, double tolerance) const {

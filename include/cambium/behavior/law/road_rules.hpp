@@ -9,6 +9,8 @@
 #include "cambium/behavior/law/constraint.hpp"
 #include "cambium/behavior/law/follow_lane.hpp"
 #include "cambium/behavior/law/idm.hpp"
+#include "cambium/behavior/law/passing.hpp"
+#include "cambium/behavior/law/stepping_out.hpp"
 #include "cambium/behavior/view.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/core/parameters.hpp"
@@ -114,11 +116,24 @@ template <class Law, class View>
 /// three places of its `plan`:
 ///
 ///   IdmLaw const law(idm, speed, rules.desired_speed(idm, view, speed));   // 1. speed limits lower the desired speed
-///   rules.heed(view, ahead);                                               // 2. leader and lane end are constraints
+///   rules.heed(view, ahead, memory);                                       // 2. leader and lane end are constraints
 ///   rules.bound(view, idm, s, speed, law.motion(...), dt, memory);         // 3. bends and signals bound the motion
+///   rules.along_lane(view, motion, dt, memory);                                  // 4. where in the lane it drives
 ///
-/// Bends and signals bound the motion instead of being constraints of the law, because a driver brakes for them evenly
-/// and exactly to a point, while IDM would keep a time headway to them.
+/// Bends, signals and those who are about to step onto the road bound the motion instead of being constraints of the
+/// law, because a driver brakes for them evenly and exactly to a point, while IDM would keep a time headway to them.
+///
+/// Who is in the way? The next road user in the lane, whatever part of it that occupies, as long as everybody drives in
+/// the middle. An agent that drives aside and slower is passed within the lane if the lane has room for both and for
+/// `passing_clearance` between them:
+///
+///    =======================================
+///            . - - - - - - .                    the driver moves aside, passes, and returns when it is clear
+///    [own] '   [cyclist] ->  ' - - - - ->
+///    =======================================
+///
+/// The law follows it until the driver will be far enough aside when it comes up to it. An agent beside the own vehicle
+/// is not in the way.
 struct RoadRules {
   enum class LaneEnd {
     ignored,
@@ -136,11 +151,16 @@ struct RoadRules {
   double stop_margin = 1.0;
   double safe_deceleration = 3.0;
   Merging merging = Merging::counts;
+  double passing_clearance = 1.5;
+  double crossing_time = 4.0;
+  bool keep_to_side = false;
+  double side_margin = 0.4;
 
   static constexpr char const* name = "road_rules";
   static constexpr char const* summary =
-      "what a driver heeds besides the next vehicle: the end of its lane, speed limits, bends, lights and stop signs";
-  static constexpr char const* source = "own; lane end: BARK";
+      "what a driver heeds besides the next vehicle: the end of its lane, speed limits, bends, lights and stop signs, "
+      "those beside it in its lane, those who step onto the road";
+  static constexpr char const* source = "own; lane end: BARK; clearance: StVO section 5 (4)";
   static constexpr auto parameters() {
     using P = RoadRules;
     return parameter_list(
@@ -160,15 +180,29 @@ struct RoadRules {
         parameter("safe_deceleration", &P::safe_deceleration, "m/s^2", Range{0.1, 20},
                   "a driver who would have to brake harder passes a light that has just turned yellow"),
         choice("merging", &P::merging, "counts|by_rule|ignored",
-               "road users in lanes that merge into the own one: followed, followed except in junctions, ignored"));
+               "road users in lanes that merge into the own one: followed, followed except in junctions, ignored"),
+        parameter(
+            "passing_clearance", &P::passing_clearance, "m", Range{0.3, 100},
+            "to slower agents that drive aside, when it passes them within its lane; StVO: 1.5 in town, 2 outside"),
+        parameter("crossing_time", &P::crossing_time, "s", Range{0, 60},
+                  "brakes for agents on no lane, such as pedestrians, who will step into its way within this time; 0: "
+                  "only for those in its lane"),
+        parameter("keep_to_side", &P::keep_to_side, "-", Range{0, 1},
+                  "drive at the outer side of the lane (right; in left-hand traffic left), as cyclists do"),
+        parameter("side_margin", &P::side_margin, "m", Range{0, 10}, "from the own side to the border there"));
   }
 
   /// What a driver remembers for the rules.
   struct Memory {
     float stopped_at = -1.0f;  ///< corridor position of the stop sign at which it stopped last [m]
+    float aside = 0.0f;        ///< offset to the left of the middle of the lane to which it steers, at the side or to
+                               ///< pass, see `to_middle` [m]; 0: the rules leave the offset to the driver
 
     friend bool operator==(Memory const&, Memory const&) = default;
   };
+
+  /// `Memory::aside` of a driver that returns to the middle, to 0.1 mm.
+  static constexpr float to_middle = 1e-4f;
 
   /// Desired speed [m/s] of a driver with parameters `idm` at its place and `speed` [m/s]: within the limits if it
   /// obeys them.
@@ -198,7 +232,15 @@ struct RoadRules {
     if (next) ahead.heed(detail::constraint_of<Law>(view, *next));
     if (auto const end = lane_end_ahead(view)) ahead.heed(*end);
   }
-  /// The same with the next vehicle in the own lane and in each lane that merges into it.
+  /// The same with the next vehicle in the own lane that is in the way, and the next one in each lane that merges in.
+  template <class View, class Law>
+  void heed(View const& view, Strictest<Law>& ahead, Memory& memory) const {
+    if (!steers(view, memory)) [[likely]]
+      return heed(view, ahead);
+    heed_in_way(view, ahead, memory);
+    if (auto const end = lane_end_ahead(view)) ahead.heed(*end);
+  }
+  /// The same for a driver that passes nobody within its lane.
   template <class View, class Law>
   void heed(View const& view, Strictest<Law>& ahead) const {
     if (view.corridor().feeders.empty()) [[likely]] {
@@ -216,15 +258,42 @@ struct RoadRules {
                     [&](RoadUser const& next) { ahead.heed(detail::constraint_of<Law>(view, next)); });
   }
 
-  /// Bounds the `motion` of a step of `dt` [s] from `s` [m] at `speed` [m/s] by bends and signals. A driver with
-  /// parameters `idm` brakes comfortably for them, and harder only if that no longer suffices.
+  /// Whether the rules may choose where in its lane the vehicle drives, and whom it passes there. O(1).
+  template <class View>
+  [[nodiscard]] bool steers(View const& view, Memory const& memory) const {
+    return keep_to_side || memory.aside != 0.0f || view.anybody_leaves_room();
+  }
+
+  /// The next road user that is in the way, in the own lane and in those that merge into it. Decides where in the lane
+  /// the driver is to be, `Memory::aside`; without `may_pass` it passes nobody. O(1), O(agents nearby) if it passes.
+  template <class View, class Law>
+  [[nodiscard]] std::optional<RoadUser> next_in_way(View const& view, Law const& law, Memory& memory,
+                                                    bool may_pass = true) const {
+    if (!steers(view, memory)) [[likely]]
+      return view.ahead({.merging = merging});
+    return next_aside(view, law, memory, may_pass).next;
+  }
+
+  /// The plan that drives `motion` along the lane over `dt` [s], at the side or past somebody if the rules say so; else
+  /// keeps the lateral offset.
+  template <class View>
+  [[nodiscard]] Plan<View> along_lane(View const& view, LongitudinalMotion<double> const& motion, double dt,
+                                      Memory const& memory) const {
+    if (memory.aside == 0.0f) [[likely]]
+      return plan_along_lane(view, motion, dt);
+    return plan_aside(View(view), LongitudinalMotion<double>(motion), dt, memory.aside);
+  }
+
+  /// Bounds the `motion` of a step of `dt` [s] from `s` [m] at `speed` [m/s] by bends, signals and those who step into
+  /// the way. A driver with parameters `idm` brakes comfortably for them, and harder only if that no longer suffices.
   template <class View, HasIdmParameters P>
   [[nodiscard]] LongitudinalMotion<double> bound(View const& view, P const& idm, double s, double speed,
                                                  LongitudinalMotion<double> const& motion, double dt,
                                                  Memory& memory) const {
     double const fastest = std::max(speed, motion.speed);
     bool const bends = slow_for_bends && fastest * fastest * view.corridor().sharpest_bend > lateral_acceleration;
-    if (!bends && !obey_signals) [[likely]]
+    bool const crossing = crossing_time > 0.0 && view.anybody_off_lanes();
+    if (!bends && !obey_signals && !crossing) [[likely]]
       return motion;
     View const here = view;  // functions that are not inlined get copies, so that the originals can stay in registers
     Memory changed = memory;
@@ -263,7 +332,69 @@ struct RoadRules {
     auto const stop = signals_ahead(view, s + view.shape().front, speed, look_ahead, memory);
     if (std::isfinite(stop.distance))
       bound_by(motion_before_stop(speed, stop.distance, braking.comfortable, braking.hardest, dt));
+    if (crossing_time > 0.0 && view.anybody_off_lanes()) {
+      double const way = detail::distance_before_crossing(view, s, speed, crossing_time, look_ahead);
+      if (std::isfinite(way))
+        bound_by(motion_before_stop(speed, std::max(0.0, way - stop_margin), braking.comfortable, braking.hardest, dt));
+    }
     return motion;
+  }
+
+  struct InWay {
+    std::optional<RoadUser> next;
+    bool passes = false;  ///< `next` is the next one beyond those beside the way at `offset`, `clearance` away
+    double offset{}, clearance{};
+  };
+
+  template <class View, class Law>
+  CAMBIUM_NOINLINE [[nodiscard]] InWay next_aside(View const& view, Law const& law, Memory& memory,
+                                                  bool may_pass) const {
+    constexpr double least_gain = 1.5, begin = 8.0, near = 20.0, alongside = 1.0, clear = 3.0;  // [m/s], [s], [m]
+    auto const& at = view.place();
+    double const side = detail::inner_side(view), speed = law.speed();
+    double const home = keep_to_side ? detail::offset_at_side(view, side_margin) : 0.0;
+    auto const past = [&](double offset, double clearance) -> InWay {
+      return {detail::next_in_way(view, offset, clearance, merging), true, offset, clearance};
+    };
+    auto const next = view.ahead({.merging = merging});
+    bool const is_agent = next && is_valid(next->agent);
+    if (is_agent && may_pass && next->speed < law.desired_speed() - least_gain &&
+        next->gap < std::max(near, begin * (speed - next->speed)))
+      if (auto const offset = detail::offset_to_pass(view, *next, passing_clearance, side)) {
+        double const aim = side * std::max(*offset, side * home);
+        memory.aside = aim == 0.0 ? to_middle : static_cast<float>(aim);
+        if (!detail::is_aside_in_time(view, *next, speed, aim, side)) return {next};
+        return past(aim, passing_clearance);
+      }
+    if (is_agent && next->gap < alongside && detail::is_beside(view, *next, at.lateral)) return past(at.lateral, 0.3);
+    if (memory.aside != 0.0f) {
+      auto const behind = view.behind({.merging = merging});
+      bool const is_beside = behind && behind->gap < clear && detail::is_beside(view, *behind, memory.aside);
+      if (is_beside && !detail::leaves_room(view, at.corridor, *behind, home, passing_clearance)) return {next};
+    }
+    constexpr double there = 1e-3;  // [m or rad]
+    bool const returns = memory.aside != 0.0f && (std::abs(at.lateral) > there || std::abs(at.heading_error) > there);
+    memory.aside = home != 0.0 ? static_cast<float>(home) : returns ? to_middle : 0.0f;
+    return {next};
+  }
+
+  template <class View, class Law>
+  CAMBIUM_NOINLINE void heed_in_way(View const& view, Strictest<Law>& ahead, Memory& memory) const {
+    auto const found = next_aside(view, ahead.law(), memory, true);
+    if (found.next) ahead.heed(detail::constraint_of<Law>(view, *found.next));
+    if (view.corridor().feeders.empty()) return;
+    if (!found.passes) return heed_merging(view, ahead);
+    detail::for_each_on_feeders(view, Look::horizon, merging, [&](RoadUser const& other) {
+      if (!detail::leaves_room(view, view.place().corridor, other, found.offset, found.clearance))
+        ahead.heed(detail::constraint_of<Law>(view, other));
+    });
+  }
+
+  template <class View>
+  CAMBIUM_NOINLINE [[nodiscard]] static Plan<View> plan_aside(View const& view,
+                                                              LongitudinalMotion<double> const& motion, double dt,
+                                                              double offset) {
+    return detail::plan_aside(view, offset, motion, dt);
   }
 };
 

@@ -16,16 +16,23 @@ void for_each_other(World const& world, Slot own, Visit const& visit) {
     if (i != own && world.frame().agents[i].status == AgentStatus::driving && is_seen(world, own, i)) visit(i);
 }
 
+/// Whether the agent in slot `own` sees the other one in slot `slot`, and its bounding circle comes within `distance`
+/// [m].
+template <class World>
+[[nodiscard]] bool is_near(World const& world, Slot own, Slot slot, double distance) {
+  auto const& here = world.frame().agents[own].state;
+  auto const& [shape, state] = std::tie(world.roster().agents[slot].shape, world.frame().agents[slot].state);
+  double const reach = distance + std::max(shape.front, shape.rear) + std::max(shape.left, shape.right);
+  double const dx = state.x - here.x, dy = state.y - here.y;
+  return slot != own && dx * dx + dy * dy <= reach * reach && is_seen(world, own, slot);
+}
+
 /// See `ObservedWorld::around`; calls `visit(slot)`.
 template <class World, class Visit>
 void for_each_around(World const& world, Slot own, double distance, Visit const& visit) {
   auto const& here = world.frame().agents[own].state;
   auto const visit_near = [&](Slot slot) {
-    auto const& [shape, state] = std::tie(world.roster().agents[slot].shape, world.frame().agents[slot].state);
-    double const reach = distance + std::max(shape.front, shape.rear) + std::max(shape.left, shape.right);
-    double const dx = state.x - here.x, dy = state.y - here.y;
-    if (slot == own || !(dx * dx + dy * dy <= reach * reach) || !is_seen(world, own, slot)) return;
-    visit(slot);
+    if (is_near(world, own, slot, distance)) visit(slot);
   };
   if constexpr (World::Behaviors::looks_around) {
     world.plane().for_each_near({here.x - distance, here.y - distance, here.x + distance, here.y + distance},

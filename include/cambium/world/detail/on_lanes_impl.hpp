@@ -61,6 +61,7 @@ CAMBIUM_COLD bool straddle(Map const& map, BodyOnRoad const& body, TrafficEntry 
   auto const& at = body.at;
   auto const& corridor = body.road.corridors[at.corridor];
   if (!is_drivable(corridor.pieces[at.piece].type)) {
+    list.off_lanes.push_back(entry.slot);
     enter_touched(map, body, entry, list);
     return true;
   }
@@ -75,6 +76,9 @@ CAMBIUM_COLD bool straddle(Map const& map, BodyOnRoad const& body, TrafficEntry 
       add_in(map.lane(hit->lane), entry_in(map.lane(hit->lane), hit->s, body, entry), list);
     return false;
   }
+  if (std::abs(at.lateral) > on_path && left <= widths.left && right <= widths.right &&
+      std::max(widths.left - left, widths.right - right) >= TrafficIndex::room_to_pass)
+    list.leaves_room = true;
   double const share = (at.index - lane.index_begin) / lane.length();
   auto const enter = [&](LaneId beside, double to_the_side) {
     if (is_valid(beside)) {

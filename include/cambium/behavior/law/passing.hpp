@@ -1,0 +1,143 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "cambium/behavior/lane_change/lane_change.hpp"
+#include "cambium/behavior/lane_change/lane_reach.hpp"
+#include "cambium/behavior/law/follow_lane.hpp"
+#include "cambium/behavior/view.hpp"
+#include "cambium/geometry/frenet.hpp"
+
+namespace cambium {
+
+/// Point at `way` [m] on the course from `start` that approaches the line critically damped: x'' = -2 x' / l - x / l^2
+/// with `length` l [m]. The course depends on the place alone, so a vehicle that restarts it in each step stays on it.
+template <class Scalar>
+[[nodiscard]] LateralCourse<Scalar> approach(LateralCourse<Scalar> const& start, Scalar length, Scalar way) {
+  using std::exp;
+  Scalar const rate = start.slope + start.offset / length, decay = exp(-way / length);
+  Scalar const offset = (start.offset + rate * way) * decay, slope = (start.slope - rate * way / length) * decay;
+  return {offset, slope, -(Scalar(2) * slope + offset / length) / length};
+}
+
+namespace detail {
+
+/// Length l [m] of `approach` for a vehicle: its way in 1 s, so that 1 m to the side takes at most 1 m/s^2 and is done
+/// but for 0.1 m after 4 s; longer at low speed, so that nobody moves sideways on the spot.
+[[nodiscard]] inline double approach_length(geometry::Shape const& shape, double speed) {
+  return std::max(5.0 + shape.front, speed);
+}
+
+/// The plan that keeps the lane and approaches `offset` [m] to the left of its middle.
+template <class View>
+[[nodiscard]] Plan<View> plan_aside(View const& view, double offset, LongitudinalMotion<double> const& motion,
+                                    double dt) {
+  auto const& at = view.place();
+  if (std::abs(at.heading_error) > most_aslant) return plan_along_lane(view, motion, dt);
+  auto const& corridor = view.corridor();
+  double const stretch = std::max(0.1, 1.0 - corridor.center.segments()[at.segment].curvature * at.lateral);
+  auto const [sin, cos] = geometry::sin_cos(at.heading_error);
+  double const along = motion.distance * cos / stretch;
+  auto const course = approach(LateralCourse<double>{at.lateral - offset, stretch * (sin / cos), 0.0},
+                               approach_length(view.shape(), motion.speed), along);
+  auto plan = plan_along_lane(view, motion, dt);
+  place_on_lane(corridor, at.s + along, offset + course.offset, geometry::arc_tangent(course.slope / stretch),
+                at.segment, plan.trajectory.back());
+  return plan;
+}
+
+/// Which side of a lane is the inner one, where one passes: 1 the left, -1 the right (in left-hand traffic).
+template <class View>
+[[nodiscard]] double inner_side(View const& view) {
+  auto const lane = view.corridor().pieces[view.place().piece].lane;
+  return is_valid(lane) && view.map().road(view.map().lane(lane).road).left_hand_traffic ? -1.0 : 1.0;
+}
+
+/// The half of something that lies towards a `side` (1: left).
+[[nodiscard]] constexpr double towards(double side, double left, double right) { return side > 0.0 ? left : right; }
+
+/// How far from the middle of the lane [m] a vehicle may drive within the next `distance` [m]: where ways conflict no
+/// farther than the bodies reach for which the map found the conflicts; infinite elsewhere. O(log conflicts + near).
+template <class View>
+[[nodiscard]] double widest_offset(View const& view, double distance) {
+  auto const& conflicts = view.corridor().conflicts;
+  double const s = view.place().s, rear = s - view.shape().rear, front = s + view.shape().front;
+  auto next = std::partition_point(conflicts.begin(), conflicts.end(),
+                                   [rear](map::Conflict const& c) { return c.farthest_end < rear; });
+  for (; next != conflicts.end() && next->hold[1][1] < front + distance; ++next)
+    if (next->hull().end > rear)
+      return std::max(0.0, view.map().options().conflict_shape.left - std::max(view.shape().left, view.shape().right));
+  return std::numeric_limits<double>::infinity();
+}
+
+/// Offset [m] to the left of the middle at which a vehicle drives `margin` [m] beside the outer border of its lane; the
+/// middle, where the lane is too narrow.
+template <class View>
+[[nodiscard]] double offset_at_side(View const& view, double margin) {
+  auto const& at = view.place();
+  auto const& shape = view.shape();
+  double const side = inner_side(view), soon = 2.0 * approach_length(shape, view.state().speed);
+  double width = std::numeric_limits<double>::infinity();
+  for (double const way : {0.0, soon}) {
+    auto const sides = view.corridor().widths_at(at.s + way);
+    width = std::min(width, towards(side, sides.right, sides.left));
+  }
+  double const outwards = std::max(0.0, width - margin - towards(side, shape.right, shape.left));
+  return -side * std::min(outwards, widest_offset(view, soon));
+}
+
+/// The vehicle comes within this of the offset at which it passes [m].
+inline constexpr double passing_slack = 0.1;
+
+/// Offset [m] towards the inner `side` from the middle at which a vehicle passes `other` within its lane with at least
+/// `clearance` [m] between the bodies; none if the lane has not that much room, or if the other reaches over the border
+/// of the lane, because it may be about to leave or enter it. Expects the other to move on to the side for 3 s. O(1)
+/// near the vehicle.
+template <class View>
+[[nodiscard]] std::optional<double> offset_to_pass(View const& view, RoadUser const& other, double clearance,
+                                                   double side) {
+  constexpr double moves_on = 3.0, beyond = 15.0, touches = 0.05;  // [s], [m], [m]
+  auto const& at = view.place();
+  auto const& corridor = view.corridor();
+  auto const& shape = view.shape();
+  auto hint = at.segment;
+  auto const frenet = geometry::to_frenet(corridor.center, view.state(other), hint);
+  auto const reach = lane_reach(corridor.center, view.state(other), view.shape(other), hint);
+  double const inwards = std::max(0.0, side * frenet.lateral_speed) * moves_on;
+  double const inner = towards(side, reach.left, -reach.right), outer = towards(side, -reach.right, reach.left);
+  double const least = inner + inwards + clearance + passing_slack + towards(side, shape.right, shape.left);
+  double const offset = std::max(0.0, least), needs = offset + towards(side, shape.left, shape.right);
+  if (offset > widest_offset(view, other.gap + shape.length() + beyond)) return std::nullopt;
+  for (double const s : {at.s + shape.front, reach.begin, reach.end, reach.end + shape.length() + beyond}) {
+    auto const sides = corridor.widths_at(s);
+    if (needs > towards(side, sides.left, sides.right) + 1e-9) return std::nullopt;
+    if (s == reach.begin && outer > towards(side, sides.right, sides.left) + touches) return std::nullopt;
+  }
+  return offset;
+}
+
+/// Whether a vehicle that approaches `offset` [m] is there, but for `passing_slack`, when it comes up to `other`.
+template <class View>
+[[nodiscard]] bool is_aside_in_time(View const& view, RoadUser const& other, double speed, double offset, double side) {
+  auto const& at = view.place();
+  double const away = at.lateral - offset, closing = speed - other.speed;
+  if (side * away >= -passing_slack) return true;
+  if (other.gap <= 0.0 || closing <= 0.0 || std::abs(at.heading_error) > most_aslant) return false;
+  LateralCourse<double> const now{away, std::tan(at.heading_error), 0.0};
+  double const way = speed * other.gap / closing;
+  return side * approach(now, approach_length(view.shape(), speed), way).offset >= -passing_slack;
+}
+
+/// Whether an agent is beside a vehicle at `offset` [m], with air between the bodies.
+template <class View>
+[[nodiscard]] bool is_beside(View const& view, RoadUser const& other, double offset) {
+  constexpr double air = 0.3;  // [m]
+  return is_valid(other.agent) && leaves_room(view, view.place().corridor, other, offset, air);
+}
+
+}  // namespace detail
+
+}  // namespace cambium

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "cambium/behavior/lane_change/lane_reach.hpp"
+#include "cambium/behavior/view.hpp"
+#include "cambium/core/macros.hpp"
+#include "cambium/geometry/frenet.hpp"
+
+namespace cambium {
+
+namespace detail {
+
+/// A span of time [s from now]; empty where it begins after its end.
+struct TimeSpan {
+  double begin, end;
+};
+
+/// When the interval from `low` to `high` [m], which moves at `rate` [m/s], overlaps that from `from` to `to` [m].
+[[nodiscard]] inline TimeSpan overlap_time(double low, double high, double rate, double from, double to) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  if (rate == 0.0) return low < to && high > from ? TimeSpan{-infinite, infinite} : TimeSpan{infinite, -infinite};
+  double const first = (from - high) / rate, second = (to - low) / rate;
+  return {std::min(first, second), std::max(first, second)};
+}
+
+/// Position along the lane [m] that the front end of a vehicle must not pass, because somebody from beside crosses its
+/// way; infinite if nobody does. Both go on evenly: `own` and `other` are where they are along and across the lane, the
+/// other moves at `along` and `across` [m/s]. It is in the way if it comes within 0.3 m of the vehicle's course within
+/// `horizon` [s], not after the vehicle has passed (plus 0.5 s), and has not left it 1 s before the vehicle arrives.
+/// A vehicle slower than 2 m/s counts as that fast: one that waits does not start in front of those who cross.
+[[nodiscard]] inline double stop_before_crossing(LaneReach const& own, double speed, LaneReach const& other,
+                                                 double along, double across, double horizon) {
+  constexpr double infinite = std::numeric_limits<double>::infinity();
+  constexpr double slowest = 2.0, side = 0.3, before = 1.0, after = 0.5, least = 0.1;  // [m/s], [m], [s], [s], [m/s]
+  if (std::abs(across) < least) return infinite;
+  auto const in_way = overlap_time(other.right, other.left, across, own.right - side, own.left + side);
+  if (in_way.end < 0.0 || in_way.begin > horizon) return infinite;
+  auto const beside = overlap_time(own.begin, own.end, std::max(speed, slowest) - along, other.begin, other.end);
+  if (std::max(0.0, in_way.begin) > beside.end + after || in_way.end + before < beside.begin) return infinite;
+  double const shift = std::min(along * std::max(0.0, in_way.begin), along * in_way.end);
+  double const place = other.begin + shift;
+  return place > own.end ? place : infinite;
+}
+
+/// How far [m] the front end of a vehicle of `speed` [m/s] at `s` [m] of its lane may go because of agents on no lane,
+/// such as pedestrians, who will step into its way within `horizon` [s]; looks `distance` [m] ahead. Infinite if nobody
+/// does. O(agents on no lane).
+template <class View>
+CAMBIUM_NOINLINE [[nodiscard]] double distance_before_crossing(View const& view, double s, double speed, double horizon,
+                                                               double distance) {
+  double nearest = std::numeric_limits<double>::infinity();
+  auto const& at = view.place();
+  auto const& line = view.corridor().center;
+  if (!map::is_drivable(view.corridor().pieces[at.piece].type)) return nearest;
+  auto const& shape = view.shape();
+  LaneReach const own{s - shape.rear, s + shape.front, at.lateral - shape.right, at.lateral + shape.left};
+  view.off_lanes(distance + shape.front, [&](RoadUser const& other) {
+    auto const& state = view.state(other);
+    auto hint = at.segment;
+    auto const frenet = geometry::to_frenet(line, state, hint);
+    auto const reach = lane_reach(line, state, view.shape(other), hint);
+    nearest = std::min(
+        nearest, stop_before_crossing(own, speed, reach, frenet.longitudinal_speed, frenet.lateral_speed, horizon));
+  });
+  return nearest - own.end;
+}
+
+}  // namespace detail
+
+}  // namespace cambium
