@@ -191,8 +191,8 @@ TEST_CASE(
     Sim world(street(width, 0.0, true, 2));
     auto const& lanes = world.map().lanes();
     auto const outer = std::find_if(lanes.begin(), lanes.end(), [](auto const& lane) { return lane.number == -2; });
-    auto const on_outer = [&](double s) { return outer->path.pose(s).position(); };
-    auto const slow = world.add({.position = on_outer(120.0),
+    auto const on_outer = [&](double s) -> cb::geometry::Point { return outer->path.pose(s).position(); };
+    auto const slow = world.add({.position = on_outer(120.0) - cb::geometry::Point{0.0, 0.5 * width - 0.725},
                                  .speed = 5.0,
                                  .shape = cb::geometry::bicycle(),
                                  .behavior = cyclist(),

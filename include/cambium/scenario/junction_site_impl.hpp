@@ -82,10 +82,12 @@ CAMBIUM_COLD void try_to_add(JunctionSite const& site, JunctionTraffic const& tr
   if (traffic.scattered_ids) id = static_cast<AgentId>(random() >> 33);
   double const desired = 8.0 + 7.0 * uniform01(random);
   auto const idm = cycles ? presets::cyclist() : IdmParameters{.desired_speed = desired};
+  Intersection driver{.idm = idm};
+  driver.rules.keep_to_side = cycles;
   JunctionSite::World::AgentSpec spec{.position = pose.position(),
                                       .heading = pose.heading,
                                       .shape = shape,
-                                      .behavior = Intersection{.idm = idm},
+                                      .behavior = driver,
                                       .route = route,
                                       .dynamics = cycles ? presets::bicycle_dynamics() : SingleTrack{},
                                       .id = id};

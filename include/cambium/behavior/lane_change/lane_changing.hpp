@@ -114,9 +114,10 @@ struct LaneChanging {
       ahead = ahead_while_changing(view, law, leader, memory.change);
     } else {
       ahead = ahead_in_lane(view, law, leader);
-      bool const may_change = memory.rest == 0.0f;
-      auto const target =
-          choose(LaneKeeping<View>{view, law, leader, lane_end(view, home, view.place().piece), may_change, ahead});
+      double const end = lane_end(view, home, view.place().piece);
+      bool const is_passing = memory.rules.aside != 0.0f && !rules.keep_to_side && end == infinite;
+      bool const may_change = memory.rest == 0.0f && !is_passing;
+      auto const target = choose(LaneKeeping<View>{view, law, leader, end, may_change, ahead});
       if (may_change && target != none<CorridorId> && is_wide_enough(view, target, 0.5 * speed * course.duration)) {
         memory.change = course.begin(target, view.shape(), speed, longest_change(view, leader, target));
         memory.rest = static_cast<float>(rest + course.duration);

@@ -349,7 +349,8 @@ struct RoadRules {
   template <class View, class Law>
   CAMBIUM_NOINLINE [[nodiscard]] InWay next_aside(View const& view, Law const& law, Memory& memory,
                                                   bool may_pass) const {
-    constexpr double least_gain = 1.5, begin = 8.0, near = 20.0, alongside = 1.0, clear = 3.0;  // [m/s], [s], [m]
+    constexpr double least_gain = 1.5, begin = 8.0;                // [m/s], [s]
+    constexpr double farthest = 100.0, near = 20.0, beside = 1.0;  // [m]
     auto const& at = view.place();
     double const side = detail::inner_side(view), speed = law.speed();
     double const home = keep_to_side ? detail::offset_at_side(view, side_margin) : 0.0;
@@ -358,24 +359,44 @@ struct RoadRules {
     };
     auto const next = view.ahead({.merging = merging});
     bool const is_agent = next && is_valid(next->agent);
-    if (is_agent && may_pass && next->speed < law.desired_speed() - least_gain &&
-        next->gap < std::max(near, begin * (speed - next->speed)))
+    if (is_agent && may_pass && next->speed < law.desired_speed() - least_gain && next->gap < farthest)
       if (auto const offset = detail::offset_to_pass(view, *next, passing_clearance, side)) {
         double const aim = side * std::max(*offset, side * home);
-        memory.aside = aim == 0.0 ? to_middle : static_cast<float>(aim);
+        bool const begins = memory.aside != 0.0f || next->gap < std::max(near, begin * (speed - next->speed));
+        if (begins && !steer_to(view, aim, next, speed, memory)) return {next};
         if (!detail::is_aside_in_time(view, *next, speed, aim, side)) return {next};
         return past(aim, passing_clearance);
       }
-    if (is_agent && next->gap < alongside && detail::is_beside(view, *next, at.lateral)) return past(at.lateral, 0.3);
-    if (memory.aside != 0.0f) {
-      auto const behind = view.behind({.merging = merging});
-      bool const is_beside = behind && behind->gap < clear && detail::is_beside(view, *behind, memory.aside);
-      if (is_beside && !detail::leaves_room(view, at.corridor, *behind, home, passing_clearance)) return {next};
-    }
     constexpr double there = 1e-3;  // [m or rad]
-    bool const returns = memory.aside != 0.0f && (std::abs(at.lateral) > there || std::abs(at.heading_error) > there);
-    memory.aside = home != 0.0 ? static_cast<float>(home) : returns ? to_middle : 0.0f;
+    bool const steers =
+        keep_to_side || (memory.aside != 0.0f && (std::abs(at.lateral) > there || std::abs(at.heading_error) > there));
+    if (steers)
+      steer_to(view, home, next, speed, memory);
+    else
+      memory.aside = 0.0f;
+    if (is_agent && next->gap < beside && detail::is_beside(view, *next, at.lateral)) return past(at.lateral, 0.3);
     return {next};
+  }
+
+  /// Steers to `offset` [m], unless somebody beside or coming up beside the vehicle is in the way there; whom it passes
+  /// counts with the full clearance. Else it stays where it is. Returns whether it may go there.
+  template <class View>
+  bool steer_to(View const& view, double offset, std::optional<RoadUser> const& next, double speed,
+                Memory& memory) const {
+    constexpr double clear = 3.0, soon = 2.0, air = 0.3;  // [m], [s], [m]
+    auto const& at = view.place();
+    auto const is_free = [&](std::optional<RoadUser> const& other, double clearance) {
+      return !other || !detail::is_beside(view, *other, at.lateral) ||
+             detail::leaves_room(view, at.corridor, *other, offset, clearance);
+    };
+    auto const behind = view.behind({.merging = merging});
+    bool const is_near = behind && behind->gap < clear + soon * std::max(0.0, behind->speed - speed);
+    bool const may =
+        is_free(next && next->gap < clear ? next : std::nullopt, air) &&
+        is_free(is_near ? behind : std::nullopt, behind && behind->speed < speed ? passing_clearance : air);
+    float const wanted = static_cast<float>(may ? offset : at.lateral);
+    memory.aside = wanted == 0.0f ? to_middle : wanted;
+    return may;
   }
 
   template <class View, class Law>
