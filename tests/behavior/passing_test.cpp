@@ -1,4 +1,5 @@
 // Cyclists keep to the side of their lane; drivers pass them there with a clearance, or follow them.
+// CAMBIUM_PASSING_RUNS is how many situations are drawn for each model, and of traffic of several.
 
 #include "cambium/behavior/law/passing.hpp"
 
@@ -7,6 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -24,6 +26,11 @@ namespace {
       cb::LaneChangeRuleBased, cb::ZipMerge, cb::Intersection
 
 using Sim = Traffic<ALL_DRIVERS>;
+
+std::uint32_t runs(std::uint32_t usual) {
+  char const* const asked = std::getenv("CAMBIUM_PASSING_RUNS");
+  return asked ? static_cast<std::uint32_t>(std::atoi(asked)) : usual;
+}
 
 /// A road with lanes of a width, which bends from 100 m on; traffic drives to +x, on the right or on the left.
 std::shared_ptr<cb::Map const> street(double width, double curvature = 0.0, bool right_hand = true, int lanes = 1) {
@@ -118,7 +125,7 @@ TEST_CASE_TEMPLATE("a cyclist keeps to the outer side of its lane, straight on a
 
 TEST_CASE_TEMPLATE("drivers pass a cyclist with 1.5 m of air where the lane allows, and return to the middle", Behavior,
                    ALL_DRIVERS) {
-  for (std::uint32_t seed = 0; seed < 12; ++seed) {
+  for (std::uint32_t seed = 0; seed < runs(12); ++seed) {
     CAPTURE(seed);
     cb::RandomStream random(seed, 11, 0);
     bool const right_hand = cb::uniform01(random) < 0.5;
@@ -213,7 +220,7 @@ TEST_CASE(
 }
 
 TEST_CASE("cars, trucks and cyclists of different speeds share wide lanes without contact; cars get past") {
-  for (std::uint32_t seed = 0; seed < 30; ++seed) {
+  for (std::uint32_t seed = 0; seed < runs(30); ++seed) {
     CAPTURE(seed);
     cb::RandomStream random(seed, 12, 0);
     bool const right_hand = seed % 2 == 0;
