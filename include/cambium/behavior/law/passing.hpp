@@ -89,17 +89,20 @@ template <class View>
   return -side * std::min(outwards, widest_offset(view, soon));
 }
 
-/// The vehicle comes within this of the offset at which it passes [m].
-inline constexpr double passing_slack = 0.1;
+/// Where a vehicle passes another one within its lane: offsets towards the inner side from the middle [m].
+struct PassingOffset {
+  double least;  ///< that leaves the clearance, 0 or more
+  double aim;    ///< a bit more, within the lane
+};
 
-/// Offset [m] towards the inner `side` from the middle at which a vehicle passes `other` within its lane with at least
-/// `clearance` [m] between the bodies; none if the lane has not that much room, or if the other reaches over the border
-/// of the lane, because it may be about to leave or enter it. Expects the other to move on to the side for 3 s. O(1)
-/// near the vehicle.
+/// Where a vehicle passes `other` within its lane, with at least `clearance` [m] between the bodies, on the inner
+/// `side` (see `inner_side`); none if the lane has not that much room, or if the other reaches over the border of the
+/// lane, because it may be about to leave or enter it. Expects the other to move on to the side for 3 s. A vehicle that
+/// does not pass yet (`begins`) needs 0.1 m more. O(1) near the vehicle.
 template <class View>
-[[nodiscard]] std::optional<double> offset_to_pass(View const& view, RoadUser const& other, double clearance,
-                                                   double side) {
-  constexpr double moves_on = 3.0, beyond = 15.0, touches = 0.05;  // [s], [m], [m]
+[[nodiscard]] std::optional<PassingOffset> offset_to_pass(View const& view, RoadUser const& other, double clearance,
+                                                          double side, bool begins) {
+  constexpr double more = 0.1, moves_on = 3.0, beyond = 15.0, touches = 0.05;  // [m], [s], [m], [m]
   auto const& at = view.place();
   auto const& corridor = view.corridor();
   auto const& shape = view.shape();
@@ -108,27 +111,31 @@ template <class View>
   auto const reach = lane_reach(corridor.center, view.state(other), view.shape(other), hint);
   double const inwards = std::max(0.0, side * frenet.lateral_speed) * moves_on;
   double const inner = towards(side, reach.left, -reach.right), outer = towards(side, -reach.right, reach.left);
-  double const least = inner + inwards + clearance + passing_slack + towards(side, shape.right, shape.left);
-  double const offset = std::max(0.0, least), needs = offset + towards(side, shape.left, shape.right);
-  if (offset > widest_offset(view, other.gap + shape.length() + beyond)) return std::nullopt;
+  double const away = inner + inwards + clearance + towards(side, shape.right, shape.left);
+  double most = widest_offset(view, other.gap + shape.length() + beyond);
   for (double const s : {at.s + shape.front, reach.begin, reach.end, reach.end + shape.length() + beyond}) {
     auto const sides = corridor.widths_at(s);
-    if (needs > towards(side, sides.left, sides.right) + 1e-9) return std::nullopt;
+    most = std::min(most, towards(side, sides.left, sides.right) - towards(side, shape.left, shape.right) + 1e-9);
     if (s == reach.begin && outer > towards(side, sides.right, sides.left) + touches) return std::nullopt;
   }
-  return offset;
+  double const least = std::max(0.0, away);
+  if (std::max(0.0, begins ? away + more : away) > most) return std::nullopt;
+  return PassingOffset{least, std::max(0.0, std::min(away + more, most))};
 }
 
-/// Whether a vehicle that approaches `offset` [m] is there, but for `passing_slack`, when it comes up to `other`.
+/// Whether a vehicle that approaches where it passes will leave the clearance when it comes up to `other`, even if it
+/// goes 2 m/s faster until then.
 template <class View>
-[[nodiscard]] bool is_aside_in_time(View const& view, RoadUser const& other, double speed, double offset, double side) {
+[[nodiscard]] bool is_aside_in_time(View const& view, RoadUser const& other, double speed, PassingOffset const& offset,
+                                    double side) {
+  constexpr double faster = 2.0;  // [m/s]
   auto const& at = view.place();
-  double const away = at.lateral - offset, closing = speed - other.speed;
-  if (side * away >= -passing_slack) return true;
+  double const fast = speed + faster, closing = fast - other.speed;
+  if (side * at.lateral >= offset.least) return true;
   if (other.gap <= 0.0 || closing <= 0.0 || std::abs(at.heading_error) > most_aslant) return false;
-  LateralCourse<double> const now{away, std::tan(at.heading_error), 0.0};
-  double const way = speed * other.gap / closing;
-  return side * approach(now, approach_length(view.shape(), speed), way).offset >= -passing_slack;
+  LateralCourse<double> const now{at.lateral - side * offset.aim, std::tan(at.heading_error), 0.0};
+  double const way = fast * other.gap / closing;
+  return side * approach(now, approach_length(view.shape(), fast), way).offset + offset.aim >= offset.least;
 }
 
 /// Whether an agent is beside a vehicle at `offset` [m], with air between the bodies.

@@ -359,13 +359,14 @@ struct RoadRules {
     };
     auto const next = view.ahead({.merging = merging});
     bool const is_agent = next && is_valid(next->agent);
+    bool const is_aside = memory.aside != 0.0f;
     if (is_agent && may_pass && next->speed < law.desired_speed() - least_gain && next->gap < farthest)
-      if (auto const offset = detail::offset_to_pass(view, *next, passing_clearance, side)) {
-        double const aim = side * std::max(*offset, side * home);
-        bool const begins = memory.aside != 0.0f || next->gap < std::max(near, begin * (speed - next->speed));
-        if (begins && !steer_to(view, aim, next, speed, memory)) return {next};
-        if (!detail::is_aside_in_time(view, *next, speed, aim, side)) return {next};
-        return past(aim, passing_clearance);
+      if (auto offset = detail::offset_to_pass(view, *next, passing_clearance, side, !is_aside)) {
+        offset->aim = std::max(offset->aim, side * home);
+        bool const begins = is_aside || next->gap < std::max(near, begin * (speed - next->speed));
+        if (begins && !steer_to(view, side * offset->aim, next, speed, memory)) return {next};
+        if (!detail::is_aside_in_time(view, *next, speed, *offset, side)) return {next};
+        return past(side * offset->aim, passing_clearance);
       }
     constexpr double there = 1e-3;  // [m or rad]
     bool const steers =
@@ -374,7 +375,8 @@ struct RoadRules {
       steer_to(view, home, next, speed, memory);
     else
       memory.aside = 0.0f;
-    if (is_agent && next->gap < beside && detail::is_beside(view, *next, at.lateral)) return past(at.lateral, 0.3);
+    bool const goes_by = is_agent && (next->gap < beside || next->speed > speed);
+    if (goes_by && detail::is_beside(view, *next, at.lateral)) return past(at.lateral, 0.3);
     return {next};
   }
 
