@@ -47,7 +47,6 @@ class ObservedWorld {
   [[nodiscard]] decltype(auto) state() const { return observed(slot_); }
   [[nodiscard]] geometry::Shape const& shape() const { return own_->shape; }
   [[nodiscard]] Dynamics const& dynamics() const { return own_->dynamics; }
-  [[nodiscard]] Action const& last_action() const { return record_->action; }
   [[nodiscard]] Goal const& goal() const { return world_->roster().goals[index_of(slot_)]; }
   [[nodiscard]] Map const& map() const { return world_->map(); }
   [[nodiscard]] map::RoadCorridor const& road() const { return *own_->road; }

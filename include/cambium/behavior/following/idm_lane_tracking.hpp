@@ -105,7 +105,8 @@ struct IdmLaneTracking {
     double s = view.place().s;
     Plan<View> plan;
     for (int i = 0; i < steps; ++i) {
-      auto const motion = rules.bound(view, p, s, x.speed, longitudinal(p, x.speed, leader, h), h, memory);
+      auto const motion =
+          rules.bound(view, p, s, x.speed, AccLaw(p, coolness, x.speed).motion(leader, h, tolerance), h, memory);
       double const angle = steering(front_axle(line, x, wheel_base, segment), x.speed, wheel_base, h);
       Action const action{(motion.speed - x.speed) / h, angle};
       if (i == 0) plan.action = action_of(model.input(action, x), action);
@@ -116,12 +117,6 @@ struct IdmLaneTracking {
     x.time = view.time() + dt;
     plan.trajectory.push_back(x);
     return plan;
-  }
-
-  [[nodiscard]] LongitudinalMotion<double> longitudinal(IdmParameters const& p, double speed, Constraint const& leader,
-                                                        double h) const {
-    if (coolness == 0.0) return idm_motion(p, speed, leader.gap, leader.speed, h, tolerance);
-    return AccLaw(p, coolness, speed).motion(leader, h);
   }
 };
 static_assert(BehaviorModel<IdmLaneTracking>);

@@ -198,13 +198,18 @@ struct MacroActions {
       auto const slower = motion_before_bend(speed, 0.0, rules.desired_speed(limit, view, speed), braking, braking, dt);
       if (slower.speed < wanted.speed) wanted = slower;
     }
-    if (action.kind != Kind::keep_gap && !action.keeps_gap) return wanted;
     IdmLaw const law(idm, speed, desired);
     Strictest ahead(law);
-    rules.heed(view, ahead);
-    if (change.active() && change.target != view.place().corridor)
-      if (auto const next = view.ahead(view.place(change.target), {.merging = rules.merging}))
-        ahead.heed({next->gap, next->speed});
+    if (action.kind == Kind::keep_gap || action.keeps_gap) {
+      rules.heed(view, ahead);
+      if (change.active() && change.target != view.place().corridor)
+        if (auto const next = view.ahead(view.place(change.target), {.merging = rules.merging}))
+          ahead.heed({next->gap, next->speed});
+    } else if (auto const end = rules.lane_end_ahead(view)) {
+      ahead.heed(*end);
+    } else {
+      return wanted;
+    }
     auto const allowed = law.motion(ahead.constraint(), dt, tolerance);
     return action.kind == Kind::keep_gap || allowed.speed < wanted.speed ? allowed : wanted;
   }
