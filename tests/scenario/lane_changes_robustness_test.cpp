@@ -122,7 +122,7 @@ std::vector<cb::LaneId> lanes_in_direction(cb::Map const& map, cb::map::RoadSect
 
 }  // namespace
 
-TEST_CASE("drivers who see with errors, late or not everybody change lanes without collisions") {
+TEST_CASE("drivers that see with errors, late or only in part change lanes without collisions") {
   for (bool const by_rule : {false, true})
     for (auto const& sight : sights()) {
       int changes = 0;
