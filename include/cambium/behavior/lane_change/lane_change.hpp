@@ -113,7 +113,9 @@ struct LaneChangeCourse {
     double const slope = std::tan(at.heading_error);
     auto const drift = detail::drift_of(view, slope);
     if (drift.target == at.corridor && drift.rest != 0.0) return {};
-    double const least = least_length(view.shape()), most = std::max(least, speed * duration);
+    // The lateral speed falls by at most 2 m/s^2 on average.
+    double const gentle = speed * speed * std::abs(slope) / 2.0;
+    double const least = std::max(least_length(view.shape()), gentle), most = std::max(least, speed * duration);
     double const length = steepest * std::abs((drift.rest - at.lateral) / slope);
     return {drift.target, static_cast<float>(std::clamp(length, least, most)), 0.0f};
   }
