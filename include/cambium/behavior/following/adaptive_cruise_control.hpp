@@ -116,7 +116,7 @@ struct AdaptiveCruiseControl {
     Strictest ahead(law);
     rules.heed(view, ahead);
     auto const motion = law.motion(ahead.constraint(), dt);
-    return plan_along_lane(view, rules.bound(view, idm, view.place().s, speed, motion, dt, memory), dt);
+    return plan_into_lane(view, rules.bound(view, idm, view.place().s, speed, motion, dt, memory), dt, memory.adrift);
   }
 };
 static_assert(BehaviorModel<AdaptiveCruiseControl>);

@@ -44,7 +44,7 @@ struct IdmClassic {
     Strictest ahead(law);
     rules.heed(view, ahead);
     auto const motion = law.motion(ahead.constraint(), dt, tolerance);
-    return plan_along_lane(view, rules.bound(view, *this, view.place().s, speed, motion, dt, memory), dt);
+    return plan_into_lane(view, rules.bound(view, *this, view.place().s, speed, motion, dt, memory), dt, memory.adrift);
   }
 };
 static_assert(BehaviorModel<IdmClassic>);

@@ -84,6 +84,8 @@ struct BasicIdmStochastic {
     bool yields = false;
     RoadRules::Memory rules{};
 
+    void was_set() { rules.was_set(); }
+
     friend bool operator==(Memory const&, Memory const&) = default;
   };
 
@@ -115,7 +117,8 @@ struct BasicIdmStochastic {
     rules.heed(view, ahead);
     if (memory.yields) let_in(view, law, p.comfortable_deceleration, ahead);
     auto const motion = law.motion(ahead.constraint(), dt, tolerance);
-    return plan_along_lane(view, rules.bound(view, p, view.place().s, speed, motion, dt, memory.rules), dt);
+    return plan_into_lane(view, rules.bound(view, p, view.place().s, speed, motion, dt, memory.rules), dt,
+                          memory.rules.adrift);
   }
 
  private:

@@ -83,6 +83,8 @@ struct Intersection {
     detail::StandingAgents stopped_before{};  ///< those that stood there when it stopped, or that stand there now
     RoadRules::Memory rules{};
 
+    void was_set() { rules.was_set(); }
+
     friend bool operator==(Memory const&, Memory const&) = default;
   };
 
@@ -113,7 +115,7 @@ struct Intersection {
     auto motion = law.motion(ahead.constraint(), dt, tolerance);
     if (auto const& bound = own.wait().bound; bound.distance < motion.distance) motion = bound;
     motion = rules.bound(view, own.idm, own.s, own.speed, motion, dt, memory.rules);
-    return plan_along_lane(view, motion, dt);
+    return plan_into_lane(view, motion, dt, memory.rules.adrift);
   }
 
  private:

@@ -85,6 +85,7 @@ struct MacroActions {
     }
 
     void fell_short(double way, bool left_course) { change.fell_short(way, left_course); }
+    void was_set() { rules.was_set(); }
 
     friend bool operator==(Memory const&, Memory const&) = default;
   };
@@ -153,6 +154,10 @@ struct MacroActions {
     auto const action = memory.chosen != nothing ? actions[memory.chosen] : MacroAction{};
     double const speed = std::max(0.0, view.state().speed);
     course.renew(memory.change, view.shape(), speed);
+    if (memory.rules.adrift) [[unlikely]] {
+      memory.rules.adrift = false;
+      if (!memory.change.active()) memory.change = course.under_way(view);
+    }
     if (memory.is_new && is_change(action.kind)) {
       auto const side = side_of(view, action.kind, memory.change);
       if (side != none<CorridorId> && side != memory.change.target) {

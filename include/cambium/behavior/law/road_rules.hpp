@@ -163,9 +163,12 @@ struct RoadRules {
                "road users in lanes that merge into the own one: followed, followed except in junctions, ignored"));
   }
 
-  /// What a driver remembers for the rules.
+  /// What a driver remembers for the rules, and whether it has found into its lane.
   struct Memory {
     float stopped_at = -1.0f;  ///< corridor position of the stop sign at which it stopped last [m]
+    bool adrift = true;        ///< it has entered or was set, and may still move across its lane
+
+    void was_set() { adrift = true; }
 
     friend bool operator==(Memory const&, Memory const&) = default;
   };
