@@ -30,7 +30,7 @@ cb::AgentId enter(World& world, Behavior behavior, cb::RoadRules const& rules, d
 #define DRIVERS                                                                                                   \
   cb::IdmClassic, cb::AdaptiveCruiseControl, cb::IdmLaneTracking, cb::IdmStochastic, cb::Mobil, cb::Intersection, \
       cb::LaneChangeRuleBased, cb::ZipMerge, cb::MacroActions, cb::IdmHypotheses, cb::IdmProposal,                \
-      cb::RssConformant<cb::IdmClassic>
+      cb::RssConformant<cb::IdmClassic>, cb::HumanDriver<cb::IdmClassic>
 
 template <class Behavior>
 cb::RoadRules& rules_of(Behavior& behavior) {

@@ -29,7 +29,9 @@ World<Behavior> traffic() {
 
 /// Whether it draws numbers: then a prediction, which does not know the seed, goes another way.
 template <class Behavior>
-constexpr bool draws = std::is_same_v<Behavior, cb::IdmStochastic> || std::is_same_v<Behavior, cb::RandomMacroActions>;
+constexpr bool draws =
+    std::is_same_v<Behavior, cb::IdmStochastic> || std::is_same_v<Behavior, cb::RandomMacroActions> ||
+    std::is_same_v<Behavior, cb::HumanDriver<cb::IdmClassic>> || std::is_same_v<Behavior, cb::HumanDriver<cb::Mobil>>;
 
 /// How a vehicle goes on that enters, or is set, on its way across the border between two lanes.
 struct Entering {
@@ -102,9 +104,9 @@ TEST_CASE_TEMPLATE("a lane keeper that steers to its lane's middle does so witho
 TEST_CASE_TEMPLATE("every behaviour can predict, allocates nothing once warm, and where it draws nothing comes true",
                    Behavior, cb::IdmClassic, cb::IdmLaneTracking, cb::AdaptiveCruiseControl, cb::IdmStochastic,
                    cb::Mobil, cb::LaneChangeRuleBased, cb::ZipMerge, cb::Intersection,
-                   cb::RssConformant<cb::IdmClassic>, cb::RssConformant<cb::Mobil>, cb::Safety,
-                   cb::ConstantAcceleration, cb::ExternalInput, cb::MotionPrimitives, cb::MacroActions,
-                   cb::RandomMacroActions, cb::IdmHypotheses, cb::IdmProposal) {
+                   cb::RssConformant<cb::IdmClassic>, cb::RssConformant<cb::Mobil>, cb::HumanDriver<cb::IdmClassic>,
+                   cb::HumanDriver<cb::Mobil>, cb::Safety, cb::ConstantAcceleration, cb::ExternalInput,
+                   cb::MotionPrimitives, cb::MacroActions, cb::RandomMacroActions, cb::IdmHypotheses, cb::IdmProposal) {
   auto world = traffic<Behavior>();
   using Set = cb::BehaviorSet<Behavior>;
   auto const begin = world.observe(static_cast<cb::AgentId>(1)).predict(cb::predict_all_as<Set>(Behavior{}));

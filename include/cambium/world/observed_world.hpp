@@ -194,6 +194,13 @@ class ObservedWorld {
     return index_of(id) < lights.size() ? lights[index_of(id)].at(time()) : map::LightColor::off;
   }
 
+  /// For how long a traffic light has been red [s]; below 0: it turns red in that time, which drivers know because a
+  /// light is yellow for as long each time. Only of a light that is on. O(1).
+  [[nodiscard]] double red_for(LightId id) const {
+    auto const& lights = world_->roster().lights;
+    return index_of(id) < lights.size() ? lights[index_of(id)].red_for(time()) : 0.0;
+  }
+
   /// Whether an agent's route passes `lane`, as its turn signals show it: the only knowledge about another agent's
   /// route that the view gives. False for objects. O(lanes of its road).
   [[nodiscard]] bool signals_way(RoadUser const& user, LaneId lane) const {

@@ -126,7 +126,7 @@ struct LaneChanging {
       }
     }
     if (!view.corridor().feeders.empty()) [[unlikely]]
-      ahead = with_merging(View(view), rules.merging, leader, memory.change.active() && memory.change.target != home,
+      ahead = with_merging(View(view), rules, leader, memory.change.active() && memory.change.target != home,
                            Strictest<IdmLaw>(ahead));
     if (auto const end = rules.lane_end_ahead(view)) ahead.heed(*end);
     auto const motion = law.motion(ahead.constraint(), dt, tolerance);
@@ -274,14 +274,15 @@ struct LaneChanging {
   /// `leader`. A vehicle that leaves its lane passes those that stand there. It takes copies, so that the originals can
   /// stay in registers.
   template <class View>
-  CAMBIUM_NOINLINE [[nodiscard]] static Strictest<IdmLaw> with_merging(View view, Merging merging,
+  CAMBIUM_NOINLINE [[nodiscard]] static Strictest<IdmLaw> with_merging(View view, RoadRules const& rules,
                                                                        std::optional<RoadUser> leader, bool leaves,
                                                                        Strictest<IdmLaw> ahead) {
-    view.each_ahead({.merging = merging}, [&](RoadUser const& next) {
+    view.each_ahead({.merging = rules.merging}, [&](RoadUser const& next) {
       if ((leader && next.agent == leader->agent && next.object == leader->object) || (leaves && next.speed < 0.5))
         return;
       ahead.heed({next.gap, next.speed});
     });
+    if (auto const gap = rules.gap_to_wait_for(view)) ahead.heed(*gap);
     return ahead;
   }
 
