@@ -39,6 +39,26 @@ struct Site {
   [[nodiscard]] bool has_lights() const { return !map->lights().empty(); }
 };
 
+/// Whether a vehicle of `shape` can meet one of its width in all bends of the route, outside of junctions: its front
+/// swings out there, and traffic in the lane beside does not look out for it.
+[[nodiscard]] inline bool fits(cb::Map const& map, cb::map::Route const& route, cb::geometry::Shape const& shape) {
+  return std::all_of(route.lanes.begin(), route.lanes.end(), [&](cb::LaneId id) {
+    auto const& lane = map.lane(id);
+    if (is_valid(map.road(lane.road).junction)) return true;
+    auto const segments = lane.path.segments();
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+      auto const& widths = lane.widths[i];
+      double const swing = 0.5 * segments[i].curvature * shape.front * shape.front;  // to the right
+      double const room = std::max(0.3, widths.left + widths.right - 2.0 * shape.right - 0.05);
+      double const beside = swing > 0.0 ? -widths.right - 0.5 : widths.left + 0.5;
+      if (std::abs(swing) > room &&
+          map.on_drivable_lane(cb::geometry::to_map(lane.path.pose(segments[i].s), {0.0, beside})))
+        return false;
+    }
+    return true;
+  });
+}
+
 /// Ways across the roads that have a sidewalk on either side, from one to the other, and along the sidewalks.
 [[nodiscard]] inline std::vector<cb::TrafficSource> find_paths(cb::Map const& map) {
   std::vector<cb::TrafficSource> paths;
@@ -48,9 +68,11 @@ struct Site {
   for (auto const& lane : map.lanes()) {
     if (!is_sidewalk(lane) || lane.length() < 15.0) continue;
     auto const walk = [&](std::vector<cb::geometry::Point> const& points) {
-      paths.push_back({.way = cb::map::build_free_corridor(map, points), .per_hour = 60.0});
+      paths.push_back({.way = cb::map::build_free_corridor(map, points, {.width = 1.0}), .per_hour = 60.0});
     };
-    walk({lane.path.pose(0.0).position(), lane.path.pose(lane.length()).position()});
+    std::vector<cb::geometry::Point> along;
+    for (double s = 0.0; s < lane.length(); s += 3.0) along.push_back(lane.path.pose(s).position());
+    walk(along);
     double const station = lane.station_at(0.5 * lane.length());
     for (auto const& other : map.lanes())
       if (is_sidewalk(other) && other.road == lane.road && other.section == lane.section &&
@@ -202,7 +224,7 @@ struct Mix {
   return {.speed = 1.0, .shape = cb::geometry::pedestrian(), .behavior = walker};
 }
 
-/// The next vehicle of a source. Trucks and buses only where they fit: see `fits_route`.
+/// The next vehicle of a source. Trucks and buses only where they fit.
 [[nodiscard]] inline Sim::AgentSpec draw_vehicle(Site const& site, Mix const& mix, cb::TrafficSource const& source,
                                                  cb::RandomStream& random) {
   using namespace cb::geometry;
@@ -213,7 +235,8 @@ struct Mix {
                 : share < mix.truck_share + mix.bus_share + 0.1                     ? van()
                 : share < mix.truck_share + mix.bus_share + 0.1 + mix.bicycle_share ? bicycle()
                                                                                     : car();
-  if (shape != bicycle() && !cb::fits_route(*site.map, route, shape)) shape = car();
+  bool const has_room = site.has_conflicts ? fits(*site.map, route, shape) : cb::fits_route(*site.map, route, shape);
+  if (!has_room && shape != bicycle()) shape = car();
   bool const is_heavy = shape == truck() || shape == bus(), cycles = shape == bicycle();
   double const limit = site.map->lane(source.lane).speed_limit_at(0.0);
   auto const idm = cycles ? cb::presets::cyclist() : draw_idm(limit, is_heavy, random);
