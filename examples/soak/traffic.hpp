@@ -39,21 +39,27 @@ struct Site {
   [[nodiscard]] bool has_lights() const { return !map->lights().empty(); }
 };
 
-/// Whether a vehicle of `shape` can meet one of its width in all bends of the route, outside of junctions: its front
-/// swings out there, and traffic in the lane beside does not look out for it.
-[[nodiscard]] inline bool fits(cb::Map const& map, cb::map::Route const& route, cb::geometry::Shape const& shape) {
+/// Whether a vehicle of `shape` can meet one of its width in all bends of the route: its front swings out there, and
+/// traffic in the lane beside does not look out for it. With `people` beside the road, its front also has to stay on
+/// the road where it turns in a junction.
+[[nodiscard]] inline bool fits(cb::Map const& map, cb::map::Route const& route, cb::geometry::Shape const& shape,
+                               bool people) {
   return std::all_of(route.lanes.begin(), route.lanes.end(), [&](cb::LaneId id) {
     auto const& lane = map.lane(id);
-    if (is_valid(map.road(lane.road).junction)) return true;
+    bool const turns = is_valid(map.road(lane.road).junction);
+    if (turns && !people) return true;
     auto const segments = lane.path.segments();
     for (std::size_t i = 0; i < segments.size(); ++i) {
+      auto const pose = lane.path.pose(segments[i].s);
+      auto const on_road = [&](double ahead, double aside) {
+        return map.on_drivable_lane(cb::geometry::to_map(pose, {ahead, aside}));
+      };
+      if (turns && !(on_road(shape.front, shape.left) && on_road(shape.front, -shape.right))) return false;
+      if (turns) continue;
       auto const& widths = lane.widths[i];
       double const swing = 0.5 * segments[i].curvature * shape.front * shape.front;  // to the right
       double const room = std::max(0.3, widths.left + widths.right - 2.0 * shape.right - 0.05);
-      double const beside = swing > 0.0 ? -widths.right - 0.5 : widths.left + 0.5;
-      if (std::abs(swing) > room &&
-          map.on_drivable_lane(cb::geometry::to_map(lane.path.pose(segments[i].s), {0.0, beside})))
-        return false;
+      if (std::abs(swing) > room && on_road(0.0, swing > 0.0 ? -widths.right - 0.5 : widths.left + 0.5)) return false;
     }
     return true;
   });
@@ -235,7 +241,7 @@ struct Mix {
                 : share < mix.truck_share + mix.bus_share + 0.1                     ? van()
                 : share < mix.truck_share + mix.bus_share + 0.1 + mix.bicycle_share ? bicycle()
                                                                                     : car();
-  bool const has_room = site.has_conflicts ? fits(*site.map, route, shape) : cb::fits_route(*site.map, route, shape);
+  bool const has_room = cb::fits_route(*site.map, route, shape) && fits(*site.map, route, shape, !site.paths.empty());
   if (!has_room && shape != bicycle()) shape = car();
   bool const is_heavy = shape == truck() || shape == bus(), cycles = shape == bicycle();
   double const limit = site.map->lane(source.lane).speed_limit_at(0.0);

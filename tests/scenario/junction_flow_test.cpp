@@ -36,10 +36,13 @@ Flow saturate(JunctionSite const& site, double truck_share, bool lights, double 
   TrafficInflow<JunctionSite::World> inflow(*site.map, sources, seed);
   auto const next = [&](TrafficSource const& source, RandomStream& random) {
     auto const route = site.random_route(source.lane, random);
-    auto const& end = site.map->lane(route.lanes.back()).path;
-    bool const turns =
-        std::cos(end.pose(end.length()).heading - site.map->lane(source.lane).path.pose(0.0).heading) < 0.9;
-    bool const large = uniform01(random) < truck_share && !turns;
+    auto const heading_at = [&](LaneId lane, double share) {
+      auto const& path = site.map->lane(lane).path;
+      return path.pose(share * path.length()).heading;
+    };
+    bool const turns = std::cos(heading_at(route.lanes.back(), 1.0) - heading_at(source.lane, 0.0)) < 0.9;
+    bool const fits = !turns && fits_route(*site.map, route, geometry::truck());  // a roundabout's ring is too narrow
+    bool const large = uniform01(random) < truck_share && fits;
     return JunctionSite::World::AgentSpec{
         .speed = 10.0,
         .shape = large ? geometry::truck() : geometry::car(),
@@ -68,7 +71,7 @@ Flow saturate(JunctionSite const& site, double truck_share, bool lights, double 
 void check_flow(JunctionSite const& site, bool lights, double least) {
   for (double const truck_share : {0.0, 0.3})
     for (double const dt : {0.2, 0.5}) {
-      auto const flow = saturate(site, truck_share, lights, dt, 5);
+      auto const flow = saturate(site, truck_share, lights, dt, 6);
       INFO(flow.per_minute, " vehicles a minute, longest stand ", flow.longest_stand, " s, trucks ", truck_share,
            ", dt ", dt, ", lights ", lights);
       CHECK(flow.collisions == 0);
