@@ -204,10 +204,13 @@ struct Mix {
       driver.rules = lawful(driver.rules);
       driver.keep_right = cb::uniform01(random) < 0.5;
       driver.bias = is_heavy ? 0.6 : 0.3;
+      driver.route_horizon = 800.0;  // exits are announced early
+      driver.route_bias = 4.0;
       return driver;
     }
     case Drivers::index<cb::LaneChangeRuleBased>: {
       cb::LaneChangeRuleBased driver{.idm = idm, .changing = draw_changing()};
+      driver.route_horizon = 800.0;
       driver.rules = lawful(driver.rules);
       return driver;
     }

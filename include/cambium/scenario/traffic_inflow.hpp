@@ -205,23 +205,28 @@ class TrafficInflow {
     return none<AgentId>;
   }
 
-  /// Whether somebody is at the place, or less than the smallest gap ahead of it. Quick: it spares most attempts.
+  /// Whether somebody is at the place or less than the smallest gap ahead of it, or changes lanes towards it. Quick: it
+  /// spares most attempts.
   [[nodiscard]] bool is_occupied(WorldType const& world, geometry::Pose const& pose,
                                  geometry::Shape const& shape) const {
+    constexpr double near = 10.0, lane_width = 5.0;  // [m]
     auto const along = geometry::sin_cos(pose.heading);
     double const half = 0.5 * rules_.minimum_gap;
-    auto box = geometry::box_of(shape, {pose.x, pose.y, pose.heading});
+    auto box = geometry::box_of(shape, pose);
     box.x += half * along.cos;
     box.y += half * along.sin;
     box.half_length += half;
     box.half_width += 0.2;
-    double const reach = box.half_length + box.half_width;
+    double const reach = box.half_length + near;
     for (Slot slot{}; index_of(slot) < world.size(); ++slot) {
       if (!detail::in_traffic(world, slot)) continue;
       auto const circle = detail::circle_of(world, slot);
-      if (std::abs(circle.x - box.x) > reach + circle.radius || std::abs(circle.y - box.y) > reach + circle.radius)
-        continue;
+      double const x = circle.x - box.x, y = circle.y - box.y;
+      if (std::abs(x) > reach + circle.radius || std::abs(y) > reach + circle.radius) continue;
       if (geometry::intersects(box, detail::box_at(world, slot))) return true;
+      double const aside = y * along.cos - x * along.sin;
+      auto const turn = geometry::sin_cos(world.frame().agents[slot].state.heading - pose.heading);
+      if (std::abs(aside) < lane_width && turn.cos > 0.0 && turn.sin * aside < -0.02 * std::abs(aside)) return true;
     }
     return false;
   }
