@@ -1,13 +1,16 @@
 // Merging traffic: samples dense scenarios at the on-ramp or lane drop of an OpenDRIVE map, simulates them with the
 // Intelligent Driver Model, judges each, and writes figures, trajectories and a replay for the browser.
 
+#include "../common/command_line.hpp"
 #include "../common/sampled_program.hpp"
 #include "task.hpp"
 
 namespace {
 
-void run(examples::Settings const& settings) {
-  merging::Task const task{merging::find_site(settings, "merging")};
+void run(examples::Settings const& settings, double non_yielding, bool waits) {
+  merging::Task task{merging::find_site(settings, "merging")};
+  task.site.non_yielding_share = non_yielding;
+  task.site.ramp_waits = waits;
   examples::sample_and_report(task, settings, {"Merging", "the ego merged"});
 }
 
@@ -17,7 +20,16 @@ int main(int argc, char** argv) {
   examples::Settings settings;
   settings.map_file = CAMBIUM_SOURCE_DIR "/maps/merging.xodr";
   settings.out = "out/merging";
-  examples::Program const program{"merging", "Samples dense merging scenarios, simulates and judges them.",
-                                  "OpenDRIVE map with a merge"};
-  return examples::run_sampled(program, settings, argc, argv, [&] { run(settings); });
+  CLI::App program("Samples dense merging scenarios, simulates and judges them.", "merging");
+  examples::add_options(program, settings, "OpenDRIVE map with a merge");
+  double non_yielding = 0.0;
+  program
+      .add_option("--non-yielding", non_yielding,
+                  "share of the drivers on the through road who open no gap for those that merge")
+      ->type_name("SHARE")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  bool waits = false;
+  program.add_flag("--wait", waits, "drivers that merge wait for a gap; otherwise they force their way");
+  return examples::run_program(program, argc, argv, [&] { run(settings, non_yielding, waits); });
 }

@@ -38,6 +38,7 @@ std::vector<Model> behaviors() {
           model<cb::ZipMerge>("ZipMerge"),
           model<cb::Intersection>("Intersection"),
           model<cb::RssConformant<cb::IdmClassic>>("RssConformant<Nominal>"),
+          model<cb::HumanDriver<cb::IdmClassic>>("HumanDriver<Nominal>"),
           model<cb::Pedestrian>("Pedestrian"),
           model<cb::Safety>("Safety"),
           model<cb::ConstantAcceleration>("ConstantAcceleration"),

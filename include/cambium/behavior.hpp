@@ -19,6 +19,7 @@
 /// - law/: constraints, IDM, braking, road rules, lane ends: the parts that the models share
 /// - following/: drivers that keep their lane (IDM, ACC, stochastic IDM, lane tracking, constant acceleration)
 /// - lane_change/: drivers that change lanes (MOBIL, rule-based, macro actions), and that merge or pass within a lane
+/// - human/: reaction time, estimation errors and inattention as a wrapper of any driver
 /// - junction/: a driver that crosses junctions by right of way
 /// - safety/: RSS as a wrapper of any behaviour; braking to a standstill
 /// - pedestrian/: social forces, and crossing lanes
@@ -37,6 +38,8 @@
 #include "cambium/behavior/following/idm_hypotheses.hpp"
 #include "cambium/behavior/following/idm_lane_tracking.hpp"
 #include "cambium/behavior/following/idm_stochastic.hpp"
+#include "cambium/behavior/human/human_driver.hpp"
+#include "cambium/behavior/human/human_view.hpp"
 #include "cambium/behavior/junction/conflict_order.hpp"
 #include "cambium/behavior/junction/intersection.hpp"
 #include "cambium/behavior/lane_change/corridor_filters.hpp"

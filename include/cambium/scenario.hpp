@@ -1,6 +1,6 @@
 /// The room `scenario`: situations to start from. `Scenario` is the value; `LaneTraffic` draws vehicles on a lane.
 /// Whole situations come from the headers that are included by name, as they make maps or worlds:
-/// scenario/merging_site.hpp, highway_site.hpp, junction_site.hpp and ring_road.hpp.
+/// scenario/merging_site.hpp, highway_site.hpp, junction_site.hpp, ring_road.hpp and traffic_inflow.hpp.
 #pragma once
 
 #include "cambium/scenario/lane_traffic.hpp"

@@ -95,6 +95,7 @@ struct RowView {
   }
   [[nodiscard]] double acceleration(cb::RoadUser const&) const { return leader->acceleration; }
   [[nodiscard]] cb::map::LightColor light(cb::LightId) const { return cb::map::LightColor::off; }
+  [[nodiscard]] double red_for(cb::LightId) const { return 0.0; }
 };
 
 struct Worst {

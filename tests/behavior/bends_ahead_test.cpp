@@ -108,7 +108,7 @@ TEST_CASE(
   }
 }
 
-TEST_CASE("the speed for bends is that of the sharpest one within the braking distance, and a step keeps to it") {
+TEST_CASE("the speed for bends suits the sharpest one within the braking distance, and a step keeps to it") {
   RandomStream random(12, 0, 0);
   for (int run = 0; run < 30; ++run) {
     Winding const winding(random);

@@ -252,6 +252,51 @@ TEST_CASE("drivers stop at red and go at green; without a plan for the light the
   CHECK(*on[1] > 20.0);
 }
 
+TEST_CASE("a late runner passes in the first second of red, a driver that obeys does not, and cross traffic minds") {
+  Crossing crossing;
+  auto const& lights = crossing.map->lights();
+  REQUIRE(!lights.empty());
+  // The arm's light is yellow from 1 s and red from 4 s on; the others turn green when it turns red.
+  auto const route = crossing.route(1, 0);
+  auto const line_light = [&](Sim& world, AgentId id) {
+    for (auto const& signal : world.observe(id).corridor().signals)
+      if (signal.kind == map::SignalKind::light) return signal;
+    REQUIRE(false);
+    return map::CorridorSignal{};
+  };
+  int runners = 0;
+  for (double const late : {0.0, 1.0})
+    for (double distance = 30.0; distance <= 80.0; distance += 2.5) {
+      CAPTURE(late);
+      CAPTURE(distance);
+      Sim world(crossing.map);
+      auto const id = add_before(world, route, distance, 13.5);
+      Intersection driver{.idm = {.desired_speed = 13.9}};
+      driver.rules.obey_speed_limits = false;
+      driver.rules.late_at_red = late;
+      world.set_behavior(id, driver);
+      auto const signal = line_light(world, id);
+      for (auto const& light : lights)
+        world.set_light(light.id, light.id == signal.light
+                                      ? map::LightPlan{.cycle = 60.0, .green_begin = 0.0, .green_end = 1.0}
+                                      : map::LightPlan{.cycle = 60.0, .green_begin = 4.0, .green_end = 30.0});
+      auto const north = add_before(world, crossing.route(2, 0), 45.0, 8.0);
+      CHECK(world.observe(id).red_for(signal.light) == doctest::Approx(-4.0));
+      double passed = 1e9;
+      while (world.time() < 25.0) {
+        REQUIRE(world.step(0.1));
+        CHECK_FALSE(AnyCollision{}.pair(world));
+        auto const& place = world.record(id).lane;
+        if (passed > 1e8 && place.s + world.roster().agents[0].shape.front > signal.line) passed = world.time();
+      }
+      CHECK(std::isfinite(world.state(north).x));
+      CHECK((passed < 4.05 + late || passed > 60.0));  // in time, or not in this cycle
+      runners += passed > 4.05 && passed < 1e8;
+      if (late == 0.0) CHECK(runners == 0);
+    }
+  CHECK(runners >= 3);  // starts 13.5 m/s * 1 s wide
+}
+
 TEST_CASE("a light's plan repeats; invalid plans and lights are errors") {
   map::LightPlan const plan{.cycle = 60.0, .green_begin = 50.0, .green_end = 70.0, .yellow = 3.0};
   using map::LightColor;

@@ -2,6 +2,11 @@
 
 #include <doctest/doctest.h>
 
+#include <algorithm>
+
+#include "../support/maps.hpp"
+#include "cambium/cambium.hpp"
+
 namespace cb = cambium;
 
 TEST_CASE("presets of pedestrians and cyclists are valid; a cyclist brakes no harder than its bicycle can") {
@@ -32,4 +37,55 @@ TEST_CASE("presets of drivers are valid and drive as their names say") {
     capacity = std::max(capacity, 3600 * v / (5.0 + cb::idm_equilibrium_gap(treiber_2000(), v)));
   CHECK(capacity > 1600.0);
   CHECK(capacity < 2000.0);
+}
+
+TEST_CASE_TEMPLATE("a temperament makes a whole driver, whatever the model", Driver, cb::IdmClassic,
+                   cb::AdaptiveCruiseControl, cb::IdmLaneTracking, cb::Mobil, cb::LaneChangeRuleBased, cb::ZipMerge,
+                   cb::Intersection, cb::HumanDriver<cb::Mobil>) {
+  namespace presets = cb::presets;
+  Driver const timid = presets::timid<Driver>(), normal = presets::normal<Driver>(),
+               hasty = presets::aggressive<Driver>();
+  for (auto const& driver : {timid, normal, hasty}) CHECK_NOTHROW(cb::check_parameters(driver));
+  auto const rules = [](auto const& d) -> cb::RoadRules const& {
+    if constexpr (requires { d.nominal; })
+      return d.nominal.rules;
+    else
+      return d.rules;
+  };
+  CHECK(rules(timid).lateral_acceleration < rules(normal).lateral_acceleration);
+  CHECK(rules(hasty).lateral_acceleration > rules(normal).lateral_acceleration);
+  CHECK(rules(hasty).late_at_red > 0.0);
+  // On a motorway with a slow leader, the hastier one keeps less time headway.
+  auto const headway = [](Driver const& driver) {
+    cb::World<cb::BehaviorSet<Driver, cb::ConstantAcceleration>, cb::InterpolateExecution, cb::SingleTrack> world(
+        support::straight_road(1, 5000.0));
+    world.add({.position = {100, -1.75}, .speed = 20.0, .behavior = cb::ConstantAcceleration{}});
+    auto const id = world.add({.position = {20, -1.75}, .speed = 20.0, .behavior = driver});
+    for (int k = 0; k < 600; ++k) REQUIRE(world.step(0.2));
+    return world.observe(id).ahead()->gap / 20.0;
+  };
+  double const longest = headway(timid), middle = headway(normal), shortest = headway(hasty);
+  CHECK(longest > middle + 0.2);
+  CHECK(middle > shortest + 0.2);
+}
+
+TEST_CASE("an aggressive driver changes lanes for less, and drives faster than the limit") {
+  namespace presets = cb::presets;
+  CHECK(presets::aggressive<cb::Mobil>().politeness < presets::timid<cb::Mobil>().politeness);
+  CHECK(presets::aggressive<cb::Mobil>().changing.safe_deceleration >
+        presets::timid<cb::Mobil>().changing.safe_deceleration);
+  auto const speed = [](cb::IdmClassic driver) {
+    driver.rules.obey_speed_limits = true;
+    auto const map = support::own_map("intersection_4way.xodr");
+    cb::World<cb::BehaviorSet<cb::IdmClassic>, cb::InterpolateExecution, cb::SingleTrack> world(map);
+    auto const lane = map->find_lane("1", 50.0, -2);
+    auto const pose = map->lane(lane).path.pose(1.0);
+    auto const id =
+        world.add({.position = pose.position(), .heading = pose.heading, .speed = 13.9, .behavior = driver});
+    for (int k = 0; k < 12; ++k) REQUIRE(world.step(0.2));
+    return world.state(id).speed / map->lane(lane).speed_limit_at(0.0);
+  };
+  CHECK(speed(presets::timid<cb::IdmClassic>()) < 0.99);
+  CHECK(speed(presets::aggressive<cb::IdmClassic>()) > 1.01);
+  CHECK(speed(presets::normal<cb::IdmClassic>()) == doctest::Approx(1.0).epsilon(0.01));
 }

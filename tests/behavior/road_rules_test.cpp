@@ -27,35 +27,40 @@ cb::AgentId enter(World& world, Behavior behavior, cb::RoadRules const& rules, d
   return world.add({.position = {x, -1.75}, .speed = speed, .behavior = behavior});
 }
 
-/// A straight road of 500 m with a signal of `type` for its only lane at 200 m.
-std::shared_ptr<cb::Map const> road_with_signal(std::string const& type) {
-  return cb::parse_opendrive(
-             "<OpenDRIVE><road id='0' length='500' junction='-1'><planView><geometry s='0' x='0' y='0' hdg='0' "
-             "length='500'><line/></geometry></planView><lanes><laneSection s='0'><center><lane "
-             "id='0'/></center><right>"
-             "<lane id='-1' type='driving'><width sOffset='0' a='3.5' b='0' c='0' d='0'/></lane></right></laneSection>"
-             "</lanes><signals><signal id='1' s='200' t='-4' type='" +
-             type + "' subtype='-1' orientation='+' dynamic='no'/></signals></road></OpenDRIVE>")
-      .map;
+#define DRIVERS                                                                                                   \
+  cb::IdmClassic, cb::AdaptiveCruiseControl, cb::IdmLaneTracking, cb::IdmStochastic, cb::Mobil, cb::Intersection, \
+      cb::LaneChangeRuleBased, cb::ZipMerge, cb::MacroActions, cb::IdmHypotheses, cb::IdmProposal,                \
+      cb::RssConformant<cb::IdmClassic>, cb::HumanDriver<cb::IdmClassic>
+
+template <class Behavior>
+cb::RoadRules& rules_of(Behavior& behavior) {
+  if constexpr (requires { behavior.nominal; })
+    return behavior.nominal.rules;
+  else if constexpr (requires { behavior.driver; })
+    return behavior.driver.rules;
+  else
+    return behavior.rules;
 }
 
 }  // namespace
 
-TEST_CASE_TEMPLATE("every car-following model stops before its lane's end if the rules say so", Behavior,
-                   cb::IdmClassic, cb::AdaptiveCruiseControl, cb::IdmLaneTracking, cb::IdmStochastic) {
-  World world(straight_road(1, 300));
-  auto const id = enter(world, Behavior{}, {.lane_end = cb::RoadRules::LaneEnd::always});
-  for (int i = 0; i < 300; ++i) REQUIRE(world.step(0.2));
-  CHECK(world.status(id) == cb::AgentStatus::driving);
-  CHECK(world.state(id).speed < 0.05);
-  double const front = world.state(id).x + 3.6;
+TEST_CASE_TEMPLATE("every driver stops before its lane's end if the rules say so", Behavior, DRIVERS) {
+  auto const drive = [](cb::RoadRules::LaneEnd lane_end) {
+    Behavior driver{};
+    rules_of(driver).lane_end = lane_end;
+    Traffic<Behavior> world(straight_road(1, 300));
+    auto const id = world.add({.position = {100, -1.75}, .speed = 14, .behavior = driver});
+    for (int i = 0; i < 300; ++i) REQUIRE(world.step(0.2));
+    return world.record(id);
+  };
+  auto const record = drive(cb::RoadRules::LaneEnd::always);
+  CHECK(record.status == cb::AgentStatus::driving);
+  CHECK(record.state.speed < 0.05);
+  double const front = record.state.x + 3.6;
   CHECK(front < 285.0);
   CHECK(front > 280.0);
   // It drives on if the end is its destination, except under BARK's option.
-  World other(straight_road(1, 300));
-  auto const through = enter(other, Behavior{}, {.lane_end = cb::RoadRules::LaneEnd::before_destination});
-  for (int i = 0; i < 300; ++i) REQUIRE(other.step(0.2));
-  CHECK(other.status(through) != cb::AgentStatus::driving);
+  CHECK(drive(cb::RoadRules::LaneEnd::before_destination).status != cb::AgentStatus::driving);
 }
 
 TEST_CASE("of a leader and the lane's end, the one that requires more braking counts") {
@@ -194,21 +199,9 @@ TEST_CASE("a driver that obeys speed limits keeps them on a town's roads") {
   CHECK(limited > 0);
 }
 
-#define DRIVERS                                                                                                   \
-  cb::IdmClassic, cb::AdaptiveCruiseControl, cb::IdmLaneTracking, cb::IdmStochastic, cb::Mobil, cb::Intersection, \
-      cb::LaneChangeRuleBased, cb::ZipMerge, cb::MacroActions, cb::RssConformant<cb::IdmClassic>
-
-template <class Behavior>
-cb::RoadRules& rules_of(Behavior& behavior) {
-  if constexpr (requires { behavior.nominal; })
-    return behavior.nominal.rules;
-  else
-    return behavior.rules;
-}
-
 TEST_CASE_TEMPLATE("every driver stops at a red light until it is green if the rules say so, and passes it otherwise",
                    Behavior, DRIVERS) {
-  auto const map = road_with_signal("1000001");
+  auto const map = support::road_with_signal("1000001");
   REQUIRE(map->lights().size() == 1);
   for (bool const obeys : {true, false}) {
     Behavior driver{};
@@ -234,7 +227,7 @@ TEST_CASE_TEMPLATE("every driver stops at a red light until it is green if the r
 TEST_CASE_TEMPLATE("every driver stops once at a stop sign and goes on", Behavior, DRIVERS) {
   Behavior driver{};
   rules_of(driver).obey_signals = true;
-  Traffic<Behavior> world(road_with_signal("206"));
+  Traffic<Behavior> world(support::road_with_signal("206"));
   auto const id = world.add({.position = {100, -1.75}, .speed = 13, .behavior = driver});
   int stops = 0;
   for (int k = 0; k < 200 && world.state(id).x < 300.0; ++k) {

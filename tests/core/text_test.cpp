@@ -58,7 +58,7 @@ TEST_CASE("a number is a number as a whole, in decimal digits, in every locale")
   std::setlocale(LC_NUMERIC, kept.c_str());
 }
 
-TEST_CASE("what is too small for a double is 0, what is too large for its type is no number") {
+TEST_CASE("a number too small for a double is 0, one too large for its type is an error") {
   CHECK(parse_number<double>("-1e-999") == 0.0);
   CHECK(parse_number<double>("0." + std::string(400, '0') + "1") == 0.0);
   CHECK(parse_number<double>(std::string(400, '9')) == std::nullopt);

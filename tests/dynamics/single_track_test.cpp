@@ -130,7 +130,7 @@ TEST_CASE("a vehicle without wheel base is refused by name") {
                        cb::ParameterError);
 }
 
-TEST_CASE("with float and with dual numbers a step is that of double, and tells how it depends on its input") {
+TEST_CASE("a step with floats or dual numbers equals that with doubles, and dual numbers give its derivatives") {
   cb::SingleTrack const model;
   for (double const steering : {-0.4, -0.01, 0.0, 0.2, 0.5})
     for (double const acceleration : {-3.0, 0.0, 2.0}) {

@@ -166,7 +166,7 @@ TEST_CASE("static objects count like the twin says") {
   CHECK(collisions < 900);
 }
 
-TEST_CASE("who touches an object only is told so, and which agent it is otherwise") {
+TEST_CASE("a contact says whether it is with an object, or with which agent") {
   Sim world(straight_road(2));
   auto const a = world.add({.position = {20, -1.75}});
   auto const b = world.add({.position = {60, -1.75}});
@@ -186,7 +186,7 @@ TEST_CASE("who touches an object only is told so, and which agent it is otherwis
   CHECK(cb::AnyCollision{}.pair(world)->second == b);
 }
 
-TEST_CASE("who has left traffic is not hit any more") {
+TEST_CASE("agents that have left traffic are not hit any more") {
   Sim world(straight_road(1, 100));
   auto const gone = world.add({.position = {95, -1.75}, .speed = 20, .behavior = cb::ConstantAcceleration{}});
   auto const next = world.add({.position = {60, -1.75}, .speed = 0, .behavior = cb::ConstantAcceleration{}});
@@ -211,7 +211,7 @@ TEST_CASE("within a margin counts as touching, to all sides, for agents and obje
   CHECK(cb::Collision{1.1}(other, b));
 }
 
-TEST_CASE("to blame is who drives into somebody or something, not who is hit while it stands or from behind") {
+TEST_CASE("the agent that drives into a road user or object is at fault, not one that is hit standing or from behind") {
   Sim world(straight_road(1, 300));
   auto const rear = world.add({.position = {20, -1.75}, .speed = 10}), front = world.add({.position = {24, -1.75}});
   cb::AtFaultCollision const at_fault;

@@ -135,7 +135,7 @@ TEST_CASE("a vehicle is past its junctions when its rear is, or when it has left
   CHECK(world.frame().agents[0].status != cb::AgentStatus::driving);  // it left the map at last
 }
 
-TEST_CASE("before a junction nobody is past it, whatever lane leads there") {
+TEST_CASE("an agent before a junction is not past it, whatever lane leads there") {
   for (auto const* name :
        {"intersection_4way.xodr", "intersection_3way.xodr", "roundabout.xodr", "highway_exit.xodr"}) {
     auto const map = support::own_map(name);
@@ -164,7 +164,7 @@ TEST_CASE("before a junction nobody is past it, whatever lane leads there") {
   }
 }
 
-TEST_CASE("the lateral acceleration is that of the curve driven") {
+TEST_CASE("the lateral acceleration follows from the curve that was driven") {
   auto const map = support::map_of({.id = "1",
                                     .line = cb::map::lay_from({}, {{200.0, 0.02, 0.02}}),
                                     .sections = {{.right = cb::map::equal_lanes(1)}}});

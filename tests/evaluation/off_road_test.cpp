@@ -87,7 +87,7 @@ Count compare(std::shared_ptr<cb::Map const> const& map, std::uint32_t places, d
 
 }  // namespace
 
-TEST_CASE("off the road is who reaches beyond the drivable lanes, as a brute-force twin finds") {
+TEST_CASE("agents that reach beyond the drivable lanes are off the road, as a brute-force twin finds") {
   // Where a ramp parts from the road, the tip of what is between them fits between two of the points that are looked
   // at.
   for (auto const& [name, overlooked] :
@@ -210,7 +210,7 @@ TEST_CASE("a vehicle that crosses from lane to lane stays on the road, one that 
   CHECK(off_at(-6.15));
 }
 
-TEST_CASE("where the map ends the road does not: who drives out of it is not off the road, unless beside it") {
+TEST_CASE("an agent that drives past the end of the map is not off the road, unless it is beside it") {
   Sim world(straight_road(1, 100));
   auto const id = world.add({.position = {50, -1.75}});
   auto const off_at = [&](double x, double y) {
@@ -223,7 +223,7 @@ TEST_CASE("where the map ends the road does not: who drives out of it is not off
   CHECK(off_at(0.3, -3.2));
 }
 
-TEST_CASE("who has left traffic is not off the road") {
+TEST_CASE("agents that have left traffic are not off the road") {
   Sim world(straight_road(1, 100));
   auto const id = world.add({.position = {98, -1.75}, .speed = 20, .behavior = cb::ConstantAcceleration{}});
   REQUIRE(world.step(1.0));

@@ -183,7 +183,7 @@ TEST_CASE("the table of a centre line is a map too, and poses come on the road's
   CHECK(std::stod(rows[0][14]) == 0.0);
 }
 
-TEST_CASE("what is wrong is said in one line, with exit code 2 and nothing written") {
+TEST_CASE("an error is one line, with exit code 2 and nothing written") {
   Program const map("map");
   if (!map.is_there()) return;
   browser::TemporaryFolder const folder;

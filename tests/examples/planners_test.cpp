@@ -116,7 +116,7 @@ TEST_CASE("rows go to a pipe, too") {
   CHECK_FALSE(std::filesystem::exists(folder.path() / ".part"));
 }
 
-TEST_CASE("the lane change example names what is wrong with its options") {
+TEST_CASE("the lane change example names the fault in its options") {
   Program const program("lane_change");
   if (!program.is_there()) return;
   for (auto const& words : {std::vector<std::string>{"--preset", "mine"},

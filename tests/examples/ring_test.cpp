@@ -30,7 +30,7 @@ TEST_CASE("the ring example writes its table, figures, picture and replay, the s
   }
 }
 
-TEST_CASE("the ring example names what is wrong with its options") {
+TEST_CASE("the ring example names the fault in its options") {
   Program const program("ring");
   if (!program.is_there()) return;
   for (auto const& words : {std::vector<std::string>{"--driver", "nobody"}, {"--length", "1"}, {"--density", "x"}}) {

@@ -41,7 +41,7 @@ TEST_CASE("repeated corners and the closing one are dropped") {
   CHECK(Polygon(points).size() == 3);
 }
 
-TEST_CASE("what is no polygon is refused with its name") {
+TEST_CASE("points that form no polygon are refused with its name") {
   CHECK_THROWS_WITH_AS(Polygon(Points{{0, 0}, {1, 0}, {0, 0}}, "goal of agent 3"),
                        "goal of agent 3: has 2 distinct points; give at least three corners", Error);
   CHECK_THROWS_AS(Polygon(Points{}), Error);
@@ -94,7 +94,7 @@ TEST_CASE("a transformed polygon keeps area and shape, and holds the transformed
   }
 }
 
-TEST_CASE("the distance to the border is that of the nearest edge") {
+TEST_CASE("the distance to the border is the distance to the nearest edge") {
   Polygon const polygon(ell);
   CHECK(polygon.distance_to_border(Point{0.5, 0.25}) == doctest::Approx(0.25));
   CHECK(polygon.distance_to_border(Point{3.0, 0.5}) == doctest::Approx(1.0));

@@ -36,7 +36,7 @@ TEST_CASE("a shape with a negative or missing side is refused by name") {
   CHECK_THROWS_AS(check_parameters(Shape{.left = std::nan("")}), ParameterError);
 }
 
-TEST_CASE("the extent along a direction is that of the furthest corner") {
+TEST_CASE("the extent along a direction is the position of the furthest corner") {
   RandomStream stream(1, 0, 0);
   for (int i = 0; i < 1000; ++i) {
     Uniform const side{0.0, 5.0};

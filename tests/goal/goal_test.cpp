@@ -18,7 +18,7 @@ cb::Goal area(std::vector<cb::geometry::Point> const& points) {
 
 }  // namespace
 
-TEST_CASE("without a goal nobody arrives") { CHECK_FALSE(cb::at_goal(cb::Goal{}, at(0, 0))); }
+TEST_CASE("an agent without a goal never arrives") { CHECK_FALSE(cb::at_goal(cb::Goal{}, at(0, 0))); }
 
 TEST_CASE("a polygon is reached with the whole vehicle, from its rear to its front end") {
   // The car reaches from 0.9 m behind its reference point to 3.6 m ahead of it, and 0.9 m to either side.

@@ -178,7 +178,7 @@ TEST_CASE("a goal with a number that is none, or out of its range, is refused by
   CHECK_NOTHROW(world.add(driver(100, cb::LaneLimits{})));  // infinite limits are none
 }
 
-TEST_CASE("a goal that can never be reached is refused with what is wrong with it, also within another goal") {
+TEST_CASE("a goal that can never be reached is refused with the reason, also within another goal") {
   Sim world(straight_road(2, 1000.0));
   auto const lane = world.map().find_lane("1", 300.0, -1);
   auto const refuses = [&](cb::Goal const& goal, char const* what) {

@@ -103,7 +103,7 @@ TEST_CASE("a lane given by its border has its middle at a road's end where the m
   CHECK(map->lane(map->find_lane("1", 10.0, -2)).path.pose(10.0).y == doctest::Approx(-4.5));
 }
 
-TEST_CASE("what is finite, but beyond any road, costs what it is written in and not the map") {
+TEST_CASE("a finite number beyond any road costs its element, not the map") {
   constexpr double huge = 1e308;
   CubicRecord const wild{0.0, 0.0, huge, huge, 0.0}, behind{1e6, 3.0, huge, huge, huge};
   using Harm = void (*)(OpenDriveDocument&, CubicRecord const&);

@@ -240,7 +240,7 @@ TEST_CASE("at a fork the corridor keeps to the route, else it goes the straighte
   CHECK(one->corridors[0].continues);
 }
 
-TEST_CASE("where a lane has two successors side by side the corridor takes that of the route") {
+TEST_CASE("where a lane has two successors side by side, the corridor takes the route's") {
   std::vector<Lane> lanes;
   auto const a = add_straight(lanes, {0, 0, 0}, 100);
   auto const left = add_straight(lanes, {100, 0, 0}, 100), right = add_straight(lanes, {100, 0, -0.02}, 100);

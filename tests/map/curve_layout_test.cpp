@@ -132,7 +132,7 @@ TEST_CASE("a curve through points passes through each of them, and takes the hea
   check_ends(line, {points[0].x(), points[0].y(), headings[0]}, {points[29].x(), points[29].y(), headings[29]});
 }
 
-TEST_CASE("what is no curve is refused") {
+TEST_CASE("parameters that form no curve are refused") {
   double const nan = std::numeric_limits<double>::quiet_NaN(), infinity = std::numeric_limits<double>::infinity();
   for (double const bad : {nan, infinity, -1.0, 0.0, 1e7}) CHECK_THROWS_AS(lay_from({}, {{bad}}), MapError);
   for (double const bad : {nan, infinity, 1e3}) CHECK_THROWS_AS(lay_to({}, {{10.0, bad, 0.0}}), MapError);

@@ -83,7 +83,7 @@ TEST_CASE("corners are rounded, and the way stays near its points") {
   }
 }
 
-TEST_CASE("what is no way is refused") {
+TEST_CASE("points that form no way are refused") {
   auto const map = support::straight_road(1, 100.0);
   double const nan = std::numeric_limits<double>::quiet_NaN();
   CHECK_THROWS_AS(build(*map, {}), cb::MapError);

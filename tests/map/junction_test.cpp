@@ -140,7 +140,7 @@ TEST_CASE("lanes of a junction conflict where they cross and merge, on the groun
   CHECK_FALSE(merge.area->contains({20, 0}));
 }
 
-TEST_CASE("priorities say who goes first, and nothing where there is none") {
+TEST_CASE("priorities say who goes first, or nothing where there are none") {
   Crossing const crossing;
   auto const& junction = crossing.map->junctions()[0];
   auto const road = [&](LaneId lane) { return crossing.map->lane(lane).road; };

@@ -362,7 +362,7 @@ TEST_CASE("a malformed file gives the map and the finding that are stated for it
   }
 }
 
-TEST_CASE("a map on which nobody may drive is a map, with a finding") {
+TEST_CASE("a map without drivable lanes is a map, with a finding") {
   std::string text = good_file;
   for (std::string const type = "driving"; text.find(type) != text.npos;)
     text.replace(text.find(type), type.size(), "sidewalk");
@@ -372,7 +372,7 @@ TEST_CASE("a map on which nobody may drive is a map, with a finding") {
   CHECK(to_string(loaded.diagnostics[0]) == "test.xodr: warning: the map has no drivable lane");
 }
 
-TEST_CASE("what is no map is refused with a sentence, the place and a remedy") {
+TEST_CASE("a file that is no map is refused with a sentence, the place and a remedy") {
   for (auto const& r : refused) {
     CAPTURE(r.name);
     auto const said = support::error_of([&] { (void)road_text::load(r.text); });

@@ -239,7 +239,7 @@ TEST_CASE("a crossing of left-hand traffic is the mirror image of one of right-h
     }
 }
 
-TEST_CASE("a built map is that of its written file") {
+TEST_CASE("a built map equals the map of its written file") {
   auto builder = crossing(1);
   builder.add_road(straight("50", {300, 0, 1}, 40, 1, 2));
   auto const text = write_opendrive(builder.document());
@@ -301,7 +301,7 @@ TEST_CASE("what cannot be built is refused with a sentence") {
   CHECK_THROWS_AS((void)MapBuilder().build(), MapError);
 }
 
-TEST_CASE("what is wrong in a plan is named by its number") {
+TEST_CASE("faults in a plan are named with their number") {
   auto const complaint = [](auto const& change) {
     auto plan = straight("1", {}, 100, 0, 2);
     plan.line = lay_from({}, {{40.0}, {30.0, 0.01, 0.01}, {30.0}});
@@ -377,7 +377,7 @@ TEST_CASE("what fails changes nothing") {
   CHECK(builder.document().roads.size() == 9);
 }
 
-TEST_CASE("what is connected once more stays as it is") {
+TEST_CASE("a second connection changes nothing") {
   MapBuilder builder;
   builder.add_junction("9");
   for (auto const& [id, x] : {std::pair{"1", 0.0}, {"2", 50.0}, {"3", 50.0}, {"4", 100.0}, {"5", 170.0}})

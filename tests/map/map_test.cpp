@@ -55,7 +55,7 @@ TEST_CASE("the bounds of curved lanes hold every point of their borders") {
   CHECK(out >= 4);
 }
 
-TEST_CASE("who asks for a lane that is not there is told where it is") {
+TEST_CASE("the error for a missing lane says where it is") {
   road_text::Road road{.sections = {{20, {{.id = 1}, {.id = -1}}},
                                     {30, {{.id = -1}, {.id = -2}}},
                                     {50, {{.id = -1}}},

@@ -147,7 +147,7 @@ TEST_CASE("lanes keep their types, links, widths, marks and limits") {
   CHECK(section.find(5) == nullptr);
 }
 
-TEST_CASE("what is no OpenDRIVE file at all is an error that says where, what and what to do") {
+TEST_CASE("a file that is not OpenDRIVE is an error that says where, what and what to do") {
   CHECK(contains(error_of(""), "test.xodr:1: the file is not well-formed XML"));
   CHECK(contains(error_of("no xml"), "the file is not well-formed XML"));
   std::string const truncated = error_of(good_file.substr(0, good_file.find("<elevation ")));
@@ -218,7 +218,7 @@ Fault const faults[]{
 
 }  // namespace
 
-TEST_CASE("every fault has its stated outcome: what is left, what is said, and for which line") {
+TEST_CASE("every fault has its stated outcome: what remains, the finding and its line") {
   for (Fault const& fault : faults) {
     std::string const name = fault.name;
     CAPTURE(name);

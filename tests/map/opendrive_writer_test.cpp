@@ -266,7 +266,7 @@ TEST_CASE("a written file is the document's text; one that cannot be written is 
                        cambium::Error);
 }
 
-TEST_CASE("what is left of a damaged file is read again as it was written") {
+TEST_CASE("the remains of a damaged file are read again as they were written") {
   auto const good = corpus::read(std::filesystem::path(CAMBIUM_SOURCE_DIR) / "maps" / "lane_drop.xodr");
   auto const rich = road_with(
       R"(<userData a="b"/><paramPoly3 aU="0" bU="1" cU="0" dU="0" aV="0" bV="0" cV="0.001" dV="0" pRange="arcLength"/>)",

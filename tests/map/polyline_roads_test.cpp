@@ -117,7 +117,7 @@ TEST_CASE("polylines that make no lane are refused") {
     CHECK_THROWS_AS((void)lanes_between(borders), MapError);
 }
 
-TEST_CASE("errors of polylines name the road and the point, and tell what is no number from what is too close") {
+TEST_CASE("errors of polylines name the road and the point, and tell NaN from points too close") {
   double const nan = std::numeric_limits<double>::quiet_NaN(), far = 1e9;
   auto const said = [](auto const& make) -> std::string {
     try {

@@ -221,7 +221,7 @@ TEST_CASE("the k shortest routes are those that listing all simple paths gives")
   CHECK(several > 500);
 }
 
-TEST_CASE("a route from a station on costs what is left of the lane, one up to a station what comes before it") {
+TEST_CASE("a route from a station costs the rest of the lane, one up to a station the part before it") {
   Lanes lanes;
   auto const a = lanes.add(100), b = lanes.add(50), right = lanes.add(200);
   put_beside(lanes.all, a, right);
@@ -389,7 +389,7 @@ TEST_CASE("reachable lanes are those within the budget, with what it costs to co
   CHECK(many > 100);
 }
 
-TEST_CASE("from a station on, what is reachable costs the rest of the lane") {
+TEST_CASE("reachable lanes from a station cost the rest of its lane") {
   Lanes lanes;
   auto const a = lanes.add(100), b = lanes.add(50);
   link(lanes.all, a, b);

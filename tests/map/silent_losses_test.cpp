@@ -198,14 +198,14 @@ TEST_CASE("user data in any element is kept, or found to be lost") {
   });
 }
 
-TEST_CASE("an element that nobody knows is kept anywhere, or found to be lost") {
+TEST_CASE("an unknown element is kept anywhere, or reported as lost") {
   check_elements([](pugi::xml_node node) {
     node.prepend_child("later").append_child("revision");
     return "later";
   });
 }
 
-TEST_CASE("an attribute that nobody knows is kept anywhere, or found to be lost") {
+TEST_CASE("an unknown attribute is kept anywhere, or reported as lost") {
   for_each_element([](pugi::xml_node node) {
     node.append_attribute("vendorNote") = "kept or found";
     auto const after = outcome_of(text_of(node));
@@ -221,7 +221,7 @@ TEST_CASE("text in any element is kept, or found to be lost") {
   });
 }
 
-TEST_CASE("a value that nobody understands is kept in any attribute, or found, and a bad place is always found") {
+TEST_CASE("an unreadable value is kept in any attribute, or reported, and a bad position is always reported") {
   for_each_element([](pugi::xml_node node) {
     for (pugi::xml_attribute a = node.first_attribute(); a; a = a.next_attribute()) {
       std::string const before = a.value(), name = a.name();
@@ -254,7 +254,7 @@ TEST_CASE("a word that is neither true nor false is found") {
   }
 }
 
-TEST_CASE("attributes that nobody knows give one finding for each kind of element, with their number") {
+TEST_CASE("unknown attributes give one finding for each kind of element, with their number") {
   auto text = std::string(everything);
   for (std::size_t at = 0; (at = text.find("<width ", at)) != std::string::npos; at += 7)
     text.insert(at + 7, "v=\"1\" ");

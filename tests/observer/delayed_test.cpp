@@ -75,7 +75,7 @@ TEST_CASE("others are seen exactly as they were some steps ago, and the agent it
   }
 }
 
-TEST_CASE("who has just entered, or come back, is seen as it entered") {
+TEST_CASE("an agent that has just entered, or come back, is seen as it entered") {
   auto world = traffic(cb::DelayedObserver<3>{});
   for (int i = 0; i < 5; ++i) REQUIRE(world.step(0.2));
   auto const late = world.add({.position = {400, -1.75}, .speed = 3});
@@ -86,7 +86,7 @@ TEST_CASE("who has just entered, or come back, is seen as it entered") {
   CHECK(seen_by(world, ego).at(late) == entered);
 }
 
-TEST_CASE("a prediction takes what is seen late for the present") {
+TEST_CASE("a prediction takes delayed observations for the present") {
   auto world = traffic(cb::DelayedObserver<3>{});
   for (int i = 0; i < 5; ++i) REQUIRE(world.step(0.2));
   auto const seen = seen_by(world, cb::AgentId{2});

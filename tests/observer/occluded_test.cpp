@@ -201,7 +201,7 @@ using World = cb::World<cb::BehaviorSet<cb::IdmClassic>, cb::InterpolateExecutio
 
 }  // namespace
 
-TEST_CASE("who is hidden is the same by intervals and by rays") {
+TEST_CASE("intervals and rays hide the same agents") {
   auto const usual = compare({.resolution = 0.02});
   CHECK(usual.seen > 100);
   CHECK(usual.hidden > 100);
@@ -215,7 +215,7 @@ TEST_CASE("who is hidden is the same by intervals and by rays") {
   CHECK(compare({.range = 20.0, .resolution = 0.01}).seen < usual.seen);
 }
 
-TEST_CASE("behind a truck nobody is seen, and the next one who is seen is the neighbour") {
+TEST_CASE("vehicles behind a truck are hidden, and the next visible one is the neighbour") {
   World<cb::OccludedObserver> world(straight_road(2, 1000.0));
   auto const ego = world.add({.position = {100, -1.75}, .speed = 10});
   auto const truck = world.add({.position = {120, -1.75}, .speed = 10, .shape = cb::geometry::truck()});

@@ -38,23 +38,23 @@ void check_drove_on(cb::State const& state) {
 
 }  // namespace
 
-TEST_CASE("who sees itself late, or elsewhere, drives as far as its speed takes it, and stays on its line") {
+TEST_CASE("an agent that sees itself late, or elsewhere, drives as far as its speed takes it, and stays on its line") {
   check_drove_on(after_driving(cb::DelayedObserver<3>{.own = 3}, cb::ConstantAcceleration{}));
   check_drove_on(after_driving(cb::ParametricObserver{.own = {.mean_along = 1.0}}, cb::ConstantAcceleration{}));
   check_drove_on(
       after_driving(cb::ParametricObserver{.own = {.along = 0.5, .across = 0.3}}, cb::ConstantAcceleration{}));
 }
 
-TEST_CASE("who sees itself as it is does what a perfect observer's agent does, to the bit") {
+TEST_CASE("an agent that sees itself as it is drives like one with a perfect observer, bit by bit") {
   cb::IdmLaneTracking const driver{.idm = {.desired_speed = 12.0}};
   CHECK(after_driving(cb::ParametricObserver{}, driver) == after_driving(cb::PerfectObserver{}, driver));
 }
 
-TEST_CASE("who misjudges its speed keeps its true one where it does not accelerate") {
+TEST_CASE("an agent that misjudges its speed keeps its true speed while it does not accelerate") {
   check_drove_on(after_driving(cb::ParametricObserver{.own = {.mean_speed = -2.0}}, cb::ConstantAcceleration{}));
 }
 
-TEST_CASE("who steers by what it sees comes to where it believes its lane to be") {
+TEST_CASE("an agent that steers by what it sees comes to where it believes its lane to be") {
   cb::ParametricObserver const observer{.own = {.mean_across = 0.4}};
   auto const state = after_driving(observer, cb::IdmLaneTracking{.idm = {.desired_speed = 10.0}});
   CHECK(state.y == doctest::Approx(-1.75 - 0.4).epsilon(0.01));

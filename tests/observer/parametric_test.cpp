@@ -119,13 +119,13 @@ TEST_CASE("perfect correlation is allowed, contradicting ones are refused in a s
   CHECK_THROWS_AS(cb::check_parameters(cb::ParametricObserver{.others = impossible}, "agent 3"), cb::ParameterError);
 }
 
-TEST_CASE("where BARK is wrong: an error to the left lies to the left, whatever the heading") {
+TEST_CASE("an error to the left lies to the left, whatever the heading; BARK's does not where one heads north") {
   cb::ParametricObserver const observer{.others = {.mean_across = 1.0}};
-  cb::State const truth{0, 0, 0, cb::geometry::pi / 2, 10};
-  auto const seen = observer.observe(truth, false, cb::RandomStream(1, 2, 3));
-  double const theirs = truth.x + std::sin(truth.heading);  // BARK's sign of the lateral error in x
-  MESSAGE("1 m to the left of who heads north: BARK at x = " << theirs << " m, here at x = " << seen.x << " m");
-  CHECK(theirs == doctest::Approx(1.0));
-  CHECK(seen.x == doctest::Approx(-1.0));
-  CHECK(std::abs(seen.y) < 1e-12);
+  for (int i = 0; i < 16; ++i) {
+    cb::State const truth{0, 5, -3, i * cb::geometry::pi / 8, 10};
+    auto const seen = observer.observe(truth, false, cb::RandomStream(1, 2, 3));
+    INFO("heading ", truth.heading);
+    CHECK(seen.x - truth.x == doctest::Approx(-std::sin(truth.heading)));  // BARK: + sin
+    CHECK(seen.y - truth.y == doctest::Approx(std::cos(truth.heading)));
+  }
 }

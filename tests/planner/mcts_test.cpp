@@ -505,6 +505,24 @@ TEST_CASE("a constraint on risk overrules the reward") {
   CHECK(careful > 10.0);
 }
 
+TEST_CASE("a report says which actions are too risky") {
+  constexpr double limit = 0.02;
+  auto planner = quick(Search{}, 400);
+  planner.options.search.constraint.limit = limit;
+  auto world = lane_change(0, IdmClassic{});
+  Search::Workspace workspace;
+  auto const report = planner.think(world.observe(ego), {}, workspace);
+  auto const arms = report.result.of(0);
+  int risky = 0;
+  for (std::size_t i = 0; i < arms.size(); ++i) {
+    double const risk = (arms[i].mean_cost * arms[i].visits + 1.0) / (arms[i].visits + 2.0);
+    bool const is_refused = report.candidates[i].refused.starts_with("risk 0.");
+    CHECK(is_refused == (risk > limit && i != report.chosen));
+    risky += is_refused;
+  }
+  CHECK(risky > 0);
+}
+
 TEST_CASE("faulty parameters and missing agents are reported") {
   auto world = lane_change(0, quick(Search{}));
   Search::Workspace workspace;

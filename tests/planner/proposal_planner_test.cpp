@@ -87,6 +87,21 @@ TEST_CASE("it brakes in time for a bend, whatever the score") {
   }
 }
 
+TEST_CASE("it stops once at a stop sign, and remembers that it did") {
+  Planner planner;
+  planner.driver.driver.rules.obey_signals = true;
+  Sim world(support::road_with_signal("206"));
+  world.add({.position = {100, -1.75}, .speed = 12, .behavior = planner});
+  int stops = 0;
+  for (int i = 0; i < 250 && world.state(ego).x < 300.0; ++i) {
+    bool const stood = world.state(ego).speed < standing_speed;
+    drive(world, 1);
+    stops += !stood && world.state(ego).speed < standing_speed;
+  }
+  CHECK(stops == 1);
+  CHECK(world.state(ego).x >= 300.0);
+}
+
 TEST_CASE("it stops at an object that blocks its lane and passes one that leaves room") {
   auto blocked = two_lanes(0);
   blocked.add_object(obstacle(120, -1.75, 1.75));

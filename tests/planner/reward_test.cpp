@@ -52,11 +52,11 @@ TEST_CASE("a reward is the sum of its terms, some per second, until a course end
   Own reward;
   reward.traffic() = {.progress = 0.5};
   CHECK(reward.judge(world, ego, 0.2).outcome.reward == doctest::Approx(0.5 * 12 * 0.2));
-  reward.rest.first = {.weight = -2.0, .per_second = true};
+  reward.term<TooClose>() = {.weight = -2.0, .per_second = true};
   CHECK(reward.judge(world, ego, 0.2).outcome.reward == doctest::Approx(1.2 - 2.0 * (30.0 - gap) * 0.2));
-  reward.rest.first.per_second = false;
+  reward.term<TooClose>().per_second = false;
   CHECK(reward.judge(world, ego, 0.2).outcome.reward == doctest::Approx(1.2 - 2.0 * (30.0 - gap)));
-  reward.first = {.weight = 5.0, .ends = true};
+  reward.term<OnTheLeft>() = {.weight = 5.0, .ends = true};
   CHECK_FALSE(reward.judge(world, ego, 0.2).ends);
   world.set_state(AgentId{0}, {.x = 60, .y = -1.75, .speed = 12});
   auto const left = reward.judge(world, ego, 0.2);
@@ -66,12 +66,22 @@ TEST_CASE("a reward is the sum of its terms, some per second, until a course end
   CHECK(reward.judge(world, ego, 0.2).outcome.reward == reward.traffic().collision);
 }
 
+TEST_CASE("an own evaluator's event counts as a risk") {
+  PredictionWorld world(support::straight_road(2, 600.0));
+  world.add({.position = {60, -5.25}, .speed = 12, .behavior = IdmClassic{}});
+  Own reward;
+  reward.term<OnTheLeft>().cost = 0.7;
+  CHECK(reward.judge(world, ego, 0.2).outcome.cost == 0.0);
+  world.set_state(AgentId{0}, {.x = 60, .y = -1.75, .speed = 12});
+  CHECK(reward.judge(world, ego, 0.2).outcome.cost == 0.7);
+}
+
 TEST_CASE("a planner heeds a user's evaluator") {
   for (double const weight : {20.0, -20.0}) {
     Sim world(support::straight_road(2, 600.0), {.seed = 3});
     Planner planner;
     planner.options.budget.iterations = 600;
-    planner.reward.first = {.weight = weight, .per_second = true};
+    planner.reward.term<OnTheLeft>() = {.weight = weight, .per_second = true};
     planner.reward.traffic().goal = 0.0;
     auto const id = world.add({.position = {60, weight > 0 ? -5.25 : -1.75}, .speed = 12, .behavior = planner});
     for (int k = 0; k < 40; ++k) REQUIRE(world.step(0.2));
@@ -89,7 +99,7 @@ TEST_CASE_TEMPLATE("every shipped evaluator can be a term of a reward that a sea
       support::straight_road(2, 600.0));
   TermPlanner planner;
   planner.options.budget.iterations = 50;
-  planner.reward.first = {.weight = 1.0, .per_second = true};
+  planner.reward.template term<Evaluator>() = {.weight = 1.0, .per_second = true};
   auto const id = world.add({.position = {60, -5.25}, .speed = 12, .behavior = planner});
   typename TermPlanner::Workspace workspace;
   for (auto const& candidate : planner.think(world.observe(id), {}, workspace).candidates)
@@ -101,18 +111,18 @@ TEST_CASE("a course that is cut off counts the terms per second for the lookahea
   PredictionWorld world(support::straight_road(2, 600.0));
   world.add({.position = {60, -5.25}, .speed = 12, .behavior = IdmClassic{}});
   Reward<SpeedDeviation> reward;
-  reward.first = {.evaluator = {.desired_speed = 15.0}, .weight = -2.0, .per_second = true};
+  reward.term<SpeedDeviation>() = {.evaluator = {.desired_speed = 15.0}, .weight = -2.0, .per_second = true};
   reward.traffic() = {.progress = 0.5, .lookahead = 4.0};
   CHECK(reward.value(world, ego, 0.2) == doctest::Approx(4.0 * (0.5 * 12.0 - 2.0 * 3.0)));
-  reward.first.per_second = false;
+  reward.term<SpeedDeviation>().per_second = false;
   CHECK(reward.value(world, ego, 0.2) == doctest::Approx(4.0 * 0.5 * 12.0));
 }
 
 TEST_CASE("the parameters of a reward's terms are checked and compared like all others") {
   Own a, b;
   CHECK(equal_parameters(a, b));
-  b.rest.first.evaluator.comfortable = 20.0;
+  b.term<TooClose>().evaluator.comfortable = 20.0;
   CHECK_FALSE(equal_parameters(a, b));
-  b.rest.first.evaluator.comfortable = -1.0;
+  b.term<TooClose>().evaluator.comfortable = -1.0;
   CHECK_THROWS_WITH_AS(check_parameters(b, "reward"), doctest::Contains("comfortable"), ParameterError);
 }

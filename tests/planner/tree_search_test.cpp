@@ -534,7 +534,7 @@ TEST_CASE("actions from a continuum are added gradually") {
   CHECK(merged.of(0).size() == parallel.searches()[0].result().of(0).size());
 }
 
-TEST_CASE("what is unknown about the root is drawn anew for each iteration") {
+TEST_CASE("unknowns at the root are drawn anew for each iteration") {
   TreeSearch<Coin> search({}, {.horizon = 1}, {}, {}, {20'000});
   auto const& result = search.run({}, 1);
   CHECK(result.of(0)[0].mean_return == doctest::Approx(0.4).epsilon(0.1));

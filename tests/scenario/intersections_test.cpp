@@ -123,7 +123,7 @@ TEST_CASE("nobody collides and nobody waits forever in sampled traffic of cars, 
     check_all_pass(support::own_map(name), name, runs(1000));
 }
 
-TEST_CASE("so it is under traffic lights, and nobody crosses a stop line on red") {
+TEST_CASE("the same holds under traffic lights, and nobody crosses a stop line on red") {
   auto const map = support::own_map("intersection_4way.xodr");
   REQUIRE(map->lights().size() == 2);
   check_all_pass(map, "intersection_4way.xodr with lights", runs(1000), {.lights = true});

@@ -13,6 +13,7 @@
 #include "cambium/core/distributions.hpp"
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/scenario/junction_site.hpp"
+#include "cambium/scenario/traffic_inflow.hpp"
 
 using namespace cambium;
 
@@ -25,59 +26,43 @@ struct Flow {
   int collisions = 0;
 };
 
-/// Whether a vehicle can start at `pose`; lowers `speed` [m/s] to that of the next one ahead.
-bool has_room(JunctionSite::World const& world, geometry::Pose const& pose, double front, double& speed) {
-  for (auto const& agent : world.frame().agents) {
-    if (agent.status != AgentStatus::driving) continue;
-    double const x = agent.state.x - pose.x, y = agent.state.y - pose.y;
-    double const ahead = x * std::cos(pose.heading) + y * std::sin(pose.heading);
-    double const aside = -x * std::sin(pose.heading) + y * std::cos(pose.heading);
-    if (std::abs(aside) > 2.0 || std::cos(agent.state.heading - pose.heading) < 0.5) continue;
-    if (std::abs(ahead) < 16.0 + front) return false;
-    if (ahead > 0.0 && ahead < 60.0) speed = std::min(speed, std::max(0.0, agent.state.speed));
-  }
-  return true;
-}
-
 /// Drives vehicles into the junction from everywhere, as soon as there is room for them.
 Flow saturate(JunctionSite const& site, double truck_share, bool lights, double dt, std::uint64_t seed) {
   JunctionSite::World world(site.map, {.seed = seed});
   auto const plans = site.sample(seed, 0, {.lights = lights}).lights;
   for (std::size_t i = 0; i < plans.size(); ++i) world.set_light(site.map->lights()[i].id, plans[i]);
-  RandomStream random(seed, 77, 0);
+  std::vector<TrafficSource> sources;
+  for (auto const lane : site.entrances) sources.push_back({.lane = lane});
+  TrafficInflow<JunctionSite::World> inflow(*site.map, sources, seed);
+  auto const next = [&](TrafficSource const& source, RandomStream& random) {
+    auto const route = site.random_route(source.lane, random);
+    auto const heading_at = [&](LaneId lane, double share) {
+      auto const& path = site.map->lane(lane).path;
+      return path.pose(share * path.length()).heading;
+    };
+    bool const turns = std::cos(heading_at(route.lanes.back(), 1.0) - heading_at(source.lane, 0.0)) < 0.9;
+    bool const fits = !turns && fits_route(*site.map, route, geometry::truck());  // a roundabout's ring is too narrow
+    bool const large = uniform01(random) < truck_share && fits;
+    return JunctionSite::World::AgentSpec{
+        .speed = 10.0,
+        .shape = large ? geometry::truck() : geometry::car(),
+        .behavior = Intersection{.idm = {.desired_speed = 10.0 + 4.0 * uniform01(random)}},
+        .route = route};
+  };
   std::map<AgentId, double> stands;
   Flow flow;
   int passed = 0;
   while (world.time() < duration) {
-    for (auto const lane : site.entrances) {
-      auto const route = site.random_route(lane, random);
-      auto const& end = site.map->lane(route.lanes.back()).path;
-      bool const turns = std::cos(end.pose(end.length()).heading - site.map->lane(lane).path.pose(0.0).heading) < 0.9;
-      bool const large = uniform01(random) < truck_share && !turns;
-      auto const shape = large ? geometry::truck() : geometry::car();
-      auto const pose = site.map->lane(lane).path.pose(1.0 + shape.rear);
-      double speed = 10.0;
-      if (!has_room(world, pose, shape.front, speed)) continue;
-      world.add({.position = pose.position(),
-                 .heading = pose.heading,
-                 .speed = speed,
-                 .shape = shape,
-                 .behavior = Intersection{.idm = {.desired_speed = 10.0 + 4.0 * uniform01(random)}},
-                 .route = route});
-    }
+    inflow.enter(world, next);
     REQUIRE(world.step(dt));
     flow.collisions += AnyCollision{}(world);
-    std::vector<AgentId> gone;
     for (Slot i{}; index_of(i) < world.size(); ++i) {
-      auto const id = world.roster().agents[i].id;
-      auto const& agent = world.frame().agents[i];
-      if (agent.status != AgentStatus::driving) gone.push_back(id);
-      auto& stand = stands[id];
-      stand = agent.state.speed < 0.1 ? stand + dt : 0.0;
+      auto& stand = stands[world.roster().agents[i].id];
+      stand = world.frame().agents[i].state.speed < 0.1 ? stand + dt : 0.0;
       flow.longest_stand = std::max(flow.longest_stand, stand);
     }
-    if (world.time() > warm_up) passed += static_cast<int>(gone.size());
-    for (auto const id : gone) world.remove(id);
+    auto const gone = inflow.leave(world).size();
+    if (world.time() > warm_up) passed += static_cast<int>(gone);
   }
   flow.per_minute = passed / (duration - warm_up) * 60.0;
   return flow;
@@ -86,7 +71,7 @@ Flow saturate(JunctionSite const& site, double truck_share, bool lights, double 
 void check_flow(JunctionSite const& site, bool lights, double least) {
   for (double const truck_share : {0.0, 0.3})
     for (double const dt : {0.2, 0.5}) {
-      auto const flow = saturate(site, truck_share, lights, dt, 5);
+      auto const flow = saturate(site, truck_share, lights, dt, 6);
       INFO(flow.per_minute, " vehicles a minute, longest stand ", flow.longest_stand, " s, trucks ", truck_share,
            ", dt ", dt, ", lights ", lights);
       CHECK(flow.collisions == 0);

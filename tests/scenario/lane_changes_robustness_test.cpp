@@ -18,6 +18,7 @@
 #include "cambium/observer/observer_set.hpp"
 #include "cambium/observer/occluded.hpp"
 #include "cambium/observer/parametric.hpp"
+#include "cambium/scenario/highway_site.hpp"
 
 using namespace lane_traffic;
 
@@ -122,7 +123,7 @@ std::vector<cb::LaneId> lanes_in_direction(cb::Map const& map, cb::map::RoadSect
 
 }  // namespace
 
-TEST_CASE("drivers who see with errors, late or not everybody change lanes without collisions") {
+TEST_CASE("drivers that see with errors, late or only in part change lanes without collisions") {
   for (bool const by_rule : {false, true})
     for (auto const& sight : sights()) {
       int changes = 0;
@@ -232,4 +233,38 @@ TEST_CASE("zip merges come off without collisions where drivers see with errors,
         stuck += record.status == cb::AgentStatus::driving && record.state.x < 600.0;
       CHECK(stuck == 0);
     }
+}
+
+TEST_CASE("nobody without a goal passes the slow in an exit lane, and then stands at its end") {
+  auto const site = cb::find_highway_site(support::own_map("highway_exit.xodr"));
+  REQUIRE(site.exits.size() == 1);
+  int passed = 0;
+  for (bool const keeps_right : {true, false})
+    for (std::uint64_t number = 20; number < 20 + samples(14); ++number) {
+      auto scenario = site.sample(771, static_cast<std::uint32_t>(number));
+      for (auto& spec : scenario.agents) {
+        auto driver = *std::get_if<cb::Mobil>(&spec.behavior.given());
+        driver.keep_right = keeps_right;
+        if (!keeps_right) driver.bias = 0.0;
+        if (spec.shape.length() > 7.0 || number % 3 == index_of(*spec.id) % 3) driver.idm.desired_speed *= 0.4;
+        spec.speed = std::min(spec.speed, driver.idm.desired_speed);
+        spec.behavior = driver;
+        if (number % 2 == 0) spec.goal = cb::NoGoal{};
+      }
+      auto world = scenario.make_world();
+      for (int k = 0; k < 400; ++k) {
+        REQUIRE(world.step(0.2));
+        for (cb::Slot slot{}; index_of(slot) < world.size(); ++slot) {
+          auto const& record = world.frame().agents[slot];
+          if (record.status != cb::AgentStatus::driving) continue;
+          auto const view = world.observe(slot);
+          if (view.has_goal()) continue;
+          double const end = cb::lane_end(view, record.lane.corridor, record.lane.piece);
+          INFO("scenario ", number, ", keeps right: ", keeps_right, ", agent ", index_of(view.id()), ", step ", k);
+          CHECK_FALSE(cb::is_way_out(view, record.lane.corridor, end));
+        }
+      }
+      for (auto const& record : world.frame().agents) passed += record.status == cb::AgentStatus::left_map;
+    }
+  CHECK(passed > 100);
 }

@@ -47,7 +47,8 @@ bool needs_more(std::string const& header) {
                                     "scenario/highway_site.hpp",
                                     "scenario/junction_site.hpp",
                                     "scenario/merging_site.hpp",
-                                    "scenario/ring_road.hpp"};
+                                    "scenario/ring_road.hpp",
+                                    "scenario/traffic_inflow.hpp"};
   return apart.contains(header) || header.starts_with("map/build/") || header.starts_with("map/opendrive/") ||
          header.ends_with("_impl.hpp");
 }

@@ -27,6 +27,17 @@ std::shared_ptr<cambium::Map const> two_way_road(double length) {
       {.id = "1", .line = cambium::map::lay_from({}, {{length}}), .sections = {{.left = lane, .right = lane}}});
 }
 
+std::shared_ptr<cambium::Map const> road_with_signal(std::string const& type) {
+  return cambium::parse_opendrive(
+             "<OpenDRIVE><road id='0' length='500' junction='-1'><planView><geometry s='0' x='0' y='0' hdg='0' "
+             "length='500'><line/></geometry></planView><lanes><laneSection s='0'><center><lane "
+             "id='0'/></center><right>"
+             "<lane id='-1' type='driving'><width sOffset='0' a='3.5' b='0' c='0' d='0'/></lane></right></laneSection>"
+             "</lanes><signals><signal id='1' s='200' t='-4' type='" +
+             type + "' subtype='-1' orientation='+' dynamic='no'/></signals></road></OpenDRIVE>")
+      .map;
+}
+
 std::shared_ptr<cambium::Map const> own_map(std::string const& name) {
   return cambium::load_opendrive(CAMBIUM_SOURCE_DIR "/maps/" + name).map;
 }

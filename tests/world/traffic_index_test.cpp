@@ -492,7 +492,7 @@ TEST_CASE("objects are in the lanes that their outlines reach into, to half a me
   CHECK(compared > 400);
 }
 
-TEST_CASE("who has left the road is nobody's leader, and who is in another lane is seen there") {
+TEST_CASE("an agent off the road is not a leader, and one in another lane is seen there") {
   auto const map = support::map_of({.line = cb::map::lay_from({}, {{500.0}}),
                                     .sections = {{.left = cb::map::equal_lanes(1), .right = cb::map::equal_lanes(1)}}});
   Sim world(map);
@@ -529,7 +529,7 @@ TEST_CASE("a long vehicle that stands aslant is seen in the lane that its front 
   CHECK(world.observe(follower).ahead()->agent == truck);
 }
 
-TEST_CASE("the nearest neighbour is the one with the smallest gap when nobody stands inside another") {
+TEST_CASE("the nearest neighbour has the smallest gap if no vehicles overlap") {
   // A follower 30 m behind a truck, which is 20 m behind a car: the truck is the leader, and the car's follower is the
   // truck.
   Sim world(straight_road(1, 500));
@@ -599,7 +599,7 @@ void turn_round(Sim& world, cb::AgentId id, cb::State const& state) {
   world.restore(frame);
 }
 
-TEST_CASE("so it is where the larger one has left its own lane for another one, and reaches over that one's end") {
+TEST_CASE("the same holds where the larger vehicle has changed lanes and reaches over the end of its new lane") {
   auto const truck = cb::geometry::articulated_truck();
   auto const motorcycle = cb::geometry::motorcycle();
   auto const one_each_way = [](double s) {
@@ -628,7 +628,7 @@ TEST_CASE("so it is where the larger one has left its own lane for another one, 
   CHECK(count.hidden > 50);
 }
 
-TEST_CASE("who reaches over the border hides nobody who is nearer") {
+TEST_CASE("a vehicle that reaches over the border does not hide a nearer one") {
   auto const car = cb::geometry::car();
   auto const bus = cb::geometry::bus();
   REQUIRE(bus.rear > car.rear + 0.5);
@@ -650,7 +650,7 @@ TEST_CASE("who reaches over the border hides nobody who is nearer") {
   CHECK(rear->gap == doctest::Approx(300 - car.rear - 203 - bus.front));
 }
 
-TEST_CASE("who only reaches over into a lane that is still to merge is not one of those who merge") {
+TEST_CASE("a vehicle that only reaches over into a merging lane does not count as merging") {
   auto const map = own_map("lane_drop.xodr");
   auto const place = [&map](int lane, double s, double right) {
     auto const p = map->lane(map->find_lane("1", s, lane)).path.pose(s);

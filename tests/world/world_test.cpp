@@ -160,7 +160,7 @@ TEST_CASE("an agent whose route ends where the road goes on has arrived") {
   CHECK(world.status(id) == cb::AgentStatus::arrived);
 }
 
-TEST_CASE("a step of no length, of no number, backwards or of more than an hour changes nothing and says so") {
+TEST_CASE("a step of 0 s, NaN, a negative time or more than an hour changes nothing and reports why") {
   Sim world(straight_road());
   world.add({.position = {10, -1.75}, .speed = 5});
   CHECK(Sim(world).step(Sim::longest_step));
@@ -601,7 +601,7 @@ TEST_CASE("a step may be long: what lies half a circle on is found") {
   CHECK(std::abs(world.record(id).lane.lateral) < 0.05);
 }
 
-TEST_CASE("who has left comes back into traffic by its state") {
+TEST_CASE("set_state brings an agent that has left back into traffic") {
   Sim world(straight_road(1, 100));
   auto const id = world.add({.position = {95, -1.75}, .speed = 20});
   REQUIRE(world.step(1.0));
@@ -676,7 +676,7 @@ bool same(std::optional<cb::RoadUser> const& a, std::optional<cb::RoadUser> cons
 
 }  // namespace
 
-TEST_CASE("who has not started sees its neighbours as if it drove, and is seen by nobody") {
+TEST_CASE("an agent that has not started sees its neighbours as if it drove, but no agent sees it") {
   using Late = cb::World<cb::BehaviorSet<cb::IdmClassic, Latecomer>, cb::InterpolateExecution, cb::SingleTrack>;
   auto const map = own_map("merging.xodr");
   int seen_by_it = 0, would_see_it = 0;

@@ -43,6 +43,8 @@ using WorkspaceOf = typename decltype(detail::workspace_of<B>())::type;
 /// is copied with it. A behaviour may further have
 /// - `memory.fell_short(way, left_course)`, if its memory holds how far the vehicle is along a course: see
 ///   `fell_short`.
+/// - `memory.was_set()`, if it infers a manoeuvre from the motion with which the vehicle enters: `World::set_state` has
+///   moved the vehicle, and the memory stays.
 /// - `double start_time() const` [s]: an agent that is added earlier enters traffic only then.
 /// - a default constructible `Workspace`, if planning needs much scratch memory, as a search does; `plan` then takes a
 ///   reference to one after `dt`. It belongs to the world, serves one agent after the other and is not copied, so its

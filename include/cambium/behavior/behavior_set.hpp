@@ -67,6 +67,15 @@ struct BehaviorSet {
     return behavior.visit([](auto const&, auto place) { return Memory(std::in_place_index<place>); });
   }
 
+  /// Tells a memory that `World::set_state` has moved the vehicle, see `BehaviorModel`.
+  static void was_set(Memory& memory) {
+    std::visit(
+        [](auto& own) {
+          if constexpr (requires { own.was_set(); }) own.was_set();
+        },
+        memory);
+  }
+
   /// When the agent enters traffic [s]; -infinity if the behaviour does not say.
   [[nodiscard]] static double start_time(Any const& behavior) {
     return behavior.visit([](auto const& model) {

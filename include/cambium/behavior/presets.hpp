@@ -63,6 +63,76 @@ namespace cambium::presets {
           .lowest_acceleration = -8.0};
 }
 
+/// What a driver's temperament means for a whole driver. Car following as in the presets of the same name; politeness,
+/// threshold and safe braking of lane changes around the values of Kesting, Treiber, Helbing 2007 (politeness 0:
+/// egoistic, up to 0.5: cooperative; 0.1 m/s^2; 4 m/s^2); speeds around the limit as in SUMO, whose drivers' speed
+/// factor is normal(1, 0.1). The other numbers, and where in these ranges a temperament lies, are ours.
+struct Temperament {
+  IdmParameters idm{};
+  double politeness{};            ///< `BasicMobil::politeness` [-]
+  double threshold{};             ///< `BasicMobil::threshold` [m/s^2]
+  double lane_change_braking{};   ///< `LaneChanging::safe_deceleration`; 0.5 m/s^2 more abort one [m/s^2]
+  double lateral_acceleration{};  ///< `RoadRules::lateral_acceleration` [m/s^2]
+  double signal_braking{};        ///< `RoadRules::safe_deceleration`: higher, it stops at yellow more often [m/s^2]
+  double merging_headway{};       ///< `RoadRules::merging_headway` [s]
+  double late_at_red{};           ///< `RoadRules::late_at_red` [s]
+  double speed_factor{};          ///< `RoadRules::speed_factor` [-]
+  double time_margin{};           ///< `Intersection::time_margin` [s]
+
+  /// `driver` with this temperament: all of the above that it has, in what it wraps, too. The rest stays.
+  template <class Driver>
+  [[nodiscard]] constexpr Driver of(Driver driver = {}) const {
+    if constexpr (requires { driver.nominal; }) driver.nominal = of(driver.nominal);
+    if constexpr (requires { driver.idm; })
+      driver.idm = idm;
+    else if constexpr (requires { {driver.desired_speed += idm.desired_speed}; } && HasIdmParameters<Driver>)
+      follow_as(driver);
+    if constexpr (requires { driver.politeness; }) driver.politeness = politeness;
+    if constexpr (requires { driver.threshold; }) driver.threshold = threshold;
+    if constexpr (requires { driver.changing.abort_deceleration; }) {
+      driver.changing.safe_deceleration = lane_change_braking;
+      driver.changing.abort_deceleration = lane_change_braking + 0.5;
+    }
+    if constexpr (requires { driver.rules; }) {
+      driver.rules.lateral_acceleration = lateral_acceleration;
+      driver.rules.safe_deceleration = signal_braking;
+      driver.rules.merging_headway = merging_headway;
+      driver.rules.late_at_red = late_at_red;
+      driver.rules.speed_factor = speed_factor;
+    }
+    if constexpr (requires { driver.time_margin; }) driver.time_margin = time_margin;
+    return driver;
+  }
+
+ private:
+  template <class Driver>
+  constexpr void follow_as(Driver& driver) const {
+    driver.desired_speed = idm.desired_speed;
+    driver.time_headway = idm.time_headway;
+    driver.minimum_gap = idm.minimum_gap;
+    driver.maximum_acceleration = idm.maximum_acceleration;
+    driver.comfortable_deceleration = idm.comfortable_deceleration;
+    driver.exponent = idm.exponent;
+    driver.lowest_acceleration = idm.lowest_acceleration;
+    driver.highest_acceleration = idm.highest_acceleration;
+  }
+};
+
+/// A whole driver of that temperament, such as `timid<Mobil>()`, `aggressive<HumanDriver<Intersection>>()`. Its desired
+/// speed is that of a motorway: set `obey_speed_limits` or another one elsewhere.
+template <class Driver>
+[[nodiscard]] constexpr Driver timid() {
+  return Temperament{timid(), 0.5, 0.3, 2.0, 2.0, 4.0, 2.0, 0.0, 0.95, 2.0}.template of<Driver>();
+}
+template <class Driver>
+[[nodiscard]] constexpr Driver normal() {
+  return Temperament{kesting_2010_car(), 0.2, 0.2, 4.0, 3.0, 3.0, 1.0, 0.0, 1.0, 1.0}.template of<Driver>();
+}
+template <class Driver>
+[[nodiscard]] constexpr Driver aggressive() {
+  return Temperament{aggressive(), 0.0, 0.1, 5.0, 4.0, 2.0, 0.5, 1.0, 1.1, 0.6}.template of<Driver>();
+}
+
 /// A cyclist, to be combined with `bicycle_dynamics`. The numbers are ours: 18 km/h, slightly below SUMO's default
 /// maximum speed of bicycles (20 km/h), gentle acceleration and braking, short gaps.
 [[nodiscard]] constexpr IdmParameters cyclist() {

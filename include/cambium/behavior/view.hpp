@@ -36,9 +36,10 @@ struct RoadUser {
 
 /// How a query along a lane corridor treats road users in lanes that merge into the corridor further ahead.
 enum class Merging : std::uint8_t {
-  counts,   ///< like those in the corridor, by their position relative to the merge
-  by_rule,  ///< likewise, except in junctions, where the right of way decides, see `LaneCorridor::conflicts`
-  ignored,
+  counts,     ///< like those in the corridor, by their position relative to the merge
+  by_rule,    ///< likewise, except in junctions, where the right of way decides, see `LaneCorridor::conflicts`
+  ignored,    ///< until they have reached the merge: who looks so opens no gap
+  gives_way,  ///< like `counts`; the driver also waits for a gap before those behind, see `RoadRules::gap_to_wait_for`
 };
 
 /// Options of a query along a lane corridor.
@@ -96,6 +97,7 @@ struct ViewArchetype {
   [[nodiscard]] geometry::Polygon const& outline(RoadUser const& object) const;
   [[nodiscard]] bool signals_way(RoadUser const& user, LaneId lane) const;  ///< its turn signal permits that way
   [[nodiscard]] map::LightColor light(LightId id) const;                    ///< current colour of a traffic light
+  [[nodiscard]] double red_for(LightId id) const;  ///< time since it turned red [s]; negative: until it does
   [[nodiscard]] AgentId id() const;
   [[nodiscard]] bool has_goal() const;                             ///< whether the lane in which the route ends matters
   [[nodiscard]] RandomStream random(std::uint32_t purpose) const;  ///< own stream for (seed, agent, step, purpose)

@@ -39,7 +39,7 @@ struct JunctionTraffic {
 
   void check(std::string const& where) const {
     if (!(truck_share + bicycle_share <= 1.0))
-      throw ParameterError(where, "truck_share and bicycle_share are more than 1 in all", "lower one of them");
+      throw ParameterError(where, "truck_share and bicycle_share add up to more than 1", "lower one of them");
   }
 };
 

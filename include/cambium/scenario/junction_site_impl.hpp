@@ -16,24 +16,11 @@
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/scenario/junction_site.hpp"
+#include "cambium/scenario/traffic_inflow.hpp"
 
 namespace cambium {
 
 namespace detail {
-
-CAMBIUM_COLD bool in_junction(Map const& map, LaneId lane) { return is_valid(map.road(map.lane(lane).road).junction); }
-
-/// Whether a vehicle of `shape` on the route stays out of the lanes beside it, outside of junctions. Traffic in those
-/// lanes does not look out for a vehicle that swings into them in a bend.
-CAMBIUM_COLD bool fits_route(Map const& map, map::Route const& route, geometry::Shape const& shape) {
-  double const sharpest = 0.9 / (0.5 * shape.front * shape.front);  // [1/m]: it swings out by 0.9 m
-  return std::all_of(route.lanes.begin(), route.lanes.end(), [&](LaneId id) {
-    auto const segments = map.lane(id).path.segments();
-    return in_junction(map, id) || std::all_of(segments.begin(), segments.end(), [&](auto const& segment) {
-             return std::abs(segment.curvature) < sharpest;
-           });
-  });
-}
 
 /// Mostly cars, and some vans and trucks where these fit.
 CAMBIUM_COLD geometry::Shape random_shape(Map const& map, JunctionTraffic const& traffic, map::Route const& route,
@@ -115,17 +102,7 @@ CAMBIUM_COLD std::vector<map::LightPlan> lights_in_turn(Map const& map) {
 
 CAMBIUM_COLD map::Route JunctionSite::random_route(LaneId from, RandomStream& random) const {
   detail::require_lanes(map, {from}, "JunctionSite::random_route: from", "find_junction_site");
-  cambium::map::Route route{{from}, map->lane(from).length()};
-  while (route.length < 400.0 || detail::in_junction(*map, route.lanes.back())) {
-    std::vector<LaneId> next;
-    for (auto const lane : map->lane(route.lanes.back()).successors)
-      if (map->lane(lane).drivable() && std::find(route.lanes.begin(), route.lanes.end(), lane) == route.lanes.end())
-        next.push_back(lane);
-    if (next.empty()) break;
-    route.lanes.push_back(next[uniform_index(random, static_cast<std::uint32_t>(next.size()))]);
-    route.length += map->lane(route.lanes.back()).length();
-  }
-  return route;
+  return cambium::random_route(*map, from, random);
 }
 
 CAMBIUM_COLD Scenario<JunctionSite::World> JunctionSite::sample(std::uint64_t seed, std::uint32_t number,

@@ -40,6 +40,8 @@ struct MergingSite {
   std::size_t crossings{};   ///< places where routes cross or meet at an angle; car following gives way at none of them
   double free_speed = 13.9;  ///< [m/s]: the speed limit at the ramp, else 50 km/h
   double truck_share = 0.1;  ///< part of the vehicles that are trucks
+  double non_yielding_share = 0.0;  ///< part of the through drivers that open no gap (`Merging::ignored`)
+  bool ramp_waits = false;  ///< drivers on the ramp wait for a gap (`Merging::gives_way`): else they force their way
 
   /// Scenario `number` of a seed: cars and trucks on all entrances, with gaps that leave time to brake, merging traffic
   /// included. The goal of all vehicles on the ramp is the lane behind the merge; the ego is the one in their middle.

@@ -192,6 +192,18 @@ CAMBIUM_COLD Scenario<MergingSite::World> draw_merging(MergingSite const& site, 
   return scenario;
 }
 
+/// Sets who lets whom in; the draws of the traffic stay the same.
+CAMBIUM_COLD void set_merging(Scenario<MergingSite::World>& scenario, std::uint32_t number, MergingSite const& site) {
+  RandomStream random(scenario.seed, number, 0, 1);
+  for (auto& agent : scenario.agents) {
+    bool const is_through = std::holds_alternative<NoGoal>(agent.goal),
+               insists = uniform01(random) < site.non_yielding_share;
+    auto& merging = std::get<IdmClassic>(agent.behavior).rules.merging;
+    if (is_through && insists) merging = Merging::ignored;
+    if (!is_through && site.ramp_waits) merging = Merging::gives_way;
+  }
+}
+
 }  // namespace detail
 
 CAMBIUM_COLD Scenario<MergingSite::World> MergingSite::sample(std::uint64_t seed, std::uint32_t number) const {
@@ -201,7 +213,9 @@ CAMBIUM_COLD Scenario<MergingSite::World> MergingSite::sample(std::uint64_t seed
     throw WorldError("MergingSite", "its ramp is none of its entrances", "take it as find_merging_site returns it");
   for (std::uint32_t attempt = 0; attempt < 100; ++attempt) {
     auto scenario = detail::draw_merging(*this, seed, number, attempt);
-    if (is_valid(scenario.ego)) return scenario;
+    if (!is_valid(scenario.ego)) continue;
+    detail::set_merging(scenario, number, *this);
+    return scenario;
   }
   throw WorldError("scenario " + std::to_string(number), "no traffic fits on the map before its merge",
                    "give a map with longer lanes there");

@@ -27,7 +27,7 @@ struct StaticObject;
 [[nodiscard]] std::pair<RecordedAgent, RecordedPose> recorded_object(StaticObject const& object);
 
 /// Records a world. The constructor takes lanes, stop lines, agents, objects and the first frame; each call of `record`
-/// adds a frame. Agents and objects that enter later are not recorded.
+/// adds a frame, and the agents that have entered since. Objects that enter later are not recorded.
 class WorldRecorder {
  public:
   template <class World>
@@ -37,9 +37,7 @@ class WorldRecorder {
       recording_.lanes.push_back(recorded_way(road.numbered->corridors.front()));
     for (auto& lane : recorded_lanes(world.map())) recording_.lanes.push_back(std::move(lane));
     recording_.stop_lines = recorded_stop_lines(world.map());
-    for (auto const& agent : world.roster().agents)
-      recording_.agents.push_back({agent.id, agent.shape, "", RecordedAgentKind::other});
-    agents_ = recording_.agents.size();
+    add_entrants(world);
     for (auto const& object : world.roster().objects) {
       auto [shown, pose] = recorded_object(object);
       recording_.agents.push_back(std::move(shown));
@@ -60,6 +58,7 @@ class WorldRecorder {
   /// Adds the world's current frame.
   template <class World>
   void record(World const& world) {
+    add_entrants(world);
     RecordedFrame frame{world.time(), std::vector<RecordedPose>(agents_)};
     for (auto const& light : world.roster().lights) frame.lights.push_back(light.at(frame.time));
     auto const& agents = world.roster().agents;
@@ -84,6 +83,21 @@ class WorldRecorder {
   [[nodiscard]] Recording const& recording() const { return recording_; }
 
  private:
+  /// Adds the agents that are not recorded yet, absent in all earlier frames.
+  template <class World>
+  void add_entrants(World const& world) {
+    std::size_t i = 0;
+    for (auto const& agent : world.roster().agents) {  // both lists are sorted by id
+      while (i < agents_ && recording_.agents[i].id < agent.id) ++i;
+      if (i < agents_ && recording_.agents[i].id == agent.id) continue;
+      auto const place = static_cast<std::ptrdiff_t>(i);
+      recording_.agents.insert(recording_.agents.begin() + place,
+                               {agent.id, agent.shape, "", RecordedAgentKind::other});
+      for (auto& frame : recording_.frames) frame.poses.insert(frame.poses.begin() + place, RecordedPose{});
+      ++agents_;
+    }
+  }
+
   Recording recording_;
   std::size_t agents_ = 0;             ///< number of the world's agents; its objects follow them
   std::vector<RecordedPose> objects_;  ///< the same in every frame

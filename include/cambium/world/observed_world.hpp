@@ -14,6 +14,7 @@
 #include "cambium/world/detail/look_around.hpp"
 #include "cambium/world/detail/on_lanes.hpp"
 #include "cambium/world/detail/seen.hpp"
+#include "cambium/world/detail/seen_lanes.hpp"
 #include "cambium/world/frame.hpp"
 #include "cambium/world/prediction.hpp"
 #include "cambium/world/static_object.hpp"
@@ -24,9 +25,10 @@ namespace cambium {
 /// What one agent sees of its world: a view of a few pointers, valid until the world changes. It shows states, shapes,
 /// neighbours, the map and the agent's own route, never the others' intentions; `predict` takes a model of those.
 ///
-/// The agent's observer model shapes what the view shows. It alters states, and therefore gaps, neighbours' speeds and
-/// the agent's own lane position. It may hide agents and objects. It does not alter the order of the visible road users
-/// along a lane, which the view takes from the true positions.
+/// The agent's observer model shapes what the view shows. It alters states, and therefore gaps, neighbours' speeds, the
+/// agent's own lane position and the lanes in which `ahead`, `behind` and `each_ahead` find others. It may hide agents
+/// and objects. It does not alter the order of the visible road users along a lane, nor the agent's own lane corridor,
+/// which the view takes from the true positions.
 template <class World>
 class ObservedWorld {
  public:
@@ -47,7 +49,6 @@ class ObservedWorld {
   [[nodiscard]] decltype(auto) state() const { return observed(slot_); }
   [[nodiscard]] geometry::Shape const& shape() const { return own_->shape; }
   [[nodiscard]] Dynamics const& dynamics() const { return own_->dynamics; }
-  [[nodiscard]] Action const& last_action() const { return record_->action; }
   [[nodiscard]] Goal const& goal() const { return world_->roster().goals[index_of(slot_)]; }
   [[nodiscard]] Map const& map() const { return world_->map(); }
   [[nodiscard]] map::RoadCorridor const& road() const { return *own_->road; }
@@ -76,10 +77,14 @@ class ObservedWorld {
   /// Next road user ahead (behind) along the agent's own lane corridor; nothing if none is within `Look::distance`.
   /// O(1) if that road user is in the same lane.
   [[nodiscard]] std::optional<RoadUser> ahead(Look const& look = {}) const {
-    return seen(world_->traffic().front(corridor(), query(record_->lane, look), objects_on_lanes(), in_traffic()), 1);
+    return nearer<1>(
+        place(), look,
+        seen(world_->traffic().front(corridor(), query(record_->lane, look), objects_on_lanes(), in_traffic()), 1));
   }
   [[nodiscard]] std::optional<RoadUser> behind(Look const& look = {}) const {
-    return seen(world_->traffic().rear(corridor(), query(record_->lane, look), objects_on_lanes(), in_traffic()), -1);
+    return nearer<-1>(
+        place(), look,
+        seen(world_->traffic().rear(corridor(), query(record_->lane, look), objects_on_lanes(), in_traffic()), -1));
   }
 
   /// Calls `f(RoadUser)` for the next road user ahead in the agent's own lane corridor, and for the next one in each
@@ -89,17 +94,20 @@ class ObservedWorld {
   void each_ahead(Look const& look, F&& f) const {
     world_->traffic().each_front(corridor(), query(record_->lane, look), objects_on_lanes(), in_traffic(),
                                  [&](RoadUser const& found) { f(seen(found, 1)); });
+    if (auto const other = nearer<1>(place(), look, std::nullopt)) f(*other);
   }
 
   /// Next road user ahead of (behind) a place on any lane corridor of the agent's road, as if the agent were there.
   /// O(log n).
   [[nodiscard]] std::optional<RoadUser> ahead(map::LanePlace const& from, Look const& look = {}) const {
     auto const& along = road().corridors[from.corridor];
-    return seen(world_->traffic().front(along, query(truth(from), look), objects_on_lanes(), false), 1);
+    return nearer<1>(from, look,
+                     seen(world_->traffic().front(along, query(truth(from), look), objects_on_lanes(), false), 1));
   }
   [[nodiscard]] std::optional<RoadUser> behind(map::LanePlace const& from, Look const& look = {}) const {
     auto const& along = road().corridors[from.corridor];
-    return seen(world_->traffic().rear(along, query(truth(from), look), objects_on_lanes(), false), -1);
+    return nearer<-1>(from, look,
+                      seen(world_->traffic().rear(along, query(truth(from), look), objects_on_lanes(), false), -1));
   }
 
   /// The foremost agent, not beyond corridor position `limit`, in the lanes that merge into the agent's own corridor at
@@ -199,6 +207,13 @@ class ObservedWorld {
     return index_of(id) < lights.size() ? lights[index_of(id)].at(time()) : map::LightColor::off;
   }
 
+  /// For how long a traffic light has been red [s]; below 0: it turns red in that time, which drivers know because a
+  /// light is yellow for as long each time. Only of a light that is on. O(1).
+  [[nodiscard]] double red_for(LightId id) const {
+    auto const& lights = world_->roster().lights;
+    return index_of(id) < lights.size() ? lights[index_of(id)].red_for(time()) : 0.0;
+  }
+
   /// Whether an agent's route passes `lane`, as its turn signals show it: the only knowledge about another agent's
   /// route that the view gives. False for objects. O(lanes of its road).
   [[nodiscard]] bool signals_way(RoadUser const& user, LaneId lane) const {
@@ -247,8 +262,10 @@ class ObservedWorld {
 
   [[nodiscard]] auto query(map::LanePlace const& at, Look const& look) const {
     auto const query = plain_query(at, look);
-    if constexpr (detail::hides<World> || detail::hides_objects<World>) {
+    if constexpr (detail::hides<World> || detail::hides_objects<World> || misplaces) {
       auto const sees = [world = world_, own = slot_](TrafficEntry const& entry, double) {
+        if constexpr (misplaces)
+          if (!detail::is_seen_in_lane(*world, own, entry)) return false;
         return detail::is_seen(*world, own, entry.slot);
       };
       auto const sees_object = [world = world_, own = slot_](Slot object) {
@@ -258,6 +275,61 @@ class ObservedWorld {
     } else {
       return query;
     }
+  }
+
+  /// `found`, or a nearer agent ahead (`sign` 1) or behind (-1) that is seen in the lane of `from` but drives in one
+  /// beside. O(agents in those lanes as far as `found`).
+  template <int sign>
+  [[nodiscard]] std::optional<RoadUser> nearer(map::LanePlace const& from, Look const& look,
+                                               std::optional<RoadUser> const& found) const {
+    if constexpr (misplaces)
+      return nearer_from_beside<sign>(from, look, found);
+    else
+      return found;
+  }
+
+  template <int sign>
+  CAMBIUM_NOINLINE [[nodiscard]] std::optional<RoadUser> nearer_from_beside(map::LanePlace const& from,
+                                                                            Look const& look,
+                                                                            std::optional<RoadUser> best) const {
+    constexpr double longest = 40.0;  // [m]: of two vehicles
+    auto const start = truth(from);
+    auto const& corridor = road().corridors[from.corridor];
+    auto const pose = corridor.center.pose(start.s);
+    auto const seen_at = [&](Slot slot, double s) {
+      map::LanePlace hint;
+      hint.segment = corridor.center.find(std::clamp(s, 0.0, corridor.length()));
+      hint.piece = from.piece;
+      return map::locate(road(), from.corridor, pose_of(observed(slot)), hint);
+    };
+    for (bool const left : {true, false})
+      for (auto at = start;;) {
+        auto const beside = road().corridors[at.corridor].pieces[at.piece].beside(left);
+        if (beside == none<CorridorId>) break;
+        at = detail::locate_beside(map(), road(), at, beside, pose);
+        auto const sees = [&](TrafficEntry const& entry, double way) {
+          if (!detail::is_misplaced(*world_, slot_, entry.slot) || !detail::is_seen(*world_, slot_, entry.slot))
+            return false;
+          auto const place = seen_at(entry.slot, start.s + sign * way);
+          return detail::reaches_into(world_->roster().agents[entry.slot].shape, place.lateral, place.heading_error,
+                                      corridor.widths_at(place.s, place.segment));
+        };
+        auto const sees_no_object = [](Slot) { return false; };
+        auto query = plain_query(at, look);
+        if (best) query.distance = std::min(query.distance, std::max(0.0, best->gap) + longest);
+        SightedQuery<decltype(sees), decltype(sees_no_object)> const sighted{query, sees, sees_no_object,
+                                                                             query.distance};
+        auto const& along = road().corridors[beside];
+        auto const& index = world_->traffic();
+        auto user = sign > 0 ? index.front(along, sighted, {}, false) : index.rear(along, sighted, {}, false);
+        if (!user) continue;
+        double const s = seen_at(user->slot, start.s + (user->s - at.s)).s;
+        user->gap = sign > 0 ? s - user->rear - from.s - shape().front : from.s - shape().rear - s - user->front;
+        user->s = s;
+        user->speed += observed(user->slot).speed - record(user->slot).state.speed;
+        if (!best || (user->gap < best->gap && user->agent != best->agent)) best = user;
+      }
+    return best;
   }
 
   [[nodiscard]] static Slot slot_of(RoadUser const& agent) {
@@ -304,6 +376,7 @@ class ObservedWorld {
   [[nodiscard]] static geometry::Pose pose_of(State const& s) { return {s.x, s.y, s.heading}; }
 
   static constexpr bool perfect = World::Observer::perfect;
+  static constexpr bool misplaces = detail::misplaces<World>;
 
   World const* world_;
   typename World::RosterType::Agent const* own_;

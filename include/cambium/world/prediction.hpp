@@ -14,6 +14,7 @@
 #include "cambium/map/corridor/lane_place.hpp"
 #include "cambium/observer/perfect.hpp"
 #include "cambium/world/detail/entering.hpp"
+#include "cambium/world/detail/on_lanes.hpp"
 #include "cambium/world/detail/seen.hpp"
 #include "cambium/world/frame.hpp"
 
@@ -92,7 +93,7 @@ template <class Set, class World>
     state.time = frame.time;
     auto lane = record.lane;
     if constexpr (!World::Observer::perfect)
-      lane = map::locate(*agent.road, lane.corridor, {state.x, state.y, state.heading}, lane);
+      lane = detail::seen_place(world.map(), *agent.road, lane, {state.x, state.y, state.heading}, i != slot);
     Action action = record.action;
     action.acceleration = detail::seen_acceleration(world, slot, i);
     seen.agents.push_back({state,

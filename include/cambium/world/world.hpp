@@ -297,6 +297,7 @@ class World {
       auto const place = detail::relocate(*agent.road, record.lane, {state.x, state.y, state.heading});
       detail::check_set_place(*map_, *agent.road, place, where);
       record.lane = place;
+      Set::was_set(record.memory);
     }
     record.state = state;
     record.action = {};

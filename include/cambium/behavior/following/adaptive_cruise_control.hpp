@@ -77,8 +77,9 @@ class AccLaw {
   [[nodiscard]] double speed() const { return speed_; }                                      ///< [m/s]
   [[nodiscard]] double desired_speed() const { return 1.0 / terms_.inverse_desired_speed; }  ///< [m/s]
 
-  /// Motion over `dt` [s] behind a leader of constant speed.
-  [[nodiscard]] LongitudinalMotion<double> motion(Constraint const& leader, double dt) const {
+  /// Motion over `dt` [s] behind a leader of constant speed; IDM's own, within `tolerance`, if `coolness` is 0.
+  [[nodiscard]] LongitudinalMotion<double> motion(Constraint const& leader, double dt, double tolerance = 1e-4) const {
+    if (coolness_ == 0.0) return detail::idm_motion(terms_, speed_, leader.gap, leader.speed, dt, tolerance);
     return follow_motion(*this, speed_, leader, dt);
   }
 

@@ -106,7 +106,8 @@ struct IdmLaneTracking {
     double s = view.place().s;
     Plan<View> plan;
     for (int i = 0; i < steps; ++i) {
-      auto const motion = rules.bound(view, p, s, x.speed, longitudinal(p, x.speed, leader, h), h, memory);
+      auto const motion =
+          rules.bound(view, p, s, x.speed, AccLaw(p, coolness, x.speed).motion(leader, h, tolerance), h, memory);
       auto axle = front_axle(line, x, wheel_base, segment);
       if (memory.aside != 0.0f) axle.offset = std::clamp(axle.offset - memory.aside, -gentle, gentle);
       double const angle = steering(axle, x.speed, wheel_base, h);
@@ -119,12 +120,6 @@ struct IdmLaneTracking {
     x.time = view.time() + dt;
     plan.trajectory.push_back(x);
     return plan;
-  }
-
-  [[nodiscard]] LongitudinalMotion<double> longitudinal(IdmParameters const& p, double speed, Constraint const& leader,
-                                                        double h) const {
-    if (coolness == 0.0) return idm_motion(p, speed, leader.gap, leader.speed, h, tolerance);
-    return AccLaw(p, coolness, speed).motion(leader, h);
   }
 };
 static_assert(BehaviorModel<IdmLaneTracking>);

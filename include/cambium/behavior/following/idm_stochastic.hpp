@@ -84,6 +84,8 @@ struct BasicIdmStochastic {
     bool yields = false;
     RoadRules::Memory rules{};
 
+    void was_set() { rules.was_set(); }
+
     friend bool operator==(Memory const&, Memory const&) = default;
   };
 

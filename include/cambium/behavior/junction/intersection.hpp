@@ -83,6 +83,8 @@ struct Intersection {
     detail::StandingAgents stopped_before{};  ///< those that stood there when it stopped, or that stand there now
     RoadRules::Memory rules{};
 
+    void was_set() { rules.was_set(); }
+
     friend bool operator==(Memory const&, Memory const&) = default;
   };
 

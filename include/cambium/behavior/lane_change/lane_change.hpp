@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "cambium/behavior/law/follow_lane.hpp"
+#include "cambium/core/macros.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/shape.hpp"
@@ -101,6 +102,24 @@ struct LaneChangeCourse {
     return {target, static_cast<float>(std::max(shortest, std::min(speed * duration, room))), 0.0f};
   }
 
+  /// The change that the motion of a vehicle shows, such as when it enters or is set in the middle of one; not active
+  /// if it shows none. The course goes on from the present lateral speed, which counts as the highest of the change.
+  template <class View>
+  CAMBIUM_NOINLINE [[nodiscard]] LaneChange under_way(View const& view) const {
+    constexpr double steepest = 1.875;  // slope halfway, relative to the mean slope of the course
+    auto const& at = view.place();
+    double const speed = std::max(0.0, view.state().speed), aslant = std::abs(at.heading_error);
+    if (speed * std::sin(aslant) < detail::least_drift || aslant > detail::most_aslant) return {};
+    double const slope = std::tan(at.heading_error);
+    auto const drift = detail::drift_of(view, slope);
+    if (drift.target == at.corridor && drift.rest != 0.0) return {};
+    // The lateral speed falls by at most 2 m/s^2 on average.
+    double const gentle = speed * speed * std::abs(slope) / 2.0;
+    double const least = std::max(least_length(view.shape()), gentle), most = std::max(least, speed * duration);
+    double const length = steepest * std::abs((drift.rest - at.lateral) / slope);
+    return {drift.target, static_cast<float>(std::clamp(length, least, most)), 0.0f};
+  }
+
   /// Restarts a change whose course the vehicle had to leave.
   void renew(LaneChange& change, geometry::Shape const& shape, double speed) const {
     if (change.active() && !(change.left > 0.0f)) change = begin(change.target, shape, speed);
@@ -140,9 +159,6 @@ template <class View>
   change.bend = static_cast<float>(course.bend);
   return plan;
 }
-
-/// Largest heading error [rad] for which a course exists; beyond it the vehicle is turned along its lane.
-inline constexpr double most_aslant = 1.0;
 
 }  // namespace detail
 

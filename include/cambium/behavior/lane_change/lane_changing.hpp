@@ -89,6 +89,7 @@ struct LaneChanging {
     RoadRules::Memory rules{};
 
     void fell_short(double way, bool left_course) { change.fell_short(way, left_course); }
+    void was_set() { rules.was_set(); }
 
     friend bool operator==(Memory const&, Memory const&) = default;
   };
@@ -105,6 +106,8 @@ struct LaneChanging {
     auto const home = view.place().corridor;
     memory.rest = std::max(0.0f, memory.rest - static_cast<float>(dt));
     course.renew(memory.change, view.shape(), speed);
+    if (memory.rules.adrift) [[unlikely]]
+      enter(view, memory);
     if (memory.change.target == home && speed < standing_speed &&
         distance_to_stop(view, view.place()) < idm.minimum_gap + 1)
       memory.change = {};  // the vehicle must leave this lane, too, and has no room left to reach its middle first
@@ -125,7 +128,7 @@ struct LaneChanging {
       }
     }
     if (!view.corridor().feeders.empty()) [[unlikely]]
-      ahead = with_merging(View(view), rules.merging, leader, memory.change.active() && memory.change.target != home,
+      ahead = with_merging(View(view), rules, leader, memory.change.active() && memory.change.target != home,
                            Strictest<IdmLaw>(ahead));
     if (auto const end = rules.lane_end_ahead(view)) ahead.heed(*end);
     auto const motion = law.motion(ahead.constraint(), dt, tolerance);
@@ -196,8 +199,15 @@ struct LaneChanging {
   static constexpr double infinite = std::numeric_limits<double>::infinity();
   /// Share of a change after which the vehicle has left its old lane.
   static constexpr double out_of_lane = 0.7;
-  /// Lateral speed that reveals the intention to change [m/s].
-  static constexpr double drift = 0.12;
+
+  /// Goes on with the change that the vehicle is in when it enters.
+  template <class View>
+  void enter(View const& view, Memory& memory) const {
+    memory.rules.adrift = false;
+    if (memory.change.active()) return;
+    memory.change = course.under_way(view);
+    if (memory.change.active()) memory.rest = std::max(memory.rest, static_cast<float>(rest + course.duration));
+  }
 
   [[nodiscard]] static bool is_object(RoadUser const& n) { return is_valid(n.object); }
 
@@ -213,7 +223,7 @@ struct LaneChanging {
     double const along =
         view.road().corridors[option.place.corridor].center.pose(option.place.s + distance, segment).heading;
     double const leftwards = state.speed * std::sin(state.heading - along);
-    return (option.left ? -leftwards : leftwards) > drift;
+    return (option.left ? -leftwards : leftwards) > detail::least_drift;
   }
 
   template <class View>
@@ -283,14 +293,15 @@ struct LaneChanging {
   /// `leader`. A vehicle that leaves its lane passes those that stand there. It takes copies, so that the originals can
   /// stay in registers.
   template <class View>
-  CAMBIUM_NOINLINE [[nodiscard]] static Strictest<IdmLaw> with_merging(View view, Merging merging,
+  CAMBIUM_NOINLINE [[nodiscard]] static Strictest<IdmLaw> with_merging(View view, RoadRules const& rules,
                                                                        std::optional<RoadUser> leader, bool leaves,
                                                                        Strictest<IdmLaw> ahead) {
-    view.each_ahead({.merging = merging}, [&](RoadUser const& next) {
+    view.each_ahead({.merging = rules.merging}, [&](RoadUser const& next) {
       if ((leader && next.agent == leader->agent && next.object == leader->object) || (leaves && next.speed < 0.5))
         return;
       ahead.heed({next.gap, next.speed});
     });
+    if (auto const gap = rules.gap_to_wait_for(view)) ahead.heed(*gap);
     return ahead;
   }
 

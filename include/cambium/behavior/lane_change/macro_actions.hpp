@@ -85,6 +85,7 @@ struct MacroActions {
     }
 
     void fell_short(double way, bool left_course) { change.fell_short(way, left_course); }
+    void was_set() { rules.was_set(); }
 
     friend bool operator==(Memory const&, Memory const&) = default;
   };
@@ -153,6 +154,10 @@ struct MacroActions {
     auto const action = memory.chosen != nothing ? actions[memory.chosen] : MacroAction{};
     double const speed = std::max(0.0, view.state().speed);
     course.renew(memory.change, view.shape(), speed);
+    if (memory.rules.adrift) [[unlikely]] {
+      memory.rules.adrift = false;
+      if (!memory.change.active()) memory.change = course.under_way(view);
+    }
     if (memory.is_new && is_change(action.kind)) {
       auto const side = side_of(view, action.kind, memory.change);
       if (side != none<CorridorId> && side != memory.change.target) {
@@ -198,13 +203,18 @@ struct MacroActions {
       auto const slower = motion_before_bend(speed, 0.0, rules.desired_speed(limit, view, speed), braking, braking, dt);
       if (slower.speed < wanted.speed) wanted = slower;
     }
-    if (action.kind != Kind::keep_gap && !action.keeps_gap) return wanted;
     IdmLaw const law(idm, speed, desired);
     Strictest ahead(law);
-    rules.heed(view, ahead);
-    if (change.active() && change.target != view.place().corridor)
-      if (auto const next = view.ahead(view.place(change.target), {.merging = rules.merging}))
-        ahead.heed({next->gap, next->speed});
+    if (action.kind == Kind::keep_gap || action.keeps_gap) {
+      rules.heed(view, ahead);
+      if (change.active() && change.target != view.place().corridor)
+        if (auto const next = view.ahead(view.place(change.target), {.merging = rules.merging}))
+          ahead.heed({next->gap, next->speed});
+    } else if (auto const end = rules.lane_end_ahead(view)) {
+      ahead.heed(*end);
+    } else {
+      return wanted;
+    }
     auto const allowed = law.motion(ahead.constraint(), dt, tolerance);
     return action.kind == Kind::keep_gap || allowed.speed < wanted.speed ? allowed : wanted;
   }

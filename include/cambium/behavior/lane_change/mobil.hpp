@@ -41,8 +41,9 @@ template <class P>
 ///
 /// It changes to the side with the largest incentive if that is also safe. `LaneChanging` defines what is safe and
 /// carries out the change. `bias` and `keep_right` shift the incentive between the sides, `route_bias` towards the
-/// lanes that go further. A driver who must leave its lane adapts its speed to the lane that it needs. Without
-/// `keep_right`, a gain of the new follower does not count: nobody cuts in to keep a vehicle from braking for another.
+/// lanes that go further. A driver without a goal does not pass in an exit lane within `route_horizon` before the exit.
+/// A driver who must leave its lane adapts its speed to the lane that it needs. Without `keep_right`, a gain of the new
+/// follower does not count: nobody cuts in to keep a vehicle from braking for another.
 ///
 /// `Filters`: further conditions, see `corridor_filters.hpp`; `Mobil` has none.
 template <class... Filters>
@@ -129,10 +130,11 @@ struct BasicMobil {
       if (side == none<CorridorId> || !changing.marks_permit(view, left)) continue;
       bool const inwards = left == inner_is_left;
       LaneOption option{view.place(side), left, {}, {}};
-      double const remaining = lane_end(view, side, option.place.piece) - option.place.s;
+      double const end = lane_end(view, side, option.place.piece), remaining = end - option.place.s;
       double const urge =
           !goes_on ? (left ? urgency.left : urgency.right) : -std::max(0.0, 1.0 - remaining / route_horizon);
       if (urge <= 0.0 && remaining < minimum_remaining + changing.there_and_back(now.law.speed())) continue;
+      if (urge <= 0.0 && remaining < route_horizon && is_way_out(view, side, end)) continue;
       double const pull = (inwards ? -bias : bias) + route_bias * urge;
       option.front = view.ahead(option.place);
       if (urge > 0.0 && !goes_on) adapt_to(now, option.front);

@@ -4,8 +4,8 @@
 
 namespace cambium {
 
-/// What bounds a driver's motion ahead: a leader, the end of the lane, a stop line, a place to give way. It moves along
-/// the lane or stands.
+/// Something ahead to which a car-following law responds: a road user, the end of the lane, the gap to open for a
+/// vehicle that merges. It moves along the lane or stands.
 struct Constraint {
   double gap = std::numeric_limits<double>::infinity();  ///< from the own front end [m]
   double speed = 0.0;                                    ///< along the lane [m/s]

@@ -1,9 +1,12 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "cambium/behavior/view.hpp"
+#include "cambium/core/macros.hpp"
+#include "cambium/geometry/angle.hpp"
 
 namespace cambium {
 
@@ -45,6 +48,93 @@ template <class View>
   plan.trajectory.push_back(follow_lane(view, motion, dt));
   plan.action.acceleration = (motion.speed - view.state().speed) / dt;
   return plan;
+}
+
+namespace detail {
+
+/// Largest heading error [rad] for which a course exists; beyond it the vehicle is turned along its lane.
+inline constexpr double most_aslant = 1.0;
+
+/// Lateral speed that reveals the intention to change lanes [m/s].
+inline constexpr double least_drift = 0.12;
+
+/// Where the present motion of a vehicle across its lane leads.
+struct Drift {
+  CorridorId target = none<CorridorId>;  ///< lane corridor in which it ends: the own one or the one beside
+  double rest{};                         ///< its end, from the own centre line, left positive [m]
+};
+
+/// A driver levels out no harder than this, and no tighter.
+inline constexpr double comfortable_levelling = 1.0, hardest_levelling = 3.0, tightest_levelling = 0.1;  // [m/s^2, 1/m]
+
+/// Curvature [1/m] at `speed` [m/s] that takes `acceleration` [m/s^2] sideways.
+[[nodiscard]] inline double levelling_curvature(double speed, double acceleration) {
+  return speed * speed * tightest_levelling > acceleration ? acceleration / (speed * speed) : tightest_levelling;
+}
+
+/// The drift of a vehicle that moves `slope` [-] to the left for each metre along its lane. Towards the centre line it
+/// ends there. Away from it, it ends on the centre line of the lane beside if it crosses the border within a second,
+/// else within the own lane.
+template <class View>
+CAMBIUM_NOINLINE [[nodiscard]] Drift drift_of(View const& view, double slope) {
+  auto const& at = view.place();
+  if (slope * at.lateral < 0.0) return {at.corridor, 0.0};
+  double const side = slope > 0.0 ? 1.0 : -1.0, speed = std::max(0.0, view.state().speed);
+  auto const& piece = view.corridor().pieces[at.piece];
+  auto const widths = view.corridor().widths_at(at.s, at.segment);
+  double const border = slope > 0.0 ? widths.left : widths.right;
+  bool const leaves = side * (at.lateral + slope * speed) > border;
+  auto const beside = piece.beside(slope > 0.0);
+  if (leaves && beside != none<CorridorId>) return {beside, at.lateral - view.place(beside).lateral};
+  double const stop = slope * slope / (2.0 * levelling_curvature(speed, comfortable_levelling));
+  double const body = slope > 0.0 ? view.shape().left : view.shape().right;
+  double const room = std::max(0.0, border - body - side * at.lateral);
+  return {at.corridor, at.lateral + side * (leaves ? std::min(stop, room) : stop)};
+}
+
+/// See `plan_into_lane`.
+template <class View>
+CAMBIUM_NOINLINE [[nodiscard]] Plan<View> plan_out_of_drift(View const& view, LongitudinalMotion<double> const& motion,
+                                                            double dt, bool& adrift) {
+  constexpr double aligned = 1e-6;  // [-]
+  auto const& at = view.place();
+  auto const& corridor = view.corridor();
+  double const speed = std::max(view.state().speed, motion.speed);
+  double const stretch = std::max(0.1, 1.0 - corridor.center.segments()[at.segment].curvature * at.lateral);
+  auto const [sin, cos] = geometry::sin_cos(at.heading_error);
+  double const along = motion.distance * cos / stretch, slope = stretch * (sin / cos);
+  bool const turns_at_once =
+      std::abs(slope) <= std::max(levelling_curvature(speed, comfortable_levelling) * along, aligned);
+  if (std::abs(at.heading_error) > most_aslant || (turns_at_once && std::abs(slope) * speed < least_drift)) {
+    adrift = false;
+    return plan_along_lane(view, motion, dt);
+  }
+  double const way = std::abs(drift_of(view, slope).rest - at.lateral), side = slope > 0.0 ? 1.0 : -1.0;
+  double const hardest = levelling_curvature(speed, hardest_levelling);
+  double const curvature = slope * slope < 2.0 * way * hardest ? slope * slope / (2.0 * way) : hardest;
+  double const turning = std::min(along, std::abs(slope) / curvature);
+  Plan<View> plan;
+  typename View::State next = view.state();
+  next.time = view.time() + dt;
+  place_on_lane(corridor, at.s + along, at.lateral + turning * (slope - side * curvature * turning / 2.0),
+                geometry::arc_tangent((slope - side * curvature * turning) / stretch), at.segment, next);
+  next.speed = motion.speed;
+  plan.trajectory.push_back(next);
+  plan.action.acceleration = (motion.speed - view.state().speed) / dt;
+  return plan;
+}
+
+}  // namespace detail
+
+/// As `plan_along_lane`, but a vehicle that may be `adrift`, because it has just entered or was set, first ends its
+/// motion across the lane. It drives the circle that touches the centre line to which it drifts, in the lane beside if
+/// it is about to cross the border. `adrift` becomes false once the vehicle drives along its lane.
+template <class View>
+[[nodiscard]] Plan<View> plan_into_lane(View const& view, LongitudinalMotion<double> const& motion, double dt,
+                                        bool& adrift) {
+  if (adrift) [[unlikely]]
+    return detail::plan_out_of_drift(view, motion, dt, adrift);
+  return plan_along_lane(view, motion, dt);
 }
 
 }  // namespace cambium

@@ -31,6 +31,14 @@ template <class View>
   return is_dead_end(view.road().corridors[number], end) ? end : std::numeric_limits<double>::infinity();
 }
 
+/// Whether a lane with the finite `lane_end` `end` leaves the route of a driver without a goal: it does not end, but
+/// leads elsewhere, as an exit lane does.
+template <class View>
+[[nodiscard]] bool is_way_out(View const& view, CorridorId number, double end) {
+  auto const& corridor = view.road().corridors[number];
+  return !view.has_goal() && corridor.continues && is_dead_end(corridor, end);
+}
+
 /// To which side the lanes lie that go further than the own lane, and how urgent a change is.
 struct LaneUrgency {
   double left{}, right{};  ///< urgency of a change to that side, from -1 to 1; negative: leads away from these lanes,

@@ -70,12 +70,23 @@ struct SignalStop {
   bool is_light = false;  ///< a traffic light is among them
 };
 
+/// Whether a driver passes a yellow or red light `to_line` [m] ahead, as it does at up to `late` [s] of red: it is at
+/// the line by then, or would have to brake harder than `deceleration` [m/s^2].
+template <class View>
+[[nodiscard]] bool passes_late(View const& view, LightId light, double speed, double to_line, double deceleration,
+                               double late) {
+  double const red_for = view.red_for(light);
+  if (red_for >= late || speed < standing_speed) return false;
+  return red_for + to_line / speed < late || !can_stop(speed, to_line, deceleration);
+}
+
 /// Where a vehicle with its front end at `front` [m] must stop for signals within `look_ahead` [m]: red lights, yellow
 /// lights if it can stop by `deceleration` [m/s^2], and stop signs. It stops `margin` [m] before the line if it can.
-/// `stopped_at` [m] is updated: the line of the last stop sign at which the vehicle has stopped. O(signals).
+/// `stopped_at` [m] is updated: the line of the last stop sign at which the vehicle has stopped. `late` [s]: see
+/// `RoadRules::late_at_red`. O(signals).
 template <class View>
 [[nodiscard]] SignalStop stop_at_signals(View const& view, double front, double speed, double look_ahead, double margin,
-                                         double deceleration, float& stopped_at) {
+                                         double deceleration, double late, float& stopped_at) {
   SignalStop stop;
   for (auto const& signal : view.corridor().signals) {
     double const to_line = signal.line - front;
@@ -88,6 +99,8 @@ template <class View>
       auto const color = view.light(signal.light);
       if (color == map::LightColor::off || color == map::LightColor::green) continue;
       if (color == map::LightColor::yellow && !can_stop(speed, to_line, deceleration)) continue;
+      if (late > 0.0 && passes_late(view, signal.light, speed, to_line, deceleration, late)) [[unlikely]]
+        continue;
       stop.is_light = true;
     }
     double const before = can_stop(speed, to_line - margin, deceleration) ? margin : 0.0;
@@ -151,6 +164,9 @@ struct RoadRules {
   double stop_margin = 1.0;
   double safe_deceleration = 3.0;
   Merging merging = Merging::counts;
+  double merging_headway = 1.0;
+  double late_at_red = 0.0;
+  double speed_factor = 1.0;
   double passing_clearance = 1.5;
   double crossing_time = 4.0;
   bool keep_to_side = false;
@@ -179,8 +195,16 @@ struct RoadRules {
         parameter("stop_margin", &P::stop_margin, "m", Range{0, 20}, "from the front end to a line where it waits"),
         parameter("safe_deceleration", &P::safe_deceleration, "m/s^2", Range{0.1, 20},
                   "a driver who would have to brake harder passes a light that has just turned yellow"),
-        choice("merging", &P::merging, "counts|by_rule|ignored",
-               "road users in lanes that merge into the own one: followed, followed except in junctions, ignored"),
+        choice("merging", &P::merging, "counts|by_rule|ignored|gives_way",
+               "road users in lanes that merge into the own one: followed; followed except in junctions; ignored until "
+               "they have reached the merge, so that the driver opens no gap; followed, and let pass from behind where "
+               "the gap before them is too short"),
+        parameter("merging_headway", &P::merging_headway, "s", Range{0, 20},
+                  "time gap before those behind with which a driver that gives way merges"),
+        parameter("late_at_red", &P::late_at_red, "s", Range{0, 60},
+                  "the driver still passes a light that has been red for less than this when it gets there"),
+        parameter("speed_factor", &P::speed_factor, "-", Range{0.1, 3},
+                  "speed on a free road, in shares of the limit that the driver obeys"),
         parameter(
             "passing_clearance", &P::passing_clearance, "m", Range{0.3, 100},
             "to slower agents that drive aside, when it passes them within its lane; StVO: 1.5 in town, 2 outside"),
@@ -192,11 +216,14 @@ struct RoadRules {
         parameter("side_margin", &P::side_margin, "m", Range{0, 10}, "from the own side to the border there"));
   }
 
-  /// What a driver remembers for the rules.
+  /// What a driver remembers for the rules, and whether it has found into its lane.
   struct Memory {
     float stopped_at = -1.0f;  ///< corridor position of the stop sign at which it stopped last [m]
     float aside = 0.0f;        ///< offset to the left of the middle of the lane to which it steers, at the side or to
                                ///< pass, see `to_middle` [m]; 0: the rules leave the offset to the driver
+    bool adrift = true;        ///< it has entered or was set, and may still move across its lane
+
+    void was_set() { adrift = true; }
 
     friend bool operator==(Memory const&, Memory const&) = default;
   };
@@ -210,8 +237,9 @@ struct RoadRules {
   [[nodiscard]] double desired_speed(P const& idm, View const& view, double speed) const {
     if (!obey_speed_limits) [[likely]]
       return idm.desired_speed;
-    return std::clamp(detail::permitted_speed(view.corridor(), view.place().s, speed, idm.comfortable_deceleration),
-                      0.1, idm.desired_speed);
+    double const permitted =
+        detail::permitted_speed(view.corridor(), view.place().s, speed, idm.comfortable_deceleration);
+    return std::clamp(speed_factor * permitted, 0.1, idm.desired_speed);
   }
 
   /// The end of the lane, if the driver has to brake for it.
@@ -256,6 +284,34 @@ struct RoadRules {
   CAMBIUM_NOINLINE void heed_merging(View const& view, Strictest<Law>& ahead) const {
     view.each_ahead({.merging = merging},
                     [&](RoadUser const& next) { ahead.heed(detail::constraint_of<Law>(view, next)); });
+    if (auto const gap = gap_to_wait_for(view)) ahead.heed(*gap);
+  }
+
+  /// The merge before which a driver that gives way (`Merging::gives_way`) must wait, because the next vehicle behind,
+  /// in a lane that merges with its own, would have to brake harder than `safe_deceleration` or come closer than
+  /// `merging_headway`, if it keeps its speed until then. Nothing if the driver can no longer stop: it then goes first.
+  /// Gap acceptance as at junctions without signals (Highway Capacity Manual 2000, chapter 17); safety as in MOBIL
+  /// (Kesting, Treiber, Helbing 2007). O(feeders), plus a search in each.
+  template <class View>
+  [[nodiscard]] std::optional<Constraint> gap_to_wait_for(View const& view) const {
+    constexpr double pull_away = 1.0, room = 2.0, slow = 2.5;  // [m/s^2], [m], [m/s]
+    if (merging != Merging::gives_way) [[likely]]
+      return std::nullopt;
+    double const s = view.place().s, front = s + view.shape().front, speed = std::max(0.0, view.state().speed);
+    double merge = std::numeric_limits<double>::infinity();
+    for (auto const& feeder : view.corridor().feeders)
+      if (feeder.is_still_to_merge() && feeder.free_until >= front) merge = std::min(merge, feeder.free_until);
+    double const way = merge - front;
+    if (way > speed * (1.0 + speed / (2.0 * pull_away)) + 10.0 || !can_stop(speed, way, safe_deceleration))
+      return std::nullopt;
+    auto const next = view.merging(merge, s);
+    double const theirs = next ? next->speed : 0.0, highest = std::max(speed, theirs);
+    if (theirs < slow) return std::nullopt;
+    double const time = time_to_cover(way, speed, pull_away, highest);
+    double const slower = std::max(0.0, theirs - std::min(highest, speed + pull_away * time));
+    double const gap = s - view.shape().rear - (next->s + next->front) + way - theirs * time;
+    if (gap > room + merging_headway * theirs + slower * slower / (2.0 * safe_deceleration)) return std::nullopt;
+    return Constraint{way, 0.0, 0.0};
   }
 
   /// Whether the rules may choose where in its lane the vehicle drives, and whom it passes there. O(1).
@@ -275,12 +331,13 @@ struct RoadRules {
   }
 
   /// The plan that drives `motion` along the lane over `dt` [s], at the side or past somebody if the rules say so; else
-  /// keeps the lateral offset.
+  /// as `plan_into_lane`.
   template <class View>
   [[nodiscard]] Plan<View> along_lane(View const& view, LongitudinalMotion<double> const& motion, double dt,
-                                      Memory const& memory) const {
+                                      Memory& memory) const {
     if (memory.aside == 0.0f) [[likely]]
-      return plan_along_lane(view, motion, dt);
+      return plan_into_lane(view, motion, dt, memory.adrift);
+    memory.adrift = false;
     return plan_aside(View(view), LongitudinalMotion<double>(motion), dt, memory.aside);
   }
 
@@ -308,7 +365,8 @@ struct RoadRules {
   [[nodiscard]] detail::SignalStop signals_ahead(View const& view, double front, double speed, double look_ahead,
                                                  Memory& memory) const {
     if (!obey_signals) return {};
-    return detail::stop_at_signals(view, front, speed, look_ahead, stop_margin, safe_deceleration, memory.stopped_at);
+    return detail::stop_at_signals(view, front, speed, look_ahead, stop_margin, safe_deceleration, late_at_red,
+                                   memory.stopped_at);
   }
 
  private:

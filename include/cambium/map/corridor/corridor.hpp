@@ -115,8 +115,8 @@ struct Conflict {
   LightId other_light = none<LightId>;  ///< that stops the other's traffic
   double shift{};  ///< where they merge or part: corridor position = position on the way + shift [m]
   double meet = std::numeric_limits<double>::infinity();  ///< where lanes that merge come together [m]
-  /// The way: the other lane, those behind it back to `MapOptions::merge_view` before the conflict, and those that it
-  /// leads into, as far as who is there may still reach back into the conflict.
+  /// The way: the other lane, the lanes that lead to it, from `MapOptions::merge_view` before the conflict on, and the
+  /// lanes after it up to where a vehicle's rear has left the conflict.
   std::vector<ConflictWay> ways;
 };
 

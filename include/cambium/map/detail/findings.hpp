@@ -27,9 +27,9 @@ struct Findings {
   }
 };
 
-/// " (finding)" for a message that no road or lane is left: the first warning by which a road, a lane or something was
-/// left out, or the one that this refers to; else the first warning about one of their elements; empty where there is
-/// none.
+/// " (finding)", to be appended to the message that no road or lane is left: the first warning that says that a road, a
+/// lane or another element was left out, or the warning to which that one refers. If there is none, the first warning
+/// about an element of roads or lanes; empty without one.
 [[nodiscard]] inline std::string likely_cause(std::span<Diagnostic const> findings) {
   constexpr std::array<std::string_view, 11> carrying{"road",  "planView",   "geometry", "line", "arc",        "spiral",
                                                       "poly3", "paramPoly3", "lanes",    "lane", "laneSection"};

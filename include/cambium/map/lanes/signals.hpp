@@ -59,6 +59,14 @@ struct LightPlan {
     if (passed < green) return LightColor::green;
     return passed < green + yellow ? LightColor::yellow : LightColor::red;
   }
+
+  /// For how long it has been red at `time` [s]; below 0 while it is green or yellow: it turns red in that time. 0 of a
+  /// light that is off. O(1).
+  [[nodiscard]] double red_for(double time) const {
+    if (!(cycle > 0.0)) return 0.0;
+    double const since = time - green_begin, passed = since - std::floor(since / cycle) * cycle;
+    return passed - std::min(cycle, green_end - green_begin) - yellow;
+  }
 };
 
 }  // namespace cambium::map

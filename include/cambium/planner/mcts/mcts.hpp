@@ -151,6 +151,8 @@ struct Mcts {
   template <class View>
   [[nodiscard]] SearchResult<typename Domain::Action> const& search(View const& view, Memory& memory, double dt,
                                                                     Workspace& workspace) const {
+    auto timed = options;
+    timed.budget.start();
     std::vector<Slot> slots;
     auto world = detail::world_to_search<PredictionWorld>(view, actions, course_of(memory), others, slots);
     if (most_agents > 1 && !slots.empty())
@@ -166,9 +168,9 @@ struct Mcts {
       if (!slots.empty()) unknowns = learn(world, slots[0], memory, dt);
       Domain domain(std::move(world), slots, actions, reward, options.step, weight);
       domain.set_unknowns(unknowns, others);
-      return workspace.run(std::move(domain), options, seed);
+      return workspace.run(std::move(domain), timed, seed);
     } else {
-      return workspace.run(Domain(std::move(world), slots, actions, reward, options.step, weight), options, seed);
+      return workspace.run(Domain(std::move(world), slots, actions, reward, options.step, weight), timed, seed);
     }
   }
 

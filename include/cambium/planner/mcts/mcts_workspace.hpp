@@ -76,13 +76,14 @@ class MctsWorkspace {
   using Search = TreeSearch<Domain, typename Options::Selection, typename Options::Rollout, typename Options::Budget>;
   using Result = SearchResult<Action>;
 
-  /// Searches from the domain's world. Throws `ParameterError` if an option is out of range.
+  /// Searches from the domain's world. The budget of `options` must have been started. Throws `ParameterError` if an
+  /// option is out of range.
   Result const& run(Domain domain, Options const& options, std::uint64_t seed) {
     if (std::exchange(keeps_, false) && !domain.is_same_game(this->domain())) trees_.forget();
     auto const root = domain.root();
     trees_.set(std::move(domain), options.search, options.selection, options.rollout, options.budget,
                static_cast<std::size_t>(options.threads));
-    return trees_.run(root, seed);
+    return trees_.run_started(root, seed);
   }
 
   /// Keeps the subtree below the best actions for the next `think`; returns whether there is one. Call it before the
@@ -136,11 +137,17 @@ class MctsWorkspace {
     for (auto const slot : domain.slots()) report.choosing.push_back(world.roster().agents[slot].id);
     for (auto const& agent : world.roster().agents) report.agents.push_back(agent.id);
     using Set = ActionSet<std::remove_cvref_t<decltype(domain.action_set())>>;
+    double const limit = search().parameters().constraint.limit;
     double second = 0.0;  // share of the visits
     for (auto const& arm : report.result.of(0)) {
-      if (report.candidates.size() != report.result.best[0]) second = std::max(second, arm.share);
-      report.candidates.push_back(
-          {Set::text(domain.action_set(), arm.action), arm.mean_return, arm.visits > 0 ? "" : "not tried"});
+      bool const is_chosen = report.candidates.size() == report.result.best[0];
+      if (!is_chosen) second = std::max(second, arm.share);
+      std::string refused;
+      if (arm.visits == 0)
+        refused = "not tried";
+      else if (!is_chosen && detail::estimated_cost(arm) > limit)
+        refused = "risk " + detail::rounded_text(detail::estimated_cost(arm)) + " above " + detail::rounded_text(limit);
+      report.candidates.push_back({Set::text(domain.action_set(), arm.action), arm.mean_return, std::move(refused)});
       report.is_cut_short = report.is_cut_short || arm.visits == 0;
     }
     report.chosen = report.result.best[0];

@@ -1,7 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <concepts>
-#include <utility>
+#include <type_traits>
 
 #include "cambium/core/parameters.hpp"
 #include "cambium/evaluation/course_end.hpp"
@@ -136,6 +137,7 @@ struct Weighted {
       "always be 0; judge by cambium::Acceleration or the state instead");
   E evaluator{};
   double weight = 0.0;
+  double cost = 0.0;
   bool per_second = false;
   bool ends = false;
 
@@ -145,6 +147,8 @@ struct Weighted {
     return parameter_list(
         parameter("evaluator", &P::evaluator, "-", {}, "returns a bool or a number"),
         parameter("weight", &P::weight, "-", any_finite, "factor on its value"),
+        parameter("cost", &P::cost, "-", Range{0, 1},
+                  "of a value other than 0: the probability of the event that a limit on risk bounds"),
         parameter("per_second", &P::per_second, "-", Range{0, 1},
                   "whether the term is multiplied by the duration of the step"),
         parameter("ends", &P::ends, "-", Range{0, 1}, "whether a value other than 0 ends the course"));
@@ -156,19 +160,30 @@ struct Weighted {
         EvaluatorFor<E, World>,
         "cambium::Reward<Evaluators...>: each must have `template <class World> auto operator()(World&, Slot) "
         "const` that returns a bool or a number (see EvaluatorFor)");
-    if (weight == 0.0 && !ends) return;
+    if (weight == 0.0 && cost == 0.0 && !ends) return;
     auto const value = static_cast<double>(evaluator(world, slot));
     all.outcome.reward += weight * value * (per_second ? dt : 1.0);
+    if (value != 0.0) all.outcome.cost = std::max(all.outcome.cost, cost);
     all.ends = all.ends || (ends && value != 0.0);
   }
 };
 
-/// `TrafficReward` plus one weighted term for each evaluator. If the rest ends the course, a term no longer counts.
+/// `TrafficReward` plus one weighted term for each evaluator: `reward.term<Gap>() = {.weight = 0.1, .per_second =
+/// true}`. If `TrafficReward` or a later term ends the course, a term no longer counts.
 template <class... Evaluators>
 struct Reward;
 
 template <>
-struct Reward<> : TrafficReward {};
+struct Reward<> : TrafficReward {
+  [[nodiscard]] TrafficReward& traffic() { return *this; }
+  [[nodiscard]] TrafficReward const& traffic() const { return *this; }
+
+  template <class E>
+  TrafficReward& term() {
+    static_assert(std::is_void_v<E>, "cambium::Reward<Evaluators...>::term<E>: E is not one of Evaluators");
+    return *this;
+  }
+};
 
 template <class First, class... Rest>
 struct Reward<First, Rest...> {
@@ -183,12 +198,16 @@ struct Reward<First, Rest...> {
   }
 
   /// The `TrafficReward` at the end of the list.
-  [[nodiscard]] TrafficReward& traffic() { return const_cast<TrafficReward&>(std::as_const(*this).traffic()); }
-  [[nodiscard]] TrafficReward const& traffic() const {
-    if constexpr (sizeof...(Rest) == 0)
-      return rest;
+  [[nodiscard]] TrafficReward& traffic() { return rest.traffic(); }
+  [[nodiscard]] TrafficReward const& traffic() const { return rest.traffic(); }
+
+  /// The term of evaluator `E`.
+  template <class E>
+  [[nodiscard]] auto& term() {
+    if constexpr (std::is_same_v<E, First>)
+      return first;
     else
-      return rest.traffic();
+      return rest.template term<E>();
   }
 
   template <class World>

@@ -244,7 +244,7 @@ struct ProposalPlanner {
     auto& world = *workspace.world;
     world.restore(workspace.start);
     world.template memory<IdmProposal>(world.roster().agents[workspace.ego].id) = {
-        static_cast<float>(proposal.speed_share), static_cast<float>(proposal.offset), memory.bend};
+        static_cast<float>(proposal.speed_share), static_cast<float>(proposal.offset), memory.bend, memory.rules};
   }
 
   /// Simulates a proposal until it collides, leaves the road or ends; with `all` the world is then stepped to the

@@ -74,12 +74,18 @@ class ParallelTreeSearch {
   /// As `TreeSearch::run`. The principal variation comes from the tree that agrees with the best actions and visited
   /// them most. Rethrows what a domain throws.
   Result const& run(State const& root, std::uint64_t seed) {
+    for (auto& search : searches_) search.budget().start();
+    return run_started(root, seed);
+  }
+
+  /// The same with a budget that its owner has started, when planning began.
+  Result const& run_started(State const& root, std::uint64_t seed) {
     if (searches_.empty()) throw SearchError("ParallelTreeSearch", "has no domain yet", "call `set` before `run`");
-    if (searches_.size() == 1) return searches_[0].run(root, seed);
+    if (searches_.size() == 1) return searches_[0].run_started(root, seed);
     std::vector<std::exception_ptr> errors(searches_.size());
     auto const grow = [&](std::size_t i) {
       try {
-        searches_[i].run(root, seed, static_cast<std::uint32_t>(i));
+        searches_[i].run_started(root, seed, static_cast<std::uint32_t>(i));
       } catch (...) {
         errors[i] = std::current_exception();
       }

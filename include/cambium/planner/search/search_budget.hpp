@@ -20,7 +20,7 @@ namespace detail {
 }  // namespace detail
 
 /// How long a planner continues. An iteration is one of a tree search, or one candidate of a planner that compares a
-/// list.
+/// list. Prediction counts, but the course that a report shows is simulated after the budget has ended.
 ///
 /// - `most()`: upper limit of the number of iterations.
 /// - `start()`: called when planning begins.
@@ -69,7 +69,7 @@ struct TimeBudget {
   [[nodiscard]] std::size_t most() const { return iterations; }
   [[nodiscard]] std::size_t expected() const { return std::min<std::size_t>(iterations, 512); }
   [[nodiscard]] TimeBudget part(std::size_t i, std::size_t n) const {
-    return {duration, detail::part_of(iterations, i, n)};
+    return {duration, detail::part_of(iterations, i, n), begin};
   }
   void start() { begin = std::chrono::steady_clock::now(); }
   [[nodiscard]] bool goes_on(std::size_t done) const {

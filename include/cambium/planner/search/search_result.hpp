@@ -111,16 +111,21 @@ struct SearchResult {
 
 namespace detail {
 
-/// The arm to take: the best by `final_move` among those within the cost limit, or the cheapest if none is. Laplace's
-/// rule of succession estimates the costs, so an arm with few visits does not count as safe.
+/// The cost of an arm by Laplace's rule of succession: an arm with few visits does not count as safe.
+template <class Action>
+[[nodiscard]] double estimated_cost(RootArm<Action> const& arm) {
+  return (arm.mean_cost * arm.visits + 1.0) / (arm.visits + 2.0);
+}
+
+/// The arm to take: the best by `final_move` among those whose `estimated_cost` is within the limit, or the cheapest if
+/// none is.
 template <class Action>
 [[nodiscard]] std::size_t final_choice(std::span<RootArm<Action> const> arms, ReturnScale scale, FinalMove final_move,
                                        double cost_limit) {
-  auto const cost = [](RootArm<Action> const& arm) { return (arm.mean_cost * arm.visits + 1.0) / (arm.visits + 2.0); };
   double visits = 0.0, cheapest = 1.0;
   for (auto const& arm : arms) {
     visits += arm.visits;
-    if (arm.visits > 0) cheapest = std::min(cheapest, cost(arm));
+    if (arm.visits > 0) cheapest = std::min(cheapest, estimated_cost(arm));
   }
   double const log_visits = portable_log(std::max(1.0, visits));
   double const limit = std::max(cheapest, cost_limit);
@@ -131,7 +136,7 @@ template <class Action>
     return final_move == FinalMove::best_return ? score : score - std::sqrt(log_visits / arm.visits);
   };
   return best_arm(arms, [&](RootArm<Action> const& arm) {
-    return arm.visits > 0 && cost(arm) <= limit ? merit(arm) : -std::numeric_limits<double>::infinity();
+    return arm.visits > 0 && estimated_cost(arm) <= limit ? merit(arm) : -std::numeric_limits<double>::infinity();
   });
 }
 

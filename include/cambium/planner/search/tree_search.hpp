@@ -85,6 +85,11 @@ class TreeSearch {
   /// distinguishes searches with the same seed that will be merged. The result is valid until the next run.
   Result const& run(State const& root, std::uint64_t seed, std::uint32_t tree = 0) {
     budget_.start();
+    return run_started(root, seed, tree);
+  }
+
+  /// The same with a budget that its owner has started, when planning began.
+  Result const& run_started(State const& root, std::uint64_t seed, std::uint32_t tree = 0) {
     start(root, seed);
     while (result_.problem == SearchProblem::none && budget_.goes_on(result_.iterations)) {
       RandomStream random(seed, tree, static_cast<std::uint32_t>(result_.iterations), iteration_purpose);

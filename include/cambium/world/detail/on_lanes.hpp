@@ -76,6 +76,27 @@ CAMBIUM_NOINLINE [[nodiscard]] inline map::LanePlace locate_farther_beside(Map c
   return locate_farther_beside(map, road, at, number, pose);
 }
 
+/// The adjacent lane corridor whose lane a vehicle at `at` is in because it is beyond the border; none if it is not.
+[[nodiscard]] inline CorridorId crossed_into(map::LaneCorridor const& corridor, map::LanePlace const& at) {
+  auto const& piece = corridor.pieces[at.piece];
+  auto const widths = corridor.widths_at(at.s, at.segment);
+  return at.lateral > widths.left ? piece.left : at.lateral < -widths.right ? piece.right : none<CorridorId>;
+}
+
+/// The place of an agent seen at `pose` that truly is at `truth`; in another lane if it `may_cross` the borders.
+[[nodiscard]] inline map::LanePlace seen_place(Map const& map, map::RoadCorridor const& road,
+                                               map::LanePlace const& truth, geometry::Pose const& pose,
+                                               bool may_cross) {
+  auto at = map::locate(road, truth.corridor, pose, truth);
+  for (auto from = none<CorridorId>; may_cross && std::abs(at.lateral) > on_path;) {
+    auto const beside = crossed_into(road.corridors[at.corridor], at);
+    if (beside == none<CorridorId> || beside == from) break;
+    from = at.corridor;
+    at = locate_beside(map, road, at, beside, pose);
+  }
+  return at;
+}
+
 /// Finds the new place of an agent that has driven `distance` [m] on its road: in its lane corridor or, once it has
 /// crossed the border, in the adjacent one.
 template <class Record>
@@ -86,12 +107,8 @@ void move_on_lane(Map const& map, map::RoadCorridor const& road, double distance
     road.corridors[at.corridor].center.segment_at(at.s + distance, at.segment);
   at = map::locate(road, at.corridor, pose, at);
   auto const& corridor = road.corridors[at.corridor];
-  auto const& piece = corridor.pieces[at.piece];
   if (std::abs(at.lateral) > on_path) {
-    auto const widths = corridor.widths_at(at.s, at.segment);
-    auto const beside = at.lateral > widths.left     ? piece.left
-                        : at.lateral < -widths.right ? piece.right
-                                                     : none<CorridorId>;
+    auto const beside = crossed_into(corridor, at);
     if (beside != none<CorridorId>) {
       at = locate_beside(map, road, at, beside, pose);
       return;

@@ -1,0 +1,266 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cambium/behavior.hpp"
+#include "cambium/core/distributions.hpp"
+#include "cambium/core/random.hpp"
+#include "cambium/dynamics/single_track.hpp"
+#include "cambium/execution/interpolate.hpp"
+#include "cambium/map/corridor/free_corridor.hpp"
+#include "cambium/map/map.hpp"
+#include "cambium/scenario/traffic_inflow.hpp"
+#include "cambium/world/world.hpp"
+
+/// The long test of mixed traffic: see main.cpp.
+namespace soak {
+
+namespace cb = cambium;
+
+using Drivers = cb::BehaviorSet<cb::Intersection, cb::IdmClassic, cb::AdaptiveCruiseControl, cb::IdmLaneTracking,
+                                cb::IdmStochastic, cb::Mobil, cb::LaneChangeRuleBased, cb::ZipMerge, cb::Pedestrian>;
+using Sim = cb::World<Drivers, cb::InterpolateExecution, cb::SingleTrack>;
+
+/// A map under test, and where its traffic comes from.
+struct Site {
+  std::string file;
+  std::shared_ptr<cb::Map const> map;
+  std::vector<cb::TrafficSource> sources{};  ///< of vehicles
+  std::vector<cb::TrafficSource> paths{};    ///< of pedestrians
+  bool has_conflicts = false;                ///< ways cross, or merge in a junction: all drive by its rules
+  bool has_merges = false;
+
+  [[nodiscard]] bool has_lights() const { return !map->lights().empty(); }
+};
+
+/// Whether a vehicle of `shape` can meet one of its width in all bends of the route: its front swings out there, and
+/// traffic in the lane beside does not look out for it. With `people` beside the road, its front also has to stay on
+/// the road where it turns in a junction.
+[[nodiscard]] inline bool fits(cb::Map const& map, cb::map::Route const& route, cb::geometry::Shape const& shape,
+                               bool people) {
+  return std::all_of(route.lanes.begin(), route.lanes.end(), [&](cb::LaneId id) {
+    auto const& lane = map.lane(id);
+    bool const turns = is_valid(map.road(lane.road).junction);
+    if (turns && !people) return true;
+    auto const segments = lane.path.segments();
+    for (std::size_t i = 0; i < segments.size(); ++i) {
+      auto const pose = lane.path.pose(segments[i].s);
+      auto const on_road = [&](double ahead, double aside) {
+        return map.on_drivable_lane(cb::geometry::to_map(pose, {ahead, aside}));
+      };
+      if (turns && !(on_road(shape.front, shape.left) && on_road(shape.front, -shape.right))) return false;
+      if (turns) continue;
+      auto const& widths = lane.widths[i];
+      double const swing = 0.5 * segments[i].curvature * shape.front * shape.front;  // to the right
+      double const room = std::max(0.3, widths.left + widths.right - 2.0 * shape.right - 0.05);
+      if (std::abs(swing) > room && on_road(0.0, swing > 0.0 ? -widths.right - 0.5 : widths.left + 0.5)) return false;
+    }
+    return true;
+  });
+}
+
+/// Ways across the roads that have a sidewalk on either side, from one to the other, and along the sidewalks.
+[[nodiscard]] inline std::vector<cb::TrafficSource> find_paths(cb::Map const& map) {
+  std::vector<cb::TrafficSource> paths;
+  auto const is_sidewalk = [&](cb::map::Lane const& lane) {
+    return lane.type == cb::map::LaneType::sidewalk && !is_valid(map.road(lane.road).junction);
+  };
+  for (auto const& lane : map.lanes()) {
+    if (!is_sidewalk(lane) || lane.length() < 15.0) continue;
+    auto const walk = [&](std::vector<cb::geometry::Point> const& points) {
+      paths.push_back({.way = cb::map::build_free_corridor(map, points, {.width = 1.0}), .per_hour = 60.0});
+    };
+    std::vector<cb::geometry::Point> along;
+    for (double s = 0.0; s < lane.length(); s += 3.0) along.push_back(lane.path.pose(s).position());
+    walk(along);
+    double const station = lane.station_at(0.5 * lane.length());
+    for (auto const& other : map.lanes())
+      if (is_sidewalk(other) && other.road == lane.road && other.section == lane.section &&
+          (other.number > 0) != (lane.number > 0))
+        walk({lane.path.pose(0.5 * lane.length()).position(), other.path.pose(other.position_at(station)).position()});
+  }
+  return paths;
+}
+
+[[nodiscard]] inline Site make_site(std::string file, std::shared_ptr<cb::Map const> map) {
+  Site site{std::move(file), std::move(map)};
+  site.sources = cb::find_sources(*site.map);
+  site.paths = find_paths(*site.map);
+  for (auto const& lane : site.map->lanes()) {
+    bool const in_junction = is_valid(site.map->road(lane.road).junction);
+    site.has_merges = site.has_merges || is_valid(lane.merges_into);
+    for (auto const& overlap : lane.overlaps)
+      if (lane.drivable() && overlap.kind != cb::map::OverlapKind::split) {
+        site.has_conflicts = site.has_conflicts || in_junction || overlap.kind == cb::map::OverlapKind::crossing;
+        site.has_merges = site.has_merges || overlap.kind == cb::map::OverlapKind::merge;
+      }
+  }
+  return site;
+}
+
+/// What the traffic of one run consists of.
+struct Mix {
+  std::string drivers;            ///< what they are called
+  std::vector<std::size_t> of{};  ///< indices of `Drivers`, drawn with equal probability
+  double truck_share = 0.35, bus_share = 0.03, bicycle_share = 0.0;
+  bool lights = false;
+  bool is_saturated = true;
+  double per_hour = cb::TrafficSource::saturated;
+  double dt = 0.2;
+};
+
+/// The traffic of run `run`: the map says which drivers know their way there.
+[[nodiscard]] inline Mix draw_mix(Site const& site, std::uint64_t seed, std::uint32_t run) {
+  cb::RandomStream random(seed, run, 1);
+  Mix mix;
+  mix.dt = 0.01 * std::round(100.0 * cb::Uniform{0.05, 0.5}(random));
+  mix.is_saturated = run % 3 != 2;
+  double const share = cb::uniform01(random);
+  if (!mix.is_saturated) mix.per_hour = site.has_conflicts ? 60.0 + 440.0 * share : 200.0 + 1400.0 * share;
+  if (site.has_conflicts) {
+    mix.lights = site.has_lights() && run % 2 == 0;
+    mix.bicycle_share = 0.07;
+    mix.drivers = mix.lights ? "junction drivers, lights on" : "junction drivers";
+    mix.of = {Drivers::index<cb::Intersection>};
+    return mix;
+  }
+  struct Named {
+    char const* name;
+    std::size_t of;
+  };
+  std::vector<Named> known = {{"IDM", Drivers::index<cb::IdmClassic>},
+                              {"cruise control", Drivers::index<cb::AdaptiveCruiseControl>},
+                              {"lane tracking", Drivers::index<cb::IdmLaneTracking>},
+                              {"stochastic IDM", Drivers::index<cb::IdmStochastic>},
+                              {"MOBIL", Drivers::index<cb::Mobil>},
+                              {"rule-based lane changes", Drivers::index<cb::LaneChangeRuleBased>}};
+  if (site.has_merges) known.push_back({"zip merge", Drivers::index<cb::ZipMerge>});
+  auto const kind = run % (known.size() + 1);
+  if (kind < known.size()) {
+    mix.drivers = known[kind].name;
+    mix.of = {known[kind].of};
+  } else {
+    mix.drivers = "all drivers";
+    for (auto const& one : known) mix.of.push_back(one.of);
+  }
+  return mix;
+}
+
+/// A driver's car following: a little different from the others.
+[[nodiscard]] inline cb::IdmParameters draw_idm(double limit, bool is_heavy, cb::RandomStream& random) {
+  auto const between = [&](double low, double high) { return cb::Uniform{low, high}(random); };
+  double const free = (std::isfinite(limit) ? limit : 50.0 / 3.6) * between(0.85, 1.1);
+  return {.desired_speed = is_heavy ? std::min(free, between(22.0, 25.0)) : free,
+          .time_headway = between(1.0, 1.8),
+          .minimum_gap = between(1.5, 2.5),
+          .maximum_acceleration = is_heavy ? 0.8 : between(1.2, 2.0)};
+}
+
+/// Rules of the road for drivers who do not have them by default.
+[[nodiscard]] inline cb::RoadRules lawful(cb::RoadRules rules = {}) {
+  rules.obey_speed_limits = rules.slow_for_bends = rules.obey_signals = true;
+  return rules;
+}
+
+[[nodiscard]] inline cb::LaneChanging draw_changing() {
+  cb::LaneChanging changing;
+  changing.others = cb::presets::kesting_2010_car();
+  changing.trucks = cb::presets::kesting_2010_truck();
+  return changing;
+}
+
+/// Driver number `kind` of `Drivers` with these parameters.
+[[nodiscard]] inline Sim::Behavior make_driver(std::size_t kind, cb::IdmParameters const& idm, bool is_heavy,
+                                               cb::RandomStream& random) {
+  auto const follower = [&]<class Driver>(Driver driver) -> Sim::Behavior {
+    driver.idm = idm;
+    driver.rules = lawful(driver.rules);
+    return driver;
+  };
+  switch (kind) {
+    case Drivers::index<cb::Intersection>:
+      return cb::Intersection{.idm = idm};
+    case Drivers::index<cb::AdaptiveCruiseControl>:
+      return follower(cb::AdaptiveCruiseControl{});
+    case Drivers::index<cb::IdmLaneTracking>:
+      return follower(cb::IdmLaneTracking{});
+    case Drivers::index<cb::ZipMerge>:
+      return follower(cb::ZipMerge{});
+    case Drivers::index<cb::IdmStochastic>: {
+      cb::IdmStochastic driver;
+      driver.desired_speed = {0.95 * idm.desired_speed, 1.05 * idm.desired_speed};
+      driver.yielding.enabled = true;
+      driver.rules = lawful();
+      return driver;
+    }
+    case Drivers::index<cb::Mobil>: {
+      cb::Mobil driver{.idm = idm, .changing = draw_changing()};
+      driver.rules = lawful(driver.rules);
+      driver.keep_right = cb::uniform01(random) < 0.5;
+      driver.bias = is_heavy ? 0.6 : 0.3;
+      driver.route_horizon = 800.0;  // exits are announced early
+      driver.route_bias = 4.0;
+      return driver;
+    }
+    case Drivers::index<cb::LaneChangeRuleBased>: {
+      cb::LaneChangeRuleBased driver{.idm = idm, .changing = draw_changing()};
+      driver.route_horizon = 800.0;
+      driver.rules = lawful(driver.rules);
+      return driver;
+    }
+    default: {
+      cb::IdmClassic driver;
+      driver.desired_speed = idm.desired_speed;
+      driver.time_headway = idm.time_headway;
+      driver.minimum_gap = idm.minimum_gap;
+      driver.maximum_acceleration = idm.maximum_acceleration;
+      driver.rules = lawful();
+      return driver;
+    }
+  }
+}
+
+/// Someone who walks along a path.
+[[nodiscard]] inline Sim::AgentSpec draw_pedestrian(cb::RandomStream& random) {
+  cb::Pedestrian walker;
+  walker.social.desired_speed = cb::Uniform{1.0, 1.6}(random);
+  return {.speed = 1.0, .shape = cb::geometry::pedestrian(), .behavior = walker};
+}
+
+/// The next vehicle of a source. Trucks and buses only where they fit.
+[[nodiscard]] inline Sim::AgentSpec draw_vehicle(Site const& site, Mix const& mix, cb::TrafficSource const& source,
+                                                 cb::RandomStream& random) {
+  using namespace cb::geometry;
+  auto const route = cb::random_route(*site.map, source.lane, random, site.has_conflicts ? 400.0 : 3000.0);
+  double const share = cb::uniform01(random);
+  Shape shape = share < mix.truck_share                                             ? truck()
+                : share < mix.truck_share + mix.bus_share                           ? bus()
+                : share < mix.truck_share + mix.bus_share + 0.1                     ? van()
+                : share < mix.truck_share + mix.bus_share + 0.1 + mix.bicycle_share ? bicycle()
+                                                                                    : car();
+  bool const has_room = cb::fits_route(*site.map, route, shape) && fits(*site.map, route, shape, !site.paths.empty());
+  if (!has_room && shape != bicycle()) shape = car();
+  bool const is_heavy = shape == truck() || shape == bus(), cycles = shape == bicycle();
+  double const limit = site.map->lane(source.lane).speed_limit_at(0.0);
+  auto const idm = cycles ? cb::presets::cyclist() : draw_idm(limit, is_heavy, random);
+  auto const kind = mix.of[cb::uniform_index(random, static_cast<std::uint32_t>(mix.of.size()))];
+  return {.speed = idm.desired_speed,
+          .shape = shape,
+          .behavior = make_driver(kind, idm, is_heavy, random),
+          .route = route,
+          .dynamics = cycles ? cb::presets::bicycle_dynamics() : cb::SingleTrack{}};
+}
+
+/// Phases of 20 s for each of the map's lights in turn: 15 s green, 3 s yellow, and 2 s to clear the junction.
+[[nodiscard]] inline cb::map::LightPlan light_plan(std::size_t number, std::size_t count) {
+  double const begin = 20.0 * static_cast<double>(number);
+  return {.cycle = 20.0 * static_cast<double>(count), .green_begin = begin, .green_end = begin + 15.0};
+}
+
+}  // namespace soak

@@ -1,0 +1,201 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <type_traits>
+
+#include "cambium/behavior/behavior_model.hpp"
+#include "cambium/behavior/course.hpp"
+#include "cambium/behavior/following/constant_acceleration.hpp"
+#include "cambium/behavior/following/idm_classic.hpp"
+#include "cambium/behavior/human/human_view.hpp"
+#include "cambium/core/distributions.hpp"
+#include "cambium/core/parameters.hpp"
+#include "cambium/core/random.hpp"
+#include "cambium/execution/interpolate.hpp"
+
+namespace cambium {
+
+/// Any behaviour, driven by a human: late, on wrong estimates, at times inattentive (the Human Driver Model of Treiber,
+/// Kesting, Helbing 2006, "Delays, inaccuracies and anticipation in microscopic traffic models", Physica A 360; here
+/// for any law, behind one leader). The wrapper lets the nominal behaviour plan on a view with the driver's errors
+/// (`HumanView`) and turns the plan's acceleration into a decision, which takes effect one reaction time later:
+///
+///     time       t - T'                              t
+///     sees       gap, speeds, with errors
+///     decides    acceleration a, for the situation expected at t
+///     drives                                         a, along the course planned at t
+///
+/// So its acceleration at t depends on the others' motion until t - T', as in the paper.
+/// - Reaction time T': decisions are interpolated where it is not a multiple of the step.
+/// - Estimation errors: gap exp(V_s w_s), and the other's speed + gap r_c w_r, with two independent Wiener
+///   (Ornstein-Uhlenbeck) processes w of mean 0, variance 1 and the given persistence time, for all road users alike.
+/// - Temporal anticipation: the driver decides for the situation a reaction time ahead, see `HumanView`.
+/// - What does not move (bends, limits, lines to stop at, the lane's end) it knows in advance: it never accelerates
+/// more
+///   than it would alone on the road, without delay. Unlike in the paper, where the free road has the delay, too; they
+///   differ only where nobody is ahead.
+/// - Inattention: at random times the driver looks away and keeps its last decision, so that its reaction time grows by
+///   as long as it looks away (frozen controls: Yang, Peng 2010, "Development of an errorable car-following driver
+///   model"). It goes on steering.
+///
+/// Without reaction time, errors and inattention it drives as the nominal behaviour, to the last bit. The behaviour
+/// must keep the vehicle in lanes; it may change them, on the errors of the moment. Reaction times about as long as the
+/// time headway make platoons unstable, and drivers collide; so do inattentive ones. O(1) beside three plans of the
+/// nominal behaviour.
+template <BehaviorModel Nominal>
+requires std::is_same_v<WorkspaceOf<Nominal>, NoWorkspace>
+struct HumanDriver {
+  Nominal nominal{};
+  double reaction_time = 0.6;
+  double gap_error = 0.1;
+  double rate_error = 0.01;
+  double persistence = 20.0;
+  bool anticipates = true;
+  double attentive = 10.0;
+  double looks_away = 0.0;
+
+  static constexpr char const* name = "human_driver";
+  static constexpr char const* summary =
+      "any behaviour, with a reaction time, lasting errors of estimated gaps and approach rates, anticipation, and "
+      "times of inattention";
+  static constexpr char const* source =
+      "Treiber, Kesting, Helbing 2006; defaults: Treiber, Kesting 2013, chapter 12; inattention: Yang, Peng 2010";
+  static constexpr auto parameters() {
+    using P = HumanDriver;
+    return parameter_list(
+        parameter("nominal", &P::nominal, "-", {}, "the behaviour of this driver without its imperfections"),
+        parameter("reaction_time", &P::reaction_time, "s", Range{0, 10}, "until a decision takes effect"),
+        parameter("gap_error", &P::gap_error, "-", Range{0, 1}, "standard deviation of the gap's logarithm"),
+        parameter("rate_error", &P::rate_error, "1/s", Range{0, 1},
+                  "standard deviation of the approach rate, per metre of gap: of the inverse time to collision"),
+        parameter("persistence", &P::persistence, "s", Range{0.01, 1e6}, "correlation time of these errors"),
+        parameter("anticipates", &P::anticipates, "-", Range{0, 1}, "decides for the situation a reaction time ahead"),
+        parameter("attentive", &P::attentive, "s", Range{0.1, 1e6}, "mean time until the driver looks away"),
+        parameter("looks_away", &P::looks_away, "s", Range{0, 60}, "mean time for which it does; 0: never"));
+  }
+
+  /// Decisions that a driver remembers. If more steps than that make up a reaction time, it decides less often.
+  static constexpr std::size_t decisions = 16;
+
+  struct Memory {
+    MemoryOf<Nominal> nominal{};
+    std::array<float, decisions> decided{};  ///< accelerations, latest first [m/s^2]
+    float age{};                             ///< of the latest [s]
+    float speed{};                           ///< own, before the last step [m/s]
+    float gap_error{}, rate_error{};         ///< the processes w
+    bool has_begun = false;
+    bool looks_away = false;
+
+    void fell_short(double way, bool left_course) { cambium::fell_short(nominal, way, left_course); }
+
+    friend bool operator==(Memory const&, Memory const&) = default;
+  };
+
+  static constexpr bool looks_beside = detail::looks_beside<Nominal>();
+  static constexpr bool looks_around = detail::looks_around<Nominal>();
+  static constexpr bool heeds_conflicts = detail::heeds_conflicts<Nominal>();
+
+  [[nodiscard]] double start_time() const requires requires(Nominal const behavior) { behavior.start_time(); }
+  { return nominal.start_time(); }
+
+  template <class View>
+  [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
+    bool const is_new = !memory.has_begun;
+    auto estimate = perceive(view, memory, dt);
+    auto const before = memory.nominal;
+    auto const course = nominal.plan(HumanView<View>(view, estimate), memory.nominal, dt);
+    bool const acts_now = reaction_time == 0.0 && !memory.looks_away;
+    if (course.status != PlanStatus::valid || (acts_now && looks_away == 0.0)) return course;
+    double const speed = std::max(0.0, view.state().speed);
+    double const alone = planned(view, before, {.alone = true}, dt);
+    memory.age += static_cast<float>(dt);
+    if (is_new || memory.age > interval(dt) - 0.5 * dt) {
+      if (anticipates) estimate.reach = reaction_time;
+      estimate.acceleration = is_new ? 0.0 : (speed - static_cast<double>(memory.speed)) / dt;
+      decide(memory,
+             memory.looks_away ? static_cast<double>(memory.decided[0]) : decision(view, before, estimate, alone, dt),
+             is_new);
+    }
+    memory.speed = static_cast<float>(speed);
+    if (acts_now) return course;
+    double const decided = in_effect(memory, dt), acceleration = memory.looks_away ? decided : std::min(decided, alone);
+    auto const motion = ConstantAcceleration{.acceleration = acceleration}.motion(speed, dt);
+    cambium::fell_short(memory.nominal, detail::course_length(course, view.state()) - motion.distance, false);
+    return detail::plan_along_course(view, course, motion, dt);
+  }
+
+ private:
+  static constexpr std::uint32_t purpose = 0x4d44u;
+
+  /// Time between decisions [s], a multiple of the step.
+  [[nodiscard]] double interval(double dt) const {
+    return dt * std::max(1.0, std::ceil(reaction_time / (dt * static_cast<double>(decisions - 1)) - 1e-9));
+  }
+
+  /// Lets the errors drift and the attention come and go; returns the estimate of now.
+  template <class View>
+  [[nodiscard]] HumanEstimate perceive(View const& view, Memory& memory, double dt) const {
+    bool const is_new = !memory.has_begun;
+    memory.has_begun = true;
+    if (gap_error == 0.0 && rate_error == 0.0 && looks_away == 0.0) return {};
+    auto random = view.random(purpose);
+    double const kept = is_new ? 0.0 : std::exp(-dt / persistence), fresh = std::sqrt(1.0 - kept * kept);
+    for (auto* const error : {&memory.gap_error, &memory.rate_error})
+      *error = static_cast<float>(kept * static_cast<double>(*error) + fresh * Normal{}(random));
+    double const mean = memory.looks_away ? looks_away : attentive;
+    bool const turns = looks_away > 0.0 && !is_new && uniform01(random) < 1.0 - std::exp(-dt / mean);
+    memory.looks_away = memory.looks_away != turns;
+    return {.gap_factor = std::exp(gap_error * static_cast<double>(memory.gap_error)),
+            .rate_error = rate_error * static_cast<double>(memory.rate_error)};
+  }
+
+  /// Acceleration [m/s^2] over the first `dt` [s] of a plan made on `view`; 0 for a plan that is too short.
+  template <class View>
+  [[nodiscard]] static double acceleration_of(Plan<View> const& plan, View const& view, double dt) {
+    auto const end = InterpolateExecution{}.execute(plan, view.state(), view.dynamics(), view.time() + dt);
+    return end.valid ? (end.state.speed - std::max(0.0, view.state().speed)) / dt : 0.0;
+  }
+
+  /// Acceleration [m/s^2] that the nominal behaviour plans on the estimate.
+  template <class View>
+  [[nodiscard]] double planned(View const& view, MemoryOf<Nominal> memory, HumanEstimate const& estimate,
+                               double dt) const {
+    HumanView<View> const seen(view, estimate);
+    return acceleration_of(nominal.plan(seen, memory, dt), seen, dt);
+  }
+
+  /// The acceleration decided on an estimate of the others [m/s^2]: what these demand, or, if they demand nothing, to
+  /// go on; what it would do `alone` now, if that is more.
+  template <class View>
+  [[nodiscard]] double decision(View const& view, MemoryOf<Nominal> const& memory, HumanEstimate estimate, double alone,
+                                double dt) const {
+    double const with_others = planned(view, memory, estimate, dt);
+    estimate.alone = true;
+    return with_others < planned(view, memory, estimate, dt) ? with_others : std::max(0.0, alone);
+  }
+
+  static void decide(Memory& memory, double acceleration, bool is_first) {
+    auto const a = static_cast<float>(acceleration);
+    if (is_first) memory.decided.fill(a);
+    std::copy_backward(memory.decided.begin(), memory.decided.end() - 1, memory.decided.end());
+    memory.decided[0] = a;
+    memory.age = 0.0f;
+  }
+
+  /// The acceleration decided a reaction time ago [m/s^2].
+  [[nodiscard]] double in_effect(Memory const& memory, double dt) const {
+    double const steps = std::max(0.0, reaction_time - static_cast<double>(memory.age)) / interval(dt);
+    auto const later = std::min(static_cast<std::size_t>(steps), decisions - 1),
+               earlier = std::min(later + 1, decisions - 1);
+    double const share = steps - static_cast<double>(later);
+    return (1.0 - share) * static_cast<double>(memory.decided[later]) +
+           share * static_cast<double>(memory.decided[earlier]);
+  }
+};
+static_assert(BehaviorModel<HumanDriver<IdmClassic>>);
+
+}  // namespace cambium

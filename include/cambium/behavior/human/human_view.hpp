@@ -1,0 +1,119 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "cambium/behavior/view.hpp"
+
+namespace cambium {
+
+/// A driver's estimation errors at one moment, and how far ahead it extrapolates what it sees.
+struct HumanEstimate {
+  double gap_factor = 1.0;    ///< estimated gap / true gap [-]
+  double rate_error = 0.0;    ///< error of the other's estimated speed, per metre of gap [1/s]
+  double reach = 0.0;         ///< the estimate is for this time ahead [s]
+  double acceleration = 0.0;  ///< own, assumed until then [m/s^2]
+  bool alone = false;         ///< sees no road users
+};
+
+/// A view as an imperfect driver has it: like `View`, but lengthwise distances and speeds of road users in lanes are
+/// estimated with the driver's errors, and extrapolated to a time ahead (Treiber, Kesting, Helbing 2006): the own place
+/// at constant speed, the own speed at constant acceleration, gaps at a constant approach rate, which itself stays. So
+/// a driver that brakes sees its leader slower by as much, and what stands in its lane come closer. Objects are known
+/// to stand. What lies across the lane, and what `View::state(user)`, `around(distance, f)`, `acceleration` and `light`
+/// tell, stays as it is. With a default `HumanEstimate` it tells what `View` tells, to the last bit.
+template <class View>
+class HumanView : public View {
+ public:
+  using State = typename View::State;
+
+  HumanView(View const& view, HumanEstimate const& estimate)
+      : View(view), estimate_(estimate), state_(view.state()), place_(view.place()) {
+    if (!(estimate.reach > 0.0)) return;
+    double const speed = std::max(0.0, state_.speed);
+    way_ = speed * estimate.reach;
+    state_.speed = std::max(0.0, speed + estimate.reach * estimate.acceleration);
+    faster_ = state_.speed - speed;
+    place_ = moved(place_, way_);
+  }
+
+  [[nodiscard]] State const& state() const { return state_; }
+  using View::shape;
+  [[nodiscard]] State const& state(RoadUser const& agent) const { return View::state(agent); }
+  [[nodiscard]] map::LanePlace const& place() const { return place_; }
+  [[nodiscard]] map::LanePlace place(CorridorId corridor) const { return moved(View::place(corridor), way_); }
+
+  [[nodiscard]] std::optional<RoadUser> ahead(Look const& look = {}) const { return seen(View::ahead(look), 1); }
+  [[nodiscard]] std::optional<RoadUser> behind(Look const& look = {}) const { return seen(View::behind(look), -1); }
+  [[nodiscard]] std::optional<RoadUser> ahead(map::LanePlace const& from, Look const& look = {}) const {
+    return seen(View::ahead(moved(from, -way_), look), 1);
+  }
+  [[nodiscard]] std::optional<RoadUser> behind(map::LanePlace const& from, Look const& look = {}) const {
+    return seen(View::behind(moved(from, -way_), look), -1);
+  }
+  [[nodiscard]] std::optional<RoadUser> merging(double merge, double limit) const {
+    return seen(View::merging(merge, limit), 1);
+  }
+  template <class F>
+  void each_ahead(Look const& look, F&& f) const {
+    if (!estimate_.alone) View::each_ahead(look, [&](RoadUser const& user) { f(seen(user, 1)); });
+  }
+  template <class F>
+  void around(map::LanePlace const& from, double distance, F&& f) const {
+    auto const here = moved(from, -way_);
+    if (!estimate_.alone)
+      View::around(here, distance, [&](RoadUser const& user) { f(seen(user, user.s < here.s ? -1 : 1)); });
+  }
+  template <class F>
+  void around(double distance, F&& f) const {
+    if (!estimate_.alone) View::around(distance, std::forward<F>(f));
+  }
+  template <class F>
+  void for_each_object(F&& f) const {
+    if (!estimate_.alone) View::for_each_object(std::forward<F>(f));
+  }
+  template <class F>
+  void on_lane(double index_begin, double index_end, F&& f) const {
+    if (!estimate_.alone)
+      View::on_lane(index_begin, index_end, [&](RoadUser user) {
+        user.s += estimate_.reach * user.speed;
+        f(user);
+      });
+  }
+
+ private:
+  [[nodiscard]] map::LanePlace moved(map::LanePlace at, double by) const {
+    if (by == 0.0) return at;
+    at.s += by;
+    at.index += by;
+    at.piece = this->road().corridors[at.corridor].piece_at(at.s, at.piece);
+    return at;
+  }
+
+  /// A road user found ahead (`sign` 1) or behind (-1), as estimated.
+  [[nodiscard]] RoadUser seen(RoadUser user, int sign) const {
+    double const before = user.gap;
+    if (before > 0.0) {
+      user.gap *= estimate_.gap_factor;
+      if (is_valid(user.agent) && estimate_.rate_error != 0.0)
+        user.speed = std::max(0.0, user.speed + before * estimate_.rate_error);
+    }
+    user.gap += sign * (estimate_.reach * user.speed - way_);
+    user.s += sign * (user.gap - before) + way_;
+    user.speed += faster_;
+    return user;
+  }
+  [[nodiscard]] std::optional<RoadUser> seen(std::optional<RoadUser> const& user, int sign) const {
+    return user && !estimate_.alone ? std::optional(seen(*user, sign)) : std::nullopt;
+  }
+
+  HumanEstimate estimate_;
+  State state_;
+  map::LanePlace place_;
+  double way_ = 0.0;     ///< driven until the time of the estimate [m]
+  double faster_ = 0.0;  ///< own speed then, above that of now [m/s]
+};
+
+}  // namespace cambium

@@ -1,0 +1,141 @@
+// Drivers that open no gap for those that merge, and drivers that wait for one.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstdint>
+
+#include "../support/maps.hpp"
+#include "cambium/cambium.hpp"
+#include "cambium/scenario/merging_site.hpp"
+
+namespace {
+
+namespace cb = cambium;
+
+using Sim = cb::MergingSite::World;
+
+cb::MergingSite site_with(double share, bool waits) {
+  auto site = cb::find_merging_site(support::own_map("merging.xodr"));
+  site.non_yielding_share = share;
+  site.ramp_waits = waits;
+  return site;
+}
+
+struct Outcomes {
+  int merged = 0, collided = 0;
+  double time = 0.0;  ///< mean until merged [s]
+};
+
+Outcomes run(cb::MergingSite const& site, int scenarios) {
+  Outcomes all;
+  for (int i = 0; i < scenarios; ++i) {
+    auto const scenario = site.sample(11, static_cast<std::uint32_t>(i));
+    auto world = scenario.make_world();
+    auto const ego = world.slot_of(scenario.ego);
+    for (bool over = false; !over && world.time() < 60.0;) {
+      REQUIRE(world.step(0.2));
+      bool const collides = cb::AnyCollision{}(world, ego), merged = !collides && cb::AtGoal{}(world, ego);
+      all.collided += collides;
+      all.merged += merged;
+      if (merged) all.time += world.time();
+      over = collides || merged;
+    }
+  }
+  all.time /= all.merged;
+  return all;
+}
+
+/// Adds an IDM driver with this rule, its front `before` [m] before the merge.
+cb::AgentId add(Sim& world, cb::MergingSite::Entrance const& entrance, double before, double speed,
+                cb::Merging merging) {
+  auto const road = cb::map::build_road_corridor(world.map(), entrance.route);
+  auto const& corridor = road->corridors[road->main];
+  double const merge = corridor.feeders.front().free_until;
+  auto const pose = corridor.center.pose(merge - before - cb::geometry::car().front);
+  cb::IdmClassic driver;
+  driver.rules.merging = merging;
+  return world.add({.position = pose.position(),
+                    .heading = pose.heading,
+                    .speed = speed,
+                    .behavior = driver,
+                    .route = entrance.route});
+}
+
+}  // namespace
+
+TEST_CASE("the more drivers open no gap, the fewer drivers merge that force their way; those that wait merge later") {
+  constexpr int scenarios = 50;
+  auto const yielding = run(site_with(0.0, false), scenarios), half = run(site_with(0.5, false), scenarios),
+             none = run(site_with(1.0, false), scenarios), waiting = run(site_with(1.0, true), scenarios);
+  CHECK(yielding.merged == scenarios);
+  CHECK(half.merged <= 40);
+  CHECK(none.merged <= 30);
+  CHECK(none.merged < half.merged);
+  CHECK(waiting.merged >= scenarios - 1);
+  CHECK(waiting.time > yielding.time + 8.0);
+}
+
+TEST_CASE("a driver that opens no gap does not brake for a vehicle beside, but for one that has merged before it") {
+  auto const site = site_with(0.0, false);
+  auto const& ramp = site.entrances[site.ramp];
+  auto const& through = *std::find_if(site.entrances.begin(), site.entrances.end(),
+                                      [](auto const& e) { return e.merges() && !e.gives_up_lane; });
+  auto const hardest = [&](cb::Merging merging, double ahead, double ramp_speed) {
+    Sim world(site.map);
+    auto const id = add(world, through, 60.0, 13.0, merging);
+    add(world, ramp, 60.0 - ahead, ramp_speed, cb::Merging::ignored);
+    double lowest = 0.0;
+    for (int k = 0; k < 60; ++k) {
+      REQUIRE(world.step(0.2));
+      REQUIRE_FALSE(cb::AnyCollision{}.pair(world));
+      if (world.time() > 3.0 && ahead < 30.0) break;  // before the merge
+      lowest = std::min(lowest, world.record(id).action.acceleration);
+    }
+    return lowest;
+  };
+  CHECK(hardest(cb::Merging::counts, 8.0, 13.0) < -0.8);
+  CHECK(hardest(cb::Merging::ignored, 8.0, 13.0) > -0.3);
+  // 50 m ahead and slow, the other has long been in the lane when the driver comes.
+  CHECK(hardest(cb::Merging::ignored, 50.0, 6.0) < -1.0);
+}
+
+TEST_CASE("a driver that gives way lets those pass whose gap is too short, takes a large one, and waits at the end") {
+  auto const site = site_with(0.0, false);
+  auto const& ramp = site.entrances[site.ramp];
+  auto const& through = *std::find_if(site.entrances.begin(), site.entrances.end(),
+                                      [](auto const& e) { return e.merges() && !e.gives_up_lane; });
+  struct Run {
+    bool first = false;
+    double slowest = 1e9;
+  };
+  auto const merge = [&](double behind) {
+    Sim world(site.map);
+    auto const own = add(world, ramp, 60.0, 12.0, cb::Merging::gives_way);
+    auto const other = add(world, through, 60.0 + behind, 13.0, cb::Merging::ignored);
+    Run result;
+    while (world.time() < 30.0) {
+      REQUIRE(world.step(0.2));
+      REQUIRE_FALSE(cb::AnyCollision{}.pair(world));
+      if (world.time() < 12.0) result.slowest = std::min(result.slowest, world.state(own).speed);
+    }
+    auto const ahead = world.observe(other).ahead();
+    result.first = ahead && ahead->agent == own;
+    return result;
+  };
+  auto const tight = merge(8.0), wide = merge(70.0);
+  CHECK_FALSE(tight.first);
+  CHECK(tight.slowest < 10.0);
+  CHECK(wide.first);
+  CHECK(wide.slowest > 11.0);
+  // Before an endless stream it stands before the merge.
+  Sim world(site.map);
+  auto const own = add(world, ramp, 60.0, 12.0, cb::Merging::gives_way);
+  for (int i = 0; i < 9; ++i) add(world, through, 50.0 + 22.0 * i, 13.0, cb::Merging::ignored);
+  double slowest = 1e9;
+  for (int k = 0; k < 60; ++k) {
+    REQUIRE(world.step(0.2));
+    REQUIRE_FALSE(cb::AnyCollision{}.pair(world));
+    slowest = std::min(slowest, world.state(own).speed);
+  }
+  CHECK(slowest < 0.5);
+}
