@@ -96,6 +96,35 @@ struct RowView {
   [[nodiscard]] double acceleration(cb::RoadUser const&) const { return leader->acceleration; }
   [[nodiscard]] cb::map::LightColor light(cb::LightId) const { return cb::map::LightColor::off; }
   [[nodiscard]] double red_for(cb::LightId) const { return 0.0; }
+
+  // What a driver asks only of merges, drifts and those beside it, which BARK's rows do not have.
+  [[nodiscard]] cb::map::LanePlace place(cb::CorridorId) const { return at; }
+  [[nodiscard]] std::optional<cb::RoadUser> behind(cb::Look const& = {}) const { return std::nullopt; }
+  [[nodiscard]] std::optional<cb::RoadUser> merging(double, double) const { return std::nullopt; }
+  [[nodiscard]] State const& state(cb::RoadUser const&) const { return leader->state; }
+  [[nodiscard]] cb::geometry::Shape const& shape(cb::RoadUser const&) const { return box; }
+  [[nodiscard]] cb::map::RoadCorridor const& road() const {
+    static cb::map::RoadCorridor const none{};
+    return none;
+  }
+  [[nodiscard]] cb::Map const& map() const {
+    static auto const road = support::straight_road();
+    return *road;
+  }
+  [[nodiscard]] cb::geometry::Polygon const& outline(cb::RoadUser const&) const {
+    static cb::geometry::Polygon const none{};
+    return none;
+  }
+  template <class F>
+  void around(cb::map::LanePlace const&, double, F&&) const {}
+  template <class F>
+  void for_each_object(F&&) const {}
+  [[nodiscard]] bool anybody_off_lanes() const { return false; }
+  [[nodiscard]] bool anybody_leaves_room() const { return false; }
+  template <class F>
+  void off_lanes(double, F&&) const {}
+  template <class F>
+  void on_lane(double, double, F&&) const {}
 };
 
 struct Worst {

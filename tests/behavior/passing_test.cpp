@@ -263,7 +263,7 @@ TEST_CASE("nobody passes who drives in the middle, is about to move over, or is 
     cb::RoadRules::Memory memory;
     cb::IdmLaw const law(cb::IdmParameters{}, 8.0);
     (void)cb::RoadRules{}.next_in_way(view, law, memory);
-    return memory.aside != 0.0f;
+    return memory.aside != 0;
   };
   auto const bicycle = cb::geometry::bicycle();
   CHECK(passes(-2.5, 0.0, 5.0, bicycle));

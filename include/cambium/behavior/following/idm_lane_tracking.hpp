@@ -109,7 +109,7 @@ struct IdmLaneTracking {
       auto const motion =
           rules.bound(view, p, s, x.speed, AccLaw(p, coolness, x.speed).motion(leader, h, tolerance), h, memory);
       auto axle = front_axle(line, x, wheel_base, segment);
-      if (memory.aside != 0.0f) axle.offset = std::clamp(axle.offset - memory.aside, -gentle, gentle);
+      if (memory.aside != 0) axle.offset = std::clamp(axle.offset - memory.offset(), -gentle, gentle);
       double const angle = steering(axle, x.speed, wheel_base, h);
       Action const action{(motion.speed - x.speed) / h, angle};
       if (i == 0) plan.action = action_of(model.input(action, x), action);

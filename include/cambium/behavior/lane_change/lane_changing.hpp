@@ -118,7 +118,7 @@ struct LaneChanging {
     } else {
       ahead = ahead_in_lane(view, law, leader);
       double const end = lane_end(view, home, view.place().piece);
-      bool const is_passing = memory.rules.aside != 0.0f && !rules.keep_to_side && end == infinite;
+      bool const is_passing = memory.rules.aside != 0 && !rules.keep_to_side && end == infinite;
       bool const may_change = memory.rest == 0.0f && !is_passing;
       auto const target = choose(LaneKeeping<View>{view, law, leader, end, may_change, ahead});
       if (may_change && target != none<CorridorId> && is_wide_enough(view, target, 0.5 * speed * course.duration)) {
@@ -133,9 +133,9 @@ struct LaneChanging {
     if (auto const end = rules.lane_end_ahead(view)) ahead.heed(*end);
     auto const motion = law.motion(ahead.constraint(), dt, tolerance);
     auto const bounded = rules.bound(view, idm, view.place().s, speed, motion, dt, memory.rules);
-    if (memory.rules.aside != 0.0f) [[unlikely]] {
+    if (memory.rules.aside != 0) [[unlikely]] {
       if (!memory.change.active()) return plan_in_lane(view, rules, bounded, dt, memory);
-      memory.rules.aside = 0.0f;
+      memory.rules.aside = 0;
     }
     return plan_lane_change(view, memory.change, bounded, dt);
   }

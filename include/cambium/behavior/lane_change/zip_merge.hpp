@@ -82,7 +82,7 @@ struct ZipMerge {
     }
     auto const motion = law.motion(ahead.constraint(), dt, tolerance);
     auto const bounded = rules.bound(view, idm, view.place().s, speed, motion, dt, memory.rules);
-    if (memory.rules.aside != 0.0f) [[unlikely]] {
+    if (memory.rules.aside != 0) [[unlikely]] {
       memory.bend = 0.0f;
       return rules.along_lane(view, bounded, dt, memory.rules);
     }

@@ -41,13 +41,21 @@ template <class View>
   return next;
 }
 
+namespace detail {
+/// The plan that reaches `next` after `dt` [s].
+template <class View>
+[[nodiscard]] Plan<View> plan_to(View const& view, typename View::State const& next, double dt) {
+  Plan<View> plan;
+  plan.trajectory.push_back(next);
+  plan.action.acceleration = (next.speed - view.state().speed) / dt;
+  return plan;
+}
+}  // namespace detail
+
 /// The plan that leads to `follow_lane`.
 template <class View>
 [[nodiscard]] Plan<View> plan_along_lane(View const& view, LongitudinalMotion<double> const& motion, double dt) {
-  Plan<View> plan;
-  plan.trajectory.push_back(follow_lane(view, motion, dt));
-  plan.action.acceleration = (motion.speed - view.state().speed) / dt;
-  return plan;
+  return detail::plan_to(view, follow_lane(view, motion, dt), dt);
 }
 
 namespace detail {
@@ -92,10 +100,10 @@ CAMBIUM_NOINLINE [[nodiscard]] Drift drift_of(View const& view, double slope) {
   return {at.corridor, at.lateral + side * (leaves ? std::min(stop, room) : stop)};
 }
 
-/// See `plan_into_lane`.
+/// Where a vehicle adrift gets with the motion that follows the lane to `next`, see `plan_into_lane`.
 template <class View>
-CAMBIUM_NOINLINE [[nodiscard]] Plan<View> plan_out_of_drift(View const& view, LongitudinalMotion<double> const& motion,
-                                                            double dt, bool& adrift) {
+CAMBIUM_NOINLINE [[nodiscard]] typename View::State drift_on(View const& view, LongitudinalMotion<double> const& motion,
+                                                             typename View::State next, bool& adrift) {
   constexpr double aligned = 1e-6;  // [-]
   auto const& at = view.place();
   auto const& corridor = view.corridor();
@@ -107,21 +115,15 @@ CAMBIUM_NOINLINE [[nodiscard]] Plan<View> plan_out_of_drift(View const& view, Lo
       std::abs(slope) <= std::max(levelling_curvature(speed, comfortable_levelling) * along, aligned);
   if (std::abs(at.heading_error) > most_aslant || (turns_at_once && std::abs(slope) * speed < least_drift)) {
     adrift = false;
-    return plan_along_lane(view, motion, dt);
+    return next;
   }
   double const way = std::abs(drift_of(view, slope).rest - at.lateral), side = slope > 0.0 ? 1.0 : -1.0;
   double const hardest = levelling_curvature(speed, hardest_levelling);
   double const curvature = slope * slope < 2.0 * way * hardest ? slope * slope / (2.0 * way) : hardest;
   double const turning = std::min(along, std::abs(slope) / curvature);
-  Plan<View> plan;
-  typename View::State next = view.state();
-  next.time = view.time() + dt;
   place_on_lane(corridor, at.s + along, at.lateral + turning * (slope - side * curvature * turning / 2.0),
                 geometry::arc_tangent((slope - side * curvature * turning) / stretch), at.segment, next);
-  next.speed = motion.speed;
-  plan.trajectory.push_back(next);
-  plan.action.acceleration = (motion.speed - view.state().speed) / dt;
-  return plan;
+  return next;
 }
 
 }  // namespace detail
@@ -132,9 +134,13 @@ CAMBIUM_NOINLINE [[nodiscard]] Plan<View> plan_out_of_drift(View const& view, Lo
 template <class View>
 [[nodiscard]] Plan<View> plan_into_lane(View const& view, LongitudinalMotion<double> const& motion, double dt,
                                         bool& adrift) {
-  if (adrift) [[unlikely]]
-    return detail::plan_out_of_drift(view, motion, dt, adrift);
-  return plan_along_lane(view, motion, dt);
+  auto next = follow_lane(view, motion, dt);
+  if (adrift) [[unlikely]] {
+    bool still = true;  // a call that is not inlined gets copies, so that the originals can stay in registers
+    next = detail::drift_on(View(view), LongitudinalMotion<double>(motion), next, still);
+    adrift = still;
+  }
+  return detail::plan_to(view, next, dt);
 }
 
 }  // namespace cambium

@@ -31,22 +31,22 @@ namespace detail {
   return std::max(5.0 + shape.front, speed);
 }
 
-/// The plan that keeps the lane and approaches `offset` [m] to the left of its middle.
+/// Where a vehicle gets that keeps its lane and approaches `offset` [m] to the left of its middle, with the motion that
+/// follows the lane to `next`.
 template <class View>
-[[nodiscard]] Plan<View> plan_aside(View const& view, double offset, LongitudinalMotion<double> const& motion,
-                                    double dt) {
+[[nodiscard]] typename View::State move_aside(View const& view, double offset, LongitudinalMotion<double> const& motion,
+                                              typename View::State next) {
   auto const& at = view.place();
-  if (std::abs(at.heading_error) > most_aslant) return plan_along_lane(view, motion, dt);
+  if (std::abs(at.heading_error) > most_aslant) return next;
   auto const& corridor = view.corridor();
   double const stretch = std::max(0.1, 1.0 - corridor.center.segments()[at.segment].curvature * at.lateral);
   auto const [sin, cos] = geometry::sin_cos(at.heading_error);
   double const along = motion.distance * cos / stretch;
   auto const course = approach(LateralCourse<double>{at.lateral - offset, stretch * (sin / cos), 0.0},
                                approach_length(view.shape(), motion.speed), along);
-  auto plan = plan_along_lane(view, motion, dt);
   place_on_lane(corridor, at.s + along, offset + course.offset, geometry::arc_tangent(course.slope / stretch),
-                at.segment, plan.trajectory.back());
-  return plan;
+                at.segment, next);
+  return next;
 }
 
 /// Which side of a lane is the inner one, where one passes: 1 the left, -1 the right (in left-hand traffic).

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <optional>
 
@@ -148,28 +149,28 @@ template <class Law, class View>
 /// The law follows it until the driver will be far enough aside when it comes up to it. An agent beside the own vehicle
 /// is not in the way.
 struct RoadRules {
-  enum class LaneEnd {
+  enum class LaneEnd : std::uint8_t {
     ignored,
     before_destination,  ///< brakes where its lane ends or leaves the route before the destination
     always,              ///< brakes before every end of its lane corridor, as BARK's option does
   };
 
   LaneEnd lane_end = LaneEnd::ignored;
-  double lane_end_distance = 60.0;
-  double lane_end_offset = 15.0;
   bool obey_speed_limits = false;
   bool slow_for_bends = false;
-  double lateral_acceleration = 2.5;
   bool obey_signals = false;
+  Merging merging = Merging::counts;
+  bool keep_to_side = false;
+  double lane_end_distance = 60.0;
+  double lane_end_offset = 15.0;
+  double lateral_acceleration = 2.5;
   double stop_margin = 1.0;
   double safe_deceleration = 3.0;
-  Merging merging = Merging::counts;
   double merging_headway = 1.0;
   double late_at_red = 0.0;
   double speed_factor = 1.0;
   double passing_clearance = 1.5;
   double crossing_time = 4.0;
-  bool keep_to_side = false;
   double side_margin = 0.4;
 
   static constexpr char const* name = "road_rules";
@@ -219,17 +220,19 @@ struct RoadRules {
   /// What a driver remembers for the rules, and whether it has found into its lane.
   struct Memory {
     float stopped_at = -1.0f;  ///< corridor position of the stop sign at which it stopped last [m]
-    float aside = 0.0f;        ///< offset to the left of the middle of the lane to which it steers, at the side or to
-                               ///< pass, see `to_middle` [m]; 0: the rules leave the offset to the driver
+    std::int16_t aside = 0;    ///< offset to the left of the middle of the lane to which it steers, at the side or to
+                               ///< pass [mm]; 1 towards the middle; 0: the rules leave the offset to the driver
     bool adrift = true;        ///< it has entered or was set, and may still move across its lane
 
     void was_set() { adrift = true; }
+    [[nodiscard]] double offset() const { return 1e-3 * aside; }  ///< `aside` [m]
+    void steer_to(double offset) {
+      double const mm = std::clamp(std::round(1e3 * offset), -32'000.0, 32'000.0);
+      aside = mm == 0.0 ? std::int16_t{1} : static_cast<std::int16_t>(mm);
+    }
 
     friend bool operator==(Memory const&, Memory const&) = default;
   };
-
-  /// `Memory::aside` of a driver that returns to the middle, to 0.1 mm.
-  static constexpr float to_middle = 1e-4f;
 
   /// Desired speed [m/s] of a driver with parameters `idm` at its place and `speed` [m/s]: within the limits if it
   /// obeys them.
@@ -265,7 +268,11 @@ struct RoadRules {
   void heed(View const& view, Strictest<Law>& ahead, Memory& memory) const {
     if (!steers(view, memory)) [[likely]]
       return heed(view, ahead);
-    heed_in_way(view, ahead, memory);
+    auto changed = memory;
+    auto of_all = ahead;
+    heed_in_way(View(view), of_all, changed);
+    memory = changed;
+    ahead = of_all;
     if (auto const end = lane_end_ahead(view)) ahead.heed(*end);
   }
   /// The same for a driver that passes nobody within its lane.
@@ -317,7 +324,7 @@ struct RoadRules {
   /// Whether the rules may choose where in its lane the vehicle drives, and whom it passes there. O(1).
   template <class View>
   [[nodiscard]] bool steers(View const& view, Memory const& memory) const {
-    return keep_to_side || memory.aside != 0.0f || view.anybody_leaves_room();
+    return keep_to_side || memory.aside != 0 || view.anybody_leaves_room();
   }
 
   /// The next road user that is in the way, in the own lane and in those that merge into it. Decides where in the lane
@@ -335,10 +342,13 @@ struct RoadRules {
   template <class View>
   [[nodiscard]] Plan<View> along_lane(View const& view, LongitudinalMotion<double> const& motion, double dt,
                                       Memory& memory) const {
-    if (memory.aside == 0.0f) [[likely]]
-      return plan_into_lane(view, motion, dt, memory.adrift);
-    memory.adrift = false;
-    return plan_aside(View(view), LongitudinalMotion<double>(motion), dt, memory.aside);
+    auto next = follow_lane(view, motion, dt);
+    if (memory.adrift || memory.aside != 0) [[unlikely]] {
+      Memory changed = memory;
+      next = across_lane(View(view), LongitudinalMotion<double>(motion), next, changed);
+      memory = changed;
+    }
+    return detail::plan_to(view, next, dt);
   }
 
   /// Bounds the `motion` of a step of `dt` [s] from `s` [m] at `speed` [m/s] by bends, signals and those who step into
@@ -417,7 +427,7 @@ struct RoadRules {
     };
     auto const next = view.ahead({.merging = merging});
     bool const is_agent = next && is_valid(next->agent);
-    bool const is_aside = memory.aside != 0.0f;
+    bool const is_aside = memory.aside != 0;
     if (is_agent && may_pass && next->speed < law.desired_speed() - least_gain && next->gap < farthest)
       if (auto offset = detail::offset_to_pass(view, *next, passing_clearance, side, !is_aside)) {
         offset->aim = std::max(offset->aim, side * home);
@@ -426,13 +436,13 @@ struct RoadRules {
         if (!detail::is_aside_in_time(view, *next, speed, *offset, side)) return {next};
         return past(side * offset->aim, passing_clearance);
       }
-    constexpr double there = 1e-3;  // [m or rad]
+    constexpr double there = 2e-3;  // [m or rad]
     bool const steers =
-        keep_to_side || (memory.aside != 0.0f && (std::abs(at.lateral) > there || std::abs(at.heading_error) > there));
+        keep_to_side || (memory.aside != 0 && (std::abs(at.lateral) > there || std::abs(at.heading_error) > there));
     if (steers)
       steer_to(view, home, next, speed, memory);
     else
-      memory.aside = 0.0f;
+      memory.aside = 0;
     bool const goes_by = is_agent && (next->gap < beside || next->speed > speed);
     if (goes_by && detail::is_beside(view, *next, at.lateral)) return past(at.lateral, 0.3);
     return {next};
@@ -454,8 +464,7 @@ struct RoadRules {
     bool const may =
         is_free(next && next->gap < clear ? next : std::nullopt, air) &&
         is_free(is_near ? behind : std::nullopt, behind && behind->speed < speed ? passing_clearance : air);
-    float const wanted = static_cast<float>(may ? offset : at.lateral);
-    memory.aside = wanted == 0.0f ? to_middle : wanted;
+    memory.steer_to(may ? offset : at.lateral);
     return may;
   }
 
@@ -472,10 +481,13 @@ struct RoadRules {
   }
 
   template <class View>
-  CAMBIUM_NOINLINE [[nodiscard]] static Plan<View> plan_aside(View const& view,
-                                                              LongitudinalMotion<double> const& motion, double dt,
-                                                              double offset) {
-    return detail::plan_aside(view, offset, motion, dt);
+  CAMBIUM_NOINLINE [[nodiscard]] static typename View::State across_lane(View const& view,
+                                                                         LongitudinalMotion<double> const& motion,
+                                                                         typename View::State const& next,
+                                                                         Memory& memory) {
+    if (memory.aside == 0) return detail::drift_on(view, motion, next, memory.adrift);
+    memory.adrift = false;
+    return detail::move_aside(view, memory.offset(), motion, next);
   }
 };
 
