@@ -147,9 +147,10 @@ struct Intersection {
     [[nodiscard]] Wait const& wait() const { return waits[meets_large]; }
   };
 
-  /// Counts the time at a standstill. A driver that has begun to creep keeps its place in the order.
+  /// Counts the time at a standstill, before the junction and within it. A driver that has begun to creep keeps its
+  /// place in the order.
   static void remember(Memory& memory, Own const& own, bool is_red, double dt) {
-    if (own.is_inside_junction || (own.speed > starting && !own.is_near_line)) memory.waited = 0.0f;
+    if (own.speed > starting && (own.is_inside_junction || !own.is_near_line)) memory.waited = 0.0f;
     bool const stands = own.speed < standing_speed && own.wait().at_line && !is_red;
     if (memory.waited == 0.0f) {
       auto const before = std::exchange(memory.stopped_before, own.standing);
