@@ -1,4 +1,4 @@
-#include "cambium/behavior/lane_change/lane_reach.hpp"
+#include "cambium/behavior/law/lane_reach.hpp"
 
 #include <doctest/doctest.h>
 

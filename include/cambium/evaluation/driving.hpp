@@ -51,11 +51,8 @@ struct PastJunctions {
       if (conflict.hull().end > rear) return false;
     if (corridor.reaches_destination) return true;
     auto const& route = agent.road->route;
-    auto const last = corridor.pieces.back().lane;
-    auto const is_beside = [&](LaneId id) { return world.map().lane(id).road == world.map().lane(last).road; };
-    auto from = std::ranges::find(route, last);
-    if (from == route.end()) from = std::ranges::find_if(route, is_beside);
-    return std::none_of(from, route.end(), is_in_junction);
+    auto const last = std::ranges::find(route, corridor.pieces.back().lane);
+    return std::none_of(last, route.end(), is_in_junction);
   }
 };
 

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "cambium/behavior/view.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/ids.hpp"

@@ -5,7 +5,7 @@
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/following/idm_classic.hpp"
 #include "cambium/behavior/lane_change/lane_change.hpp"
-#include "cambium/behavior/lane_change/lane_reach.hpp"
+#include "cambium/behavior/law/lane_reach.hpp"
 
 namespace cambium {
 

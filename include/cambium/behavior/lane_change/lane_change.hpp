@@ -14,14 +14,6 @@
 
 namespace cambium {
 
-/// Lateral position of a vehicle that converges to a line, as a function of the distance along the line.
-template <class Scalar>
-struct LateralCourse {
-  Scalar offset{};  ///< left positive [m]
-  Scalar slope{};   ///< derivative of the offset [-]
-  Scalar bend{};    ///< derivative of the slope [1/m]
-};
-
 /// Point at `distance` [m] on the course from `start` that ends on the line and parallel to it after `length` [m] with
 /// the least squared jerk: a quintic polynomial (Takahashi, Hongo, Ninomiya, Sugimoto 1989; Werling, Ziegler, Kammel,
 /// Thrun 2010, section IV). Beyond `length` > 0 it stays on the line.

@@ -10,6 +10,14 @@
 
 namespace cambium {
 
+/// Lateral position of a vehicle that converges to a line, as a function of the distance along the line.
+template <class Scalar>
+struct LateralCourse {
+  Scalar offset{};  ///< left positive [m]
+  Scalar slope{};   ///< derivative of the offset [-]
+  Scalar bend{};    ///< derivative of the slope [1/m]
+};
+
 /// Distance covered and final speed of a vehicle after some time on its lane.
 template <class Scalar>
 struct LongitudinalMotion {

@@ -5,8 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include "cambium/behavior/lane_change/lane_change.hpp"
-#include "cambium/behavior/lane_change/lane_reach.hpp"
+#include "cambium/behavior/law/lane_reach.hpp"
 #include "cambium/behavior/law/follow_lane.hpp"
 #include "cambium/behavior/view.hpp"
 #include "cambium/geometry/frenet.hpp"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "cambium/behavior/lane_change/lane_reach.hpp"
+#include "cambium/behavior/law/lane_reach.hpp"
 #include "cambium/behavior/view.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/geometry/frenet.hpp"

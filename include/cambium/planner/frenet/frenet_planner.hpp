@@ -16,7 +16,7 @@
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/following/constant_acceleration.hpp"
 #include "cambium/behavior/lane_change/lane_change.hpp"
-#include "cambium/behavior/lane_change/lane_reach.hpp"
+#include "cambium/behavior/law/lane_reach.hpp"
 #include "cambium/behavior/law/lane_ends.hpp"
 #include "cambium/core/stable_sort.hpp"
 #include "cambium/planner/detail/others_ahead.hpp"
