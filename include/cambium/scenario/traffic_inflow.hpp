@@ -93,13 +93,13 @@ void check_sources(Map const& map, std::vector<TrafficSource> const& sources);
 
 }  // namespace detail
 
-/// Traffic that comes and goes for as long as one likes: lets agents enter a world at its sources, where there is room
-/// for them at a speed from which nobody has to brake hard, and takes those away that have left traffic.
+/// Traffic without end: lets agents enter a world at its sources as soon as there is room, at a speed from which no
+/// vehicle has to brake hard, and removes agents that have left traffic.
 ///
 ///   source  [##] ---> | gap >= minimum_gap + headway v | [##] ---> ... ---> sink: the end of the route
 ///
-/// Between two steps of the world call `enter`, which needs to know who is next, and `leave`. An agent that finds no
-/// room waits, and those behind it. The same seed lets the same agents enter at the same times.
+/// Between two steps of the world call `enter`, which asks for the next agent, and `leave`. An agent without room
+/// waits, and so do the agents behind it. The same seed lets the same agents enter at the same times.
 template <class WorldType>
 class TrafficInflow {
  public:

@@ -34,10 +34,9 @@ namespace cambium {
 /// - Estimation errors: gap exp(V_s w_s), and the other's speed + gap r_c w_r, with two independent Wiener
 ///   (Ornstein-Uhlenbeck) processes w of mean 0, variance 1 and the given persistence time, for all road users alike.
 /// - Temporal anticipation: the driver decides for the situation a reaction time ahead, see `HumanView`.
-/// - What does not move (bends, limits, lines to stop at, the lane's end) it knows in advance: it never accelerates
-/// more
-///   than it would alone on the road, without delay. Unlike in the paper, where the free road has the delay, too; they
-///   differ only where nobody is ahead.
+/// - The driver knows in advance what does not move (bends, limits, lines to stop at, the lane's end): it never
+///   accelerates more than it would alone on the road, without delay. In the paper the free road has the delay, too;
+///   the two differ only on a free road.
 /// - Inattention: at random times the driver looks away and keeps its last decision, so that its reaction time grows by
 ///   as long as it looks away (frozen controls: Yang, Peng 2010, "Development of an errorable car-following driver
 ///   model"). It goes on steering.
@@ -168,8 +167,8 @@ struct HumanDriver {
     return acceleration_of(nominal.plan(seen, memory, dt), seen, dt);
   }
 
-  /// The acceleration decided on an estimate of the others [m/s^2]: what these demand, or, if they demand nothing, to
-  /// go on; what it would do `alone` now, if that is more.
+  /// The acceleration decided on an estimate of the others [m/s^2]: the one that they demand; if they demand none, the
+  /// larger of 0 and the one that the driver would choose `alone` now.
   template <class View>
   [[nodiscard]] double decision(View const& view, MemoryOf<Nominal> const& memory, HumanEstimate estimate, double alone,
                                 double dt) const {

@@ -21,9 +21,9 @@ struct HumanEstimate {
 /// A view as an imperfect driver has it: like `View`, but lengthwise distances and speeds of road users in lanes are
 /// estimated with the driver's errors, and extrapolated to a time ahead (Treiber, Kesting, Helbing 2006): the own place
 /// at constant speed, the own speed at constant acceleration, gaps at a constant approach rate, which itself stays. So
-/// a driver that brakes sees its leader slower by as much, and what stands in its lane come closer. Objects are known
-/// to stand. What lies across the lane, and what `View::state(user)`, `around(distance, f)`, `acceleration` and `light`
-/// tell, stays as it is. With a default `HumanEstimate` it tells what `View` tells, to the last bit.
+/// a driver that brakes sees its leader slower by as much, and standing road users come closer. Objects are known to
+/// stand. Lateral positions and the answers of `View::state(user)`, `around(distance, f)`, `acceleration` and `light`
+/// stay as they are. With a default `HumanEstimate` all answers equal those of `View`, to the last bit.
 template <class View>
 class HumanView : public View {
  public:

@@ -137,9 +137,9 @@ template <class Law, class View>
 /// Bends, signals and those who are about to step onto the road bound the motion instead of being constraints of the
 /// law, because a driver brakes for them evenly and exactly to a point, while IDM would keep a time headway to them.
 ///
-/// Who is in the way? The next road user in the lane, whatever part of it that occupies, as long as everybody drives in
-/// the middle. An agent that drives aside and slower is passed within the lane if the lane has room for both and for
-/// `passing_clearance` between them:
+/// As long as all agents drive in the middle of their lanes, the next road user in the lane is in the way, whatever
+/// part of the lane it occupies. The driver passes a slower agent that drives aside if the lane has room for both and
+/// for `passing_clearance` between them:
 ///
 ///    =======================================
 ///            . - - - - - - .                    the driver moves aside, passes, and returns when it is clear

@@ -26,11 +26,12 @@ struct TimeSpan {
   return {std::min(first, second), std::max(first, second)};
 }
 
-/// Position along the lane [m] that the front end of a vehicle must not pass, because somebody from beside crosses its
-/// way; infinite if nobody does. Both go on evenly: `own` and `other` are where they are along and across the lane, the
-/// other moves at `along` and `across` [m/s]. It is in the way if it comes within 0.3 m of the vehicle's course within
-/// `horizon` [s], not after the vehicle has passed (plus 0.5 s), and has not left it 1 s before the vehicle arrives.
-/// A vehicle slower than 2 m/s counts as that fast: one that waits does not start in front of those who cross.
+/// Position along the lane [m] that the front end of a vehicle must not pass, because a road user from beside crosses
+/// its way; infinite if none does. Both keep their velocities: `own` and `other` are their extents along and across the
+/// lane, the other moves at `along` and `across` [m/s]. It is in the way if it comes within 0.3 m of the vehicle's
+/// course within `horizon` [s], not after the vehicle has passed (plus 0.5 s), and has not left it 1 s before the
+/// vehicle arrives. A vehicle slower than 2 m/s counts as that fast, so that a waiting one does not start in front of
+/// pedestrians.
 [[nodiscard]] inline double stop_before_crossing(LaneReach const& own, double speed, LaneReach const& other,
                                                  double along, double across, double horizon) {
   constexpr double infinite = std::numeric_limits<double>::infinity();
