@@ -116,10 +116,8 @@ struct AdaptiveCruiseControl {
     auto p = idm;
     p.desired_speed = rules.desired_speed(idm, view, speed);
     AccLaw const law(p, coolness, speed);
-    Strictest ahead(law);
-    rules.heed(view, ahead, memory);
-    auto const motion = law.motion(ahead.constraint(), dt);
-    return rules.along_lane(view, rules.bound(view, idm, view.place().s, speed, motion, dt, memory), dt, memory);
+    constexpr double tolerance = 1e-4;  // [m/s^2], as IdmClassic's
+    return rules.keep_lane(view, Strictest(law), idm, tolerance, dt, memory);
   }
 };
 static_assert(BehaviorModel<AdaptiveCruiseControl>);

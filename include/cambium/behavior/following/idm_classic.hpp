@@ -41,10 +41,7 @@ struct IdmClassic {
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
     double const speed = std::max(0.0, view.state().speed);
     IdmLaw const law(*this, speed, rules.desired_speed(*this, view, speed));
-    Strictest ahead(law);
-    rules.heed(view, ahead, memory);
-    auto const motion = law.motion(ahead.constraint(), dt, tolerance);
-    return rules.along_lane(view, rules.bound(view, *this, view.place().s, speed, motion, dt, memory), dt, memory);
+    return rules.keep_lane(view, Strictest(law), *this, tolerance, dt, memory);
   }
 };
 static_assert(BehaviorModel<IdmClassic>);

@@ -114,11 +114,8 @@ struct BasicIdmStochastic {
     auto const p = drawn == Drawn::per_agent ? draw(own) : draw(stream);
     IdmLaw const law(p, speed, rules.desired_speed(p, view, speed));
     Strictest ahead(law);
-    rules.heed(view, ahead, memory.rules);
     if (memory.yields) let_in(view, law, p.comfortable_deceleration, ahead);
-    auto const motion = law.motion(ahead.constraint(), dt, tolerance);
-    return rules.along_lane(view, rules.bound(view, p, view.place().s, speed, motion, dt, memory.rules), dt,
-                            memory.rules);
+    return rules.keep_lane(view, ahead, p, tolerance, dt, memory.rules);
   }
 
  private:

@@ -126,13 +126,17 @@ template <class Law, class View>
 
 }  // namespace detail
 
-/// What a driver heeds on the road besides other road users, shared by all driver models. A model uses the rules in
-/// three places of its `plan`:
+/// What a driver heeds on the road besides other road users, shared by all driver models. A model that keeps its lane
+/// has it all in one:
 ///
-///   IdmLaw const law(idm, speed, rules.desired_speed(idm, view, speed));   // 1. speed limits lower the desired speed
-///   rules.heed(view, ahead, memory);                                       // 2. leader and lane end are constraints
-///   rules.bound(view, idm, s, speed, law.motion(...), dt, memory);         // 3. bends and signals bound the motion
-///   rules.along_lane(view, motion, dt, memory);                                  // 4. where in the lane it drives
+///   IdmLaw const law(idm, speed, rules.desired_speed(idm, view, speed));   // speed limits lower the desired speed
+///   return rules.keep_lane(view, Strictest(law), idm, tolerance, dt, memory);
+///
+/// Another one uses its parts in its `plan`:
+///
+///   rules.heed(view, ahead, memory);                                       // leader and lane end are constraints
+///   rules.bound(view, idm, s, speed, law.motion(...), dt, memory);         // bends and signals bound the motion
+///   rules.along_lane(view, motion, dt, memory);                            // where in the lane it drives
 ///
 /// Bends, signals and those who are about to step onto the road bound the motion instead of being constraints of the
 /// law, because a driver brakes for them evenly and exactly to a point, while IDM would keep a time headway to them.
@@ -281,14 +285,14 @@ struct RoadRules {
     if (view.corridor().feeders.empty()) [[likely]] {
       if (auto const next = view.ahead({.merging = merging})) ahead.heed(detail::constraint_of<Law>(view, *next));
     } else {
-      heed_merging(view, ahead);
+      ahead.heed(strictest_merging(view, ahead.law()));
     }
     if (auto const end = lane_end_ahead(view)) ahead.heed(*end);
   }
 
   /// Adds the next vehicle in the own lane and in each lane that merges into it to the constraints.
   template <class View, class Law>
-  CAMBIUM_NOINLINE void heed_merging(View const& view, Strictest<Law>& ahead) const {
+  void heed_merging(View const& view, Strictest<Law>& ahead) const {
     view.each_ahead({.merging = merging},
                     [&](RoadUser const& next) { ahead.heed(detail::constraint_of<Law>(view, next)); });
     if (auto const gap = gap_to_wait_for(view)) ahead.heed(*gap);
@@ -301,24 +305,9 @@ struct RoadRules {
   /// (Kesting, Treiber, Helbing 2007). O(feeders), plus a search in each.
   template <class View>
   [[nodiscard]] std::optional<Constraint> gap_to_wait_for(View const& view) const {
-    constexpr double pull_away = 1.0, room = 2.0, slow = 2.5;  // [m/s^2], [m], [m/s]
     if (merging != Merging::gives_way) [[likely]]
       return std::nullopt;
-    double const s = view.place().s, front = s + view.shape().front, speed = std::max(0.0, view.state().speed);
-    double merge = std::numeric_limits<double>::infinity();
-    for (auto const& feeder : view.corridor().feeders)
-      if (feeder.is_still_to_merge() && feeder.free_until >= front) merge = std::min(merge, feeder.free_until);
-    double const way = merge - front;
-    if (way > speed * (1.0 + speed / (2.0 * pull_away)) + 10.0 || !can_stop(speed, way, safe_deceleration))
-      return std::nullopt;
-    auto const next = view.merging(merge, s);
-    double const theirs = next ? next->speed : 0.0, highest = std::max(speed, theirs);
-    if (theirs < slow) return std::nullopt;
-    double const time = time_to_cover(way, speed, pull_away, highest);
-    double const slower = std::max(0.0, theirs - std::min(highest, speed + pull_away * time));
-    double const gap = s - view.shape().rear - (next->s + next->front) + way - theirs * time;
-    if (gap > room + merging_headway * theirs + slower * slower / (2.0 * safe_deceleration)) return std::nullopt;
-    return Constraint{way, 0.0, 0.0};
+    return gap_before_merge(view);
   }
 
   /// Whether the rules may choose where in its lane the vehicle drives, and whom it passes there. O(1).
@@ -351,6 +340,24 @@ struct RoadRules {
     return detail::plan_to(view, next, dt);
   }
 
+  /// The plan over `dt` [s] of a driver with parameters `idm` that keeps its lane: its law answers what the model heeds
+  /// by itself, `ahead`, and what the rules add to it, within their bounds. `tolerance` [m/s^2]: see `idm_motion`.
+  template <class View, class Law, HasIdmParameters P>
+  [[nodiscard]] Plan<View> keep_lane(View const& view, Strictest<Law> ahead, P const& idm, double tolerance, double dt,
+                                     Memory& memory) const {
+    if (!only_follows(view, memory)) [[unlikely]] {
+      Memory changed = memory;  // calls that are not inlined get copies, so that the originals can stay in registers
+      auto plan = keep_lane_by_rules(View(view), ahead, idm, tolerance, dt, changed);
+      memory = changed;
+      return plan;
+    }
+    if (!view.corridor().feeders.empty()) [[unlikely]]
+      ahead.heed(strictest_merging(view, ahead.law()));
+    else if (auto const next = view.ahead({.merging = merging}))
+      ahead.heed(detail::constraint_of<Law>(view, *next));
+    return plan_along_lane(view, ahead.law().motion(ahead.constraint(), dt, tolerance), dt);
+  }
+
   /// Bounds the `motion` of a step of `dt` [s] from `s` [m] at `speed` [m/s] by bends, signals and those who step into
   /// the way. A driver with parameters `idm` brakes comfortably for them, and harder only if that no longer suffices.
   template <class View, HasIdmParameters P>
@@ -380,6 +387,49 @@ struct RoadRules {
   }
 
  private:
+  template <class View>
+  CAMBIUM_NOINLINE [[nodiscard]] std::optional<Constraint> gap_before_merge(View const& view) const {
+    constexpr double pull_away = 1.0, room = 2.0, slow = 2.5;  // [m/s^2], [m], [m/s]
+    double const s = view.place().s, front = s + view.shape().front, speed = std::max(0.0, view.state().speed);
+    double merge = std::numeric_limits<double>::infinity();
+    for (auto const& feeder : view.corridor().feeders)
+      if (feeder.is_still_to_merge() && feeder.free_until >= front) merge = std::min(merge, feeder.free_until);
+    double const way = merge - front;
+    if (way > speed * (1.0 + speed / (2.0 * pull_away)) + 10.0 || !can_stop(speed, way, safe_deceleration))
+      return std::nullopt;
+    auto const next = view.merging(merge, s);
+    double const theirs = next ? next->speed : 0.0, highest = std::max(speed, theirs);
+    if (theirs < slow) return std::nullopt;
+    double const time = time_to_cover(way, speed, pull_away, highest);
+    double const slower = std::max(0.0, theirs - std::min(highest, speed + pull_away * time));
+    double const gap = s - view.shape().rear - (next->s + next->front) + way - theirs * time;
+    if (gap > room + merging_headway * theirs + slower * slower / (2.0 * safe_deceleration)) return std::nullopt;
+    return Constraint{way, 0.0, 0.0};
+  }
+
+  /// Whether nothing matters to the driver but the next vehicle in its lane. O(1).
+  template <class View>
+  [[nodiscard]] bool only_follows(View const& view, Memory const& memory) const {
+    bool const heeds_more = lane_end != LaneEnd::ignored || slow_for_bends || obey_signals;
+    return !heeds_more && !steers(view, memory) && !memory.adrift && !(crossing_time > 0.0 && view.anybody_off_lanes());
+  }
+
+  /// The strictest of `heed_merging`, as a value so that the caller's constraints can stay in registers.
+  template <class View, class Law>
+  CAMBIUM_NOINLINE [[nodiscard]] Constraint strictest_merging(View const& view, Law const& law) const {
+    Strictest ahead(law);
+    heed_merging(view, ahead);
+    return ahead.constraint();
+  }
+
+  template <class View, class Law, HasIdmParameters P>
+  CAMBIUM_NOINLINE [[nodiscard]] Plan<View> keep_lane_by_rules(View const& view, Strictest<Law> ahead, P const& idm,
+                                                               double tolerance, double dt, Memory& memory) const {
+    heed(view, ahead, memory);
+    auto const motion = ahead.law().motion(ahead.constraint(), dt, tolerance);
+    return along_lane(view, bound(view, idm, view.place().s, ahead.law().speed(), motion, dt, memory), dt, memory);
+  }
+
   struct Braking {
     double comfortable, hardest;  // [m/s^2]
   };
