@@ -26,11 +26,55 @@ namespace {
 struct TimeHeadway {
   template <class World>
   double operator()(World& world, cb::Slot slot) const {
-    auto const view = world.observe(slot);
+    auto const view = world.truth(slot);
     auto const next = view.ahead();
     return next ? next->gap / view.state().speed : 1e9;
   }
 };
+/// Believes others elsewhere, and does not see every second one, nor objects.
+struct Misled {
+  static constexpr bool perfect = false;
+  static constexpr std::size_t past_steps = 1;
+  template <class S>
+  S observe(S state, bool, cb::RandomStream const&) const {
+    state.x += 7.0;
+    state.y += 3.0;
+    state.speed += 1.0;
+    return state;
+  }
+  std::size_t steps_back(bool) const { return 1; }
+  template <class Scene>
+  bool sees(Scene const&, cb::Slot, cb::Slot other) const {
+    return cb::index_of(other) % 2 == 0;
+  }
+  template <class Scene>
+  bool sees_object(Scene const&, cb::Slot, cb::Slot) const {
+    return false;
+  }
+};
+
+/// All that a view shows of the others.
+template <class View>
+std::vector<double> shown(View const& view) {
+  std::vector<double> all{view.state().x, view.state().y, view.place().s, view.place().lateral};
+  auto const add = [&](cb::RoadUser const& user) {
+    all.insert(all.end(), {static_cast<double>(cb::index_of(user.slot)), user.gap, user.s, user.speed});
+    if (cb::is_valid(user.agent)) all.push_back(view.state(user).x);
+  };
+  for (auto const& corridor : {cb::CorridorId{0}, cb::CorridorId{1}, cb::CorridorId{2}}) {
+    auto const place = view.place(corridor);
+    if (auto const next = view.ahead(place)) add(*next);
+    if (auto const next = view.behind(place)) add(*next);
+    view.around(place, 50.0, add);
+  }
+  if (auto const next = view.ahead()) add(*next);
+  if (auto const next = view.behind()) add(*next);
+  view.each_ahead({}, add);
+  view.around(40.0, add);
+  view.for_each_object([&](cb::ObjectId id, auto const&) { all.push_back(cb::index_of(id)); });
+  return all;
+}
+
 /// A user's own behaviour, which says only where it drives.
 struct Stops {
   template <class View>
@@ -207,6 +251,28 @@ TEST_CASE("a gap is the true one, whatever the agent sees") {
   REQUIRE(std::abs(world.observe(ego).ahead()->gap - gap) > 0.01);
   CHECK(cb::Gap{}(world, ego) == doctest::Approx(gap));
   CHECK(cb::TimeToCollision{}(world, ego) == doctest::Approx(gap / 5.0));
+}
+
+TEST_CASE("the true view shows what an agent would see with a perfect observer") {
+  using Erring = cb::World<Sim::Behaviors, cb::InterpolateExecution, cb::SingleTrack, Misled>;
+  Erring erring(straight_road(3, 300));
+  Sim perfect(erring.shared_map());
+  auto const fill = [](auto& world) {
+    for (int i = 0; i < 12; ++i) world.add({.position = {30.0 + 9.0 * i, -1.75 - 3.5 * (i % 3)}, .speed = 8.0 + i % 4});
+    world.add_object(cb::geometry::Polygon{{{150, -2}, {152, -2}, {152, -1}, {150, -1}}});
+    for (int i = 0; i < 5; ++i) REQUIRE(world.step(0.2));
+  };
+  fill(erring), fill(perfect);
+  for (cb::Slot slot{}; cb::index_of(slot) < perfect.size(); ++slot)
+    perfect.set_state(perfect.roster().agents[slot].id, erring.frame().agents[slot].state);
+  for (cb::Slot slot{}; cb::index_of(slot) < perfect.size(); ++slot) {
+    auto const truth = shown(erring.truth(slot));
+    REQUIRE(truth.size() > 40);
+    CHECK(shown(erring.observe(slot)) != truth);
+    CHECK(shown(perfect.observe(slot)) == truth);
+    if (auto const next = erring.truth(slot).ahead(); next && cb::is_valid(next->agent))
+      CHECK(erring.truth(slot).acceleration(*next) == erring.frame().agents[next->slot].action.acceleration);
+  }
 }
 
 TEST_CASE("a course that has not begun is not over, and what asks a view can end one") {

@@ -11,7 +11,6 @@
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/shape.hpp"
 #include "cambium/world/frame.hpp"
-#include "cambium/world/traffic_query.hpp"
 
 namespace cambium {
 
@@ -180,20 +179,6 @@ struct Jerk {
   }
 };
 
-namespace detail {
-
-/// The next road user ahead of an agent along its lane corridor, as it truly is.
-template <class World>
-[[nodiscard]] std::optional<RoadUser> next_ahead(World& world, Slot slot) {
-  static_cast<void>(world.observe(slot));  // brings the index up to date
-  auto const& agent = world.roster().agents[slot];
-  auto const& at = world.frame().agents[slot].lane;
-  TrafficQuery const query{slot, at.s, agent.shape.front, agent.shape.rear, at.piece};
-  return world.traffic().front(agent.road->corridors[at.corridor], query, world.roster().object_entries, false);
-}
-
-}  // namespace detail
-
 /// The gap to the next road user ahead along the lane corridor, bumper to bumper, at most `farthest` [m].
 struct Gap {
   double farthest = Look::horizon;
@@ -207,7 +192,7 @@ struct Gap {
 
   template <class World>
   [[nodiscard]] double operator()(World& world, Slot slot) const {
-    auto const next = detail::next_ahead(world, slot);
+    auto const next = world.truth(slot).ahead();
     return next ? std::min(next->gap, farthest) : farthest;
   }
 };
@@ -226,7 +211,7 @@ struct TimeToCollision {
 
   template <class World>
   [[nodiscard]] double operator()(World& world, Slot slot) const {
-    auto const next = detail::next_ahead(world, slot);
+    auto const next = world.truth(slot).ahead();
     double const closing = next ? world.frame().agents[slot].state.speed - next->speed : 0.0;
     return closing > 0.0 ? std::clamp(next->gap / closing, 0.0, longest) : longest;
   }

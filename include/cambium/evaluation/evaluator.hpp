@@ -9,8 +9,9 @@ namespace cambium {
 /// Judges one agent of a world: a copyable struct with
 ///   `template <class World> auto operator()(World const& world, Slot slot) const`
 /// that returns a bool (whether ...) or a number (how much ...). Pure: it reads only the frame and the roster.
-/// An evaluator that needs neighbours takes a `World&` and looks through a view, `world.observe(slot)`. The same
-/// evaluator serves as a metric, as a terminal criterion and as a term of a reward.
+/// An evaluator that needs neighbours takes a `World&` and looks through the view `world.truth(slot)`, which shows the
+/// world as it is (`world.observe(slot)` shows what the agent perceives). The same evaluator serves as a metric, as a
+/// terminal criterion and as a term of a reward.
 template <class E, class World>
 concept EvaluatorFor = std::copyable<E> && requires(E const evaluator, World& world) {
   { evaluator(world, Slot{}) } -> std::convertible_to<double>;

@@ -29,7 +29,9 @@ namespace cambium {
 /// agent's own lane position and the lanes in which `ahead`, `behind` and `each_ahead` find others. It may hide agents
 /// and objects. It does not alter the order of the visible road users along a lane, nor the agent's own lane corridor,
 /// which the view takes from the true positions.
-template <class World>
+///
+/// `World::truth` gives the same view of the world as it is, to those who judge an agent.
+template <class World, bool perfect = World::Observer::perfect>
 class ObservedWorld {
  public:
   using State = typename World::State;
@@ -123,10 +125,10 @@ class ObservedWorld {
   void around(map::LanePlace const& from, double distance, F&& f) const {
     auto const& along = road().corridors[from.corridor];
     TrafficQuery const own = plain_query(truth(from), {});
-    auto const sees_object = [this](Slot object) { return detail::is_object_seen(*world_, slot_, object); };
+    auto const sees_object = [this](Slot object) { return this->sees_object(object); };
     auto const visit = [&](int sign) {
       return [&f, &own, this, sign](TrafficEntry const& entry, double way) {
-        if (!detail::is_seen(*world_, slot_, entry.slot)) return false;
+        if (!sees(entry.slot)) return false;
         double const gap = sign > 0 ? way - entry.rear - own.front : way - entry.front - own.rear;
         f(seen(TrafficIndex::user_of(entry, false, gap, own.s + sign * way), sign));
         return false;
@@ -150,7 +152,9 @@ class ObservedWorld {
   /// looks around, O(agents found), in an order that does not depend on lanes; else O(agents), in the order of ids.
   template <class F>
   void around(double distance, F&& f) const {
-    detail::for_each_around(*world_, slot_, distance, [&](Slot slot) { f(user(slot)); });
+    detail::for_each_around(*world_, slot_, distance, [&](Slot slot) {
+      if (sees(slot)) f(user(slot));
+    });
   }
 
   /// Calls `f(RoadUser)` for every other agent within `distance` [m], measured as in `around`, that is on no drivable
@@ -158,7 +162,7 @@ class ObservedWorld {
   template <class F>
   void off_lanes(double distance, F&& f) const {
     for (Slot const slot : world_->traffic().off_lanes())
-      if (detail::is_near(*world_, slot_, slot, distance)) f(user(slot));
+      if (detail::is_near(*world_, slot_, slot, distance) && sees(slot)) f(user(slot));
   }
   /// Whether there are such agents in the world, seen or not. O(1).
   [[nodiscard]] bool anybody_off_lanes() const { return !world_->traffic().off_lanes().empty(); }
@@ -171,8 +175,7 @@ class ObservedWorld {
   template <class F>
   void on_lane(double index_begin, double index_end, F&& f) const {
     world_->traffic().for_each_in(index_begin, index_end, objects_on_lanes(), [&](auto const& entry, bool is_object) {
-      bool const counts = is_object ? detail::is_object_seen(*world_, slot_, entry.slot)
-                                    : entry.slot != slot_ && detail::is_seen(*world_, slot_, entry.slot);
+      bool const counts = is_object ? sees_object(entry.slot) : entry.slot != slot_ && sees(entry.slot);
       if (counts) f(seen(TrafficIndex::user_of(entry, is_object, 0.0, entry.position), 0));
     });
   }
@@ -181,7 +184,9 @@ class ObservedWorld {
   /// of ids.
   template <class F>
   void for_each_object(F&& f) const {
-    detail::for_each_object(*world_, slot_, f);
+    auto const& objects = world_->roster().objects;
+    for (Slot i{}; index_of(i) < objects.size(); ++i)
+      if (sees_object(i)) f(objects[i].id, objects[i].outline);
   }
 
   /// Another agent's state, as observed. O(1). Asserts that the road user is an agent.
@@ -191,7 +196,11 @@ class ObservedWorld {
   }
   /// Another agent's acceleration over the last step, along its heading [m/s^2], as brake lights would show it.
   [[nodiscard]] double acceleration(RoadUser const& agent) const {
-    return detail::seen_acceleration(*world_, slot_, slot_of(agent));
+    auto const slot = slot_of(agent);
+    if constexpr (perfect)
+      return record(slot).action.acceleration;
+    else
+      return detail::seen_acceleration(*world_, slot_, slot);
   }
   [[nodiscard]] geometry::Polygon const& outline(RoadUser const& object) const {
     CAMBIUM_ASSERT(is_valid(object.object), "ObservedWorld::outline: the road user is an agent");
@@ -225,7 +234,10 @@ class ObservedWorld {
   /// judge it. It contains no history, no observer models and no true behaviours. O(agents); allocates, so predict
   /// once, then copy.
   template <class Set>
-  [[nodiscard]] typename World::template WithBehaviors<Set> predict(Prediction<Set> const& prediction) const {
+  requires(perfect == World::Observer::perfect) [[nodiscard]]
+  typename World::template WithBehaviors<Set> predict(Prediction<Set> const& prediction) const {
+    static_assert(perfect == World::Observer::perfect,
+                  "cambium::World::truth shows what no agent knows: predict from World::observe");
     return predicted_world<Set>(*world_, slot_, prediction);
   }
 
@@ -243,7 +255,24 @@ class ObservedWorld {
   [[nodiscard]] auto const& record(Slot slot) const { return world_->frame().agents[index_of(slot)]; }
   [[nodiscard]] std::span<TrafficEntry const> objects_on_lanes() const { return world_->roster().object_entries; }
 
-  [[nodiscard]] decltype(auto) observed(Slot slot) const { return detail::seen_state(*world_, slot_, slot); }
+  [[nodiscard]] decltype(auto) observed(Slot slot) const {
+    if constexpr (perfect)
+      return (record(slot).state);
+    else
+      return detail::seen_state(*world_, slot_, slot);
+  }
+  [[nodiscard]] bool sees(Slot slot) const {
+    if constexpr (perfect)
+      return true;
+    else
+      return detail::is_seen(*world_, slot_, slot);
+  }
+  [[nodiscard]] bool sees_object(Slot object) const {
+    if constexpr (perfect)
+      return true;
+    else
+      return detail::is_object_seen(*world_, slot_, object);
+  }
 
   /// The true place for an observed one.
   [[nodiscard]] decltype(auto) truth(map::LanePlace const& at) const {
@@ -262,7 +291,7 @@ class ObservedWorld {
 
   [[nodiscard]] auto query(map::LanePlace const& at, Look const& look) const {
     auto const query = plain_query(at, look);
-    if constexpr (detail::hides<World> || detail::hides_objects<World> || misplaces) {
+    if constexpr (!perfect && (detail::hides<World> || detail::hides_objects<World> || misplaces)) {
       auto const sees = [world = world_, own = slot_](TrafficEntry const& entry, double) {
         if constexpr (misplaces)
           if (!detail::is_seen_in_lane(*world, own, entry)) return false;
@@ -375,8 +404,7 @@ class ObservedWorld {
 
   [[nodiscard]] static geometry::Pose pose_of(State const& s) { return {s.x, s.y, s.heading}; }
 
-  static constexpr bool perfect = World::Observer::perfect;
-  static constexpr bool misplaces = detail::misplaces<World>;
+  static constexpr bool misplaces = !perfect && detail::misplaces<World>;
 
   World const* world_;
   typename World::RosterType::Agent const* own_;

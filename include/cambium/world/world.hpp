@@ -74,6 +74,7 @@ class World {
   using Record = typename FrameType::Record;
   using RosterType = Roster<Behavior, Execution, Dynamics, Observer>;
   using View = ObservedWorld<World>;
+  using TrueView = ObservedWorld<World, true>;
   /// The type of a prediction: other behaviours, perfect observation.
   template <class OtherSet>
   using WithBehaviors = World<OtherSet, Execution, Dynamics, PerfectObserver>;
@@ -314,6 +315,14 @@ class World {
   [[nodiscard]] View observe(Slot slot) & {
     refresh_traffic();
     return View(*this, slot);
+  }
+
+  /// What the agent would see with a perfect observer: the view by which others judge it. As `observe`, but without
+  /// `predict` if the agents' observers are imperfect.
+  [[nodiscard]] TrueView truth(AgentId id) & { return truth(slot_of(id)); }
+  [[nodiscard]] TrueView truth(Slot slot) & {
+    refresh_traffic();
+    return TrueView(*this, slot);
   }
 
   /// Reports a call on a const world or a temporary, with a remedy.

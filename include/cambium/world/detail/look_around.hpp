@@ -4,30 +4,22 @@
 #include <cstdint>
 #include <tuple>
 
-#include "cambium/world/detail/seen.hpp"
+#include "cambium/core/ids.hpp"
 #include "cambium/world/frame.hpp"
 
 namespace cambium::detail {
 
-/// Calls `visit(slot)` for every other agent in traffic that the agent in slot `own` sees, in the order of their ids.
-template <class World, class Visit>
-void for_each_other(World const& world, Slot own, Visit const& visit) {
-  for (Slot i{}; index_of(i) < world.size(); ++i)
-    if (i != own && world.frame().agents[i].status == AgentStatus::driving && is_seen(world, own, i)) visit(i);
-}
-
-/// Whether the agent in slot `own` sees the other one in slot `slot`, and its bounding circle comes within `distance`
-/// [m].
+/// Whether the other agent's bounding circle comes within `distance` [m] of the agent in slot `own`.
 template <class World>
 [[nodiscard]] bool is_near(World const& world, Slot own, Slot slot, double distance) {
   auto const& here = world.frame().agents[own].state;
   auto const& [shape, state] = std::tie(world.roster().agents[slot].shape, world.frame().agents[slot].state);
   double const reach = distance + std::max(shape.front, shape.rear) + std::max(shape.left, shape.right);
   double const dx = state.x - here.x, dy = state.y - here.y;
-  return slot != own && dx * dx + dy * dy <= reach * reach && is_seen(world, own, slot);
+  return slot != own && dx * dx + dy * dy <= reach * reach;
 }
 
-/// See `ObservedWorld::around`; calls `visit(slot)`.
+/// See `ObservedWorld::around`; calls `visit(slot)`, for unseen agents, too.
 template <class World, class Visit>
 void for_each_around(World const& world, Slot own, double distance, Visit const& visit) {
   auto const& here = world.frame().agents[own].state;
@@ -41,14 +33,6 @@ void for_each_around(World const& world, Slot own, double distance, Visit const&
     for (Slot i{}; index_of(i) < world.size(); ++i)
       if (world.frame().agents[i].status == AgentStatus::driving) visit_near(i);
   }
-}
-
-/// Calls `f(id, outline)` for each static object that the agent in slot `own` sees, in the order of their ids.
-template <class World, class F>
-void for_each_object(World const& world, Slot own, F&& f) {
-  auto const& objects = world.roster().objects;
-  for (Slot i{}; index_of(i) < objects.size(); ++i)
-    if (is_object_seen(world, own, i)) f(objects[i].id, objects[i].outline);
 }
 
 }  // namespace cambium::detail
