@@ -17,6 +17,7 @@
 #include "cambium/geometry/collision.hpp"
 #include "cambium/geometry/oriented_box.hpp"
 #include "cambium/world/frame.hpp"
+#include "cambium/world/static_object.hpp"
 
 namespace cambium {
 
@@ -70,6 +71,17 @@ template <class World>
   return world.frame().agents[slot].status == AgentStatus::driving;
 }
 
+/// The first static object that a box touches, or nothing. O(objects).
+template <class World>
+[[nodiscard]] StaticObject const* touched_object(World const& world, geometry::OrientedBox const& box) {
+  auto const& objects = world.roster().objects;
+  auto const around = box.bounding_box();
+  auto const touched = std::ranges::find_if(objects, [&](StaticObject const& object) {
+    return around.intersects(object.outline.bounding_box()) && geometry::intersects(box, object.outline);
+  });
+  return touched == objects.end() ? nullptr : &*touched;
+}
+
 }  // namespace detail
 
 /// What an agent touches: another agent or a static object.
@@ -112,12 +124,8 @@ struct Collision {
       if (geometry::intersects(own(), detail::box_at(world, i))) return Contact{.agent = world.roster().agents[i].id};
     }
     if (world.roster().objects.empty()) return std::nullopt;
-    auto const box = own();
-    auto const around = box.bounding_box();
-    for (auto const& object : world.roster().objects)
-      if (around.intersects(object.outline.bounding_box()) && geometry::intersects(box, object.outline))
-        return Contact{.object = object.id};
-    return std::nullopt;
+    auto const* const object = detail::touched_object(world, own());
+    return object ? std::optional(Contact{.object = object->id}) : std::nullopt;
   }
 };
 
@@ -158,11 +166,7 @@ struct AtFaultCollision {
   template <class World>
   [[nodiscard]] bool hits_object(World const& world, Slot slot) const {
     if (world.roster().objects.empty()) return false;
-    auto const own = detail::box_after(world, slot, look_ahead);
-    auto const around = own.bounding_box();
-    return std::ranges::any_of(world.roster().objects, [&](auto const& object) {
-      return around.intersects(object.outline.bounding_box()) && geometry::intersects(own, object.outline);
-    });
+    return detail::touched_object(world, detail::box_after(world, slot, look_ahead)) != nullptr;
   }
 
   template <class World>
@@ -197,7 +201,8 @@ struct AnyCollision {
   [[nodiscard]] std::optional<Pair> pair(World const& world) const {
     if (!world.roster().objects.empty())
       for (Slot i{}; index_of(i) < world.size(); ++i)
-        if (detail::in_traffic(world, i) && touches_object(world, i)) return Pair{world.roster().agents[i].id};
+        if (detail::in_traffic(world, i) && detail::touched_object(world, detail::box_at(world, i)))
+          return Pair{world.roster().agents[i].id};
     return world.size() <= few ? compare_all(world) : sweep(world);
   }
 
@@ -267,15 +272,6 @@ struct AnyCollision {
           return ordered(world, a.slot, circles[j].slot);
     }
     return std::nullopt;
-  }
-
-  template <class World>
-  [[nodiscard]] static bool touches_object(World const& world, Slot slot) {
-    auto const box = detail::box_at(world, slot);
-    auto const around = box.bounding_box();
-    return std::ranges::any_of(world.roster().objects, [&](auto const& object) {
-      return around.intersects(object.outline.bounding_box()) && geometry::intersects(box, object.outline);
-    });
   }
 
   template <class World>

@@ -15,100 +15,10 @@
 #include "cambium/behavior/view.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/core/parameters.hpp"
-#include "cambium/map/corridor/corridor.hpp"
-#include "cambium/map/lanes/signals.hpp"
 
 namespace cambium {
 
 namespace detail {
-
-/// Highest speed [m/s] at position `s` [m] of a corridor from which a driver who brakes by `deceleration` [m/s^2]
-/// reaches every lower speed limit ahead 3 s early, because car following approaches a desired speed slowly; infinite
-/// without limits. O(limits within the braking distance).
-CAMBIUM_NOINLINE [[nodiscard]] inline double permitted_speed(map::LaneCorridor const& corridor, double s, double speed,
-                                                             double deceleration) {
-  double permitted = corridor.speed_limit_at(s);
-  double const early = s + 3.0 * speed, reach = early + speed * speed / (2.0 * deceleration);
-  for (auto const& step : corridor.speed_limits) {
-    if (step.begin <= s) continue;
-    if (step.begin > reach) break;
-    double const room = std::max(0.0, step.begin - early);
-    permitted = std::min(permitted, std::sqrt(step.limit * step.limit + 2.0 * deceleration * room));
-  }
-  return permitted;
-}
-
-/// What the bends within reach permit.
-struct BendsAhead {
-  double highest;                    ///< speed in the sharpest of them [m/s]
-  LongitudinalMotion<double> bound;  ///< longest motion of a step
-};
-
-/// What the bends within the step of `dt` [s] and the braking distance at `deceleration` [m/s^2] permit a vehicle of
-/// `speed` [m/s] at `s` [m], so that it takes each of them with at most `lateral_acceleration` [m/s^2]. It brakes up to
-/// `hardest` [m/s^2] if the bend is too close for that. Without bends `highest` is `desired_speed` [m/s]. O(log bends +
-/// bends within reach).
-[[nodiscard]] inline BendsAhead bends_ahead(map::LaneCorridor const& corridor, double s, double speed,
-                                            double desired_speed, double lateral_acceleration, double deceleration,
-                                            double hardest, double dt) {
-  constexpr double infinite = std::numeric_limits<double>::infinity();
-  BendsAhead ahead{desired_speed, {infinite, infinite}};
-  double const reach = s + speed * (dt + speed / (2.0 * deceleration));
-  auto const& bends = corridor.bends;
-  auto bend = std::partition_point(bends.begin(), bends.end(), [s](map::Bend const& b) { return b.end < s; });
-  for (; bend != bends.end() && bend->begin <= reach; ++bend) {
-    double const highest = std::sqrt(lateral_acceleration / bend->curvature);
-    auto const motion = motion_before_bend(speed, bend->begin - s, highest, deceleration, hardest, dt);
-    ahead.highest = std::min(ahead.highest, highest);
-    if (motion.distance < ahead.bound.distance) ahead.bound = motion;
-  }
-  return ahead;
-}
-
-/// How far a vehicle may drive before signals that stop it.
-struct SignalStop {
-  double distance = std::numeric_limits<double>::infinity();
-  bool is_light = false;  ///< a traffic light is among them
-};
-
-/// Whether a driver passes a yellow or red light `to_line` [m] ahead, as it does at up to `late` [s] of red: it is at
-/// the line by then, or would have to brake harder than `deceleration` [m/s^2].
-template <class View>
-[[nodiscard]] bool passes_late(View const& view, LightId light, double speed, double to_line, double deceleration,
-                               double late) {
-  double const red_for = view.red_for(light);
-  if (red_for >= late || speed < standing_speed) return false;
-  return red_for + to_line / speed < late || !can_stop(speed, to_line, deceleration);
-}
-
-/// Where a vehicle with its front end at `front` [m] must stop for signals within `look_ahead` [m]: red lights, yellow
-/// lights if it can stop by `deceleration` [m/s^2], and stop signs. It stops `margin` [m] before the line if it can.
-/// `stopped_at` [m] is updated: the line of the last stop sign at which the vehicle has stopped. `late` [s]: see
-/// `RoadRules::late_at_red`. O(signals).
-template <class View>
-[[nodiscard]] SignalStop stop_at_signals(View const& view, double front, double speed, double look_ahead, double margin,
-                                         double deceleration, double late, float& stopped_at) {
-  SignalStop stop;
-  for (auto const& signal : view.corridor().signals) {
-    double const to_line = signal.line - front;
-    if (to_line > look_ahead) break;
-    if (to_line < 0.0) continue;
-    if (signal.kind == map::SignalKind::stop) {
-      if (speed < standing_speed && to_line < margin + 1.0) stopped_at = static_cast<float>(signal.line);
-      if (std::abs(static_cast<double>(stopped_at) - signal.line) < 0.1) continue;
-    } else {
-      auto const color = view.light(signal.light);
-      if (color == map::LightColor::off || color == map::LightColor::green) continue;
-      if (color == map::LightColor::yellow && !can_stop(speed, to_line, deceleration)) continue;
-      if (late > 0.0 && passes_late(view, signal.light, speed, to_line, deceleration, late)) [[unlikely]]
-        continue;
-      stop.is_light = true;
-    }
-    double const before = can_stop(speed, to_line - margin, deceleration) ? margin : 0.0;
-    stop.distance = std::min(stop.distance, std::max(0.0, to_line - before));
-  }
-  return stop;
-}
 
 /// A neighbour as a constraint, with its acceleration if `Law` asks for it.
 template <class Law, class View>
