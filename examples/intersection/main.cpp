@@ -35,10 +35,9 @@ struct Task {
   }
 };
 
-void run(examples::Settings const& settings, bool lights) {
-  Task const task{cambium::find_junction_site(examples::load_map(settings.map_file), settings.map_file),
-                  {.lights = lights}};
-  if (lights && task.site.map->lights().empty())
+void run(examples::Settings const& settings, cambium::JunctionTraffic const& traffic) {
+  Task const task{cambium::find_junction_site(examples::load_map(settings.map_file), settings.map_file), traffic};
+  if (traffic.lights && task.site.map->lights().empty())
     throw cambium::MapError(settings.map_file, "this map has no traffic lights",
                             "leave out --lights or give a map with some, such as maps/intersection_4way.xodr");
   examples::sample_and_report(task, settings, {"Intersection", "everybody got through"});
@@ -53,8 +52,13 @@ int main(int argc, char** argv) {
   settings.steps = 600;
   CLI::App program("Samples traffic before junctions, simulates and judges it.", "intersection");
   examples::add_options(program, settings, "OpenDRIVE map with an intersection");
-  bool lights = false;
-  program.add_flag("--lights", lights,
+  cambium::JunctionTraffic traffic;
+  program.add_flag("--lights", traffic.lights,
                    "switch on the map's traffic lights; otherwise signs and right before left apply");
-  return examples::run_program(program, argc, argv, [&] { run(settings, lights); });
+  auto const add_share = [&](char const* option, double& share, char const* text) {
+    program.add_option(option, share, text)->type_name("SHARE")->check(CLI::Range(0.0, 1.0))->capture_default_str();
+  };
+  add_share("--trucks", traffic.truck_share, "share of trucks, on routes whose bends they can drive");
+  add_share("--bicycles", traffic.bicycle_share, "share of bicycles");
+  return examples::run_program(program, argc, argv, [&] { run(settings, traffic); });
 }

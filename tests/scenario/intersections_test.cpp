@@ -129,7 +129,7 @@ TEST_CASE("the same holds under traffic lights, and nobody crosses a stop line o
   check_all_pass(map, "intersection_4way.xodr with lights", runs(1000), {.lights = true});
 }
 
-TEST_CASE("so it is among bicycles, which ride as cars drive, in sampled traffic") {
+TEST_CASE("so it is among bicycles, which keep to the side of their lanes, in sampled traffic") {
   for (char const* name : {"intersection_3way.xodr", "intersection_4way.xodr", "roundabout.xodr"})
     check_all_pass(support::own_map(name), name + std::string(" with bicycles"), runs(1000), {.bicycle_share = 0.3});
 }
