@@ -245,7 +245,7 @@ struct Intersection {
   /// Distance to where it waits [m]: before the line if it can still stop there, otherwise before the conflict.
   [[nodiscard]] double distance_to_stop(Claim claim, double to_hold, Own const& own, double to_conflict) const {
     double const to_line = std::min(to_hold, to_conflict);
-    if (to_line < 0.0 || !can_stop(own.speed, to_line)) return to_conflict;
+    if (claim == Claim::watch || to_line < 0.0 || !can_stop(own.speed, to_line)) return to_conflict;
     for (double const margin : {claim == Claim::watch ? air : rules.stop_margin, air})
       if (can_stop(own.speed, to_line - margin)) return std::max(0.0, to_line - margin);
     return to_line;
@@ -313,7 +313,7 @@ struct Intersection {
       double end = zone.other_end + reach.rear;  // where it leaves room for the own vehicle
       if (conflict.kind == map::OverlapKind::merge)
         end = std::min(end, zone.begin + view.shape().front + own.idm.minimum_gap + user.rear - conflict.shift);
-      double const out = (end - at) / std::max(user.speed, standing_speed);
+      double const out = user.speed < standing_speed ? infinite : time_to_cover(end - at, user.speed, detail::pull_away, infinite);
       return out + 0.5 * time_margin < arrival(own, own_way) ? Claim::watch : Claim::blocked;
     }
     if (detail::goes_first(view, conflict, zone, other, way, own_way, own)) return Claim::free;
