@@ -182,18 +182,23 @@ struct Intersection {
   void heed_conflicts(View const& view, Own& own, Strictest<IdmLaw>& ahead, double dt) const {
     auto const& conflicts = view.corridor().conflicts;
     auto const is_behind = [&](map::Conflict const& c) { return c.farthest_end < own.s; };
-    for (auto at = std::partition_point(conflicts.begin(), conflicts.end(), is_behind); at != conflicts.end(); ++at) {
-      auto const& conflict = *at;
-      if (conflict.hold[1][1] > own.front + own.look_ahead) break;
+    auto const first = std::partition_point(conflicts.begin(), conflicts.end(), is_behind);
+    auto end = first;
+    for (; end != conflicts.end() && end->hold[1][1] <= own.front + own.look_ahead; ++end) {
+      auto const& conflict = *end;
       if (conflict.hull().end < own.s) continue;
       auto const& zones = conflict.zones[own.is_large];
       own.is_near_line = own.is_near_line || zones[0].line - own.front < detail::short_way;
       own.is_inside_junction = own.is_inside_junction || own.is_inside(conflict, zones[0]);
-      auto claims = claims_of(view, conflict, own, ahead);
-      if (!zones[0].empty() && claims[0] < Claim::yield && is_full_behind(view, zones[0], own, ahead.constraint()))
-        claims[0] = Claim::yield;
+      auto const claims = claims_of(view, conflict, own, ahead);
       for (std::size_t other = 0; other < 2; ++other)
         if (claims[other] != Claim::free) obey(claims[other], conflict, zones[other], view, own, dt);
+    }
+    if (!keep_clear || ahead.constraint().speed > starting) return;
+    for (auto at = first; at != end; ++at) {
+      auto const& zone = at->zones[own.is_large][0];
+      if (!zone.empty() && is_full_behind(view, zone, own, ahead.constraint()))
+        obey(Claim::yield, *at, zone, view, own, dt);
     }
   }
 
@@ -242,11 +247,12 @@ struct Intersection {
     return place;
   }
 
-  /// Distance to where it waits [m]: before the line if it can still stop there, otherwise before the conflict.
+  /// Distance to where it waits [m]: before the line if it can still stop there, otherwise before the conflict, to
+  /// which it also goes if that will be free in time.
   [[nodiscard]] double distance_to_stop(Claim claim, double to_hold, Own const& own, double to_conflict) const {
     double const to_line = std::min(to_hold, to_conflict);
     if (claim == Claim::watch || to_line < 0.0 || !can_stop(own.speed, to_line)) return to_conflict;
-    for (double const margin : {claim == Claim::watch ? air : rules.stop_margin, air})
+    for (double const margin : {rules.stop_margin, air})
       if (can_stop(own.speed, to_line - margin)) return std::max(0.0, to_line - margin);
     return to_line;
   }
@@ -340,9 +346,8 @@ struct Intersection {
 
   /// Whether the room behind the conflict is too small for the vehicle, as in a queue.
   template <class View>
-  [[nodiscard]] bool is_full_behind(View const& view, map::ConflictZone const& zone, Own const& own,
-                                    Constraint const& leader) const {
-    if (!keep_clear || leader.speed > starting) return false;
+  [[nodiscard]] static bool is_full_behind(View const& view, map::ConflictZone const& zone, Own const& own,
+                                    Constraint const& leader) {
     double const end = zone.end - view.shape().rear;  // end of the conflict for a rear end
     double const room = own.front + leader.gap - end;
     return room < view.shape().length() + own.idm.minimum_gap;
