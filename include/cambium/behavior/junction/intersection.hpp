@@ -336,7 +336,8 @@ struct Intersection {
     Window const ours{arrival(own, own_way), arrival(own, zone.end - own.s)};
     bool const is_in = other.is_inside(conflict, zone);
     if (theirs.end + time_margin < ours.begin) return is_in ? Claim::watch : Claim::free;
-    return ours.end + time_margin < theirs.begin && !is_in ? Claim::free : Claim::yield;
+    if (ours.end + time_margin < theirs.begin && !is_in) return Claim::free;
+    return own.waited > own.patience + 40.0 ? Claim::watch : Claim::yield;
   }
 
   /// Earliest time [s] at which the own vehicle has driven `distance` [m].
