@@ -215,7 +215,7 @@ struct Intersection {
                               : -infinite;
     for (std::size_t others : {0u, 1u}) {
       double const outside = std::min(zone.line - own.front, conflict.hold[own.is_large][others] - own.s);
-      double const to_stop = distance_to_stop(claim, std::max(outside, inside), own, to_conflict);
+      double const to_stop = distance_to_stop(view, claim, std::max(outside, inside), own, to_conflict);
       if (claim == Claim::yield && !can_stop(own.speed, to_conflict + air)) continue;
       double const braking = claim == Claim::watch ? rules.safe_deceleration : own.idm.comfortable_deceleration;
       auto const motion = motion_before_stop(own.speed, to_stop, braking, hardest(own), dt);
@@ -247,14 +247,30 @@ struct Intersection {
     return place;
   }
 
-  /// Distance to where it waits [m]: before the line if it can still stop there, otherwise before the conflict, to
-  /// which it also goes if that will be free in time.
-  [[nodiscard]] double distance_to_stop(Claim claim, double to_hold, Own const& own, double to_conflict) const {
+  /// Distance to where it waits [m]: before the line if it can still stop there, otherwise before the first zone ahead
+  /// of it, so that it stands in nobody's way. Up to the conflict itself if that will be free in time.
+  template <class View>
+  [[nodiscard]] double distance_to_stop(View const& view, Claim claim, double to_hold, Own const& own,
+                                        double to_conflict) const {
+    if (claim == Claim::watch) return to_conflict;
     double const to_line = std::min(to_hold, to_conflict);
-    if (claim == Claim::watch || to_line < 0.0 || !can_stop(own.speed, to_line)) return to_conflict;
+    if (to_line < 0.0 || !can_stop(own.speed, to_line)) return distance_to_zone(view, own, to_conflict);
     for (double const margin : {rules.stop_margin, air})
       if (can_stop(own.speed, to_line - margin)) return std::max(0.0, to_line - margin);
     return to_line;
+  }
+
+  /// Distance [m] to the first zone ahead before which the vehicle can still stop, at most `to_conflict`.
+  template <class View>
+  [[nodiscard]] double distance_to_zone(View const& view, Own const& own, double to_conflict) const {
+    double nearest = to_conflict;
+    for (auto const& c : view.corridor().conflicts)
+      for (std::size_t const other : {0u, 1u}) {
+        double const way = c.zones[own.is_large][other].begin - air - own.s;
+        if (c.kind == map::OverlapKind::split || (other == 1 && !own.meets_large) || way < 0.0) continue;
+        if (way < nearest && can_stop(own.speed, way)) nearest = way;
+      }
+    return nearest;
   }
 
   /// The strongest claims of the normal and of the large vehicles on their way to the conflict. Adds merging leaders to
