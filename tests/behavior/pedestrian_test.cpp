@@ -229,10 +229,9 @@ TEST_CASE("a pedestrian between two lanes does not wait for a queue of traffic t
     CAPTURE(seed);
     Sim world(road, {.seed = seed});
     auto const id = walk(world, way({{320, 8}, {320, -14}}), {320, -2.7});  // in the first lane, before the second
-    double const speed = 5.0 + 0.5 * seed;
-    for (double x = 250.0 - 3.0 * seed; x > 5.0; x -= 5.0 + 1.6 * speed)
+    double const speed = 4.0 + 0.1 * seed;
+    for (double x = 315.0 - 0.5 * seed; x > 5.0; x -= 6.5 + 1.6 * speed)
       world.add({.position = {x, -5.25}, .speed = speed, .behavior = cb::IdmClassic{.desired_speed = speed}});
-    world.add({.position = {312, -5.25}, .speed = speed, .behavior = cb::IdmClassic{.desired_speed = speed}});
     double crossed = 1e9;
     for (int i = 0; i < 300 && crossed > 1e8; ++i) {
       drive_safely(world, 1, 0.1);
