@@ -260,10 +260,12 @@ struct Intersection {
     return to_line;
   }
 
-  /// Distance [m] to the first zone ahead before which the vehicle can still stop, at most `to_conflict`.
+  /// Distance [m] to the first zone ahead before which the vehicle can still stop, at most `to_conflict`; to the
+  /// conflict where that is far, maybe in another junction.
   template <class View>
   [[nodiscard]] double distance_to_zone(View const& view, Own const& own, double to_conflict) const {
     double nearest = to_conflict;
+    if (to_conflict > detail::short_way) return nearest;
     for (auto const& c : view.corridor().conflicts)
       for (std::size_t const other : {0u, 1u}) {
         double const way = c.zones[own.is_large][other].begin - air - own.s;
@@ -335,7 +337,8 @@ struct Intersection {
       double end = zone.other_end + reach.rear;  // where it leaves room for the own vehicle
       if (conflict.kind == map::OverlapKind::merge)
         end = std::min(end, zone.begin + view.shape().front + own.idm.minimum_gap + user.rear - conflict.shift);
-      double const out = user.speed < standing_speed ? infinite : time_to_cover(end - at, user.speed, detail::pull_away, infinite);
+      double const out =
+          user.speed < standing_speed ? infinite : time_to_cover(end - at, user.speed, detail::pull_away, infinite);
       return out + 0.5 * time_margin < arrival(own, own_way) ? Claim::watch : Claim::blocked;
     }
     if (detail::goes_first(view, conflict, zone, other, way, own_way, own)) return Claim::free;
@@ -364,7 +367,7 @@ struct Intersection {
   /// Whether the room behind the conflict is too small for the vehicle, as in a queue.
   template <class View>
   [[nodiscard]] static bool is_full_behind(View const& view, map::ConflictZone const& zone, Own const& own,
-                                    Constraint const& leader) {
+                                           Constraint const& leader) {
     double const end = zone.end - view.shape().rear;  // end of the conflict for a rear end
     double const room = own.front + leader.gap - end;
     return room < view.shape().length() + own.idm.minimum_gap;
