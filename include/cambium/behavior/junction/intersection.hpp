@@ -34,8 +34,9 @@ namespace cambium {
 /// all vehicles that are still outside. At green it also enters to turn left, and waits inside for oncoming traffic.
 /// It stops at red lights (`World::set_light`) and stop signs, and slows down for bends. Where neither priorities nor
 /// lights say who goes first, those who have stopped go in the order in which they came. In a deadlock one driver after
-/// the other loses its `patience` and goes. Static objects count where they extend into the own lane, as for
-/// `IdmClassic`.
+/// the other loses its `patience` and goes. A driver that has waited 40 s more for others who go first drives up to the
+/// conflict: then it is inside the junction, and those who can still stop let it go, so that nobody starves. Static
+/// objects count where they extend into the own lane, as for `IdmClassic`.
 ///
 /// Guarantee: as long as the vehicle can stop before a conflict, it does not enter while another vehicle is inside or
 /// can no longer stop. Of two vehicles that can both stop, one goes first, or both until one of them can no longer
@@ -124,6 +125,7 @@ struct Intersection {
   static constexpr double starting = detail::starting_speed;
   static constexpr double at_line_within = 2.0;  // [m] from where a driver waits: it has arrived there
   static constexpr double air = 0.3;             // [m] distance kept to a conflict
+  static constexpr double longest_wait = 40.0;   // [s] beyond its patience, until it drives up to the conflict
   static constexpr double infinite = std::numeric_limits<double>::infinity();
 
   /// Where one waits.
@@ -356,7 +358,7 @@ struct Intersection {
     bool const is_in = other.is_inside(conflict, zone);
     if (theirs.end + time_margin < ours.begin) return is_in ? Claim::watch : Claim::free;
     if (ours.end + time_margin < theirs.begin && !is_in) return Claim::free;
-    return own.waited > own.patience + 40.0 ? Claim::watch : Claim::yield;
+    return own.waited > own.patience + longest_wait ? Claim::watch : Claim::yield;
   }
 
   /// Earliest time [s] at which the own vehicle has driven `distance` [m].
