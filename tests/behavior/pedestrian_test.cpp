@@ -209,6 +209,38 @@ TEST_CASE("a pedestrian that relies on braking drivers gets across unhurt") {
   CHECK(crossed == 120);
 }
 
+TEST_CASE("two pedestrians who meet on a way too narrow for both pass each other") {
+  int passed = 0;
+  for (std::uint32_t seed = 0; seed < 40; ++seed) {
+    Sim world(road, {.seed = seed});
+    cb::RandomStream random(seed, 6, 0);
+    cb::Pedestrian const one{.social = {.desired_speed = between(1.0, 1.6, random)}};
+    cb::Pedestrian const two{.social = {.desired_speed = between(1.0, 1.6, random)}};
+    auto const a = walk(world, way({{0, 50}, {20, 50}}, 1.0), {0, 50}, one);
+    auto const b = walk(world, way({{20, 50}, {0, 50}}, 1.0), {20, 50}, two);
+    for (int i = 0; i < 600; ++i) REQUIRE(world.step(0.1));
+    passed += world.status(a) == cb::AgentStatus::arrived && world.status(b) == cb::AgentStatus::arrived;
+  }
+  CHECK(passed == 40);
+}
+
+TEST_CASE("a pedestrian between two lanes does not wait for a queue of traffic to end, and is not hit") {
+  for (std::uint32_t seed = 0; seed < 20; ++seed) {
+    CAPTURE(seed);
+    Sim world(road, {.seed = seed});
+    auto const id = walk(world, way({{320, 8}, {320, -14}}), {320, -2.7});  // in the first lane, before the second
+    double const speed = 4.0 + 0.1 * seed;
+    for (double x = 315.0 - 0.5 * seed; x > 5.0; x -= 6.5 + 1.6 * speed)
+      world.add({.position = {x, -5.25}, .speed = speed, .behavior = cb::IdmClassic{.desired_speed = speed}});
+    double crossed = 1e9;
+    for (int i = 0; i < 300 && crossed > 1e8; ++i) {
+      drive_safely(world, 1, 0.1);
+      if (world.state(id).y < -7.3) crossed = world.time();
+    }
+    CHECK(crossed < 15.0);
+  }
+}
+
 TEST_CASE("a crowd forms lanes of one direction, but not with the forces of 1995 or without forces") {
   double formed = 0.0, mixed = 0.0, published = 0.0;
   for (std::uint32_t seed = 0; seed < 3; ++seed) {

@@ -22,6 +22,8 @@ inline constexpr double starting_speed = 2.5;
 inline constexpr double short_way = 15.0;
 /// A vehicle that stands at its line is not beyond it, whatever the rounding [m].
 inline constexpr double over_line = 0.1;
+/// Acceleration of a vehicle that leaves a junction [m/s^2].
+inline constexpr double pull_away = 1.0;
 
 /// Length [m] by which a body exceeds the shape for which conflicts are computed, for instance a larger one or one at
 /// an angle.
@@ -144,7 +146,6 @@ template <class View>
   constexpr double spread = 8.0;     // [s] range over which ids spread the end of patience
   constexpr double later = 20.0;     // [s] more for the larger id, and if only one of the two is in the junction
   constexpr double in_order = 10.0;  // [s] more where those who came earlier go first
-  constexpr double pull_away = 1.0;  // [m/s^2]
   auto const& [user, at, reach, is_behind_slow] = other;
   bool const stands = user.speed < standing_speed, own_stands = own.speed < standing_speed;
   // Two drivers must not lose their patience together. Of two that wait for each other, the smaller id goes long before

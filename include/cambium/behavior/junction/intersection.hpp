@@ -34,8 +34,9 @@ namespace cambium {
 /// all vehicles that are still outside. At green it also enters to turn left, and waits inside for oncoming traffic.
 /// It stops at red lights (`World::set_light`) and stop signs, and slows down for bends. Where neither priorities nor
 /// lights say who goes first, those who have stopped go in the order in which they came. In a deadlock one driver after
-/// the other loses its `patience` and goes. Static objects count where they extend into the own lane, as for
-/// `IdmClassic`.
+/// the other loses its `patience` and goes. A driver that has waited 40 s more for others who go first drives up to the
+/// conflict: then it is inside the junction, and those who can still stop let it go, so that nobody starves. Static
+/// objects count where they extend into the own lane, as for `IdmClassic`.
 ///
 /// Guarantee: as long as the vehicle can stop before a conflict, it does not enter while another vehicle is inside or
 /// can no longer stop. Of two vehicles that can both stop, one goes first, or both until one of them can no longer
@@ -124,6 +125,7 @@ struct Intersection {
   static constexpr double starting = detail::starting_speed;
   static constexpr double at_line_within = 2.0;  // [m] from where a driver waits: it has arrived there
   static constexpr double air = 0.3;             // [m] distance kept to a conflict
+  static constexpr double longest_wait = 40.0;   // [s] beyond its patience, until it drives up to the conflict
   static constexpr double infinite = std::numeric_limits<double>::infinity();
 
   /// Where one waits.
@@ -182,18 +184,23 @@ struct Intersection {
   void heed_conflicts(View const& view, Own& own, Strictest<IdmLaw>& ahead, double dt) const {
     auto const& conflicts = view.corridor().conflicts;
     auto const is_behind = [&](map::Conflict const& c) { return c.farthest_end < own.s; };
-    for (auto at = std::partition_point(conflicts.begin(), conflicts.end(), is_behind); at != conflicts.end(); ++at) {
-      auto const& conflict = *at;
-      if (conflict.hold[1][1] > own.front + own.look_ahead) break;
+    auto const first = std::partition_point(conflicts.begin(), conflicts.end(), is_behind);
+    auto end = first;
+    for (; end != conflicts.end() && end->hold[1][1] <= own.front + own.look_ahead; ++end) {
+      auto const& conflict = *end;
       if (conflict.hull().end < own.s) continue;
       auto const& zones = conflict.zones[own.is_large];
       own.is_near_line = own.is_near_line || zones[0].line - own.front < detail::short_way;
       own.is_inside_junction = own.is_inside_junction || own.is_inside(conflict, zones[0]);
-      auto claims = claims_of(view, conflict, own, ahead);
-      if (!zones[0].empty() && claims[0] < Claim::yield && is_full_behind(view, zones[0], own, ahead.constraint()))
-        claims[0] = Claim::yield;
+      auto const claims = claims_of(view, conflict, own, ahead);
       for (std::size_t other = 0; other < 2; ++other)
         if (claims[other] != Claim::free) obey(claims[other], conflict, zones[other], view, own, dt);
+    }
+    if (!keep_clear || ahead.constraint().speed > starting) return;
+    for (auto at = first; at != end; ++at) {
+      auto const& zone = at->zones[own.is_large][0];
+      if (!zone.empty() && is_full_behind(view, zone, own, ahead.constraint()))
+        obey(Claim::yield, *at, zone, view, own, dt);
     }
   }
 
@@ -210,7 +217,7 @@ struct Intersection {
                               : -infinite;
     for (std::size_t others : {0u, 1u}) {
       double const outside = std::min(zone.line - own.front, conflict.hold[own.is_large][others] - own.s);
-      double const to_stop = distance_to_stop(claim, std::max(outside, inside), own, to_conflict);
+      double const to_stop = distance_to_stop(view, claim, std::max(outside, inside), own, to_conflict);
       if (claim == Claim::yield && !can_stop(own.speed, to_conflict + air)) continue;
       double const braking = claim == Claim::watch ? rules.safe_deceleration : own.idm.comfortable_deceleration;
       auto const motion = motion_before_stop(own.speed, to_stop, braking, hardest(own), dt);
@@ -242,13 +249,32 @@ struct Intersection {
     return place;
   }
 
-  /// Distance to where it waits [m]: before the line if it can still stop there, otherwise before the conflict.
-  [[nodiscard]] double distance_to_stop(Claim claim, double to_hold, Own const& own, double to_conflict) const {
+  /// Distance to where it waits [m]: before the line if it can still stop there, otherwise before the first zone ahead
+  /// of it, so that it stands in nobody's way. Up to the conflict itself if that will be free in time.
+  template <class View>
+  [[nodiscard]] double distance_to_stop(View const& view, Claim claim, double to_hold, Own const& own,
+                                        double to_conflict) const {
+    if (claim == Claim::watch) return to_conflict;
     double const to_line = std::min(to_hold, to_conflict);
-    if (to_line < 0.0 || !can_stop(own.speed, to_line)) return to_conflict;
-    for (double const margin : {claim == Claim::watch ? air : rules.stop_margin, air})
+    if (to_line < 0.0 || !can_stop(own.speed, to_line)) return distance_to_zone(view, own, to_conflict);
+    for (double const margin : {rules.stop_margin, air})
       if (can_stop(own.speed, to_line - margin)) return std::max(0.0, to_line - margin);
     return to_line;
+  }
+
+  /// Distance [m] to the first zone ahead before which the vehicle can still stop, at most `to_conflict`; to the
+  /// conflict where that is far, maybe in another junction.
+  template <class View>
+  [[nodiscard]] double distance_to_zone(View const& view, Own const& own, double to_conflict) const {
+    double nearest = to_conflict;
+    if (to_conflict > detail::short_way) return nearest;
+    for (auto const& c : view.corridor().conflicts)
+      for (std::size_t const other : {0u, 1u}) {
+        double const way = c.zones[own.is_large][other].begin - air - own.s;
+        if (c.kind == map::OverlapKind::split || (other == 1 && !own.meets_large) || way < 0.0) continue;
+        if (way < nearest && can_stop(own.speed, way)) nearest = way;
+      }
+    return nearest;
   }
 
   /// The strongest claims of the normal and of the large vehicles on their way to the conflict. Adds merging leaders to
@@ -313,7 +339,8 @@ struct Intersection {
       double end = zone.other_end + reach.rear;  // where it leaves room for the own vehicle
       if (conflict.kind == map::OverlapKind::merge)
         end = std::min(end, zone.begin + view.shape().front + own.idm.minimum_gap + user.rear - conflict.shift);
-      double const out = (end - at) / std::max(user.speed, standing_speed);
+      double const out =
+          user.speed < standing_speed ? infinite : time_to_cover(end - at, user.speed, detail::pull_away, infinite);
       return out + 0.5 * time_margin < arrival(own, own_way) ? Claim::watch : Claim::blocked;
     }
     if (detail::goes_first(view, conflict, zone, other, way, own_way, own)) return Claim::free;
@@ -330,7 +357,8 @@ struct Intersection {
     Window const ours{arrival(own, own_way), arrival(own, zone.end - own.s)};
     bool const is_in = other.is_inside(conflict, zone);
     if (theirs.end + time_margin < ours.begin) return is_in ? Claim::watch : Claim::free;
-    return ours.end + time_margin < theirs.begin && !is_in ? Claim::free : Claim::yield;
+    if (ours.end + time_margin < theirs.begin && !is_in) return Claim::free;
+    return own.waited > own.patience + longest_wait ? Claim::watch : Claim::yield;
   }
 
   /// Earliest time [s] at which the own vehicle has driven `distance` [m].
@@ -340,9 +368,8 @@ struct Intersection {
 
   /// Whether the room behind the conflict is too small for the vehicle, as in a queue.
   template <class View>
-  [[nodiscard]] bool is_full_behind(View const& view, map::ConflictZone const& zone, Own const& own,
-                                    Constraint const& leader) const {
-    if (!keep_clear || leader.speed > starting) return false;
+  [[nodiscard]] static bool is_full_behind(View const& view, map::ConflictZone const& zone, Own const& own,
+                                           Constraint const& leader) {
     double const end = zone.end - view.shape().rear;  // end of the conflict for a rear end
     double const room = own.front + leader.gap - end;
     return room < view.shape().length() + own.idm.minimum_gap;

@@ -70,11 +70,12 @@ template <class View>
 }
 
 /// Whether the traffic of a crossed lane leaves no gap. `to_begin`, `to_end` [m]: from the front and the rear of the
-/// body to the borders of the lane; `margin` [s]: see `CrossingParameters::time_margin`.
+/// body to the borders of the lane; `margin` [s]: see `CrossingParameters::time_margin`; `demanded` [m/s^2]: see
+/// `CrossingParameters::demanded_deceleration`.
 template <class View>
 [[nodiscard]] bool is_blocked(CrossingParameters const& p, SocialForceParameters const& social, View const& view,
                               map::LaneCrossing const& crossing, double speed, double to_begin, double to_end,
-                              double margin) {
+                              double margin, double demanded) {
   double const walking = social.desired_speed;
   double const arrival = std::max(0.0, to_begin) / (social.highest_speed_ratio * walking);
   double const clearance =
@@ -85,7 +86,7 @@ template <class View>
   auto const heed = [&](RoadUser const& user, double position) {
     if (blocked || position - user.rear > strip.end || !view.signals_way(user, crossing.lane)) return;
     double const distance = strip.begin - position - user.front, theirs = std::max(0.0, user.speed);
-    if (distance > 0.0 && theirs * theirs < 2.0 * p.demanded_deceleration * distance) return;
+    if (distance > 0.0 && theirs * theirs < 2.0 * demanded * distance) return;
     double const first = time_to_cover(distance, theirs, p.assumed_acceleration, std::max(theirs, p.assumed_speed));
     double const way = strip.end - position + user.rear;
     double const last = theirs > standing_speed ? way / theirs : std::numeric_limits<double>::infinity();
@@ -99,13 +100,15 @@ template <class View>
 
 /// How far the reference point of a pedestrian at `speed` [m/s] may go along its corridor [m], so that its front does
 /// not pass the border of a lane without a gap; infinite if it may go on. Adjacent lanes are crossed in one go. A
-/// pedestrian on its way across goes on, unless a vehicle unexpectedly enters a lane still ahead. O(arriving vehicles).
+/// pedestrian on its way across goes on, unless a vehicle unexpectedly enters a lane still ahead and can no longer
+/// brake for it comfortably. O(arriving vehicles).
 template <class View>
 [[nodiscard]] double distance_to_stop(CrossingParameters const& p, SocialForceParameters const& social,
                                       View const& view, double speed) {
   constexpr double infinite = std::numeric_limits<double>::infinity();
-  constexpr double near = 5.0;  // [m]
-  constexpr double toe = 0.2;   // [m] a pedestrian that extends over the kerb by less has not begun to cross
+  constexpr double near = 5.0;         // [m]
+  constexpr double comfortable = 1.5;  // [m/s^2]
+  constexpr double toe = 0.2;          // [m] a pedestrian that extends over the kerb by less has not begun to cross
   double const s = view.place().s, front = s + view.shape().front, rear = s - view.shape().rear;
   double row_begin = -infinite, row_end = -infinite;
   for (auto const& crossing : view.corridor().crossings) {
@@ -116,7 +119,8 @@ template <class View>
     if (crossing.end < rear || crossing.begin + toe < front) continue;  // behind it, or inside it
     bool const on_the_way = row_begin + toe < front;
     if (detail::is_blocked(p, social, view, crossing, speed, crossing.begin - front, crossing.end - rear,
-                           on_the_way ? 0.0 : p.time_margin))
+                           on_the_way ? 0.0 : p.time_margin,
+                           on_the_way ? std::max(p.demanded_deceleration, comfortable) : p.demanded_deceleration))
       return (on_the_way ? crossing.begin : row_begin) - view.shape().front - s;
   }
   return infinite;

@@ -209,12 +209,14 @@ struct Pedestrian {
     return sum;
   }
 
-  /// Force of the way's borders, and of the kerb where it has to stop.
+  /// Force of the way's borders, and of the kerb where it has to stop. Below its desired speed the borders count less,
+  /// below half of it not at all: two who meet on a way too narrow for both step over them.
   [[nodiscard]] Vector borders(map::LaneCorridor const& way, map::SideWidths const& sides, double stop,
                                Walk const& walk) const {
     auto const& g = way.center.segments()[walk.at.segment];
-    double const leftwards = border_repulsion(social, sides.right + walk.at.lateral) -
-                             border_repulsion(social, sides.left - walk.at.lateral);
+    double const pace = std::clamp(2.0 * walk.velocity.norm() / social.desired_speed - 1.0, 0.0, 1.0);
+    double const leftwards = pace * (border_repulsion(social, sides.right + walk.at.lateral) -
+                                     border_repulsion(social, sides.left - walk.at.lateral));
     double const back =
         stop < std::numeric_limits<double>::infinity() ? border_repulsion(social, stop - walk.at.s) : 0.0;
     return {-leftwards * g.uy - back * g.ux, leftwards * g.ux - back * g.uy};
