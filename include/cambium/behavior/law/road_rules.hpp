@@ -489,7 +489,11 @@ struct RoadRules {
                                                                          LongitudinalMotion<double> const& motion,
                                                                          typename View::State const& next,
                                                                          Memory& memory) {
-    if (memory.aside == 0) return detail::drift_on(view, motion, next, memory.adrift);
+    if (memory.aside == 0) {
+      auto const drifted = detail::drift_on(view, motion, next, memory.adrift);
+      if (!memory.adrift && detail::sticks_out(view)) memory.steer_to(0.0);
+      return drifted;
+    }
     memory.adrift = false;
     return detail::move_aside(view, memory.offset(), motion, next);
   }
