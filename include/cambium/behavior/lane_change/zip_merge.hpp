@@ -171,15 +171,16 @@ struct ZipMerge {
     };
     auto first = whose_turn(view, memory, leader, merge, own, coming);
     // Vehicles behind it go first, too, even though it is not their turn, if they do not give way. Drivers of other
-    // kinds follow whoever is ahead: one that is still ahead where it is high time to brake for it may be one of these.
-    constexpr double high_time = 3.0;  // [m/s^2]
+    // kinds follow whoever is ahead: one that is still ahead where it is high time to brake for it, and does not brake
+    // itself, may be one of these.
+    constexpr double high_time = 3.0, brakes = 1.0;  // [m/s^2]
     auto const insists = [&](RoadUser const& other) {
       return !gives_way(coming(other), own) ||
-             (other.s > view.place().s && braking_after(coming(other), own) > high_time);
+             (other.s > view.place().s && braking_after(coming(other), own) > high_time &&
+              !(is_valid(other.agent) && view.acceleration(other) < -brakes));
     };
     for (auto next = view.merging(merge, first ? first->s - first->rear : infinite);
-         next && (!first || next->s < first->s) && insists(*next);
-         next = view.merging(merge, first->s - first->rear))
+         next && (!first || next->s < first->s) && insists(*next); next = view.merging(merge, first->s - first->rear))
       first = next;
     return first;
   }
