@@ -33,8 +33,8 @@ CAMBIUM_COLD geometry::Shape random_shape(Map const& map, JunctionTraffic const&
 }
 
 /// How far an agent put on lane `from` may drive before it is where bodies of those in the junction may reach [m];
-/// negative where it is already, or where the lane is too narrow for it, as where it opens, or has no width, so that the
-/// agent is in the lane beside.
+/// negative where it is already, or where the lane is too narrow for it, as where it opens, or has no width, so that
+/// the agent is in the lane beside.
 CAMBIUM_COLD double room_before_zones(JunctionSite::World const& world, AgentId id, LaneId from) {
   auto const slot = world.slot_of(id);
   auto const& agent = world.roster().agents[slot];
