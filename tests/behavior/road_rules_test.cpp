@@ -63,6 +63,20 @@ TEST_CASE_TEMPLATE("every driver stops before its lane's end if the rules say so
   CHECK(drive(cb::RoadRules::LaneEnd::before_destination).status != cb::AgentStatus::driving);
 }
 
+TEST_CASE_TEMPLATE(
+    "a driver that enters over the border of its lane finds back to the middle, one within it keeps its place",
+    Behavior, cb::IdmClassic, cb::AdaptiveCruiseControl, cb::Intersection) {
+  auto const offset_after = [](double offset) {
+    Traffic<Behavior> world(straight_road(2, 400));
+    auto const id = world.add({.position = {50, -5.25 + offset}, .speed = 10, .behavior = Behavior{}});
+    for (int i = 0; i < 60; ++i) REQUIRE(world.step(0.2));
+    CHECK(std::abs(world.record(id).lane.heading_error) < 1e-3);
+    return world.record(id).lane.lateral;
+  };
+  for (double const offset : {1.6, -1.6}) CHECK(std::abs(offset_after(offset)) < 0.02);
+  for (double const offset : {0.5, -0.5}) CHECK(offset_after(offset) == doctest::Approx(offset));
+}
+
 TEST_CASE("of a leader and the lane's end, the one that requires more braking counts") {
   World world(straight_road(1, 300));
   cb::RoadRules const rules{.lane_end = cb::RoadRules::LaneEnd::always};

@@ -109,6 +109,41 @@ TEST_CASE("if one lane is sparser, all pass without collisions and nobody waits 
   }
 }
 
+TEST_CASE(
+    "among drivers who follow whoever is ahead, zip merging vehicles of any length do not collide, and all get on") {
+  using cb::geometry::car, cb::geometry::truck, cb::geometry::bus;
+  auto const map = support::own_map("lane_drop.xodr");
+  for (std::uint64_t seed = 1; seed <= 30; ++seed) {
+    CAPTURE(seed);
+    Sim world(map, {.seed = seed});
+    cb::RandomStream random(seed, 0, 0);
+    double place[2] = {380.0, 380.0 - between(0.0, 12.0, random)};
+    std::size_t entered = 0;
+    for (int i = 0; i < 40; ++i) {
+      int const lane = i % 2;
+      auto const shape = cb::uniform01(random) < 0.4 ? truck() : cb::uniform01(random) < 0.2 ? bus() : car();
+      double const desired = between(10.0, 16.0, random), s = place[lane] - shape.front;
+      if (s - shape.rear < 5.0) continue;
+      if (cb::uniform01(random) < 0.5)
+        add(world, 2 + lane, s, 6.0, zip(desired), {}, shape);
+      else
+        add(world, 2 + lane, s, 6.0, cb::IdmClassic{.desired_speed = desired}, {}, shape);
+      place[lane] = s - shape.rear - between(6.0, 14.0, random);
+      ++entered;
+    }
+    std::size_t passed = 0;
+    int hits = 0;
+    for (int k = 0; k < 1500 && passed < entered; ++k) {
+      REQUIRE(world.step(0.2));
+      hits += collisions(world);
+      passed = 0;
+      for (auto const& agent : world.frame().agents) passed += agent.state.x > 640.0;
+    }
+    CHECK(hits == 0);
+    CHECK(passed == entered);
+  }
+}
+
 TEST_CASE("beside a fast lane nobody brakes to a standstill for vehicles that pass anyway") {
   auto const map = support::own_map("lane_drop.xodr");
   for (double gap = 40.0; gap < 85.0; gap += 5.0) {

@@ -80,14 +80,14 @@ std::uint32_t crossed_on_red(JunctionSite::World const& world, std::vector<doubl
 }
 
 /// Seeds and numbers are scattered over their ranges.
-void run(JunctionSite const& site, JunctionTraffic const& traffic, std::uint32_t number, Tally& tally) {
+void run(JunctionSite const& site, JunctionTraffic const& traffic, std::uint32_t number, double dt, Tally& tally) {
   auto world = site.sample(17 + 0x9e3779b97f4a7c15u * (number % 7), number * 2654435761u, traffic).make_world();
   tally.agents += world.size();
   bool hit = false;
-  for (int step = 0; step < 1500 && world.size() > 0 && !hit; ++step) {
+  for (int step = 0; step * dt < 300.0 && world.size() > 0 && !hit; ++step) {
     std::vector<double> before;
     for (auto const& agent : world.frame().agents) before.push_back(agent.lane.s);
-    REQUIRE(world.step(0.2));
+    REQUIRE(world.step(dt));
     if (traffic.lights) tally.on_red += crossed_on_red(world, before);
     remove_those_through(world);
     hit = collides(world);
@@ -101,11 +101,11 @@ void run(JunctionSite const& site, JunctionTraffic const& traffic, std::uint32_t
 }
 
 void check_all_pass(std::shared_ptr<Map const> const& map, std::string const& name, std::uint32_t count,
-                    JunctionTraffic traffic = {}) {
+                    JunctionTraffic traffic = {}, double dt = 0.2) {
   traffic.scattered_ids = true;
   auto const site = find_junction_site(map, name);
   Tally tally;
-  for (std::uint32_t number = 0; number < count; ++number) run(site, traffic, number, tally);
+  for (std::uint32_t number = 0; number < count; ++number) run(site, traffic, number, dt, tally);
   CAPTURE(name);
   CAPTURE(tally.first);
   CHECK(tally.collisions == 0);
@@ -121,6 +121,12 @@ void check_all_pass(std::shared_ptr<Map const> const& map, std::string const& na
 TEST_CASE("nobody collides and nobody waits forever in sampled traffic of cars, vans and trucks") {
   for (char const* name : {"intersection_3way.xodr", "intersection_4way.xodr", "roundabout.xodr"})
     check_all_pass(support::own_map(name), name, runs(1000));
+}
+
+TEST_CASE("so it is at shorter and longer steps, with a third of trucks where these fit") {
+  for (char const* name : {"roundabout.xodr", "intersection_3way.xodr", "intersection_4way.xodr"})
+    for (double const dt : {0.1, 0.5})
+      check_all_pass(support::own_map(name), name, runs(150), {.truck_share = 0.35}, dt);
 }
 
 TEST_CASE("the same holds under traffic lights, and nobody crosses a stop line on red") {

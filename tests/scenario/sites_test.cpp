@@ -1,6 +1,7 @@
 // Sampled situations: the same laws for merges, highways and junctions.
 #include <doctest/doctest.h>
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -192,6 +193,16 @@ TEST_CASE("traffic at junctions has the shares that are asked for, and lights in
   CHECK(color(1, 25.0) == map::LightColor::green);
   CHECK_THROWS_WITH_AS(static_cast<void>(site.sample(5, 1, {.truck_share = 1.5})), doctest::Contains("truck_share"),
                        ParameterError);
+}
+
+TEST_CASE("traffic at junctions begins in the middle of its lanes, also where a lane opens behind its entrance") {
+  auto const map = support::corpus_map("multi_intersections.xodr");
+  if (!map) return;
+  auto const site = find_junction_site(map);
+  for (std::uint32_t number = 0; number < 20; ++number) {
+    auto const world = site.sample(3, number).make_world();
+    for (auto const& record : world.frame().agents) CHECK(std::abs(record.lane.lateral) < 0.01);
+  }
 }
 
 TEST_CASE("a scenario whose ego is missing or whose ids repeat makes no world") {

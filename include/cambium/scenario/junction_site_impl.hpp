@@ -32,13 +32,15 @@ CAMBIUM_COLD geometry::Shape random_shape(Map const& map, JunctionTraffic const&
   return fits_route(map, route, shape) ? shape : car();
 }
 
-/// How far an agent may drive before it is where bodies of those in the junction may reach [m]; negative where it is
-/// already, or where its lane is too narrow for it, as where a lane opens.
-CAMBIUM_COLD double room_before_zones(JunctionSite::World const& world, AgentId id) {
+/// How far an agent put on lane `from` may drive before it is where bodies of those in the junction may reach [m];
+/// negative where it is already, or where the lane is too narrow for it, as where it opens, or has no width, so that
+/// the agent is in the lane beside.
+CAMBIUM_COLD double room_before_zones(JunctionSite::World const& world, AgentId id, LaneId from) {
   auto const slot = world.slot_of(id);
   auto const& agent = world.roster().agents[slot];
   auto const& at = world.frame().agents[slot].lane;
   auto const& corridor = agent.road->corridors[at.corridor];
+  if (corridor.lane_at(at.s).lane != from) return -1.0;
   if (corridor.width_at(at.s - agent.shape.rear) < agent.shape.width()) return -1.0;
   bool const large = !world.map().options().conflict_shape.holds(agent.shape);
   double hold = std::numeric_limits<double>::infinity();
@@ -79,7 +81,7 @@ CAMBIUM_COLD void try_to_add(JunctionSite const& site, JunctionTraffic const& tr
                                       .dynamics = cycles ? presets::bicycle_dynamics() : SingleTrack{},
                                       .id = id};
   id = world.add(spec);
-  double const room = std::min(junction - s - shape.front, room_before_zones(world, *id)) - 1.0;
+  double const room = std::min(junction - s - shape.front, room_before_zones(world, *id, from)) - 1.0;
   double const wanted = 3.0 + 9.0 * uniform01(random);
   if (room < 0.0) return world.remove(*id);
   spec.speed = std::min(cycles ? idm.desired_speed : wanted, std::sqrt(2.0 * 1.5 * room));

@@ -170,10 +170,17 @@ struct ZipMerge {
       return Coming{std::max(0.0, other.speed), merge - other.s - other.front, other.length()};
     };
     auto first = whose_turn(view, memory, leader, merge, own, coming);
-    // Vehicles behind it go first, too, even though it is not their turn, if they do not give way.
+    // Vehicles behind it go first, too, even though it is not their turn, if they do not give way. Drivers of other
+    // kinds follow whoever is ahead: one that is still ahead where it is high time to brake for it, and does not brake
+    // itself, may be one of these.
+    constexpr double high_time = 3.0, brakes = 1.0;  // [m/s^2]
+    auto const insists = [&](RoadUser const& other) {
+      return !gives_way(coming(other), own) ||
+             (other.s > view.place().s && braking_after(coming(other), own) > high_time &&
+              !(is_valid(other.agent) && view.acceleration(other) < -brakes));
+    };
     for (auto next = view.merging(merge, first ? first->s - first->rear : infinite);
-         next && (!first || next->s < first->s) && !gives_way(coming(*next), own);
-         next = view.merging(merge, first->s - first->rear))
+         next && (!first || next->s < first->s) && insists(*next); next = view.merging(merge, first->s - first->rear))
       first = next;
     return first;
   }
@@ -183,20 +190,20 @@ struct ZipMerge {
   [[nodiscard]] std::optional<RoadUser> whose_turn(View const& view, Memory& memory,
                                                    std::optional<RoadUser> const& leader, double merge,
                                                    Coming const& own, Measure const& coming) const {
+    double const s = view.place().s;
+    auto const is_impatient = [&](RoadUser const& other) { return memory.stood > patience && other.s < s; };
     if (!leader) {  // without a leader, the vehicle closer to the merge goes first
       auto const other = view.merging(merge, infinite);
       constexpr double equal = 0.5;  // [m]
-      bool const is_first =
-          other && coming(*other).to_merge < own.to_merge + (other->agent < view.id() ? equal : -equal);
-      return is_first ? other : std::nullopt;
+      bool const is_first = other && other->s > s - (other->agent < view.id() ? equal : -equal);
+      return is_first && !is_impatient(*other) ? other : std::nullopt;
     }
     double const rear_of_leader = merge - own.to_merge + leader->gap;
     if (rear_of_leader < merge && is_on_path(view, *leader, rear_of_leader)) memory.ahead = leader->agent;
     if (leader->agent != memory.ahead) return std::nullopt;  // the other lane has had its turn
     auto const other = view.merging(merge, rear_of_leader);
     if (!other || !gives_way(own, coming(*other))) return std::nullopt;
-    bool const is_impatient = memory.stood > patience && coming(*other).to_merge > own.to_merge;
-    return is_impatient ? std::nullopt : other;
+    return is_impatient(*other) ? std::nullopt : other;
   }
 };
 static_assert(BehaviorModel<ZipMerge>);

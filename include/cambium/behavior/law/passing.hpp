@@ -48,6 +48,17 @@ template <class View>
   return next;
 }
 
+/// Whether a vehicle beside the middle of its lane extends over the border there by more than 0.1 m.
+template <class View>
+[[nodiscard]] bool sticks_out(View const& view) {
+  constexpr double more = 0.1;  // [m]
+  auto const& at = view.place();
+  auto const widths = view.corridor().widths_at(at.s, at.segment);
+  double const left = at.lateral + view.shape().left - widths.left,
+               right = view.shape().right - at.lateral - widths.right;
+  return (at.lateral > more && left > more) || (at.lateral < -more && right > more);
+}
+
 /// Which side of a lane is the inner one, where one passes: 1 the left, -1 the right (in left-hand traffic).
 template <class View>
 [[nodiscard]] double inner_side(View const& view) {

@@ -28,8 +28,12 @@ template <class Law, class View>
     if (is_valid(user.agent)) {
       constraint.acceleration = view.acceleration(user);
       double const gap = user.s - user.rear - view.place().s - view.shape().front;
-      if (user.gap > gap + 0.1)
-        constraint.acceleration = std::min(constraint.acceleration, -1.0);  // the gap has to open
+      // Before a merge the gap has to open, whatever the leader's acceleration; near it, the law must not rely on that.
+      constexpr double soon = 3.0, share = 0.2, hardest = -1e3;  // [s], see `map::gap_before_merge`, [m/s^2]
+      double const opens = user.gap - gap;
+      if (opens > 0.1)
+        constraint.acceleration =
+            std::min(constraint.acceleration, opens < share * soon * view.state().speed ? hardest : -1.0);
     }
   return constraint;
 }
@@ -445,7 +449,11 @@ struct RoadRules {
                                                                          LongitudinalMotion<double> const& motion,
                                                                          typename View::State const& next,
                                                                          Memory& memory) {
-    if (memory.aside == 0) return detail::drift_on(view, motion, next, memory.adrift);
+    if (memory.aside == 0) {
+      auto const drifted = detail::drift_on(view, motion, next, memory.adrift);
+      if (!memory.adrift && detail::sticks_out(view)) memory.steer_to(0.0);
+      return drifted;
+    }
     memory.adrift = false;
     return detail::move_aside(view, memory.offset(), motion, next);
   }
