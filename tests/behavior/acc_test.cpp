@@ -175,6 +175,20 @@ TEST_CASE("from safe gaps the ACC model does not collide with a leader that brak
   MESSAGE("hardest braking " << -hardest << " m/s^2");
 }
 
+TEST_CASE("an ACC driver brakes for what comes towards it, whether that accelerates or brakes") {
+  cb::RandomStream random(4, 0, 0, 0);
+  for (int i = 0; i < 10'000; ++i) {
+    auto const driver = any_driver(random);
+    double const speed = between(0.5, 30, random), gap = between(0.5, 60, random);
+    cb::AccLaw const law(driver, 0.99, speed);
+    double const standing = law({gap, 0.0, 0.0});
+    double const oncoming = law({gap, between(-20, -0.1, random), between(-5, 5, random)});
+    CAPTURE(speed);
+    CAPTURE(gap);
+    CHECK(oncoming <= standing + 1e-9);
+  }
+}
+
 TEST_CASE("extreme inputs give finite accelerations within the bounds") {
   cb::IdmParameters const p;
   for (double const v : {0.0, 1e-9, 30.0, 1000.0})

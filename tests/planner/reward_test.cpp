@@ -44,7 +44,7 @@ constexpr Slot ego{};
 
 }  // namespace
 
-TEST_CASE("a reward is the sum of its terms, some per second, until a course ends") {
+TEST_CASE("a reward is the sum of its terms, some per second") {
   PredictionWorld world(support::straight_road(2, 600.0));
   world.add({.position = {60, -5.25}, .speed = 12, .behavior = IdmClassic{}});
   world.add({.position = {80, -5.25}, .speed = 12, .behavior = IdmClassic{}});
@@ -62,8 +62,9 @@ TEST_CASE("a reward is the sum of its terms, some per second, until a course end
   auto const left = reward.judge(world, ego, 0.2);
   CHECK(left.ends);
   CHECK(left.outcome.reward == doctest::Approx(1.2 + 5.0));
-  world.set_state(AgentId{0}, {.x = 78, .y = -5.25, .speed = 12});  // a collision: the user's terms no longer count
-  CHECK(reward.judge(world, ego, 0.2).outcome.reward == reward.traffic().collision);
+  world.set_state(AgentId{0}, {.x = 78, .y = -5.25, .speed = 12});  // a collision
+  CHECK(reward.judge(world, ego, 0.2).outcome.reward ==
+        doctest::Approx(reward.traffic().collision - 2.0 * (30.0 - (gap - 18.0))));
 }
 
 TEST_CASE("an own evaluator's event counts as a risk") {
@@ -105,6 +106,21 @@ TEST_CASE_TEMPLATE("every shipped evaluator can be a term of a reward that a sea
   for (auto const& candidate : planner.think(world.observe(id), {}, workspace).candidates)
     CHECK(std::isfinite(candidate.score));
   REQUIRE(world.step(0.2));
+}
+
+TEST_CASE_TEMPLATE("an event that ends the course counts as a term of its own, too", Event, Collision, AtFaultCollision,
+                   AnyCollision, OffRoad) {
+  PredictionWorld world(support::straight_road(2, 600.0));
+  world.add({.position = {60, -5.25}, .speed = 12, .behavior = IdmClassic{}});
+  world.add({.position = {90, -5.25}, .speed = 12, .behavior = IdmClassic{}});
+  Reward<Event> reward;
+  reward.template term<Event>().weight = -7.0;
+  CHECK(reward.judge(world, ego, 0.2).outcome.reward == 0.0);
+  double const y = std::is_same_v<Event, OffRoad> ? 5.0 : -5.25;
+  world.set_state(AgentId{0}, {.x = 88, .y = y, .speed = 12});
+  auto const judged = reward.judge(world, ego, 0.2);
+  CHECK(judged.ends);
+  CHECK(judged.outcome.reward == doctest::Approx(-1007.0));
 }
 
 TEST_CASE("a course that is cut off counts the terms per second for the lookahead, the user's too") {

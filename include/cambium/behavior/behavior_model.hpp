@@ -202,4 +202,11 @@ void fell_short(Memory& memory, double way, bool left_course) {
   if constexpr (requires { memory.fell_short(way, left_course); }) memory.fell_short(way, left_course);
 }
 
+/// Tells a behaviour's memory that `World::set_state` has moved the vehicle, see `BehaviorModel`. A memory that
+/// contains another behaviour's passes it on.
+template <class Memory>
+void was_set(Memory& memory) {
+  if constexpr (requires { memory.was_set(); }) memory.was_set();
+}
+
 }  // namespace cambium

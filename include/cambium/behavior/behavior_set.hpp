@@ -69,11 +69,7 @@ struct BehaviorSet {
 
   /// Tells a memory that `World::set_state` has moved the vehicle, see `BehaviorModel`.
   static void was_set(Memory& memory) {
-    std::visit(
-        [](auto& own) {
-          if constexpr (requires { own.was_set(); }) own.was_set();
-        },
-        memory);
+    std::visit([](auto& own) { cambium::was_set(own); }, memory);
   }
 
   /// When the agent enters traffic [s]; -infinity if the behaviour does not say.

@@ -10,13 +10,15 @@
 namespace cambium {
 
 /// Acceleration [m/s^2] that just avoids a collision if the leader keeps its acceleration (constant-acceleration
-/// heuristic; Kesting, Treiber, Helbing 2010, eq. 2.3). The leader's acceleration counts up to `most` [m/s^2].
+/// heuristic; Kesting, Treiber, Helbing 2010, eq. 2.3). The leader's acceleration counts up to `most` [m/s^2]; an
+/// oncoming one, to which the formula does not apply, is not expected to slow down.
 [[nodiscard]] inline double cah_acceleration(double speed, Constraint const& leader, double most) {
-  double const a = std::min(leader.acceleration, most), gap = std::max(leader.gap, 1e-9);
+  double const a = std::min(leader.acceleration, leader.speed < 0.0 ? 0.0 : most), gap = std::max(leader.gap, 1e-9);
   double const closing = speed - leader.speed;
   double const denominator = leader.speed * leader.speed - 2.0 * gap * a;
   // The leader stops before the two are closest; the case below covers a leader that already stands.
-  if (leader.speed * closing <= -2.0 * gap * a && denominator > 0.0) return speed * speed * a / denominator;
+  bool const stops_first = leader.speed >= 0.0 && leader.speed * closing <= -2.0 * gap * a;
+  if (stops_first && denominator > 0.0) return speed * speed * a / denominator;
   return a - (closing > 0.0 ? closing * closing / (2.0 * gap) : 0.0);
 }
 

@@ -19,6 +19,8 @@ struct IdmHypotheses {
     float time_headway = 1.5f;  ///< assumed [s]
     IdmClassic::Memory driver{};
 
+    void was_set() { driver.was_set(); }
+
     friend bool operator==(Memory const&, Memory const&) = default;
   };
 

@@ -90,6 +90,7 @@ struct HumanDriver {
     bool looks_away = false;
 
     void fell_short(double way, bool left_course) { cambium::fell_short(nominal, way, left_course); }
+    void was_set() { cambium::was_set(nominal); }
 
     friend bool operator==(Memory const&, Memory const&) = default;
   };

@@ -22,8 +22,9 @@ struct HumanEstimate {
 /// estimated with the driver's errors, and extrapolated to a time ahead (Treiber, Kesting, Helbing 2006): the own place
 /// at constant speed, the own speed at constant acceleration, gaps at a constant approach rate, which itself stays. So
 /// a driver that brakes sees its leader slower by as much, and standing road users come closer. Objects are known to
-/// stand. Lateral positions and the answers of `View::state(user)`, `around(distance, f)`, `acceleration` and `light`
-/// stay as they are. With a default `HumanEstimate` all answers equal those of `View`, to the last bit.
+/// stand. Lateral positions and the answers of `View::state(user)`, `around(distance, f)`, `off_lanes`,
+/// `acceleration` and `light` stay as they are. With a default `HumanEstimate` all answers equal those of `View`, to
+/// the last bit.
 template <class View>
 class HumanView : public View {
  public:
@@ -70,6 +71,11 @@ class HumanView : public View {
   void around(double distance, F&& f) const {
     if (!estimate_.alone) View::around(distance, std::forward<F>(f));
   }
+  template <class F>
+  void off_lanes(double distance, F&& f) const {
+    if (!estimate_.alone) View::off_lanes(distance, std::forward<F>(f));
+  }
+  [[nodiscard]] bool anybody_off_lanes() const { return !estimate_.alone && View::anybody_off_lanes(); }
   template <class F>
   void for_each_object(F&& f) const {
     if (!estimate_.alone) View::for_each_object(std::forward<F>(f));

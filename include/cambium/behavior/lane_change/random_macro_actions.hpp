@@ -30,6 +30,7 @@ struct RandomMacroActions {
     float left{};  ///< time until the next choice [s]
 
     void fell_short(double way, bool left_course) { macro.fell_short(way, left_course); }
+    void was_set() { macro.was_set(); }
 
     friend bool operator==(Memory const&, Memory const&) = default;
   };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <concepts>
 #include <limits>
 
 namespace cambium {
@@ -12,11 +13,24 @@ struct Constraint {
   double acceleration = 0.0;                             ///< of a leader, if the law asks for it [m/s^2]
 };
 
+/// A driver's car-following law at one speed, such as `IdmLaw` and `AccLaw`:
+/// - `law(constraint)`: its acceleration behind a constraint [m/s^2], never higher than on a free road;
+/// - `law.speed()`, `law.desired_speed()` [m/s];
+/// - `law.motion(constraint, dt, tolerance)`: the `LongitudinalMotion` of a step of `dt` [s] behind a constraint that
+///   keeps its speed; `tolerance` [m/s^2], see `idm_motion`;
+/// - `Law::asks_acceleration`: whether it wants to know a leader's acceleration.
+template <class L>
+concept CarFollowingLaw = requires(L const law, Constraint const& constraint, double x) {
+  { law(constraint) } -> std::convertible_to<double>;
+  { law.speed() } -> std::convertible_to<double>;
+  { law.desired_speed() } -> std::convertible_to<double>;
+  { law.motion(constraint, x, x).distance } -> std::convertible_to<double>;
+  { L::asks_acceleration } -> std::convertible_to<bool>;
+};
+
 /// Keeps the strictest of a driver's constraints: the one to which the car-following law responds with the lowest
-/// acceleration; among equals, the nearest. Without constraints the road is free. `Law` has `double
-/// operator()(Constraint const&) const` [m/s^2] for the driver's speed, never higher behind a constraint than on a free
-/// road.
-template <class Law>
+/// acceleration; among equals, the nearest. Without constraints the road is free.
+template <CarFollowingLaw Law>
 class Strictest {
  public:
   explicit Strictest(Law const& law) : law_(&law) {}

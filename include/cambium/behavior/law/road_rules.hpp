@@ -175,10 +175,11 @@ struct RoadRules {
     return Constraint{std::max(0.0, left - lane_end_offset), 0.0, 0.0};
   }
 
-  /// Adds the next vehicle ahead, `next`, and the end of the lane to the constraints.
+  /// Adds the next vehicle ahead, `next`, a merge to wait for, and the end of the lane to the constraints.
   template <class View, class Law>
   void heed(View const& view, std::optional<RoadUser> const& next, Strictest<Law>& ahead) const {
     if (next) ahead.heed(detail::constraint_of<Law>(view, *next));
+    if (auto const gap = gap_to_wait_for(view)) ahead.heed(*gap);
     if (auto const end = lane_end_ahead(view)) ahead.heed(*end);
   }
   /// The same with the next vehicle in the own lane that is in the way, and the next one in each lane that merges in.
@@ -256,7 +257,7 @@ struct RoadRules {
 
   /// The plan over `dt` [s] of a driver with parameters `idm` that keeps its lane: its law answers what the model heeds
   /// by itself, `ahead`, and what the rules add to it, within their bounds. `tolerance` [m/s^2]: see `idm_motion`.
-  template <class View, class Law, HasIdmParameters P>
+  template <class View, CarFollowingLaw Law, HasIdmParameters P>
   [[nodiscard]] Plan<View> keep_lane(View const& view, Strictest<Law> ahead, P const& idm, double tolerance, double dt,
                                      Memory& memory) const {
     if (!only_follows(view, memory)) [[unlikely]] {
@@ -442,6 +443,7 @@ struct RoadRules {
       if (!detail::leaves_room(view, view.place().corridor, other, found.offset, found.clearance))
         ahead.heed(detail::constraint_of<Law>(view, other));
     });
+    if (auto const gap = gap_to_wait_for(view)) ahead.heed(*gap);
   }
 
   template <class View>

@@ -169,7 +169,7 @@ struct Weighted {
 };
 
 /// `TrafficReward` plus one weighted term for each evaluator: `reward.term<Gap>() = {.weight = 0.1, .per_second =
-/// true}`. If `TrafficReward` or a later term ends the course, a term no longer counts.
+/// true}`. All terms count in the step that ends the course, too.
 template <class... Evaluators>
 struct Reward;
 
@@ -187,6 +187,8 @@ struct Reward<> : TrafficReward {
 
 template <class First, class... Rest>
 struct Reward<First, Rest...> {
+  static_assert(!(std::is_same_v<First, Rest> || ...),
+                "cambium::Reward<Evaluators...>: an evaluator is there twice; each has one term");
   Weighted<First> first{};
   Reward<Rest...> rest{};
 
@@ -213,7 +215,7 @@ struct Reward<First, Rest...> {
   template <class World>
   [[nodiscard]] Judgement judge(World& world, Slot slot, double dt) const {
     auto all = rest.judge(world, slot, dt);
-    if (!all.ends) first.judge(world, slot, dt, all);
+    if (world.frame().agents[slot].status == AgentStatus::driving) first.judge(world, slot, dt, all);
     return all;
   }
   /// That of `TrafficReward`, and the terms per second as if nothing changed during its `lookahead`.
