@@ -250,6 +250,37 @@ TEST_CASE("errors are normal, last, and show in the gaps that drivers keep") {
   CHECK(product == doctest::Approx(std::exp(-1.0)).epsilon(0.2));
 }
 
+TEST_CASE("a driver decides in every step, or as often as its memory of 16 decisions spans a reaction time") {
+  for (double const dt : {0.05, 0.1, 0.5})
+    for (double const reaction_time : {0.3, 1.2, 2.0}) {
+      int pause = 1;  // [steps]
+      while (15 * pause * dt < reaction_time - 1e-9) ++pause;
+      auto world = platoon(Swinging{}, precise(reaction_time, true), 1);
+      double oldest = 0.0;
+      for (int k = 0; k < 60; ++k) {
+        REQUIRE(world.step(dt));
+        oldest = std::max(oldest, static_cast<double>(world.memory<Human>(cb::AgentId{1}).age));
+      }
+      CAPTURE(dt);
+      CAPTURE(reaction_time);
+      CHECK(oldest == doctest::Approx((pause - 1) * dt).epsilon(1e-5).scale(1.0));
+    }
+}
+
+TEST_CASE("a driver errs about the speeds of vehicles, but knows that objects stand") {
+  Platoon world(straight_road(2, 500.0));
+  auto const id = add(world, 1, 100.0, 20.0, precise(0.0, false));
+  world.add_object(cb::geometry::Polygon({{150, -2}, {152, -2}, {152, -1}, {150, -1}}));
+  auto const view = world.observe(id);
+  cb::HumanView const mistaken(view, cb::HumanEstimate{.rate_error = 0.1});
+  REQUIRE(mistaken.ahead());
+  CHECK(mistaken.ahead()->speed == 0.0);
+  add(world, 1, 130.0, 20.0, cb::IdmClassic{});
+  auto const now = world.observe(id);
+  double const gap = now.ahead()->gap;
+  CHECK(cb::HumanView(now, cb::HumanEstimate{.rate_error = 0.1}).ahead()->speed == doctest::Approx(20.0 + 0.1 * gap));
+}
+
 TEST_CASE("a driver that looks away notices later that its leader brakes") {
   auto inattentive = precise(0.6, true);
   inattentive.attentive = 3.0;

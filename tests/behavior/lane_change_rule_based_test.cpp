@@ -2,6 +2,8 @@
 
 #include <doctest/doctest.h>
 
+#include <cmath>
+
 #include "lane_traffic_fixtures.hpp"
 
 using namespace lane_traffic;
@@ -90,6 +92,18 @@ TEST_CASE("MOBIL changes only if its filters permit it, the library's and the us
   CHECK_NOTHROW(cb::check_parameters(wary));
   wary.filters.first.rear = -1.0;
   CHECK_THROWS_AS(cb::check_parameters(wary), cb::ParameterError);
+}
+
+TEST_CASE("a lane is long enough if exactly the least length remains, and too short below that") {
+  Sim world(support::own_map("lane_drop.xodr"));
+  auto const id = add(world, 3, 100.0, 14.0, roomy(20.0));
+  auto const view = world.observe(id);
+  cb::LaneOption const option{view.place(), false, {}, {}};
+  double const remaining = cb::lane_end(view, option.place.corridor, option.place.piece) - option.place.s;
+  REQUIRE(std::isfinite(remaining));
+  auto const permits = [&](double least) { return cb::RemainingLength{least}(view, option); };
+  CHECK(permits(remaining));
+  CHECK(!permits(std::nextafter(remaining, 1e9)));
 }
 
 TEST_CASE("a lane is changed into only if its speed limit is high enough") {

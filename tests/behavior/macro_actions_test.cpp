@@ -302,6 +302,10 @@ TEST_CASE("the vehicle model carries out the chosen motion primitive") {
     CHECK(result.failed == 1);
   }
   CHECK_THROWS_AS((void)cb::MotionPrimitives::of({}), cb::ParameterError);
+  cb::MotionPrimitive const p;
+  CHECK(cb::MotionPrimitives::of({p, p, p, p, p, p, p, p, p, p, p, p, p, p, p, p}).size() == 16);
+  CHECK_THROWS_WITH_AS((void)cb::MotionPrimitives::of({p, p, p, p, p, p, p, p, p, p, p, p, p, p, p, p, p}),
+                       doctest::Contains("give 1 to 16"), cb::ParameterError);
 }
 
 TEST_CASE("safety brakes to a standstill and returns to the middle of its lane") {

@@ -139,3 +139,34 @@ TEST_CASE("a driver that gives way lets those pass whose gap is too short, takes
   }
   CHECK(slowest < 0.5);
 }
+
+TEST_CASE("a driver waits for those whose gap behind it would be too short at the merge, as a simulated twin says") {
+  auto const site = site_with(0.0, false);
+  auto const& ramp = site.entrances[site.ramp];
+  auto const& through = *std::find_if(site.entrances.begin(), site.entrances.end(),
+                                      [](auto const& e) { return e.merges() && !e.gives_up_lane; });
+  double const before = 25.0, length = cb::geometry::car().length();
+  cb::RoadRules const rules{.merging = cb::Merging::gives_way};
+  for (double const speed : {5.5, 8.0, 11.0})
+    for (double const theirs : {6.0, 10.0, 16.0}) {
+      // The twin pulls away by 1 m/s^2, up to the speed of the vehicle behind; that one keeps its speed until the merge
+      // and then brakes behind the slower one.
+      double time = 0.0, way = 0.0, then = speed;
+      for (double const dt = 1e-3; way < before; time += dt) {
+        then = std::min(std::max(speed, theirs), then + dt);
+        way += then * dt;
+      }
+      double const slower = std::max(0.0, theirs - then);
+      double const needed = 2.0 + rules.merging_headway * theirs + slower * slower / (2.0 * rules.safe_deceleration);
+      double const threshold = needed + theirs * time - before + length;
+      for (double const behind : {threshold - 0.3, threshold + 0.3}) {
+        Sim world(site.map);
+        auto const own = add(world, ramp, before, speed, cb::Merging::gives_way);
+        add(world, through, before + behind, theirs, cb::Merging::ignored);
+        CAPTURE(speed);
+        CAPTURE(theirs);
+        CAPTURE(threshold);
+        CHECK(rules.gap_to_wait_for(world.observe(own)).has_value() == (behind < threshold));
+      }
+    }
+}

@@ -93,6 +93,20 @@ double air_beside(Sim const& world, cb::AgentId a, cb::AgentId b) {
 
 }  // namespace
 
+TEST_CASE("a vehicle sticks out of its lane from 0.1 m beyond the border of the side on which it drives") {
+  Sim world(street(3.0));
+  for (auto const& shape : {cb::geometry::car(), cb::geometry::truck(), cb::geometry::bicycle()})
+    for (double const side : {1.0, -1.0})
+      for (double const beyond : {-0.5, -0.02, 0.02, 0.08, 0.12, 0.18, 0.5}) {
+        double const lateral = side * (1.5 - (side > 0.0 ? shape.left : shape.right) + beyond);
+        if (side * lateral < 0.1) continue;
+        auto const id = enter(world, 50.0, 0.0, cb::IdmClassic{}, shape, lateral);
+        CAPTURE(beyond);
+        CHECK(cb::detail::sticks_out(world.observe(id)) == (beyond > 0.1));
+        world.remove(id);
+      }
+}
+
 TEST_CASE_TEMPLATE("a cyclist keeps to the outer side of its lane, straight on and in bends", Behavior, cb::IdmClassic,
                    cb::IdmLaneTracking, cb::AdaptiveCruiseControl, cb::Mobil, cb::ZipMerge, cb::Intersection) {
   for (double const width : {3.0, 5.0})

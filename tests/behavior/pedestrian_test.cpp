@@ -191,6 +191,29 @@ TEST_CASE("a pedestrian crosses in gaps and is never hit by vehicles that ignore
   CHECK(least > 3.0);
 }
 
+TEST_CASE("a pedestrian enters if it clears the lane a time margin before the next vehicle; on its way, no margin") {
+  double const walking = 1.34, speed = 20.0;  // of the vehicle, which comes in the farther lane
+  // Time [s] until the latest vehicle arrives for which the pedestrian slows down.
+  auto const latest = [&](double y) {
+    for (double distance = 220.0; distance > 20.0; distance -= 0.5) {
+      Sim world(road);
+      auto const id = walk(world, way({{320, 8}, {320, -14}}), {320, y},
+                           {.crossing = {.time_margin = 3.0, .assumed_acceleration = 0}, .fluctuation = 0.0}, walking);
+      world.add({.position = {320 - 0.3 - cb::geometry::car().front - distance, -5.25},
+                 .speed = speed,
+                 .behavior = cb::ConstantAcceleration{}});
+      REQUIRE(world.step(0.1));
+      if (world.state(id).speed < walking - 0.04) return distance / speed;
+    }
+    return 0.0;
+  };
+  for (double const y : {0.4, -1.0, -2.0, -3.0}) {
+    double const clearance = (y + 0.3 + 7.0) / walking, margin = y > 0.0 ? 3.0 : 0.0;
+    CAPTURE(y);
+    CHECK(std::abs(latest(y) - (clearance + margin)) < 0.06);
+  }
+}
+
 TEST_CASE("a pedestrian that relies on braking drivers gets across unhurt") {
   int crossed = 0;
   for (std::uint32_t seed = 0; seed < 40; ++seed) {

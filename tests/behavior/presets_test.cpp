@@ -16,6 +16,8 @@ TEST_CASE("presets of pedestrians and cyclists are valid; a cyclist brakes no ha
   CHECK_NOTHROW(cb::check_parameters(pedestrian_dynamics()));
   CHECK(cyclist().lowest_acceleration >= bicycle_dynamics().lowest_acceleration);
   CHECK(cyclist().maximum_acceleration <= bicycle_dynamics().highest_acceleration);
+  // The bicycle has some reserve beyond what the cyclist uses, but no motor.
+  CHECK(bicycle_dynamics().highest_acceleration <= 2.0 * cyclist().maximum_acceleration);
   CHECK(pedestrian_dynamics().highest_speed > 1.3 * 1.34);
   auto const bicycle = cb::geometry::bicycle();
   CHECK(bicycle_dynamics().wheel_base < bicycle.length());

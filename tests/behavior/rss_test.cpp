@@ -138,6 +138,15 @@ TEST_CASE(
   CHECK_FALSE(cb::rss_response(p, at).any());
 }
 
+TEST_CASE("any response differs from none") {
+  for (bool const brake : {false, true})
+    for (bool const left : {false, true})
+      for (bool const right : {false, true}) {
+        cb::RssResponse const response{brake, left, right};
+        CHECK(response.any() == (response != cb::RssResponse{}));
+      }
+}
+
 TEST_CASE("contradictory bounds of braking are errors") {
   cambium::RssParameters rss;
   rss.minimum_deceleration = rss.maximum_deceleration + 2.0;

@@ -4,9 +4,11 @@
 
 #include <cmath>
 #include <cstdint>
+#include <limits>
 
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"
+#include "cambium/planner/frenet/frenet_candidate.hpp"
 #include "cambium/planner/frenet/quintic.hpp"
 
 using namespace cambium;
@@ -110,4 +112,31 @@ TEST_CASE("heading, curvature, speed and acceleration of a course beside a line 
     CHECK(back.slope == doctest::Approx(motion.slope).epsilon(1e-12));
     CHECK(back.bend == doctest::Approx(motion.bend).epsilon(1e-12));
   }
+}
+
+TEST_CASE("slope and bend of a candidate are the derivatives of its offset, by way and over time") {
+  RandomStream random(5, 0, 0);
+  int by_way = 0, checked = 0;
+  for (int i = 0; i < 200; ++i) {
+    auto const draw = [&](double low, double high) { return Uniform{low, high}(random); };
+    double const speed = i % 2 == 0 ? draw(1.0, 3.0) : draw(6.0, 20.0), duration = draw(2.0, 5.0);
+    FrenetMotion<double> const start{draw(0, 50), speed,           draw(-0.5, 0.5),
+                                     draw(-1, 1), draw(-0.1, 0.1), draw(-0.01, 0.01)};
+    auto const course = frenet_candidate(start, {std::numeric_limits<double>::infinity(), speed + draw(0.0, 2.0)},
+                                         draw(-2, 2), duration, 15.0, 4.0, FrenetCosts{});
+    by_way += course.by_way;
+    CHECK(course.at(0.0).offset == doctest::Approx(start.offset));
+    CHECK(course.at(0.0).slope == doctest::Approx(start.slope));
+    CHECK(course.at(0.0).bend == doctest::Approx(start.bend));
+    for (double t = 0.1; t < duration - 0.1; t += 0.3) {
+      double const h = 1e-4;
+      auto const a = course.at(t - h), b = course.at(t), c = course.at(t + h);
+      if (course.by_way && c.s - start.s >= course.way) break;
+      CHECK(b.slope == doctest::Approx((c.offset - a.offset) / (c.s - a.s)).epsilon(1e-5).scale(1.0));
+      CHECK(b.bend == doctest::Approx((c.slope - a.slope) / (c.s - a.s)).epsilon(1e-5).scale(1.0));
+      ++checked;
+    }
+  }
+  CHECK(by_way == 100);
+  CHECK(checked > 1000);
 }

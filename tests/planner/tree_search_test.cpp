@@ -51,6 +51,15 @@ TEST_CASE("regret matching and Exp3 play the mixed equilibria of matrix games") 
   }
 }
 
+TEST_CASE_TEMPLATE("a dominant action is played nearly always", Selection, RegretMatching, Exp3) {
+  MatrixGame const dominated{2, 2, {{{0.2, 0.4}, {0.6, 0.8}}}};  // the second row and the first column
+  for (std::uint64_t seed = 1; seed <= 3; ++seed) {
+    auto const result = solve<Selection>(dominated, 20'000, seed, Selection{0.05});
+    CHECK(result.of(0)[1].share > 0.9);
+    CHECK(result.of(1)[0].share > 0.9);
+  }
+}
+
 TEST_CASE_TEMPLATE("searches play noughts and crosses perfectly", Selection, Ucb1, Ucb1Tuned, Puct, RegretMatching) {
   RandomStream random(3, 0, 0);
   TicTacToe const game;
@@ -438,6 +447,15 @@ struct Riches {
   }
 };
 
+/// Pays 1 a step, without end.
+struct Wages : Riches {
+  bool step(State&, std::span<int const>, RandomStream&, std::span<AgentOutcome> out) const {
+    out[0].reward = 1.0;
+    return false;
+  }
+  int policy_action(State, std::size_t, RandomStream&) const { return 0; }
+};
+
 /// A single choice between two rewards.
 struct TwoPrices {
   static constexpr bool is_deterministic = true;
@@ -459,6 +477,17 @@ struct TwoPrices {
 TEST_CASE("a return that overflows is a problem") {
   TreeSearch<Riches, Ucb1, NoRollout> search({}, {.horizon = 5, .discount = 1.0}, {}, {}, {100});
   CHECK(search.run(0, 1).problem == SearchProblem::not_finite);
+}
+
+TEST_CASE_TEMPLATE("a roll-out ends at the horizon: the return of equal rewards is a geometric series", Rollout,
+                   RandomRollout, PolicyRollout, TruncatedRollout<RandomRollout>) {
+  for (int horizon = 1; horizon <= 12; ++horizon)
+    for (double const discount : {1.0, 0.9, 0.5}) {
+      double series = 0.0;
+      for (int step = horizon; step > 0; --step) series = 1.0 + discount * series;
+      TreeSearch<Wages, Ucb1, Rollout> search({}, {.horizon = horizon, .discount = discount}, {}, {}, {20});
+      CHECK(search.run(0, 1).of(0)[0].mean_return == doctest::Approx(series).epsilon(1e-12));
+    }
 }
 
 TEST_CASE("returns whose total or difference overflows are a problem, and such a search keeps nothing") {
