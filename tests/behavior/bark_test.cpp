@@ -42,11 +42,19 @@ std::vector<Row> read_rows(std::string const& name) {
 }
 
 /// The centre lines on which BARK drives.
+/// A lane of 3.5 m along `points`.
+cb::map::LaneCorridor lane_along(std::vector<cb::geometry::Point> const& points) {
+  cb::map::LaneCorridor lane;
+  lane.center = cb::geometry::Line::from_points(points);
+  lane.widths.assign(lane.center.segments().size() + 1, {1.75, 1.75});
+  return lane;
+}
+
 std::vector<cb::map::LaneCorridor> straight_corridors() {
   std::vector<cb::map::LaneCorridor> corridors(2);
   for (int i = 0; i < 2; ++i) {
     std::vector<cb::geometry::Point> const points{{0, -1.75 - 3.5 * i}, {1000, -1.75 - 3.5 * i}};
-    corridors[static_cast<std::size_t>(i)].center = cb::geometry::Line::from_points(points);
+    corridors[static_cast<std::size_t>(i)] = lane_along(points);
   }
   return corridors;
 }
@@ -55,7 +63,7 @@ std::vector<cb::map::LaneCorridor> arc_corridors(std::string const& line) {
   std::vector<std::vector<cb::geometry::Point>> points(2);
   for (auto const& c : corpus::table(*corpus::find("oracle/bark/bark_arc_centerlines.csv")))
     if (c[1] == line) points[static_cast<std::size_t>(std::stoi(c[0]))].emplace_back(std::stod(c[3]), std::stod(c[4]));
-  for (std::size_t i = 0; i < 2; ++i) corridors[i].center = cb::geometry::Line::from_points(points[i]);
+  for (std::size_t i = 0; i < 2; ++i) corridors[i] = lane_along(points[i]);
   return corridors;
 }
 

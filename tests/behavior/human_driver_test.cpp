@@ -151,6 +151,34 @@ TEST_CASE_TEMPLATE("a human without imperfections drives as the nominal behaviou
     CHECK(human.frame().agents[i].state == nominal.frame().agents[i].state);
 }
 
+TEST_CASE("so it does among cyclists, seen by an imperfect observer") {
+  using Human = cb::HumanDriver<cb::IdmClassic>;
+  using Noisy = cb::World<cb::BehaviorSet<cb::IdmClassic, Human>, cb::InterpolateExecution, cb::SingleTrack,
+                          cb::ParametricObserver>;
+  cb::ObservationNoise const noise{.along = 0.3, .across = 0.1, .speed = 0.2};
+  auto const drive = [&](bool human) {
+    Noisy world(straight_road(1, 1000.0), {.seed = 3});
+    cb::IdmClassic const driver{.desired_speed = 12.0};
+    Noisy::Behaviors::Any behavior = driver;
+    if (human) behavior = Human{.nominal = driver, .reaction_time = 0.0, .gap_error = 0.0, .rate_error = 0.0};
+    for (int i = 0; i < 8; ++i) {
+      bool const cycles = i % 2 == 1;
+      world.add({.position = {20.0 + 25.0 * i, cycles ? -3.0 : -1.75},
+                 .speed = cycles ? 5.0 : 10.0,
+                 .shape = cycles ? cb::geometry::bicycle() : cb::geometry::car(),
+                 .behavior = cycles ? Noisy::Behaviors::Any(
+                                          cb::IdmClassic{.desired_speed = 5.0, .rules = cb::presets::cyclist_rules()})
+                                    : behavior,
+                 .observer = {.others = noise}});
+    }
+    for (int k = 0; k < 150; ++k) REQUIRE(world.step(0.2));
+    return world;
+  };
+  auto const nominal = drive(false), human = drive(true);
+  for (cb::Slot slot{}; cb::index_of(slot) < human.size(); ++slot)
+    CHECK(human.frame().agents[slot].state == nominal.frame().agents[slot].state);
+}
+
 TEST_CASE("a decision takes effect one reaction time later, however long the steps") {
   struct Case {
     double reaction_time, dt;

@@ -71,7 +71,7 @@ std::vector<double> shown(View const& view) {
   if (auto const next = view.behind()) add(*next);
   view.each_ahead({}, add);
   view.around(40.0, add);
-  view.for_each_object([&](cb::ObjectId id, auto const&) { all.push_back(cb::index_of(id)); });
+  view.for_each_object([&](cb::ObjectId id, auto const&) { all.push_back(static_cast<double>(cb::index_of(id))); });
   return all;
 }
 

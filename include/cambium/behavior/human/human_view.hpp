@@ -42,7 +42,7 @@ class HumanView : public View {
 
   [[nodiscard]] State const& state() const { return state_; }
   using View::shape;
-  [[nodiscard]] State const& state(RoadUser const& agent) const { return View::state(agent); }
+  [[nodiscard]] decltype(auto) state(RoadUser const& agent) const { return View::state(agent); }
   [[nodiscard]] map::LanePlace const& place() const { return place_; }
   [[nodiscard]] map::LanePlace place(CorridorId corridor) const { return moved(View::place(corridor), way_); }
 
