@@ -555,7 +555,27 @@ TEST_CASE("frames are exchanged: each world goes on where the other's frame was,
   CHECK(frame == later);
 }
 
-TEST_CASE("an agent on the wrong lane at a fork leaves its route; one that passes its end has arrived") {
+TEST_CASE("an agent on the wrong lane at a fork leaves its route; one on the exit lane drives to the end of the ramp") {
+  auto const map = own_map("highway_exit.xodr");
+  auto const lane_of = [&](cb::map::LaneType type) {
+    auto const found = std::ranges::find(map->lanes(), type, &cb::map::Lane::type);
+    REQUIRE(found != map->lanes().end());
+    return found->id;
+  };
+  auto const ramp = lane_of(cb::map::LaneType::off_ramp), exit = lane_of(cb::map::LaneType::exit);
+  for (bool const takes_exit : {true, false}) {
+    Sim world(map);
+    auto const& path = map->lane(exit).path;
+    auto const pose = path.pose(0.8 * path.length());
+    auto const start = takes_exit ? pose.position() : cb::geometry::to_map(pose, {0.0, 3.6});
+    auto const id = world.add({.position = start, .heading = pose.heading, .speed = 12, .goal = cb::ReachLane{ramp}});
+    for (int k = 0; k < 400 && world.status(id) == cb::AgentStatus::driving; ++k) REQUIRE(world.step(0.5));
+    CAPTURE(takes_exit);
+    CHECK(world.status(id) == (takes_exit ? cb::AgentStatus::left_map : cb::AgentStatus::off_route));
+  }
+}
+
+TEST_CASE("an agent that passes the end of its route has arrived") {
   auto const map = own_map("merging.xodr");
   Sim world(map);
   auto const ramp = map->find_lane("2", 10, -1), first = map->find_lane("3", 10, -3);
