@@ -5,17 +5,17 @@
 #include <cstdint>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "cambium/behavior/behavior_set.hpp"
 #include "cambium/behavior/following/idm_classic.hpp"
 #include "cambium/behavior/lane_change/macro_actions.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/dynamics/single_track.hpp"
+#include "cambium/evaluation/course_end.hpp"
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/map/road/curve_layout.hpp"
 #include "cambium/planner/mcts/mcts.hpp"
-#include "cambium/planner/mcts/mcts.hpp"
+#include "cambium/scenario/scenario.hpp"
 #include "cambium/world/world.hpp"
 
 /// The lane change of Bernhard, Esterle, Hart, Kessler 2020 ("BARK: Open behavior benchmarking in multi-agent
@@ -35,7 +35,7 @@ struct SameActionRollout {
 
   template <class Run>
   bool roll_out(Run& run) const {
-    return cb::detail::play(run, run.steps, [](std::size_t, int) { return std::uint8_t{3}; }) == 0.0;
+    return cb::play(run, run.steps, [](std::size_t, int) { return std::uint8_t{3}; }) == 0.0;
   }
 };
 
@@ -118,51 +118,38 @@ inline Sim::Behavior planner(Cell const& cell) {
   return own;
 }
 
-struct Scenario {
-  Sim world;
-  cb::AgentId ego;
-};
-
-/// Fills a lane with vehicles: gaps of 20 to 30 m, speeds of 11 to 17 m/s.
-inline std::vector<cb::AgentId> fill_lane(Sim& world, double begin, double end, double y, Cell const& cell,
-                                          cb::RandomStream& random) {
-  std::vector<cb::AgentId> ids;
+/// Fills a lane with vehicles from `begin` to `end` [m]: gaps of 20 to 30 m, speeds of 11 to 17 m/s.
+inline void fill_lane(cb::Scenario<Sim>& scenario, double begin, double end, double y, Cell const& cell,
+                      cb::RandomStream& random) {
   cb::geometry::Shape const shape{.front = 3.85, .rear = 1.12, .left = 0.955, .right = 0.955};
   for (double s = begin + cb::Uniform{0.0, 10.0}(random); s <= end;
-       s += shape.length() + cb::Uniform{20.0, 30.0}(random)) {
-    double const speed = cb::Uniform{11.0, 17.0}(random);
-    ids.push_back(world.add(
-        {.position = {s, y}, .speed = speed, .shape = shape, .behavior = driver(headway * (1.0 - cell.variation))}));
-  }
-  return ids;
+       s += shape.length() + cb::Uniform{20.0, 30.0}(random))
+    scenario.agents.push_back({.position = {s, y},
+                               .speed = cb::Uniform{11.0, 17.0}(random),
+                               .shape = shape,
+                               .behavior = driver(headway * (1.0 - cell.variation)),
+                               .id = static_cast<cb::AgentId>(scenario.agents.size())});
 }
 
-/// Samples scenario `number`. All cells of one variation get the same traffic.
-inline Scenario sample(std::shared_ptr<cb::Map const> const& map, Cell const& cell, std::uint64_t seed,
-                       std::uint32_t number) {
+/// Samples scenario `number`: the ego is one of those on the right. All cells of one variation get the same traffic.
+inline cb::Scenario<Sim> sample(std::shared_ptr<cb::Map const> const& map, Cell const& cell, std::uint64_t seed,
+                                std::uint32_t number) {
   cb::RandomStream random(seed, 0, number);
-  Scenario scenario{Sim(map, {.seed = seed + number}), {}};
-  auto& world = scenario.world;
-  fill_lane(world, 0.1 * way, 0.9 * way, -1.75, cell, random);
-  auto const right = fill_lane(world, 0.2 * way, 0.5 * way, -5.25, cell, random);
-  scenario.ego = right[cb::uniform_index(random, static_cast<std::uint32_t>(right.size()))];
-  auto const left = map->nearest_lane({0.5 * way, -1.75, 0.0})->lane;
-  // The ego enters again, with its planner and its goal.
-  auto const state = world.state(scenario.ego);
-  auto const shape = world.roster().agents[world.slot_of(scenario.ego)].shape;
-  world.remove(scenario.ego);
-  world.add({.position = {state.x, state.y},
-             .speed = state.speed,
-             .shape = shape,
-             .behavior = planner(cell),
-             .goal = cb::LaneLimits{.lane = left,
-                                    .from = 0.2 * way,
-                                    .left = 0.5,
-                                    .right = 0.5,
-                                    .heading_error = 0.08,
-                                    .lowest_speed = 11.0,
-                                    .highest_speed = 17.0},
-             .id = scenario.ego});
+  cb::Scenario<Sim> scenario{.map = map, .seed = seed + number};
+  fill_lane(scenario, 0.1 * way, 0.9 * way, -1.75, cell, random);
+  auto const left = scenario.agents.size();
+  fill_lane(scenario, 0.2 * way, 0.5 * way, -5.25, cell, random);
+  auto const right = static_cast<std::uint32_t>(scenario.agents.size() - left);
+  auto& ego = scenario.agents[left + cb::uniform_index(random, right)];
+  ego.behavior = planner(cell);
+  ego.goal = cb::LaneLimits{.lane = map->nearest_lane({0.5 * way, -1.75, 0.0})->lane,
+                            .from = 0.2 * way,
+                            .left = 0.5,
+                            .right = 0.5,
+                            .heading_error = 0.08,
+                            .lowest_speed = 11.0,
+                            .highest_speed = 17.0};
+  scenario.ego = ego.id;
   return scenario;
 }
 
@@ -173,15 +160,16 @@ struct Outcome {
   int steps = 0;
 };
 
-/// Simulates a scenario to its end. If the ego collides or leaves the road in the step that reaches the goal, this
-/// counts as a collision.
-inline Outcome play(Scenario scenario) {
-  auto& world = scenario.world;
+/// Simulates a scenario to its end. Leaving the road counts as a collision; both count in the step that reaches the
+/// goal, too.
+inline Outcome play(cb::Scenario<Sim> const& scenario) {
+  auto world = scenario.make_world();
   auto const ego = world.slot_of(scenario.ego);
   for (int k = 1; k <= most_steps; ++k) {
     if (auto const result = world.step(step); !result)
       throw cb::WorldError("step " + std::to_string(k), to_string(result.problem));
-    if (cb::Collision{}(world, ego) || cb::OffRoad{}(world, ego)) return {End::collision, k};
+    auto const end = cb::course_end(world, ego);
+    if (end == cb::CourseEnd::collision || end == cb::CourseEnd::off_road) return {End::collision, k};
     if (world.reached_goal(scenario.ego)) return {End::success, k};
   }
   return {End::time_out, most_steps};

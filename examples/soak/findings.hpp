@@ -87,7 +87,7 @@ struct Finding {
   double const turn = std::abs(cb::geometry::angle_difference(p.heading, q.heading));
   if (turn > 0.75 * cb::geometry::pi) return Flaw::head_on;
   if (turn > cb::geometry::pi / 6.0) return Flaw::crossing;
-  auto const box = cb::detail::box_at(world, a), other = cb::detail::box_at(world, b);
+  auto const box = cb::box_at(world, a), other = cb::box_at(world, b);
   double const aside = std::abs(-(other.x - box.x) * box.sin + (other.y - box.y) * box.cos);
   return aside < 0.6 * (box.half_width + other.half_width) ? Flaw::rear_end : Flaw::side;
 }
@@ -167,9 +167,8 @@ class Inspector {
     if (!cb::AnyCollision{}(world)) return;
     for (cb::Slot b{}; index_of(b) < world.size(); ++b)
       for (cb::Slot a{}; a < b; ++a) {
-        if (!cb::detail::in_traffic(world, a) || !cb::detail::in_traffic(world, b)) continue;
-        if (!cb::detail::circle_of(world, a).meets(cb::detail::circle_of(world, b))) continue;
-        if (!cb::geometry::intersects(cb::detail::box_at(world, a), cb::detail::box_at(world, b))) continue;
+        if (!cb::in_traffic(world, a) || !cb::in_traffic(world, b)) continue;
+        if (!cb::geometry::intersects(cb::box_at(world, a), cb::box_at(world, b))) continue;
         if (std::abs(height(world, a) - height(world, b)) > 3.0) continue;
         auto const flaw = kind_of_collision(world, a, b);
         auto const walks = [&](cb::Slot slot) {

@@ -5,3 +5,4 @@
 #include "cambium/evaluation/driving.hpp"
 #include "cambium/evaluation/evaluator.hpp"
 #include "cambium/evaluation/off_road.hpp"
+#include "cambium/evaluation/terms.hpp"

@@ -476,7 +476,7 @@ struct Hurry {
   template <class World>
   [[nodiscard]] Judgement judge(World const& world, Slot slot, double dt) const {
     double const speed = world.frame().agents[slot].state.speed;
-    return {{0.1 * speed * dt, speed > 13.0 ? 0.1 : 0.0}, false};
+    return {.reward = 0.1 * speed * dt, .cost = speed > 13.0 ? 0.1 : 0.0};
   }
   static constexpr auto parameters() { return parameter_list(); }
 };
@@ -596,9 +596,9 @@ TEST_CASE("an agent in an oncoming lane has left the road") {
   PredictionWorld world(support::two_way_road(300.0));
   TrafficReward const reward{.off_road = -10.0, .progress = 0.1};
   world.add({.position = {60, -1.75}, .heading = 0.0, .speed = 10});
-  CHECK(reward.judge(world, cambium::Slot{}, 0.2).outcome.reward == doctest::Approx(0.2));
+  CHECK(reward.judge(world, cambium::Slot{}, 0.2).reward == doctest::Approx(0.2));
   world.set_state(ego, {.x = 60, .y = 1.75, .heading = 0.0, .speed = 10});
-  CHECK(reward.judge(world, cambium::Slot{}, 0.2).outcome.reward == doctest::Approx(-10.0));
+  CHECK(reward.judge(world, cambium::Slot{}, 0.2).reward == doctest::Approx(-10.0));
   CHECK(reward.judge(world, cambium::Slot{}, 0.2).ends);
 }
 

@@ -4,7 +4,10 @@
 #include <cmath>
 
 #include "cambium/execution/interpolate.hpp"
+#include "cambium/planner/frenet/frenet_planner.hpp"
 #include "cambium/planner/mcts/mcts.hpp"
+#include "cambium/planner/policy/policy_tree_planner.hpp"
+#include "cambium/planner/policy/proposal_planner.hpp"
 #include "cambium/world/world.hpp"
 #include "support/maps.hpp"
 
@@ -35,12 +38,24 @@ struct OnTheLeft {
   }
 };
 
+/// How far to the left the agent is on a road along x [m].
+struct Leftwards {
+  static constexpr auto parameters() { return parameter_list(); }
+  template <class World>
+  [[nodiscard]] double operator()(World const& world, Slot slot) const {
+    return world.frame().agents[slot].state.y;
+  }
+};
+
 using Own = Reward<OnTheLeft, TooClose>;
+using Predicted = World<BehaviorSet<MacroActions, IdmProposal, IdmClassic, ConstantAcceleration>, InterpolateExecution,
+                        SingleTrack>;
 using PredictionWorld = World<BehaviorSet<MacroActions, IdmClassic>, InterpolateExecution, SingleTrack>;
 using Planner = Mcts<PredictionWorld, MacroActions, Own>;
 using Sim = World<BehaviorSet<Planner, IdmClassic>, InterpolateExecution, SingleTrack>;
 
 constexpr Slot ego{};
+#define COMMA ,
 
 }  // namespace
 
@@ -50,21 +65,21 @@ TEST_CASE("a reward is the sum of its terms, some per second") {
   world.add({.position = {80, -5.25}, .speed = 12, .behavior = IdmClassic{}});
   double const gap = 20.0 - geometry::car().front - geometry::car().rear;
   Own reward;
-  reward.traffic() = {.progress = 0.5};
-  CHECK(reward.judge(world, ego, 0.2).outcome.reward == doctest::Approx(0.5 * 12 * 0.2));
+  reward.traffic = {.progress = 0.5};
+  CHECK(reward.judge(world, ego, 0.2).reward == doctest::Approx(0.5 * 12 * 0.2));
   reward.term<TooClose>() = {.weight = -2.0, .per_second = true};
-  CHECK(reward.judge(world, ego, 0.2).outcome.reward == doctest::Approx(1.2 - 2.0 * (30.0 - gap) * 0.2));
+  CHECK(reward.judge(world, ego, 0.2).reward == doctest::Approx(1.2 - 2.0 * (30.0 - gap) * 0.2));
   reward.term<TooClose>().per_second = false;
-  CHECK(reward.judge(world, ego, 0.2).outcome.reward == doctest::Approx(1.2 - 2.0 * (30.0 - gap)));
+  CHECK(reward.judge(world, ego, 0.2).reward == doctest::Approx(1.2 - 2.0 * (30.0 - gap)));
   reward.term<OnTheLeft>() = {.weight = 5.0, .ends = true};
   CHECK_FALSE(reward.judge(world, ego, 0.2).ends);
   world.set_state(AgentId{0}, {.x = 60, .y = -1.75, .speed = 12});
   auto const left = reward.judge(world, ego, 0.2);
   CHECK(left.ends);
-  CHECK(left.outcome.reward == doctest::Approx(1.2 + 5.0));
+  CHECK(left.reward == doctest::Approx(1.2 + 5.0));
   world.set_state(AgentId{0}, {.x = 78, .y = -5.25, .speed = 12});  // a collision
-  CHECK(reward.judge(world, ego, 0.2).outcome.reward ==
-        doctest::Approx(reward.traffic().collision - 2.0 * (30.0 - (gap - 18.0))));
+  CHECK(reward.judge(world, ego, 0.2).reward ==
+        doctest::Approx(reward.traffic.collision - 2.0 * (30.0 - (gap - 18.0))));
 }
 
 TEST_CASE("an own evaluator's event counts as a risk") {
@@ -72,9 +87,9 @@ TEST_CASE("an own evaluator's event counts as a risk") {
   world.add({.position = {60, -5.25}, .speed = 12, .behavior = IdmClassic{}});
   Own reward;
   reward.term<OnTheLeft>().cost = 0.7;
-  CHECK(reward.judge(world, ego, 0.2).outcome.cost == 0.0);
+  CHECK(reward.judge(world, ego, 0.2).cost == 0.0);
   world.set_state(AgentId{0}, {.x = 60, .y = -1.75, .speed = 12});
-  CHECK(reward.judge(world, ego, 0.2).outcome.cost == 0.7);
+  CHECK(reward.judge(world, ego, 0.2).cost == 0.7);
 }
 
 TEST_CASE("a planner heeds a user's evaluator") {
@@ -83,12 +98,49 @@ TEST_CASE("a planner heeds a user's evaluator") {
     Planner planner;
     planner.options.budget.iterations = 600;
     planner.reward.term<OnTheLeft>() = {.weight = weight, .per_second = true};
-    planner.reward.traffic().goal = 0.0;
+    planner.reward.traffic.goal = 0.0;
     auto const id = world.add({.position = {60, weight > 0 ? -5.25 : -1.75}, .speed = 12, .behavior = planner});
     for (int k = 0; k < 40; ++k) REQUIRE(world.step(0.2));
     CAPTURE(world.state(id).y);
     CHECK((world.state(id).y > -3.5) == (weight > 0));
   }
+}
+
+TEST_CASE_TEMPLATE("every other planner heeds a user's evaluator, too", Heeding,
+                   ProposalPlanner<Predicted COMMA ConstantAcceleration COMMA NoBudget COMMA Terms<Leftwards>>,
+                   PolicyTreePlanner<Predicted COMMA NoBudget COMMA Terms<Leftwards>>,
+                   FrenetPlanner<Predicted COMMA ConstantAcceleration COMMA NoBudget COMMA Terms<Leftwards>>) {
+  auto const drive = [](double weight) {
+    World<BehaviorSet<Heeding, IdmClassic>, InterpolateExecution, SingleTrack> world(support::straight_road(3, 600.0));
+    Heeding planner;
+    planner.terms.template term<Leftwards>() = {.weight = weight, .per_second = true};
+    auto const id = world.add({.position = {60, -5.25}, .speed = 12, .behavior = planner});
+    typename Heeding::Workspace workspace;
+    auto const report = planner.think(world.observe(id), {}, workspace);
+    REQUIRE(report.chosen);
+    for (auto const& candidate : report.candidates)
+      if (candidate.refused.empty()) CHECK(candidate.score <= report.candidates[*report.chosen].score + 0.01);
+    for (int k = 0; k < 20; ++k) REQUIRE(world.step(0.2));
+    return world.state(id).y;
+  };
+  double const left = drive(20.0), middle = drive(0.0), right = drive(-20.0);
+  CHECK(left > middle + 0.5);
+  CHECK(right < middle - 0.5);
+}
+
+TEST_CASE("a term that ends the course ends it in every planner") {
+  World<BehaviorSet<IdmClassic>, InterpolateExecution, SingleTrack> world(support::straight_road(2, 600.0));
+  auto const id = world.add({.position = {60, -5.25}, .speed = 12});
+  auto const score = [&]<class P>(P planner, bool ends) {
+    planner.terms.template term<Progress>() = {.weight = 1.0, .ends = ends};
+    typename P::Workspace workspace;
+    auto const report = planner.think(world.observe(id), {}, workspace);
+    return report.candidates[*report.chosen].score;
+  };
+  auto const shortens = [&](auto const& planner) { return score(planner, true) < score(planner, false) - 50.0; };
+  CHECK(shortens(ProposalPlanner<Predicted, ConstantAcceleration, NoBudget, Terms<Progress>>{}));
+  CHECK(shortens(PolicyTreePlanner<Predicted, NoBudget, Terms<Progress>>{}));
+  CHECK(shortens(FrenetPlanner<Predicted, ConstantAcceleration, NoBudget, Terms<Progress>>{}));
 }
 
 TEST_CASE_TEMPLATE("every shipped evaluator can be a term of a reward that a search plans by", Evaluator, Collision,
@@ -115,12 +167,12 @@ TEST_CASE_TEMPLATE("an event that ends the course counts as a term of its own, t
   world.add({.position = {90, -5.25}, .speed = 12, .behavior = IdmClassic{}});
   Reward<Event> reward;
   reward.template term<Event>().weight = -7.0;
-  CHECK(reward.judge(world, ego, 0.2).outcome.reward == 0.0);
+  CHECK(reward.judge(world, ego, 0.2).reward == 0.0);
   double const y = std::is_same_v<Event, OffRoad> ? 5.0 : -5.25;
   world.set_state(AgentId{0}, {.x = 88, .y = y, .speed = 12});
   auto const judged = reward.judge(world, ego, 0.2);
   CHECK(judged.ends);
-  CHECK(judged.outcome.reward == doctest::Approx(-1007.0));
+  CHECK(judged.reward == doctest::Approx(-1007.0));
 }
 
 TEST_CASE("a course that is cut off counts the terms per second for the lookahead, the user's too") {
@@ -128,7 +180,7 @@ TEST_CASE("a course that is cut off counts the terms per second for the lookahea
   world.add({.position = {60, -5.25}, .speed = 12, .behavior = IdmClassic{}});
   Reward<SpeedDeviation> reward;
   reward.term<SpeedDeviation>() = {.evaluator = {.desired_speed = 15.0}, .weight = -2.0, .per_second = true};
-  reward.traffic() = {.progress = 0.5, .lookahead = 4.0};
+  reward.traffic = {.progress = 0.5, .lookahead = 4.0};
   CHECK(reward.value(world, ego, 0.2) == doctest::Approx(4.0 * (0.5 * 12.0 - 2.0 * 3.0)));
   reward.term<SpeedDeviation>().per_second = false;
   CHECK(reward.value(world, ego, 0.2) == doctest::Approx(4.0 * 0.5 * 12.0));

@@ -52,7 +52,7 @@ bool collides(JunctionSite::World const& world) {
   if (!AnyCollision{}(world)) return false;
   for (Slot i{}; index_of(i) < world.size(); ++i)
     for (Slot k{}; k < i; ++k)
-      if (geometry::intersects(detail::box_at(world, i), detail::box_at(world, k)) &&
+      if (geometry::intersects(box_at(world, i), box_at(world, k)) &&
           std::abs(height(world, i) - height(world, k)) < 3.0)
         return true;
   return false;

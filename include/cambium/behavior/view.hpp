@@ -50,8 +50,8 @@ struct Look {
   double distance = horizon;  ///< longest distance along the corridor to the other's reference point [m]
 };
 
-/// Everything that a behaviour may ask of its view; `ObservedWorld` offers it. Concepts are checked against this type,
-/// whose functions are only declared. SI units, map frame, radians.
+/// Everything that a behaviour may ask of its view; `ObservedWorld` offers it, and `goal` and `predict` for planners.
+/// Concepts are checked against this type, whose functions are only declared. SI units, map frame, radians.
 struct ViewArchetype {
   using State = cambium::State;
   using Dynamics = SingleTrack;

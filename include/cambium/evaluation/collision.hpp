@@ -21,6 +21,18 @@
 
 namespace cambium {
 
+/// Whether the agent at `slot` drives, rather than having left or not yet entered.
+template <class World>
+[[nodiscard]] bool in_traffic(World const& world, Slot slot) {
+  return world.frame().agents[slot].status == AgentStatus::driving;
+}
+
+/// The box that the agent at `slot` covers.
+template <class World>
+[[nodiscard]] geometry::OrientedBox box_at(World const& world, Slot slot) {
+  return geometry::box_of(world.roster().agents[slot].shape, world.frame().agents[slot].state);
+}
+
 namespace detail {
 
 /// An agent in traffic as the broad phase sees it: a circle about its reference point.
@@ -43,11 +55,6 @@ template <class World>
   return {state.x, state.y, along + across, 0.0, slot};  // the sum of the legs bounds the diagonal without a root
 }
 
-template <class World>
-[[nodiscard]] geometry::OrientedBox box_at(World const& world, Slot slot) {
-  return geometry::box_of(world.roster().agents[slot].shape, world.frame().agents[slot].state);
-}
-
 /// The box of the agent at `slot` after `time` [s] at constant velocity.
 template <class World>
 [[nodiscard]] geometry::OrientedBox box_after(World const& world, Slot slot, double time) {
@@ -64,11 +71,6 @@ template <class World>
   auto const& state = world.frame().agents[slot].state;
   auto const along = geometry::sin_cos(state.heading);
   return (other.x - state.x) * along.cos + (other.y - state.y) * along.sin;
-}
-
-template <class World>
-[[nodiscard]] bool in_traffic(World const& world, Slot slot) {
-  return world.frame().agents[slot].status == AgentStatus::driving;
 }
 
 /// The first static object that a box touches, or nothing. O(objects).
@@ -110,9 +112,9 @@ struct Collision {
   /// The first contact: agents in the order of their ids, then objects.
   template <class World>
   [[nodiscard]] std::optional<Contact> contact(World const& world, Slot slot) const {
-    if (!detail::in_traffic(world, slot)) return std::nullopt;
+    if (!in_traffic(world, slot)) return std::nullopt;
     auto const own = [&] {
-      auto box = detail::box_at(world, slot);
+      auto box = box_at(world, slot);
       box.half_length += margin;
       box.half_width += margin;
       return box;
@@ -120,8 +122,8 @@ struct Collision {
     auto circle = detail::circle_of(world, slot);
     circle.radius += 2.0 * margin;
     for (Slot i{}; index_of(i) < world.size(); ++i) {
-      if (i == slot || !detail::in_traffic(world, i) || !circle.meets(detail::circle_of(world, i))) continue;
-      if (geometry::intersects(own(), detail::box_at(world, i))) return Contact{.agent = world.roster().agents[i].id};
+      if (i == slot || !in_traffic(world, i) || !circle.meets(detail::circle_of(world, i))) continue;
+      if (geometry::intersects(own(), box_at(world, i))) return Contact{.agent = world.roster().agents[i].id};
     }
     if (world.roster().objects.empty()) return std::nullopt;
     auto const* const object = detail::touched_object(world, own());
@@ -147,7 +149,7 @@ struct AtFaultCollision {
 
   template <class World>
   [[nodiscard]] bool operator()(World const& world, Slot slot) const {
-    if (!detail::in_traffic(world, slot)) return false;
+    if (!in_traffic(world, slot)) return false;
     if (hits_object(world, slot)) return true;
     for (Slot other{}; index_of(other) < world.size(); ++other)
       if (other != slot && hits(world, slot, other)) return true;
@@ -157,7 +159,7 @@ struct AtFaultCollision {
   /// The same, but of the other agents only those at the slots `others` count.
   template <class World>
   [[nodiscard]] bool among(World const& world, Slot slot, std::span<Slot const> others) const {
-    return detail::in_traffic(world, slot) && (hits_object(world, slot) || std::ranges::any_of(others, [&](Slot other) {
+    return in_traffic(world, slot) && (hits_object(world, slot) || std::ranges::any_of(others, [&](Slot other) {
                                                  return hits(world, slot, other);
                                                }));
   }
@@ -171,9 +173,9 @@ struct AtFaultCollision {
 
   template <class World>
   [[nodiscard]] bool hits(World const& world, Slot slot, Slot other) const {
-    if (world.frame().agents[slot].state.speed < standing_speed || !detail::in_traffic(world, other)) return false;
+    if (world.frame().agents[slot].state.speed < standing_speed || !in_traffic(world, other)) return false;
     double const behind = look_ahead > 0.0 ? 0.0 : -world.roster().agents[slot].shape.rear;
-    return detail::distance_ahead(world, slot, detail::box_at(world, other)) > behind &&
+    return detail::distance_ahead(world, slot, box_at(world, other)) > behind &&
            geometry::intersects(detail::box_after(world, slot, look_ahead),
                                 detail::box_after(world, other, look_ahead));
   }
@@ -201,7 +203,7 @@ struct AnyCollision {
   [[nodiscard]] std::optional<Pair> pair(World const& world) const {
     if (!world.roster().objects.empty())
       for (Slot i{}; index_of(i) < world.size(); ++i)
-        if (detail::in_traffic(world, i) && detail::touched_object(world, detail::box_at(world, i)))
+        if (in_traffic(world, i) && detail::touched_object(world, box_at(world, i)))
           return Pair{world.roster().agents[i].id};
     return world.size() <= few ? compare_all(world) : sweep(world);
   }
@@ -218,7 +220,7 @@ struct AnyCollision {
     std::size_t count = 0;
     bool bounded = true;
     for (Slot slot{}; index_of(slot) < world.size(); ++slot) {
-      if (!detail::in_traffic(world, slot)) continue;
+      if (!in_traffic(world, slot)) continue;
       auto const circle = detail::circle_of(world, slot);
       x[count] = circle.x;
       y[count] = circle.y;
@@ -260,7 +262,7 @@ struct AnyCollision {
     circles.reserve(world.size());
     geometry::Box scene;
     for (Slot slot{}; index_of(slot) < world.size(); ++slot) {
-      if (!detail::in_traffic(world, slot)) continue;
+      if (!in_traffic(world, slot)) continue;
       auto const& circle = circles.emplace_back(detail::circle_of(world, slot));
       scene.add(circle.x, circle.y);
     }
@@ -276,7 +278,7 @@ struct AnyCollision {
 
   template <class World>
   [[nodiscard]] static bool touch(World const& world, Slot a, Slot b) {
-    return geometry::intersects(detail::box_at(world, a), detail::box_at(world, b));
+    return geometry::intersects(box_at(world, a), box_at(world, b));
   }
 
   template <class World>

@@ -114,6 +114,21 @@ namespace detail {
 
 }  // namespace detail
 
+/// Whether `box`, at corridor position `s` and `offset` [m], reaches beyond the drivable lanes or into an oncoming
+/// lane. False past the ends of the corridor, where the road is unknown.
+[[nodiscard]] inline bool leaves_road(Map const& map, map::LaneCorridor const& corridor, double s, double offset,
+                                      geometry::OrientedBox const& box) {
+  if (s < 0.0 || s > corridor.length()) return false;
+  auto const sides = corridor.widths_at(s);
+  double const reach = box.half_width + 0.1;  // [m], allows for a small heading error
+  if (offset + reach < sides.left && -offset + reach < sides.right) return false;
+  if ((offset > sides.left || -offset > sides.right) && detail::is_against_traffic(map, box)) return true;
+  return std::ranges::any_of(box.corners(), [&](geometry::Point const& corner) {
+    double const at = corridor.center.project(corner, corridor.center.find(s)).s;
+    return at > 0.0 && at < corridor.length() && !map.on_drivable_lane(corner);
+  });
+}
+
 /// Whether an agent in traffic drives in a lane of oncoming traffic, outside all lanes of its route.
 struct OncomingLane {
   static constexpr char const* name = "oncoming_lane";

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "cambium/behavior/behavior_model.hpp"
 #include "cambium/core/ids.hpp"
 
 namespace cambium {
@@ -42,7 +43,7 @@ struct PlannerReport {
 /// `SearchBudget`). Throws `SearchError` if there is nothing to plan, and `ParameterError` if a parameter is out of
 /// range.
 template <class P, class View>
-concept PlannerModel = std::copyable<P> && std::default_initializable<typename P::Memory> &&
+concept PlannerModel = BehaviorModel<P> && std::default_initializable<typename P::Memory> &&
     std::default_initializable<typename P::Workspace> &&
     requires(P const planner, View const& view, typename P::Memory const& memory, typename P::Workspace& workspace) {
   planner.think(view, memory, workspace).course;
@@ -51,6 +52,7 @@ concept PlannerModel = std::copyable<P> && std::default_initializable<typename P
   { planner.think(view, memory, workspace).candidates } -> std::convertible_to<std::vector<PlannerCandidate>>;
   { planner.think(view, memory, workspace).chosen } -> std::convertible_to<std::optional<std::size_t>>;
   { planner.think(view, memory, workspace).decidedness } -> std::convertible_to<double>;
+  { planner.think(view, memory, workspace).is_cut_short } -> std::convertible_to<bool>;
 };
 
 /// The lead of the chosen candidate's score over the best of the others that may be driven, as a share of the range of

@@ -140,42 +140,21 @@ template <class World>
   return slots;
 }
 
-namespace detail {
-
 /// The agents with whom the agent at `ego` has to avoid contact: all but those behind it in the strip of road that it
 /// covers. Those have to keep clear themselves. O(agents).
 template <class World>
-void choose_counting(World const& world, Slot ego, std::vector<Slot>& counting) {
-  counting.clear();
+void agents_to_avoid(World const& world, Slot ego, std::vector<Slot>& slots) {
+  slots.clear();
+  auto const& state = world.frame().agents[ego].state;
   double const rear = world.roster().agents[ego].shape.rear;
   auto const own = box_at(world, ego);
   for (Slot i{}; index_of(i) < world.size(); ++i) {
     auto const box = box_at(world, i);
     double const aside = own.cos * (box.y - own.y) - own.sin * (box.x - own.x);
+    double const ahead = (box.x - state.x) * own.cos + (box.y - state.y) * own.sin;
     bool const beside = std::abs(aside) > own.half_width + box.half_width;
-    if (i != ego && (beside || distance_ahead(world, ego, box) > -rear)) counting.push_back(i);
+    if (i != ego && (beside || ahead > -rear)) slots.push_back(i);
   }
 }
-
-/// Number of lane changes from `piece` of lane corridor `number` to a corridor that reaches the destination; 0 if none
-/// can be reached from there. O(lanes).
-[[nodiscard]] inline int lanes_to_destination(map::RoadCorridor const& road, CorridorId number, PieceId piece) {
-  constexpr int most = 16;
-  if (road.corridors[number].reaches_destination) return 0;
-  for (bool const left : {true, false}) {
-    auto corridor = number;
-    auto at = piece;
-    for (int lanes = 1; lanes <= most; ++lanes) {
-      auto const& here = road.corridors[corridor].pieces[at];
-      corridor = here.beside(left);
-      at = here.piece_beside(left);
-      if (corridor == none<CorridorId>) break;
-      if (road.corridors[corridor].reaches_destination) return lanes;
-    }
-  }
-  return 0;
-}
-
-}  // namespace detail
 
 }  // namespace cambium

@@ -220,11 +220,11 @@ class TrafficInflow {
     box.half_width += 0.2;
     double const reach = box.half_length + near;
     for (Slot slot{}; index_of(slot) < world.size(); ++slot) {
-      if (!detail::in_traffic(world, slot)) continue;
+      if (!in_traffic(world, slot)) continue;
       auto const circle = detail::circle_of(world, slot);
       double const x = circle.x - box.x, y = circle.y - box.y;
       if (std::abs(x) > reach + circle.radius || std::abs(y) > reach + circle.radius) continue;
-      if (geometry::intersects(box, detail::box_at(world, slot))) return true;
+      if (geometry::intersects(box, box_at(world, slot))) return true;
       double const aside = y * along.cos - x * along.sin;
       auto const turn = geometry::sin_cos(world.frame().agents[slot].state.heading - pose.heading);
       if (std::abs(aside) < lane_width && turn.cos > 0.0 && turn.sin * aside < -0.02 * std::abs(aside)) return true;

@@ -226,7 +226,7 @@ class World {
   void remove_object(ObjectId id) {
     auto const& objects = roster_->objects;
     auto const at = std::find_if(objects.begin(), objects.end(), [id](StaticObject const& o) { return o.id == id; });
-    if (at == objects.end()) throw WorldError("object " + to_string(id), "the world has no such object");
+    if (at == objects.end()) throw WorldError("object " + to_string(id), "the world has no such object", "World::roster lists those it has");
     writable_roster().erase_object(static_cast<Slot>(at - objects.begin()));
   }
 
@@ -265,7 +265,8 @@ class World {
     auto const slot = slot_of(id);
     constexpr auto place = Set::template index<B>;
     if (roster_->agents[slot].behavior.index() != place)
-      detail::refuse(id, "its behaviour is not the one whose memory was asked for");
+      detail::refuse(id, "its behaviour is not the one whose memory was asked for",
+                     "ask for the model in Roster::agents");
     return *std::get_if<place>(&frame_.agents[slot].memory);
   }
 
@@ -281,7 +282,7 @@ class World {
     auto const slot = slot_of(id);
     auto const where = detail::name_of(id);
     state.time = frame_.time;
-    if (!is_finite(state)) throw WorldError(where, "its position, heading or speed is not a finite number");
+    if (!is_finite(state)) throw WorldError(where, "its position, heading or speed is not a finite number", "give metres, radians, m/s");
     state.speed = detail::checked_speed(state.speed, where);
     auto const& agent = roster_->agents[slot];
     auto& record = frame_.agents[slot];

@@ -7,7 +7,7 @@
 struct Fast {
   template <class World>
   cambium::Judgement judge(World const& world, cambium::Slot slot, double dt) const {
-    return {{world.frame().agents[slot].state.speed * dt, 0.0}, false};
+    return {.reward = world.frame().agents[slot].state.speed * dt};
   }
 };
 using Predicted = cambium::World<cambium::BehaviorSet<cambium::MacroActions, cambium::IdmClassic>,

@@ -1,4 +1,4 @@
-// expect: cambium::Reward<Evaluators...>: each must have `template <class World> auto operator()(World&, Slot) const`
+// expect: cambium::Terms<Evaluators...>: each must have `template <class World> auto operator()(World&, Slot) const`
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/planner/mcts/mcts.hpp"
 #include "cambium/world/world.hpp"

@@ -1,4 +1,4 @@
-// expect: cambium::Reward<Evaluators...>: describe each evaluator's parameters, as cambium::Collision does
+// expect: cambium::Terms<Evaluators...>: describe each evaluator's parameters, as cambium::Collision does
 #include "cambium/planner/mcts/traffic_reward.hpp"
 
 struct Mood {

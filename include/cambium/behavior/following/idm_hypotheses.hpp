@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <concepts>
 #include <cstddef>
 #include <string>
 
@@ -9,6 +10,17 @@
 #include "cambium/core/distributions.hpp"
 
 namespace cambium {
+
+/// A behaviour with something unknown about its driver, which a planner learns by observation, see `Mcts`:
+/// - `hypotheses()`: the number of hypotheses about it, 1 to 8;
+/// - `assume(memory, number, share)`: sets the memory of a driver for whom hypothesis `number` holds. Where that is a
+///   range of values, `share`, 0 to 1, says which; the middle, 0.5, stands for all when the planner compares what it
+///   observes.
+template <class B>
+concept HypothesisModel = BehaviorModel<B> && requires(B const driver, MemoryOf<B>& memory) {
+  { driver.hypotheses() } -> std::convertible_to<std::size_t>;
+  driver.assume(memory, std::size_t{}, double{});
+};
 
 /// An IDM driver whose time headway is unknown but lies in one of a few regions of equal width: a planner's belief
 /// about another driver, see `Mcts`. The assumed headway is its memory, which a search draws anew.
@@ -47,6 +59,11 @@ struct IdmHypotheses {
       throw ParameterError(where, "has its longest headway below the shortest", "swap the two");
   }
 
+  [[nodiscard]] std::size_t hypotheses() const { return static_cast<std::size_t>(regions); }
+  void assume(Memory& memory, std::size_t number, double share) const {
+    memory.time_headway = static_cast<float>(headway(number, share));
+  }
+
   /// Headway [s] at `share`, 0 to 1, of region `number`.
   [[nodiscard]] double headway(std::size_t number, double share) const {
     return shortest_headway + (longest_headway - shortest_headway) * (static_cast<double>(number) + share) / regions;
@@ -59,6 +76,6 @@ struct IdmHypotheses {
     return assumed.plan(view, memory.driver, dt);
   }
 };
-static_assert(BehaviorModel<IdmHypotheses>);
+static_assert(HypothesisModel<IdmHypotheses>);
 
 }  // namespace cambium

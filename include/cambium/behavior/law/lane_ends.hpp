@@ -121,4 +121,23 @@ CAMBIUM_NOINLINE [[nodiscard]] LaneUrgency lane_urgency(View const& view, double
   return lanes.left > 0 ? LaneUrgency{urgency, -urgency} : LaneUrgency{-urgency, urgency};
 }
 
+/// Number of lane changes from `piece` of lane corridor `number` to a corridor that reaches the destination; 0 if none
+/// can be reached from there. O(lanes).
+[[nodiscard]] inline int lanes_to_destination(map::RoadCorridor const& road, CorridorId number, PieceId piece) {
+  constexpr int most = 16;
+  if (road.corridors[number].reaches_destination) return 0;
+  for (bool const left : {true, false}) {
+    auto corridor = number;
+    auto at = piece;
+    for (int lanes = 1; lanes <= most; ++lanes) {
+      auto const& here = road.corridors[corridor].pieces[at];
+      corridor = here.beside(left);
+      at = here.piece_beside(left);
+      if (corridor == none<CorridorId>) break;
+      if (road.corridors[corridor].reaches_destination) return lanes;
+    }
+  }
+  return 0;
+}
+
 }  // namespace cambium

@@ -52,6 +52,8 @@ template <class View>
                               : lane_reach(line, view.outline(user), hint);
 }
 
+}  // namespace detail
+
 /// Whether `neighbor` is in lane corridor `number` but leaves room for a vehicle that drives `offset` [m] to the left
 /// of its middle with `clearance` [m] to both sides. A road user that is still to merge into the lane leaves none.
 template <class View>
@@ -59,10 +61,12 @@ template <class View>
                                double clearance) {
   auto const at = view.place(number);
   auto const sides = view.road().corridors[number].widths_at(at.s, at.segment);
-  auto const reach = lane_reach(view, number, neighbor, at.segment);
+  auto const reach = detail::lane_reach(view, number, neighbor, at.segment);
   return reach.meets(-sides.right, sides.left) &&
          !reach.meets(offset - view.shape().right - clearance, offset + view.shape().left + clearance);
 }
+
+namespace detail {
 
 /// Calls `f(RoadUser)` for the road users ahead in lanes that merge into the own corridor, or have just split off it,
 /// if these begin less than `distance` [m] ahead. Gaps as in `ViewArchetype::ahead`. O(feeders + their agents).

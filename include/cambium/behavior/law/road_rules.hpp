@@ -422,7 +422,7 @@ struct RoadRules {
     auto const& at = view.place();
     auto const is_free = [&](std::optional<RoadUser> const& other, double clearance) {
       return !other || !detail::is_beside(view, *other, at.lateral) ||
-             detail::leaves_room(view, at.corridor, *other, offset, clearance);
+             leaves_room(view, at.corridor, *other, offset, clearance);
     };
     auto const behind = view.behind({.merging = merging});
     bool const is_near = behind && behind->gap < clear + soon * std::max(0.0, behind->speed - speed);
@@ -440,7 +440,7 @@ struct RoadRules {
     if (view.corridor().feeders.empty()) return;
     if (!found.passes) return heed_merging(view, ahead);
     detail::for_each_on_feeders(view, Look::horizon, merging, [&](RoadUser const& other) {
-      if (!detail::leaves_room(view, view.place().corridor, other, found.offset, found.clearance))
+      if (!leaves_room(view, view.place().corridor, other, found.offset, found.clearance))
         ahead.heed(detail::constraint_of<Law>(view, other));
     });
     if (auto const gap = gap_to_wait_for(view)) ahead.heed(*gap);

@@ -127,7 +127,7 @@ template <class WidthsAt>
                                                        WidthsAt const& widths_at, PathStretch const& stretch,
                                                        double growth) {
   if (std::isnan(stretch.begin) || std::isnan(stretch.end))
-    throw MapError("lane area", "its begin or end is not a number");
+    throw MapError("lane area", "its begin or end is not a number", "give metres along it");
   if (!std::isfinite(growth)) throw MapError("lane area", "its growth is no finite number", "give metres");
   double const begin = std::clamp(stretch.begin, 0.0, line.length()),
                end = std::clamp(stretch.end, begin, line.length());

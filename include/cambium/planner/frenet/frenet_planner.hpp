@@ -8,6 +8,7 @@
 #include <limits>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -19,7 +20,9 @@
 #include "cambium/behavior/law/lane_reach.hpp"
 #include "cambium/behavior/law/lane_ends.hpp"
 #include "cambium/core/stable_sort.hpp"
-#include "cambium/planner/detail/others_ahead.hpp"
+#include "cambium/evaluation/off_road.hpp"
+#include "cambium/evaluation/terms.hpp"
+#include "cambium/planner/others_ahead.hpp"
 #include "cambium/planner/planner_model.hpp"
 #include "cambium/planner/predicted.hpp"
 #include "cambium/planner/search/search_budget.hpp"
@@ -40,18 +43,21 @@ struct FrenetMemory {
 };
 
 /// What a `FrenetPlanner` reports. Its candidates are the courses; a score is a negative cost. It chooses the first
-/// valid one. In the frames of the report's course, only ego's state is planned; the rest of ego's record is predicted.
+/// valid one, or with `terms` the best of the valid ones. In the frames of the report's course, ego's memory is that of
+/// the prediction.
 template <class World>
 struct FrenetReport : PlannerReport<World, FrenetMemory> {
-  std::vector<FrenetCandidate> courses;  ///< cheapest first; all checked unless the budget ended
+  std::vector<FrenetCandidate> courses;  ///< cheapest first, without `terms`; all checked unless the budget ended
 };
 
 /// Plans by sampling courses in the Frenet frames of its lane and the lanes beside it. A course is a quintic polynomial
 /// across the lane and a quartic or quintic one along it, to one of several speeds or to a place behind the leader,
 /// over one of several durations. The planner drives the cheapest course that is drivable, stays on the road and keeps
 /// clear of the others, whose motion it predicts once as `Others`. If there is none, it brakes. `PredictionWorld` must
-/// have `Others` in its behaviour set.
-template <class PredictionWorld, class Others = ConstantAcceleration, SearchBudget Budget = NoBudget>
+/// have `Others` in its behaviour set. With own `terms`, all courses are checked, and the sum of the terms over a valid
+/// course is deducted from its cost.
+template <class PredictionWorld, class Others = ConstantAcceleration, SearchBudget Budget = NoBudget,
+          class Own = Terms<>>
 struct FrenetPlanner {
   static_assert(detail::check_planner<PredictionWorld, Others>());
 
@@ -59,9 +65,12 @@ struct FrenetPlanner {
   using Report = FrenetReport<PredictionWorld>;
 
   struct Workspace {
-    detail::OthersAhead<PredictionWorld> others;
+    OthersAhead<PredictionWorld> others;
     std::vector<FrenetCandidate> candidates;
     std::vector<FrenetTarget> targets;
+    typename PredictionWorld::FrameType frame;
+    Slot ego{};
+    bool is_cut_short = false;
   };
 
   // Not lists in braces: g++ 12 takes these for uninitialised at -O2.
@@ -82,6 +91,7 @@ struct FrenetPlanner {
   double step = 0.2;
   double low_speed = 4.0;
   Budget budget{};
+  Own terms{};
 
   static constexpr char const* name = "frenet_planner";
   static constexpr char const* summary =
@@ -106,7 +116,8 @@ struct FrenetPlanner {
         parameter("step", &P::step, "s", Range{0.01, 2}, "time between two checks"),
         parameter("low_speed", &P::low_speed, "m/s", Range{0.1, 50},
                   "below this speed, offsets depend on the distance driven"),
-        parameter("budget", &P::budget, "-", {}, "how many courses are checked, the cheapest first"));
+        parameter("budget", &P::budget, "-", {}, "how many courses are checked, the cheapest first"),
+        parameter("terms", &P::terms, "-", {}, "evaluators whose sum over a course is deducted from its cost"));
   }
 
   void check(std::string const& where) const {
@@ -122,10 +133,8 @@ struct FrenetPlanner {
       auto clock = budget;
       clock.start();
       if (sample(view, memory, workspace) != SearchProblem::none) return plan;
-      for (std::size_t i = 0; i < workspace.candidates.size() && clock.goes_on(i); ++i)
-        if (auto const& candidate = workspace.candidates[i];
-            verdict(view, candidate, workspace) == FrenetVerdict::valid)
-          return follow(view, candidate, memory, dt);
+      if (auto const chosen = choose(view, workspace, clock, has_terms))
+        return follow(view, workspace.candidates[*chosen], memory, dt);
       float bend = 0.0f;
       double const speed = std::max(0.0, view.state().speed);
       memory = braking(view);
@@ -142,31 +151,30 @@ struct FrenetPlanner {
     clock.start();
     throw_if(sample(view, memory, workspace));
     Report report;
-    for (auto& candidate : workspace.candidates) {
-      auto const number = report.candidates.size();
-      if (!report.is_cut_short) report.is_cut_short = !clock.goes_on(number);
-      if (!report.is_cut_short) candidate.verdict = verdict(view, candidate, workspace);
-      bool const is_valid = candidate.verdict == FrenetVerdict::valid;
-      if (is_valid && !report.chosen) report.chosen = number;
-      report.candidates.push_back(
-          {text(view, candidate), -candidate.cost, is_valid ? "" : to_string(candidate.verdict)});
-    }
+    report.chosen = choose(view, workspace, clock, true);
+    report.is_cut_short = workspace.is_cut_short;
+    for (auto const& candidate : workspace.candidates)
+      report.candidates.push_back({text(view, candidate), -candidate.cost,
+                                   candidate.verdict == FrenetVerdict::valid ? "" : to_string(candidate.verdict)});
     report.decidedness = decidedness(report.candidates, report.chosen);
     report.courses = workspace.candidates;
     report.course = workspace.others.frames;
-    auto const& roster = workspace.others.world->roster();
-    for (auto const& agent : roster.agents) report.agents.push_back(agent.id);
-    auto const ego = *roster.slot_of(view.id());
+    for (auto const& agent : workspace.others.world->roster().agents) report.agents.push_back(agent.id);
     for (std::size_t k = 1; k < report.course.size(); ++k) {
       double const time = static_cast<double>(k) * step;
-      report.course[k].agents[ego].state = report.chosen ? state_at(view, report.courses[*report.chosen], time).state
-                                                         : braking_state(view, -limits.lowest_acceleration, time);
+      auto& record = report.course[k].agents[workspace.ego];
+      if (report.chosen)
+        drive(view, report.courses[*report.chosen], time, record);
+      else
+        record.state = braking_state(view, -limits.lowest_acceleration, time);
     }
     report.memory = report.chosen ? memory_of(state_at(view, report.courses[*report.chosen], step)) : braking(view);
     return report;
   }
 
  private:
+  static constexpr bool has_terms = !std::is_same_v<Own, Terms<>>;
+
   /// A state on a course, with its motion along the course and in the Frenet frame.
   template <class State>
   struct Driven {
@@ -202,6 +210,7 @@ struct FrenetPlanner {
     std::optional<Slot> ego;
     auto world = predicted_for<PredictionWorld>(view, others, others, ego);
     if (!ego) return SearchProblem::not_in_world;
+    workspace.ego = *ego;
     workspace.others.predict(std::move(world), *ego, horizon, step);
     workspace.candidates.clear();
     auto const& at = view.place();
@@ -224,7 +233,7 @@ struct FrenetPlanner {
     auto const start = frenet_motion(now, at.s, at.lateral, {corridor.center.segments()[at.segment].curvature, 0.0});
     double const wanted = std::min(desired_speed, corridor.speed_limit_at(at.s));
     double const route =
-        view.has_goal() ? costs.route * detail::lanes_to_destination(view.road(), number, at.piece) : 0.0;
+        view.has_goal() ? costs.route * lanes_to_destination(view.road(), number, at.piece) : 0.0;
     for (double const duration : durations) {
       set_targets(view, number, at, wanted, duration, workspace);
       for (auto const& target : workspace.targets)
@@ -255,7 +264,7 @@ struct FrenetPlanner {
   }
 
   /// The place and speed at which ego follows `leader` with the desired gap, `time` [s] from now.
-  [[nodiscard]] FrenetTarget behind(detail::OthersAhead<PredictionWorld> const& ahead, RoadUser const& leader, double s,
+  [[nodiscard]] FrenetTarget behind(OthersAhead<PredictionWorld> const& ahead, RoadUser const& leader, double s,
                                     double time) const {
     double const contact = s + leader.gap;
     auto const slot = ahead.world->roster().slot_of(leader.agent);
@@ -293,7 +302,7 @@ struct FrenetPlanner {
       auto const verdict = drivable(limits, course, frenet, fastest);
       if (verdict != FrenetVerdict::valid) return verdict;
       auto box = geometry::box_of(view.shape(), state);
-      if (detail::leaves_road(view.map(), corridor, frenet.s, frenet.offset, box)) return FrenetVerdict::road;
+      if (leaves_road(view.map(), corridor, frenet.s, frenet.offset, box)) return FrenetVerdict::road;
       box.half_length += limits.clearance;
       box.half_width += limits.clearance;
       if (ahead.touched(box, k)) return FrenetVerdict::collision;
@@ -301,15 +310,59 @@ struct FrenetPlanner {
     return FrenetVerdict::valid;
   }
 
+  /// The first valid course, or with `all` the best of the valid ones, as far as the clock permits.
+  template <class View>
+  [[nodiscard]] std::optional<std::size_t> choose(View const& view, Workspace& workspace, Budget& clock,
+                                                  bool all) const {
+    std::optional<std::size_t> best;
+    workspace.is_cut_short = false;
+    auto& candidates = workspace.candidates;
+    for (std::size_t i = 0; i < candidates.size() && (all || !best); ++i) {
+      workspace.is_cut_short = !clock.goes_on(i);
+      if (workspace.is_cut_short) break;
+      candidates[i].verdict = verdict(view, candidates[i], workspace);
+      if (candidates[i].verdict != FrenetVerdict::valid) continue;
+      if constexpr (has_terms) candidates[i].cost -= sum_of_terms(view, candidates[i], workspace);
+      if (!best || candidates[i].cost < candidates[*best].cost) best = i;
+    }
+    return best;
+  }
+
+  /// Ego's record `time` [s] on a course.
+  template <class View, class Record>
+  void drive(View const& view, FrenetCandidate const& candidate, double time, Record& record) const {
+    auto const driven = state_at(view, candidate, time);
+    record.state = driven.state;
+    record.action.acceleration = driven.course.acceleration;
+    record.lane = map::locate(view.road(), candidate.corridor, {driven.state.x, driven.state.y, driven.state.heading},
+                              view.place(candidate.corridor));
+    record.status = AgentStatus::driving;
+  }
+
+  template <class View>
+  [[nodiscard]] double sum_of_terms(View const& view, FrenetCandidate const& candidate, Workspace& workspace) const {
+    auto& world = *workspace.others.world;
+    double sum = 0.0;
+    for (std::size_t k = 1; k < workspace.others.frames.size(); ++k) {
+      workspace.frame = workspace.others.frames[k];
+      drive(view, candidate, static_cast<double>(k) * step, workspace.frame.agents[workspace.ego]);
+      world.restore(workspace.frame);
+      auto const judged = terms.judge(world, workspace.ego, step);
+      sum += judged.reward;
+      if (judged.ends) break;
+    }
+    return sum;
+  }
+
   /// Whether the course ends nearer to the leader than following would, and the leader leaves no room to pass.
   template <class View>
   [[nodiscard]] bool comes_too_near(View const& view, FrenetCandidate const& candidate,
-                                    detail::OthersAhead<PredictionWorld> const& ahead) const {
+                                    OthersAhead<PredictionWorld> const& ahead) const {
     auto const leader = view.ahead(view.place(candidate.corridor));
     if (!leader) return false;
     double const s = view.place(candidate.corridor).s;
     if (candidate.at(horizon).s <= behind(ahead, *leader, s, horizon).position) return false;
-    return !detail::leaves_room(view, candidate.corridor, *leader, candidate.offset, limits.clearance);
+    return !leaves_room(view, candidate.corridor, *leader, candidate.offset, limits.clearance);
   }
 
   template <class View>

@@ -27,10 +27,18 @@ namespace detail {
 struct TrackedAgent {
   AgentId id = none<AgentId>;
   Belief belief{};
-  std::array<float, IdmHypotheses::most_regions> expected{};  ///< next observed speed, by hypothesis [m/s]
+  std::array<float, Belief::capacity> expected{};  ///< next observed speed, by hypothesis [m/s]
 
   friend bool operator==(TrackedAgent const&, TrackedAgent const&) = default;
 };
+
+template <class PredictionWorld, class Actions, class Reward, class Others>
+[[nodiscard]] constexpr auto search_domain() {
+  if constexpr (HypothesisModel<Others>)
+    return std::type_identity<HypothesisDomain<PredictionWorld, Actions, Reward, Others>>{};
+  else
+    return std::type_identity<TrafficDomain<PredictionWorld, Actions, Reward>>{};
+}
 
 }  // namespace detail
 
@@ -68,10 +76,10 @@ struct BeliefMemory {
 ///   maximises the reward among courses whose estimated probability of a collision is within the limit; if there is
 ///   none, it minimises that probability. It learns the weight of a collision (a Lagrange multiplier), so the reward
 ///   needs none.
-/// - Search with hypotheses about the others (RSBG: Bernhard, Knoll 2020): `Others` is `IdmHypotheses`. The time
-///   headways of the others are unknown. Each lies in one of a few regions, whose probabilities follow from what the
-///   agent does (Bayes). Each iteration draws all headways anew (root sampling: Silver, Veness 2010), so nodes stand
-///   for ego's actions only.
+/// - Search with hypotheses about the others (RSBG: Bernhard, Knoll 2020): `Others` is a `HypothesisModel`, such as
+///   `IdmHypotheses`, whose time headway is unknown but lies in one of a few regions. The probabilities of the
+///   hypotheses follow from what the agent does (Bayes). Each iteration draws one for each agent anew (root sampling:
+///   Silver, Veness 2010), so nodes stand for ego's actions only.
 template <class PredictionWorld, class Actions = MacroActions, class Reward = TrafficReward, class Others = IdmClassic,
           class Options = MctsOptions<>>
 struct Mcts {
@@ -82,12 +90,11 @@ struct Mcts {
       "if it has none: `static constexpr auto parameters() { return cambium::parameter_list(); }`");
 
   /// Whether it learns about the others.
-  static constexpr bool learns = std::is_same_v<Others, IdmHypotheses>;
+  static constexpr bool learns = HypothesisModel<Others>;
 
   using CourseMemory = detail::ActionMemory<Actions>;
   using Memory = std::conditional_t<learns, BeliefMemory<CourseMemory>, CourseMemory>;
-  using Domain = std::conditional_t<learns, HypothesisDomain<PredictionWorld, Actions, Reward>,
-                                    TrafficDomain<PredictionWorld, Actions, Reward>>;
+  using Domain = typename decltype(detail::search_domain<PredictionWorld, Actions, Reward, Others>())::type;
   using Workspace = MctsWorkspace<Domain, Options>;
   using Report = MctsReport<Domain, Memory>;
 
@@ -116,7 +123,7 @@ struct Mcts {
         parameter("most_agents", &P::most_agents, "-", Range{1, 32}, "number of agents that choose, including ego"),
         parameter("range", &P::range, "m", non_negative, "agents farther away do not choose"),
         parameter("cooperation", &P::cooperation, "-", Range{0, 1}, "weight of the others' rewards in an agent's own"),
-        parameter("belief", &P::belief, "-", {}, "how it learns about the others if they are idm_hypotheses"));
+        parameter("belief", &P::belief, "-", {}, "how it learns about the others if there are hypotheses about them"));
   }
 
   template <class View>
@@ -174,8 +181,8 @@ struct Mcts {
     }
   }
 
-  [[nodiscard]] static IdmHypotheses::Memory* headway_at(typename PredictionWorld::FrameType& frame, Slot slot) {
-    return std::get_if<PredictionWorld::Behaviors::template index<IdmHypotheses>>(&frame.agents[slot].memory);
+  [[nodiscard]] static MemoryOf<Others>* memory_at(typename PredictionWorld::FrameType& frame, Slot slot) {
+    return std::get_if<PredictionWorld::Behaviors::template index<Others>>(&frame.agents[slot].memory);
   }
 
   /// Updates the beliefs by what the others did since the last observation, and predicts what they will do until the
@@ -184,48 +191,48 @@ struct Mcts {
     constexpr double same_time = 1e-6;  // [s]
     auto frame = world.frame();
     auto near = nearest_agents(world, ego, Memory::capacity, belief.range);
-    std::erase_if(near, [&](Slot slot) { return headway_at(frame, slot) == nullptr; });  // they choose themselves
-    auto const regions = static_cast<std::size_t>(others.regions);
+    std::erase_if(near, [&](Slot slot) { return memory_at(frame, slot) == nullptr; });  // they choose themselves
+    std::size_t const hypotheses = others.hypotheses();
     bool const was_expected = std::abs(memory.expected_at - world.time()) < same_time;
     decltype(memory.tracked) tracked{};
     std::vector<typename Domain::Unknown> unknowns;
     for (std::size_t i = 0; i < near.size(); ++i) {
       auto const id = world.roster().agents[near[i]].id;
       auto const known = std::ranges::find(memory.tracked, id, &detail::TrackedAgent::id);
-      bool const is_known = known != memory.tracked.end() && known->belief.size() == regions;
-      tracked[i] = is_known ? *known : detail::TrackedAgent{id, Belief(regions), {}};
+      bool const is_known = known != memory.tracked.end() && known->belief.size() == hypotheses;
+      tracked[i] = is_known ? *known : detail::TrackedAgent{id, Belief(hypotheses), {}};
       if (is_known && was_expected) observe(tracked[i], frame.agents[near[i]].state.speed);
       unknowns.push_back({near[i], tracked[i].belief});
     }
     // Nothing is known about the rest.
     for (Slot slot{}; index_of(slot) < world.size(); ++slot)
-      if (headway_at(frame, slot) != nullptr && std::ranges::find(near, slot) == near.end())
-        unknowns.push_back({slot, Belief(regions)});
+      if (memory_at(frame, slot) != nullptr && std::ranges::find(near, slot) == near.end())
+        unknowns.push_back({slot, Belief(hypotheses)});
     memory.tracked = tracked;
     expect(world, near, memory, dt);
     return unknowns;
   }
 
   void observe(detail::TrackedAgent& other, double speed) const {
-    std::array<double, IdmHypotheses::most_regions> likelihoods{};
+    std::array<double, Belief::capacity> likelihoods{};
     double nearest = 1e300;
-    auto const regions = static_cast<std::size_t>(others.regions);
-    for (std::size_t r = 0; r < regions; ++r) {
+    std::size_t const hypotheses = others.hypotheses();
+    for (std::size_t r = 0; r < hypotheses; ++r) {
       double const off = (speed - static_cast<double>(other.expected[r])) / belief.speed_deviation;
       likelihoods[r] = 0.5 * off * off;
       nearest = std::min(nearest, likelihoods[r]);
     }
-    // Relative to the best; otherwise all would underflow to 0 if no headway explains the observation.
-    for (std::size_t r = 0; r < regions; ++r) likelihoods[r] = detail::portable_exp(nearest - likelihoods[r]);
-    other.belief.update({likelihoods.data(), regions}, belief);
+    // Relative to the best; otherwise all would underflow to 0 if no hypothesis explains the observation.
+    for (std::size_t r = 0; r < hypotheses; ++r) likelihoods[r] = detail::portable_exp(nearest - likelihoods[r]);
+    other.belief.update({likelihoods.data(), hypotheses}, belief);
   }
 
   /// Predicts the speed of each of `slots` after `dt` [s] under each hypothesis.
   void expect(PredictionWorld const& world, std::span<Slot const> slots, Memory& memory, double dt) const {
     PredictionWorld trial = world;
-    for (std::size_t r = 0; r < static_cast<std::size_t>(others.regions); ++r) {
+    for (std::size_t r = 0; r < others.hypotheses(); ++r) {
       auto frame = world.frame();
-      for (auto const slot : slots) headway_at(frame, slot)->time_headway = static_cast<float>(others.headway(r, 0.5));
+      for (auto const slot : slots) others.assume(*memory_at(frame, slot), r, 0.5);
       trial.exchange(frame);
       (void)trial.step(dt);
       for (std::size_t i = 0; i < slots.size(); ++i)

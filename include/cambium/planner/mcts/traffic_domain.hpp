@@ -112,8 +112,8 @@ class TrafficDomain {
     double sum = 0.0;
     for (std::size_t k = 0; k < slots_.size(); ++k) {
       auto const judgement = reward_.judge(world_, slots_[k], dt_);
-      outcomes[k] = judgement.outcome;
-      sum += judgement.outcome.reward;
+      outcomes[k] = {judgement.reward, judgement.cost};
+      sum += judgement.reward;
       state.over = state.over || judgement.ends;
     }
     for (auto& outcome : outcomes) outcome.reward += cooperation_ * (sum - outcome.reward);
@@ -214,9 +214,9 @@ class TrafficDomain {
   double cooperation_ = 0.0;
 };
 
-/// Traffic in which each iteration draws the others' time headways anew by the belief about each. Nodes then stand only
+/// Traffic in which each iteration draws what is unknown about the others anew, by the belief about each. Nodes then stand only
 /// for the actions of the choosing agents, not for states.
-template <class PredictionWorld, class Actions, class Reward>
+template <class PredictionWorld, class Actions, class Reward, HypothesisModel Others>
 class HypothesisDomain : public TrafficDomain<PredictionWorld, Actions, Reward> {
   using Base = TrafficDomain<PredictionWorld, Actions, Reward>;
 
@@ -226,29 +226,28 @@ class HypothesisDomain : public TrafficDomain<PredictionWorld, Actions, Reward> 
 
   using Base::Base;
 
-  /// The belief about the agent at `slot`, whose behaviour must be `IdmHypotheses`.
+  /// The belief about the agent at `slot`, whose behaviour must be `Others`.
   struct Unknown {
     Slot slot;
     Belief belief;
   };
 
-  void set_unknowns(std::span<Unknown const> unknowns, IdmHypotheses const& hypotheses) {
+  void set_unknowns(std::span<Unknown const> unknowns, Others const& hypotheses) {
     unknowns_.assign(unknowns.begin(), unknowns.end());
     hypotheses_ = hypotheses;
   }
 
   void sample_root(State& state, RandomStream& random) const {
-    constexpr auto index = PredictionWorld::Behaviors::template index<IdmHypotheses>;
+    constexpr auto index = PredictionWorld::Behaviors::template index<Others>;
     for (auto const& unknown : unknowns_) {
-      auto const region = unknown.belief.sample(random);
-      std::get_if<index>(&state.frame.agents[unknown.slot].memory)->time_headway =
-          static_cast<float>(hypotheses_.headway(region, uniform01(random)));
+      auto const number = unknown.belief.sample(random);
+      hypotheses_.assume(*std::get_if<index>(&state.frame.agents[unknown.slot].memory), number, uniform01(random));
     }
   }
 
  private:
   std::vector<Unknown> unknowns_;
-  IdmHypotheses hypotheses_{};
+  Others hypotheses_{};
 };
 
 }  // namespace cambium

@@ -1,23 +1,14 @@
 #pragma once
 
-#include <algorithm>
 #include <concepts>
-#include <type_traits>
 
 #include "cambium/core/parameters.hpp"
 #include "cambium/evaluation/course_end.hpp"
 #include "cambium/evaluation/driving.hpp"
-#include "cambium/evaluation/evaluator.hpp"
-#include "cambium/planner/search/search_domain.hpp"
+#include "cambium/evaluation/terms.hpp"
 #include "cambium/world/frame.hpp"
 
 namespace cambium {
-
-/// The outcome of a step for one agent, and whether its course ends there.
-struct Judgement {
-  AgentOutcome outcome{};
-  bool ends = false;
-};
 
 /// Judges, for a search, the state of the agent at `slot` of `world` after a step of `dt` [s]. A copyable, described
 /// struct (`static constexpr auto parameters()`, see `TrafficReward`) with
@@ -95,14 +86,14 @@ struct TrafficReward {
       case CourseEnd::none:
         break;
       case CourseEnd::over:
-        return {{}, true};
+        return {0.0, 0.0, true};
       case CourseEnd::collision:
-        return {{collision, 1.0}, true};
+        return {collision, 1.0, true};
       case CourseEnd::off_road:
-        return {{off_road, 0.0}, true};
+        return {off_road, 0.0, true};
     }
     bool const there = goal != 0.0 && AtGoal{}(world, slot);
-    return {{on_the_way(world, slot, dt) + (there ? goal : 0.0), 0.0}, there};
+    return {on_the_way(world, slot, dt) + (there ? goal : 0.0), 0.0, there};
   }
 
   /// The terms for driving, as if nothing changed during `lookahead`.
@@ -124,106 +115,33 @@ struct TrafficReward {
   }
 };
 
-/// A term of a reward: an evaluator's value after a step, times a weight.
-template <class E>
-struct Weighted {
-  static_assert(
-      Described<E>,
-      "cambium::Reward<Evaluators...>: describe each evaluator's parameters, as cambium::Collision does; where "
-      "it has none: `static constexpr auto parameters() { return cambium::parameter_list(); }`");
-  static_assert(
-      !requires { E::needs_history; },
-      "cambium::Reward<Evaluators...>: this evaluator needs a history, and predictions keep none: it would "
-      "always be 0; judge by cambium::Acceleration or the state instead");
-  E evaluator{};
-  double weight = 0.0;
-  double cost = 0.0;
-  bool per_second = false;
-  bool ends = false;
-
-  static constexpr char const* name = "weighted";
-  static constexpr auto parameters() {
-    using P = Weighted;
-    return parameter_list(
-        parameter("evaluator", &P::evaluator, "-", {}, "returns a bool or a number"),
-        parameter("weight", &P::weight, "-", any_finite, "factor on its value"),
-        parameter("cost", &P::cost, "-", Range{0, 1},
-                  "of a value other than 0: the probability of the event that a limit on risk bounds"),
-        parameter("per_second", &P::per_second, "-", Range{0, 1},
-                  "whether the term is multiplied by the duration of the step"),
-        parameter("ends", &P::ends, "-", Range{0, 1}, "whether a value other than 0 ends the course"));
-  }
-
-  template <class World>
-  void judge(World& world, Slot slot, double dt, Judgement& all) const {
-    static_assert(
-        EvaluatorFor<E, World>,
-        "cambium::Reward<Evaluators...>: each must have `template <class World> auto operator()(World&, Slot) "
-        "const` that returns a bool or a number (see EvaluatorFor)");
-    if (weight == 0.0 && cost == 0.0 && !ends) return;
-    auto const value = static_cast<double>(evaluator(world, slot));
-    all.outcome.reward += weight * value * (per_second ? dt : 1.0);
-    if (value != 0.0) all.outcome.cost = std::max(all.outcome.cost, cost);
-    all.ends = all.ends || (ends && value != 0.0);
-  }
-};
-
 /// `TrafficReward` plus one weighted term for each evaluator: `reward.term<Gap>() = {.weight = 0.1, .per_second =
 /// true}`. All terms count in the step that ends the course, too.
 template <class... Evaluators>
-struct Reward;
-
-template <>
-struct Reward<> : TrafficReward {
-  [[nodiscard]] TrafficReward& traffic() { return *this; }
-  [[nodiscard]] TrafficReward const& traffic() const { return *this; }
-
-  template <class E>
-  TrafficReward& term() {
-    static_assert(std::is_void_v<E>, "cambium::Reward<Evaluators...>::term<E>: E is not one of Evaluators");
-    return *this;
-  }
-};
-
-template <class First, class... Rest>
-struct Reward<First, Rest...> {
-  static_assert(!(std::is_same_v<First, Rest> || ...),
-                "cambium::Reward<Evaluators...>: an evaluator is there twice; each has one term");
-  Weighted<First> first{};
-  Reward<Rest...> rest{};
+struct Reward {
+  TrafficReward traffic{};
+  Terms<Evaluators...> terms{};
 
   static constexpr char const* name = "reward";
   static constexpr auto parameters() {
-    return parameter_list(
-        parameter("first", &Reward::first, "-", {}, "the first term"),
-        parameter("rest", &Reward::rest, "-", {}, "the other terms; the last of them are those of TrafficReward"));
+    return parameter_list(parameter("traffic", &Reward::traffic, "-", {}, "what every search in traffic needs"),
+                          parameter("terms", &Reward::terms, "-", {}, "one for each evaluator"));
   }
-
-  /// The `TrafficReward` at the end of the list.
-  [[nodiscard]] TrafficReward& traffic() { return rest.traffic(); }
-  [[nodiscard]] TrafficReward const& traffic() const { return rest.traffic(); }
 
   /// The term of evaluator `E`.
   template <class E>
-  [[nodiscard]] auto& term() {
-    if constexpr (std::is_same_v<E, First>)
-      return first;
-    else
-      return rest.template term<E>();
+  [[nodiscard]] Weighted<E>& term() {
+    return terms.template term<E>();
   }
 
   template <class World>
   [[nodiscard]] Judgement judge(World& world, Slot slot, double dt) const {
-    auto all = rest.judge(world, slot, dt);
-    if (world.frame().agents[slot].status == AgentStatus::driving) first.judge(world, slot, dt, all);
-    return all;
+    return traffic.judge(world, slot, dt) + terms.judge(world, slot, dt);
   }
   /// That of `TrafficReward`, and the terms per second as if nothing changed during its `lookahead`.
   template <class World>
   [[nodiscard]] double value(World& world, Slot slot, double dt) const {
-    Judgement own;
-    if (first.per_second) first.judge(world, slot, traffic().lookahead, own);
-    return rest.value(world, slot, dt) + own.outcome.reward;
+    return traffic.value(world, slot, dt) + terms.value(world, slot, traffic.lookahead);
   }
 };
 

@@ -122,6 +122,7 @@ struct PolicyCost {
   double efficiency{};  ///< mean deviation from the desired speed, as a share of it
   double safety{};      ///< share of the time with unsafe gaps, plus collisions and leaving the road
   double navigation{};  ///< mean number of lane changes still needed to reach the destination
+  double terms{};       ///< negative sum of the planner's `terms`
 };
 
 /// How a `PolicyTreePlanner` weighs the parts of the cost, and what it takes for a safe gap.
@@ -168,7 +169,7 @@ struct PolicyWeights {
 
   /// The weighted sum of the parts.
   [[nodiscard]] double total(PolicyCost const& cost) const {
-    return efficiency * cost.efficiency + safety * cost.safety + navigation * cost.navigation;
+    return efficiency * cost.efficiency + safety * cost.safety + navigation * cost.navigation + cost.terms;
   }
 };
 

@@ -47,7 +47,7 @@ struct PolicyTreeReport : PlannerReport<World, MacroActions::Memory> {
 ///     later      keep ----- keep ----- left           agent 4, on the left, does not yield
 ///     soon       keep ----- left ----- left           agent 7, on the right, changes left
 ///     now        left ----- left ----- left
-template <class PredictionWorld, SearchBudget Budget = NoBudget>
+template <class PredictionWorld, SearchBudget Budget = NoBudget, class Own = Terms<>>
 struct PolicyTreePlanner {
   static_assert(detail::check_planner<PredictionWorld>());
   static_assert(PredictionWorld::Behaviors::template contains<MacroActions>,
@@ -78,6 +78,7 @@ struct PolicyTreePlanner {
   int most_agents = 4;
   double range = 60.0;
   Budget budget{};
+  Own terms{};
 
   static constexpr char const* name = "policy_tree_planner";
   static constexpr char const* summary =
@@ -97,7 +98,8 @@ struct PolicyTreePlanner {
         parameter("most_agents", &P::most_agents, "-", Range{0, 32},
                   "number of nearest others whose intentions are simulated"),
         parameter("range", &P::range, "m", non_negative, "agents farther away keep their lanes"),
-        parameter("budget", &P::budget, "-", {}, "how many sequences are simulated, the ongoing action first"));
+        parameter("budget", &P::budget, "-", {}, "how many sequences are simulated, the ongoing action first"),
+        parameter("terms", &P::terms, "-", {}, "evaluators whose sum over a sequence is deducted from its cost"));
   }
 
   template <class View>
@@ -232,6 +234,7 @@ struct PolicyTreePlanner {
       branch.mean.efficiency += odds * cost.efficiency;
       branch.mean.safety += odds * cost.safety;
       branch.mean.navigation += odds * cost.navigation;
+      branch.mean.terms += odds * cost.terms;
       sum += odds;
     };
     add(nullptr, 1.0);
@@ -241,7 +244,8 @@ struct PolicyTreePlanner {
         double const p = std::min(other.probability, most);
         add(&other, p / (1.0 - p));
       }
-    for (auto* part : {&branch.mean.efficiency, &branch.mean.safety, &branch.mean.navigation}) *part /= sum;
+    for (auto* part : {&branch.mean.efficiency, &branch.mean.safety, &branch.mean.navigation, &branch.mean.terms})
+      *part /= sum;
     branch.expected = weights.total(branch.mean);
     branch.worst = std::max(branch.worst, branch.expected);
     branch.cost = (1.0 - weights.worst_case) * branch.expected + weights.worst_case * branch.worst;
@@ -280,14 +284,14 @@ struct PolicyTreePlanner {
       visit(world.frame());
       if (is_over) continue;
       auto const end = course_end(world, workspace.ego);
-      if (end == CourseEnd::over || (workspace.has_goal && world.reached_goal(workspace.ego)))
-        is_over = true;
-      else if (end != CourseEnd::none) {  // the earlier, the worse
+      auto const own = terms.judge(world, workspace.ego, step);
+      cost.terms -= own.reward;
+      is_over = end != CourseEnd::none || own.ends || (workspace.has_goal && world.reached_goal(workspace.ego));
+      if (end == CourseEnd::collision || end == CourseEnd::off_road) {  // the earlier, the worse
         double const left = static_cast<double>(steps - k) / steps;
         cost.safety += weights.collision * (1.0 + left);
         cost.efficiency += left;
-        is_over = true;
-      } else {
+      } else if (!is_over) {
         add_step(workspace, id, 1.0 / steps, cost);
       }
     }
@@ -304,7 +308,7 @@ struct PolicyTreePlanner {
                         (rear && rear->gap < weights.safe_gap(rear->speed, speed));
     cost.safety += unsafe ? share : 0.0;
     auto const& at = view.place();
-    if (workspace.has_goal) cost.navigation += share * detail::lanes_to_destination(view.road(), at.corridor, at.piece);
+    if (workspace.has_goal) cost.navigation += share * lanes_to_destination(view.road(), at.corridor, at.piece);
   }
 };
 

@@ -16,6 +16,7 @@
 #include "cambium/behavior/following/constant_acceleration.hpp"
 #include "cambium/behavior/lane_change/idm_proposal.hpp"
 #include "cambium/evaluation/driving.hpp"
+#include "cambium/evaluation/terms.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/planner/planner_model.hpp"
 #include "cambium/planner/predicted.hpp"
@@ -77,7 +78,8 @@ struct ProposalScore {
   double time_to_collision = 1.0;                                       ///< mark, 0 or 1
   double comfort = 1.0;                                                 ///< mark, 0 or 1
   double speed_limit = 1.0;                                             ///< mark: share of the time within the limit
-  double score{};                                                       ///< total, 0 to 1
+  double terms{};                                                       ///< sum of the planner's `terms`
+  double score{};  ///< total of the marks, 0 to 1, plus `terms`
 };
 
 /// What a `ProposalPlanner` reports. Its candidates are the proposals. It chooses none and brakes if even the best soon
@@ -92,8 +94,9 @@ struct ProposalReport : PlannerReport<World, IdmProposal::Memory> {
 /// motion planning"): simulates IDM drivers at several speeds and offsets from the middle of its lane, closed loop,
 /// while the others behave as `Others`. It scores them and drives like the best. It brakes if that one collides or
 /// leaves the road within `emergency_time`. It keeps its lane and drives on at its goal. `PredictionWorld` must have
-/// `IdmProposal` and `Others` in its behaviour set.
-template <class PredictionWorld, class Others = ConstantAcceleration, SearchBudget Budget = NoBudget>
+/// `IdmProposal` and `Others` in its behaviour set. `Own` are a user's own terms, which count beside the marks.
+template <class PredictionWorld, class Others = ConstantAcceleration, SearchBudget Budget = NoBudget,
+          class Own = Terms<>>
 struct ProposalPlanner {
   static_assert(detail::check_planner<PredictionWorld, Others>());
   static_assert(PredictionWorld::Behaviors::template contains<IdmProposal>,
@@ -107,7 +110,7 @@ struct ProposalPlanner {
     std::optional<PredictionWorld> world;
     typename PredictionWorld::FrameType start;
     Slot ego{};
-    std::vector<Slot> counting;  ///< agents that ego has to keep clear of
+    std::vector<Slot> to_avoid;  ///< see `agents_to_avoid`
     std::vector<ProposalScore> proposals;
     std::size_t best{};
     bool is_cut_short = false;
@@ -126,6 +129,7 @@ struct ProposalPlanner {
   double emergency_time = 2.0;
   double emergency_deceleration = 6.0;
   Budget budget{};
+  Own terms{};
 
   static constexpr char const* name = "proposal_planner";
   static constexpr char const* summary =
@@ -147,7 +151,8 @@ struct ProposalPlanner {
                   "it brakes if the best proposal fails sooner than this"),
         parameter("emergency_deceleration", &P::emergency_deceleration, "m/s^2", Range{0.01, 50},
                   "with which it then brakes"),
-        parameter("budget", &P::budget, "-", {}, "how many proposals are simulated, in order of preference"));
+        parameter("budget", &P::budget, "-", {}, "how many proposals are simulated, in order of preference"),
+        parameter("terms", &P::terms, "-", {}, "evaluators whose sum over a proposal is added to its score"));
   }
 
   void check(std::string const& where) const {
@@ -225,7 +230,7 @@ struct ProposalPlanner {
     if (!ego) return SearchProblem::not_in_world;
     workspace.ego = *ego;
     workspace.start = workspace.world->frame();
-    detail::choose_counting(*workspace.world, *ego, workspace.counting);
+    agents_to_avoid(*workspace.world, *ego, workspace.to_avoid);
     workspace.proposals.clear();
     for (double const offset : offsets)
       for (double const share : speed_shares) {
@@ -264,8 +269,10 @@ struct ProposalPlanner {
       auto const& now = world.frame().agents[ego];
       proposal.progress += 0.5 * step * (before.state.speed + now.state.speed) *
                            std::cos(0.5 * (before.lane.heading_error + now.lane.heading_error));
+      auto const own = terms.judge(world, ego, step);
+      proposal.terms += own.reward;
       auto const end = course_end(world, ego, [&](auto const& predicted, Slot slot) {
-        return AtFaultCollision{}.among(predicted, slot, workspace.counting);
+        return AtFaultCollision{}.among(predicted, slot, workspace.to_avoid);
       });
       if (end == CourseEnd::over) break;
       proposal.collides = end == CourseEnd::collision;
@@ -274,6 +281,7 @@ struct ProposalPlanner {
         proposal.time_to_infraction = (driven + 1) * step;
         break;
       }
+      if (own.ends) break;
       judge(workspace, before.state, last_acceleration, proposal);
       too_fast += SpeedLimitExcess{}(world, ego) > 1e-3 ? 1 : 0;
     }
@@ -295,7 +303,7 @@ struct ProposalPlanner {
     AtFaultCollision at_fault;
     for (double const part : {1.0 / 3, 2.0 / 3, 1.0}) {
       at_fault.look_ahead = part * scoring.look_ahead;
-      if (now.speed > at_fault.standing_speed && at_fault.among(world, ego, workspace.counting))
+      if (now.speed > at_fault.standing_speed && at_fault.among(world, ego, workspace.to_avoid))
         proposal.time_to_collision = 0.0;
     }
     double const along = (now.speed - before.speed) / step;
@@ -320,7 +328,7 @@ struct ProposalPlanner {
       double const progress = farthest > standing ? std::clamp(p.progress / farthest, 0.0, 1.0) : 1.0;
       double const sum = scoring.progress * progress + scoring.time_to_collision * p.time_to_collision +
                          scoring.speed_limit * p.speed_limit + scoring.comfort * p.comfort;
-      p.score = p.collides || p.leaves_road ? 0.0 : sum / weights;
+      p.score = (p.collides || p.leaves_road ? 0.0 : sum / weights) + p.terms;
       if (!std::isfinite(p.score)) return SearchProblem::not_finite;
       auto const& best = proposals[workspace.best];
       // First whoever stays clear, or fails last; then the better score.

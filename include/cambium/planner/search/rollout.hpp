@@ -36,8 +36,6 @@ concept RolloutPolicy = std::copyable<R> && requires(R const rollout, RolloutRun
   { rollout.roll_out(run) } -> std::same_as<bool>;
 };
 
-namespace detail {
-
 /// Plays up to `steps` steps; in each, agent k takes the action `choose(k, step)`. Returns the discount factor after
 /// the last one, or 0 if the game is over.
 template <class Run, class Choose>
@@ -49,7 +47,7 @@ template <class Run, class Choose>
     std::fill(run.outcomes.begin(), run.outcomes.end(), AgentOutcome{});
     bool const over = run.domain.step(run.state, run.joint, run.random, run.outcomes);
     ++run.played;
-    run.problem = problem_of(run.outcomes);
+    run.problem = detail::problem_of(run.outcomes);
     if (run.problem != SearchProblem::none) return 0.0;
     for (std::size_t k = 0; k < run.joint.size(); ++k) {
       run.returns[k] += weight * run.outcomes[k].reward;
@@ -64,7 +62,7 @@ template <class Run, class Choose>
 /// A random action of the agent, uniformly distributed.
 template <class Run>
 [[nodiscard]] auto random_action(Run& run, std::size_t agent) {
-  if constexpr (ListsActions<std::remove_reference_t<decltype(run.domain)>>) {
+  if constexpr (detail::ListsActions<std::remove_reference_t<decltype(run.domain)>>) {
     auto const count = static_cast<std::size_t>(run.domain.actions(run.state, agent, run.options));
     bool const is_wrong = count == 0 || count > run.options.size();
     if (is_wrong) run.problem = SearchProblem::no_actions;
@@ -73,8 +71,6 @@ template <class Run>
     return run.domain.sample_action(run.state, agent, run.random);
   }
 }
-
-}  // namespace detail
 
 /// Takes random actions to the horizon and holds each for `hold` steps. More than one step suits games in which an
 /// available action remains available.
@@ -93,8 +89,8 @@ struct RandomRollout {
 
   template <class Run>
   bool roll_out(Run& run) const {
-    return detail::play(run, std::min(run.steps, steps), [&](std::size_t agent, int step) {
-             return step % hold == 0 ? detail::random_action(run, agent) : run.joint[agent];
+    return play(run, std::min(run.steps, steps), [&](std::size_t agent, int step) {
+             return step % hold == 0 ? random_action(run, agent) : run.joint[agent];
            }) == 0.0;
   }
 };
@@ -116,7 +112,7 @@ struct PolicyRollout {
     static_assert(detail::HasPolicy<std::remove_reference_t<decltype(run.domain)>>,
                   "cambium::PolicyRollout: the domain must have a policy: "
                   "`Action policy_action(State const&, std::size_t agent, RandomStream&)`");
-    return detail::play(run, std::min(run.steps, steps), [&](std::size_t agent, int) {
+    return play(run, std::min(run.steps, steps), [&](std::size_t agent, int) {
              return run.domain.policy_action(run.state, agent, run.random);
            }) == 0.0;
   }

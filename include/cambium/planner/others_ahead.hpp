@@ -10,29 +10,29 @@
 
 #include "cambium/planner/predicted.hpp"
 
-namespace cambium::detail {
+namespace cambium {
 
 /// A prediction of the other agents, made once, step by step. It does not depend on what ego does.
 template <class World>
 struct OthersAhead {
   std::optional<World> world;
   std::vector<typename World::FrameType> frames;  ///< now and after each step
-  std::vector<geometry::OrientedBox> boxes;       ///< of the agents in `counting`, step by step
-  std::vector<Slot> counting;                     ///< agents that ego has to keep clear of, see `choose_counting`
+  std::vector<geometry::OrientedBox> boxes;       ///< of the agents in `to_avoid`, step by step
+  std::vector<Slot> to_avoid;                     ///< agents that ego has to keep clear of, see `agents_to_avoid`
   double step{};                                  ///< [s]
 
   /// Predicts from `now` to `horizon` [s] in steps of `length` [s].
   void predict(World now, Slot ego, double horizon, double length) {
     world = std::move(now);
     step = length;
-    choose_counting(*world, ego, counting);
+    agents_to_avoid(*world, ego, to_avoid);
     auto const steps = static_cast<std::size_t>(std::max(1L, std::lround(horizon / step)));
     frames.resize(steps + 1);
     boxes.clear();
     for (std::size_t k = 0; k <= steps; ++k) {
       if (k > 0) (void)world->step(step);
       frames[k] = world->frame();
-      for (auto const i : counting) {
+      for (auto const i : to_avoid) {
         auto box = box_at(*world, i);
         if (!in_traffic(*world, i)) box.half_length = -1e9;  // touches nobody
         boxes.push_back(box);
@@ -40,10 +40,10 @@ struct OthersAhead {
     }
   }
 
-  /// Whether `box` touches an object, or, after step `k`, an agent in `counting`. O(agents + objects).
+  /// Whether `box` touches an object, or, after step `k`, an agent in `to_avoid`. O(agents + objects).
   [[nodiscard]] bool touched(geometry::OrientedBox const& box, std::size_t k) const {
-    for (std::size_t i = 0; i < counting.size(); ++i)
-      if (geometry::intersects(box, boxes[k * counting.size() + i])) return true;
+    for (std::size_t i = 0; i < to_avoid.size(); ++i)
+      if (geometry::intersects(box, boxes[k * to_avoid.size() + i])) return true;
     return std::ranges::any_of(world->roster().objects,
                                [&](auto const& object) { return geometry::intersects(box, object.outline); });
   }
@@ -61,19 +61,4 @@ struct OthersAhead {
   }
 };
 
-/// Whether `box`, at corridor position `s` and `offset` [m], reaches beyond the drivable lanes or into an oncoming
-/// lane. False past the ends of the corridor, where the road is unknown.
-[[nodiscard]] inline bool leaves_road(Map const& map, map::LaneCorridor const& corridor, double s, double offset,
-                                      geometry::OrientedBox const& box) {
-  if (s < 0.0 || s > corridor.length()) return false;
-  auto const sides = corridor.widths_at(s);
-  double const reach = box.half_width + 0.1;  // [m], allows for a small heading error
-  if (offset + reach < sides.left && -offset + reach < sides.right) return false;
-  if ((offset > sides.left || -offset > sides.right) && is_against_traffic(map, box)) return true;
-  return std::ranges::any_of(box.corners(), [&](geometry::Point const& corner) {
-    double const at = corridor.center.project(corner, corridor.center.find(s)).s;
-    return at > 0.0 && at < corridor.length() && !map.on_drivable_lane(corner);
-  });
-}
-
-}  // namespace cambium::detail
+}  // namespace cambium
