@@ -27,10 +27,56 @@ cb::AgentId enter(World& world, Behavior behavior, cb::RoadRules const& rules, d
   return world.add({.position = {x, -1.75}, .speed = speed, .behavior = behavior});
 }
 
+/// A user's law: Gipps 1981, eq. 2 and 3, read as the acceleration towards the speed after the reaction time.
+struct GippsLaw {
+  static constexpr bool asks_acceleration = false;
+  static constexpr double reaction_time = 0.67, fastest_acceleration = 1.7, braking = 3.0, gap_at_rest = 2.0;
+
+  double own_speed, desired;
+
+  [[nodiscard]] double speed() const { return own_speed; }
+  [[nodiscard]] double desired_speed() const { return desired; }
+  [[nodiscard]] double operator()(cb::Constraint const& ahead) const {
+    double const share = own_speed / desired, tau = reaction_time, b = braking;
+    double const free = own_speed + 2.5 * fastest_acceleration * tau * (1.0 - share) * std::sqrt(0.025 + share);
+    double const under_root =
+        b * b * tau * tau + b * (2.0 * (ahead.gap - gap_at_rest) - own_speed * tau + ahead.speed * ahead.speed / b);
+    double const safe = std::sqrt(std::max(0.0, under_root)) - b * tau;
+    return std::max(-8.0, (std::max(0.0, std::min(free, safe)) - own_speed) / tau);
+  }
+  [[nodiscard]] cb::LongitudinalMotion<double> motion(cb::Constraint const& ahead, double dt, double) const {
+    return cb::ConstantAcceleration{(*this)(ahead)}.motion(own_speed, dt);
+  }
+};
+static_assert(cb::CarFollowingLaw<GippsLaw>);
+
+/// A user's driver by that law. It has no parameters of IDM, but the rules.
+struct Gipps {
+  using Memory = cb::RoadRules::Memory;
+
+  double desired_speed = 15.0;
+  double comfortable_deceleration = 1.67;
+  double lowest_acceleration = -8.0;
+  cb::RoadRules rules{};
+
+  static constexpr char const* name = "gipps";
+  static constexpr auto parameters() {
+    return cb::parameter_list(cb::parameter("desired_speed", &Gipps::desired_speed, "m/s", cb::Range{0.1, 100}, "free"),
+                              cb::parameter("rules", &Gipps::rules, "-", {}, "what it heeds"));
+  }
+  template <class View>
+  [[nodiscard]] cb::Plan<View> plan(View const& view, Memory& memory, double dt) const {
+    double const speed = std::max(0.0, view.state().speed);
+    GippsLaw const law{speed, rules.desired_speed(*this, view, speed)};
+    return rules.keep_lane(view, cb::Strictest(law), *this, 0.0, dt, memory);
+  }
+};
+static_assert(!cb::HasIdmParameters<Gipps>);
+
 #define DRIVERS                                                                                                   \
   cb::IdmClassic, cb::AdaptiveCruiseControl, cb::IdmLaneTracking, cb::IdmStochastic, cb::Mobil, cb::Intersection, \
       cb::LaneChangeRuleBased, cb::ZipMerge, cb::MacroActions, cb::IdmHypotheses, cb::IdmProposal,                \
-      cb::RssConformant<cb::IdmClassic>, cb::HumanDriver<cb::IdmClassic>
+      cb::RssConformant<cb::IdmClassic>, cb::HumanDriver<cb::IdmClassic>, Gipps
 
 template <class Behavior>
 cb::RoadRules& rules_of(Behavior& behavior) {

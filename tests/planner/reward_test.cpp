@@ -48,8 +48,8 @@ struct Leftwards {
 };
 
 using Own = Reward<OnTheLeft, TooClose>;
-using Predicted = World<BehaviorSet<MacroActions, IdmProposal, IdmClassic, ConstantAcceleration>, InterpolateExecution,
-                        SingleTrack>;
+using Predicted =
+    World<BehaviorSet<MacroActions, IdmProposal, IdmClassic, ConstantAcceleration>, InterpolateExecution, SingleTrack>;
 using PredictionWorld = World<BehaviorSet<MacroActions, IdmClassic>, InterpolateExecution, SingleTrack>;
 using Planner = Mcts<PredictionWorld, MacroActions, Own>;
 using Sim = World<BehaviorSet<Planner, IdmClassic>, InterpolateExecution, SingleTrack>;

@@ -160,8 +160,8 @@ struct AtFaultCollision {
   template <class World>
   [[nodiscard]] bool among(World const& world, Slot slot, std::span<Slot const> others) const {
     return in_traffic(world, slot) && (hits_object(world, slot) || std::ranges::any_of(others, [&](Slot other) {
-                                                 return hits(world, slot, other);
-                                               }));
+                                         return hits(world, slot, other);
+                                       }));
   }
 
  private:

@@ -53,10 +53,9 @@ struct Weighted {
 
   template <class World>
   [[nodiscard]] Judgement judge(World& world, Slot slot, double dt) const {
-    static_assert(
-        EvaluatorFor<E, World>,
-        "cambium::Terms<Evaluators...>: each must have `template <class World> auto operator()(World&, Slot) "
-        "const` that returns a bool or a number (see EvaluatorFor)");
+    static_assert(EvaluatorFor<E, World>,
+                  "cambium::Terms<Evaluators...>: each must have `template <class World> auto operator()(World&, Slot) "
+                  "const` that returns a bool or a number (see EvaluatorFor)");
     if (weight == 0.0 && cost == 0.0 && !ends) return {};
     auto const value = static_cast<double>(evaluator(world, slot));
     bool const is_event = value != 0.0;

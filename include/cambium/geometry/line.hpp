@@ -79,7 +79,8 @@ class Line {
     std::vector<double> headings;
     headings.reserve(samples.size());
     for (auto const& sample : samples) {
-      if (!std::isfinite(sample.heading)) throw MapError("line", "a sample's heading is not a finite number", "give radians");
+      if (!std::isfinite(sample.heading))
+        throw MapError("line", "a sample's heading is not a finite number", "give radians");
       if (line.append(sample.x, sample.y)) headings.push_back(sample.heading);
     }
     line.finish();
@@ -241,7 +242,8 @@ class Line {
 
   /// Adds a vertex unless it repeats the last one; returns whether it was added.
   bool append(double x, double y) {
-    if (!std::isfinite(x) || !std::isfinite(y)) throw MapError("line", "a point is not a finite number", "give coordinates in metres");
+    if (!std::isfinite(x) || !std::isfinite(y))
+      throw MapError("line", "a point is not a finite number", "give coordinates in metres");
     if (!has_first_) {
       has_first_ = true;
       end_x_ = x;

@@ -39,7 +39,8 @@ class Polygon {
   explicit Polygon(std::span<Point const> points, std::string const& where = "polygon") {
     points_.reserve(points.size());
     for (auto const& p : points) {
-      if (!std::isfinite(p.x()) || !std::isfinite(p.y())) throw Error(where, "a point is not a finite number", "give coordinates in metres");
+      if (!std::isfinite(p.x()) || !std::isfinite(p.y()))
+        throw Error(where, "a point is not a finite number", "give coordinates in metres");
       if (points_.empty() || p != points_.back()) points_.push_back(p);
     }
     while (points_.size() > 1 && points_.front() == points_.back()) points_.pop_back();

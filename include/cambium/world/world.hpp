@@ -226,7 +226,8 @@ class World {
   void remove_object(ObjectId id) {
     auto const& objects = roster_->objects;
     auto const at = std::find_if(objects.begin(), objects.end(), [id](StaticObject const& o) { return o.id == id; });
-    if (at == objects.end()) throw WorldError("object " + to_string(id), "the world has no such object", "World::roster lists those it has");
+    if (at == objects.end())
+      throw WorldError("object " + to_string(id), "the world has no such object", "World::roster lists those it has");
     writable_roster().erase_object(static_cast<Slot>(at - objects.begin()));
   }
 
@@ -282,7 +283,8 @@ class World {
     auto const slot = slot_of(id);
     auto const where = detail::name_of(id);
     state.time = frame_.time;
-    if (!is_finite(state)) throw WorldError(where, "its position, heading or speed is not a finite number", "give metres, radians, m/s");
+    if (!is_finite(state))
+      throw WorldError(where, "its position, heading or speed is not a finite number", "give metres, radians, m/s");
     state.speed = detail::checked_speed(state.speed, where);
     auto const& agent = roster_->agents[slot];
     auto& record = frame_.agents[slot];

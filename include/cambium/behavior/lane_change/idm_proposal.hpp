@@ -49,8 +49,7 @@ struct IdmProposal {
     driver.rules.heed(view, detail::next_in_way(view, offset, clearance, merging), ahead);
     if (!view.corridor().feeders.empty())
       detail::for_each_on_feeders(view, Look::horizon, merging, [&](RoadUser const& other) {
-        if (!leaves_room(view, view.place().corridor, other, offset, clearance))
-          ahead.heed({other.gap, other.speed});
+        if (!leaves_room(view, view.place().corridor, other, offset, clearance)) ahead.heed({other.gap, other.speed});
       });
     auto const motion = driver.rules.bound(view, driver, view.place().s, speed,
                                            law.motion(ahead.constraint(), dt, driver.tolerance), dt, memory.rules);

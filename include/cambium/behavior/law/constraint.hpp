@@ -28,6 +28,15 @@ concept CarFollowingLaw = requires(L const law, Constraint const& constraint, do
   { L::asks_acceleration } -> std::convertible_to<bool>;
 };
 
+/// The parameters of a driver that `RoadRules` reads, whatever its law: its desired speed [m/s], and how hard it brakes
+/// comfortably (above 0) and at most (below 0) [m/s^2].
+template <class P>
+concept HasDriverParameters = requires(P const p) {
+  { p.desired_speed } -> std::convertible_to<double>;
+  { p.comfortable_deceleration } -> std::convertible_to<double>;
+  { p.lowest_acceleration } -> std::convertible_to<double>;
+};
+
 /// Keeps the strictest of a driver's constraints: the one to which the car-following law responds with the lowest
 /// acceleration; among equals, the nearest. Without constraints the road is free.
 template <CarFollowingLaw Law>

@@ -15,14 +15,11 @@ namespace cambium {
 
 /// A parameter struct with the fields of the Intelligent Driver Model, which the functions below read.
 template <class P>
-concept HasIdmParameters = requires(P const p) {
-  p.desired_speed;
+concept HasIdmParameters = HasDriverParameters<P> && requires(P const p) {
   p.time_headway;
   p.minimum_gap;
   p.maximum_acceleration;
-  p.comfortable_deceleration;
   p.exponent;
-  p.lowest_acceleration;
   p.highest_acceleration;
 };
 

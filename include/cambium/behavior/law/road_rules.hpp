@@ -152,15 +152,15 @@ struct RoadRules {
     friend bool operator==(Memory const&, Memory const&) = default;
   };
 
-  /// Desired speed [m/s] of a driver with parameters `idm` at its place and `speed` [m/s]: within the limits if it
+  /// Desired speed [m/s] of a driver with parameters `driver` at its place and `speed` [m/s]: within the limits if it
   /// obeys them.
-  template <HasIdmParameters P, class View>
-  [[nodiscard]] double desired_speed(P const& idm, View const& view, double speed) const {
+  template <HasDriverParameters P, class View>
+  [[nodiscard]] double desired_speed(P const& driver, View const& view, double speed) const {
     if (!obey_speed_limits) [[likely]]
-      return idm.desired_speed;
+      return driver.desired_speed;
     double const permitted =
-        detail::permitted_speed(view.corridor(), view.place().s, speed, idm.comfortable_deceleration);
-    return std::clamp(speed_factor * permitted, 0.1, idm.desired_speed);
+        detail::permitted_speed(view.corridor(), view.place().s, speed, driver.comfortable_deceleration);
+    return std::clamp(speed_factor * permitted, 0.1, driver.desired_speed);
   }
 
   /// The end of the lane, if the driver has to brake for it.
@@ -255,14 +255,15 @@ struct RoadRules {
     return detail::plan_to(view, next, dt);
   }
 
-  /// The plan over `dt` [s] of a driver with parameters `idm` that keeps its lane: its law answers what the model heeds
-  /// by itself, `ahead`, and what the rules add to it, within their bounds. `tolerance` [m/s^2]: see `idm_motion`.
-  template <class View, CarFollowingLaw Law, HasIdmParameters P>
-  [[nodiscard]] Plan<View> keep_lane(View const& view, Strictest<Law> ahead, P const& idm, double tolerance, double dt,
-                                     Memory& memory) const {
+  /// The plan over `dt` [s] of a driver with parameters `driver` that keeps its lane: its law answers what the model
+  /// heeds by itself, `ahead`, and what the rules add to it, within their bounds. `tolerance` [m/s^2]: see
+  /// `idm_motion`.
+  template <class View, CarFollowingLaw Law, HasDriverParameters P>
+  [[nodiscard]] Plan<View> keep_lane(View const& view, Strictest<Law> ahead, P const& driver, double tolerance,
+                                     double dt, Memory& memory) const {
     if (!only_follows(view, memory)) [[unlikely]] {
       Memory changed = memory;  // calls that are not inlined get copies, so that the originals can stay in registers
-      auto plan = keep_lane_by_rules(View(view), ahead, idm, tolerance, dt, changed);
+      auto plan = keep_lane_by_rules(View(view), ahead, driver, tolerance, dt, changed);
       memory = changed;
       return plan;
     }
@@ -274,9 +275,10 @@ struct RoadRules {
   }
 
   /// Bounds the `motion` of a step of `dt` [s] from `s` [m] at `speed` [m/s] by bends, signals and those who step into
-  /// the way. A driver with parameters `idm` brakes comfortably for them, and harder only if that no longer suffices.
-  template <class View, HasIdmParameters P>
-  [[nodiscard]] LongitudinalMotion<double> bound(View const& view, P const& idm, double s, double speed,
+  /// the way. A driver with parameters `driver` brakes comfortably for them, and harder only if that no longer
+  /// suffices.
+  template <class View, HasDriverParameters P>
+  [[nodiscard]] LongitudinalMotion<double> bound(View const& view, P const& driver, double s, double speed,
                                                  LongitudinalMotion<double> const& motion, double dt,
                                                  Memory& memory) const {
     double const fastest = std::max(speed, motion.speed);
@@ -286,8 +288,8 @@ struct RoadRules {
       return motion;
     View const here = view;  // functions that are not inlined get copies, so that the originals can stay in registers
     Memory changed = memory;
-    auto const bounded =
-        within_bounds(here, {idm.comfortable_deceleration, -idm.lowest_acceleration}, s, speed, motion, dt, changed);
+    auto const bounded = within_bounds(here, {driver.comfortable_deceleration, -driver.lowest_acceleration}, s, speed,
+                                       motion, dt, changed);
     memory = changed;
     return bounded;
   }
@@ -337,12 +339,12 @@ struct RoadRules {
     return ahead.constraint();
   }
 
-  template <class View, class Law, HasIdmParameters P>
-  CAMBIUM_NOINLINE [[nodiscard]] Plan<View> keep_lane_by_rules(View const& view, Strictest<Law> ahead, P const& idm,
+  template <class View, class Law, HasDriverParameters P>
+  CAMBIUM_NOINLINE [[nodiscard]] Plan<View> keep_lane_by_rules(View const& view, Strictest<Law> ahead, P const& driver,
                                                                double tolerance, double dt, Memory& memory) const {
     heed(view, ahead, memory);
     auto const motion = ahead.law().motion(ahead.constraint(), dt, tolerance);
-    return along_lane(view, bound(view, idm, view.place().s, ahead.law().speed(), motion, dt, memory), dt, memory);
+    return along_lane(view, bound(view, driver, view.place().s, ahead.law().speed(), motion, dt, memory), dt, memory);
   }
 
   struct Braking {

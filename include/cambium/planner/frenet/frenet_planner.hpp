@@ -232,8 +232,7 @@ struct FrenetPlanner {
                                    std::max(0.0, view.state().speed), static_cast<double>(memory.acceleration)};
     auto const start = frenet_motion(now, at.s, at.lateral, {corridor.center.segments()[at.segment].curvature, 0.0});
     double const wanted = std::min(desired_speed, corridor.speed_limit_at(at.s));
-    double const route =
-        view.has_goal() ? costs.route * lanes_to_destination(view.road(), number, at.piece) : 0.0;
+    double const route = view.has_goal() ? costs.route * lanes_to_destination(view.road(), number, at.piece) : 0.0;
     for (double const duration : durations) {
       set_targets(view, number, at, wanted, duration, workspace);
       for (auto const& target : workspace.targets)

@@ -91,7 +91,8 @@ class MctsWorkspace {
   /// report, continues the subtree if the world turns out as predicted, at the predicted time
   /// (`TrafficDomain::same_state`), and nothing else has changed in the world, the reward or the actions
   /// (`TrafficDomain::is_same_game`). `result.kept_nodes` tells whether it did. If you fill a new world for each
-  /// `think`, set its time (`WorldOptions::time`). Impossible with hypotheses about the others, because then nodes have no states.
+  /// `think`, set its time (`WorldOptions::time`). Impossible with hypotheses about the others, because then nodes have
+  /// no states.
   bool keep() {
     auto const& result = trees_.result();
     keeps_ = !result.variation.empty() && trees_.keep({result.variation.data(), result.agents});

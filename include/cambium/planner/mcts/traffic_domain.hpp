@@ -214,8 +214,8 @@ class TrafficDomain {
   double cooperation_ = 0.0;
 };
 
-/// Traffic in which each iteration draws what is unknown about the others anew, by the belief about each. Nodes then stand only
-/// for the actions of the choosing agents, not for states.
+/// Traffic in which each iteration draws what is unknown about the others anew, by the belief about each. Nodes then
+/// stand only for the actions of the choosing agents, not for states.
 template <class PredictionWorld, class Actions, class Reward, HypothesisModel Others>
 class HypothesisDomain : public TrafficDomain<PredictionWorld, Actions, Reward> {
   using Base = TrafficDomain<PredictionWorld, Actions, Reward>;

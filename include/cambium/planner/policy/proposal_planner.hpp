@@ -79,7 +79,7 @@ struct ProposalScore {
   double comfort = 1.0;                                                 ///< mark, 0 or 1
   double speed_limit = 1.0;                                             ///< mark: share of the time within the limit
   double terms{};                                                       ///< sum of the planner's `terms`
-  double score{};  ///< total of the marks, 0 to 1, plus `terms`
+  double score{};                                                       ///< total of the marks, 0 to 1, plus `terms`
 };
 
 /// What a `ProposalPlanner` reports. Its candidates are the proposals. It chooses none and brakes if even the best soon

@@ -112,9 +112,8 @@ struct PolicyRollout {
     static_assert(detail::HasPolicy<std::remove_reference_t<decltype(run.domain)>>,
                   "cambium::PolicyRollout: the domain must have a policy: "
                   "`Action policy_action(State const&, std::size_t agent, RandomStream&)`");
-    return play(run, std::min(run.steps, steps), [&](std::size_t agent, int) {
-             return run.domain.policy_action(run.state, agent, run.random);
-           }) == 0.0;
+    return play(run, std::min(run.steps, steps),
+                [&](std::size_t agent, int) { return run.domain.policy_action(run.state, agent, run.random); }) == 0.0;
   }
 };
 
