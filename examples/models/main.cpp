@@ -90,6 +90,8 @@ std::vector<Model> parts() {
           model<cb::TruncatedRollout<cb::RandomRollout>>("TruncatedRollout<Base>"),
           model<cb::NoRollout>("NoRollout"),
           model<cb::TrafficReward>("TrafficReward"),
+          model<cb::Terms<>>("Terms<>"),
+          model<cb::Weighted<cb::Gap>>("Weighted<Gap>"),
           model<cb::BeliefParameters>("BeliefParameters"),
           model<cb::ProposalScoring>("ProposalScoring"),
           model<cb::IntentionPrior>("IntentionPrior"),

@@ -39,6 +39,7 @@ struct Weighted {
   bool ends = false;
 
   static constexpr char const* name = "weighted";
+  static constexpr char const* summary = "an evaluator's value after a step, times a weight";
   static constexpr auto parameters() {
     using P = Weighted;
     return parameter_list(
@@ -71,7 +72,7 @@ struct Terms;
 template <>
 struct Terms<> {
   static constexpr char const* name = "terms";
-  static constexpr char const* summary = "none";
+  static constexpr char const* summary = "a sum of weighted evaluators";
   static constexpr auto parameters() { return parameter_list(); }
 
   template <class E>
@@ -96,7 +97,7 @@ struct Terms<First, Rest...> {
   Terms<Rest...> rest{};
 
   static constexpr char const* name = "terms";
-  static constexpr char const* summary = "weighted evaluators";
+  static constexpr char const* summary = "a sum of weighted evaluators";
   static constexpr auto parameters() {
     return parameter_list(parameter("first", &Terms::first, "-", {}, "the first term"),
                           parameter("rest", &Terms::rest, "-", {}, "the other terms"));
