@@ -234,8 +234,7 @@ class ObservedWorld {
   /// judge it. It contains no history, no observer models and no true behaviours. O(agents); allocates, so predict
   /// once, then copy.
   template <class Set>
-  requires(perfect == World::Observer::perfect) [[nodiscard]]
-  typename World::template WithBehaviors<Set> predict(Prediction<Set> const& prediction) const {
+  [[nodiscard]] typename World::template WithBehaviors<Set> predict(Prediction<Set> const& prediction) const {
     static_assert(perfect == World::Observer::perfect,
                   "cambium::World::truth shows what no agent knows: predict from World::observe");
     return predicted_world<Set>(*world_, slot_, prediction);

@@ -335,6 +335,12 @@ class World {
                   "cambium::World::observe brings the traffic index up to date: call it on a world that is neither "
                   "const nor a temporary, or on a copy");
   }
+  template <class Id, bool may_change = false>
+  TrueView truth(Id) const& {
+    static_assert(may_change,
+                  "cambium::World::truth brings the traffic index up to date: call it on a world that is neither "
+                  "const nor a temporary, or on a copy; an evaluator that looks at neighbours takes a World&");
+  }
 
   /// The traffic index; views use it. Up to date after `observe` and within a step.
   [[nodiscard]] TrafficIndex const& traffic() const { return scratch_.traffic; }

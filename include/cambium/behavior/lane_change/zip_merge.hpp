@@ -98,10 +98,10 @@ struct ZipMerge {
   /// merge is, so that the gap opens gradually, and includes most of what a faster vehicle opens by itself. It never
   /// exceeds the larger of `gap` and the distance to the merge.
   [[nodiscard]] static double gap_to_open(double to_merge, double gap, double speed, double other_speed) {
-    constexpr double share = 0.2, trust = 0.7;
+    constexpr double trust = 0.7;
     if (!(to_merge > 0.0)) return gap;
     double const opening = trust * (other_speed - speed) * to_merge / std::max(speed, 1.0);
-    return std::min(gap + std::max(share * to_merge, opening), std::max(gap, to_merge));
+    return std::min(gap + std::max(map::opening_share * to_merge, opening), std::max(gap, to_merge));
   }
 
   /// Counts the time at a standstill. A driver that has lost its patience and starts regains it only at driving speed.
@@ -113,30 +113,23 @@ struct ZipMerge {
       memory.stood = 0.0f;
   }
 
-  /// A vehicle on its way to the merge.
-  struct Coming {
-    double speed{};
-    double to_merge{};  ///< from its front end [m]
-    double length{};
-  };
-
-  /// Deceleration [m/s^2] with which `one` arrives at the merge after `other` has cleared it.
-  [[nodiscard]] double braking_after(Coming const& other, Coming const& one) const {
+  /// Deceleration [m/s^2] with which `one` arrives at the merge after `other` has cleared it. Here and below, the `gap`
+  /// of a vehicle is that from its front end to the merge.
+  [[nodiscard]] double braking_after(RoadUser const& other, RoadUser const& one) const {
     if (!(one.speed > 0.0)) return 0.0;
-    if (!(one.to_merge > 0.0)) return infinite;
-    double const way = std::max(0.0, other.to_merge + other.length + idm.minimum_gap);
+    if (!(one.gap > 0.0)) return infinite;
+    double const way = std::max(0.0, other.gap + other.length() + idm.minimum_gap);
     double const time = way / std::max(other.speed, 1.0);
-    double const too_far = one.speed * time - one.to_merge;
+    double const too_far = one.speed * time - one.gap;
     if (too_far <= 0.0) return 0.0;
     double const evenly = 2.0 * too_far / (time * time);
-    return evenly * time < one.speed ? evenly : one.speed * one.speed / (2.0 * one.to_merge);
+    return evenly * time < one.speed ? evenly : one.speed * one.speed / (2.0 * one.gap);
   }
 
   /// Whether `one` lets `other` in when it is that one's turn: `other` must not be too far behind, and `one` must not
   /// have to brake hard, unless `other` would have to brake even harder. Both drivers come to the same result.
-  [[nodiscard]] bool gives_way(Coming const& one, Coming const& other) const {
-    return other.to_merge < one.to_merge + reach &&
-           braking_after(other, one) <= std::max(comfortable, braking_after(one, other));
+  [[nodiscard]] bool gives_way(RoadUser const& one, RoadUser const& other) const {
+    return other.gap < one.gap + reach && braking_after(other, one) <= std::max(comfortable, braking_after(one, other));
   }
 
   /// Whether the vehicle ahead is on the own path; near the merge, vehicles of the other lane are still beside it.
@@ -164,10 +157,17 @@ struct ZipMerge {
   template <class View>
   [[nodiscard]] std::optional<RoadUser> let_in(View const& view, Memory& memory, std::optional<RoadUser> const& leader,
                                                double merge) const {
-    double const front = view.place().s + view.shape().front;
-    Coming const own{std::max(0.0, view.state().speed), merge - front, view.shape().length()};
-    auto const coming = [&](RoadUser const& other) {
-      return Coming{std::max(0.0, other.speed), merge - other.s - other.front, other.length()};
+    auto const& at = view.place();
+    auto const& shape = view.shape();
+    RoadUser const own{.gap = merge - (at.s + shape.front),
+                       .s = at.s,
+                       .front = shape.front,
+                       .rear = shape.rear,
+                       .speed = std::max(0.0, view.state().speed)};
+    auto const coming = [&](RoadUser other) {
+      other.gap = merge - other.s - other.front;
+      other.speed = std::max(0.0, other.speed);
+      return other;
     };
     auto first = whose_turn(view, memory, leader, merge, own, coming);
     // Vehicles behind it go first, too, even though it is not their turn, if they do not give way. Drivers of other
@@ -175,9 +175,8 @@ struct ZipMerge {
     // itself, may be one of these.
     constexpr double high_time = 3.0, brakes = 1.0;  // [m/s^2]
     auto const insists = [&](RoadUser const& other) {
-      return !gives_way(coming(other), own) ||
-             (other.s > view.place().s && braking_after(coming(other), own) > high_time &&
-              !(is_valid(other.agent) && view.acceleration(other) < -brakes));
+      return !gives_way(coming(other), own) || (other.s > at.s && braking_after(coming(other), own) > high_time &&
+                                                !(is_valid(other.agent) && view.acceleration(other) < -brakes));
     };
     for (auto next = view.merging(merge, first ? first->s - first->rear : infinite);
          next && (!first || next->s < first->s) && insists(*next); next = view.merging(merge, first->s - first->rear))
@@ -189,7 +188,7 @@ struct ZipMerge {
   template <class View, class Measure>
   [[nodiscard]] std::optional<RoadUser> whose_turn(View const& view, Memory& memory,
                                                    std::optional<RoadUser> const& leader, double merge,
-                                                   Coming const& own, Measure const& coming) const {
+                                                   RoadUser const& own, Measure const& coming) const {
     double const s = view.place().s;
     auto const is_impatient = [&](RoadUser const& other) { return memory.stood > patience && other.s < s; };
     if (!leader) {  // without a leader, the vehicle closer to the merge goes first
@@ -198,7 +197,7 @@ struct ZipMerge {
       bool const is_first = other && other->s > s - (other->agent < view.id() ? equal : -equal);
       return is_first && !is_impatient(*other) ? other : std::nullopt;
     }
-    double const rear_of_leader = merge - own.to_merge + leader->gap;
+    double const rear_of_leader = merge - own.gap + leader->gap;
     if (rear_of_leader < merge && is_on_path(view, *leader, rear_of_leader)) memory.ahead = leader->agent;
     if (leader->agent != memory.ahead) return std::nullopt;  // the other lane has had its turn
     auto const other = view.merging(merge, rear_of_leader);

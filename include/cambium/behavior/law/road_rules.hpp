@@ -29,11 +29,11 @@ template <class Law, class View>
       constraint.acceleration = view.acceleration(user);
       double const gap = user.s - user.rear - view.place().s - view.shape().front;
       // Before a merge the gap has to open, whatever the leader's acceleration; near it, the law must not rely on that.
-      constexpr double soon = 3.0, share = 0.2, hardest = -1e3;  // [s], see `map::gap_before_merge`, [m/s^2]
+      constexpr double soon = 3.0, hardest = -1e3;  // [s], [m/s^2]
       double const opens = user.gap - gap;
       if (opens > 0.1)
         constraint.acceleration =
-            std::min(constraint.acceleration, opens < share * soon * view.state().speed ? hardest : -1.0);
+            std::min(constraint.acceleration, opens < map::opening_share * soon * view.state().speed ? hardest : -1.0);
     }
   return constraint;
 }
