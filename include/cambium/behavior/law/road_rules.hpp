@@ -327,8 +327,9 @@ struct RoadRules {
   /// Whether nothing matters to the driver but the next vehicle in its lane. O(1).
   template <class View>
   [[nodiscard]] bool only_follows(View const& view, Memory const& memory) const {
-    bool const heeds_more = lane_end != LaneEnd::ignored || slow_for_bends || obey_signals;
-    return !heeds_more && !steers(view, memory) && !memory.adrift && !(crossing_time > 0.0 && view.anybody_off_lanes());
+    bool const heeds_more = (lane_end != LaneEnd::ignored) | slow_for_bends | obey_signals | keep_to_side;
+    bool const moves_aside = memory.adrift | (memory.aside != 0) | view.anybody_leaves_room();
+    return !(heeds_more | moves_aside) && !(view.anybody_off_lanes() && crossing_time > 0.0);
   }
 
   /// The strictest of `heed_merging`, as a value so that the caller's constraints can stay in registers.
