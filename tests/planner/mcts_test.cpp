@@ -343,6 +343,40 @@ TEST_CASE("beliefs find the headway of the leader") {
   }
 }
 
+namespace {
+
+/// A user's hypotheses: the driver keeps its speed, or brakes.
+struct MayBrake {
+  struct Memory {
+    bool brakes = false;
+    friend bool operator==(Memory, Memory) = default;
+  };
+  static constexpr auto parameters() { return parameter_list(); }
+  [[nodiscard]] std::size_t hypotheses() const { return 2; }
+  void assume(Memory& memory, std::size_t number, double) const { memory.brakes = number == 1; }
+  template <class View>
+  [[nodiscard]] Plan<View> plan(View const& view, Memory const& memory, double dt) const {
+    return plan_along_lane(view, ConstantAcceleration{memory.brakes ? -1.0 : 0.0}.motion(view.state().speed, dt), dt);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a planner learns which of a user's own hypotheses holds") {
+  using Predicted = World<BehaviorSet<MacroActions, MayBrake>, InterpolateExecution, SingleTrack>;
+  using Curious = Mcts<Predicted, MacroActions, TrafficReward, MayBrake>;
+  for (bool const brakes : {false, true}) {
+    Predicted::WithBehaviors<BehaviorSet<Curious, ConstantAcceleration>> world(support::straight_road(1, 2000.0));
+    world.add({.position = {60, -1.75}, .speed = 12, .behavior = quick(Curious{}, 50)});
+    world.add({.position = {110, -1.75}, .speed = 14, .behavior = ConstantAcceleration{brakes ? -1.0 : 0.0}});
+    for (int step = 0; step < 6; ++step) REQUIRE(world.step(0.2));
+    auto const* belief = world.memory<Curious>(ego).belief(AgentId{1});
+    REQUIRE(belief != nullptr);
+    CHECK(belief->size() == 2);
+    CHECK(belief->probability(brakes ? 1 : 0) > 0.95);
+  }
+}
+
 TEST_CASE("an observed speed changes a belief by its normal distribution about what each headway predicts") {
   auto planner = quick(Learning{}, 20);
   planner.belief = {.forgetting = 0.0, .floor = 0.0, .speed_deviation = 0.08};
