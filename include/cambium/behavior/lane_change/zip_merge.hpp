@@ -74,7 +74,8 @@ struct ZipMerge {
     if (merge < infinite) {
       if (auto const other = let_in(view, memory, leader, merge)) {
         double const front = view.place().s + view.shape().front;
-        double const gap = gap_to_open(merge - front, other->s - other->rear - front, speed, other->speed);
+        double const to_merge = merge - front - speed * dt;  // when the step ends: the law takes the gap as given
+        double const gap = gap_to_open(to_merge, other->s - other->rear - front, speed, other->speed);
         ahead.heed({gap, other->speed});
       }
     } else if (leader) {
