@@ -8,8 +8,6 @@
 #include <type_traits>
 #include <vector>
 
-#include "cambium/behavior/following/constant_acceleration.hpp"
-#include "cambium/behavior/law/follow_lane.hpp"
 #include "cambium/core/plan.hpp"
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/evaluation/course_end.hpp"
@@ -112,14 +110,6 @@ void drive_predicted(World& world, Slot slot, double dt, double step, BasicPlan<
     plan.trajectory.back().time = i + 1 == steps ? begin + dt : world.time();
   }
   plan.status = PlanStatus::valid;
-}
-
-/// The agent's state after braking for `time` [s] with `deceleration` [m/s^2], along its lane at its present offset.
-template <class View>
-[[nodiscard]] typename View::State braking_state(View const& view, double deceleration, double time) {
-  double const speed = std::max(0.0, view.state().speed);
-  if (!(time > 0.0)) return view.state();
-  return follow_lane(view, ConstantAcceleration{-deceleration}.motion(speed, time), time);
 }
 
 /// Up to `count` agents nearest to the one at `ego`, within `range` [m], nearest first. O(n log n) in the agents.

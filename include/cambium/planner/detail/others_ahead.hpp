@@ -61,14 +61,25 @@ struct OthersAhead {
   }
 };
 
-/// Whether `box`, at corridor position `s` and `offset` [m], reaches beyond the drivable lanes or into an oncoming
-/// lane. False past the ends of the corridor, where the road is unknown.
+/// Whether `box`, the box of `shape` at corridor position `s`, `offset` [m] and `heading_error` [rad], reaches beyond
+/// the drivable lanes or into an oncoming lane. False past the ends of the corridor, where the road is unknown.
 [[nodiscard]] inline bool leaves_road(Map const& map, map::LaneCorridor const& corridor, double s, double offset,
+                                      double heading_error, geometry::Shape const& shape,
                                       geometry::OrientedBox const& box) {
   if (s < 0.0 || s > corridor.length()) return false;
-  auto const sides = corridor.widths_at(s);
-  double const reach = box.half_width + 0.1;  // [m], allows for a small heading error
-  if (offset + reach < sides.left && -offset + reach < sides.right) return false;
+  auto segment = corridor.center.find(s);
+  auto const sides = corridor.widths_at(s, segment);
+  // Quick test: it fits into the narrowest of the widths at its rear, middle and front.
+  double const longer = std::max(shape.front, shape.rear);
+  double const bend = 0.5 * std::abs(corridor.center.segments()[segment].curvature) * longer;
+  double const reach = box.half_width + (std::abs(heading_error) + bend) * longer + 0.05;  // [m]
+  bool is_inside = true;
+  for (double const at : {s, s + shape.front, s - shape.rear}) {
+    corridor.center.segment_at(at, segment);
+    auto const here = corridor.widths_at(at, segment);
+    is_inside = is_inside && offset + reach < here.left && -offset + reach < here.right;
+  }
+  if (is_inside) return false;
   if ((offset > sides.left || -offset > sides.right) && is_against_traffic(map, box)) return true;
   return std::ranges::any_of(box.corners(), [&](geometry::Point const& corner) {
     double const at = corridor.center.project(corner, corridor.center.find(s)).s;

@@ -126,10 +126,8 @@ struct FrenetPlanner {
         if (auto const& candidate = workspace.candidates[i];
             verdict(view, candidate, workspace) == FrenetVerdict::valid)
           return follow(view, candidate, memory, dt);
-      float bend = 0.0f;
-      double const speed = std::max(0.0, view.state().speed);
       memory = braking(view);
-      return plan_to_center(view, bend, ConstantAcceleration{limits.lowest_acceleration}.motion(speed, dt), dt);
+      return brake(view, dt);
     }
     return plan;
   }
@@ -160,7 +158,7 @@ struct FrenetPlanner {
     for (std::size_t k = 1; k < report.course.size(); ++k) {
       double const time = static_cast<double>(k) * step;
       report.course[k].agents[ego].state = report.chosen ? state_at(view, report.courses[*report.chosen], time).state
-                                                         : braking_state(view, -limits.lowest_acceleration, time);
+                                                         : brake(view, time).trajectory.back();
     }
     report.memory = report.chosen ? memory_of(state_at(view, report.courses[*report.chosen], step)) : braking(view);
     return report;
@@ -174,6 +172,14 @@ struct FrenetPlanner {
     CourseMotion<double> course;
     FrenetMotion<double> frenet;
   };
+
+  /// The plan for the next `dt` [s] if no course is valid: it brakes and returns to the middle of its lane.
+  template <class View>
+  [[nodiscard]] Plan<View> brake(View const& view, double dt) const {
+    float bend = 0.0f;
+    double const speed = std::max(0.0, view.state().speed);
+    return plan_to_center(view, bend, ConstantAcceleration{limits.lowest_acceleration}.motion(speed, dt), dt);
+  }
 
   /// The memory while it brakes.
   template <class View>
@@ -293,7 +299,8 @@ struct FrenetPlanner {
       auto const verdict = drivable(limits, course, frenet, fastest);
       if (verdict != FrenetVerdict::valid) return verdict;
       auto box = geometry::box_of(view.shape(), state);
-      if (detail::leaves_road(view.map(), corridor, frenet.s, frenet.offset, box)) return FrenetVerdict::road;
+      if (detail::leaves_road(view.map(), corridor, frenet.s, frenet.offset, course.heading_error, view.shape(), box))
+        return FrenetVerdict::road;
       box.half_length += limits.clearance;
       box.half_width += limits.clearance;
       if (ahead.touched(box, k)) return FrenetVerdict::collision;
