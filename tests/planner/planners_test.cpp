@@ -330,6 +330,33 @@ TEST_CASE_TEMPLATE("once warm, hardly anything but the prediction allocates", Pl
   CHECK(support::allocations() - before < 40);  // for dozens of simulations
 }
 
+namespace {
+
+/// Checks that ego is in each frame of a report's course where its state says, as it is in a world: in the lane that
+/// holds it, at the place and with the acceleration that belong to the state.
+template <class World, class Report>
+void check_places(World const& world, Report const& report) {
+  auto const slot = world.slot_of(ego);
+  auto const& road = *world.roster().agents[slot].road;
+  for (std::size_t k = 1; k < report.course.size(); ++k) {
+    CAPTURE(k);
+    auto const &now = report.course[k].agents[slot], &before = report.course[k - 1].agents[slot];
+    if (now.status != AgentStatus::driving) break;
+    auto const& corridor = road.corridors[now.lane.corridor];
+    auto const at = map::locate(road, now.lane.corridor, {now.state.x, now.state.y, now.state.heading});
+    CHECK(now.lane.s == doctest::Approx(at.s).epsilon(1e-6));
+    CHECK(std::abs(now.lane.lateral - at.lateral) < 1e-6);
+    CHECK(std::abs(now.lane.heading_error - at.heading_error) < 1e-6);
+    auto const sides = corridor.widths_at(at.s);
+    CHECK(at.lateral < sides.left + 0.01);
+    CHECK(-at.lateral < sides.right + 0.01);
+    double const dt = now.state.time - before.state.time;
+    CHECK(std::abs(now.action.acceleration - (now.state.speed - before.state.speed) / dt) < 0.5);
+  }
+}
+
+}  // namespace
+
 TEST_CASE_TEMPLATE("its report has a course up to the horizon, and the reasons", Planner, ALL_PLANNERS) {
   auto const planner = quick<Planner>();
   auto const [step, horizon] = times(planner);
@@ -358,6 +385,7 @@ TEST_CASE_TEMPLATE("its report has a course up to the horizon, and the reasons",
     CHECK(report.candidates[*report.chosen].refused.empty());
     CHECK(report.decidedness >= 0.0);
     CHECK(report.decidedness <= 1.0);
+    check_places(world, report);
     // It drives the start of that course; afterwards its memory equals that of the report.
     REQUIRE(world.step(step));
     auto const slot = world.slot_of(ego);

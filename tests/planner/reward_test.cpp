@@ -1,7 +1,10 @@
 // Rewards composed of evaluators, including a user's own.
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
+#include <string>
 
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/planner/frenet/frenet_planner.hpp"
@@ -126,6 +129,67 @@ TEST_CASE_TEMPLATE("every other planner heeds a user's evaluator, too", Heeding,
   double const left = drive(20.0), middle = drive(0.0), right = drive(-20.0);
   CHECK(left > middle + 0.5);
   CHECK(right < middle - 0.5);
+}
+
+namespace {
+
+/// Not a number, or infinite, where the speed is above 13 m/s.
+template <int sign>
+struct Broken {
+  static constexpr auto parameters() { return parameter_list(); }
+  template <class World>
+  [[nodiscard]] double operator()(World const& world, Slot slot) const {
+    if (world.frame().agents[slot].state.speed < 13.0) return 1.0;
+    double const infinite = std::numeric_limits<double>::infinity();
+    return sign == 0 ? infinite - infinite : sign * infinite;
+  }
+};
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("no planner drives a course whose terms are not finite", Term, Broken<0>, Broken<1>, Broken<-1>) {
+  World<BehaviorSet<IdmClassic>, InterpolateExecution, SingleTrack> world(support::straight_road(2, 600.0));
+  auto const id = world.add({.position = {60, -5.25}, .speed = 12});
+  auto const check = [&]<class P>(P planner) {
+    planner.terms.template term<Term>().weight = 1.0;
+    typename P::Workspace workspace;
+    try {
+      auto const report = planner.think(world.observe(id), {}, workspace);
+      REQUIRE(report.chosen);
+      CHECK(std::isfinite(report.candidates[*report.chosen].score));
+      for (auto const& candidate : report.candidates)
+        if (candidate.refused.empty()) CHECK(std::isfinite(candidate.score));
+    } catch (SearchError const& error) {
+      CHECK(std::string(error.what()).find("finite") != std::string::npos);
+    }
+  };
+  check(ProposalPlanner<Predicted, ConstantAcceleration, NoBudget, Terms<Term>>{});
+  check(PolicyTreePlanner<Predicted, NoBudget, Terms<Term>>{});
+  check(FrenetPlanner<Predicted, ConstantAcceleration, NoBudget, Terms<Term>>{});
+}
+
+TEST_CASE("evaluators see Frenet's courses as they see a world") {
+  // A lane change: its lane offset is that from the lane that holds the vehicle, the gap is to whoever is ahead there.
+  World<BehaviorSet<IdmClassic>, InterpolateExecution, SingleTrack> world(support::straight_road(2, 600.0));
+  auto const id = world.add({.position = {60, -5.25}, .speed = 12});
+  world.add({.position = {110, -5.25}, .speed = 4, .behavior = IdmClassic{.desired_speed = 4}});
+  FrenetPlanner<Predicted, ConstantAcceleration, NoBudget, Terms<LaneOffset>> planner;
+  planner.terms.term<LaneOffset>() = {.weight = -1e-9, .per_second = true};
+  decltype(planner)::Workspace workspace;
+  auto const report = planner.think(world.observe(id), {}, workspace);
+  REQUIRE(report.chosen);
+  Predicted seen = world.observe(id).predict(
+      predict_all_as<BehaviorSet<MacroActions, IdmProposal, IdmClassic, ConstantAcceleration>>(ConstantAcceleration{}));
+  double largest = 0.0, least_gap = 400.0;
+  for (auto const& frame : report.course) {
+    seen.restore(frame);
+    largest = std::max(largest, LaneOffset{}(seen, ego));
+    if (frame.agents[ego].state.y < -4.5) least_gap = std::min(least_gap, Gap{}(seen, ego));
+  }
+  CHECK(report.course.back().agents[ego].state.y > -3.0);  // it changes lanes
+  CHECK(largest > 1.0);
+  CHECK(largest < 1.8);
+  CHECK(least_gap < 46.0);
 }
 
 TEST_CASE("a term that ends the course ends it in every planner") {

@@ -109,6 +109,24 @@ TEST_CASE("nobody enters into a queue that has grown back to the source, and the
   CHECK(inflow.waiting(0) > 70);
 }
 
+TEST_CASE("nobody enters beside a vehicle that changes into the lane, in a bend as on a straight road") {
+  for (double const curvature : {-0.005, 0.0, 0.005}) {
+    auto const road = support::straight_road(2, 200.0, curvature);
+    auto const left = road->nearest_lane({0.0, -1.75, 0.0})->lane, right = road->nearest_lane({0.0, -5.25, 0.0})->lane;
+    for (bool const to_left : {true, false})
+      for (double const turn : {-0.04, 0.0, 0.04}) {  // [rad], positive: towards the source
+        Sim world(road, {});
+        auto const pose = road->lane(to_left ? right : left).path.pose(12.0);
+        world.add({.position = pose.position(), .heading = pose.heading + (to_left ? turn : -turn), .speed = 12.0});
+        Inflow inflow(*road, {{.lane = to_left ? left : right, .per_hour = TrafficSource::saturated}}, 1);
+        auto const draw = [](TrafficSource const&, RandomStream&) { return Sim::AgentSpec{.speed = 12.0}; };
+        CAPTURE(curvature);
+        CAPTURE(to_left);
+        CHECK(inflow.enter(world, draw).size() == (turn > 0.0 ? 0 : 1));
+      }
+  }
+}
+
 TEST_CASE("sources are where traffic can enter a map; wrong ones are refused with a sentence") {
   CHECK(find_sources(*support::own_map("highway.xodr")).size() == 3);
   CHECK(find_sources(*support::own_map("highway_exit.xodr")).size() == 3);  // not the lane that opens for the exit

@@ -25,14 +25,21 @@ struct OffRoad {
   template <class World>
   [[nodiscard]] bool operator()(World const& world, Slot slot) const {
     auto const& record = world.frame().agents[slot];
-    if (record.status != AgentStatus::driving || inside_lanes(world, slot)) return false;
-    auto const& s = record.state;
-    auto const box = geometry::box_of(world.roster().agents[slot].shape, {s.x, s.y, s.heading});
-    auto const corners = box.corners();
+    auto const& agent = world.roster().agents[slot];
+    return record.status == AgentStatus::driving &&
+           leaves(world.map(), *agent.road, record.lane, record.state, agent.shape);
+  }
+
+  /// The same for a vehicle of `shape` in `state`, whose place on `road` is `at`.
+  template <MotionState S>
+  [[nodiscard]] static bool leaves(Map const& map, map::RoadCorridor const& road, map::LanePlace const& at,
+                                   S const& state, geometry::Shape const& shape) {
+    if (inside_lanes(road, at, shape)) return false;
+    auto const corners = geometry::box_of(shape, state).corners();
     for (std::size_t i = 0; i < corners.size(); ++i) {
       auto const& corner = corners[i];
       geometry::Point const middle = 0.5 * (corner + corners[(i + 1) % corners.size()]);
-      if (beyond_road(world, slot, corner) || beyond_road(world, slot, middle)) return true;
+      if (beyond_road(map, road, at, corner) || beyond_road(map, road, at, middle)) return true;
     }
     return false;
   }
@@ -40,13 +47,10 @@ struct OffRoad {
  private:
   /// Quick test: a box is inside if it fits into the narrowest of the widths at its rear, middle and front, and the
   /// lane bends little. The widths include the adjacent lanes if these run along the whole box. [m, rad]
-  template <class World>
-  [[nodiscard]] static bool inside_lanes(World const& world, Slot slot) {
-    auto const& agent = world.roster().agents[slot];
-    auto const& at = world.frame().agents[slot].lane;
-    auto const& corridor = agent.road->corridors[at.corridor];
+  [[nodiscard]] static bool inside_lanes(map::RoadCorridor const& road, map::LanePlace const& at,
+                                         geometry::Shape const& shape) {
+    auto const& corridor = road.corridors[at.corridor];
     auto const& piece = corridor.pieces[at.piece];
-    auto const& shape = agent.shape;
     double const rear = at.s - shape.rear, front = at.s + shape.front;
     if (rear < 0 || front > corridor.length()) return false;
     double const reach = std::max(shape.front, shape.rear);
@@ -64,9 +68,9 @@ struct OffRoad {
       auto const widths = corridor.widths_at(s, segment);
       double left = widths.left, right = widths.right;
       if (has_beside && at.lateral + shape.left + margin >= left)
-        left += width_beside(*agent.road, piece, piece.left, piece.left_piece, s);
+        left += width_beside(road, piece, piece.left, piece.left_piece, s);
       if (has_beside && at.lateral - shape.right - margin <= -right)
-        right += width_beside(*agent.road, piece, piece.right, piece.right_piece, s);
+        right += width_beside(road, piece, piece.right, piece.right_piece, s);
       if (at.lateral + shape.left + margin >= left || at.lateral - shape.right - margin <= -right) return false;
     }
     return true;
@@ -84,11 +88,10 @@ struct OffRoad {
 
   /// Whether the point is in no lane. Points beyond the end of the agent's road do not count: the map ends there, not
   /// the real road.
-  template <class World>
-  [[nodiscard]] static bool beyond_road(World const& world, Slot slot, geometry::Point const& p) {
-    if (world.map().on_drivable_lane(p)) return false;
-    auto const& at = world.frame().agents[slot].lane;
-    auto const& corridor = world.roster().agents[slot].road->corridors[at.corridor];
+  [[nodiscard]] static bool beyond_road(Map const& map, map::RoadCorridor const& road, map::LanePlace const& at,
+                                        geometry::Point const& p) {
+    if (map.on_drivable_lane(p)) return false;
+    auto const& corridor = road.corridors[at.corridor];
     auto const foot = corridor.center.project(p, at.segment);
     if (foot.s > 0.0 && foot.s < corridor.length()) return true;
     bool const is_before = foot.s <= 0.0;
@@ -98,7 +101,7 @@ struct OffRoad {
     constexpr double inside = 0.01;  // [m]
     auto const at_end = corridor.center.pose(is_before ? inside : corridor.length() - inside);
     auto const along = geometry::sin_cos(at_end.heading);
-    return !world.map().on_drivable_lane({at_end.x - foot.lateral * along.sin, at_end.y + foot.lateral * along.cos});
+    return !map.on_drivable_lane({at_end.x - foot.lateral * along.sin, at_end.y + foot.lateral * along.cos});
   }
 };
 
@@ -114,21 +117,6 @@ namespace detail {
 
 }  // namespace detail
 
-/// Whether `box`, at corridor position `s` and `offset` [m], reaches beyond the drivable lanes or into an oncoming
-/// lane. False past the ends of the corridor, where the road is unknown.
-[[nodiscard]] inline bool leaves_road(Map const& map, map::LaneCorridor const& corridor, double s, double offset,
-                                      geometry::OrientedBox const& box) {
-  if (s < 0.0 || s > corridor.length()) return false;
-  auto const sides = corridor.widths_at(s);
-  double const reach = box.half_width + 0.1;  // [m], allows for a small heading error
-  if (offset + reach < sides.left && -offset + reach < sides.right) return false;
-  if ((offset > sides.left || -offset > sides.right) && detail::is_against_traffic(map, box)) return true;
-  return std::ranges::any_of(box.corners(), [&](geometry::Point const& corner) {
-    double const at = corridor.center.project(corner, corridor.center.find(s)).s;
-    return at > 0.0 && at < corridor.length() && !map.on_drivable_lane(corner);
-  });
-}
-
 /// Whether an agent in traffic drives in a lane of oncoming traffic, outside all lanes of its route.
 struct OncomingLane {
   static constexpr char const* name = "oncoming_lane";
@@ -138,12 +126,18 @@ struct OncomingLane {
   template <class World>
   [[nodiscard]] bool operator()(World const& world, Slot slot) const {
     auto const& record = world.frame().agents[slot];
-    if (record.status != AgentStatus::driving) return false;
-    auto const& at = record.lane;
-    auto const sides = world.roster().agents[slot].road->corridors[at.corridor].widths_at(at.s, at.segment);
+    auto const& agent = world.roster().agents[slot];
+    return record.status == AgentStatus::driving &&
+           enters(world.map(), *agent.road, record.lane, record.state, agent.shape);
+  }
+
+  /// The same for a vehicle of `shape` in `state`, whose place on `road` is `at`.
+  template <MotionState S>
+  [[nodiscard]] static bool enters(Map const& map, map::RoadCorridor const& road, map::LanePlace const& at,
+                                   S const& state, geometry::Shape const& shape) {
+    auto const sides = road.corridors[at.corridor].widths_at(at.s, at.segment);
     bool const is_in_lane = at.lateral < sides.left && -at.lateral < sides.right;
-    return !is_in_lane &&
-           detail::is_against_traffic(world.map(), geometry::box_of(world.roster().agents[slot].shape, record.state));
+    return !is_in_lane && detail::is_against_traffic(map, geometry::box_of(shape, state));
   }
 };
 

@@ -45,8 +45,9 @@ struct Weighted {
     return parameter_list(
         parameter("evaluator", &P::evaluator, "-", {}, "returns a bool or a number"),
         parameter("weight", &P::weight, "-", any_finite, "factor on its value"),
-        parameter("cost", &P::cost, "-", Range{0, 1},
-                  "of a value other than 0: the probability of the event that a limit on risk bounds"),
+        parameter(
+            "cost", &P::cost, "-", Range{0, 1},
+            "of a value other than 0: the probability of the event that a limit on risk bounds; only Mcts has one"),
         parameter("per_second", &P::per_second, "-", Range{0, 1},
                   "whether the term is multiplied by the duration of the step"),
         parameter("ends", &P::ends, "-", Range{0, 1}, "whether a value other than 0 ends the course"));

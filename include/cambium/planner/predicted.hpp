@@ -8,11 +8,11 @@
 #include <type_traits>
 #include <vector>
 
-#include "cambium/behavior/following/constant_acceleration.hpp"
-#include "cambium/behavior/law/follow_lane.hpp"
 #include "cambium/core/plan.hpp"
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/evaluation/course_end.hpp"
+#include "cambium/world/detail/on_lanes.hpp"
+#include "cambium/world/detail/situation.hpp"
 #include "cambium/world/prediction.hpp"
 
 namespace cambium {
@@ -114,12 +114,32 @@ void drive_predicted(World& world, Slot slot, double dt, double step, BasicPlan<
   plan.status = PlanStatus::valid;
 }
 
-/// The agent's state after braking for `time` [s] with `deceleration` [m/s^2], along its lane at its present offset.
-template <class View>
-[[nodiscard]] typename View::State braking_state(View const& view, double deceleration, double time) {
-  double const speed = std::max(0.0, view.state().speed);
-  if (!(time > 0.0)) return view.state();
-  return follow_lane(view, ConstantAcceleration{-deceleration}.motion(speed, time), time);
+/// The record of the agent at `slot` of `world` once it has driven from `before` to `state`: its lane, its status and
+/// the parts of its goal that it has passed are what a step of the world finds. Its memory stays.
+template <class World>
+[[nodiscard]] typename World::Record driven_to(World const& world, Slot slot, typename World::Record const& before,
+                                               typename World::State const& state) {
+  auto record = before;
+  auto const& agent = world.roster().agents[slot];
+  double const duration = state.time - before.state.time;
+  record.state = state;
+  record.action = {};
+  if (duration > 0.0) record.action.acceleration = (state.speed - before.state.speed) / duration;
+  if (before.status != AgentStatus::driving) return record;
+  detail::move_on_lane(world.map(), *agent.road, 0.5 * (before.state.speed + state.speed) * duration, record);
+  detail::pass_goals(agent, world.roster().goals[slot], record);
+  return record;
+}
+
+/// Replaces the motion of the agent at `ego` in a predicted course of `world` by another one: `state_at(k)` is its
+/// state in frame k.
+template <class World, class F>
+void replace_course(World const& world, Slot ego, std::vector<typename World::FrameType>& course, F const& state_at) {
+  for (std::size_t k = 1; k < course.size(); ++k) {
+    auto state = state_at(k);
+    state.time = course[k].time;
+    course[k].agents[ego] = driven_to(world, ego, course[k - 1].agents[ego], state);
+  }
 }
 
 /// Up to `count` agents nearest to the one at `ego`, within `range` [m], nearest first. O(n log n) in the agents.

@@ -225,9 +225,11 @@ class TrafficInflow {
       double const x = circle.x - box.x, y = circle.y - box.y;
       if (std::abs(x) > reach + circle.radius || std::abs(y) > reach + circle.radius) continue;
       if (geometry::intersects(box, box_at(world, slot))) return true;
+      auto const& agent = world.frame().agents[slot];
       double const aside = y * along.cos - x * along.sin;
-      auto const turn = geometry::sin_cos(world.frame().agents[slot].state.heading - pose.heading);
-      if (std::abs(aside) < lane_width && turn.cos > 0.0 && turn.sin * aside < -0.02 * std::abs(aside)) return true;
+      if (std::abs(aside) < lane_width && std::cos(agent.state.heading - pose.heading) > 0.0 &&
+          agent.lane.heading_error * aside < -0.02 * std::abs(aside))
+        return true;
     }
     return false;
   }

@@ -399,12 +399,8 @@ class World {
   }
 
  private:
-  /// Records which parts of its goal sequence an agent in traffic has reached.
   void pass_goals(Slot slot, Record& record) const {
-    auto const* const sequence = std::get_if<GoalSequence>(&roster_->goals[slot]);
-    if (sequence && record.status != AgentStatus::not_started)
-      record.goals_passed =
-          static_cast<std::uint8_t>(sequence->pass(detail::situation_of(roster_->agents[slot], record)));
+    detail::pass_goals(roster_->agents[slot], roster_->goals[slot], record);
   }
 
   [[nodiscard]] RosterType& writable_roster() {

@@ -44,7 +44,7 @@ struct FrenetMemory {
 
 /// What a `FrenetPlanner` reports. Its candidates are the courses; a score is a negative cost. It chooses the first
 /// valid one, or with `terms` the best of the valid ones. In the frames of the report's course, ego's memory is that of
-/// the prediction.
+/// the start.
 template <class World>
 struct FrenetReport : PlannerReport<World, FrenetMemory> {
   std::vector<FrenetCandidate> courses;  ///< cheapest first, without `terms`; all checked unless the budget ended
@@ -135,10 +135,8 @@ struct FrenetPlanner {
       if (sample(view, memory, workspace) != SearchProblem::none) return plan;
       if (auto const chosen = choose(view, workspace, clock, has_terms))
         return follow(view, workspace.candidates[*chosen], memory, dt);
-      float bend = 0.0f;
-      double const speed = std::max(0.0, view.state().speed);
       memory = braking(view);
-      return plan_to_center(view, bend, ConstantAcceleration{limits.lowest_acceleration}.motion(speed, dt), dt);
+      return brake(view, dt);
     }
     return plan;
   }
@@ -160,14 +158,11 @@ struct FrenetPlanner {
     report.courses = workspace.candidates;
     report.course = workspace.others.frames;
     for (auto const& agent : workspace.others.world->roster().agents) report.agents.push_back(agent.id);
-    for (std::size_t k = 1; k < report.course.size(); ++k) {
+    replace_course(*workspace.others.world, workspace.ego, report.course, [&](std::size_t k) {
       double const time = static_cast<double>(k) * step;
-      auto& record = report.course[k].agents[workspace.ego];
-      if (report.chosen)
-        drive(view, report.courses[*report.chosen], time, record);
-      else
-        record.state = braking_state(view, -limits.lowest_acceleration, time);
-    }
+      return report.chosen ? state_at(view, report.courses[*report.chosen], time).state
+                           : brake(view, time).trajectory.back();
+    });
     report.memory = report.chosen ? memory_of(state_at(view, report.courses[*report.chosen], step)) : braking(view);
     return report;
   }
@@ -182,6 +177,14 @@ struct FrenetPlanner {
     CourseMotion<double> course;
     FrenetMotion<double> frenet;
   };
+
+  /// The plan for the next `dt` [s] if no course is valid: it brakes and returns to the middle of its lane.
+  template <class View>
+  [[nodiscard]] Plan<View> brake(View const& view, double dt) const {
+    float bend = 0.0f;
+    double const speed = std::max(0.0, view.state().speed);
+    return plan_to_center(view, bend, ConstantAcceleration{limits.lowest_acceleration}.motion(speed, dt), dt);
+  }
 
   /// The memory while it brakes.
   template <class View>
@@ -294,14 +297,18 @@ struct FrenetPlanner {
     if (!std::isfinite(candidate.cost)) return FrenetVerdict::not_finite;
     if (candidate.kind == FrenetCandidate::Kind::keep_speed && comes_too_near(view, candidate, ahead))
       return FrenetVerdict::gap;
-    auto const& corridor = view.road().corridors[candidate.corridor];
+    auto record = ahead.frames[0].agents[workspace.ego];
     double const fastest = std::max(view.state().speed, 1.1 * desired_speed) + 0.1;
     for (std::size_t k = 1; k < ahead.frames.size(); ++k) {
-      auto const [state, course, frenet] = state_at(view, candidate, static_cast<double>(k) * step);
-      auto const verdict = drivable(limits, course, frenet, fastest);
+      auto const driven = state_at(view, candidate, static_cast<double>(k) * step);
+      auto const verdict = drivable(limits, driven.course, driven.frenet, fastest);
       if (verdict != FrenetVerdict::valid) return verdict;
-      auto box = geometry::box_of(view.shape(), state);
-      if (leaves_road(view.map(), corridor, frenet.s, frenet.offset, box)) return FrenetVerdict::road;
+      record = driven_to(*ahead.world, workspace.ego, record, driven.state);
+      if (record.status == AgentStatus::driving &&
+          (OffRoad::leaves(view.map(), view.road(), record.lane, record.state, view.shape()) ||
+           OncomingLane::enters(view.map(), view.road(), record.lane, record.state, view.shape())))
+        return FrenetVerdict::road;
+      auto box = geometry::box_of(view.shape(), driven.state);
       box.half_length += limits.clearance;
       box.half_width += limits.clearance;
       if (ahead.touched(box, k)) return FrenetVerdict::collision;
@@ -321,30 +328,26 @@ struct FrenetPlanner {
       if (workspace.is_cut_short) break;
       candidates[i].verdict = verdict(view, candidates[i], workspace);
       if (candidates[i].verdict != FrenetVerdict::valid) continue;
-      if constexpr (has_terms) candidates[i].cost -= sum_of_terms(view, candidates[i], workspace);
+      if constexpr (has_terms) {
+        candidates[i].cost -= sum_of_terms(view, candidates[i], workspace);
+        if (!std::isfinite(candidates[i].cost)) candidates[i].verdict = FrenetVerdict::not_finite;
+        if (candidates[i].verdict != FrenetVerdict::valid) continue;
+      }
       if (!best || candidates[i].cost < candidates[*best].cost) best = i;
     }
     return best;
   }
 
-  /// Ego's record `time` [s] on a course.
-  template <class View, class Record>
-  void drive(View const& view, FrenetCandidate const& candidate, double time, Record& record) const {
-    auto const driven = state_at(view, candidate, time);
-    record.state = driven.state;
-    record.action.acceleration = driven.course.acceleration;
-    record.lane = map::locate(view.road(), candidate.corridor, {driven.state.x, driven.state.y, driven.state.heading},
-                              view.place(candidate.corridor));
-    record.status = AgentStatus::driving;
-  }
-
+  /// The sum of the terms over a course; not finite if one of them is not.
   template <class View>
   [[nodiscard]] double sum_of_terms(View const& view, FrenetCandidate const& candidate, Workspace& workspace) const {
     auto& world = *workspace.others.world;
+    auto record = workspace.others.frames[0].agents[workspace.ego];
     double sum = 0.0;
     for (std::size_t k = 1; k < workspace.others.frames.size(); ++k) {
+      record = driven_to(world, workspace.ego, record, state_at(view, candidate, static_cast<double>(k) * step).state);
       workspace.frame = workspace.others.frames[k];
-      drive(view, candidate, static_cast<double>(k) * step, workspace.frame.agents[workspace.ego]);
+      workspace.frame.agents[workspace.ego] = record;
       world.restore(workspace.frame);
       auto const judged = terms.judge(world, workspace.ego, step);
       sum += judged.reward;

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -124,6 +125,12 @@ struct Mcts {
         parameter("range", &P::range, "m", non_negative, "agents farther away do not choose"),
         parameter("cooperation", &P::cooperation, "-", Range{0, 1}, "weight of the others' rewards in an agent's own"),
         parameter("belief", &P::belief, "-", {}, "how it learns about the others if there are hypotheses about them"));
+  }
+
+  void check(std::string const& where) const {
+    if constexpr (learns)
+      if (std::size_t const n = others.hypotheses(); n < 1 || n > Belief::capacity)
+        throw ParameterError(where, "has " + std::to_string(n) + " hypotheses about the others", "give 1 to 8");
   }
 
   template <class View>

@@ -200,12 +200,12 @@ struct ProposalPlanner {
     if (best.time_to_infraction >= emergency_time) {
       report.chosen = report.best;
     } else {
-      for (auto& frame : report.course) {
-        auto then = memory;
-        if (frame.time > view.time())
-          frame.agents[workspace.ego].state = brake(view, best, then, frame.time - view.time()).trajectory.back();
-        if (&frame == &report.course[1]) report.memory = then;
-      }
+      report.memory = memory;
+      (void)brake(view, best, report.memory, step);
+      replace_course(*workspace.world, workspace.ego, report.course, [&](std::size_t k) {
+        auto after = memory;
+        return brake(view, best, after, static_cast<double>(k) * step).trajectory.back();
+      });
     }
     report.decidedness = decidedness(report.candidates, report.chosen);
     return report;

@@ -1,8 +1,12 @@
 #pragma once
 
+#include <cstdint>
 #include <tuple>
+#include <variant>
 
+#include "cambium/goal/goal.hpp"
 #include "cambium/goal/goal_situation.hpp"
+#include "cambium/world/frame.hpp"
 
 namespace cambium::detail {
 
@@ -22,6 +26,14 @@ template <class Agent, class Record>
           lane.corridor,
           lane.s,
           record.goals_passed};
+}
+
+/// Records which parts of its goal sequence an agent in traffic has reached.
+template <class Agent, class Record>
+void pass_goals(Agent const& agent, Goal const& goal, Record& record) {
+  auto const* const sequence = std::get_if<GoalSequence>(&goal);
+  if (sequence && record.status != AgentStatus::not_started)
+    record.goals_passed = static_cast<std::uint8_t>(sequence->pass(situation_of(agent, record)));
 }
 
 }  // namespace cambium::detail

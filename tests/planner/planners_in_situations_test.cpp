@@ -1,0 +1,210 @@
+// Laws of all planners where driving is harder: before a bend, behind a standing vehicle, at a merge, behind a slow
+// leader. CAMBIUM_PLANNER_RUNS is how many runs each planner drives in each situation.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <string>
+#include <type_traits>
+#include <variant>
+
+#include "cambium/behavior/following/constant_acceleration.hpp"
+#include "cambium/behavior/following/idm_classic.hpp"
+#include "cambium/core/distributions.hpp"
+#include "cambium/evaluation/collision.hpp"
+#include "cambium/evaluation/driving.hpp"
+#include "cambium/evaluation/off_road.hpp"
+#include "cambium/execution/interpolate.hpp"
+#include "cambium/map/road/curve_layout.hpp"
+#include "cambium/map/build/road_plan.hpp"
+#include "cambium/planner/frenet/frenet_planner.hpp"
+#include "cambium/planner/mcts/mcts.hpp"
+#include "cambium/planner/policy/policy_tree_planner.hpp"
+#include "cambium/planner/policy/proposal_planner.hpp"
+#include "cambium/scenario/merging_site.hpp"
+#include "cambium/world/world.hpp"
+#include "support/maps.hpp"
+
+using namespace cambium;
+
+namespace {
+
+using PredictionWorld = World<BehaviorSet<MacroActions, IdmProposal, IdmClassic, IdmHypotheses, ConstantAcceleration>,
+                              InterpolateExecution, SingleTrack>;
+using Search = Mcts<PredictionWorld, MacroActions, TrafficReward, ConstantAcceleration>;
+using Learning = Mcts<PredictionWorld, MacroActions, TrafficReward, IdmHypotheses>;
+using Proposal = ProposalPlanner<PredictionWorld>;
+using PolicyTree = PolicyTreePlanner<PredictionWorld>;
+using Frenet = FrenetPlanner<PredictionWorld>;
+#define ALL_PLANNERS Search, Learning, Proposal, PolicyTree, Frenet
+// Those who expect the others to go on as they do. `IdmHypotheses` expects that a standing vehicle drives off.
+#define STEADY_PLANNERS Search, Proposal, PolicyTree, Frenet
+
+template <class Planner>
+using Sim = World<BehaviorSet<Planner, IdmClassic, ConstantAcceleration>, InterpolateExecution, SingleTrack>;
+
+constexpr double highest_lateral = 2.5;  // [m/s^2]
+
+std::uint64_t runs(std::uint64_t usual = 5) {
+  char const* const asked = std::getenv("CAMBIUM_PLANNER_RUNS");
+  return asked ? std::strtoull(asked, nullptr, 10) : usual;
+}
+
+/// A planner with settings for quick tests that limits its lateral acceleration.
+template <class Planner>
+Planner quick() {
+  Planner planner;
+  if constexpr (requires { planner.options; }) {
+    planner.options.budget.iterations = 100;
+    planner.options.step = 0.4;
+    planner.options.search.horizon = 12;
+    planner.reward.progress = 1.0;
+    planner.reward.collision = planner.reward.off_road = -100.0;
+    planner.belief.interval = planner.options.step;
+  }
+  if constexpr (requires { planner.actions; }) planner.actions.rules.slow_for_bends = true;
+  if constexpr (requires { planner.limits; }) planner.limits.lateral_acceleration = highest_lateral;
+  return planner;
+}
+
+template <class Planner>
+double step_of(Planner const& planner) {
+  if constexpr (requires { planner.options; })
+    return planner.options.step;
+  else
+    return planner.step;
+}
+
+template <class Planner>
+constexpr bool changes_lanes = !std::is_same_v<Planner, Proposal>;
+
+/// What a run has shown of ego.
+struct Drive {
+  double way = 0.0;      ///< [m]
+  double lateral = 0.0;  ///< highest lateral acceleration [m/s^2]
+};
+
+/// Steps `world` by the planner's own step, for `duration` [s] or until ego is at its goal, and checks what holds
+/// everywhere: ego causes no collision, stays on the road, and drives the start of the course that it reports.
+template <class Planner>
+Drive drive(Sim<Planner>& world, AgentId ego, Planner const& planner, double duration) {
+  double const dt = step_of(planner);
+  typename Planner::Workspace workspace;
+  Drive seen;
+  for (int i = 0; i * dt < duration && world.status(ego) == AgentStatus::driving && !world.reached_goal(ego); ++i) {
+    CAPTURE(world.time());
+    auto const before = world.state(ego);
+    typename Planner::Report report;
+    bool const asks = i % 8 == 0;
+    if (asks) report = planner.think(world.observe(ego), world.template memory<Planner>(ego), workspace);
+    REQUIRE(world.step(dt));
+    auto const now = world.state(ego);
+    auto const slot = world.slot_of(ego);
+    if (asks) {
+      auto const at = std::ranges::find(report.agents, ego) - report.agents.begin();
+      auto planned = report.course[1].agents[static_cast<Slot>(at)].state;
+      planned.time = now.time;
+      CHECK(now == planned);
+      CHECK(world.template memory<Planner>(ego) == report.memory);
+    }
+    seen.way += 0.5 * (before.speed + now.speed) * dt;
+    seen.lateral = std::max(seen.lateral, std::abs(LateralAcceleration::between(before, now)));
+    REQUIRE_FALSE(AtFaultCollision{}(world, slot));
+    REQUIRE_FALSE(OffRoad{}(world, slot));
+  }
+  return seen;
+}
+
+/// The same, and the first of the runs twice: from the same state, the same motion.
+template <class Planner>
+Drive drive(std::uint64_t seed, Sim<Planner>& world, AgentId ego, Planner const& planner, double duration) {
+  auto again = world;
+  auto const seen = drive<Planner>(world, ego, planner, duration);
+  if (seed == 0) {
+    (void)drive<Planner>(again, ego, planner, duration);
+    CHECK(world.frame() == again.frame());
+  }
+  return seen;
+}
+
+constexpr AgentId first{0};
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("it slows down for a bend and drives through it", Planner, ALL_PLANNERS) {
+  for (std::uint64_t seed = 0; seed < runs(); ++seed) {
+    CAPTURE(seed);
+    RandomStream random(seed, 1, 0);
+    auto const planner = quick<Planner>();
+    double const curvature = (seed % 2 == 0 ? 1.0 : -1.0) / Uniform{20.0, 60.0}(random);
+    auto const line = map::lay_from(
+        {}, {{150.0}, {20.0, 0.0, curvature}, {40.0, curvature, curvature}, {20.0, curvature, 0.0}, {200.0}});
+    Sim<Planner> world(support::map_of({.id = "1", .line = line, .sections = {{.right = map::equal_lanes(1)}}}),
+                       {.seed = seed});
+    world.add({.position = {30.0, -1.75}, .speed = Uniform{8.0, 15.0}(random), .behavior = planner});
+    auto const seen = drive<Planner>(seed, world, first, planner, 40.0);
+    CHECK(seen.lateral < 1.05 * highest_lateral);
+    CHECK(seen.way > 220.0);
+  }
+}
+
+TEST_CASE_TEMPLATE("it stops behind a standing vehicle, or passes it in another lane", Planner, STEADY_PLANNERS) {
+  for (std::uint64_t seed = 0; seed < runs(); ++seed) {
+    CAPTURE(seed);
+    RandomStream random(seed, 2, 0);
+    int const lanes = seed % 2 == 0 ? 1 : 2;
+    double const lane = lanes == 1 ? -1.75 : -5.25, at = Uniform{120.0, 160.0}(random);
+    auto const planner = quick<Planner>();
+    Sim<Planner> world(support::straight_road(lanes, 600.0), {.seed = seed});
+    world.add({.position = {30.0, lane}, .speed = Uniform{8.0, 15.0}(random), .behavior = planner});
+    world.add({.position = {at, lane},
+               .shape = seed % 3 == 0 ? geometry::truck() : geometry::car(),
+               .behavior = ConstantAcceleration{0.0}});
+    auto const seen = drive<Planner>(seed, world, first, planner, 40.0);
+    bool const passes = lanes == 2 && changes_lanes<Planner>;
+    CHECK(seen.way > (passes ? at : 0.8 * (at - 30.0)));
+    if (!passes) CHECK(world.state(first).speed < 0.5);
+  }
+}
+
+TEST_CASE_TEMPLATE("it merges into traffic and gets to its goal", Planner, ALL_PLANNERS) {
+  MergingSite const sites[] = {find_merging_site(support::own_map("merging.xodr")),
+                               find_merging_site(support::own_map("lane_drop.xodr"))};
+  for (std::uint64_t seed = 0; seed < runs(4); ++seed) {
+    CAPTURE(seed);
+    auto const planner = quick<Planner>();
+    auto scenario =
+        with_behaviors<Sim<Planner>>(sites[seed % 2].sample(30, static_cast<std::uint32_t>(seed / 2)),
+                                     [](auto const& agent) { return std::get<IdmClassic>(agent.behavior); });
+    for (auto& agent : scenario.agents)
+      if (agent.id.given() == scenario.ego) agent.behavior = planner;
+    auto world = scenario.make_world();
+    (void)drive<Planner>(seed, world, scenario.ego, planner, 60.0);
+    CHECK(world.reached_goal(scenario.ego));
+  }
+}
+
+TEST_CASE_TEMPLATE("it passes a slower leader, or follows it", Planner, STEADY_PLANNERS) {
+  // A search with few iterations finds the change of lanes in some of the runs.
+  constexpr bool passes = std::is_same_v<Planner, PolicyTree> || std::is_same_v<Planner, Frenet>;
+  std::uint64_t passed = 0;
+  for (std::uint64_t seed = 0; seed < runs(); ++seed) {
+    CAPTURE(seed);
+    RandomStream random(seed, 3, 0);
+    auto const planner = quick<Planner>();
+    Sim<Planner> world(support::straight_road(2, 900.0), {.seed = seed});
+    double const slow = Uniform{3.0, 7.0}(random);
+    auto const begin = Uniform{60.0, 80.0}(random), beside = Uniform{0.0, 20.0}(random);
+    world.add({.position = {30.0, -5.25}, .speed = Uniform{8.0, 14.0}(random), .behavior = planner});
+    world.add({.position = {begin, -5.25}, .speed = slow, .behavior = IdmClassic{.desired_speed = slow}});
+    world.add({.position = {beside, -1.75}, .speed = 13.0, .behavior = IdmClassic{.desired_speed = 13.0}});
+    (void)drive<Planner>(seed, world, first, planner, 30.0);
+    double const ahead = world.state(first).x - world.state(AgentId{1}).x;
+    CHECK(ahead > (passes ? 20.0 : -30.0));
+    passed += ahead > 20.0;
+  }
+  CHECK((passed > 0) == changes_lanes<Planner>);
+}
