@@ -139,7 +139,6 @@ struct Intersection {
     IdmParameters idm;
     double look_ahead{};  ///< [m]
     double highest{};     ///< highest speed within `look_ahead` [m/s]
-    bool is_large = false;
     std::array<Wait, 2> waits{};        ///< by whether it has to leave room for large vehicles
     bool meets_large = false;           ///< a large vehicle is on its way to one of the conflicts
     detail::StandingAgents standing{};  ///< others that stand at their lines
@@ -293,9 +292,11 @@ struct Intersection {
         auto const& zone = conflict.zones[own.is_large][large];
         if (zone.empty()) return;
         own.meets_large = own.meets_large || large;
-        Other const other{user, way.begin + user.s - way.index_begin,
-                          detail::extra_reach(view, large, user.front, user.rear),
-                          first && first->speed < starting && first->agent != user.agent};
+        double const at = way.begin + user.s - way.index_begin, to_line = zone.other_line - at - user.front;
+        Other const other{user, at, detail::extra_reach(view, large, user.front, user.rear),
+                          first && first->speed < starting && first->agent != user.agent,
+                          std::abs(to_line) < detail::short_way ? view.waiting_place(user, conflict.other, large)
+                                                                : infinite};
         claims[large] = std::max(claims[large], claim_of(view, conflict, zone, other, own, ahead));
       });
     return claims;
@@ -323,7 +324,7 @@ struct Intersection {
   template <class View>
   [[nodiscard]] Claim claim_of(View const& view, map::Conflict const& conflict, map::ConflictZone const& zone,
                                Other const& other, Own const& own, Strictest<IdmLaw>& ahead) const {
-    auto const& [user, at, reach, behind_slow] = other;
+    auto const& [user, at, reach, behind_slow, hold] = other;
     if (at > zone.other_end + reach.rear) return Claim::free;
     double const way = zone.other_begin - reach.front - at;
     if (at < 0.0 && !view.signals_way(user, conflict.other)) return Claim::free;
@@ -350,7 +351,7 @@ struct Intersection {
   /// The claim of a vehicle that goes first and arrives at the zone after `way` [m].
   [[nodiscard]] Claim claim_in_time(map::Conflict const& conflict, map::ConflictZone const& zone, Other const& other,
                                     double way, double own_way, Own const& own) const {
-    auto const& [user, at, reach, behind_slow] = other;
+    auto const& [user, at, reach, behind_slow, hold] = other;
     Window const theirs{
         time_to_cover(way, user.speed, assumed_acceleration, std::max(user.speed, own.idm.desired_speed)),
         (way + zone.other_end - zone.other_begin + reach.front + reach.rear) / std::max(user.speed, standing_speed)};
