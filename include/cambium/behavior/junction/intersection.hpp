@@ -195,7 +195,8 @@ struct Intersection {
       for (std::size_t other = 0; other < 2; ++other)
         if (claims[other] != Claim::free) obey(claims[other], conflict, zones[other], view, own, dt);
     }
-    if (!keep_clear || ahead.constraint().speed > starting) return;
+    bool const has_waited = own.waited > own.patience + longest_wait;  // maybe for the end of its own queue
+    if (!keep_clear || has_waited || ahead.constraint().speed > starting) return;
     for (auto at = first; at != end; ++at) {
       auto const& zone = at->zones[own.is_large][0];
       if (!zone.empty() && is_full_behind(view, zone, own, ahead.constraint()))
