@@ -359,6 +359,10 @@ struct Intersection {
     Window const ours{arrival(own, own_way), arrival(own, zone.end - own.s)};
     bool const is_in = other.is_inside(conflict, zone);
     if (theirs.end + time_margin < ours.begin) return is_in ? Claim::watch : Claim::free;
+    double const length = way + zone.other_end - zone.other_begin + reach.front + reach.rear;
+    if (is_in && user.speed >= standing_speed &&
+        time_to_cover(length, user.speed, detail::pull_away, infinite) + 0.5 * time_margin < ours.begin)
+      return Claim::watch;
     if (ours.end + time_margin < theirs.begin && !is_in) return Claim::free;
     return own.waited > own.patience + longest_wait ? Claim::watch : Claim::yield;
   }
