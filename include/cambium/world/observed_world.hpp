@@ -231,10 +231,10 @@ class ObservedWorld {
     return world_->roster().agents[index_of(user.slot)].road->corridor_of(lane) != none<CorridorId>;
   }
 
-  /// Where an agent waits before the junction of `lane`, if no large vehicle is in its way, on the way that its turn
-  /// signals show: the position of its reference point on the lane's path, negative before the lane [m]. `is_large`: see
-  /// `map::ConflictZones`. Infinite for objects, and where it does not pass the lane or need not wait for anybody there.
-  /// O(lanes and conflicts of its road).
+  /// Where an agent waits before the junction of `lane` for others of its size, on the way that its turn signals show:
+  /// the position of its reference point on the lane's path, negative before the lane [m]. `is_large`: see
+  /// `map::ConflictZones`. Infinite for objects, and where it does not pass the lane or need not wait for anybody
+  /// there. O(lanes and conflicts of its road).
   [[nodiscard]] double waiting_place(RoadUser const& user, LaneId lane, bool is_large) const {
     constexpr double nowhere = std::numeric_limits<double>::infinity();
     if (!is_valid(user.agent)) return nowhere;

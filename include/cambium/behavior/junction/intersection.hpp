@@ -137,10 +137,10 @@ struct Intersection {
   /// The own vehicle: its place, and its motion as bounded so far.
   struct Own : detail::ConflictAsker {
     IdmParameters idm;
-    double look_ahead{};  ///< [m]
-    double highest{};     ///< highest speed within `look_ahead` [m/s]
+    double look_ahead{};                ///< [m]
+    double highest{};                   ///< highest speed within `look_ahead` [m/s]
     std::array<Wait, 2> waits{};        ///< by whether it has to leave room for large vehicles
-    bool meets_large = false;           ///< a large vehicle is on its way to one of the conflicts
+    bool meets_large = false;           ///< a large vehicle is next on its way to one of the conflicts, see `claims_of`
     detail::StandingAgents standing{};  ///< others that stand at their lines
     bool is_near_line = false;          ///< comes to a line within `detail::short_way`
     bool is_inside_junction = false;
@@ -283,8 +283,10 @@ struct Intersection {
   [[nodiscard]] std::array<Claim, 2> claims_of(View const& view, map::Conflict const& conflict, Own& own,
                                                Strictest<IdmLaw>& ahead) const {
     std::array<Claim, 2> claims{Claim::free, Claim::free};
+    bool const by_arrival = detail::is_by_arrival(view, conflict);
     auto const first = own.speed < starting ? first_before(view, conflict, own) : std::nullopt;
-    if (first && first->speed < standing_speed && view.signals_way(*first, conflict.other))
+    if (first && view.signals_way(*first, conflict.other) &&
+        (first->speed < standing_speed || own.stopped_before->holds(first->agent)))
       own.standing.add(first->agent);
     for (auto const& way : conflict.ways)
       view.on_lane(way.index_begin, way.index_end, [&](RoadUser const& user) {
@@ -292,12 +294,14 @@ struct Intersection {
         bool const large = detail::is_large(view, view.shape(user));
         auto const& zone = conflict.zones[own.is_large][large];
         if (zone.empty()) return;
-        own.meets_large = own.meets_large || large;
         double const at = way.begin + user.s - way.index_begin, to_line = zone.other_line - at - user.front;
-        Other const other{user, at, detail::extra_reach(view, large, user.front, user.rear),
-                          first && first->speed < starting && first->agent != user.agent,
-                          std::abs(to_line) < detail::short_way ? view.waiting_place(user, conflict.other, large)
-                                                                : infinite};
+        // Where all go in the order in which they came, a truck in the queue of another way comes later.
+        bool const comes = !by_arrival || !first || first->agent == user.agent || at > zone.other_begin;
+        own.meets_large = own.meets_large || (large && (comes || own.is_large));
+        Other const other{
+            user, at, detail::extra_reach(view, large, user.front, user.rear),
+            first && first->speed < starting && first->agent != user.agent,
+            std::abs(to_line) < detail::short_way ? view.waiting_place(user, conflict.other, large) : infinite};
         claims[large] = std::max(claims[large], claim_of(view, conflict, zone, other, own, ahead));
       });
     return claims;
@@ -341,8 +345,10 @@ struct Intersection {
       double end = zone.other_end + reach.rear;  // where it leaves room for the own vehicle
       if (conflict.kind == map::OverlapKind::merge)
         end = std::min(end, zone.begin + view.shape().front + own.idm.minimum_gap + user.rear - conflict.shift);
-      double const out =
-          user.speed < standing_speed ? infinite : time_to_cover(end - at, user.speed, detail::pull_away, infinite);
+      // One that is in the zone, but has yet to enter the junction, may stop where it is.
+      bool const goes = other.has_entered(zone) || !can_stop(user.speed, zone.other_line - at - user.front);
+      bool const leaves = goes && user.speed >= standing_speed;
+      double const out = leaves ? time_to_cover(end - at, user.speed, detail::pull_away, infinite) : infinite;
       return out + 0.5 * time_margin < arrival(own, own_way) ? Claim::watch : Claim::blocked;
     }
     if (detail::goes_first(view, conflict, zone, other, way, own_way, own)) return Claim::free;
