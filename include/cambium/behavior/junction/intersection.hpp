@@ -283,7 +283,6 @@ struct Intersection {
   [[nodiscard]] std::array<Claim, 2> claims_of(View const& view, map::Conflict const& conflict, Own& own,
                                                Strictest<IdmLaw>& ahead) const {
     std::array<Claim, 2> claims{Claim::free, Claim::free};
-    bool const by_arrival = detail::is_by_arrival(view, conflict);
     auto const first = own.speed < starting ? first_before(view, conflict, own) : std::nullopt;
     if (first && view.signals_way(*first, conflict.other) &&
         (first->speed < standing_speed || own.stopped_before->holds(first->agent)))
@@ -296,8 +295,11 @@ struct Intersection {
         if (zone.empty()) return;
         double const at = way.begin + user.s - way.index_begin, to_line = zone.other_line - at - user.front;
         // Where all go in the order in which they came, a truck in the queue of another way comes later.
-        bool const comes = !by_arrival || !first || first->agent == user.agent || at > zone.other_begin;
-        own.meets_large = own.meets_large || (large && (comes || own.is_large));
+        auto const comes_next = [&] {
+          bool const is_next = !first || first->agent == user.agent || at > zone.other_begin;
+          return is_next || own.is_large || !detail::is_by_arrival(view, conflict);
+        };
+        own.meets_large = own.meets_large || (large && comes_next());
         Other const other{
             user, at, detail::extra_reach(view, large, user.front, user.rear),
             first && first->speed < starting && first->agent != user.agent,
