@@ -59,10 +59,11 @@ constexpr double on_freeways = 1.5, at_junctions = 2.0;
 }
 
 /// All ways have to stop, one lane each: a vehicle departs every h seconds on each, with traffic on all others: h = 9.6
-/// s at a crossing (case 5), 7.0 s at a T (case 4; exhibits 17-22 and 17-37); heavy vehicles add 1.7 s (equation 17-56,
-/// exhibit 17-33).
+/// s at a crossing (case 5), 7.0 s at a T (case 4; exhibits 17-22 and 17-37), to which the share of left turns adds 0.2
+/// s, that of right turns -0.6 s and that of heavy vehicles 1.7 s (equation 17-56, exhibit 17-33). Routes are drawn
+/// with equal probability: at both a third of the traffic turns left, and a third right.
 [[nodiscard]] inline Facility all_way_stop(int ways, double heavy) {
-  double const headway = ways == 4 ? 9.6 : 7.0;
+  double const turning = 1.0 / 3.0, headway = (ways == 4 ? 9.6 : 7.0) + (0.2 - 0.6) * turning;
   return {"all-way stop", 60.0 * ways / headway, 60.0 * ways / (headway + 1.7 * heavy)};
 }
 

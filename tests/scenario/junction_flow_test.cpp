@@ -83,26 +83,38 @@ void check_flow(std::shared_ptr<Map const> const& map, Expected const& expected,
 
 TEST_CASE("a saturated crossing keeps flowing, with lights and without") {
   auto const map = support::own_map("intersection_4way.xodr");
-  check_flow(map, {26.0, 23.0});
+  check_flow(map, {36.0, 28.0});
   check_flow(map, {41.0, 34.0}, true);
 }
 
-TEST_CASE("a saturated roundabout keeps flowing") { check_flow(support::own_map("roundabout.xodr"), {28.0, 28.0}); }
+TEST_CASE("a saturated roundabout keeps flowing") { check_flow(support::own_map("roundabout.xodr"), {31.0, 31.0}); }
 
 // Two-way stop: 41 cars a minute by the Highway Capacity Manual 2000, gap acceptance (see examples/soak/capacity.hpp).
 TEST_CASE("nobody waits forever on a side road that enters a saturated main road") {
-  check_flow(support::own_map("intersection_3way.xodr"), {0.85 * 41.3, 26.0});
-  check_flow(support::corpus_map("parking_demo.xodr"), {38.0, 34.0});
+  check_flow(support::own_map("intersection_3way.xodr"), {41.3, 29.0});
+  check_flow(support::corpus_map("parking_demo.xodr"), {40.0, 36.0});
 }
 
-// Where all ways have to stop, each of four sends one vehicle per 9.6 s (Highway Capacity Manual 2000, exhibit 17-37,
-// one lane, traffic on all ways): 25 cars a minute; each of three one per 7.0 s: 25.7.
-TEST_CASE("a saturated crossing of single lanes passes 85 % of what the manual says, in cars") {
-  check_flow(support::corpus_map("4way_intersection.xodr"), {0.85 * 25.0, 12.5});
+// Where all ways have to stop, each of four sends one vehicle per 9.47 s (Highway Capacity Manual 2000, exhibits 17-33
+// and 17-37, one lane, traffic on all ways, a third turning either way): 25.4 cars a minute; each of three one per 6.87
+// s: 26.2.
+TEST_CASE("a saturated crossing of single lanes passes 93 % of what the manual says, in cars") {
+  check_flow(support::corpus_map("4way_intersection.xodr"), {0.93 * 25.4, 16.0});
+}
+
+// Three vehicles gridlocked here when drivers did not count as inside who had passed its place to wait, but not yet the
+// edge of the junction. Nobody passed after the warm-up.
+TEST_CASE("who has left its place to wait is let through, before the edge of the junction too") {
+  auto const map = support::corpus_map("threeway_intersection.xodr");
+  if (!map) return;
+  auto const flow = saturate(find_junction_site(map), 0.3, false, 0.2, 17);
+  CHECK(flow.collisions == 0);
+  CHECK(flow.longest_stand < 120.0);
+  CHECK(flow.per_minute > 14.5);
 }
 
 TEST_CASE("trucks and cars do not block each other in small junctions for good") {
-  check_flow(support::corpus_map("threeway_intersection.xodr"), {17.0, 12.5});
-  check_flow(support::corpus_map("fabriksgatan.xodr"), {17.0, 12.5});
-  check_flow(support::corpus_map("simple_3way_intersection_lht.xodr"), {15.5, 11.0});
+  check_flow(support::corpus_map("threeway_intersection.xodr"), {17.8, 14.8});
+  check_flow(support::corpus_map("fabriksgatan.xodr"), {19.0, 18.0});
+  check_flow(support::corpus_map("simple_3way_intersection_lht.xodr"), {19.5, 12.6});
 }

@@ -96,8 +96,11 @@ struct ViewArchetype {
   [[nodiscard]] double acceleration(RoadUser const& agent) const;  ///< over the last step, along its heading [m/s^2]
   [[nodiscard]] geometry::Polygon const& outline(RoadUser const& object) const;
   [[nodiscard]] bool signals_way(RoadUser const& user, LaneId lane) const;  ///< its turn signal permits that way
-  [[nodiscard]] map::LightColor light(LightId id) const;                    ///< current colour of a traffic light
-  [[nodiscard]] double red_for(LightId id) const;  ///< time since it turned red [s]; negative: until it does
+  /// Where it waits before the junction of `lane` for others of its size, on the way that its turn signal shows: a
+  /// position on the lane's path, negative before the lane; infinite if it does not wait there [m].
+  [[nodiscard]] double waiting_place(RoadUser const& user, LaneId lane, bool is_large) const;
+  [[nodiscard]] map::LightColor light(LightId id) const;  ///< current colour of a traffic light
+  [[nodiscard]] double red_for(LightId id) const;         ///< time since it turned red [s]; negative: until it does
   [[nodiscard]] AgentId id() const;
   [[nodiscard]] bool has_goal() const;                             ///< whether the lane in which the route ends matters
   [[nodiscard]] RandomStream random(std::uint32_t purpose) const;  ///< own stream for (seed, agent, step, purpose)

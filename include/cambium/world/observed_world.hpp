@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <type_traits>
@@ -228,6 +229,18 @@ class ObservedWorld {
   [[nodiscard]] bool signals_way(RoadUser const& user, LaneId lane) const {
     if (!is_valid(user.agent)) return false;
     return world_->roster().agents[index_of(user.slot)].road->corridor_of(lane) != none<CorridorId>;
+  }
+
+  /// Where an agent waits before the junction of `lane` for others of its size, on the way that its turn signals show:
+  /// the position of its reference point on the lane's path, negative before the lane [m]. `is_large`: see
+  /// `map::ConflictZones`. Infinite for objects, and where it does not pass the lane or need not wait for anybody
+  /// there. O(lanes and conflicts of its road).
+  [[nodiscard]] double waiting_place(RoadUser const& user, LaneId lane, bool is_large) const {
+    constexpr double nowhere = std::numeric_limits<double>::infinity();
+    if (!is_valid(user.agent)) return nowhere;
+    auto const& road = *world_->roster().agents[index_of(user.slot)].road;
+    auto const corridor = road.corridor_of(lane);
+    return corridor == none<CorridorId> ? nowhere : road.corridors[corridor].hold_before(lane, is_large);
   }
 
   /// Returns a separate world, as this agent sees it, in which all agents behave as `prediction` says. Step, copy and

@@ -36,11 +36,16 @@ struct ConflictUser {
   RoadUser const& user;
   double at;
   ExtraReach reach;
-  bool is_behind_slow = false;  ///< behind a slow vehicle that is not in the junction yet
+  bool is_behind_slow = false;                            ///< behind a slow vehicle that is not in the junction yet
+  double hold = std::numeric_limits<double>::infinity();  ///< where it waits, see `ViewArchetype::waiting_place` [m]
 
-  /// Whether it is inside the junction already.
+  /// Whether it has passed the line, or the place where it waits.
+  [[nodiscard]] bool has_entered(map::ConflictZone const& zone) const {
+    return at + user.front > zone.other_line + over_line || at > hold + over_line;
+  }
+  /// Whether it is inside the junction.
   [[nodiscard]] bool is_inside(map::Conflict const& conflict, map::ConflictZone const& zone) const {
-    return at + user.front > zone.other_line + over_line && at < conflict.other_lane_end;
+    return has_entered(zone) && at < conflict.other_lane_end;
   }
 };
 
@@ -60,8 +65,8 @@ template <class View>
 /// When a vehicle stopped before a junction, as another driver there remembers it.
 enum class Arrival : std::uint8_t { earlier, together, later };
 
-/// The vehicles that stood before a junction when a driver stopped there. It holds the lower halves of seven ids; where
-/// more stood, unknown vehicles count as earlier.
+/// The vehicles that stood before a junction when a driver stopped there, or had stood there and were about to enter.
+/// It holds the lower halves of seven ids; where more stood, unknown vehicles count as earlier.
 class StandingAgents {
  public:
   [[nodiscard]] Arrival arrival_of(AgentId id) const {
@@ -69,6 +74,7 @@ class StandingAgents {
     if (at == size_) return size_ < ids_.size() ? Arrival::later : Arrival::earlier;
     return (together_ >> at & 1) != 0 ? Arrival::together : Arrival::earlier;
   }
+  [[nodiscard]] bool holds(AgentId id) const { return find(id) < size_; }
   void add(AgentId id) {
     if (find(id) == size_ && size_ < ids_.size()) ids_[size_++] = lower_half(id);
   }
@@ -98,9 +104,11 @@ struct ConflictAsker {
   double waited{};                         ///< time at a standstill there [s]
   double patience{};                       ///< see `Intersection::patience` [s]
   StandingAgents const* stopped_before{};  ///< those that stood there when it stopped
+  bool is_large = false;                   ///< see `map::ConflictZones`
 
   [[nodiscard]] bool is_inside(map::Conflict const& conflict, map::ConflictZone const& zone) const {
-    return front > zone.line + over_line && s < conflict.lane_end;
+    return (front > zone.line + over_line || s > conflict.hold[is_large][is_large] + over_line) &&
+           s < conflict.lane_end;
   }
 };
 
@@ -146,7 +154,7 @@ template <class View>
   constexpr double spread = 8.0;     // [s] range over which ids spread the end of patience
   constexpr double later = 20.0;     // [s] more for the larger id, and if only one of the two is in the junction
   constexpr double in_order = 10.0;  // [s] more where those who came earlier go first
-  auto const& [user, at, reach, is_behind_slow] = other;
+  auto const& [user, at, reach, is_behind_slow, hold] = other;
   bool const stands = user.speed < standing_speed, own_stands = own.speed < standing_speed;
   // Two drivers must not lose their patience together. Of two that wait for each other, the smaller id goes long before
   // the other; the golden ratio spreads the ids of a ring of waiting drivers.

@@ -30,13 +30,14 @@ namespace cambium {
 /// that goes first (`detail::goes_first`) has the zone if the two times in it are less than `time_margin` apart. The
 /// strongest claim bounds the step so that the vehicle can stop at its line.
 ///
-/// The driver enters a junction when all its conflicts are its own and there is room behind them. It then goes before
-/// all vehicles that are still outside. At green it also enters to turn left, and waits inside for oncoming traffic.
-/// It stops at red lights (`World::set_light`) and stop signs, and slows down for bends. Where neither priorities nor
-/// lights say who goes first, those who have stopped go in the order in which they came. In a deadlock one driver after
-/// the other loses its `patience` and goes. A driver that has waited 40 s more for others who go first drives up to the
-/// conflict: then it is inside the junction, and those who can still stop let it go, so that nobody starves. Static
-/// objects count where they extend into the own lane, as for `IdmClassic`.
+/// The driver enters a junction when all its conflicts are its own and there is room behind them. As soon as it has
+/// left its place to wait, maybe well before the edge of the junction, it goes before all vehicles that are still
+/// outside. At green it also enters to turn left, and waits inside for oncoming traffic. It stops at red lights
+/// (`World::set_light`) and stop signs, and slows down for bends. Where neither priorities nor lights say who goes
+/// first, those who have stopped go in the order in which they came. In a deadlock one driver after the other loses its
+/// `patience` and goes. A driver that has waited 40 s more for others who go first drives up to the conflict: then it
+/// is inside the junction, and those who can still stop let it go, so that nobody starves. Static objects count where
+/// they extend into the own lane, as for `IdmClassic`.
 ///
 /// Guarantee: as long as the vehicle can stop before a conflict, it does not enter while another vehicle is inside or
 /// can no longer stop. Of two vehicles that can both stop, one goes first, or both until one of them can no longer
@@ -137,11 +138,10 @@ struct Intersection {
   /// The own vehicle: its place, and its motion as bounded so far.
   struct Own : detail::ConflictAsker {
     IdmParameters idm;
-    double look_ahead{};  ///< [m]
-    double highest{};     ///< highest speed within `look_ahead` [m/s]
-    bool is_large = false;
+    double look_ahead{};                ///< [m]
+    double highest{};                   ///< highest speed within `look_ahead` [m/s]
     std::array<Wait, 2> waits{};        ///< by whether it has to leave room for large vehicles
-    bool meets_large = false;           ///< a large vehicle is on its way to one of the conflicts
+    bool meets_large = false;           ///< a large vehicle is next on its way to one of the conflicts, see `claims_of`
     detail::StandingAgents standing{};  ///< others that stand at their lines
     bool is_near_line = false;          ///< comes to a line within `detail::short_way`
     bool is_inside_junction = false;
@@ -196,7 +196,8 @@ struct Intersection {
       for (std::size_t other = 0; other < 2; ++other)
         if (claims[other] != Claim::free) obey(claims[other], conflict, zones[other], view, own, dt);
     }
-    if (!keep_clear || ahead.constraint().speed > starting) return;
+    bool const has_waited = own.waited > own.patience + longest_wait;  // maybe for the end of its own queue
+    if (!keep_clear || has_waited || ahead.constraint().speed > starting) return;
     for (auto at = first; at != end; ++at) {
       auto const& zone = at->zones[own.is_large][0];
       if (!zone.empty() && is_full_behind(view, zone, own, ahead.constraint()))
@@ -284,7 +285,8 @@ struct Intersection {
                                                Strictest<IdmLaw>& ahead) const {
     std::array<Claim, 2> claims{Claim::free, Claim::free};
     auto const first = own.speed < starting ? first_before(view, conflict, own) : std::nullopt;
-    if (first && first->speed < standing_speed && view.signals_way(*first, conflict.other))
+    if (first && view.signals_way(*first, conflict.other) &&
+        (first->speed < standing_speed || own.stopped_before->holds(first->agent)))
       own.standing.add(first->agent);
     for (auto const& way : conflict.ways)
       view.on_lane(way.index_begin, way.index_end, [&](RoadUser const& user) {
@@ -292,10 +294,17 @@ struct Intersection {
         bool const large = detail::is_large(view, view.shape(user));
         auto const& zone = conflict.zones[own.is_large][large];
         if (zone.empty()) return;
-        own.meets_large = own.meets_large || large;
-        Other const other{user, way.begin + user.s - way.index_begin,
-                          detail::extra_reach(view, large, user.front, user.rear),
-                          first && first->speed < starting && first->agent != user.agent};
+        double const at = way.begin + user.s - way.index_begin, to_line = zone.other_line - at - user.front;
+        // Where all go in the order in which they came, a truck in the queue of another way comes later.
+        auto const comes_next = [&] {
+          bool const is_next = !first || first->agent == user.agent || at > zone.other_begin;
+          return is_next || own.is_large || !detail::is_by_arrival(view, conflict);
+        };
+        own.meets_large = own.meets_large || (large && comes_next());
+        Other const other{
+            user, at, detail::extra_reach(view, large, user.front, user.rear),
+            first && first->speed < starting && first->agent != user.agent,
+            std::abs(to_line) < detail::short_way ? view.waiting_place(user, conflict.other, large) : infinite};
         claims[large] = std::max(claims[large], claim_of(view, conflict, zone, other, own, ahead));
       });
     return claims;
@@ -323,7 +332,7 @@ struct Intersection {
   template <class View>
   [[nodiscard]] Claim claim_of(View const& view, map::Conflict const& conflict, map::ConflictZone const& zone,
                                Other const& other, Own const& own, Strictest<IdmLaw>& ahead) const {
-    auto const& [user, at, reach, behind_slow] = other;
+    auto const& [user, at, reach, behind_slow, hold] = other;
     if (at > zone.other_end + reach.rear) return Claim::free;
     double const way = zone.other_begin - reach.front - at;
     if (at < 0.0 && !view.signals_way(user, conflict.other)) return Claim::free;
@@ -339,8 +348,10 @@ struct Intersection {
       double end = zone.other_end + reach.rear;  // where it leaves room for the own vehicle
       if (conflict.kind == map::OverlapKind::merge)
         end = std::min(end, zone.begin + view.shape().front + own.idm.minimum_gap + user.rear - conflict.shift);
-      double const out =
-          user.speed < standing_speed ? infinite : time_to_cover(end - at, user.speed, detail::pull_away, infinite);
+      // One that is in the zone, but has yet to enter the junction, may stop where it is.
+      bool const goes = other.has_entered(zone) || !can_stop(user.speed, zone.other_line - at - user.front);
+      bool const leaves = goes && user.speed >= standing_speed;
+      double const out = leaves ? time_to_cover(end - at, user.speed, detail::pull_away, infinite) : infinite;
       return out + 0.5 * time_margin < arrival(own, own_way) ? Claim::watch : Claim::blocked;
     }
     if (detail::goes_first(view, conflict, zone, other, way, own_way, own)) return Claim::free;
@@ -350,13 +361,17 @@ struct Intersection {
   /// The claim of a vehicle that goes first and arrives at the zone after `way` [m].
   [[nodiscard]] Claim claim_in_time(map::Conflict const& conflict, map::ConflictZone const& zone, Other const& other,
                                     double way, double own_way, Own const& own) const {
-    auto const& [user, at, reach, behind_slow] = other;
+    auto const& [user, at, reach, behind_slow, hold] = other;
     Window const theirs{
         time_to_cover(way, user.speed, assumed_acceleration, std::max(user.speed, own.idm.desired_speed)),
         (way + zone.other_end - zone.other_begin + reach.front + reach.rear) / std::max(user.speed, standing_speed)};
     Window const ours{arrival(own, own_way), arrival(own, zone.end - own.s)};
     bool const is_in = other.is_inside(conflict, zone);
     if (theirs.end + time_margin < ours.begin) return is_in ? Claim::watch : Claim::free;
+    double const length = way + zone.other_end - zone.other_begin + reach.front + reach.rear;
+    if (is_in && user.speed >= standing_speed &&
+        time_to_cover(length, user.speed, detail::pull_away, infinite) + 0.5 * time_margin < ours.begin)
+      return Claim::watch;
     if (ours.end + time_margin < theirs.begin && !is_in) return Claim::free;
     return own.waited > own.patience + longest_wait ? Claim::watch : Claim::yield;
   }

@@ -190,6 +190,16 @@ struct LaneCorridor {
   /// The speed limit at `s`; infinite where there is none. [m/s], O(log steps).
   [[nodiscard]] double speed_limit_at(double s) const { return map::speed_limit_at(speed_limits, s); }
 
+  /// Where a vehicle waits before the junction of `lane` for others of its size (see `Conflict::hold`): a position on
+  /// the lane's path, negative before the lane; infinite where it meets nobody there. [m], O(pieces + conflicts).
+  [[nodiscard]] double hold_before(LaneId lane, bool is_large) const {
+    for (auto const& piece : pieces)
+      if (piece.lane == lane)
+        for (auto const& conflict : conflicts)
+          if (conflict.lane_end == piece.end) return conflict.hold[is_large][is_large] + piece.lane_offset;
+    return std::numeric_limits<double>::infinity();
+  }
+
   /// The type of the lane at `s`. O(log pieces).
   [[nodiscard]] LaneType type_at(double s) const { return piece_at(s).type; }
 
