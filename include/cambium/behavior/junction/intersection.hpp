@@ -58,9 +58,8 @@ struct Intersection {
   static constexpr char const* name = "intersection";
   static constexpr char const* summary =
       "IDM; stops at red lights and stop signs; gives way by priorities of the map, signs, order of arrival, right "
-      "before "
-      "left, oncoming before turning; stops for vehicles predicted to come too close in time; resolves deadlocks; "
-      "slows for bends";
+      "before left, oncoming before turning; stops for vehicles predicted to come too close in time; resolves "
+      "deadlocks; slows for bends";
   static constexpr char const* source = "rules of the road (StVO sections 8 and 9); prediction: own";
   static constexpr auto parameters() {
     using P = Intersection;
