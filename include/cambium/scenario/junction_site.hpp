@@ -60,8 +60,8 @@ struct JunctionSite {
   [[nodiscard]] map::Route random_route(LaneId from, RandomStream& random) const;
 
   /// Scenario `number` of a seed: four to `most_vehicles` vehicles, each before its first junction, and slow enough to
-  /// stop there by comfortable braking. The ego is the first one. Throws `ParameterError` if a parameter of `traffic` is out
-  /// of range, `WorldError` if the map has no room before its junctions. O(vehicles^2).
+  /// stop there by comfortable braking. The ego is the first one. Throws `ParameterError` if a parameter of `traffic`
+  /// is out of range, `WorldError` if the map has no room before its junctions. O(vehicles^2).
   [[nodiscard]] Scenario<World> sample(std::uint64_t seed, std::uint32_t number,
                                        JunctionTraffic const& traffic = {}) const;
 };
