@@ -242,7 +242,7 @@ TEST_CASE("errors are normal, last, and show in the gaps that drivers keep") {
                      .gap_error = 0.1,
                      .rate_error = 0.0,
                      .persistence = 2000.0};
-  double sum = 0.0, squares = 0.0, product = 0.0;
+  double sum = 0.0, squares = 0.0, product = 0.0, variance = 0.0;
   int n = 0;
   for (std::uint64_t seed = 1; seed <= 400; ++seed) {
     auto world = platoon(Swinging{.amplitude = 0.0}, erring, 1, seed);
@@ -273,8 +273,12 @@ TEST_CASE("errors are normal, last, and show in the gaps that drivers keep") {
     auto const before = errors();
     for (int k = 0; k < 100; ++k) REQUIRE(world.step(0.2));
     auto const after = errors();
-    for (std::size_t i = 0; i < 4; ++i) product += before[i] * after[i] / 1600.0;
+    for (std::size_t i = 0; i < 4; ++i) {
+      product += before[i] * after[i] / 1600.0;
+      variance += after[i] * after[i] / 1600.0;
+    }
   }
+  CHECK(variance == doctest::Approx(1.0).epsilon(0.1));
   CHECK(product == doctest::Approx(std::exp(-1.0)).epsilon(0.2));
 }
 

@@ -252,6 +252,50 @@ TEST_CASE("drivers stop at red and go at green; without a plan for the light the
   CHECK(*on[1] > 20.0);
 }
 
+TEST_CASE(
+    "a driver that turns left at green waits for oncoming traffic within the junction, as far as it blocks nobody") {
+  constexpr double air = 0.3, margin = 1.0;  // [m] before a conflict, and before the place to wait
+  Crossing const crossing;
+  for (int arm = 1; arm <= 4; ++arm) {
+    CAPTURE(arm);
+    Sim world(crossing.map);
+    auto const turner = add_before(world, crossing.route(arm, 2), 25.0, 8.0);
+    for (int i = 0; i < 6; ++i) add_before(world, crossing.route((arm + 1) % 4 + 1, 0), 20.0 + 13.0 * i, 5.0);
+    auto const& corridor = world.observe(turner).corridor();
+    auto const own_light = corridor.signals.front().light;
+    REQUIRE(is_valid(own_light));
+    for (auto const& light : crossing.map->lights()) {
+      bool const is_green = light.id == own_light;
+      world.set_light(light.id,
+                      {.cycle = 60.0, .green_begin = is_green ? 0.0 : 57.0, .green_end = is_green ? 55.0 : 58.0});
+    }
+    // The zones of those who go before it: ways of oncoming traffic across its own.
+    std::vector<map::ConflictZone> zones;
+    for (auto const& c : corridor.conflicts)
+      if (c.right_of_way == map::RightOfWay::yields && !c.zones[0][0].empty() && c.light == own_light &&
+          c.other_light == own_light)
+        zones.push_back(c.zones[0][0]);
+    REQUIRE(!zones.empty());
+    // Tried out in steps of 1 mm: the farthest place outside of them, before each.
+    double farthest = 1e9;
+    for (auto const& zone : zones) {
+      double place = zone.begin - air;
+      while (std::ranges::any_of(zones, [&](auto const& z) { return z.begin - air < place && place <= z.end; }))
+        place -= 1e-3;
+      farthest = std::min(farthest, place);
+    }
+    double waits_at = 0.0;
+    while (world.time() < 60.0) {
+      REQUIRE(world.step(0.1));
+      REQUIRE_FALSE(AnyCollision{}(world));
+      if (world.status(turner) != AgentStatus::driving) break;
+      if (world.state(turner).speed < 0.05) waits_at = world.record(turner).lane.s;
+    }
+    CHECK(waits_at + geometry::car().front > zones.front().line + 1.0);
+    CHECK(waits_at == doctest::Approx(farthest - margin).epsilon(1e-3));
+  }
+}
+
 TEST_CASE("a late runner passes in the first second of red, a driver that obeys does not, and cross traffic minds") {
   Crossing crossing;
   auto const& lights = crossing.map->lights();

@@ -290,7 +290,7 @@ TEST_CASE("nobody passes who drives in the middle, is about to move over, or is 
   CHECK(passes(-2.5, 0.0, 5.0, cb::geometry::car()));  // who it is does not matter, only the room
 }
 
-TEST_CASE("where somebody is passed is the nearest place with room, tried out in steps of 1 cm") {
+TEST_CASE("a driver passes at the nearest offset with room, as found by trying out steps of 1 cm") {
   int passed = 0;
   for (std::uint32_t seed = 0; seed < 400; ++seed) {
     CAPTURE(seed);
@@ -347,6 +347,7 @@ TEST_CASE("as long as everybody drives in the middle, the rules of passing chang
     REQUIRE(usual.step(0.2));
     REQUIRE(other.step(0.2));
     REQUIRE(usual.frame() == other.frame());
+    for (auto const& record : usual.frame().agents) REQUIRE(record.lane.lateral == 0.0);
   }
 }
 

@@ -353,7 +353,7 @@ TEST_CASE_TEMPLATE("every driver meets a lower speed limit in time if the rules 
   }
 }
 
-TEST_CASE("where no limit is posted, macro actions keep their speed if they obey limits") {
+TEST_CASE("macro actions that obey limits keep their speed on a road without a limit") {
   cb::MacroActions driver;
   driver.rules.obey_speed_limits = true;
   Traffic<cb::MacroActions> world(support::straight_road());

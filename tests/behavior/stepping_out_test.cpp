@@ -73,7 +73,7 @@ bool meet_by_trial(cb::detail::LaneReach const& own, double speed, cb::detail::L
 
 }  // namespace
 
-TEST_CASE("who will be in the way is found as by trying out all times") {
+TEST_CASE("a driver brakes for those who will be in its way, as found by trying out all times") {
   int met = 0, different = 0;
   for (std::uint32_t seed = 0; seed < 3000; ++seed) {
     CAPTURE(seed);

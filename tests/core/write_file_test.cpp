@@ -9,7 +9,7 @@
 
 using namespace cambium;
 
-TEST_CASE("what cannot be written is an error that says why, and what would help") {
+TEST_CASE("a file that cannot be written is an error that says why, and what would help") {
   std::filesystem::path const folder(CAMBIUM_BUILD_DIR);
   CHECK_THROWS_WITH_AS(write_file(folder, "text"), doctest::Contains("; name a file, not a folder"), Error);
   CHECK_THROWS_WITH_AS(write_file(folder / "missing" / "file.txt", "text"),

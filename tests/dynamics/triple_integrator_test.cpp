@@ -94,7 +94,7 @@ TEST_CASE("a driver's turn stays within its limit, and depends little on the ste
       }
 }
 
-TEST_CASE("where its jerk suffices a driver's motion is the cubic that the jerk makes of it") {
+TEST_CASE("a driver's motion is the cubic of its jerk, as long as that suffices") {
   cb::TripleIntegrator const model;
   cb::TripleIntegrator::State x{.heading = 0.4, .speed = 9.0, .acceleration = 0.1, .lateral_acceleration = 1.2};
   auto twin = x;

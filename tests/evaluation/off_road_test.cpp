@@ -233,7 +233,7 @@ TEST_CASE("agents that have left traffic are not off the road") {
   CHECK(cb::OffRoad{}(world, world.slot_of(id)));
 }
 
-TEST_CASE("where a bend is followed by one to the other side, too") {
+TEST_CASE("on bends to both sides, one after the other, the road is where the map says") {
   Count count;
   cb::RandomStream random(9, 0, 0);
   for (std::uint32_t i = 0; i < 60; ++i) {

@@ -125,7 +125,7 @@ TEST_CASE("a route is printed lane by lane, and where there is none it is an err
   CHECK(has(none.err, "there is no way from 3:-1:300 to 2:-1:5"));
 }
 
-TEST_CASE("what can be reached is listed from the nearest lane on") {
+TEST_CASE("the list of reachable lanes begins with the nearest lane") {
   Program const map("map");
   if (!map.is_there()) return;
   auto const run = map.run({merging, "--reachable", "2:-1:5", "200"});

@@ -84,8 +84,7 @@ TEST_CASE("--help lists the options and is no error") {
   }
 }
 
-TEST_CASE(
-    "what is wrong with the command line, the map or the folder is said in one line that names it, with exit code 2") {
+TEST_CASE("a mistake in the command line, the map or the folder gets one line that names it, and exit code 2") {
   Program const program("merging");
   if (!program.is_there()) return;
   browser::TemporaryFolder const folder;

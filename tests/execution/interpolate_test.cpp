@@ -117,7 +117,9 @@ TEST_CASE("a time between two samples lies on the line between these, not on tha
     }
 }
 
-TEST_CASE("what a vehicle model adds to its state is interpolated too, and a sample asked for is that sample") {
+TEST_CASE(
+    "fields that a vehicle model adds to its state are interpolated too, and at the time of a sample the state is the "
+    "sample") {
   using Steering = cb::SingleTrackSteering::State;
   cb::BasicPlan<Steering> plan;
   for (int i = 0; i < 5; ++i)

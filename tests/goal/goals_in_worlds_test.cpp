@@ -47,7 +47,7 @@ TEST_CASE("a sequence is reached once its parts have been passed in their order,
   CHECK_FALSE(world.reached_goal(backwards));
 }
 
-TEST_CASE("what an agent has passed of a sequence goes along with copies, frames and predictions, each with its own") {
+TEST_CASE("copies, frames and predictions each keep how far an agent has got in a sequence") {
   Sim world(straight_road(2, 1000.0));
   cb::Goal const goal = cb::GoalSequence{{cb::ReachPolygon{gate(105)}, cb::ReachPolygon{gate(200)}}};
   auto const id = world.add(driver(100, goal));

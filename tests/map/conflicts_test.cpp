@@ -111,7 +111,7 @@ TEST_CASE("two vehicles whose ways cross know of the same zones") {
   }
 }
 
-TEST_CASE("where two bodies touch there is a zone, and outside of all zones none do") {
+TEST_CASE("bodies touch only within the zones of a conflict, and each place where they touch has one") {
   RandomStream random(5, 0, 0);
   for (auto const& [name, map] : junction_maps()) {
     CAPTURE(name);

@@ -240,7 +240,7 @@ TEST_CASE("at a fork the corridor keeps to the route, else it goes the straighte
   CHECK(one->corridors[0].continues);
 }
 
-TEST_CASE("where a lane has two successors side by side, the corridor takes the route's") {
+TEST_CASE("a corridor follows its route where a lane has two successors side by side") {
   std::vector<Lane> lanes;
   auto const a = add_straight(lanes, {0, 0, 0}, 100);
   auto const left = add_straight(lanes, {100, 0, 0}, 100), right = add_straight(lanes, {100, 0, -0.02}, 100);
@@ -540,7 +540,7 @@ TEST_CASE("the ground of corridors and roads is made of valid polygons that hold
   });
 }
 
-TEST_CASE("where a curve is tighter than half the lane's width its inner fold is left out of its ground") {
+TEST_CASE("the ground of a lane leaves out the inner fold of a curve tighter than half the lane's width") {
   std::vector<Lane> lanes;
   auto samples = arc({0, 0, 0}, 0.0, 10, 0.5);
   auto const bend = arc({10, 0, 0}, 1.0, 0.5 * geometry::pi, 0.05),

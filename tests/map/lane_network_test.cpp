@@ -168,7 +168,7 @@ TEST_CASE("many gaps between two roads are one finding") {
   CHECK(count(loaded, Severity::warning, "(and 3 more such)") == 1);
 }
 
-TEST_CASE("what one side only says is entered once, and reported where the other side says something else") {
+TEST_CASE("a link that only one side names is entered once, and reported if the other side names another") {
   Road a{.behind = to_start("2"), .sections = {{.lanes = {{.id = -1, .behind = {-1}}, {.id = -2, .behind = {-2}}}}}};
   Road b{.id = "2", .x = 100, .before = to_end("1"), .sections = a.sections};
   b.sections[0].lanes[0].behind = b.sections[0].lanes[1].behind = {};

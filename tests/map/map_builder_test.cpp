@@ -248,7 +248,7 @@ TEST_CASE("a built map equals the map of its written file") {
   CHECK(contents(*loaded.map) == contents(*checked(builder)));
 }
 
-TEST_CASE("what cannot be built is refused with a sentence") {
+TEST_CASE("a plan that cannot be built is refused with a sentence") {
   double const nan = std::numeric_limits<double>::quiet_NaN();
   MapBuilder builder;
   builder.add_road(straight("1", {}, 100, 1, 1));
@@ -348,7 +348,7 @@ TEST_CASE("a map of nothing is refused with what to add, and no word about a fil
   CHECK_MESSAGE(what.find("file") == what.npos, what);
 }
 
-TEST_CASE("what fails changes nothing") {
+TEST_CASE("a call that fails changes nothing") {
   MapBuilder builder;
   for (auto const* id : {"8", "9"}) builder.add_junction(id);
   for (auto const& [id, x] : {std::pair{"1", 0.0}, {"2", 80.0}, {"3", 80.0}, {"4", 30.0}, {"5", 50.0}, {"6", 0.0}})

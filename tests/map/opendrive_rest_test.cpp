@@ -133,7 +133,7 @@ TEST_CASE("profiles and lanes keep heights, crossfall and shape") {
   CHECK(read(write_opendrive(r.document)).document == r.document);
 }
 
-TEST_CASE("what the document has no field for is kept where it stood") {
+TEST_CASE("elements without a field in the document are kept where they stood") {
   auto const r = read(file_with(
       R"(<link note="l"><neighbor side="left" elementId="2"/></link><railroad><switch id="s"/></railroad>
 <userData code="c" value="v"><deep><deeper>text</deeper></deep></userData>)",

@@ -137,7 +137,7 @@ TEST_CASE("names with every character that XML makes special are kept") {
   CHECK(again.roads[0].rest.elements[0].children[0].text == "  ");
 }
 
-TEST_CASE("what XML cannot hold is replaced or refused") {
+TEST_CASE("text that XML cannot hold is replaced or refused") {
   auto document = read(road_with("<line/>"));
   document.roads[0].name = std::string("a\x01z\0", 4);
   CHECK(read(write_opendrive(document)).roads[0].name == "a\xEF\xBF\xBDz\xEF\xBF\xBD");

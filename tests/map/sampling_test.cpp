@@ -94,7 +94,7 @@ TEST_CASE("a road that winds keeps its whole length, however often it comes roun
     }
 }
 
-TEST_CASE("what steps in the file steps in the sampled lanes, and not before") {
+TEST_CASE("a step in the file is a step in the sampled lanes, and at the same place") {
   cb::map::RoadPlan road;
   road.id = "1";
   road.line = cb::map::lay_from({}, {{100.0}});

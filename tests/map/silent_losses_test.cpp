@@ -177,7 +177,7 @@ void check_elements(Add const& add) {
 
 }  // namespace
 
-TEST_CASE("what the reader knows is written again, without a finding") {
+TEST_CASE("everything that the reader knows is written again, without a finding") {
   auto const before = outcome_of(everything);
   CHECK(before.findings.empty());
   CHECK(counts_of(before.written) == counts_of(everything));

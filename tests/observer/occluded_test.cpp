@@ -274,7 +274,7 @@ TEST_CASE("a neighbour behind one that is not seen is found") {
   CHECK(at(3).ahead(at(3).place(side))->agent == straddling);
 }
 
-TEST_CASE("which static objects are hidden is the same by intervals and by rays") {
+TEST_CASE("intervals and rays hide the same static objects") {
   auto const usual = compare_objects({.resolution = 0.02});
   CHECK(usual.seen > 50);
   CHECK(usual.hidden > 10);

@@ -114,7 +114,7 @@ TEST_CASE("an observer that errs along the lane only finds whom a perfect one fi
   }
 }
 
-TEST_CASE("who sees others late finds one that has just changed lanes in the old lane") {
+TEST_CASE("a late observer finds an agent that has just changed lanes in its old lane") {
   World<cb::DelayedObserver<2>> world(straight_road(2, 600.0));
   auto const ego = world.add({.position = {50, -1.75}, .speed = 10.0, .observer = {.others = 2}});
   auto const other = world.add({.position = {100, -1.75}, .speed = 10.0});

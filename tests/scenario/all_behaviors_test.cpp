@@ -90,10 +90,10 @@ void check_entering(bool reaches_lane) {
 
 }  // namespace
 
-TEST_CASE_TEMPLATE("who enters or is set on its way into a lane goes on into it, without a jerk of the wheel", Behavior,
-                   cb::IdmClassic, cb::AdaptiveCruiseControl, cb::IdmStochastic, cb::Mobil, cb::LaneChangeRuleBased,
-                   cb::Intersection, cb::MacroActions, cb::HumanDriver<cb::IdmClassic>, cb::HumanDriver<cb::Mobil>,
-                   cb::IdmHypotheses) {
+TEST_CASE_TEMPLATE(
+    "a vehicle that enters or is set on its way into a lane goes on into it, without a jerk of the wheel", Behavior,
+    cb::IdmClassic, cb::AdaptiveCruiseControl, cb::IdmStochastic, cb::Mobil, cb::LaneChangeRuleBased, cb::Intersection,
+    cb::MacroActions, cb::HumanDriver<cb::IdmClassic>, cb::HumanDriver<cb::Mobil>, cb::IdmHypotheses) {
   check_entering<Behavior>(true);
 }
 

@@ -129,6 +129,16 @@ TEST_CASE("so it is at shorter and longer steps, with a third of trucks where th
       check_all_pass(support::own_map(name), name, runs(150), {.truck_share = 0.35}, dt);
 }
 
+TEST_CASE("so it is with up to 30 vehicles, as many as fit before the junctions, at shorter and longer steps") {
+  JunctionTraffic const dense{.most_vehicles = 30};
+  for (double const dt : {0.1, 0.5}) {
+    for (char const* name : {"roundabout.xodr", "intersection_3way.xodr", "intersection_4way.xodr"})
+      check_all_pass(support::own_map(name), name, runs(100), dense, dt);
+    for (std::string const name : {"simple_3way_intersection_lht", "fabriksgatan", "route_strategy_test_road"})
+      if (auto const map = support::corpus_map(name + ".xodr")) check_all_pass(map, name, runs(50), dense, dt);
+  }
+}
+
 TEST_CASE("the same holds under traffic lights, and nobody crosses a stop line on red") {
   auto const map = support::own_map("intersection_4way.xodr");
   REQUIRE(map->lights().size() == 2);

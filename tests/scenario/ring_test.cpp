@@ -88,7 +88,7 @@ TEST_CASE("small waves on a ring grow or decay at the rate of linear theory") {
   CHECK(decaying >= 2);
 }
 
-TEST_CASE("where traffic is string stable, flow and density lie on the curve of equilibrium, and no wave comes up") {
+TEST_CASE("string stable traffic keeps to the curve of equilibrium of flow and density, and no wave comes up") {
   auto const road = cb::make_ring_road(2000.0, 50);
   struct Case {
     cb::IdmParameters driver;
@@ -112,7 +112,8 @@ TEST_CASE("where traffic is string stable, flow and density lie on the curve of 
   }
 }
 
-TEST_CASE("where it is not, a disturbance becomes stop-and-go waves, which run upstream about as kinematic waves do") {
+TEST_CASE(
+    "a disturbance of unstable traffic becomes stop-and-go waves, which run upstream about as kinematic waves do") {
   auto const road = cb::make_ring_road(2000.0, 50);
   auto const driver = presets::treiber_2000();
   for (int const vehicles : {80, 120, 160, 200}) {

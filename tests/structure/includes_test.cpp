@@ -181,8 +181,7 @@ TEST_CASE("rooms include only upward, and the rooms of a step stay free of heavy
   for (auto const& breach : find_breaches(includes)) FAIL_CHECK(breach);
 }
 
-TEST_CASE(
-    "what a step calls for each agent is dispatched without std::visit: its table of functions and its exception") {
+TEST_CASE("a step dispatches its calls for each agent without std::visit, its table of functions and its exception") {
   int read = 0;
   for (std::string const room : {"dynamics", "execution", "observer"})
     for (auto const& entry : std::filesystem::recursive_directory_iterator(std::filesystem::path(CAMBIUM_SOURCE_DIR) /

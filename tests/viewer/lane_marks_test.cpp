@@ -86,7 +86,7 @@ TEST_CASE("a line goes on from lane to lane as one, so that its dashes keep thei
   for (auto const& mark : marks) CHECK((mark.points.back() - mark.points.front()).norm() == doctest::Approx(95.0));
 }
 
-TEST_CASE("where a lane tapers out, the road has a solid line all along") {
+TEST_CASE("a road has a solid line all along the taper of a lane") {
   RecordedLane taper;
   taper.left = {{0, 0}, {90, 0}};
   taper.right = {{0, -3}, {90, 0}};
@@ -106,7 +106,7 @@ TEST_CASE("where a lane tapers out, the road has a solid line all along") {
   }
 }
 
-TEST_CASE("where ways cross in a junction nothing is painted, and its rim is") {
+TEST_CASE("the rim of a junction is painted, and nothing where ways cross within") {
   for (std::string const name : {"intersection_4way.xodr", "intersection_3way.xodr", "roundabout.xodr"}) {
     CAPTURE(name);
     auto const lanes = recorded_lanes(*support::own_map(name));

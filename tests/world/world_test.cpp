@@ -55,7 +55,7 @@ TEST_CASE("agents keep their lateral offset and follow curves") {
   CHECK(s.heading == doctest::Approx(100.0 / 101.75).epsilon(1e-3));
 }
 
-TEST_CASE("what cannot enter is named, and leaves the world as it was") {
+TEST_CASE("an agent that cannot enter is named, and the world stays as it was") {
   Sim world(straight_road());
   auto const before = world.frame();
   double const nan = std::numeric_limits<double>::quiet_NaN();

@@ -22,6 +22,7 @@ namespace cambium {
 struct JunctionTraffic {
   double truck_share = 0.15;
   double bicycle_share = 0.0;
+  int most_vehicles = 12;
   bool lights = false;
   bool scattered_ids = false;
 
@@ -32,6 +33,8 @@ struct JunctionTraffic {
         parameter("truck_share", &P::truck_share, "-", Range{0, 1},
                   "part of the vehicles that are trucks, on routes whose bends they can drive"),
         parameter("bicycle_share", &P::bicycle_share, "-", Range{0, 1}, "part of the vehicles that are bicycles"),
+        parameter("most_vehicles", &P::most_vehicles, "-", Range{4, 1000},
+                  "there are 4 to this many, but no more than fit at distances of 18 m"),
         parameter("lights", &P::lights, "-", Range{0, 1},
                   "1: traffic lights are on, green for 15 s one after the other; 0: they are off"),
         parameter("scattered_ids", &P::scattered_ids, "-", Range{0, 1}, "1: random agent ids; 0: ascending ones"));
@@ -56,9 +59,9 @@ struct JunctionSite {
   /// junctions, after 400 m. O(lanes of the route).
   [[nodiscard]] map::Route random_route(LaneId from, RandomStream& random) const;
 
-  /// Scenario `number` of a seed: four to twelve vehicles, each before its first junction, and slow enough to stop
-  /// there by comfortable braking. The ego is the first one. Throws `ParameterError` if a parameter of `traffic` is out
-  /// of range, `WorldError` if the map has no room before its junctions. O(vehicles^2).
+  /// Scenario `number` of a seed: four to `most_vehicles` vehicles, each before its first junction, and slow enough to
+  /// stop there by comfortable braking. The ego is the first one. Throws `ParameterError` if a parameter of `traffic`
+  /// is out of range, `WorldError` if the map has no room before its junctions. O(vehicles^2).
   [[nodiscard]] Scenario<World> sample(std::uint64_t seed, std::uint32_t number,
                                        JunctionTraffic const& traffic = {}) const;
 };

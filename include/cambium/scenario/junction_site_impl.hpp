@@ -115,9 +115,9 @@ CAMBIUM_COLD Scenario<JunctionSite::World> JunctionSite::sample(std::uint64_t se
   if (traffic.lights) scenario.lights = detail::lights_in_turn(*map);
   World world(map);
   RandomStream random(seed, number, 0);
-  auto const wanted = 4 + uniform_index(random, 9);
+  auto const wanted = 4 + uniform_index(random, static_cast<std::uint32_t>(traffic.most_vehicles - 3));
   auto const lanes = static_cast<std::uint32_t>(entrances.size());
-  for (std::uint32_t i = 0; i < 400 && scenario.agents.size() < wanted; ++i)
+  for (std::uint32_t i = 0; i < std::max(400u, 8 * wanted) && scenario.agents.size() < wanted; ++i)
     if (i < 8 * wanted || scenario.agents.size() < 2)
       detail::try_to_add(*this, traffic, entrances[uniform_index(random, lanes)], random, world, scenario);
   if (scenario.agents.size() < 2)
