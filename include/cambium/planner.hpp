@@ -64,6 +64,7 @@
 #include "cambium/planner/mcts/mcts_workspace.hpp"
 #include "cambium/planner/mcts/traffic_domain.hpp"
 #include "cambium/planner/mcts/traffic_reward.hpp"
+#include "cambium/planner/others_ahead.hpp"
 #include "cambium/planner/planner_model.hpp"
 #include "cambium/planner/policy/policy_tree.hpp"
 #include "cambium/planner/policy/policy_tree_planner.hpp"

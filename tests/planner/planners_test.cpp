@@ -140,9 +140,10 @@ struct Greedy {
     if constexpr (requires { view.predict(predict_all_as<typename PredictionWorld::Behaviors>(IdmClassic{})); }) {
       auto const report = think(view, memory, workspace);
       auto const ego = std::ranges::find(report.agents, view.id()) - report.agents.begin();
-      for (auto const& frame : report.course)
-        if (frame.time > view.time() && frame.time < view.time() + dt + 1e-9)
-          plan.trajectory.push_back(frame.agents[static_cast<Slot>(ego)].state);
+      for (auto const& frame : report.course) {  // up to the first one that is not before the end of the step
+        if (frame.time > view.time()) plan.trajectory.push_back(frame.agents[static_cast<Slot>(ego)].state);
+        if (frame.time > view.time() + dt - 1e-9) break;
+      }
       plan.status = PlanStatus::valid;
       go_straight_on(view, view.time() + dt, plan);
     }

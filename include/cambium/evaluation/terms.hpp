@@ -65,6 +65,16 @@ struct Weighted {
   }
 };
 
+template <class... Evaluators>
+struct Terms;
+
+namespace detail {
+template <class T>
+inline constexpr bool is_terms = false;
+template <class... Evaluators>
+inline constexpr bool is_terms<Terms<Evaluators...>> = true;
+}  // namespace detail
+
 /// One weighted term for each evaluator, by which every planner can judge: `terms.term<Gap>() = {.weight = 0.1,
 /// .per_second = true}`.
 template <class... Evaluators>

@@ -11,6 +11,7 @@
 #include "cambium/core/plan.hpp"
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/evaluation/course_end.hpp"
+#include "cambium/evaluation/terms.hpp"
 #include "cambium/world/detail/on_lanes.hpp"
 #include "cambium/world/detail/situation.hpp"
 #include "cambium/world/prediction.hpp"
@@ -45,6 +46,13 @@ template <class PredictionWorld, class... Others>
     static_assert((PredictionWorld::Behaviors::template contains<Others> && ...),
                   "cambium: the behaviour set of a planner's PredictionWorld must contain its Others, the "
                   "model by which all agents but ego are predicted");
+  return true;
+}
+
+/// True. Else a compile error says that a planner's own terms are something else.
+template <class Own>
+[[nodiscard]] constexpr bool check_terms() {
+  static_assert(is_terms<Own>, "cambium: a planner's own terms must be cambium::Terms<Evaluators...>");
   return true;
 }
 

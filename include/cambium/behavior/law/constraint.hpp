@@ -14,7 +14,8 @@ struct Constraint {
 };
 
 /// A driver's car-following law at one speed, such as `IdmLaw` and `AccLaw`:
-/// - `law(constraint)`: its acceleration behind a constraint [m/s^2], never higher than on a free road;
+/// - `law(constraint)`: its acceleration behind a constraint [m/s^2], never higher than on a free road. Before a lower
+///   speed limit the rules lower the desired speed evenly; a law that follows it with a lag passes the sign too fast;
 /// - `law.speed()`, `law.desired_speed()` [m/s];
 /// - `law.motion(constraint, dt, tolerance)`: the `LongitudinalMotion` of a step of `dt` [s] behind a constraint that
 ///   keeps its speed; `tolerance` [m/s^2], see `idm_motion`;

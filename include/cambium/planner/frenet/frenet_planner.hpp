@@ -60,6 +60,7 @@ template <class PredictionWorld, class Others = ConstantAcceleration, SearchBudg
           class Own = Terms<>>
 struct FrenetPlanner {
   static_assert(detail::check_planner<PredictionWorld, Others>());
+  static_assert(detail::check_terms<Own>());
 
   using Memory = FrenetMemory;
   using Report = FrenetReport<PredictionWorld>;

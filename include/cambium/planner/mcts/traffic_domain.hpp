@@ -39,6 +39,9 @@ class TrafficDomain {
   static_assert(RewardModel<Reward, PredictionWorld>,
                 "cambium::TrafficDomain<World, Actions, Reward>: Reward must judge a world, as cambium::TrafficReward "
                 "does (see RewardModel)");
+  static_assert(!detail::is_terms<Reward>,
+                "cambium::Mcts<PredictionWorld, Actions, Reward>: Terms alone know no collision and no goal; take "
+                "cambium::Reward<Evaluators...>");
   static_assert(
       Described<Reward>,
       "cambium::TrafficDomain<World, Actions, Reward>: describe Reward's parameters, as cambium::TrafficReward "

@@ -50,6 +50,7 @@ struct PolicyTreeReport : PlannerReport<World, MacroActions::Memory> {
 template <class PredictionWorld, SearchBudget Budget = NoBudget, class Own = Terms<>>
 struct PolicyTreePlanner {
   static_assert(detail::check_planner<PredictionWorld>());
+  static_assert(detail::check_terms<Own>());
   static_assert(PredictionWorld::Behaviors::template contains<MacroActions>,
                 "cambium::PolicyTreePlanner<PredictionWorld>: the behaviour set of PredictionWorld must contain "
                 "cambium::MacroActions, which carries out ego's actions and the others' intentions");

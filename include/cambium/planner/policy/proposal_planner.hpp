@@ -99,6 +99,7 @@ template <class PredictionWorld, class Others = ConstantAcceleration, SearchBudg
           class Own = Terms<>>
 struct ProposalPlanner {
   static_assert(detail::check_planner<PredictionWorld, Others>());
+  static_assert(detail::check_terms<Own>());
   static_assert(PredictionWorld::Behaviors::template contains<IdmProposal>,
                 "cambium::ProposalPlanner<PredictionWorld>: the behaviour set of PredictionWorld must contain "
                 "cambium::IdmProposal, the driver that is simulated");
@@ -184,13 +185,17 @@ struct ProposalPlanner {
     report.proposals = workspace.proposals;
     report.best = workspace.best;
     report.is_cut_short = workspace.is_cut_short;
+    double const latest = report.proposals[report.best].time_to_infraction;
+    auto const is_acceptable = [&](ProposalScore const& p) {
+      return p.time_to_infraction >= emergency_time && p.time_to_infraction >= latest;
+    };
     for (auto const& p : report.proposals)
       report.candidates.push_back(
           {detail::rounded_text(p.speed_share) + " of the desired speed at " + detail::rounded_text(p.offset) + " m",
            p.score,
-           p.time_to_infraction >= emergency_time ? ""
-           : p.collides                           ? "collision"
-                                                  : "off road"});
+           is_acceptable(p) ? ""
+           : p.collides     ? "collision"
+                            : "off road"});
     for (auto const& agent : workspace.world->roster().agents) report.agents.push_back(agent.id);
     report.course.push_back(workspace.start);
     auto again = report.proposals[report.best];
