@@ -140,7 +140,8 @@ inline cb::Scenario<Sim> sample(std::shared_ptr<cb::Map const> const& map, Cell 
   auto const left = scenario.agents.size();
   fill_lane(scenario, 0.2 * way, 0.5 * way, -5.25, cell, random);
   auto const right = static_cast<std::uint32_t>(scenario.agents.size() - left);
-  auto& ego = scenario.agents[left + cb::uniform_index(random, right)];
+  auto const number_of_ego = left + cb::uniform_index(random, right);
+  auto& ego = scenario.agents[number_of_ego];
   ego.behavior = planner(cell);
   ego.goal = cb::LaneLimits{.lane = map->nearest_lane({0.5 * way, -1.75, 0.0})->lane,
                             .from = 0.2 * way,
@@ -149,7 +150,7 @@ inline cb::Scenario<Sim> sample(std::shared_ptr<cb::Map const> const& map, Cell 
                             .heading_error = 0.08,
                             .lowest_speed = 11.0,
                             .highest_speed = 17.0};
-  scenario.ego = ego.id;
+  scenario.ego = static_cast<cb::AgentId>(number_of_ego);
   return scenario;
 }
 
