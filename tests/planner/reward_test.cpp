@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <type_traits>
+#include <vector>
 
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/planner/frenet/frenet_planner.hpp"
@@ -41,12 +43,17 @@ struct OnTheLeft {
   }
 };
 
-/// How far to the left the agent is on a road along x [m].
-struct Leftwards {
+/// One evaluator for several tests, so that each planner is compiled once: how far to the left the agent is on a road
+/// along x [m], 1, or from 13 m/s on a `broken` number.
+struct Mixed {
+  enum class Kind { leftwards, always, broken } kind = Kind::leftwards;
+  double broken = 0.0;
+
   static constexpr auto parameters() { return parameter_list(); }
   template <class World>
   [[nodiscard]] double operator()(World const& world, Slot slot) const {
-    return world.frame().agents[slot].state.y;
+    auto const& state = world.frame().agents[slot].state;
+    return kind == Kind::leftwards ? state.y : kind == Kind::broken && state.speed > 13.0 ? broken : 1.0;
   }
 };
 
@@ -58,7 +65,6 @@ using Planner = Mcts<PredictionWorld, MacroActions, Own>;
 using Sim = World<BehaviorSet<Planner, IdmClassic>, InterpolateExecution, SingleTrack>;
 
 constexpr Slot ego{};
-#define COMMA ,
 
 }  // namespace
 
@@ -109,77 +115,98 @@ TEST_CASE("a planner heeds a user's evaluator") {
   }
 }
 
-TEST_CASE_TEMPLATE("every other planner heeds a user's evaluator, too", Heeding,
-                   ProposalPlanner<Predicted COMMA ConstantAcceleration COMMA NoBudget COMMA Terms<Leftwards>>,
-                   PolicyTreePlanner<Predicted COMMA NoBudget COMMA Terms<Leftwards>>,
-                   FrenetPlanner<Predicted COMMA ConstantAcceleration COMMA NoBudget COMMA Terms<Leftwards>>) {
-  auto const drive = [](double weight) {
-    World<BehaviorSet<Heeding, IdmClassic>, InterpolateExecution, SingleTrack> world(support::straight_road(3, 600.0));
-    Heeding planner;
-    planner.terms.template term<Leftwards>() = {.weight = weight, .per_second = true};
-    auto const id = world.add({.position = {60, -5.25}, .speed = 12, .behavior = planner});
-    typename Heeding::Workspace workspace;
-    auto const report = planner.think(world.observe(id), {}, workspace);
-    REQUIRE(report.chosen);
-    for (auto const& candidate : report.candidates)
-      if (candidate.refused.empty()) CHECK(candidate.score <= report.candidates[*report.chosen].score + 0.01);
-    for (int k = 0; k < 20; ++k) REQUIRE(world.step(0.2));
-    return world.state(id).y;
-  };
-  double const left = drive(20.0), middle = drive(0.0), right = drive(-20.0);
-  CHECK(left > middle + 0.5);
-  CHECK(right < middle - 0.5);
-}
-
 namespace {
 
-/// Not a number, or infinite, where the speed is above 13 m/s.
-template <int sign>
-struct Broken {
-  static constexpr auto parameters() { return parameter_list(); }
-  template <class World>
-  [[nodiscard]] double operator()(World const& world, Slot slot) const {
-    if (world.frame().agents[slot].state.speed < 13.0) return 1.0;
-    double const infinite = std::numeric_limits<double>::infinity();
-    return sign == 0 ? infinite - infinite : sign * infinite;
-  }
-};
+using OtherPlanners = BehaviorSet<ProposalPlanner<Predicted, ConstantAcceleration, NoBudget, Terms<Mixed>>,
+                                  PolicyTreePlanner<Predicted, NoBudget, Terms<Mixed>>,
+                                  FrenetPlanner<Predicted, ConstantAcceleration, NoBudget, Terms<Mixed>>>;
+using OtherSim = World<OtherPlanners, InterpolateExecution, SingleTrack>;
+
+/// Calls `f(planner)` for each of them, with that term.
+template <class F>
+void for_each_other(Weighted<Mixed> const& term, F const& f) {
+  auto const call = [&]<class P>(std::type_identity<P>) {
+    P planner;
+    planner.terms.template term<Mixed>() = term;
+    CAPTURE(P::name);
+    f(planner);
+  };
+  [&]<class... P>(std::type_identity<BehaviorSet<P...>>) {
+    (call(std::type_identity<P>{}), ...);
+  }(std::type_identity<OtherPlanners>{});
+}
+
+/// A world with a planner's agent at 12 m/s on a straight road.
+template <class P>
+OtherSim with(P const& planner, int lanes = 3) {
+  OtherSim world(support::straight_road(lanes, 600.0));
+  world.add({.position = {60, -5.25}, .speed = 12, .behavior = planner});
+  return world;
+}
+
+template <class P>
+auto report_of(P const& planner, OtherSim& world) {
+  typename P::Workspace workspace;
+  auto report = planner.think(world.observe(ego), {}, workspace);
+  REQUIRE(report.chosen);
+  return report;
+}
 
 }  // namespace
 
-TEST_CASE_TEMPLATE("no planner drives a course whose terms are not finite", Term, Broken<0>, Broken<1>, Broken<-1>) {
-  World<BehaviorSet<IdmClassic>, InterpolateExecution, SingleTrack> world(support::straight_road(2, 600.0));
-  auto const id = world.add({.position = {60, -5.25}, .speed = 12});
-  auto const check = [&]<class P>(P planner) {
-    planner.terms.template term<Term>().weight = 1.0;
-    typename P::Workspace workspace;
-    try {
-      auto const report = planner.think(world.observe(id), {}, workspace);
-      REQUIRE(report.chosen);
-      CHECK(std::isfinite(report.candidates[*report.chosen].score));
+TEST_CASE("every other planner heeds a user's evaluator, too") {
+  std::vector<double> ends;
+  for (double const weight : {20.0, 0.0, -20.0})
+    for_each_other({.weight = weight, .per_second = true}, [&](auto const& planner) {
+      auto world = with(planner);
+      auto const report = report_of(planner, world);
       for (auto const& candidate : report.candidates)
-        if (candidate.refused.empty()) CHECK(std::isfinite(candidate.score));
-    } catch (SearchError const& error) {
-      CHECK(std::string(error.what()).find("finite") != std::string::npos);
-    }
-  };
-  check(ProposalPlanner<Predicted, ConstantAcceleration, NoBudget, Terms<Term>>{});
-  check(PolicyTreePlanner<Predicted, NoBudget, Terms<Term>>{});
-  check(FrenetPlanner<Predicted, ConstantAcceleration, NoBudget, Terms<Term>>{});
+        if (candidate.refused.empty()) CHECK(candidate.score <= report.candidates[*report.chosen].score + 0.01);
+      for (int k = 0; k < 20; ++k) REQUIRE(world.step(0.2));
+      ends.push_back(world.state(AgentId{0}).y);
+    });
+  for (std::size_t i = 0; i < 3; ++i) {
+    CHECK(ends[i] > ends[3 + i] + 0.5);
+    CHECK(ends[6 + i] < ends[3 + i] - 0.5);
+  }
+}
+
+TEST_CASE("a term that ends the course ends it in every planner") {
+  std::vector<double> scores;
+  for (bool const ends : {false, true})
+    for_each_other({.evaluator = {Mixed::Kind::always}, .weight = 1.0, .ends = ends}, [&](auto const& planner) {
+      auto world = with(planner);
+      auto const report = report_of(planner, world);
+      scores.push_back(report.candidates[*report.chosen].score);
+    });
+  for (std::size_t i = 0; i < 3; ++i) CHECK(scores[3 + i] < scores[i] - 20.0);  // 1 instead of 1 a step
+}
+
+TEST_CASE("no planner drives a course whose terms are not finite") {
+  double const infinite = std::numeric_limits<double>::infinity();
+  for (double const broken : {infinite - infinite, infinite, -infinite})
+    for_each_other({.evaluator = {Mixed::Kind::broken, broken}, .weight = 1.0}, [&](auto const& planner) {
+      auto world = with(planner);
+      try {
+        auto const report = report_of(planner, world);
+        for (auto const& candidate : report.candidates)
+          if (candidate.refused.empty()) CHECK(std::isfinite(candidate.score));
+        CHECK(report.candidates[*report.chosen].refused.empty());
+      } catch (SearchError const& error) {
+        CHECK(std::string(error.what()).find("finite") != std::string::npos);
+      }
+    });
 }
 
 TEST_CASE("evaluators see Frenet's courses as they see a world") {
   // A lane change: its lane offset is that from the lane that holds the vehicle, the gap is to whoever is ahead there.
-  World<BehaviorSet<IdmClassic>, InterpolateExecution, SingleTrack> world(support::straight_road(2, 600.0));
-  auto const id = world.add({.position = {60, -5.25}, .speed = 12});
-  world.add({.position = {110, -5.25}, .speed = 4, .behavior = IdmClassic{.desired_speed = 4}});
-  FrenetPlanner<Predicted, ConstantAcceleration, NoBudget, Terms<LaneOffset>> planner;
-  planner.terms.term<LaneOffset>() = {.weight = -1e-9, .per_second = true};
-  decltype(planner)::Workspace workspace;
-  auto const report = planner.think(world.observe(id), {}, workspace);
-  REQUIRE(report.chosen);
-  Predicted seen = world.observe(id).predict(
-      predict_all_as<BehaviorSet<MacroActions, IdmProposal, IdmClassic, ConstantAcceleration>>(ConstantAcceleration{}));
+  using Frenet = FrenetPlanner<Predicted, ConstantAcceleration, NoBudget, Terms<Mixed>>;
+  Frenet const planner;
+  auto world = with(planner, 2);
+  OtherSim::Behavior const slow = planner;
+  world.add({.position = {110, -5.25}, .speed = 4, .behavior = slow});
+  auto const report = report_of(planner, world);
+  auto seen = world.observe(ego).predict(predict_all_as<Predicted::Behaviors>(ConstantAcceleration{}));
   double largest = 0.0, least_gap = 400.0;
   for (auto const& frame : report.course) {
     seen.restore(frame);
@@ -190,21 +217,6 @@ TEST_CASE("evaluators see Frenet's courses as they see a world") {
   CHECK(largest > 1.0);
   CHECK(largest < 1.8);
   CHECK(least_gap < 46.0);
-}
-
-TEST_CASE("a term that ends the course ends it in every planner") {
-  World<BehaviorSet<IdmClassic>, InterpolateExecution, SingleTrack> world(support::straight_road(2, 600.0));
-  auto const id = world.add({.position = {60, -5.25}, .speed = 12});
-  auto const score = [&]<class P>(P planner, bool ends) {
-    planner.terms.template term<Progress>() = {.weight = 1.0, .ends = ends};
-    typename P::Workspace workspace;
-    auto const report = planner.think(world.observe(id), {}, workspace);
-    return report.candidates[*report.chosen].score;
-  };
-  auto const shortens = [&](auto const& planner) { return score(planner, true) < score(planner, false) - 50.0; };
-  CHECK(shortens(ProposalPlanner<Predicted, ConstantAcceleration, NoBudget, Terms<Progress>>{}));
-  CHECK(shortens(PolicyTreePlanner<Predicted, NoBudget, Terms<Progress>>{}));
-  CHECK(shortens(FrenetPlanner<Predicted, ConstantAcceleration, NoBudget, Terms<Progress>>{}));
 }
 
 TEST_CASE_TEMPLATE("every shipped evaluator can be a term of a reward that a search plans by", Evaluator, Collision,
