@@ -112,7 +112,7 @@ void check_feeder_laws(Map const& map, LaneCorridor const& corridor) {
     CHECK(f.begin < f.end);
     CHECK(f.index_begin >= lane.index_begin - 1e-9);
     CHECK(f.index_end <= lane.index_begin + lane.length() + 1e-9);
-    if (f.end > 1e-6) CHECK(std::count(own.begin(), own.end(), f.lane) == 0);
+    if (f.end > 1e-6 && f.begin < corridor.length() - 1e-6) CHECK(std::count(own.begin(), own.end(), f.lane) == 0);
     stretches[f.lane].emplace_back(f.index_begin, f.index_end);
   }
   for (auto& [lane, list] : stretches) {
@@ -273,13 +273,17 @@ TEST_CASE("straight routes end at their length, at a dead end, and before they r
   CHECK(straight_route(*map, ring[0], 150).length == doctest::Approx(240).epsilon(1e-3));
   CHECK(straight_route(*map, ring[0], 0).lanes.size() == 1);
   CHECK_THROWS_AS((void)straight_route(*map, static_cast<LaneId>(4)), MapError);
-  // On a ring the traffic behind the begin is on the corridor's own last lane.
+  // On a ring the traffic behind the begin is on the corridor's own last lane, that beyond the end on its first one.
   auto const road = build_road_corridor(*map, straight_route(*map, ring[0]));
-  REQUIRE(road->corridors[0].feeders.size() == 1);
-  auto const& behind = road->corridors[0].feeders[0];
+  REQUIRE(road->corridors[0].feeders.size() == 2);
+  auto const &behind = road->corridors[0].feeders[0], &beyond = road->corridors[0].feeders[1];
   CHECK(behind.lane == ring[3]);
   CHECK(behind.begin == doctest::Approx(-100));
   CHECK(behind.end == 0.0);
+  CHECK(beyond.lane == ring[0]);
+  CHECK(beyond.begin == road->corridors[0].length());
+  CHECK(beyond.end == doctest::Approx(beyond.begin + 30.0));
+  CHECK_FALSE(beyond.is_still_to_merge());
 }
 
 TEST_CASE("lanes beside the route have corridors that know each other, and one that opens later begins its own") {

@@ -161,6 +161,35 @@ TEST_CASE("so it is at the junctions of the corpus") {
     if (auto const map = support::corpus_map(name + ".xodr")) check_all_pass(map, name, runs(20));
 }
 
+TEST_CASE("who reaches the end of its route sees a vehicle beyond it that still reaches back") {
+  auto const site = find_junction_site(support::own_map("intersection_4way.xodr"));
+  for (LaneId const entrance : site.entrances) {
+    auto const& lane = site.map->lane(entrance);
+    for (LaneId const next : lane.successors) {
+      JunctionSite::World world(site.map);
+      auto const add = [&](LaneId where, double s, double speed, double desired) {
+        return world.add({.position = site.map->lane(where).path.pose(s).position(),
+                          .speed = speed,
+                          .behavior = Intersection{.idm = {.desired_speed = desired}},
+                          .route = map::Route{{where}, site.map->lane(where).length()}});
+      };
+      auto const behind = add(entrance, lane.length() - 60.0, 10.0, 10.0);
+      add(next, 0.5, 0.0, 0.1);
+      double gap = 60.0;
+      for (int step = 0; step < 60 && world.frame().agents[world.slot_of(behind)].status == AgentStatus::driving;
+           ++step) {
+        REQUIRE(world.step(0.2));
+        auto const ahead = world.observe(behind).ahead();
+        REQUIRE(ahead);
+        gap = std::min(gap, ahead->gap);
+      }
+      CHECK_FALSE(AnyCollision{}(world));
+      CHECK(gap > 0.0);
+      CHECK(gap < 5.0);  // it came up to it
+    }
+  }
+}
+
 TEST_CASE("a vehicle larger than those that conflicts are found for is refused with a sentence") {
   auto const site = find_junction_site(support::own_map("intersection_4way.xodr"));
   RandomStream random(1, 0, 0);

@@ -60,7 +60,7 @@ void upstream(cb::Map const& map, LaneId lane, LaneId known, double distance, do
 /// Says where somebody counts on a corridor. By the rules of `build_road_corridor`: who is in one of its lanes, there;
 /// and by the first of these rules that gives a place: beside an overlap; on the way to the corridor's begin (who is in
 /// one of its lanes too: it may be a ring); on the
-/// way into one of its lanes; on the way to an overlap where a lane merges in.
+/// way into one of its lanes; on the way to an overlap where a lane merges in; within 30 m of its end.
 class Twin {
  public:
   Twin(cb::Map const& map, cb::map::LaneCorridor const& corridor) : map_(map), corridor_(corridor) {
@@ -79,6 +79,7 @@ class Twin {
         add_upstream(overlap.other, cb::none<LaneId>, view, overlap.other_begin, begin, begin, false);
       }
     }
+    add_downstream(corridor.pieces.back().lane, 30.0, corridor.length());
   }
 
   [[nodiscard]] std::vector<Image> images(LaneId lane, double s) const {
@@ -133,6 +134,15 @@ class Twin {
     for (auto const& [before, gap] : lanes)
       if (with_own || !holds(before))
         add_before(before, map_.lane(before).length(), view - gap, image_end - gap, free_until);
+  }
+
+  void add_downstream(LaneId lane, double view, double image_begin) {
+    for (auto const id : map_.lane(lane).successors) {
+      if (!map_.lane(id).drivable()) continue;
+      double const length = std::min(view, map_.lane(id).length());
+      stretches_.push_back({id, 0.0, length, image_begin, image_begin + length, -infinite});
+      if (length < view) add_downstream(id, view - length, image_begin + length);
+    }
   }
 
   cb::Map const& map_;

@@ -183,10 +183,12 @@ struct LaneChanging {
   }
 
  private:
-  /// Whether it may pass slower ones within its lane: not where lanes merge in, whose traffic counts as a whole.
+  /// Whether it may pass slower ones within its lane: not where lanes merge in, whose traffic counts as a whole. Those
+  /// beyond the corridor's end do not count.
   template <class View>
   [[nodiscard]] static bool passes_in_lane(View const& view) {
-    return view.corridor().feeders.empty();
+    auto const& corridor = view.corridor();
+    return corridor.feeders.empty() || corridor.feeders.front().begin >= corridor.length();
   }
 
   template <class View>

@@ -35,8 +35,9 @@ struct CorridorPiece {
 };
 
 /// A stretch of a lane outside of the corridor whose traffic counts in it: a lane that merges in (from `merge_view`
-/// before the overlap on), one that has just split off and still overlaps, or one that leads onto the corridor's first
-/// lane. Lane coordinates [index_begin, index_end] map linearly onto corridor positions [begin, end].
+/// before the overlap on), one that has just split off and still overlaps, one that leads onto the corridor's first
+/// lane, or one to which its last lane leads. Lane coordinates [index_begin, index_end] map linearly onto corridor
+/// positions [begin, end].
 struct Feeder {
   LaneId lane = none<LaneId>;
   double index_begin{}, index_end{};

@@ -22,8 +22,9 @@
 ///                                               /
 ///     ramp          =====[ feeder: merge_view ]'
 ///
-/// There are three kinds: the overlaps with lanes that merge in or have just split off, the lanes upstream of the
-/// corridor, and the lanes that lead to a merge. A stretch of a lane has one image only: a kind named earlier wins.
+/// There are four kinds: the overlaps with lanes that merge in or have just split off, the lanes upstream of the
+/// corridor, the lanes that lead to a merge, and the lanes that lead on from its end, where a vehicle may reach back
+/// into the corridor. A stretch of a lane has one image only: a kind named earlier wins.
 namespace cambium::map::detail {
 
 /// Finds the feeders of a lane corridor whose `pieces` are known, see `build_road_corridor`.
@@ -33,6 +34,7 @@ class FeederFinder {
 
   void find() {
     constexpr double rear_view = 100.0;  // [m] before the corridor's begin
+    constexpr double front_view = 30.0;  // [m] beyond its end: no two bodies across it reach as far
     constexpr double never = -std::numeric_limits<double>::infinity();
     corridor_.feeders.clear();
     for (auto const& piece : corridor_.pieces)
@@ -47,6 +49,7 @@ class FeederFinder {
         if (overlap.kind == OverlapKind::merge && !holds(overlap.other))
           add_upstream_of(overlap, position(piece, overlap.begin));
     }
+    if (corridor_.continues) add_successors(front_view);
     cambium::detail::stable_sort_by(corridor_.feeders, [](Feeder const& a, Feeder const& b) {
       return std::tie(a.begin, a.lane, a.index_begin) < std::tie(b.begin, b.lane, b.index_begin);
     });
@@ -82,32 +85,54 @@ class FeederFinder {
   }
 
   /// Adds the predecessors of `lane` and those behind them, up to `view` [m] back; `end` is the image of the lane's
-  /// begin. One way is followed to its end before the next; of a lane come to again no more than what is new, so that
-  /// lanes linked crosswise or in rings are not followed over and over.
+  /// begin.
   void add_predecessors(LaneId lane, double view, double end, double free_until, bool with_own) {
+    auto const add_before = [&](Lane const& before, double length, double at) {
+      double const index_end = before.index_begin + before.length();
+      add({before.id, index_end - length, index_end, at - length, at, free_until});
+      return at - length;
+    };
+    follow(lane, &Lane::predecessors, view, end, with_own, add_before);
+  }
+
+  /// Adds the lanes to which the corridor's last lane leads, up to `view` [m] beyond its end; its own lanes as well, to
+  /// which a ring comes back.
+  void add_successors(double view) {
+    auto const add_next = [&](Lane const& next, double length, double at) {
+      add({next.id, next.index_begin, next.index_begin + length, at, at + length});
+      return at + length;
+    };
+    follow(corridor_.pieces.back().lane, &Lane::successors, view, corridor_.length(), true, add_next);
+  }
+
+  /// Calls `visit(lane, length, at)` for the lanes to which `links` lead from `lane`, and those farther along, up to
+  /// `view` [m]: `length` of each is in view, `at` the image of its near end; it returns that of its far end. One way
+  /// is followed to its end before the next; of a lane come to again no more than what is new, so that lanes linked
+  /// crosswise or in rings are not followed over and over.
+  template <class Links, class Visit>
+  void follow(LaneId lane, Links links, double view, double at, bool with_own, Visit const& visit) const {
     constexpr double worth_it = 0.01;  // [m]
     struct Way {
       LaneId lane;
-      double view, end;
+      double view, at;
     };
     std::vector<Way> open;
     std::map<LaneId, double> seen;  // the largest view
-    auto const open_before = [&](Way const& way) {
-      auto const& before = map_.lane(way.lane).predecessors;
-      for (auto i = before.rbegin(); i != before.rend(); ++i)
-        if (map_.lane(*i).drivable() && (with_own || !holds(*i))) open.push_back({*i, way.view, way.end});
+    auto const open_from = [&](Way const& way) {
+      auto const& linked = map_.lane(way.lane).*links;
+      for (auto i = linked.rbegin(); i != linked.rend(); ++i)
+        if (map_.lane(*i).drivable() && (with_own || !holds(*i))) open.push_back({*i, way.view, way.at});
     };
-    for (open_before({lane, view, end}); !open.empty();) {
+    for (open_from({lane, view, at}); !open.empty();) {
       auto const way = open.back();
       open.pop_back();
       auto const [mark, is_new] = seen.emplace(way.lane, way.view);
       if (!is_new && way.view < mark->second + worth_it) continue;
       mark->second = way.view;
-      auto const& previous = map_.lane(way.lane);
-      double const length = std::min(way.view, previous.length());
-      double const index_end = previous.index_begin + previous.length();
-      add({way.lane, index_end - length, index_end, way.end - length, way.end, free_until});
-      if (length < way.view) open_before({way.lane, way.view - length, way.end - length});
+      auto const& next = map_.lane(way.lane);
+      double const length = std::min(way.view, next.length());
+      double const far_end = visit(next, length, way.at);
+      if (length < way.view) open_from({way.lane, way.view - length, far_end});
     }
   }
 
