@@ -351,8 +351,10 @@ struct MayBrake {
     bool brakes = false;
     friend bool operator==(Memory, Memory) = default;
   };
+  std::size_t count = 2;
+
   static constexpr auto parameters() { return parameter_list(); }
-  [[nodiscard]] std::size_t hypotheses() const { return 2; }
+  [[nodiscard]] std::size_t hypotheses() const { return count; }
   void assume(Memory& memory, std::size_t number, double) const { memory.brakes = number == 1; }
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory const& memory, double dt) const {
@@ -375,6 +377,9 @@ TEST_CASE("a planner learns which of a user's own hypotheses holds") {
     CHECK(belief->size() == 2);
     CHECK(belief->probability(brakes ? 1 : 0) > 0.95);
   }
+  for (std::size_t const count : {0u, 9u})
+    CHECK_THROWS_WITH_AS(check_parameters(Curious{.others = {count}}, "planner"), doctest::Contains("give 1 to 8"),
+                         ParameterError);
 }
 
 TEST_CASE("an observed speed changes a belief by its normal distribution about what each headway predicts") {

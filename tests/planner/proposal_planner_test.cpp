@@ -195,6 +195,11 @@ TEST_CASE("it brakes as hard as it may if all proposals soon collide") {
   auto const report = Planner{}.think(world.observe(ego), {}, workspace);
   CHECK_FALSE(report.chosen);
   CHECK(report.course.back().agents[0].state.speed == 0.0);
+  for (auto const& frame : report.course) {  // it is where its state says
+    auto const &now = frame.agents[0], &start = report.course[0].agents[0];
+    CHECK(now.lane.s - start.lane.s == doctest::Approx(now.state.x - start.state.x));
+    CHECK(now.action.acceleration <= 0.0);
+  }
   REQUIRE(world.step(0.2));
   CHECK(world.record(ego).action.acceleration == doctest::Approx(-6.0));
   for (auto const& candidate : report.candidates) CHECK(candidate.refused == "collision");

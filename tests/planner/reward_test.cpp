@@ -171,6 +171,12 @@ TEST_CASE("every other planner heeds a user's evaluator, too") {
   }
 }
 
+TEST_CASE("planners without a limit on risk refuse a term with a cost") {
+  for_each_other({.cost = 0.5}, [](auto const& planner) {
+    CHECK_THROWS_WITH_AS(check_parameters(planner, "planner"), doctest::Contains("does not bound"), ParameterError);
+  });
+}
+
 TEST_CASE("a term that ends the course ends it in every planner") {
   std::vector<double> scores;
   for (bool const ends : {false, true})

@@ -45,9 +45,8 @@ struct Weighted {
     return parameter_list(
         parameter("evaluator", &P::evaluator, "-", {}, "returns a bool or a number"),
         parameter("weight", &P::weight, "-", any_finite, "factor on its value"),
-        parameter(
-            "cost", &P::cost, "-", Range{0, 1},
-            "of a value other than 0: the probability of the event that a limit on risk bounds; only Mcts has one"),
+        parameter("cost", &P::cost, "-", Range{0, 1},
+                  "of a value other than 0: the probability of the event that a limit on risk bounds; for Mcts only"),
         parameter("per_second", &P::per_second, "-", Range{0, 1},
                   "whether the term is multiplied by the duration of the step"),
         parameter("ends", &P::ends, "-", Range{0, 1}, "whether a value other than 0 ends the course"));
@@ -90,6 +89,8 @@ struct Terms<> {
   [[nodiscard]] Weighted<E>& term() {
     static_assert(std::is_void_v<E>, "cambium::Terms<Evaluators...>::term<E>: E is not one of Evaluators");
   }
+  [[nodiscard]] constexpr bool has_cost() const { return false; }
+
   template <class World>
   [[nodiscard]] Judgement judge(World&, Slot, double) const {
     return {};
@@ -122,6 +123,9 @@ struct Terms<First, Rest...> {
     else
       return rest.template term<E>();
   }
+
+  /// Whether one of them has a `cost`.
+  [[nodiscard]] constexpr bool has_cost() const { return first.cost != 0.0 || rest.has_cost(); }
 
   /// The sum of the terms for the agent at `slot` after a step of `dt` [s]; nothing for an agent that is not driving.
   template <class World>

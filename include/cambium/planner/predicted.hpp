@@ -5,9 +5,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <string>
 #include <type_traits>
 #include <vector>
 
+#include "cambium/core/error.hpp"
 #include "cambium/core/plan.hpp"
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/evaluation/course_end.hpp"
@@ -54,6 +56,13 @@ template <class Own>
 [[nodiscard]] constexpr bool check_terms() {
   static_assert(is_terms<Own>, "cambium: a planner's own terms must be cambium::Terms<Evaluators...>");
   return true;
+}
+
+/// Throws `ParameterError` if one of a planner's own terms bounds a risk, which only `Mcts` does.
+template <class Own>
+void refuse_costs(Own const& terms, std::string const& where) {
+  if (terms.has_cost())
+    throw ParameterError(where, "has a term with a cost, which this planner does not bound", "give it a weight");
 }
 
 /// True. Else a compile error says how `PredictionWorld` differs from the world type `Predicted`.
@@ -127,13 +136,13 @@ void drive_predicted(World& world, Slot slot, double dt, double step, BasicPlan<
 template <class World>
 [[nodiscard]] typename World::Record driven_to(World const& world, Slot slot, typename World::Record const& before,
                                                typename World::State const& state) {
+  if (before.status != AgentStatus::driving) return before;  // it has left
   auto record = before;
   auto const& agent = world.roster().agents[slot];
   double const duration = state.time - before.state.time;
   record.state = state;
   record.action = {};
   if (duration > 0.0) record.action.acceleration = (state.speed - before.state.speed) / duration;
-  if (before.status != AgentStatus::driving) return record;
   detail::move_on_lane(world.map(), *agent.road, 0.5 * (before.state.speed + state.speed) * duration, record);
   detail::pass_goals(agent, world.roster().goals[slot], record);
   return record;

@@ -316,7 +316,8 @@ class World {
   /// to date.
   [[nodiscard]] View observe(AgentId id) & { return observe(slot_of(id)); }
   [[nodiscard]] View observe(Slot slot) & {
-    CAMBIUM_ASSERT(index_of(slot) < size(), "World::observe: there is no such slot; World::slot_of finds an agent's");
+    if (index_of(slot) >= size()) [[unlikely]]
+      detail::refuse_slot(slot);
     refresh_traffic();
     return View(*this, slot);
   }
@@ -325,7 +326,8 @@ class World {
   /// `predict` if the agents' observers are imperfect.
   [[nodiscard]] TrueView truth(AgentId id) & { return truth(slot_of(id)); }
   [[nodiscard]] TrueView truth(Slot slot) & {
-    CAMBIUM_ASSERT(index_of(slot) < size(), "World::truth: there is no such slot; World::slot_of finds an agent's");
+    if (index_of(slot) >= size()) [[unlikely]]
+      detail::refuse_slot(slot);
     refresh_traffic();
     return TrueView(*this, slot);
   }

@@ -30,7 +30,8 @@ namespace cambium {
 /// that goes first (`detail::goes_first`) has the zone if the two times in it are less than `time_margin` apart. The
 /// strongest claim bounds the step so that the vehicle can stop at its line.
 ///
-/// The driver enters a junction when all its conflicts are its own and there is room behind them. As soon as it has
+/// The driver enters a junction when all its conflicts are its own and there is room behind them (after 40 s more than
+/// its patience, even without room). As soon as it has
 /// left its place to wait, maybe well before the edge of the junction, it goes before all vehicles that are still
 /// outside. At green it also enters to turn left, and waits inside for oncoming traffic. It stops at red lights
 /// (`World::set_light`) and stop signs, and slows down for bends. Where neither priorities nor lights say who goes

@@ -124,6 +124,7 @@ struct FrenetPlanner {
   void check(std::string const& where) const {
     if (speed_shares.empty() || durations.empty() || offsets.empty())
       throw ParameterError(where, "has no speed share, duration or offset", "give at least one of each");
+    detail::refuse_costs(terms, where);
   }
 
   template <class View>
@@ -305,6 +306,7 @@ struct FrenetPlanner {
       auto const verdict = drivable(limits, driven.course, driven.frenet, fastest);
       if (verdict != FrenetVerdict::valid) return verdict;
       record = driven_to(*ahead.world, workspace.ego, record, driven.state);
+      if (record.status == AgentStatus::off_route) return FrenetVerdict::road;
       if (record.status == AgentStatus::driving &&
           (OffRoad::leaves(view.map(), view.road(), record.lane, record.state, view.shape()) ||
            OncomingLane::enters(view.map(), view.road(), record.lane, record.state, view.shape())))

@@ -116,7 +116,8 @@ struct TrafficReward {
 };
 
 /// `TrafficReward` plus one weighted term for each evaluator: `reward.term<Gap>() = {.weight = 0.1, .per_second =
-/// true}`. All terms count in the step that ends the course, too.
+/// true}`. All terms count in the step that ends the course, too,
+/// unless the agent has left.
 template <class... Evaluators>
 struct Reward {
   TrafficReward traffic{};

@@ -103,6 +103,8 @@ struct PolicyTreePlanner {
         parameter("terms", &P::terms, "-", {}, "evaluators whose sum over a sequence is deducted from its cost"));
   }
 
+  void check(std::string const& where) const { detail::refuse_costs(terms, where); }
+
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt, Workspace& workspace) const {
     Plan<View> plan;

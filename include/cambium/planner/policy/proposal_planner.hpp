@@ -159,6 +159,7 @@ struct ProposalPlanner {
   void check(std::string const& where) const {
     if (speed_shares.empty() || offsets.empty())
       throw ParameterError(where, "has no speed share or no offset", "give 1 to 8 of each");
+    detail::refuse_costs(terms, where);
   }
 
   template <class View>

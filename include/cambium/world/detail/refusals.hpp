@@ -47,6 +47,7 @@ void require_kept(std::size_t steps_back, std::size_t kept);
 [[nodiscard]] std::string name_of(AgentId id);
 
 /// Throws `WorldError` about an agent: what is wrong, and what to do.
+[[noreturn]] void refuse_slot(Slot slot);
 [[noreturn]] void refuse(AgentId id, char const* what, char const* remedy = "");
 
 }  // namespace cambium::detail

@@ -76,6 +76,11 @@ CAMBIUM_COLD void require_kept(std::size_t steps_back, std::size_t kept) {
 
 CAMBIUM_COLD std::string name_of(AgentId id) { return "agent " + to_string(id); }
 
+CAMBIUM_COLD void refuse_slot(Slot slot) {
+  throw WorldError("slot " + std::to_string(index_of(slot)), "the world has no such slot",
+                   "World::slot_of returns that of an agent");
+}
+
 CAMBIUM_COLD void refuse(AgentId id, char const* what, char const* remedy) {
   throw WorldError(name_of(id), what, remedy);
 }
