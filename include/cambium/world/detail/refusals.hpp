@@ -46,8 +46,10 @@ void require_kept(std::size_t steps_back, std::size_t kept);
 /// The agent's name for messages, such as "agent 7".
 [[nodiscard]] std::string name_of(AgentId id);
 
-/// Throws `WorldError` about an agent: what is wrong, and what to do.
+/// Throws `WorldError` about a slot that the world does not have.
 [[noreturn]] void refuse_slot(Slot slot);
+
+/// Throws `WorldError` about an agent: what is wrong, and what to do.
 [[noreturn]] void refuse(AgentId id, char const* what, char const* remedy = "");
 
 }  // namespace cambium::detail
