@@ -166,16 +166,25 @@ class JsonBuilder : public nlohmann::json_sax<nlohmann::json> {
   return std::move(builder.root());
 }
 
-/// Writes a value on one line.
-inline void print_flat(JsonValue const& value, std::string& text) {
-  auto const list = [&text](auto const& parts, char begin, char end, auto const& print) {
+/// Writes a value on one line, unless `text` would get longer than `most`; returns whether it did.
+inline bool print_flat(JsonValue const& value, std::size_t most, std::string& text) {
+  auto const list = [&](auto const& parts, char begin, char end, auto const& print) {
     text += begin;
     for (std::size_t i = 0; i < parts.size(); ++i) {
       if (i > 0) text += ", ";
-      print(parts[i]);
+      if (!print(parts[i])) return false;
     }
     text += end;
+    return text.size() <= most;
   };
+  if (auto const* const items = value.items())
+    return list(*items, '[', ']', [&](JsonValue const& item) { return print_flat(item, most, text); });
+  if (auto const* const members = value.members())
+    return list(*members, '{', '}', [&](JsonValue::Member const& member) {
+      print_flat({member.first}, most, text);
+      text += ": ";
+      return print_flat(member.second, most, text);
+    });
   if (auto const* const truth = value.get<bool>())
     text += *truth ? "true" : "false";
   else if (auto const* const integer = value.get<std::int64_t>())
@@ -186,35 +195,25 @@ inline void print_flat(JsonValue const& value, std::string& text) {
     text += *number == 0.0 && std::signbit(*number) ? "-0.0" : number_text(*number);  // "-0" reads as an integer
   else if (auto const* const word = value.get<std::string>())
     text += nlohmann::json(*word).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
-  else if (auto const* const items = value.items())
-    list(*items, '[', ']', [&](JsonValue const& item) { print_flat(item, text); });
-  else if (auto const* const members = value.members())
-    list(*members, '{', '}', [&](JsonValue::Member const& member) {
-      print_flat({member.first}, text);
-      text += ": ";
-      print_flat(member.second, text);
-    });
   else
     text += "null";
+  return text.size() <= most;
 }
 
 inline void print_broken(JsonValue const& value, std::size_t indent, std::size_t width, std::string& text) {
-  std::string flat;
-  print_flat(value, flat);
-  if (!value.has_parts() || indent + flat.size() <= width) {
-    text += flat;
-    return;
-  }
+  auto const begin = text.size();
+  if (print_flat(value, begin + width - std::min(indent, width), text) || !value.has_parts()) return;
+  text.resize(begin);
   auto const* const members = value.members();
   std::size_t const size = members != nullptr ? members->size() : value.items()->size();
   text += members != nullptr ? "{" : "[";
   for (std::size_t i = 0; i < size; ++i) {
-    (text += i == 0 ? "\n" : ",\n").append(indent + 2, ' ');
+    (text += i == 0 ? "\n" : ",\n").append(indent + 1, ' ');
     if (members != nullptr) {
-      print_flat({(*members)[i].first}, text);
+      print_flat({(*members)[i].first}, std::string::npos, text);
       text += ": ";
     }
-    print_broken(members != nullptr ? (*members)[i].second : (*value.items())[i], indent + 2, width, text);
+    print_broken(members != nullptr ? (*members)[i].second : (*value.items())[i], indent + 1, width, text);
   }
   (text += '\n').append(indent, ' ');
   text += members != nullptr ? "}" : "]";
@@ -530,8 +529,7 @@ class JsonReader final : public ParameterTransfer {
  private:
   [[noreturn]] void refuse(std::string const& expected) const {
     std::string found;
-    print_flat(*places_.back().value, found);
-    if (found.size() > 40) found = places_.back().value->kind();
+    if (!print_flat(*places_.back().value, 40, found)) found = places_.back().value->kind();
     throw ParameterError(where(), "is " + found, "give " + expected);
   }
 
