@@ -146,3 +146,57 @@ TEST_CASE("an error in a scenario file says where it is and what to do") {
   CHECK(refusal(goal("\"here\"")).find("write road/section/lane") != std::string::npos);
   CHECK(refusal(goal("7")).find("give a lane's name, in quotes") != std::string::npos);
 }
+
+TEST_CASE("a recipe draws what its sampler draws") {
+  using Site = MergingSite::World;
+  auto const set = parse_scenarios<Site>(
+      R"({"recipes": [{"title": "m", "map_file": "merging.xodr", "kind": "merging", "seed": 3, "first": 2, "scenarios": 3}]})",
+      maps);
+  auto const site = find_merging_site(load_opendrive(maps + "merging.xodr").map);
+  REQUIRE(set.scenarios.size() == 3);
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    auto drawn = site.sample(3, 2 + i);
+    drawn.map_file = "merging.xodr";
+    drawn.title = "m";
+    CHECK(equal_parameters(set.scenarios[i], drawn));
+  }
+  CHECK(
+      refusal(R"({"recipes": [{"map_file": "intersection_4way.xodr", "kind": "junction"}]})") ==
+      "f.json: recipes[0]: needs the behaviour intersection, which the program lacks; add it to the BehaviorSet of the "
+      "program's World");
+}
+
+TEST_CASE("flows draw traffic by lane that is dense, safe and reproducible") {
+  std::string const text = R"({"recipes": [{"map_file": "highway.xodr", "scenarios": 30, "seed": 8, "flows": [
+    {"lane": "1/0/-1", "traffic": {"begin": 0, "end": 300, "truck_share": 0}, "ego": "middle",
+     "drivers": [{"share": 3, "behavior": {"mobil": {"idm": {"desired_speed": 25}}}}, {"share": 1, "behavior": "idm_classic"}]},
+    {"lane": "1/0/-2", "traffic": {"begin": 0, "end": 300, "truck_share": 0.5}, "all_controlled": true}]}]})";
+  auto const set = parse_scenarios<Small>(text, maps);
+  CHECK(parse_scenarios<Small>(text, maps).hash() == set.hash());
+  REQUIRE(set.scenarios.size() == 30);
+  int mobil = 0, all = 0, trucks = 0;
+  for (auto const& scenario : set.scenarios) {
+    CHECK(is_valid(scenario.ego));
+    CHECK(scenario.controlled.size() > 2);
+    auto world = scenario.make_world();
+    CHECK(world.size() > 8);
+    for (auto const& agent : world.roster().agents) {
+      ++all;
+      mobil += std::holds_alternative<Mobil>(agent.behavior);
+      trucks += agent.shape.length() > 8.0;
+    }
+    CHECK_FALSE(AnyCollision{}(world));
+    for (int step = 0; step < 25; ++step) {
+      REQUIRE(world.step(0.2));
+      CHECK_FALSE(AnyCollision{}(world));
+      for (Slot slot{}; index_of(slot) < world.size(); ++slot) CHECK(Acceleration{}(world, slot) > -4.0);
+    }
+  }
+  CHECK(mobil > all / 4);
+  CHECK(mobil < all / 2);
+  CHECK(trucks > all / 12);
+  CHECK(refusal(R"({"recipes": [{"map_file": "highway.xodr", "flows": [{}]}]})") ==
+        "f.json: recipes[0].flows[0]: names no lane; give \"lane\": \"road/section/lane\"");
+  CHECK(refusal(R"({"recipes": [{"map_file": "highway.xodr"}]})") ==
+        "f.json: recipes[0]: draws no vehicle; give longer or denser flows");
+}

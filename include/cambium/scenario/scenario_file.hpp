@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -20,10 +22,10 @@
 ///        "goal": {"reach_lane": {"lane": "3/0/-2"}}}]}]}
 namespace cambium {
 
-/// Reads a set from JSON text. Maps are loaded once each, relative to `folder`. Throws `ParameterError` as `read_json`
-/// (also for a model that `WorldType` lacks), `MapError` if a map is missing, and `WorldError` if a scenario has no
-/// agent, two with one id or overlapping, or none of the ego's id; all with `where` and the scenario. What needs a
-/// route is checked by `Scenario::make_world`.
+/// Reads a set from JSON text, and draws the scenarios of its recipes. Maps are loaded once each, relative to `folder`.
+/// Throws `ParameterError` as `read_json` (also for a model that `WorldType` lacks), `MapError` if a map is missing,
+/// and `WorldError` if a scenario has no agent, two with one id or overlapping, or none of the ego's id; all with
+/// `where` and the scenario. What needs a route is checked by `Scenario::make_world`.
 template <class WorldType>
 [[nodiscard]] ScenarioSet<WorldType> parse_scenarios(std::string_view text, std::filesystem::path const& folder,
                                                      std::string const& where = "scenarios") {
@@ -45,6 +47,17 @@ template <class WorldType>
                           agent.shape});
     detail::check_overlaps(bodies, place);
   }
+  ScenarioRecipe<WorldType> const usual_recipe{};
+  for (std::size_t i = 0; i < set.recipes.size(); ++i) {
+    auto& recipe = set.recipes[i];
+    auto const place = where + ": recipes[" + std::to_string(i) + "]";
+    auto const map = maps.load(folder, recipe.map_file, place);
+    detail::exchange_lanes(&recipe, &usual_recipe, &detail::transfer_any<ScenarioRecipe<WorldType>>, *map, lanes, true,
+                           place);
+    auto drawn = draw(recipe, map, place);
+    std::move(drawn.begin(), drawn.end(), std::back_inserter(set.scenarios));
+  }
+  set.recipes.clear();
   return set;
 }
 
@@ -60,6 +73,8 @@ template <class WorldType>
 [[nodiscard]] std::string to_json_text(ScenarioSet<WorldType> set) {
   detail::LaneTable lanes;
   Scenario<WorldType> const usual{};
+  if (!set.recipes.empty())
+    throw ParameterError("scenario set", "has recipes that were not drawn", "`draw` gives their scenarios");
   set.format = ScenarioSet<WorldType>::latest_format;
   for (std::size_t i = 0; i < set.scenarios.size(); ++i) {
     auto& scenario = set.scenarios[i];
