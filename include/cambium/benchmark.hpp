@@ -12,6 +12,7 @@
 // First: it says which language and flags cambium needs.
 #include "cambium/core/macros.hpp"
 
+#include "cambium/benchmark/benchmark_main.hpp"
 #include "cambium/benchmark/contender.hpp"
 #include "cambium/benchmark/result_store.hpp"
 #include "cambium/benchmark/run_on_threads.hpp"

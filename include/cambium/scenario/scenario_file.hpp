@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <iterator>
 #include <memory>
 #include <string>
@@ -27,8 +28,9 @@ namespace cambium {
 /// and `WorldError` if a scenario has no agent, two with one id or overlapping, or none of the ego's id; all with
 /// `where` and the scenario. What needs a route is checked by `Scenario::make_world`.
 template <class WorldType>
-[[nodiscard]] ScenarioSet<WorldType> parse_scenarios(std::string_view text, std::filesystem::path const& folder,
-                                                     std::string const& where = "scenarios") {
+[[nodiscard]] ScenarioSet<WorldType> parse_scenarios(
+    std::string_view text, std::filesystem::path const& folder, std::string const& where = "scenarios",
+    std::function<void(ScenarioRecipe<WorldType>&)> const& adjust = {}) {
   detail::LaneTable lanes;
   auto set = from_json<ScenarioSet<WorldType>>(text, where, &lanes);
   detail::MapFiles maps;
@@ -54,6 +56,7 @@ template <class WorldType>
     auto const map = maps.load(folder, recipe.map_file, place);
     detail::exchange_lanes(&recipe, &usual_recipe, &detail::transfer_any<ScenarioRecipe<WorldType>>, *map, lanes, true,
                            place);
+    if (adjust) adjust(recipe);
     auto drawn = draw(recipe, map, place);
     std::move(drawn.begin(), drawn.end(), std::back_inserter(set.scenarios));
   }
@@ -63,8 +66,10 @@ template <class WorldType>
 
 /// Reads a set from a file. Throws as `parse_scenarios`, and `Error` if the file cannot be read.
 template <class WorldType>
-[[nodiscard]] ScenarioSet<WorldType> read_scenarios(std::filesystem::path const& path) {
-  return parse_scenarios<WorldType>(read_file(path, "give a scenario file (.json)"), path.parent_path(), path.string());
+[[nodiscard]] ScenarioSet<WorldType> read_scenarios(
+    std::filesystem::path const& path, std::function<void(ScenarioRecipe<WorldType>&)> const& adjust = {}) {
+  return parse_scenarios<WorldType>(read_file(path, "give a scenario file (.json)"), path.parent_path(), path.string(),
+                                    adjust);
 }
 
 /// The set as JSON text, which `parse_scenarios` reads back as the same bits. Throws `ParameterError` if an agent has a

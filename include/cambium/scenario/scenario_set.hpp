@@ -35,10 +35,11 @@ struct ScenarioSet {
   }
 
   /// Hash of everything that a run depends on, but for the maps, which count by their file names. Equal on every
-  /// platform.
+  /// platform. O(scenarios * agents).
   [[nodiscard]] std::uint64_t hash() const {
     auto plain = *this;
     plain.format = 0;
+    plain.title.clear();
     return hash_parameters(plain);
   }
 };
