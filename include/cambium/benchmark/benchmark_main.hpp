@@ -30,16 +30,16 @@ namespace cambium {
 
 /// Where `benchmark_main` looks for what the command line does not name.
 struct BenchmarkDefaults {
-  std::string program = "benchmark";        ///< name of the program, for its messages
-  std::filesystem::path sets = "sets";      ///< `--set NAME` means the files in `sets`/NAME
-  std::string set = "examples";             ///< used without `--set`
+  std::string program = "benchmark";            ///< name of the program, for its messages
+  std::filesystem::path sets = "sets";          ///< `--set NAME` means the files in `sets`/NAME
+  std::string set = "examples";                 ///< used without `--set`
   std::filesystem::path out = "out/benchmark";  ///< the database is `out`/results.db
 };
 
 namespace detail {
 
 [[nodiscard]] inline std::vector<Option> benchmark_options() {
-  return {{"--set", "FILE|NAME", "scenario files (.json), separated by commas, or a folder of them by its name"},
+  return {{"--set", "FILE|NAME", "scenario files (.json) or names of sets, separated by commas"},
           {"--behaviors", "A,B,...", "the behaviours to run; all without it"},
           {"--scenarios", "N", "number of scenarios that each recipe draws, instead of its own"},
           {"--seed", "S", "seed of the recipes, instead of their own"},
@@ -54,13 +54,17 @@ namespace detail {
           {"--help", "", "print this and exit"}};
 }
 
-/// The scenario files that `--set` names.
+/// The scenario files that `--set` names: files, or in `folder` those of a folder, or one of the folder `usual`.
 [[nodiscard]] inline std::vector<std::filesystem::path> set_files(std::vector<std::string> const& names,
-                                                                  std::filesystem::path const& folder) {
+                                                                  std::filesystem::path const& folder,
+                                                                  std::string const& usual) {
   std::vector<std::filesystem::path> files;
   for (auto const& name : names) {
-    if (std::filesystem::is_regular_file(name)) {
-      files.emplace_back(name);
+    std::filesystem::path const places[] = {name, folder / (name + ".json"), folder / usual / (name + ".json")};
+    auto const* const place =
+        std::ranges::find_if(places, [](auto const& path) { return std::filesystem::is_regular_file(path); });
+    if (place != std::end(places)) {
+      files.push_back(*place);
       continue;
     }
     if (name.empty() || !std::filesystem::is_directory(folder / name))
@@ -110,13 +114,13 @@ inline void print_tallies(std::vector<Tally> const& tallies) {
   for (auto const& t : tallies) {
     if (t.set != last)
       std::printf("\n  %s, %zu scenarios\n  %-*s %8s %9s %8s %8s %8s %6s %9s %6s %10s\n", t.set.c_str(), t.scenarios,
-                  static_cast<int>(wide), "behaviour", "success", "collision", "at fault", "off-road", "time-out", "error",
-                  "mean time", "score", "ms a plan");
+                  static_cast<int>(wide), "behaviour", "success", "collision", "at fault", "off-road", "time-out",
+                  "error", "mean time", "score", "ms a plan");
     last = t.set;
-    std::printf("  %-*s %6.1f %% %7.1f %% %6.1f %% %6.1f %% %6.1f %% %6zu %7.1f s %6.2f %10.3g\n", static_cast<int>(wide),
-                t.behavior.c_str(), 100 * t.share(t.success), 100 * t.share(t.collision), 100 * t.share(t.at_fault),
-                100 * t.share(t.off_road), 100 * t.share(t.timed_out), t.error, t.mean(t.success_time, t.success),
-                t.mean(t.score, t.scenarios), t.mean(t.ms, t.scenarios));
+    std::printf("  %-*s %6.1f %% %7.1f %% %6.1f %% %6.1f %% %6.1f %% %6zu %7.1f s %6.2f %10.3g\n",
+                static_cast<int>(wide), t.behavior.c_str(), 100 * t.share(t.success), 100 * t.share(t.collision),
+                100 * t.share(t.at_fault), 100 * t.share(t.off_road), 100 * t.share(t.timed_out), t.error,
+                t.mean(t.success_time, t.success), t.mean(t.score, t.scenarios), t.mean(t.ms, t.scenarios));
   }
 }
 
@@ -156,7 +160,8 @@ template <class World>
   std::vector<Contender<World>> found;
   for (auto const& name : names) {
     auto const at = std::find(known.begin(), known.end(), name);
-    if (at == known.end()) throw Error("behaviour " + name, "the program has none of that name", suggestion(name, known));
+    if (at == known.end())
+      throw Error("behaviour " + name, "the program has none of that name", suggestion(name, known));
     found.push_back(contenders[static_cast<std::size_t>(at - known.begin())]);
   }
   return found;
@@ -199,8 +204,8 @@ int run_only(std::vector<ScenarioSet<World>> const& sets, std::vector<Contender<
 }
 
 template <class World>
-int run_benchmark_program(Arguments const& arguments, std::vector<Contender<World>> const& all, std::string const& command,
-                          BenchmarkDefaults const& defaults) {
+int run_benchmark_program(Arguments const& arguments, std::vector<Contender<World>> const& all,
+                          std::string const& command, BenchmarkDefaults const& defaults) {
   auto const contenders = chosen(all, arguments.list("--behaviors"));
   BenchmarkOptions options;
   options.threads = static_cast<std::size_t>(arguments.whole("--threads", 1, 4096).value_or(options.threads));
@@ -213,11 +218,12 @@ int run_benchmark_program(Arguments const& arguments, std::vector<Contender<Worl
     options.shard = *i;
     options.shards = *n;
   }
-  auto const count = arguments.whole("--scenarios", 1, 10'000'000), seed = arguments.whole("--seed", 0, ~std::uint64_t{0});
+  auto const count = arguments.whole("--scenarios", 1, 10'000'000),
+             seed = arguments.whole("--seed", 0, ~std::uint64_t{0});
   std::vector<ScenarioSet<World>> sets;
   auto names = arguments.list("--set");
   if (names.empty()) names = {defaults.set};
-  for (auto const& file : set_files(names, defaults.sets)) {
+  for (auto const& file : set_files(names, defaults.sets, defaults.set)) {
     sets.push_back(read_scenarios<World>(file, [&](ScenarioRecipe<World>& recipe) {
       if (count) recipe.scenarios = static_cast<std::uint32_t>(*count);
       if (seed) recipe.seed = *seed;
@@ -263,10 +269,10 @@ int run_benchmark_program(Arguments const& arguments, std::vector<Contender<Worl
 }  // namespace detail
 
 /// The `main` of a benchmark program: reads scenario sets whose behaviours are those of `World`, runs `contenders` on
-/// them, keeps the results in a database, and prints a table. `--help` lists the options. Returns the exit code: 0, or 2
-/// after an error, which it prints in one line.
+/// them, keeps the results in a database, and prints a table. `--help` lists the options. Returns the exit code: 0, or
+/// 2 after an error, which it prints in one line.
 template <class World>
-int benchmark_main(int argc, char** argv, std::vector<Contender<World>> const& contenders,
+int benchmark_main(int argc, char const* const* argv, std::vector<Contender<World>> const& contenders,
                    BenchmarkDefaults const& defaults = {}) {
   auto const options = detail::benchmark_options();
   try {
@@ -282,8 +288,14 @@ int benchmark_main(int argc, char** argv, std::vector<Contender<World>> const& c
       for (auto const& contender : contenders) std::cout << "  " << contender.name << "\n";
       std::cout << "sets:\n";
       std::error_code none_there;
-      for (auto const& entry : std::filesystem::directory_iterator(defaults.sets, none_there))
-        if (entry.is_directory()) std::cout << "  " << entry.path().filename().string() << "\n";
+      for (auto const& entry : std::filesystem::directory_iterator(defaults.sets, none_there)) {
+        if (!entry.is_directory()) continue;
+        auto const name = entry.path().filename().string();
+        std::cout << "  " << name << ":";
+        for (auto const& file : detail::set_files({name}, defaults.sets, defaults.set))
+          std::cout << " " << file.stem().string();
+        std::cout << "\n";
+      }
       return 0;
     }
     std::string command = defaults.program;

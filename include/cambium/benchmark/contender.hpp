@@ -215,7 +215,7 @@ template <class ScenarioWorld, class Choose>
                                typename ScenarioWorld::Execution, typename ScenarioWorld::Dynamics,
                                typename ScenarioWorld::Observer>;
   auto drive = [choose = std::move(choose)](Scenario<ScenarioWorld> const& scenario, RunOptions const& options,
-                                          bool records) {
+                                            bool records) {
     Run run;
     detail::PlanClock clock;
     clock.limit_ms = 1e3 * options.time_step;
