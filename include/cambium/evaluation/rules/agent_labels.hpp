@@ -1,8 +1,6 @@
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
-#include <limits>
 
 #include "cambium/core/ids.hpp"
 #include "cambium/core/parameters.hpp"
@@ -168,73 +166,6 @@ struct BeyondPoint {
   [[nodiscard]] bool operator()(World const& world, Slot slot) const {
     auto const& own = world.frame().agents[slot].lane;
     return own.s > detail::corridor_of(world, slot).center.project({x, y}, own.segment).s;
-  }
-};
-
-namespace detail {
-
-/// Where an agent's lane merges into its neighbour.
-struct MergeAhead {
-  int side = 0;      ///< 1: to the left, -1: to the right, 0: it does not
-  double end = 0.0;  ///< where the two lanes are one: corridor position [m]
-};
-
-/// Where the agent's lane merges, if that begins within `distance` [m] of its front end or has begun. O(pieces there).
-template <class World>
-[[nodiscard]] MergeAhead merge_ahead(World const& world, Slot slot, double distance) {
-  auto const& corridor = corridor_of(world, slot);
-  auto const& at = world.frame().agents[slot].lane;
-  double const front = at.s + world.roster().agents[slot].shape.front;
-  for (auto i = index_of(at.piece); i < corridor.pieces.size(); ++i) {
-    auto const& piece = corridor.pieces[i];
-    if (piece.begin - front > distance || !is_valid(piece.lane)) break;
-    auto const& lane = world.map().lane(piece.lane);
-    if (!is_valid(lane.merges_into)) continue;
-    if (lane.merge_begin - piece.lane_offset - front > distance) break;
-    return {lane.left_neighbor == lane.merges_into ? 1 : -1, piece.end};
-  }
-  return {};
-}
-
-}  // namespace detail
-
-/// Whether there is a vehicle to let in where two lanes become one: in the other one of these lanes, behind the next
-/// one ahead in the own lane, and ahead of the agent by less than `reach`, bumper to bumper, where they merge within
-/// `distance`. O(agents).
-struct ZipPartner {
-  double reach = 6.0;
-  double distance = 55.0;
-
-  static constexpr char const* name = "zip_partner";
-  static constexpr char const* summary = "a vehicle close ahead is to be let in: its lane and the agent's become one";
-  static constexpr char const* source =
-      "after the conditions on the second vehicle in BARK's rule for DR_DEU_Merging_MT";
-  static constexpr auto parameters() {
-    using P = ZipPartner;
-    return parameter_list(
-        parameter("reach", &P::reach, "m", Range{0, 1000}, "from the own front end to its rear end"),
-        parameter("distance", &P::distance, "m", Range{0, 1e5}, "from a front end to where its lane begins to merge"));
-  }
-
-  template <class World>
-  [[nodiscard]] bool operator()(World const& world, Slot slot) const {
-    double const front = world.roster().agents[slot].shape.front;
-    double const s = world.frame().agents[slot].lane.s;
-    auto const merge = detail::merge_ahead(world, slot, distance);
-    double leader = std::numeric_limits<double>::infinity(), partner = leader;  // ways to the nearest of each
-    for (Slot other{}; index_of(other) < world.size(); ++other) {
-      if (other == slot || !in_traffic(world, other)) continue;
-      auto const at = relative_place(world, slot, other);
-      if (!at) continue;
-      if (at->lanes == 0 && at->way > 0.0) leader = std::min(leader, at->way);
-      if (at->lanes != 1 && at->lanes != -1) continue;
-      double const gap = at->way - world.roster().agents[other].shape.rear - front;
-      if (gap < 0.0 || gap >= reach) continue;
-      bool const into_its_lane = at->lanes == merge.side && s + at->way < merge.end;
-      if (into_its_lane || at->lanes == -detail::merge_ahead(world, other, distance).side)
-        partner = std::min(partner, at->way);
-    }
-    return partner < leader;
   }
 };
 

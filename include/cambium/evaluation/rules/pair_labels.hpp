@@ -143,4 +143,68 @@ struct SucceedingAgent {
   }
 };
 
+namespace detail {
+
+/// Where an agent's lane merges into its neighbour.
+struct MergeAhead {
+  int side = 0;      ///< 1: to the left, -1: to the right, 0: it does not
+  double end = 0.0;  ///< where the two lanes are one: corridor position [m]
+};
+
+/// Where the agent's lane merges, if that begins within `distance` [m] of its front end or has begun. O(pieces there).
+template <class World>
+[[nodiscard]] MergeAhead merge_ahead(World const& world, Slot slot, double distance) {
+  auto const& corridor = corridor_of(world, slot);
+  auto const& at = world.frame().agents[slot].lane;
+  double const front = at.s + world.roster().agents[slot].shape.front;
+  for (auto i = index_of(at.piece); i < corridor.pieces.size(); ++i) {
+    auto const& piece = corridor.pieces[i];
+    if (piece.begin - front > distance || !is_valid(piece.lane)) break;
+    auto const& lane = world.map().lane(piece.lane);
+    if (!is_valid(lane.merges_into)) continue;
+    if (lane.merge_begin - piece.lane_offset - front > distance) break;
+    return {lane.left_neighbor == lane.merges_into ? 1 : -1, piece.end};
+  }
+  return {};
+}
+
+}  // namespace detail
+
+/// Whether a third vehicle is to be let in between the agent and the other, which is ahead in its lane: where two lanes
+/// become one, it is in the other one of these lanes, behind the other agent, and ahead of the agent by less than
+/// `reach`, bumper to bumper; the lanes begin to merge within `distance`. O(1), O(agents) where the other is ahead.
+struct ZipPartner {
+  double reach = 6.0;
+  double distance = 55.0;
+
+  static constexpr char const* name = "zip_partner";
+  static constexpr char const* summary =
+      "a third vehicle is to be let in between the two: its lane and theirs become one";
+  static constexpr char const* source = "the conditions on the second vehicle in BARK's rule for DR_DEU_Merging_MT";
+  static constexpr auto parameters() {
+    using P = ZipPartner;
+    return parameter_list(
+        parameter("reach", &P::reach, "m", Range{0, 1000}, "from the own front end to its rear end"),
+        parameter("distance", &P::distance, "m", Range{0, 1e5}, "from a front end to where its lane begins to merge"));
+  }
+
+  template <class World>
+  [[nodiscard]] bool operator()(World const& world, Slot slot, Slot other) const {
+    auto const ahead = relative_place(world, slot, other);
+    if (!ahead || ahead->lanes != 0 || !(ahead->way > 0.0)) return false;
+    double const s = world.frame().agents[slot].lane.s, front = world.roster().agents[slot].shape.front;
+    auto const merge = detail::merge_ahead(world, slot, distance);
+    for (Slot third{}; index_of(third) < world.size(); ++third) {
+      if (third == slot || third == other || !in_traffic(world, third)) continue;
+      auto const at = relative_place(world, slot, third);
+      if (!at || (at->lanes != 1 && at->lanes != -1) || at->way >= ahead->way) continue;
+      double const gap = at->way - world.roster().agents[third].shape.rear - front;
+      if (gap < 0.0 || gap >= reach) continue;
+      bool const into_its_lane = at->lanes == merge.side && s + at->way < merge.end;
+      if (into_its_lane || at->lanes == -detail::merge_ahead(world, third, distance).side) return true;
+    }
+    return false;
+  }
+};
+
 }  // namespace cambium

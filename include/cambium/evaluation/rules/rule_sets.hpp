@@ -86,15 +86,16 @@ template <class Labels = RuleLabels<>>
 
 /// The zip merge: where a lane ends, the vehicle that is close ahead in the lane beside goes in between an agent and
 /// its leader. `merge` is a point behind which the two lanes are one. After Esterle, Gressenbuch, Knoll 2020, as BARK's
-/// evaluators for the INTERACTION maps have it; StVO section 7 (4). `precedes` and `merged` are of the other agent:
+/// evaluators for the INTERACTION maps have it; StVO section 7 (4). `precedes` and `merged` are of the other agent, the
+/// leader:
 ///
 ///     G(zip_partner & precedes & !ego_merged & ((precedes | merged) U ego_merged)
 ///       -> G(ego_merged & merged -> !precedes))
 ///
-/// The published formula ranges over two other agents, leader and partner. That there is a partner is here a label of
-/// the agent itself, which says the same, because the partner's labels matter at one step only. Here, the partner may
-/// be on either side and either of the two lanes may end; there, it is on the right. Left out: that the ending lane is
-/// used up to its end.
+/// The published formula ranges over two other agents, the leader and the one to let in. That the latter exists is here
+/// a label, which says the same, because its place matters at one step only. There, it is on the right and may be ahead
+/// of the leader, too; here, it may be on either side, and either of the two lanes may end. Left out: that the ending
+/// lane is used up to its end.
 template <class Labels = RuleLabels<>>
 [[nodiscard]] std::vector<TrafficRule<Labels>> zip_merge_rules(geometry::Point const& merge) {
   BeyondPoint const beyond{merge.x(), merge.y()};
