@@ -85,8 +85,8 @@ template <class World, class F>
 }  // namespace detail
 
 /// Whether the agent has to let the other go first, and the other comes at once: it has the right of way in a conflict
-/// at most `distance` ahead of the agent, and is in the zone of that conflict or gets there within `time` at its speed.
-/// One that waits at a red light does not come. O(conflicts near).
+/// at most `distance` ahead of the agent, and gets to its zone within `time` at its speed. One that is in the zone
+/// already goes first anyway; one that waits at a red light does not come. O(conflicts near).
 struct MustGiveWay {
   double time = 2.0;
   double distance = 20.0;
@@ -106,12 +106,12 @@ struct MustGiveWay {
     double const speed = world.frame().agents[other].state.speed;
     return detail::any_mutual_conflict(world, slot, other, distance, [&](detail::MutualConflict const& mutual) {
       auto const& [conflict, zone, at] = mutual;
-      if (conflict.right_of_way != map::RightOfWay::yields || at > zone.other_end) return false;
+      if (conflict.right_of_way != map::RightOfWay::yields || at >= zone.other_begin) return false;
       bool const is_past_line = at + world.roster().agents[other].shape.front > zone.other_line;
       if (!is_past_line && is_valid(conflict.other_light) &&
           world.truth(slot).light(conflict.other_light) == map::LightColor::red)
         return false;
-      return at >= zone.other_begin || zone.other_begin - at < speed * time;
+      return zone.other_begin - at < speed * time;
     });
   }
 };
