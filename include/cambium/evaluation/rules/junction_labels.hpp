@@ -57,9 +57,9 @@ struct MutualConflict {
   double at;  ///< position of its reference point, as in `map::Conflict::ways` [m]
 };
 
-/// Whether `f(MutualConflict)` is true for one of the conflicts whose zones begin at most `ahead` [m] ahead of the
-/// agent and do not end behind it, in which `other` is on its way by its route. O(conflicts there * stretches of their
-/// ways).
+/// Whether `f(MutualConflict)` is true for one of the crossings and merges whose zones begin at most `ahead` [m] ahead
+/// of the agent and do not end behind it, in which `other` is on its way by its route. O(conflicts there * stretches of
+/// their ways).
 template <class World, class F>
 [[nodiscard]] bool any_mutual_conflict(World const& world, Slot slot, Slot other, double ahead, F const& f) {
   auto const& conflicts = corridor_of(world, slot).conflicts;
@@ -69,12 +69,14 @@ template <class World, class F>
   };
   double const s = world.frame().agents[slot].lane.s, index = world.frame().agents[other].lane.index;
   for (auto const& conflict : conflicts) {
-    if (conflict.farthest_end < s) continue;
+    if (conflict.farthest_end < s || conflict.kind == map::OverlapKind::split) continue;
     if (conflict.hull().end < s || conflict.hull().begin > s + ahead) continue;
     for (auto const& way : conflict.ways) {
       if (index < way.index_begin || index > way.index_end) continue;
       auto const& zone = conflict.zones[is_large(slot)][is_large(other)];
-      if (zone.empty() || zone.end < s || road_of(world, other).corridor_of(conflict.other) == none<CorridorId>) break;
+      if (zone.empty() || zone.end < s || zone.begin > s + ahead ||
+          road_of(world, other).corridor_of(conflict.other) == none<CorridorId>)
+        break;
       if (f(MutualConflict{conflict, zone, way.begin + index - way.index_begin})) return true;
       break;
     }
@@ -125,9 +127,8 @@ struct InConflict {
 
   template <class World>
   [[nodiscard]] bool operator()(World& world, Slot slot, Slot other) const {
-    double const s = world.frame().agents[slot].lane.s;
     return detail::any_mutual_conflict(world, slot, other, 0.0, [&](detail::MutualConflict const& mutual) {
-      return mutual.zone.begin <= s && mutual.at <= mutual.zone.other_end;
+      return mutual.at <= mutual.zone.other_end;
     });
   }
 };

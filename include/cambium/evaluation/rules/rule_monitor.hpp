@@ -25,7 +25,7 @@ namespace cambium {
 /// A label under the name by which formulas call it; that of its struct where none is given. `Labels` is a `OneOf`.
 template <class Labels>
 struct NamedLabel {
-  std::string name;
+  std::string name{};
   Labels label;
 
   template <class L>
@@ -37,11 +37,11 @@ struct NamedLabel {
 /// separately. `Labels` is the `OneOf` of all label types that the rule may use, the user's own among them.
 template <class Labels>
 struct TrafficRule {
-  std::string name;
-  std::string summary;
-  std::string source;
-  Formula formula;
-  std::vector<NamedLabel<Labels>> labels;  ///< may be more than the formula has
+  std::string name{};
+  std::string summary{};
+  std::string source{};
+  Formula formula{};
+  std::vector<NamedLabel<Labels>> labels{};  ///< may be more than the formula has
 };
 
 /// A stretch of steps at which a rule was violated.
