@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -87,11 +88,13 @@ template <class World, class F>
 }  // namespace detail
 
 /// Whether the agent has to let the other go first, and the other comes at once: it has the right of way in a conflict
-/// at most `distance` ahead of the agent, and gets to its zone within `time` at its speed. One that is in the zone
+/// at most `distance` ahead of the agent, and gets to its zone within `time` at its speed. If it brakes, by up to
+/// `braking`, it is taken to do so for reasons of its own, as to turn, and to go on braking. One that is in the zone
 /// already goes first anyway; one that waits at a red light does not come. O(conflicts near).
 struct MustGiveWay {
   double time = 2.0;
   double distance = 20.0;
+  double braking = 3.0;
 
   static constexpr char const* name = "must_give_way";
   static constexpr char const* summary = "the other has the right of way and comes at once";
@@ -99,13 +102,13 @@ struct MustGiveWay {
   static constexpr auto parameters() {
     using P = MustGiveWay;
     return parameter_list(
-        parameter("time", &P::time, "s", Range{0, 60}, "until the other reaches the conflict at its speed"),
-        parameter("distance", &P::distance, "m", Range{0, 400}, "from the agent to the conflict"));
+        parameter("time", &P::time, "s", Range{0, 60}, "until the other reaches the conflict as it drives now"),
+        parameter("distance", &P::distance, "m", Range{0, 400}, "from the agent to the conflict"),
+        parameter("braking", &P::braking, "m/s^2", Range{0, 20}, "of the other that is not taken to be forced"));
   }
 
   template <class World>
   [[nodiscard]] bool operator()(World& world, Slot slot, Slot other) const {
-    double const speed = world.frame().agents[other].state.speed;
     return detail::any_mutual_conflict(world, slot, other, distance, [&](detail::MutualConflict const& mutual) {
       auto const& [conflict, zone, at] = mutual;
       if (conflict.right_of_way != map::RightOfWay::yields || at >= zone.other_begin) return false;
@@ -113,8 +116,17 @@ struct MustGiveWay {
       if (!is_past_line && is_valid(conflict.other_light) &&
           world.truth(slot).light(conflict.other_light) == map::LightColor::red)
         return false;
-      return zone.other_begin - at < speed * time;
+      return zone.other_begin - at < way_of(world.frame().agents[other]);
     });
+  }
+
+ private:
+  /// How far a vehicle gets within `time` [m].
+  template <class Record>
+  [[nodiscard]] double way_of(Record const& record) const {
+    double const speed = record.state.speed, brakes = std::clamp(-record.action.acceleration, 0.0, braking);
+    double const moves = brakes * time > speed ? speed / brakes : time;  // until it stands
+    return speed * moves - 0.5 * brakes * moves * moves;
   }
 };
 
