@@ -54,7 +54,7 @@ struct StraightOn {
   }
 };
 
-using Drivers = BehaviorSet<ConstantAcceleration, IdmClassic, StraightOn, ZipMerge, Intersection>;
+using Drivers = BehaviorSet<ConstantAcceleration, IdmClassic, StraightOn, ZipMerge, Intersection, Mobil>;
 using Sim = World<Drivers, InterpolateExecution, SingleTrack>;
 using Driver = Sim::Behavior;
 
@@ -90,10 +90,20 @@ AgentId add_on(Sim& world, LaneId id, double s, double speed, Driver const& beha
   return world.add(spec);
 }
 
+/// A sampled scenario with its drivers, or with others.
+template <class Sampled>
+Sim world_of(Sampled const& scenario) {
+  return with_behaviors<Sim>(scenario,
+                             [](auto const& spec) {
+                               return std::visit([](auto const& driver) { return Driver(driver); },
+                                                 spec.behavior.given());
+                             })
+      .make_world();
+}
+
 /// Runs a world, with a monitor of each rule for each agent that is there at the start; their number of violations by
 /// the names of the rules.
-template <class World>
-std::map<std::string, std::size_t> violations(World world, std::vector<TrafficRule<RuleLabels<>>> const& rules,
+std::map<std::string, std::size_t> violations(Sim world, std::vector<TrafficRule<RuleLabels<>>> const& rules,
                                               double duration) {
   world.keep_history(1);
   std::vector<std::pair<AgentId, RuleMonitor<RuleLabels<>>>> monitors;
@@ -114,8 +124,7 @@ std::map<std::string, std::size_t> violations(World world, std::vector<TrafficRu
 }
 
 /// The violations of one agent.
-template <class World>
-std::vector<Violation> violations_of(World& world, AgentId agent, TrafficRule<RuleLabels<>> const& rule,
+std::vector<Violation> violations_of(Sim& world, AgentId agent, TrafficRule<RuleLabels<>> const& rule,
                                      double duration) {
   world.keep_history(1);
   RuleMonitor monitor(rule);
@@ -455,17 +464,22 @@ struct Yielding {
 
 TEST_CASE("an agent must give way to who has the right of way and comes at once") {
   Yielding const at;
-  auto const must = [&](double way, double other_way, double other_speed) {
+  auto const must = [&](double way, double other_way, double other_speed, double acceleration = 0.0) {
     auto world = at.world(way, other_way, 5, other_speed, ConstantAcceleration{});
+    world.set_behavior(world.roster().agents[1].id, ConstantAcceleration{.acceleration = acceleration});
+    if (acceleration != 0.0) REQUIRE(world.step(0.01));
     CHECK_FALSE(MustGiveWay{}(world, Slot{1}, Slot{0}));
     return MustGiveWay{.time = 2, .distance = 20}(world, Slot{0}, Slot{1});
   };
   CHECK(must(5, 10, 6));
   CHECK(must(19, 10, 6));
-  CHECK_FALSE(must(21, 10, 6));  // still far
-  CHECK_FALSE(must(5, 13, 6));   // comes later
-  CHECK_FALSE(must(5, 10, 0));   // does not come
-  CHECK_FALSE(must(5, -1, 6));   // is there already
+  CHECK_FALSE(must(21, 10, 6));     // still far
+  CHECK_FALSE(must(5, 13, 6));      // comes later
+  CHECK_FALSE(must(5, 10, 0));      // does not come
+  CHECK_FALSE(must(5, -1, 6));      // is there already
+  CHECK_FALSE(must(5, 10, 6, -2));  // will stop before
+  CHECK(must(5, 2, 6, -2));
+  CHECK(must(5, 5, 6, -8));  // is forced to brake
   auto const in = [&](double way, double other_way) {
     auto world = at.world(way, other_way, 5, 6, ConstantAcceleration{});
     return InConflict{}(world, Slot{0}, Slot{1});
@@ -678,7 +692,7 @@ TEST_CASE("a mistake in a rule is named before it is watched") {
 
 TEST_CASE("a step does not allocate once the monitor knows the agents") {
   auto const site = find_highway_site(support::own_map("highway.xodr"));
-  auto world = site.sample(3, 1).make_world();
+  auto world = world_of(site.sample(3, 1));
   world.keep_history(1);
   auto const ego = world.roster().agents[world.size() / 2].id;
   std::vector<RuleMonitor<RuleLabels<>>> monitors;
@@ -773,7 +787,7 @@ TEST_CASE("sampled drivers of the literature change lanes safely and do not pass
   std::vector const rules{rule(all, "safe_lane_change"), rule(all, "no_passing_on_the_right")};
   TrafficRule<RuleLabels<>> const change{.name = "change", .formula = "G !lane_change", .labels = {ChangesLane{}}};
   for (std::uint32_t number = 0; number < 8; ++number) {
-    auto const world = site.sample(6, number).make_world();
+    auto const world = world_of(site.sample(6, number));
     for (auto const& [name, count] : violations(world, rules, 40)) {
       CAPTURE(name);
       CHECK(count == 0);
@@ -827,7 +841,7 @@ TEST_CASE("drivers who know intersections keep their rules on all of our maps") 
     for (bool const lights : {false, true})
       for (std::uint32_t number = 0; number < 8; ++number)
         for (auto const& [rule, count] :
-             violations(site.sample(7, number, {.lights = lights}).make_world(), intersection_rules(), 60)) {
+             violations(world_of(site.sample(7, number, {.lights = lights})), intersection_rules(), 60)) {
           CAPTURE(std::string(name));
           CAPTURE(rule);
           CAPTURE(number);
