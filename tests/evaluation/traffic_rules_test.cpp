@@ -718,9 +718,9 @@ TEST_CASE("drivers who keep to the highway rules break none of them, and each of
     add(calm, 120 + 60 * i, middle, 25, IdmClassic{.desired_speed = 25});
     add(calm, 140 + 60 * i, right, 20, IdmClassic{.desired_speed = 20});
   }
-  for (auto const& [name, count] : violations(calm, rules, 20)) {
-    CAPTURE(name);
-    CHECK(count == 0);
+  for (auto const& found : violations(calm, rules, 20)) {
+    CAPTURE(found.first);
+    CHECK(found.second == 0);
   }
 
   Sim tailgating(support::straight_road(3, 3000));
@@ -788,9 +788,9 @@ TEST_CASE("sampled drivers of the literature change lanes safely and do not pass
   TrafficRule<RuleLabels<>> const change{.name = "change", .formula = "G !lane_change", .labels = {ChangesLane{}}};
   for (std::uint32_t number = 0; number < 8; ++number) {
     auto const world = world_of(site.sample(6, number));
-    for (auto const& [name, count] : violations(world, rules, 40)) {
-      CAPTURE(name);
-      CHECK(count == 0);
+    for (auto const& found : violations(world, rules, 40)) {
+      CAPTURE(found.first);
+      CHECK(found.second == 0);
     }
     lane_changes += violations(world, {change}, 40)["change"];
   }
@@ -840,12 +840,12 @@ TEST_CASE("drivers who know intersections keep their rules on all of our maps") 
     auto const site = find_junction_site(support::own_map(name));
     for (bool const lights : {false, true})
       for (std::uint32_t number = 0; number < 8; ++number)
-        for (auto const& [rule, count] :
+        for (auto const& found :
              violations(world_of(site.sample(7, number, {.lights = lights})), intersection_rules(), 60)) {
           CAPTURE(std::string(name));
-          CAPTURE(rule);
+          CAPTURE(found.first);
           CAPTURE(number);
-          CHECK(count == 0);
+          CHECK(found.second == 0);
         }
   }
 }

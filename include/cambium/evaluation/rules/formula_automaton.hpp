@@ -49,7 +49,9 @@ class FormulaAutomaton {
   [[nodiscard]] std::size_t size() const { return verdicts_.size(); }
 
   /// The state after a step in `state` with the labels in `letter`: bit i is that of `labels()[i]`. O(1).
-  [[nodiscard]] State next(State state, std::uint32_t letter) const { return next_[state << labels_.size() | letter]; }
+  [[nodiscard]] State next(State state, std::uint32_t letter) const {
+    return next_[(std::size_t{state} << labels_.size()) | letter];
+  }
 
   /// The verdict in a state. O(1).
   [[nodiscard]] Verdict verdict(State state) const { return verdicts_[state]; }
