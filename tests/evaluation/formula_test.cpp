@@ -234,9 +234,9 @@ TEST_CASE("a mistake in a formula is named with its column, and what was expecte
 }
 
 TEST_CASE("equal obligations are one state, and a formula that needs too many is refused") {
-  CHECK(FormulaAutomaton("G a").size() == 3);                // nothing read, kept so far, violated
+  CHECK(FormulaAutomaton("G a").size() == 3);          // nothing read, kept so far, violated
   CHECK(FormulaAutomaton("F a & X F a").size() == 5);  // nothing read; a due now and later, later, once; done
-  CHECK(FormulaAutomaton("G(a -> F b)").size() == 3);        // nothing read, b is not due, b is due
+  CHECK(FormulaAutomaton("G(a -> F b)").size() == 3);  // nothing read, b is not due, b is due
   CHECK(FormulaAutomaton("true").verdict(FormulaAutomaton::start) == Verdict::satisfied);
   CHECK(FormulaAutomaton("a | !a").verdict(FormulaAutomaton::start) == Verdict::satisfied);
   CHECK(FormulaAutomaton("X a & N !a").verdict(FormulaAutomaton::start) == Verdict::violated);

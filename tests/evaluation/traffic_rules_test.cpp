@@ -681,10 +681,10 @@ TEST_CASE("a mistake in a rule is named before it is watched") {
     return "none";
   };
   CHECK(problem({.name = "own", .formula = "G betwen", .labels = {Between{1, 2}, Drawn{}}}) ==
-        "rule 'own', formula 'G betwen': it has no label 'betwen'; did you mean 'between'? the labels are between, "
+        "rule 'own', formula 'G betwen': there is no label 'betwen'; did you mean 'between'? the labels are between, "
         "drawn");
   CHECK(problem({.name = "own", .formula = "G a"}) ==
-        "rule 'own', formula 'G a': it has no label 'a'; there are no labels");
+        "rule 'own', formula 'G a': there is no label 'a'; there are no labels");
   CHECK(problem({.name = "own", .formula = "G a", .labels = {{"a", Between{-1, 2}}}}) ==
         "rule 'own', label 'a': between.begin: is -1 s; give a value in [0, 1e+06] s");
   CHECK(problem({.name = "own", .formula = "G a", .labels = {{"a", Between{1, 2}}, {"b", Between{-1, 2}}}}) == "none");

@@ -15,6 +15,13 @@ struct FormulaError : Error {
   using Error::Error;
 };
 
+namespace detail {
+
+/// Throws the `FormulaError` about a label that is not among those known: it names the nearest of these, and all.
+[[noreturn]] void refuse_label(std::string const& where, std::string_view label, std::span<std::string const> known);
+
+}  // namespace detail
+
 /// A formula of linear temporal logic on finite traces (LTLf; De Giacomo, Vardi 2013, "Linear temporal logic and linear
 /// dynamic logic on finite traces"), as a value: what has to hold over the steps of a run. Its atoms are labels, which
 /// are true or false at each step. Made from text, or in C++ by the functions below, where text stands for a formula:

@@ -57,17 +57,16 @@ inline constexpr std::array<OperatorSign, 9> operator_signs{{
   return row.back();
 }
 
-/// What to do about an unknown label: the nearest of those known, or all of them.
-[[nodiscard]] inline std::string known_labels(std::string_view unknown, std::span<std::string const> known) {
+CAMBIUM_COLD void refuse_label(std::string const& where, std::string_view label, std::span<std::string const> known) {
   auto const nearest = std::min_element(known.begin(), known.end(), [&](auto const& a, auto const& b) {
-    return edit_distance(unknown, a) < edit_distance(unknown, b);
+    return edit_distance(label, a) < edit_distance(label, b);
   });
-  std::string text;
-  if (nearest != known.end() && edit_distance(unknown, *nearest) <= 1 + unknown.size() / 4)
-    text = "did you mean '" + *nearest + "'? ";
-  text += known.empty() ? "there are no labels" : "the labels are ";
-  for (std::size_t i = 0; i < known.size(); ++i) text += (i > 0 ? ", " : "") + known[i];
-  return text;
+  std::string remedy;
+  if (nearest != known.end() && edit_distance(label, *nearest) <= 1 + label.size() / 4)
+    remedy = "did you mean '" + *nearest + "'? ";
+  remedy += known.empty() ? "there are no labels" : "the labels are ";
+  for (std::size_t i = 0; i < known.size(); ++i) remedy += (i > 0 ? ", " : "") + known[i];
+  throw FormulaError(where, "there is no label '" + std::string(label) + "'", remedy);
 }
 
 /// Recursive descent over the text; writes operators behind their operands.
@@ -136,7 +135,7 @@ class FormulaReader {
       push(token_ == "true" ? Kind::verum : Kind::falsum);
     } else {
       if (!labels_.empty() && std::find(labels_.begin(), labels_.end(), token_) == labels_.end())
-        throw FormulaError(where(), "there is no label '" + std::string(token_) + "'", known_labels(token_, labels_));
+        refuse_label(where(), token_, labels_);
       postfix_.push_back({Kind::label, std::string(token_)});
     }
     advance();

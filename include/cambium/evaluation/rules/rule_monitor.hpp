@@ -53,14 +53,6 @@ struct Violation {
   friend bool operator==(Violation const&, Violation const&) = default;
 };
 
-namespace detail {
-
-/// Throws the `FormulaError` about a label that a rule does not have.
-[[noreturn]] void refuse_label(std::string const& rule, Formula const& formula, std::string const& label,
-                               std::span<std::string const> known);
-
-}  // namespace detail
-
 /// Watches whether one agent keeps a rule, step by step:
 ///
 ///     RuleMonitor monitor(rule);
@@ -161,7 +153,7 @@ class RuleMonitor {
       if (found == rule.labels.end()) {
         std::vector<std::string> known;
         for (auto const& label : rule.labels) known.push_back(label.name);
-        detail::refuse_label(rule.name, rule.formula, name, known);
+        detail::refuse_label("rule '" + rule.name + "', formula '" + to_string(rule.formula) + "'", name, known);
       }
       found->label.visit([&](auto const& label) {
         if constexpr (Described<std::decay_t<decltype(label)>>)
@@ -275,7 +267,3 @@ class RuleMonitor {
 };
 
 }  // namespace cambium
-
-#ifndef CAMBIUM_COMPILED
-#include "cambium/evaluation/rules/rule_monitor_impl.hpp"
-#endif
