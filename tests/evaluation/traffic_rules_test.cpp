@@ -175,6 +175,19 @@ using OwnLabels = OneOf<Between, Drawn, Collision>;
 
 }  // namespace
 
+TEST_CASE("every shipped label is described, copied as bytes, and of one agent or of two") {
+  auto const check = []<class Label>(Label const& label) {
+    CAPTURE(std::string(Label::name));
+    CHECK(std::string(Label::summary).size() > 10);
+    CHECK_NOTHROW(check_parameters(label));
+    CHECK(AgentLabel<Label, Sim> != PairLabel<Label, Sim>);
+    CHECK(std::is_trivially_copyable_v<Label>);
+    CHECK(hash_parameters(label) == hash_parameters(Label{}));
+  };
+  auto const check_all = [&]<class... Labels>(OneOf<Labels...> const*) { (check(Labels{}), ...); };
+  check_all(static_cast<RuleLabels<> const*>(nullptr));
+}
+
 TEST_CASE("labels of one agent hold where they say, and not elsewhere") {
   Sim world(support::straight_road(3, 500));
   auto const ego = world.slot_of(add(world, 200, middle, 20));

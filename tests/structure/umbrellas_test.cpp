@@ -70,6 +70,15 @@ TEST_CASE("every room has an umbrella header that gathers all of its headers but
   }
 }
 
+TEST_CASE("evaluation/rules.hpp gathers what watches traffic rules") {
+  auto const lines = lines_of(headers / "evaluation" / "rules.hpp");
+  for (auto const& entry : fs::directory_iterator(headers / "evaluation" / "rules")) {
+    auto const header = fs::relative(entry.path(), headers).generic_string();
+    CAPTURE(header);
+    CHECK(lines.contains("#include \"cambium/" + header + "\"") == !header.ends_with("_impl.hpp"));
+  }
+}
+
 TEST_CASE("cambium.hpp gathers all rooms but the viewer") {
   auto const lines = lines_of(headers / "cambium.hpp");
   for (auto const& room : rooms()) {

@@ -84,9 +84,9 @@ class RuleMonitor {
     located_.reserve(violations);
   }
 
-  /// Judges the step that led to the present frame: violated if the rule was violated in this step; satisfied if it
-  /// can no longer be, by none of the agents seen; else open. Nothing happens while the agent is not in traffic; when
-  /// it has left, or another agent is at `slot`, its trace is finished.
+  /// Judges the step that led to the present frame: violated if the rule was violated in this step; satisfied if it no
+  /// longer can be, with any of the agents that are in traffic; else open. Nothing happens while the agent is not in
+  /// traffic; when it has left, or another agent is at `slot`, its trace is finished.
   template <class World>
   Verdict operator()(World& world, Slot slot) {
     auto const id = world.roster().agents[slot].id;

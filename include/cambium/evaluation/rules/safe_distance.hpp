@@ -36,7 +36,8 @@ namespace cambium {
 /// that have yet to merge do not count. O(1), as `ObservedWorld::ahead`.
 ///
 /// BARK's label of that name counts overlapping vehicles as safe, swaps the decelerations of the two where the ego is
-/// behind, and is always true in its last version.
+/// behind, and is always true in its last version. Left out are its options to look at crossing vehicles, and to be
+/// content with a safe distance sideways.
 struct SafeDistance {
   enum class Side : std::uint8_t { ahead, behind };
 
