@@ -27,7 +27,7 @@ Formula random_formula(RandomStream& random, std::uint32_t size, std::uint32_t l
     auto const i = uniform_index(random, labels + 1);
     return i < labels ? Formula(names[i]) : Formula(uniform_index(random, 2) == 0 ? "true" : "false");
   }
-  auto const kind = static_cast<Kind>(static_cast<std::uint32_t>(Kind::negation) + uniform_index(random, 9));
+  auto const kind = static_cast<Kind>(static_cast<std::uint32_t>(Kind::negation) + uniform_index(random, 10));
   if (kind <= Kind::always) return Formula::of(kind, random_formula(random, size - 1, labels));
   auto const left = uniform_index(random, size);
   auto const f = random_formula(random, left, labels);
@@ -81,11 +81,12 @@ struct Semantics {
           if (!last(k)) return false;
         return true;
       case Kind::until:
+      case Kind::weak_until:
         for (auto k = i; k < trace.size(); ++k) {
           if (last(k)) return true;
           if (!first(k)) return false;
         }
-        return false;
+        return nodes[node].kind == Kind::weak_until;
     }
     return false;
   }

@@ -42,7 +42,7 @@ namespace detail {
 /// | `F f` | `eventually` | `eventually(f)` | f holds now or at a later step |
 /// | `G f` | `always` | `always(f)` | f holds from now on to the end |
 /// | `f U g` | `until` | `until(f, g)` | g holds now or later, and f until then |
-/// | `f W g` | `weak_until` | `weak_until(f, g)` | the same, or f holds to the end: short for `(f U g) \| G f` |
+/// | `f W g` | `weak_until` | `weak_until(f, g)` | the same, or f holds to the end |
 ///
 /// Operators bind in the order `! X N F G`, `U W`, `&`, `|`, `->`; `U`, `W` and `->` group to the right.
 class Formula {
@@ -57,6 +57,7 @@ class Formula {
     eventually,
     always,
     until,
+    weak_until,
     conjunction,
     disjunction,
     implication,
@@ -118,7 +119,9 @@ class Formula {
 [[nodiscard]] inline Formula until(Formula const& f, Formula const& g) {
   return Formula::of(Formula::Kind::until, f, g);
 }
-[[nodiscard]] inline Formula weak_until(Formula const& f, Formula const& g) { return until(f, g) || always(f); }
+[[nodiscard]] inline Formula weak_until(Formula const& f, Formula const& g) {
+  return Formula::of(Formula::Kind::weak_until, f, g);
+}
 
 }  // namespace cambium
 

@@ -112,7 +112,8 @@ class Progression {
     while (state > Diagrams::yes) {
       auto const& node = diagrams_.node(state);
       auto const kind = nodes_[node.variable].kind;
-      state = kind == Kind::weak_next || kind == Kind::always ? node.high : node.low;
+      bool const is_weak = kind == Kind::weak_next || kind == Kind::always || kind == Kind::weak_until;
+      state = is_weak ? node.high : node.low;
     }
     return state == Diagrams::yes;
   }
@@ -167,6 +168,7 @@ class Progression {
       case Kind::always:
         return d.choose(after[last], again(), no);
       case Kind::until:
+      case Kind::weak_until:
         return d.choose(after[last], yes, d.choose(after[first], again(), no));
     }
     return no;

@@ -26,17 +26,23 @@ struct OperatorSign {
 };
 
 inline constexpr int tightest = 5;
-inline constexpr std::array<OperatorSign, 9> operator_signs{{
+inline constexpr std::array<OperatorSign, 10> operator_signs{{
     {Formula::Kind::implication, 1, "->", {"implies", ""}},
     {Formula::Kind::disjunction, 2, "|", {"||", "or"}},
     {Formula::Kind::conjunction, 3, "&", {"&&", "and"}},
     {Formula::Kind::until, 4, "U", {"until", ""}},
+    {Formula::Kind::weak_until, 4, "W", {"weak_until", ""}},
     {Formula::Kind::negation, tightest, "!", {"not", ""}},
     {Formula::Kind::next, tightest, "X", {"next", ""}},
     {Formula::Kind::weak_next, tightest, "N", {"weak_next", ""}},
     {Formula::Kind::eventually, tightest, "F", {"eventually", ""}},
     {Formula::Kind::always, tightest, "G", {"always", ""}},
 }};
+
+/// Whether `f U g U h` means `f U (g U h)`.
+[[nodiscard]] constexpr bool groups_right(Formula::Kind kind) {
+  return kind == Formula::Kind::until || kind == Formula::Kind::weak_until || kind == Formula::Kind::implication;
+}
 
 [[nodiscard]] constexpr bool is_label_character(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_';
@@ -92,18 +98,11 @@ class FormulaReader {
     if (precedence == tightest) return unary();
     binary(precedence + 1);
     for (auto sign = binary_sign(precedence); sign; sign = binary_sign(precedence)) {
-      bool const is_weak_until = token_ == "W" || token_ == "weak_until";
-      bool const groups_right = *sign == Kind::until || *sign == Kind::implication;
-      auto const left = is_weak_until ? operand() : std::vector<Node>();
       advance();
       nest(1);
-      binary(groups_right ? precedence : precedence + 1);
+      binary(groups_right(*sign) ? precedence : precedence + 1);
       nest(-1);
       push(*sign);
-      if (!is_weak_until) continue;
-      postfix_.insert(postfix_.end(), left.begin(), left.end());
-      push(Kind::always);
-      push(Kind::disjunction);
     }
   }
 
@@ -150,21 +149,12 @@ class FormulaReader {
     return false;
   }
   [[nodiscard]] std::optional<Kind> binary_sign(int precedence) const {
-    if (precedence == 4 && (token_ == "W" || token_ == "weak_until")) return Kind::until;
     for (auto const& sign : operator_signs)
       if (sign.precedence == precedence && is(sign)) return sign.kind;
     return std::nullopt;
   }
 
-  using Node = Formula::Node;
   void push(Kind kind) { postfix_.push_back({kind, {}}); }
-
-  /// The last complete formula that was read.
-  [[nodiscard]] std::vector<Node> operand() const {
-    auto begin = postfix_.size();
-    for (int missing = 1; missing > 0;) missing += postfix_[--begin].arity() - 1;
-    return {postfix_.begin() + static_cast<std::ptrdiff_t>(begin), postfix_.end()};
-  }
 
   /// Moves to the next word or sign; an empty one at the end.
   void advance() {
@@ -196,7 +186,7 @@ class FormulaReader {
 
   std::string_view text_, token_;
   std::span<std::string const> labels_;
-  std::vector<Node> postfix_;
+  std::vector<Formula::Node> postfix_;
   std::size_t place_ = 0;
   int depth_ = 0;
 };
@@ -257,10 +247,9 @@ CAMBIUM_COLD std::string to_string(Formula const& formula) {
       parts.push_back({sign.sign + std::string(is_word ? " " : "") + last.within(sign.precedence), sign.precedence});
       continue;
     }
-    bool const groups_right = node.kind == Kind::until || node.kind == Kind::implication;
     auto& first = parts.back();
-    first.text = first.within(sign.precedence + (groups_right ? 1 : 0)) + " " + sign.sign + " " +
-                 last.within(sign.precedence + (groups_right ? 0 : 1));
+    first.text = first.within(sign.precedence + (detail::groups_right(node.kind) ? 1 : 0)) + " " + sign.sign + " " +
+                 last.within(sign.precedence + (detail::groups_right(node.kind) ? 0 : 1));
     first.precedence = sign.precedence;
   }
   return parts.back().text;

@@ -58,7 +58,7 @@ struct MutualConflict {
   double at;  ///< position of its reference point, as in `map::Conflict::ways` [m]
 };
 
-/// Whether `f(MutualConflict)` is true for one of the crossings and merges whose zones begin at most `ahead` [m] ahead
+/// Whether `f(MutualConflict)` is true for one of the conflicts whose zones begin at most `ahead` [m] ahead
 /// of the agent and do not end behind it, in which `other` is on its way by its route. O(conflicts there * stretches of
 /// their ways).
 template <class World, class F>
@@ -70,7 +70,7 @@ template <class World, class F>
   };
   double const s = world.frame().agents[slot].lane.s, index = world.frame().agents[other].lane.index;
   for (auto const& conflict : conflicts) {
-    if (conflict.farthest_end < s || conflict.kind == map::OverlapKind::split) continue;
+    if (conflict.farthest_end < s) continue;
     if (conflict.hull().end < s || conflict.hull().begin > s + ahead) continue;
     for (auto const& way : conflict.ways) {
       if (index < way.index_begin || index > way.index_end) continue;
