@@ -813,7 +813,9 @@ TEST_CASE("sampled drivers of the literature change lanes safely and do not pass
 TEST_CASE("who opens a gap keeps the zip, and who closes it does not") {
   auto const site = find_merging_site(support::own_map("lane_drop.xodr"));
   auto const rules = zip_merge_rules({500, 0});
-  std::size_t kept = 0, broken = 0;
+  TrafficRule<RuleLabels<>> const occurs{
+      .name = "occurs", .formula = "G !(zip_partner & precedes)", .labels = rules.front().labels};
+  std::size_t kept = 0, broken = 0, asked = 0;
   for (std::uint32_t number = 0; number < 12; ++number)
     for (bool const zips : {true, false}) {
       auto const scenario = with_behaviors<Sim>(site.sample(7, number), [&](auto const& spec) -> Driver {
@@ -824,10 +826,13 @@ TEST_CASE("who opens a gap keeps the zip, and who closes it does not") {
         pushing.rules.merging = Merging::ignored;
         return pushing;
       });
-      (zips ? kept : broken) += violations(scenario.make_world(), rules, 40)["zip_merge"];
+      auto found = violations(scenario.make_world(), {rules.front(), occurs}, 40);
+      (zips ? kept : broken) += found["zip_merge"];
+      asked += zips ? found["occurs"] : 0;
     }
   CHECK(kept == 0);
   CHECK(broken > 1);
+  CHECK(asked > 20);
 }
 
 TEST_CASE("who stays close behind its leader at the merge, past the one beside, breaks the zip: the leader is named") {
@@ -849,18 +854,27 @@ TEST_CASE("who stays close behind its leader at the merge, past the one beside, 
 }
 
 TEST_CASE("drivers who know intersections keep their rules on all of our maps") {
+  auto rules = intersection_rules();
+  auto const kept = rules.size();
+  auto const occurs = [&](std::string const& label, TrafficRule<RuleLabels<>> const& of) {
+    rules.push_back({.name = label, .formula = always(!Formula(label)), .labels = of.labels});
+  };
+  occurs("red_ahead", rules[0]);
+  occurs("must_give_way", rules[2]);
+  std::map<std::string, std::size_t> all;
   for (auto const* name : {"intersection_3way.xodr", "intersection_4way.xodr", "roundabout.xodr"}) {
     auto const site = find_junction_site(support::own_map(name));
     for (bool const lights : {false, true})
       for (std::uint32_t number = 0; number < 8; ++number)
-        for (auto const& found :
-             violations(world_of(site.sample(7, number, {.lights = lights})), intersection_rules(), 60)) {
-          CAPTURE(std::string(name));
-          CAPTURE(found.first);
-          CAPTURE(number);
-          CHECK(found.second == 0);
-        }
+        for (auto const& found : violations(world_of(site.sample(7, number, {.lights = lights})), rules, 60))
+          all[found.first] += found.second;
   }
+  for (std::size_t i = 0; i < kept; ++i) {
+    CAPTURE(rules[i].name);
+    CHECK(all[rules[i].name] == 0);
+  }
+  CHECK(all["red_ahead"] > 20);
+  CHECK(all["must_give_way"] > 50);
 }
 
 TEST_CASE("who does not stop and who does not wait breaks the rules of intersections") {
