@@ -529,27 +529,6 @@ TEST_CASE("who zips is let in between an agent and its leader, where their lanes
   CHECK_FALSE(zips(far_left, beside, 50, 4, 10));
 }
 
-TEST_CASE("behind the merge, who drives in the next lane is nobody to let in") {
-  Sim world(support::own_map("lane_drop.xodr"));
-  auto const& lanes = world.map().lanes();
-  auto const& ending = *std::ranges::find_if(lanes, [](auto const& lane) { return is_valid(lane.merges_into); });
-  auto const ego = world.slot_of(add_on(world, ending.id, ending.length() - 3, 10, ConstantAcceleration{}));
-  auto const& own = world.frame().agents[ego].lane;
-  auto const add_ahead = [&](double way, double aside) {
-    auto const pose = detail::corridor_of(world, ego).center.pose(own.s + way);
-    return world.slot_of(world.add(
-        {.position = pose.position() + aside * geometry::Point(-std::sin(pose.heading), std::cos(pose.heading)),
-         .heading = pose.heading,
-         .speed = 10}));
-  };
-  auto const leader = add_ahead(length + 15, 0), beside = add_ahead(length + 4, 3.5);
-  auto const at = relative_place(world, ego, beside);
-  REQUIRE(at);
-  CHECK(at->lanes == 1);
-  REQUIRE(PrecedingAgent{}(world, ego, leader));
-  CHECK_FALSE(ZipPartner{}(world, ego, leader));
-}
-
 TEST_CASE("violations are counted by stretches of steps, and located; the formula is watched anew after each") {
   Sim world(support::straight_road(3, 1000));
   auto const ego = add(world, 100, middle, 10);
