@@ -80,7 +80,7 @@ bool says(Label const& label, double y, double x_other, double y_other, double s
   return label(world, Slot{0}, Slot{1});
 }
 
-double const length = geometry::car().length(), front = geometry::car().front, rear = geometry::car().rear;
+double const length = geometry::car().length(), front = geometry::car().front;
 
 /// An agent on lane `id` of the world's map, at `s` of its path.
 AgentId add_on(Sim& world, LaneId id, double s, double speed, Driver const& behavior, map::Route const& route = {}) {
