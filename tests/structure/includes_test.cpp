@@ -25,6 +25,7 @@ constexpr std::size_t no_room = rooms.size();
 std::map<std::string, std::vector<std::string>> const families{
     {"map", {"road", "opendrive", "lanes", "routing", "corridor", "build"}},
     {"behavior", {"law", "following", "lane_change", "junction", "safety", "human", "pedestrian", "open_loop"}},
+    {"evaluation", {"rules"}},
     {"planner", {"search", "mcts", "frenet", "policy"}}};
 /// Rooms that do without the Boost libraries that are slow to compile, over whatever they include.
 constexpr std::array light_rooms = {"dynamics", "execution", "behavior",   "observer",

@@ -30,7 +30,7 @@ std::vector<std::string> rooms() {
 }
 
 /// Headers that stay out of the umbrellas: they need pugixml or Eigen, are for those who read, check or write maps and
-/// files, or only declare what other headers define.
+/// files or watch traffic rules, or only declare what other headers define.
 bool needs_more(std::string const& header) {
   std::set<std::string> const apart{"core/json.hpp",
                                     "core/read_file.hpp",
@@ -55,7 +55,7 @@ bool needs_more(std::string const& header) {
                                     "scenario/scenario_set.hpp",
                                     "scenario/traffic_inflow.hpp"};
   return apart.contains(header) || header.starts_with("map/build/") || header.starts_with("map/opendrive/") ||
-         header.ends_with("_impl.hpp");
+         header.starts_with("evaluation/rules") || header.ends_with("_impl.hpp");
 }
 
 }  // namespace
@@ -72,6 +72,15 @@ TEST_CASE("every room has an umbrella header that gathers all of its headers but
       CAPTURE(header);
       CHECK(lines.contains("#include \"cambium/" + header + "\"") == !needs_more(header));
     }
+  }
+}
+
+TEST_CASE("evaluation/rules.hpp gathers what watches traffic rules") {
+  auto const lines = lines_of(headers / "evaluation" / "rules.hpp");
+  for (auto const& entry : fs::directory_iterator(headers / "evaluation" / "rules")) {
+    auto const header = fs::relative(entry.path(), headers).generic_string();
+    CAPTURE(header);
+    CHECK(lines.contains("#include \"cambium/" + header + "\"") == !header.ends_with("_impl.hpp"));
   }
 }
 

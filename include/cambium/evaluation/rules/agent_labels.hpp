@@ -1,0 +1,172 @@
+#pragma once
+
+#include <cstdint>
+
+#include "cambium/core/ids.hpp"
+#include "cambium/core/parameters.hpp"
+#include "cambium/evaluation/collision.hpp"
+#include "cambium/evaluation/rules/relative_place.hpp"
+#include "cambium/map/corridor/corridor.hpp"
+#include "cambium/world/frame.hpp"
+
+// Labels of one agent. Those that other headers bring: `Collision`, `OffRoad`, and by `Exceeds` every evaluator that
+// returns a number.
+
+namespace cambium {
+
+/// The same at every step.
+struct Constant {
+  bool value = true;
+
+  static constexpr char const* name = "constant";
+  static constexpr char const* summary = "the same at every step";
+  static constexpr auto parameters() {
+    return parameter_list(parameter("value", &Constant::value, "-", Range{0, 1}, "what it says"));
+  }
+
+  template <class World>
+  [[nodiscard]] bool operator()(World const&, Slot) const {
+    return value;
+  }
+};
+
+/// Whether an agent's reference point passed into a neighbouring lane in the last step. Needs a world that keeps a
+/// history (`World::keep_history`); false without one. O(1).
+///
+/// BARK asks whether the way since the last state crosses a border of the lane that the agent is in now, and misses a
+/// change of two lanes.
+struct ChangesLane {
+  static constexpr bool needs_history = true;
+  static constexpr char const* name = "lane_change";
+  static constexpr char const* summary = "passed into a neighbouring lane in the last step; needs a history";
+  static constexpr auto parameters() { return parameter_list(); }
+
+  template <class World>
+  [[nodiscard]] bool operator()(World const& world, Slot slot) const {
+    if (world.history_size() == 0) return false;
+    auto const& before = world.history(1).agents[slot];
+    auto const& now = world.frame().agents[slot];
+    return before.status == AgentStatus::driving && before.lane.corridor != now.lane.corridor;
+  }
+};
+
+/// Whether at least `agents` others are within `radius` of an agent, reference point to reference point. O(agents).
+struct DenseTraffic {
+  double radius = 20.0;
+  std::uint32_t agents = 8;
+
+  static constexpr char const* name = "dense_traffic";
+  static constexpr char const* summary = "many others are near";
+  static constexpr char const* source = "BARK";
+  static constexpr auto parameters() {
+    using P = DenseTraffic;
+    return parameter_list(parameter("radius", &P::radius, "m", Range{0, 1e5}, "between reference points"),
+                          parameter("agents", &P::agents, "-", Range{0, 1e6}, "from this number on it is dense"));
+  }
+
+  template <class World>
+  [[nodiscard]] bool operator()(World const& world, Slot slot) const {
+    auto const& own = world.frame().agents[slot].state;
+    std::uint32_t count = 0;
+    for (Slot other{}; index_of(other) < world.size(); ++other) {
+      auto const& state = world.frame().agents[other].state;
+      double const dx = state.x - own.x, dy = state.y - own.y;
+      bool const is_near = dx * dx + dy * dy < radius * radius;
+      count += is_near && other != slot && in_traffic(world, other) ? 1 : 0;
+    }
+    return count >= agents;
+  }
+};
+
+/// Whether the lane that an agent is in ends, or leaves its route, within `distance` of its front end: there it must
+/// have changed lanes, or merges. O(1).
+struct AtLaneEnd {
+  double distance = 50.0;
+
+  static constexpr char const* name = "at_lane_end";
+  static constexpr char const* summary = "its lane ends, merges or leaves its route soon";
+  static constexpr char const* source = "BARK";
+  static constexpr auto parameters() {
+    return parameter_list(
+        parameter("distance", &AtLaneEnd::distance, "m", Range{0, 1e5}, "from its front end to the end of the lane"));
+  }
+
+  template <class World>
+  [[nodiscard]] bool operator()(World const& world, Slot slot) const {
+    double const front = world.frame().agents[slot].lane.s + world.roster().agents[slot].shape.front;
+    return detail::piece_of(world, slot).lane_end - front < distance;
+  }
+};
+
+namespace detail {
+
+/// Whether the agent's road has no lane of its direction beside its own there, or one that ends within `distance` [m].
+template <class World>
+[[nodiscard]] bool is_outermost(World const& world, Slot slot, bool leftwards, double distance) {
+  auto const& piece = piece_of(world, slot);
+  if (!is_valid(piece.beside(leftwards))) return true;
+  auto const& beside = road_of(world, slot).corridors[piece.beside(leftwards)].pieces[piece.piece_beside(leftwards)];
+  double const share = (world.frame().agents[slot].lane.s - piece.begin) / (piece.end - piece.begin);
+  double const s = beside.begin + share * (beside.end - beside.begin);
+  return beside.lane_end - s - world.roster().agents[slot].shape.front <= distance;
+}
+
+}  // namespace detail
+
+/// Whether there is no lane to the right of an agent's lane in its direction, or one that ends soon. O(1).
+struct RightmostLane {
+  double distance = 100.0;
+
+  static constexpr char const* name = "rightmost_lane";
+  static constexpr char const* summary = "there is no lane to its right, or one that ends soon";
+  static constexpr char const* source = "BARK";
+  static constexpr auto parameters() {
+    return parameter_list(parameter("distance", &RightmostLane::distance, "m", Range{0, 1e5},
+                                    "a lane that ends within it does not count"));
+  }
+
+  template <class World>
+  [[nodiscard]] bool operator()(World const& world, Slot slot) const {
+    return detail::is_outermost(world, slot, false, distance);
+  }
+};
+
+/// Whether there is no lane to the left of an agent's lane in its direction, or one that ends soon. O(1).
+struct LeftmostLane {
+  double distance = 100.0;
+
+  static constexpr char const* name = "leftmost_lane";
+  static constexpr char const* summary = "there is no lane to its left, or one that ends soon";
+  static constexpr char const* source = "BARK";
+  static constexpr auto parameters() {
+    return parameter_list(parameter("distance", &LeftmostLane::distance, "m", Range{0, 1e5},
+                                    "a lane that ends within it does not count"));
+  }
+
+  template <class World>
+  [[nodiscard]] bool operator()(World const& world, Slot slot) const {
+    return detail::is_outermost(world, slot, true, distance);
+  }
+};
+
+/// Whether an agent's reference point has passed a point of the map, measured along its lane corridor: the point's
+/// foot on the centre line is behind it. O(segments of the centre line in between).
+struct BeyondPoint {
+  double x = 0.0, y = 0.0;
+
+  static constexpr char const* name = "beyond_point";
+  static constexpr char const* summary = "has passed a point of the map, along its lane";
+  static constexpr char const* source = "BARK";
+  static constexpr auto parameters() {
+    return parameter_list(parameter("x", &BeyondPoint::x, "m", any_finite, "of the point"),
+                          parameter("y", &BeyondPoint::y, "m", any_finite, "of the point"));
+  }
+
+  template <class World>
+  [[nodiscard]] bool operator()(World const& world, Slot slot) const {
+    auto const& own = world.frame().agents[slot].lane;
+    return own.s > detail::corridor_of(world, slot).center.project({x, y}, own.segment).s;
+  }
+};
+
+}  // namespace cambium
