@@ -23,7 +23,7 @@ constexpr std::size_t no_room = rooms.size();
 /// Families are folders of a room, from top to bottom: a header of a family includes its own family, those above, and
 /// the headers that lie in the room itself.
 std::map<std::string, std::vector<std::string>> const families{
-    {"map", {"road", "opendrive", "lanes", "routing", "corridor", "build"}},
+    {"map", {"road", "opendrive", "lanes", "routing", "corridor", "build", "lanelet"}},
     {"behavior", {"law", "following", "lane_change", "junction", "safety", "human", "pedestrian", "open_loop"}},
     {"planner", {"search", "mcts", "frenet", "policy"}}};
 /// Rooms that do without the Boost libraries that are slow to compile, over whatever they include.
@@ -33,7 +33,8 @@ constexpr std::array light_rooms = {"dynamics", "execution", "behavior",   "obse
 constexpr std::array heavy_headers = {"cambium/geometry/polygon_union", "cambium/geometry/detail/boost_polygon"};
 /// Headers (beginnings of paths) of cambium::opendrive; all others do without pugixml.
 constexpr std::array opendrive_headers = {"cambium/map/opendrive.hpp", "cambium/map/opendrive_impl.hpp",
-                                          "cambium/map/opendrive/"};
+                                          "cambium/map/opendrive/", "cambium/map/lanelet/lanelet2",
+                                          "cambium/scenario/dataset/common_road"};
 
 /// Who makes maps brings what a map itself calls.
 bool makes_maps(std::string const& header) { return header == "cambium/map/build/build_map.hpp"; }

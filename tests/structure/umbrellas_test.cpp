@@ -32,25 +32,17 @@ std::vector<std::string> rooms() {
 /// Headers that stay out of the umbrellas: they need pugixml or Eigen, are for those who read, check or write maps and
 /// files, or only declare what other headers define.
 bool needs_more(std::string const& header) {
-  std::set<std::string> const apart{"core/stable_sort.hpp",
-                                    "core/state_vector.hpp",
-                                    "core/text.hpp",
-                                    "core/write_file.hpp",
-                                    "geometry/polygon_union.hpp",
-                                    "map/corridor/road_area.hpp",
-                                    "map/fwd.hpp",
-                                    "map/lanes/lane_network.hpp",
-                                    "map/lanes/overlaps.hpp",
-                                    "map/opendrive.hpp",
-                                    "map/road/curve_layout.hpp",
-                                    "map/road/road_surface.hpp",
-                                    "scenario/highway_site.hpp",
-                                    "scenario/junction_site.hpp",
-                                    "scenario/merging_site.hpp",
-                                    "scenario/ring_road.hpp",
-                                    "scenario/traffic_inflow.hpp"};
+  std::set<std::string> const apart{"core/read_file.hpp",         "core/stable_sort.hpp",
+                                    "core/state_vector.hpp",      "core/text.hpp",
+                                    "core/write_file.hpp",        "geometry/polygon_union.hpp",
+                                    "map/corridor/road_area.hpp", "map/fwd.hpp",
+                                    "map/lanes/lane_network.hpp", "map/lanes/overlaps.hpp",
+                                    "map/opendrive.hpp",          "map/road/curve_layout.hpp",
+                                    "map/road/road_surface.hpp",  "scenario/highway_site.hpp",
+                                    "scenario/junction_site.hpp", "scenario/merging_site.hpp",
+                                    "scenario/ring_road.hpp",     "scenario/traffic_inflow.hpp"};
   return apart.contains(header) || header.starts_with("map/build/") || header.starts_with("map/opendrive/") ||
-         header.ends_with("_impl.hpp");
+         header.starts_with("map/lanelet/") || header.starts_with("scenario/dataset/") || header.ends_with("_impl.hpp");
 }
 
 }  // namespace
