@@ -83,6 +83,7 @@ class LaneletMapMaker {
       std::vector<std::vector<Point>> borders{evened(groups_.lanelets[of.front()].left)};
       for (auto const i : of) borders.push_back(evened(groups_.lanelets[i].right));
       auto plan = lanes_between(borders);
+      check_ends(plan, of);
       return add_road(std::move(plan), of, group.junction);
     } catch (MapError const& problem) {
       groups_.report(Severity::warning, of.front(),
@@ -90,6 +91,24 @@ class LaneletMapMaker {
                          "); each becomes a road of its own, and nobody changes lanes between them");
     }
     for (auto const i : of) add_road(single(i), {i}, group.junction);
+  }
+
+  /// Throws `MapError` where a lane of the road does not begin and end where its lanelet does: a road ends square to
+  /// its leftmost border.
+  void check_ends(RoadPlan const& plan, std::vector<std::size_t> const& of) const {
+    constexpr double farthest = 0.3;  // [m]
+    MapBuilder trial;
+    RoadPlan copy = plan;
+    auto const id = trial.add_road(std::move(copy));
+    for (std::size_t k = 0; k < of.size(); ++k)
+      for (bool const at_end : {false, true}) {
+        auto const end = at_end ? opendrive::ContactPoint::end : opendrive::ContactPoint::start;
+        auto const is = trial.lane_pose({id, end}, -static_cast<int>(k) - 1);
+        auto const wanted = end_pose(groups_.centers[of[k]], at_end);
+        if ((is.position() - wanted.position()).norm() > farthest)
+          throw MapError("lanelet " + std::to_string(groups_.lanelets[of[k]].id),
+                         at_end ? "it ends aslant" : "it begins aslant");
+      }
   }
 
   [[nodiscard]] RoadPlan single(std::size_t lanelet) {
@@ -150,13 +169,15 @@ class LaneletMapMaker {
       lanelet_of.try_emplace(ends, from);
       connections[at->second].second.push_back({places_[from]->lane, places_[to]->lane});
     }
-    for (auto const& [ends, lanes] : connections) try {
+    for (auto const& [ends, lanes] : connections) {
+      try {
         builder_.connect({ends.first, opendrive::ContactPoint::end}, {ends.second, opendrive::ContactPoint::start},
                          lanes);
       } catch (MapError const& problem) {
         groups_.report(Severity::warning, lanelet_of[ends],
                        "what follows it cannot be linked (" + std::string(problem.what()) + "); it was left out");
       }
+    }
   }
 
   /// Signs, lights and the direction of a lane.

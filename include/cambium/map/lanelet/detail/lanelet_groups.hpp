@@ -112,8 +112,27 @@ class LaneletGroups {
       for (auto const id : lanelets[i].successors) add_link(i, id, find(id), i, "successor");
       for (auto const id : lanelets[i].predecessors) add_link(find(id), id, i, i, "predecessor");
     }
+    join_dead_ends();
     std::sort(links.begin(), links.end());
     links.erase(std::unique(links.begin(), links.end()), links.end());
+  }
+
+  /// A lanelet whose named successors are not where it ends goes on as the one that begins there.
+  void join_dead_ends() {
+    constexpr double rounding = 0.05;  // [m]
+    std::vector<bool> goes_on(lanelets.size());
+    for (auto const& link : links) goes_on[link.from] = true;
+    for (std::size_t i = 0; i < lanelets.size(); ++i) {
+      if (goes_on[i] || lanelets[i].successors.empty()) continue;
+      for (std::size_t k = 0; k < lanelets.size(); ++k) {
+        if ((lanelets[i].left.back() - lanelets[k].left.front()).norm() > rounding ||
+            (lanelets[i].right.back() - lanelets[k].right.front()).norm() > rounding || i == k)
+          continue;
+        report(Severity::warning, i,
+               "lanelet " + std::to_string(lanelets[k].id) + " begins where it ends; the two were joined");
+        links.push_back({i, k});
+      }
+    }
   }
 
   void add_link(std::size_t from, std::int64_t other, std::size_t to, std::size_t by, char const* what) {
