@@ -75,6 +75,8 @@ class CommonRoadReader {
     xml::for_each_child(root, "lanelet", [&](pugi::xml_node node) { read_lanelet(node); });
     xml::for_each_child(root, "intersection", [&](pugi::xml_node node) { read_intersection(node); });
     xml::for_each_child(root, [&](pugi::xml_node node, std::string_view name) { read_other(node, name); });
+    std::stable_partition(traffic_.tracks.begin(), traffic_.tracks.end(),
+                          [](Track const& track) { return track.stands; });
     if (!traffic_.lanelets.empty()) make_map(options);
     check_recorded_traffic(traffic_);
     return std::move(traffic_);
@@ -367,6 +369,11 @@ class CommonRoadReader {
     return child ? point(child).value_or(geometry::Point{}) : geometry::Point{};
   }
 
+  /// To a nanometre: cosines of right angles are not 0.
+  [[nodiscard]] static geometry::Point rounded(geometry::Point const& p) {
+    return {std::round(p.x() * 1e9) / 1e9, std::round(p.y() * 1e9) / 1e9};
+  }
+
   [[nodiscard]] std::optional<CommonRoadShape> rectangle(Node node) {
     auto const length = number(node, "length"), width = number(node, "width");
     if (!length || !width || !(*length > 0.0 && *width > 0.0)) return std::nullopt;
@@ -375,7 +382,7 @@ class CommonRoadReader {
     double const c = std::cos(shape.heading), s = std::sin(shape.heading);
     for (auto const& [a, b] : {std::pair{0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}, {-0.5, -0.5}}) {
       double const x = a * *length, y = b * *width;
-      shape.outline.push_back({shape.center.x() + c * x - s * y, shape.center.y() + s * x + c * y});
+      shape.outline.push_back(rounded({shape.center.x() + c * x - s * y, shape.center.y() + s * x + c * y}));
     }
     return shape;
   }
@@ -388,7 +395,7 @@ class CommonRoadReader {
     for (int k = 0; k < corners; ++k) {
       double const angle = 2.0 * geometry::pi * k / corners;
       shape.outline.push_back(
-          {shape.center.x() + *radius * std::cos(angle), shape.center.y() + *radius * std::sin(angle)});
+          rounded({shape.center.x() + *radius * std::cos(angle), shape.center.y() + *radius * std::sin(angle)}));
     }
     return shape;
   }
