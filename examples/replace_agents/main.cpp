@@ -47,8 +47,7 @@ constexpr std::size_t parameter_sets = std::size(minimum_distances), columns = s
 
 struct Settings {
   std::string tracks, map, json, write;
-  std::uint64_t recordings = 10, seed = 1, iterations = 200,
-                threads = std::max(1u, std::thread::hardware_concurrency());
+  std::uint64_t recordings = 5, seed = 1, iterations = 100, threads = std::max(1u, std::thread::hardware_concurrency());
   std::vector<std::uint64_t> ids{65, 66, 67, 68};
   double begin = -1e9, end = 1e9;
 };
@@ -91,7 +90,7 @@ Sim::Behavior driver(std::size_t number, double minimum_distance, std::uint64_t 
   }
   Search search{.others = idm_classic(idm)};
   search.reward.desired_speed = idm.desired_speed;
-  search.reward.progress = 1.0;
+  search.reward.speed_deviation = -1.0;
   search.options.step = 2.0 * dt;
   search.options.search.horizon = 10;
   search.options.budget.iterations = iterations;
