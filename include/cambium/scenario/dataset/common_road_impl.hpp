@@ -245,6 +245,7 @@ class CommonRoadReader {
     }
     if (!good) return warn(node, "lanelet " + std::to_string(*id) + " was left out, see the previous finding");
     xml::for_each_child(node, [&](Node child, std::string_view name) { read_lanelet_part(child, name, lanelet); });
+    if (auto const line = xml::find_child(node, "stopLine")) read_stop_line(line, lanelet);
     traffic_.lanelets.push_back(std::move(lanelet));
   }
 
@@ -267,8 +268,6 @@ class CommonRoadReader {
       lanelet.both_directions = lanelet.both_directions || text_of(node) == "vehicle" || text_of(node) == "car";
     } else if (name == "trafficSignRef" || name == "trafficLightRef") {
       if (auto const ref = reference(node)) add_signal(node, *ref, 0.0, lanelet);
-    } else if (name == "stopLine") {
-      read_stop_line(node, lanelet);
     }
   }
 
