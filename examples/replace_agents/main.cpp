@@ -22,6 +22,7 @@
 #include "cambium/core/error.hpp"
 #include "cambium/core/write_file.hpp"
 #include "cambium/evaluation/collision.hpp"
+#include "cambium/map/opendrive/writer.hpp"
 #include "cambium/planner/mcts/mcts.hpp"
 #include "cambium/scenario/dataset/recorded_scenario.hpp"
 #include "cambium/scenario/dataset/track_table.hpp"
@@ -147,7 +148,7 @@ struct Cell {
 std::vector<cb::RecordedTraffic> recordings_of(Settings const& settings) {
   std::vector<cb::RecordedTraffic> all;
   if (settings.tracks.empty()) {
-    auto const map = zip_map();
+    auto const map = zip_map().build();
     for (std::uint64_t i = 0; i < settings.recordings; ++i) all.push_back(record_zip(map, settings.seed + i));
     return all;
   }
@@ -206,7 +207,11 @@ void print_table(std::vector<AgentSet> const& sets, PrintCell const& print_cell)
 
 void run_all(Settings const& settings) {
   auto const recordings = recordings_of(settings);
-  if (!settings.write.empty()) cb::write_file(settings.write, interaction_text(recordings.front()));
+  if (!settings.write.empty()) {
+    cb::write_file(settings.write, interaction_text(recordings.front()));
+    if (settings.tracks.empty())
+      cb::write_file(settings.write + ".xodr", cb::map::write_opendrive(zip_map().document()));
+  }
   auto const sets = agent_sets(settings.ids);
   cb::RecordingWindow const window{std::max(settings.begin, recordings.front().begin()),
                                    std::min(settings.end, recordings.front().end())};
@@ -274,7 +279,9 @@ int main(int argc, char** argv) {
   whole("--iterations", settings.iterations, 1, 1'000'000, "of the tree search");
   whole("--threads", settings.threads, 1, 256, "number of threads; the results do not depend on it");
   program.add_option("--json", settings.json, "writes the cells to this file")->type_name("FILE");
-  program.add_option("--write", settings.write, "writes the first recording as an INTERACTION track file")
+  program
+      .add_option("--write", settings.write,
+                  "writes the first recording as an INTERACTION track file, and its map as FILE.xodr")
       ->type_name("FILE");
   return examples::run_program(program, argc, argv, [&] {
     if (settings.ids.size() != 4)

@@ -27,7 +27,7 @@ namespace cb = cambium;
 
 /// Two lanes of 2.8 and 3.2 m become one, as at DR_DEU_Merging_MT: the right one narrows from 45 m before its end on.
 /// With 40 m more before the merge than INTERACTION's map, so that all vehicles are there at the start.
-inline std::shared_ptr<cb::Map const> zip_map() {
+inline cb::MapBuilder zip_map() {
   using cb::map::CurvePiece;
   constexpr double merge = 114.0, narrows = 69.0, end = 185.0;
   cb::MapBuilder builder("zip");
@@ -42,7 +42,7 @@ inline std::shared_ptr<cb::Map const> zip_map() {
                     {.s = merge, .right = {{.width = 2.8, .end_width = 3.2}}}},
        .type = "town",
        .speed_limit = 30.0 / 3.6});
-  return builder.build();
+  return builder;
 }
 
 /// The recorded vehicles, in the order of the zip. Those that the paper replaces have its numbers: 66 and 68 on the
