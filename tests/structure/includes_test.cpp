@@ -32,9 +32,12 @@ constexpr std::array light_rooms = {"dynamics", "execution", "behavior",   "obse
 /// Headers (beginnings of paths) that may include Boost.Geometry and Boost.Graph.
 constexpr std::array heavy_headers = {"cambium/geometry/polygon_union", "cambium/geometry/detail/boost_polygon"};
 /// Headers (beginnings of paths) of cambium::opendrive; all others do without pugixml.
-constexpr std::array opendrive_headers = {"cambium/map/opendrive.hpp", "cambium/map/opendrive_impl.hpp",
-                                          "cambium/map/opendrive/", "cambium/map/lanelet/lanelet2",
-                                          "cambium/scenario/dataset/common_road"};
+constexpr std::array opendrive_headers = {"cambium/map/opendrive.hpp",
+                                          "cambium/map/opendrive_impl.hpp",
+                                          "cambium/map/opendrive/",
+                                          "cambium/map/lanelet/lanelet2",
+                                          "cambium/scenario/dataset/common_road",
+                                          "cambium/scenario/dataset/detail/common_road"};
 
 /// Who makes maps brings what a map itself calls.
 bool makes_maps(std::string const& header) { return header == "cambium/map/build/build_map.hpp"; }

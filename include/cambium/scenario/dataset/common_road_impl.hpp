@@ -1,12 +1,9 @@
 #pragma once
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
-#include <map>
 #include <optional>
 #include <set>
 #include <string>
@@ -19,16 +16,14 @@
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/core/parameters.hpp"
-#include "cambium/geometry/angle.hpp"
-#include "cambium/geometry/box.hpp"
+#include "cambium/core/stable_sort.hpp"
 #include "cambium/map/opendrive/xml.hpp"
 #include "cambium/scenario/dataset/common_road.hpp"
+#include "cambium/scenario/dataset/detail/common_road_lanes.hpp"
 
 namespace cambium {
 
 namespace detail {
-
-namespace xml = map::xml;
 
 /// The words of obstacle types and the types that they become; of several words for one type the first is written.
 inline constexpr std::pair<std::string_view, TrackType> common_road_types[] = {{"car", TrackType::car},
@@ -42,102 +37,21 @@ inline constexpr std::pair<std::string_view, TrackType> common_road_types[] = {{
                                                                                {"priorityVehicle", TrackType::car},
                                                                                {"parkedVehicle", TrackType::car}};
 
-/// The words of lanelet types that are more than "driving".
-inline constexpr std::pair<std::string_view, map::LaneType> common_road_lane_types[] = {
-    {"shoulder", map::LaneType::shoulder},  {"sidewalk", map::LaneType::sidewalk},
-    {"busLane", map::LaneType::bus},        {"bicycleLane", map::LaneType::biking},
-    {"accessRamp", map::LaneType::on_ramp}, {"exitRamp", map::LaneType::off_ramp},
-    {"crosswalk", map::LaneType::walking}};
-
-/// The parts of an OpenDRIVE-like catalogue of signs that matter, by country or without one.
-[[nodiscard]] inline std::optional<map::SignalKind> common_road_sign(std::string_view id) {
-  if (id == "205" || id == "R1-2") return map::SignalKind::give_way;
-  if (id == "206" || id == "R1-1") return map::SignalKind::stop;
-  if (id == "301" || id == "306") return map::SignalKind::priority;
-  return std::nullopt;
-}
-
-/// A shape: the rectangle around it, with its own middle and heading.
-struct CommonRoadShape {
-  geometry::Point center{};
-  double heading = 0.0, length = 0.0, width = 0.0;
-  std::vector<geometry::Point> outline{};
-};
-
 /// Reads a CommonRoad scenario, see `parse_common_road`.
-class CommonRoadReader {
+class CommonRoadReader : private CommonRoadLanes {
  public:
-  CommonRoadReader(std::string_view text, std::string const& file) : context_(text, file, traffic_.diagnostics) {}
+  CommonRoadReader(std::string_view text, std::string const& file) : CommonRoadLanes(text, file) {}
 
   [[nodiscard]] RecordedTraffic read(pugi::xml_node root, map::MapOptions const& options) {
     read_head(root);
-    xml::for_each_child(root, [&](pugi::xml_node node, std::string_view name) { read_rule(node, name); });
-    xml::for_each_child(root, "lanelet", [&](pugi::xml_node node) { read_lanelet(node); });
-    xml::for_each_child(root, "intersection", [&](pugi::xml_node node) { read_intersection(node); });
+    read_lanes(root, options);
     xml::for_each_child(root, [&](pugi::xml_node node, std::string_view name) { read_other(node, name); });
-    std::stable_partition(traffic_.tracks.begin(), traffic_.tracks.end(),
-                          [](Track const& track) { return track.stands; });
-    if (!traffic_.lanelets.empty()) make_map(options);
+    detail::stable_sort(traffic_.tracks, [](Track const& track) { return !track.stands; });
     check_recorded_traffic(traffic_);
     return std::move(traffic_);
   }
 
  private:
-  using Node = pugi::xml_node;
-  using Id = std::int64_t;
-
-  struct Interval {
-    double begin{}, end{};
-    [[nodiscard]] double middle() const { return begin == end ? begin : 0.5 * (begin + end); }
-  };
-
-  void warn(Node node, std::string sentence) { context_.report(Severity::warning, node, std::move(sentence)); }
-  void note(Node node, std::string sentence) { context_.report(Severity::info, node, std::move(sentence)); }
-
-  [[nodiscard]] static std::string_view text_of(Node node) { return xml::trimmed(node.child_value()); }
-
-  /// The number in a child element; nothing, with a finding, where it is missing or none.
-  [[nodiscard]] std::optional<double> number(Node node, char const* name) {
-    auto const child = xml::find_child(node, name);
-    if (!child) {
-      warn(node, std::string("it has no <") + name + ">");
-      return std::nullopt;
-    }
-    auto const value = xml::parse_number<double>(text_of(child));
-    if (!value || std::abs(*value) > 1e15) {
-      warn(child, "\"" + std::string(text_of(child)) + "\" is no usable number");
-      return std::nullopt;
-    }
-    return value;
-  }
-
-  [[nodiscard]] std::optional<geometry::Point> point(Node node) {
-    auto const x = number(node, "x"), y = number(node, "y");
-    if (!x || !y) return std::nullopt;
-    return geometry::Point{*x, *y};
-  }
-
-  /// <exact>, or <intervalStart> and <intervalEnd>, of the child of that name; nothing where there is no such child.
-  [[nodiscard]] std::optional<Interval> interval(Node node, char const* name) {
-    auto const child = xml::find_child(node, name);
-    if (!child) return std::nullopt;
-    if (xml::find_child(child, "exact")) {
-      auto const value = number(child, "exact");
-      return value ? std::optional(Interval{*value, *value}) : std::nullopt;
-    }
-    auto const begin = number(child, "intervalStart"), end = number(child, "intervalEnd");
-    if (!begin || !end) return std::nullopt;
-    return Interval{*begin, *end};
-  }
-  /// One value of such an interval.
-  [[nodiscard]] std::optional<double> value(Node node, char const* name) {
-    auto const found = interval(node, name);
-    if (!found) return std::nullopt;
-    if (found->begin != found->end)
-      note(xml::find_child(node, name), std::string(name) + " is an interval; its middle was taken");
-    return found->middle();
-  }
-
   void read_head(Node root) {
     traffic_.name = root.attribute("benchmarkID").value();
     std::string_view const version = root.attribute("commonRoadVersion").value();
@@ -150,186 +64,6 @@ class CommonRoadReader {
                   "give the attribute timeStepSize, such as \"0.1\"");
     traffic_.time_step = *step;
   }
-
-  [[nodiscard]] std::string place(Node node) { return context_.file() + ":" + std::to_string(context_.line(node)); }
-
-  [[nodiscard]] std::optional<Id> id_of(Node node) {
-    auto const id = context_.number<Id>(node, "id");
-    if (!id) warn(node, "it was left out");
-    return id;
-  }
-
-  // --- signs and lights ----------------------------------------------------------------------------------------------
-
-  struct Sign {
-    std::optional<map::SignalKind> kind{};
-    std::optional<double> speed{};  ///< limit [m/s]
-  };
-
-  void read_rule(Node node, std::string_view name) {
-    if (name == "trafficSign") read_sign(node);
-    if (name == "trafficLight") read_light(node);
-  }
-
-  void read_sign(Node node) {
-    auto const id = id_of(node);
-    if (!id) return;
-    Sign sign;
-    xml::for_each_child(node, "trafficSignElement", [&](Node element) {
-      auto const word = text_of(xml::find_child(element, "trafficSignID"));
-      if (auto const kind = common_road_sign(word)) sign.kind = kind;
-      bool const is_limit = word == "274" || word == "R2-1";
-      if (!is_limit) return;
-      auto const limit = number(element, "additionalValue");
-      if (limit && *limit > 0.0 && *limit < 300.0) sign.speed = limit;
-    });
-    signs_.emplace(*id, sign);
-  }
-
-  /// The phases of a light: from the end of the red one. Several greens become the first.
-  void read_light(Node node) {
-    auto const id = id_of(node);
-    if (!id) return;
-    map::LightPlan plan;
-    double offset = 0.0, at = 0.0, yellow = 0.0;
-    std::optional<Interval> green;
-    auto cycle = xml::find_child(node, "cycle");
-    xml::for_each_child(cycle, [&](Node element, std::string_view name) {
-      if (name == "timeOffset") offset = xml::parse_number<double>(text_of(element)).value_or(0.0);
-      if (name != "cycleElement") return;
-      auto const steps = number(element, "duration");
-      if (!steps || !(*steps >= 0.0 && *steps <= 1e6)) return;
-      double const lasts = *steps * traffic_.time_step;
-      auto const color = text_of(xml::find_child(element, "color"));
-      if (color == "green" && green) note(element, "a second green phase was left out");
-      if (color == "green" && !green) green = Interval{at, at + lasts};
-      if (color == "yellow" && green && at == green->end) yellow = lasts;
-      at += lasts;
-    });
-    if (text_of(xml::find_child(node, "active")) != "false" && at > 0.0 && green) {
-      plan = {.cycle = at, .green_begin = green->begin, .green_end = green->end, .yellow = yellow};
-      plan.green_begin += offset * traffic_.time_step;
-      plan.green_end += offset * traffic_.time_step;
-    }
-    if (!plan.is_possible()) {
-      warn(node, "its cycle is impossible; the light is off");
-      plan = {};
-    }
-    lights_.emplace(*id, plan);
-  }
-
-  // --- lanelets ------------------------------------------------------------------------------------------------------
-
-  [[nodiscard]] std::optional<Id> reference(Node node) {
-    auto const ref = context_.number<Id>(node, "ref");
-    return ref;
-  }
-
-  void read_lanelet(Node node) {
-    auto const id = id_of(node);
-    if (!id) return;
-    map::Lanelet lanelet{.id = *id};
-    lanelet.line = context_.line(node);
-    bool good = true;
-    for (bool const is_left : {true, false}) {
-      auto const bound = xml::find_child(node, is_left ? "leftBound" : "rightBound");
-      auto& points = is_left ? lanelet.left : lanelet.right;
-      xml::for_each_child(bound, "point", [&](Node child) {
-        auto const p = point(child);
-        good = good && p;
-        if (p) points.push_back(*p);
-      });
-      auto const marking = text_of(xml::find_child(bound, "lineMarking"));
-      (is_left ? lanelet.may_change_left : lanelet.may_change_right) =
-          marking != "solid" && marking != "broad_solid" && marking != "curb";
-    }
-    if (!good) return warn(node, "lanelet " + std::to_string(*id) + " was left out, see the previous finding");
-    xml::for_each_child(node, [&](Node child, std::string_view name) { read_lanelet_part(child, name, lanelet); });
-    if (auto const line = xml::find_child(node, "stopLine")) read_stop_line(line, lanelet);
-    traffic_.lanelets.push_back(std::move(lanelet));
-  }
-
-  void read_lanelet_part(Node node, std::string_view name, map::Lanelet& lanelet) {
-    if (name == "predecessor" || name == "successor") {
-      auto& list = name == "successor" ? lanelet.successors : lanelet.predecessors;
-      if (auto const ref = reference(node)) list.push_back(*ref);
-    } else if (name == "adjacentLeft" || name == "adjacentRight") {
-      auto const ref = reference(node);
-      if (!ref || std::string_view(node.attribute("drivingDir").value()) == "opposite") return;
-      (name == "adjacentLeft" ? lanelet.left_neighbor : lanelet.right_neighbor) = *ref;
-    } else if (name == "laneletType") {
-      for (auto const& [word, type] : common_road_lane_types)
-        if (word == text_of(node)) lanelet.type = type;
-      lanelet.in_junction = lanelet.in_junction || text_of(node) == "intersection";
-    } else if (name == "speedLimit") {
-      auto const limit = xml::parse_number<double>(text_of(node));
-      if (limit && *limit > 0.0 && *limit < 1000.0) lanelet.speed_limit = limit;
-    } else if (name == "userBidirectional") {
-      lanelet.both_directions = lanelet.both_directions || text_of(node) == "vehicle" || text_of(node) == "car";
-    } else if (name == "trafficSignRef" || name == "trafficLightRef") {
-      if (auto const ref = reference(node)) add_signal(node, *ref, 0.0, lanelet);
-    }
-  }
-
-  /// Signs that the lanelet has stand at its stop line, where it has one.
-  void read_stop_line(Node node, map::Lanelet& lanelet) {
-    std::vector<geometry::Point> ends;
-    xml::for_each_child(node, "point", [&](Node child) {
-      if (auto const p = point(child)) ends.push_back(*p);
-    });
-    double before = 0.0;
-    if (ends.size() == 2 && !lanelet.left.empty() && !lanelet.right.empty())
-      before = (0.5 * (ends[0] + ends[1]) - 0.5 * (lanelet.left.back() + lanelet.right.back())).norm();
-    if (!(before >= 0.0 && before <= 1000.0)) before = 0.0;
-    xml::for_each_child(node, [&](Node child, std::string_view name) {
-      if (name != "trafficSignRef" && name != "trafficLightRef") return;
-      if (auto const ref = reference(child)) add_signal(child, *ref, before, lanelet);
-    });
-    for (auto& signal : lanelet.signals) signal.before_end = before;
-  }
-
-  void add_signal(Node node, Id ref, double before, map::Lanelet& lanelet) {
-    if (auto const sign = signs_.find(ref); sign != signs_.end()) {
-      if (sign->second.speed) lanelet.speed_limit = sign->second.speed;
-      if (sign->second.kind) add_once(lanelet, {*sign->second.kind, before, {}});
-    } else if (lights_.contains(ref)) {
-      add_once(lanelet, {map::SignalKind::light, before, std::to_string(ref)});
-    } else {
-      warn(node, "sign or light " + std::to_string(ref) + " is not there");
-    }
-  }
-  static void add_once(map::Lanelet& lanelet, map::LaneletSignal const& signal) {
-    for (auto const& known : lanelet.signals)
-      if (known.kind == signal.kind && known.light == signal.light) return;
-    lanelet.signals.push_back(signal);
-  }
-
-  /// The ways through an intersection lie in it.
-  void read_intersection(Node node) {
-    std::set<Id> inside;
-    xml::for_each_child(node, "incoming", [&](Node incoming) {
-      xml::for_each_child(incoming, [&](Node child, std::string_view name) {
-        if (!name.starts_with("successors")) return;
-        if (auto const ref = reference(child)) inside.insert(*ref);
-      });
-    });
-    for (auto& lanelet : traffic_.lanelets)
-      if (inside.contains(lanelet.id)) lanelet.in_junction = true;
-  }
-
-  void make_map(map::MapOptions const& options) {
-    auto made = map::build_lanelet_map(traffic_.lanelets, options, context_.file());
-    for (auto& found : made.diagnostics) traffic_.diagnostics.push_back(std::move(found));
-    traffic_.map = std::move(made.map);
-    traffic_.lanes = std::move(made.lanes);
-    for (auto const& light : traffic_.map->lights()) {
-      auto const id = xml::parse_number<Id>(light.name);
-      auto const plan = id ? lights_.find(*id) : lights_.end();
-      traffic_.lights.push_back(plan == lights_.end() ? map::LightPlan{} : plan->second);
-    }
-  }
-
-  // --- obstacles -----------------------------------------------------------------------------------------------------
 
   void read_other(Node node, std::string_view name) {
     constexpr std::string_view known[] = {"lanelet",  "intersection", "trafficSign", "trafficLight",
@@ -345,102 +79,6 @@ class CommonRoadReader {
     else if (std::find(std::begin(known), std::end(known), name) == std::end(known) &&
              unknown_.insert(std::string(name)).second)
       note(node, "elements of this kind are not read");
-  }
-
-  /// The first shape of <shape>, <occupancy> or <position>; in the frame of what it belongs to.
-  [[nodiscard]] std::optional<CommonRoadShape> shape_of(Node parent) {
-    if (!parent) return std::nullopt;
-    std::optional<CommonRoadShape> found;
-    bool second = false;
-    xml::for_each_child(parent, [&](Node node, std::string_view name) {
-      if (name != "rectangle" && name != "circle" && name != "polygon") return;
-      if (found)
-        second = true;
-      else
-        found = name == "rectangle" ? rectangle(node) : name == "circle" ? circle(node) : polygon(node);
-    });
-    if (second) note(parent, "it has several shapes; the first one was taken");
-    return found;
-  }
-
-  [[nodiscard]] geometry::Point center(Node node) {
-    auto const child = xml::find_child(node, "center");
-    return child ? point(child).value_or(geometry::Point{}) : geometry::Point{};
-  }
-
-  /// To a nanometre: cosines of right angles are not 0.
-  [[nodiscard]] static geometry::Point rounded(geometry::Point const& p) {
-    return {std::round(p.x() * 1e9) / 1e9, std::round(p.y() * 1e9) / 1e9};
-  }
-
-  [[nodiscard]] std::optional<CommonRoadShape> rectangle(Node node) {
-    auto const length = number(node, "length"), width = number(node, "width");
-    if (!length || !width || !(*length > 0.0 && *width > 0.0)) return std::nullopt;
-    CommonRoadShape shape{center(node), 0.0, *length, *width, {}};
-    if (xml::find_child(node, "orientation")) shape.heading = number(node, "orientation").value_or(0.0);
-    double const c = std::cos(shape.heading), s = std::sin(shape.heading);
-    for (auto const& [a, b] : {std::pair{0.5, -0.5}, {0.5, 0.5}, {-0.5, 0.5}, {-0.5, -0.5}}) {
-      double const x = a * *length, y = b * *width;
-      shape.outline.push_back(rounded({shape.center.x() + c * x - s * y, shape.center.y() + s * x + c * y}));
-    }
-    return shape;
-  }
-
-  [[nodiscard]] std::optional<CommonRoadShape> circle(Node node) {
-    auto const radius = number(node, "radius");
-    if (!radius || !(*radius > 0.0)) return std::nullopt;
-    CommonRoadShape shape{center(node), 0.0, 2.0 * *radius, 2.0 * *radius, {}};
-    constexpr int corners = 32;
-    for (int k = 0; k < corners; ++k) {
-      double const angle = 2.0 * geometry::pi * k / corners;
-      shape.outline.push_back(
-          rounded({shape.center.x() + *radius * std::cos(angle), shape.center.y() + *radius * std::sin(angle)}));
-    }
-    return shape;
-  }
-
-  [[nodiscard]] std::optional<CommonRoadShape> polygon(Node node) {
-    CommonRoadShape shape;
-    geometry::Box box;
-    bool good = true;
-    xml::for_each_child(node, "point", [&](Node child) {
-      auto const p = point(child);
-      good = good && p;
-      if (!p) return;
-      shape.outline.push_back(*p);
-      box.add(p->x(), p->y());
-    });
-    if (!good || shape.outline.size() < 3) return std::nullopt;
-    shape.center = box.center();
-    shape.length = box.max_x - box.min_x;
-    shape.width = box.max_y - box.min_y;
-    return shape;
-  }
-
-  /// A position: a point, or the middle of an area.
-  [[nodiscard]] std::optional<geometry::Point> position(Node state) {
-    auto const node = xml::find_child(state, "position");
-    if (auto const child = xml::find_child(node, "point")) return point(child);
-    auto const area = shape_of(node);
-    if (area) {
-      note(node, "the position is an area; its middle was taken");
-      return area->center;
-    }
-    return std::nullopt;
-  }
-
-  /// A state; the heading without one is `heading`.
-  [[nodiscard]] std::optional<State> state_of(Node node, double heading) {
-    auto const at = position(node);
-    auto const step = value(node, "time");
-    if (!at || !step) return std::nullopt;
-    State state;
-    state.time = *step * traffic_.time_step;
-    state.x = at->x();
-    state.y = at->y();
-    state.heading = value(node, "orientation").value_or(heading);
-    state.speed = value(node, "velocity").value_or(0.0);
-    return state;
   }
 
   void read_obstacle(Node node, bool stands) {
@@ -520,8 +158,6 @@ class CommonRoadReader {
                                {State{0.0, shape->center.x(), shape->center.y(), shape->heading, 0.0}}});
   }
 
-  // --- planning problems ---------------------------------------------------------------------------------------------
-
   void read_problem(Node node) {
     auto const id = id_of(node);
     if (!id) return;
@@ -592,10 +228,6 @@ class CommonRoadReader {
     }
   }
 
-  RecordedTraffic traffic_;
-  xml::XmlContext context_;
-  std::map<Id, Sign> signs_;
-  std::map<Id, map::LightPlan> lights_;
   std::set<Id> ids_;  ///< of the obstacles
   std::set<std::string> unknown_;
 };

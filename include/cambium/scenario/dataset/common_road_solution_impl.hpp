@@ -15,6 +15,7 @@
 
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
+#include "cambium/core/stable_sort.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/map/opendrive/xml.hpp"
@@ -129,8 +130,7 @@ CAMBIUM_COLD CommonRoadSolution parse_common_road_solution(std::string_view text
     }
     solution.states.push_back(state);
   });
-  std::stable_sort(solution.states.begin(), solution.states.end(),
-                   [](State const& a, State const& b) { return a.time < b.time; });
+  detail::stable_sort(solution.states, &State::time);
   detail::check_solution(solution);
   return solution;
 }

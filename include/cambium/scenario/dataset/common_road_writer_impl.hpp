@@ -111,8 +111,6 @@ class CommonRoadWriter {
     return std::to_string(static_cast<std::int64_t>(whole));
   }
 
-  // --- lanelets ------------------------------------------------------------------------------------------------------
-
   [[nodiscard]] static Sign sign_of(map::SignalKind kind) {
     constexpr char const* numbers[] = {"306", "205", "206", ""};
     return {numbers[static_cast<std::size_t>(kind)], ""};
@@ -202,12 +200,12 @@ class CommonRoadWriter {
   }
 
   void write_signs() {
-    for (auto const& [sign, id] : signs_)
-      text_.element("trafficSign", [&, &sign = sign, &id = id] {
-        attribute("id", std::to_string(id));
+    for (auto const& entry : signs_)
+      text_.element("trafficSign", [&] {
+        attribute("id", std::to_string(entry.second));
         text_.element("trafficSignElement", [&] {
-          leaf("trafficSignID", sign.first);
-          if (!sign.second.empty()) leaf("additionalValue", sign.second);
+          leaf("trafficSignID", entry.first.first);
+          if (!entry.first.second.empty()) leaf("additionalValue", entry.first.second);
         });
         leaf("virtual", "false");
       });
@@ -243,8 +241,6 @@ class CommonRoadWriter {
       leaf("active", is_on ? "true" : "false");
     });
   }
-
-  // --- obstacles and problems ----------------------------------------------------------------------------------------
 
   void write_tracks() {
     for (bool const stands : {true, false})

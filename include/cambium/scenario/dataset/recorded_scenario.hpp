@@ -15,6 +15,7 @@
 #include "cambium/behavior/open_loop/static_trajectory.hpp"
 #include "cambium/core/diagnostic.hpp"
 #include "cambium/core/ids.hpp"
+#include "cambium/core/stable_sort.hpp"
 #include "cambium/geometry/polygon.hpp"
 #include "cambium/goal/goal.hpp"
 #include "cambium/map/corridor/corridor.hpp"
@@ -190,8 +191,7 @@ template <class WorldType, class ToBehavior>
     }
     result.scenario.agents.push_back(std::move(spec));
   }
-  std::stable_sort(result.later.begin(), result.later.end(),
-                   [](auto const& a, auto const& b) { return a.time < b.time; });
+  detail::stable_sort(result.later, [](auto const& entrant) { return entrant.time; });
   if (is_valid(result.scenario.ego) && std::none_of(result.scenario.agents.begin(), result.scenario.agents.end(),
                                                     [&](auto const& agent) { return agent.id == result.scenario.ego; }))
     result.scenario.ego = none<AgentId>;  // it comes later

@@ -17,6 +17,7 @@
 #include "cambium/core/macros.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/read_file.hpp"
+#include "cambium/core/stable_sort.hpp"
 #include "cambium/core/text.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/scenario/dataset/track_table.hpp"
@@ -213,7 +214,7 @@ class TrackTableReader {
   /// Fills the track from its rows; the least difference of their times [s].
   double finish(Read& read) {
     auto& rows = read.rows;
-    std::stable_sort(rows.begin(), rows.end(), [](Row const& a, Row const& b) { return a.state.time < b.state.time; });
+    stable_sort(rows, [](Row const& row) { return row.state.time; });
     double step = std::numeric_limits<double>::infinity();
     for (std::size_t i = 1; i < rows.size(); ++i) {
       double const passed = rows[i].state.time - rows[i - 1].state.time;
