@@ -25,7 +25,8 @@ constexpr std::size_t no_room = rooms.size();
 std::map<std::string, std::vector<std::string>> const families{
     {"map", {"road", "opendrive", "lanes", "routing", "corridor", "build", "lanelet"}},
     {"behavior", {"law", "following", "lane_change", "junction", "safety", "human", "pedestrian", "open_loop"}},
-    {"planner", {"search", "mcts", "frenet", "policy"}}};
+    {"planner", {"search", "mcts", "frenet", "policy"}},
+    {"scenario", {"dataset"}}};
 /// Rooms that do without the Boost libraries that are slow to compile, over whatever they include.
 constexpr std::array light_rooms = {"dynamics", "execution", "behavior",   "observer",
                                     "goal",     "world",     "evaluation", "planner"};
