@@ -59,6 +59,10 @@ std::string lanelet2_text() {
   way(12, 7, 8, kerb);
   way(13, 5, 6, kerb);
   way(14, 8, 9, kerb);
+  text +=
+      "<node id='90' lat='0' lon='0'><tag k='local_x' v='90'/><tag k='local_y' v='0'/></node>\n"
+      "<node id='91' lat='0' lon='0'><tag k='local_x' v='90'/><tag k='local_y' v='-3.5'/></node>\n";
+  way(15, 90, 91, "<tag k='type' v='stop_line'/>");
   auto const lanelet = [&](int number, int left, int right, std::string const& more) {
     text += "<relation id='" + std::to_string(number) + "'><member type='way' role='left' ref='" +
             std::to_string(left) + "'/><member type='way' role='right' ref='" + std::to_string(right) +
@@ -66,10 +70,12 @@ std::string lanelet2_text() {
   };
   lanelet(20, 10, 11, "<tag k='speed_limit' v='50 km/h'/>");
   lanelet(21, 11, 12, "<member type='relation' role='regulatory_element' ref='30'/>");
-  lanelet(22, 13, 14, "<tag k='speed_limit' v='30 mph'/>");
+  lanelet(22, 13, 14, "<tag k='speed_limit' v='30 mph'/><member type='relation' role='regulatory_element' ref='31'/>");
   text +=
       "<relation id='30'><member type='relation' role='yield' ref='21'/><tag k='type' v='regulatory_element'/>"
-      "<tag k='subtype' v='right_of_way'/></relation>\n";
+      "<tag k='subtype' v='right_of_way'/></relation>\n"
+      "<relation id='31'><member type='way' role='ref_line' ref='15'/><tag k='type' v='regulatory_element'/>"
+      "<tag k='subtype' v='traffic_light'/></relation>\n";
   return text + "</osm>\n";
 }
 
@@ -229,6 +235,20 @@ TEST_CASE("a Lanelet2 file says who follows whom, who lies beside whom, limits a
   REQUIRE(lane_of(made, 21).signals.size() == 1);
   CHECK(lane_of(made, 21).signals[0].kind == cambium::map::SignalKind::give_way);
   CHECK(lane_of(made, 21).path.pose(10.0).y == doctest::Approx(-1.75));
+  REQUIRE(lane_of(made, 22).signals.size() == 1);
+  CHECK(lane_of(made, 22).signals[0].s == doctest::Approx(40.0));
+  REQUIRE(made.map->lights().size() == 1);
+  CHECK(made.map->lights()[0].name == "31");
+  auto const with_line = [](std::string const& subtype) {
+    auto text = lanelet2_text();
+    text.replace(text.find("v='dashed'"), 10, "v='" + subtype + "'");
+    return lanelet2_map(text);
+  };
+  // The way is written against the traffic: solid on its left is solid for the right lane.
+  auto const mixed = with_line("solid_dashed");
+  CHECK(lane_of(mixed, 20).may_change_right(10.0));
+  CHECK_FALSE(lane_of(mixed, 21).may_change_left(10.0));
+  CHECK_FALSE(lane_of(with_line("solid"), 20).may_change_right(10.0));
 }
 
 TEST_CASE("a malformed Lanelet2 file is an error with its line, or a map with findings") {

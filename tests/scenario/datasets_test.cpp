@@ -177,6 +177,15 @@ TEST_CASE("pedestrians and cyclists have neither size nor heading: both follow f
   CHECK(walker.states[2].heading == doctest::Approx(geometry::pi / 2));  // who stands keeps it
 }
 
+TEST_CASE("tracks of several files are one recording, each with an id of its own") {
+  auto traffic = read_tracks(table);
+  add_tracks(traffic, read_tracks(replaced(table, "4,2,200", "9,2,200")));
+  std::vector<std::int64_t> ids;
+  for (auto const& track : traffic.tracks) ids.push_back(track.id);
+  CHECK(ids == std::vector<std::int64_t>{3, 4, 10, 11, 9});
+  check_recorded_traffic(traffic);
+}
+
 TEST_CASE("highD's corners in pictures and NGSIM's feet become middles in metres") {
   auto const highd = read_tracks(
       "frame,id,x,y,width,height,xVelocity,yVelocity\n25,1,100,20,5,2,-30,0\n26,1,98.8,20,5,2,-30,0\n", highd_tracks());

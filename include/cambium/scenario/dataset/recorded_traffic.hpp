@@ -157,6 +157,10 @@ struct RecordedTraffic {
   [[nodiscard]] double end() const;
 };
 
+/// Adds the tracks of another file of the same place and time, such as INTERACTION's of pedestrians. An id that is
+/// taken becomes the next one that is free above all others. O(tracks log tracks).
+void add_tracks(RecordedTraffic& traffic, RecordedTraffic const& more);
+
 /// Throws `Error` where a track has no states, times that do not rise, a number that is not finite, or no size; or
 /// where two have the same id.
 void check_recorded_traffic(RecordedTraffic const& traffic);

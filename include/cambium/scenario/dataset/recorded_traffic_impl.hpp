@@ -62,6 +62,20 @@ CAMBIUM_COLD double RecordedTraffic::end() const {
   return std::isfinite(last) ? last : 0.0;
 }
 
+CAMBIUM_COLD void add_tracks(RecordedTraffic& traffic, RecordedTraffic const& more) {
+  std::set<std::int64_t> ids;
+  for (auto const& track : traffic.tracks) ids.insert(track.id);
+  for (auto const& track : more.tracks) ids.insert(track.id);
+  auto next = ids.empty() ? 0 : *ids.rbegin();
+  ids.clear();
+  for (auto const& track : traffic.tracks) ids.insert(track.id);
+  for (auto track : more.tracks) {
+    if (!ids.insert(track.id).second) track.id = ++next;
+    traffic.tracks.push_back(std::move(track));
+  }
+  traffic.diagnostics.insert(traffic.diagnostics.end(), more.diagnostics.begin(), more.diagnostics.end());
+}
+
 CAMBIUM_COLD void check_recorded_traffic(RecordedTraffic const& traffic) {
   std::set<std::int64_t> ids;
   for (auto const& track : traffic.tracks) {

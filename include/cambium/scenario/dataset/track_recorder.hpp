@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <map>
@@ -32,11 +31,10 @@ class TrackRecorder {
     traffic_.time_step = time_step;
     traffic_.map = world.shared_map();
     traffic_.lights = world.roster().lights;
-    std::int64_t id = 0;
-    for (auto const& agent : world.roster().agents) id = std::max(id, static_cast<std::int64_t>(index_of(agent.id)));
+    std::int64_t id = 4'000'000'000;  // far from those of agents
     for (auto const& object : world.roster().objects) {
       auto const& box = object.outline.bounding_box();
-      traffic_.tracks.push_back({++id + 1'000'000,
+      traffic_.tracks.push_back({id++,
                                  TrackType::other,
                                  box.max_x - box.min_x,
                                  box.max_y - box.min_y,
