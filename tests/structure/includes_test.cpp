@@ -16,17 +16,18 @@ namespace {
 using Includes = std::map<std::string, std::vector<std::string>>;
 
 /// The rooms from top to bottom: a header includes its own room and those above.
-constexpr std::array rooms = {"core",   "geometry",  "map",      "dynamics",   "execution", "behavior",
-                              "observer", "goal",    "world",    "evaluation", "planner",   "scenario",
-                              "viewer", "benchmark", "snapshot", "learning",   "testing"};
+constexpr std::array rooms = {"core",     "geometry",  "map",      "dynamics",   "execution", "behavior",
+                              "observer", "goal",      "world",    "evaluation", "planner",   "scenario",
+                              "viewer",   "benchmark", "snapshot", "learning",   "testing"};
 constexpr std::size_t no_room = rooms.size();
 /// Families are folders of a room, from top to bottom: a header of a family includes its own family, those above, and
 /// the headers that lie in the room itself.
 std::map<std::string, std::vector<std::string>> const families{
-    {"map", {"road", "opendrive", "lanes", "routing", "corridor", "build"}},
+    {"map", {"road", "opendrive", "lanes", "routing", "corridor", "build", "lanelet"}},
     {"behavior", {"law", "following", "lane_change", "junction", "safety", "human", "pedestrian", "open_loop"}},
-    {"evaluation", {"rules"}},
-    {"planner", {"search", "mcts", "frenet", "policy"}}};
+    {"evaluation", {"metrics", "rules"}},
+    {"planner", {"search", "mcts", "frenet", "policy"}},
+    {"scenario", {"dataset"}}};
 /// Rooms that do without the Boost libraries that are slow to compile, over whatever they include.
 constexpr std::array light_rooms = {"dynamics", "execution", "behavior",   "observer",
                                     "goal",     "world",     "evaluation", "planner"};
@@ -36,7 +37,9 @@ constexpr std::array heavy_headers = {"cambium/geometry/polygon_union", "cambium
 std::map<std::string, std::vector<std::string>> const optional_headers{
     {"pugixml.hpp",
      {"cambium/map/opendrive.hpp", "cambium/map/opendrive_impl.hpp", "cambium/map/opendrive/",
-      "cambium/scenario/scenario_file.hpp", "cambium/scenario/detail/scenario_maps.hpp", "cambium/benchmark"}},
+      "cambium/scenario/scenario_file.hpp", "cambium/scenario/detail/scenario_maps.hpp", "cambium/benchmark",
+      "cambium/map/lanelet/lanelet2", "cambium/scenario/dataset/common_road",
+      "cambium/scenario/dataset/detail/common_road"}},
     {"nlohmann/json.hpp",
      {"cambium/core/json.hpp", "cambium/core/detail/json_transfer.hpp", "cambium/scenario/scenario_file.hpp",
       "cambium/scenario/detail/scenario_maps.hpp", "cambium/benchmark"}},

@@ -52,7 +52,7 @@ template <Described T>
 /// A struct from a JSON file. Throws as `read_json`, and `Error` if the file cannot be read.
 template <Described T>
 [[nodiscard]] T from_json_file(std::filesystem::path const& path) {
-  return from_json<T>(read_file(path, "give a JSON file"), path.string());
+  return from_json<T>(read_file<Error>(path.string(), {.expected = "give a JSON file"}), path.string());
 }
 
 }  // namespace cambium

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <iterator>
@@ -68,8 +69,9 @@ template <class WorldType>
 template <class WorldType>
 [[nodiscard]] ScenarioSet<WorldType> read_scenarios(
     std::filesystem::path const& path, std::function<void(ScenarioRecipe<WorldType>&)> const& adjust = {}) {
-  return parse_scenarios<WorldType>(read_file(path, "give a scenario file (.json)"), path.parent_path(), path.string(),
-                                    adjust);
+  return parse_scenarios<WorldType>(
+      read_file<Error>(path.string(), {.largest = std::size_t{1} << 31, .expected = "give a scenario file (.json)"}),
+      path.parent_path(), path.string(), adjust);
 }
 
 /// The set as JSON text, which `parse_scenarios` reads back as the same bits. Throws `ParameterError` if an agent has a
