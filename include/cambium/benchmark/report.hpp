@@ -42,7 +42,7 @@ struct Table {
 
 /// The tables of a report: for each set the outcomes, the means and the planning times of each behaviour, and the
 /// differences between each two; then the comparisons. Tables of means have at most `columns` measures.
-[[nodiscard]] std::vector<Table> tables_of(Report const& report, std::size_t columns = 6);
+[[nodiscard]] std::vector<Table> tables_of(Report const& report, std::size_t columns = 7);
 
 /// What a comparison says in one line: "significant loss: merging, mobil: success".
 [[nodiscard]] std::string verdict_of(Comparisons const& comparisons);

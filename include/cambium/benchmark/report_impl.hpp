@@ -46,7 +46,7 @@ namespace detail {
     auto const text = fixed_text(scale * x, decimals);
     return with_sign && x > 0.0 ? "+" + text : text;
   };
-  if (!is_known) return number(value);
+  if (!is_known || width == 0.0) return number(value);
   auto const low = number(interval.low), high = number(interval.high);
   bool const has_sign = with_sign || low.front() == '-';
   return number(value) + " (" + low + (has_sign ? " to " : "-") + high + ")";
@@ -111,7 +111,6 @@ namespace detail {
       if (measures()[m].key == "mean_ms") mean = cell_of(measures()[m], estimates[m], group.rows.size());
       if (measures()[m].key == "longest_ms") longest = with_interval(estimates[m].most, {0.0, 0.0}, false, false);
     }
-    longest = longest.substr(0, longest.find(' '));
     table.rows.push_back({group.label, std::to_string(plans), mean, longest, std::to_string(overruns)});
   }
   table.note = "On the machine and threads of the run; interval of the mean over scenarios.";
@@ -147,7 +146,7 @@ namespace detail {
   std::replace(name.begin(), name.end(), '_', ' ');
   table.title = name + (is_share ? ", differences [percentage points]" : ", differences");
   table.note = std::string("On the scenarios that both have run. *: significant at ") +
-               fixed_text(100 * report.each.level, 1) + " % (" +
+               rounded_text(100 * report.each.level) + " % (" +
                (is_share ? "McNemar's exact test" : "paired bootstrap") + ", Holm's correction for all pairs).";
   return table;
 }
@@ -314,9 +313,11 @@ CAMBIUM_COLD std::vector<Table> tables_of(Report const& report, std::size_t colu
   for (std::size_t m = 0; m < measures().size(); ++m) {
     if (measures()[m].is_share)
       shares.push_back(m);
-    else if (!detail::is_time(measures()[m]))
+    else if (!detail::is_time(measures()[m]) && measures()[m].key != "steps")  // the duration says that
       means.push_back(m);
   }
+  auto const parts = (means.size() + columns - 1) / columns;
+  columns = (means.size() + parts - 1) / parts;  // tables of equal widths
   for (auto const& set : detail::groups_by_set(report.groups)) {
     auto const& name = report.groups[set.front()].set_label;
     auto const add = [&](Table table, std::string const& title) {
@@ -355,7 +356,7 @@ CAMBIUM_COLD std::string verdict_of(Comparisons const& comparisons) {
     }
   auto text = (worse.empty() ? "no significant loss" : "significant loss: " + worse) +
               (better.empty() ? "" : "; significant gain: " + better);
-  return comparisons.title + ": " + text + " (level " + detail::fixed_text(100 * comparisons.level, 1) + " %)";
+  return comparisons.title + ": " + text + " (level " + detail::rounded_text(100 * comparisons.level) + " %)";
 }
 
 CAMBIUM_COLD std::string text_of(Table const& table) {
