@@ -33,6 +33,7 @@ std::vector<std::string> rooms() {
 /// files or watch traffic rules, or only declare what other headers define.
 bool needs_more(std::string const& header) {
   std::set<std::string> const apart{"core/json.hpp",
+                                    "core/markup.hpp",
                                     "core/read_file.hpp",
                                     "core/stable_sort.hpp",
                                     "core/state_vector.hpp",

@@ -97,6 +97,21 @@ class ResultStore {
     has_ = prepare(
         "SELECT 1 FROM results WHERE set_hash=? AND scenario=? AND behavior=? AND parameters_hash=? AND version=?");
   }
+  /// Opens a database that is there already. Throws `StoreError` if the file is missing or is none; then it stays as it
+  /// is.
+  [[nodiscard]] static ResultStore existing(std::filesystem::path const& file) {
+    sqlite3* db = nullptr;
+    bool is_ours = sqlite3_open_v2(file.string().c_str(), &db, SQLITE_OPEN_READONLY, nullptr) == SQLITE_OK;
+    std::unique_ptr<sqlite3, Close> const closed(db);
+    sqlite3_stmt* query = nullptr;
+    is_ours = is_ours && sqlite3_prepare_v2(db, "SELECT 1 FROM runs, sets, behaviors, results, times LIMIT 0", -1,
+                                            &query, nullptr) == SQLITE_OK;
+    sqlite3_finalize(query);
+    if (!is_ours)
+      throw StoreError(file.string(), "is no database of results (" + std::string(sqlite3_errmsg(db)) + ")",
+                       "name one that a benchmark has written");
+    return ResultStore(file);
+  }
   ResultStore(ResultStore&&) = default;
   ResultStore& operator=(ResultStore&&) = default;
   ~ResultStore() {
