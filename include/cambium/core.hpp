@@ -8,7 +8,8 @@
 ///
 /// **Errors.** Loading and building throw `Error`s; the step path does not throw. `CAMBIUM_ASSERT` guards invariants.
 ///
-/// `core/json.hpp` (needs nlohmann_json), `core/text.hpp` (parses numbers), `core/markup.hpp` (text in HTML and JSON),
+/// `core/json.hpp` and `core/json_document.hpp` (need nlohmann_json), `core/transfer_parameters.hpp` (for file formats of
+/// your own), `core/nearest_names.hpp`, `core/text.hpp` (parses numbers), `core/markup.hpp` (text in HTML and JSON),
 /// `core/read_file.hpp`, `core/write_file.hpp`, `core/stable_sort.hpp` and `core/state_vector.hpp` (Eigen) are included
 /// by name.
 #pragma once

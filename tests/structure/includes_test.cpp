@@ -41,8 +41,8 @@ std::map<std::string, std::vector<std::string>> const optional_headers{
       "cambium/map/lanelet/lanelet2", "cambium/scenario/dataset/common_road",
       "cambium/scenario/dataset/detail/common_road"}},
     {"nlohmann/json.hpp",
-     {"cambium/core/json.hpp", "cambium/core/detail/json_transfer.hpp", "cambium/scenario/scenario_file.hpp",
-      "cambium/scenario/detail/scenario_maps.hpp", "cambium/benchmark"}},
+     {"cambium/core/json.hpp", "cambium/core/json_document.hpp", "cambium/core/detail/json_transfer.hpp",
+      "cambium/scenario/scenario_file.hpp", "cambium/scenario/detail/scenario_maps.hpp", "cambium/benchmark"}},
     {"sqlite3.h", {"cambium/benchmark"}}};
 
 /// Who makes maps brings what a map itself calls.

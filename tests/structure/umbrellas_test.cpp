@@ -33,11 +33,14 @@ std::vector<std::string> rooms() {
 /// files or watch traffic rules, or only declare what other headers define.
 bool needs_more(std::string const& header) {
   std::set<std::string> const apart{"core/json.hpp",
+                                    "core/json_document.hpp",
+                                    "core/nearest_names.hpp",
                                     "core/markup.hpp",
                                     "core/read_file.hpp",
                                     "core/stable_sort.hpp",
                                     "core/state_vector.hpp",
                                     "core/text.hpp",
+                                    "core/transfer_parameters.hpp",
                                     "core/write_file.hpp",
                                     "geometry/polygon_union.hpp",
                                     "map/corridor/road_area.hpp",

@@ -20,7 +20,7 @@
 #include "cambium/benchmark/detail/progress.hpp"
 #include "cambium/benchmark/result_store.hpp"
 #include "cambium/benchmark/runner.hpp"
-#include "cambium/core/detail/json_transfer.hpp"
+#include "cambium/core/json_document.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/write_file.hpp"
 #include "cambium/scenario/scenario_file.hpp"

@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "cambium/core/detail/json_transfer.hpp"
-#include "cambium/core/detail/transfer_parameters.hpp"
+#include "cambium/core/transfer_parameters.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/read_file.hpp"

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "cambium/core/detail/nearest_names.hpp"
+#include "cambium/core/nearest_names.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/text.hpp"
 

@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "cambium/core/detail/transfer_parameters.hpp"
+#include "cambium/core/transfer_parameters.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/json.hpp"
 #include "cambium/core/text.hpp"
