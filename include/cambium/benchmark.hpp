@@ -16,6 +16,7 @@
 #include "cambium/benchmark/comparison.hpp"
 #include "cambium/benchmark/contender.hpp"
 #include "cambium/benchmark/measure.hpp"
+#include "cambium/benchmark/progress.hpp"
 #include "cambium/benchmark/read_results.hpp"
 #include "cambium/benchmark/report.hpp"
 #include "cambium/benchmark/result_group.hpp"

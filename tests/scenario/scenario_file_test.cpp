@@ -166,6 +166,14 @@ TEST_CASE("a recipe draws what its sampler draws") {
       "program's World");
 }
 
+TEST_CASE("the example in the README is a scenario file") {
+  auto const readme = read_file<Error>(CAMBIUM_SOURCE_DIR "/include/cambium/scenario/README.md", {});
+  auto const begin = readme.find("```json\n") + 8;
+  auto const set = parse_scenarios<Small>(readme.substr(begin, readme.find("```", begin) - begin), maps, "README");
+  CHECK(set.scenarios.size() == 1051);
+  CHECK(set.title == "a merge");
+}
+
 TEST_CASE("flows draw traffic by lane that is dense, safe and reproducible") {
   std::string const text = R"({"recipes": [{"map_file": "highway.xodr", "scenarios": 30, "seed": 8, "flows": [
     {"lane": "1/0/-1", "traffic": {"begin": 0, "end": 300, "truck_share": 0}, "ego": "middle",

@@ -17,7 +17,7 @@
 
 #include "cambium/benchmark/contender.hpp"
 #include "cambium/benchmark/detail/arguments.hpp"
-#include "cambium/benchmark/detail/progress.hpp"
+#include "cambium/benchmark/progress.hpp"
 #include "cambium/benchmark/result_store.hpp"
 #include "cambium/benchmark/runner.hpp"
 #include "cambium/core/json_document.hpp"

@@ -10,7 +10,7 @@
 #include <cstdio>
 #include <string>
 
-namespace cambium::detail {
+namespace cambium {
 
 /// Progress after `seconds` of work: "120 of 600, 14.2/s, 34 s left".
 [[nodiscard]] inline std::string progress_text(std::size_t done, std::size_t total, double seconds) {
@@ -27,7 +27,7 @@ namespace cambium::detail {
   return text;
 }
 
-/// A line on a terminal's error stream that shows how far the work is; silent elsewhere.
+/// A line on a terminal's error stream that shows how far the work is; silent elsewhere. One thread at a time calls it.
 class ProgressBar {
  public:
   explicit ProgressBar(std::string what) : what_(std::move(what)) {
@@ -63,4 +63,4 @@ class ProgressBar {
   bool is_terminal_ = false, is_drawn_ = false;
 };
 
-}  // namespace cambium::detail
+}  // namespace cambium

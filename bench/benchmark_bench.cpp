@@ -1,0 +1,108 @@
+// What the benchmark runner costs over a bare loop, how many rows a second the database takes, and how long a JSON set
+// of 10 000 scenarios takes to read.
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "cambium/benchmark.hpp"
+#include "cambium/cambium.hpp"
+#include "cambium/map/opendrive.hpp"
+#include "cambium/scenario/merging_site.hpp"
+#include "cambium/scenario/scenario_file.hpp"
+
+#include "yardstick/main.hpp"
+
+namespace cb = cambium;
+
+namespace {
+
+using Traffic = cb::MergingSite::World;
+
+cb::ScenarioSet<Traffic> merging(std::uint32_t scenarios) {
+  std::string const file = CAMBIUM_SOURCE_DIR "/maps/merging.xodr";
+  cb::ScenarioRecipe<Traffic> recipe{
+      .map_file = file, .kind = cb::ScenarioRecipe<Traffic>::Kind::merging, .scenarios = scenarios};
+  return {.scenarios = cb::draw(recipe, cb::load_opendrive(file).map)};
+}
+
+std::filesystem::path database() { return std::filesystem::temp_directory_path() / "cambium_benchmark_bench.db"; }
+
+void remove_database() {
+  for (char const* end : {"", "-wal", "-shm"}) std::filesystem::remove(database().string() + end);
+}
+
+constexpr std::uint32_t runs = 200;
+
+/// The contender's runs alone, without jobs, locks and database.
+void bare_loop(benchmark::State& state) {
+  auto const set = merging(runs);
+  auto const idm = cb::contender<Traffic>(cb::IdmClassic{.desired_speed = 22.0});
+  yardstick::measure_duration(state, [&] {
+    for (auto const& scenario : set.scenarios)
+      benchmark::DoNotOptimize(idm.run(scenario, {set.time_step, set.time_limit}, false).result.steps);
+  });
+}
+
+void runner(benchmark::State& state, std::size_t threads) {
+  auto const set = merging(runs);
+  auto const idm = cb::contender<Traffic>(cb::IdmClassic{.desired_speed = 22.0});
+  remove_database();
+  cb::ResultStore store(database());
+  cb::BenchmarkOptions options;
+  options.threads = threads;
+  options.again = true;
+  yardstick::measure_duration(state, [&] { cb::run_benchmark(set, std::vector{idm}, store, options); });
+  remove_database();
+}
+
+void rows(benchmark::State& state) {
+  remove_database();
+  cb::ResultStore store(database());
+  cb::ResultRow row;
+  row.key = {.set_hash = 1, .scenario = 0, .behavior = "idm", .parameters_hash = 2};
+  row.result.least_gap = 3.25;
+  constexpr std::size_t count = 10'000;
+  yardstick::measure_search(state, count, [&] {
+    for (std::size_t i = 0; i < count; ++i) {
+      ++row.key.scenario;
+      store.add(row);
+    }
+    store.commit();
+  });
+  remove_database();
+}
+
+void read_json(benchmark::State& state) {
+  auto const text = cb::to_json_text(merging(10'000));
+  yardstick::measure_duration(
+      state, [&] { benchmark::DoNotOptimize(cb::parse_scenarios<Traffic>(text, "/").scenarios.size()); });
+}
+
+void print_ratios(yardstick::Results const& results) {
+  yardstick::print_targets(results,
+                           {{"benchmark/rows", 1e5}, {"scenario/json_10000", 2000.0}, {"scenario/draw_10000", 2000.0}});
+  if (auto const ratio = yardstick::ratio(results, "benchmark/overhead", "benchmark/bare_loop"))
+    std::printf("  runner over bare loop      %12.3f   target      1.05\n", *ratio);
+  if (auto const ratio = yardstick::ratio(results, "benchmark/overhead", "benchmark/threads_2"))
+    std::printf("  2 threads over 1           %12.2f   target       1.9\n", *ratio);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  yardstick::add("benchmark/bare_loop", bare_loop)->UseRealTime();
+  yardstick::add("benchmark/overhead", [](benchmark::State& state) { runner(state, 1); })->UseRealTime();
+  yardstick::add("benchmark/threads_2", [](benchmark::State& state) { runner(state, 2); })->UseRealTime();
+  yardstick::add("benchmark/rows", rows)->UseRealTime();
+  yardstick::add("scenario/json_10000", read_json);
+  yardstick::add("scenario/draw_10000", [](benchmark::State& state) {
+    yardstick::measure_duration(state, [] { benchmark::DoNotOptimize(merging(10'000).scenarios.size()); });
+  });
+  return yardstick::run_benchmarks(argc, argv, "What the benchmark runner, its database and scenario files cost.",
+                                   print_ratios);
+}

@@ -1,0 +1,127 @@
+// The benchmark example as a user meets it.
+#include <doctest/doctest.h>
+
+#include <signal.h>
+#include <sys/types.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "cambium/benchmark/result_store.hpp"
+#include "program.hpp"
+
+using program::content_of;
+using program::Program;
+
+namespace {
+
+/// All rows of a database but their times, as text.
+std::string results_in(std::string const& file) {
+  cambium::ResultStore store(file);
+  std::string text;
+  store.for_each([&](cambium::ResultRow const& row) {
+    text += row.key.behavior + " " + std::to_string(row.key.scenario) + " " + to_string(row.result) + "\n";
+  });
+  return text;
+}
+
+}  // namespace
+
+TEST_CASE("the benchmark gives the same results on any number of threads, and goes on after it was killed") {
+  Program const program("benchmark");
+  if (!program.is_there()) return;
+  browser::TemporaryFolder const folder;
+  auto const file = [&](char const* name) { return (folder.path() / name).string(); };
+  std::vector<std::string> const what{
+      "--set", "merging,junction_lights", "--behaviors", "idm,mobil,intersection", "--scenarios", "40"};
+  auto const with = [&](std::vector<std::string> more) {
+    more.insert(more.begin(), what.begin(), what.end());
+    return more;
+  };
+  auto const one = program.run(with({"--threads", "1", "--db", file("one.db"), "--json", file("one.json")}));
+  CHECK(one.code == 0);
+  CHECK(one.err.empty());
+  CHECK(one.out.find("240 runs") != std::string::npos);
+  auto const rows = nlohmann::json::parse(content_of(file("one.json")));
+  REQUIRE(rows.size() == 6);
+  for (auto const& row : rows) {
+    CHECK(row["scenarios"] == 40);
+    CHECK(row["error"] == 0.0);
+    double const ends = double(row["success"]) + double(row["collision"]) + double(row["timed_out"]);
+    CHECK(ends <= 1.0 + 1e-9);
+  }
+  CHECK(rows[0]["set"] == "merging");
+  CHECK(rows[0]["success"] == 1.0);
+
+  auto const expected = results_in(file("one.db"));
+  REQUIRE(program.run(with({"--threads", "3", "--db", file("three.db")})).code == 0);
+  CHECK(results_in(file("three.db")) == expected);
+
+  for (int const milliseconds : {30, 90, 200}) {
+    pid_t const child = fork();
+    REQUIRE(child >= 0);
+    if (child == 0) {
+      auto words = with({"--threads", "2", "--db", file("killed.db")});
+      words.insert(words.begin(), CAMBIUM_EXAMPLES_DIR "/benchmark");
+      std::vector<char*> argv;
+      for (auto& word : words) argv.push_back(word.data());
+      argv.push_back(nullptr);
+      if (std::freopen("/dev/null", "w", stdout) == nullptr) _exit(1);
+      execv(argv[0], argv.data());
+      _exit(1);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+    kill(child, SIGKILL);
+    waitpid(child, nullptr, 0);
+  }
+  auto const again = program.run(with({"--db", file("killed.db")}));
+  CHECK(again.code == 0);
+  CHECK(results_in(file("killed.db")) == expected);
+  CHECK(program.run(with({"--db", file("killed.db")})).out.find("0 runs") != std::string::npos);
+}
+
+TEST_CASE("the benchmark repeats one scenario and writes its replay") {
+  Program const program("benchmark");
+  if (!program.is_there()) return;
+  browser::TemporaryFolder const folder;
+  auto const replay = (folder.path() / "replay.html").string();
+  auto const run = program.run({"--set", "merging", "--only", "merging:3:idm", "--replay", replay});
+  CHECK(run.code == 0);
+  CHECK(run.out.find("success: true") != std::string::npos);
+  CHECK(content_of(replay).find("merging, scenario 3, idm") != std::string::npos);
+}
+
+TEST_CASE("the benchmark names the fault in its options") {
+  Program const program("benchmark");
+  if (!program.is_there()) return;
+  browser::TemporaryFolder const folder;
+  auto const error = [&](std::vector<std::string> const& words) {
+    auto const run = program.run(words);
+    CHECK(run.code == 2);
+    return run.err;
+  };
+  auto const says = [&](std::vector<std::string> const& words, std::string const& text) {
+    auto const message = error(words);
+    CAPTURE(message);
+    CHECK(message.find(text) != std::string::npos);
+  };
+  says({"--sets", "merging"}, "is it --set?");
+  says({"--set"}, "lacks its value");
+  says({"--set", "nowhere"}, "is neither a scenario file nor a folder");
+  says({"--set", "merging", "--behaviors", "idmm"}, "is it idm?");
+  says({"--threads", "0"}, "give a whole number from 1 to 4096");
+  says({"--threads", "1", "--threads", "2"}, "is given twice");
+  says({"--shard", "2/2"}, "write i/n");
+  says({"--set", "merging", "--only", "merging:99:idm"}, "give a number from 0 to 7");
+  says({"--set", "merging", "--only", "merging"}, "write SET:NUMBER:BEHAVIOR");
+  says({"--set", "merging", "--replay", "x.html"}, "needs --only");
+  says({"--set", "merging", "--db", "/nowhere/at/all.db"}, "/nowhere");
+  CHECK(program.run({"--help"}).out.find("--shard i/n") != std::string::npos);
+  CHECK(program.run({"--list"}).out.find("mcts_hypothesis") != std::string::npos);
+}
