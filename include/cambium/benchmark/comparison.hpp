@@ -12,7 +12,7 @@
 namespace cambium {
 
 /// What a significant difference means.
-enum class Verdict { none, better, worse };
+enum class Finding { none, better, worse };
 
 /// One measure of two behaviours, on the scenarios in which both have a finite value.
 struct Change {
@@ -23,7 +23,7 @@ struct Change {
   Interval difference{};             ///< 95 % bootstrap interval of after - before
   double p = 1.0;                    ///< McNemar's exact test of a share, paired bootstrap of a mean
   double p_adjusted = 1.0;           ///< for all measures and comparisons made together
-  Verdict verdict = Verdict::none;
+  Finding verdict = Finding::none;
 };
 
 /// Two behaviours on the scenarios that both have run (congruent scenarios).
@@ -45,7 +45,7 @@ struct Comparisons {
   [[nodiscard]] bool has_loss() const {
     for (auto const& comparison : list)
       for (auto const& change : comparison.changes)
-        if (change.verdict == Verdict::worse) return true;
+        if (change.verdict == Finding::worse) return true;
     return false;
   }
 };

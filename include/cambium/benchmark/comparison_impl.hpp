@@ -85,7 +85,7 @@ inline void judge_changes(Comparisons& comparisons) {
     change.p_adjusted = adjusted[i];
     if (adjusted[i] >= comparisons.level) continue;
     bool const is_more = change.after > change.before;
-    change.verdict = is_more == (change.measure->better == Better::more) ? Verdict::better : Verdict::worse;
+    change.verdict = is_more == (change.measure->better == Better::more) ? Finding::better : Finding::worse;
   }
 }
 

@@ -137,7 +137,7 @@ namespace detail {
           is_share = change.measure->is_share;
           double const difference = (is_share ? 100.0 : 1.0) * (change.after - change.before) * (forward ? -1.0 : 1.0);
           cell = (difference > 0 ? "+" : "") + fixed_text(difference, is_share ? 1 : 3);
-          if (change.verdict != Verdict::none) cell += "*";
+          if (change.verdict != Finding::none) cell += "*";
         }
       table.rows[i].push_back(cell);
     }
@@ -179,8 +179,8 @@ namespace detail {
     table.rows.push_back({titled(measure), std::to_string(change.pairs), value(change.before), value(change.after),
                           with_interval(change.after - change.before, change.difference, measure.is_share, true),
                           p_text(change.p), is_judged ? p_text(change.p_adjusted) : "",
-                          change.verdict == Verdict::better  ? "better"
-                          : change.verdict == Verdict::worse ? "WORSE"
+                          change.verdict == Finding::better  ? "better"
+                          : change.verdict == Finding::worse ? "WORSE"
                                                              : ""});
   }
   if (table.rows.empty())
@@ -350,8 +350,8 @@ CAMBIUM_COLD std::string verdict_of(Comparisons const& comparisons) {
   std::string worse, better;
   for (auto const& comparison : comparisons.list)
     for (auto const& change : comparison.changes) {
-      if (change.verdict == Verdict::none) continue;
-      auto& text = change.verdict == Verdict::worse ? worse : better;
+      if (change.verdict == Finding::none) continue;
+      auto& text = change.verdict == Finding::worse ? worse : better;
       text += (text.empty() ? "" : "; ") + comparison.set + ", " + comparison.after + ": " + change.measure->name;
     }
   auto text = (worse.empty() ? "no significant loss" : "significant loss: " + worse) +
@@ -427,8 +427,8 @@ CAMBIUM_COLD std::string csv_of(Report const& report) {
                                   detail::csv_number(change.difference.low), detail::csv_number(change.difference.high),
                                   detail::csv_number(change.p),
                                   measure.better == Better::neither ? "" : detail::csv_number(change.p_adjusted),
-                                  change.verdict == Verdict::better  ? "better"
-                                  : change.verdict == Verdict::worse ? "worse"
+                                  change.verdict == Finding::better  ? "better"
+                                  : change.verdict == Finding::worse ? "worse"
                                                                      : ""});
       }
   };
