@@ -14,6 +14,7 @@
 
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
+#include "cambium/map/lanelet/lanelet_map.hpp"
 #include "cambium/map/opendrive/xml.hpp"
 #include "cambium/scenario/dataset/common_road_writer.hpp"
 
