@@ -3,54 +3,16 @@
 #include <cstdint>
 #include <map>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "cambium/core/diagnostic.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/ids.hpp"
-#include "cambium/geometry/pose.hpp"
-#include "cambium/map/lanes/signals.hpp"
+#include "cambium/map/lanelet/lanelet.hpp"
 #include "cambium/map/map.hpp"
-#include "cambium/map/road/lane_type.hpp"
 
-/// Lanelets: the form in which Lanelet2 and CommonRoad describe roads. A lanelet is a piece of one lane between two
-/// polylines; what follows it and what lies beside it is said by ids.
 namespace cambium::map {
-
-/// A sign or light for the traffic of a lanelet.
-struct LaneletSignal {
-  SignalKind kind = SignalKind::priority;
-  double before_end = 0.0;  ///< how far before the lanelet's end it counts, as at a stop line [m]
-  std::string light{};      ///< name of the traffic light; only of a light
-
-  friend bool operator==(LaneletSignal const&, LaneletSignal const&) = default;
-};
-
-/// A piece of a lane. `left` and `right` run in the direction of travel; what a neighbour is travels the same way.
-struct Lanelet {
-  std::int64_t id = 0;
-  std::vector<geometry::Point> left{}, right{};  ///< at least two points each, map frame [m]
-  std::vector<std::int64_t> predecessors{}, successors{};
-  std::optional<std::int64_t> left_neighbor{}, right_neighbor{};
-  bool may_change_left = true, may_change_right = true;  ///< as the marks say
-  LaneType type = LaneType::driving;
-  std::optional<double> speed_limit{};  ///< [m/s]
-  bool both_directions = false;         ///< driven either way
-  bool in_junction = false;             ///< the file says that it lies in an intersection
-  std::vector<LaneletSignal> signals{};
-  int line = 0;  ///< of the file, for messages; 0: unknown
-
-  /// Compares all but the line.
-  friend bool operator==(Lanelet const& a, Lanelet const& b) {
-    return a.id == b.id && a.left == b.left && a.right == b.right && a.predecessors == b.predecessors &&
-           a.successors == b.successors && a.left_neighbor == b.left_neighbor && a.right_neighbor == b.right_neighbor &&
-           a.may_change_left == b.may_change_left && a.may_change_right == b.may_change_right && a.type == b.type &&
-           a.speed_limit == b.speed_limit && a.both_directions == b.both_directions && a.in_junction == b.in_junction &&
-           a.signals == b.signals;
-  }
-};
 
 /// A map made of lanelets.
 struct LaneletMap {

@@ -14,6 +14,7 @@
 
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
+#include "cambium/map/lanelet/lanelet_map.hpp"
 #include "cambium/map/opendrive/xml.hpp"
 #include "cambium/scenario/dataset/common_road_writer.hpp"
 
@@ -309,10 +310,9 @@ class CommonRoadWriter {
       interval("orientation", decimal_text(limits.heading_from), decimal_text(limits.heading_to));
     if (std::isfinite(goal.first_time) && std::isfinite(goal.last_time))
       interval("time", steps(goal.first_time, of), steps(goal.last_time, of));
-    constexpr double fastest = 1000.0;  // [m/s]
     if (std::isfinite(limits.lowest_speed) || std::isfinite(limits.highest_speed))
-      interval("velocity", decimal_text(std::max(limits.lowest_speed, -fastest)),
-               decimal_text(std::min(limits.highest_speed, fastest)));
+      interval("velocity", decimal_text(std::max(limits.lowest_speed, -1000.0)),
+               decimal_text(std::min(limits.highest_speed, 1000.0)));
   }
 
   RecordedTraffic const& traffic_;

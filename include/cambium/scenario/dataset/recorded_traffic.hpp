@@ -19,7 +19,7 @@
 #include "cambium/geometry/pose.hpp"
 #include "cambium/geometry/shape.hpp"
 #include "cambium/goal/goal.hpp"
-#include "cambium/map/lanelet/lanelet_map.hpp"
+#include "cambium/map/lanelet/lanelet.hpp"
 #include "cambium/map/lanes/signals.hpp"
 #include "cambium/map/map.hpp"
 

@@ -9,7 +9,7 @@
 
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/pose.hpp"
-#include "cambium/map/lanelet/lanelet_map.hpp"
+#include "cambium/map/lanelet/lanelet.hpp"
 #include "cambium/map/lanes/lane.hpp"
 
 /// The geometry of lanelets: bounds that can be built from, the line between them, and where they cross.

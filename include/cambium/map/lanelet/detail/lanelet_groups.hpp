@@ -17,7 +17,7 @@
 #include "cambium/geometry/box.hpp"
 #include "cambium/map/detail/findings.hpp"
 #include "cambium/map/lanelet/detail/lanelet_bounds.hpp"
-#include "cambium/map/lanelet/lanelet_map.hpp"
+#include "cambium/map/lanelet/lanelet.hpp"
 
 namespace cambium::map::detail {
 
