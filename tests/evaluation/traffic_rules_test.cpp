@@ -566,13 +566,14 @@ TEST_CASE("violations are counted by stretches of steps, and located; the formul
   CHECK(next_one.violations()[0].begin == doctest::Approx(2.2));
   CHECK(impossible.count() == 1);
   CHECK(impossible.violations()[0].begin == doctest::Approx(2.0));  // known before the next step
-  for (auto* monitor : {&never, &responds, &fails, &soon}) monitor->finish();
+  for (auto* monitor : {&never, &responds, &soon}) CHECK(monitor->finish() == Verdict::satisfied);
+  CHECK(fails.finish() == Verdict::violated);
   CHECK(never.count() == 2);
   CHECK(responds.count() == 0);
   CHECK(soon.count() == 0);
   CHECK(fails.count() == 1);  // b does not come again
   CHECK(fails.violations()[0].begin == doctest::Approx(4.0));
-  fails.finish();
+  CHECK(fails.finish() == Verdict::open);
   CHECK(fails.count() == 1);
 }
 

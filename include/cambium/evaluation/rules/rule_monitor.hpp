@@ -68,9 +68,9 @@ struct Violation {
 /// first seen to the one at which it has left: what the formula still demands then is a violation. A trace that ends
 /// may come out as satisfied or violated, but not open.
 ///
-/// A copy continues by itself and shares the automaton. A step costs O(labels), for a rule with labels of two agents
-/// O(agents * labels), and one look into a table; it does not allocate while there are no more others and violations
-/// than the constructor reserved room for.
+/// A step costs O(labels), for a rule with labels of two agents O(agents * labels), and one look into a table each; it
+/// does not allocate while there are no more others and violations than the constructor reserved room for. A copy
+/// continues by itself, shares the automaton, and gets its room as it needs it.
 template <class Labels>
 class RuleMonitor {
  public:
@@ -86,7 +86,7 @@ class RuleMonitor {
 
   /// Judges the step that led to the present frame: violated if the rule was violated in this step; satisfied if it no
   /// longer can be, with any of the agents that are in traffic; else open. Nothing happens while the agent is not in
-  /// traffic; when it has left, or another agent is at `slot`, its trace is finished.
+  /// traffic; when it has left, or another agent is at `slot`, its trace is finished, see `finish`.
   template <class World>
   Verdict operator()(World& world, Slot slot) {
     auto const id = world.roster().agents[slot].id;
@@ -94,10 +94,7 @@ class RuleMonitor {
       finish();
       agent_ = id;
     }
-    if (!in_traffic(world, slot)) {
-      finish();
-      return Verdict::open;
-    }
+    if (!in_traffic(world, slot)) return finish();
     time_ = world.frame().time;
     is_violated_ = false;
     auto const letter = letter_of(world, slot);
@@ -113,10 +110,14 @@ class RuleMonitor {
     return all ? Verdict::satisfied : Verdict::open;
   }
 
-  /// Ends the traces: what the formula still demands is a violation at the last step.
-  void finish() {
+  /// Ends the traces: what the formula still demands is a violation at the last step. Satisfied or violated; open where
+  /// there was no trace.
+  Verdict finish() {
+    if (traces_.empty()) return Verdict::open;
+    is_violated_ = false;
     for (auto const& trace : traces_) end(trace);
     traces_.clear();
+    return is_violated_ ? Verdict::violated : Verdict::satisfied;
   }
 
   /// The number of violations.
