@@ -105,7 +105,7 @@ void each_extension(Letters& trace, std::size_t longest, std::uint32_t letters, 
 }
 
 /// The shortest way on from `state` to a state in which a trace may end with `verdict`; it must exist.
-Letters way_to(FormulaAutomaton const& automaton, FormulaAutomaton::State state, Verdict verdict) {
+Letters way_to(FormulaAutomaton const& automaton, FormulaAutomaton::State state, RuleVerdict verdict) {
   struct Reached {
     FormulaAutomaton::State state;
     Letters way;
@@ -158,21 +158,21 @@ TEST_CASE("automata say of random traces what the semantics say of all their ext
     auto const letters = 1u << automaton.labels().size();
     Letters trace;
     auto state = FormulaAutomaton::start;
-    auto before = Verdict::open;
+    auto before = RuleVerdict::open;
     for (int step = 0; step < 7; ++step) {
       trace.push_back(uniform_index(random, letters));
       state = automaton.next(state, trace.back());
       auto const verdict = automaton.verdict(state);
       bool const holds = semantics.holds(trace);
-      REQUIRE(automaton.verdict_at_end(state) == (holds ? Verdict::satisfied : Verdict::violated));
-      if (verdict == Verdict::open) {
-        REQUIRE(before == Verdict::open);
-        REQUIRE(semantics.holds(joined(trace, way_to(automaton, state, Verdict::satisfied))));
-        REQUIRE_FALSE(semantics.holds(joined(trace, way_to(automaton, state, Verdict::violated))));
+      REQUIRE(automaton.verdict_at_end(state) == (holds ? RuleVerdict::satisfied : RuleVerdict::violated));
+      if (verdict == RuleVerdict::open) {
+        REQUIRE(before == RuleVerdict::open);
+        REQUIRE(semantics.holds(joined(trace, way_to(automaton, state, RuleVerdict::satisfied))));
+        REQUIRE_FALSE(semantics.holds(joined(trace, way_to(automaton, state, RuleVerdict::violated))));
         ++undecided;
-      } else if (before == Verdict::open) {
+      } else if (before == RuleVerdict::open) {
         each_extension(trace, letters == 8 ? 3 : 4, letters, [&](Letters const& longer) {
-          REQUIRE(semantics.holds(longer) == (verdict == Verdict::satisfied));
+          REQUIRE(semantics.holds(longer) == (verdict == RuleVerdict::satisfied));
         });
         ++decided;
       } else {
@@ -238,9 +238,9 @@ TEST_CASE("equal obligations are one state, and a formula that needs too many is
   CHECK(FormulaAutomaton("G a").size() == 3);          // nothing read, kept so far, violated
   CHECK(FormulaAutomaton("F a & X F a").size() == 5);  // nothing read; a due now and later, later, once; done
   CHECK(FormulaAutomaton("G(a -> F b)").size() == 3);  // nothing read, b is not due, b is due
-  CHECK(FormulaAutomaton("true").verdict(FormulaAutomaton::start) == Verdict::satisfied);
-  CHECK(FormulaAutomaton("a | !a").verdict(FormulaAutomaton::start) == Verdict::satisfied);
-  CHECK(FormulaAutomaton("X a & N !a").verdict(FormulaAutomaton::start) == Verdict::violated);
+  CHECK(FormulaAutomaton("true").verdict(FormulaAutomaton::start) == RuleVerdict::satisfied);
+  CHECK(FormulaAutomaton("a | !a").verdict(FormulaAutomaton::start) == RuleVerdict::satisfied);
+  CHECK(FormulaAutomaton("X a & N !a").verdict(FormulaAutomaton::start) == RuleVerdict::violated);
   auto const problem = [](Formula const& formula) -> std::string {
     try {
       FormulaAutomaton const automaton(formula);

@@ -88,7 +88,7 @@ class RuleMonitor {
   /// longer can be, with any of the agents that are in traffic; else open. Nothing happens while the agent is not in
   /// traffic; when it has left, or another agent is at `slot`, its trace is finished, see `finish`.
   template <class World>
-  Verdict operator()(World& world, Slot slot) {
+  RuleVerdict operator()(World& world, Slot slot) {
     auto const id = world.roster().agents[slot].id;
     if (id != agent_) {
       finish();
@@ -102,22 +102,22 @@ class RuleMonitor {
       read_pairs(world, slot, letter);
     else
       read_alone(letter);
-    if (is_violated_) return Verdict::violated;
+    if (is_violated_) return RuleVerdict::violated;
     auto const is_satisfied = [&](Trace const& trace) {
-      return automaton().verdict(trace.state) == Verdict::satisfied;
+      return automaton().verdict(trace.state) == RuleVerdict::satisfied;
     };
     bool const all = !traces_.empty() && std::all_of(traces_.begin(), traces_.end(), is_satisfied);
-    return all ? Verdict::satisfied : Verdict::open;
+    return all ? RuleVerdict::satisfied : RuleVerdict::open;
   }
 
   /// Ends the traces: what the formula still demands is a violation at the last step. Satisfied or violated; open where
   /// there was no trace.
-  Verdict finish() {
-    if (traces_.empty()) return Verdict::open;
+  RuleVerdict finish() {
+    if (traces_.empty()) return RuleVerdict::open;
     is_violated_ = false;
     for (auto const& trace : traces_) end(trace);
     traces_.clear();
-    return is_violated_ ? Verdict::violated : Verdict::satisfied;
+    return is_violated_ ? RuleVerdict::violated : RuleVerdict::satisfied;
   }
 
   /// The number of violations.
@@ -223,7 +223,7 @@ class RuleMonitor {
       Trace& trace = next_.emplace_back();
       trace.other = id;
       if (known != traces_.end() && known->other == id) trace = *known++;
-      if (automaton().verdict(trace.state) == Verdict::satisfied) continue;
+      if (automaton().verdict(trace.state) == RuleVerdict::satisfied) continue;
       read(trace, letter | letter_of(world, slot, other));
     }
     for (; known != traces_.end(); ++known) end(*known);
@@ -232,7 +232,7 @@ class RuleMonitor {
 
   void read(Trace& trace, std::uint32_t letter) {
     trace.state = automaton().next(trace.state, letter);
-    if (automaton().verdict(trace.state) != Verdict::violated) {
+    if (automaton().verdict(trace.state) != RuleVerdict::violated) {
       trace.violation = no_violation;
       return;
     }
@@ -245,7 +245,7 @@ class RuleMonitor {
   }
 
   void end(Trace const& trace) {
-    if (automaton().verdict_at_end(trace.state) != Verdict::violated) return;
+    if (automaton().verdict_at_end(trace.state) != RuleVerdict::violated) return;
     is_violated_ = true;
     violated(trace.other);
   }
