@@ -43,6 +43,7 @@ have_package() {
     libpugixml-dev) have_header pugixml.hpp ;;
     nlohmann-json3-dev) have_header nlohmann/json.hpp ;;
     libcli11-dev) have_header CLI/CLI.hpp ;;
+    libsqlite3-dev) have_header sqlite3.h ;;
     doctest-dev) have_header doctest/doctest.h ;;
     libbenchmark-dev) have_header benchmark/benchmark.h ;;
     *) have "$1" ;;

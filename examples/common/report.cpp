@@ -6,9 +6,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cambium/benchmark/statistics.hpp"
+
 #include "part_file.hpp"
 #include "version.hpp"
-#include "wilson.hpp"
 
 namespace {
 
@@ -76,7 +77,7 @@ Json head(examples::Settings const& settings, examples::Facts const& facts,
   json["agent_steps"] = t.agent_steps;
   json["replayed_scenario"] = t.replayed;
   for (auto const& [name, count] : shares) {
-    auto const interval = examples::wilson(count, n);
+    auto const interval = cambium::wilson_interval(count, n);
     json["counts"][name] = count;
     json["intervals"][name] = {interval.low, interval.high};
   }
@@ -123,7 +124,7 @@ std::string examples::explained(Words const& words) {
 }
 
 std::string examples::share_text(std::uint64_t count, std::uint64_t total) {
-  auto const interval = wilson(count, total);
+  auto const interval = cambium::wilson_interval(count, total);
   // Enough digits to tell the ends of the interval apart.
   int const digits = interval.high - interval.low > 0.01 ? 1 : interval.high - interval.low > 0.001 ? 2 : 3;
   char text[96];

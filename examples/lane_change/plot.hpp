@@ -9,9 +9,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cambium/benchmark/statistics.hpp"
 #include "cambium/viewer/detail/svg_panel.hpp"
-
-#include "../common/wilson.hpp"
 
 /// The results of the experiment: JSON, and bar charts over the variations.
 namespace lane_change {
@@ -28,8 +27,6 @@ struct Row {
   double iterations_per_second = 0.0;  ///< of one thread
 };
 
-using examples::wilson;
-
 /// A row as JSON: counts, and shares with their 95 % intervals.
 inline nlohmann::ordered_json as_json(Row const& row) {
   nlohmann::ordered_json json{{"preset", row.preset},
@@ -42,7 +39,7 @@ inline nlohmann::ordered_json as_json(Row const& row) {
   };
   for (auto const& [name, count] :
        {Kind{"success", row.success}, Kind{"collision", row.collision}, Kind{"time_out", row.time_out}}) {
-    auto const interval = wilson(count, row.scenarios);
+    auto const interval = cambium::wilson_interval(count, row.scenarios);
     json[name] = {{"count", count},
                   {"share", static_cast<double>(count) / static_cast<double>(row.scenarios)},
                   {"low", interval.low},
@@ -97,7 +94,7 @@ inline std::string panel(std::vector<Row> const& rows, double top, std::string c
     double const x = slots.begin[i], middle = x + 0.5 * slots.width;
     auto const n = row.*count;
     double const share = static_cast<double>(n) / static_cast<double>(row.scenarios);
-    auto const bounds = wilson(n, row.scenarios);
+    auto const bounds = cambium::wilson_interval(n, row.scenarios);
     svg += "<rect x=\"" + svg_number(x + 0.15 * slots.width) + "\" y=\"" + svg_number(y_of(share)) + "\" width=\"" +
            svg_number(0.7 * slots.width) + "\" height=\"" + svg_number(height * share) + "\" fill=\"" + color +
            "\"/>\n";

@@ -16,25 +16,34 @@ namespace {
 using Includes = std::map<std::string, std::vector<std::string>>;
 
 /// The rooms from top to bottom: a header includes its own room and those above.
-constexpr std::array rooms = {"core",      "geometry", "map",    "dynamics",   "execution", "behavior",
-                              "observer",  "goal",     "world",  "evaluation", "planner",   "scenario",
-                              "benchmark", "snapshot", "viewer", "learning",   "testing"};
+constexpr std::array rooms = {"core",     "geometry",  "map",      "dynamics",   "execution", "behavior",
+                              "observer", "goal",      "world",    "evaluation", "planner",   "scenario",
+                              "viewer",   "benchmark", "snapshot", "learning",   "testing"};
 constexpr std::size_t no_room = rooms.size();
 /// Families are folders of a room, from top to bottom: a header of a family includes its own family, those above, and
 /// the headers that lie in the room itself.
 std::map<std::string, std::vector<std::string>> const families{
-    {"map", {"road", "opendrive", "lanes", "routing", "corridor", "build"}},
+    {"map", {"road", "opendrive", "lanes", "routing", "corridor", "build", "lanelet"}},
     {"behavior", {"law", "following", "lane_change", "junction", "safety", "human", "pedestrian", "open_loop"}},
-    {"evaluation", {"rules"}},
-    {"planner", {"search", "mcts", "frenet", "policy"}}};
+    {"evaluation", {"metrics", "rules"}},
+    {"planner", {"search", "mcts", "frenet", "policy"}},
+    {"scenario", {"dataset"}}};
 /// Rooms that do without the Boost libraries that are slow to compile, over whatever they include.
 constexpr std::array light_rooms = {"dynamics", "execution", "behavior",   "observer",
                                     "goal",     "world",     "evaluation", "planner"};
 /// Headers (beginnings of paths) that may include Boost.Geometry and Boost.Graph.
 constexpr std::array heavy_headers = {"cambium/geometry/polygon_union", "cambium/geometry/detail/boost_polygon"};
-/// Headers (beginnings of paths) of cambium::opendrive; all others do without pugixml.
-constexpr std::array opendrive_headers = {"cambium/map/opendrive.hpp", "cambium/map/opendrive_impl.hpp",
-                                          "cambium/map/opendrive/"};
+/// Headers (beginnings of paths) of the optional parts, by the library that they need; all others do without it.
+std::map<std::string, std::vector<std::string>> const optional_headers{
+    {"pugixml.hpp",
+     {"cambium/map/opendrive.hpp", "cambium/map/opendrive_impl.hpp", "cambium/map/opendrive/",
+      "cambium/scenario/scenario_file.hpp", "cambium/scenario/detail/scenario_maps.hpp", "cambium/benchmark",
+      "cambium/map/lanelet/lanelet2", "cambium/scenario/dataset/common_road",
+      "cambium/scenario/dataset/detail/common_road"}},
+    {"nlohmann/json.hpp",
+     {"cambium/core/json.hpp", "cambium/core/json_document.hpp", "cambium/core/detail/json_transfer.hpp",
+      "cambium/scenario/scenario_file.hpp", "cambium/scenario/detail/scenario_maps.hpp", "cambium/benchmark"}},
+    {"sqlite3.h", {"cambium/benchmark"}}};
 
 /// Who makes maps brings what a map itself calls.
 bool makes_maps(std::string const& header) { return header == "cambium/map/build/build_map.hpp"; }
@@ -63,7 +72,7 @@ bool is_heavy_library(std::string_view include) {
 
 template <class Range>
 bool begins_with_any(std::string const& text, Range const& beginnings) {
-  return std::any_of(beginnings.begin(), beginnings.end(), [&](auto const* b) { return text.starts_with(b); });
+  return std::any_of(beginnings.begin(), beginnings.end(), [&](auto const& b) { return text.starts_with(b); });
 }
 
 /// The header that defines what `header` declares, where there is one.
@@ -132,9 +141,8 @@ void check_weight(Includes const& includes, std::string const& header, std::vect
   bool const light = std::find(light_rooms.begin(), light_rooms.end(), name) != light_rooms.end();
   auto const heavy = std::find_if(all.begin(), all.end(), is_heavy_library);
   if (light && heavy != all.end()) breaches.push_back(header + " drags in " + *heavy);
-  if (all.contains("pugixml.hpp") && !begins_with_any(header, opendrive_headers)) {
-    breaches.push_back(header + " drags in pugixml.hpp");
-  }
+  for (auto const& [library, users] : optional_headers)
+    if (all.contains(library) && !begins_with_any(header, users)) breaches.push_back(header + " drags in " + library);
 }
 
 std::vector<std::string> find_breaches(Includes const& includes) {

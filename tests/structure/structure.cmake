@@ -116,14 +116,14 @@ add_build_test(structure.headers_alone structure_headers_alone)
 write_if_new(${structure_binary}/all_headers.cpp "${all_headers}")
 write_if_new(${structure_binary}/twice.cpp "int main() {}\n")
 add_library(structure_all_headers OBJECT EXCLUDE_FROM_ALL ${structure_binary}/all_headers.cpp)
-target_link_libraries(structure_all_headers PRIVATE cambium::opendrive)
+target_link_libraries(structure_all_headers PRIVATE cambium::benchmark)
 target_compile_options(structure_all_headers PRIVATE -O0 ${CAMBIUM_WARNINGS} -Werror)
 add_custom_command(OUTPUT ${structure_binary}/all_headers_again.o
   COMMAND ${CMAKE_COMMAND} -E copy $<TARGET_OBJECTS:structure_all_headers> ${structure_binary}/all_headers_again.o
   DEPENDS structure_all_headers $<TARGET_OBJECTS:structure_all_headers> VERBATIM)
 add_executable(structure_headers_twice EXCLUDE_FROM_ALL ${structure_binary}/twice.cpp
   $<TARGET_OBJECTS:structure_all_headers> ${structure_binary}/all_headers_again.o)
-target_link_libraries(structure_headers_twice PRIVATE cambium::opendrive)
+target_link_libraries(structure_headers_twice PRIVATE cambium::benchmark)
 add_build_test(structure.headers_twice structure_headers_twice)
 
 # A program of two translation units, one of which makes the map: header-only, with cold code compiled apart, and with one

@@ -14,6 +14,7 @@
 #include "cambium/core/distributions.hpp"
 #include "cambium/map/corridor/free_corridor.hpp"
 #include "cambium/map/road/curve_layout.hpp"
+#include "cambium/world/driven_to.hpp"
 #include "fixtures.hpp"
 
 using namespace fixtures;
@@ -748,4 +749,113 @@ TEST_CASE("an agent that has not started sees its neighbours as if it drove, but
   }
   CHECK(seen_by_it > 200);
   CHECK(would_see_it > 100);
+}
+
+// Twin: a step of the world under constant acceleration. `driven_to` gets the state that the step ends in.
+TEST_CASE("a record driven to the state of a step has the lane, the status and the goals that the step finds") {
+  std::vector<cb::AgentStatus> ends;
+  auto const compare = [&](Sim world) {
+    for (int k = 0; k < 400 && world.frame().agents[0].status == cb::AgentStatus::driving; ++k) {
+      auto const before = world;
+      auto const& last = before.frame().agents[0];
+      REQUIRE(world.step(0.5));
+      auto const& next = world.frame().agents[0];
+      auto const found = cb::driven_to(before, cb::Slot{0}, last, next.state);
+      CHECK(found.state == next.state);
+      CHECK(found.lane == next.lane);
+      CHECK(found.status == next.status);
+      CHECK(found.goals_passed == next.goals_passed);
+      CHECK(found.action.acceleration == doctest::Approx(next.action.acceleration));
+      CHECK(found.memory == last.memory);
+    }
+    auto const& gone = world.frame().agents[0];
+    ends.push_back(gone.status);
+    auto elsewhere = gone.state;
+    elsewhere.x += 5.0;
+    CHECK(cb::driven_to(world, cb::Slot{0}, gone, elsewhere) == gone);  // it has left
+    return gone.goals_passed;
+  };
+  auto const straight = straight_road(1, 200.0);
+  Sim to_the_end(straight);
+  to_the_end.add({.position = {20, -1.75}, .speed = 8, .behavior = cb::ConstantAcceleration{.acceleration = 0.5}});
+  compare(to_the_end);
+
+  Sim past_goals(straight);
+  auto const lane = straight->find_lane("1", 0, -1);
+  past_goals.add({.position = {20, -1.75},
+                  .speed = 8,
+                  .behavior = cb::ConstantAcceleration{},
+                  .goal = cb::GoalSequence{{cb::ReachLane{lane, 60.0, 70.0}, cb::ReachLane{lane, 120.0, 130.0}}}});
+  CHECK(compare(past_goals) == 2);
+
+  auto const exit = own_map("highway_exit.xodr");
+  Sim past_exit(exit);
+  auto const of_type = [&](cb::map::LaneType type) -> cb::map::Lane const& {
+    return *std::ranges::find(exit->lanes(), type, &cb::map::Lane::type);
+  };
+  auto const& path = of_type(cb::map::LaneType::exit).path;
+  auto const pose = path.pose(0.8 * path.length());
+  past_exit.add({.position = cb::geometry::to_map(pose, {0.0, 3.6}),
+                 .heading = pose.heading,
+                 .speed = 12,
+                 .goal = cb::ReachLane{of_type(cb::map::LaneType::off_ramp).id}});
+  compare(past_exit);
+
+  auto const merging = own_map("merging.xodr");
+  Sim at_destination(merging);
+  auto const ramp = merging->find_lane("2", 10, -1);
+  at_destination.add({.position = merging->lane(ramp).path.pose(150.0).position(),
+                      .speed = 15,
+                      .goal = cb::ReachLane{merging->find_lane("3", 10, -3)}});
+  compare(at_destination);
+  CHECK(ends == std::vector{cb::AgentStatus::left_map, cb::AgentStatus::left_map, cb::AgentStatus::off_route,
+                            cb::AgentStatus::arrived});
+}
+
+// Each agent's own corridor says where it waits; others see the same place, on the lane's path.
+TEST_CASE("where a vehicle waits before a junction others see on the way that it signals, and nowhere else") {
+  auto const map = own_map("intersection_4way.xodr");
+  Sim world(map);
+  struct Waits {
+    cb::AgentId id;
+    cb::LaneId way;
+    double s;  ///< corridor position of the way's begin
+    cb::map::LaneCorridor const* corridor;
+  };
+  std::vector<Waits> all;
+  for (auto const& entrance : map->lanes())
+    if (entrance.drivable() && entrance.predecessors.empty() && !entrance.successors.empty()) {
+      auto const way = entrance.successors.front();
+      auto const pose = entrance.path.pose(entrance.length() - 40.0);
+      auto const id = world.add({.position = pose.position(),
+                                 .heading = pose.heading,
+                                 .route = cb::map::Route{{entrance.id, way, map->lane(way).successors.front()}, 0.0}});
+      auto const& agent = world.roster().agents[world.slot_of(id)];
+      auto const& corridor = agent.road->corridors[agent.road->corridor_of(way)];
+      auto const piece = std::ranges::find(corridor.pieces, way, &cb::map::CorridorPiece::lane);
+      all.push_back({id, way, piece->begin, &corridor});
+    }
+  REQUIRE(all.size() >= 8);
+  for (auto const& other : all) {
+    auto const observer = world.observe(other.id == all[0].id ? all[1].id : all[0].id);
+    auto const slot = world.slot_of(other.id);
+    cb::RoadUser user{};
+    user.agent = other.id;
+    user.slot = slot;
+    for (bool const is_large : {false, true}) {
+      // The zones of the junction, from the corridor of the one who waits: its place is outside of them all.
+      double first = 1e9;
+      for (auto const& conflict : other.corridor->conflicts)
+        if (!conflict.zones[is_large][is_large].empty() && conflict.kind != cb::map::OverlapKind::split)
+          first = std::min(first, conflict.zones[is_large][is_large].begin);
+      double const place = observer.waiting_place(user, other.way, is_large);
+      REQUIRE(std::isfinite(place));
+      CHECK(other.s + place <= first + 1e-9);
+      CHECK(other.s + place > first - 25.0);
+    }
+    CHECK(observer.waiting_place(user, other.way, true) <= observer.waiting_place(user, other.way, false));
+    for (auto const& third : all)
+      if (!observer.signals_way(user, third.way)) CHECK(std::isinf(observer.waiting_place(user, third.way, false)));
+    CHECK(std::isinf(observer.waiting_place(cb::RoadUser{}, other.way, false)));  // an object
+  }
 }

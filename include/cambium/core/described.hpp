@@ -31,7 +31,10 @@ struct ParameterInfo {
 ///   - `double`, `float`, an integer or `bool`;
 ///   - an enum, described by `choice`;
 ///   - an id, which has no range, because only the world or map knows which ids exist;
+///   - a `std::string`, which has no range either;
 ///   - another described struct: its own ranges apply, and its keys appear as "outer.inner";
+///   - a `OneOf` of described structs: keys appear as "outer.alternative.inner";
+///   - a `std::optional` of these: nothing appears of an empty one;
 ///   - a list of these (an array, a vector, or a pointer to one): unit and range hold for each element, and keys appear
 ///     as "list[0]" and "list[0].inner".
 template <class Owner, class Field>

@@ -13,7 +13,8 @@
 namespace cambium::detail {
 
 CAMBIUM_COLD std::string ParameterPath::text() const {
-  std::string own = outer != nullptr ? outer->text() + "." : std::string();
+  std::string own = outer != nullptr ? outer->text() : std::string();
+  if (outer != nullptr && *name != '\0') own += '.';
   own += name;
   if (element == any_element)
     own += "[]";
@@ -46,6 +47,7 @@ CAMBIUM_COLD std::string value_text(ParameterInfo const& info, ParameterValue co
     case Kind::boolean:
       return value.bits != 0 ? "true" : "false";
     case Kind::id:
+    case Kind::lane:
       return to_string(static_cast<AgentId>(value.bits));
     case Kind::choice:
       if (auto const name = choice_name(info.choices != nullptr ? info.choices : "", value.bits); !name.empty())
@@ -108,32 +110,50 @@ CAMBIUM_COLD void check_values(char const* name, void const* object, ReadStruct 
 
 CAMBIUM_COLD std::string parameters_table(void const* object, ReadStruct read) {
   struct Table final : ParameterReader {
-    std::string text = "| name | default | unit | range | meaning |\n|---|---|---|---|---|\n";
+    std::string rows = "| name | default | unit | range | meaning |\n|---|---|---|---|---|\n";
 
     void value(ParameterPath const& path, ParameterInfo const& info, ParameterValue const& value,
                ParameterValue const*) override {
-      text += "| " + path.text() + " | " + (path.is_any_element() ? "-" : value_text(info, value)) + " | " + info.unit +
-              " | " + (value.has_range() ? range_text(info) : "-") + " | " + info.sentence + " |\n";
+      add(path, info, value_text(info, value), value.has_range() ? range_text(info) : "-");
+    }
+    void text(ParameterPath const& path, ParameterInfo const& info, std::string_view value,
+              std::string_view const*) override {
+      add(path, info, '"' + std::string(value) + '"', "-");
+    }
+    void alternative(ParameterPath const& path, ParameterInfo const& info, char const* name) override {
+      add(path, info, name, "-");
+    }
+    void add(ParameterPath const& path, ParameterInfo const& info, std::string const& value, std::string const& range) {
+      rows += "| " + path.text() + " | " + (path.is_any_element() ? "-" : value) + " | " + info.unit + " | " + range +
+              " | " + info.sentence + " |\n";
     }
   } table;
   read(object, nullptr, nullptr, ListElements::one_default, table);
-  return std::move(table.text);
+  return std::move(table.rows);
 }
 
 CAMBIUM_COLD std::string parameters_line(char const* name, void const* object, ReadStruct read) {
   struct Line final : ParameterReader {
-    std::string text;
+    std::string line;
     bool is_first = true;
 
     void value(ParameterPath const& path, ParameterInfo const& info, ParameterValue const& value,
                ParameterValue const*) override {
-      text += (is_first ? " " : ", ") + path.text() + "=" + with_unit(value_text(info, value), info.unit);
+      add(path, with_unit(value_text(info, value), info.unit));
+    }
+    void text(ParameterPath const& path, ParameterInfo const&, std::string_view value,
+              std::string_view const*) override {
+      add(path, '"' + std::string(value) + '"');
+    }
+    void alternative(ParameterPath const& path, ParameterInfo const&, char const* name) override { add(path, name); }
+    void add(ParameterPath const& path, std::string const& value) {
+      line += (is_first ? " " : ", ") + path.text() + "=" + value;
       is_first = false;
     }
-  } line;
-  line.text = std::string(name) + ":";
-  read(object, nullptr, nullptr, ListElements::each, line);
-  return std::move(line.text);
+  } reader;
+  reader.line = std::string(name) + ":";
+  read(object, nullptr, nullptr, ListElements::each, reader);
+  return std::move(reader.line);
 }
 
 CAMBIUM_COLD std::uint64_t parameters_hash(char const* name, void const* object, ReadStruct read) {
@@ -148,16 +168,28 @@ CAMBIUM_COLD std::uint64_t parameters_hash(char const* name, void const* object,
     void add_bits(std::uint64_t bits) {
       for (int shift = 0; shift < 64; shift += 8) add_byte((bits >> shift) & 0xffu);
     }
-    void value(ParameterPath const& path, ParameterInfo const& info, ParameterValue const& value,
-               ParameterValue const*) override {
+    void add_path(ParameterPath const& path, ParameterInfo const& info) {
       for (auto const* key = &path; key != nullptr; key = key->outer) {
         if (key != &path) add_name(key->name);
         if (key->element != key->no_list) add_bits(key->element);
       }
       add_name(info.name);
-      bool const is_real =
-          value.kind == ParameterValue::Kind::number || value.kind == ParameterValue::Kind::single_precision;
-      add_bits(is_real ? std::bit_cast<std::uint64_t>(value.number + 0.0) : value.bits);  // + 0.0 turns -0 into 0
+    }
+    void value(ParameterPath const& path, ParameterInfo const& info, ParameterValue const& value,
+               ParameterValue const*) override {
+      add_path(path, info);
+      // + 0.0 turns -0 into 0
+      add_bits(value.is_real() ? std::bit_cast<std::uint64_t>(value.number + 0.0) : value.bits);
+    }
+    void text(ParameterPath const& path, ParameterInfo const& info, std::string_view text,
+              std::string_view const*) override {
+      add_path(path, info);
+      add_bits(text.size());
+      for (char const c : text) add_byte(static_cast<unsigned char>(c));
+    }
+    void alternative(ParameterPath const& path, ParameterInfo const& info, char const* name) override {
+      add_path(path, info);
+      add_name(name);
     }
   } hash;
   hash.add_name(name);
@@ -172,6 +204,10 @@ CAMBIUM_COLD bool parameters_equal(void const* a, void const* b, ReadStruct read
     void value(ParameterPath const&, ParameterInfo const&, ParameterValue const& value,
                ParameterValue const* other) override {
       holds = holds && value.number == other->number && value.bits == other->bits;
+    }
+    void text(ParameterPath const&, ParameterInfo const&, std::string_view text,
+              std::string_view const* other) override {
+      holds = holds && text == *other;
     }
     void other_length() override { holds = false; }
   } equality;

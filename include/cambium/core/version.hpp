@@ -4,3 +4,13 @@
 #define CAMBIUM_VERSION_MAJOR 0
 #define CAMBIUM_VERSION_MINOR 1
 #define CAMBIUM_VERSION_PATCH 0
+
+#define CAMBIUM_TEXT_OF(number) #number
+#define CAMBIUM_VERSION_TEXT(major, minor, patch) \
+  CAMBIUM_TEXT_OF(major) "." CAMBIUM_TEXT_OF(minor) "." CAMBIUM_TEXT_OF(patch)
+
+namespace cambium {
+/// "0.1.0".
+inline constexpr char const* version =
+    CAMBIUM_VERSION_TEXT(CAMBIUM_VERSION_MAJOR, CAMBIUM_VERSION_MINOR, CAMBIUM_VERSION_PATCH);
+}  // namespace cambium

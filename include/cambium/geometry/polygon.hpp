@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <initializer_list>
+#include <limits>
 #include <span>
 #include <string>
 #include <utility>
@@ -34,6 +35,9 @@ namespace cambium::geometry {
 /// convex. Its border belongs to it. Precondition: the ring does not cross itself, see `is_simple`.
 class Polygon {
  public:
+  /// No polygon yet: it has no corners and contains nothing.
+  Polygon() = default;
+
   /// Takes the corners in either direction. Drops repeated points and a last point that closes the ring. Throws `Error`
   /// naming `where` if there are fewer than three distinct points, a number is not finite, or the area is zero. O(n).
   explicit Polygon(std::span<Point const> points, std::string const& where = "polygon") {
@@ -64,6 +68,7 @@ class Polygon {
   /// The corners, counter-clockwise; the last one is joined to the first.
   [[nodiscard]] std::span<Point const> points() const { return points_; }
   [[nodiscard]] std::size_t size() const { return points_.size(); }
+  [[nodiscard]] Point const* data() const { return points_.data(); }
   [[nodiscard]] double area() const { return area_; }  ///< [m^2]
   [[nodiscard]] Box const& bounding_box() const { return box_; }
   /// True if no corner turns right. O(1).
@@ -89,8 +94,9 @@ class Polygon {
     return inside;
   }
 
-  /// Distance [m] to the nearest point of the border, from outside or inside. O(n).
+  /// Distance [m] to the nearest point of the border, from outside or inside; infinite without corners. O(n).
   [[nodiscard]] double distance_to_border(Point const& p) const {
+    if (points_.empty()) return std::numeric_limits<double>::infinity();
     double distance = distance_to_segment(p, points_.back(), points_.front());
     for (std::size_t i = 0; i + 1 < points_.size(); ++i) {
       distance = std::min(distance, distance_to_segment(p, points_[i], points_[i + 1]));
@@ -100,6 +106,7 @@ class Polygon {
 
   /// This polygon, taken as local to `frame` (x forward, y left), in the map frame. O(n).
   [[nodiscard]] Polygon transformed(Pose const& frame) const {
+    if (points_.empty()) return {};
     auto const [sin, cos] = sin_cos(frame.heading);
     Polygon result = *this;
     for (auto& p : result.points_) {

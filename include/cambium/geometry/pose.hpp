@@ -4,6 +4,8 @@
 #include <cmath>
 #include <concepts>
 
+#include "cambium/core/described.hpp"
+
 namespace cambium::geometry {
 
 /// A vector of two doubles from another library, such as Eigen: it has `x()`, `y()` and a constant size.
@@ -24,6 +26,12 @@ class Point {
   template <ForeignVector V>
   constexpr operator V() const {
     return V(x_, y_);
+  }
+
+  static constexpr char const* name = "point";
+  static constexpr auto parameters() {
+    return parameter_list(parameter("x", &Point::x_, "m", any_finite, "map frame"),
+                          parameter("y", &Point::y_, "m", any_finite, "map frame"));
   }
 
   [[nodiscard]] constexpr double x() const { return x_; }

@@ -25,6 +25,9 @@ struct AllGoals {
 
   static constexpr char const* name = "all_goals";
   static constexpr char const* summary = "all of its parts, at the same time";
+  static constexpr auto parameters() {
+    return cambium::parameter_list(cambium::parameter("parts", &AllGoals::parts, "-", {}, "goals"));
+  }
 
   [[nodiscard]] bool at_goal(GoalSituation const& at) const;
 };
@@ -35,6 +38,9 @@ struct AnyGoal {
 
   static constexpr char const* name = "any_goal";
   static constexpr char const* summary = "one of its parts";
+  static constexpr auto parameters() {
+    return cambium::parameter_list(cambium::parameter("parts", &AnyGoal::parts, "-", {}, "goals"));
+  }
 
   [[nodiscard]] bool at_goal(GoalSituation const& at) const;
 };
@@ -48,6 +54,9 @@ struct GoalSequence {
 
   static constexpr char const* name = "goal_sequence";
   static constexpr char const* summary = "its parts, one after the other";
+  static constexpr auto parameters() {
+    return cambium::parameter_list(cambium::parameter("parts", &GoalSequence::parts, "-", {}, "goals"));
+  }
 
   [[nodiscard]] bool at_goal(GoalSituation const& at) const { return at.passed >= parts.size() && !parts.empty(); }
 

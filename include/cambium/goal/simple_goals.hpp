@@ -38,6 +38,7 @@ inline void check_speeds(double lowest, double highest, std::string const& where
 struct NoGoal {
   static constexpr char const* name = "no_goal";
   static constexpr char const* summary = "never reached; the route goes straight on";
+  static constexpr auto parameters() { return parameter_list(); }
   [[nodiscard]] bool at_goal(GoalSituation const&) const { return false; }
 };
 
@@ -46,6 +47,13 @@ struct ReachPolygon {
   static constexpr char const* name = "reach_polygon";
   static constexpr char const* summary = "the whole shape is within a polygon";
   geometry::Polygon area;
+
+  static constexpr auto parameters() {
+    return parameter_list(parameter("area", &ReachPolygon::area, "m", any_finite, "the corners of the polygon"));
+  }
+  void check(std::string const& where) const {
+    if (area.size() == 0) throw ParameterError(where, "its area has no corners", "give at least three");
+  }
   [[nodiscard]] bool at_goal(GoalSituation const& at) const {
     return geometry::contains(area, geometry::box_of(at.shape, at.pose));
   }

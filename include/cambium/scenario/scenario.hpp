@@ -3,14 +3,17 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "cambium/core/described.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/ids.hpp"
+#include "cambium/geometry/polygon.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/lanes/signals.hpp"
 
@@ -40,18 +43,41 @@ struct Scenario {
   std::vector<typename WorldType::AgentSpec> agents{};  ///< in the order in which they enter, each with its id
   AgentId ego = none<AgentId>;                          ///< one of the agents; none if all are alike
   std::vector<map::LightPlan> lights{};                 ///< of the map's first traffic lights; the others are off
+  std::vector<geometry::Polygon> objects{};             ///< static objects in the way
+  std::vector<AgentId> controlled{};                    ///< agents that a benchmark drives, too, besides the ego
+  std::string map_file{};                               ///< that `map` was read from; files name it
+  std::string title{};                                  ///< for reports
+
+  static constexpr char const* name = "scenario";
+  /// What a file holds of it.
+  static constexpr auto parameters() {
+    using P = Scenario;
+    return parameter_list(
+        parameter("title", &P::title, "-", {}, "for reports"),
+        parameter("map_file", &P::map_file, "-", {}, "OpenDRIVE file, relative to the folder of the scenario file"),
+        parameter("seed", &P::seed, "-", Range{0, std::numeric_limits<double>::max()}, "of the random numbers"),
+        parameter("ego", &P::ego, "-", {}, "the agent that the scenario is about"),
+        parameter("controlled", &P::controlled, "-", {}, "further agents that a benchmark drives"),
+        parameter("lights", &P::lights, "-", {}, "of the map's first traffic lights; the others are off"),
+        parameter("objects", &P::objects, "m", any_finite, "corners of static objects"),
+        parameter("agents", &P::agents, "-", {}, "in the order in which they enter"));
+  }
 
   /// A world with all agents in it. Throws `WorldError` if an agent or a light plan is invalid, if two agents have the
   /// same id, or if the ego is not among the agents. O(agents^2) for the checks of entering.
   [[nodiscard]] WorldType make_world() const {
     WorldType world(map, {.seed = seed});
     for (std::size_t i = 0; i < lights.size(); ++i) world.set_light(static_cast<LightId>(i), lights[i]);
+    for (auto const& object : objects) world.add_object(object);
     for (auto const& agent : agents) world.add(agent);
-    bool const has_ego =
-        std::ranges::any_of(world.roster().agents, [this](auto const& agent) { return agent.id == ego; });
-    if (is_valid(ego) && !has_ego)
-      throw WorldError("Scenario", "its ego, agent " + to_string(ego) + ", is not among its agents",
-                       "set Scenario::ego to the id of one of them");
+    auto const require = [&world](AgentId id, char const* what) {
+      if (is_valid(id) && !world.roster().slot_of(id))
+        throw WorldError("Scenario",
+                         std::string("its ") + what + ", agent " + to_string(id) + ", is not among its agents",
+                         "name one of them by its id");
+    };
+    require(ego, "ego");
+    for (auto const id : controlled) require(id, "controlled agent");
     return world;
   }
 };
@@ -68,8 +94,15 @@ template <class OtherWorld, class WorldType, class ToBehavior>
           std::is_convertible_v<typename WorldType::Dynamics, typename OtherWorld::Dynamics>,
       "cambium::with_behaviors<OtherWorld>: OtherWorld must take the scenario's executions and vehicle models: "
       "the same types, or an ExecutionSet and a DynamicSet that contain them");
-  Scenario<OtherWorld> other{
-      .map = scenario.map, .seed = scenario.seed, .ego = scenario.ego, .lights = scenario.lights};
+  Scenario<OtherWorld> other{.map = scenario.map,
+                             .seed = scenario.seed,
+                             .agents = {},
+                             .ego = scenario.ego,
+                             .lights = scenario.lights,
+                             .objects = scenario.objects,
+                             .controlled = scenario.controlled,
+                             .map_file = scenario.map_file,
+                             .title = scenario.title};
   other.agents.reserve(scenario.agents.size());
   for (auto const& spec : scenario.agents)
     other.agents.push_back({.position = spec.position,

@@ -10,12 +10,12 @@
 #include <vector>
 
 #include "cambium/core/macros.hpp"
+#include "cambium/core/markup.hpp"
 #include "cambium/core/write_file.hpp"
 #include "cambium/viewer/detail/lane_marks.hpp"
 #include "cambium/viewer/detail/replay_controls.hpp"
 #include "cambium/viewer/detail/replay_page.hpp"
 #include "cambium/viewer/detail/replay_script.hpp"
-#include "cambium/viewer/detail/text.hpp"
 #include "cambium/viewer/html_replay.hpp"
 #include "cambium/viewer/recording.hpp"
 

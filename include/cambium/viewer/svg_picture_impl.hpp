@@ -13,10 +13,10 @@
 #include <vector>
 
 #include "cambium/core/macros.hpp"
+#include "cambium/core/markup.hpp"
 #include "cambium/core/write_file.hpp"
 #include "cambium/viewer/detail/lane_marks.hpp"
 #include "cambium/viewer/detail/svg_panel.hpp"
-#include "cambium/viewer/detail/text.hpp"
 #include "cambium/viewer/recording.hpp"
 #include "cambium/viewer/svg_picture.hpp"
 

@@ -6,7 +6,9 @@
 #include <type_traits>
 #include <utility>
 
+#include "cambium/core/described.hpp"
 #include "cambium/core/ids.hpp"
+#include "cambium/core/one_of.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/geometry/shape.hpp"
 #include "cambium/goal/goal.hpp"
@@ -50,6 +52,15 @@ struct Given : Value {
       return Value{};
   }
 };
+
+/// The field, unless it is a struct without a description, which files cannot hold.
+template <class Owner, class Field>
+[[nodiscard]] constexpr auto if_described(Parameter<Owner, Field> field) {
+  if constexpr (Described<Field> || Variant<Field>)
+    return parameter_list(field);
+  else
+    return parameter_list();
+}
 }  // namespace detail
 
 /// Describes an agent for `World::add`: see `World::AgentSpec`.
@@ -68,6 +79,26 @@ struct AgentSpecOf {
   Dynamics dynamics{};
   Observer observer{};
   detail::Given<std::optional<AgentId>, detail::SpecPart::id> id{};  ///< default: the next free id
+
+  static constexpr char const* name = "agent";
+  /// What a file holds of it: all but `road`.
+  static constexpr auto parameters() {
+    using P = AgentSpecOf;
+    auto const own = parameter_list(
+        parameter("id", &P::id, "-", {}, "a number; absent: the next free one"),
+        parameter("position", &P::position, "m", any_finite, "of the reference point"),
+        parameter("heading", &P::heading, "rad", any_finite, "counter-clockwise from +x; absent: along the lane"),
+        parameter("speed", &P::speed, "m/s", Range{-0.1, 1000}, "along the heading"),
+        parameter("shape", &P::shape, "-", {}, "default: a car"),
+        parameter("behavior", &P::behavior, "-", {}, "one of the world's behaviors"),
+        parameter("goal", &P::goal, "-", {}, "absent: none"),
+        parameter("route", &P::route, "-", {}, "absent: the shortest to the goal, straight on without one"));
+    auto const models = join_parameters(
+        detail::if_described(parameter("execution", &P::execution, "-", {}, "how it tracks its plans")),
+        detail::if_described(parameter("dynamics", &P::dynamics, "-", {}, "the vehicle model")));
+    auto const observer = detail::if_described(parameter("observer", &P::observer, "-", {}, "how it sees the others"));
+    return join_parameters(own, join_parameters(models, observer));
+  }
 };
 
 }  // namespace cambium

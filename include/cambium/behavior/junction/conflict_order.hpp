@@ -105,6 +105,8 @@ struct ConflictAsker {
   double patience{};                       ///< see `Intersection::patience` [s]
   StandingAgents const* stopped_before{};  ///< those that stood there when it stopped
   bool is_large = false;                   ///< see `map::ConflictZones`
+  double dt{};                             ///< length of the step [s]
+  double braking{};                        ///< deceleration by which vehicles can stop [m/s^2]
 
   [[nodiscard]] bool is_inside(map::Conflict const& conflict, map::ConflictZone const& zone) const {
     return (front > zone.line + over_line || s > conflict.hold[is_large][is_large] + over_line) &&
@@ -131,8 +133,25 @@ template <class View>
   return goes(conflict.light) && goes(conflict.other_light);
 }
 
+/// Whether the other vehicle leaves its place to wait before the own one, where both are outside: it can no longer stop
+/// there, or will not be able to after this step if it accelerates by `pull_away`, and is nearer (at equal distance:
+/// has the smaller id). All find the same order, so of vehicles that conflict one leaves in a step, but for those that
+/// accelerate harder. If several did, a step later each would be inside for the others, and three could form a ring.
+[[nodiscard]] inline bool leaves_first(map::Conflict const& conflict, ConflictUser const& other,
+                                       ConflictAsker const& own, bool is_smaller) {
+  auto const& user = other.user;
+  double const to_hold = other.hold - other.at, own_to_hold = conflict.hold[own.is_large][own.is_large] - own.s;
+  if (user.speed < standing_speed || !can_stop(own.speed, own_to_hold, own.braking)) return false;
+  if (!can_stop(user.speed, to_hold, own.braking)) return true;
+  double const speed = user.speed + pull_away * own.dt;
+  if (can_stop(speed, to_hold - 0.5 * (user.speed + speed) * own.dt, own.braking)) return false;
+  return to_hold != own_to_hold ? to_hold < own_to_hold : !is_smaller;
+}
+
 /// Whether the own vehicle goes before `other`, where both can still stop before the zone, `own_way` and `way` [m]
 /// ahead of them. The first rule that applies decides:
+/// - One by one: where neither priorities nor lights say who goes first, a driver does not leave its place to wait in
+///   the step in which another one does that is nearer to its own (`leaves_first`).
 /// - First come, first served: where neither priorities nor lights say who goes first, a driver that stands at its line
 ///   goes before one that stopped there later or has yet to stop. With right before left alone, four drivers would wait
 ///   for each other again and again.
@@ -144,8 +163,8 @@ template <class View>
 /// - Right of way by map, signs and rules (`map::right_of_way`).
 /// - Without right of way, the nearer vehicle goes; at about equal distance, the one with the smaller id.
 ///
-/// Two drivers disagree only by the first two rules, which ask how long a driver has stood: both may go at once. Then
-/// the first to reach the zone has it, and the other one stops before it, as it can.
+/// Two drivers disagree only by the second and third rules, which ask how long a driver has stood: both may start at
+/// once. Then the first to leave its place has the zone, and the other one stops, as it can.
 ///
 /// O(1).
 template <class View>
@@ -162,6 +181,8 @@ template <class View>
   double const share = 0.6180339887498949 * static_cast<double>(static_cast<std::uint32_t>(view.id()));
   double const turn = spread * (share - std::floor(share)) + (is_smaller ? 0.0 : later);  // [s]
   bool const inside = other.is_inside(conflict, zone), own_inside = own.is_inside(conflict, zone);
+  if (!inside && !own_inside && is_by_arrival(view, conflict) && leaves_first(conflict, other, own, is_smaller))
+    return false;
   bool const by_arrival = !inside && !own_inside && own.waited >= own.patience && is_by_arrival(view, conflict);
   double const to_line = zone.other_line - at - user.front;
   auto const arrival = own.stopped_before->arrival_of(user.agent);

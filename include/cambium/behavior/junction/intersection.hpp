@@ -33,7 +33,8 @@ namespace cambium {
 /// The driver enters a junction when all its conflicts are its own and there is room behind them (after 40 s more than
 /// its patience, even without room). As soon as it has
 /// left its place to wait, maybe well before the edge of the junction, it goes before all vehicles that are still
-/// outside. At green it also enters to turn left, and waits inside for oncoming traffic. It stops at red lights
+/// outside. Of those that leave their places in the same step, the nearest goes (`detail::leaves_first`). At green it
+/// also enters to turn left, and waits inside for oncoming traffic. It stops at red lights
 /// (`World::set_light`) and stop signs, and slows down for bends. Where neither priorities nor lights say who goes
 /// first, those who have stopped go in the order in which they came. In a deadlock one driver after the other loses its
 /// `patience` and goes. A driver that has waited 40 s more for others who go first drives up to the conflict: then it
@@ -108,6 +109,8 @@ struct Intersection {
     own.waited = memory.waited;
     own.patience = patience;
     own.stopped_before = &memory.stopped_before;
+    own.dt = dt;
+    own.braking = rules.safe_deceleration;
     IdmLaw const law(own.idm, own.speed);
     Strictest ahead(law);
     rules.heed(view, ahead, memory.rules);
@@ -294,18 +297,16 @@ struct Intersection {
         bool const large = detail::is_large(view, view.shape(user));
         auto const& zone = conflict.zones[own.is_large][large];
         if (zone.empty()) return;
-        double const at = way.begin + user.s - way.index_begin, to_line = zone.other_line - at - user.front;
+        double const at = way.begin + user.s - way.index_begin;
         // Where all go in the order in which they came, a truck in the queue of another way comes later.
         auto const comes_next = [&] {
           bool const is_next = !first || first->agent == user.agent || at > zone.other_begin;
           return is_next || own.is_large || !detail::is_by_arrival(view, conflict);
         };
         own.meets_large = own.meets_large || (large && comes_next());
-        Other const other{
-            user, at, detail::extra_reach(view, large, user.front, user.rear),
-            first && first->speed < starting && first->agent != user.agent,
-            std::abs(to_line) < detail::short_way ? view.waiting_place(user, conflict.other, large) : infinite};
-        claims[large] = std::max(claims[large], claim_of(view, conflict, zone, other, own, ahead));
+        Other const other{user, at, detail::extra_reach(view, large, user.front, user.rear),
+                          first && first->speed < starting && first->agent != user.agent};
+        claims[large] = std::max(claims[large], claim_of(view, conflict, large, other, own, ahead));
       });
     return claims;
   }
@@ -330,8 +331,9 @@ struct Intersection {
 
   /// The claim of one vehicle on its way.
   template <class View>
-  [[nodiscard]] Claim claim_of(View const& view, map::Conflict const& conflict, map::ConflictZone const& zone,
-                               Other const& other, Own const& own, Strictest<IdmLaw>& ahead) const {
+  [[nodiscard]] Claim claim_of(View const& view, map::Conflict const& conflict, bool large, Other other, Own const& own,
+                               Strictest<IdmLaw>& ahead) const {
+    auto const& zone = conflict.zones[own.is_large][large];
     auto const& [user, at, reach, behind_slow, hold] = other;
     if (at > zone.other_end + reach.rear) return Claim::free;
     double const way = zone.other_begin - reach.front - at;
@@ -344,6 +346,7 @@ struct Intersection {
       if (gap > 0.0 || conflict.kind == map::OverlapKind::split) return Claim::free;
     }
     if (own_is_in) return Claim::free;
+    other.hold = view.waiting_place(user, conflict.other, large);
     if (is_in || !can_stop(user.speed, way)) {
       double end = zone.other_end + reach.rear;  // where it leaves room for the own vehicle
       if (conflict.kind == map::OverlapKind::merge)

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 
+#include "cambium/core/described.hpp"
 #include "cambium/core/ids.hpp"
 
 namespace cambium::map {
@@ -41,6 +42,17 @@ struct LightPlan {
   double green_begin = 0.0;  ///< in the cycle [s]
   double green_end = 0.0;    ///< [s], may lie beyond the cycle's end
   double yellow = 3.0;       ///< [s]
+
+  static constexpr char const* name = "light_plan";
+  static constexpr auto parameters() {
+    using P = LightPlan;
+    constexpr double day = 86'400.0;
+    return parameter_list(
+        parameter("cycle", &P::cycle, "s", Range{0, day}, "after which the phases repeat; 0: off"),
+        parameter("green_begin", &P::green_begin, "s", Range{-day, day}, "in the cycle"),
+        parameter("green_end", &P::green_end, "s", Range{-day, 2 * day}, "may lie beyond the cycle's end"),
+        parameter("yellow", &P::yellow, "s", Range{0, day}, "duration of yellow, after green"));
+  }
 
   friend bool operator==(LightPlan const&, LightPlan const&) = default;
 

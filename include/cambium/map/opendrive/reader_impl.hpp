@@ -16,13 +16,12 @@
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/map/detail/findings.hpp"
-#include "cambium/map/detail/read_map_file.hpp"
 #include "cambium/map/opendrive/check.hpp"
 #include "cambium/map/opendrive/detail/junctions_reader.hpp"
 #include "cambium/map/opendrive/detail/lanes_reader.hpp"
 #include "cambium/map/opendrive/detail/plan_view.hpp"
 #include "cambium/map/opendrive/detail/xml_context.hpp"
-#include "cambium/map/opendrive/detail/xml_limits.hpp"
+#include "cambium/map/opendrive/detail/xml_root.hpp"
 #include "cambium/map/opendrive/document.hpp"
 #include "cambium/map/opendrive/reader.hpp"
 
@@ -161,30 +160,6 @@ inline void read_signals(XmlContext& context, pugi::xml_node road_node, opendriv
   return true;
 }
 
-/// The root element. Throws `MapError` when the text is not XML, or has another root.
-[[nodiscard]] inline pugi::xml_node parse_root(pugi::xml_document& xml, std::string_view text,
-                                               std::string const& file) {
-  require_readable(text.size(), file);
-  if (auto const narrow = narrowed(text); narrow.empty())
-    XmlCounter(text).check(file);
-  else
-    XmlCounter(narrow).check(file);
-  pugi::xml_parse_result const result =
-      xml.load_buffer(text.data(), text.size(), pugi::parse_cdata | pugi::parse_escapes | pugi::parse_eol);
-  if (!result) {
-    int const line = LineTable(text).line(result.offset);
-    throw MapError(file + ":" + std::to_string(std::max(1, line)),
-                   "the file is not well-formed XML (" + std::string(result.description()) + ")",
-                   "repair it there, or export it again");
-  }
-  pugi::xml_node const root = xml.document_element();
-  if (local_name(root) != "OpenDRIVE")
-    throw MapError(file + ":" + std::to_string(LineTable(text).line(root.offset_debug())),
-                   "the root element is <" + std::string(root.name()) + ">, not <OpenDRIVE>",
-                   "give an OpenDRIVE file (usually named .xodr)");
-  return root;
-}
-
 inline void read_top_level(XmlContext& context, pugi::xml_node node, std::string_view name,
                            OpenDriveDocument& document) {
   if (name == "header") {
@@ -214,7 +189,8 @@ CAMBIUM_COLD OpenDriveDocument read_opendrive_document(std::string_view text, st
                                                        std::vector<Diagnostic>& diagnostics) {
   if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   pugi::xml_document xml;
-  pugi::xml_node const root = detail::parse_root(xml, text, file_name);
+  pugi::xml_node const root =
+      detail::parse_root(xml, text, file_name, "OpenDRIVE", "give an OpenDRIVE file (usually named .xodr)");
   detail::XmlContext context(text, std::move(file_name), diagnostics);
   OpenDriveDocument document;
   for (pugi::xml_attribute a = root.first_attribute(); a; a = a.next_attribute())

@@ -5,6 +5,7 @@
 #include <functional>
 #include <vector>
 
+#include "cambium/core/described.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/map/lanes/lane.hpp"
 
@@ -16,6 +17,13 @@ struct Route {
   std::vector<LaneId> lanes;
   double length{};  ///< driven [m]: of lanes beside each other only the last one counts
   double cost{};    ///< by the options that it was found with
+
+  static constexpr char const* name = "route";
+  static constexpr auto parameters() {
+    return parameter_list(parameter("lanes", &Route::lanes, "-", {}, "in order"),
+                          parameter("length", &Route::length, "m", non_negative, "driven"),
+                          parameter("cost", &Route::cost, "-", non_negative, "by the options it was found with"));
+  }
 };
 
 /// What makes one route better than another.

@@ -13,6 +13,7 @@
 
 #include "cambium/core/error.hpp"
 #include "cambium/core/ids.hpp"
+#include "cambium/core/markup.hpp"
 #include "cambium/geometry/box.hpp"
 #include "cambium/geometry/pose.hpp"
 #include "cambium/map/lanes/junction.hpp"
@@ -21,7 +22,6 @@
 #include "cambium/viewer/detail/map_legend.hpp"
 #include "cambium/viewer/detail/map_page.hpp"
 #include "cambium/viewer/detail/svg_panel.hpp"
-#include "cambium/viewer/detail/text.hpp"
 #include "cambium/viewer/map_picture_options.hpp"
 
 namespace cambium::detail {

@@ -3,10 +3,10 @@
 #include <string>
 #include <string_view>
 
+#include "cambium/core/markup.hpp"
 #include "cambium/viewer/detail/map_legend.hpp"
 #include "cambium/viewer/detail/map_page_script.hpp"
 #include "cambium/viewer/detail/svg_panel.hpp"
-#include "cambium/viewer/detail/text.hpp"
 
 namespace cambium::detail {
 

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <string>
 
+#include "cambium/core/markup.hpp"
 #include "cambium/geometry/pose.hpp"
-#include "cambium/viewer/detail/text.hpp"
 
 namespace cambium::detail {
 

@@ -1,4 +1,4 @@
-#include "cambium/viewer/detail/text.hpp"
+#include "cambium/core/markup.hpp"
 
 #include <limits>
 #include <string>

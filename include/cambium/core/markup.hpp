@@ -7,6 +7,7 @@
 #include <string_view>
 #include <system_error>
 
+/// Numbers and text inside HTML, SVG and JSON.
 namespace cambium::detail {
 
 /// Appends `value` rounded to `decimals` places, without trailing zeros, regardless of the locale. A value that is not

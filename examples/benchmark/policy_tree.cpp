@@ -1,0 +1,9 @@
+#include "cambium/planner/policy/policy_tree_planner.hpp"
+
+#include "traffic.hpp"
+
+benchmark::Contender benchmark::policy_tree() {
+  using Planner = cb::PolicyTreePlanner<Prediction<cb::MacroActions, cb::IdmClassic>>;
+  return with_speed(Planner{}, "policy_tree",
+                    [](Planner& planner, double speed) { planner.actions.idm.desired_speed = speed; });
+}

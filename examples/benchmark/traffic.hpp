@@ -1,0 +1,55 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cambium/behavior/behavior_set.hpp"
+#include "cambium/behavior/following/constant_acceleration.hpp"
+#include "cambium/behavior/following/idm_classic.hpp"
+#include "cambium/behavior/junction/intersection.hpp"
+#include "cambium/behavior/lane_change/mobil.hpp"
+#include "cambium/benchmark/contender.hpp"
+#include "cambium/dynamics/single_track.hpp"
+#include "cambium/execution/interpolate.hpp"
+#include "cambium/world/world.hpp"
+
+namespace benchmark {
+
+namespace cb = cambium;
+
+/// The drivers that scenario files may name.
+using Traffic = cb::World<cb::BehaviorSet<cb::IdmClassic, cb::Mobil, cb::Intersection, cb::ConstantAcceleration>,
+                          cb::InterpolateExecution, cb::SingleTrack>;
+using Contender = cb::Contender<Traffic>;
+using Spec = Traffic::AgentSpec;
+
+/// What planners predict with.
+template <class... Behaviors>
+using Prediction = Traffic::WithBehaviors<cb::BehaviorSet<Behaviors...>>;
+
+/// The speed that the scenario's driver of the ego likes: contenders drive in its place and have the same wish.
+[[nodiscard]] double desired_speed(Spec const& ego);
+
+/// A contender whose parameters are `planner`, but for the ego's desired speed: `set_speed(planner, speed)`.
+template <class Planner, class SetSpeed>
+[[nodiscard]] Contender with_speed(Planner const& planner, std::string const& name, SetSpeed set_speed) {
+  return cb::contender_by<Traffic>(name, cb::to_string(planner), cb::hash_parameters(planner),
+                                   [planner, set_speed](Spec const& ego, cb::Scenario<Traffic> const&) {
+                                     auto own = planner;
+                                     set_speed(own, desired_speed(ego));
+                                     return own;
+                                   });
+}
+
+// The shipped behaviours, a source file each, because planners take long to compile.
+[[nodiscard]] Contender idm();
+[[nodiscard]] Contender mobil();
+[[nodiscard]] Contender intersection();
+[[nodiscard]] Contender proposals();
+[[nodiscard]] Contender policy_tree();
+[[nodiscard]] Contender frenet();
+[[nodiscard]] Contender mcts_single_agent();
+[[nodiscard]] Contender mcts_cooperative();
+[[nodiscard]] Contender mcts_hypothesis();
+
+}  // namespace benchmark

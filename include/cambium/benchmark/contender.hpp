@@ -1,0 +1,264 @@
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "cambium/behavior/behavior_set.hpp"
+#include "cambium/benchmark/run_result.hpp"
+#include "cambium/core/parameters.hpp"
+#include "cambium/evaluation/collision.hpp"
+#include "cambium/evaluation/driving.hpp"
+#include "cambium/evaluation/metrics/closed_loop_score.hpp"
+#include "cambium/evaluation/metrics/over_time.hpp"
+#include "cambium/evaluation/metrics/post_encroachment_time.hpp"
+#include "cambium/evaluation/metrics/rss_compliance.hpp"
+#include "cambium/evaluation/off_road.hpp"
+#include "cambium/goal/goal.hpp"
+#include "cambium/scenario/scenario_set.hpp"
+#include "cambium/viewer/record_world.hpp"
+#include "cambium/world/world.hpp"
+
+namespace cambium {
+
+/// How a scenario is run.
+struct RunOptions {
+  double time_step = 0.2;    ///< [s]
+  double time_limit = 60.0;  ///< [s]
+};
+
+/// What a run gives: the result, the times, and the recording if one was asked for.
+struct Run {
+  RunResult result;
+  RunTimes times;
+  std::optional<Recording> recording;
+};
+
+/// A behaviour under test: its name, its parameters as text and hash, and how it runs a scenario as the ego (and as
+/// the other controlled agents). Made by `contender`.
+template <class ScenarioWorld>
+struct Contender {
+  std::string name;
+  std::string parameters;
+  std::uint64_t parameters_hash = 0;
+  std::function<Run(Scenario<ScenarioWorld> const& scenario, RunOptions const& options, bool records)> run;
+};
+
+namespace detail {
+
+/// How long plans took.
+struct PlanClock {
+  RunTimes times;
+  double limit_ms = 0.0, sum_ms = 0.0;
+
+  void add(double ms) {
+    ++times.decisions;
+    sum_ms += ms;
+    times.longest_ms = std::max(times.longest_ms, ms);
+    times.overruns += ms > limit_ms;
+  }
+};
+
+/// A behaviour whose plans are timed.
+template <class Behavior>
+struct Timed : Behavior {
+  PlanClock* clock = nullptr;
+
+  Timed() = default;
+  Timed(Behavior behavior, PlanClock* own) : Behavior(std::move(behavior)), clock(own) {}
+
+  template <class View, class... More>
+  [[nodiscard]] Plan<View> plan(View const& view, MemoryOf<Behavior>& memory, double dt, More&... workspace) const {
+    auto const begin = std::chrono::steady_clock::now();
+    auto plan = Behavior::plan(view, memory, dt, workspace...);
+    if (clock != nullptr)
+      clock->add(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
+    return plan;
+  }
+};
+
+template <class Set, class Behavior>
+struct WithBehavior;
+template <class... Models, class Behavior>
+struct WithBehavior<BehaviorSet<Models...>, Behavior> {
+  using type = BehaviorSet<Models..., Behavior>;
+};
+
+/// Judges a run of one agent.
+template <class World>
+class RunJudge {
+ public:
+  RunJudge(World& world, Slot ego) : ego_(ego) { observe(world, 0.0); }
+
+  void observe(World& world, double dt) {
+    gap_.observe(world, ego_, dt);
+    collision_time_.observe(world, ego_, dt);
+    encroachment_.observe(world, ego_, dt);
+    speed_.observe(world, ego_, dt);
+    progress_.observe(world, ego_, dt);
+    braking_.observe(world, ego_, dt);
+    hard_brakings_.observe(world, ego_, dt);
+    rss_.observe(world, ego_, dt);
+    score_.observe(world, ego_, dt);
+    auto const& record = world.frame().agents[ego_];
+    if (record.status == AgentStatus::driving && dt > 0.0) {
+      jerk_ = std::max(jerk_, std::abs(Jerk{}(world, ego_)));
+      lateral_ = std::max(lateral_, std::abs(LateralAcceleration{}(world, ego_)));
+    }
+    result_.off_road = result_.off_road || OffRoad{}(world, ego_) || record.status == AgentStatus::off_route;
+    if (auto const contact = Collision{}.contact(world, ego_)) {
+      result_.collision = true;
+      result_.hit = contact->agent;
+      result_.at_fault = AtFaultCollision{}(world, ego_);
+    }
+    auto const pair = AnyCollision{}.pair(world);
+    bool const others = pair && pair->first != id(world) && pair->second != id(world);
+    result_.others_collided += others && !others_collide_;
+    others_collide_ = others;
+  }
+
+  [[nodiscard]] RunResult& result() { return result_; }
+
+  [[nodiscard]] RunResult finished(World const& world) {
+    result_.steps = static_cast<std::int64_t>(world.frame().step);
+    result_.duration_s = world.time();
+    result_.progress_m = progress_.value();
+    result_.mean_speed = std::max(0.0, speed_.value());
+    result_.least_gap = gap_.value();
+    result_.least_time_to_collision = collision_time_.value();
+    result_.post_encroachment_time = encroachment_.value();
+    result_.hardest_braking = std::max(0.0, -braking_.value());
+    result_.largest_jerk = jerk_;
+    result_.largest_lateral_acceleration = lateral_;
+    result_.hard_brakings = static_cast<std::int64_t>(hard_brakings_.value());
+    result_.rss_compliance = rss_.value();
+    result_.closed_loop_score = score_.value();
+    return result_;
+  }
+
+ private:
+  struct Speed {
+    [[nodiscard]] double operator()(World const& world, Slot slot) const {
+      return world.frame().agents[slot].state.speed;
+    }
+  };
+
+  [[nodiscard]] AgentId id(World const& world) const { return world.roster().agents[ego_].id; }
+
+  Slot ego_;
+  RunResult result_;
+  bool others_collide_ = false;
+  double jerk_ = 0.0, lateral_ = 0.0;
+  Least<Gap> gap_;
+  Least<TimeToCollision> collision_time_;
+  PostEncroachmentTime encroachment_;
+  MeanOf<Speed> speed_;
+  Integral<Progress> progress_;
+  Least<Acceleration> braking_;
+  Times<HardBraking> hard_brakings_;
+  RssCompliance rss_;
+  ClosedLoopScore score_;
+};
+
+/// Runs a world until its ego is at its goal, collides, leaves the road or the map, or time is up. Without a goal, the
+/// ego has succeeded when it has come to the end of its route.
+template <class World>
+[[nodiscard]] RunResult run_world(World& world, AgentId ego, RunOptions const& options, WorldRecorder* film) {
+  auto const slot = world.slot_of(ego);
+  bool const has_goal = !std::holds_alternative<NoGoal>(world.roster().goals[slot]);
+  world.keep_history(1);
+  RunJudge<World> judge(world, slot);
+  auto& result = judge.result();
+  auto const most = static_cast<std::uint64_t>(std::ceil(options.time_limit / options.time_step - 1e-9));
+  bool is_over = result.collision;
+  while (!is_over) {
+    auto const step = world.step(options.time_step);
+    auto const status = world.frame().agents[slot].status;
+    if (step.problem == StepProblem::bad_duration || status == AgentStatus::failed) {
+      result.error = "agent " + to_string(step.agent) + ": " + to_string(step.problem);
+      is_over = true;
+    }
+    judge.observe(world, options.time_step);
+    if (film != nullptr) film->record(world);
+    bool const is_away = status != AgentStatus::driving && status != AgentStatus::not_started;
+    bool const done =
+        has_goal ? world.reached_goal(slot)
+                 : status == AgentStatus::arrived || status == AgentStatus::left_map || status == AgentStatus::expired;
+    result.success = done && !result.collision && result.error.empty();
+    is_over = is_over || result.collision || done || is_away;
+    result.timed_out = !is_over && world.frame().step >= most;
+    is_over = is_over || result.timed_out;
+  }
+  return judge.finished(world);
+}
+
+}  // namespace detail
+
+/// A contender from a function that says, for the spec of an agent to be controlled, what drives it:
+/// `choose(spec, scenario)` returns a behaviour. `name`: for tables and the database; `parameters`: what tells it from
+/// contenders of that name.
+template <class ScenarioWorld, class Choose>
+[[nodiscard]] Contender<ScenarioWorld> contender_by(std::string name, std::string parameters,
+                                                    std::uint64_t parameters_hash, Choose choose) {
+  using Behavior =
+      std::invoke_result_t<Choose const&, typename ScenarioWorld::AgentSpec const&, Scenario<ScenarioWorld> const&>;
+  using Timed = detail::Timed<Behavior>;
+  using World = cambium::World<typename detail::WithBehavior<typename ScenarioWorld::Behaviors, Timed>::type,
+                               typename ScenarioWorld::Execution, typename ScenarioWorld::Dynamics,
+                               typename ScenarioWorld::Observer>;
+  auto drive = [choose = std::move(choose)](Scenario<ScenarioWorld> const& scenario, RunOptions const& options,
+                                            bool records) {
+    Run run;
+    detail::PlanClock clock;
+    clock.limit_ms = 1e3 * options.time_step;
+    auto const begin = std::chrono::steady_clock::now();
+    try {
+      if (!is_valid(scenario.ego))
+        throw WorldError("scenario", "has no ego", "name the agent that the benchmark is about");
+      auto const ours = with_behaviors<World>(scenario, [&](auto const& spec) -> typename World::Behavior {
+        auto const id = spec.id.given().value_or(none<AgentId>);
+        bool const is_ours =
+            id == scenario.ego || std::ranges::find(scenario.controlled, id) != scenario.controlled.end();
+        if (is_ours) return Timed(choose(spec, scenario), id == scenario.ego ? &clock : nullptr);
+        return std::visit([](auto const& driver) -> typename World::Behavior { return driver; }, spec.behavior);
+      });
+      auto world = ours.make_world();
+      std::optional<WorldRecorder> film;
+      if (records) {
+        film.emplace(world);
+        film->show_as(scenario.ego, RecordedAgentKind::ego, "ego");
+      }
+      run.result = detail::run_world(world, scenario.ego, options, film ? &*film : nullptr);
+      if (film) run.recording = std::move(film->recording());
+    } catch (std::exception const& problem) {
+      run.result = {};
+      run.result.error = problem.what();
+    }
+    run.times = clock.times;
+    run.times.mean_ms = clock.times.decisions > 0 ? clock.sum_ms / static_cast<double>(clock.times.decisions) : 0.0;
+    run.times.run_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return run;
+  };
+  return {std::move(name), std::move(parameters), parameters_hash, std::move(drive)};
+}
+
+/// A contender that drives with the same parameters everywhere. `name`: by default that of the model.
+template <class ScenarioWorld, class Behavior>
+[[nodiscard]] Contender<ScenarioWorld> contender(Behavior const& behavior, std::string name = Behavior::name) {
+  static_assert(Described<Behavior>,
+                "cambium::contender: describe the behaviour's parameters, so that results can be told apart: `static "
+                "constexpr auto parameters() { return cambium::parameter_list(); }`");
+  return contender_by<ScenarioWorld>(
+      std::move(name), to_string(behavior), hash_parameters(behavior),
+      [behavior](typename ScenarioWorld::AgentSpec const&, Scenario<ScenarioWorld> const&) { return behavior; });
+}
+
+}  // namespace cambium

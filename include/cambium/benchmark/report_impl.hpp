@@ -1,0 +1,440 @@
+#pragma once
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "cambium/benchmark/report.hpp"
+#include "cambium/benchmark/run_on_threads.hpp"
+#include "cambium/core/error.hpp"
+#include "cambium/core/macros.hpp"
+#include "cambium/core/markup.hpp"
+#include "cambium/core/parameters.hpp"
+
+namespace cambium {
+
+namespace detail {
+
+/// `value` with that many places after the point.
+[[nodiscard]] inline std::string fixed_text(double value, int decimals) {
+  char buffer[400];
+  auto const end = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::fixed, decimals).ptr;
+  std::string text(buffer, end);
+  return text.find_first_not_of("-0.") == text.npos && text.front() == '-' ? text.substr(1) : text;
+}
+
+/// "93.1 (90.2-95.4)": a value and its interval, with enough digits to tell the ends apart.
+[[nodiscard]] inline std::string with_interval(double value, Interval const& interval, bool is_share, bool with_sign) {
+  if (!std::isfinite(value)) return "-";
+  double const scale = is_share ? 100.0 : 1.0, width = scale * (interval.high - interval.low);
+  bool const is_known = std::isfinite(width);
+  double const digits = is_share                  ? (width > 1.0   ? 1
+                                                     : width > 0.1 ? 2
+                                                                   : 3)
+                        : is_known && width > 0.0 ? 1 - std::floor(std::log10(width))
+                        : std::abs(value) > 0.0   ? 2 - std::floor(std::log10(std::abs(value)))
+                                                  : 0;
+  auto const decimals = static_cast<int>(std::clamp(digits, 0.0, is_share ? 3.0 : 6.0));
+  auto const number = [&](double x) {
+    auto const text = fixed_text(scale * x, decimals);
+    return with_sign && x > 0.0 ? "+" + text : text;
+  };
+  if (!is_known || width == 0.0) return number(value);
+  auto const low = number(interval.low), high = number(interval.high);
+  bool const has_sign = with_sign || low.front() == '-';
+  return number(value) + " (" + low + (has_sign ? " to " : "-") + high + ")";
+}
+
+[[nodiscard]] inline std::string cell_of(Measure const& measure, Estimate const& estimate, std::size_t scenarios) {
+  auto const text = with_interval(estimate.value, estimate.interval, measure.is_share, false);
+  return estimate.count == scenarios || estimate.count == 0 ? text : text + " n=" + std::to_string(estimate.count);
+}
+
+[[nodiscard]] inline std::string p_text(double p) { return p < 1e-4 ? "<0.0001" : fixed_text(p, p < 0.001 ? 4 : 3); }
+
+[[nodiscard]] inline std::string titled(Measure const& measure) {
+  return measure.unit.empty() ? measure.name : measure.name + " [" + measure.unit + "]";
+}
+
+[[nodiscard]] inline bool is_time(Measure const& measure) {
+  for (char const* key : {"decisions", "mean_ms", "longest_ms", "overruns", "run_s"})
+    if (measure.key == key) return true;
+  return false;
+}
+
+/// The groups of each set, in order.
+[[nodiscard]] inline std::vector<std::vector<std::size_t>> groups_by_set(std::vector<ResultGroup> const& groups) {
+  std::vector<std::vector<std::size_t>> sets;
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    if (i == 0 || groups[i].set_hash != groups[i - 1].set_hash) sets.emplace_back();
+    sets.back().push_back(i);
+  }
+  return sets;
+}
+
+/// A table of some measures of the groups of a set.
+[[nodiscard]] inline Table measure_table(Report const& report, std::vector<std::size_t> const& set,
+                                         std::vector<std::size_t> const& chosen, bool with_scenarios) {
+  Table table{.head = {"behaviour"}};
+  if (with_scenarios) table.head.emplace_back("scenarios");
+  for (auto const m : chosen) table.head.push_back(titled(measures()[m]));
+  for (auto const g : set) {
+    auto const& group = report.groups[g];
+    table.rows.push_back({group.label});
+    if (with_scenarios) table.rows.back().push_back(std::to_string(group.rows.size()));
+    for (auto const m : chosen)
+      table.rows.back().push_back(cell_of(measures()[m], report.estimates[g][m], group.rows.size()));
+  }
+  return table;
+}
+
+/// How long the behaviours of a set think.
+[[nodiscard]] inline Table time_table(Report const& report, std::vector<std::size_t> const& set) {
+  Table table{.head = {"behaviour", "plans", "mean time of a plan [ms]", "longest [ms]", "plans longer than a step"}};
+  for (auto const g : set) {
+    auto const& group = report.groups[g];
+    auto const& estimates = report.estimates[g];
+    std::int64_t plans = 0, overruns = 0;
+    for (auto const& row : group.rows) {
+      plans += row.times.decisions;
+      overruns += row.times.overruns;
+    }
+    std::string mean = "-", longest = "-";
+    for (std::size_t m = 0; m < measures().size(); ++m) {
+      if (measures()[m].key == "mean_ms") mean = cell_of(measures()[m], estimates[m], group.rows.size());
+      if (measures()[m].key == "longest_ms") longest = with_interval(estimates[m].most, {0.0, 0.0}, false, false);
+    }
+    table.rows.push_back({group.label, std::to_string(plans), mean, longest, std::to_string(overruns)});
+  }
+  table.note = "On the machine and threads of the run; interval of the mean over scenarios.";
+  return table;
+}
+
+/// Differences of a measure between each two behaviours of a set.
+[[nodiscard]] inline Table difference_table(Report const& report, std::vector<std::size_t> const& set,
+                                            std::string const& key) {
+  Table table{.head = {"row minus column"}};
+  for (auto const g : set) table.head.push_back(report.groups[g].label);
+  table.rows.resize(set.size());
+  bool is_share = false;
+  for (std::size_t i = 0; i < set.size(); ++i) {
+    auto const& row = report.groups[set[i]];
+    table.rows[i] = {row.label};
+    for (auto const g : set) {
+      std::string cell;
+      for (auto const& pair : report.each.list)
+        for (auto const& change : pair.changes) {
+          bool const forward = pair.before == row.label && pair.after == report.groups[g].label;
+          bool const backward = pair.after == row.label && pair.before == report.groups[g].label;
+          if (pair.set != row.set_label || change.measure->key != key || !(forward || backward)) continue;
+          is_share = change.measure->is_share;
+          double const difference = (is_share ? 100.0 : 1.0) * (change.after - change.before) * (forward ? -1.0 : 1.0);
+          cell = (difference > 0 ? "+" : "") + fixed_text(difference, is_share ? 1 : 3);
+          if (change.verdict != Verdict::none) cell += "*";
+        }
+      table.rows[i].push_back(cell);
+    }
+  }
+  std::string name = key;
+  std::replace(name.begin(), name.end(), '_', ' ');
+  table.title = name + (is_share ? ", differences [percentage points]" : ", differences");
+  table.note = std::string("On the scenarios that both have run. *: significant at ") +
+               rounded_text(100 * report.each.level) + " % (" +
+               (is_share ? "McNemar's exact test" : "paired bootstrap") + ", Holm's correction for all pairs).";
+  return table;
+}
+
+[[nodiscard]] inline std::string numbers_text(std::vector<std::int64_t> const& numbers) {
+  constexpr std::size_t most = 12;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(most, numbers.size()); ++i)
+    text += (i == 0 ? "" : ", ") + std::to_string(numbers[i]);
+  return numbers.size() > most ? text + " and " + std::to_string(numbers.size() - most) + " more" : text;
+}
+
+[[nodiscard]] inline Table comparison_table(Comparison const& comparison) {
+  Table table{.title = comparison.set + ": " + comparison.after +
+                       (comparison.after == comparison.before ? "" : " compared with " + comparison.before) + ", " +
+                       std::to_string(comparison.scenarios) + " equal scenarios",
+              .head = {"measure", "pairs", "before", "after", "difference", "p", "p (Holm)", "verdict"}};
+  std::string equal;
+  for (auto const& change : comparison.changes) {
+    auto const& measure = *change.measure;
+    if (!change.differs) {
+      if (change.pairs > 0) equal += (equal.empty() ? "" : ", ") + measure.name;
+      continue;
+    }
+    bool const is_judged = measure.better != Better::neither;
+    auto const value = [&](double x) {
+      auto const text = with_interval(x, change.difference, measure.is_share, false);
+      return text.substr(0, text.find(' '));
+    };
+    table.rows.push_back({titled(measure), std::to_string(change.pairs), value(change.before), value(change.after),
+                          with_interval(change.after - change.before, change.difference, measure.is_share, true),
+                          p_text(change.p), is_judged ? p_text(change.p_adjusted) : "",
+                          change.verdict == Verdict::better  ? "better"
+                          : change.verdict == Verdict::worse ? "WORSE"
+                                                             : ""});
+  }
+  if (table.rows.empty())
+    table.note = "No difference.";
+  else if (!equal.empty())
+    table.note = "Equal in each scenario: " + equal + ".";
+  if (!comparison.lost.empty()) table.note += " Success lost in scenarios " + numbers_text(comparison.lost) + ".";
+  if (!comparison.won.empty()) table.note += " Success won in scenarios " + numbers_text(comparison.won) + ".";
+  return table;
+}
+
+/// The words of a cell of a head, in lines of at most `width` letters where possible.
+[[nodiscard]] inline std::vector<std::string> wrapped(std::string const& text, std::size_t width) {
+  std::vector<std::string> lines(1);
+  for (std::size_t begin = 0; begin < text.size();) {
+    auto const found = text.find_first_of(" _", begin);
+    auto const end = found == text.npos ? text.size() : found + 1;
+    auto const word = text.substr(begin, end - begin);
+    bool const has_room = lines.back().size() + word.size() - word.ends_with(' ') <= width;
+    if (!has_room && !lines.back().empty()) lines.emplace_back();
+    lines.back() += word;
+    begin = end;
+  }
+  for (auto& line : lines)
+    if (line.ends_with(' ')) line.pop_back();
+  return lines;
+}
+
+/// Number of letters; bytes that continue a UTF-8 character do not count.
+[[nodiscard]] inline std::size_t letters(std::string_view text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xC0u) != 0x80u; }));
+}
+
+/// The head of a table in lines, each as a row.
+[[nodiscard]] inline std::vector<std::vector<std::string>> head_lines(Table const& table) {
+  std::vector<std::vector<std::string>> columns;
+  std::size_t height = 1;
+  for (std::size_t c = 0; c < table.head.size(); ++c) {
+    std::size_t width = 10;
+    for (auto const& row : table.rows) width = std::max(width, letters(row[c]));
+    columns.push_back(wrapped(table.head[c], width));
+    height = std::max(height, columns.back().size());
+  }
+  std::vector<std::vector<std::string>> lines(height, std::vector<std::string>(columns.size()));
+  for (std::size_t c = 0; c < columns.size(); ++c)
+    for (std::size_t i = 0; i < columns[c].size(); ++i) lines[height - columns[c].size() + i][c] = columns[c][i];
+  return lines;
+}
+
+[[nodiscard]] inline std::string escape_latex(std::string_view text) {
+  std::string out;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    char const c = text[i];
+    bool const after_digit = i > 0 && text[i - 1] >= '0' && text[i - 1] <= '9';
+    bool const before_digit = i + 1 < text.size() && text[i + 1] >= '0' && text[i + 1] <= '9';
+    if (std::string_view("&%$#_{}").find(c) != std::string_view::npos)
+      out += std::string("\\") + c;
+    else if (c == '\\')
+      out += "\\textbackslash{}";
+    else if (c == '~' || c == '^')
+      out += c == '~' ? "\\textasciitilde{}" : "\\textasciicircum{}";
+    else if (c == '<' || c == '>')
+      out += c == '<' ? "$<$" : "$>$";
+    else if (c == '"')
+      out += "''";
+    else if (c == '-' && before_digit)
+      out += after_digit ? "--" : "$-$";
+    else
+      out += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  }
+  return out;
+}
+
+[[nodiscard]] inline std::string csv_line(std::vector<std::string> const& cells) {
+  std::string line;
+  for (auto const& cell : cells) {
+    if (&cell != &cells.front()) line += ',';
+    if (cell.find_first_of(",\"\r\n") == cell.npos) {
+      line += cell;
+      continue;
+    }
+    line += '"';
+    for (char const c : cell) line += c == '"' ? "\"\"" : std::string(1, c);
+    line += '"';
+  }
+  return line + "\n";
+}
+
+[[nodiscard]] inline std::string csv_number(double value) { return std::isfinite(value) ? number_text(value) : ""; }
+
+[[nodiscard]] inline char const* text_of_better(Better better) {
+  return better == Better::more ? "more" : better == Better::less ? "less" : "";
+}
+
+[[nodiscard]] inline Estimate estimate_of(ResultGroup const& group, Measure const& measure) {
+  Estimate estimate;
+  std::vector<double> values;
+  for (auto const& row : group.rows)
+    if (double const value = measure.value(row); std::isfinite(value)) values.push_back(value);
+  estimate.count = values.size();
+  if (values.empty()) return estimate;
+  estimate.value = mean_of(values);
+  auto const [least, most] = std::minmax_element(values.begin(), values.end());
+  estimate.least = *least;
+  estimate.most = *most;
+  estimate.interval =
+      measure.is_share
+          ? wilson_interval(static_cast<std::uint64_t>(std::count(values.begin(), values.end(), 1.0)), values.size())
+          : bootstrap_interval(values);
+  return estimate;
+}
+
+}  // namespace detail
+
+CAMBIUM_COLD Report make_report(std::vector<ResultGroup> groups, double level) {
+  Report report{.groups = std::move(groups)};
+  auto const count = measures().size();
+  report.estimates.assign(report.groups.size(), std::vector<Estimate>(count));
+  run_on_threads(report.groups.size() * count, std::thread::hardware_concurrency(), [&](std::size_t i) {
+    report.estimates[i / count][i % count] = detail::estimate_of(report.groups[i / count], measures()[i % count]);
+  });
+  report.each = compare_each(report.groups, level);
+  return report;
+}
+
+CAMBIUM_COLD std::vector<Table> tables_of(Report const& report, std::size_t columns) {
+  std::vector<Table> tables;
+  std::vector<std::size_t> shares, means;
+  for (std::size_t m = 0; m < measures().size(); ++m) {
+    if (measures()[m].is_share)
+      shares.push_back(m);
+    else if (!detail::is_time(measures()[m]) && measures()[m].key != "steps")  // the duration says that
+      means.push_back(m);
+  }
+  auto const parts = (means.size() + columns - 1) / columns;
+  columns = (means.size() + parts - 1) / parts;  // tables of equal widths
+  for (auto const& set : detail::groups_by_set(report.groups)) {
+    auto const& name = report.groups[set.front()].set_label;
+    auto const add = [&](Table table, std::string const& title) {
+      table.title = name + ": " + title;
+      tables.push_back(std::move(table));
+    };
+    add(detail::measure_table(report, set, shares, true), "outcomes");
+    tables.back().note = "Shares of the scenarios; in brackets: 95 % intervals (Wilson).";
+    for (std::size_t begin = 0; begin < means.size(); begin += columns) {
+      auto const first = means.begin() + static_cast<std::ptrdiff_t>(begin);
+      auto const last = means.begin() + static_cast<std::ptrdiff_t>(std::min(means.size(), begin + columns));
+      add(detail::measure_table(report, set, {first, last}, false), "means");
+    }
+    tables.back().note =
+        "In brackets: 95 % intervals (bootstrap, BCa); n: scenarios with a finite value, where not all.";
+    add(detail::time_table(report, set), "planning times");
+    if (set.size() < 2) continue;
+    for (char const* key : {"success", "closed_loop_score"}) {
+      auto table = detail::difference_table(report, set, key);
+      auto const title = table.title;
+      add(std::move(table), title);
+    }
+  }
+  for (auto const& comparisons : report.comparisons)
+    for (auto const& comparison : comparisons.list) tables.push_back(detail::comparison_table(comparison));
+  return tables;
+}
+
+CAMBIUM_COLD std::string verdict_of(Comparisons const& comparisons) {
+  std::string worse, better;
+  for (auto const& comparison : comparisons.list)
+    for (auto const& change : comparison.changes) {
+      if (change.verdict == Verdict::none) continue;
+      auto& text = change.verdict == Verdict::worse ? worse : better;
+      text += (text.empty() ? "" : "; ") + comparison.set + ", " + comparison.after + ": " + change.measure->name;
+    }
+  auto text = (worse.empty() ? "no significant loss" : "significant loss: " + worse) +
+              (better.empty() ? "" : "; significant gain: " + better);
+  return comparisons.title + ": " + text + " (level " + detail::rounded_text(100 * comparisons.level) + " %)";
+}
+
+CAMBIUM_COLD std::string text_of(Table const& table) {
+  auto lines = detail::head_lines(table);
+  auto const head_height = lines.size();
+  for (auto const& row : table.rows) lines.push_back(row);
+  if (table.rows.empty()) lines.clear();
+  std::vector<std::size_t> widths(table.head.size(), 0);
+  for (auto& line : lines)
+    for (std::size_t c = 0; c < line.size(); ++c) {
+      line[c] = detail::printable(line[c]);
+      widths[c] = std::max(widths[c], detail::letters(line[c]));
+    }
+  std::string text = "  " + detail::printable(table.title) + "\n";
+  for (std::size_t l = 0; l < lines.size(); ++l) {
+    std::string row;
+    for (std::size_t c = 0; c < lines[l].size(); ++c) {
+      std::string const blanks(widths[c] - detail::letters(lines[l][c]), ' ');
+      row += (c == 0 ? "    " + lines[l][c] + blanks : "  " + blanks + lines[l][c]);
+    }
+    row.resize(row.find_last_not_of(' ') + 1);
+    text += row + "\n";
+    if (l + 1 != head_height) continue;
+    std::size_t all = 2 * (widths.size() - 1);
+    for (auto const width : widths) all += width;
+    text += "    " + std::string(all, '-') + "\n";
+  }
+  return table.note.empty() ? text : text + "    " + detail::printable(table.note) + "\n";
+}
+
+CAMBIUM_COLD std::string latex_of(Table const& table) {
+  auto const row = [](std::vector<std::string> const& cells) {
+    std::string line;
+    for (auto const& cell : cells) line += (&cell == &cells.front() ? "  " : " & ") + detail::escape_latex(cell);
+    return line + " \\\\\n";
+  };
+  std::string text = "\\begin{table}\n  \\centering\n  \\caption{" + detail::escape_latex(table.title) + ". " +
+                     detail::escape_latex(table.note) + "}\n  \\begin{tabular}{l" +
+                     std::string(table.head.size() - 1, 'r') + "}\n  \\toprule\n";
+  for (auto const& line : detail::head_lines(table)) text += row(line);
+  text += "  \\midrule\n";
+  for (auto const& line : table.rows) text += row(line);
+  return text + "  \\bottomrule\n  \\end{tabular}\n\\end{table}\n";
+}
+
+CAMBIUM_COLD std::string csv_of(Report const& report) {
+  auto text = detail::csv_line({"set", "behavior", "parameters", "version", "against", "measure", "unit", "better",
+                                "scenarios", "value", "low", "high", "p", "p_adjusted", "verdict"});
+  for (std::size_t g = 0; g < report.groups.size(); ++g) {
+    auto const& group = report.groups[g];
+    for (std::size_t m = 0; m < measures().size(); ++m) {
+      auto const& measure = measures()[m];
+      auto const& estimate = report.estimates[g][m];
+      text += detail::csv_line({group.set_label, group.label, group.parameters, group.version, "", measure.key,
+                                measure.is_share ? "" : measure.unit, detail::text_of_better(measure.better),
+                                std::to_string(estimate.count), detail::csv_number(estimate.value),
+                                detail::csv_number(estimate.interval.low), detail::csv_number(estimate.interval.high),
+                                "", "", ""});
+    }
+  }
+  auto const add = [&](Comparisons const& comparisons) {
+    for (auto const& comparison : comparisons.list)
+      for (auto const& change : comparison.changes) {
+        auto const& measure = *change.measure;
+        text += detail::csv_line({comparison.set, comparison.after, "", "", comparison.before, measure.key,
+                                  measure.is_share ? "" : measure.unit, detail::text_of_better(measure.better),
+                                  std::to_string(change.pairs), detail::csv_number(change.after - change.before),
+                                  detail::csv_number(change.difference.low), detail::csv_number(change.difference.high),
+                                  detail::csv_number(change.p),
+                                  measure.better == Better::neither ? "" : detail::csv_number(change.p_adjusted),
+                                  change.verdict == Verdict::better  ? "better"
+                                  : change.verdict == Verdict::worse ? "worse"
+                                                                     : ""});
+      }
+  };
+  add(report.each);
+  for (auto const& comparisons : report.comparisons) add(comparisons);
+  return text;
+}
+
+}  // namespace cambium

@@ -1,0 +1,336 @@
+#pragma once
+
+#include <sqlite3.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "cambium/benchmark/run_result.hpp"
+#include "cambium/core/error.hpp"
+#include "cambium/core/parameters.hpp"
+#include "cambium/core/version.hpp"
+
+/// Results of benchmarks in one SQLite file.
+///
+///   runs       one row a call of the runner: run, started, command
+///   sets       one row a scenario set: set_hash, title, scenarios
+///   behaviors  one row a behaviour with its parameters: behavior, parameters_hash, parameters
+///   results    one row a scenario and behaviour: the key (set_hash, scenario, behavior, parameters_hash, version), the
+///              scenario's seed, the fields of `RunResult`, and the run that brought it
+///   times      the same key, and the fields of `RunTimes`
+///
+/// Hashes are texts of 16 hexadecimal digits. Everything in `results` but `run` is the same however often, in whatever
+/// order and on how many threads the scenarios are run.
+namespace cambium {
+
+/// What a result belongs to.
+struct ResultKey {
+  std::uint64_t set_hash = 0;
+  std::int64_t scenario = 0;  ///< number in the set, from 0
+  std::string behavior;
+  std::uint64_t parameters_hash = 0;
+  std::string version = cambium::version;
+
+  friend bool operator==(ResultKey const&, ResultKey const&) = default;
+  friend auto operator<=>(ResultKey const&, ResultKey const&) = default;
+};
+
+/// A row of the database.
+struct ResultRow {
+  ResultKey key;
+  std::uint64_t seed = 0;
+  RunResult result;
+  RunTimes times{};
+};
+
+/// A hash as in the database: 16 hexadecimal digits.
+[[nodiscard]] inline std::string hash_text(std::uint64_t hash) {
+  std::string text(16, '0');
+  for (std::size_t i = 16; i-- > 0; hash >>= 4) text[i] = "0123456789abcdef"[hash & 15u];
+  return text;
+}
+
+/// A database that cannot be opened, read or written, or that another program has laid out.
+struct StoreError : Error {
+  using Error::Error;
+};
+
+/// An open database of results. One object serves one thread; several processes may write to one file. What `add` has
+/// got is on disk after `commit`, and at the latest when the store is closed; a process that is killed loses only what
+/// came after the last `commit`.
+class ResultStore {
+ public:
+  /// Opens or makes the file. Throws `StoreError` if that is impossible, or if its tables are others.
+  explicit ResultStore(std::filesystem::path const& file) : file_(file.string()) {
+    sqlite3* db = nullptr;
+    auto const code = sqlite3_open(file_.c_str(), &db);
+    db_.reset(db);
+    if (code != SQLITE_OK) fail("cannot be opened", "name a file in a folder that exists and that you may write to");
+    sqlite3_busy_timeout(db_.get(), 60'000);
+    execute("PRAGMA journal_mode=WAL");
+    execute("PRAGMA synchronous=NORMAL");
+    execute("CREATE TABLE IF NOT EXISTS runs(run INTEGER PRIMARY KEY, started TEXT, command TEXT)");
+    execute("CREATE TABLE IF NOT EXISTS sets(set_hash TEXT PRIMARY KEY, title TEXT, scenarios INTEGER)");
+    execute(
+        "CREATE TABLE IF NOT EXISTS behaviors(behavior TEXT, parameters_hash TEXT, parameters TEXT, PRIMARY "
+        "KEY(behavior, "
+        "parameters_hash))");
+    std::string const key =
+        "set_hash TEXT NOT NULL, scenario INTEGER NOT NULL, behavior TEXT NOT NULL, parameters_hash TEXT NOT NULL, "
+        "version TEXT NOT NULL, ";
+    std::string const primary = ", PRIMARY KEY(set_hash, behavior, parameters_hash, version, scenario)) WITHOUT ROWID";
+    execute("CREATE TABLE IF NOT EXISTS results(" + key + "seed TEXT, run INTEGER, " + columns<RunResult>(true) +
+            primary);
+    execute("CREATE TABLE IF NOT EXISTS times(" + key + columns<RunTimes>(true) + primary);
+    add_result_ = prepare("INSERT OR REPLACE INTO results(" + key_columns + "seed, run, " + columns<RunResult>(false) +
+                          ") VALUES(" + marks(7 + count<RunResult>()) + ")");
+    add_times_ = prepare("INSERT OR REPLACE INTO times(" + key_columns + columns<RunTimes>(false) + ") VALUES(" +
+                         marks(5 + count<RunTimes>()) + ")");
+    has_ = prepare(
+        "SELECT 1 FROM results WHERE set_hash=? AND scenario=? AND behavior=? AND parameters_hash=? AND version=?");
+  }
+  /// Opens a database that is there already. Throws `StoreError` if the file is missing or is none; then it stays as it
+  /// is.
+  [[nodiscard]] static ResultStore existing(std::filesystem::path const& file) {
+    sqlite3* db = nullptr;
+    bool is_ours = sqlite3_open_v2(file.string().c_str(), &db, SQLITE_OPEN_READONLY, nullptr) == SQLITE_OK;
+    std::unique_ptr<sqlite3, Close> const closed(db);
+    sqlite3_stmt* query = nullptr;
+    is_ours = is_ours && sqlite3_prepare_v2(db, "SELECT 1 FROM runs, sets, behaviors, results, times LIMIT 0", -1,
+                                            &query, nullptr) == SQLITE_OK;
+    sqlite3_finalize(query);
+    if (!is_ours)
+      throw StoreError(file.string(), "is no database of results (" + std::string(sqlite3_errmsg(db)) + ")",
+                       "name one that a benchmark has written");
+    return ResultStore(file);
+  }
+  ResultStore(ResultStore&&) = default;
+  ResultStore& operator=(ResultStore&&) = default;
+  ~ResultStore() {
+    if (db_ && in_transaction_) sqlite3_exec(db_.get(), "COMMIT", nullptr, nullptr, nullptr);
+  }
+
+  [[nodiscard]] std::string const& file() const { return file_; }
+
+  /// Notes a call of the runner; rows added from now on belong to it. `started`: a text, as "2026-11-24 17:00".
+  void begin_run(std::string const& started, std::string const& command) {
+    auto statement = prepare("INSERT INTO runs(started, command) VALUES(?, ?)");
+    bind(statement.get(), 1, started);
+    bind(statement.get(), 2, command);
+    step(statement.get());
+    run_ = sqlite3_last_insert_rowid(db_.get());
+  }
+  void add_set(std::uint64_t hash, std::string const& title, std::size_t scenarios) {
+    auto statement = prepare("INSERT OR REPLACE INTO sets VALUES(?, ?, ?)");
+    bind(statement.get(), 1, hash_text(hash));
+    bind(statement.get(), 2, title);
+    bind(statement.get(), 3, static_cast<std::int64_t>(scenarios));
+    step(statement.get());
+  }
+  void add_behavior(std::string const& name, std::uint64_t hash, std::string const& parameters) {
+    auto statement = prepare("INSERT OR REPLACE INTO behaviors VALUES(?, ?, ?)");
+    bind(statement.get(), 1, name);
+    bind(statement.get(), 2, hash_text(hash));
+    bind(statement.get(), 3, parameters);
+    step(statement.get());
+  }
+
+  /// Whether there is a result of that key.
+  [[nodiscard]] bool has(ResultKey const& key) {
+    bind_key(has_.get(), key);
+    bool const found = sqlite3_step(has_.get()) == SQLITE_ROW;
+    sqlite3_reset(has_.get());
+    return found;
+  }
+
+  /// Adds a row, in place of an earlier one of that key. Throws `StoreError`, for example if the disk is full.
+  void add(ResultRow const& row) {
+    if (!in_transaction_) execute("BEGIN");
+    in_transaction_ = true;
+    int at = bind_key(add_result_.get(), row.key);
+    bind(add_result_.get(), at++, std::to_string(row.seed));
+    bind(add_result_.get(), at++, run_);
+    bind_fields(add_result_.get(), at, row.result);
+    step(add_result_.get());
+    at = bind_key(add_times_.get(), row.key);
+    bind_fields(add_times_.get(), at, row.times);
+    step(add_times_.get());
+  }
+
+  /// Puts all rows so far on disk.
+  void commit() {
+    if (in_transaction_) execute("COMMIT");
+    in_transaction_ = false;
+  }
+
+  /// Calls `f(ResultRow)` for each result, by set, behaviour, parameters, version and scenario.
+  void for_each(std::function<void(ResultRow const&)> const& f) {
+    auto statement =
+        prepare("SELECT " + key_columns + "seed, " + columns<RunResult>(false) + ", " + columns<RunTimes>(false) +
+                " FROM results LEFT JOIN times USING(set_hash, scenario, behavior, parameters_hash, version) ORDER BY "
+                "set_hash, behavior, parameters_hash, version, scenario");
+    for (int code = sqlite3_step(statement.get()); code != SQLITE_DONE; code = sqlite3_step(statement.get())) {
+      if (code != SQLITE_ROW) fail("cannot be read", "it may be damaged: run the benchmark into another file");
+      ResultRow row;
+      row.key = {hash_of(text(statement.get(), 0)), sqlite3_column_int64(statement.get(), 1), text(statement.get(), 2),
+                 hash_of(text(statement.get(), 3)), text(statement.get(), 4)};
+      row.seed = std::strtoull(text(statement.get(), 5).c_str(), nullptr, 10);
+      int at = 6;
+      read_fields(statement.get(), at, row.result);
+      read_fields(statement.get(), at, row.times);
+      f(row);
+    }
+  }
+
+  /// The parameters of a behaviour as text; empty if they are unknown.
+  [[nodiscard]] std::string parameters_of(std::string const& name, std::uint64_t hash) {
+    auto statement = prepare("SELECT parameters FROM behaviors WHERE behavior=? AND parameters_hash=?");
+    bind(statement.get(), 1, name);
+    bind(statement.get(), 2, hash_text(hash));
+    return sqlite3_step(statement.get()) == SQLITE_ROW ? text(statement.get(), 0) : std::string();
+  }
+  /// The title of a set; its hash if it has none.
+  [[nodiscard]] std::string title_of(std::uint64_t set_hash) {
+    auto statement = prepare("SELECT title FROM sets WHERE set_hash=?");
+    bind(statement.get(), 1, hash_text(set_hash));
+    auto const title = sqlite3_step(statement.get()) == SQLITE_ROW ? text(statement.get(), 0) : std::string();
+    return title.empty() ? hash_text(set_hash) : title;
+  }
+
+  /// Adds all rows of another database, as after runs with `--shard`. Rows of one key are taken from `other`.
+  void merge(ResultStore& other) {
+    auto attach = prepare("ATTACH DATABASE ? AS other");
+    commit();
+    bind(attach.get(), 1, other.file_);
+    other.commit();
+    step(attach.get());
+    execute("INSERT OR REPLACE INTO sets SELECT * FROM other.sets");
+    execute("INSERT OR REPLACE INTO behaviors SELECT * FROM other.behaviors");
+    execute("INSERT OR REPLACE INTO results SELECT * FROM other.results");
+    execute("INSERT OR REPLACE INTO times SELECT * FROM other.times");
+    execute("DETACH DATABASE other");
+  }
+
+ private:
+  struct Close {
+    void operator()(sqlite3* db) const { sqlite3_close_v2(db); }
+  };
+  struct Finalize {
+    void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
+  };
+  using Statement = std::unique_ptr<sqlite3_stmt, Finalize>;
+
+  inline static std::string const key_columns = "set_hash, scenario, behavior, parameters_hash, version, ";
+
+  [[noreturn]] void fail(std::string const& what, std::string const& remedy) const {
+    throw StoreError(file_, what + " (" + sqlite3_errmsg(db_.get()) + ")", remedy);
+  }
+  void execute(std::string const& sql) {
+    if (sqlite3_exec(db_.get(), sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK)
+      fail("cannot be written", "name a database of this version of cambium, or a new file on a disk with room");
+  }
+  [[nodiscard]] Statement prepare(std::string const& sql) {
+    sqlite3_stmt* statement = nullptr;
+    if (sqlite3_prepare_v2(db_.get(), sql.c_str(), -1, &statement, nullptr) != SQLITE_OK)
+      fail("has other tables than this version of cambium", "name another file");
+    return Statement(statement);
+  }
+  void step(sqlite3_stmt* statement) {
+    auto const code = sqlite3_step(statement);
+    if (code != SQLITE_DONE && code != SQLITE_ROW)
+      fail("cannot be written", "make room on the disk, or name another file");
+    sqlite3_reset(statement);
+  }
+
+  static void bind(sqlite3_stmt* s, int at, std::string const& value) {
+    sqlite3_bind_text(s, at, value.data(), static_cast<int>(value.size()), SQLITE_TRANSIENT);
+  }
+  static void bind(sqlite3_stmt* s, int at, std::int64_t value) { sqlite3_bind_int64(s, at, value); }
+  static int bind_key(sqlite3_stmt* s, ResultKey const& key) {
+    bind(s, 1, hash_text(key.set_hash));
+    bind(s, 2, key.scenario);
+    bind(s, 3, key.behavior);
+    bind(s, 4, hash_text(key.parameters_hash));
+    bind(s, 5, key.version);
+    return 6;
+  }
+
+  template <class T>
+  [[nodiscard]] static int count() {
+    int fields = 0;
+    for_each_parameter<T>([&](auto const&) { ++fields; });
+    return fields;
+  }
+  [[nodiscard]] static std::string marks(int number) {
+    std::string text;
+    for (int i = 0; i < number; ++i) text += i == 0 ? "?" : ", ?";
+    return text;
+  }
+  template <class T>
+  [[nodiscard]] static std::string columns(bool with_types) {
+    std::string text;
+    for_each_parameter<T>([&]<class P>(P const& entry) {
+      using Field = std::remove_cvref_t<decltype(std::declval<T&>().*entry.field)>;
+      text += (text.empty() ? "" : ", ") + std::string(entry.name);
+      if (!with_types) return;
+      text += std::is_same_v<Field, std::string> ? " TEXT" : std::is_floating_point_v<Field> ? " REAL" : " INTEGER";
+    });
+    return text;
+  }
+  template <class T>
+  static void bind_fields(sqlite3_stmt* s, int& at, T const& object) {
+    for_each_parameter<T>([&](auto const& entry) {
+      auto const& field = object.*entry.field;
+      using Field = std::remove_cvref_t<decltype(field)>;
+      if constexpr (std::is_same_v<Field, std::string>)
+        bind(s, at, field);
+      else if constexpr (std::is_floating_point_v<Field>)
+        sqlite3_bind_double(s, at, field);
+      else if constexpr (StrongId<Field>)
+        is_valid(field) ? sqlite3_bind_int64(s, at, static_cast<std::int64_t>(field)) : sqlite3_bind_null(s, at);
+      else
+        bind(s, at, static_cast<std::int64_t>(field));
+      ++at;
+    });
+  }
+  template <class T>
+  static void read_fields(sqlite3_stmt* s, int& at, T& object) {
+    for_each_parameter<T>([&](auto const& entry) {
+      auto& field = object.*entry.field;
+      using Field = std::remove_cvref_t<decltype(field)>;
+      if constexpr (std::is_same_v<Field, std::string>)
+        field = text(s, at);
+      else if constexpr (std::is_floating_point_v<Field>)
+        field = sqlite3_column_double(s, at);
+      else if constexpr (StrongId<Field>)
+        field =
+            sqlite3_column_type(s, at) == SQLITE_NULL ? none<Field> : static_cast<Field>(sqlite3_column_int64(s, at));
+      else
+        field = static_cast<Field>(sqlite3_column_int64(s, at));
+      ++at;
+    });
+  }
+  [[nodiscard]] static std::string text(sqlite3_stmt* s, int at) {
+    auto const* const bytes = reinterpret_cast<char const*>(sqlite3_column_text(s, at));
+    return bytes != nullptr ? bytes : "";
+  }
+  [[nodiscard]] static std::uint64_t hash_of(std::string const& text) {
+    return std::strtoull(text.c_str(), nullptr, 16);
+  }
+
+  std::string file_;
+  std::unique_ptr<sqlite3, Close> db_;
+  Statement add_result_, add_times_, has_;
+  std::int64_t run_ = 0;
+  bool in_transaction_ = false;
+};
+
+}  // namespace cambium

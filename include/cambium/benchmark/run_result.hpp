@@ -1,0 +1,89 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+
+#include "cambium/core/described.hpp"
+#include "cambium/core/ids.hpp"
+
+namespace cambium {
+
+/// What came of one scenario with one behaviour. It depends on nothing but these two and the library: not on threads,
+/// machine load or time of day (`RunTimes` does).
+struct RunResult {
+  bool success = false;
+  bool collision = false;
+  bool at_fault = false;
+  bool off_road = false;
+  bool timed_out = false;
+  std::string error{};
+  std::int64_t steps = 0;
+  double duration_s = 0.0;
+  double progress_m = 0.0;
+  double mean_speed = 0.0;
+  double least_gap = std::numeric_limits<double>::infinity();
+  double least_time_to_collision = std::numeric_limits<double>::infinity();
+  double post_encroachment_time = std::numeric_limits<double>::infinity();
+  double hardest_braking = 0.0;
+  double largest_jerk = 0.0;
+  double largest_lateral_acceleration = 0.0;
+  std::int64_t hard_brakings = 0;
+  double rss_compliance = 1.0;
+  double closed_loop_score = 0.0;
+  std::int64_t others_collided = 0;
+  AgentId hit = none<AgentId>;
+
+  static constexpr char const* name = "result";
+  static constexpr auto parameters() {
+    using P = RunResult;
+    constexpr Range share{0, 1};
+    auto const outcome = parameter_list(
+        parameter("success", &P::success, "-", share, "the ego reached its goal in time, without a collision"),
+        parameter("collision", &P::collision, "-", share, "the ego touched an agent or an object"),
+        parameter("at_fault", &P::at_fault, "-", share, "it caused that: it moved, and the other was not behind it"),
+        parameter("off_road", &P::off_road, "-", share, "a part of it left the drivable lanes, or it left its route"),
+        parameter("timed_out", &P::timed_out, "-", share, "the time limit passed"),
+        parameter("error", &P::error, "-", {}, "why the run could not go on; empty: it could"),
+        parameter("steps", &P::steps, "-", non_negative, "number of steps"),
+        parameter("duration_s", &P::duration_s, "s", non_negative, "until the run ended"));
+    auto const driving = parameter_list(
+        parameter("progress_m", &P::progress_m, "m", any_finite, "way along the lanes"),
+        parameter("mean_speed", &P::mean_speed, "m/s", non_negative, "over time"),
+        parameter("least_gap", &P::least_gap, "m", any_finite, "to the next road user ahead"),
+        parameter("least_time_to_collision", &P::least_time_to_collision, "s", non_negative, "to it"),
+        parameter("post_encroachment_time", &P::post_encroachment_time, "s", non_negative, "least, where ways cross"),
+        parameter("hardest_braking", &P::hardest_braking, "m/s^2", non_negative, "deceleration"),
+        parameter("largest_jerk", &P::largest_jerk, "m/s^3", non_negative, "either way"),
+        parameter("largest_lateral_acceleration", &P::largest_lateral_acceleration, "m/s^2", non_negative,
+                  "either way"),
+        parameter("hard_brakings", &P::hard_brakings, "-", non_negative, "number of brakings harder than 4 m/s^2"),
+        parameter("rss_compliance", &P::rss_compliance, "-", share, "share of steps with a proper response"),
+        parameter("closed_loop_score", &P::closed_loop_score, "-", share, "nuPlan's, without progress"),
+        parameter("others_collided", &P::others_collided, "-", non_negative,
+                  "number of steps in which a collision without the ego began"),
+        parameter("hit", &P::hit, "-", {}, "the agent that the ego touched"));
+    return join_parameters(outcome, driving);
+  }
+};
+
+/// How long the ego's decisions took. Apart from `RunResult`, because it differs from run to run.
+struct RunTimes {
+  std::int64_t decisions = 0;
+  double mean_ms = 0.0;
+  double longest_ms = 0.0;
+  std::int64_t overruns = 0;
+  double run_s = 0.0;
+
+  static constexpr char const* name = "times";
+  static constexpr auto parameters() {
+    using P = RunTimes;
+    return parameter_list(parameter("decisions", &P::decisions, "-", non_negative, "number of the ego's plans"),
+                          parameter("mean_ms", &P::mean_ms, "ms", non_negative, "mean time of a plan"),
+                          parameter("longest_ms", &P::longest_ms, "ms", non_negative, "longest time of a plan"),
+                          parameter("overruns", &P::overruns, "-", non_negative, "plans that took longer than a step"),
+                          parameter("run_s", &P::run_s, "s", non_negative, "wall clock time of the run"));
+  }
+};
+
+}  // namespace cambium

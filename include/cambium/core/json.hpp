@@ -1,0 +1,58 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "cambium/core/detail/json_transfer.hpp"
+#include "cambium/core/transfer_parameters.hpp"
+#include "cambium/core/error.hpp"
+#include "cambium/core/parameters.hpp"
+#include "cambium/core/read_file.hpp"
+
+/// Described structs as JSON: parameters, scenarios, scenario sets. Needs nlohmann_json (`cambium::json`).
+///
+///   `{"idm": {"desired_speed": 14.5}, "patience": 2}`
+///
+/// A field that is absent keeps its default, so files hold what is special. A choice is written by its name, an
+/// alternative as `{"its_name": {...}}`, or `"its_name"` if all is as usual, infinity as "inf". Numbers are written
+/// such that they read back as the same bits.
+namespace cambium {
+
+/// The struct as JSON text. Lines are broken where an object or a list gets longer than 120 characters. Throws
+/// `ParameterError` if a `OneOf` holds a struct without a description, or a number is NaN.
+template <Described T>
+[[nodiscard]] std::string to_json(T const& object, JsonDetail detail = JsonDetail::differences,
+                                  LaneNames const* lanes = nullptr) {
+  static T const usual{};
+  return detail::json_text(&object, &usual, &detail::transfer_any<T>, detail, lanes);
+}
+
+/// Reads JSON text into `object`; what the text does not say, stays. Throws `ParameterError`, and leaves the object as
+/// it is, if the text is no JSON (with line and column), if a key is unknown (with the nearest known one), is there
+/// twice, or its value has a wrong type or is out of range (with the full key). `where`: the file, for messages.
+/// O(text).
+template <Described T>
+void read_json(T& object, std::string_view text, std::string const& where = "JSON", LaneNames const* lanes = nullptr) {
+  T const usual{};
+  T read = object;
+  detail::read_json_text(detail::struct_name<T>(), &read, &usual, &detail::transfer_any<T>, text, where, lanes);
+  check_parameters(read, where);
+  object = std::move(read);
+}
+
+/// A struct from JSON text, its defaults where the text says nothing. Throws as `read_json`.
+template <Described T>
+[[nodiscard]] T from_json(std::string_view text, std::string const& where = "JSON", LaneNames const* lanes = nullptr) {
+  T object{};
+  read_json(object, text, where, lanes);
+  return object;
+}
+
+/// A struct from a JSON file. Throws as `read_json`, and `Error` if the file cannot be read.
+template <Described T>
+[[nodiscard]] T from_json_file(std::filesystem::path const& path) {
+  return from_json<T>(read_file<Error>(path.string(), {.expected = "give a JSON file"}), path.string());
+}
+
+}  // namespace cambium

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+namespace cambium::detail {
+
+/// Edit distance: the number of letters to change, add or remove (Levenshtein 1966).
+[[nodiscard]] inline std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), std::size_t{0});
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i);
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      auto const changed = diagonal + (a[i - 1] != b[j - 1]);
+      diagonal = row[j];
+      row[j] = std::min({changed, row[j] + 1, row[j - 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+/// The names that a mistyped `word` may stand for, nearest first, at most three.
+[[nodiscard]] inline std::vector<std::string> nearest_names(std::string_view word,
+                                                            std::vector<std::string> const& names) {
+  std::vector<std::pair<std::size_t, std::string>> found;
+  for (auto const& name : names) {
+    auto const far = edit_distance(word, name);
+    bool const begins = word.size() > 3 && name.starts_with(word);
+    if (begins || far <= std::max<std::size_t>(1, word.size() / 3)) found.emplace_back(begins ? 0 : far, name);
+  }
+  std::sort(found.begin(), found.end());
+  found.resize(std::min<std::size_t>(found.size(), 3));
+  std::vector<std::string> nearest;
+  for (auto& [far, name] : found) nearest.push_back(std::move(name));
+  return nearest;
+}
+
+/// A remedy for a mistyped `word`: "is it speed or speeds?", or "give one of a, b, c" if nothing is near.
+[[nodiscard]] inline std::string suggestion(std::string_view word, std::vector<std::string> const& names) {
+  auto const near = nearest_names(word, names);
+  std::string text = near.empty() ? "give one of " : "is it ";
+  auto const& listed = near.empty() ? names : near;
+  for (std::size_t i = 0; i < listed.size(); ++i) text += (i == 0 ? "" : near.empty() ? ", " : " or ") + listed[i];
+  return listed.empty() ? "there are none" : text + (near.empty() ? "" : "?");
+}
+
+}  // namespace cambium::detail

@@ -1,0 +1,146 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "cambium/geometry/angle.hpp"
+#include "cambium/geometry/pose.hpp"
+#include "cambium/map/lanelet/lanelet_map.hpp"
+#include "cambium/map/lanes/lane.hpp"
+
+/// The geometry of lanelets: bounds that can be built from, the line between them, and where they cross.
+namespace cambium::map::detail {
+
+using geometry::Point;
+
+/// A polyline and the arc lengths of its points [m].
+struct Rail {
+  explicit Rail(std::span<Point const> given) : points(given.begin(), given.end()) {
+    for (auto const& p : points) s.push_back(s.empty() ? 0.0 : s.back() + (p - points[s.size() - 1]).norm());
+  }
+
+  [[nodiscard]] double length() const { return s.back(); }
+
+  /// The point at share `u` of the length, from 0 to 1.
+  [[nodiscard]] Point at(double u) const {
+    double const place = u * length();
+    auto const next = std::upper_bound(s.begin() + 1, s.end() - 1, place) - s.begin();
+    auto const i = static_cast<std::size_t>(next);
+    double const share = std::clamp((place - s[i - 1]) / (s[i] - s[i - 1]), 0.0, 1.0);
+    return points[i - 1] + share * (points[i] - points[i - 1]);
+  }
+
+  std::vector<Point> points;
+  std::vector<double> s;
+};
+
+/// Without points less than a centimetre from the one before, and with others between those more than 4 m apart: a
+/// curve through them then keeps close to the straight pieces.
+[[nodiscard]] inline std::vector<Point> evened(std::span<Point const> points) {
+  constexpr double shortest = 0.01, longest = 4.0;
+  constexpr double most = 2000.0;  // [m] of a segment that is divided
+  std::vector<Point> result;
+  for (auto const& p : points) {
+    if (result.empty()) {
+      result.push_back(p);
+      continue;
+    }
+    auto const from = result.back();
+    double const length = (p - from).norm();
+    if (length < shortest) continue;
+    int const pieces = length < most ? static_cast<int>(std::ceil(length / longest)) : 1;
+    for (int k = 1; k < pieces; ++k) result.push_back(from + (p - from) * (static_cast<double>(k) / pieces));
+    result.push_back(p);
+  }
+  return result;
+}
+
+/// Why bounds cannot be used; null where they can. Bounds that lie on the wrong sides are exchanged, which `swapped`
+/// reports.
+[[nodiscard]] inline char const* fault_of_bounds(Lanelet& lanelet, bool& swapped) {
+  constexpr double farthest = 1e8;  // [m]
+  for (auto* bound : {&lanelet.left, &lanelet.right}) {
+    for (auto const& p : *bound)
+      if (!(std::abs(p.x()) <= farthest && std::abs(p.y()) <= farthest)) return "a point is no finite place in metres";
+    if (evened(*bound).size() < 2) return "a bound has fewer than two points that are a centimetre apart";
+  }
+  Rail const left(lanelet.left), right(lanelet.right);
+  double twice_area = 0.0;  // of the ring along the left bound and back along the right one: clockwise is right
+  std::vector<Point> ring = left.points;
+  ring.insert(ring.end(), right.points.rbegin(), right.points.rend());
+  for (std::size_t i = 0; i < ring.size(); ++i) {
+    auto const p = ring[i] - ring[0], q = ring[(i + 1) % ring.size()] - ring[0];
+    twice_area += p.x() * q.y() - q.x() * p.y();
+  }
+  if (!(std::abs(twice_area) > 0.02)) return "there is no room between its bounds";
+  swapped = twice_area > 0.0;
+  if (swapped) std::swap(lanelet.left, lanelet.right);
+  return nullptr;
+}
+
+/// The middle between the bounds, with half of the width at each point.
+struct LaneletCenter {
+  std::vector<Point> points;
+  std::vector<SideWidths> widths;
+};
+
+/// Points of equal shares of both bounds face each other. Precondition: `fault_of_bounds` finds none.
+[[nodiscard]] inline LaneletCenter center_of(Lanelet const& lanelet) {
+  constexpr double apart = 0.25;  // [m] of points at least
+  Rail const left(evened(lanelet.left)), right(evened(lanelet.right));
+  std::vector<double> shares{0.0, 1.0};
+  for (auto const* rail : {&left, &right})
+    for (double const s : rail->s) shares.push_back(s / rail->length());
+  std::sort(shares.begin(), shares.end());
+  LaneletCenter center;
+  auto const add = [&](double u) {
+    Point const l = left.at(u), r = right.at(u);
+    center.points.push_back(0.5 * (l + r));
+    double const half = 0.5 * (l - r).norm();
+    center.widths.push_back({half, half});
+  };
+  for (double const u : shares) {
+    Point const p = 0.5 * (left.at(u) + right.at(u));
+    if (center.points.empty() || (p - center.points.back()).norm() >= apart) add(u);
+  }
+  Point const end = 0.5 * (left.at(1.0) + right.at(1.0));
+  if (center.points.size() > 1 && (end - center.points.back()).norm() < apart) {
+    center.points.pop_back();
+    center.widths.pop_back();
+  }
+  if (end != center.points.back()) add(1.0);
+  return center;
+}
+
+/// Where a lanelet begins or ends: the middle between its bounds, along the way.
+[[nodiscard]] inline geometry::Pose end_pose(LaneletCenter const& center, bool at_end) {
+  auto const& p = center.points;
+  Point const way = at_end ? p.back() - p[p.size() - 2] : p[1] - p[0];
+  Point const& at = at_end ? p.back() : p.front();
+  return {at.x(), at.y(), std::atan2(way.y(), way.x())};
+}
+
+/// Whether two ways cross, away from their ends, at an angle of 20 degrees or more.
+[[nodiscard]] inline bool cross_each_other(std::vector<Point> const& a, std::vector<Point> const& b) {
+  constexpr double near_end = 0.5, sine = 0.34;  // [m], of 20 degrees
+  auto const from_ends = [](std::vector<Point> const& line, Point const& p) {
+    return std::min((p - line.front()).norm(), (p - line.back()).norm());
+  };
+  for (std::size_t i = 0; i + 1 < a.size(); ++i)
+    for (std::size_t k = 0; k + 1 < b.size(); ++k) {
+      Point const u = a[i + 1] - a[i], v = b[k + 1] - b[k], w = b[k] - a[i];
+      double const turn = u.x() * v.y() - u.y() * v.x();
+      if (!(std::abs(turn) >= sine * u.norm() * v.norm()) || turn == 0.0) continue;
+      double const along = (w.x() * v.y() - w.y() * v.x()) / turn, across = (w.x() * u.y() - w.y() * u.x()) / turn;
+      if (along < 0.0 || along > 1.0 || across < 0.0 || across > 1.0) continue;
+      Point const p = a[i] + along * u;
+      if (from_ends(a, p) > near_end && from_ends(b, p) > near_end) return true;
+    }
+  return false;
+}
+
+}  // namespace cambium::map::detail

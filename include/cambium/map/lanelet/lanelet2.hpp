@@ -1,0 +1,55 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "cambium/core/diagnostic.hpp"
+#include "cambium/core/parameters.hpp"
+#include "cambium/map/lanelet/lanelet_map.hpp"
+#include "cambium/map/map.hpp"
+
+#ifdef CAMBIUM_COMPILED_WITHOUT_READER
+#error "cambium::compiled has no Lanelet2 reader because CMake did not find pugixml: install it (libpugixml-dev)"
+#endif
+
+namespace cambium::map {
+
+/// How the places of a Lanelet2 file become metres: by transverse Mercator in the UTM zone of the origin, which becomes
+/// (0, 0), as Lanelet2's UTM projector does. INTERACTION's maps have the origin (0, 0).
+struct Lanelet2Origin {
+  double latitude = 0.0;   ///< [degrees], north positive
+  double longitude = 0.0;  ///< [degrees], east positive
+
+  static constexpr char const* name = "lanelet2_origin";
+  static constexpr auto parameters() {
+    using P = Lanelet2Origin;
+    return parameter_list(parameter("latitude", &P::latitude, "degrees", Range{-84, 84}, "of the map frame's origin"),
+                          parameter("longitude", &P::longitude, "degrees", Range{-180, 180}, "likewise"));
+  }
+};
+
+/// The lanelets of a Lanelet2 file (OSM XML); `file` names it in messages. Nodes have `lat` and `lon`, or tags
+/// `local_x` and `local_y` [m], which count where all nodes have them. A lanelet follows another where it begins at the
+/// nodes where that ends, and lies beside it where they share a way. Read are: one way or both; the subtypes road,
+/// highway, play_street, exit, emergency_lane, bus_lane, bicycle_lane, walkway, shared_walkway and parking (others,
+/// such as crosswalks, are left out); speed limits (tag `speed_limit`, or elements of that kind); dashed, solid and
+/// mixed lines; `turn_direction` (it lies in an intersection); right of way, all-way stops, traffic lights and signs
+/// (205, 206, 301, 306) with their stop lines. Throws `MapError` where the text is no OSM file, has no lanelets, or a
+/// place is no number; what else is odd goes to `diagnostics`. Linear in the text.
+[[nodiscard]] std::vector<Lanelet> read_lanelet2(std::string_view text, Lanelet2Origin const& origin,
+                                                 std::string const& file, std::vector<Diagnostic>& diagnostics);
+
+/// The map of a Lanelet2 file. Throws as `read_lanelet2` and `build_lanelet_map`, and where the file cannot be read.
+[[nodiscard]] LaneletMap load_lanelet2(std::string const& path, Lanelet2Origin const& origin = {},
+                                       MapOptions const& options = {});
+
+}  // namespace cambium::map
+
+namespace cambium {
+using map::load_lanelet2;
+}  // namespace cambium
+
+#ifndef CAMBIUM_COMPILED
+#include "cambium/map/lanelet/lanelet2_impl.hpp"
+#endif

@@ -1,0 +1,249 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <pugixml.hpp>
+
+#include "cambium/core/error.hpp"
+#include "cambium/core/macros.hpp"
+#include "cambium/core/parameters.hpp"
+#include "cambium/core/stable_sort.hpp"
+#include "cambium/map/opendrive/xml.hpp"
+#include "cambium/scenario/dataset/common_road.hpp"
+#include "cambium/scenario/dataset/detail/common_road_lanes.hpp"
+
+namespace cambium {
+
+namespace detail {
+
+/// The words of obstacle types and the types that they become; of several words for one type the first is written.
+inline constexpr std::pair<std::string_view, TrackType> common_road_types[] = {{"car", TrackType::car},
+                                                                               {"truck", TrackType::truck},
+                                                                               {"bus", TrackType::bus},
+                                                                               {"bicycle", TrackType::bicycle},
+                                                                               {"pedestrian", TrackType::pedestrian},
+                                                                               {"motorcycle", TrackType::motorcycle},
+                                                                               {"unknown", TrackType::other},
+                                                                               {"taxi", TrackType::car},
+                                                                               {"priorityVehicle", TrackType::car},
+                                                                               {"parkedVehicle", TrackType::car}};
+
+/// Reads a CommonRoad scenario, see `parse_common_road`.
+class CommonRoadReader : private CommonRoadLanes {
+ public:
+  CommonRoadReader(std::string_view text, std::string const& file) : CommonRoadLanes(text, file) {}
+
+  [[nodiscard]] RecordedTraffic read(pugi::xml_node root, map::MapOptions const& options) {
+    read_head(root);
+    read_lanes(root, options);
+    xml::for_each_child(root, [&](pugi::xml_node node, std::string_view name) { read_other(node, name); });
+    detail::stable_sort(traffic_.tracks, [](Track const& track) { return !track.stands; });
+    check_recorded_traffic(traffic_);
+    return std::move(traffic_);
+  }
+
+ private:
+  void read_head(Node root) {
+    traffic_.name = root.attribute("benchmarkID").value();
+    std::string_view const version = root.attribute("commonRoadVersion").value();
+    if (version != "2018b" && version != "2020a")
+      warn(root, version.empty() ? "there is no commonRoadVersion; the file was read as one of 2020a"
+                                 : "version " + std::string(version) + " is unknown; it was read as one of 2020a");
+    auto const step = xml::parse_number<double>(root.attribute("timeStepSize").value());
+    if (!step || !(*step > 0.0 && *step <= 3600.0))
+      throw Error(place(root), "timeStepSize is missing, or no number of seconds above 0",
+                  "give the attribute timeStepSize, such as \"0.1\"");
+    traffic_.time_step = *step;
+  }
+
+  void read_other(Node node, std::string_view name) {
+    constexpr std::string_view known[] = {"lanelet",  "intersection", "trafficSign", "trafficLight",
+                                          "location", "scenarioTags", "tags"};
+    if (name == "obstacle")
+      read_obstacle(node, text_of(xml::find_child(node, "role")) == "static");
+    else if (name == "staticObstacle" || name == "dynamicObstacle")
+      read_obstacle(node, name == "staticObstacle");
+    else if (name == "environmentObstacle")
+      read_environment(node);
+    else if (name == "planningProblem")
+      read_problem(node);
+    else if (std::find(std::begin(known), std::end(known), name) == std::end(known) &&
+             unknown_.insert(std::string(name)).second)
+      note(node, "elements of this kind are not read");
+  }
+
+  void read_obstacle(Node node, bool stands) {
+    auto const id = id_of(node);
+    if (!id) return;
+    auto const name = "obstacle " + std::to_string(*id);
+    Track track{.id = *id, .type = TrackType::other, .stands = stands};
+    for (auto const& [word, type] : common_road_types)
+      if (word == text_of(xml::find_child(node, "type"))) track.type = type;
+    auto const shape = shape_of(xml::find_child(node, "shape"));
+    auto const initial = state_of(xml::find_child(node, "initialState"), 0.0);
+    if (!shape || !initial)
+      return warn(node, name + " has no shape, or no state with position and time; it was left out");
+    track.length = shape->length;
+    track.width = shape->width;
+    if (!(track.length > 1e-3 && track.width > 1e-3 && track.length <= 100.0 && track.width <= 100.0))
+      return warn(node, name + " is not up to 100 m long and wide; it was left out");
+    track.states.push_back(*initial);
+    if (!stands) read_motion(node, track);
+    for (auto& state : track.states) shift(state, *shape);
+    if (!ids_.insert(*id).second) return warn(node, name + " is there already; the second one was left out");
+    traffic_.tracks.push_back(std::move(track));
+  }
+
+  /// From the origin of the obstacle's frame to the middle of its shape.
+  static void shift(State& state, CommonRoadShape const& shape) {
+    if (shape.center != geometry::Point{}) {
+      double const c = std::cos(state.heading), s = std::sin(state.heading);
+      state.x += c * shape.center.x() - s * shape.center.y();
+      state.y += s * shape.center.x() + c * shape.center.y();
+    }
+    if (shape.heading != 0.0) state.heading += shape.heading;
+  }
+
+  void read_motion(Node node, Track& track) {
+    auto const add = [&](Node at, std::optional<State> const& state) {
+      if (!state)
+        warn(at, "a state of obstacle " + std::to_string(track.id) + " has no position or time; it was left out");
+      else if (!(state->time > track.states.back().time))
+        warn(at,
+             "a state of obstacle " + std::to_string(track.id) + " is not later than the one before; it was left out");
+      else
+        track.states.push_back(*state);
+    };
+    xml::for_each_child(xml::find_child(node, "trajectory"), "state",
+                        [&](Node child) { add(child, state_of(child, track.states.back().heading)); });
+    auto const set = xml::find_child(node, "occupancySet");
+    if (set) note(set, "the occupancies of obstacle " + std::to_string(track.id) + " became places: their middles");
+    xml::for_each_child(set, "occupancy", [&](Node child) {
+      auto const shape = shape_of(xml::find_child(child, "shape"));
+      auto const step = value(child, "time");
+      if (step && *step * traffic_.time_step <= track.states.front().time) return;  // the initial state again
+      if (!shape || !step) return add(child, std::nullopt);
+      State state = track.states.back();
+      double const passed = *step * traffic_.time_step - state.time;
+      double const way = (shape->center - geometry::Point{state.x, state.y}).norm();
+      state = {*step * traffic_.time_step, shape->center.x(), shape->center.y(),
+               shape->heading != 0.0 ? shape->heading : state.heading, passed > 0.0 ? way / passed : 0.0};
+      add(child, state);
+    });
+  }
+
+  /// Buildings and the like: an obstacle that stands, about its middle.
+  void read_environment(Node node) {
+    auto const id = id_of(node);
+    auto const shape = shape_of(xml::find_child(node, "shape"));
+    if (!id) return;
+    if (!shape || !(shape->length > 1e-3 && shape->width > 1e-3 && shape->length <= 100.0 && shape->width <= 100.0) ||
+        !ids_.insert(*id).second)
+      return warn(node, "obstacle " + std::to_string(*id) + " has no shape of up to 100 m; it was left out");
+    note(node, "obstacle " + std::to_string(*id) + " became the rectangle around it");
+    traffic_.tracks.push_back({*id,
+                               TrackType::other,
+                               shape->length,
+                               shape->width,
+                               true,
+                               {State{0.0, shape->center.x(), shape->center.y(), shape->heading, 0.0}}});
+  }
+
+  void read_problem(Node node) {
+    auto const id = id_of(node);
+    if (!id) return;
+    auto const initial = state_of(xml::find_child(node, "initialState"), 0.0);
+    if (!initial)
+      return warn(node, "planning problem " + std::to_string(*id) + " has no initial state; it was left out");
+    PlanningProblem problem{.id = *id, .initial = *initial};
+    xml::for_each_child(node, "goalState", [&](Node child) {
+      if (auto goal = goal_of(child)) problem.goals.push_back(std::move(*goal));
+    });
+    if (problem.goals.empty()) warn(node, "planning problem " + std::to_string(*id) + " has no goal");
+    traffic_.problems.push_back(std::move(problem));
+  }
+
+  [[nodiscard]] std::optional<GoalState> goal_of(Node node) {
+    GoalState goal;
+    if (auto const time = interval(node, "time")) {
+      goal.first_time = time->begin * traffic_.time_step;
+      goal.last_time = time->end * traffic_.time_step;
+    } else {
+      warn(node, "the goal has no time; it counts at any time");
+    }
+    if (auto const angle = interval(node, "orientation")) {
+      goal.limits.heading_from = angle->begin;
+      goal.limits.heading_to = angle->end;
+    }
+    if (auto const speed = interval(node, "velocity")) {
+      goal.limits.lowest_speed = speed->begin;
+      goal.limits.highest_speed = speed->end;
+    }
+    try {
+      check_parameters(goal.limits, "goal");
+    } catch (Error const& problem) {
+      warn(node, std::string(problem.what()) + "; the goal was left out");
+      return std::nullopt;
+    }
+    auto const area = xml::find_child(node, "position");
+    xml::for_each_child(area, [&](Node child, std::string_view name) { add_area(child, name, goal); });
+    if (area && goal.areas.empty()) {
+      warn(area, "no area of the goal's position is usable; the goal was left out");
+      return std::nullopt;
+    }
+    return goal;
+  }
+
+  void add_area(Node node, std::string_view name, GoalState& goal) {
+    std::vector<geometry::Point> outline;
+    if (name == "lanelet") {
+      auto const ref = reference(node);
+      auto const at = std::find_if(traffic_.lanelets.begin(), traffic_.lanelets.end(),
+                                   [&](map::Lanelet const& lanelet) { return ref && lanelet.id == *ref; });
+      if (at == traffic_.lanelets.end()) return warn(node, "that lanelet is not there");
+      outline = at->right;
+      outline.insert(outline.end(), at->left.rbegin(), at->left.rend());
+    } else if (name == "rectangle" || name == "circle" || name == "polygon") {
+      auto const shape = name == "rectangle" ? rectangle(node) : name == "circle" ? circle(node) : polygon(node);
+      if (!shape) return;
+      outline = shape->outline;
+    } else if (name == "point") {
+      return warn(node, "a single point as a goal is never met; it was left out");
+    } else {
+      return;
+    }
+    try {
+      goal.areas.emplace_back(outline);
+    } catch (Error const& problem) {
+      warn(node, problem.what());
+    }
+  }
+
+  std::set<Id> ids_;  ///< of the obstacles
+  std::set<std::string> unknown_;
+};
+
+}  // namespace detail
+
+CAMBIUM_COLD RecordedTraffic parse_common_road(std::string_view text, map::MapOptions const& options,
+                                               std::string const& file) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  pugi::xml_document document;
+  auto const root = map::xml::parse_root(document, text, file, "commonRoad", "give a CommonRoad scenario (.xml)");
+  return detail::CommonRoadReader(text, file).read(root, options);
+}
+
+CAMBIUM_COLD RecordedTraffic load_common_road(std::string const& path, map::MapOptions const& options) {
+  return parse_common_road(map::xml::read_map_file(path, "give a CommonRoad scenario (.xml)"), options, path);
+}
+
+}  // namespace cambium

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "cambium/core/described.hpp"
+#include "cambium/core/parameters.hpp"
+#include "cambium/scenario/recipe.hpp"
+#include "cambium/scenario/scenario.hpp"
+
+namespace cambium {
+
+/// Scenarios that belong together, and how they are run.
+template <class WorldType>
+struct ScenarioSet {
+  std::string title{};
+  double time_step = 0.2;    ///< [s]
+  double time_limit = 60.0;  ///< a scenario that takes longer has timed out [s]
+  std::vector<Scenario<WorldType>> scenarios{};
+  std::vector<ScenarioRecipe<WorldType>> recipes{};  ///< for more scenarios; empty once these are drawn
+  int format = 0;                                    ///< version of the file that it was read from; 0: none
+
+  static constexpr int latest_format = 1;
+  static constexpr char const* name = "scenario_set";
+  static constexpr auto parameters() {
+    using P = ScenarioSet;
+    return parameter_list(
+        parameter("format", &P::format, "-", Range{0, latest_format}, "version of the file format"),
+        parameter("title", &P::title, "-", {}, "for reports"),
+        parameter("time_step", &P::time_step, "s", Range{0.001, 10}, "of the simulation"),
+        parameter("time_limit", &P::time_limit, "s", Range{0.001, 1e6}, "a scenario that takes longer has timed out"),
+        parameter("scenarios", &P::scenarios, "-", {}, "situations to start from"),
+        parameter("recipes", &P::recipes, "-", {}, "for more of them, drawn when the file is read"));
+  }
+
+  /// Hash of everything that a run depends on, but for the maps, which count by their file names. Equal on every
+  /// platform. O(scenarios * agents).
+  [[nodiscard]] std::uint64_t hash() const {
+    auto plain = *this;
+    plain.format = 0;
+    plain.title.clear();
+    return hash_parameters(plain);
+  }
+};
+
+}  // namespace cambium

@@ -1,0 +1,239 @@
+#include <cambium/benchmark/statistics.hpp>
+#include <cambium/core/distributions.hpp>
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+using namespace cambium;
+
+namespace {
+
+/// The mice of Efron and Tibshirani 1993, table 2.1: survival times under treatment [days].
+std::vector<double> const mice{94, 197, 16, 38, 99, 141, 23};
+
+/// Calls `f(resample)` for all n^n resamples of `values`.
+template <class F>
+void for_all_resamples(std::vector<double> const& values, F const& f) {
+  auto const n = values.size();
+  std::vector<std::size_t> digits(n, 0);
+  std::vector<double> sample(n);
+  for (bool more = true; more;) {
+    for (std::size_t i = 0; i < n; ++i) sample[i] = values[digits[i]];
+    f(sample);
+    std::size_t i = 0;
+    while (i < n && ++digits[i] == n) digits[i++] = 0;
+    more = i < n;
+  }
+}
+
+/// Student's t of the hypothesis that the mean is `middle`; infinite without scatter.
+double t_of(std::vector<double> const& values, double middle) {
+  detail::Moments const moments(values);
+  auto const n = static_cast<double>(values.size());
+  return (moments.mean - middle) / std::sqrt(moments.square / (n - 1) / n);
+}
+
+double binomial(int n, int k) {
+  double result = 1.0;
+  for (int i = 1; i <= k; ++i) result = result * (n - k + i) / i;
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("Wilson's intervals are those of the literature") {
+  // Newcombe 1998 (table I, method 3): 81 of 263, 15 of 148, 0 of 20, 1 of 29.
+  struct Row {
+    unsigned count, n;
+    double low, high;
+  };
+  for (auto const& [count, n, low, high] : {Row{81, 263, 0.2553, 0.3662}, Row{15, 148, 0.0624, 0.1605},
+                                            Row{0, 20, 0.0, 0.1611}, Row{1, 29, 0.0061, 0.1718}}) {
+    auto const interval = wilson_interval(count, n);
+    CHECK(std::abs(interval.low - low) < 1e-4);
+    CHECK(std::abs(interval.high - high) < 1e-4);
+  }
+  CHECK(wilson_interval(20, 20).high == 1.0);
+  CHECK(wilson_interval(0, 0) == Interval{0.0, 1.0});
+}
+
+TEST_CASE("a Wilson interval holds exactly the shares that the score test does not reject") {
+  for (unsigned n : {1u, 5u, 40u, 1000u})
+    for (unsigned count = 0; count <= n; count += 1 + n / 7) {
+      auto const [low, high] = wilson_interval(count, n);
+      double const share = count / double(n);
+      for (double const end : {low, high}) {
+        if (end <= 0.0 || end >= 1.0) continue;
+        CHECK(std::abs(share - end) / std::sqrt(end * (1 - end) / n) == doctest::Approx(normal_975));
+      }
+      CHECK(low <= share);
+      CHECK(share <= high);
+    }
+}
+
+TEST_CASE("the bootstrap interval is that of all resamples") {
+  std::vector<double> means;
+  for_all_resamples(mice, [&](auto const& sample) { means.push_back(mean_of(sample)); });
+  std::sort(means.begin(), means.end());
+  double const mean = mean_of(mice);
+  CHECK(mean == doctest::Approx(86.86).epsilon(1e-4));
+  double scatter = 0.0, below = 0.0;
+  for (double const m : means) {
+    scatter += (m - mean) * (m - mean);
+    below += m < mean ? 1.0 : m == mean ? 0.5 : 0.0;
+  }
+  auto const all = static_cast<double>(means.size());
+  CHECK(std::sqrt(scatter / all) == doctest::Approx(23.36).epsilon(1e-3));  // Efron and Tibshirani, table 2.2, B = inf
+  // BCa as the book writes it, with the acceleration by leaving out one value at a time.
+  double square = 0.0, cube = 0.0;
+  for (std::size_t i = 0; i < mice.size(); ++i) {
+    auto rest = mice;
+    rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(i));
+    double const d = mean - mean_of(rest);
+    square += d * d;
+    cube += d * d * d;
+  }
+  double const acceleration = cube / (6 * std::pow(square, 1.5)), bias = detail::normal_quantile(below / all);
+  auto const share = [&](double z) {
+    return 0.5 * std::erfc(-(bias + (bias + z) / (1 - acceleration * (bias + z))) / std::sqrt(2.0));
+  };
+  auto const quantile = [&](double p) { return means[static_cast<std::size_t>(p * all)]; };
+  auto const [low, high] = bootstrap_interval(mice, 200'000);
+  CHECK(low == doctest::Approx(quantile(share(-1.96))).epsilon(0.01));
+  CHECK(high == doctest::Approx(quantile(share(1.96))).epsilon(0.01));
+  CHECK(bootstrap_interval(mice) == bootstrap_interval(mice));
+}
+
+TEST_CASE("a bootstrap interval of nothing, one value or equal values says so") {
+  CHECK(std::isinf(bootstrap_interval({}).high));
+  CHECK(std::isinf(bootstrap_interval(std::vector{3.0}).low));
+  CHECK(bootstrap_interval(std::vector{0.1, 0.1, 0.1}) == Interval{0.1, 0.1});
+}
+
+TEST_CASE("bootstrap intervals move and stretch with the values") {
+  auto values = mice;
+  auto const before = bootstrap_interval(values);
+  for (double& value : values) value = 4.0 * value + 8.0;  // exact
+  auto const after = bootstrap_interval(values);
+  CHECK(after.low == doctest::Approx(4.0 * before.low + 8.0));
+  CHECK(after.high == doctest::Approx(4.0 * before.high + 8.0));
+}
+
+TEST_CASE("bootstrap intervals hold the true mean about as often as they say") {
+  int normal = 0, skewed = 0;
+  constexpr int trials = 1000;
+  for (std::uint32_t trial = 0; trial < trials; ++trial) {
+    RandomStream stream(11, trial, 0);
+    std::vector<double> values(40), waits(40);
+    for (double& value : values) value = Normal{.mean = 5.0, .deviation = 2.0}(stream);
+    for (double& wait : waits) wait = -std::log(1.0 - uniform01(stream));
+    auto const a = bootstrap_interval(values, 499), b = bootstrap_interval(waits, 499);
+    normal += a.low <= 5.0 && 5.0 <= a.high;
+    skewed += b.low <= 1.0 && 1.0 <= b.high;
+  }
+  // Two standard deviations of 1000 trials are 1.4 %; the bootstrap of 40 values is known to be a little too short.
+  CHECK(normal / double(trials) == doctest::Approx(0.945).epsilon(0.02));
+  CHECK(skewed / double(trials) == doctest::Approx(0.93).epsilon(0.03));
+}
+
+TEST_CASE("McNemar's exact test counts all ways to toss the pairs that differ") {
+  CHECK(mcnemar_p(0, 0) == 1.0);
+  CHECK(mcnemar_p(5, 5) == 1.0);
+  for (int n = 1; n <= 12; ++n)
+    for (int first = 0; first <= n; ++first) {
+      double as_far = 0.0;
+      for (int k = 0; k <= n; ++k)
+        if (std::abs(2 * k - n) >= std::abs(2 * first - n)) as_far += binomial(n, k);
+      CHECK(mcnemar_p(static_cast<unsigned>(first), static_cast<unsigned>(n - first)) ==
+            doctest::Approx(as_far / std::ldexp(1.0, n)));
+    }
+  // Agresti 2002, table 10.1 (approval of the prime minister): 150 and 86 changed their minds; Fay 2010.
+  CHECK(mcnemar_p(86, 150) == doctest::Approx(3.716e-5).epsilon(1e-3));
+  CHECK(mcnemar_p(150, 86) == mcnemar_p(86, 150));
+  // Large numbers: the normal approximation with continuity correction.
+  double const z = (std::abs(50'500.0 - 49'500.0) - 1) / std::sqrt(100'000.0);
+  CHECK(mcnemar_p(50'500, 49'500) == doctest::Approx(std::erfc(z / std::sqrt(2.0))).epsilon(1e-3));
+}
+
+TEST_CASE("the paired bootstrap is that of all resamples") {
+  // Efron and Tibshirani 1993, section 16.4: whether the mice's mean is 129; t = -1.67, one-sided p about 0.1.
+  std::vector<double> differences;
+  for (double const days : mice) differences.push_back(days - 129.0);
+  double const t = t_of(differences, 0.0), mean = mean_of(differences);
+  CHECK(t == doctest::Approx(-1.67).epsilon(2e-3));
+  double below = 0.0, as_far = 0.0, all = 0.0;
+  for_all_resamples(differences, [&](auto const& sample) {
+    double const other = t_of(sample, mean);
+    bool const is_constant = !std::isfinite(other);
+    below += other <= t;
+    as_far += is_constant || std::abs(other) >= std::abs(t);
+    all += 1.0;
+  });
+  CHECK(below / all == doctest::Approx(0.10).epsilon(0.1));
+  double const p = paired_bootstrap_p(differences, 100'000);
+  // It ends after 100 exceedances, so p is good to 10 %.
+  CHECK(p == doctest::Approx(as_far / all).epsilon(0.25));
+  CHECK(p == paired_bootstrap_p(differences, 200'000));
+}
+
+TEST_CASE("the paired bootstrap finds differences, does not mind the direction, and asks for more than a few pairs") {
+  CHECK(paired_bootstrap_p({}) == 1.0);
+  CHECK(paired_bootstrap_p(std::vector<double>(50, 0.0)) == 1.0);
+  CHECK(paired_bootstrap_p(std::vector{0.3, 0.3, 0.3}) == 0.25);
+  CHECK(paired_bootstrap_p(std::vector{0.3}) == 1.0);
+  CHECK(paired_bootstrap_p(std::vector<double>(50, 0.3)) == 1e-4);
+  std::vector<double> clear;
+  for (int i = 0; i < 60; ++i) clear.push_back(i % 3 - 0.5);
+  auto reverse = clear;
+  for (double& d : reverse) d = -d;
+  CHECK(paired_bootstrap_p(clear) < 1e-3);
+  CHECK(paired_bootstrap_p(reverse) == paired_bootstrap_p(clear));
+}
+
+TEST_CASE("the paired bootstrap cries wolf at its level") {
+  // Differences around 0 of three kinds; 0.05 ± 0.02 is three standard deviations of 1000 trials.
+  constexpr int trials = 1000;
+  int normal = 0, even = 0, rare = 0;
+  for (std::uint32_t trial = 0; trial < trials; ++trial) {
+    RandomStream stream(12, trial, 0);
+    std::vector<double> a(60), b(60), c(60);
+    for (std::size_t i = 0; i < a.size(); ++i) {
+      a[i] = Normal{.mean = 0.0, .deviation = 3.0}(stream);
+      b[i] = uniform01(stream) - uniform01(stream);
+      c[i] = uniform01(stream) < 0.8 ? 0.0 : Normal{.mean = 0.0, .deviation = 1.0}(stream);
+    }
+    normal += paired_bootstrap_p(a, 499) < 0.05;
+    even += paired_bootstrap_p(b, 499) < 0.05;
+    rare += paired_bootstrap_p(c, 499) < 0.05;
+  }
+  CHECK(std::abs(normal / double(trials) - 0.05) < 0.02);
+  CHECK(std::abs(even / double(trials) - 0.05) < 0.02);
+  CHECK(rare / double(trials) < 0.08);
+}
+
+TEST_CASE("Holm's p values reject what closed testing by Bonferroni rejects") {
+  // Adjusted p of a hypothesis: the largest Bonferroni p over all sets of hypotheses that hold it.
+  for (std::uint32_t trial = 0; trial < 200; ++trial) {
+    RandomStream stream(13, trial, 0);
+    std::vector<double> p(1 + uniform_index(stream, 7));
+    for (double& value : p) value = 0.2 * uniform01(stream) * uniform01(stream);
+    if (p.size() > 2) p[1] = p[2];
+    std::vector<double> expected(p.size(), 0.0);
+    for (std::uint32_t set = 1; set < (1u << p.size()); ++set) {
+      double least = 1.0, members = 0.0;
+      for (std::size_t i = 0; i < p.size(); ++i)
+        if ((set >> i & 1u) != 0) {
+          least = std::min(least, p[i]);
+          members += 1.0;
+        }
+      for (std::size_t i = 0; i < p.size(); ++i)
+        if ((set >> i & 1u) != 0) expected[i] = std::max(expected[i], std::min(1.0, members * least));
+    }
+    auto const adjusted = holm(p);
+    for (std::size_t i = 0; i < p.size(); ++i) CHECK(adjusted[i] == doctest::Approx(expected[i]));
+  }
+  CHECK(holm({}).empty());
+}

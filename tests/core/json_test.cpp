@@ -1,0 +1,216 @@
+#include <cambium/core/json.hpp>
+#include <doctest/doctest.h>
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cambium/core/one_of.hpp"
+
+using namespace cambium;
+
+namespace {
+
+enum class Mood : std::uint8_t { calm, hasty };
+
+struct Window {
+  double from = 0.0, to = 1.0;
+
+  static constexpr char const* name = "window";
+  static constexpr auto parameters() {
+    return parameter_list(parameter("from", &Window::from, "s", any_finite, "begins"),
+                          parameter("to", &Window::to, "s", any_finite, "ends"));
+  }
+  void check(std::string const& where) const {
+    if (from > to) throw ParameterError(where, "ends before it begins", "swap the two");
+  }
+  friend bool operator==(Window const&, Window const&) = default;
+};
+
+struct Straight {
+  static constexpr char const* name = "straight";
+  static constexpr auto parameters() { return parameter_list(); }
+};
+struct Turn {
+  double radius = 10.0;
+  std::vector<Window> windows{};
+
+  static constexpr char const* name = "turn";
+  static constexpr auto parameters() {
+    return parameter_list(parameter("radius", &Turn::radius, "m", positive, "of the bend"),
+                          parameter("windows", &Turn::windows, "-", {}, "when"));
+  }
+};
+struct Secret {};  // not described
+
+struct Everything {
+  double number = 1.5;
+  float single = 0.1f;
+  int integer = -3;
+  std::uint64_t natural = 7;
+  std::uint8_t small = 1;
+  bool truth = false;
+  Mood mood = Mood::calm;
+  AgentId agent = none<AgentId>;
+  LaneId lane = none<LaneId>;
+  std::string text = "usual";
+  Window window{};
+  OneOf<Straight, Turn, Secret> way{};
+  std::optional<double> maybe{};
+  std::array<double, 2> pair{1.0, 2.0};
+  std::vector<Window> windows{};
+  std::vector<double> numbers{1.0};
+  std::shared_ptr<std::vector<double> const> shared{};
+
+  static constexpr char const* name = "everything";
+  static constexpr auto parameters() {
+    using P = Everything;
+    return parameter_list(
+        parameter("number", &P::number, "m", detail_range, "a number"),
+        parameter("single", &P::single, "m", any_finite, "in single precision"),
+        parameter("integer", &P::integer, "-", Range{-10, 10}, "an integer"),
+        parameter("natural", &P::natural, "-", Range{0, 1.8446744073709552e19}, "a natural number"),
+        parameter("small", &P::small, "-", Range{0, 255}, "a byte"),
+        parameter("truth", &P::truth, "-", Range{0, 1}, "yes or no"),
+        choice("mood", &P::mood, "calm|hasty", "a choice"), parameter("agent", &P::agent, "-", {}, "an id"),
+        parameter("lane", &P::lane, "-", {}, "a lane"), parameter("text", &P::text, "-", {}, "a text"),
+        parameter("window", &P::window, "-", {}, "a struct"), parameter("way", &P::way, "-", {}, "an alternative"),
+        parameter("maybe", &P::maybe, "-", any_finite, "an optional"),
+        parameter("pair", &P::pair, "-", any_finite, "of fixed length"),
+        parameter("windows", &P::windows, "-", {}, "structs"),
+        parameter("numbers", &P::numbers, "-", any_finite, "numbers"),
+        parameter("shared", &P::shared, "-", any_finite, "behind a pointer"));
+  }
+  static constexpr Range detail_range{-1e3, std::numeric_limits<double>::infinity()};
+};
+
+Everything unusual() {
+  return {.number = std::numeric_limits<double>::infinity(),
+          .single = 0.3f,
+          .integer = -7,
+          .natural = std::numeric_limits<std::uint64_t>::max(),
+          .small = 200,
+          .truth = true,
+          .mood = Mood::hasty,
+          .agent = AgentId{12},
+          .lane = LaneId{4},
+          .text = "\"a\\b\"\n\x01 \u00e9",
+          .window = {.from = 0.1 + 0.2, .to = 1e300},
+          .way = Turn{.radius = 3.0, .windows = {{.from = -1.0}}},
+          .maybe = 5e-324,
+          .pair = {3.0, -0.0},
+          .windows = {{}, {.to = 2.0}},
+          .numbers = {},
+          .shared = std::make_shared<std::vector<double> const>(std::vector<double>{1.0, 0.1})};
+}
+
+/// The message of what reading `text` throws.
+template <class T = Everything>
+std::string refusal(std::string const& text) {
+  try {
+    static_cast<void>(from_json<T>(text, "f.json"));
+  } catch (ParameterError const& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+}  // namespace
+
+TEST_CASE("a described struct reads back as the same bits") {
+  for (auto const detail : {JsonDetail::differences, JsonDetail::everything})
+    for (auto const& object : {Everything{}, unusual()}) {
+      auto const text = to_json(object, detail);
+      CAPTURE(text);
+      auto const read = from_json<Everything>(text);
+      CHECK(equal_parameters(read, object));
+      CHECK(hash_parameters(read) == hash_parameters(object));
+      CHECK(to_json(read, detail) == text);
+    }
+  CHECK(std::signbit(from_json<Everything>(to_json(unusual())).pair[1]));
+}
+
+TEST_CASE("a file holds what differs from the defaults") {
+  CHECK(to_json(Everything{}) == "{\"pair\": [1, 2], \"numbers\": [1]}\n");
+  CHECK(to_json(Window{.to = 2.0}) == "{\"to\": 2}\n");
+  CHECK(to_json(Window{.to = 2.0}, JsonDetail::everything) == "{\"from\": 0, \"to\": 2}\n");
+  Everything turning{.way = Turn{}, .pair = {}};
+  CHECK(to_json(turning).find("\"way\": \"turn\"") != std::string::npos);
+  turning.way = Turn{.radius = 3.0};
+  CHECK(to_json(turning).find("\"way\": {\"turn\": {\"radius\": 3}}") != std::string::npos);
+}
+
+TEST_CASE("what the text does not say stays") {
+  Window window{.from = -5.0, .to = 5.0};
+  read_json(window, R"({"to": 6})");
+  CHECK(window == Window{-5.0, 6.0});
+  CHECK_THROWS_AS(read_json(window, R"({"to": -6, "from": 1})"), ParameterError);
+  CHECK(window == Window{-5.0, 6.0});
+}
+
+TEST_CASE("an error says where it is and what to do") {
+  CHECK(refusal(R"({"nubmer": 1})") == "f.json: everything: has no field \"nubmer\"; is it number?");
+  CHECK(refusal(R"({"window": {"until": 1}})") ==
+        "f.json: everything.window: has no field \"until\"; give one of from, to");
+  CHECK(refusal(R"({"number": "1"})") == "f.json: everything.number: is \"1\"; give a number");
+  CHECK(refusal(R"({"number": null})") == "f.json: everything.number: is null; give a number");
+  CHECK(refusal(R"({"number": -2000})") == "f.json: everything.number: is -2000 m; give a value in [-1000, inf] m");
+  CHECK(refusal(R"({"integer": 1.5})") == "f.json: everything.integer: is 1.5; give an integer");
+  CHECK(refusal(R"({"integer": 3000000000})") ==
+        "f.json: everything.integer: is 3000000000; give an integer from -2147483648 to 2147483647");
+  CHECK(refusal(R"({"small": 256})") == "f.json: everything.small: is 256; give an integer from 0 to 255");
+  CHECK(refusal(R"({"natural": -1})") ==
+        "f.json: everything.natural: is -1; give an integer from 0 to 18446744073709551615");
+  CHECK(refusal(R"({"truth": 1})") == "f.json: everything.truth: is 1; give true or false");
+  CHECK(refusal(R"({"mood": "callm"})") == "f.json: everything.mood: is \"callm\"; is it calm?");
+  CHECK(refusal(R"({"mood": 0})") == "f.json: everything.mood: is 0; give one of calm, hasty, in quotes");
+  CHECK(refusal(R"({"way": "turm"})") ==
+        "f.json: everything.way: there is no \"turm\" here; is it turn? There are: straight, turn");
+  CHECK(refusal(R"({"way": {"turn": {"radius": 0}}})") ==
+        "f.json: everything.way.turn.radius: is 0 m; give a value in (0, inf) m");
+  CHECK(refusal(R"({"way": {"turn": {}, "straight": {}}})").find("give a name, or an object with one") !=
+        std::string::npos);
+  CHECK(refusal(R"({"way": {"turn": 3}})") == "f.json: everything.way.turn: is 3; give an object");
+  CHECK(refusal(R"({"pair": [1]})") == "f.json: everything.pair: has 1 elements; give 2");
+  CHECK(refusal(R"({"windows": [{}, {"from": "x"}]})") ==
+        "f.json: everything.windows[1].from: is \"x\"; give a number");
+  CHECK(refusal(R"({"window": {"from": 2}})") == "f.json: everything.window: ends before it begins; swap the two");
+  CHECK(refusal(R"({"text": 3})") == "f.json: everything.text: is 3; give a text, in quotes");
+  CHECK(refusal("[]") == "f.json: everything: is []; give an object");
+  CHECK(refusal(R"({"number": 1, "number": 2})") ==
+        "f.json: the key \"number\" is there twice in one object; remove one of them");
+  CHECK(refusal("{\n  \"number\": 1,\n  \"text\" 3}").find("f.json, line 3, column 10: this is no JSON") == 0);
+  CHECK(refusal("{\"number\": 1").find("the text ends too early") != std::string::npos);
+  CHECK(refusal("{\"number\": 1e999}").find("is too large") != std::string::npos);
+  CHECK(refusal(std::string(300, '[')).find("nested deeper than 100") != std::string::npos);
+  CHECK_THROWS_WITH_AS(static_cast<void>(to_json(Everything{.way = Secret{}})),
+                       "way: holds a struct that is not described, or has no default: a file cannot hold it; give it "
+                       "`parameters()` and `name`",
+                       ParameterError);
+}
+
+TEST_CASE("damaged texts are read or refused, never worse") {
+  auto const good = to_json(unusual(), JsonDetail::everything);
+  std::uint32_t state = 1;
+  auto const random = [&state](std::size_t below) {
+    state = state * 1664525u + 1013904223u;
+    return static_cast<std::size_t>(state >> 8) % below;
+  };
+  int refused = 0;
+  for (int i = 0; i < 3000; ++i) {
+    auto text = good.substr(0, i % 3 == 0 ? random(good.size()) : good.size());
+    for (std::size_t k = random(4); k > 0 && !text.empty(); --k)
+      text[random(text.size())] = static_cast<char>(random(256));
+    try {
+      static_cast<void>(from_json<Everything>(text));
+    } catch (ParameterError const&) {
+      ++refused;
+    }
+  }
+  CHECK(refused > 2000);
+}

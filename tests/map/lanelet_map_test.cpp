@@ -1,0 +1,269 @@
+// Maps of lanelets, and Lanelet2 files.
+#include <doctest/doctest.h>
+
+#include <cmath>
+#include <cstdint>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cambium/map/corridor/build_corridor.hpp"
+#include "cambium/map/lanelet/detail/utm.hpp"
+#include "cambium/map/lanelet/lanelet2.hpp"
+#include "cambium/map/lanelet/lanelet_map.hpp"
+#include "cambium/map/lanes/junction.hpp"
+
+#include "../support/corpus.hpp"
+#include "../support/maps.hpp"
+
+using cambium::Diagnostic;
+using cambium::is_valid;
+using cambium::geometry::Point;
+using cambium::map::build_lanelet_map;
+using cambium::map::Lanelet;
+using cambium::map::LaneletMap;
+
+namespace {
+
+std::vector<Point> line(Point from, Point to) { return {from, 0.5 * (from + to), to}; }
+
+/// A straight lanelet of 3.5 m about the line from `from` to `to`.
+Lanelet straight(std::int64_t id, Point from, Point to) {
+  Point const way = (to - from).normalized(), left{-1.75 * way.y(), 1.75 * way.x()};
+  return {.id = id, .left = line(from + left, to + left), .right = line(from - left, to - left)};
+}
+
+cambium::map::Lane const& lane_of(LaneletMap const& made, std::int64_t id) { return made.map->lane(made.lanes.at(id)); }
+
+std::string text_of(std::vector<Diagnostic> const& diagnostics) {
+  std::string text;
+  for (auto const& found : diagnostics) text += to_string(found) + "\n";
+  return text;
+}
+
+/// A Lanelet2 file: two lanes side by side, the right one followed by another, with a stop sign and a speed limit.
+std::string lanelet2_text() {
+  std::string text = "<?xml version='1.0'?>\n<osm version='0.6'>\n";
+  int id = 0;
+  for (double const y : {3.5, 0.0, -3.5})
+    for (double const x : {0.0, 50.0, 100.0})
+      text += "<node id='" + std::to_string(++id) + "' lat='0' lon='0'><tag k='local_x' v='" + std::to_string(x) +
+              "'/><tag k='local_y' v='" + std::to_string(y) + "'/></node>\n";
+  auto const way = [&](int number, int from, int to, std::string const& tags) {
+    text += "<way id='" + std::to_string(number) + "'><nd ref='" + std::to_string(from) + "'/><nd ref='" +
+            std::to_string(to) + "'/>" + tags + "</way>\n";
+  };
+  std::string const kerb = "<tag k='type' v='curbstone'/>";
+  way(10, 1, 2, kerb);
+  way(11, 5, 4, "<tag k='type' v='line_thin'/><tag k='subtype' v='dashed'/>");  // written backwards
+  way(12, 7, 8, kerb);
+  way(13, 5, 6, kerb);
+  way(14, 8, 9, kerb);
+  text +=
+      "<node id='90' lat='0' lon='0'><tag k='local_x' v='90'/><tag k='local_y' v='0'/></node>\n"
+      "<node id='91' lat='0' lon='0'><tag k='local_x' v='90'/><tag k='local_y' v='-3.5'/></node>\n";
+  way(15, 90, 91, "<tag k='type' v='stop_line'/>");
+  auto const lanelet = [&](int number, int left, int right, std::string const& more) {
+    text += "<relation id='" + std::to_string(number) + "'><member type='way' role='left' ref='" +
+            std::to_string(left) + "'/><member type='way' role='right' ref='" + std::to_string(right) +
+            "'/><tag k='type' v='lanelet'/><tag k='subtype' v='road'/>" + more + "</relation>\n";
+  };
+  lanelet(20, 10, 11, "<tag k='speed_limit' v='50 km/h'/>");
+  lanelet(21, 11, 12, "<member type='relation' role='regulatory_element' ref='30'/>");
+  lanelet(22, 13, 14, "<tag k='speed_limit' v='30 mph'/><member type='relation' role='regulatory_element' ref='31'/>");
+  text +=
+      "<relation id='30'><member type='relation' role='yield' ref='21'/><tag k='type' v='regulatory_element'/>"
+      "<tag k='subtype' v='right_of_way'/></relation>\n"
+      "<relation id='31'><member type='way' role='ref_line' ref='15'/><tag k='type' v='regulatory_element'/>"
+      "<tag k='subtype' v='traffic_light'/></relation>\n";
+  return text + "</osm>\n";
+}
+
+LaneletMap lanelet2_map(std::string const& text) {
+  std::vector<Diagnostic> diagnostics;
+  auto result = build_lanelet_map(cambium::map::read_lanelet2(text, {}, "a.osm", diagnostics));
+  result.diagnostics.insert(result.diagnostics.begin(), diagnostics.begin(), diagnostics.end());
+  return result;
+}
+
+}  // namespace
+
+TEST_CASE("lanelets side by side are lanes of one road, with the marks between them") {
+  auto left = straight(1, {0, 0}, {100, 0}), right = straight(2, {0, -3.5}, {100, -3.5});
+  left.right_neighbor = 2;
+  right.left_neighbor = 1;
+  right.may_change_left = false;
+  right.speed_limit = 13.0;
+  auto const made = build_lanelet_map({left, right});
+  CHECK(made.diagnostics.empty());
+  REQUIRE(made.lanes.size() == 2);
+  CHECK(lane_of(made, 1).road == lane_of(made, 2).road);
+  CHECK(lane_of(made, 1).right_neighbor == made.lanes.at(2));
+  CHECK(lane_of(made, 1).may_change_right(50.0));
+  CHECK_FALSE(lane_of(made, 2).may_change_left(50.0));
+  CHECK(lane_of(made, 2).speed_limit_at(10.0) == 13.0);
+  CHECK(lane_of(made, 2).path.pose(40.0).position().y() == doctest::Approx(-3.5).epsilon(1e-9));
+  auto const widths = lane_of(made, 2).widths_at(40.0);
+  CHECK(widths.left + widths.right == doctest::Approx(3.5));
+}
+
+TEST_CASE("a lane that ends beside another merges into it") {
+  auto left = straight(1, {0, 0}, {100, 0}), right = straight(2, {0, -3.5}, {100, -3.5}),
+       next = straight(3, {100, 0}, {200, 0});
+  left.right_neighbor = 2;
+  left.successors = {3};
+  auto const made = build_lanelet_map({left, right, next});
+  CHECK(lane_of(made, 1).successors == std::vector{made.lanes.at(3)});
+  CHECK(lane_of(made, 2).merges_into == made.lanes.at(1));
+}
+
+TEST_CASE("lanelets that cross are a junction with conflicts, and so is what turns off beside them") {
+  auto in = straight(1, {-60, 0}, {-10, 0}), across = straight(2, {-10, 0}, {10, 0}),
+       out = straight(3, {10, 0}, {60, 0}), from_south = straight(4, {0, -60}, {0, -10}),
+       north = straight(5, {0, -10}, {0, 10}), to_north = straight(6, {0, 10}, {0, 60});
+  Lanelet turn{.id = 7};  // from the west to the north: it crosses nothing that it does not meet at its end
+  for (int k = 0; k <= 10; ++k) {
+    double const angle = -0.5 * cambium::geometry::pi + 0.05 * cambium::geometry::pi * k;
+    auto const at = [&](double r) { return Point{-10 + r * std::cos(angle), 10 + r * std::sin(angle)}; };
+    turn.left.push_back(at(8.25));
+    turn.right.push_back(at(11.75));
+  }
+  in.successors = {2, 7};
+  across.successors = {3};
+  from_south.successors = {5};
+  north.successors = {6};
+  turn.successors = {6};
+  from_south.signals = {{cambium::map::SignalKind::stop, 2.0, {}}};
+  auto const made = build_lanelet_map({in, across, out, from_south, north, to_north, turn});
+  CHECK_MESSAGE(made.diagnostics.empty(), text_of(made.diagnostics));
+  auto const junction = [&](std::int64_t id) { return made.map->road(lane_of(made, id).road).junction; };
+  CHECK(is_valid(junction(2)));
+  CHECK(junction(5) == junction(2));
+  CHECK(junction(7) == junction(2));
+  for (int const id : {1, 3, 4, 6}) CHECK_FALSE(is_valid(junction(id)));
+  CHECK(lane_of(made, 1).successors.size() == 2);
+  auto const road =
+      cambium::map::build_road_corridor(*made.map, cambium::map::straight_route(*made.map, made.lanes.at(4)));
+  auto const& conflicts = road->corridors[road->main].conflicts;
+  REQUIRE_FALSE(conflicts.empty());
+  CHECK(conflicts[0].right_of_way == cambium::map::RightOfWay::yields);
+  REQUIRE(lane_of(made, 4).signals.size() == 1);
+  CHECK(lane_of(made, 4).signals[0].s == doctest::Approx(48.0));
+}
+
+TEST_CASE("what is odd in lanelets is a finding, and the rest is a map") {
+  auto good = straight(1, {0, 0}, {100, 0}), next = straight(2, {100, 0}, {200, 0}),
+       far = straight(3, {0, 50}, {9, 50});
+  good.successors = {2, 3, 99};
+  std::swap(next.left, next.right);
+  Lanelet const point{.id = 4, .left = {{0, 0}, {0, 0}}, .right = {{0, 1}, {5, 1}}},
+      wild{.id = 5, .left = {{0, 0}, {std::nan(""), 0}}, .right = {{0, 1}, {5, 1}}};
+  auto const made = build_lanelet_map({good, next, far, point, wild, good}, {}, "five lanelets");
+  auto const text = text_of(made.diagnostics);
+  CHECK(made.lanes.size() == 3);
+  CHECK(lane_of(made, 1).successors == std::vector{made.lanes.at(2)});
+  for (char const* words : {"lanelet 1: its successor 99 is not there", "lanelet 1: its successor 3 does not meet it",
+                            "lanelet 2: its left bound lies to the right", "lanelet 4: a bound has fewer than two",
+                            "lanelet 5: a point is no finite place", "lanelet 1: its id is taken already"})
+    CHECK_MESSAGE(text.find(words) != std::string::npos, words, "\n", text);
+  CHECK(support::error_of([&] { (void)build_lanelet_map({point}, {}, "point"); }).find("point: no lanelet is left") ==
+        0);
+}
+
+TEST_CASE("a lanelet whose named successor lies elsewhere goes on as the one that begins where it ends") {
+  auto one = straight(1, {0, 0}, {100, 0}), other = straight(2, {100, 0}, {200, 0}),
+       far = straight(3, {0, 50}, {9, 50});
+  one.successors = {3};
+  auto const made = build_lanelet_map({one, other, far});
+  CHECK(lane_of(made, 1).successors == std::vector{made.lanes.at(2)});
+  CHECK(text_of(made.diagnostics).find("lanelet 2 begins where it ends") != std::string::npos);
+}
+
+TEST_CASE("the lanelets of a map make the same lanes again") {
+  for (char const* name : {"merging.xodr", "intersection_4way.xodr", "roundabout.xodr"}) {
+    CAPTURE(name);
+    auto const map = support::own_map(name);
+    auto const lanelets = cambium::map::lanelets_of(*map, 1000);
+    auto const made = build_lanelet_map(lanelets);
+    std::size_t linked = 0, kept = 0;
+    for (auto const& lanelet : lanelets) {
+      CAPTURE(lanelet.id);
+      auto const& lane = map->lane(static_cast<cambium::LaneId>(lanelet.id - 1000));
+      REQUIRE(made.lanes.contains(lanelet.id));
+      auto const& copy = lane_of(made, lanelet.id);
+      linked += lanelet.successors.size();
+      kept += copy.successors.size();
+      if (is_valid(lane.merges_into)) continue;  // its path swings over
+      CHECK(copy.length() == doctest::Approx(lane.length()).epsilon(0.02));
+      auto const p = lane.path.pose(0.5 * lane.length()).position();
+      CHECK(std::abs(copy.path.project(p).lateral) < 0.1);
+    }
+    CHECK(static_cast<double>(kept) >= 0.9 * static_cast<double>(linked));
+  }
+}
+
+TEST_CASE("the UTM projection has the grid's known values") {
+  cambium::map::detail::UtmProjection const zone31(0.0, 3.0);
+  CHECK(zone31(0.0, 0.0).x() == doctest::Approx(166021.443 - 500000.0).epsilon(1e-9));
+  CHECK(zone31(0.0, 0.0).y() == doctest::Approx(0.0));
+  CHECK(zone31(45.0, 3.0).y() == doctest::Approx(4982950.400).epsilon(1e-9));  // 0.9996 of the meridian's arc
+  CHECK(zone31(-45.0, 3.0).y() == doctest::Approx(-4982950.400).epsilon(1e-9));
+}
+
+TEST_CASE("INTERACTION's test map lies where its tracks do") {
+  auto const file = corpus::find("scenarios/interaction/TestScenarioForScripts.osm");
+  if (!file) return;
+  auto const made = cambium::load_lanelet2(file->string());
+  CHECK(made.diagnostics.empty());
+  REQUIRE(made.lanes.size() == 2);
+  auto const right = lane_of(made, 20).path, left = lane_of(made, 21).path;
+  CHECK(right.pose(0.0).x == doctest::Approx(1.0).epsilon(1e-4));
+  CHECK(right.pose(0.0).y == doctest::Approx(2.5).epsilon(1e-4));
+  CHECK(right.length() == doctest::Approx(99.9).epsilon(1e-3));
+  CHECK(left.pose(0.0).y == doctest::Approx(5.5).epsilon(1e-4));
+  CHECK(std::cos(left.pose(0.0).heading) == doctest::Approx(-1.0));  // its way is written against its traffic
+}
+
+TEST_CASE("a Lanelet2 file says who follows whom, who lies beside whom, limits and signs") {
+  auto const made = lanelet2_map(lanelet2_text());
+  CHECK_MESSAGE(made.diagnostics.empty(), text_of(made.diagnostics));
+  CHECK(lane_of(made, 20).right_neighbor == made.lanes.at(21));
+  CHECK(lane_of(made, 20).may_change_right(10.0));
+  CHECK(lane_of(made, 21).successors == std::vector{made.lanes.at(22)});
+  CHECK(lane_of(made, 20).speed_limit_at(1.0) == doctest::Approx(50.0 / 3.6));
+  CHECK(lane_of(made, 22).speed_limit_at(1.0) == doctest::Approx(30.0 * 0.44704));
+  REQUIRE(lane_of(made, 21).signals.size() == 1);
+  CHECK(lane_of(made, 21).signals[0].kind == cambium::map::SignalKind::give_way);
+  CHECK(lane_of(made, 21).path.pose(10.0).y == doctest::Approx(-1.75));
+  REQUIRE(lane_of(made, 22).signals.size() == 1);
+  CHECK(lane_of(made, 22).signals[0].s == doctest::Approx(40.0));
+  REQUIRE(made.map->lights().size() == 1);
+  CHECK(made.map->lights()[0].name == "31");
+  auto const with_line = [](std::string const& subtype) {
+    auto text = lanelet2_text();
+    text.replace(text.find("v='dashed'"), 10, "v='" + subtype + "'");
+    return lanelet2_map(text);
+  };
+  // The way is written against the traffic: solid on its left is solid for the right lane.
+  auto const mixed = with_line("solid_dashed");
+  CHECK(lane_of(mixed, 20).may_change_right(10.0));
+  CHECK_FALSE(lane_of(mixed, 21).may_change_left(10.0));
+  CHECK_FALSE(lane_of(with_line("solid"), 20).may_change_right(10.0));
+}
+
+TEST_CASE("a malformed Lanelet2 file is an error with its line, or a map with findings") {
+  auto const text = lanelet2_text();
+  auto const replaced = [&](std::string const& what, std::string const& by) {
+    auto copy = text;
+    copy.replace(copy.find(what), what.size(), by);
+    return copy;
+  };
+  auto const error = [](std::string const& changed) { return support::error_of([&] { (void)lanelet2_map(changed); }); };
+  CHECK(error("<xsm/>").find("a.osm:1: the root element is <xsm>") == 0);
+  CHECK(error("<osm/>").find("it has no usable lanelet") != std::string::npos);
+  CHECK(error(replaced("<tag k='local_x' v='0.000000'/>", "")).find("no lanelet is left") != std::string::npos);
+  CHECK(error(replaced("lat='0' lon='0'><tag k='local_x' v='0.000000'/>", "lat='x' lon='0'>")).find("a.osm:3: ") == 0);
+  auto const lost = lanelet2_map(replaced("role='right' ref='12'", "role='right' ref='77'"));
+  CHECK(lost.lanes.size() == 2);
+  CHECK(text_of(lost.diagnostics).find("way 77 is not there") != std::string::npos);
+}

@@ -1,0 +1,202 @@
+#include <cambium/cambium.hpp>
+#include <cambium/scenario/highway_site.hpp>
+#include <cambium/scenario/junction_site.hpp>
+#include <cambium/scenario/merging_site.hpp>
+#include <cambium/scenario/scenario_file.hpp>
+#include <doctest/doctest.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+using namespace cambium;
+
+namespace {
+
+std::string const maps = CAMBIUM_SOURCE_DIR "/maps/";
+
+template <class Site>
+ScenarioSet<typename Site::World> sampled(Site const& site, std::string const& map_file, std::uint32_t count) {
+  ScenarioSet<typename Site::World> set{.title = map_file};
+  for (std::uint32_t i = 0; i < count; ++i) {
+    auto scenario = site.sample(3, i);
+    scenario.map_file = map_file;
+    set.scenarios.push_back(std::move(scenario));
+  }
+  return set;
+}
+
+/// The frames of a scenario after some steps, as bits.
+template <class World>
+std::vector<double> run(Scenario<World> const& scenario) {
+  auto world = scenario.make_world();
+  std::vector<double> numbers;
+  for (int step = 0; step < 60; ++step) {
+    REQUIRE(world.step(0.2));
+    for (auto const& record : world.frame().agents)
+      numbers.insert(numbers.end(), {record.state.x, record.state.y, record.state.heading, record.state.speed});
+  }
+  return numbers;
+}
+
+template <class World>
+void check_round_trip(ScenarioSet<World> const& set) {
+  auto const text = to_json_text(set);
+  auto const read = parse_scenarios<World>(text, maps);
+  CHECK(read.hash() == set.hash());
+  CHECK(to_json_text(read) == text);
+  REQUIRE(read.scenarios.size() == set.scenarios.size());
+  for (std::size_t i = 0; i < set.scenarios.size(); ++i) CHECK(run(read.scenarios[i]) == run(set.scenarios[i]));
+}
+
+using Small = World<BehaviorSet<IdmClassic, Mobil>, InterpolateExecution, SingleTrack>;
+
+std::string refusal(std::string const& text) {
+  try {
+    static_cast<void>(parse_scenarios<Small>(text, maps, "f.json"));
+  } catch (Error const& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+/// A file with one scenario on merging.xodr; `more` are further members of the scenario.
+std::string with_agents(std::string const& agents, std::string const& more = "") {
+  return R"({"format": 1, "scenarios": [{"map_file": "merging.xodr", "agents": [)" + agents + "]" + more + "}]}";
+}
+
+}  // namespace
+
+TEST_CASE("a scenario set that was written and read runs the same, bit for bit") {
+  check_round_trip(sampled(find_merging_site(load_opendrive(maps + "merging.xodr").map), "merging.xodr", 5));
+  check_round_trip(sampled(find_highway_site(load_opendrive(maps + "highway_exit.xodr").map), "highway_exit.xodr", 5));
+  auto const site = find_junction_site(load_opendrive(maps + "intersection_4way.xodr").map);
+  auto set = sampled(site, "intersection_4way.xodr", 4);
+  set.scenarios[1] = site.sample(5, 2, {.lights = true});
+  set.scenarios[1].map_file = "intersection_4way.xodr";
+  check_round_trip(set);
+}
+
+TEST_CASE("a file holds goals of all kinds, objects and controlled agents") {
+  auto const map = load_opendrive(maps + "merging.xodr").map;
+  auto const lane = map->find_lane("3", 400.0, -2);
+  Goal const goals[] = {ReachPolygon{geometry::Polygon({{0, 0}, {4, 0}, {4, 2}})},
+                        ReachLane{lane, 3.0},
+                        StateLimits{.lowest_speed = 3.0},
+                        LaneLimits{.lane = lane, .left = 0.3},
+                        ReachLaneEnd{12.0},
+                        ReachLaneBeside{ReachLaneBeside::Side::right},
+                        AllGoals{{ReachLane{lane}, StateLimits{.highest_speed = 9.0}}},
+                        AnyGoal{{AllGoals{{ReachLane{lane}}}}},
+                        GoalSequence{{ReachLane{lane}, ReachLaneEnd{}}}};
+  ScenarioSet<Small> set;
+  for (auto const& goal : goals) {
+    Scenario<Small> scenario{.map = map, .seed = 9, .map_file = "merging.xodr"};
+    scenario.agents.push_back(
+        {.position = {20, -5.25}, .speed = 12.0, .behavior = Mobil{}, .goal = goal, .id = AgentId{7}});
+    scenario.objects = {geometry::Polygon({{300, 0}, {304, 0}, {304, 2}})};
+    scenario.controlled = {AgentId{7}};
+    set.scenarios.push_back(scenario);
+  }
+  auto const read = parse_scenarios<Small>(to_json_text(set), maps);
+  CHECK(read.hash() == set.hash());
+  for (std::size_t i = 0; i < set.scenarios.size(); ++i) {
+    auto const &a = read.scenarios[i].agents[0].goal.given(), &b = set.scenarios[i].agents[0].goal.given();
+    CHECK(equal_parameters(read.scenarios[i], set.scenarios[i]));
+    CHECK(a.index() == b.index());
+  }
+  auto other = set;
+  other.scenarios[0].agents[0].goal = ReachPolygon{geometry::Polygon({{0, 0}, {4, 0}, {4, 3}})};
+  CHECK(other.hash() != set.hash());
+}
+
+TEST_CASE("a recorded trajectory travels with its file") {
+  using Replay = World<BehaviorSet<StaticTrajectory>, InterpolateExecution, SingleTrack>;
+  ScenarioSet<Replay> set;
+  Scenario<Replay> scenario{.map = load_opendrive(maps + "merging.xodr").map, .map_file = "merging.xodr"};
+  scenario.agents.push_back(
+      {.position = {20, -5.25},
+       .behavior = StaticTrajectory({{0.0, 20.0, -5.25, 0.0, 10.0}, {50.0, 520.0, -5.25, 0.0, 10.0}}),
+       .id = AgentId{1}});
+  set.scenarios.push_back(scenario);
+  check_round_trip(set);
+}
+
+TEST_CASE("an error in a scenario file says where it is and what to do") {
+  std::string const good = R"({"id": 0, "position": {"x": 20, "y": -5.25}, "heading": 0, "speed": 12})";
+  CHECK(refusal(with_agents(good)) == "accepted");
+  CHECK(
+      refusal(with_agents(R"({"position": {"x": 20, "y": -5.25}, "behavior": "imd"})")) ==
+      "f.json: scenario_set.scenarios[0].agents[0].behavior: there is no \"imd\" here; There are: idm_classic, mobil");
+  CHECK(refusal(with_agents(R"({"position": {"x": 20, "y": -5.25}, "behavior": {"mobil": {"politness": 1}}})")) ==
+        "f.json: scenario_set.scenarios[0].agents[0].behavior.mobil: has no field \"politness\"; is it politeness?");
+  CHECK(refusal(with_agents(good + "," + good)).find("agents") != std::string::npos);
+  CHECK(refusal(with_agents(good + R"(,{"id": 1, "position": {"x": 22, "y": -5.25}, "heading": 0})")) ==
+        "f.json: scenarios[0]: agents 0 and 1 overlap at the start; move one of them");
+  CHECK(refusal(R"({"scenarios": [{"agents": []}]})").find("f.json: scenarios[0]: it names no map") == 0);
+  CHECK(refusal(R"({"scenarios": [{"map_file": "nowhere.xodr"}]})").find("f.json: scenarios[0]: ") == 0);
+  CHECK(refusal(R"({"format": 2})") == "f.json: scenario_set.format: is 2; give a value in [0, 1]");
+  CHECK(refusal(with_agents(R"({"speed": 3})")).find("position.x: is nan") != std::string::npos);
+  auto const goal = [](std::string const& lane) {
+    return with_agents(R"({"position": {"x": 20, "y": -5.25}, "goal": {"reach_lane": {"lane": )" + lane + "}}}");
+  };
+  CHECK(refusal(goal("\"3/0/-2\"")) == "accepted");
+  CHECK(refusal(goal("\"3/0/-9\"")) ==
+        "f.json: scenarios[0]: lane \"3/0/-9\": is not in its map; examples/run map FILE lists the lanes");
+  CHECK(refusal(goal("\"here\"")).find("write road/section/lane") != std::string::npos);
+  CHECK(refusal(goal("7")).find("give a lane's name, in quotes") != std::string::npos);
+}
+
+TEST_CASE("a recipe draws what its sampler draws") {
+  using Site = MergingSite::World;
+  auto const set = parse_scenarios<Site>(
+      R"({"recipes": [{"title": "m", "map_file": "merging.xodr", "kind": "merging", "seed": 3, "first": 2, "scenarios": 3}]})",
+      maps);
+  auto const site = find_merging_site(load_opendrive(maps + "merging.xodr").map);
+  REQUIRE(set.scenarios.size() == 3);
+  for (std::uint32_t i = 0; i < 3; ++i) {
+    auto drawn = site.sample(3, 2 + i);
+    drawn.map_file = "merging.xodr";
+    drawn.title = "m";
+    CHECK(equal_parameters(set.scenarios[i], drawn));
+  }
+  CHECK(
+      refusal(R"({"recipes": [{"map_file": "intersection_4way.xodr", "kind": "junction"}]})") ==
+      "f.json: recipes[0]: needs the behaviour intersection, which the program lacks; add it to the BehaviorSet of the "
+      "program's World");
+}
+
+TEST_CASE("flows draw traffic by lane that is dense, safe and reproducible") {
+  std::string const text = R"({"recipes": [{"map_file": "highway.xodr", "scenarios": 30, "seed": 8, "flows": [
+    {"lane": "1/0/-1", "traffic": {"begin": 0, "end": 300, "truck_share": 0}, "ego": "middle",
+     "drivers": [{"share": 3, "behavior": {"mobil": {"idm": {"desired_speed": 25}}}}, {"share": 1, "behavior": "idm_classic"}]},
+    {"lane": "1/0/-2", "traffic": {"begin": 0, "end": 300, "truck_share": 0.5}, "all_controlled": true}]}]})";
+  auto const set = parse_scenarios<Small>(text, maps);
+  CHECK(parse_scenarios<Small>(text, maps).hash() == set.hash());
+  REQUIRE(set.scenarios.size() == 30);
+  int mobil = 0, all = 0, trucks = 0;
+  for (auto const& scenario : set.scenarios) {
+    CHECK(is_valid(scenario.ego));
+    CHECK(scenario.controlled.size() > 2);
+    auto world = scenario.make_world();
+    CHECK(world.size() > 8);
+    for (auto const& agent : world.roster().agents) {
+      ++all;
+      mobil += std::holds_alternative<Mobil>(agent.behavior);
+      trucks += agent.shape.length() > 8.0;
+    }
+    CHECK_FALSE(AnyCollision{}(world));
+    for (int step = 0; step < 25; ++step) {
+      REQUIRE(world.step(0.2));
+      CHECK_FALSE(AnyCollision{}(world));
+      for (Slot slot{}; index_of(slot) < world.size(); ++slot) CHECK(Acceleration{}(world, slot) > -4.0);
+    }
+  }
+  CHECK(mobil > all / 4);
+  CHECK(mobil < all / 2);
+  CHECK(trucks > all / 12);
+  CHECK(refusal(R"({"recipes": [{"map_file": "highway.xodr", "flows": [{}]}]})") ==
+        "f.json: recipes[0].flows[0]: names no lane; give \"lane\": \"road/section/lane\"");
+  CHECK(refusal(R"({"recipes": [{"map_file": "highway.xodr"}]})") ==
+        "f.json: recipes[0]: draws no vehicle; give longer or denser flows");
+}
