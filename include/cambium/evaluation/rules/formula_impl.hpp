@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
-#include <numeric>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "cambium/core/macros.hpp"
+#include "cambium/core/nearest_names.hpp"
 #include "cambium/evaluation/rules/formula.hpp"
 
 namespace cambium {
@@ -51,28 +51,9 @@ inline constexpr std::array<OperatorSign, 10> operator_signs{{
 /// Whether it continues a character of several bytes (UTF-8), which is never a sign of its own.
 [[nodiscard]] constexpr bool is_within_character(char c) { return (static_cast<unsigned char>(c) & 0xC0u) == 0x80u; }
 
-/// Changes, insertions and removals of characters that turn one word into the other (Levenshtein 1966).
-[[nodiscard]] inline std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i + 1);
-    for (std::size_t j = 0; j < b.size(); ++j)
-      diagonal = std::exchange(row[j + 1], std::min({row[j] + 1, row[j + 1] + 1, diagonal + (a[i] != b[j] ? 1u : 0u)}));
-  }
-  return row.back();
-}
-
 CAMBIUM_COLD void refuse_label(std::string const& where, std::string_view label, std::span<std::string const> known) {
-  auto const nearest = std::min_element(known.begin(), known.end(), [&](auto const& a, auto const& b) {
-    return edit_distance(label, a) < edit_distance(label, b);
-  });
-  std::string remedy;
-  if (nearest != known.end() && edit_distance(label, *nearest) <= 1 + label.size() / 4)
-    remedy = "did you mean '" + *nearest + "'? ";
-  remedy += known.empty() ? "there are no labels" : "the labels are ";
-  for (std::size_t i = 0; i < known.size(); ++i) remedy += (i > 0 ? ", " : "") + known[i];
-  throw FormulaError(where, "there is no label '" + std::string(label) + "'", remedy);
+  throw FormulaError(where, "there is no label '" + std::string(label) + "'",
+                     suggestion(label, {known.begin(), known.end()}));
 }
 
 /// Recursive descent over the text; writes operators behind their operands.
