@@ -105,7 +105,7 @@ void each_extension(Letters& trace, std::size_t longest, std::uint32_t letters, 
 }
 
 /// The shortest way on from `state` to a state in which a trace may end with `verdict`; it must exist.
-Letters way_to(FormulaAutomaton const& automaton, FormulaAutomaton::State state, Verdict verdict) {
+Letters way_to(FormulaAutomaton const& automaton, FormulaAutomaton::State state, RuleVerdict verdict) {
   struct Reached {
     FormulaAutomaton::State state;
     Letters way;
@@ -158,21 +158,21 @@ TEST_CASE("automata say of random traces what the semantics say of all their ext
     auto const letters = 1u << automaton.labels().size();
     Letters trace;
     auto state = FormulaAutomaton::start;
-    auto before = Verdict::open;
+    auto before = RuleVerdict::open;
     for (int step = 0; step < 7; ++step) {
       trace.push_back(uniform_index(random, letters));
       state = automaton.next(state, trace.back());
       auto const verdict = automaton.verdict(state);
       bool const holds = semantics.holds(trace);
-      REQUIRE(automaton.verdict_at_end(state) == (holds ? Verdict::satisfied : Verdict::violated));
-      if (verdict == Verdict::open) {
-        REQUIRE(before == Verdict::open);
-        REQUIRE(semantics.holds(joined(trace, way_to(automaton, state, Verdict::satisfied))));
-        REQUIRE_FALSE(semantics.holds(joined(trace, way_to(automaton, state, Verdict::violated))));
+      REQUIRE(automaton.verdict_at_end(state) == (holds ? RuleVerdict::satisfied : RuleVerdict::violated));
+      if (verdict == RuleVerdict::open) {
+        REQUIRE(before == RuleVerdict::open);
+        REQUIRE(semantics.holds(joined(trace, way_to(automaton, state, RuleVerdict::satisfied))));
+        REQUIRE_FALSE(semantics.holds(joined(trace, way_to(automaton, state, RuleVerdict::violated))));
         ++undecided;
-      } else if (before == Verdict::open) {
+      } else if (before == RuleVerdict::open) {
         each_extension(trace, letters == 8 ? 3 : 4, letters, [&](Letters const& longer) {
-          REQUIRE(semantics.holds(longer) == (verdict == Verdict::satisfied));
+          REQUIRE(semantics.holds(longer) == (verdict == RuleVerdict::satisfied));
         });
         ++decided;
       } else {
@@ -225,10 +225,9 @@ TEST_CASE("a mistake in a formula is named with its column, and what was expecte
   CHECK(mistake("a \xC3\xA4 b") ==
         "formula 'a \xC3\xA4 b', column 3: expected an operator or the end, not '\xC3\xA4'" + remedy);
   CHECK(mistake("G lane_chage", {"lane_change", "near"}) ==
-        "formula 'G lane_chage', column 3: there is no label 'lane_chage'; did you mean 'lane_change'? the labels are "
-        "lane_change, near");
+        "formula 'G lane_chage', column 3: there is no label 'lane_chage'; is it lane_change?");
   CHECK(mistake("G foo", {"lane_change", "near"}) ==
-        "formula 'G foo', column 3: there is no label 'foo'; the labels are lane_change, near");
+        "formula 'G foo', column 3: there is no label 'foo'; give one of lane_change, near");
   CHECK(mistake("near & !lane_change", {"lane_change", "near"}) == "none");
   CHECK(mistake((std::string(250, '!') + "a").c_str()).find("more than 200 operators in one another") !=
         std::string::npos);
@@ -238,9 +237,9 @@ TEST_CASE("equal obligations are one state, and a formula that needs too many is
   CHECK(FormulaAutomaton("G a").size() == 3);          // nothing read, kept so far, violated
   CHECK(FormulaAutomaton("F a & X F a").size() == 5);  // nothing read; a due now and later, later, once; done
   CHECK(FormulaAutomaton("G(a -> F b)").size() == 3);  // nothing read, b is not due, b is due
-  CHECK(FormulaAutomaton("true").verdict(FormulaAutomaton::start) == Verdict::satisfied);
-  CHECK(FormulaAutomaton("a | !a").verdict(FormulaAutomaton::start) == Verdict::satisfied);
-  CHECK(FormulaAutomaton("X a & N !a").verdict(FormulaAutomaton::start) == Verdict::violated);
+  CHECK(FormulaAutomaton("true").verdict(FormulaAutomaton::start) == RuleVerdict::satisfied);
+  CHECK(FormulaAutomaton("a | !a").verdict(FormulaAutomaton::start) == RuleVerdict::satisfied);
+  CHECK(FormulaAutomaton("X a & N !a").verdict(FormulaAutomaton::start) == RuleVerdict::violated);
   auto const problem = [](Formula const& formula) -> std::string {
     try {
       FormulaAutomaton const automaton(formula);

@@ -11,7 +11,6 @@
 #include <limits>
 #include <vector>
 
-
 using namespace cambium;
 
 namespace {
@@ -91,8 +90,8 @@ TEST_CASE("post-encroachment time is the time between two vehicles at a crossing
                   .id = AgentId{2}});
     auto const one = observed(crossing, AgentId{1}, PostEncroachmentTime{}, 150, 0.05).value();
     auto const other = observed(crossing, AgentId{2}, PostEncroachmentTime{}, 150, 0.05).value();
-    // At 10 m/s the first one's rear is past the second one's way after 2.36 s, the second one's front reaches the first
-    // one's way 1.38 s after it has started.
+    // At 10 m/s the first one's rear is past the second one's way after 2.36 s, the second one's front reaches the
+    // first one's way 1.38 s after it has started.
     CHECK(one == other);
     CHECK(std::abs(one - (later - 0.98)) < 0.06);
   }

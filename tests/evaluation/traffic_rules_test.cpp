@@ -539,14 +539,14 @@ TEST_CASE("violations are counted by stretches of steps, and located; the formul
   };
   auto never = watch("G !(a | b)"), responds = watch("G(a -> F c)"), fails = watch("G(c -> F b)"), soon = watch("F b"),
        next_one = watch("G(b -> X c)"), impossible = watch("G(b -> X false)");
-  std::vector<Verdict> verdicts, later;
+  std::vector<RuleVerdict> verdicts, later;
   for (int i = 0; i < 20; ++i) {  // to 4 s
     REQUIRE(world.step(dt));
     auto const slot = world.slot_of(ego);
     verdicts.push_back(never(world, slot));
     later.push_back(soon(world, slot));
     for (auto* monitor : {&responds, &fails, &next_one, &impossible})
-      CHECK((*monitor)(world, slot) != Verdict::satisfied);
+      CHECK((*monitor)(world, slot) != RuleVerdict::satisfied);
   }
   CHECK(never.count() == 2);
   REQUIRE(never.violations().size() == 2);
@@ -556,23 +556,24 @@ TEST_CASE("violations are counted by stretches of steps, and located; the formul
   CHECK(never.violations()[1].end == doctest::Approx(2.0));
   CHECK(never.violations()[0].agent == ego);
   CHECK(never.violations()[0].other == none<AgentId>);
-  CHECK(std::ranges::count(verdicts, Verdict::violated) == 4);
-  CHECK(std::ranges::count(verdicts, Verdict::satisfied) == 0);
-  CHECK(std::ranges::count(later, Verdict::open) == 9);  // to 1.8 s
-  CHECK(std::ranges::count(later, Verdict::satisfied) == 11);
+  CHECK(std::ranges::count(verdicts, RuleVerdict::violated) == 4);
+  CHECK(std::ranges::count(verdicts, RuleVerdict::satisfied) == 0);
+  CHECK(std::ranges::count(later, RuleVerdict::open) == 9);  // to 1.8 s
+  CHECK(std::ranges::count(later, RuleVerdict::satisfied) == 11);
   CHECK(responds.count() == 0);
   CHECK(fails.count() == 0);
   CHECK(next_one.count() == 1);  // c begins later
   CHECK(next_one.violations()[0].begin == doctest::Approx(2.2));
   CHECK(impossible.count() == 1);
   CHECK(impossible.violations()[0].begin == doctest::Approx(2.0));  // known before the next step
-  for (auto* monitor : {&never, &responds, &fails, &soon}) monitor->finish();
+  for (auto* monitor : {&never, &responds, &soon}) CHECK(monitor->finish() == RuleVerdict::satisfied);
+  CHECK(fails.finish() == RuleVerdict::violated);
   CHECK(never.count() == 2);
   CHECK(responds.count() == 0);
   CHECK(soon.count() == 0);
   CHECK(fails.count() == 1);  // b does not come again
   CHECK(fails.violations()[0].begin == doctest::Approx(4.0));
-  fails.finish();
+  CHECK(fails.finish() == RuleVerdict::open);
   CHECK(fails.count() == 1);
 }
 
@@ -602,7 +603,7 @@ TEST_CASE("a monitor of pairs does what one automaton for each pair does, while 
         auto const& agents = world.roster().agents;
         for (auto it = twin.begin(); it != twin.end();) {
           bool const stays = std::ranges::any_of(agents, [&](auto const& agent) { return agent.id == it->first; });
-          if (!stays && automaton.verdict_at_end(it->second.first) == Verdict::violated)
+          if (!stays && automaton.verdict_at_end(it->second.first) == RuleVerdict::violated)
             expected.emplace_back(it->first, world.time());
           it = stays ? std::next(it) : twin.erase(it);
         }
@@ -618,7 +619,7 @@ TEST_CASE("a monitor of pairs does what one automaton for each pair does, while 
             letter |= static_cast<std::uint32_t>(holds) << i;
           }
           state = automaton.next(state, letter);
-          bool const violated = automaton.verdict(state) == Verdict::violated;
+          bool const violated = automaton.verdict(state) == RuleVerdict::violated;
           if (violated && !lasts) expected.emplace_back(agent.id, world.time());
           if (violated) state = FormulaAutomaton::start;
           lasts = violated;
@@ -626,7 +627,7 @@ TEST_CASE("a monitor of pairs does what one automaton for each pair does, while 
       }
       monitor.finish();
       for (auto const& [id, at] : twin)
-        if (automaton.verdict_at_end(at.first) == Verdict::violated) expected.emplace_back(id, world.time());
+        if (automaton.verdict_at_end(at.first) == RuleVerdict::violated) expected.emplace_back(id, world.time());
       for (auto const& violation : monitor.violations()) {
         CHECK(violation.agent == ego);
         found.emplace_back(violation.other, violation.begin);
@@ -694,10 +695,9 @@ TEST_CASE("a mistake in a rule is named before it is watched") {
     return "none";
   };
   CHECK(problem({.name = "own", .formula = "G betwen", .labels = {Between{1, 2}, Drawn{}}}) ==
-        "rule 'own', formula 'G betwen': there is no label 'betwen'; did you mean 'between'? the labels are between, "
-        "drawn");
+        "rule 'own', formula 'G betwen': there is no label 'betwen'; is it between?");
   CHECK(problem({.name = "own", .formula = "G a"}) ==
-        "rule 'own', formula 'G a': there is no label 'a'; there are no labels");
+        "rule 'own', formula 'G a': there is no label 'a'; there are none");
   CHECK(problem({.name = "own", .formula = "G a", .labels = {{"a", Between{-1, 2}}}}) ==
         "rule 'own', label 'a': between.begin: is -1 s; give a value in [0, 1e+06] s");
   CHECK(problem({.name = "own", .formula = "G a", .labels = {{"a", Between{1, 2}}, {"b", Between{-1, 2}}}}) == "none");

@@ -17,7 +17,8 @@ struct FormulaError : Error {
 
 namespace detail {
 
-/// Throws the `FormulaError` about a label that is not among those known: it names the nearest of these, and all.
+/// Throws the `FormulaError` about a label that is not among those known: it names those of these that are near, or
+/// all.
 [[noreturn]] void refuse_label(std::string const& where, std::string_view label, std::span<std::string const> known);
 
 }  // namespace detail

@@ -10,15 +10,15 @@
 namespace cambium {
 
 /// What the steps so far say about a formula.
-enum class Verdict : std::uint8_t {
+enum class RuleVerdict : std::uint8_t {
   open,       ///< it depends on what follows
   satisfied,  ///< it holds, whatever follows
   violated,   ///< it does not hold, whatever follows
 };
 
 /// "open", "satisfied", "violated".
-[[nodiscard]] constexpr char const* to_string(Verdict verdict) {
-  return verdict == Verdict::open ? "open" : verdict == Verdict::satisfied ? "satisfied" : "violated";
+[[nodiscard]] constexpr char const* to_string(RuleVerdict verdict) {
+  return verdict == RuleVerdict::open ? "open" : verdict == RuleVerdict::satisfied ? "satisfied" : "violated";
 }
 
 /// The deterministic automaton that reads a trace step by step and knows at each whether the formula holds if the trace
@@ -54,15 +54,15 @@ class FormulaAutomaton {
   }
 
   /// The verdict in a state. O(1).
-  [[nodiscard]] Verdict verdict(State state) const { return verdicts_[state]; }
+  [[nodiscard]] RuleVerdict verdict(State state) const { return verdicts_[state]; }
 
   /// The verdict if the trace ends in that state: not open, except at the start. O(1).
-  [[nodiscard]] Verdict verdict_at_end(State state) const { return at_end_[state]; }
+  [[nodiscard]] RuleVerdict verdict_at_end(State state) const { return at_end_[state]; }
 
  private:
   std::vector<std::string> labels_;
   std::vector<State> next_;
-  std::vector<Verdict> verdicts_, at_end_;
+  std::vector<RuleVerdict> verdicts_, at_end_;
 };
 
 }  // namespace cambium

@@ -218,16 +218,18 @@ CAMBIUM_COLD FormulaAutomaton::FormulaAutomaton(Formula const& formula) : labels
       next_.push_back(at->second);
     }
   std::vector<bool> can_hold(states.size()), can_fail(states.size());
-  at_end_.push_back(Verdict::open);
+  at_end_.push_back(RuleVerdict::open);
   for (std::size_t state = 1; state < states.size(); ++state) {
     can_hold[state] = progression.holds_at_end(states[state]);
     can_fail[state] = !can_hold[state];
-    at_end_.push_back(can_hold[state] ? Verdict::satisfied : Verdict::violated);
+    at_end_.push_back(can_hold[state] ? RuleVerdict::satisfied : RuleVerdict::violated);
   }
   detail::mark_origins(next_, letters, can_hold);
   detail::mark_origins(next_, letters, can_fail);
   for (std::size_t state = 0; state < states.size(); ++state)
-    verdicts_.push_back(!can_fail[state] ? Verdict::satisfied : !can_hold[state] ? Verdict::violated : Verdict::open);
+    verdicts_.push_back(!can_fail[state]   ? RuleVerdict::satisfied
+                        : !can_hold[state] ? RuleVerdict::violated
+                                           : RuleVerdict::open);
 }
 
 }  // namespace cambium

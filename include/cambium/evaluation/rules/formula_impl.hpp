@@ -52,15 +52,8 @@ inline constexpr std::array<OperatorSign, 10> operator_signs{{
 [[nodiscard]] constexpr bool is_within_character(char c) { return (static_cast<unsigned char>(c) & 0xC0u) == 0x80u; }
 
 CAMBIUM_COLD void refuse_label(std::string const& where, std::string_view label, std::span<std::string const> known) {
-  auto const nearest = std::min_element(known.begin(), known.end(), [&](auto const& a, auto const& b) {
-    return edit_distance(label, a) < edit_distance(label, b);
-  });
-  std::string remedy;
-  if (nearest != known.end() && edit_distance(label, *nearest) <= 1 + label.size() / 4)
-    remedy = "did you mean '" + *nearest + "'? ";
-  remedy += known.empty() ? "there are no labels" : "the labels are ";
-  for (std::size_t i = 0; i < known.size(); ++i) remedy += (i > 0 ? ", " : "") + known[i];
-  throw FormulaError(where, "there is no label '" + std::string(label) + "'", remedy);
+  throw FormulaError(where, "there is no label '" + std::string(label) + "'",
+                     suggestion(label, {known.begin(), known.end()}));
 }
 
 /// Recursive descent over the text; writes operators behind their operands.

@@ -68,9 +68,9 @@ struct Violation {
 /// first seen to the one at which it has left: what the formula still demands then is a violation. A trace that ends
 /// may come out as satisfied or violated, but not open.
 ///
-/// A copy continues by itself and shares the automaton. A step costs O(labels), for a rule with labels of two agents
-/// O(agents * labels), and one look into a table; it does not allocate while there are no more others and violations
-/// than the constructor reserved room for.
+/// A step costs O(labels), for a rule with labels of two agents O(agents * labels), and one look into a table each; it
+/// does not allocate while there are no more others and violations than the constructor reserved room for. A copy
+/// continues by itself, shares the automaton, and gets its room as it needs it.
 template <class Labels>
 class RuleMonitor {
  public:
@@ -86,18 +86,15 @@ class RuleMonitor {
 
   /// Judges the step that led to the present frame: violated if the rule was violated in this step; satisfied if it no
   /// longer can be, with any of the agents that are in traffic; else open. Nothing happens while the agent is not in
-  /// traffic; when it has left, or another agent is at `slot`, its trace is finished.
+  /// traffic; when it has left, or another agent is at `slot`, its trace is finished, see `finish`.
   template <class World>
-  Verdict operator()(World& world, Slot slot) {
+  RuleVerdict operator()(World& world, Slot slot) {
     auto const id = world.roster().agents[slot].id;
     if (id != agent_) {
       finish();
       agent_ = id;
     }
-    if (!in_traffic(world, slot)) {
-      finish();
-      return Verdict::open;
-    }
+    if (!in_traffic(world, slot)) return finish();
     time_ = world.frame().time;
     is_violated_ = false;
     auto const letter = letter_of(world, slot);
@@ -105,18 +102,22 @@ class RuleMonitor {
       read_pairs(world, slot, letter);
     else
       read_alone(letter);
-    if (is_violated_) return Verdict::violated;
+    if (is_violated_) return RuleVerdict::violated;
     auto const is_satisfied = [&](Trace const& trace) {
-      return automaton().verdict(trace.state) == Verdict::satisfied;
+      return automaton().verdict(trace.state) == RuleVerdict::satisfied;
     };
     bool const all = !traces_.empty() && std::all_of(traces_.begin(), traces_.end(), is_satisfied);
-    return all ? Verdict::satisfied : Verdict::open;
+    return all ? RuleVerdict::satisfied : RuleVerdict::open;
   }
 
-  /// Ends the traces: what the formula still demands is a violation at the last step.
-  void finish() {
+  /// Ends the traces: what the formula still demands is a violation at the last step. Satisfied or violated; open where
+  /// there was no trace.
+  RuleVerdict finish() {
+    if (traces_.empty()) return RuleVerdict::open;
+    is_violated_ = false;
     for (auto const& trace : traces_) end(trace);
     traces_.clear();
+    return is_violated_ ? RuleVerdict::violated : RuleVerdict::satisfied;
   }
 
   /// The number of violations.
@@ -222,7 +223,7 @@ class RuleMonitor {
       Trace& trace = next_.emplace_back();
       trace.other = id;
       if (known != traces_.end() && known->other == id) trace = *known++;
-      if (automaton().verdict(trace.state) == Verdict::satisfied) continue;
+      if (automaton().verdict(trace.state) == RuleVerdict::satisfied) continue;
       read(trace, letter | letter_of(world, slot, other));
     }
     for (; known != traces_.end(); ++known) end(*known);
@@ -231,7 +232,7 @@ class RuleMonitor {
 
   void read(Trace& trace, std::uint32_t letter) {
     trace.state = automaton().next(trace.state, letter);
-    if (automaton().verdict(trace.state) != Verdict::violated) {
+    if (automaton().verdict(trace.state) != RuleVerdict::violated) {
       trace.violation = no_violation;
       return;
     }
@@ -244,7 +245,7 @@ class RuleMonitor {
   }
 
   void end(Trace const& trace) {
-    if (automaton().verdict_at_end(trace.state) != Verdict::violated) return;
+    if (automaton().verdict_at_end(trace.state) != RuleVerdict::violated) return;
     is_violated_ = true;
     violated(trace.other);
   }
