@@ -1,3 +1,4 @@
+#include <cambium/core/binary.hpp>
 #include <cambium/core/json.hpp>
 #include <doctest/doctest.h>
 
@@ -213,4 +214,49 @@ TEST_CASE("damaged texts are read or refused, never worse") {
     }
   }
   CHECK(refused > 2000);
+}
+
+TEST_CASE("a described struct travels as bytes") {
+  for (auto const& object : {Everything{}, unusual()}) {
+    auto const bytes = to_binary(object);
+    auto const read = from_binary<Everything>(bytes);
+    CHECK(equal_parameters(read, object));
+    CHECK(to_binary(read) == bytes);
+    CHECK(bytes.size() < to_json(object, JsonDetail::everything).size() / 2);
+  }
+  CHECK(std::signbit(from_binary<Everything>(to_binary(unusual())).pair[1]));
+  CHECK_THROWS_AS(static_cast<void>(to_binary(Everything{.way = Secret{}})), ParameterError);
+}
+
+TEST_CASE("bytes of another kind, cut short or changed are refused") {
+  auto const bytes = to_binary(unusual());
+  auto const refused = [](std::string const& damaged) {
+    try {
+      static_cast<void>(from_binary<Everything>(damaged, "f.bin"));
+    } catch (ParameterError const& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  CHECK(refused("{}") == "f.bin: is no binary file of cambium; give one, or a JSON file");
+  CHECK(refused(to_binary(Window{})).find("for other structs") != std::string::npos);
+  for (std::size_t size = 0; size < bytes.size(); ++size) CHECK_FALSE(refused(bytes.substr(0, size)).empty());
+  for (std::size_t at = 0; at < bytes.size(); ++at)
+    for (int bit = 0; bit < 8; ++bit) {
+      auto changed = bytes;
+      changed[at] = static_cast<char>(changed[at] ^ (1 << bit));
+      CHECK_FALSE(refused(changed).empty());
+    }
+  // With a right checksum, the content is read or refused, never worse.
+  auto const payload = bytes.substr(32);
+  std::uint32_t state = 7;
+  auto const random = [&state](std::size_t below) {
+    state = state * 1664525u + 1013904223u;
+    return static_cast<std::size_t>(state >> 8) % below;
+  };
+  for (int i = 0; i < 20000; ++i) {
+    auto changed = payload;
+    for (std::size_t k = 0; k < 1 + random(3); ++k) changed[random(changed.size())] = static_cast<char>(random(256));
+    static_cast<void>(refused(detail::sealed(changed, detail::schema_of<Everything>())));
+  }
 }

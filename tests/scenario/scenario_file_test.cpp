@@ -47,6 +47,11 @@ void check_round_trip(ScenarioSet<World> const& set) {
   CHECK(to_json_text(read) == text);
   REQUIRE(read.scenarios.size() == set.scenarios.size());
   for (std::size_t i = 0; i < set.scenarios.size(); ++i) CHECK(run(read.scenarios[i]) == run(set.scenarios[i]));
+  auto const bytes = to_bytes(set);
+  auto const unpacked = parse_scenarios<World>(bytes, maps);
+  CHECK(unpacked.hash() == set.hash());
+  CHECK(to_bytes(unpacked) == bytes);
+  CHECK(bytes.size() < text.size());
 }
 
 using Small = World<BehaviorSet<IdmClassic, Mobil>, InterpolateExecution, SingleTrack>;
@@ -145,6 +150,11 @@ TEST_CASE("an error in a scenario file says where it is and what to do") {
         "f.json: scenarios[0]: lane \"3/0/-9\": is not in its map; examples/run map FILE lists the lanes");
   CHECK(refusal(goal("\"here\"")).find("write road/section/lane") != std::string::npos);
   CHECK(refusal(goal("7")).find("give a lane's name, in quotes") != std::string::npos);
+}
+
+TEST_CASE("bytes of another behaviour set are refused") {
+  auto const set = sampled(find_merging_site(load_opendrive(maps + "merging.xodr").map), "merging.xodr", 1);
+  CHECK(refusal(to_bytes(set)).find("for other structs") != std::string::npos);
 }
 
 TEST_CASE("a recipe draws what its sampler draws") {

@@ -10,12 +10,14 @@
 #include <string_view>
 #include <vector>
 
+#include "cambium/core/binary.hpp"
 #include "cambium/core/json.hpp"
 #include "cambium/core/write_file.hpp"
 #include "cambium/scenario/detail/scenario_maps.hpp"
 #include "cambium/scenario/scenario_set.hpp"
 
-/// Scenario sets as JSON files. A file names maps by their path and lanes as "road/section/lane"; behaviours and other
+/// Scenario sets as files: JSON to read and to exchange, or compact bytes for large sets, which one version of the
+/// program reads. A file names maps by their path and lanes as "road/section/lane"; behaviours and other
 /// models by the names of the alternatives that the program's `World` has.
 ///
 ///   {"format": 1, "scenarios": [
@@ -24,16 +26,26 @@
 ///        "goal": {"reach_lane": {"lane": "3/0/-2"}}}]}]}
 namespace cambium {
 
-/// Reads a set from JSON text, and draws the scenarios of its recipes. Maps are loaded once each, relative to `folder`.
-/// Throws `ParameterError` as `read_json` (also for a model that `WorldType` lacks), `MapError` if a map is missing,
-/// and `WorldError` if a scenario has no agent, two with one id or overlapping, or none of the ego's id; all with
-/// `where` and the scenario. What needs a route is checked by `Scenario::make_world`.
+namespace detail {
+
+/// A set as bytes, with the names of its lanes.
 template <class WorldType>
-[[nodiscard]] ScenarioSet<WorldType> parse_scenarios(
-    std::string_view text, std::filesystem::path const& folder, std::string const& where = "scenarios",
-    std::function<void(ScenarioRecipe<WorldType>&)> const& adjust = {}) {
-  detail::LaneTable lanes;
-  auto set = from_json<ScenarioSet<WorldType>>(text, where, &lanes);
+struct PackedSet {
+  std::vector<std::string> lanes{};
+  ScenarioSet<WorldType> set{};
+
+  static constexpr char const* name = "packed_set";
+  static constexpr auto parameters() {
+    using P = PackedSet;
+    return parameter_list(parameter("lanes", &P::lanes, "-", {}, "names of all lanes"),
+                          parameter("set", &P::set, "-", {}, "with numbers of these names as lanes"));
+  }
+};
+
+/// Loads the maps of a set as its file holds it, and draws its recipes.
+template <class WorldType>
+void complete(ScenarioSet<WorldType>& set, LaneTable const& lanes, std::filesystem::path const& folder,
+              std::string const& where, std::function<void(ScenarioRecipe<WorldType>&)> const& adjust) {
   detail::MapFiles maps;
   Scenario<WorldType> const usual{};
   for (std::size_t i = 0; i < set.scenarios.size(); ++i) {
@@ -62,6 +74,48 @@ template <class WorldType>
     std::move(drawn.begin(), drawn.end(), std::back_inserter(set.scenarios));
   }
   set.recipes.clear();
+}
+
+/// The set as its file holds it: with numbers of `lanes` as lanes.
+template <class WorldType>
+[[nodiscard]] ScenarioSet<WorldType> as_in_file(ScenarioSet<WorldType> set, LaneTable const& lanes) {
+  Scenario<WorldType> const usual{};
+  if (!set.recipes.empty())
+    throw ParameterError("scenario set", "has recipes that were not drawn", "`draw` gives their scenarios");
+  set.format = ScenarioSet<WorldType>::latest_format;
+  for (std::size_t i = 0; i < set.scenarios.size(); ++i) {
+    auto& scenario = set.scenarios[i];
+    auto const place = "scenarios[" + std::to_string(i) + "]";
+    require_map(scenario.map, place);
+    for (auto const& agent : scenario.agents)
+      if (agent.road)
+        throw ParameterError(place, "an agent has a road of its own", "give it a route: files hold no roads");
+    exchange_lanes(&scenario, &usual, &transfer_any<Scenario<WorldType>>, *scenario.map, lanes, false, place);
+  }
+  return set;
+}
+
+}  // namespace detail
+
+/// Reads a set from JSON text, or from bytes as `to_bytes` gives them, and draws the scenarios of its recipes. Maps are
+/// loaded once each, relative to `folder`. Throws `ParameterError` as `read_json` and `from_binary` (also for a model
+/// that `WorldType` lacks, or a lane that the map lacks), `MapError` if a map is missing, and `WorldError` if two
+/// agents overlap; all with `where` and the scenario. The rest is checked by `Scenario::make_world`. `adjust` may
+/// change a recipe before its scenarios are drawn.
+template <class WorldType>
+[[nodiscard]] ScenarioSet<WorldType> parse_scenarios(
+    std::string_view text, std::filesystem::path const& folder, std::string const& where = "scenarios",
+    std::function<void(ScenarioRecipe<WorldType>&)> const& adjust = {}) {
+  detail::LaneTable lanes;
+  ScenarioSet<WorldType> set;
+  if (is_binary(text)) {
+    auto packed = from_binary<detail::PackedSet<WorldType>>(text, where);
+    lanes = detail::LaneTable(packed.lanes);
+    set = std::move(packed.set);
+  } else {
+    set = from_json<ScenarioSet<WorldType>>(text, where, &lanes);
+  }
+  detail::complete(set, lanes, folder, where, adjust);
   return set;
 }
 
@@ -70,37 +124,34 @@ template <class WorldType>
 [[nodiscard]] ScenarioSet<WorldType> read_scenarios(
     std::filesystem::path const& path, std::function<void(ScenarioRecipe<WorldType>&)> const& adjust = {}) {
   return parse_scenarios<WorldType>(
-      read_file<Error>(path.string(), {.largest = std::size_t{1} << 31, .expected = "give a scenario file (.json)"}),
+      read_file<Error>(path.string(), {.largest = std::size_t{1} << 31, .expected = "give a scenario file"}),
       path.parent_path(), path.string(), adjust);
 }
 
 /// The set as JSON text, which `parse_scenarios` reads back as the same bits. Throws `ParameterError` if an agent has a
 /// road or a goal of its own, or a model without description.
 template <class WorldType>
-[[nodiscard]] std::string to_json_text(ScenarioSet<WorldType> set) {
+[[nodiscard]] std::string to_json_text(ScenarioSet<WorldType> const& set) {
   detail::LaneTable lanes;
-  Scenario<WorldType> const usual{};
-  if (!set.recipes.empty())
-    throw ParameterError("scenario set", "has recipes that were not drawn", "`draw` gives their scenarios");
-  set.format = ScenarioSet<WorldType>::latest_format;
-  for (std::size_t i = 0; i < set.scenarios.size(); ++i) {
-    auto& scenario = set.scenarios[i];
-    auto const place = "scenarios[" + std::to_string(i) + "]";
-    detail::require_map(scenario.map, place);
-    for (auto const& agent : scenario.agents)
-      if (agent.road)
-        throw ParameterError(place, "an agent has a road of its own", "give it a route: files hold no roads");
-    detail::exchange_lanes(&scenario, &usual, &detail::transfer_any<Scenario<WorldType>>, *scenario.map, lanes, false,
-                           place);
-  }
-  return to_json(set, JsonDetail::differences, &lanes);
+  auto const written = detail::as_in_file(set, lanes);
+  return to_json(written, JsonDetail::differences, &lanes);
 }
 
-/// Writes a set atomically. Map files are named as in `Scenario::map_file`, so relative ones must fit the folder of
-/// `path`. Throws as `to_json_text`, and `Error` if the file cannot be written.
+/// The set as bytes, a third of the JSON text. Throws as `to_json_text`.
+template <class WorldType>
+[[nodiscard]] std::string to_bytes(ScenarioSet<WorldType> const& set) {
+  detail::LaneTable lanes;
+  detail::PackedSet<WorldType> packed{{}, detail::as_in_file(set, lanes)};
+  packed.lanes = lanes.names();
+  return to_binary(packed);
+}
+
+/// Writes a set atomically: as JSON if the name of the file ends with .json, else as bytes. Map files are named as in
+/// `Scenario::map_file`, so relative ones must fit the folder of `path`. Throws as `to_json_text`, and `Error` if the
+/// file cannot be written.
 template <class WorldType>
 void write_scenarios(std::filesystem::path const& path, ScenarioSet<WorldType> const& set) {
-  write_file(path, to_json_text(set));
+  write_file(path, path.extension() == ".json" ? to_json_text(set) : to_bytes(set));
 }
 
 }  // namespace cambium

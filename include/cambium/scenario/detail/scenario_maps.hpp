@@ -26,6 +26,12 @@ namespace cambium::detail {
 /// Lanes of several maps by name: in the files' structs, `LaneId` k stands for the k-th name.
 class LaneTable final : public LaneNames {
  public:
+  LaneTable() = default;
+  explicit LaneTable(std::vector<std::string> const& names) {
+    for (auto const& name : names) static_cast<void>(lane(name, {}));
+  }
+
+  [[nodiscard]] std::vector<std::string> const& names() const { return names_; }
   [[nodiscard]] std::string name(LaneId lane) const override { return names_[index_of(lane)]; }
   [[nodiscard]] LaneId lane(std::string_view name, std::string const& where) const override;
 
@@ -98,6 +104,8 @@ inline LaneId LaneTable::lane(std::string_view name, std::string const&) const {
 }
 
 inline LaneId LaneTable::lane_in(Map const& map, LaneId number, std::string const& where) const {
+  if (index_of(number) >= names_.size())
+    throw ParameterError(where, "names a lane by a number that the file lacks", "it is damaged: take another copy");
   auto const& name = names_[index_of(number)];
   auto const refuse = [&](char const* what, char const* remedy) {
     throw ParameterError(where + ": lane \"" + name + "\"", what, remedy);
