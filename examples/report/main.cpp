@@ -72,9 +72,12 @@ int report(Settings const& settings) {
     cb::write_file(settings.latex, text);
   }
   if (!settings.html.empty()) {
+    auto const folder = fs::path(settings.html).parent_path();
+    std::error_code none;
+    fs::create_directories(folder / "replays", none);  // where the page's commands put replays
     cb::write_file(settings.html,
-                   cb::html_report(report, {.title = "Benchmark " + fs::path(settings.db).stem().string(),
-                                            .page_folder = fs::path(settings.html).parent_path()}));
+                   cb::html_report(
+                       report, {.title = "Benchmark " + fs::path(settings.db).stem().string(), .page_folder = folder}));
     std::printf("  %s opens in a browser\n", settings.html.c_str());
   }
   return has_loss ? 1 : 0;

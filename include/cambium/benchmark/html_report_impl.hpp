@@ -43,11 +43,11 @@ inline constexpr std::array<char const*, 6> run_outcomes = {
   return text;
 }
 
-/// A cell: an interval in brackets is set smaller.
+/// A cell: an interval in brackets and what follows is set smaller.
 [[nodiscard]] inline std::string html_cell(std::string const& cell) {
   auto const at = cell.find(" (");
   std::string const kind = cell == "better" ? " class=\"better\"" : cell == "WORSE" ? " class=\"worse\"" : "";
-  if (at == cell.npos || !cell.ends_with(')')) return "<td" + kind + ">" + escape_markup(cell) + "</td>";
+  if (at == cell.npos) return "<td" + kind + ">" + escape_markup(cell) + "</td>";
   return "<td>" + escape_markup(cell.substr(0, at)) + " <span class=\"ci\">" + escape_markup(cell.substr(at + 1)) +
          "</span></td>";
 }
@@ -181,7 +181,7 @@ CAMBIUM_COLD std::string replay_file_name(std::string const& set, std::string co
 CAMBIUM_COLD std::string html_report(Report const& report, HtmlReportOptions const& options) {
   using detail::escape_markup;
   auto const sets = detail::groups_by_set(report.groups);
-  auto const tables = tables_of(report, measures().size());
+  auto const tables = tables_of(report);
   std::size_t runs = 0;
   std::set<std::string> behaviors, versions;
   for (auto const& group : report.groups) {

@@ -400,7 +400,7 @@ CAMBIUM_COLD std::string latex_of(Table const& table) {
     return line + " \\\\\n";
   };
   std::string text = "\\begin{table}\n  \\centering\n  \\caption{" + detail::escape_latex(detail::full_title(table)) +
-                     ". " + detail::escape_latex(table.note) + "}\n  \\begin{tabular}{l" +
+                     (table.note.empty() ? "" : ". " + detail::escape_latex(table.note)) + "}\n  \\begin{tabular}{l" +
                      std::string(table.head.size() - 1, 'r') + "}\n  \\toprule\n";
   for (auto const& line : detail::head_lines(table)) text += row(line);
   text += "  \\midrule\n";

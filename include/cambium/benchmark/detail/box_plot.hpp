@@ -34,20 +34,24 @@ struct BoxPlotRow {
   return values[below] + (place - static_cast<double>(below)) * (values[above] - values[below]);
 }
 
-/// The horizontal axis of a plot: linear, or logarithmic where the values cover more than two decades.
+/// The horizontal axis of a plot: linear, or logarithmic where the rows differ by more than a decade.
 struct PlotAxis {
   double low = 0.0, high = 1.0, left = 0.0, right = 1.0;
   bool is_logarithmic = false;
 
   PlotAxis(std::vector<BoxPlotRow> const& rows, double left_end, double right_end) : left(left_end), right(right_end) {
+    double least_median = 0.0, largest_median = 0.0;
     bool is_first = true;
     for (auto const& row : rows) {
       if (row.values.empty()) continue;
       low = is_first ? row.values.front() : std::min(low, row.values.front());
       high = is_first ? row.values.back() : std::max(high, row.values.back());
+      double const median = quantile_of(row.values, 0.5);
+      least_median = is_first ? median : std::min(least_median, median);
+      largest_median = is_first ? median : std::max(largest_median, median);
       is_first = false;
     }
-    is_logarithmic = low > 0.0 && high > 100.0 * low;
+    is_logarithmic = low > 0.0 && largest_median > 30.0 * least_median;
     if (is_logarithmic) return;
     if (high <= low) high = low + std::max(1e-3, 1e-3 * std::abs(low));
   }
@@ -92,7 +96,6 @@ struct PlotAxis {
   for (std::size_t i = 0; i < rows.size(); ++i) {
     auto const& values = rows[i].values;
     double const middle = top + row_height * (static_cast<double>(i) + 0.5);
-    // Browsers fit long names; U+2026 is an ellipsis.
     std::string name = rows[i].label;
     if (name.size() > 21) {
       std::size_t cut = 20;
