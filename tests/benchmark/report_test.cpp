@@ -153,20 +153,20 @@ TEST_CASE("a planted loss is found, and which way it goes") {
   auto const loss = compare_against({before}, {after}, "old.db", "new.db");
   CHECK(loss.has_loss());
   auto const& success = change_of(loss.list.front(), "success");
-  CHECK(success.verdict == Verdict::worse);
+  CHECK(success.verdict == Finding::worse);
   CHECK(success.difference.high < 0.0);
   CHECK(success.p == mcnemar_p(loss.list.front().lost.size(), 0));
   CHECK(success.p_adjusted == success.p);  // nothing else differs: a family of one
-  CHECK(change_of(loss.list.front(), "closed_loop_score").verdict == Verdict::none);
+  CHECK(change_of(loss.list.front(), "closed_loop_score").verdict == Finding::none);
   CHECK(verdict_of(loss).find("significant loss: merging, driver: success") != std::string::npos);
   auto const gain = compare_against({after}, {before}, "old.db", "new.db");
   CHECK_FALSE(gain.has_loss());
-  CHECK(change_of(gain.list.front(), "success").verdict == Verdict::better);
+  CHECK(change_of(gain.list.front(), "success").verdict == Finding::better);
 
   after = before;
   for (auto& row : after.rows) row.result.hard_brakings += row.scenario % 2;
   auto const brakings = compare_against({before}, {after}, "old.db", "new.db");
-  CHECK(change_of(brakings.list.front(), "hard_brakings").verdict == Verdict::worse);
+  CHECK(change_of(brakings.list.front(), "hard_brakings").verdict == Finding::worse);
   CHECK(change_of(brakings.list.front(), "hard_brakings").after -
             change_of(brakings.list.front(), "hard_brakings").before ==
         doctest::Approx(0.5));
@@ -184,7 +184,7 @@ TEST_CASE("equally good behaviours seldom differ significantly") {
     auto const found = compare_against({noisy(2 * trial, 0.8)}, {noisy(2 * trial + 1, 0.8)}, "old.db", "new.db", 0.1);
     losses += found.has_loss();
     auto const& changes = found.list.front().changes;
-    any += std::any_of(changes.begin(), changes.end(), [](auto const& c) { return c.verdict != Verdict::none; });
+    any += std::any_of(changes.begin(), changes.end(), [](auto const& c) { return c.verdict != Finding::none; });
   }
   CHECK(any / double(trials) < 0.15);
   CHECK(any / double(trials) > 0.05);
@@ -203,12 +203,12 @@ TEST_CASE("comparisons use equal scenarios only, and say what they left out") {
   REQUIRE(with.list.size() == 1);
   CHECK(with.list.front().before == "driver");
   CHECK(with.list.front().after == "new driver");
-  CHECK_THROWS_AS(compare_with_baseline({a, other}, "nobody"), Error);
-  CHECK_THROWS_AS(compare_with_baseline({a}, "driver"), Error);
+  CHECK_THROWS_AS(static_cast<void>(compare_with_baseline({a, other}, "nobody")), Error);
+  CHECK_THROWS_AS(static_cast<void>(compare_with_baseline({a}, "driver")), Error);
   auto elsewhere = a;
   elsewhere.set_hash = 5;
-  CHECK_THROWS_AS(compare_against({a}, {elsewhere}, "old.db", "new.db"), Error);
-  CHECK_THROWS_AS(compare_against({a}, {other}, "old.db", "new.db"), Error);
+  CHECK_THROWS_AS(static_cast<void>(compare_against({a}, {elsewhere}, "old.db", "new.db")), Error);
+  CHECK_THROWS_AS(static_cast<void>(compare_against({a}, {other}, "old.db", "new.db")), Error);
 
   // With several of a name, the one of equal parameters counts, then the latest version.
   auto tuned = noisy(4, 0.5);
