@@ -22,9 +22,9 @@ struct Measure {
   std::function<double(ResultGroup::Row const&)> value{};  ///< 0 or 1 of a share; not finite where there is nothing
 };
 
-/// All measures, in the order of the fields of `RunResult` and `RunTimes`. A field that is described there is a measure
-/// here; numbers that say nothing about how well a behaviour drives, among them all times, are neither better nor
-/// worse.
+/// All measures, in the order of the fields of `RunResult` and `RunTimes`: a field that is described there is a measure
+/// here. Better or worse are outcomes, safety and the closed-loop score. Neither are speeds, gaps and the like, of which
+/// a good driver may have more or less; time-outs, which lack success; and times, which depend on the machine.
 [[nodiscard]] std::vector<Measure> const& measures();
 
 }  // namespace cambium

@@ -15,17 +15,18 @@ namespace cambium {
 namespace detail {
 
 [[nodiscard]] inline Better better_of(std::string_view key) {
-  for (char const* more : {"success", "mean_speed", "least_time_to_collision", "post_encroachment_time",
-                           "rss_compliance", "closed_loop_score"})
+  for (char const* more : {"success", "rss_compliance", "closed_loop_score"})
     if (key == more) return Better::more;
-  for (char const* less : {"collision", "at_fault", "off_road", "timed_out", "error", "hardest_braking", "largest_jerk",
-                           "largest_lateral_acceleration", "hard_brakings", "others_collided"})
+  for (char const* less : {"collision", "at_fault", "off_road", "error", "hard_brakings", "others_collided"})
     if (key == less) return Better::less;
   return Better::neither;
 }
 
 /// "least_gap" as "least gap"; a unit at the end ("run_s") is left out.
 [[nodiscard]] inline std::string name_of_measure(std::string key, std::string const& unit) {
+  for (auto const& [field, name] : {std::pair{"mean_ms", "mean planning time"},
+                                    std::pair{"longest_ms", "longest planning time"}, std::pair{"run_s", "run time"}})
+    if (key == field) return name;
   std::string const ending = "_" + unit;
   if (key.size() > ending.size() && std::string_view(key).ends_with(ending)) key.resize(key.size() - ending.size());
   std::replace(key.begin(), key.end(), '_', ' ');

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "cambium/benchmark/result_group.hpp"
@@ -44,8 +45,12 @@ namespace cambium {
     if (other_parameters) group.label += " #" + hash_text(group.parameters_hash).substr(0, 8);
     if (other_version) group.label += " " + group.version;
   }
-  std::stable_sort(groups.begin(), groups.end(),
-                   [](auto const& a, auto const& b) { return a.set_label < b.set_label; });
+  std::sort(groups.begin(), groups.end(), [](auto const& a, auto const& b) {
+    auto const key = [](auto const& g) {
+      return std::tie(g.set_label, g.set_hash, g.behavior, g.parameters_hash, g.version);
+    };
+    return key(a) < key(b);
+  });
   return groups;
 }
 

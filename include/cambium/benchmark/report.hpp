@@ -34,6 +34,7 @@ struct Report {
 
 /// A table of text. The first column names the rows.
 struct Table {
+  std::string set{};  ///< what it is about; empty of comparisons
   std::string title{};
   std::vector<std::string> head{};
   std::vector<std::vector<std::string>> rows{};

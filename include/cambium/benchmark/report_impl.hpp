@@ -192,6 +192,11 @@ namespace detail {
   return table;
 }
 
+/// "merging: outcomes".
+[[nodiscard]] inline std::string full_title(Table const& table) {
+  return table.set.empty() ? table.title : table.set + ": " + table.title;
+}
+
 /// The words of a cell of a head, in lines of at most `width` letters where possible.
 [[nodiscard]] inline std::vector<std::string> wrapped(std::string const& text, std::size_t width) {
   std::vector<std::string> lines(1);
@@ -321,7 +326,8 @@ CAMBIUM_COLD std::vector<Table> tables_of(Report const& report, std::size_t colu
   for (auto const& set : detail::groups_by_set(report.groups)) {
     auto const& name = report.groups[set.front()].set_label;
     auto const add = [&](Table table, std::string const& title) {
-      table.title = name + ": " + title;
+      table.set = name;
+      table.title = title;
       tables.push_back(std::move(table));
     };
     add(detail::measure_table(report, set, shares, true), "outcomes");
@@ -370,7 +376,7 @@ CAMBIUM_COLD std::string text_of(Table const& table) {
       line[c] = detail::printable(line[c]);
       widths[c] = std::max(widths[c], detail::letters(line[c]));
     }
-  std::string text = "  " + detail::printable(table.title) + "\n";
+  std::string text = "  " + detail::printable(detail::full_title(table)) + "\n";
   for (std::size_t l = 0; l < lines.size(); ++l) {
     std::string row;
     for (std::size_t c = 0; c < lines[l].size(); ++c) {
@@ -393,8 +399,8 @@ CAMBIUM_COLD std::string latex_of(Table const& table) {
     for (auto const& cell : cells) line += (&cell == &cells.front() ? "  " : " & ") + detail::escape_latex(cell);
     return line + " \\\\\n";
   };
-  std::string text = "\\begin{table}\n  \\centering\n  \\caption{" + detail::escape_latex(table.title) + ". " +
-                     detail::escape_latex(table.note) + "}\n  \\begin{tabular}{l" +
+  std::string text = "\\begin{table}\n  \\centering\n  \\caption{" + detail::escape_latex(detail::full_title(table)) +
+                     (table.note.empty() ? "" : ". " + detail::escape_latex(table.note)) + "}\n  \\begin{tabular}{l" +
                      std::string(table.head.size() - 1, 'r') + "}\n  \\toprule\n";
   for (auto const& line : detail::head_lines(table)) text += row(line);
   text += "  \\midrule\n";

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "cambium/benchmark/report.hpp"
+
+namespace cambium {
+
+/// What an HTML report says beside its tables.
+struct HtmlReportOptions {
+  std::string title = "Benchmark";
+  std::filesystem::path replays = "replays";       ///< folder of replays; links to it are relative to the page
+  std::filesystem::path page_folder = ".";         ///< where the page will lie
+  std::string command = "examples/run benchmark";  ///< runs a scenario again, with `--only SET:NUMBER:BEHAVIOR`
+};
+
+/// Name of the file that replays a scenario: "merging_mobil_17.html". Letters that are trouble in file names become _.
+[[nodiscard]] std::string replay_file_name(std::string const& set, std::string const& behavior, std::int64_t scenario);
+
+/// A page for any browser of 2023 or later, without further files or a network: the tables of a report, distributions
+/// of the measures, and a list of all runs that can be sorted and filtered. A row leads to the replay of its run if the
+/// file `replays`/`replay_file_name(...)` is there, and otherwise says how to make it. UTF-8; the same report and files
+/// give the same bytes. All names are escaped. O(rows).
+[[nodiscard]] std::string html_report(Report const& report, HtmlReportOptions const& options = {});
+
+}  // namespace cambium
+
+#ifndef CAMBIUM_COMPILED
+#include "cambium/benchmark/html_report_impl.hpp"
+#endif

@@ -1,0 +1,344 @@
+#include <cambium/benchmark/comparison.hpp>
+#include <cambium/benchmark/html_report.hpp>
+#include <cambium/benchmark/read_results.hpp>
+#include <cambium/benchmark/report.hpp>
+#include <cambium/core/distributions.hpp>
+#include <cambium/core/error.hpp>
+#include <cambium/core/write_file.hpp>
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "../examples/program.hpp"
+
+using namespace cambium;
+using browser::TemporaryFolder;
+
+namespace {
+
+/// `count` results of a behaviour on set 1; `make(result, scenario)` fills each.
+ResultGroup group_of(std::string const& behavior, std::int64_t count,
+                     std::function<void(RunResult&, std::int64_t)> const& make) {
+  ResultGroup group{.set_hash = 1,
+                    .set = "merging",
+                    .set_label = "merging",
+                    .behavior = behavior,
+                    .version = version,
+                    .label = behavior};
+  for (std::int64_t i = 0; i < count; ++i) {
+    group.rows.push_back({.scenario = i, .seed = static_cast<std::uint64_t>(i)});
+    make(group.rows.back().result, i);
+  }
+  return group;
+}
+
+void write(ResultStore& store, ResultGroup const& group) {
+  store.add_set(group.set_hash, group.set, group.rows.size());
+  store.add_behavior(group.behavior, group.parameters_hash, group.parameters);
+  for (auto const& row : group.rows)
+    store.add({{group.set_hash, row.scenario, group.behavior, group.parameters_hash, group.version},
+               row.seed,
+               row.result,
+               row.times});
+  store.commit();
+}
+
+std::size_t number_of(std::string const& key) {
+  auto const& all = measures();
+  auto const found = std::find_if(all.begin(), all.end(), [&](Measure const& m) { return m.key == key; });
+  REQUIRE(found != all.end());
+  return static_cast<std::size_t>(found - all.begin());
+}
+
+Change const& change_of(Comparison const& comparison, std::string const& key) {
+  return comparison.changes.at(number_of(key));
+}
+
+/// A driver of whom success, score, proper responses and hard brakings scatter.
+ResultGroup noisy(std::uint64_t seed, double success, std::int64_t count = 120) {
+  return group_of("driver", count, [&](RunResult& result, std::int64_t i) {
+    RandomStream stream(seed, static_cast<std::uint32_t>(i), 0);
+    result.success = uniform01(stream) < success;
+    result.closed_loop_score = uniform01(stream);
+    result.rss_compliance = 1.0 - 0.2 * uniform01(stream) * uniform01(stream);
+    result.hard_brakings = uniform_index(stream, 4);
+  });
+}
+
+}  // namespace
+
+TEST_CASE("a report of known results has their figures") {
+  auto const mobil = group_of("mobil", 20, [](RunResult& result, std::int64_t i) {
+    result.success = i >= 5;
+    result.collision = i < 2;
+    result.error = i == 4 ? "no plan" : "";
+    result.mean_speed = static_cast<double>(i);
+    if (i < 4) result.least_time_to_collision = 1.0 + static_cast<double>(i);
+  });
+  auto idm = group_of("idm", 15, [](RunResult& result, std::int64_t i) { result.success = i != 14; });
+  idm.rows.erase(idm.rows.begin());  // another does not run all
+  idm.rows[3].times = {.decisions = 7, .mean_ms = 2.0, .longest_ms = 9.5, .overruns = 1};
+  TemporaryFolder const folder;
+  ResultStore store(folder.path() / "results.db");
+  write(store, mobil);
+  write(store, idm);
+  auto const report = make_report(read_results(store));
+  REQUIRE(report.groups.size() == 2);
+  CHECK(report.groups[0].label == "idm");
+  auto const estimate = [&](std::size_t group, std::string const& key) {
+    return report.estimates[group][number_of(key)];
+  };
+  CHECK(estimate(1, "success").value == 0.75);
+  CHECK(estimate(1, "success").interval == wilson_interval(15, 20));
+  CHECK(estimate(1, "collision").value == 0.1);
+  CHECK(estimate(1, "error").value == 0.05);
+  CHECK(estimate(1, "mean_speed").value == 9.5);
+  std::vector<double> speeds;
+  for (int i = 0; i < 20; ++i) speeds.push_back(i);
+  CHECK(estimate(1, "mean_speed").interval == bootstrap_interval(speeds));
+  CHECK(estimate(1, "least_time_to_collision").count == 4);
+  CHECK(estimate(1, "least_time_to_collision").value == 2.5);
+  CHECK(estimate(0, "success").value == doctest::Approx(13.0 / 14));
+  CHECK(estimate(0, "longest_ms").most == 9.5);
+
+  REQUIRE(report.each.list.size() == 1);
+  auto const& pair = report.each.list.front();
+  CHECK(pair.scenarios == 14);
+  CHECK(pair.lost == std::vector<std::int64_t>{1, 2, 3, 4});  // idm to mobil
+  CHECK(pair.won == std::vector<std::int64_t>{14});
+  CHECK(pair.changes.front().p == mcnemar_p(4, 1));
+  CHECK(pair.changes.front().before == doctest::Approx(13.0 / 14));
+  CHECK(pair.changes.front().after == doctest::Approx(10.0 / 14));
+
+  auto const tables = tables_of(report);
+  auto const text = text_of(tables.front());
+  CHECK(text.find("merging: outcomes") != text.npos);
+  CHECK(text.find("75.0 (53.1-88.8)") != text.npos);
+  auto const latex = latex_of(tables.front());
+  CHECK(latex.find("mobil & 20 & 75.0 (53.1--88.8)") != latex.npos);
+  CHECK(latex.find("success [\\%]") != latex.npos);
+  auto const csv = csv_of(report);
+  CHECK(csv.find("\nmerging,mobil,,0.1.0,,success,,more,20,0.75,0.53") != csv.npos);
+  CHECK(csv.find("\nmerging,mobil,,,idm,success,,more,14,-0.21428571428571") != csv.npos);
+}
+
+TEST_CASE("behaviours of one name are told apart") {
+  TemporaryFolder const folder;
+  ResultStore store(folder.path() / "results.db");
+  auto group = noisy(1, 0.5, 3);
+  write(store, group);
+  group.parameters_hash = 0xabcdef0123456789u;
+  write(store, group);
+  group.version = "9.9.9";
+  write(store, group);
+  group.set_hash = 2;
+  write(store, group);
+  std::string labels;
+  for (auto const& g : read_results(store)) labels += g.set_label + ": " + g.label + "\n";
+  CHECK(labels == "merging #00000000: driver #00000000 " + std::string(version) +
+                      "\nmerging #00000000: driver #abcdef01 " + version +
+                      "\nmerging #00000000: driver #abcdef01 9.9.9\nmerging #00000000: driver\n");
+}
+
+TEST_CASE("a planted loss is found, and which way it goes") {
+  auto const before = noisy(1, 0.9);
+  auto after = before;
+  after.parameters_hash = 7;  // a change of parameters is still the same behaviour
+  for (std::size_t i = 0; i < after.rows.size(); i += 8) after.rows[i].result.success = false;
+  auto const loss = compare_against({before}, {after}, "old.db", "new.db");
+  CHECK(loss.has_loss());
+  auto const& success = change_of(loss.list.front(), "success");
+  CHECK(success.verdict == Finding::worse);
+  CHECK(success.difference.high < 0.0);
+  CHECK(success.p == mcnemar_p(loss.list.front().lost.size(), 0));
+  CHECK(success.p_adjusted == success.p);  // nothing else differs: a family of one
+  CHECK(change_of(loss.list.front(), "closed_loop_score").verdict == Finding::none);
+  CHECK(verdict_of(loss).find("significant loss: merging, driver: success") != std::string::npos);
+  auto const gain = compare_against({after}, {before}, "old.db", "new.db");
+  CHECK_FALSE(gain.has_loss());
+  CHECK(change_of(gain.list.front(), "success").verdict == Finding::better);
+
+  after = before;
+  for (auto& row : after.rows) row.result.hard_brakings += row.scenario % 2;
+  auto const brakings = compare_against({before}, {after}, "old.db", "new.db");
+  CHECK(change_of(brakings.list.front(), "hard_brakings").verdict == Finding::worse);
+  CHECK(change_of(brakings.list.front(), "hard_brakings").after -
+            change_of(brakings.list.front(), "hard_brakings").before ==
+        doctest::Approx(0.5));
+  after = before;
+  for (auto& row : after.rows) row.times.mean_ms = 100.0;
+  CHECK_FALSE(compare_against({before}, {after}, "old.db", "new.db").has_loss());  // a slower machine
+}
+
+TEST_CASE("equally good behaviours seldom differ significantly") {
+  // 500 pairs of 120 scenarios at a level of 10 %: 10 % ± 4 % are three standard deviations. McNemar's test is exact
+  // and therefore errs less often than its level.
+  constexpr int trials = 500;
+  int any = 0, losses = 0;
+  for (std::uint64_t trial = 0; trial < trials; ++trial) {
+    auto const found = compare_against({noisy(2 * trial, 0.8)}, {noisy(2 * trial + 1, 0.8)}, "old.db", "new.db", 0.1);
+    losses += found.has_loss();
+    auto const& changes = found.list.front().changes;
+    any += std::any_of(changes.begin(), changes.end(), [](auto const& c) { return c.verdict != Finding::none; });
+  }
+  CHECK(any / double(trials) < 0.15);
+  CHECK(any / double(trials) > 0.05);
+  CHECK(losses < any);
+}
+
+TEST_CASE("comparisons use equal scenarios only, and say what they left out") {
+  auto const a = noisy(1, 0.5), b = noisy(2, 0.5, 30);
+  auto other = noisy(3, 0.5);
+  other.behavior = other.label = "new driver";
+  auto const found = compare_against({a}, {b, other}, "old.db", "new.db");
+  REQUIRE(found.list.size() == 1);
+  CHECK(found.list.front().scenarios == 30);
+  CHECK(found.left_out == std::vector<std::string>{"merging: new driver is only in new.db"});
+  auto const with = compare_with_baseline({a, other}, "driver");
+  REQUIRE(with.list.size() == 1);
+  CHECK(with.list.front().before == "driver");
+  CHECK(with.list.front().after == "new driver");
+  CHECK_THROWS_AS(static_cast<void>(compare_with_baseline({a, other}, "nobody")), Error);
+  CHECK_THROWS_AS(static_cast<void>(compare_with_baseline({a}, "driver")), Error);
+  auto elsewhere = a;
+  elsewhere.set_hash = 5;
+  CHECK_THROWS_AS(static_cast<void>(compare_against({a}, {elsewhere}, "old.db", "new.db")), Error);
+  CHECK_THROWS_AS(static_cast<void>(compare_against({a}, {other}, "old.db", "new.db")), Error);
+
+  // With several of a name, the one of equal parameters counts, then the latest version.
+  auto tuned = noisy(4, 0.5);
+  tuned.parameters_hash = 9;
+  auto const same = compare_against({tuned, a}, {tuned}, "old.db", "new.db");
+  CHECK_FALSE(change_of(same.list.front(), "closed_loop_score").differs);
+}
+
+TEST_CASE("hostile names are escaped in every format") {
+  std::string const evil = "<img src=x onerror=alert(1)>,\"'&$%_{}\\</script>\x1b[2J";
+  auto group = group_of(evil, 3, [&](RunResult& result, std::int64_t) { result.error = evil; });
+  group.set = group.set_label = group.parameters = evil;
+  auto report = make_report({group, noisy(1, 0.5, 3)});
+  report.comparisons.push_back({.title = evil, .left_out = {evil}});
+  auto const page = html_report(report, {.title = evil, .command = evil});
+  CHECK(page.find("<img") == page.npos);
+  CHECK(page.find("&lt;img src=x onerror=alert(1)&gt;") != page.npos);
+  CHECK(page.find('\x1b') == page.npos);
+  std::size_t scripts = 0;
+  for (auto at = page.find("</script"); at != page.npos; at = page.find("</script", at + 1)) ++scripts;
+  CHECK(scripts == 2);
+  for (char const* outside : {"http:", "https:", "url(", "@import", "<link", "<iframe", "<script src"}) {
+    CAPTURE(outside);
+    CHECK(page.find(outside) == page.npos);
+  }
+  auto const tables = tables_of(report);
+  CHECK(text_of(tables.front()).find('\x1b') == std::string::npos);
+  auto const latex = latex_of(tables.front());
+  CHECK(latex.find("\\&\\$\\%\\_\\{\\}\\textbackslash{}") != latex.npos);
+  CHECK(csv_of(report).find("\"<img src=x onerror=alert(1)>,\"\"'&") != std::string::npos);
+  CHECK(replay_file_name("a/../b", "c d\xC3\xA4", 7) == "a_.._b_c_d___7.html");
+}
+
+TEST_CASE("the page lists all runs, filters them, and links the replays that there are") {
+  auto const chromium = browser::find();
+  if (!chromium) return support::skip("no Chromium");
+  auto report = make_report({noisy(1, 0.5, 150), group_of("idm", 10, [](RunResult& result, std::int64_t i) {
+                               result.success = i > 2;
+                               result.collision = i < 2;
+                               result.error = i == 2 ? "<b>no plan" : "";
+                             })});
+  TemporaryFolder const folder;
+  std::filesystem::create_directories(folder.path() / "replays");
+  write_file(folder.path() / "replays" / replay_file_name("merging", "idm", 4), "a replay");
+  auto const page = html_report(report, {.page_folder = folder.path()});
+  CHECK(page == html_report(report, {.page_folder = folder.path()}));
+  auto const file = folder.path() / "report.html";
+  write_file(file, browser::with_actions(page, "find", R"js(
+const rows = () => [...document.querySelectorAll('#runs tbody tr')];
+say('shown', rows().length, document.body.dataset.found);
+say('links', ...[...document.querySelectorAll('#runs a')].map((a) => a.getAttribute('href')));
+document.getElementById('behavior').value = 'idm';
+document.getElementById('behavior').oninput();
+say('idm', rows().length);
+document.querySelectorAll('#runs th')[3].click();
+say('sorted', rows()[0].cells[3].textContent, rows()[9].cells[3].textContent, rows()[9].cells[1].textContent);
+rows()[9].click();
+say('command', document.querySelector('.more code').textContent);
+say('problem', rows()[9].cells[3].title === '<b>no plan', document.querySelector('.more p').textContent === '<b>no plan');
+target.value = 'no plan';
+target.oninput();
+say('text', rows().length);
+)js"));
+  auto const document = browser::document(*chromium, file);
+  auto const said = [&](std::string const& name) { return browser::attribute(document, "<body", "data-" + name); };
+  CHECK(said("failure") == "");
+  CHECK(said("shown") == "100 160");
+  CHECK(said("links") == "replays/merging_idm_4.html");
+  CHECK(said("idm") == "10");
+  CHECK(said("sorted") == "success error 2");
+  CHECK(said("command").find("examples/run benchmark --only merging:2:idm --replay ") == 0);
+  CHECK(said("problem") == "true true");
+  CHECK(said("text") == "1");
+}
+
+TEST_CASE("a store that must exist is not made, and a foreign one is not touched") {
+  TemporaryFolder const folder;
+  auto const missing = folder.path() / "missing.db", foreign = folder.path() / "foreign.db";
+  CHECK_THROWS_AS(static_cast<void>(ResultStore::existing(missing)), StoreError);
+  CHECK_FALSE(std::filesystem::exists(missing));
+  sqlite3* db = nullptr;
+  REQUIRE(sqlite3_open(foreign.c_str(), &db) == SQLITE_OK);
+  REQUIRE(sqlite3_exec(db, "CREATE TABLE photos(a)", nullptr, nullptr, nullptr) == SQLITE_OK);
+  sqlite3_close(db);
+  auto const before = program::content_of(foreign);
+  CHECK_THROWS_AS(static_cast<void>(ResultStore::existing(foreign)), StoreError);
+  CHECK(program::content_of(foreign) == before);
+  write_file(missing, "no database at all, just text");
+  CHECK_THROWS_AS(static_cast<void>(ResultStore::existing(missing)), StoreError);
+}
+
+TEST_CASE("the program reports, merges, and exits 1 on a significant loss") {
+  program::Program const report("report");
+  if (!report.is_there()) return;
+  TemporaryFolder const folder;
+  auto const path = [&](char const* name) { return (folder.path() / name).string(); };
+  auto const before = noisy(1, 0.9);
+  auto after = before, first = before, second = before;
+  for (std::size_t i = 0; i < after.rows.size(); i += 5) after.rows[i].result.success = false;
+  first.rows.resize(50);
+  second.rows.erase(second.rows.begin(), second.rows.begin() + 50);
+  for (auto const& [name, group] :
+       {std::pair{"old.db", &before}, {"new.db", &after}, {"first.db", &first}, {"second.db", &second}}) {
+    ResultStore store(folder.path() / name);
+    write(store, *group);
+  }
+  auto const run = report.run({"--db", path("new.db"), "--against", path("old.db"), "--html", path("page/r.html"),
+                               "--csv", path("r.csv"), "--latex", path("r.tex")});
+  CHECK(run.code == 1);
+  CHECK(run.err == "");
+  CHECK(run.out.find("significant loss: merging, driver: success") != std::string::npos);
+  CHECK(program::content_of(path("page/r.html")).find("</html>") != std::string::npos);
+  CHECK(program::content_of(path("r.csv")).find(",worse\n") != std::string::npos);
+  CHECK(program::content_of(path("r.tex")).find("\\toprule") != std::string::npos);
+  CHECK(report.run({"--db", path("old.db"), "--against", path("new.db")}).code == 0);
+  auto const merged = report.run(
+      {"--db", path("all.db"), "--merge", path("first.db"), "--merge", path("second.db"), "--against", path("old.db")});
+  CHECK(merged.code == 0);
+  CHECK(merged.out.find("merging: driver, 120 equal scenarios\n    No difference.") != std::string::npos);
+  for (auto const& words : std::vector<std::vector<std::string>>{{"--db", path("nowhere.db")},
+                                                                 {"--db", path("r.csv")},
+                                                                 {"--db", path("old.db"), "--against", path("r.tex")},
+                                                                 {"--db", path("old.db"), "--merge", path("old.db")},
+                                                                 {"--db", path("old.db"), "--baseline", "nobody"},
+                                                                 {}}) {
+    auto const refused = report.run(words);
+    CHECK(refused.code == 2);
+    CHECK(refused.out == "");
+    CHECK(refused.err.find("report: ") == 0);
+    CHECK(std::count(refused.err.begin(), refused.err.end(), '\n') == 1);
+  }
+  CHECK_FALSE(std::filesystem::exists(path("nowhere.db")));
+}
