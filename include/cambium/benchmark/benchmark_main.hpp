@@ -256,7 +256,7 @@ int run_benchmark_program(Arguments const& arguments, std::vector<Contender<Worl
     for (std::size_t s = 0; s < sets.size(); ++s)
       for (std::size_t c = 0; c < contenders.size(); ++c)
         if (row.key.set_hash == hashes[s] && row.key.behavior == contenders[c].name &&
-            row.key.parameters_hash == contenders[c].parameters_hash && row.key.version == version)
+            row.key.parameters_hash == contenders[c].parameters_hash && row.key.version == library_version)
           tallies[s * contenders.size() + c].add(row);
   });
   print_tallies(tallies);

@@ -200,7 +200,7 @@ CAMBIUM_COLD std::string html_report(Report const& report, HtmlReportOptions con
       "</style>\n</head>\n<body>\n<header><h1>" + escape_markup(options.title) + "</h1><p class=\"soft\">" +
       counted(sets.size(), "set") + ", " + counted(behaviors.size(), "behaviour") + ", " + counted(runs, "run") +
       "; cambium";
-  for (auto const& version : versions) page += " " + escape_markup(version);
+  for (auto const& one : versions) page += " " + escape_markup(one);
   page += "</p><nav>";
   for (std::size_t s = 0; s < sets.size(); ++s)
     page +=

@@ -23,8 +23,8 @@ struct Measure {
 };
 
 /// All measures, in the order of the fields of `RunResult` and `RunTimes`: a field that is described there is a measure
-/// here. Better or worse are outcomes, safety and the closed-loop score. Neither are speeds, gaps and the like, of which
-/// a good driver may have more or less; time-outs, which lack success; and times, which depend on the machine.
+/// here. Better or worse are outcomes, safety and the closed-loop score. Neither are speeds, gaps and the like, of
+/// which a good driver may have more or less; time-outs, which lack success; and times, which depend on the machine.
 [[nodiscard]] std::vector<Measure> const& measures();
 
 }  // namespace cambium

@@ -37,7 +37,7 @@ struct ResultKey {
   std::int64_t scenario = 0;  ///< number in the set, from 0
   std::string behavior;
   std::uint64_t parameters_hash = 0;
-  std::string version = cambium::version;
+  std::string version = library_version;
 
   friend bool operator==(ResultKey const&, ResultKey const&) = default;
   friend auto operator<=>(ResultKey const&, ResultKey const&) = default;

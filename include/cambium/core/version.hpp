@@ -11,6 +11,6 @@
 
 namespace cambium {
 /// "0.1.0".
-inline constexpr char const* version =
+inline constexpr char const* library_version =
     CAMBIUM_VERSION_TEXT(CAMBIUM_VERSION_MAJOR, CAMBIUM_VERSION_MINOR, CAMBIUM_VERSION_PATCH);
 }  // namespace cambium
