@@ -152,6 +152,21 @@ TEST_CASE("an error in a scenario file says where it is and what to do") {
   CHECK(refusal(goal("7")).find("give a lane's name, in quotes") != std::string::npos);
 }
 
+TEST_CASE("the hash of a set changes with what is in its maps") {
+  auto text = read_file<Error>(maps + "merging.xodr", {});
+  auto const hash_on = [&](std::string const& map_text) {
+    ScenarioSet<Small> set;
+    set.scenarios.push_back({.map = parse_opendrive(map_text).map, .map_file = "merging.xodr"});
+    return set.hash();
+  };
+  auto const hash = hash_on(text);
+  CHECK(hash_on(text + "<!-- a comment -->") == hash);
+  auto const width = text.find("<width");
+  REQUIRE(width != std::string::npos);
+  auto const a = text.find(" a=\"", width) + 4;
+  CHECK(hash_on(text.substr(0, a) + "2.9" + text.substr(text.find('"', a))) != hash);
+}
+
 TEST_CASE("bytes of another behaviour set are refused") {
   auto const set = sampled(find_merging_site(load_opendrive(maps + "merging.xodr").map), "merging.xodr", 1);
   CHECK(refusal(to_bytes(set)).find("for other structs") != std::string::npos);

@@ -44,6 +44,7 @@ bool needs_more(std::string const& header) {
                                     "core/transfer_parameters.hpp",
                                     "core/write_file.hpp",
                                     "geometry/polygon_union.hpp",
+                                    "map/content_hash.hpp",
                                     "map/corridor/road_area.hpp",
                                     "map/fwd.hpp",
                                     "map/lanes/lane_network.hpp",

@@ -1,11 +1,14 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "cambium/core/described.hpp"
 #include "cambium/core/parameters.hpp"
+#include "cambium/map/content_hash.hpp"
+#include "cambium/map/map.hpp"
 #include "cambium/scenario/recipe.hpp"
 #include "cambium/scenario/scenario.hpp"
 
@@ -34,13 +37,20 @@ struct ScenarioSet {
         parameter("recipes", &P::recipes, "-", {}, "for more of them, drawn when the file is read"));
   }
 
-  /// Hash of everything that a run depends on, but for the maps, which count by their file names. Equal on every
-  /// platform. O(scenarios * agents).
+  /// Hash of everything that a run depends on, the maps' content included, see `content_hash`. O(scenarios *
+  /// agents + path segments of the maps).
   [[nodiscard]] std::uint64_t hash() const {
     auto plain = *this;
     plain.format = 0;
     plain.title.clear();
-    return hash_parameters(plain);
+    auto hash = hash_parameters(plain);
+    std::vector<Map const*> known;
+    for (auto const& scenario : scenarios) {
+      if (!scenario.map || std::find(known.begin(), known.end(), scenario.map.get()) != known.end()) continue;
+      known.push_back(scenario.map.get());
+      hash = (hash ^ content_hash(*scenario.map)) * 0x100000001b3u;
+    }
+    return hash;
   }
 };
 

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <string_view>
+
+#include "cambium/map/map.hpp"
+
+namespace cambium::map {
+
+/// Hash of what traffic knows of a map: lanes, their paths, widths, links, limits, signals and conflicts' rules; not of
+/// the file's text. Equal files give equal hashes wherever the mathematical library is the same. O(path segments).
+[[nodiscard]] inline std::uint64_t content_hash(Map const& map) {
+  std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a
+  auto const add = [&hash](std::uint64_t bits) {
+    for (int shift = 0; shift < 64; shift += 8) hash = (hash ^ (bits >> shift & 0xffu)) * 0x100000001b3u;
+  };
+  auto const add_number = [&](double number) { add(std::bit_cast<std::uint64_t>(number + 0.0)); };
+  auto const add_text = [&](std::string_view text) {
+    for (char const c : text) add(static_cast<unsigned char>(c));
+    add(text.size());
+  };
+  auto const add_lanes = [&](auto const& ids) {
+    for (auto const id : ids) add(index_of(id));
+    add(ids.size());
+  };
+  for (auto const& road : map.roads()) add_text(road.name);
+  for (auto const& lane : map.lanes()) {
+    add(index_of(lane.road));
+    add(lane.section);
+    add(static_cast<std::uint64_t>(lane.number));
+    add(static_cast<std::uint64_t>(lane.type));
+    add(lane.along_road);
+    for (auto const& segment : lane.path.segments()) {
+      add_number(segment.x);
+      add_number(segment.y);
+      add_number(segment.length);
+    }
+    for (auto const& width : lane.widths) {
+      add_number(width.left);
+      add_number(width.right);
+    }
+    for (auto const& limit : lane.speed_limits) {
+      add_number(limit.begin);
+      add_number(limit.limit);
+    }
+    for (auto const* changes : {&lane.left_changes, &lane.right_changes})
+      for (auto const& stretch : *changes) {
+        add_number(stretch.begin);
+        add_number(stretch.end);
+      }
+    for (auto const id : {lane.left_neighbor, lane.right_neighbor, lane.opposite, lane.merges_into}) add(index_of(id));
+    add_lanes(lane.successors);
+    add_lanes(lane.predecessors);
+    for (auto const& overlap : lane.overlaps) {
+      add(index_of(overlap.other));
+      add_number(overlap.begin);
+      add_number(overlap.end);
+    }
+    for (auto const& signal : lane.signals) {
+      add_number(signal.s);
+      add(static_cast<std::uint64_t>(signal.kind));
+      add(index_of(signal.light));
+    }
+  }
+  for (auto const& junction : map.junctions())
+    for (auto const& priority : junction.priorities) {
+      add(index_of(priority.high));
+      add(index_of(priority.low));
+    }
+  for (auto const& light : map.lights()) add_text(light.name);
+  return hash;
+}
+
+}  // namespace cambium::map
+
+namespace cambium {
+using map::content_hash;
+}
