@@ -181,7 +181,8 @@ TEST_CASE("equally good behaviours seldom differ significantly") {
   constexpr int trials = 500;
   int any = 0, losses = 0;
   for (std::uint64_t trial = 0; trial < trials; ++trial) {
-    auto const found = compare_against({noisy(2 * trial, 0.8)}, {noisy(2 * trial + 1, 0.8)}, "old.db", "new.db", 0.1);
+    auto const found =
+        compare_against({noisy(2 * trial, 0.8, 60)}, {noisy(2 * trial + 1, 0.8, 60)}, "old.db", "new.db", 0.1);
     losses += found.has_loss();
     auto const& changes = found.list.front().changes;
     any += std::any_of(changes.begin(), changes.end(), [](auto const& c) { return c.verdict != Finding::none; });
