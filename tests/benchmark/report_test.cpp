@@ -28,7 +28,7 @@ ResultGroup group_of(std::string const& behavior, std::int64_t count,
                     .set = "merging",
                     .set_label = "merging",
                     .behavior = behavior,
-                    .version = version,
+                    .version = library_version,
                     .label = behavior};
   for (std::int64_t i = 0; i < count; ++i) {
     group.rows.push_back({.scenario = i, .seed = static_cast<std::uint64_t>(i)});
@@ -140,8 +140,8 @@ TEST_CASE("behaviours of one name are told apart") {
   write(store, group);
   std::string labels;
   for (auto const& g : read_results(store)) labels += g.set_label + ": " + g.label + "\n";
-  CHECK(labels == "merging #00000000: driver #00000000 " + std::string(version) +
-                      "\nmerging #00000000: driver #abcdef01 " + version +
+  CHECK(labels == "merging #00000000: driver #00000000 " + std::string(library_version) +
+                      "\nmerging #00000000: driver #abcdef01 " + library_version +
                       "\nmerging #00000000: driver #abcdef01 9.9.9\nmerging #00000000: driver\n");
 }
 
@@ -181,7 +181,8 @@ TEST_CASE("equally good behaviours seldom differ significantly") {
   constexpr int trials = 500;
   int any = 0, losses = 0;
   for (std::uint64_t trial = 0; trial < trials; ++trial) {
-    auto const found = compare_against({noisy(2 * trial, 0.8)}, {noisy(2 * trial + 1, 0.8)}, "old.db", "new.db", 0.1);
+    auto const found =
+        compare_against({noisy(2 * trial, 0.8, 60)}, {noisy(2 * trial + 1, 0.8, 60)}, "old.db", "new.db", 0.1);
     losses += found.has_loss();
     auto const& changes = found.list.front().changes;
     any += std::any_of(changes.begin(), changes.end(), [](auto const& c) { return c.verdict != Finding::none; });
@@ -267,7 +268,8 @@ document.querySelectorAll('#runs th')[3].click();
 say('sorted', rows()[0].cells[3].textContent, rows()[9].cells[3].textContent, rows()[9].cells[1].textContent);
 rows()[9].click();
 say('command', document.querySelector('.more code').textContent);
-say('problem', rows()[9].cells[3].title === '<b>no plan', document.querySelector('.more p').textContent === '<b>no plan');
+say('problem', rows()[9].cells[3].title === '<b>no plan',
+    document.querySelector('.more p').textContent === '<b>no plan');
 target.value = 'no plan';
 target.oninput();
 say('text', rows().length);

@@ -15,6 +15,7 @@
 
 #include "cambium/benchmark/detail/box_plot.hpp"
 #include "cambium/benchmark/detail/report_page.hpp"
+#include "cambium/benchmark/detail/report_text.hpp"
 #include "cambium/benchmark/html_report.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/core/macros.hpp"

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -11,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "cambium/benchmark/detail/report_text.hpp"
 #include "cambium/benchmark/report.hpp"
 #include "cambium/benchmark/run_on_threads.hpp"
 #include "cambium/core/error.hpp"
@@ -21,14 +21,6 @@
 namespace cambium {
 
 namespace detail {
-
-/// `value` with that many places after the point.
-[[nodiscard]] inline std::string fixed_text(double value, int decimals) {
-  char buffer[400];
-  auto const end = std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::fixed, decimals).ptr;
-  std::string text(buffer, end);
-  return text.find_first_not_of("-0.") == text.npos && text.front() == '-' ? text.substr(1) : text;
-}
 
 /// "93.1 (90.2-95.4)": a value and its interval, with enough digits to tell the ends apart.
 [[nodiscard]] inline std::string with_interval(double value, Interval const& interval, bool is_share, bool with_sign) {
@@ -59,24 +51,10 @@ namespace detail {
 
 [[nodiscard]] inline std::string p_text(double p) { return p < 1e-4 ? "<0.0001" : fixed_text(p, p < 0.001 ? 4 : 3); }
 
-[[nodiscard]] inline std::string titled(Measure const& measure) {
-  return measure.unit.empty() ? measure.name : measure.name + " [" + measure.unit + "]";
-}
-
 [[nodiscard]] inline bool is_time(Measure const& measure) {
   for (char const* key : {"decisions", "mean_ms", "longest_ms", "overruns", "run_s"})
     if (measure.key == key) return true;
   return false;
-}
-
-/// The groups of each set, in order.
-[[nodiscard]] inline std::vector<std::vector<std::size_t>> groups_by_set(std::vector<ResultGroup> const& groups) {
-  std::vector<std::vector<std::size_t>> sets;
-  for (std::size_t i = 0; i < groups.size(); ++i) {
-    if (i == 0 || groups[i].set_hash != groups[i - 1].set_hash) sets.emplace_back();
-    sets.back().push_back(i);
-  }
-  return sets;
 }
 
 /// A table of some measures of the groups of a set.

@@ -54,7 +54,8 @@ td.better { color: var(--good); font-weight: 650; } td.worse { color: var(--bad)
 .plots { display: grid; grid-template-columns: repeat(auto-fill, minmax(380px, 1fr)); gap: 10px 22px; }
 .plots svg { width: 100%; height: auto; display: block; } .plots h4 { margin: 8px 0 0; font-size: 13px; }
 .plots text { fill: var(--soft); font-size: 11px; } .plots .name { fill: var(--text); font-size: 12px; }
-.grid { stroke: var(--line); } .dots { stroke: var(--accent); stroke-opacity: .28; stroke-width: 3; stroke-linecap: round; }
+.grid { stroke: var(--line); }
+.dots { stroke: var(--accent); stroke-opacity: .28; stroke-width: 3; stroke-linecap: round; }
 .box { fill: var(--box); stroke: var(--accent); } .whisker { stroke: var(--accent); fill: none; }
 .median { stroke: var(--text); stroke-width: 2; }
 details { margin-top: 12px; } summary { cursor: pointer; font-weight: 600; }
@@ -70,7 +71,8 @@ label { display: inline-flex; align-items: center; gap: 6px; cursor: pointer; }
 :focus-visible { outline: 2px solid var(--accent); outline-offset: 1px; }
 #runs th { cursor: pointer; user-select: none; white-space: nowrap; }
 #runs th[aria-sort=ascending]::after { content: " ▲"; } #runs th[aria-sort=descending]::after { content: " ▼"; }
-#runs tbody tr { cursor: pointer; } #runs tbody tr:hover { background: color-mix(in srgb, var(--accent) 12%, transparent); }
+#runs tbody tr { cursor: pointer; }
+#runs tbody tr:hover { background: color-mix(in srgb, var(--accent) 12%, transparent); }
 #runs td { max-width: 320px; overflow: hidden; text-overflow: ellipsis; }
 #runs .more td { white-space: normal; text-align: left; cursor: auto; font-weight: 400; max-width: none; }
 [hidden] { display: none !important; }
@@ -79,7 +81,8 @@ label { display: inline-flex; align-items: center; gap: 6px; cursor: pointer; }
 /// The list of runs: body and script. It reads the JSON of the element `data`.
 inline constexpr std::string_view report_list = R"html(<section id="list"><h2>All runs</h2>
 <p class="soft">A click on a row opens its replay, or says how to make it. A click on a head sorts.</p>
-<div class="controls"><input type="search" id="find" placeholder="scenario, behaviour, error ..." aria-label="Find runs">
+
+div class="controls"><input type="search" id="find" placeholder="scenario, behaviour, error ..." aria-label="Find runs">
 <select id="set" aria-label="Set"></select><select id="behavior" aria-label="Behaviour"></select>
 <select id="outcome" aria-label="Outcome"></select>
 <label title="Scenarios in which some behaviours succeed and others do not">
