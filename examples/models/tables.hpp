@@ -29,8 +29,9 @@ template <class Value>
     using Element = cb::detail::ElementOf<Value>;
     if constexpr (cb::Described<Element>)
       return std::to_string(list.size()) + " *" + cb::detail::struct_name<Element>() + "*";
+    if constexpr (cb::detail::Variant<Element>) return list.empty() ? "none" : std::to_string(list.size());
     std::string text;
-    if constexpr (!cb::Described<Element>)
+    if constexpr (!cb::Described<Element> && !cb::detail::Variant<Element>)
       for (auto const& element : list) text += (text.empty() ? "" : ", ") + value_text(element, info);
     return text;
   } else if constexpr (std::is_floating_point_v<Value>) {
