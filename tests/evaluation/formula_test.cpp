@@ -229,8 +229,9 @@ TEST_CASE("a mistake in a formula is named with its column, and what was expecte
   CHECK(mistake("G foo", {"lane_change", "near"}) ==
         "formula 'G foo', column 3: there is no label 'foo'; give one of lane_change, near");
   CHECK(mistake("near & !lane_change", {"lane_change", "near"}) == "none");
-  CHECK(mistake((std::string(250, '!') + "a").c_str()).find("more than 200 operators in one another") !=
-        std::string::npos);
+  std::string deep(250, '!');
+  deep += 'a';
+  CHECK(mistake(deep.c_str()).find("more than 200 operators in one another") != std::string::npos);
 }
 
 TEST_CASE("equal obligations are one state, and a formula that needs too many is refused") {

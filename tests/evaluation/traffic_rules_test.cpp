@@ -428,12 +428,12 @@ TEST_CASE("signals ahead are lights, red lights and stop signs, up to their line
 namespace {
 
 /// The four-way crossing's or the junction's way of an agent that yields to another one, and that one's way.
-struct Yielding {
+struct WhoYields {
   std::shared_ptr<Map const> map = support::own_map("intersection_3way.xodr");
   map::Route own, other;
   map::ConflictZone zone;
 
-  Yielding() {
+  WhoYields() {
     for (auto const& lane : map->lanes()) {
       if (!lane.drivable() || !lane.predecessors.empty()) continue;
       for (auto const inside : lane.successors) {
@@ -476,7 +476,7 @@ struct Yielding {
 }  // namespace
 
 TEST_CASE("an agent must give way to who has the right of way and comes at once") {
-  Yielding const at;
+  WhoYields const at;
   auto const must = [&](double way, double other_way, double other_speed, double acceleration = 0.0) {
     auto world = at.world(way, other_way, 5, other_speed, ConstantAcceleration{});
     world.set_behavior(world.roster().agents[1].id, ConstantAcceleration{.acceleration = acceleration});
@@ -898,7 +898,7 @@ TEST_CASE("who does not stop and who does not wait breaks the rules of intersect
     if (!obeys) CHECK(found[0].begin == doctest::Approx((100 - front) / 11.0).epsilon(0.1));
   }
 
-  Yielding const at;
+  WhoYields const at;
   for (bool const knows : {false, true}) {
     auto const driver = knows ? Driver(Intersection{}) : Driver(ConstantAcceleration{});
     auto world = at.world(20, 22, 5, 5.5, driver);
