@@ -111,7 +111,7 @@ TEST_CASE("the benchmark names the fault in its options") {
     CAPTURE(message);
     CHECK(message.find(text) != std::string::npos);
   };
-  says({"--sets", "merging"}, "is it --set?");
+  says({"--sets", "merging"}, "is it --set or --seed?");
   says({"--set"}, "lacks its value");
   says({"--set", "nowhere"}, "is neither a scenario file nor a folder");
   says({"--set", "merging", "--behaviors", "idmm"}, "is it idm?");
@@ -121,7 +121,10 @@ TEST_CASE("the benchmark names the fault in its options") {
   says({"--set", "merging", "--only", "merging:99:idm"}, "give a number from 0 to 7");
   says({"--set", "merging", "--only", "merging"}, "write SET:NUMBER:BEHAVIOR");
   says({"--set", "merging", "--replay", "x.html"}, "needs --only");
-  says({"--set", "merging", "--db", "/nowhere/at/all.db"}, "/nowhere");
+  auto const replay = (folder.path() / "replay.html").string();
+  REQUIRE(program.run({"--set", "merging", "--only", "merging:0:idm", "--replay", replay}).code == 0);
+  says({"--set", "merging", "--db", replay + "/in_a_file.db"}, "in_a_file.db");
+  says({"--set", "merging", "--behaviors", "idm", "--db", replay}, "replay.html");
   CHECK(program.run({"--help"}).out.find("--shard i/n") != std::string::npos);
   CHECK(program.run({"--list"}).out.find("mcts_hypothesis") != std::string::npos);
 }

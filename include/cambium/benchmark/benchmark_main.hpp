@@ -11,6 +11,7 @@
 #include <iostream>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
@@ -234,7 +235,8 @@ int run_benchmark_program(Arguments const& arguments, std::vector<Contender<Worl
   if (arguments.has("--replay")) throw Error("--replay", "needs --only", "say which scenario to replay");
 
   std::filesystem::path const file = arguments.text("--db").value_or((defaults.out / "results.db").string());
-  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path());
+  std::error_code refused;  // then the store says what is wrong
+  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), refused);
   ResultStore store(file);
   store.begin_run(time_of_day(), command);
   std::size_t jobs = 0;
