@@ -19,7 +19,7 @@ namespace cambium::detail {
 
 /// A value of a JSON document. Integers keep their bits.
 struct JsonValue {
-  using Member = std::pair<std::string, JsonValue>;
+  struct Member;
   std::variant<std::monostate, bool, std::int64_t, std::uint64_t, double, std::string, std::vector<JsonValue>,
                std::vector<Member>>
       value;
@@ -32,9 +32,7 @@ struct JsonValue {
   [[nodiscard]] auto const* items() const { return get<std::vector<JsonValue>>(); }
 
   /// Whether it is an object or a list with something in it.
-  [[nodiscard]] bool has_parts() const {
-    return (members() != nullptr && !members()->empty()) || (items() != nullptr && !items()->empty());
-  }
+  [[nodiscard]] bool has_parts() const;
 
   /// What it is, for messages: "a number", "null".
   [[nodiscard]] char const* kind() const {
@@ -43,6 +41,16 @@ struct JsonValue {
     return names[value.index()];
   }
 };
+
+/// A member of an object. (Not a pair, which asks for a complete `JsonValue` too early.)
+struct JsonValue::Member {
+  std::string first;
+  JsonValue second{};
+};
+
+inline bool JsonValue::has_parts() const {
+  return (members() != nullptr && !members()->empty()) || (items() != nullptr && !items()->empty());
+}
 
 /// "line 3, column 7": the place of byte `offset` (from 0).
 [[nodiscard]] inline std::string place_in(std::string_view text, std::size_t offset) {
@@ -74,7 +82,7 @@ class JsonBuilder : public nlohmann::json_sax<nlohmann::json> {
     for (auto const& [name, member] : members)
       if (name == value)
         throw ParameterError(where_, "the key \"" + value + "\" is there twice in one object", "remove one of them");
-    members.emplace_back(std::move(value), JsonValue{});
+    members.push_back({std::move(value)});
     return true;
   }
   bool end_object() override { return close(); }

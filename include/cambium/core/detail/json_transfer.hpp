@@ -92,7 +92,7 @@ class JsonWriter final : public ParameterTransfer {
     if (place.key == nullptr)
       std::get<std::vector<JsonValue>>(parent.value->value).push_back(std::move(*place.value));
     else
-      std::get<std::vector<JsonValue::Member>>(parent.value->value).emplace_back(place.key, std::move(*place.value));
+      std::get<std::vector<JsonValue::Member>>(parent.value->value).push_back({place.key, std::move(*place.value)});
   }
 
   void begin_struct() override {
