@@ -154,4 +154,7 @@ TEST_CASE("a store refuses what it cannot use") {
   auto twice = contenders();
   twice.push_back(twice[0]);
   CHECK_THROWS_AS(run_benchmark(merging_set(1), twice, store), ParameterError);
+  auto still = merging_set(1);
+  still.time_step = 0.0;
+  CHECK_THROWS_AS(run_benchmark(still, contenders(), store), ParameterError);
 }

@@ -14,6 +14,7 @@
 #include "cambium/benchmark/contender.hpp"
 #include "cambium/benchmark/result_store.hpp"
 #include "cambium/benchmark/run_on_threads.hpp"
+#include "cambium/core/parameters.hpp"
 #include "cambium/scenario/scenario_set.hpp"
 
 namespace cambium {
@@ -38,6 +39,7 @@ std::size_t run_benchmark(ScenarioSet<World> const& set, std::vector<Contender<W
     ResultKey key;
     std::size_t contender;
   };
+  check_parameters(set, "benchmark");
   auto const hash = set.hash();
   store.add_set(hash, set.title, set.scenarios.size());
   std::vector<Job> jobs;
