@@ -101,11 +101,6 @@ struct Intersection {
     own.s = view.place().s;
     own.front = own.s + view.shape().front;
     own.is_large = detail::is_large(view, view.shape());
-    own.highest = own.idm.desired_speed;
-    if (rules.slow_for_bends)
-      own.highest = detail::bends_ahead(view.corridor(), own.s, own.speed, own.highest, rules.lateral_acceleration,
-                                        own.idm.comfortable_deceleration, hardest(own), dt)
-                        .highest;
     own.waited = memory.waited;
     own.patience = patience;
     own.stopped_before = &memory.stopped_before;
@@ -188,6 +183,12 @@ struct Intersection {
     auto const& conflicts = view.corridor().conflicts;
     auto const is_behind = [&](map::Conflict const& c) { return c.farthest_end < own.s; };
     auto const first = std::partition_point(conflicts.begin(), conflicts.end(), is_behind);
+    if (first == conflicts.end()) return;
+    own.highest = own.idm.desired_speed;
+    if (rules.slow_for_bends)
+      own.highest = detail::bends_ahead(view.corridor(), own.s, own.speed, own.highest, rules.lateral_acceleration,
+                                        own.idm.comfortable_deceleration, hardest(own), dt)
+                        .highest;
     auto end = first;
     for (; end != conflicts.end() && end->hold[1][1] <= own.front + own.look_ahead; ++end) {
       auto const& conflict = *end;
