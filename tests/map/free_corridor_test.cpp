@@ -93,5 +93,6 @@ TEST_CASE("points that form no way are refused") {
   CHECK_THROWS_AS(build(*map, {{0, 0}, {10, 0}}, {.width = 0.0}), cb::MapError);
   CHECK_THROWS_AS(build(*map, {{0, 0}, {10, 0}}, {.width = nan}), cb::MapError);
   CHECK_THROWS_AS(build(*map, {{0, 0}, {10, 0}}, {.view = -1.0}), cb::MapError);
+  CHECK_THROWS_AS(build(*map, {{0, 0}, {10, 0}}, {.type = cb::map::LaneType::driving}), cb::MapError);
   CHECK_NOTHROW(build(*map, {{0, 0}, {10, 0}, {0, 0}, {10, 0}}));  // back the same way
 }

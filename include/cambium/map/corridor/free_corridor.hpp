@@ -21,8 +21,8 @@ struct FreeCorridorOptions {
 /// for those on foot or on wheels who go beside the lanes and across. Its `crossings` are the drivable lanes that it
 /// crosses, whose traffic goes first; a way along a lane is one long crossing of it. Bridges count as level. Worlds
 /// take it in `AgentSpec::road`; give agents on one way the same corridor, so that they are neighbours on it. Throws
-/// `MapError` for fewer than two distinct points, numbers that are not finite, a length beyond 10 km, or a width or
-/// view that is not positive. O(length log lanes).
+/// `MapError` for fewer than two distinct points, numbers that are not finite, a length beyond 10 km, a width or
+/// view that is not positive, or a type of lane to drive on. O(length log lanes).
 [[nodiscard]] inline std::shared_ptr<RoadCorridor const> build_free_corridor(Map const& map,
                                                                              std::span<geometry::Point const> points,
                                                                              FreeCorridorOptions const& options = {}) {

@@ -106,6 +106,10 @@ class CrossingFinder {
                                                                             FreeCorridorOptions const& options) {
   if (!(options.width > 0.0 && options.width <= 1000.0 && options.view > 0.0 && options.view <= 1e4))
     throw MapError("free corridor", "its width or view is no positive number of metres", "leave them out");
+  if (is_drivable(options.type))
+    throw MapError("free corridor",
+                   "its type, " + std::string(to_string(options.type)) + ", is one of lanes to drive on",
+                   "take walking or biking, or build a road corridor");
   LaneCorridor corridor;
   auto const sharp = geometry::Line::from_points(points);
   if (!(sharp.length() <= 10'000.0))
