@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <iostream>
 #include <optional>
+#include <span>
 #include <string>
 #include <thread>
 #include <vector>
@@ -22,6 +23,8 @@
 #include "cambium/core/error.hpp"
 #include "cambium/core/write_file.hpp"
 #include "cambium/evaluation/collision.hpp"
+#include "cambium/evaluation/metrics/displacement.hpp"
+#include "cambium/evaluation/metrics/per_agent.hpp"
 #include "cambium/map/opendrive/writer.hpp"
 #include "cambium/planner/mcts/mcts.hpp"
 #include "cambium/scenario/dataset/recorded_scenario.hpp"
@@ -114,28 +117,22 @@ Outcome run(cb::RecordedTraffic const& traffic, cb::RecordingWindow const& windo
     return is_replaced(track.id) ? behavior : std::optional<Sim::Behavior>{};
   });
   auto world = recorded.make_world();
-  std::size_t entered = 0, counted = 0;
+  cb::PerAgent<cb::Displacement> displacements(std::span<cb::AgentId const>{}, {});
+  for (auto const id : set.ids)
+    if (auto way = cb::way_of(*traffic.map, traffic.track(id), recorded.begin, recorded.end)) {
+      for (auto& state : way->states) state.time -= recorded.begin;
+      displacements.add(static_cast<cb::AgentId>(id), cb::Displacement(cb::StaticTrajectory(std::move(way->states))));
+    }
+  std::size_t entered = 0;
   Outcome outcome;
-  while (world.time() + dt <= recorded.duration() + 1e-9) {
+  while (!outcome.collision && world.time() + dt <= recorded.duration() + 1e-9) {
     entered = recorded.enter(world, entered);
     (void)world.step(dt);  // who finds no way on stands
-    if (cb::AnyCollision{}(world)) {
-      outcome.collision = true;
-      break;
-    }
-    for (auto const id : set.ids) {
-      auto const slot = world.roster().slot_of(static_cast<cb::AgentId>(id));
-      auto const& track = traffic.track(id);
-      double const time = world.time() + recorded.begin;
-      if (!slot || time > track.end() || !cb::in_traffic(world, *slot)) continue;
-      auto const& s = world.frame().agents[*slot].state;
-      auto const is = cb::middle_state({s.time, s.x, s.y, s.heading, s.speed}, world.roster().agents[*slot].shape);
-      auto const was = track.at(time);
-      outcome.displacement += std::hypot(is.x - was.x, is.y - was.y);
-      ++counted;
-    }
+    outcome.collision = cb::AnyCollision{}(world);
+    displacements.observe(world, dt);
   }
-  if (counted > 0) outcome.displacement /= static_cast<double>(counted);
+  for (auto const& [id, displacement] : displacements.each())
+    outcome.displacement += displacement.mean() / static_cast<double>(displacements.each().size());
   return outcome;
 }
 

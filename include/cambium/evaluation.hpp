@@ -7,6 +7,7 @@
 #include "cambium/evaluation/metrics/closed_loop_score.hpp"
 #include "cambium/evaluation/metrics/displacement.hpp"
 #include "cambium/evaluation/metrics/over_time.hpp"
+#include "cambium/evaluation/metrics/per_agent.hpp"
 #include "cambium/evaluation/metrics/post_encroachment_time.hpp"
 #include "cambium/evaluation/metrics/rss_compliance.hpp"
 #include "cambium/evaluation/off_road.hpp"

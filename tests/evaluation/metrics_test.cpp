@@ -1,8 +1,10 @@
 #include <cambium/evaluation/metrics/closed_loop_score.hpp>
 #include <cambium/evaluation/metrics/displacement.hpp>
 #include <cambium/evaluation/metrics/over_time.hpp>
+#include <cambium/evaluation/metrics/per_agent.hpp>
 #include <cambium/evaluation/metrics/post_encroachment_time.hpp>
 #include <cambium/evaluation/metrics/rss_compliance.hpp>
+#include <cambium/evaluation/rules/safe_distance.hpp>
 #include <cambium/cambium.hpp>
 #include <cambium/map/opendrive.hpp>
 #include <doctest/doctest.h>
@@ -65,6 +67,49 @@ TEST_CASE("folds agree with the values of each step") {
   CHECK(observed(world, AgentId{2}, Integral<Gap>{}, 80).value() == doctest::Approx(sum * 0.1));
   CHECK(braked > 0.0);
   CHECK(observed(world, AgentId{2}, Times<HardBraking>(HardBraking{2.0}), 80).value() == braked);
+}
+
+TEST_CASE("a metric of each agent: of all, of those given, of those that come and leave") {
+  auto world = following(30.0, 8.0, 15.0, IdmClassic{});
+  AgentId const second[] = {AgentId{2}};
+  PerAgent<Least<Gap>> all;
+  PerAgent<Least<Gap>> one(second, Least<Gap>{});
+  auto const watch = [&](int steps, double dt) {
+    for (int i = 0; i < steps; ++i) {
+      if (dt > 0.0) REQUIRE(world.step(dt));
+      all.observe(world, dt);
+      one.observe(world, dt);
+    }
+  };
+  watch(1, 0.0);
+  watch(10, 0.1);
+  world.add({.position = {60, -1.75}, .speed = 15.0, .behavior = IdmClassic{}, .id = AgentId{3}});
+  watch(10, 0.1);
+  double const before = all.each().at(AgentId{2}).value();
+  world.remove(AgentId{1});  // slots move up
+  watch(60, 0.1);
+
+  CHECK(all.each().size() == 3);
+  REQUIRE(one.each().size() == 1);
+  CHECK(one.each().at(AgentId{2}).value() == before);  // nobody is ahead of it any more
+  CHECK(all.each().at(AgentId{1}).value() == Gap{}.farthest);
+  CHECK(all.each().at(AgentId{2}).value() == before);
+  CHECK(before < 30.0);
+  double const third = all.each().at(AgentId{3}).value();
+  CHECK(third < Gap{}.farthest);
+  CHECK(third != before);
+}
+
+TEST_CASE("how often an agent came too close: the static and the dynamic safe distance") {
+  auto const close = following(1.2, 8.0, 8.0, ConstantAcceleration{});
+  auto const apart = following(7.0, 8.0, 8.0, ConstantAcceleration{});
+  AgentId const id{2};
+  Times<Collision> const within(Collision{.margin = 1.5});
+  CHECK(observed(close, id, within, 10).value() == 1.0);
+  CHECK(observed(apart, id, within, 10).value() == 0.0);
+  Least<SafeDistance> const keeps(SafeDistance{.reaction_time = 1.0});
+  CHECK(observed(apart, id, keeps, 10).value() == 0.0);
+  CHECK(observed(following(9.0, 8.0, 8.0, ConstantAcceleration{}), id, keeps, 10).value() == 1.0);
 }
 
 TEST_CASE("post-encroachment time is the time between two vehicles at a crossing") {
