@@ -1,13 +1,7 @@
-#include "cambium/planner/mcts/mcts.hpp"
-
-#include "traffic.hpp"
+#include "search.hpp"
 
 benchmark::Contender benchmark::mcts_cooperative() {
-  using Planner =
-      cb::Mcts<Prediction<cb::MacroActions, cb::IdmClassic>, cb::MacroActions, cb::TrafficReward, cb::IdmClassic>;
-  Planner planner;
-  planner.options.budget.iterations = 150;
-  planner.reward.speed_deviation = -1.0;  // else nothing moves it before the goal is near
+  auto planner = search<cb::Intersection>();
   planner.most_agents = 4;
-  return with_speed(planner, "mcts_cooperative", [](Planner& own, double speed) { own.reward.desired_speed = speed; });
+  return with_speed(planner, "mcts_cooperative");
 }

@@ -1,12 +1,5 @@
-#include "cambium/planner/mcts/mcts.hpp"
-
-#include "traffic.hpp"
+#include "search.hpp"
 
 benchmark::Contender benchmark::mcts_single_agent() {
-  using Planner =
-      cb::Mcts<Prediction<cb::MacroActions, cb::IdmClassic>, cb::MacroActions, cb::TrafficReward, cb::IdmClassic>;
-  Planner planner;
-  planner.options.budget.iterations = 150;
-  planner.reward.speed_deviation = -1.0;  // else nothing moves it before the goal is near
-  return with_speed(planner, "mcts_single_agent", [](Planner& own, double speed) { own.reward.desired_speed = speed; });
+  return with_speed(search<cb::Intersection>(), "mcts_single_agent");
 }

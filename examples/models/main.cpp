@@ -47,6 +47,7 @@ std::vector<Model> behaviors() {
           model<cb::MotionPrimitives>("MotionPrimitives"),
           model<cb::MacroActions>("MacroActions"),
           model<cb::RandomMacroActions>("RandomMacroActions"),
+          model<cb::DriverActions<cb::Intersection>>("DriverActions<Driver>"),
           model<cb::IdmHypotheses>("IdmHypotheses"),
           model<cb::IdmProposal>("IdmProposal")};
 }

@@ -43,6 +43,7 @@
 #include "cambium/behavior/junction/conflict_order.hpp"
 #include "cambium/behavior/junction/intersection.hpp"
 #include "cambium/behavior/lane_change/corridor_filters.hpp"
+#include "cambium/behavior/lane_change/driver_actions.hpp"
 #include "cambium/behavior/lane_change/idm_proposal.hpp"
 #include "cambium/behavior/lane_change/lane_change.hpp"
 #include "cambium/behavior/lane_change/lane_change_rule_based.hpp"

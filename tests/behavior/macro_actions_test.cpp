@@ -1,3 +1,4 @@
+#include "cambium/behavior/lane_change/driver_actions.hpp"
 #include "cambium/behavior/lane_change/macro_actions.hpp"
 
 #include <doctest/doctest.h>
@@ -354,4 +355,49 @@ TEST_CASE("an action that keeps the gap is no faster than car following permits,
   CHECK(speed_after(3, -1.75) < 9.0);
   CHECK(speed_after(4, -1.75) == doctest::Approx(11.0));
   CHECK_FALSE(Action{Kind::stay, 1.0} == Action{Kind::stay, 1.0, true});
+}
+
+TEST_CASE("driver actions: its driver's plan, unless a macro action is chosen or a change is under way") {
+  using Junction = cb::DriverActions<cb::Intersection>;
+  using Crossing = Traffic<Junction, cb::Intersection>;
+  auto const crossing = [](Crossing::Behavior const& own) {
+    Crossing world(own_map("intersection_4way.xodr"));
+    auto const routed = [&](double x, double y, double heading, cb::AgentId id, Crossing::Behavior const& behavior) {
+      world.add({.position = {x, y}, .heading = heading, .speed = 8.0, .behavior = behavior, .id = id});
+    };
+    routed(-40.0, -1.75, 0.0, cb::AgentId{1}, own);
+    routed(1.75, -38.0, M_PI / 2, cb::AgentId{2}, cb::Intersection{});
+    return world;
+  };
+  cb::Intersection const driver{.idm = {.desired_speed = 9.0}};
+  auto own = crossing(Junction{.driver = driver}), alike = crossing(driver);
+  double slowest = 8.0;
+  for (int i = 0; i < 60; ++i) {
+    REQUIRE(own.step(0.2));
+    REQUIRE(alike.step(0.2));
+    CHECK(own.state(cb::AgentId{1}) == alike.state(cb::AgentId{1}));
+    CHECK(own.state(cb::AgentId{2}) == alike.state(cb::AgentId{2}));
+    slowest = std::min(slowest, own.state(cb::AgentId{1}).speed);
+  }
+  CHECK(slowest < 6.0);  // it gives way to the right
+
+  // The same macro actions, in the same order, as `MacroActions` carries them out.
+  using Road = Traffic<Junction, cb::MacroActions>;
+  Road mixed(straight_road(3, 2000.0)), plain(straight_road(3, 2000.0));
+  auto const left = number_of(Kind::change_left);
+  auto const one = mixed.add({.position = {100, -5.25}, .speed = 10, .behavior = Junction{}});
+  auto const two = plain.add({.position = {100, -5.25}, .speed = 10, .behavior = cb::MacroActions{}});
+  mixed.memory<Junction>(one).choose(left);
+  plain.memory<cb::MacroActions>(two).choose(left);
+  REQUIRE(mixed.step(0.2));
+  REQUIRE(plain.step(0.2));
+  mixed.memory<Junction>(one).choose(Junction::drive);  // in the middle of the change
+  plain.memory<cb::MacroActions>(two).choose(number_of(Kind::keep_gap));
+  for (int i = 0; i < 30 && plain.memory<cb::MacroActions>(two).change.active(); ++i) {
+    CHECK(mixed.state(one) == plain.state(two));
+    REQUIRE(mixed.step(0.2));
+    REQUIRE(plain.step(0.2));
+  }
+  CHECK(mixed.state(one) == plain.state(two));
+  CHECK(mixed.state(one).y == doctest::Approx(-1.75).epsilon(0.05));
 }

@@ -17,6 +17,7 @@
 #include "cambium/map/corridor/build_corridor.hpp"
 #include "cambium/map/routing/route.hpp"
 #include "cambium/observer/parametric.hpp"
+#include "cambium/scenario/highway_site.hpp"
 
 using namespace fixtures;
 
@@ -144,6 +145,31 @@ TEST_CASE("speed counts as excess above the limit of the lane, and never without
   CHECK(cb::SpeedLimitExcess{}(world, fast) == doctest::Approx(2.5));
   Sim free(straight_road(1, 300));
   CHECK(cb::SpeedLimitExcess{}(free, free.slot_of(free.add({.position = {30, -1.75}, .speed = 90.0}))) == 0.0);
+}
+
+TEST_CASE("a lane change grows urgent towards the end of a lane, and in a lane that does not lead to the goal") {
+  Sim world(support::own_map("lane_drop.xodr"));
+  auto const ends = [&](double x, double y) { return world.slot_of(world.add({.position = {x, y}, .speed = 10.0})); };
+  auto const right = world.map().nearest_lane({20.0, -5.25, 0.0});
+  double const end = world.map().lane(right->lane).length();
+  auto const near = ends(end - 30.0, -5.25), far = ends(20.0, -5.25), stays = ends(20.0, -1.75);
+  CHECK(cb::LaneChangeUrgency{}(world, stays) == 0.0);
+  CHECK(cb::LaneChangeUrgency{}(world, near) > cb::LaneChangeUrgency{}(world, far));
+  CHECK(cb::LaneChangeUrgency{}(world, near) == doctest::Approx(0.9).epsilon(0.01));
+  CHECK(cb::LaneChangeUrgency{.horizon = 60.0}(world, near) == doctest::Approx(0.5).epsilon(0.01));
+
+  auto const map = support::own_map("highway_exit.xodr");
+  auto const site = cb::find_highway_site(map);
+  Sim motorway(map);
+  auto const& begin = map->lane(site.lanes.front()).path;
+  auto const pose = begin.pose(50.0);
+  cb::Slot const inner = motorway.slot_of(motorway.add({.position = pose.position(),
+                                                        .heading = pose.heading,
+                                                        .speed = 20.0,
+                                                        .goal = cb::ReachLane{site.exits.front()}}));
+  double const first = cb::LaneChangeUrgency{}(motorway, inner);
+  for (int i = 0; i < 40; ++i) REQUIRE(motorway.step(0.2));
+  CHECK(cb::LaneChangeUrgency{}(motorway, inner) > first);
 }
 
 TEST_CASE("a vehicle is past its junctions when its rear is, or when it has left traffic") {

@@ -13,6 +13,9 @@
 
 #include "cambium/behavior/following/constant_acceleration.hpp"
 #include "cambium/behavior/following/idm_classic.hpp"
+#include "cambium/behavior/junction/intersection.hpp"
+#include "cambium/behavior/lane_change/driver_actions.hpp"
+#include "cambium/behavior/lane_change/mobil.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/evaluation/driving.hpp"
@@ -24,6 +27,8 @@
 #include "cambium/planner/mcts/mcts.hpp"
 #include "cambium/planner/policy/policy_tree_planner.hpp"
 #include "cambium/planner/policy/proposal_planner.hpp"
+#include "cambium/scenario/highway_site.hpp"
+#include "cambium/scenario/junction_site.hpp"
 #include "cambium/scenario/merging_site.hpp"
 #include "cambium/world/world.hpp"
 #include "support/maps.hpp"
@@ -207,4 +212,94 @@ TEST_CASE_TEMPLATE("it passes a slower leader, or follows it", Planner, STEADY_P
     passed += ahead > 20.0;
   }
   CHECK((passed > 0) == changes_lanes<Planner>);
+}
+
+namespace {
+
+/// A search that may drive by the rules at junctions, and expects the others to.
+using Actions = DriverActions<Intersection>;
+using Ruled = World<BehaviorSet<Actions, Intersection>, InterpolateExecution, SingleTrack>;
+using RuledSearch = Mcts<Ruled, Actions, Reward<LaneChangeUrgency>, Intersection>;
+
+RuledSearch ruled_search() {
+  RuledSearch planner;
+  planner.options.budget.iterations = 100;
+  planner.options.rollout.hold = 5;
+  planner.options.selection.exploration = 0.2;
+  planner.reward.traffic.speed_deviation = -1.0;
+  planner.reward.term<LaneChangeUrgency>() = {.weight = -40.0, .per_second = true};
+  return planner;
+}
+
+/// Runs scenarios until the ego is at its goal, or the end of its route; checks that it causes no collision.
+/// `is_asked`: which scenarios are run. Returns how many egos arrived.
+template <class Planner, class Sample, class MakeEgo>
+int arrivals(int wanted, Sample const& sample, MakeEgo const& make_ego) {
+  int arrived = 0;
+  for (std::uint32_t number = 0, run = 0; run < static_cast<std::uint32_t>(wanted); ++number) {
+    CAPTURE(number);
+    auto const drawn = sample(number);
+    using Drawn = std::remove_cvref_t<decltype(drawn.agents.front().behavior.given())>;
+    using Driver = std::variant_alternative_t<0, Drawn>;
+    using Sim = World<BehaviorSet<Planner, Driver>, InterpolateExecution, SingleTrack>;
+    auto scenario =
+        with_behaviors<Sim>(drawn, [](auto const& spec) { return std::get<Driver>(spec.behavior.given()); });
+    auto const ego = std::ranges::find(scenario.agents, scenario.ego, [](auto const& s) { return *s.id.given(); });
+    if (!make_ego(*ego)) continue;
+    ++run;
+    auto world = scenario.make_world();
+    auto const slot = world.slot_of(scenario.ego);
+    bool const has_goal = !std::holds_alternative<NoGoal>(world.roster().goals[slot]);
+    while (world.time() < 90.0 && world.status(scenario.ego) == AgentStatus::driving && !world.reached_goal(slot)) {
+      REQUIRE(world.step(0.2));
+      REQUIRE_FALSE(AtFaultCollision{}(world, slot));
+    }
+    bool const left =
+        world.status(scenario.ego) == AgentStatus::arrived || world.status(scenario.ego) == AgentStatus::left_map;
+    arrived += has_goal ? world.reached_goal(slot) : left;
+  }
+  return arrived;
+}
+
+}  // namespace
+
+TEST_CASE_TEMPLATE("it gets through traffic to its exit", Planner, RuledSearch, Frenet) {
+  auto const site = find_highway_site(support::own_map("highway_exit.xodr"));
+  auto const count = static_cast<int>(runs(8));
+  int const arrived = arrivals<Planner>(
+      count, [&](std::uint32_t number) { return site.sample(3, number); },
+      [](auto& ego) {
+        if (std::holds_alternative<NoGoal>(ego.goal.given())) return false;
+        double const speed = std::get<Mobil>(ego.behavior.given()).idm.desired_speed;
+        if constexpr (std::is_same_v<Planner, Frenet>) {
+          Planner planner;
+          planner.desired_speed = speed;
+          ego.behavior = planner;
+        } else {
+          auto planner = ruled_search();
+          planner.reward.traffic.desired_speed = planner.actions.driver.idm.desired_speed =
+              planner.actions.macro.idm.desired_speed = speed;
+          ego.behavior = planner;
+        }
+        return true;
+      });
+  CHECK(arrived >= count - count / 8);
+}
+
+TEST_CASE("a search that may drive by the rules of junctions gets through them, without a collision of its own") {
+  for (auto const* const name : {"intersection_4way.xodr", "roundabout.xodr"}) {
+    CAPTURE(name);
+    auto const site = find_junction_site(support::own_map(name));
+    auto const count = static_cast<int>(runs(4));
+    int const arrived = arrivals<RuledSearch>(
+        count, [&](std::uint32_t number) { return site.sample(3, number); },
+        [](auto& ego) {
+          auto planner = ruled_search();
+          planner.reward.traffic.desired_speed = planner.actions.driver.idm.desired_speed =
+              planner.actions.macro.idm.desired_speed = 10.0;
+          ego.behavior = planner;
+          return true;
+        });
+    CHECK(arrived == count);
+  }
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "cambium/behavior/law/lane_ends.hpp"
 #include "cambium/behavior/view.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/core/parameters.hpp"
@@ -108,6 +109,26 @@ struct LaneOffset {
   template <class World>
   [[nodiscard]] double operator()(World const& world, Slot slot) const {
     return std::abs(world.frame().agents[slot].lane.lateral);
+  }
+};
+
+/// How urgent a lane change is for the agent, because its lane ends or does not lead to its goal: 0 if it may stay, and
+/// growing to 1 over the last `horizon` [m] for each lane to cross (see `lane_urgency`). As a term with a negative
+/// weight, it draws a planner into the lane of its exit long before the end of its prediction.
+struct LaneChangeUrgency {
+  double horizon = 300.0;
+
+  static constexpr char const* name = "lane_change_urgency";
+  static constexpr char const* summary = "how urgent a lane change is: 0 to 1";
+  static constexpr auto parameters() {
+    return parameter_list(parameter("horizon", &LaneChangeUrgency::horizon, "m", Range{1, 10'000},
+                                    "length for each lane to cross over which the urgency grows"));
+  }
+
+  template <class World>
+  [[nodiscard]] double operator()(World& world, Slot slot) const {
+    auto const urgency = lane_urgency(world.truth(slot), horizon);
+    return std::max({0.0, urgency.left, urgency.right});
   }
 };
 

@@ -136,6 +136,13 @@ struct MacroActions {
 
   [[nodiscard]] std::size_t size() const { return actions.size(); }
 
+  /// The number of the first `keep_gap`, or `nothing` without one.
+  [[nodiscard]] std::uint8_t keeping_gap() const {
+    for (std::size_t i = 0; i < size(); ++i)
+      if (actions[i].kind == Kind::keep_gap) return static_cast<std::uint8_t>(i);
+    return nothing;
+  }
+
   /// Whether action `number` could begin now, with `change` in progress. A change needs a sufficiently long lane of the
   /// road on that side; a change back can always begin. O(1).
   template <class View>

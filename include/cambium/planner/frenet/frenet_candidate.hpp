@@ -20,6 +20,7 @@ struct FrenetCosts {
   double speed = 1.0;
   double lateral = 1.0;
   double route = 40.0;
+  double route_urgency = 20.0;
 
   static constexpr char const* name = "frenet_costs";
   static constexpr char const* summary =
@@ -36,7 +37,9 @@ struct FrenetCosts {
         parameter("lateral", &P::lateral, "-", non_negative,
                   "weight of the lateral motion relative to the longitudinal one"),
         parameter("route", &P::route, "-", non_negative,
-                  "cost of each lane change still needed to reach the destination"));
+                  "cost of each lane change still needed to reach the destination"),
+        parameter("route_urgency", &P::route_urgency, "-", non_negative,
+                  "how often that cost is added again at the end of the lane"));
   }
 };
 

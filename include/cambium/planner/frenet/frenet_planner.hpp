@@ -91,6 +91,9 @@ struct FrenetPlanner {
   double horizon = 5.0;
   double step = 0.2;
   double low_speed = 4.0;
+  double route_horizon = 300.0;
+  double room_to_change = 25.0;
+  double comfortable_deceleration = 2.0;
   Budget budget{};
   Own terms{};
 
@@ -117,6 +120,12 @@ struct FrenetPlanner {
         parameter("step", &P::step, "s", Range{0.01, 2}, "time between two checks"),
         parameter("low_speed", &P::low_speed, "m/s", Range{0.1, 50},
                   "below this speed, offsets depend on the distance driven"),
+        parameter("route_horizon", &P::route_horizon, "m", Range{1, 10'000},
+                  "length for each lane change still needed over which its cost grows"),
+        parameter("room_to_change", &P::room_to_change, "m", Range{0, 1000},
+                  "kept for each lane change still needed where it must stop before the end of a lane"),
+        parameter("comfortable_deceleration", &P::comfortable_deceleration, "m/s^2", Range{0.1, 20},
+                  "with which it comes to the end of a lane"),
         parameter("budget", &P::budget, "-", {}, "how many courses are checked, the cheapest first"),
         parameter("terms", &P::terms, "-", {}, "evaluators whose sum over a course is deducted from its cost"));
   }
@@ -236,10 +245,20 @@ struct FrenetPlanner {
     CourseMotion<double> const now{at.heading_error, static_cast<double>(memory.curvature),
                                    std::max(0.0, view.state().speed), static_cast<double>(memory.acceleration)};
     auto const start = frenet_motion(now, at.s, at.lateral, {corridor.center.segments()[at.segment].curvature, 0.0});
+    int const lanes = view.has_goal() ? lanes_to_destination(view.road(), number, at.piece) : 0;
+    double const end = lane_end(view, number, at.piece);
+    double const closeness = lanes > 0 ? std::clamp(1.0 - (end - at.s) / (lanes * route_horizon), 0.0, 1.0) : 0.0;
+    double const route = costs.route * lanes * (1.0 + costs.route_urgency * closeness);
     double const wanted = std::min(desired_speed, corridor.speed_limit_at(at.s));
-    double const route = view.has_goal() ? costs.route * lanes_to_destination(view.road(), number, at.piece) : 0.0;
+    double fastest = wanted;
+    auto stop = std::numeric_limits<double>::infinity();
+    if (std::isfinite(end) && is_dead_end(corridor, end)) {
+      stop = end - view.shape().front - minimum_gap - lanes * room_to_change;
+      if (!corridor.reaches_destination)
+        fastest = std::min(wanted, std::sqrt(2.0 * comfortable_deceleration * std::max(0.0, stop - at.s)));
+    }
     for (double const duration : durations) {
-      set_targets(view, number, at, wanted, duration, workspace);
+      set_targets(view, number, at, fastest, stop, duration, workspace);
       for (auto const& target : workspace.targets)
         for (double const offset : offsets) {
           auto& c = workspace.candidates.emplace_back(
@@ -250,21 +269,18 @@ struct FrenetPlanner {
     }
   }
 
-  /// Sets the targets of courses of `duration` [s]: the speeds, a place behind the leader, a stop before the lane's
-  /// end.
+  /// Sets the targets of courses of `duration` [s]: speeds up to `fastest` [m/s], a place behind the leader, and `stop`
+  /// [m] if it is finite.
   template <class View>
-  void set_targets(View const& view, CorridorId number, map::LanePlace const& at, double wanted, double duration,
-                   Workspace& workspace) const {
+  void set_targets(View const& view, CorridorId number, map::LanePlace const& at, double fastest, double stop,
+                   double duration, Workspace& workspace) const {
     auto& targets = workspace.targets;
     targets.clear();
     for (double const share : speed_shares)
-      targets.push_back({std::numeric_limits<double>::infinity(), share * wanted});
+      targets.push_back({std::numeric_limits<double>::infinity(), share * fastest});
     if (auto const leader = view.ahead(view.place(number)))
       targets.push_back(behind(workspace.others, *leader, at.s, duration));
-    auto const& corridor = view.road().corridors[number];
-    double const end = lane_end(view, number, at.piece);
-    if (is_dead_end(corridor, end) && std::isfinite(end))
-      targets.push_back({end - view.shape().front - minimum_gap, 0.0});
+    if (std::isfinite(stop)) targets.push_back({stop, 0.0});
   }
 
   /// The place and speed at which ego follows `leader` with the desired gap, `time` [s] from now.

@@ -6,6 +6,7 @@
 #include <span>
 #include <string>
 
+#include "cambium/behavior/lane_change/driver_actions.hpp"
 #include "cambium/behavior/lane_change/macro_actions.hpp"
 #include "cambium/behavior/open_loop/external_input.hpp"
 #include "cambium/behavior/open_loop/motion_primitives.hpp"
@@ -86,17 +87,39 @@ struct ActionSet<MacroActions> {
   static bool goes_on_alike(MacroActions::Memory const& a, MacroActions::Memory const& b) {
     return a.change.target == b.change.target;
   }
-  /// `keep_gap` if it is in the list, else `MacroActions::nothing`: keep lane and speed.
-  static Choice usual(MacroActions const& actions) {
-    for (std::size_t i = 0; i < actions.size(); ++i)
-      if (actions.actions[i].kind == MacroAction::Kind::keep_gap) return static_cast<Choice>(i);
-    return MacroActions::nothing;
-  }
+  static Choice usual(MacroActions const& actions) { return actions.keeping_gap(); }
   static std::string text(MacroActions const& actions, Choice choice) {
     auto const& action = actions.actions[choice];
     std::string result = to_string(action.kind);
     if (action.kind != MacroAction::Kind::keep_gap) result += " " + detail::rounded_text(action.acceleration);
     return result;
+  }
+};
+
+template <class Driver>
+struct ActionSet<DriverActions<Driver>> {
+  using Behavior = DriverActions<Driver>;
+  using Memory = typename Behavior::Memory;
+  using Macro = ActionSet<MacroActions>;
+  using Choice = Macro::Choice;
+  static constexpr std::size_t capacity = Macro::capacity + 1;
+
+  static Behavior const& behavior(Behavior const& actions) { return actions; }
+  template <class View>
+  static std::size_t list(Behavior const& actions, View const& view, Memory const& memory, std::span<Choice> out) {
+    out[0] = Behavior::drive;
+    return 1 + Macro::list(actions.macro, view, memory.macro, out.subspan(1));
+  }
+  static void set(Memory& memory, Choice choice) { memory.choose(choice); }
+  /// To drive counts as `keep_gap`.
+  static MacroAction action(Behavior const& actions, Choice choice) {
+    if (choice == Behavior::drive) return {MacroAction::Kind::keep_gap};
+    return Macro::action(actions.macro, choice);
+  }
+  static bool goes_on_alike(Memory const& a, Memory const& b) { return Macro::goes_on_alike(a.macro, b.macro); }
+  static Choice usual(Behavior const&) { return Behavior::drive; }
+  static std::string text(Behavior const& actions, Choice choice) {
+    return choice == Behavior::drive ? "drive" : Macro::text(actions.macro, choice);
   }
 };
 
