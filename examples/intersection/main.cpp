@@ -35,7 +35,8 @@ struct Task {
   }
 };
 
-void run(examples::Settings const& settings, cambium::JunctionTraffic const& traffic) {
+void run(examples::Settings& settings, cambium::JunctionTraffic traffic) {
+  settings.parameters.take(traffic);
   Task const task{cambium::find_junction_site(examples::load_map(settings.map_file), settings.map_file), traffic};
   if (traffic.lights && task.site.map->lights().empty())
     throw cambium::MapError(settings.map_file, "this map has no traffic lights",

@@ -7,7 +7,7 @@
 
 namespace {
 
-void run(examples::Settings const& settings, double non_yielding, bool waits) {
+void run(examples::Settings& settings, double non_yielding, bool waits) {
   merging::Task task{merging::find_site(settings, "merging")};
   task.site.non_yielding_share = non_yielding;
   task.site.ramp_waits = waits;

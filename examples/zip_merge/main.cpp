@@ -8,7 +8,7 @@
 
 namespace {
 
-void run(examples::Settings const& settings) {
+void run(examples::Settings& settings) {
   zip_merge::Task const task{merging::find_site(settings, "zip_merge")};
   examples::sample_and_report(
       task, settings,
