@@ -59,7 +59,7 @@ int main(int argc, char** argv) {
   auto const add_share = [&](char const* option, double& share, char const* text) {
     program.add_option(option, share, text)->type_name("SHARE")->check(CLI::Range(0.0, 1.0))->capture_default_str();
   };
-  add_share("--trucks", traffic.truck_share, "share of trucks, on routes whose bends they can drive");
-  add_share("--bicycles", traffic.bicycle_share, "share of bicycles");
+  add_share("--trucks", traffic.mix.truck_share, "share of trucks, on routes whose bends they can drive");
+  add_share("--bicycles", traffic.mix.bicycle_share, "share of bicycles");
   return examples::run_program(program, argc, argv, [&] { run(settings, traffic); });
 }
