@@ -136,7 +136,9 @@ inline Sim::Behavior planner(Cell const& cell) {
   return cell.is_paper ? made(paper_planner()) : made(own_planner());
 }
 
-/// Fills a lane with vehicles from `begin` to `end` [m]: gaps of 20 to 30 m, speeds of 11 to 17 m/s.
+/// Fills a lane with vehicles from `begin` to `end` [m]: gaps of 20 to 30 m, speeds of 11 to 17 m/s. This is the
+/// procedure of the paper, from the rear to the front; a recipe's flow (examples/benchmark/sets/lane_change) draws from
+/// the front to the rear.
 inline void fill_lane(cb::Scenario<Sim>& scenario, double begin, double end, double y, Cell const& cell,
                       cb::RandomStream& random) {
   auto other = driver(cell);
