@@ -193,7 +193,10 @@ TEST_CASE("what a flow cannot do is an error that says where and what to do") {
   auto const from = highway_lane(-2);
   CHECK(refusal("highway.xodr", {Flow{.from = from}}) == "accepted");
   CHECK(refusal("highway.xodr", {Flow{.from = highway_lane(-4)}}) ==
-        "recipe.flows[0].from: nobody drives in this lane; examples/run map FILE lists the lanes");
+        "recipe.flows[0].from: there is no such lane for vehicles; examples/run map FILE lists the lanes");
+  CHECK(refusal("highway.xodr", {Flow{.from = LaneId{77}}}).find("there is no such lane") != std::string::npos);
+  CHECK(refusal("highway.xodr", {Flow{.from = from, .drivers = {Driver{.share = 0.0, .behavior = Mobil{}}}}}) ==
+        "recipe.flows[0]: has only drivers whose share is 0; give one of them a share");
   auto const exit = support::own_map("highway_exit.xodr");
   CHECK(refusal("highway_exit.xodr",
                 {Flow{.from = exit->find_lane("2", 200.0, -1), .to = exit->find_lane("1", 10.0, -1)}}) ==

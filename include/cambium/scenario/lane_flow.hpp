@@ -127,8 +127,9 @@ struct FlowPlan {
 [[nodiscard]] inline std::vector<LaneId> lanes_of(Map const& map, LaneId lane,
                                                   std::optional<geometry::Point> const& point, char const* name,
                                                   std::string const& where) {
-  if (!point && is_valid(lane) && !map.lane(lane).drivable())
-    throw ParameterError(where + "." + name, "nobody drives in this lane", "examples/run map FILE lists the lanes");
+  if (!point && is_valid(lane) && (index_of(lane) >= map.lanes().size() || !map.lane(lane).drivable()))
+    throw ParameterError(where + "." + name, "there is no such lane for vehicles",
+                         "examples/run map FILE lists the lanes");
   if (!point) return is_valid(lane) ? std::vector{lane} : std::vector<LaneId>{};
   if (is_valid(lane))
     throw ParameterError(where, std::string("has both ") + name + " and " + name + "_point", "leave out one of them");
@@ -205,6 +206,9 @@ template <class World>
     if (flow.drivers.empty() && !World::Behaviors::template contains<IdmClassic>)
       throw ParameterError(plan.where, "has no drivers, and the program's BehaviorSet no IdmClassic",
                            "give \"drivers\"");
+    auto const has_share = [](DriverShare<World> const& driver) { return driver.share > 0.0; };
+    if (!flow.drivers.empty() && std::none_of(flow.drivers.begin(), flow.drivers.end(), has_share))
+      throw ParameterError(plan.where, "has only drivers whose share is 0", "give one of them a share");
     check_drawn(flow, plan.where);
     plan_way(map, plan);
     auto& traffic = plan.flow.traffic;

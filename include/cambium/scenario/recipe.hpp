@@ -94,6 +94,7 @@ template <class World>
   };
   switch (recipe.kind) {
     case Kind::lanes: {
+      check_parameters(recipe.room, where);
       auto const plans = detail::plan_flows(map, recipe.flows, where);
       each([&](std::uint32_t number) {
         return detail::draw_flows(map, plans, recipe.room, recipe.seed, number, where);
