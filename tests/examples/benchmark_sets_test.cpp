@@ -8,12 +8,13 @@
 
 #include "program.hpp"
 
-TEST_CASE("the lane change experiment is a set: a driver who changes lanes succeeds, one who keeps his lane does not") {
+TEST_CASE(
+    "the lane change experiment is a set: a planner that changes lanes succeeds, a driver who keeps his does not") {
   program::Program const program("benchmark");
   if (!program.is_there()) return;
   browser::TemporaryFolder const folder;
   auto const file = [&](char const* name) { return (folder.path() / name).string(); };
-  auto const run = program.run({"--set", "lane_change", "--behaviors", "idm,mobil", "--scenarios", "40", "--db",
+  auto const run = program.run({"--set", "lane_change", "--behaviors", "idm,frenet", "--scenarios", "40", "--db",
                                 file("lane_change.db"), "--json", file("rows.json")});
   CHECK(run.code == 0);
   CHECK(run.err.empty());
