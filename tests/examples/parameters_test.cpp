@@ -29,10 +29,11 @@ TEST_CASE("sampled examples: printed parameters read back as the same results, c
   struct Case {
     std::string name, change;
   };
-  for (auto const& [name, change] : {Case{"merging", R"({"idm_classic": {"time_headway": 3}})"},
-                                     Case{"zip_merge", R"({"format": 1, "zip_merge": {"idm": {"time_headway": 3}}})"},
-                                     Case{"highway", R"({"mobil": {"idm": {"desired_speed": 18}}})"},
-                                     Case{"intersection", R"({"junction_traffic": {"most_vehicles": 5}})"}}) {
+  for (auto const& example : {Case{"merging", R"({"idm_classic": {"time_headway": 3}})"},
+                              Case{"zip_merge", R"({"format": 1, "zip_merge": {"idm": {"time_headway": 3}}})"},
+                              Case{"highway", R"({"mobil": {"idm": {"desired_speed": 18}}})"},
+                              Case{"intersection", R"({"junction_traffic": {"most_vehicles": 5}})"}}) {
+    auto const &name = example.name, &change = example.change;
     CAPTURE(name);
     Program const program(name);
     if (!program.is_there()) return;
@@ -110,7 +111,9 @@ TEST_CASE("ring, lane_change, replace_agents, soak and benchmark take parameters
                          R"({"mcts": {}})",
                          "is it mcts_",
                          {"--set", "merging", "--behaviors", "idm", "--scenarios", "3", "--threads", "1"}}};
-  for (auto const& [name, right, wrong, message, words] : cases) {
+  for (auto const& example : cases) {
+    auto const &name = example.name, &right = example.right, &wrong = example.wrong, &message = example.message;
+    auto const& words = example.words;
     CAPTURE(name);
     Program const program(name);
     if (!program.is_there()) return;
