@@ -30,6 +30,22 @@ cb::ScenarioSet<Traffic> merging(std::uint32_t scenarios) {
   return {.scenarios = cb::draw(recipe, cb::load_opendrive(file).map)};
 }
 
+/// 10 000 scenarios of 20 vehicles in two flows.
+void draw_flows(benchmark::State& state) {
+  std::string const file = CAMBIUM_SOURCE_DIR "/maps/highway.xodr";
+  auto const map = cb::load_opendrive(file).map;
+  cb::ScenarioRecipe<Traffic> recipe{.map_file = file, .scenarios = 10'000};
+  for (int const lane : {-2, -3}) {
+    cb::LaneFlow<Traffic> flow{.from = map->find_lane("1", 0.0, lane)};
+    flow.traffic = {.end = 400.0,
+                    .speed = cb::Uniform{20.0, 25.0},
+                    .desired_speed = cb::Uniform{22.0, 30.0},
+                    .headway = cb::Uniform{0.8, 1.2}};
+    recipe.flows.push_back(flow);
+  }
+  yardstick::measure_duration(state, [&] { benchmark::DoNotOptimize(cb::draw(recipe, map).size()); });
+}
+
 std::filesystem::path database() { return std::filesystem::temp_directory_path() / "cambium_benchmark_bench.db"; }
 
 void remove_database() {
@@ -84,8 +100,10 @@ void read_json(benchmark::State& state) {
 }
 
 void print_ratios(yardstick::Results const& results) {
-  yardstick::print_targets(results,
-                           {{"benchmark/rows", 1e5}, {"scenario/json_10000", 2000.0}, {"scenario/draw_10000", 2000.0}});
+  yardstick::print_targets(results, {{"benchmark/rows", 1e5},
+                                     {"scenario/json_10000", 2000.0},
+                                     {"scenario/draw_10000", 2000.0},
+                                     {"scenario/flows_10000", 2000.0}});
   if (auto const ratio = yardstick::ratio(results, "benchmark/overhead", "benchmark/bare_loop"))
     std::printf("  runner over bare loop      %12.3f   target      1.05\n", *ratio);
   if (auto const ratio = yardstick::ratio(results, "benchmark/overhead", "benchmark/threads_2"))
@@ -103,6 +121,7 @@ int main(int argc, char** argv) {
   yardstick::add("scenario/draw_10000", [](benchmark::State& state) {
     yardstick::measure_duration(state, [] { benchmark::DoNotOptimize(merging(10'000).scenarios.size()); });
   });
+  yardstick::add("scenario/flows_10000", draw_flows);
   return yardstick::run_benchmarks(argc, argv, "What the benchmark runner, its database and scenario files cost.",
                                    print_ratios);
 }

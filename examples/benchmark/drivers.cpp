@@ -17,14 +17,14 @@ double desired_speed(Spec const& ego) {
       ego.behavior.given());
 }
 
-Contender idm() {
-  return with_speed(cb::IdmClassic{}, "idm", [](auto& driver, double speed) { driver.desired_speed = speed; });
+Contender idm(examples::ParameterFile& file) {
+  return with_speed(file, cb::IdmClassic{}, "idm", [](auto& driver, double speed) { driver.desired_speed = speed; });
 }
-Contender mobil() {
-  return with_speed(cb::Mobil{}, "mobil", [](auto& driver, double speed) { driver.idm.desired_speed = speed; });
+Contender mobil(examples::ParameterFile& file) {
+  return with_speed(file, cb::Mobil{}, "mobil", [](auto& driver, double speed) { driver.idm.desired_speed = speed; });
 }
-Contender intersection() {
-  return with_speed(cb::Intersection{}, "intersection",
+Contender intersection(examples::ParameterFile& file) {
+  return with_speed(file, cb::Intersection{}, "intersection",
                     [](auto& driver, double speed) { driver.idm.desired_speed = speed; });
 }
 

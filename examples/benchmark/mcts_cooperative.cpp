@@ -1,7 +1,7 @@
 #include "search.hpp"
 
-benchmark::Contender benchmark::mcts_cooperative() {
+benchmark::Contender benchmark::mcts_cooperative(examples::ParameterFile& file) {
   auto planner = search<cb::Intersection>();
   planner.most_agents = 4;
-  return with_speed(planner, "mcts_cooperative");
+  return with_speed(file, planner, "mcts_cooperative");
 }

@@ -2,8 +2,8 @@
 
 #include "traffic.hpp"
 
-benchmark::Contender benchmark::policy_tree() {
+benchmark::Contender benchmark::policy_tree(examples::ParameterFile& file) {
   using Planner = cb::PolicyTreePlanner<Prediction<cb::MacroActions, cb::IdmClassic>>;
-  return with_speed(Planner{}, "policy_tree",
+  return with_speed(file, Planner{}, "policy_tree",
                     [](Planner& planner, double speed) { planner.actions.idm.desired_speed = speed; });
 }

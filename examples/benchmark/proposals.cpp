@@ -2,8 +2,8 @@
 
 #include "traffic.hpp"
 
-benchmark::Contender benchmark::proposals() {
+benchmark::Contender benchmark::proposals(examples::ParameterFile& file) {
   using Planner = cb::ProposalPlanner<Prediction<cb::IdmProposal, cb::ConstantAcceleration>>;
-  return with_speed(Planner{}, "proposals",
+  return with_speed(file, Planner{}, "proposals",
                     [](Planner& planner, double speed) { planner.driver.driver.desired_speed = speed; });
 }

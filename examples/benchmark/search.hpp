@@ -27,8 +27,9 @@ template <class Others>
 }
 
 template <class Others>
-[[nodiscard]] Contender with_speed(Search<Others> const& planner, std::string const& name) {
-  return with_speed(planner, name, [](Search<Others>& own, double speed) {
+[[nodiscard]] Contender with_speed(examples::ParameterFile& file, Search<Others> const& planner,
+                                   std::string const& name) {
+  return with_speed(file, planner, name, [](Search<Others>& own, double speed) {
     own.reward.traffic.desired_speed = speed;
     own.actions.driver.idm.desired_speed = own.actions.macro.idm.desired_speed = speed;
     own.actions.macro.highest_speed = 1.1 * speed;

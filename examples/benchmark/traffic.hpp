@@ -13,6 +13,8 @@
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/world/world.hpp"
 
+#include "../common/parameter_file.hpp"
+
 namespace benchmark {
 
 namespace cb = cambium;
@@ -30,9 +32,12 @@ using Prediction = Traffic::WithBehaviors<cb::BehaviorSet<Behaviors...>>;
 /// The speed that the scenario's driver of the ego likes: contenders drive in its place and have the same wish.
 [[nodiscard]] double desired_speed(Spec const& ego);
 
-/// A contender whose parameters are `planner`, but for the ego's desired speed: `set_speed(planner, speed)`.
+/// A contender whose parameters are `planner` with what the file says of `name`, but for the ego's desired speed:
+/// `set_speed(planner, speed)`.
 template <class Planner, class SetSpeed>
-[[nodiscard]] Contender with_speed(Planner const& planner, std::string const& name, SetSpeed set_speed) {
+[[nodiscard]] Contender with_speed(examples::ParameterFile& file, Planner planner, std::string const& name,
+                                   SetSpeed set_speed) {
+  file.take(planner, name);
   return cb::contender_by<Traffic>(name, cb::to_string(planner), cb::hash_parameters(planner),
                                    [planner, set_speed](Spec const& ego, cb::Scenario<Traffic> const&) {
                                      auto own = planner;
@@ -42,14 +47,14 @@ template <class Planner, class SetSpeed>
 }
 
 // The shipped behaviours, a source file each, because planners take long to compile.
-[[nodiscard]] Contender idm();
-[[nodiscard]] Contender mobil();
-[[nodiscard]] Contender intersection();
-[[nodiscard]] Contender proposals();
-[[nodiscard]] Contender policy_tree();
-[[nodiscard]] Contender frenet();
-[[nodiscard]] Contender mcts_single_agent();
-[[nodiscard]] Contender mcts_cooperative();
-[[nodiscard]] Contender mcts_hypothesis();
+[[nodiscard]] Contender idm(examples::ParameterFile& file);
+[[nodiscard]] Contender mobil(examples::ParameterFile& file);
+[[nodiscard]] Contender intersection(examples::ParameterFile& file);
+[[nodiscard]] Contender proposals(examples::ParameterFile& file);
+[[nodiscard]] Contender policy_tree(examples::ParameterFile& file);
+[[nodiscard]] Contender frenet(examples::ParameterFile& file);
+[[nodiscard]] Contender mcts_single_agent(examples::ParameterFile& file);
+[[nodiscard]] Contender mcts_cooperative(examples::ParameterFile& file);
+[[nodiscard]] Contender mcts_hypothesis(examples::ParameterFile& file);
 
 }  // namespace benchmark

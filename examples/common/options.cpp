@@ -33,6 +33,7 @@ void add_options(CLI::App& program, Settings& settings, std::string const& map_s
       ->type_name("DIR")
       ->check(not_empty())
       ->capture_default_str();
+  settings.parameters.add_options(program);
   program.footer("What it prints:\n" + explained({"", "the ego, or everybody, completed the task"}) +
                  "What it writes to trajectories.csv:\n"
                  "  a line for each vehicle and step; x and y are the centre of the rear axle, front and rear the\n"

@@ -8,9 +8,7 @@
 #include <thread>
 #include <vector>
 
-namespace CLI {
-class App;
-}
+#include "parameter_file.hpp"
 
 /// Shared code of the example programs; here the command line of those that sample scenarios.
 namespace examples {
@@ -21,6 +19,7 @@ struct Settings {
   std::uint64_t scenarios = 200, seed = 1, steps = 300, trajectories = 10;
   std::uint64_t threads = std::max(1u, std::thread::hardware_concurrency());
   std::optional<std::uint64_t> replay{};  ///< the scenario to replay; none: the most interesting one
+  ParameterFile parameters{};
 };
 
 /// An event that the scenarios count, such as "lane changes", and an optional explanation.

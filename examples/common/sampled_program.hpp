@@ -1,10 +1,12 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <iostream>
 #include <string>
+#include <variant>
 
 #include "cambium/core/error.hpp"
 #include "cambium/viewer/html_replay.hpp"
@@ -49,10 +51,40 @@ void write_replay(std::filesystem::path const& file, Task const& task, Settings 
   cambium::write_html_replay(file, recording);
 }
 
+/// A task whose drivers have the parameters that the file says.
+template <class Task>
+struct WithParameters : Task {
+  ParameterFile const* file;
+
+  [[nodiscard]] auto sample(std::uint64_t seed, std::uint32_t number) const {
+    auto scenario = Task::sample(seed, number);
+    for (auto& agent : scenario.agents) std::visit([&](auto& driver) { file->set(driver); }, agent.behavior);
+    return scenario;
+  }
+};
+
+template <class... Drivers>
+void allow_drivers(std::variant<Drivers...> const&, ParameterFile& file) {
+  (file.allow<Drivers>(), ...);
+}
+
+/// Checks the file's parameters of drivers. Prints them if that is asked for, as the first scenarios' drivers have
+/// them; returns whether.
+template <class Task>
+[[nodiscard]] bool take_parameters(WithParameters<Task> const& task, Settings& settings) {
+  allow_drivers(typename decltype(task.sample(0, 0).make_world())::Behavior{}, settings.parameters);
+  for (std::uint64_t i = 0; settings.parameters.prints() && i < std::min<std::uint64_t>(settings.scenarios, 50); ++i)
+    for (auto const& agent : task.sample(settings.seed, static_cast<std::uint32_t>(i)).agents)
+      std::visit([&](auto const& driver) { settings.parameters.show(driver); }, agent.behavior);
+  return settings.parameters.finish();
+}
+
 /// Runs all scenarios of a task (see `run_scenario`), prints the table and writes the files. A scenario that fails is
 /// reported as a `MapError`, because the map is the usual cause.
-template <class Task>
-void sample_and_report(Task const& task, Settings const& settings, Words const& words) {
+template <class Plain>
+void sample_and_report(Plain const& plain, Settings& settings, Words const& words) {
+  WithParameters<Plain> const task{plain, &settings.parameters};
+  if (take_parameters(task, settings)) return;
   std::filesystem::path const folder(settings.out);
   if (settings.replay && *settings.replay >= settings.scenarios)
     throw cambium::Error("--replay " + std::to_string(*settings.replay),

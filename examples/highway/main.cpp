@@ -60,7 +60,7 @@ struct Task {
   [[nodiscard]] examples::Facts facts() const { return {{"lanes", site.lanes.size()}, {"exits", site.exits.size()}}; }
 };
 
-void run(examples::Settings const& settings) {
+void run(examples::Settings& settings) {
   Task const task{cambium::find_highway_site(examples::load_map(settings.map_file), settings.map_file)};
   std::string const success = task.site.exits.empty() ? "the ego reached the end" : "the ego took its exit";
   examples::sample_and_report(task, settings, {"Highway", success, {{"lane changes"}}});

@@ -35,7 +35,8 @@ struct Task {
   }
 };
 
-void run(examples::Settings const& settings, cambium::JunctionTraffic const& traffic) {
+void run(examples::Settings& settings, cambium::JunctionTraffic traffic) {
+  settings.parameters.take(traffic);
   Task const task{cambium::find_junction_site(examples::load_map(settings.map_file), settings.map_file), traffic};
   if (traffic.lights && task.site.map->lights().empty())
     throw cambium::MapError(settings.map_file, "this map has no traffic lights",
@@ -58,7 +59,7 @@ int main(int argc, char** argv) {
   auto const add_share = [&](char const* option, double& share, char const* text) {
     program.add_option(option, share, text)->type_name("SHARE")->check(CLI::Range(0.0, 1.0))->capture_default_str();
   };
-  add_share("--trucks", traffic.truck_share, "share of trucks, on routes whose bends they can drive");
-  add_share("--bicycles", traffic.bicycle_share, "share of bicycles");
+  add_share("--trucks", traffic.mix.truck_share, "share of trucks, on routes whose bends they can drive");
+  add_share("--bicycles", traffic.mix.bicycle_share, "share of bicycles");
   return examples::run_program(program, argc, argv, [&] { run(settings, traffic); });
 }

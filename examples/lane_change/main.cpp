@@ -36,6 +36,7 @@ struct Settings {
   std::vector<std::uint64_t> iterations{2000, 4000, 8000};
   std::vector<double> variations{0.0, 0.2, 0.4, 0.8};
   std::string preset = "cambium", json, out = "out/lane_change";
+  examples::ParameterFile parameters{};
 };
 
 std::shared_ptr<cambium::Map const> two_lanes() {
@@ -92,7 +93,20 @@ void print(lane_change::Row const& row) {
   std::fflush(stdout);
 }
 
-void run_grid(Settings const& settings) {
+/// Checks the file's parameters; prints them if that is asked for, and returns whether.
+bool take_parameters(Settings& settings) {
+  auto const take = [&](auto planner) { settings.parameters.take(planner); };
+  if (settings.preset == "paper")
+    take(lane_change::paper_planner());
+  else
+    take(lane_change::own_planner());
+  auto others = lane_change::driver(lane_change::headway);
+  settings.parameters.take(others);
+  return settings.parameters.finish();
+}
+
+void run_grid(Settings& settings) {
+  if (take_parameters(settings)) return;
   std::filesystem::path const folder(settings.out);
   examples::prepare_folder(folder);
   std::optional<examples::PartFile> json;  // opened now, so that a bad path fails before the work
@@ -108,7 +122,7 @@ void run_grid(Settings const& settings) {
   auto const cells = std::to_string(settings.variations.size() * settings.iterations.size());
   for (auto const variation : settings.variations)
     for (auto const iterations : settings.iterations) {
-      Cell const cell{settings.preset == "paper", static_cast<std::size_t>(iterations), variation};
+      Cell const cell{settings.preset == "paper", static_cast<std::size_t>(iterations), variation, settings.parameters};
       auto const begin = std::chrono::steady_clock::now();
       auto const outcomes = run(map, cell, settings, "cell " + std::to_string(rows.size() + 1) + " of " + cells + ":");
       std::chrono::duration<double> const spent = std::chrono::steady_clock::now() - begin;
@@ -139,6 +153,7 @@ void add_options(CLI::App& program, Settings& settings) {
   examples::add_list(program, "--variation", settings.variations, examples::number(0.0, 0.99),
                      "by how much the others' headways are shorter than predicted, a cell each")
       ->type_name("SHARE,...");
+  settings.parameters.add_options(program);
   program.add_option("--preset", settings.preset, "the paper's choices, or cambium's")
       ->check(CLI::IsMember({"paper", "cambium"}))
       ->capture_default_str();

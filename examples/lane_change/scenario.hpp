@@ -18,6 +18,8 @@
 #include "cambium/scenario/scenario.hpp"
 #include "cambium/world/world.hpp"
 
+#include "../common/parameter_file.hpp"
+
 /// The lane change of Bernhard, Esterle, Hart, Kessler 2020 ("BARK: Open behavior benchmarking in multi-agent
 /// environments", section V-A). Numbers that the paper does not give are those of BARK's configuration.
 namespace lane_change {
@@ -55,6 +57,7 @@ struct Cell {
   bool is_paper = false;
   std::size_t iterations = 2000;
   double variation = 0.0;  ///< by how much the others' headways are shorter than the planner assumes, as a share
+  examples::ParameterFile parameters{};
 };
 
 inline cb::IdmClassic driver(double time_headway) {
@@ -93,18 +96,25 @@ inline cb::MacroActions own_actions() {
   return actions;
 }
 
-inline Sim::Behavior planner(Cell const& cell) {
-  if (cell.is_paper) {
-    PaperPlanner paper{.actions = paper_actions(), .others = driver(headway)};
-    paper.options.search = {.horizon = most_steps,
-                            .discount = 0.9,
-                            .lowest_return = -1000.0,
-                            .highest_return = 100.0,
-                            .final_move = cb::FinalMove::best_return};
-    paper.options.selection.exploration = 2.0 * 0.7 * std::sqrt(2.0);
-    paper.options.budget.iterations = cell.iterations;
-    return paper;
-  }
+/// The others, but for their shorter headways.
+inline cb::IdmClassic driver(Cell const& cell) {
+  auto usual = driver(headway);
+  cell.parameters.set(usual);
+  return usual;
+}
+
+inline PaperPlanner paper_planner() {
+  PaperPlanner paper{.actions = paper_actions(), .others = driver(headway)};
+  paper.options.search = {.horizon = most_steps,
+                          .discount = 0.9,
+                          .lowest_return = -1000.0,
+                          .highest_return = 100.0,
+                          .final_move = cb::FinalMove::best_return};
+  paper.options.selection.exploration = 2.0 * 0.7 * std::sqrt(2.0);
+  return paper;
+}
+
+inline OwnPlanner own_planner() {
   OwnPlanner own{.actions = own_actions()};
   own.options.selection.exploration = 0.3;
   own.reward.desired_speed = 14.0;  // the goal requires 11 to 17 m/s
@@ -114,20 +124,32 @@ inline Sim::Behavior planner(Cell const& cell) {
   own.options.step = 2.0 * step;
   own.options.search = {.horizon = most_steps / 2, .discount = 0.9};
   own.options.rollout.hold = 3;
-  own.options.budget.iterations = cell.iterations;
   return own;
 }
 
-/// Fills a lane with vehicles from `begin` to `end` [m]: gaps of 20 to 30 m, speeds of 11 to 17 m/s.
+inline Sim::Behavior planner(Cell const& cell) {
+  auto const made = [&](auto planner) -> Sim::Behavior {
+    cell.parameters.set(planner);
+    planner.options.budget.iterations = cell.iterations;
+    return planner;
+  };
+  return cell.is_paper ? made(paper_planner()) : made(own_planner());
+}
+
+/// Fills a lane with vehicles from `begin` to `end` [m]: gaps of 20 to 30 m, speeds of 11 to 17 m/s. This is the
+/// procedure of the paper, from the rear to the front; a recipe's flow (examples/benchmark/sets/lane_change) draws from
+/// the front to the rear.
 inline void fill_lane(cb::Scenario<Sim>& scenario, double begin, double end, double y, Cell const& cell,
                       cb::RandomStream& random) {
+  auto other = driver(cell);
+  other.time_headway *= 1.0 - cell.variation;
   cb::geometry::Shape const shape{.front = 3.85, .rear = 1.12, .left = 0.955, .right = 0.955};
   for (double s = begin + cb::Uniform{0.0, 10.0}(random); s <= end;
        s += shape.length() + cb::Uniform{20.0, 30.0}(random))
     scenario.agents.push_back({.position = {s, y},
                                .speed = cb::Uniform{11.0, 17.0}(random),
                                .shape = shape,
-                               .behavior = driver(headway * (1.0 - cell.variation)),
+                               .behavior = other,
                                .id = static_cast<cb::AgentId>(scenario.agents.size())});
 }
 

@@ -7,10 +7,9 @@
 
 namespace {
 
-void run(examples::Settings const& settings, double non_yielding, bool waits) {
-  merging::Task task{merging::find_site(settings, "merging")};
-  task.site.non_yielding_share = non_yielding;
-  task.site.ramp_waits = waits;
+void run(examples::Settings& settings, cambium::MergingTraffic traffic) {
+  settings.parameters.take(traffic);
+  merging::Task const task{merging::find_site(settings, "merging"), traffic};
   examples::sample_and_report(task, settings, {"Merging", "the ego merged"});
 }
 
@@ -22,14 +21,13 @@ int main(int argc, char** argv) {
   settings.out = "out/merging";
   CLI::App program("Samples dense merging scenarios, simulates and judges them.", "merging");
   examples::add_options(program, settings, "OpenDRIVE map with a merge");
-  double non_yielding = 0.0;
+  cambium::MergingTraffic traffic;
   program
-      .add_option("--non-yielding", non_yielding,
+      .add_option("--non-yielding", traffic.non_yielding_share,
                   "share of the drivers on the through road who open no gap for those that merge")
       ->type_name("SHARE")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
-  bool waits = false;
-  program.add_flag("--wait", waits, "drivers that merge wait for a gap; otherwise they force their way");
-  return examples::run_program(program, argc, argv, [&] { run(settings, non_yielding, waits); });
+  program.add_flag("--wait", traffic.ramp_waits, "drivers that merge wait for a gap; otherwise they force their way");
+  return examples::run_program(program, argc, argv, [&] { run(settings, traffic); });
 }

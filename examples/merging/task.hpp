@@ -17,8 +17,11 @@ namespace merging {
 /// The task: the ego merges. See `examples::run_scenario`.
 struct Task {
   cambium::MergingSite site;
+  cambium::MergingTraffic traffic{};
 
-  [[nodiscard]] auto sample(std::uint64_t seed, std::uint32_t number) const { return site.sample(seed, number); }
+  [[nodiscard]] auto sample(std::uint64_t seed, std::uint32_t number) const {
+    return site.sample(seed, number, traffic);
+  }
 
   template <class World>
   [[nodiscard]] auto watch(World const&, cambium::Slot ego) const {

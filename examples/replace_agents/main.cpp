@@ -12,6 +12,7 @@
 #include <span>
 #include <string>
 #include <thread>
+#include <variant>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -33,6 +34,7 @@
 #include "../common/command_line.hpp"
 #include "../common/map_file.hpp"
 #include "../common/on_threads.hpp"
+#include "../common/parameter_file.hpp"
 #include "zip_recording.hpp"
 
 namespace replace_agents {
@@ -54,6 +56,7 @@ struct Settings {
   std::uint64_t recordings = 5, seed = 1, iterations = 100, threads = std::max(1u, std::thread::hardware_concurrency());
   std::vector<std::uint64_t> ids{65, 66, 67, 68};
   double begin = -1e9, end = 1e9;
+  examples::ParameterFile parameters{};
 };
 
 /// The agents that a row of the table replaces.
@@ -202,7 +205,24 @@ void print_table(std::vector<AgentSet> const& sets, PrintCell const& print_cell)
   }
 }
 
-void run_all(Settings const& settings) {
+/// Model `number` of `models` with what the file of parameters says.
+Sim::Behavior driver(std::size_t number, double minimum_distance, Settings const& settings) {
+  auto behavior = driver(number, minimum_distance, settings.iterations);
+  std::visit([&](auto& model) { settings.parameters.set(model); }, behavior);
+  return behavior;
+}
+
+/// Checks the file's parameters; prints them if that is asked for, and returns whether.
+bool take_parameters(Settings& settings) {
+  for (std::size_t column = 0; column < columns; ++column) {
+    auto behavior = driver(column / parameter_sets, minimum_distances[column % parameter_sets], settings.iterations);
+    std::visit([&](auto& model) { settings.parameters.take(model); }, behavior);
+  }
+  return settings.parameters.finish();
+}
+
+void run_all(Settings& settings) {
+  if (take_parameters(settings)) return;
   auto const recordings = recordings_of(settings);
   if (!settings.write.empty()) {
     cb::write_file(settings.write, interaction_text(recordings.front()));
@@ -220,8 +240,7 @@ void run_all(Settings const& settings) {
   std::vector<Outcome> outcomes(count * runs);
   examples::run_on_threads(outcomes.size(), settings.threads, [&](std::uint64_t i) {
     auto const cell = i / runs, column = cell % columns;
-    auto const behavior =
-        driver(column / parameter_sets, minimum_distances[column % parameter_sets], settings.iterations);
+    auto const behavior = driver(column / parameter_sets, minimum_distances[column % parameter_sets], settings);
     outcomes[i] = run(recordings[i % runs], window, sets[cell / columns], behavior);
   });
   std::vector<Cell> cells(count);
@@ -280,6 +299,7 @@ int main(int argc, char** argv) {
       .add_option("--write", settings.write,
                   "writes the first recording as an INTERACTION track file, and its map as FILE.xodr")
       ->type_name("FILE");
+  settings.parameters.add_options(program);
   return examples::run_program(program, argc, argv, [&] {
     if (settings.ids.size() != 4)
       throw cambium::Error("--ids", "these are not four different tracks", "give four numbers, such as 65,66,67,68");

@@ -20,6 +20,7 @@
 #include "cambium/viewer/record_world.hpp"
 
 #include "../common/command_line.hpp"
+#include "../common/parameter_file.hpp"
 #include "picture.hpp"
 #include "ring_traffic.hpp"
 
@@ -32,6 +33,7 @@ struct Settings {
   std::string driver = "treiber_2000";
   std::uint64_t length = 2000, density = 40, minutes = 30;
   std::string out = "out/ring";
+  examples::ParameterFile parameters{};
 };
 
 cb::IdmParameters driver_of(std::string const& name) {
@@ -135,8 +137,10 @@ void print_table(Settings const& settings, cb::RingRoad const& road, std::vector
   std::printf("\n");
 }
 
-void run(Settings const& settings) {
-  auto const driver = driver_of(settings.driver);
+void run(Settings& settings) {
+  auto driver = driver_of(settings.driver);
+  settings.parameters.take(driver);
+  if (settings.parameters.finish()) return;
   std::filesystem::path const folder(settings.out);
   examples::prepare_folder(folder);
   double const duration = 60.0 * static_cast<double>(settings.minutes), length = static_cast<double>(settings.length);
@@ -177,5 +181,6 @@ int main(int argc, char** argv) {
   program.add_option("--out", settings.out, "folder for summary.json, ring.svg and replay.html")
       ->type_name("DIR")
       ->capture_default_str();
+  settings.parameters.add_options(program);
   return examples::run_program(program, argc, argv, [&] { ring::run(settings); });
 }

@@ -34,10 +34,10 @@ struct Shot {
   cb::Recording recording{};
 };
 
-/// Drives run `run` of a seed for `duration` [s]. Records a part of it into `shot`, unless that is null, and ends
-/// behind it.
+/// Drives run `run` of a seed for `duration` [s], with what the file says of the drivers. Records a part of it into
+/// `shot`, unless that is null, and ends behind it.
 [[nodiscard]] inline Result drive(Site const& site, std::uint64_t seed, std::uint32_t run, double duration,
-                                  Shot* shot = nullptr) {
+                                  examples::ParameterFile const& parameters, Shot* shot = nullptr) {
   Result result{.mix = draw_mix(site, seed, run)};
   auto const& mix = result.mix;
   Sim world(site.map, {.seed = seed + 0x9e3779b97f4a7c15u * (run + 1)});
@@ -56,7 +56,9 @@ struct Shot {
   auto const is_walker = [](auto const& agent) { return agent.shape == cb::geometry::pedestrian(); };
   while (world.time() < std::min(duration, last)) {
     for (auto const &entered : inflow.enter(world, [&](cb::TrafficSource const&source, cb::RandomStream&random) {
-           return source.way ? draw_pedestrian(random) : draw_vehicle(site, mix, source, random);
+           auto spec = source.way ? draw_pedestrian(random) : draw_vehicle(site, mix, source, random);
+           set_parameters(spec, parameters);
+           return spec;
          })) {
       auto const& agent = world.roster().agents[world.slot_of(entered.id)];
       result.entered += !is_walker(agent);

@@ -39,6 +39,7 @@ struct Settings {
   double hours = 0.0, minutes = 10.0;
   std::uint64_t seed = 1, threads = std::max(1u, std::thread::hardware_concurrency());
   std::optional<std::uint64_t> replay{}, step{};
+  examples::ParameterFile parameters{};
 
   [[nodiscard]] double duration() const { return hours > 0.0 ? 3600.0 * hours : 60.0 * minutes; }  // [s]
   [[nodiscard]] std::uint64_t runs() const { return static_cast<std::uint64_t>(std::ceil(duration() / run_length)); }
@@ -134,7 +135,8 @@ Row row_of(Site const& site, std::vector<Result> const& runs) {
 std::string repeat_command(Settings const& settings, std::string const& file, std::uint64_t run,
                            Finding const& finding) {
   return "examples/run soak --map " + file + " --seed " + std::to_string(settings.seed) + " --replay " +
-         std::to_string(run) + " --step " + std::to_string(finding.step);
+         std::to_string(run) + " --step " + std::to_string(finding.step) +
+         (settings.parameters.path().empty() ? "" : " --parameters " + settings.parameters.path());
 }
 
 /// Prints the findings, of each map the first `most` of each kind, which suffices to see what is wrong.
@@ -229,7 +231,7 @@ void replay(Settings const& settings) {
   examples::prepare_folder(folder);
   Shot shot{.step = settings.step.value_or(100)};
   auto const run = static_cast<std::uint32_t>(*settings.replay);
-  auto const result = drive(site, settings.seed, run, run_length, &shot);
+  auto const result = drive(site, settings.seed, run, run_length, settings.parameters, &shot);
   shot.recording.title = "Soak on " + fs::path(site.file).filename().string() + ", run " + std::to_string(run);
   std::string text = result.mix.drivers + ", dt " + std::to_string(result.mix.dt).substr(0, 4) + " s, seed " +
                      std::to_string(settings.seed) + ", step " + std::to_string(shot.step);
@@ -243,7 +245,8 @@ void replay(Settings const& settings) {
   std::cout << "  " << text << "\n  " << (folder / "replay.html").string() << "  plays it in a browser\n";
 }
 
-int run(Settings const& settings) {
+int run(Settings& settings) {
+  if (take_parameters(settings.parameters)) return 0;
   if (settings.replay) return replay(settings), 0;
   std::optional<examples::PartFile> json;
   if (!settings.json_file.empty()) json.emplace(settings.json_file);
@@ -254,7 +257,8 @@ int run(Settings const& settings) {
   examples::run_on_threads(sites.size() * runs, settings.threads, [&](std::uint64_t job) {
     auto const i = job / runs, number = job % runs;
     double const left = settings.duration() - run_length * static_cast<double>(number);
-    results[i][number] = drive(sites[i], settings.seed, static_cast<std::uint32_t>(number), std::min(run_length, left));
+    results[i][number] = drive(sites[i], settings.seed, static_cast<std::uint32_t>(number), std::min(run_length, left),
+                               settings.parameters);
   });
   double const seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   std::vector<Row> rows;
@@ -313,6 +317,7 @@ int main(int argc, char** argv) {
       ->type_name("DIR")
       ->check(not_empty())
       ->capture_default_str();
+  settings.parameters.add_options(program);
   program.footer(
       "What it prints:\n"
       "  the findings, with what repeats each; then a row for each map:\n"

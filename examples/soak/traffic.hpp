@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "cambium/behavior.hpp"
@@ -17,6 +18,8 @@
 #include "cambium/map/map.hpp"
 #include "cambium/scenario/traffic_inflow.hpp"
 #include "cambium/world/world.hpp"
+
+#include "../common/parameter_file.hpp"
 
 /// The long test of mixed traffic: see main.cpp.
 namespace soak {
@@ -255,6 +258,25 @@ struct Mix {
           .behavior = make_driver(kind, idm, is_heavy, random),
           .route = route,
           .dynamics = cycles ? cb::presets::bicycle_dynamics() : cb::SingleTrack{}};
+}
+
+/// What the file of parameters says of a driver.
+inline void set_parameters(Sim::AgentSpec& spec, examples::ParameterFile const& file) {
+  std::visit([&](auto& driver) { file.set(driver); }, spec.behavior);
+}
+
+/// Checks the file's parameters; prints them if that is asked for, and returns whether.
+[[nodiscard]] inline bool take_parameters(examples::ParameterFile& file) {
+  cb::RandomStream random(1, 0, 0);
+  for (int draw = 0; draw < 50; ++draw)
+    for (std::size_t kind = 0; kind < Drivers::Any::size; ++kind) {
+      bool const is_heavy = draw % 2 == 0;
+      auto spec = draw_pedestrian(random);
+      if (kind != Drivers::index<cb::Pedestrian>)
+        spec.behavior = make_driver(kind, draw_idm(draw % 3 == 0 ? 14.0 : 30.0, is_heavy, random), is_heavy, random);
+      std::visit([&](auto& driver) { file.take(driver); }, spec.behavior);
+    }
+  return file.finish();
 }
 
 /// Phases of 20 s for each of the map's lights in turn: 15 s green, 3 s yellow, and 2 s to clear the junction.

@@ -8,8 +8,9 @@
 
 namespace {
 
-void run(examples::Settings const& settings) {
-  zip_merge::Task const task{merging::find_site(settings, "zip_merge")};
+void run(examples::Settings& settings) {
+  zip_merge::Task task{merging::find_site(settings, "zip_merge")};
+  settings.parameters.take(task.traffic);
   examples::sample_and_report(
       task, settings,
       {"Zip merge",

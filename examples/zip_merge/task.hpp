@@ -81,9 +81,10 @@ class Watch {
 /// The task: the ego merges in dense traffic of drivers who merge like a zip. See `examples::run_scenario`.
 struct Task {
   cambium::MergingSite site;
+  cambium::MergingTraffic traffic{};
 
   [[nodiscard]] cambium::Scenario<Simulation> sample(std::uint64_t seed, std::uint32_t number) const {
-    return cambium::with_behaviors<Simulation>(site.sample(seed, number), [](auto const& agent) {
+    return cambium::with_behaviors<Simulation>(site.sample(seed, number, traffic), [](auto const& agent) {
       return zip(std::get<cambium::IdmClassic>(agent.behavior));
     });
   }

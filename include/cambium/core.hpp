@@ -9,7 +9,7 @@
 /// **Errors.** Loading and building throw `Error`s; the step path does not throw. `CAMBIUM_ASSERT` guards invariants.
 ///
 /// `core/json.hpp` and `core/json_document.hpp` (need nlohmann_json), `core/transfer_parameters.hpp` (for file formats of
-/// your own), `core/nearest_names.hpp`, `core/text.hpp` (parses numbers), `core/markup.hpp` (text in HTML and JSON),
+/// your own), `core/set_parameter.hpp` (by key), `core/nearest_names.hpp`, `core/text.hpp` (parses numbers), `core/markup.hpp` (text in HTML and JSON),
 /// `core/read_file.hpp`, `core/write_file.hpp`, `core/stable_sort.hpp` and `core/state_vector.hpp` (Eigen) are included
 /// by name.
 #pragma once
@@ -19,6 +19,7 @@
 
 #include "cambium/core/described.hpp"
 #include "cambium/core/diagnostic.hpp"
+#include "cambium/core/distribution.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/ids.hpp"

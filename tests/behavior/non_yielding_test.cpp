@@ -14,22 +14,18 @@ namespace cb = cambium;
 
 using Sim = cb::MergingSite::World;
 
-cb::MergingSite site_with(double share, bool waits) {
-  auto site = cb::find_merging_site(support::own_map("merging.xodr"));
-  site.non_yielding_share = share;
-  site.ramp_waits = waits;
-  return site;
-}
+cb::MergingSite merging_site() { return cb::find_merging_site(support::own_map("merging.xodr")); }
 
 struct Outcomes {
   int merged = 0, collided = 0;
   double time = 0.0;  ///< mean until merged [s]
 };
 
-Outcomes run(cb::MergingSite const& site, int scenarios) {
+Outcomes run(cb::MergingTraffic const& traffic, int scenarios) {
+  auto const site = merging_site();
   Outcomes all;
   for (int i = 0; i < scenarios; ++i) {
-    auto const scenario = site.sample(11, static_cast<std::uint32_t>(i));
+    auto const scenario = site.sample(11, static_cast<std::uint32_t>(i), traffic);
     auto world = scenario.make_world();
     auto const ego = world.slot_of(scenario.ego);
     for (bool over = false; !over && world.time() < 60.0;) {
@@ -65,8 +61,9 @@ cb::AgentId add(Sim& world, cb::MergingSite::Entrance const& entrance, double be
 
 TEST_CASE("the more drivers open no gap, the fewer drivers merge that force their way; those that wait merge later") {
   constexpr int scenarios = 50;
-  auto const yielding = run(site_with(0.0, false), scenarios), half = run(site_with(0.5, false), scenarios),
-             none = run(site_with(1.0, false), scenarios), waiting = run(site_with(1.0, true), scenarios);
+  auto const yielding = run({}, scenarios), half = run({.non_yielding_share = 0.5}, scenarios),
+             none = run({.non_yielding_share = 1.0}, scenarios),
+             waiting = run({.non_yielding_share = 1.0, .ramp_waits = true}, scenarios);
   CHECK(yielding.merged == scenarios);
   CHECK(half.merged <= 40);
   CHECK(none.merged <= 30);
@@ -76,7 +73,7 @@ TEST_CASE("the more drivers open no gap, the fewer drivers merge that force thei
 }
 
 TEST_CASE("a driver that opens no gap does not brake for a vehicle beside, but for one that has merged before it") {
-  auto const site = site_with(0.0, false);
+  auto const site = merging_site();
   auto const& ramp = site.entrances[site.ramp];
   auto const& through = *std::find_if(site.entrances.begin(), site.entrances.end(),
                                       [](auto const& e) { return e.merges() && !e.gives_up_lane; });
@@ -100,7 +97,7 @@ TEST_CASE("a driver that opens no gap does not brake for a vehicle beside, but f
 }
 
 TEST_CASE("a driver that gives way lets those pass whose gap is too short, takes a large one, and waits at the end") {
-  auto const site = site_with(0.0, false);
+  auto const site = merging_site();
   auto const& ramp = site.entrances[site.ramp];
   auto const& through = *std::find_if(site.entrances.begin(), site.entrances.end(),
                                       [](auto const& e) { return e.merges() && !e.gives_up_lane; });
@@ -141,7 +138,7 @@ TEST_CASE("a driver that gives way lets those pass whose gap is too short, takes
 }
 
 TEST_CASE("a driver waits for those whose gap behind it would be too short at the merge, as a simulated twin says") {
-  auto const site = site_with(0.0, false);
+  auto const site = merging_site();
   auto const& ramp = site.entrances[site.ramp];
   auto const& through = *std::find_if(site.entrances.begin(), site.entrances.end(),
                                       [](auto const& e) { return e.merges() && !e.gives_up_lane; });

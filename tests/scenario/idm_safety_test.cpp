@@ -38,12 +38,9 @@ std::vector<cb::LaneVehicle> sample_traffic(cb::RandomStream& random) {
   traffic.end = 270.0;
   // From town to country road, from dense to loose.
   double const free_speed = between(8.0, 30.0, random);
-  traffic.lowest_speed = between(0.0, 0.8, random) * free_speed;
-  traffic.highest_speed = free_speed;
-  traffic.lowest_desired_speed = 0.85 * free_speed;
-  traffic.highest_desired_speed = 1.15 * free_speed;
-  traffic.shortest_headway = 0.8;
-  traffic.longest_headway = between(0.8, 2.5, random);
+  traffic.speed = cb::Uniform{between(0.0, 0.8, random) * free_speed, free_speed};
+  traffic.desired_speed = cb::Uniform{0.85 * free_speed, 1.15 * free_speed};
+  traffic.headway = cb::Uniform{0.8, between(0.8, 2.5, random)};
   return traffic.sample(random);
 }
 

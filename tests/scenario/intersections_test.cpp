@@ -126,7 +126,7 @@ TEST_CASE("nobody collides and nobody waits forever in sampled traffic of cars, 
 TEST_CASE("so it is at shorter and longer steps, with a third of trucks where these fit") {
   for (char const* name : {"roundabout.xodr", "intersection_3way.xodr", "intersection_4way.xodr"})
     for (double const dt : {0.1, 0.5})
-      check_all_pass(support::own_map(name), name, runs(150), {.truck_share = 0.35}, dt);
+      check_all_pass(support::own_map(name), name, runs(150), {.mix = {.truck_share = 0.35, .van_share = 0.15}}, dt);
 }
 
 TEST_CASE("so it is with up to 30 vehicles, as many as fit before the junctions, at shorter and longer steps") {
@@ -165,7 +165,8 @@ TEST_CASE("the same holds under traffic lights, and nobody crosses a stop line o
 
 TEST_CASE("so it is among bicycles, which keep to the side of their lanes, in sampled traffic") {
   for (char const* name : {"intersection_3way.xodr", "intersection_4way.xodr", "roundabout.xodr"})
-    check_all_pass(support::own_map(name), name + std::string(" with bicycles"), runs(1000), {.bicycle_share = 0.3});
+    check_all_pass(support::own_map(name), name + std::string(" with bicycles"), runs(1000),
+                   {.mix = {.truck_share = 0.15, .van_share = 0.15, .bicycle_share = 0.3}});
 }
 
 TEST_CASE("so it is at the junctions of the corpus") {

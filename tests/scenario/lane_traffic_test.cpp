@@ -38,10 +38,10 @@ TEST_CASE("vehicles stand on the stretch from its front to its rear, and what is
     CHECK(vehicles.front().s + vehicles.front().shape.front == doctest::Approx(400.0));
     CHECK(vehicles.back().s - vehicles.back().shape.rear >= 30.0);
     for (auto const& v : vehicles) {
-      CHECK(v.speed <= std::min(traffic.highest_speed, v.driver.desired_speed));
-      CHECK(v.speed >= traffic.lowest_speed);
-      CHECK(v.driver.desired_speed <= traffic.highest_desired_speed);
-      CHECK(v.driver.desired_speed >= 0.85 * traffic.lowest_desired_speed);
+      CHECK(v.speed <= std::min(traffic.speed.highest(), v.driver.desired_speed));
+      CHECK(v.speed >= traffic.speed.lowest());
+      CHECK(v.driver.desired_speed <= traffic.desired_speed.highest());
+      CHECK(v.driver.desired_speed >= 0.85 * traffic.desired_speed.lowest());
       CHECK_NOTHROW(cb::check_parameters(v.driver));
       slowest = std::min(slowest, v.speed);
       fastest = std::max(fastest, v.speed);
@@ -52,12 +52,8 @@ TEST_CASE("vehicles stand on the stretch from its front to its rear, and what is
 }
 
 TEST_CASE("every gap lets the follower keep its headway and brake comfortably to its leader's speed") {
-  LaneTraffic const traffic{.begin = 0.0,
-                            .end = 500.0,
-                            .lowest_speed = 2.0,
-                            .highest_speed = 25.0,
-                            .lowest_desired_speed = 20.0,
-                            .highest_desired_speed = 30.0};
+  LaneTraffic const traffic{
+      .begin = 0.0, .end = 500.0, .speed = cb::Uniform{2.0, 25.0}, .desired_speed = cb::Uniform{20.0, 30.0}};
   for (std::uint32_t number = 0; number < 200; ++number) {
     auto const vehicles = sample(traffic, number);
     for (std::size_t i = 1; i < vehicles.size(); ++i) {
@@ -65,8 +61,8 @@ TEST_CASE("every gap lets the follower keep its headway and brake comfortably to
       double const closing = std::max(0.0, follower.speed - leader.speed);
       double const braking_way = closing * closing / (2 * follower.driver.comfortable_deceleration);
       double const headway = (gap(follower, leader) - follower.driver.minimum_gap - braking_way) / follower.speed;
-      CHECK(headway >= traffic.shortest_headway - 1e-9);
-      CHECK(headway <= traffic.longest_headway + 1e-9);
+      CHECK(headway >= traffic.headway.lowest() - 1e-9);
+      CHECK(headway <= traffic.headway.highest() + 1e-9);
     }
   }
 }
@@ -90,7 +86,7 @@ TEST_CASE("the share of trucks is that asked for") {
   for (double const share : {0.0, 0.3, 1.0}) {
     int trucks = 0, all = 0;
     for (std::uint32_t number = 0; number < 400; ++number)
-      for (auto const& v : sample({.end = 2000.0, .truck_share = share}, number)) {
+      for (auto const& v : sample({.end = 2000.0, .mix = {.truck_share = share}}, number)) {
         trucks += v.shape == cb::geometry::truck();
         ++all;
       }
@@ -105,10 +101,10 @@ TEST_CASE("a stretch too short for a vehicle stays empty") {
 
 TEST_CASE("bounds that contradict each other, and values out of range, are refused by name") {
   cb::RandomStream random(1, 0, 0);
-  CHECK_THROWS_WITH_AS((void)(LaneTraffic{.lowest_speed = 9, .highest_speed = 8}.sample(random)),
+  CHECK_THROWS_WITH_AS((void)(LaneTraffic{.speed = cb::Uniform{9, 8}}.sample(random)),
                        doctest::Contains("lane_traffic"), cb::ParameterError);
-  CHECK_THROWS_WITH_AS((void)(LaneTraffic{.truck_share = 1.5}.sample(random)), doctest::Contains("truck_share"),
-                       cb::ParameterError);
-  CHECK_THROWS_WITH_AS((void)(LaneTraffic{.lowest_speed = -1}.sample(random)), doctest::Contains("lowest_speed"),
-                       cb::ParameterError);
+  CHECK_THROWS_WITH_AS((void)(LaneTraffic{.mix = {.truck_share = 1.5}}.sample(random)),
+                       doctest::Contains("truck_share"), cb::ParameterError);
+  CHECK_THROWS_WITH_AS((void)(LaneTraffic{.speed = cb::Uniform{-1, 8}}.sample(random)),
+                       doctest::Contains("lane_traffic.speed: draws up to -1 m/s"), cb::ParameterError);
 }

@@ -80,12 +80,10 @@ TEST_CASE_TEMPLATE(
       double const free_speed = Uniform{8.0, 30.0}(random);
       LaneTraffic const traffic{.begin = 20.0,
                                 .end = 320.0,
-                                .lowest_speed = Uniform{0.0, 0.8}(random)*free_speed,
-                                .highest_speed = free_speed,
-                                .lowest_desired_speed = 0.85 * free_speed,
-                                .highest_desired_speed = 1.15 * free_speed,
-                                .longest_headway = Uniform{0.8, 2.5}(random),
-                                .truck_share = 0.35};
+                                .speed = Uniform{Uniform{0.0, 0.8}(random)*free_speed, free_speed},
+                                .desired_speed = Uniform{0.85 * free_speed, 1.15 * free_speed},
+                                .headway = Uniform{0.8, Uniform{0.8, 2.5}(random)},
+                                .mix = {.truck_share = 0.35}};
       Sim world(map);
       for (auto const& vehicle : traffic.sample(random)) {
         typename Sim::AgentSpec spec{.position = {vehicle.s, -1.75}, .speed = vehicle.speed, .shape = vehicle.shape};
@@ -114,14 +112,13 @@ TEST_CASE_TEMPLATE("dense traffic with a third of trucks merges without a collis
                    AdaptiveCruiseControl, IdmLaneTracking, Mobil, ZipMerge) {
   using Sim = World<BehaviorSet<Behavior>, InterpolateExecution, SingleTrack>;
   for (std::string const name : {"merging.xodr", "lane_drop.xodr"}) {
-    auto site = find_merging_site(support::own_map(name));
-    site.truck_share = 0.35;
+    auto const site = find_merging_site(support::own_map(name));
     for (double const dt : {0.1, 0.2, 0.5}) {
       std::uint32_t collisions = 0, merged = 0;
       for (std::uint32_t number = 0; number < runs(); ++number) {
-        auto const scenario = with_behaviors<Sim>(site.sample(20, number), [](auto const& agent) {
-          return driver<Behavior>(std::get<IdmClassic>(agent.behavior));
-        });
+        auto const scenario = with_behaviors<Sim>(
+            site.sample(20, number, {.mix = {.truck_share = 0.35}}),
+            [](auto const& agent) { return driver<Behavior>(std::get<IdmClassic>(agent.behavior)); });
         auto world = scenario.make_world();
         bool hit = false;
         for (int step = 0; step * dt < 40.0 && !hit; ++step) {

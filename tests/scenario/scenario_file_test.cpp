@@ -201,9 +201,9 @@ TEST_CASE("the example in the README is a scenario file") {
 
 TEST_CASE("flows draw traffic by lane that is dense, safe and reproducible") {
   std::string const text = R"({"recipes": [{"map_file": "highway.xodr", "scenarios": 30, "seed": 8, "flows": [
-    {"lane": "1/0/-1", "traffic": {"begin": 0, "end": 300, "truck_share": 0}, "ego": "middle",
+    {"from": "1/0/-1", "traffic": {"begin": 0, "end": 300, "mix": {"truck_share": 0}}, "ego": "middle",
      "drivers": [{"share": 3, "behavior": {"mobil": {"idm": {"desired_speed": 25}}}}, {"share": 1, "behavior": "idm_classic"}]},
-    {"lane": "1/0/-2", "traffic": {"begin": 0, "end": 300, "truck_share": 0.5}, "all_controlled": true}]}]})";
+    {"from": "1/0/-2", "traffic": {"begin": 0, "end": 300, "mix": {"truck_share": 0.5}}, "controlled_share": 1}]}]})";
   auto const set = parse_scenarios<Small>(text, maps);
   CHECK(parse_scenarios<Small>(text, maps).hash() == set.hash());
   REQUIRE(set.scenarios.size() == 30);
@@ -229,7 +229,8 @@ TEST_CASE("flows draw traffic by lane that is dense, safe and reproducible") {
   CHECK(mobil < all / 2);
   CHECK(trucks > all / 12);
   CHECK(refusal(R"({"recipes": [{"map_file": "highway.xodr", "flows": [{}]}]})") ==
-        "f.json: recipes[0].flows[0]: names no lane; give \"lane\": \"road/section/lane\"");
+        "f.json: recipes[0].flows[0]: names no source; give \"from\": \"road/section/lane\", or "
+        "\"from_point\"");
   CHECK(refusal(R"({"recipes": [{"map_file": "highway.xodr"}]})") ==
-        "f.json: recipes[0]: draws no vehicle; give longer or denser flows");
+        "f.json: recipes[0]: draws no vehicle, or none for the ego; give longer or denser flows, or slower ones");
 }

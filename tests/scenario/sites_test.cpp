@@ -179,10 +179,10 @@ TEST_CASE("traffic at junctions has the shares that are asked for, and lights in
       for (auto const& agent : site.sample(5, number, traffic).agents) found += agent.shape == shape;
     return found;
   };
-  CHECK(count({.bicycle_share = 0.0}, geometry::bicycle()) == 0);
-  CHECK(count({.bicycle_share = 0.5}, geometry::bicycle()) > 50);
-  CHECK(count({.truck_share = 0.0}, geometry::truck()) == 0);
-  CHECK(count({.truck_share = 0.5}, geometry::truck()) > 50);
+  CHECK(count({.mix = {.bicycle_share = 0.0}}, geometry::bicycle()) == 0);
+  CHECK(count({.mix = {.bicycle_share = 0.5}}, geometry::bicycle()) > 50);
+  CHECK(count({.mix = {.truck_share = 0.0}}, geometry::truck()) == 0);
+  CHECK(count({.mix = {.truck_share = 0.5}}, geometry::truck()) > 50);
 
   auto const world = site.sample(5, 1, {.lights = true}).make_world();
   REQUIRE(world.map().lights().size() == 2);
@@ -191,7 +191,7 @@ TEST_CASE("traffic at junctions has the shares that are asked for, and lights in
   CHECK(color(1, 5.0) == map::LightColor::red);
   CHECK(color(0, 25.0) == map::LightColor::red);
   CHECK(color(1, 25.0) == map::LightColor::green);
-  CHECK_THROWS_WITH_AS(static_cast<void>(site.sample(5, 1, {.truck_share = 1.5})), doctest::Contains("truck_share"),
+  CHECK_THROWS_WITH_AS(static_cast<void>(site.sample(5, 1, {.mix = {.truck_share = 1.5}})), doctest::Contains("truck_share"),
                        ParameterError);
 }
 

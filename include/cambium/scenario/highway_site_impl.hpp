@@ -92,12 +92,10 @@ CAMBIUM_COLD LaneTraffic highway_traffic(HighwaySite const& site, LaneId lane, d
   auto const& widths = site.map->lane(lane).widths.front();
   LaneTraffic traffic;
   traffic.end = std::min(0.45 * site.length, 500.0);
-  traffic.lowest_speed = 27.0 - 6.0 * share;
-  traffic.highest_speed = 32.0 - 8.0 * share;
-  traffic.lowest_desired_speed = traffic.highest_desired_speed = 40.0;  // these drivers are replaced
-  traffic.shortest_headway = 1.0;
-  traffic.longest_headway = 4.0;
-  traffic.truck_share = widths.left + widths.right > 3.3 ? 0.35 * share * share : 0.0;
+  traffic.speed = Uniform{27.0 - 6.0 * share, 32.0 - 8.0 * share};
+  traffic.desired_speed = Uniform{40.0, 40.0};  // these drivers are replaced
+  traffic.headway = Uniform{1.0, 4.0};
+  traffic.mix.truck_share = widths.left + widths.right > 3.3 ? 0.35 * share * share : 0.0;
   return traffic;
 }
 

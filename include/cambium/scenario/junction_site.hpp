@@ -14,14 +14,14 @@
 #include "cambium/map/map.hpp"
 #include "cambium/map/routing/route.hpp"
 #include "cambium/scenario/scenario.hpp"
+#include "cambium/scenario/vehicle_mix.hpp"
 #include "cambium/world/world.hpp"
 
 namespace cambium {
 
 /// What traffic at junctions consists of.
 struct JunctionTraffic {
-  double truck_share = 0.15;
-  double bicycle_share = 0.0;
+  VehicleMix mix{.truck_share = 0.15, .van_share = 0.15};
   int most_vehicles = 12;
   bool lights = false;
   bool scattered_ids = false;
@@ -30,19 +30,12 @@ struct JunctionTraffic {
   static constexpr auto parameters() {
     using P = JunctionTraffic;
     return parameter_list(
-        parameter("truck_share", &P::truck_share, "-", Range{0, 1},
-                  "part of the vehicles that are trucks, on routes whose bends they can drive"),
-        parameter("bicycle_share", &P::bicycle_share, "-", Range{0, 1}, "part of the vehicles that are bicycles"),
+        parameter("mix", &P::mix, "-", {}, "which vehicles; trucks and vans only on routes whose bends they can drive"),
         parameter("most_vehicles", &P::most_vehicles, "-", Range{4, 1000},
                   "there are 4 to this many, but no more than fit at distances of 18 m"),
         parameter("lights", &P::lights, "-", Range{0, 1},
                   "1: traffic lights are on, green for 15 s one after the other; 0: they are off"),
         parameter("scattered_ids", &P::scattered_ids, "-", Range{0, 1}, "1: random agent ids; 0: ascending ones"));
-  }
-
-  void check(std::string const& where) const {
-    if (!(truck_share + bicycle_share <= 1.0))
-      throw ParameterError(where, "truck_share and bicycle_share add up to more than 1", "lower one of them");
   }
 };
 

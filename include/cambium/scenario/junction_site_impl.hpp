@@ -22,14 +22,11 @@ namespace cambium {
 
 namespace detail {
 
-/// Mostly cars, and some vans and trucks where these fit.
-CAMBIUM_COLD geometry::Shape random_shape(Map const& map, JunctionTraffic const& traffic, map::Route const& route,
+/// The next vehicle: a car where it would not fit.
+CAMBIUM_COLD geometry::Shape random_shape(Map const& map, VehicleMix const& mix, map::Route const& route,
                                           RandomStream& random) {
-  using namespace geometry;
-  double const share = uniform01(random);
-  if (share >= 1.0 - traffic.bicycle_share) return bicycle();
-  auto const shape = share < traffic.truck_share ? truck() : share < traffic.truck_share + 0.15 ? van() : car();
-  return fits_route(map, route, shape) ? shape : car();
+  auto const shape = mix(random);
+  return shape == geometry::bicycle() || fits_route(map, route, shape) ? shape : geometry::car();
 }
 
 /// How far an agent put on lane `from` may drive before it is where bodies of those in the junction may reach [m];
@@ -65,7 +62,7 @@ CAMBIUM_COLD void try_to_add(JunctionSite const& site, JunctionTraffic const& tr
   auto const pose = map.lane(from).path.pose(s);
   for (auto const& agent : world.frame().agents)
     if (std::hypot(agent.state.x - pose.x, agent.state.y - pose.y) < 18.0) return;
-  auto const shape = random_shape(map, traffic, route, random);
+  auto const shape = random_shape(map, traffic.mix, route, random);
   bool const cycles = shape == geometry::bicycle();
   std::optional<AgentId> id;
   if (traffic.scattered_ids) id = static_cast<AgentId>(random() >> 33);

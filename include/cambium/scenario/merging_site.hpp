@@ -8,14 +8,34 @@
 
 #include "cambium/behavior/behavior_set.hpp"
 #include "cambium/behavior/following/idm_classic.hpp"
+#include "cambium/core/parameters.hpp"
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/map/routing/route.hpp"
 #include "cambium/scenario/scenario.hpp"
+#include "cambium/scenario/vehicle_mix.hpp"
 #include "cambium/world/world.hpp"
 
 namespace cambium {
+
+/// What traffic at a merge consists of.
+struct MergingTraffic {
+  VehicleMix mix{};
+  double non_yielding_share = 0.0;
+  bool ramp_waits = false;
+
+  static constexpr char const* name = "merging_traffic";
+  static constexpr auto parameters() {
+    using P = MergingTraffic;
+    return parameter_list(parameter("mix", &P::mix, "-", {}, "which vehicles"),
+                          parameter("non_yielding_share", &P::non_yielding_share, "-", Range{0, 1},
+                                    "part of the drivers on the through road who open no gap (`Merging::ignored`)"),
+                          parameter("ramp_waits", &P::ramp_waits, "-", Range{0, 1},
+                                    "1: drivers on the ramp wait for a gap (`Merging::gives_way`); 0: they force "
+                                    "their way"));
+  }
+};
 
 /// A place where traffic merges, at an on-ramp or a lane drop: samples dense traffic from every entrance up to it. Made
 /// by `find_merging_site`.
@@ -39,14 +59,13 @@ struct MergingSite {
   std::size_t ramp{};        ///< the entrance whose vehicles merge
   std::size_t crossings{};   ///< places where routes cross or meet at an angle; car following gives way at none of them
   double free_speed = 13.9;  ///< [m/s]: the speed limit at the ramp, else 50 km/h
-  double truck_share = 0.1;  ///< part of the vehicles that are trucks
-  double non_yielding_share = 0.0;  ///< part of the through drivers that open no gap (`Merging::ignored`)
-  bool ramp_waits = false;  ///< drivers on the ramp wait for a gap (`Merging::gives_way`): else they force their way
 
   /// Scenario `number` of a seed: cars and trucks on all entrances, with gaps that leave time to brake, merging traffic
   /// included. The goal of all vehicles on the ramp is the lane behind the merge; the ego is the one in their middle.
-  /// Throws `WorldError` if the map has no room before the merge. O(vehicles^2).
-  [[nodiscard]] Scenario<World> sample(std::uint64_t seed, std::uint32_t number) const;
+  /// Throws `ParameterError` if a parameter of `traffic` is out of range, `WorldError` if the map has no room before
+  /// the merge. O(vehicles^2).
+  [[nodiscard]] Scenario<World> sample(std::uint64_t seed, std::uint32_t number,
+                                       MergingTraffic const& traffic = {}) const;
 };
 
 /// Finds the merge of a map: among the lanes that begin at its edge, the one that ends in a merge after the longest

@@ -143,22 +143,21 @@ CAMBIUM_COLD bool enters_safely(MergingSite::World& world, AgentId id) {
 
 /// Traffic from one entrance, a little denser or thinner each time.
 CAMBIUM_COLD LaneTraffic traffic_from(MergingSite const& site, MergingSite::Entrance const& entrance,
-                                      RandomStream& random) {
+                                      VehicleMix const& mix, RandomStream& random) {
   LaneTraffic traffic;
   traffic.begin = std::max(0.0, entrance.traffic_end - 250.0);
   traffic.end = entrance.traffic_end - 5.0 * uniform01(random);
   double const share = 0.5 + 0.4 * uniform01(random);  // of the free speed
-  traffic.lowest_speed = 0.8 * share * site.free_speed;
-  traffic.highest_speed = std::min(1.2 * share, 1.0) * site.free_speed;
-  traffic.lowest_desired_speed = 0.85 * site.free_speed;
-  traffic.highest_desired_speed = 1.15 * site.free_speed;
-  traffic.truck_share = site.truck_share;
+  traffic.speed = Uniform{0.8 * share * site.free_speed, std::min(1.2 * share, 1.0) * site.free_speed};
+  traffic.desired_speed = Uniform{0.85 * site.free_speed, 1.15 * site.free_speed};
+  traffic.mix = mix;
   return traffic;
 }
 
 /// One draw of a scenario, which may lack an ego or others; `attempt` numbers the draws.
-CAMBIUM_COLD Scenario<MergingSite::World> draw_merging(MergingSite const& site, std::uint64_t seed,
-                                                       std::uint32_t number, std::uint32_t attempt) {
+CAMBIUM_COLD Scenario<MergingSite::World> draw_merging(MergingSite const& site, VehicleMix const& mix,
+                                                       std::uint64_t seed, std::uint32_t number,
+                                                       std::uint32_t attempt) {
   Scenario<MergingSite::World> scenario{.map = site.map, .seed = seed};
   MergingSite::World world(site.map);
   RandomStream random(seed, number, attempt);
@@ -166,7 +165,7 @@ CAMBIUM_COLD Scenario<MergingSite::World> draw_merging(MergingSite const& site, 
   for (std::size_t k = 0; k < site.entrances.size(); ++k) {
     auto const i = (site.ramp + k) % site.entrances.size();  // the ramp first: somebody has to merge
     auto const& entrance = site.entrances[i];
-    auto const traffic = traffic_from(site, entrance, random);
+    auto const traffic = traffic_from(site, entrance, mix, random);
     auto const road = map::build_road_corridor(*site.map, entrance.route);
     auto const& corridor = road->corridors[road->main];
     for (auto const& vehicle : traffic.sample(random)) {
@@ -193,28 +192,31 @@ CAMBIUM_COLD Scenario<MergingSite::World> draw_merging(MergingSite const& site, 
 }
 
 /// Sets who lets whom in; the draws of the traffic stay the same.
-CAMBIUM_COLD void set_merging(Scenario<MergingSite::World>& scenario, std::uint32_t number, MergingSite const& site) {
+CAMBIUM_COLD void set_merging(Scenario<MergingSite::World>& scenario, std::uint32_t number,
+                              MergingTraffic const& traffic) {
   RandomStream random(scenario.seed, number, 0, 1);
   for (auto& agent : scenario.agents) {
     bool const is_through = std::holds_alternative<NoGoal>(agent.goal),
-               insists = uniform01(random) < site.non_yielding_share;
+               insists = uniform01(random) < traffic.non_yielding_share;
     auto& merging = std::get<IdmClassic>(agent.behavior).rules.merging;
     if (is_through && insists) merging = Merging::ignored;
-    if (!is_through && site.ramp_waits) merging = Merging::gives_way;
+    if (!is_through && traffic.ramp_waits) merging = Merging::gives_way;
   }
 }
 
 }  // namespace detail
 
-CAMBIUM_COLD Scenario<MergingSite::World> MergingSite::sample(std::uint64_t seed, std::uint32_t number) const {
+CAMBIUM_COLD Scenario<MergingSite::World> MergingSite::sample(std::uint64_t seed, std::uint32_t number,
+                                                              MergingTraffic const& traffic) const {
+  check_parameters(traffic);
   for (auto const& entrance : entrances)
     detail::require_lanes(map, entrance.route.lanes, "MergingSite::entrances", "find_merging_site");
   if (ramp >= entrances.size())
     throw WorldError("MergingSite", "its ramp is none of its entrances", "take it as find_merging_site returns it");
   for (std::uint32_t attempt = 0; attempt < 100; ++attempt) {
-    auto scenario = detail::draw_merging(*this, seed, number, attempt);
+    auto scenario = detail::draw_merging(*this, traffic.mix, seed, number, attempt);
     if (!is_valid(scenario.ego)) continue;
-    detail::set_merging(scenario, number, *this);
+    detail::set_merging(scenario, number, traffic);
     return scenario;
   }
   throw WorldError("scenario " + std::to_string(number), "no traffic fits on the map before its merge",

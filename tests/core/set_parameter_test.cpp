@@ -1,0 +1,85 @@
+#include "cambium/core/set_parameter.hpp"
+
+#include <doctest/doctest.h>
+
+#include <string>
+
+#include "cambium/cambium.hpp"
+#include "cambium/core/distribution.hpp"
+
+using namespace cambium;
+
+namespace {
+
+struct Search {
+  double discount = 0.9;
+  int depth = 3;
+  Distribution speed = Uniform{1.0, 2.0};
+  std::vector<Uniform> parts{{}, {}};
+
+  static constexpr char const* name = "search";
+  static constexpr auto parameters() {
+    using P = Search;
+    return parameter_list(parameter("discount", &P::discount, "-", Range{0, 1}, "of later rewards"),
+                          parameter("depth", &P::depth, "-", Range{1, 9}, "of the tree"),
+                          parameter("speed", &P::speed, "m/s", {}, "how it is drawn"),
+                          parameter("parts", &P::parts, "-", {}, "a list"));
+  }
+};
+
+template <class T>
+std::string refusal(T object, std::string_view key, double number) {
+  auto const before = to_string(object);
+  try {
+    set_parameter(object, key, number, "f.json");
+  } catch (ParameterError const& error) {
+    CHECK(to_string(object) == before);
+    return error.what();
+  }
+  return "accepted";
+}
+
+}  // namespace
+
+TEST_CASE("a number is set by its key, and nothing else changes") {
+  Mobil driver;
+  set_parameter(driver, "idm.desired_speed", 31.0);
+  set_parameter(driver, "politeness", 0.25);
+  Mobil expected;
+  expected.idm.desired_speed = 31.0;
+  expected.politeness = 0.25;
+  CHECK(equal_parameters(driver, expected));
+  Search search;
+  set_parameter(search, "speed.uniform.high", 5.0);
+  CHECK(search.speed.highest() == 5.0);
+  CHECK(search.speed.lowest() == 1.0);
+}
+
+TEST_CASE("a key that names no number, or one out of range, is an error with the nearest key") {
+  CHECK(refusal(Mobil{}, "idm.desird_speed", 1.0) ==
+        "f.json: idm.desird_speed: there is no number of that key; is it desired_speed?");
+  CHECK(refusal(Mobil{}, "politness", 1.0).find("is it politeness?") != std::string::npos);
+  CHECK(refusal(Mobil{}, "idm", 1.0) == "f.json: idm: there is no number of that key; name a number in it");
+  CHECK(refusal(Mobil{}, "", 1.0).find("there is no number of that key") != std::string::npos);
+  CHECK(refusal(Search{}, "discount", 1.5) == "f.json: discount: is 1.5; give a value in [0, 1]");
+  CHECK(refusal(Search{}, "depth", 4.0) == "f.json: depth: is no real number; name another parameter");
+  CHECK(refusal(Search{}, "parts.low", 0.5).find("there is no number of that key") != std::string::npos);
+  CHECK(refusal(Search{}, "speed.clipped_normal.low", 0.5).find("there is no number") != std::string::npos);
+}
+
+TEST_CASE("a clipped normal distribution stays within its bounds, and is normal between them") {
+  RandomStream random(3, 0, 0);
+  Distribution const drawn = ClippedNormal{.mean = 10.0, .deviation = 2.0, .low = 8.0, .high = 13.0};
+  int low = 0, below_mean = 0;
+  constexpr int draws = 20'000;
+  for (int i = 0; i < draws; ++i) {
+    double const x = drawn(random);
+    CHECK(x >= 8.0);
+    CHECK(x <= 13.0);
+    low += x == 8.0;
+    below_mean += x < 10.0;
+  }
+  CHECK(static_cast<double>(low) / draws == doctest::Approx(0.1587).epsilon(0.06));  // of a normal, 1 deviation below
+  CHECK(static_cast<double>(below_mean) / draws == doctest::Approx(0.5).epsilon(0.03));
+  CHECK_THROWS_AS(check_parameters(ClippedNormal{.low = 2.0, .high = 1.0}), ParameterError);
+}

@@ -1,0 +1,145 @@
+// `--parameters FILE` and `--print-parameters`, which all examples that run behaviours have.
+#include <doctest/doctest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "sampled_example.hpp"
+
+using program::content_of;
+using program::Program;
+
+namespace {
+
+std::string written(std::filesystem::path const& file, std::string const& text) {
+  std::ofstream(file) << text;
+  return file.string();
+}
+
+std::vector<std::string> joined(std::vector<std::string> words, std::vector<std::string> const& more) {
+  words.insert(words.end(), more.begin(), more.end());
+  return words;
+}
+
+}  // namespace
+
+TEST_CASE("sampled examples: printed parameters read back as the same results, changed ones give others") {
+  struct Case {
+    std::string name, change;
+  };
+  for (auto const& example : {Case{"merging", R"({"idm_classic": {"time_headway": 3}})"},
+                              Case{"zip_merge", R"({"format": 1, "zip_merge": {"idm": {"time_headway": 3}}})"},
+                              Case{"highway", R"({"mobil": {"idm": {"desired_speed": 18}}})"},
+                              Case{"intersection", R"({"junction_traffic": {"most_vehicles": 5}})"}}) {
+    auto const &name = example.name, &change = example.change;
+    CAPTURE(name);
+    Program const program(name);
+    if (!program.is_there()) return;
+    browser::TemporaryFolder const folder;
+    auto const summary = [&](std::string const& out, std::vector<std::string> const& more) {
+      auto const run = program.run(joined({"--scenarios", "60", "--out", (folder.path() / out).string()}, more));
+      CHECK(run.code == 0);
+      CHECK(run.err.empty());
+      return content_of(folder.path() / out / "summary.json");
+    };
+    auto const printed = program.run({"--scenarios", "60", "--print-parameters"});
+    REQUIRE(printed.code == 0);
+    CHECK(printed.out.find("\"format\": 1") != std::string::npos);
+    auto const usual = summary("usual", {});
+    CHECK(sampled_example::value_of(usual, "scenarios") == 60.0);
+    CHECK(summary("same", {"--parameters", written(folder.path() / "same.json", printed.out)}) == usual);
+    auto const file = written(folder.path() / "other.json", change);
+    CHECK(summary("other", {"--parameters", file}) != usual);
+    CHECK(program.run({"--scenarios", "60", "--print-parameters", "--parameters", file}).out != printed.out);
+  }
+}
+
+TEST_CASE("a wrong file of parameters is refused with file, key and remedy") {
+  Program const program("highway");
+  if (!program.is_there()) return;
+  browser::TemporaryFolder const folder;
+  auto const refusal = [&](std::string const& text) {
+    auto const file = written(folder.path() / "p.json", text);
+    auto const run = program.run({"--parameters", file, "--out", (folder.path() / "out").string()});
+    CHECK(run.code == 2);
+    CHECK(run.out.empty());
+    CHECK(run.err.find("highway: " + file + ": ") == 0);
+    return run.err.substr(run.err.find("p.json: ") + 8);
+  };
+  CHECK(refusal(R"({"mobill": {}})") == "this program has no parameters \"mobill\"; is it mobil?\n");
+  CHECK(refusal(R"({"mobil": {"politness": 1}})") == "mobil: has no field \"politness\"; is it politeness?\n");
+  CHECK(refusal(R"({"mobil": {"idm": {"desired_speed": "fast"}}})") ==
+        "mobil.idm.desired_speed: is \"fast\"; give a number\n");
+  CHECK(refusal(R"({"mobil": {"idm": {"time_headway": -1}}})").find("mobil.idm.time_headway: is -1 s; give a value") ==
+        0);
+  CHECK(refusal(R"({"format": 2})") == "format: is not 1, the one that this version reads; write \"format\": 1\n");
+  CHECK(refusal("[1]").find("is a list; give an object") == 0);
+  auto const absent = program.run({"--parameters", "nowhere.json"});
+  CHECK(absent.code == 2);
+  CHECK(absent.err.find("nowhere.json: the file cannot be opened") != std::string::npos);
+}
+
+TEST_CASE("ring, lane_change, replace_agents, soak and benchmark take parameters") {
+  struct Case {
+    std::string name, right, wrong, message;
+    std::vector<std::string> words;
+  };
+  Case const cases[] = {{"ring",
+                         R"({"idm": {"time_headway": 0.7}})",
+                         R"({"idm_classic": {}})",
+                         "no parameters \"idm_classic\"",
+                         {"--length", "600", "--minutes", "1", "--density", "30"}},
+                        {"lane_change",
+                         R"({"idm_classic": {"desired_speed": 9}})",
+                         R"({"mcts": {"option": {}}})",
+                         "is it options?",
+                         {"--scenarios", "3", "--iterations", "20", "--variation", "0.4"}},
+                        {"replace_agents",
+                         R"({"mobil": {"idm": {"desired_speed": 3}}})",
+                         R"({"mobil": {"idm": {"exponent": []}}})",
+                         "mobil.idm.exponent: is []",
+                         {"--recordings", "1", "--iterations", "2"}},
+                        {"soak",
+                         R"({"idm_classic": {"time_headway": 3}})",
+                         R"({"zip_merg": {}})",
+                         "is it zip_merge?",
+                         {"--map", CAMBIUM_SOURCE_DIR "/maps/lane_drop.xodr", "--minutes", "2", "--threads", "1"}},
+                        {"benchmark",
+                         R"({"idm": {"time_headway": 3}})",
+                         R"({"mcts": {}})",
+                         "is it mcts_",
+                         {"--set", "merging", "--behaviors", "idm", "--scenarios", "3", "--threads", "1"}}};
+  for (auto const& example : cases) {
+    auto const &name = example.name, &right = example.right, &wrong = example.wrong, &message = example.message;
+    auto const& words = example.words;
+    CAPTURE(name);
+    Program const program(name);
+    if (!program.is_there()) return;
+    browser::TemporaryFolder const folder;
+    bool const has_json = name != "ring";
+    auto const figures = [&](std::string const& label, std::vector<std::string> const& more) {
+      auto all = joined(words, more);
+      auto const file = folder.path() / (label + ".json");
+      if (has_json) all = joined(all, {"--json", file.string()});
+      if (name == "benchmark") all = joined(all, {"--db", (folder.path() / (label + ".db")).string()});
+      if (name == "ring" || name == "lane_change") all = joined(all, {"--out", (folder.path() / label).string()});
+      auto const run = program.run(all);
+      CAPTURE(run.err);
+      CHECK(run.code == 0);
+      return content_of(has_json ? file : folder.path() / label / "summary.json");
+    };
+    auto const usual = figures("usual", {});
+    CHECK(usual.size() > 100);
+    CHECK(figures("changed", {"--parameters", written(folder.path() / "right.json", right)}) != usual);
+    auto const printed = program.run({"--print-parameters"});
+    CHECK(printed.code == 0);
+    auto const again = written(folder.path() / "printed.json", printed.out);
+    CHECK(program.run({"--parameters", again, "--print-parameters"}).out == printed.out);
+    auto const refused = program.run({"--parameters", written(folder.path() / "wrong.json", wrong)});
+    CHECK(refused.code == 2);
+    CHECK(refused.err.find("wrong.json") != std::string::npos);
+    CHECK(refused.err.find(message) != std::string::npos);
+  }
+}

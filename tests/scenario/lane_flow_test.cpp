@@ -1,0 +1,220 @@
+#include <cambium/cambium.hpp>
+#include <cambium/map/opendrive.hpp>
+#include <cambium/scenario/recipe.hpp>
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "../support/maps.hpp"
+
+using namespace cambium;
+
+namespace {
+
+using Sim = World<BehaviorSet<Mobil, IdmClassic, Intersection>, InterpolateExecution, SingleTrack>;
+using Flow = LaneFlow<Sim>;
+using Driver = DriverShare<Sim>;
+using Recipe = ScenarioRecipe<Sim>;
+
+std::vector<Scenario<Sim>> drawn(std::string const& map, std::vector<Flow> flows, std::uint32_t scenarios = 40,
+                                 InflowRules const& room = Recipe{}.room) {
+  return draw(Recipe{.seed = 4, .scenarios = scenarios, .flows = std::move(flows), .room = room},
+              support::own_map(map));
+}
+
+std::string refusal(std::string const& map, std::vector<Flow> flows) {
+  try {
+    static_cast<void>(drawn(map, std::move(flows), 1));
+  } catch (Error const& error) {
+    return error.what();
+  }
+  return "accepted";
+}
+
+LaneId highway_lane(int number) { return support::own_map("highway.xodr")->find_lane("1", 0.0, number); }
+
+}  // namespace
+
+TEST_CASE("the simplest flow spreads vehicles uniformly over a lane") {
+  for (auto const& scenario : drawn("highway.xodr",
+                                    {Flow{.from = highway_lane(-2),
+                                    .traffic = {.begin = 100.0,
+                                               .end = 700.0,
+                                               .speed = Uniform{20.0, 21.0},
+                                               .desired_speed = Uniform{25.0, 25.0},
+                                               .gap = Uniform{20.0, 40.0}}}},
+                                    40, {.headway = 0.3, .minimum_gap = 1.0, .deceleration = 5.0})) {
+    auto const& agents = scenario.agents;
+    CHECK(agents.size() >= 12);  // vehicles of at most 10 m, gaps of at most 40 m
+    auto world = scenario.make_world();
+    for (auto const& agent : agents) {
+      auto const view = world.observe(*agent.id);
+      CHECK(view.place().s - agent.shape.rear >= 100.0);
+      CHECK(view.place().s + agent.shape.front <= 700.0);
+      if (auto const ahead = view.ahead()) {
+        CHECK(ahead->gap >= 20.0 - 1e-6);
+        CHECK(ahead->gap <= 40.0 + 1e-6);
+      }
+      CHECK(agent.speed >= 20.0);
+      CHECK(agent.speed <= 21.25);
+    }
+  }
+}
+
+TEST_CASE("kinds of drivers have their shares, vehicles and drawn parameters") {
+  auto const scenarios = drawn(
+      "highway.xodr", {Flow{.from = highway_lane(-2),
+                            .traffic = {.end = 600.0, .speed = Uniform{18.0, 22.0}, .mix = {.truck_share = 0.0}},
+                            .drivers = {Driver{.share = 3.0,
+                                               .behavior = Mobil{},
+                                               .drawn = {{"idm.desired_speed", ClippedNormal{28.0, 3.0, 24.0, 33.0}},
+                                                         {"politeness", Uniform{0.1, 0.2}}}},
+                                        Driver{.share = 1.0,
+                                               .vehicle = Driver::Vehicle::truck,
+                                               .behavior = IdmClassic{.desired_speed = 22.0}}},
+                            .controlled_share = 0.25}});
+  int cars = 0, trucks = 0, controlled = 0;
+  double sum = 0.0, lowest = 1e9, highest = 0.0;
+  for (auto const& scenario : scenarios) {
+    controlled += static_cast<int>(scenario.controlled.size());
+    for (auto const& agent : scenario.agents) {
+      if (auto const* const mobil = std::get_if<Mobil>(&agent.behavior)) {
+        ++cars;
+        CHECK(agent.shape == geometry::car());
+        CHECK(mobil->politeness >= 0.1);
+        CHECK(mobil->politeness <= 0.2);
+        sum += mobil->idm.desired_speed;
+        lowest = std::min(lowest, mobil->idm.desired_speed);
+        highest = std::max(highest, mobil->idm.desired_speed);
+      } else {
+        ++trucks;
+        CHECK(agent.shape == geometry::truck());
+        CHECK(std::get<IdmClassic>(agent.behavior).desired_speed == 22.0);
+      }
+    }
+  }
+  CHECK(static_cast<double>(cars) / (cars + trucks) == doctest::Approx(0.75).epsilon(0.08));
+  CHECK(static_cast<double>(controlled) / (cars + trucks) == doctest::Approx(0.25).epsilon(0.25));
+  CHECK(sum / cars == doctest::Approx(28.2).epsilon(0.02));
+  CHECK(lowest == 24.0);
+  CHECK(highest == 33.0);
+}
+
+TEST_CASE("bicycles ride as cyclists do") {
+  int bicycles = 0;
+  for (auto const& scenario :
+       drawn("highway.xodr", {Flow{.from = highway_lane(-3), .traffic = {.mix = {.bicycle_share = 0.5}}}}))
+    for (auto const& agent : scenario.agents)
+      if (agent.shape == geometry::bicycle()) {
+        ++bicycles;
+        CHECK(agent.speed <= presets::cyclist().desired_speed);
+        CHECK(equal_parameters(agent.dynamics, presets::bicycle_dynamics()));
+      }
+  CHECK(bicycles > 40);
+}
+
+TEST_CASE("flows lead from sources to sinks, named by lane or by point; nobody overlaps or must collide at once") {
+  auto const map = support::own_map("intersection_4way.xodr");
+  std::vector<Flow> by_lane, by_point;
+  for (auto const& source : find_sources(*map)) {
+    RandomStream random(2, static_cast<std::uint32_t>(index_of(source.lane)), 0);
+    auto const route = random_route(*map, source.lane, random);
+    Flow flow{.traffic = {.end = 1000.0, .speed = Uniform{3.0, 12.0}},
+              .drivers = {Driver{.behavior = Intersection{.idm = {.time_headway = 1.2}}}},
+              .ego = by_lane.empty() ? Flow::Ego::random : Flow::Ego::none};
+    flow.from = route.lanes.front();
+    flow.to = route.lanes.back();
+    by_lane.push_back(flow);
+    flow.from = flow.to = none<LaneId>;
+    flow.from_point = map->lane(route.lanes.front()).path.pose(20.0).position();
+    flow.to_point = map->lane(route.lanes.back()).path.pose(20.0).position();
+    by_point.push_back(flow);
+  }
+  REQUIRE(by_lane.size() >= 4);
+  auto const scenarios = drawn("intersection_4way.xodr", by_lane, 60),
+             twins = drawn("intersection_4way.xodr", by_point, 60);
+  for (std::size_t i = 0; i < scenarios.size(); ++i) {
+    CHECK(equal_parameters(scenarios[i], twins[i]));
+    CHECK(is_valid(scenarios[i].ego));
+    auto world = scenarios[i].make_world();
+    CHECK(world.size() > by_lane.size());
+    for (auto const& agent : scenarios[i].agents)
+      CHECK(std::any_of(by_lane.begin(), by_lane.end(), [&](Flow const& flow) {
+        return agent.route->lanes.front() == flow.from && agent.route->lanes.back() == flow.to;
+      }));
+    CHECK_FALSE(AnyCollision{}(world));
+    for (int step = 0; step < 50; ++step) {
+      REQUIRE(world.step(0.2));
+      CHECK_FALSE(AnyCollision{}(world));
+      for (Slot slot{}; step < 15 && index_of(slot) < world.size(); ++slot) CHECK(Acceleration{}(world, slot) > -4.0);
+    }
+  }
+}
+
+TEST_CASE("a flow to the lane beside begins in its own lane") {
+  for (auto const& scenario : drawn("highway.xodr", {Flow{.from = highway_lane(-3), .to = highway_lane(-2)}}, 5)) {
+    auto world = scenario.make_world();
+    for (auto const& agent : scenario.agents) {
+      auto const view = world.observe(*agent.id);
+      CHECK(view.corridor().lane_at(view.place().s).lane == highway_lane(-3));
+      CHECK(agent.route->lanes.back() == highway_lane(-2));
+    }
+  }
+}
+
+TEST_CASE("the ego is who the rule says, alone with a goal where that is asked for") {
+  auto const from = highway_lane(-3);
+  Goal const goal = ReachLane{highway_lane(-2), 700.0};
+  for (auto const rule : {Flow::Ego::first, Flow::Ego::middle, Flow::Ego::last, Flow::Ego::random})
+    for (auto const& scenario : drawn("highway.xodr", {Flow{.from = from,
+                                                      .traffic = {.end = 400.0},
+                                                      .goal = goal,
+                                                      .goal_of = Flow::GoalOf::ego,
+                                                      .ego = rule,
+                                                      .controlled_share = 1.0}})) {
+      auto const& agents = scenario.agents;
+      CHECK(scenario.controlled.size() + 1 == agents.size());
+      CHECK(std::count(scenario.controlled.begin(), scenario.controlled.end(), scenario.ego) == 0);
+      for (std::size_t i = 0; i < agents.size(); ++i) {
+        bool const is_ego = agents[i].id.given() == scenario.ego;
+        CHECK(std::holds_alternative<ReachLane>(agents[i].goal.given()) == is_ego);
+        if (rule == Flow::Ego::first) CHECK(is_ego == (i == 0));
+        if (rule == Flow::Ego::last) CHECK(is_ego == (i + 1 == agents.size()));
+        if (rule == Flow::Ego::middle) CHECK(is_ego == (i == agents.size() / 2));
+      }
+    }
+}
+
+TEST_CASE("what a flow cannot do is an error that says where and what to do") {
+  auto const from = highway_lane(-2);
+  CHECK(refusal("highway.xodr", {Flow{.from = from}}) == "accepted");
+  CHECK(refusal("highway.xodr", {Flow{.from = highway_lane(-4)}}) ==
+        "recipe.flows[0].from: there is no such lane for vehicles; examples/run map FILE lists the lanes");
+  CHECK(refusal("highway.xodr", {Flow{.from = LaneId{77}}}).find("there is no such lane") != std::string::npos);
+  CHECK(refusal("highway.xodr", {Flow{.from = from, .drivers = {Driver{.share = 0.0, .behavior = Mobil{}}}}}) ==
+        "recipe.flows[0]: has only drivers whose share is 0; give one of them a share");
+  auto const exit = support::own_map("highway_exit.xodr");
+  CHECK(refusal("highway_exit.xodr",
+                {Flow{.from = exit->find_lane("2", 200.0, -1), .to = exit->find_lane("1", 10.0, -1)}}) ==
+        "recipe.flows[0]: no way leads from its source to its sink; examples/run map FILE --reachable lists where one "
+        "gets");
+  CHECK(refusal("highway.xodr", {Flow{.from_point = geometry::Point{0.0, 900.0}}}) ==
+        "recipe.flows[0].from_point: no drivable lane is within 5 m of it; look at examples/run map FILE --picture");
+  CHECK(refusal("highway.xodr", {Flow{.from = from, .from_point = geometry::Point{0.0, 0.0}}}) ==
+        "recipe.flows[0]: has both from and from_point; leave out one of them");
+  CHECK(refusal("highway.xodr",
+                {Flow{.from = from, .ego = Flow::Ego::first}, Flow{.from = from, .ego = Flow::Ego::last}}) ==
+        "recipe.flows[1]: is the second flow with an ego; let one flow have it");
+  auto const with = [&](DrawnParameter const& parameter) {
+    return std::vector<Flow>{Flow{.from = from, .drivers = {Driver{.behavior = Mobil{}, .drawn = {parameter}}}}};
+  };
+  CHECK(refusal("highway.xodr", with({"idm.desird_speed", Uniform{20.0, 30.0}})) ==
+        "recipe.flows[0].drivers[0].drawn[0]: idm.desird_speed: there is no number of that key; is it desired_speed?");
+  CHECK(
+      refusal("highway.xodr", with({"idm.time_headway", ClippedNormal{1.0, 0.5}})).find("idm.time_headway: is -inf") !=
+      std::string::npos);
+}
