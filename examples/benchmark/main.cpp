@@ -5,8 +5,5 @@
 
 int main(int argc, char** argv) {
   using namespace benchmark;
-  return cb::benchmark_main<Traffic>(argc, argv,
-                                     {idm(), mobil(), intersection(), proposals(), policy_tree(), frenet(),
-                                      mcts_single_agent(), mcts_cooperative(), mcts_hypothesis()},
-                                     {.sets = CAMBIUM_SOURCE_DIR "/examples/benchmark/sets"});
+  return cb::benchmark_main<Traffic>(argc, argv, shipped(), {.sets = CAMBIUM_SOURCE_DIR "/examples/benchmark/sets"});
 }

@@ -52,4 +52,17 @@ template <class Planner, class SetSpeed>
 [[nodiscard]] Contender mcts_cooperative();
 [[nodiscard]] Contender mcts_hypothesis();
 
+/// All of them.
+[[nodiscard]] inline std::vector<Contender> shipped() {
+  return {idm(),
+          mobil(),
+          intersection(),
+          proposals(),
+          policy_tree(),
+          frenet(),
+          mcts_single_agent(),
+          mcts_cooperative(),
+          mcts_hypothesis()};
+}
+
 }  // namespace benchmark

@@ -344,9 +344,9 @@ CAMBIUM_COLD std::vector<Table> summary_of(std::vector<ResultGroup> const& group
       table.rows.push_back({groups[g].label, std::to_string(groups[g].rows.size())});
       for (auto const* const measure : chosen) {
         double const value = detail::mean_of_measure(groups[g], *measure);
-        table.rows.back().push_back(measure->is_share              ? detail::fixed_text(100.0 * value, 1)
-                                    : measure->key == "duration_s" ? detail::fixed_text(value, 1)
-                                                                   : detail::fixed_text(value, value < 0.1 ? 5 : 2));
+        bool const is_rounded = measure->is_share || measure->key == "duration_s";
+        table.rows.back().push_back(is_rounded ? detail::fixed_text(measure->is_share ? 100.0 * value : value, 1)
+                                               : detail::short_text(value));
       }
     }
     tables.push_back(std::move(table));

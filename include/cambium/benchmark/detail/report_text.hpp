@@ -20,6 +20,12 @@ namespace cambium::detail {
   return text.find_first_not_of("-0.") == text.npos && text.front() == '-' ? text.substr(1) : text;
 }
 
+/// `value` with three significant digits.
+[[nodiscard]] inline std::string short_text(double value) {
+  char buffer[40];
+  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, 3).ptr};
+}
+
 /// "least gap [m]".
 [[nodiscard]] inline std::string titled(Measure const& measure) {
   return measure.unit.empty() ? measure.name : measure.name + " [" + measure.unit + "]";
