@@ -23,6 +23,14 @@ using namespace cambium;
 
 namespace {
 
+/// The outcome that a process for jobs gives.
+JobOutcome outcome_in(detail::JobProcess& process, std::size_t job) {
+  process.start(job);
+  for (;;)
+    if (auto const bytes = process.wait(100)) return detail::read_outcome(*bytes);
+}
+
+#ifdef CAMBIUM_MPIEXEC
 /// All rows of a database but their times, as text.
 std::string results_in(std::filesystem::path const& file) {
   auto store = ResultStore::existing(file);
@@ -41,14 +49,6 @@ std::ptrdiff_t files_in(std::filesystem::path const& folder) {
   return std::distance(std::filesystem::directory_iterator(folder), {});
 }
 
-/// The outcome that a process for jobs gives.
-JobOutcome outcome_in(detail::JobProcess& process, std::size_t job) {
-  process.start(job);
-  for (;;)
-    if (auto const bytes = process.wait(100)) return detail::read_outcome(*bytes);
-}
-
-#ifdef CAMBIUM_MPIEXEC
 /// Runs a program under MPI, also as root and on few cores.
 program::Run run_mpi(std::string const& words, std::filesystem::path const& folder) {
   auto const out = folder / "out", err = folder / "err";
@@ -163,6 +163,16 @@ TEST_CASE("a benchmark goes on without a rank that dies, or is finished by the s
   CHECK(lines_in(results_in(folder.path() / "off.db")) < 60);
   CHECK(run_mpi(command("", "off.db"), folder.path()).code == 0);
   CHECK(results_in(folder.path() / "off.db") == results_in(folder.path() / "on.db"));
+
+  program::Program const example("benchmark_on_ranks");
+  if (example.is_there()) {
+    auto const run =
+        run_mpi(CAMBIUM_MPIEXEC " -n 2 " CAMBIUM_EXAMPLES_DIR "/benchmark_on_ranks --behaviors idm,mobil --db " +
+                    browser::quoted((folder.path() / "example.db").string()),
+                folder.path());
+    CHECK(run.code == 0);
+    CHECK(run.out.find("16 runs in ") != std::string::npos);
+  }
 
   auto const refused = run_mpi(command("", "no/where.db/r.db") + " --behaviors nobody", folder.path());
   CHECK(refused.code != 0);  // and does not wait for ranks that wait for jobs
