@@ -120,7 +120,7 @@ class JobDispatcher {
   struct Worker {
     Clock::time_point heard = Clock::now();
     std::vector<std::size_t> jobs{};
-    bool is_lost = false;
+    bool is_ready = false, is_lost = false;  ///< ready: it has said something in this call
   };
 
   [[nodiscard]] static int rank_of(std::size_t worker) { return static_cast<int>(worker) + 1; }
@@ -128,8 +128,11 @@ class JobDispatcher {
   void hear(RankMessage const& message, Executor::Take const& take) {
     auto& worker = workers_[static_cast<std::size_t>(message.rank - 1)];
     worker.heard = Clock::now();
+    if (message.session < session_)  // it was silent when an earlier call ended
+      return send(ranks_, message.rank, end_message, message.session);
     worker.is_lost = false;
-    if (message.kind != outcome_message || message.session != session_) return;
+    worker.is_ready = true;
+    if (message.kind != outcome_message) return;
     std::erase(worker.jobs, message.job);
     if (left_.erase(message.job) > 0) take(message.job, read_outcome(message.content));
   }
@@ -147,7 +150,7 @@ class JobDispatcher {
       return;
     }
     if (says_alive) send(ranks_, rank_of(number), alive_message, session_);
-    while (!open_.empty() && worker.jobs.size() < (open_.size() > workers_.size() ? 2u : 1u)) {
+    while (worker.is_ready && !open_.empty() && worker.jobs.size() < (open_.size() > workers_.size() ? 2u : 1u)) {
       auto const job = open_.front();
       open_.pop_front();
       if (!left_.contains(job)) continue;
