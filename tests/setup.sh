@@ -44,6 +44,8 @@ have_package() {
     nlohmann-json3-dev) have_header nlohmann/json.hpp ;;
     libcli11-dev) have_header CLI/CLI.hpp ;;
     libsqlite3-dev) have_header sqlite3.h ;;
+    libboost-mpi-dev) have_header boost/mpi.hpp ;;
+    openmpi-bin) have mpirun ;;
     doctest-dev) have_header doctest/doctest.h ;;
     libbenchmark-dev) have_header benchmark/benchmark.h ;;
     *) have "$1" ;;

@@ -17,15 +17,7 @@ int main(int argc, char** argv) {
   program.allow_extras();  // for `benchmark_main`
   program.set_help_flag();
   return examples::run_program(program, argc, argv, [&] {
-    std::vector<Contender> const contenders{idm(file),
-                                            mobil(file),
-                                            intersection(file),
-                                            proposals(file),
-                                            policy_tree(file),
-                                            frenet(file),
-                                            mcts_single_agent(file),
-                                            mcts_cooperative(file),
-                                            mcts_hypothesis(file)};
+    auto const contenders = shipped(file);
     if (file.finish()) return 0;
     auto const rest = program.remaining();
     std::vector<char const*> words{argv[0]};

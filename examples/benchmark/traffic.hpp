@@ -57,4 +57,17 @@ template <class Planner, class SetSpeed>
 [[nodiscard]] Contender mcts_cooperative(examples::ParameterFile& file);
 [[nodiscard]] Contender mcts_hypothesis(examples::ParameterFile& file);
 
+/// All of them.
+[[nodiscard]] inline std::vector<Contender> shipped(examples::ParameterFile& file) {
+  return {idm(file),
+          mobil(file),
+          intersection(file),
+          proposals(file),
+          policy_tree(file),
+          frenet(file),
+          mcts_single_agent(file),
+          mcts_cooperative(file),
+          mcts_hypothesis(file)};
+}
+
 }  // namespace benchmark

@@ -15,6 +15,7 @@
 #include "cambium/benchmark/benchmark_main.hpp"
 #include "cambium/benchmark/comparison.hpp"
 #include "cambium/benchmark/contender.hpp"
+#include "cambium/benchmark/executor.hpp"
 #include "cambium/benchmark/html_report.hpp"
 #include "cambium/benchmark/measure.hpp"
 #include "cambium/benchmark/progress.hpp"

@@ -27,6 +27,7 @@ ResultGroup group_of(std::string const& behavior, std::int64_t count,
   ResultGroup group{.set_hash = 1,
                     .set = "merging",
                     .set_label = "merging",
+                    .source = "--set 'my sets/merging.json'",
                     .behavior = behavior,
                     .version = library_version,
                     .label = behavior};
@@ -38,7 +39,7 @@ ResultGroup group_of(std::string const& behavior, std::int64_t count,
 }
 
 void write(ResultStore& store, ResultGroup const& group) {
-  store.add_set(group.set_hash, group.set, group.rows.size());
+  store.add_set(group.set_hash, group.set, group.rows.size(), group.source);
   store.add_behavior(group.behavior, group.parameters_hash, group.parameters);
   for (auto const& row : group.rows)
     store.add({{group.set_hash, row.scenario, group.behavior, group.parameters_hash, group.version},
@@ -281,7 +282,8 @@ say('text', rows().length);
   CHECK(said("links") == "replays/merging_idm_4.html");
   CHECK(said("idm") == "10");
   CHECK(said("sorted") == "success error 2");
-  CHECK(said("command").find("examples/run benchmark --only merging:2:idm --replay ") == 0);
+  CHECK(said("command").find("examples/run benchmark --set 'my sets/merging.json' --only merging:2:idm --replay ") ==
+        0);
   CHECK(said("problem") == "true true");
   CHECK(said("text") == "1");
 }

@@ -5,12 +5,16 @@
 #include <cambium/core/write_file.hpp>
 #include <doctest/doctest.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "../examples/program.hpp"
 
 using namespace cambium;
 
@@ -50,6 +54,25 @@ struct GivesUp {
   }
 };
 
+/// Throws what is no exception.
+struct ThrowsNumber {
+  static constexpr char const* name = "throws_number";
+  static constexpr auto parameters() { return parameter_list(); }
+  template <class View>
+  Plan<View> plan(View const&, NoMemory&, double) const {
+    throw 42;
+  }
+};
+/// Keeps its speed, or returns no plan.
+struct Either {
+  bool gives_up = false;
+  static constexpr char const* name = "either";
+  template <class View>
+  Plan<View> plan(View const& view, NoMemory& memory, double dt) const {
+    return gives_up ? GivesUp{}.plan(view, memory, dt) : ConstantAcceleration{}.plan(view, memory, dt);
+  }
+};
+
 std::vector<Contender<Traffic>> contenders() {
   return {contender<Traffic>(IdmClassic{.desired_speed = 22.0}), contender<Traffic>(Mobil{}),
           contender<Traffic>(ConstantAcceleration{}, "keep_speed"), contender<Traffic>(Throws{}),
@@ -70,6 +93,24 @@ std::vector<ResultRow> rows_of(ResultStore& store) {
   std::vector<ResultRow> rows;
   store.for_each([&](ResultRow const& row) { rows.push_back(row); });
   return rows;
+}
+
+/// Names of the files of a folder; none if it is not there.
+std::vector<std::string> files_in(std::filesystem::path const& folder) {
+  std::vector<std::string> names;
+  std::error_code none;
+  for (auto const& entry : std::filesystem::directory_iterator(folder, none))
+    names.push_back(entry.path().filename().string());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// Does to a database what only its files allow.
+void execute(std::filesystem::path const& file, char const* sql) {
+  sqlite3* db = nullptr;
+  REQUIRE(sqlite3_open(file.c_str(), &db) == SQLITE_OK);
+  REQUIRE(sqlite3_exec(db, sql, nullptr, nullptr, nullptr) == SQLITE_OK);
+  sqlite3_close(db);
 }
 
 /// The rows but for their times, as text.
@@ -157,4 +198,132 @@ TEST_CASE("a store refuses what it cannot use") {
   auto still = merging_set(1);
   still.time_step = 0.0;
   CHECK_THROWS_AS(run_benchmark(still, contenders(), store), ParameterError);
+}
+
+TEST_CASE("failures leave replays, up to a number of each contender") {
+  Folder folder;
+  auto const set = merging_set(4);
+  ResultStore store(folder.path / "r.db");
+  BenchmarkOptions options{.threads = 2,
+                           .replays = Replays::failures,
+                           .replay_folder = folder.path / "replays",
+                           .most_replays = 3,
+                           .warn = [](auto const& sentence) { FAIL_CHECK(sentence); }};
+  run_benchmark(set, contenders(), store, options);
+  auto const files = files_in(options.replay_folder);
+  std::map<std::string, std::size_t> failures, replays;
+  for (auto const& row : rows_of(store)) {
+    auto const file = replay_file_name(set.title, row.key.behavior, row.key.scenario);
+    bool const is_there = std::find(files.begin(), files.end(), file) != files.end();
+    failures[row.key.behavior] += !row.result.success;
+    replays[row.key.behavior] += is_there;
+    CHECK_FALSE((is_there && row.result.success));
+  }
+  CHECK(failures["throws"] == 4);
+  CHECK(failures["idm_classic"] == 0);
+  for (auto const& [name, count] : failures) CHECK(replays[name] == std::min<std::size_t>(count, 3));
+  CHECK(program::content_of(options.replay_folder /
+                            *std::find_if(files.begin(), files.end(),
+                                          [](auto const& file) { return file.find("throws") != file.npos; }))
+            .find("error: out of ideas") != std::string::npos);
+
+  options.replays = Replays::all;
+  options.again = true;
+  options.replay_folder = folder.path / "all";
+  run_benchmark(set, contenders(), store, options);
+  CHECK(files_in(options.replay_folder).size() == 20);
+  options.replays = Replays::none;
+  options.replay_folder = folder.path / "no";
+  run_benchmark(set, contenders(), store, options);
+  CHECK_FALSE(std::filesystem::exists(options.replay_folder));
+}
+
+TEST_CASE("replays that cannot be written are reported once, and the results are there") {
+  Folder folder;
+  write_file(folder.path / "replays", "a file in the way");
+  std::vector<std::string> warnings;
+  ResultStore store(folder.path / "r.db");
+  run_benchmark(merging_set(3), contenders(), store,
+                {.replays = Replays::all, .replay_folder = folder.path / "replays", .warn = [&](auto const& sentence) {
+                   warnings.push_back(sentence);
+                 }});
+  CHECK(rows_of(store).size() == 15);
+  REQUIRE(warnings.size() == 1);
+  CHECK(warnings.front().find("a replay is missing, and perhaps others: ") == 0);
+  CHECK(warnings.front().find("replays") != std::string::npos);
+}
+
+TEST_CASE("a run whose plans take too long together ends with an error") {
+  auto const set = merging_set(1);
+  auto const idm = contender<Traffic>(IdmClassic{.desired_speed = 22.0});
+  auto const slow = idm.run(set.scenarios[0], {.plan_limit = 1e-12}, false);
+  CHECK(slow.result.steps == 1);
+  CHECK_FALSE(slow.result.success);
+  CHECK(slow.result.error.find("planned for ") == 0);
+  CHECK(slow.result.error.find(" s, longer than the limit of 1e-12 s") != std::string::npos);
+  CHECK(idm.run(set.scenarios[0], {.plan_limit = 1e6}, false).result.error == "");
+}
+
+TEST_CASE("an error names the agent that failed, and a failure of others is only counted") {
+  using Mixed = World<BehaviorSet<IdmClassic, GivesUp>, InterpolateExecution, SingleTrack>;
+  auto const plain = merging_set(1).scenarios[0];
+  REQUIRE(plain.agents.size() >= 3);
+  std::vector<AgentId> others;
+  for (auto const& spec : plain.agents)
+    if (*spec.id != plain.ego) others.push_back(*spec.id);
+  auto scenario = with_behaviors<Mixed>(plain, [&](auto const& spec) -> Mixed::Behavior {
+    if (*spec.id == others.front()) return GivesUp{};
+    return std::get<IdmClassic>(spec.behavior.given());
+  });
+  auto const counted = contender<Mixed>(IdmClassic{.desired_speed = 22.0}).run(scenario, {}, false).result;
+  CHECK(counted.error == "");
+  CHECK(counted.others_failed == 1);
+  CHECK(counted.steps > 1);
+
+  auto const both = contender<Mixed>(GivesUp{}, "gives_up").run(scenario, {}, false).result;
+  CHECK(both.error.find("agent " + to_string(plain.ego) + " (the ego)") == 0);
+  CHECK(both.error.find("the behaviour found no plan") != std::string::npos);
+
+  scenario.controlled = {others.back()};
+  auto const choose = [&](auto const& spec, auto const&) { return Either{.gives_up = *spec.id == others.back()}; };
+  auto const controlled = contender_by<Mixed>("either", "", 0, choose).run(scenario, {}, false).result;
+  CHECK(controlled.error.find("agent " + to_string(others.back()) + " (controlled)") == 0);
+  CHECK(controlled.steps == 1);
+}
+
+TEST_CASE("what a behaviour throws is an error, whatever it is") {
+  auto const run = contender<Traffic>(ThrowsNumber{}).run(merging_set(1).scenarios[0], {}, false);
+  CHECK(run.result.error == "threw what is no std::exception");
+}
+
+TEST_CASE("a store that cannot be read says so, and merges all of another or nothing") {
+  Folder folder;
+  auto const set = merging_set(2);
+  ResultStore first(folder.path / "first.db"), second(folder.path / "second.db");
+  run_benchmark(set, contenders(), first, {.shard = 0, .shards = 2});
+  run_benchmark(set, contenders(), second, {.shard = 1, .shards = 2});
+  auto const before = results_of(first);
+  execute(folder.path / "second.db", "DROP TABLE times");
+  CHECK_THROWS_AS(first.merge(second), StoreError);
+  CHECK(results_of(first) == before);
+  execute(folder.path / "first.db", "DROP TABLE results");
+  CHECK_THROWS_AS(static_cast<void>(first.has({.behavior = "idm"})), StoreError);
+}
+
+TEST_CASE("a database of an older version is read, and gets the columns that it lacks") {
+  Folder folder;
+  auto const set = merging_set(2);
+  std::string before;
+  {
+    ResultStore store(folder.path / "old.db");
+    run_benchmark(set, contenders(), store);
+    before = results_of(store);
+  }
+  execute(folder.path / "old.db", "ALTER TABLE results DROP COLUMN others_failed");
+  execute(folder.path / "old.db", "ALTER TABLE sets DROP COLUMN source");
+  auto store = ResultStore::existing(folder.path / "old.db");
+  CHECK(results_of(store) == before);
+  CHECK(store.source_of(set.hash()) == "");
+  CHECK(run_benchmark(set, contenders(), store, {.source = "--set merging"}) == 0);
+  CHECK(store.source_of(set.hash()) == "--set merging");
 }

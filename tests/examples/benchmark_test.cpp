@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <filesystem>
 #include <string>
 #include <thread>
 #include <vector>
@@ -97,6 +98,29 @@ TEST_CASE("the benchmark repeats one scenario and writes its replay") {
   CHECK(content_of(replay).find("merging, scenario 3, idm") != std::string::npos);
 }
 
+TEST_CASE("failed runs leave replays that the report links, and a command that repeats them") {
+  Program const program("benchmark"), report("report");
+  if (!program.is_there() || !report.is_there()) return;
+  browser::TemporaryFolder const folder;
+  auto const file = [&](char const* name) { return (folder.path() / name).string(); };
+  std::vector<std::string> const words{"--set", "exit", "--behaviors", "idm", "--scenarios", "3", "--db", file("r.db")};
+  REQUIRE(program.run(words).code == 0);
+  CHECK(content_of(file("replays/exit_idm_0.html")).find("exit, scenario 0, idm") != std::string::npos);
+  REQUIRE(report.run({"--db", file("r.db"), "--html", file("r.html")}).code == 0);
+  auto const page = content_of(file("r.html"));
+  CHECK(page.find("\"made\":[0,1,2]") != std::string::npos);
+  CHECK(page.find("\"source\":\"--set examples/exit --scenarios 3\"") != std::string::npos);
+  auto const again = program.run({"--set", "examples/exit", "--scenarios", "3", "--only", "exit:2:idm"});
+  CHECK(again.code == 0);
+  CHECK(again.out.find("success: false") != std::string::npos);
+
+  auto const none = program.run({"--set", "exit", "--behaviors", "idm", "--scenarios", "3", "--db", file("none/r.db"),
+                                 "--replays", "none", "--plan-limit", "1e-9", "--json", file("r.json")});
+  CHECK(none.code == 0);
+  CHECK_FALSE(std::filesystem::exists(file("none/replays")));
+  CHECK(nlohmann::json::parse(content_of(file("r.json")))[0]["error"] == 1.0);
+}
+
 TEST_CASE("the benchmark names the fault in its options") {
   Program const program("benchmark");
   if (!program.is_there()) return;
@@ -121,6 +145,8 @@ TEST_CASE("the benchmark names the fault in its options") {
   says({"--set", "merging", "--only", "merging:99:idm"}, "give a number from 0 to 7");
   says({"--set", "merging", "--only", "merging"}, "write SET:NUMBER:BEHAVIOR");
   says({"--set", "merging", "--replay", "x.html"}, "needs --only");
+  says({"--replays", "some"}, "write failures, all or none");
+  says({"--plan-limit", "0"}, "give a number of seconds above 0");
   auto const replay = (folder.path() / "replay.html").string();
   REQUIRE(program.run({"--set", "merging", "--only", "merging:0:idm", "--replay", replay}).code == 0);
   says({"--set", "merging", "--db", replay + "/in_a_file.db"}, "in_a_file.db");

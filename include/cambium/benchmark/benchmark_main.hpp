@@ -1,24 +1,32 @@
 #pragma once
 
 #include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
+#include <cstring>
 #include <ctime>
 #include <exception>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <optional>
 #include <string>
 #include <system_error>
-#include <thread>
 #include <utility>
 #include <vector>
 
 #include "cambium/benchmark/contender.hpp"
 #include "cambium/benchmark/detail/arguments.hpp"
+#include "cambium/benchmark/detail/report_text.hpp"
+#include "cambium/benchmark/executor.hpp"
+#include "cambium/benchmark/measure.hpp"
 #include "cambium/benchmark/progress.hpp"
+#include "cambium/benchmark/read_results.hpp"
+#include "cambium/benchmark/report.hpp"
+#include "cambium/benchmark/result_group.hpp"
 #include "cambium/benchmark/result_store.hpp"
 #include "cambium/benchmark/runner.hpp"
 #include "cambium/core/json_document.hpp"
@@ -35,24 +43,32 @@ struct BenchmarkDefaults {
   std::filesystem::path sets = "sets";          ///< `--set NAME` means the files in `sets`/NAME
   std::string set = "examples";                 ///< used without `--set`
   std::filesystem::path out = "out/benchmark";  ///< the database is `out`/results.db
+  Executor executor{};                          ///< where the jobs run, in place of threads; see `on_ranks`
 };
 
 namespace detail {
 
 [[nodiscard]] inline std::vector<Option> benchmark_options() {
-  return {{"--set", "FILE|NAME", "scenario files (.json) or names of sets, separated by commas"},
-          {"--behaviors", "A,B,...", "the behaviours to run; all without it"},
-          {"--scenarios", "N", "number of scenarios that each recipe draws, instead of its own"},
-          {"--seed", "S", "seed of the recipes, instead of their own"},
-          {"--threads", "T", "number of threads; the results do not depend on it"},
-          {"--db", "FILE", "database of the results; what it has already is not run again"},
-          {"--shard", "i/n", "run only the i-th of n parts, i from 0; merge the databases with examples/run report"},
-          {"--again", "", "run also what the database has already"},
-          {"--only", "SET:NUMBER:BEHAVIOR", "run one scenario and print what came of it"},
-          {"--replay", "FILE", "with --only: write a replay that opens in a browser"},
-          {"--json", "FILE", "write the table, a row a set and behaviour"},
-          {"--list", "", "list behaviours and sets, and exit"},
-          {"--help", "", "print this and exit"}};
+  return {
+      {"--set", "FILE|NAME", "scenario files (.json) or names of sets, separated by commas"},
+      {"--behaviors", "A,B,...", "the behaviours to run; all without it"},
+      {"--scenarios", "N", "number of scenarios that each recipe draws, instead of its own"},
+      {"--seed", "S", "seed of the recipes, instead of their own"},
+      {"--threads", "T", "number of threads; the results do not depend on it"},
+      {"--db", "FILE", "database of the results; what it has already is not run again"},
+      {"--shard", "i/n", "run only the i-th of n parts, i from 0; merge the databases with examples/run report"},
+      {"--plan-limit", "SECONDS",
+       "ends a run whose plans take longer than that together: an error. A plan that never returns is not ended. Off "
+       "without it, because the results then depend on the machine"},
+      {"--replays", "failures|all|none",
+       "the runs that leave a replay in the folder replays beside the database; failures (usual): of those of each "
+       "behaviour and set, the first 20"},
+      {"--again", "", "run also what the database has already"},
+      {"--only", "SET:NUMBER:BEHAVIOR", "run one scenario and print what came of it"},
+      {"--replay", "FILE", "with --only: write a replay that opens in a browser"},
+      {"--json", "FILE", "write the table, a row a set and behaviour"},
+      {"--list", "", "list behaviours and sets, and exit"},
+      {"--help", "", "print this and exit"}};
 }
 
 /// The scenario files that `--set` names: files, or in `folder` those of a folder, or one of the folder `usual`.
@@ -80,68 +96,50 @@ namespace detail {
   return files;
 }
 
-/// Numbers of the results of one behaviour on one set.
-struct Tally {
-  std::string set, behavior;
-  std::uint64_t parameters_hash = 0;
-  std::size_t scenarios = 0, success = 0, collision = 0, at_fault = 0, off_road = 0, timed_out = 0, error = 0;
-  double success_time = 0.0, ms = 0.0, score = 0.0;
-
-  void add(ResultRow const& row) {
-    auto const& r = row.result;
-    ++scenarios;
-    success += r.success;
-    collision += r.collision;
-    at_fault += r.at_fault;
-    off_road += r.off_road;
-    timed_out += r.timed_out;
-    error += !r.error.empty();
-    if (r.success) success_time += r.duration_s;
-    ms += row.times.mean_ms;
-    score += r.closed_loop_score;
+/// The table as JSON, a row a set and behaviour.
+[[nodiscard]] inline std::string summary_json(std::vector<ResultGroup> const& groups) {
+  std::vector<JsonValue> rows;
+  for (auto const& group : groups) {
+    std::map<std::string, double> means;
+    for (auto const& measure : measures()) means[measure.key] = mean_of_measure(group, measure);
+    auto successes = group;
+    std::erase_if(successes.rows, [](auto const& row) { return !row.result.success; });
+    for (auto const& measure : measures())
+      if (measure.key == "duration_s") means["mean_time_s"] = mean_of_measure(successes, measure);
+    std::vector<JsonValue::Member> row{{"set", {group.set}},
+                                       {"behavior", {group.behavior}},
+                                       {"parameters_hash", {hash_text(group.parameters_hash)}},
+                                       {"scenarios", {std::uint64_t{group.rows.size()}}}};
+    for (auto const& [name, key] : {std::pair{"success", "success"},
+                                    {"collision", "collision"},
+                                    {"collision_at_fault", "at_fault"},
+                                    {"off_road", "off_road"},
+                                    {"timed_out", "timed_out"},
+                                    {"error", "error"},
+                                    {"mean_time_s", "mean_time_s"},
+                                    {"closed_loop_score", "closed_loop_score"},
+                                    {"ms_per_decision", "mean_ms"}})
+      row.push_back({name, {means.at(key)}});
+    rows.push_back({std::move(row)});
   }
-  [[nodiscard]] double share(std::size_t count) const {
-    return scenarios > 0 ? static_cast<double>(count) / static_cast<double>(scenarios) : 0.0;
-  }
-  [[nodiscard]] double mean(double sum, std::size_t count) const {
-    return count > 0 ? sum / static_cast<double>(count) : 0.0;
-  }
-};
-
-inline void print_tallies(std::vector<Tally> const& tallies) {
-  std::size_t wide = 9;
-  for (auto const& t : tallies) wide = std::max(wide, t.behavior.size());
-  std::string last;
-  for (auto const& t : tallies) {
-    if (t.set != last)
-      std::printf("\n  %s, %zu scenarios\n  %-*s %8s %9s %8s %8s %8s %6s %9s %6s %10s\n", t.set.c_str(), t.scenarios,
-                  static_cast<int>(wide), "behaviour", "success", "collision", "at fault", "off-road", "time-out",
-                  "error", "mean time", "score", "ms a plan");
-    last = t.set;
-    std::printf("  %-*s %6.1f %% %7.1f %% %6.1f %% %6.1f %% %6.1f %% %6zu %7.1f s %6.2f %10.3g\n",
-                static_cast<int>(wide), t.behavior.c_str(), 100 * t.share(t.success), 100 * t.share(t.collision),
-                100 * t.share(t.at_fault), 100 * t.share(t.off_road), 100 * t.share(t.timed_out), t.error,
-                t.mean(t.success_time, t.success), t.mean(t.score, t.scenarios), t.mean(t.ms, t.scenarios));
-  }
+  return print_json({std::move(rows)});
 }
 
-[[nodiscard]] inline std::string tallies_json(std::vector<Tally> const& tallies) {
-  std::vector<JsonValue> rows;
-  for (auto const& t : tallies)
-    rows.push_back({std::vector<JsonValue::Member>{{"set", {t.set}},
-                                                   {"behavior", {t.behavior}},
-                                                   {"parameters_hash", {hash_text(t.parameters_hash)}},
-                                                   {"scenarios", {std::uint64_t{t.scenarios}}},
-                                                   {"success", {t.share(t.success)}},
-                                                   {"collision", {t.share(t.collision)}},
-                                                   {"collision_at_fault", {t.share(t.at_fault)}},
-                                                   {"off_road", {t.share(t.off_road)}},
-                                                   {"timed_out", {t.share(t.timed_out)}},
-                                                   {"error", {t.share(t.error)}},
-                                                   {"mean_time_s", {t.mean(t.success_time, t.success)}},
-                                                   {"closed_loop_score", {t.mean(t.score, t.scenarios)}},
-                                                   {"ms_per_decision", {t.mean(t.ms, t.scenarios)}}}});
-  return print_json({std::move(rows)});
+/// The results that the database has of these sets and contenders, in their order.
+template <class World>
+[[nodiscard]] std::vector<ResultGroup> chosen_results(ResultStore& store, std::vector<ScenarioSet<World>> const& sets,
+                                                      std::vector<Contender<World>> const& contenders) {
+  auto all = read_results(store);
+  std::vector<ResultGroup> chosen;
+  for (auto const& set : sets) {
+    auto const hash = set.hash();
+    for (auto const& contender : contenders)
+      for (auto& group : all)
+        if (!group.rows.empty() && group.set_hash == hash && group.behavior == contender.name &&
+            group.parameters_hash == contender.parameters_hash && group.version == library_version)
+          chosen.push_back(std::exchange(group, {}));
+  }
+  return chosen;
 }
 
 [[nodiscard]] inline std::string time_of_day() {
@@ -171,7 +169,7 @@ template <class World>
 /// Runs one scenario again: `only` is "SET:NUMBER:BEHAVIOR".
 template <class World>
 int run_only(std::vector<ScenarioSet<World>> const& sets, std::vector<Contender<World>> const& contenders,
-             std::string const& only, std::optional<std::string> const& replay) {
+             double plan_limit, std::string const& only, std::optional<std::string> const& replay) {
   auto const parts = split(only, ":");
   if (parts.size() != 3) throw Error("--only " + only, "is no key", "write SET:NUMBER:BEHAVIOR, as merging:17:mobil");
   auto const set = std::find_if(sets.begin(), sets.end(), [&](auto const& s) { return s.title == parts[0]; });
@@ -181,7 +179,7 @@ int run_only(std::vector<ScenarioSet<World>> const& sets, std::vector<Contender<
     throw Error("--only " + only, "there is no such scenario",
                 "give a number from 0 to " + std::to_string(set->scenarios.size() - 1));
   auto const contender = chosen(contenders, {std::string(parts[2])}).front();
-  auto run = contender.run(set->scenarios[*number], {set->time_step, set->time_limit}, replay.has_value());
+  auto run = contender.run(set->scenarios[*number], {set->time_step, set->time_limit, plan_limit}, replay.has_value());
   std::cout << only << "\n  " << contender.parameters << "\n";
   for_each_parameter<RunResult>([&](auto const& entry) {
     using Field = std::remove_cvref_t<decltype(run.result.*entry.field)>;
@@ -192,25 +190,25 @@ int run_only(std::vector<ScenarioSet<World>> const& sets, std::vector<Contender<
       std::cout << with_unit(value_text(entry, ParameterValue(run.result.*entry.field)), entry.unit) << "\n";
   });
   if (replay && run.recording) {
-    run.recording->title = set->title + ", scenario " + std::to_string(*number) + ", " + contender.name;
-    run.recording->notes = {run.result.error.empty() ? (run.result.success     ? "success"
-                                                        : run.result.collision ? "collision"
-                                                        : run.result.timed_out ? "time-out"
-                                                                               : "left the road")
-                                                     : run.result.error};
-    write_html_replay(*replay, *run.recording);
+    write_html_replay(*replay, titled(std::move(*run.recording), set->title, *number, contender.name, run.result));
     std::cout << "  " << *replay << " plays it in a browser\n";
   }
   return 0;
 }
 
-template <class World>
-int run_benchmark_program(Arguments const& arguments, std::vector<Contender<World>> const& all,
-                          std::string const& command, BenchmarkDefaults const& defaults) {
-  auto const contenders = chosen(all, arguments.list("--behaviors"));
+/// The options of the command line; `database`: replays go beside it.
+[[nodiscard]] inline BenchmarkOptions options_of(Arguments const& arguments, std::filesystem::path const& database,
+                                                 Executor const& executor) {
   BenchmarkOptions options;
   options.threads = static_cast<std::size_t>(arguments.whole("--threads", 1, 4096).value_or(options.threads));
+  options.executor = executor.execute ? executor : on_threads(options.threads);
   options.again = arguments.has("--again");
+  options.plan_limit = arguments.seconds("--plan-limit").value_or(options.plan_limit);
+  options.replay_folder = database.parent_path() / "replays";
+  auto const replays = arguments.text("--replays").value_or("failures");
+  if (replays != "failures" && replays != "all" && replays != "none")
+    throw Error("--replays", "is '" + replays + "'", "write failures, all or none");
+  options.replays = replays == "failures" ? Replays::failures : replays == "all" ? Replays::all : Replays::none;
   if (auto const shard = arguments.text("--shard")) {
     auto const parts = split(*shard, "/");
     auto const i = parse_number<std::size_t>(parts[0]), n = parse_number<std::size_t>(parts.back());
@@ -219,9 +217,39 @@ int run_benchmark_program(Arguments const& arguments, std::vector<Contender<Worl
     options.shard = *i;
     options.shards = *n;
   }
+  return options;
+}
+
+/// `word` for a shell.
+[[nodiscard]] inline std::string shell_word(std::string const& word) {
+  auto const is_plain = [](unsigned char c) { return std::isalnum(c) != 0 || std::strchr("_-./,:=+", c) != nullptr; };
+  if (!word.empty() && std::ranges::all_of(word, is_plain)) return word;
+  std::string quoted = "'";
+  for (char const c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
+
+/// What names the set of a file on the command line, as in "--set examples/merging --seed 3".
+[[nodiscard]] inline std::string source_of(Arguments const& arguments, std::filesystem::path const& file,
+                                           std::filesystem::path const& folder) {
+  auto const below = file.lexically_relative(folder);
+  bool const is_below = !below.empty() && *below.begin() != "..";
+  std::string source = "--set " + shell_word(is_below ? below.parent_path() / below.stem() : file);
+  for (char const* option : {"--scenarios", "--seed"})
+    if (auto const value = arguments.text(option)) source += std::string(" ") + option + " " + *value;
+  return source;
+}
+
+template <class World>
+int run_benchmark_program(Arguments const& arguments, std::vector<Contender<World>> const& all,
+                          std::string const& command, BenchmarkDefaults const& defaults) {
+  std::filesystem::path const database = arguments.text("--db").value_or((defaults.out / "results.db").string());
+  auto options = options_of(arguments, database, defaults.executor);
+  auto const contenders = chosen(all, arguments.list("--behaviors"));
   auto const count = arguments.whole("--scenarios", 1, 10'000'000),
              seed = arguments.whole("--seed", 0, ~std::uint64_t{0});
   std::vector<ScenarioSet<World>> sets;
+  std::vector<std::string> sources;
   auto names = arguments.list("--set");
   if (names.empty()) names = {defaults.set};
   for (auto const& file : set_files(names, defaults.sets, defaults.set)) {
@@ -230,41 +258,34 @@ int run_benchmark_program(Arguments const& arguments, std::vector<Contender<Worl
       if (seed) recipe.seed = *seed;
     }));
     if (sets.back().title.empty()) sets.back().title = file.stem().string();
+    sources.push_back(source_of(arguments, file, defaults.sets));
   }
-  if (auto const only = arguments.text("--only")) return run_only(sets, contenders, *only, arguments.text("--replay"));
+  if (options.executor.is_worker) {
+    for (auto const& set : sets) serve_benchmark(set, contenders, options);
+    return 0;
+  }
+  if (auto const only = arguments.text("--only"))
+    return run_only(sets, contenders, options.plan_limit, *only, arguments.text("--replay"));
   if (arguments.has("--replay")) throw Error("--replay", "needs --only", "say which scenario to replay");
 
-  std::filesystem::path const file = arguments.text("--db").value_or((defaults.out / "results.db").string());
   std::error_code refused;  // then the store says what is wrong
-  if (file.has_parent_path()) std::filesystem::create_directories(file.parent_path(), refused);
-  ResultStore store(file);
+  if (database.has_parent_path()) std::filesystem::create_directories(database.parent_path(), refused);
+  ResultStore store(database);
   store.begin_run(time_of_day(), command);
   std::size_t jobs = 0;
   auto const begin = std::chrono::steady_clock::now();
-  for (auto const& set : sets) {
-    ProgressBar bar(set.title);
+  for (std::size_t s = 0; s < sets.size(); ++s) {
+    ProgressBar bar(sets[s].title);
     options.progress = [&bar](std::size_t done, std::size_t total) { bar(done, total); };
-    jobs += run_benchmark(set, contenders, store, options);
+    options.source = sources[s];
+    jobs += run_benchmark(sets[s], contenders, store, options);
   }
   double const seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-
-  std::vector<Tally> tallies;
-  for (auto const& set : sets)
-    for (auto const& contender : contenders)
-      tallies.push_back({.set = set.title, .behavior = contender.name, .parameters_hash = contender.parameters_hash});
-  std::vector<std::uint64_t> hashes;
-  for (auto const& set : sets) hashes.push_back(set.hash());
-  store.for_each([&](ResultRow const& row) {
-    for (std::size_t s = 0; s < sets.size(); ++s)
-      for (std::size_t c = 0; c < contenders.size(); ++c)
-        if (row.key.set_hash == hashes[s] && row.key.behavior == contenders[c].name &&
-            row.key.parameters_hash == contenders[c].parameters_hash && row.key.version == library_version)
-          tallies[s * contenders.size() + c].add(row);
-  });
-  print_tallies(tallies);
-  std::printf("\n  %zu runs in %.1f s on %zu threads; results in %s\n", jobs, seconds, options.threads,
-              file.string().c_str());
-  if (auto const json = arguments.text("--json")) write_file(*json, tallies_json(tallies));
+  auto const groups = chosen_results(store, sets, contenders);
+  for (auto const& table : summary_of(groups)) std::printf("\n%s", text_of(table).c_str());
+  std::printf("\n  %zu runs in %.1f s on %s; results in %s\n", jobs, seconds, options.executor.name.c_str(),
+              database.string().c_str());
+  if (auto const json = arguments.text("--json")) write_file(*json, summary_json(groups));
   return 0;
 }
 
@@ -279,10 +300,11 @@ int benchmark_main(int argc, char const* const* argv, std::vector<Contender<Worl
   auto const options = detail::benchmark_options();
   try {
     detail::Arguments const arguments(argc, argv, options);
+    if (defaults.executor.is_worker && (arguments.has("--help") || arguments.has("--list") || arguments.has("--only")))
+      return 0;  // that is the task of the process with the store
     if (arguments.has("--help")) {
       std::cout << "Runs behaviours on sets of scenarios.\n\n";
-      for (auto const& option : options)
-        std::printf("  %-32s %s\n", (option.name + " " + option.value).c_str(), option.sentence.c_str());
+      for (auto const& option : options) std::cout << detail::help_of(option);
       return 0;
     }
     if (arguments.has("--list")) {

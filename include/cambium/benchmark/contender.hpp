@@ -5,7 +5,9 @@
 #include <cmath>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -33,6 +35,9 @@ namespace cambium {
 struct RunOptions {
   double time_step = 0.2;    ///< [s]
   double time_limit = 60.0;  ///< [s]
+  /// Longest time that all plans of a run may take together, of the wall clock [s]. A run that exceeds it ends with an
+  /// error after that plan; a plan that never returns is not ended. The outcome then depends on the machine.
+  double plan_limit = std::numeric_limits<double>::infinity();
 };
 
 /// What a run gives: the result, the times, and the recording if one was asked for.
@@ -43,7 +48,8 @@ struct Run {
 };
 
 /// A behaviour under test: its name, its parameters as text and hash, and how it runs a scenario as the ego (and as
-/// the other controlled agents). Made by `contender`.
+/// the other controlled agents). `run` throws nothing: what a behaviour throws is the result's error. Made by
+/// `contender`.
 template <class ScenarioWorld>
 struct Contender {
   std::string name;
@@ -54,16 +60,20 @@ struct Contender {
 
 namespace detail {
 
-/// How long plans took.
+/// How long plans of the ego took, and those of other controlled agents.
 struct PlanClock {
   RunTimes times;
-  double limit_ms = 0.0, sum_ms = 0.0;
+  double step_ms = 0.0, sum_ms = 0.0, others_ms = 0.0;
 
-  void add(double ms) {
+  void add(double ms, bool is_ego) {
+    if (!is_ego) {
+      others_ms += ms;
+      return;
+    }
     ++times.decisions;
     sum_ms += ms;
     times.longest_ms = std::max(times.longest_ms, ms);
-    times.overruns += ms > limit_ms;
+    times.overruns += ms > step_ms;
   }
 };
 
@@ -71,16 +81,18 @@ struct PlanClock {
 template <class Behavior>
 struct Timed : Behavior {
   PlanClock* clock = nullptr;
+  bool is_ego = false;
 
   Timed() = default;
-  Timed(Behavior behavior, PlanClock* own) : Behavior(std::move(behavior)), clock(own) {}
+  Timed(Behavior behavior, PlanClock* own, bool drives_ego)
+      : Behavior(std::move(behavior)), clock(own), is_ego(drives_ego) {}
 
   template <class View, class... More>
   [[nodiscard]] Plan<View> plan(View const& view, MemoryOf<Behavior>& memory, double dt, More&... workspace) const {
     auto const begin = std::chrono::steady_clock::now();
     auto plan = Behavior::plan(view, memory, dt, workspace...);
     if (clock != nullptr)
-      clock->add(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count());
+      clock->add(std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - begin).count(), is_ego);
     return plan;
   }
 };
@@ -90,6 +102,15 @@ struct WithBehavior;
 template <class... Models, class Behavior>
 struct WithBehavior<BehaviorSet<Models...>, Behavior> {
   using type = BehaviorSet<Models..., Behavior>;
+};
+
+/// The size of what an evaluator says.
+template <class E>
+struct SizeOf {
+  template <class World>
+  [[nodiscard]] double operator()(World& world, Slot slot) const {
+    return std::abs(E{}(world, slot));
+  }
 };
 
 /// Judges a run of one agent.
@@ -108,12 +129,10 @@ class RunJudge {
     hard_brakings_.observe(world, ego_, dt);
     rss_.observe(world, ego_, dt);
     score_.observe(world, ego_, dt);
-    auto const& record = world.frame().agents[ego_];
-    if (record.status == AgentStatus::driving && dt > 0.0) {
-      jerk_ = std::max(jerk_, std::abs(Jerk{}(world, ego_)));
-      lateral_ = std::max(lateral_, std::abs(LateralAcceleration{}(world, ego_)));
-    }
-    result_.off_road = result_.off_road || OffRoad{}(world, ego_) || record.status == AgentStatus::off_route;
+    jerk_.observe(world, ego_, dt);
+    lateral_.observe(world, ego_, dt);
+    result_.off_road =
+        result_.off_road || OffRoad{}(world, ego_) || world.frame().agents[ego_].status == AgentStatus::off_route;
     if (auto const contact = Collision{}.contact(world, ego_)) {
       result_.collision = true;
       result_.hit = contact->agent;
@@ -136,8 +155,8 @@ class RunJudge {
     result_.least_time_to_collision = collision_time_.value();
     result_.post_encroachment_time = encroachment_.value();
     result_.hardest_braking = std::max(0.0, -braking_.value());
-    result_.largest_jerk = jerk_;
-    result_.largest_lateral_acceleration = lateral_;
+    result_.largest_jerk = std::max(0.0, jerk_.value());
+    result_.largest_lateral_acceleration = std::max(0.0, lateral_.value());
     result_.hard_brakings = static_cast<std::int64_t>(hard_brakings_.value());
     result_.rss_compliance = rss_.value();
     result_.closed_loop_score = score_.value();
@@ -156,7 +175,6 @@ class RunJudge {
   Slot ego_;
   RunResult result_;
   bool others_collide_ = false;
-  double jerk_ = 0.0, lateral_ = 0.0;
   Least<Gap> gap_;
   Least<TimeToCollision> collision_time_;
   PostEncroachmentTime encroachment_;
@@ -164,15 +182,34 @@ class RunJudge {
   Integral<Progress> progress_;
   Least<Acceleration> braking_;
   Times<HardBraking> hard_brakings_;
+  Most<SizeOf<Jerk>> jerk_;
+  Most<SizeOf<LateralAcceleration>> lateral_;
   RssCompliance rss_;
   ClosedLoopScore score_;
 };
 
-/// Runs a world until its ego is at its goal, collides, leaves the road or the map, or time is up. Without a goal, the
-/// ego has succeeded when it has come to the end of its route.
+/// Why a run cannot go on after a step with a problem: a behaviour under test, which drives `own` (the ego first), has
+/// failed. Empty if only others have.
 template <class World>
-[[nodiscard]] RunResult run_world(World& world, AgentId ego, RunOptions const& options, WorldRecorder* film) {
-  auto const slot = world.slot_of(ego);
+[[nodiscard]] std::string failure_of(World const& world, StepResult const& step, std::span<AgentId const> own) {
+  if (step.problem == StepProblem::bad_duration) return to_string(step.problem);
+  for (auto const id : own) {
+    if (world.frame().agents[world.slot_of(id)].status != AgentStatus::failed) continue;
+    auto const who = "agent " + to_string(id) + (id == own.front() ? " (the ego)" : " (controlled)");
+    if (id == step.agent) return who + ": " + to_string(step.problem);
+    return who + " failed in a step in which others did, the first agent " + to_string(step.agent) + ": " +
+           to_string(step.problem);
+  }
+  return {};
+}
+
+/// Runs a world until its ego is at its goal, collides, leaves the road or the map, time is up, or an agent of `own`
+/// (the ego first) fails. Without a goal, the ego has succeeded when it has come to the end of its route. Calls
+/// `after_step(world)`; a text that is not empty ends the run with this error.
+template <class World, class AfterStep>
+[[nodiscard]] RunResult run_world(World& world, std::span<AgentId const> own, RunOptions const& options,
+                                  AfterStep const& after_step) {
+  auto const slot = world.slot_of(own.front());
   bool const has_goal = !std::holds_alternative<NoGoal>(world.roster().goals[slot]);
   world.keep_history(1);
   RunJudge<World> judge(world, slot);
@@ -182,18 +219,17 @@ template <class World>
   while (!is_over) {
     auto const step = world.step(options.time_step);
     auto const status = world.frame().agents[slot].status;
-    if (step.problem == StepProblem::bad_duration || status == AgentStatus::failed) {
-      result.error = "agent " + to_string(step.agent) + ": " + to_string(step.problem);
-      is_over = true;
-    }
+    if (!step) result.error = failure_of(world, step, own);
+    if (result.error.empty()) result.others_failed += step.failed;
     judge.observe(world, options.time_step);
-    if (film != nullptr) film->record(world);
+    auto problem = after_step(world);
+    if (result.error.empty()) result.error = std::move(problem);
     bool const is_away = status != AgentStatus::driving && status != AgentStatus::not_started;
     bool const done =
         has_goal ? world.reached_goal(slot)
                  : status == AgentStatus::arrived || status == AgentStatus::left_map || status == AgentStatus::expired;
     result.success = done && !result.collision && result.error.empty();
-    is_over = is_over || result.collision || done || is_away;
+    is_over = !result.error.empty() || result.collision || done || is_away;
     result.timed_out = !is_over && world.frame().step >= most;
     is_over = is_over || result.timed_out;
   }
@@ -218,30 +254,40 @@ template <class ScenarioWorld, class Choose>
                                             bool records) {
     Run run;
     detail::PlanClock clock;
-    clock.limit_ms = 1e3 * options.time_step;
+    clock.step_ms = 1e3 * options.time_step;
+    std::optional<WorldRecorder> film;
     auto const begin = std::chrono::steady_clock::now();
     try {
       if (!is_valid(scenario.ego))
         throw WorldError("scenario", "has no ego", "name the agent that the benchmark is about");
+      std::vector<AgentId> own{scenario.ego};
+      own.insert(own.end(), scenario.controlled.begin(), scenario.controlled.end());
       auto const ours = with_behaviors<World>(scenario, [&](auto const& spec) -> typename World::Behavior {
         auto const id = spec.id.given().value_or(none<AgentId>);
-        bool const is_ours =
-            id == scenario.ego || std::ranges::find(scenario.controlled, id) != scenario.controlled.end();
-        if (is_ours) return Timed(choose(spec, scenario), id == scenario.ego ? &clock : nullptr);
+        if (std::ranges::find(own, id) != own.end()) return Timed(choose(spec, scenario), &clock, id == scenario.ego);
         return std::visit([](auto const& driver) -> typename World::Behavior { return driver; }, spec.behavior);
       });
       auto world = ours.make_world();
-      std::optional<WorldRecorder> film;
       if (records) {
         film.emplace(world);
         film->show_as(scenario.ego, RecordedAgentKind::ego, "ego");
       }
-      run.result = detail::run_world(world, scenario.ego, options, film ? &*film : nullptr);
-      if (film) run.recording = std::move(film->recording());
+      run.result = detail::run_world(world, own, options, [&](World const& now) -> std::string {
+        if (film) film->record(now);
+        double const planned = 1e-3 * (clock.sum_ms + clock.others_ms);
+        if (!(planned > options.plan_limit)) return {};
+        return "planned for " + detail::rounded_text(planned) + " s, longer than the limit of " +
+               detail::rounded_text(options.plan_limit) + " s for all plans of a run";
+      });
     } catch (std::exception const& problem) {
       run.result = {};
       run.result.error = problem.what();
+      if (run.result.error.empty()) run.result.error = "threw an exception without words";
+    } catch (...) {
+      run.result = {};
+      run.result.error = "threw what is no std::exception";
     }
+    if (film) run.recording = std::move(film->recording());
     run.times = clock.times;
     run.times.mean_ms = clock.times.decisions > 0 ? clock.sum_ms / static_cast<double>(clock.times.decisions) : 0.0;
     run.times.run_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

@@ -11,9 +11,10 @@ namespace cambium {
 /// What an HTML report says beside its tables.
 struct HtmlReportOptions {
   std::string title = "Benchmark";
-  std::filesystem::path replays = "replays";       ///< folder of replays; links to it are relative to the page
-  std::filesystem::path page_folder = ".";         ///< where the page will lie
-  std::string command = "examples/run benchmark";  ///< runs a scenario again, with `--only SET:NUMBER:BEHAVIOR`
+  std::filesystem::path replays = "replays";  ///< folder of replays; links to it are relative to the page
+  std::filesystem::path page_folder = ".";    ///< where the page will lie
+  std::string command =
+      "examples/run benchmark";  ///< runs a scenario again, with the set's source and `--only SET:NUMBER:BEHAVIOR`
 };
 
 /// Name of the file that replays a scenario: "merging_mobil_17.html". Letters that are trouble in file names become _.

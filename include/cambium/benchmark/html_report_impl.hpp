@@ -17,6 +17,7 @@
 #include "cambium/benchmark/detail/report_page.hpp"
 #include "cambium/benchmark/detail/report_text.hpp"
 #include "cambium/benchmark/html_report.hpp"
+#include "cambium/benchmark/run_result.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/core/markup.hpp"
@@ -24,16 +25,6 @@
 namespace cambium {
 
 namespace detail {
-
-/// How a run ended; each run ends in one way. Their colours are --o0 to --o5.
-inline constexpr std::array<char const*, 6> run_outcomes = {
-    "success", "collision, at fault", "collision, not at fault", "time-out", "error", "left the road or route"};
-
-[[nodiscard]] inline std::size_t outcome_of(RunResult const& result) {
-  if (!result.error.empty()) return 4;
-  if (result.collision) return result.at_fault ? 1 : 2;
-  return result.success ? 0 : result.timed_out ? 3 : 5;
-}
 
 /// `text` with what is no letter, digit, dot or dash as _.
 [[nodiscard]] inline std::string file_word(std::string text) {
@@ -143,8 +134,9 @@ inline constexpr std::array<char const*, 6> run_outcomes = {
   for (std::size_t g = 0; g < report.groups.size(); ++g) {
     auto const& group = report.groups[g];
     groups += (g == 0 ? "{\"set\":" : ",\n{\"set\":") + json_string(group.set_label) +
-              ",\"title\":" + json_string(group.set) + ",\"label\":" + json_string(group.label) +
-              ",\"behavior\":" + json_string(group.behavior) + ",\"hash\":\"" + std::to_string(group.set_hash) +
+              ",\"title\":" + json_string(group.set) + ",\"source\":" + json_string(group.source) +
+              ",\"label\":" + json_string(group.label) + ",\"behavior\":" + json_string(group.behavior) +
+              ",\"hash\":\"" + std::to_string(group.set_hash) +
               "\",\"file\":" + json_string(file_word(group.set) + "_" + file_word(group.behavior)) + "}";
     for (auto const& row : group.rows) {
       rows += (index == 0 ? "[" : ",\n[") + std::to_string(g) + "," + std::to_string(row.scenario) + "," +
@@ -163,7 +155,7 @@ inline constexpr std::array<char const*, 6> run_outcomes = {
       ++index;
     }
   }
-  std::string outcomes;
+  std::string outcomes;  // their colours are --o0 to --o5
   for (char const* outcome : run_outcomes) outcomes += (outcomes.empty() ? "" : ",") + json_string(outcome);
   return "{\"command\":" + json_string(options.command) +
          ",\"replays\":" + json_string(options.replays.generic_string()) +

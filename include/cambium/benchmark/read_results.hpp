@@ -31,6 +31,7 @@ namespace cambium {
   });
   for (auto& group : groups) {
     group.set = store.title_of(group.set_hash);
+    group.source = store.source_of(group.set_hash);
     group.parameters = store.parameters_of(group.behavior, group.parameters_hash);
   }
   for (auto& group : groups) {

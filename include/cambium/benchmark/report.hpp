@@ -45,6 +45,10 @@ struct Table {
 /// differences between each two; then the comparisons. Tables of means have at most `columns` measures.
 [[nodiscard]] std::vector<Table> tables_of(Report const& report, std::size_t columns = 7);
 
+/// One table a set of what matters most, without intervals: outcomes, duration, closed-loop score and planning time of
+/// each behaviour. Groups of a set are neighbours.
+[[nodiscard]] std::vector<Table> summary_of(std::vector<ResultGroup> const& groups);
+
 /// What a comparison says in one line: "significant loss: merging, mobil: success".
 [[nodiscard]] std::string verdict_of(Comparisons const& comparisons);
 

@@ -330,6 +330,30 @@ CAMBIUM_COLD std::vector<Table> tables_of(Report const& report, std::size_t colu
   return tables;
 }
 
+CAMBIUM_COLD std::vector<Table> summary_of(std::vector<ResultGroup> const& groups) {
+  std::vector<Measure const*> chosen;
+  for (auto const& measure : measures())
+    if (measure.is_share || measure.key == "duration_s" || measure.key == "closed_loop_score" ||
+        measure.key == "mean_ms")
+      chosen.push_back(&measure);
+  std::vector<Table> tables;
+  for (auto const& set : detail::groups_by_set(groups)) {
+    Table table{.title = groups[set.front()].set_label, .head = {"behaviour", "scenarios"}};
+    for (auto const* const measure : chosen) table.head.push_back(detail::titled(*measure));
+    for (auto const g : set) {
+      table.rows.push_back({groups[g].label, std::to_string(groups[g].rows.size())});
+      for (auto const* const measure : chosen) {
+        double const value = detail::mean_of_measure(groups[g], *measure);
+        bool const is_rounded = measure->is_share || measure->key == "duration_s";
+        table.rows.back().push_back(is_rounded ? detail::fixed_text(measure->is_share ? 100.0 * value : value, 1)
+                                               : detail::short_text(value));
+      }
+    }
+    tables.push_back(std::move(table));
+  }
+  return tables;
+}
+
 CAMBIUM_COLD std::string verdict_of(Comparisons const& comparisons) {
   std::string worse, better;
   for (auto const& comparison : comparisons.list)

@@ -20,6 +20,7 @@ struct ResultGroup {
   std::uint64_t set_hash = 0;
   std::string set{};        ///< title
   std::string set_label{};  ///< the title, and what tells the set from others of that title
+  std::string source{};     ///< what names the set on the command line: "--set merging"; empty: unknown
   std::string behavior{};
   std::uint64_t parameters_hash = 0;
   std::string parameters{};  ///< as text

@@ -21,7 +21,7 @@
 /// Results of benchmarks in one SQLite file.
 ///
 ///   runs       one row a call of the runner: run, started, command
-///   sets       one row a scenario set: set_hash, title, scenarios
+///   sets       one row a scenario set: set_hash, title, scenarios, source (what names it on the command line)
 ///   behaviors  one row a behaviour with its parameters: behavior, parameters_hash, parameters
 ///   results    one row a scenario and behaviour: the key (set_hash, scenario, behavior, parameters_hash, version), the
 ///              scenario's seed, the fields of `RunResult`, and the run that brought it
@@ -78,7 +78,7 @@ class ResultStore {
     execute("PRAGMA journal_mode=WAL");
     execute("PRAGMA synchronous=NORMAL");
     execute("CREATE TABLE IF NOT EXISTS runs(run INTEGER PRIMARY KEY, started TEXT, command TEXT)");
-    execute("CREATE TABLE IF NOT EXISTS sets(set_hash TEXT PRIMARY KEY, title TEXT, scenarios INTEGER)");
+    execute("CREATE TABLE IF NOT EXISTS sets(set_hash TEXT PRIMARY KEY, title TEXT, scenarios INTEGER, source TEXT)");
     execute(
         "CREATE TABLE IF NOT EXISTS behaviors(behavior TEXT, parameters_hash TEXT, parameters TEXT, PRIMARY "
         "KEY(behavior, "
@@ -90,6 +90,8 @@ class ResultStore {
     execute("CREATE TABLE IF NOT EXISTS results(" + key + "seed TEXT, run INTEGER, " + columns<RunResult>(true) +
             primary);
     execute("CREATE TABLE IF NOT EXISTS times(" + key + columns<RunTimes>(true) + primary);
+    add_missing_column("sets", "source TEXT");  // of a database that an older version of cambium has made
+    add_missing_column("results", "others_failed INTEGER");
     add_result_ = prepare("INSERT OR REPLACE INTO results(" + key_columns + "seed, run, " + columns<RunResult>(false) +
                           ") VALUES(" + marks(7 + count<RunResult>()) + ")");
     add_times_ = prepare("INSERT OR REPLACE INTO times(" + key_columns + columns<RunTimes>(false) + ") VALUES(" +
@@ -128,11 +130,13 @@ class ResultStore {
     step(statement.get());
     run_ = sqlite3_last_insert_rowid(db_.get());
   }
-  void add_set(std::uint64_t hash, std::string const& title, std::size_t scenarios) {
-    auto statement = prepare("INSERT OR REPLACE INTO sets VALUES(?, ?, ?)");
+  /// `source`: what names the set on the command line, "--set merging --seed 3"; empty: unknown.
+  void add_set(std::uint64_t hash, std::string const& title, std::size_t scenarios, std::string const& source = {}) {
+    auto statement = prepare("INSERT OR REPLACE INTO sets(set_hash, title, scenarios, source) VALUES(?, ?, ?, ?)");
     bind(statement.get(), 1, hash_text(hash));
     bind(statement.get(), 2, title);
     bind(statement.get(), 3, static_cast<std::int64_t>(scenarios));
+    bind(statement.get(), 4, source);
     step(statement.get());
   }
   void add_behavior(std::string const& name, std::uint64_t hash, std::string const& parameters) {
@@ -143,10 +147,10 @@ class ResultStore {
     step(statement.get());
   }
 
-  /// Whether there is a result of that key.
+  /// Whether there is a result of that key. Throws `StoreError` if the file cannot be read.
   [[nodiscard]] bool has(ResultKey const& key) {
     bind_key(has_.get(), key);
-    bool const found = sqlite3_step(has_.get()) == SQLITE_ROW;
+    bool const found = has_row(has_.get());
     sqlite3_reset(has_.get());
     return found;
   }
@@ -177,8 +181,7 @@ class ResultStore {
         prepare("SELECT " + key_columns + "seed, " + columns<RunResult>(false) + ", " + columns<RunTimes>(false) +
                 " FROM results LEFT JOIN times USING(set_hash, scenario, behavior, parameters_hash, version) ORDER BY "
                 "set_hash, behavior, parameters_hash, version, scenario");
-    for (int code = sqlite3_step(statement.get()); code != SQLITE_DONE; code = sqlite3_step(statement.get())) {
-      if (code != SQLITE_ROW) fail("cannot be read", "it may be damaged: run the benchmark into another file");
+    while (has_row(statement.get())) {
       ResultRow row;
       row.key = {hash_of(text(statement.get(), 0)), sqlite3_column_int64(statement.get(), 1), text(statement.get(), 2),
                  hash_of(text(statement.get(), 3)), text(statement.get(), 4)};
@@ -195,27 +198,39 @@ class ResultStore {
     auto statement = prepare("SELECT parameters FROM behaviors WHERE behavior=? AND parameters_hash=?");
     bind(statement.get(), 1, name);
     bind(statement.get(), 2, hash_text(hash));
-    return sqlite3_step(statement.get()) == SQLITE_ROW ? text(statement.get(), 0) : std::string();
+    return has_row(statement.get()) ? text(statement.get(), 0) : std::string();
   }
   /// The title of a set; its hash if it has none.
   [[nodiscard]] std::string title_of(std::uint64_t set_hash) {
-    auto statement = prepare("SELECT title FROM sets WHERE set_hash=?");
-    bind(statement.get(), 1, hash_text(set_hash));
-    auto const title = sqlite3_step(statement.get()) == SQLITE_ROW ? text(statement.get(), 0) : std::string();
+    auto const title = of_set("title", set_hash);
     return title.empty() ? hash_text(set_hash) : title;
   }
+  /// What names a set on the command line; empty if that is unknown.
+  [[nodiscard]] std::string source_of(std::uint64_t set_hash) { return of_set("source", set_hash); }
 
-  /// Adds all rows of another database, as after runs with `--shard`. Rows of one key are taken from `other`.
+  /// Adds all rows of another database, or none if that fails, as after runs with `--shard`. Rows of one key are taken
+  /// from `other`. Throws `StoreError`.
   void merge(ResultStore& other) {
     auto attach = prepare("ATTACH DATABASE ? AS other");
     commit();
     bind(attach.get(), 1, other.file_);
     other.commit();
     step(attach.get());
-    execute("INSERT OR REPLACE INTO sets SELECT * FROM other.sets");
-    execute("INSERT OR REPLACE INTO behaviors SELECT * FROM other.behaviors");
-    execute("INSERT OR REPLACE INTO results SELECT * FROM other.results");
-    execute("INSERT OR REPLACE INTO times SELECT * FROM other.times");
+    auto const copy = [this](std::string const& table, std::string const& fields) {
+      execute("INSERT OR REPLACE INTO " + table + "(" + fields + ") SELECT " + fields + " FROM other." + table);
+    };
+    try {
+      execute("BEGIN");
+      copy("sets", "set_hash, title, scenarios, source");
+      copy("behaviors", "behavior, parameters_hash, parameters");
+      copy("results", key_columns + "seed, run, " + columns<RunResult>(false));
+      copy("times", key_columns + columns<RunTimes>(false));
+      execute("COMMIT");
+    } catch (...) {
+      sqlite3_exec(db_.get(), "ROLLBACK", nullptr, nullptr, nullptr);
+      sqlite3_exec(db_.get(), "DETACH DATABASE other", nullptr, nullptr, nullptr);
+      throw;
+    }
     execute("DETACH DATABASE other");
   }
 
@@ -242,6 +257,26 @@ class ResultStore {
     if (sqlite3_prepare_v2(db_.get(), sql.c_str(), -1, &statement, nullptr) != SQLITE_OK)
       fail("has other tables than this version of cambium", "name another file");
     return Statement(statement);
+  }
+  /// Whether a query has a row, which can then be read.
+  [[nodiscard]] bool has_row(sqlite3_stmt* query) {
+    auto const code = sqlite3_step(query);
+    if (code != SQLITE_ROW && code != SQLITE_DONE) {
+      sqlite3_reset(query);
+      fail("cannot be read", "it may be damaged or locked: try again, or run the benchmark into another file");
+    }
+    return code == SQLITE_ROW;
+  }
+  [[nodiscard]] std::string of_set(std::string const& column, std::uint64_t set_hash) {
+    auto statement = prepare("SELECT " + column + " FROM sets WHERE set_hash=?");
+    bind(statement.get(), 1, hash_text(set_hash));
+    return has_row(statement.get()) ? text(statement.get(), 0) : std::string();
+  }
+  void add_missing_column(std::string const& table, std::string const& column) {
+    auto query = prepare("SELECT 1 FROM pragma_table_info(?) WHERE name=?");
+    bind(query.get(), 1, table);
+    bind(query.get(), 2, column.substr(0, column.find(' ')));
+    if (!has_row(query.get())) execute("ALTER TABLE " + table + " ADD COLUMN " + column);
   }
   void step(sqlite3_stmt* statement) {
     auto const code = sqlite3_step(statement);

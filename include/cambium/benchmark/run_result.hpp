@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <string>
@@ -32,6 +34,7 @@ struct RunResult {
   double rss_compliance = 1.0;
   double closed_loop_score = 0.0;
   std::int64_t others_collided = 0;
+  std::int64_t others_failed = 0;
   AgentId hit = none<AgentId>;
 
   static constexpr char const* name = "result";
@@ -62,10 +65,26 @@ struct RunResult {
         parameter("closed_loop_score", &P::closed_loop_score, "-", share, "nuPlan's, without progress"),
         parameter("others_collided", &P::others_collided, "-", non_negative,
                   "number of steps in which a collision without the ego began"),
+        parameter("others_failed", &P::others_failed, "-", non_negative,
+                  "number of agents that found no plan, or an impossible one, and left traffic; not those under test"),
         parameter("hit", &P::hit, "-", {}, "the agent that the ego touched"));
     return join_parameters(outcome, driving);
   }
 };
+
+namespace detail {
+
+/// How a run ended; each run ends in one way.
+inline constexpr std::array<char const*, 6> run_outcomes = {
+    "success", "collision, at fault", "collision, not at fault", "time-out", "error", "left the road or route"};
+
+[[nodiscard]] inline std::size_t outcome_of(RunResult const& result) {
+  if (!result.error.empty()) return 4;
+  if (result.collision) return result.at_fault ? 1 : 2;
+  return result.success ? 0 : result.timed_out ? 3 : 5;
+}
+
+}  // namespace detail
 
 /// How long the ego's decisions took. Apart from `RunResult`, because it differs from run to run.
 struct RunTimes {

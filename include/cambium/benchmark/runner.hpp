@@ -1,32 +1,120 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <exception>
+#include <filesystem>
 #include <functional>
-#include <mutex>
+#include <iostream>
+#include <limits>
+#include <memory>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 #include <vector>
 
 #include "cambium/benchmark/contender.hpp"
+#include "cambium/benchmark/executor.hpp"
+#include "cambium/benchmark/html_report.hpp"
 #include "cambium/benchmark/result_store.hpp"
-#include "cambium/benchmark/run_on_threads.hpp"
 #include "cambium/core/parameters.hpp"
+#include "cambium/core/write_file.hpp"
 #include "cambium/scenario/scenario_set.hpp"
+#include "cambium/viewer/html_replay.hpp"
 
 namespace cambium {
+
+/// Which runs leave a replay.
+enum class Replays {
+  none,
+  failures,  ///< runs that are no success
+  all,
+};
 
 /// What to run of a benchmark, and how.
 struct BenchmarkOptions {
   std::size_t threads = std::max(1u, std::thread::hardware_concurrency());
   std::size_t shard = 0, shards = 1;  ///< runs only the jobs number `shard`, `shard + shards`, ...
   bool again = false;                 ///< runs also what the store has already
+  double plan_limit = std::numeric_limits<double>::infinity();  ///< see `RunOptions` [s]
+  Replays replays = Replays::none;
+  std::filesystem::path replay_folder = "replays";  ///< replays are `replay_folder`/`replay_file_name(...)`
+  /// Of failures, the first of each contender and set in a call leave a replay, so that they do not fill the disk.
+  std::size_t most_replays = 20;
+  std::string source{};  ///< what names the set on the command line, for reports: "--set merging --seed 3"
+  Executor executor{};   ///< where jobs run, in place of `threads`
   /// Called after each job with the numbers of jobs done and to do; one thread at a time.
   std::function<void(std::size_t done, std::size_t total)> progress{};
+  /// Called with a sentence about a problem that does not end the benchmark; one thread at a time.
+  std::function<void(std::string const& sentence)> warn = [](auto const& sentence) { std::cerr << sentence << "\n"; };
 };
+
+namespace detail {
+
+/// A recording with what names its run.
+[[nodiscard]] inline Recording titled(Recording recording, std::string const& set, std::size_t scenario,
+                                      std::string const& contender, RunResult const& result) {
+  recording.title = set + ", scenario " + std::to_string(scenario) + ", " + contender;
+  recording.notes = {result.error.empty() ? run_outcomes[outcome_of(result)] : "error: " + result.error};
+  return recording;
+}
+
+/// Runs jobs of a benchmark; job number = number of the contender × scenarios + number of the scenario.
+template <class World>
+[[nodiscard]] Executor::Run job_runner(ScenarioSet<World> const& set, std::vector<Contender<World>> const& contenders,
+                                       BenchmarkOptions const& options) {
+  auto const replays = std::make_shared<std::vector<std::atomic<std::size_t>>>(contenders.size());
+  return [&set, &contenders, &options, replays](std::size_t job) {
+    auto const c = job / set.scenarios.size(), i = job % set.scenarios.size();
+    auto& made = (*replays)[c];
+    bool const all = options.replays == Replays::all;
+    bool const records = all || (options.replays == Replays::failures && made < options.most_replays);
+    auto run = contenders[c].run(set.scenarios[i], {set.time_step, set.time_limit, options.plan_limit}, records);
+    JobOutcome outcome{run.result, run.times, {}, {}};
+    if (!run.recording || !(all || (!run.result.success && made++ < options.most_replays))) return outcome;
+    try {
+      outcome.replay = html_replay(titled(std::move(*run.recording), set.title, i, contenders[c].name, run.result));
+    } catch (std::exception const& problem) {
+      outcome.problem = problem.what();
+    }
+    return outcome;
+  };
+}
+
+/// Writes replays; reports the first that cannot be written.
+class ReplayFolder {
+ public:
+  ReplayFolder(BenchmarkOptions const& options, std::size_t contenders) : options_(options), written_(contenders) {}
+
+  void take(JobOutcome const& outcome, std::string const& file, std::size_t contender) {
+    bool const is_enough = options_.replays == Replays::failures && written_[contender] >= options_.most_replays;
+    if ((outcome.replay.empty() && outcome.problem.empty()) || is_enough) return;
+    ++written_[contender];
+    auto problem = outcome.problem;
+    try {
+      std::error_code refused;  // then the file says what is wrong
+      std::filesystem::create_directories(options_.replay_folder, refused);
+      if (problem.empty()) write_file(options_.replay_folder / file, outcome.replay);
+    } catch (std::exception const& failure) {
+      problem = failure.what();
+    }
+    if (problem.empty() || has_warned_) return;
+    has_warned_ = true;
+    if (options_.warn) options_.warn("a replay is missing, and perhaps others: " + problem);
+  }
+
+ private:
+  BenchmarkOptions const& options_;
+  std::vector<std::size_t> written_;
+  bool has_warned_ = false;
+};
+
+}  // namespace detail
 
 /// Runs each contender on each scenario of a set, and adds the results to `store` as they come. Jobs whose results the
 /// store has are left out, so a benchmark that was killed goes on where it was. A run that throws, or whose step fails,
@@ -35,47 +123,51 @@ struct BenchmarkOptions {
 template <class World>
 std::size_t run_benchmark(ScenarioSet<World> const& set, std::vector<Contender<World>> const& contenders,
                           ResultStore& store, BenchmarkOptions const& options = {}) {
-  struct Job {
-    ResultKey key;
-    std::size_t contender;
-  };
   check_parameters(set, "benchmark");
   auto const hash = set.hash();
-  store.add_set(hash, set.title, set.scenarios.size());
-  std::vector<Job> jobs;
-  std::size_t number = 0;
+  auto const count = set.scenarios.size();
+  store.add_set(hash, set.title, count, options.source);
+  auto const key_of = [&](std::size_t job) {
+    auto const& contender = contenders[job / count];
+    return ResultKey{hash, static_cast<std::int64_t>(job % count), contender.name, contender.parameters_hash};
+  };
+  std::vector<std::size_t> jobs;
   for (std::size_t c = 0; c < contenders.size(); ++c) {
     auto const& contender = contenders[c];
     for (std::size_t other = 0; other < c; ++other)
       if (contenders[other].name == contender.name && contenders[other].parameters_hash == contender.parameters_hash)
         throw ParameterError("contender " + contender.name, "is there twice with the same parameters", "leave one out");
     store.add_behavior(contender.name, contender.parameters_hash, contender.parameters);
-    for (std::size_t i = 0; i < set.scenarios.size(); ++i) {
-      bool const is_ours = number++ % options.shards == options.shard;
-      ResultKey key{hash, static_cast<std::int64_t>(i), contender.name, contender.parameters_hash};
-      if (is_ours && (options.again || !store.has(key))) jobs.push_back({std::move(key), c});
-    }
+    for (std::size_t job = c * count; job < (c + 1) * count; ++job)
+      if (job % options.shards == options.shard && (options.again || !store.has(key_of(job)))) jobs.push_back(job);
   }
   store.commit();
-  std::mutex mutex;
+  detail::ReplayFolder replays(options, contenders.size());
   std::size_t done = 0;
-  RunOptions const run_options{set.time_step, set.time_limit};
   auto last_commit = std::chrono::steady_clock::now();
-  run_on_threads(jobs.size(), options.threads, [&](std::size_t i) {
-    auto const& job = jobs[i];
-    auto const& scenario = set.scenarios[static_cast<std::size_t>(job.key.scenario)];
-    auto const run = contenders[job.contender].run(scenario, run_options, false);
-    std::lock_guard const lock(mutex);
-    store.add({job.key, scenario.seed, run.result, run.times});
+  auto const take = [&](std::size_t job, JobOutcome outcome) {
+    auto key = key_of(job);
+    replays.take(outcome, replay_file_name(set.title, key.behavior, key.scenario), job / count);
+    store.add({std::move(key), set.scenarios[job % count].seed, std::move(outcome.result), outcome.times});
     auto const now = std::chrono::steady_clock::now();
     if (now - last_commit > std::chrono::milliseconds(250)) {
       store.commit();
       last_commit = now;
     }
     if (options.progress) options.progress(++done, jobs.size());
-  });
+  };
+  auto const executor = options.executor.execute ? options.executor : on_threads(options.threads);
+  executor.execute(jobs, detail::job_runner(set, contenders, options), take);
   store.commit();
   return jobs.size();
+}
+
+/// In a worker of an executor: runs jobs for the process that calls `run_benchmark` with the same set, contenders and
+/// options, until that has no more.
+template <class World>
+void serve_benchmark(ScenarioSet<World> const& set, std::vector<Contender<World>> const& contenders,
+                     BenchmarkOptions const& options) {
+  options.executor.execute({}, detail::job_runner(set, contenders, options), {});
 }
 
 }  // namespace cambium

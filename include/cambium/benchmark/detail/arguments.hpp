@@ -21,6 +21,23 @@ struct Option {
   std::string name, value, sentence;
 };
 
+/// An option as a line of a help text, or several.
+[[nodiscard]] inline std::string help_of(Option const& option) {
+  constexpr std::size_t begin = 35, end = 118;
+  std::string line = "  " + option.name + " " + option.value, text;
+  line.resize(std::max(line.size() + 1, begin), ' ');
+  for (auto const word : split(option.sentence, " ")) {
+    if (line.size() + word.size() > end) {
+      line.pop_back();
+      text += line + "\n";
+      line.assign(begin, ' ');
+    }
+    line += std::string(word) + " ";
+  }
+  line.pop_back();
+  return text + line + "\n";
+}
+
 /// A command line of `--name value` and `--name=value`. Throws `Error` for a word that is no option, an option given
 /// twice, or one without its value.
 class Arguments {
@@ -61,6 +78,14 @@ class Arguments {
     if (!value || *value < low || *value > high)
       throw Error(name, "is '" + *word + "'",
                   "give a whole number from " + std::to_string(low) + " to " + std::to_string(high));
+    return value;
+  }
+  /// A time above 0.
+  [[nodiscard]] std::optional<double> seconds(std::string const& name) const {
+    auto const word = text(name);
+    if (!word) return std::nullopt;
+    auto const value = parse_number<double>(*word);
+    if (!value || !(*value > 0.0)) throw Error(name, "is '" + *word + "'", "give a number of seconds above 0");
     return value;
   }
   /// The parts of a comma-separated list.

@@ -124,7 +124,7 @@ let sorted = 1, down = false, shown = page, found = rows;
 const link = (row) => data.replays + '/' + encodeURIComponent(groups[row[0]].file + '_' + row[1] + '.html');
 const hasReplay = new Set(data.made);
 const quoted = (word) => /^[\w:.\/-]+$/.test(word) ? word : "'" + word.replaceAll("'", "'\\''") + "'";
-const command = (row) => data.command + ' --only ' + quoted(groups[row[0]].title + ':' + row[1] + ':' +
+const command = (row) => data.command + (groups[row[0]].source ? ' ' + groups[row[0]].source : '') + ' --only ' + quoted(groups[row[0]].title + ':' + row[1] + ':' +
     groups[row[0]].behavior) + ' --replay ' + quoted(data.folder + '/' + groups[row[0]].file + '_' + row[1] + '.html');
 const explain = (line, row) => {
   if (line.nextSibling && line.nextSibling.className === 'more') { line.nextSibling.remove(); return; }

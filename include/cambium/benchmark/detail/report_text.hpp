@@ -1,6 +1,7 @@
 #pragma once
 
 #include <charconv>
+#include <cmath>
 #include <cstddef>
 #include <string>
 #include <vector>
@@ -19,9 +20,26 @@ namespace cambium::detail {
   return text.find_first_not_of("-0.") == text.npos && text.front() == '-' ? text.substr(1) : text;
 }
 
+/// `value` with three significant digits.
+[[nodiscard]] inline std::string short_text(double value) {
+  char buffer[40];
+  return {buffer, std::to_chars(buffer, buffer + sizeof buffer, value, std::chars_format::general, 3).ptr};
+}
+
 /// "least gap [m]".
 [[nodiscard]] inline std::string titled(Measure const& measure) {
   return measure.unit.empty() ? measure.name : measure.name + " [" + measure.unit + "]";
+}
+
+/// Mean of the finite values; 0 without any.
+[[nodiscard]] inline double mean_of_measure(ResultGroup const& group, Measure const& measure) {
+  double sum = 0.0, count = 0.0;
+  for (auto const& row : group.rows)
+    if (double const value = measure.value(row); std::isfinite(value)) {
+      sum += value;
+      count += 1.0;
+    }
+  return count > 0.0 ? sum / count : 0.0;
 }
 
 /// The groups of each set, in order.

@@ -1,0 +1,154 @@
+#pragma once
+
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <csignal>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "cambium/benchmark/detail/outcome_bytes.hpp"
+#include "cambium/benchmark/executor.hpp"
+#include "cambium/core/error.hpp"
+
+namespace cambium::detail {
+
+/// A forked copy of this process that runs jobs, so that a job that crashes takes nothing with it. It ends when this
+/// process does.
+class JobProcess {
+ public:
+  explicit JobProcess(Executor::Run run) : run_(std::move(run)) {}
+  JobProcess(JobProcess const&) = delete;
+  JobProcess& operator=(JobProcess const&) = delete;
+  ~JobProcess() {
+    if (pid_ <= 0) return;
+    kill(pid_, SIGKILL);
+    static_cast<void>(end());
+  }
+
+  [[nodiscard]] bool is_busy() const { return is_busy_; }
+  [[nodiscard]] std::size_t job() const { return job_; }
+
+  /// Precondition: not busy. Throws `Error` if the system gives no process.
+  void start(std::size_t job) {
+    job_ = job;
+    is_busy_ = true;
+    deaths_ = 0;
+    send_job();
+  }
+
+  /// Waits for up to `milliseconds`. The bytes of the outcome of the job, once it is there. A job whose process dies is
+  /// run once more, because the death may be a stranger's doing; the second is its error.
+  [[nodiscard]] std::optional<std::string> wait(int milliseconds) {
+    pollfd ready{socket_, POLLIN, 0};
+    if (poll(&ready, is_busy_ ? 1 : 0, milliseconds) <= 0) return std::nullopt;
+    char buffer[1 << 16];
+    auto const count = read(socket_, buffer, sizeof buffer);
+    if (count > 0) {
+      bytes_.append(buffer, static_cast<std::size_t>(count));
+      if (bytes_.size() < 8 || bytes_.size() < 8 + MessageReader(bytes_).number()) return std::nullopt;
+      is_busy_ = false;
+      return std::exchange(bytes_, {}).substr(8);
+    }
+    if (count < 0 && errno == EINTR) return std::nullopt;
+    auto const death = end();
+    if (++deaths_ < 2) {
+      send_job();
+      return std::nullopt;
+    }
+    is_busy_ = false;
+    JobOutcome outcome;
+    outcome.result.error = "the process that ran it died, twice: " + death;
+    return outcome_bytes(outcome);
+  }
+
+ private:
+  void send_job() {
+    if (pid_ <= 0) fork_child();
+    std::string bytes;
+    append_number(bytes, job_, 8);
+    static_cast<void>(send_all(socket_, bytes));  // if it has died, `wait` finds that out
+  }
+
+  void fork_child() {
+    bytes_.clear();
+    int ends[2];
+    if (socketpair(AF_UNIX, SOCK_STREAM, 0, ends) != 0) fail();
+    std::fflush(nullptr);  // else the child writes it, too
+    pid_ = fork();
+    if (pid_ < 0) fail();
+    close(ends[pid_ == 0 ? 0 : 1]);
+    if (pid_ == 0) work(ends[1]);
+    socket_ = ends[0];
+  }
+
+  [[noreturn]] static void fail() {
+    throw Error("process for jobs", std::string("cannot be made (") + std::strerror(errno) + ")",
+                "run fewer processes on this machine");
+  }
+
+  [[noreturn]] void work(int socket) const {
+    for (int const end : {SIGSEGV, SIGBUS, SIGFPE, SIGILL, SIGABRT, SIGTERM, SIGINT}) std::signal(end, SIG_DFL);
+    for (;;) {
+      char number[8];
+      std::size_t at = 0;
+      while (at < sizeof number) {
+        auto const count = read(socket, number + at, sizeof number - at);
+        if (count <= 0) _exit(0);
+        at += static_cast<std::size_t>(count);
+      }
+      auto const job = MessageReader({number, sizeof number}).number();
+      std::string bytes;
+      try {
+        append_text(bytes, outcome_bytes(run_(static_cast<std::size_t>(job))));
+      } catch (...) {
+        std::fflush(nullptr);
+        _exit(70);
+      }
+      std::fflush(nullptr);
+      if (!send_all(socket, bytes)) _exit(0);
+    }
+  }
+
+  [[nodiscard]] static bool send_all(int socket, std::string_view bytes) {
+    while (!bytes.empty()) {
+      auto const sent = send(socket, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+      if (sent < 0 && errno == EINTR) continue;
+      if (sent <= 0) return false;
+      bytes.remove_prefix(static_cast<std::size_t>(sent));
+    }
+    return true;
+  }
+
+  /// Ends the child. Returns of what it died.
+  [[nodiscard]] std::string end() {
+    int status = 0;
+    close(socket_);
+    while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
+    }
+    pid_ = 0;
+    socket_ = -1;
+    if (!WIFSIGNALED(status)) return "exit code " + std::to_string(WEXITSTATUS(status));
+    return "signal " + std::to_string(WTERMSIG(status)) + " (" + strsignal(WTERMSIG(status)) + ")";
+  }
+
+  Executor::Run run_;
+  pid_t pid_ = 0;
+  int socket_ = -1;
+  bool is_busy_ = false;
+  std::size_t job_ = 0;
+  int deaths_ = 0;
+  std::string bytes_;  ///< of the answer, so far
+};
+
+}  // namespace cambium::detail

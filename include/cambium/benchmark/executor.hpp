@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "cambium/benchmark/run_on_threads.hpp"
+#include "cambium/benchmark/run_result.hpp"
+
+namespace cambium {
+
+/// What a job of a benchmark gives: a contender's run of a scenario.
+struct JobOutcome {
+  RunResult result{};
+  RunTimes times{};
+  std::string replay{};   ///< page for browsers; empty: none
+  std::string problem{};  ///< why there is no replay though one was wanted
+};
+
+/// Where a benchmark's jobs run: on threads of this process (`on_threads`), or on the ranks of an MPI program
+/// (`on_ranks`).
+struct Executor {
+  using Run = std::function<JobOutcome(std::size_t job)>;
+  using Take = std::function<void(std::size_t job, JobOutcome outcome)>;
+
+  /// Calls `run(job)` for each of `jobs`, in any order and at the same time, and `take(job, outcome)` for each outcome,
+  /// one call at a time. What these throw ends it. In a worker, it runs the jobs that the process with the store gives,
+  /// until that has no more: `jobs` do not count, and `take` is not called.
+  std::function<void(std::vector<std::size_t> const& jobs, Run const& run, Take const& take)> execute{};
+  bool is_worker = false;  ///< works for another process, which has the store
+  std::string name{};      ///< "4 threads"
+};
+
+/// Runs jobs on threads of this process; one thread: in order.
+[[nodiscard]] inline Executor on_threads(std::size_t threads) {
+  return {.execute =
+              [threads](auto const& jobs, auto const& run, auto const& take) {
+                std::mutex mutex;
+                run_on_threads(jobs.size(), threads, [&](std::size_t i) {
+                  auto outcome = run(jobs[i]);
+                  std::lock_guard const lock(mutex);
+                  take(jobs[i], std::move(outcome));
+                });
+              },
+          .name = std::to_string(threads) + (threads == 1 ? " thread" : " threads")};
+}
+
+}  // namespace cambium
