@@ -185,6 +185,23 @@ TEST_CASE("a result is what an own loop finds") {
   }
 }
 
+TEST_CASE("who leaves the map before its goal has left its way") {
+  auto set = merging_set(1);
+  auto& scenario = set.scenarios.front();
+  auto const ego = std::ranges::find(scenario.agents, scenario.ego, [](auto const& spec) { return *spec.id; });
+  auto const other = std::ranges::find_if(
+      scenario.agents, [&](auto const& spec) { return std::holds_alternative<NoGoal>(spec.goal.given()); });
+  REQUIRE(other != scenario.agents.end());
+  REQUIRE(ego != scenario.agents.end());
+  scenario.ego = *other->id;  // on the through road
+  other->goal = Goal(StateLimits{.lowest_speed = 90.0});
+  auto const run = contender<Traffic>(IdmClassic{.desired_speed = 22.0}).run(scenario, {}, false);
+  CHECK(run.result.error == "");
+  CHECK_FALSE(run.result.success);
+  CHECK_FALSE(run.result.timed_out);
+  CHECK(run.result.off_road);
+}
+
 TEST_CASE("a store refuses what it cannot use") {
   Folder folder;
   CHECK_THROWS_AS(ResultStore(folder.path / "no" / "where.db"), StoreError);

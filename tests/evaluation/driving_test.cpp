@@ -150,13 +150,12 @@ TEST_CASE("speed counts as excess above the limit of the lane, and never without
 TEST_CASE("a lane change grows urgent towards the end of a lane, and in a lane that does not lead to the goal") {
   Sim world(support::own_map("lane_drop.xodr"));
   auto const ends = [&](double x, double y) { return world.slot_of(world.add({.position = {x, y}, .speed = 10.0})); };
-  auto const right = world.map().nearest_lane({20.0, -5.25, 0.0});
-  double const end = world.map().lane(right->lane).length();
-  auto const near = ends(end - 30.0, -5.25), far = ends(20.0, -5.25), stays = ends(20.0, -1.75);
-  CHECK(cb::LaneChangeUrgency{}(world, stays) == 0.0);
-  CHECK(cb::LaneChangeUrgency{}(world, near) > cb::LaneChangeUrgency{}(world, far));
-  CHECK(cb::LaneChangeUrgency{}(world, near) == doctest::Approx(0.9).epsilon(0.01));
-  CHECK(cb::LaneChangeUrgency{.horizon = 60.0}(world, near) == doctest::Approx(0.5).epsilon(0.01));
+  auto const far = ends(300.0, -5.25), near = ends(340.0, -5.25), stays = ends(300.0, -1.75);
+  cb::LaneChangeUrgency const urgency, late{.horizon = 1.0};
+  CHECK(urgency(world, stays) == 0.0);
+  CHECK(urgency(world, far) > 0.0);
+  CHECK(urgency(world, near) - urgency(world, far) == doctest::Approx(40.0 / 300.0).epsilon(0.05));
+  CHECK(late(world, far) == 0.0);
 
   auto const map = support::own_map("highway_exit.xodr");
   auto const site = cb::find_highway_site(map);

@@ -231,16 +231,15 @@ RuledSearch ruled_search() {
   return planner;
 }
 
-/// Runs scenarios until the ego is at its goal, or the end of its route; checks that it causes no collision.
-/// `is_asked`: which scenarios are run. Returns how many egos arrived.
-template <class Planner, class Sample, class MakeEgo>
+/// Runs `wanted` of the scenarios `sample(number)` until the ego is at its goal, or without one at the end of its
+/// route, and checks that it causes no collision. `make_ego(spec)` sets its behaviour; false: leaves that scenario out.
+/// Returns how many egos arrived.
+template <class Planner, class Driver, class Sample, class MakeEgo>
 int arrivals(int wanted, Sample const& sample, MakeEgo const& make_ego) {
   int arrived = 0;
   for (std::uint32_t number = 0, run = 0; run < static_cast<std::uint32_t>(wanted); ++number) {
     CAPTURE(number);
     auto const drawn = sample(number);
-    using Drawn = std::remove_cvref_t<decltype(drawn.agents.front().behavior.given())>;
-    using Driver = std::variant_alternative_t<0, Drawn>;
     using Sim = World<BehaviorSet<Planner, Driver>, InterpolateExecution, SingleTrack>;
     auto scenario =
         with_behaviors<Sim>(drawn, [](auto const& spec) { return std::get<Driver>(spec.behavior.given()); });
@@ -266,7 +265,7 @@ int arrivals(int wanted, Sample const& sample, MakeEgo const& make_ego) {
 TEST_CASE_TEMPLATE("it gets through traffic to its exit", Planner, RuledSearch, Frenet) {
   auto const site = find_highway_site(support::own_map("highway_exit.xodr"));
   auto const count = static_cast<int>(runs(8));
-  int const arrived = arrivals<Planner>(
+  int const arrived = arrivals<Planner, Mobil>(
       count, [&](std::uint32_t number) { return site.sample(3, number); },
       [](auto& ego) {
         if (std::holds_alternative<NoGoal>(ego.goal.given())) return false;
@@ -291,7 +290,7 @@ TEST_CASE("a search that may drive by the rules of junctions gets through them, 
     CAPTURE(name);
     auto const site = find_junction_site(support::own_map(name));
     auto const count = static_cast<int>(runs(4));
-    int const arrived = arrivals<RuledSearch>(
+    int const arrived = arrivals<RuledSearch, Intersection>(
         count, [&](std::uint32_t number) { return site.sample(3, number); },
         [](auto& ego) {
           auto planner = ruled_search();
