@@ -241,7 +241,9 @@ TEST_CASE("hostile names are escaped in every format") {
   auto const latex = latex_of(tables.front());
   CHECK(latex.find("\\&\\$\\%\\_\\{\\}\\textbackslash{}") != latex.npos);
   CHECK(csv_of(report).find("\"<img src=x onerror=alert(1)>,\"\"'&") != std::string::npos);
-  CHECK(replay_file_name("a/../b", "c d\xC3\xA4", 7) == "a_.._b_c_d___7.html");
+  CHECK(replay_file_name("a", "b", 1, 0, 7) != replay_file_name("a", "b", 0, 0, 7));
+  CHECK(replay_file_name("a", "b", 0, 1, 7) != replay_file_name("a", "b", 0, 0, 7));
+  CHECK(replay_file_name("a/../b", "c d\xC3\xA4", 0, 0, 7) == "a_.._b_c_d___00000000_7.html");
 }
 
 TEST_CASE("the page lists all runs, filters them, and links the replays that there are") {
@@ -254,7 +256,10 @@ TEST_CASE("the page lists all runs, filters them, and links the replays that the
                              })});
   TemporaryFolder const folder;
   std::filesystem::create_directories(folder.path() / "replays");
-  write_file(folder.path() / "replays" / replay_file_name("merging", "idm", 4), "a replay");
+  write_file(
+      folder.path() / "replays" /
+          replay_file_name("merging", "idm", report.groups.back().set_hash, report.groups.back().parameters_hash, 4),
+      "a replay");
   auto const page = html_report(report, {.page_folder = folder.path()});
   CHECK(page == html_report(report, {.page_folder = folder.path()}));
   auto const file = folder.path() / "report.html";

@@ -230,7 +230,8 @@ TEST_CASE("failures leave replays, up to a number of each contender") {
   auto const files = files_in(options.replay_folder);
   std::map<std::string, std::size_t> failures, replays;
   for (auto const& row : rows_of(store)) {
-    auto const file = replay_file_name(set.title, row.key.behavior, row.key.scenario);
+    auto const file =
+        replay_file_name(set.title, row.key.behavior, row.key.set_hash, row.key.parameters_hash, row.key.scenario);
     bool const is_there = std::find(files.begin(), files.end(), file) != files.end();
     failures[row.key.behavior] += !row.result.success;
     replays[row.key.behavior] += is_there;
@@ -276,7 +277,7 @@ TEST_CASE("a run whose plans take too long together ends with an error") {
   auto const slow = idm.run(set.scenarios[0], {.plan_limit = 1e-12}, false);
   CHECK(slow.result.steps == 1);
   CHECK_FALSE(slow.result.success);
-  CHECK(slow.result.error.find("planned for ") == 0);
+  CHECK(slow.result.error.find("its plans took longer than ") == 0);
   CHECK(slow.result.error.find(" s, longer than the limit of 1e-12 s") != std::string::npos);
   CHECK(idm.run(set.scenarios[0], {.plan_limit = 1e6}, false).result.error == "");
 }

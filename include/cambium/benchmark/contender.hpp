@@ -277,8 +277,7 @@ template <class ScenarioWorld, class Choose>
         if (film) film->record(now);
         double const planned = 1e-3 * (clock.sum_ms + clock.others_ms);
         if (!(planned > options.plan_limit)) return {};
-        return "planned for " + detail::rounded_text(planned) + " s, longer than the limit of " +
-               detail::rounded_text(options.plan_limit) + " s for all plans of a run";
+        return plans_too_long + detail::rounded_text(options.plan_limit) + " s together";
       });
     } catch (std::exception const& problem) {
       run.result = {};

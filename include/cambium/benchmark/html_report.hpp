@@ -17,8 +17,10 @@ struct HtmlReportOptions {
       "examples/run benchmark";  ///< runs a scenario again, with the set's source and `--only SET:NUMBER:BEHAVIOR`
 };
 
-/// Name of the file that replays a scenario: "merging_mobil_17.html". Letters that are trouble in file names become _.
-[[nodiscard]] std::string replay_file_name(std::string const& set, std::string const& behavior, std::int64_t scenario);
+/// Name of the file with the replay of a run: "merging_mobil_1f00ba12_17.html"; the digits tell sets and parameters of
+/// the same names apart. Letters that are trouble in file names become _.
+[[nodiscard]] std::string replay_file_name(std::string const& set, std::string const& behavior, std::uint64_t set_hash,
+                                           std::uint64_t parameters_hash, std::int64_t scenario);
 
 /// A page for any browser of 2023 or later, without further files or a network: the tables of a report, distributions
 /// of the measures, and a list of all runs that can be sorted and filtered. A row leads to the replay of its run if the

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdio>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -33,6 +34,15 @@ namespace detail {
     if (!is_plain && c != '.') c = '_';
   }
   return text;
+}
+
+/// The name of a run's replay up to the number of its scenario.
+[[nodiscard]] inline std::string replay_prefix(std::string const& set, std::string const& behavior,
+                                               std::uint64_t set_hash, std::uint64_t parameters_hash) {
+  char digits[9];
+  std::uint64_t const mixed = set_hash ^ (parameters_hash << 1);
+  std::snprintf(digits, sizeof digits, "%08x", static_cast<unsigned>(mixed ^ (mixed >> 32)));
+  return file_word(set) + "_" + file_word(behavior) + "_" + digits;
 }
 
 /// A cell: an interval in brackets and what follows is set smaller.
@@ -136,8 +146,8 @@ namespace detail {
     groups += (g == 0 ? "{\"set\":" : ",\n{\"set\":") + json_string(group.set_label) +
               ",\"title\":" + json_string(group.set) + ",\"source\":" + json_string(group.source) +
               ",\"label\":" + json_string(group.label) + ",\"behavior\":" + json_string(group.behavior) +
-              ",\"hash\":\"" + std::to_string(group.set_hash) +
-              "\",\"file\":" + json_string(file_word(group.set) + "_" + file_word(group.behavior)) + "}";
+              ",\"hash\":\"" + std::to_string(group.set_hash) + "\",\"file\":" +
+              json_string(replay_prefix(group.set, group.behavior, group.set_hash, group.parameters_hash)) + "}";
     for (auto const& row : group.rows) {
       rows += (index == 0 ? "[" : ",\n[") + std::to_string(g) + "," + std::to_string(row.scenario) + "," +
               std::to_string(outcome_of(row.result));
@@ -149,7 +159,8 @@ namespace detail {
       seeds += (index == 0 ? "\"" : ",\"") + std::to_string(row.seed) + "\"";
       std::error_code ignored;
       if (std::filesystem::exists(
-              options.page_folder / options.replays / replay_file_name(group.set, group.behavior, row.scenario),
+              options.page_folder / options.replays /
+                  replay_file_name(group.set, group.behavior, group.set_hash, group.parameters_hash, row.scenario),
               ignored))
         made += (made.empty() ? "" : ",") + std::to_string(index);
       ++index;
@@ -167,8 +178,9 @@ namespace detail {
 
 }  // namespace detail
 
-CAMBIUM_COLD std::string replay_file_name(std::string const& set, std::string const& behavior, std::int64_t scenario) {
-  return detail::file_word(set) + "_" + detail::file_word(behavior) + "_" + std::to_string(scenario) + ".html";
+CAMBIUM_COLD std::string replay_file_name(std::string const& set, std::string const& behavior, std::uint64_t set_hash,
+                                          std::uint64_t parameters_hash, std::int64_t scenario) {
+  return detail::replay_prefix(set, behavior, set_hash, parameters_hash) + "_" + std::to_string(scenario) + ".html";
 }
 
 CAMBIUM_COLD std::string html_report(Report const& report, HtmlReportOptions const& options) {

@@ -97,7 +97,9 @@ class ResultStore {
     add_times_ = prepare("INSERT OR REPLACE INTO times(" + key_columns + columns<RunTimes>(false) + ") VALUES(" +
                          marks(5 + count<RunTimes>()) + ")");
     has_ = prepare(
-        "SELECT 1 FROM results WHERE set_hash=? AND scenario=? AND behavior=? AND parameters_hash=? AND version=?");
+        "SELECT 1 FROM results WHERE set_hash=? AND scenario=? AND behavior=? AND parameters_hash=? AND version=? AND "
+        "error NOT GLOB '" +
+        std::string(plans_too_long) + "*' AND error NOT GLOB '" + process_died + "*'");
   }
   /// Opens a database that is there already. Throws `StoreError` if the file is missing or is none; then it stays as it
   /// is.
@@ -147,7 +149,8 @@ class ResultStore {
     step(statement.get());
   }
 
-  /// Whether there is a result of that key. Throws `StoreError` if the file cannot be read.
+  /// Whether there is a result of that key. One for which the machine may be to blame does not count: of a run whose
+  /// plans took too long, or whose process died. Throws `StoreError` if the file cannot be read.
   [[nodiscard]] bool has(ResultKey const& key) {
     bind_key(has_.get(), key);
     bool const found = has_row(has_.get());

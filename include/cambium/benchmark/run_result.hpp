@@ -11,8 +11,13 @@
 
 namespace cambium {
 
+/// How the errors begin for which the machine may be to blame; such runs are run again.
+inline constexpr char const *plans_too_long = "its plans took longer than ",
+                            *process_died = "the process that ran it died";
+
 /// What came of one scenario with one behaviour. It depends on nothing but these two and the library: not on threads,
-/// machine load or time of day (`RunTimes` does).
+/// machine load or time of day (`RunTimes` does). Excepted are errors that begin with `plans_too_long` or
+/// `process_died`.
 struct RunResult {
   bool success = false;
   bool collision = false;

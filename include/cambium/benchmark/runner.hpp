@@ -147,7 +147,8 @@ std::size_t run_benchmark(ScenarioSet<World> const& set, std::vector<Contender<W
   auto last_commit = std::chrono::steady_clock::now();
   auto const take = [&](std::size_t job, JobOutcome outcome) {
     auto key = key_of(job);
-    replays.take(outcome, replay_file_name(set.title, key.behavior, key.scenario), job / count);
+    replays.take(outcome, replay_file_name(set.title, key.behavior, key.set_hash, key.parameters_hash, key.scenario),
+                 job / count);
     store.add({std::move(key), set.scenarios[job % count].seed, std::move(outcome.result), outcome.times});
     auto const now = std::chrono::steady_clock::now();
     if (now - last_commit > std::chrono::milliseconds(250)) {

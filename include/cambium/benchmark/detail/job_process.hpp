@@ -1,5 +1,6 @@
 #pragma once
 
+#include <fcntl.h>
 #include <poll.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
@@ -68,7 +69,7 @@ class JobProcess {
     }
     is_busy_ = false;
     JobOutcome outcome;
-    outcome.result.error = "the process that ran it died, twice: " + death;
+    outcome.result.error = process_died + (", twice: " + death);
     return outcome_bytes(outcome);
   }
 
@@ -84,7 +85,8 @@ class JobProcess {
     bytes_.clear();
     int ends[2];
     if (socketpair(AF_UNIX, SOCK_STREAM, 0, ends) != 0) fail();
-    std::fflush(nullptr);  // else the child writes it, too
+    for (int const end : ends) fcntl(end, F_SETFD, FD_CLOEXEC);  // else a program that a planner starts keeps it open
+    std::fflush(nullptr);                                        // else the child writes it, too
     pid_ = fork();
     if (pid_ < 0) fail();
     close(ends[pid_ == 0 ? 0 : 1]);
