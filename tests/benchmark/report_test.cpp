@@ -284,7 +284,7 @@ say('text', rows().length);
   auto const said = [&](std::string const& name) { return browser::attribute(document, "<body", "data-" + name); };
   CHECK(said("failure") == "");
   CHECK(said("shown") == "100 160");
-  CHECK(said("links") == "replays/merging_idm_4.html");
+  CHECK(said("links") == "replays/merging_idm_00000001_4.html");
   CHECK(said("idm") == "10");
   CHECK(said("sorted") == "success error 2");
   CHECK(said("command").find("examples/run benchmark --set 'my sets/merging.json' --only merging:2:idm --replay ") ==
