@@ -191,8 +191,8 @@ TEST_CASE("traffic at junctions has the shares that are asked for, and lights in
   CHECK(color(1, 5.0) == map::LightColor::red);
   CHECK(color(0, 25.0) == map::LightColor::red);
   CHECK(color(1, 25.0) == map::LightColor::green);
-  CHECK_THROWS_WITH_AS(static_cast<void>(site.sample(5, 1, {.mix = {.truck_share = 1.5}})), doctest::Contains("truck_share"),
-                       ParameterError);
+  CHECK_THROWS_WITH_AS(static_cast<void>(site.sample(5, 1, {.mix = {.truck_share = 1.5}})),
+                       doctest::Contains("truck_share"), ParameterError);
 }
 
 TEST_CASE("traffic at junctions begins in the middle of its lanes, also where a lane opens behind its entrance") {
