@@ -66,7 +66,6 @@ struct ThrowsNumber {
 /// Keeps its speed, or returns no plan.
 struct Either {
   bool gives_up = false;
-  static constexpr char const* name = "either";
   template <class View>
   Plan<View> plan(View const& view, NoMemory& memory, double dt) const {
     return gives_up ? GivesUp{}.plan(view, memory, dt) : ConstantAcceleration{}.plan(view, memory, dt);
