@@ -381,6 +381,10 @@ TEST_CASE("driver actions: its driver's plan, unless a macro action is chosen or
   }
   CHECK(slowest < 6.0);  // it gives way to the right
 
+  Junction blind;
+  blind.macro = cb::MacroActions::of({{Kind::stay, 1.0}, {Kind::change_left}});
+  CHECK_THROWS_WITH_AS(cb::check_parameters(blind), doctest::Contains("has no keep_gap"), cb::ParameterError);
+
   // The same macro actions, in the same order, as `MacroActions` carries them out.
   using Road = Traffic<Junction, cb::MacroActions>;
   Road mixed(straight_road(3, 2000.0)), plain(straight_road(3, 2000.0));

@@ -2,9 +2,11 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/lane_change/macro_actions.hpp"
+#include "cambium/core/error.hpp"
 #include "cambium/core/parameters.hpp"
 
 namespace cambium {
@@ -49,6 +51,11 @@ struct DriverActions {
     using P = DriverActions;
     return parameter_list(parameter("macro", &P::macro, "-", {}, "the macro actions to choose from"),
                           parameter("driver", &P::driver, "-", {}, "who drives otherwise"));
+  }
+
+  void check(std::string const& where) const {
+    if (macro.keeping_gap() == MacroActions::nothing)
+      throw ParameterError(where + ".macro.actions", "has no keep_gap, by which a lane change is completed", "add it");
   }
 
   template <class View>
