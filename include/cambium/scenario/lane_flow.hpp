@@ -27,6 +27,7 @@
 #include "cambium/scenario/lane_traffic.hpp"
 #include "cambium/scenario/scenario.hpp"
 #include "cambium/scenario/traffic_inflow.hpp"
+#include "cambium/world/agent_spec.hpp"
 
 namespace cambium {
 
