@@ -70,7 +70,7 @@ void runner(benchmark::State& state, std::size_t threads) {
   remove_database();
   cb::ResultStore store(database());
   cb::BenchmarkOptions options;
-  options.threads = threads;
+  options.executor = cb::on_threads(threads);
   options.again = true;
   yardstick::measure_duration(state, [&] { cb::run_benchmark(set, std::vector{idm}, store, options); });
   remove_database();

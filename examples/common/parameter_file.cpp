@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <iostream>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -78,7 +79,11 @@ void ParameterFile::know(std::string const& name) {
     content_->known.push_back(name);
 }
 
-bool ParameterFile::has(std::string const& name) const { return content_ && find(content_->said, name) != nullptr; }
+bool ParameterFile::has(std::string const& name) const {
+  if (!content_ || std::find(content_->known.begin(), content_->known.end(), name) == content_->known.end())
+    throw std::logic_error("parameters " + name + ": declare them by allow() or take() first");
+  return find(content_->said, name) != nullptr;
+}
 
 void ParameterFile::read(std::string const& name, void* object, void const* usual,
                          cambium::detail::TransferStruct transfer) const {

@@ -100,7 +100,7 @@ TEST_CASE("outcomes are the same after a message, bit by bit") {
 TEST_CASE("a job that kills its process is an error, and the next one runs") {
   browser::TemporaryFolder const folder;
   auto const once = folder.path() / "once";
-  detail::JobProcess process([&](std::size_t job) {
+  auto const jobs = [&](std::size_t job) {
     if (job == 1) std::raise(SIGKILL);
     if (job == 2) std::exit(3);
     if (job == 3 && !std::filesystem::exists(once)) {
@@ -111,7 +111,8 @@ TEST_CASE("a job that kills its process is an error, and the next one runs") {
     outcome.result.steps = static_cast<std::int64_t>(job);
     outcome.replay = std::string(job * 1'000'000, 'x');  // more than a socket holds
     return outcome;
-  });
+  };
+  detail::JobProcess process(jobs, 60.0);
   CHECK(outcome_in(process, 0).result.steps == 0);
   CHECK(outcome_in(process, 1).result.error.find("the process that ran it died, twice: signal 9") == 0);
   CHECK(outcome_in(process, 2).result.error == "the process that ran it died, twice: exit code 3");

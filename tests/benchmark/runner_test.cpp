@@ -1,4 +1,5 @@
 #include <cambium/cambium.hpp>
+#include <cambium/benchmark/run_on_processes.hpp>
 #include <cambium/benchmark/runner.hpp>
 #include <cambium/map/opendrive.hpp>
 #include <cambium/scenario/merging_site.hpp>
@@ -6,12 +7,15 @@
 #include <doctest/doctest.h>
 
 #include <algorithm>
+#include <chrono>
+#include <csignal>
 #include <cstdint>
 #include <filesystem>
 #include <iterator>
 #include <map>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "../examples/program.hpp"
@@ -63,6 +67,16 @@ struct ThrowsNumber {
     throw 42;
   }
 };
+/// Crashes in scenarios whose seed is odd, and never returns where it can be divided by 4.
+struct Hostile {
+  std::uint64_t seed = 0;
+  template <class View>
+  Plan<View> plan(View const& view, NoMemory& memory, double dt) const {
+    if (seed % 2 == 1) std::raise(SIGSEGV);
+    while (seed % 4 == 0) std::this_thread::sleep_for(std::chrono::seconds(1));
+    return ConstantAcceleration{}.plan(view, memory, dt);
+  }
+};
 /// Keeps its speed, or returns no plan.
 struct Either {
   bool gives_up = false;
@@ -112,6 +126,20 @@ void execute(std::filesystem::path const& file, char const* sql) {
   sqlite3_close(db);
 }
 
+/// The first value that a query of a database gives.
+std::string text_in(std::filesystem::path const& file, char const* sql) {
+  sqlite3* db = nullptr;
+  std::string text;
+  REQUIRE(sqlite3_open(file.c_str(), &db) == SQLITE_OK);
+  auto const keep = [](void* to, int, char** values, char**) {
+    if (values[0] != nullptr) *static_cast<std::string*>(to) = values[0];
+    return 0;
+  };
+  CHECK(sqlite3_exec(db, sql, keep, &text, nullptr) == SQLITE_OK);
+  sqlite3_close(db);
+  return text;
+}
+
 /// The rows but for their times, as text.
 std::string results_of(ResultStore& store) {
   std::string text;
@@ -128,19 +156,69 @@ TEST_CASE("results do not depend on threads, shards or interruptions") {
   auto const set = merging_set(12);
   ResultStore one(folder.path / "one.db"), four(folder.path / "four.db"), first(folder.path / "first.db"),
       second(folder.path / "second.db");
-  CHECK(run_benchmark(set, contenders(), one, {.threads = 1}) == 60);
-  CHECK(run_benchmark(set, contenders(), four, {.threads = 4}) == 60);
+  CHECK(run_benchmark(set, contenders(), one, {.executor = on_threads(1)}) == 60);
+  CHECK(run_benchmark(set, contenders(), four, {.executor = on_threads(4)}) == 60);
   CHECK(results_of(one) == results_of(four));
-  CHECK(run_benchmark(set, contenders(), one, {.threads = 1}) == 0);
-  CHECK(run_benchmark(set, contenders(), one, {.threads = 1, .again = true}) == 60);
+  CHECK(run_benchmark(set, contenders(), one, {.executor = on_threads(1)}) == 0);
+  CHECK(run_benchmark(set, contenders(), one, {.executor = on_threads(1), .again = true}) == 60);
   CHECK(results_of(one) == results_of(four));
-  auto const half = run_benchmark(set, contenders(), first, {.threads = 2, .shard = 0, .shards = 2});
+  auto const half = run_benchmark(set, contenders(), first, {.executor = on_threads(2), .shard = 0, .shards = 2});
   CHECK(half == 30);
-  CHECK(half + run_benchmark(set, contenders(), second, {.threads = 2, .shard = 1, .shards = 2}) == 60);
+  CHECK(half + run_benchmark(set, contenders(), second, {.executor = on_threads(2), .shard = 1, .shards = 2}) == 60);
+  first.begin_run("now", "the first");
+  second.begin_run("now", "the second");
+  CHECK(run_benchmark(set, contenders(), second, {.shard = 1, .shards = 2, .again = true}) == 30);
   first.merge(second);
   CHECK(results_of(first) == results_of(four));
+  CHECK(text_in(folder.path / "first.db", "SELECT command FROM results JOIN runs USING(run) WHERE scenario = 1 LIMIT 1") ==
+        "the second");
   CHECK(run_benchmark(set, contenders(), second) == 30);  // goes on where it was
   CHECK(results_of(second) == results_of(four));
+}
+
+TEST_CASE("in processes, a behaviour that crashes or never returns costs its own runs only") {
+  Folder folder;
+  auto set = merging_set(6);
+  for (std::size_t i = 0; i < set.scenarios.size(); ++i) set.scenarios[i].seed = i + 1;
+  auto const choose = [](auto const&, auto const& scenario) { return Hostile{.seed = scenario.seed}; };
+  auto all = contenders();
+  all.push_back(contender_by<Traffic>("hostile", "", 0, choose));
+  ResultStore store(folder.path / "r.db"), peaceful(folder.path / "peaceful.db");
+  // limit of a run: twice the limit of its plans and 10 s
+  CHECK(run_benchmark(set, all, store, {.executor = on_processes(2), .plan_limit = 1e-9}) == 36);
+  int crashed = 0, endless = 0, other = 0;
+  for (auto const& row : rows_of(store)) {
+    if (row.key.behavior != "hostile") continue;
+    crashed += row.result.error.starts_with(process_died);
+    endless += row.result.error.find("did not return") != std::string::npos;
+    other += row.result.error.starts_with(plans_too_long) && row.result.steps == 1;
+  }
+  CHECK(crashed == 3);
+  CHECK(endless == 1);
+  CHECK(other == 2);
+  all.pop_back();
+  CHECK(run_benchmark(set, all, store, {.executor = on_processes(3)}) == 18);  // a slow machine is no verdict for good
+  CHECK(run_benchmark(set, all, peaceful, {.executor = on_threads(1)}) == 30);
+  auto rows = rows_of(store);
+  std::erase_if(rows, [](auto const& row) { return row.key.behavior == "hostile"; });
+  auto const expected = rows_of(peaceful);
+  REQUIRE(rows.size() == expected.size());
+  for (std::size_t i = 0; i < rows.size(); ++i) CHECK(to_string(rows[i].result) == to_string(expected[i].result));
+}
+
+TEST_CASE("results of a process that has read other scenarios are refused") {
+  Folder folder;
+  auto const set = merging_set(2), other = merging_set(1);
+  ResultStore store(folder.path / "r.db");
+  auto const all = contenders();
+  BenchmarkOptions const options;
+  auto stranger = on_threads(1);
+  stranger.execute = [&](auto const& jobs, auto const&, auto const& take, double limit) {
+    on_threads(1).execute(jobs, detail::job_runner(other, other.hash(), all, options), take, limit);
+  };
+  CHECK_THROWS_WITH_AS(run_benchmark(set, all, store, {.executor = stranger}),
+                       doctest::Contains("has read other scenarios"), Error);
+  CHECK(rows_of(store).empty());
 }
 
 TEST_CASE("a run that throws or fails is a result") {
@@ -220,7 +298,7 @@ TEST_CASE("failures leave replays, up to a number of each contender") {
   Folder folder;
   auto const set = merging_set(4);
   ResultStore store(folder.path / "r.db");
-  BenchmarkOptions options{.threads = 2,
+  BenchmarkOptions options{.executor = on_threads(2),
                            .replays = Replays::failures,
                            .replay_folder = folder.path / "replays",
                            .most_replays = 3,

@@ -64,7 +64,8 @@ TEST_CASE("a key that names no number, or one out of range, is an error with the
   CHECK(refusal(Search{}, "discount", 1.5) == "f.json: discount: is 1.5; give a value in [0, 1]");
   CHECK(refusal(Search{}, "depth", 4.0) == "f.json: depth: is no real number; name another parameter");
   CHECK(refusal(Search{}, "parts.low", 0.5).find("there is no number of that key") != std::string::npos);
-  CHECK(refusal(Search{}, "speed.clipped_normal.low", 0.5).find("there is no number") != std::string::npos);
+  CHECK(refusal(Search{}, "speed.clipped_normal.low", 0.5).find("give one of uniform") != std::string::npos);
+  CHECK(refusal(Search{}, "speed.low", 0.5).find("give one of uniform") != std::string::npos);
 }
 
 TEST_CASE("a clipped normal distribution stays within its bounds, and is normal between them") {

@@ -231,6 +231,9 @@ TEST_CASE("flows draw traffic by lane that is dense, safe and reproducible") {
   CHECK(refusal(R"({"recipes": [{"map_file": "highway.xodr", "flows": [{}]}]})") ==
         "f.json: recipes[0].flows[0]: names no source; give \"from\": \"road/section/lane\", or "
         "\"from_point\"");
+  CHECK(refusal(R"({"recipes": [{"map_file": "highway.xodr", "flows": [{"from": "1/0/-1",
+    "traffic": {"desired_speed": {"uniform": {"low": 9, "high": 12}}}, "drivers": [{"behavior": "idm_classic"}]}]}]})")
+            .find("f.json: recipes[0].flows[0].traffic.desired_speed: is not for flows with drivers; ") == 0);
   CHECK(refusal(R"({"recipes": [{"map_file": "highway.xodr"}]})") ==
         "f.json: recipes[0]: draws no vehicle, or none for the ego; give longer or denser flows, or slower ones");
 }

@@ -4,12 +4,11 @@
 
 #include "cambium/benchmark/run_on_ranks.hpp"
 
-#include "../traffic.hpp"
+#include "../program.hpp"
 
 int main(int argc, char** argv) {
-  using namespace benchmark;
   boost::mpi::environment const environment(argc, argv);
-  examples::ParameterFile file;  // none: all as shipped
-  return cb::benchmark_on_ranks(boost::mpi::communicator(), argc, argv, shipped(file),
-                                {.sets = CAMBIUM_SOURCE_DIR "/examples/benchmark/sets"});
+  return benchmark::run_program(argc, argv, [](auto const&... all) {
+    return cambium::benchmark_on_ranks(boost::mpi::communicator(), all...);
+  });
 }

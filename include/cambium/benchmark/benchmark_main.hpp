@@ -35,6 +35,13 @@
 #include "cambium/scenario/scenario_file.hpp"
 #include "cambium/viewer/html_replay.hpp"
 
+#if __has_include(<sys/wait.h>)
+#define CAMBIUM_HAS_PROCESSES 1
+#include "cambium/benchmark/run_on_processes.hpp"
+#else
+#define CAMBIUM_HAS_PROCESSES 0
+#endif
+
 namespace cambium {
 
 /// Where `benchmark_main` looks for what the command line does not name.
@@ -44,7 +51,17 @@ struct BenchmarkDefaults {
   std::string set = "examples";                 ///< used without `--set`
   std::filesystem::path out = "out/benchmark";  ///< the database is `out`/results.db
   Executor executor{};                          ///< where the jobs run, in place of threads; see `on_ranks`
+  std::string settings{};  ///< words of the command line that the program has read itself: "--parameters FILE"
 };
+
+/// `word` for a shell.
+[[nodiscard]] inline std::string shell_word(std::string const& word) {
+  auto const is_plain = [](unsigned char c) { return std::isalnum(c) != 0 || std::strchr("_-./,:=+", c) != nullptr; };
+  if (!word.empty() && std::ranges::all_of(word, is_plain)) return word;
+  std::string quoted = "'";
+  for (char const c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return quoted + "'";
+}
 
 namespace detail {
 
@@ -55,11 +72,15 @@ namespace detail {
       {"--scenarios", "N", "number of scenarios that each recipe draws, instead of its own"},
       {"--seed", "S", "seed of the recipes, instead of their own"},
       {"--threads", "T", "number of threads; the results do not depend on it"},
+#if CAMBIUM_HAS_PROCESSES
+      {"--processes", "N",
+       "in place of threads: each run in one of N processes. A behaviour that crashes then costs that run only"},
+#endif
       {"--db", "FILE", "database of the results; what it has already is not run again"},
       {"--shard", "i/n", "run only the i-th of n parts, i from 0; merge the databases with examples/run report"},
       {"--plan-limit", "SECONDS",
-       "ends a run whose plans take longer than that together: an error. A plan that never returns is not ended. Off "
-       "without it, because the results then depend on the machine"},
+       "ends a run whose plans take longer than that together: an error. With --processes, a plan that never returns is "
+       "ended, too. Off without it, because the results then depend on the machine"},
       {"--replays", "failures|all|none",
        "the runs that leave a replay in the folder replays beside the database; failures (usual): of those of each "
        "behaviour and set, the first 20"},
@@ -120,6 +141,9 @@ namespace detail {
                                     {"closed_loop_score", "closed_loop_score"},
                                     {"ms_per_decision", "mean_ms"}})
       row.push_back({name, {means.at(key)}});
+    if (successes.rows.empty())
+      for (auto& [name, value] : row)
+        if (name == "mean_time_s") value = {};
     rows.push_back({std::move(row)});
   }
   return print_json({std::move(rows)});
@@ -200,8 +224,15 @@ int run_only(std::vector<ScenarioSet<World>> const& sets, std::vector<Contender<
 [[nodiscard]] inline BenchmarkOptions options_of(Arguments const& arguments, std::filesystem::path const& database,
                                                  Executor const& executor) {
   BenchmarkOptions options;
-  options.threads = static_cast<std::size_t>(arguments.whole("--threads", 1, 4096).value_or(options.threads));
-  options.executor = executor.execute ? executor : on_threads(options.threads);
+  auto const threads = arguments.whole("--threads", 1, 4096);
+  if (threads) options.executor = on_threads(static_cast<std::size_t>(*threads));
+#if CAMBIUM_HAS_PROCESSES
+  if (auto const processes = arguments.whole("--processes", 1, 4096)) {
+    if (threads) throw Error("--processes", "is given beside --threads", "give one of them");
+    options.executor = on_processes(static_cast<std::size_t>(*processes));
+  }
+#endif
+  if (executor.execute) options.executor = executor;
   options.again = arguments.has("--again");
   options.plan_limit = arguments.seconds("--plan-limit").value_or(options.plan_limit);
   options.replay_folder = database.parent_path() / "replays";
@@ -220,22 +251,13 @@ int run_only(std::vector<ScenarioSet<World>> const& sets, std::vector<Contender<
   return options;
 }
 
-/// `word` for a shell.
-[[nodiscard]] inline std::string shell_word(std::string const& word) {
-  auto const is_plain = [](unsigned char c) { return std::isalnum(c) != 0 || std::strchr("_-./,:=+", c) != nullptr; };
-  if (!word.empty() && std::ranges::all_of(word, is_plain)) return word;
-  std::string quoted = "'";
-  for (char const c : word) quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
-  return quoted + "'";
-}
-
 /// What names the set of a file on the command line, as in "--set examples/merging --seed 3".
 [[nodiscard]] inline std::string source_of(Arguments const& arguments, std::filesystem::path const& file,
                                            std::filesystem::path const& folder) {
   auto const below = file.lexically_relative(folder);
   bool const is_below = !below.empty() && *below.begin() != "..";
   std::string source = "--set " + shell_word(is_below ? below.parent_path() / below.stem() : file);
-  for (char const* option : {"--scenarios", "--seed"})
+  for (char const* option : {"--scenarios", "--seed", "--plan-limit"})
     if (auto const value = arguments.text(option)) source += std::string(" ") + option + " " + *value;
   return source;
 }
@@ -278,6 +300,7 @@ int run_benchmark_program(Arguments const& arguments, std::vector<Contender<Worl
     ProgressBar bar(sets[s].title);
     options.progress = [&bar](std::size_t done, std::size_t total) { bar(done, total); };
     options.source = sources[s];
+    options.settings = defaults.settings;
     jobs += run_benchmark(sets[s], contenders, store, options);
   }
   double const seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -324,6 +347,7 @@ int benchmark_main(int argc, char const* const* argv, std::vector<Contender<Worl
     }
     std::string command = defaults.program;
     for (int i = 1; i < argc; ++i) command += std::string(" ") + argv[i];
+    if (!defaults.settings.empty()) command += " " + defaults.settings;
     return detail::run_benchmark_program(arguments, contenders, command, defaults);
   } catch (std::exception const& problem) {
     std::cerr << defaults.program << ": " << problem.what() << "\n";

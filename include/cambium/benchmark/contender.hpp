@@ -36,7 +36,7 @@ struct RunOptions {
   double time_step = 0.2;    ///< [s]
   double time_limit = 60.0;  ///< [s]
   /// Longest time that all plans of a run may take together, of the wall clock [s]. A run that exceeds it ends with an
-  /// error after that plan; a plan that never returns is not ended. The outcome then depends on the machine.
+  /// error after that plan. The outcome then depends on the machine.
   double plan_limit = std::numeric_limits<double>::infinity();
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <mutex>
 #include <string>
@@ -16,20 +17,23 @@ namespace cambium {
 struct JobOutcome {
   RunResult result{};
   RunTimes times{};
-  std::string replay{};   ///< page for browsers; empty: none
-  std::string problem{};  ///< why there is no replay though one was wanted
+  std::string replay{};     ///< page for browsers; empty: none
+  std::string problem{};    ///< why there is no replay though one was wanted
+  std::uint64_t setup = 0;  ///< hash of set and contender, as the process that ran it has them
 };
 
-/// Where a benchmark's jobs run: on threads of this process (`on_threads`), or on the ranks of an MPI program
-/// (`on_ranks`).
+/// Where a benchmark's jobs run: on threads of this process (`on_threads`), in processes of their own
+/// (`on_processes`), or on the ranks of an MPI program (`on_ranks`).
 struct Executor {
   using Run = std::function<JobOutcome(std::size_t job)>;
   using Take = std::function<void(std::size_t job, JobOutcome outcome)>;
 
   /// Calls `run(job)` for each of `jobs`, in any order and at the same time, and `take(job, outcome)` for each outcome,
-  /// one call at a time. What these throw ends it. In a worker, it runs the jobs that the process with the store gives,
-  /// until that has no more: `jobs` do not count, and `take` is not called.
-  std::function<void(std::vector<std::size_t> const& jobs, Run const& run, Take const& take)> execute{};
+  /// one call at a time. What these throw ends it. Where jobs run in other processes, one that takes longer than
+  /// `job_limit` [s] is ended, and that is its error. In a worker, it runs the jobs that the process with the store
+  /// gives, until that has no more: `jobs` do not count, and `take` is not called.
+  std::function<void(std::vector<std::size_t> const& jobs, Run const& run, Take const& take, double job_limit)>
+      execute{};
   bool is_worker = false;  ///< works for another process, which has the store
   std::string name{};      ///< "4 threads"
 };
@@ -37,7 +41,7 @@ struct Executor {
 /// Runs jobs on threads of this process; one thread: in order.
 [[nodiscard]] inline Executor on_threads(std::size_t threads) {
   return {.execute =
-              [threads](auto const& jobs, auto const& run, auto const& take) {
+              [threads](auto const& jobs, auto const& run, auto const& take, double) {
                 std::mutex mutex;
                 run_on_threads(jobs.size(), threads, [&](std::size_t i) {
                   auto outcome = run(jobs[i]);

@@ -22,7 +22,8 @@
 ///
 ///   runs       one row a call of the runner: run, started, command
 ///   sets       one row a scenario set: set_hash, title, scenarios, source (what names it on the command line)
-///   behaviors  one row a behaviour with its parameters: behavior, parameters_hash, parameters
+///   behaviors  one row a behaviour with its parameters: behavior, parameters_hash, parameters, settings (what sets
+///              them on the command line)
 ///   results    one row a scenario and behaviour: the key (set_hash, scenario, behavior, parameters_hash, version), the
 ///              scenario's seed, the fields of `RunResult`, and the run that brought it
 ///   times      the same key, and the fields of `RunTimes`
@@ -80,9 +81,8 @@ class ResultStore {
     execute("CREATE TABLE IF NOT EXISTS runs(run INTEGER PRIMARY KEY, started TEXT, command TEXT)");
     execute("CREATE TABLE IF NOT EXISTS sets(set_hash TEXT PRIMARY KEY, title TEXT, scenarios INTEGER, source TEXT)");
     execute(
-        "CREATE TABLE IF NOT EXISTS behaviors(behavior TEXT, parameters_hash TEXT, parameters TEXT, PRIMARY "
-        "KEY(behavior, "
-        "parameters_hash))");
+        "CREATE TABLE IF NOT EXISTS behaviors(behavior TEXT, parameters_hash TEXT, parameters TEXT, settings TEXT, "
+        "PRIMARY KEY(behavior, parameters_hash))");
     std::string const key =
         "set_hash TEXT NOT NULL, scenario INTEGER NOT NULL, behavior TEXT NOT NULL, parameters_hash TEXT NOT NULL, "
         "version TEXT NOT NULL, ";
@@ -91,6 +91,7 @@ class ResultStore {
             primary);
     execute("CREATE TABLE IF NOT EXISTS times(" + key + columns<RunTimes>(true) + primary);
     add_missing_column("sets", "source TEXT");  // of a database that an older version of cambium has made
+    add_missing_column("behaviors", "settings TEXT");
     add_missing_column("results", "others_failed INTEGER");
     add_result_ = prepare("INSERT OR REPLACE INTO results(" + key_columns + "seed, run, " + columns<RunResult>(false) +
                           ") VALUES(" + marks(7 + count<RunResult>()) + ")");
@@ -132,20 +133,24 @@ class ResultStore {
     step(statement.get());
     run_ = sqlite3_last_insert_rowid(db_.get());
   }
-  /// `source`: what names the set on the command line, "--set merging --seed 3"; empty: unknown.
+  /// `source`: what names the set on the command line, "--set merging --seed 3"; empty: what was known stays.
   void add_set(std::uint64_t hash, std::string const& title, std::size_t scenarios, std::string const& source = {}) {
     auto statement = prepare("INSERT OR REPLACE INTO sets(set_hash, title, scenarios, source) VALUES(?, ?, ?, ?)");
     bind(statement.get(), 1, hash_text(hash));
     bind(statement.get(), 2, title);
     bind(statement.get(), 3, static_cast<std::int64_t>(scenarios));
-    bind(statement.get(), 4, source);
+    bind(statement.get(), 4, source.empty() ? source_of(hash) : source);
     step(statement.get());
   }
-  void add_behavior(std::string const& name, std::uint64_t hash, std::string const& parameters) {
-    auto statement = prepare("INSERT OR REPLACE INTO behaviors VALUES(?, ?, ?)");
+  /// `settings`: what sets the parameters on the command line, "--parameters FILE"; empty: nothing.
+  void add_behavior(std::string const& name, std::uint64_t hash, std::string const& parameters,
+                    std::string const& settings = {}) {
+    auto statement = prepare(
+        "INSERT OR REPLACE INTO behaviors(behavior, parameters_hash, parameters, settings) VALUES(?, ?, ?, ?)");
     bind(statement.get(), 1, name);
     bind(statement.get(), 2, hash_text(hash));
     bind(statement.get(), 3, parameters);
+    bind(statement.get(), 4, settings);
     step(statement.get());
   }
 
@@ -198,10 +203,11 @@ class ResultStore {
 
   /// The parameters of a behaviour as text; empty if they are unknown.
   [[nodiscard]] std::string parameters_of(std::string const& name, std::uint64_t hash) {
-    auto statement = prepare("SELECT parameters FROM behaviors WHERE behavior=? AND parameters_hash=?");
-    bind(statement.get(), 1, name);
-    bind(statement.get(), 2, hash_text(hash));
-    return has_row(statement.get()) ? text(statement.get(), 0) : std::string();
+    return of_behavior("parameters", name, hash);
+  }
+  /// What sets these parameters on the command line; empty: nothing, or unknown.
+  [[nodiscard]] std::string settings_of(std::string const& name, std::uint64_t hash) {
+    return of_behavior("settings", name, hash);
   }
   /// The title of a set; its hash if it has none.
   [[nodiscard]] std::string title_of(std::uint64_t set_hash) {
@@ -219,14 +225,18 @@ class ResultStore {
     bind(attach.get(), 1, other.file_);
     other.commit();
     step(attach.get());
-    auto const copy = [this](std::string const& table, std::string const& fields) {
-      execute("INSERT OR REPLACE INTO " + table + "(" + fields + ") SELECT " + fields + " FROM other." + table);
+    auto const copy = [this](std::string const& table, std::string const& fields, std::string const& values = {}) {
+      execute("INSERT OR REPLACE INTO " + table + "(" + fields + ") SELECT " + (values.empty() ? fields : values) +
+              " FROM other." + table);
     };
     try {
       execute("BEGIN");
+      auto const runs = last_run();
       copy("sets", "set_hash, title, scenarios, source");
-      copy("behaviors", "behavior, parameters_hash, parameters");
-      copy("results", key_columns + "seed, run, " + columns<RunResult>(false));
+      copy("behaviors", "behavior, parameters_hash, parameters, settings");
+      copy("runs", "run, started, command", "run + " + runs + ", started, command");
+      auto const fields = columns<RunResult>(false);
+      copy("results", key_columns + "seed, run, " + fields, key_columns + "seed, run + " + runs + ", " + fields);
       copy("times", key_columns + columns<RunTimes>(false));
       execute("COMMIT");
     } catch (...) {
@@ -275,11 +285,21 @@ class ResultStore {
     bind(statement.get(), 1, hash_text(set_hash));
     return has_row(statement.get()) ? text(statement.get(), 0) : std::string();
   }
+  [[nodiscard]] std::string of_behavior(std::string const& column, std::string const& name, std::uint64_t hash) {
+    auto statement = prepare("SELECT " + column + " FROM behaviors WHERE behavior=? AND parameters_hash=?");
+    bind(statement.get(), 1, name);
+    bind(statement.get(), 2, hash_text(hash));
+    return has_row(statement.get()) ? text(statement.get(), 0) : std::string();
+  }
   void add_missing_column(std::string const& table, std::string const& column) {
     auto query = prepare("SELECT 1 FROM pragma_table_info(?) WHERE name=?");
     bind(query.get(), 1, table);
     bind(query.get(), 2, column.substr(0, column.find(' ')));
     if (!has_row(query.get())) execute("ALTER TABLE " + table + " ADD COLUMN " + column);
+  }
+  [[nodiscard]] std::string last_run() {
+    auto query = prepare("SELECT COALESCE(MAX(run), 0) FROM main.runs");
+    return has_row(query.get()) ? text(query.get(), 0) : "0";
   }
   void step(sqlite3_stmt* statement) {
     auto const code = sqlite3_step(statement);

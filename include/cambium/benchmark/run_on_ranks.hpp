@@ -140,11 +140,12 @@ class JobDispatcher {
   void look_after(std::size_t number, bool says_alive) {
     auto& worker = workers_[number];
     if (worker.is_lost) return;
-    if (std::chrono::duration<double>(Clock::now() - worker.heard).count() > options_.patience) {
+    double const patience = (worker.is_ready ? 1.0 : 10.0) * options_.patience;  // it may still read its scenarios
+    if (std::chrono::duration<double>(Clock::now() - worker.heard).count() > patience) {
       worker.is_lost = true;
       if (options_.warn)
         options_.warn("rank " + std::to_string(rank_of(number)) + " has not been heard from for " +
-                      rounded_text(options_.patience) + " s: others take its jobs");
+                      rounded_text(patience) + " s: others take its jobs");
       open_.insert(open_.begin(), worker.jobs.begin(), worker.jobs.end());
       worker.jobs.clear();
       return;
@@ -170,9 +171,9 @@ class JobDispatcher {
 /// A rank other than 0 in one call of the executor.
 template <class Communicator>
 void work_for_rank_0(Communicator const& ranks, RankOptions const& options, std::uint64_t session,
-                     Executor::Run const& run) {
+                     Executor::Run const& run, double job_limit) {
   using Clock = std::chrono::steady_clock;
-  JobProcess process(run);
+  JobProcess process(run, job_limit);
   std::deque<std::size_t> jobs;
   auto heard = Clock::now();
   EverySecond is_time;
@@ -208,12 +209,13 @@ template <class Communicator>
   if (ranks.size() == 1) return on_threads(1);
   auto const session = std::make_shared<std::uint64_t>(0);
   return {.execute =
-              [ranks, options = std::move(options), session](auto const& jobs, auto const& run, auto const& take) {
+              [ranks, options = std::move(options), session](auto const& jobs, auto const& run, auto const& take,
+                                                             double job_limit) {
                 ++*session;
                 if (ranks.rank() == 0)
                   detail::JobDispatcher(ranks, options, *session, jobs).run(take);
                 else
-                  detail::work_for_rank_0(ranks, options, *session, run);
+                  detail::work_for_rank_0(ranks, options, *session, run, job_limit);
               },
           .is_worker = ranks.rank() != 0,
           .name = std::to_string(ranks.size() - 1) + (ranks.size() == 2 ? " rank" : " ranks")};

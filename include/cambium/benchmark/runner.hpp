@@ -22,6 +22,7 @@
 #include "cambium/benchmark/executor.hpp"
 #include "cambium/benchmark/html_report.hpp"
 #include "cambium/benchmark/result_store.hpp"
+#include "cambium/core/error.hpp"
 #include "cambium/core/parameters.hpp"
 #include "cambium/core/write_file.hpp"
 #include "cambium/scenario/scenario_set.hpp"
@@ -38,16 +39,18 @@ enum class Replays {
 
 /// What to run of a benchmark, and how.
 struct BenchmarkOptions {
-  std::size_t threads = std::max(1u, std::thread::hardware_concurrency());
+  Executor executor = on_threads(std::max(1u, std::thread::hardware_concurrency()));
   std::size_t shard = 0, shards = 1;  ///< runs only the jobs number `shard`, `shard + shards`, ...
   bool again = false;                 ///< runs also what the store has already
-  double plan_limit = std::numeric_limits<double>::infinity();  ///< see `RunOptions` [s]
+  /// See `RunOptions`. Where jobs run in other processes, a plan that never returns is ended, too: when its run takes
+  /// twice this time and 10 s [s].
+  double plan_limit = std::numeric_limits<double>::infinity();
   Replays replays = Replays::none;
   std::filesystem::path replay_folder = "replays";  ///< replays are `replay_folder`/`replay_file_name(...)`
   /// Of failures, the first of each contender and set in a call leave a replay, so that they do not fill the disk.
   std::size_t most_replays = 20;
   std::string source{};  ///< what names the set on the command line, for reports: "--set merging --seed 3"
-  Executor executor{};   ///< where jobs run, in place of `threads`
+  std::string settings{};  ///< what sets the contenders' parameters there: "--parameters FILE"
   /// Called after each job with the numbers of jobs done and to do; one thread at a time.
   std::function<void(std::size_t done, std::size_t total)> progress{};
   /// Called with a sentence about a problem that does not end the benchmark; one thread at a time.
@@ -64,19 +67,34 @@ namespace detail {
   return recording;
 }
 
-/// Runs jobs of a benchmark; job number = number of the contender × scenarios + number of the scenario.
+/// What a process knows of a benchmark, as a hash: scenarios of hash `set`, and a contender.
 template <class World>
-[[nodiscard]] Executor::Run job_runner(ScenarioSet<World> const& set, std::vector<Contender<World>> const& contenders,
+[[nodiscard]] std::uint64_t setup_of(std::uint64_t set, Contender<World> const& contender) {
+  return set ^ (contender.parameters_hash * 0x9e3779b97f4a7c15u) ^ std::hash<std::string>{}(contender.name);
+}
+
+/// A run, and once more for its replay.
+[[nodiscard]] inline double job_limit(BenchmarkOptions const& options) { return 2.0 * options.plan_limit + 10.0; }
+
+/// Runs jobs of a benchmark; job number = number of the contender × scenarios + number of the scenario. `hash`: of the
+/// set.
+template <class World>
+[[nodiscard]] Executor::Run job_runner(ScenarioSet<World> const& set, std::uint64_t hash,
+                                       std::vector<Contender<World>> const& contenders,
                                        BenchmarkOptions const& options) {
   auto const replays = std::make_shared<std::vector<std::atomic<std::size_t>>>(contenders.size());
-  return [&set, &contenders, &options, replays](std::size_t job) {
+  return [&set, hash, &contenders, &options, replays](std::size_t job) {
+    if (job >= contenders.size() * set.scenarios.size()) return JobOutcome{.setup = 1};  // a worker that has other ones
     auto const c = job / set.scenarios.size(), i = job % set.scenarios.size();
-    auto& made = (*replays)[c];
+    auto const& scenario = set.scenarios[i];
+    RunOptions const how{set.time_step, set.time_limit, options.plan_limit};
     bool const all = options.replays == Replays::all;
-    bool const records = all || (options.replays == Replays::failures && made < options.most_replays);
-    auto run = contenders[c].run(set.scenarios[i], {set.time_step, set.time_limit, options.plan_limit}, records);
-    JobOutcome outcome{run.result, run.times, {}, {}};
-    if (!run.recording || !(all || (!run.result.success && made++ < options.most_replays))) return outcome;
+    auto run = contenders[c].run(scenario, how, all);
+    JobOutcome outcome{run.result, run.times, {}, {}, setup_of(hash, contenders[c])};
+    bool const wanted = options.replays == Replays::failures && !run.result.success &&
+                        (*replays)[c]++ < options.most_replays;
+    if (wanted) run = contenders[c].run(scenario, how, true);  // it is cheaper to run a failure again than to film all
+    if (!run.recording) return outcome;
     try {
       outcome.replay = html_replay(titled(std::move(*run.recording), set.title, i, contenders[c].name, run.result));
     } catch (std::exception const& problem) {
@@ -137,7 +155,7 @@ std::size_t run_benchmark(ScenarioSet<World> const& set, std::vector<Contender<W
     for (std::size_t other = 0; other < c; ++other)
       if (contenders[other].name == contender.name && contenders[other].parameters_hash == contender.parameters_hash)
         throw ParameterError("contender " + contender.name, "is there twice with the same parameters", "leave one out");
-    store.add_behavior(contender.name, contender.parameters_hash, contender.parameters);
+    store.add_behavior(contender.name, contender.parameters_hash, contender.parameters, options.settings);
     for (std::size_t job = c * count; job < (c + 1) * count; ++job)
       if (job % options.shards == options.shard && (options.again || !store.has(key_of(job)))) jobs.push_back(job);
   }
@@ -146,6 +164,9 @@ std::size_t run_benchmark(ScenarioSet<World> const& set, std::vector<Contender<W
   std::size_t done = 0;
   auto last_commit = std::chrono::steady_clock::now();
   auto const take = [&](std::size_t job, JobOutcome outcome) {
+    if (outcome.setup != 0 && outcome.setup != detail::setup_of(hash, contenders[job / count]))
+      throw Error("benchmark", "a process that runs jobs has read other scenarios or parameters",
+                  "give all of them the same files");
     auto key = key_of(job);
     replays.take(outcome, replay_file_name(set.title, key.behavior, key.set_hash, key.parameters_hash, key.scenario),
                  job / count);
@@ -157,8 +178,7 @@ std::size_t run_benchmark(ScenarioSet<World> const& set, std::vector<Contender<W
     }
     if (options.progress) options.progress(++done, jobs.size());
   };
-  auto const executor = options.executor.execute ? options.executor : on_threads(options.threads);
-  executor.execute(jobs, detail::job_runner(set, contenders, options), take);
+  options.executor.execute(jobs, detail::job_runner(set, hash, contenders, options), take, detail::job_limit(options));
   store.commit();
   return jobs.size();
 }
@@ -168,7 +188,7 @@ std::size_t run_benchmark(ScenarioSet<World> const& set, std::vector<Contender<W
 template <class World>
 void serve_benchmark(ScenarioSet<World> const& set, std::vector<Contender<World>> const& contenders,
                      BenchmarkOptions const& options) {
-  options.executor.execute({}, detail::job_runner(set, contenders, options), {});
+  options.executor.execute({}, detail::job_runner(set, set.hash(), contenders, options), {}, detail::job_limit(options));
 }
 
 }  // namespace cambium

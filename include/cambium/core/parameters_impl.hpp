@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <charconv>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -160,20 +161,26 @@ CAMBIUM_COLD std::uint64_t parameters_hash(char const* name, void const* object,
   struct Hash final : ParameterReader {
     std::uint64_t hash = 0xcbf29ce484222325u;
 
-    void add_byte(std::uint64_t byte) { hash = (hash ^ byte) * 0x100000001b3u; }
-    void add_name(char const* text) {
-      for (; *text != '\0'; ++text) add_byte(static_cast<unsigned char>(*text));
-      add_byte(0);
-    }
     void add_bits(std::uint64_t bits) {
-      for (int shift = 0; shift < 64; shift += 8) add_byte((bits >> shift) & 0xffu);
+      hash = (hash ^ bits) * 0x9e3779b97f4a7c15u;
+      hash ^= hash >> 32;
+    }
+    void add_text(std::string_view text) {  // eight letters at a time: most of the time goes into names
+      add_bits(text.size());
+      std::uint64_t word = 0;
+      for (std::size_t i = 0; i < text.size(); ++i) {
+        word |= std::uint64_t{static_cast<unsigned char>(text[i])} << (8 * (i % 8));
+        if (i % 8 != 7 && i + 1 != text.size()) continue;
+        add_bits(word);
+        word = 0;
+      }
     }
     void add_path(ParameterPath const& path, ParameterInfo const& info) {
       for (auto const* key = &path; key != nullptr; key = key->outer) {
-        if (key != &path) add_name(key->name);
+        if (key != &path) add_text(key->name);
         if (key->element != key->no_list) add_bits(key->element);
       }
-      add_name(info.name);
+      add_text(info.name);
     }
     void value(ParameterPath const& path, ParameterInfo const& info, ParameterValue const& value,
                ParameterValue const*) override {
@@ -184,15 +191,14 @@ CAMBIUM_COLD std::uint64_t parameters_hash(char const* name, void const* object,
     void text(ParameterPath const& path, ParameterInfo const& info, std::string_view text,
               std::string_view const*) override {
       add_path(path, info);
-      add_bits(text.size());
-      for (char const c : text) add_byte(static_cast<unsigned char>(c));
+      add_text(text);
     }
     void alternative(ParameterPath const& path, ParameterInfo const& info, char const* name) override {
       add_path(path, info);
-      add_name(name);
+      add_text(name);
     }
   } hash;
-  hash.add_name(name);
+  hash.add_text(name);
   read(object, nullptr, nullptr, ListElements::each, hash);
   return hash.hash;
 }

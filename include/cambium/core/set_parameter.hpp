@@ -52,6 +52,7 @@ class KeyedNumber final : public ParameterTransfer {
   [[nodiscard]] std::size_t alternative(std::span<char const* const> names, std::size_t now, std::size_t) override {
     if (entered_.empty() || in_list_ > 0) return now;
     bool const is_named = depth() < parts_.size() && parts_[depth()] == alternative_name(names, now);
+    if (!is_named && depth() == deepest_) beside_ = {std::string(alternative_name(names, now))};
     entered_.back() = is_named ? depth() + 1 : parts_.size();
     return now;
   }

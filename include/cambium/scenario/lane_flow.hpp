@@ -210,6 +210,11 @@ template <class World>
     auto const has_share = [](DriverShare<World> const& driver) { return driver.share > 0.0; };
     if (!flow.drivers.empty() && std::none_of(flow.drivers.begin(), flow.drivers.end(), has_share))
       throw ParameterError(plan.where, "has only drivers whose share is 0", "give one of them a share");
+    auto usual = flow.traffic;
+    usual.desired_speed = LaneTraffic{}.desired_speed;
+    if (!flow.drivers.empty() && !equal_parameters(usual, flow.traffic))
+      throw ParameterError(plan.where + ".traffic.desired_speed", "is not for flows with drivers",
+                           "give the speed to these, or draw it: {\"key\": \"desired_speed\", \"value\": ...}");
     check_drawn(flow, plan.where);
     plan_way(map, plan);
     auto& traffic = plan.flow.traffic;

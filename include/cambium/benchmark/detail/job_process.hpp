@@ -2,12 +2,16 @@
 
 #include <fcntl.h>
 #include <poll.h>
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstddef>
 #include <cstdint>
@@ -24,11 +28,12 @@
 
 namespace cambium::detail {
 
-/// A forked copy of this process that runs jobs, so that a job that crashes takes nothing with it. It ends when this
-/// process does.
+/// A forked copy of this process that runs jobs, so that a job that crashes, or never ends, takes nothing with it. It
+/// ends when this process does.
 class JobProcess {
  public:
-  explicit JobProcess(Executor::Run run) : run_(std::move(run)) {}
+  /// `limit`: a job that takes longer is ended [s].
+  JobProcess(Executor::Run run, double limit) : run_(std::move(run)), limit_(limit) {}
   JobProcess(JobProcess const&) = delete;
   JobProcess& operator=(JobProcess const&) = delete;
   ~JobProcess() {
@@ -39,6 +44,8 @@ class JobProcess {
 
   [[nodiscard]] bool is_busy() const { return is_busy_; }
   [[nodiscard]] std::size_t job() const { return job_; }
+  /// Ready to be read when `wait` has something to do; for `poll`.
+  [[nodiscard]] int socket() const { return socket_; }
 
   /// Precondition: not busy. Throws `Error` if the system gives no process.
   void start(std::size_t job) {
@@ -52,7 +59,12 @@ class JobProcess {
   /// run once more, because the death may be a stranger's doing; the second is its error.
   [[nodiscard]] std::optional<std::string> wait(int milliseconds) {
     pollfd ready{socket_, POLLIN, 0};
-    if (poll(&ready, is_busy_ ? 1 : 0, milliseconds) <= 0) return std::nullopt;
+    if (poll(&ready, is_busy_ ? 1 : 0, milliseconds) <= 0) {
+      if (!is_busy_ || std::chrono::duration<double>(Clock::now() - begin_).count() <= limit_) return std::nullopt;
+      kill(pid_, SIGKILL);
+      static_cast<void>(end());
+      return failed(plans_too_long + rounded_text(limit_) + " s, and did not return: its process was ended");
+    }
     char buffer[1 << 16];
     auto const count = read(socket_, buffer, sizeof buffer);
     if (count > 0) {
@@ -67,14 +79,21 @@ class JobProcess {
       send_job();
       return std::nullopt;
     }
-    is_busy_ = false;
-    JobOutcome outcome;
-    outcome.result.error = process_died + (", twice: " + death);
-    return outcome_bytes(outcome);
+    return failed(process_died + (", twice: " + death));
   }
 
  private:
+  using Clock = std::chrono::steady_clock;
+
+  [[nodiscard]] std::string failed(std::string error) {
+    is_busy_ = false;
+    JobOutcome outcome;
+    outcome.result.error = std::move(error);
+    return outcome_bytes(outcome);
+  }
+
   void send_job() {
+    begin_ = Clock::now();
     if (pid_ <= 0) fork_child();
     std::string bytes;
     append_number(bytes, job_, 8);
@@ -90,7 +109,12 @@ class JobProcess {
     pid_ = fork();
     if (pid_ < 0) fail();
     close(ends[pid_ == 0 ? 0 : 1]);
-    if (pid_ == 0) work(ends[1]);
+    if (pid_ == 0) {
+#ifdef __linux__
+      prctl(PR_SET_PDEATHSIG, SIGKILL);  // also in the middle of a job
+#endif
+      work(ends[1]);
+    }
     socket_ = ends[0];
   }
 
@@ -145,6 +169,8 @@ class JobProcess {
   }
 
   Executor::Run run_;
+  double limit_;
+  Clock::time_point begin_{};
   pid_t pid_ = 0;
   int socket_ = -1;
   bool is_busy_ = false;
