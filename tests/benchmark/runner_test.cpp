@@ -170,8 +170,8 @@ TEST_CASE("results do not depend on threads, shards or interruptions") {
   CHECK(run_benchmark(set, contenders(), second, {.shard = 1, .shards = 2, .again = true}) == 30);
   first.merge(second);
   CHECK(results_of(first) == results_of(four));
-  CHECK(text_in(folder.path / "first.db", "SELECT command FROM results JOIN runs USING(run) WHERE scenario = 1 LIMIT 1") ==
-        "the second");
+  CHECK(text_in(folder.path / "first.db",
+                "SELECT command FROM results JOIN runs USING(run) WHERE scenario = 1 LIMIT 1") == "the second");
   CHECK(run_benchmark(set, contenders(), second) == 30);  // goes on where it was
   CHECK(results_of(second) == results_of(four));
 }

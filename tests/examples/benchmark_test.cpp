@@ -16,6 +16,7 @@
 #include <nlohmann/json.hpp>
 
 #include "cambium/benchmark/result_store.hpp"
+#include "cambium/core/write_file.hpp"
 #include "program.hpp"
 
 using program::content_of;
@@ -64,6 +65,10 @@ TEST_CASE("the benchmark gives the same results on any number of threads, and go
   auto const expected = results_in(file("one.db"));
   REQUIRE(program.run(with({"--threads", "3", "--db", file("three.db")})).code == 0);
   CHECK(results_in(file("three.db")) == expected);
+  auto const processes = program.run(with({"--processes", "2", "--db", file("processes.db")}));
+  CHECK(processes.out.find("240 runs in ") != std::string::npos);
+  CHECK(processes.out.find(" on 2 processes; ") != std::string::npos);
+  CHECK(results_in(file("processes.db")) == expected);
 
   for (int const milliseconds : {30, 90, 200}) {
     pid_t const child = fork();
@@ -125,7 +130,19 @@ TEST_CASE("failed runs leave replays that the report links, and a command that r
                                  "--replays", "none", "--plan-limit", "1e-9", "--json", file("r.json")});
   CHECK(none.code == 0);
   CHECK_FALSE(std::filesystem::exists(file("none/replays")));
-  CHECK(nlohmann::json::parse(content_of(file("r.json")))[0]["error"] == 1.0);
+  auto const row = nlohmann::json::parse(content_of(file("r.json")))[0];
+  CHECK(row["error"] == 1.0);
+  CHECK(row["mean_time_s"].is_null());
+
+  cambium::write_file(file("its parameters.json"), R"({"idm": {"time_headway": 3}})");
+  REQUIRE(program
+              .run({"--set", "exit", "--behaviors", "idm", "--scenarios", "1", "--db", file("with.db"), "--plan-limit",
+                    "60", "--parameters", file("its parameters.json")})
+              .code == 0);
+  REQUIRE(report.run({"--db", file("with.db"), "--html", file("with.html")}).code == 0);
+  CHECK(content_of(file("with.html"))
+            .find("--set examples/exit --scenarios 1 --plan-limit 60 --parameters '" + file("its parameters.json") +
+                  "'") != std::string::npos);
 }
 
 TEST_CASE("the benchmark names the fault in its options") {
@@ -148,6 +165,7 @@ TEST_CASE("the benchmark names the fault in its options") {
   says({"--set", "merging", "--behaviors", "idmm"}, "is it idm?");
   says({"--threads", "0"}, "give a whole number from 1 to 4096");
   says({"--threads", "1", "--threads", "2"}, "is given twice");
+  says({"--threads", "1", "--processes", "2"}, "is given beside --threads");
   says({"--shard", "2/2"}, "write i/n");
   says({"--set", "merging", "--only", "merging:99:idm"}, "give a number from 0 to 7");
   says({"--set", "merging", "--only", "merging"}, "write SET:NUMBER:BEHAVIOR");

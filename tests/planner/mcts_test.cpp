@@ -196,7 +196,7 @@ TEST_CASE("a search continues its tree if the world turns out as predicted") {
       for (int step = 0; step < 8; ++step) {
         REQUIRE(workspace.keep());
         CHECK(report.memory == *std::get_if<MacroActions::Memory>(&report.course[1].agents[0].memory));
-        REQUIRE(world.step(planner.options.step));
+        REQUIRE(world.step(planner.options.step + (step % 2 == 0 ? 1e-3 : -1e-3)));  // clocks jitter
         world.set_state(ego, report.course[1].agents[0].state);
         if (surprised) {
           auto state = world.state(AgentId{3});
@@ -340,6 +340,32 @@ TEST_CASE("beliefs find the headway of the leader") {
     REQUIRE(belief != nullptr);
     CHECK(belief->most_likely() == (headway < 1.0 ? 0 : 3));
     CHECK(belief->probability(belief->most_likely()) > 0.8);
+  }
+}
+
+TEST_CASE("beliefs are learnt from observations that come early or late, and the same") {
+  for (double const headway : {0.8, 3.2}) {
+    double on_time = 0.0;
+    for (double const jitter : {0.0, 0.001, 0.05}) {
+      CAPTURE(jitter);
+      Sim world(support::straight_road(1, 2000.0));
+      world.add({.position = {60, -1.75}, .speed = 12, .behavior = IdmClassic{}});
+      world.add({.position = {90, -1.75}, .speed = 14, .behavior = IdmClassic{.time_headway = headway}});
+      world.add({.position = {115, -1.75}, .speed = 10, .behavior = IdmClassic{.desired_speed = 10}});
+      auto const planner = quick(Learning{}, 50);
+      Learning::Workspace workspace;
+      Learning::Memory memory;
+      for (int step = 0; step < 8; ++step) {
+        memory = planner.think(world.observe(ego), memory, workspace).memory;
+        REQUIRE(world.step(planner.belief.interval + (step % 2 == 0 ? jitter : -jitter)));
+      }
+      auto const* belief = memory.belief(AgentId{1});
+      REQUIRE(belief != nullptr);
+      std::size_t const right = headway < 1.0 ? 0 : 3;
+      CHECK(belief->most_likely() == right);
+      if (jitter == 0.0) on_time = belief->probability(right);
+      CHECK(belief->probability(right) == doctest::Approx(on_time).epsilon(0.1));
+    }
   }
 }
 

@@ -8,7 +8,6 @@
 
 int main(int argc, char** argv) {
   boost::mpi::environment const environment(argc, argv);
-  return benchmark::run_program(argc, argv, [](auto const&... all) {
-    return cambium::benchmark_on_ranks(boost::mpi::communicator(), all...);
-  });
+  return benchmark::run_program(
+      argc, argv, [](auto const&... all) { return cambium::benchmark_on_ranks(boost::mpi::communicator(), all...); });
 }

@@ -66,21 +66,17 @@ struct BenchmarkDefaults {
 namespace detail {
 
 [[nodiscard]] inline std::vector<Option> benchmark_options() {
-  return {
+  std::vector<Option> options{
       {"--set", "FILE|NAME", "scenario files (.json) or names of sets, separated by commas"},
       {"--behaviors", "A,B,...", "the behaviours to run; all without it"},
       {"--scenarios", "N", "number of scenarios that each recipe draws, instead of its own"},
       {"--seed", "S", "seed of the recipes, instead of their own"},
       {"--threads", "T", "number of threads; the results do not depend on it"},
-#if CAMBIUM_HAS_PROCESSES
-      {"--processes", "N",
-       "in place of threads: each run in one of N processes. A behaviour that crashes then costs that run only"},
-#endif
       {"--db", "FILE", "database of the results; what it has already is not run again"},
       {"--shard", "i/n", "run only the i-th of n parts, i from 0; merge the databases with examples/run report"},
       {"--plan-limit", "SECONDS",
-       "ends a run whose plans take longer than that together: an error. With --processes, a plan that never returns is "
-       "ended, too. Off without it, because the results then depend on the machine"},
+       "ends a run whose plans take longer than that together: an error. With --processes, a plan that never "
+       "returns is ended, too. Off without it, because the results then depend on the machine"},
       {"--replays", "failures|all|none",
        "the runs that leave a replay in the folder replays beside the database; failures (usual): of those of each "
        "behaviour and set, the first 20"},
@@ -90,6 +86,11 @@ namespace detail {
       {"--json", "FILE", "write the table, a row a set and behaviour"},
       {"--list", "", "list behaviours and sets, and exit"},
       {"--help", "", "print this and exit"}};
+  if (CAMBIUM_HAS_PROCESSES)
+    options.insert(options.begin() + 5, {"--processes", "N",
+                                         "in place of threads: each run in one of N processes. A behaviour that "
+                                         "crashes then costs that run only"});
+  return options;
 }
 
 /// The scenario files that `--set` names: files, or in `folder` those of a folder, or one of the folder `usual`.

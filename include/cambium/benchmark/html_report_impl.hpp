@@ -144,8 +144,8 @@ namespace detail {
   for (std::size_t g = 0; g < report.groups.size(); ++g) {
     auto const& group = report.groups[g];
     groups += (g == 0 ? "{\"set\":" : ",\n{\"set\":") + json_string(group.set_label) +
-              ",\"title\":" + json_string(group.set) + ",\"source\":" +
-              json_string(group.source + (group.settings.empty() ? "" : " " + group.settings)) +
+              ",\"title\":" + json_string(group.set) +
+              ",\"source\":" + json_string(group.source + (group.settings.empty() ? "" : " " + group.settings)) +
               ",\"label\":" + json_string(group.label) + ",\"behavior\":" + json_string(group.behavior) +
               ",\"hash\":\"" + std::to_string(group.set_hash) + "\",\"file\":" +
               json_string(replay_prefix(group.set, group.behavior, group.set_hash, group.parameters_hash)) + "}";

@@ -145,8 +145,8 @@ class ResultStore {
   /// `settings`: what sets the parameters on the command line, "--parameters FILE"; empty: nothing.
   void add_behavior(std::string const& name, std::uint64_t hash, std::string const& parameters,
                     std::string const& settings = {}) {
-    auto statement = prepare(
-        "INSERT OR REPLACE INTO behaviors(behavior, parameters_hash, parameters, settings) VALUES(?, ?, ?, ?)");
+    auto statement =
+        prepare("INSERT OR REPLACE INTO behaviors(behavior, parameters_hash, parameters, settings) VALUES(?, ?, ?, ?)");
     bind(statement.get(), 1, name);
     bind(statement.get(), 2, hash_text(hash));
     bind(statement.get(), 3, parameters);

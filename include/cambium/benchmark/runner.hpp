@@ -49,7 +49,7 @@ struct BenchmarkOptions {
   std::filesystem::path replay_folder = "replays";  ///< replays are `replay_folder`/`replay_file_name(...)`
   /// Of failures, the first of each contender and set in a call leave a replay, so that they do not fill the disk.
   std::size_t most_replays = 20;
-  std::string source{};  ///< what names the set on the command line, for reports: "--set merging --seed 3"
+  std::string source{};    ///< what names the set on the command line, for reports: "--set merging --seed 3"
   std::string settings{};  ///< what sets the contenders' parameters there: "--parameters FILE"
   /// Called after each job with the numbers of jobs done and to do; one thread at a time.
   std::function<void(std::size_t done, std::size_t total)> progress{};
@@ -91,8 +91,8 @@ template <class World>
     bool const all = options.replays == Replays::all;
     auto run = contenders[c].run(scenario, how, all);
     JobOutcome outcome{run.result, run.times, {}, {}, setup_of(hash, contenders[c])};
-    bool const wanted = options.replays == Replays::failures && !run.result.success &&
-                        (*replays)[c]++ < options.most_replays;
+    bool const wanted =
+        options.replays == Replays::failures && !run.result.success && (*replays)[c]++ < options.most_replays;
     if (wanted) run = contenders[c].run(scenario, how, true);  // it is cheaper to run a failure again than to film all
     if (!run.recording) return outcome;
     try {
@@ -188,7 +188,8 @@ std::size_t run_benchmark(ScenarioSet<World> const& set, std::vector<Contender<W
 template <class World>
 void serve_benchmark(ScenarioSet<World> const& set, std::vector<Contender<World>> const& contenders,
                      BenchmarkOptions const& options) {
-  options.executor.execute({}, detail::job_runner(set, set.hash(), contenders, options), {}, detail::job_limit(options));
+  options.executor.execute({}, detail::job_runner(set, set.hash(), contenders, options), {},
+                           detail::job_limit(options));
 }
 
 }  // namespace cambium

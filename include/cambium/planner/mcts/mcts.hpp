@@ -28,6 +28,7 @@ namespace detail {
 struct TrackedAgent {
   AgentId id = none<AgentId>;
   Belief belief{};
+  float speed = 0.0f;                              ///< as last observed [m/s]
   std::array<float, Belief::capacity> expected{};  ///< next observed speed, by hypothesis [m/s]
 
   friend bool operator==(TrackedAgent const&, TrackedAgent const&) = default;
@@ -50,8 +51,8 @@ struct BeliefMemory {
   static constexpr std::size_t capacity = 6;
 
   std::array<detail::TrackedAgent, capacity> tracked{};
-  double expected_at = -1.0;  ///< time for which `TrackedAgent::expected` holds [s]
-  CourseMemory course{};      ///< the manoeuvre under way
+  double observed_at = -1.0, expected_at = -1.0;  ///< times of `TrackedAgent::speed` and `expected` [s]
+  CourseMemory course{};                          ///< the manoeuvre under way
 
   /// The belief about an agent; null if there is none.
   [[nodiscard]] Belief const* belief(AgentId id) const {
@@ -193,22 +194,25 @@ struct Mcts {
   }
 
   /// Updates the beliefs by what the others did since the last observation, and predicts what they will do until the
-  /// next one, in `dt` [s]. Returns the belief about each.
+  /// next one, in `dt` [s]. Returns the belief about each. An observation that comes early or late, by up to half of
+  /// `dt`, is compared with what was expected for its own time.
   [[nodiscard]] auto learn(PredictionWorld const& world, Slot ego, Memory& memory, double dt) const {
-    constexpr double same_time = 1e-6;  // [s]
     auto frame = world.frame();
     auto near = nearest_agents(world, ego, Memory::capacity, belief.range);
     std::erase_if(near, [&](Slot slot) { return memory_at(frame, slot) == nullptr; });  // they choose themselves
     std::size_t const hypotheses = others.hypotheses();
-    bool const was_expected = std::abs(memory.expected_at - world.time()) < same_time;
+    double const delay = (world.time() - memory.expected_at) / (memory.expected_at - memory.observed_at);
+    bool const was_expected = memory.expected_at > memory.observed_at && std::abs(delay) <= 0.5;
     decltype(memory.tracked) tracked{};
     std::vector<typename Domain::Unknown> unknowns;
     for (std::size_t i = 0; i < near.size(); ++i) {
       auto const id = world.roster().agents[near[i]].id;
       auto const known = std::ranges::find(memory.tracked, id, &detail::TrackedAgent::id);
       bool const is_known = known != memory.tracked.end() && known->belief.size() == hypotheses;
-      tracked[i] = is_known ? *known : detail::TrackedAgent{id, Belief(hypotheses), {}};
-      if (is_known && was_expected) observe(tracked[i], frame.agents[near[i]].state.speed);
+      tracked[i] = is_known ? *known : detail::TrackedAgent{id, Belief(hypotheses)};
+      double const speed = frame.agents[near[i]].state.speed;
+      if (is_known && was_expected) observe(tracked[i], speed, delay);
+      tracked[i].speed = static_cast<float>(speed);
       unknowns.push_back({near[i], tracked[i].belief});
     }
     // Nothing is known about the rest.
@@ -220,12 +224,14 @@ struct Mcts {
     return unknowns;
   }
 
-  void observe(detail::TrackedAgent& other, double speed) const {
+  /// `delay`: of the observation, in the duration of the prediction.
+  void observe(detail::TrackedAgent& other, double speed, double delay) const {
     std::array<double, Belief::capacity> likelihoods{};
     double nearest = 1e300;
     std::size_t const hypotheses = others.hypotheses();
     for (std::size_t r = 0; r < hypotheses; ++r) {
-      double const off = (speed - static_cast<double>(other.expected[r])) / belief.speed_deviation;
+      double const expected = other.expected[r], change = expected - static_cast<double>(other.speed);
+      double const off = (speed - (expected + delay * change)) / belief.speed_deviation;
       likelihoods[r] = 0.5 * off * off;
       nearest = std::min(nearest, likelihoods[r]);
     }
@@ -245,6 +251,7 @@ struct Mcts {
       for (std::size_t i = 0; i < slots.size(); ++i)
         memory.tracked[i].expected[r] = static_cast<float>(trial.frame().agents[slots[i]].state.speed);
     }
+    memory.observed_at = world.time();
     memory.expected_at = world.time() + dt;
   }
 };

@@ -151,7 +151,7 @@ class TrafficDomain {
     world_.exchange(state.frame);
   }
 
-  /// Whether `seen` is close to `predicted`: for every agent within 0.5 m, 0.5 m/s and 0.05 rad, at the same time; and
+  /// Whether `seen` is close to `predicted`: for every agent within 0.5 m, 0.5 m/s and 0.05 rad, within 20 ms; and
   /// whether the choosing agents are in the middle of the same manoeuvres.
   [[nodiscard]] bool same_state(State const& predicted, State const& seen) const {
     auto const is_near = [](auto const& a, auto const& b) {
@@ -164,7 +164,7 @@ class TrafficDomain {
       return Set::goes_on_alike(*std::get_if<behavior_index>(&predicted.frame.agents[slot].memory),
                                 *std::get_if<behavior_index>(&seen.frame.agents[slot].memory));
     };
-    return std::abs(predicted.frame.time - seen.frame.time) < 1e-6 &&
+    return std::abs(predicted.frame.time - seen.frame.time) < 0.02 &&
            std::ranges::equal(predicted.frame.agents, seen.frame.agents, is_near) &&
            std::ranges::all_of(slots_, goes_on_alike);
   }
