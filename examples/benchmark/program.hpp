@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -25,8 +26,10 @@ int run_program(int argc, char** argv, Run const& run) {
     auto const rest = program.remaining();
     std::vector<char const*> words{argv[0]};
     for (auto const& word : rest) words.push_back(word.c_str());
-    cb::BenchmarkDefaults defaults{.sets = CAMBIUM_SOURCE_DIR "/examples/benchmark/sets"};
-    if (!file.path().empty()) defaults.settings = "--parameters " + cb::shell_word(file.path());
+    cb::BenchmarkDefaults defaults{.command = "examples/run benchmark",
+                                   .sets = CAMBIUM_SOURCE_DIR "/examples/benchmark/sets"};
+    if (!file.path().empty())
+      defaults.command += " --parameters " + cb::shell_word(std::filesystem::absolute(file.path()));
     int const code = run(static_cast<int>(words.size()), words.data(), contenders, defaults);
     if (std::find(rest.begin(), rest.end(), "--help") != rest.end())
       for (auto const* option : program.get_options())

@@ -72,7 +72,7 @@ int report(Settings const& settings) {
     cb::write_file(settings.latex, text);
   }
   if (!settings.html.empty()) {
-    auto const folder = fs::path(settings.html).parent_path();
+    auto const folder = fs::absolute(settings.html).parent_path();
     std::error_code none;
     fs::create_directories(folder / "replays", none);  // where the page's commands put replays
     cb::write_file(settings.html,

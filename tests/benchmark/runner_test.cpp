@@ -276,7 +276,9 @@ TEST_CASE("who leaves the map before its goal has left its way") {
   CHECK(run.result.error == "");
   CHECK_FALSE(run.result.success);
   CHECK_FALSE(run.result.timed_out);
-  CHECK(run.result.off_road);
+  CHECK(run.result.off_route);
+  CHECK_FALSE(run.result.off_road);
+  CHECK(run.result.closed_loop_score == 0.0);
 }
 
 TEST_CASE("a store refuses what it cannot use") {

@@ -46,12 +46,11 @@ namespace cambium {
 
 /// Where `benchmark_main` looks for what the command line does not name.
 struct BenchmarkDefaults {
-  std::string program = "benchmark";            ///< name of the program, for its messages
+  std::string command{};  ///< what runs the program, with the options that it has read itself; usual: the path of it
   std::filesystem::path sets = "sets";          ///< `--set NAME` means the files in `sets`/NAME
   std::string set = "examples";                 ///< used without `--set`
   std::filesystem::path out = "out/benchmark";  ///< the database is `out`/results.db
   Executor executor{};                          ///< where the jobs run, in place of threads; see `on_ranks`
-  std::string settings{};  ///< words of the command line that the program has read itself: "--parameters FILE"
 };
 
 /// `word` for a shell.
@@ -136,6 +135,7 @@ namespace detail {
                                     {"collision", "collision"},
                                     {"collision_at_fault", "at_fault"},
                                     {"off_road", "off_road"},
+                                    {"off_route", "off_route"},
                                     {"timed_out", "timed_out"},
                                     {"error", "error"},
                                     {"mean_time_s", "mean_time_s"},
@@ -257,7 +257,7 @@ int run_only(std::vector<ScenarioSet<World>> const& sets, std::vector<Contender<
                                            std::filesystem::path const& folder) {
   auto const below = file.lexically_relative(folder);
   bool const is_below = !below.empty() && *below.begin() != "..";
-  std::string source = "--set " + shell_word(is_below ? below.parent_path() / below.stem() : file);
+  std::string source = "--set " + shell_word(is_below ? below.parent_path() / below.stem() : std::filesystem::absolute(file));
   for (char const* option : {"--scenarios", "--seed", "--plan-limit"})
     if (auto const value = arguments.text(option)) source += std::string(" ") + option + " " + *value;
   return source;
@@ -267,20 +267,27 @@ template <class World>
 int run_benchmark_program(Arguments const& arguments, std::vector<Contender<World>> const& all,
                           std::string const& command, BenchmarkDefaults const& defaults) {
   std::filesystem::path const database = arguments.text("--db").value_or((defaults.out / "results.db").string());
+  if (database.empty()) throw Error("--db", "is empty", "name a file, or leave the option out");
   auto options = options_of(arguments, database, defaults.executor);
   auto const contenders = chosen(all, arguments.list("--behaviors"));
-  auto const count = arguments.whole("--scenarios", 1, 10'000'000),
+  auto const count = arguments.whole("--scenarios", 1, 100'000),  // of each recipe; all are held in memory
              seed = arguments.whole("--seed", 0, ~std::uint64_t{0});
   std::vector<ScenarioSet<World>> sets;
   std::vector<std::string> sources;
   auto names = arguments.list("--set");
   if (names.empty()) names = {defaults.set};
   for (auto const& file : set_files(names, defaults.sets, defaults.set)) {
+    bool is_drawn = false;
     sets.push_back(read_scenarios<World>(file, [&](ScenarioRecipe<World>& recipe) {
+      is_drawn = true;
       if (count) recipe.scenarios = static_cast<std::uint32_t>(*count);
       if (seed) recipe.seed = *seed;
     }));
     if (sets.back().title.empty()) sets.back().title = file.stem().string();
+    if (sets.back().scenarios.empty())
+      throw Error(file.string(), "has no scenarios", "give it \"scenarios\" or \"recipes\"");
+    if ((count || seed) && !is_drawn)
+      throw Error(file.string(), "has no recipes to which --scenarios and --seed could apply", "leave them out");
     sources.push_back(source_of(arguments, file, defaults.sets));
   }
   if (options.executor.is_worker) {
@@ -301,7 +308,7 @@ int run_benchmark_program(Arguments const& arguments, std::vector<Contender<Worl
     ProgressBar bar(sets[s].title);
     options.progress = [&bar](std::size_t done, std::size_t total) { bar(done, total); };
     options.source = sources[s];
-    options.settings = defaults.settings;
+    options.command = defaults.command;
     jobs += run_benchmark(sets[s], contenders, store, options);
   }
   double const seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -320,8 +327,9 @@ int run_benchmark_program(Arguments const& arguments, std::vector<Contender<Worl
 /// 2 after an error, which it prints in one line.
 template <class World>
 int benchmark_main(int argc, char const* const* argv, std::vector<Contender<World>> const& contenders,
-                   BenchmarkDefaults const& defaults = {}) {
+                   BenchmarkDefaults defaults = {}) {
   auto const options = detail::benchmark_options();
+  std::filesystem::path const path(argc > 0 ? argv[0] : "benchmark");
   try {
     detail::Arguments const arguments(argc, argv, options);
     if (defaults.executor.is_worker && (arguments.has("--help") || arguments.has("--list") || arguments.has("--only")))
@@ -346,12 +354,13 @@ int benchmark_main(int argc, char const* const* argv, std::vector<Contender<Worl
       }
       return 0;
     }
-    std::string command = defaults.program;
-    for (int i = 1; i < argc; ++i) command += std::string(" ") + argv[i];
-    if (!defaults.settings.empty()) command += " " + defaults.settings;
+    if (defaults.command.empty())
+      defaults.command = shell_word(path.has_parent_path() ? std::filesystem::absolute(path) : path);
+    std::string command = defaults.command;
+    for (int i = 1; i < argc; ++i) command += " " + shell_word(argv[i]);
     return detail::run_benchmark_program(arguments, contenders, command, defaults);
   } catch (std::exception const& problem) {
-    std::cerr << defaults.program << ": " << problem.what() << "\n";
+    std::cerr << path.stem().string() << ": " << problem.what() << "\n";
     return 2;
   }
 }

@@ -131,8 +131,8 @@ class RunJudge {
     score_.observe(world, ego_, dt);
     jerk_.observe(world, ego_, dt);
     lateral_.observe(world, ego_, dt);
-    result_.off_road =
-        result_.off_road || OffRoad{}(world, ego_) || world.frame().agents[ego_].status == AgentStatus::off_route;
+    result_.off_road = result_.off_road || OffRoad{}(world, ego_);
+    result_.off_route = result_.off_route || world.frame().agents[ego_].status == AgentStatus::off_route;
     if (auto const contact = Collision{}.contact(world, ego_)) {
       result_.collision = true;
       result_.hit = contact->agent;
@@ -159,7 +159,7 @@ class RunJudge {
     result_.largest_lateral_acceleration = std::max(0.0, lateral_.value());
     result_.hard_brakings = static_cast<std::int64_t>(hard_brakings_.value());
     result_.rss_compliance = rss_.value();
-    result_.closed_loop_score = score_.value();
+    result_.closed_loop_score = result_.success ? score_.value() : 0.0;  // else it made no progress in nuPlan's sense
     return result_;
   }
 
@@ -229,7 +229,7 @@ template <class World, class AfterStep>
         has_goal ? world.reached_goal(slot)
                  : status == AgentStatus::arrived || status == AgentStatus::left_map || status == AgentStatus::expired;
     result.success = done && !result.collision && result.error.empty();
-    result.off_road = result.off_road || (has_goal && !done && status == AgentStatus::left_map);
+    result.off_route = result.off_route || (has_goal && !done && status == AgentStatus::left_map);
     is_over = !result.error.empty() || result.collision || done || is_away;
     result.timed_out = !is_over && world.frame().step >= most;
     is_over = is_over || result.timed_out;

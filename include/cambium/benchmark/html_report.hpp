@@ -13,8 +13,6 @@ struct HtmlReportOptions {
   std::string title = "Benchmark";
   std::filesystem::path replays = "replays";  ///< folder of replays; links to it are relative to the page
   std::filesystem::path page_folder = ".";    ///< where the page will lie
-  std::string command =
-      "examples/run benchmark";  ///< runs a scenario again, with the set's source and `--only SET:NUMBER:BEHAVIOR`
 };
 
 /// Name of the file with the replay of a run: "merging_mobil_1f00ba12_17.html"; the digits tell sets and parameters of

@@ -145,7 +145,8 @@ namespace detail {
     auto const& group = report.groups[g];
     groups += (g == 0 ? "{\"set\":" : ",\n{\"set\":") + json_string(group.set_label) +
               ",\"title\":" + json_string(group.set) +
-              ",\"source\":" + json_string(group.source + (group.settings.empty() ? "" : " " + group.settings)) +
+              ",\"source\":" + json_string(group.source) +
+              ",\"command\":" + json_string(group.command.empty() ? "examples/run benchmark" : group.command) +
               ",\"label\":" + json_string(group.label) + ",\"behavior\":" + json_string(group.behavior) +
               ",\"hash\":\"" + std::to_string(group.set_hash) + "\",\"file\":" +
               json_string(replay_prefix(group.set, group.behavior, group.set_hash, group.parameters_hash)) + "}";
@@ -169,8 +170,7 @@ namespace detail {
   }
   std::string outcomes;  // their colours are --o0 to --o5
   for (char const* outcome : run_outcomes) outcomes += (outcomes.empty() ? "" : ",") + json_string(outcome);
-  return "{\"command\":" + json_string(options.command) +
-         ",\"replays\":" + json_string(options.replays.generic_string()) +
+  return "{\"replays\":" + json_string(options.replays.generic_string()) +
          ",\"folder\":" + json_string((options.page_folder / options.replays).lexically_normal().generic_string()) +
          ",\"columns\":[" + names + "],\"outcomes\":[" + outcomes + "],\n\"groups\":[" + groups + "],\n\"rows\":[" +
          rows + "],\n\"errors\":{" + errors + "},\n\"hits\":{" + hits + "},\n\"made\":[" + made + "],\n\"seeds\":[" +

@@ -33,7 +33,7 @@ namespace cambium {
     group.set = store.title_of(group.set_hash);
     group.source = store.source_of(group.set_hash);
     group.parameters = store.parameters_of(group.behavior, group.parameters_hash);
-    group.settings = store.settings_of(group.behavior, group.parameters_hash);
+    group.command = store.command_of(group.behavior, group.parameters_hash);
   }
   for (auto& group : groups) {
     bool other_set = false, other_parameters = false, other_version = false;

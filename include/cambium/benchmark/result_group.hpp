@@ -24,7 +24,7 @@ struct ResultGroup {
   std::string behavior{};
   std::uint64_t parameters_hash = 0;
   std::string parameters{};  ///< as text
-  std::string settings{};    ///< what sets them on the command line: "--parameters FILE"; empty: nothing, or unknown
+  std::string command{};     ///< what runs it, without the set: "examples/run benchmark"; empty: unknown
   std::string version{};
   std::string label{};      ///< the behaviour's name, and what tells it from others of that name on this set
   std::vector<Row> rows{};  ///< by scenario

@@ -22,8 +22,8 @@
 ///
 ///   runs       one row a call of the runner: run, started, command
 ///   sets       one row a scenario set: set_hash, title, scenarios, source (what names it on the command line)
-///   behaviors  one row a behaviour with its parameters: behavior, parameters_hash, parameters, settings (what sets
-///              them on the command line)
+///   behaviors  one row a behaviour with its parameters: behavior, parameters_hash, parameters, command (what runs
+///              it, without the set)
 ///   results    one row a scenario and behaviour: the key (set_hash, scenario, behavior, parameters_hash, version), the
 ///              scenario's seed, the fields of `RunResult`, and the run that brought it
 ///   times      the same key, and the fields of `RunTimes`
@@ -69,53 +69,25 @@ struct StoreError : Error {
 /// came after the last `commit`.
 class ResultStore {
  public:
-  /// Opens or makes the file. Throws `StoreError` if that is impossible, or if its tables are others.
-  explicit ResultStore(std::filesystem::path const& file) : file_(file.string()) {
-    sqlite3* db = nullptr;
-    auto const code = sqlite3_open(file_.c_str(), &db);
-    db_.reset(db);
-    if (code != SQLITE_OK) fail("cannot be opened", "name a file in a folder that exists and that you may write to");
-    sqlite3_busy_timeout(db_.get(), 60'000);
-    execute("PRAGMA journal_mode=WAL");
-    execute("PRAGMA synchronous=NORMAL");
-    execute("CREATE TABLE IF NOT EXISTS runs(run INTEGER PRIMARY KEY, started TEXT, command TEXT)");
-    execute("CREATE TABLE IF NOT EXISTS sets(set_hash TEXT PRIMARY KEY, title TEXT, scenarios INTEGER, source TEXT)");
-    execute(
-        "CREATE TABLE IF NOT EXISTS behaviors(behavior TEXT, parameters_hash TEXT, parameters TEXT, settings TEXT, "
-        "PRIMARY KEY(behavior, parameters_hash))");
-    std::string const key =
-        "set_hash TEXT NOT NULL, scenario INTEGER NOT NULL, behavior TEXT NOT NULL, parameters_hash TEXT NOT NULL, "
-        "version TEXT NOT NULL, ";
-    std::string const primary = ", PRIMARY KEY(set_hash, behavior, parameters_hash, version, scenario)) WITHOUT ROWID";
-    execute("CREATE TABLE IF NOT EXISTS results(" + key + "seed TEXT, run INTEGER, " + columns<RunResult>(true) +
-            primary);
-    execute("CREATE TABLE IF NOT EXISTS times(" + key + columns<RunTimes>(true) + primary);
-    add_missing_column("sets", "source TEXT");  // of a database that an older version of cambium has made
-    add_missing_column("behaviors", "settings TEXT");
-    add_missing_column("results", "others_failed INTEGER");
-    add_result_ = prepare("INSERT OR REPLACE INTO results(" + key_columns + "seed, run, " + columns<RunResult>(false) +
-                          ") VALUES(" + marks(7 + count<RunResult>()) + ")");
-    add_times_ = prepare("INSERT OR REPLACE INTO times(" + key_columns + columns<RunTimes>(false) + ") VALUES(" +
-                         marks(5 + count<RunTimes>()) + ")");
-    has_ = prepare(
-        "SELECT 1 FROM results WHERE set_hash=? AND scenario=? AND behavior=? AND parameters_hash=? AND version=? AND "
-        "error NOT GLOB '" +
-        std::string(plans_too_long) + "*' AND error NOT GLOB '" + process_died + "*'");
-  }
-  /// Opens a database that is there already. Throws `StoreError` if the file is missing or is none; then it stays as it
-  /// is.
+  /// Opens or makes the file. Throws `StoreError` if that is impossible, or if its tables are others; then it stays as
+  /// it is.
+  explicit ResultStore(std::filesystem::path const& file) : ResultStore(file, nullptr) {}
+
+  /// Opens a database that is there already, also one that may only be read: then what is added is lost. Throws
+  /// `StoreError` if the file is missing or is none; then it stays as it is.
   [[nodiscard]] static ResultStore existing(std::filesystem::path const& file) {
-    sqlite3* db = nullptr;
-    bool is_ours = sqlite3_open_v2(file.string().c_str(), &db, SQLITE_OPEN_READONLY, nullptr) == SQLITE_OK;
-    std::unique_ptr<sqlite3, Close> const closed(db);
-    sqlite3_stmt* query = nullptr;
-    is_ours = is_ours && sqlite3_prepare_v2(db, "SELECT 1 FROM runs, sets, behaviors, results, times LIMIT 0", -1,
-                                            &query, nullptr) == SQLITE_OK;
-    sqlite3_finalize(query);
-    if (!is_ours)
-      throw StoreError(file.string(), "is no database of results (" + std::string(sqlite3_errmsg(db)) + ")",
+    auto db = open(file.string(), SQLITE_OPEN_READWRITE);
+    bool const is_frozen = sqlite3_db_readonly(db.get(), "main") == 1;
+    if (is_frozen) db = open(immutable(file.string()), SQLITE_OPEN_READONLY | SQLITE_OPEN_URI);
+    if (!is_ours(db.get()))
+      throw StoreError(file.string(), "is no database of results (" + std::string(sqlite3_errmsg(db.get())) + ")",
                        "name one that a benchmark has written");
-    return ResultStore(file);
+    if (!is_frozen) return ResultStore(file);
+    auto copy = open(":memory:", SQLITE_OPEN_READWRITE);
+    auto* const backup = sqlite3_backup_init(copy.get(), "main", db.get(), "main");
+    sqlite3_backup_step(backup, -1);
+    sqlite3_backup_finish(backup);
+    return ResultStore(file, std::move(copy));
   }
   ResultStore(ResultStore&&) = default;
   ResultStore& operator=(ResultStore&&) = default;
@@ -142,15 +114,15 @@ class ResultStore {
     bind(statement.get(), 4, source.empty() ? source_of(hash) : source);
     step(statement.get());
   }
-  /// `settings`: what sets the parameters on the command line, "--parameters FILE"; empty: nothing.
+  /// `command`: what runs it, without the set, "examples/run benchmark --parameters FILE"; empty: what was known stays.
   void add_behavior(std::string const& name, std::uint64_t hash, std::string const& parameters,
-                    std::string const& settings = {}) {
+                    std::string const& command = {}) {
     auto statement =
-        prepare("INSERT OR REPLACE INTO behaviors(behavior, parameters_hash, parameters, settings) VALUES(?, ?, ?, ?)");
+        prepare("INSERT OR REPLACE INTO behaviors(behavior, parameters_hash, parameters, command) VALUES(?, ?, ?, ?)");
     bind(statement.get(), 1, name);
     bind(statement.get(), 2, hash_text(hash));
     bind(statement.get(), 3, parameters);
-    bind(statement.get(), 4, settings);
+    bind(statement.get(), 4, command.empty() ? command_of(name, hash) : command);
     step(statement.get());
   }
 
@@ -205,9 +177,9 @@ class ResultStore {
   [[nodiscard]] std::string parameters_of(std::string const& name, std::uint64_t hash) {
     return of_behavior("parameters", name, hash);
   }
-  /// What sets these parameters on the command line; empty: nothing, or unknown.
-  [[nodiscard]] std::string settings_of(std::string const& name, std::uint64_t hash) {
-    return of_behavior("settings", name, hash);
+  /// What runs it on the command line, without the set; empty if that is unknown.
+  [[nodiscard]] std::string command_of(std::string const& name, std::uint64_t hash) {
+    return of_behavior("command", name, hash);
   }
   /// The title of a set; its hash if it has none.
   [[nodiscard]] std::string title_of(std::uint64_t set_hash) {
@@ -233,7 +205,7 @@ class ResultStore {
       execute("BEGIN");
       auto const runs = last_run();
       copy("sets", "set_hash, title, scenarios, source");
-      copy("behaviors", "behavior, parameters_hash, parameters, settings");
+      copy("behaviors", "behavior, parameters_hash, parameters, command");
       copy("runs", "run, started, command", "run + " + runs + ", started, command");
       auto const fields = columns<RunResult>(false);
       copy("results", key_columns + "seed, run, " + fields, key_columns + "seed, run + " + runs + ", " + fields);
@@ -254,7 +226,71 @@ class ResultStore {
   struct Finalize {
     void operator()(sqlite3_stmt* statement) const { sqlite3_finalize(statement); }
   };
+  using Database = std::unique_ptr<sqlite3, Close>;
   using Statement = std::unique_ptr<sqlite3_stmt, Finalize>;
+
+  /// `db`: the database, null for that in the file.
+  ResultStore(std::filesystem::path const& file, Database db) : file_(file.string()), db_(std::move(db)) {
+    if (!db_) db_ = open(file_, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
+    if (sqlite3_errcode(db_.get()) != SQLITE_OK)
+      fail("cannot be opened", "name a file in a folder that exists and that you may write to");
+    if (sqlite3_db_readonly(db_.get(), "main") == 1) fail("may not be written", "name another file");
+    sqlite3_busy_timeout(db_.get(), 60'000);
+    if (has_row(prepare("SELECT 1 FROM sqlite_master WHERE type = 'table'").get()) && !is_ours(db_.get()))
+      fail("holds tables of another program", "name another file");
+    execute("PRAGMA journal_mode=WAL");
+    execute("PRAGMA synchronous=NORMAL");
+    execute("BEGIN IMMEDIATE");
+    execute("CREATE TABLE IF NOT EXISTS runs(run INTEGER PRIMARY KEY, started TEXT, command TEXT)");
+    execute("CREATE TABLE IF NOT EXISTS sets(set_hash TEXT PRIMARY KEY, title TEXT, scenarios INTEGER, source TEXT)");
+    execute(
+        "CREATE TABLE IF NOT EXISTS behaviors(behavior TEXT, parameters_hash TEXT, parameters TEXT, command TEXT, "
+        "PRIMARY KEY(behavior, parameters_hash))");
+    std::string const key =
+        "set_hash TEXT NOT NULL, scenario INTEGER NOT NULL, behavior TEXT NOT NULL, parameters_hash TEXT NOT NULL, "
+        "version TEXT NOT NULL, ";
+    std::string const primary = ", PRIMARY KEY(set_hash, behavior, parameters_hash, version, scenario)) WITHOUT ROWID";
+    execute("CREATE TABLE IF NOT EXISTS results(" + key + "seed TEXT, run INTEGER, " + columns<RunResult>(true) +
+            primary);
+    execute("CREATE TABLE IF NOT EXISTS times(" + key + columns<RunTimes>(true) + primary);
+    add_missing_column("sets", "source TEXT");  // of a database that an older version of cambium has made
+    add_missing_column("behaviors", "command TEXT");
+    add_missing_column("results", "others_failed INTEGER");
+    add_missing_column("results", "off_route INTEGER");
+    execute("COMMIT");
+    add_result_ = prepare("INSERT OR REPLACE INTO results(" + key_columns + "seed, run, " + columns<RunResult>(false) +
+                          ") VALUES(" + marks(7 + count<RunResult>()) + ")");
+    add_times_ = prepare("INSERT OR REPLACE INTO times(" + key_columns + columns<RunTimes>(false) + ") VALUES(" +
+                         marks(5 + count<RunTimes>()) + ")");
+    has_ = prepare(
+        "SELECT 1 FROM results WHERE set_hash=? AND scenario=? AND behavior=? AND parameters_hash=? AND version=? AND "
+        "error NOT GLOB '" +
+        std::string(plans_too_long) + "*' AND error NOT GLOB '" + process_died + "*'");
+  }
+
+  [[nodiscard]] static Database open(std::string const& name, int flags) {
+    sqlite3* db = nullptr;
+    sqlite3_open_v2(name.c_str(), &db, flags, nullptr);
+    return Database(db);
+  }
+  /// The name of a file that nobody changes: without that, one cannot read in a folder that one may not write to.
+  [[nodiscard]] static std::string immutable(std::string const& file) {
+    std::string uri = "file:";
+    for (char const c : file)
+      if (c == '?' || c == '#' || c == '%')
+        uri += c == '?' ? "%3f" : c == '#' ? "%23" : "%25";
+      else
+        uri += c;
+    return uri + "?immutable=1";
+  }
+  /// Whether the database has our tables.
+  [[nodiscard]] static bool is_ours(sqlite3* db) {
+    sqlite3_stmt* query = nullptr;
+    bool const is_ours = sqlite3_prepare_v2(db, "SELECT 1 FROM runs, sets, behaviors, results, times LIMIT 0", -1,
+                                            &query, nullptr) == SQLITE_OK;
+    sqlite3_finalize(query);
+    return is_ours;
+  }
 
   inline static std::string const key_columns = "set_hash, scenario, behavior, parameters_hash, version, ";
 
@@ -263,7 +299,7 @@ class ResultStore {
   }
   void execute(std::string const& sql) {
     if (sqlite3_exec(db_.get(), sql.c_str(), nullptr, nullptr, nullptr) != SQLITE_OK)
-      fail("cannot be written", "name a database of this version of cambium, or a new file on a disk with room");
+      fail("cannot be written", "make room on the disk, or name another file");
   }
   [[nodiscard]] Statement prepare(std::string const& sql) {
     sqlite3_stmt* statement = nullptr;
@@ -385,7 +421,7 @@ class ResultStore {
   }
 
   std::string file_;
-  std::unique_ptr<sqlite3, Close> db_;
+  Database db_;
   Statement add_result_, add_times_, has_;
   std::int64_t run_ = 0;
   bool in_transaction_ = false;

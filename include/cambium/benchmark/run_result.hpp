@@ -23,6 +23,7 @@ struct RunResult {
   bool collision = false;
   bool at_fault = false;
   bool off_road = false;
+  bool off_route = false;
   bool timed_out = false;
   std::string error{};
   std::int64_t steps = 0;
@@ -50,8 +51,8 @@ struct RunResult {
         parameter("success", &P::success, "-", share, "the ego reached its goal in time, without a collision"),
         parameter("collision", &P::collision, "-", share, "the ego touched an agent or an object"),
         parameter("at_fault", &P::at_fault, "-", share, "it caused that: it moved, and the other was not behind it"),
-        parameter("off_road", &P::off_road, "-", share,
-                  "a part of it left the drivable lanes, or it left its route, or the map before its goal"),
+        parameter("off_road", &P::off_road, "-", share, "a part of it left the drivable lanes"),
+        parameter("off_route", &P::off_route, "-", share, "it left its route, or the map before its goal"),
         parameter("timed_out", &P::timed_out, "-", share, "the time limit passed"),
         parameter("error", &P::error, "-", {}, "why the run could not go on; empty: it could"),
         parameter("steps", &P::steps, "-", non_negative, "number of steps"),
@@ -68,7 +69,7 @@ struct RunResult {
                   "either way"),
         parameter("hard_brakings", &P::hard_brakings, "-", non_negative, "number of brakings harder than 4 m/s^2"),
         parameter("rss_compliance", &P::rss_compliance, "-", share, "share of steps with a proper response"),
-        parameter("closed_loop_score", &P::closed_loop_score, "-", share, "nuPlan's, without progress"),
+        parameter("closed_loop_score", &P::closed_loop_score, "-", share, "nuPlan's, without progress; 0 without success"),
         parameter("others_collided", &P::others_collided, "-", non_negative,
                   "number of steps in which a collision without the ego began"),
         parameter("others_failed", &P::others_failed, "-", non_negative,
@@ -82,7 +83,7 @@ namespace detail {
 
 /// How a run ended; each run ends in one way.
 inline constexpr std::array<char const*, 6> run_outcomes = {
-    "success", "collision, at fault", "collision, not at fault", "time-out", "error", "left the road or route"};
+    "success", "collision, at fault", "collision, not at fault", "time-out", "error", "left its route"};
 
 [[nodiscard]] inline std::size_t outcome_of(RunResult const& result) {
   if (!result.error.empty()) return 4;

@@ -50,7 +50,7 @@ struct BenchmarkOptions {
   /// Of failures, the first of each contender and set in a call leave a replay, so that they do not fill the disk.
   std::size_t most_replays = 20;
   std::string source{};    ///< what names the set on the command line, for reports: "--set merging --seed 3"
-  std::string settings{};  ///< what sets the contenders' parameters there: "--parameters FILE"
+  std::string command{};  ///< what runs these contenders there: "examples/run benchmark --parameters FILE"
   /// Called after each job with the numbers of jobs done and to do; one thread at a time.
   std::function<void(std::size_t done, std::size_t total)> progress{};
   /// Called with a sentence about a problem that does not end the benchmark; one thread at a time.
@@ -111,7 +111,11 @@ class ReplayFolder {
 
   void take(JobOutcome const& outcome, std::string const& file, std::size_t contender) {
     bool const is_enough = options_.replays == Replays::failures && written_[contender] >= options_.most_replays;
-    if ((outcome.replay.empty() && outcome.problem.empty()) || is_enough) return;
+    if ((outcome.replay.empty() && outcome.problem.empty()) || is_enough) {
+      std::error_code none_there;
+      std::filesystem::remove(options_.replay_folder / file, none_there);  // of an earlier result
+      return;
+    }
     ++written_[contender];
     auto problem = outcome.problem;
     try {
@@ -155,7 +159,7 @@ std::size_t run_benchmark(ScenarioSet<World> const& set, std::vector<Contender<W
     for (std::size_t other = 0; other < c; ++other)
       if (contenders[other].name == contender.name && contenders[other].parameters_hash == contender.parameters_hash)
         throw ParameterError("contender " + contender.name, "is there twice with the same parameters", "leave one out");
-    store.add_behavior(contender.name, contender.parameters_hash, contender.parameters, options.settings);
+    store.add_behavior(contender.name, contender.parameters_hash, contender.parameters, options.command);
     for (std::size_t job = c * count; job < (c + 1) * count; ++job)
       if (job % options.shards == options.shard && (options.again || !store.has(key_of(job)))) jobs.push_back(job);
   }

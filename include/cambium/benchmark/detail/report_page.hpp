@@ -81,8 +81,7 @@ label { display: inline-flex; align-items: center; gap: 6px; cursor: pointer; }
 /// The list of runs: body and script. It reads the JSON of the element `data`.
 inline constexpr std::string_view report_list = R"html(<section id="list"><h2>All runs</h2>
 <p class="soft">A click on a row opens its replay, or says how to make it. A click on a head sorts.</p>
-
-div class="controls"><input type="search" id="find" placeholder="scenario, behaviour, error ..." aria-label="Find runs">
+<div class="controls"><input type="search" id="find" placeholder="scenario, behaviour, error ..." aria-label="Find runs">
 <select id="set" aria-label="Set"></select><select id="behavior" aria-label="Behaviour"></select>
 <select id="outcome" aria-label="Outcome"></select>
 <label title="Scenarios in which some behaviours succeed and others do not">
@@ -124,7 +123,7 @@ let sorted = 1, down = false, shown = page, found = rows;
 const link = (row) => data.replays + '/' + encodeURIComponent(groups[row[0]].file + '_' + row[1] + '.html');
 const hasReplay = new Set(data.made);
 const quoted = (word) => /^[\w:.\/-]+$/.test(word) ? word : "'" + word.replaceAll("'", "'\\''") + "'";
-const command = (row) => data.command + (groups[row[0]].source ? ' ' + groups[row[0]].source : '') + ' --only ' + quoted(groups[row[0]].title + ':' + row[1] + ':' +
+const command = (row) => groups[row[0]].command + (groups[row[0]].source ? ' ' + groups[row[0]].source : '') + ' --only ' + quoted(groups[row[0]].title + ':' + row[1] + ':' +
     groups[row[0]].behavior) + ' --replay ' + quoted(data.folder + '/' + groups[row[0]].file + '_' + row[1] + '.html');
 const explain = (line, row) => {
   if (line.nextSibling && line.nextSibling.className === 'more') { line.nextSibling.remove(); return; }
