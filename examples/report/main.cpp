@@ -1,5 +1,5 @@
 // Reports the results of a benchmark: tables, comparisons of behaviours and with older results, a page for browsers.
-// Exits 1 if --against finds that something became significantly worse.
+// Exits 1 if --against finds that something became significantly worse, or is missing.
 
 #include <cstdio>
 #include <filesystem>
@@ -57,12 +57,14 @@ int report(Settings const& settings) {
     auto old = cb::ResultStore::existing(settings.against);
     report.comparisons.push_back(
         cb::compare_against(cb::read_results(old), report.groups, settings.against, settings.db, level));
-    has_loss = report.comparisons.back().has_loss();
+    has_loss = report.comparisons.back().has_loss() || !report.comparisons.back().missing.empty();
   }
   auto const tables = cb::tables_of(report);
   for (auto const& table : tables) std::printf("%s\n", cb::text_of(table).c_str());
+  for (auto const& words : cb::errors_of(report.groups)) std::printf("  %s\n", words.c_str());
   for (auto const& comparisons : report.comparisons) {
     for (auto const& words : comparisons.left_out) std::printf("  not compared: %s\n", words.c_str());
+    for (auto const& words : comparisons.missing) std::printf("  missing: %s\n", words.c_str());
     std::printf("  %s\n", cb::verdict_of(comparisons).c_str());
   }
   if (!settings.csv.empty()) cb::write_file(settings.csv, cb::csv_of(report));
@@ -95,8 +97,9 @@ void add_options(CLI::App& program, Settings& settings) {
       ->check(examples::not_empty())
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
       ->expected(1);
-  file("--against", settings.against,
-       "compares with the results of an older database; exits 1 if something became significantly worse");
+  file(
+      "--against", settings.against,
+      "compares with the results of an older database; exits 1 if something became significantly worse, or is missing");
   program.add_option("--baseline", settings.baseline, "compares all behaviours with this one on equal scenarios")
       ->type_name("NAME")
       ->check(examples::not_empty());

@@ -117,14 +117,19 @@ TEST_CASE("a report of known results has their figures") {
   CHECK(pair.changes.front().after == doctest::Approx(10.0 / 14));
 
   auto const tables = tables_of(report);
-  auto const text = text_of(tables.front());
+  auto const overview = text_of(tables.front());
+  CHECK(overview.find("successes (collisions)") != overview.npos);
+  CHECK(tables.front().rows.back()[0] == "mobil");
+  CHECK(tables.front().rows.back()[1] == "15/20 (2)");
+  CHECK(tables.front().rows.back()[2] == "15/20 (2)");
+  auto const text = text_of(tables[1]);
   CHECK(text.find("merging: outcomes") != text.npos);
   CHECK(text.find("75.0 (53.1-88.8)") != text.npos);
-  auto const latex = latex_of(tables.front());
+  auto const latex = latex_of(tables[1]);
   CHECK(latex.find("mobil & 20 & 75.0 (53.1--88.8)") != latex.npos);
   CHECK(latex.find("success [\\%]") != latex.npos);
   auto const csv = csv_of(report);
-  CHECK(csv.find("\nmerging,mobil,,0.1.0,,success,,more,20,0.75,0.53") != csv.npos);
+  CHECK(csv.find("\nmerging,mobil,0000000000000000,0.1.0,,success,,more,20,0.75,0.53") != csv.npos);
   CHECK(csv.find("\nmerging,mobil,,,idm,success,,more,14,-0.21428571428571") != csv.npos);
 }
 
@@ -201,6 +206,10 @@ TEST_CASE("comparisons use equal scenarios only, and say what they left out") {
   REQUIRE(found.list.size() == 1);
   CHECK(found.list.front().scenarios == 30);
   CHECK(found.left_out == std::vector<std::string>{"merging: new driver is only in new.db"});
+  CHECK(found.missing == std::vector<std::string>{"merging: driver lacks 90 of 120 scenarios of old.db"});
+  auto const dropped = compare_against({a, other}, {a}, "old.db", "new.db");
+  CHECK(dropped.missing == std::vector<std::string>{"merging: new driver is only in old.db"});
+  CHECK(verdict_of(dropped).find("results are missing") != std::string::npos);
   auto const with = compare_with_baseline({a, other}, "driver");
   REQUIRE(with.list.size() == 1);
   CHECK(with.list.front().before == "driver");
@@ -236,8 +245,13 @@ TEST_CASE("hostile names are escaped in every format") {
     CAPTURE(outside);
     CHECK(page.find(outside) == page.npos);
   }
+  CHECK(page.find("<div class=\"controls\">") != page.npos);
+  auto const errors = errors_of(report.groups);
+  REQUIRE(errors.size() == 1);
+  CHECK(errors.front().find("3 of 3 runs ended with an error, scenario ") != std::string::npos);
+  CHECK(errors.front().find('\x1b') == std::string::npos);
   auto const tables = tables_of(report);
-  CHECK(text_of(tables.front()).find('\x1b') == std::string::npos);
+  for (auto const& table : tables) CHECK(text_of(table).find('\x1b') == std::string::npos);
   auto const latex = latex_of(tables.front());
   CHECK(latex.find("\\&\\$\\%\\_\\{\\}\\textbackslash{}") != latex.npos);
   CHECK(csv_of(report).find("\"<img src=x onerror=alert(1)>,\"\"'&") != std::string::npos);

@@ -6,6 +6,8 @@
 #include <cambium/core/write_file.hpp>
 #include <doctest/doctest.h>
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <chrono>
 #include <csignal>
@@ -75,6 +77,16 @@ struct Hostile {
     if (seed % 2 == 1) std::raise(SIGSEGV);
     while (seed % 4 == 0) std::this_thread::sleep_for(std::chrono::seconds(1));
     return ConstantAcceleration{}.plan(view, memory, dt);
+  }
+};
+/// Drives by IDM, or throws.
+struct Moody {
+  using Memory = IdmClassic::Memory;
+  bool throws = false;
+  template <class View>
+  Plan<View> plan(View const& view, Memory& memory, double dt) const {
+    if (throws) throw std::runtime_error("in a bad mood");
+    return IdmClassic{.desired_speed = 22.0}.plan(view, memory, dt);
   }
 };
 /// Keeps its speed, or returns no plan.
@@ -294,6 +306,66 @@ TEST_CASE("a store refuses what it cannot use") {
   auto still = merging_set(1);
   still.time_step = 0.0;
   CHECK_THROWS_AS(run_benchmark(still, contenders(), store), ParameterError);
+}
+
+TEST_CASE("a database of another program stays as it is") {
+  Folder folder;
+  for (char const* tables : {"CREATE TABLE people(name TEXT)", "CREATE TABLE results(points INTEGER)"}) {
+    CAPTURE(tables);
+    auto const file = folder.path / "foreign.db";
+    std::filesystem::remove(file);
+    execute(file, tables);
+    CHECK_THROWS_WITH_AS(ResultStore{file}, doctest::Contains("holds tables of another program"), StoreError);
+    CHECK_THROWS_WITH_AS(static_cast<void>(ResultStore::existing(file)), doctest::Contains("is no database of results"),
+                         StoreError);
+    CHECK(text_in(file, "SELECT count(*) FROM sqlite_master") == "1");
+    CHECK(text_in(file, "PRAGMA journal_mode") == "delete");
+  }
+}
+
+TEST_CASE("a database that may only be read is read") {
+  Folder folder;
+  auto const set = merging_set(2);
+  auto const file = folder.path / "a #100%?.db";
+  std::string expected;
+  {
+    ResultStore store(file);
+    run_benchmark(set, contenders(), store);
+    expected = results_of(store);
+  }
+  std::filesystem::permissions(file, std::filesystem::perms(0444));
+  std::filesystem::permissions(folder.path, std::filesystem::perms(0555));
+  auto const user = geteuid();
+  if (user == 0) REQUIRE(seteuid(65534) == 0);  // root may write everywhere
+  std::string found, refusal;
+  try {
+    auto store = ResultStore::existing(file);
+    found = results_of(store);
+    ResultStore refused(file);
+  } catch (StoreError const& problem) {
+    refusal = problem.what();
+  }
+  if (user == 0) REQUIRE(seteuid(0) == 0);
+  std::filesystem::permissions(folder.path, std::filesystem::perms(0755));
+  CHECK(found == expected);
+  CHECK(refusal.find("may not be written") != std::string::npos);
+}
+
+TEST_CASE("the replay of a failure goes when it is a failure no more") {
+  Folder folder;
+  auto const set = merging_set(1);
+  bool throws = true;
+  auto const choose = [&](auto const&, auto const&) { return Moody{throws}; };
+  ResultStore store(folder.path / "r.db");
+  BenchmarkOptions options{.replays = Replays::failures, .replay_folder = folder.path / "replays"};
+  std::vector const moody{contender_by<Traffic>("moody", "", 0, choose)};
+  run_benchmark(set, moody, store, options);
+  CHECK(files_in(options.replay_folder).size() == 1);
+  throws = false;
+  options.again = true;
+  run_benchmark(set, moody, store, options);
+  CHECK(rows_of(store).front().result.error == "");
+  CHECK(files_in(options.replay_folder).empty() == rows_of(store).front().result.success);
 }
 
 TEST_CASE("failures leave replays, up to a number of each contender") {

@@ -90,7 +90,10 @@ TEST_CASE("the benchmark gives the same results on any number of threads, and go
   auto const again = program.run(with({"--db", file("killed.db")}));
   CHECK(again.code == 0);
   CHECK(results_in(file("killed.db")) == expected);
-  CHECK(program.run(with({"--db", file("killed.db")})).out.find("0 runs") != std::string::npos);
+  auto const nothing = program.run(with({"--db", file("killed.db")}));
+  CHECK(nothing.out.find("0 runs") != std::string::npos);
+  CHECK(nothing.out.find("240 results were there already; --again runs all anew") != std::string::npos);
+  CHECK(nothing.out.find("successes (collisions)") != std::string::npos);
 }
 
 TEST_CASE("the benchmark repeats one scenario and writes its replay") {
@@ -173,6 +176,18 @@ TEST_CASE("the benchmark names the fault in its options") {
   says({"--set", "merging", "--replay", "x.html"}, "needs --only");
   says({"--replays", "some"}, "write failures, all or none");
   says({"--plan-limit", "0"}, "give a number of seconds above 0");
+  says({"--db", ""}, "--db: is empty; name a file");
+  says({"--scenarios", "100001"}, "give a whole number from 1 to 100000");
+  auto const own = [&](std::string const& text) {
+    cambium::write_file(folder.path() / "own.json", text);
+    return (folder.path() / "own.json").string();
+  };
+  std::string const map = R"("map_file": ")" CAMBIUM_SOURCE_DIR R"(/maps/merging.xodr")";
+  says({"--set", own(R"({"format": 1})")}, "has no scenarios; give it");
+  std::string const agents = R"("agents": [{"id": 0, "position": {"x": 20, "y": -5.25}, "heading": 0, "speed": 9}]})";
+  says({"--set", own(R"({"scenarios": [{)" + map + ", " + agents + "]}")}, "own.json: scenario 0: has no ego");
+  says({"--set", own(R"({"scenarios": [{)" + map + R"(, "ego": 0, )" + agents + "]}"), "--seed", "3"},
+       "has no recipes to which --scenarios and --seed could apply");
   auto const replay = (folder.path() / "replay.html").string();
   REQUIRE(program.run({"--set", "merging", "--only", "merging:0:idm", "--replay", replay}).code == 0);
   says({"--set", "merging", "--db", replay + "/in_a_file.db"}, "in_a_file.db");

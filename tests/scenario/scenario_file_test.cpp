@@ -191,6 +191,23 @@ TEST_CASE("a recipe draws what its sampler draws") {
       "program's World");
 }
 
+TEST_CASE("what no world accepts is an error of the file") {
+  auto const with = [](std::string const& rest) {
+    return refusal(R"({"scenarios": [{"map_file": "merging.xodr", )" + rest + "}]}");
+  };
+  auto const begins = [](std::string const& text) {
+    CAPTURE(text);
+    return text.find("f.json: scenarios[0]: ") == 0;
+  };
+  std::string const good = R"({"id": 0, "position": {"x": 20, "y": -5.25}, "heading": 0, "speed": 9})";
+  CHECK(with(R"("ego": 0, "agents": [)" + good + "]") == "accepted");
+  CHECK(begins(with(R"("ego": 7, "agents": [)" + good + "]")));
+  CHECK(begins(with(R"("agents": [{"id": 0, "position": {"x": 20, "y": 500}, "heading": 0, "speed": 9}])")));
+  CHECK(begins(with(R"("agents": [)" + good + R"(, {"id": 0, "position": {"x": 60, "y": -5.25}, "speed": 9}])")));
+  CHECK(with(R"("agents": [{"id": -1, "position": {"x": 20, "y": -5.25}}])")
+            .find("give an integer from 0 to 429496729") != std::string::npos);
+}
+
 TEST_CASE("the example in the README is a scenario file") {
   auto const readme = read_file<Error>(CAMBIUM_SOURCE_DIR "/include/cambium/scenario/README.md", {});
   auto const begin = readme.find("```json\n") + 8;

@@ -128,6 +128,7 @@ namespace detail {
     for (auto const& measure : measures())
       if (measure.key == "duration_s") means["mean_time_s"] = mean_of_measure(successes, measure);
     std::vector<JsonValue::Member> row{{"set", {group.set}},
+                                       {"set_hash", {hash_text(group.set_hash)}},
                                        {"behavior", {group.behavior}},
                                        {"parameters_hash", {hash_text(group.parameters_hash)}},
                                        {"scenarios", {std::uint64_t{group.rows.size()}}}};
@@ -205,7 +206,7 @@ int run_only(std::vector<ScenarioSet<World>> const& sets, std::vector<Contender<
                 "give a number from 0 to " + std::to_string(set->scenarios.size() - 1));
   auto const contender = chosen(contenders, {std::string(parts[2])}).front();
   auto run = contender.run(set->scenarios[*number], {set->time_step, set->time_limit, plan_limit}, replay.has_value());
-  std::cout << only << "\n  " << contender.parameters << "\n";
+  std::cout << only << "\n  " << contender.parameters << "\n  seed: " << set->scenarios[*number].seed << "\n";
   for_each_parameter<RunResult>([&](auto const& entry) {
     using Field = std::remove_cvref_t<decltype(run.result.*entry.field)>;
     std::cout << "  " << entry.name << ": ";
@@ -257,7 +258,8 @@ int run_only(std::vector<ScenarioSet<World>> const& sets, std::vector<Contender<
                                            std::filesystem::path const& folder) {
   auto const below = file.lexically_relative(folder);
   bool const is_below = !below.empty() && *below.begin() != "..";
-  std::string source = "--set " + shell_word(is_below ? below.parent_path() / below.stem() : std::filesystem::absolute(file));
+  std::string source =
+      "--set " + shell_word(is_below ? below.parent_path() / below.stem() : std::filesystem::absolute(file));
   for (char const* option : {"--scenarios", "--seed", "--plan-limit"})
     if (auto const value = arguments.text(option)) source += std::string(" ") + option + " " + *value;
   return source;
@@ -271,7 +273,7 @@ int run_benchmark_program(Arguments const& arguments, std::vector<Contender<Worl
   auto options = options_of(arguments, database, defaults.executor);
   auto const contenders = chosen(all, arguments.list("--behaviors"));
   auto const count = arguments.whole("--scenarios", 1, 100'000),  // of each recipe; all are held in memory
-             seed = arguments.whole("--seed", 0, ~std::uint64_t{0});
+      seed = arguments.whole("--seed", 0, ~std::uint64_t{0});
   std::vector<ScenarioSet<World>> sets;
   std::vector<std::string> sources;
   auto names = arguments.list("--set");
@@ -286,6 +288,10 @@ int run_benchmark_program(Arguments const& arguments, std::vector<Contender<Worl
     if (sets.back().title.empty()) sets.back().title = file.stem().string();
     if (sets.back().scenarios.empty())
       throw Error(file.string(), "has no scenarios", "give it \"scenarios\" or \"recipes\"");
+    for (std::size_t i = 0; i < sets.back().scenarios.size(); ++i)
+      if (!is_valid(sets.back().scenarios[i].ego))
+        throw Error(file.string() + ": scenario " + std::to_string(i), "has no ego",
+                    "name the agent that the benchmark is about");
     if ((count || seed) && !is_drawn)
       throw Error(file.string(), "has no recipes to which --scenarios and --seed could apply", "leave them out");
     sources.push_back(source_of(arguments, file, defaults.sets));
@@ -305,7 +311,7 @@ int run_benchmark_program(Arguments const& arguments, std::vector<Contender<Worl
   std::size_t jobs = 0;
   auto const begin = std::chrono::steady_clock::now();
   for (std::size_t s = 0; s < sets.size(); ++s) {
-    ProgressBar bar(sets[s].title);
+    ProgressBar bar(sets[s].title + " (" + std::to_string(s + 1) + " of " + std::to_string(sets.size()) + ")");
     options.progress = [&bar](std::size_t done, std::size_t total) { bar(done, total); };
     options.source = sources[s];
     options.command = defaults.command;
@@ -314,8 +320,15 @@ int run_benchmark_program(Arguments const& arguments, std::vector<Contender<Worl
   double const seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   auto const groups = chosen_results(store, sets, contenders);
   for (auto const& table : summary_of(groups)) std::printf("\n%s", text_of(table).c_str());
-  std::printf("\n  %zu runs in %.1f s on %s; results in %s\n", jobs, seconds, options.executor.name.c_str(),
+  std::printf("\n");
+  for (auto const& words : errors_of(groups)) std::printf("  %s\n", words.c_str());
+  std::printf("  %zu runs in %.1f s on %s; results in %s\n", jobs, seconds, options.executor.name.c_str(),
               database.string().c_str());
+  std::size_t results = 0;
+  for (auto const& group : groups) results += group.rows.size();
+  if (results > jobs)
+    std::printf("  %zu results were there already; --again runs all anew, as after a change of a planner's code\n",
+                results - jobs);
   if (auto const json = arguments.text("--json")) write_file(*json, summary_json(groups));
   return 0;
 }

@@ -39,7 +39,8 @@ struct Comparisons {
   std::string title{};
   double level = 0.05;
   std::vector<Comparison> list{};
-  std::vector<std::string> left_out{};  ///< what had no counterpart: "merging: mobil is only in old.db"
+  std::vector<std::string> left_out{};  ///< what had no counterpart: "merging: mobil is only in new.db"
+  std::vector<std::string> missing{};   ///< older results without a counterpart, as of a behaviour that crashes now
 
   /// Whether some measure became significantly worse.
   [[nodiscard]] bool has_loss() const {
@@ -55,7 +56,7 @@ struct Comparisons {
 /// or worse and differ in some scenario; one below `level` gives a verdict. So a report on equally good behaviours
 /// finds a significant difference with a probability of at most about `level`. A scenario counts in the mean of a
 /// measure where both values are finite. Throws `Error` if the two have no scenario in common; `old_name` and
-/// `new_name` are for that message and `left_out`. The same on any number of threads. O(measures × scenarios ×
+/// `new_name` are for messages. The same on any number of threads. O(measures × scenarios ×
 /// resamples).
 [[nodiscard]] Comparisons compare_against(std::vector<ResultGroup> const& old_groups,
                                           std::vector<ResultGroup> const& new_groups, std::string const& old_name,

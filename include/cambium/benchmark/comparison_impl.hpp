@@ -134,7 +134,7 @@ CAMBIUM_COLD Comparisons compare_against(std::vector<ResultGroup> const& old_gro
                                          std::vector<ResultGroup> const& new_groups, std::string const& old_name,
                                          std::string const& new_name, double level) {
   std::vector<detail::GroupPair> pairs;
-  std::vector<std::string> left_out;
+  std::vector<std::string> left_out, missing;
   std::vector<ResultGroup const*> used;
   for (auto const& group : new_groups) {
     ResultGroup const* found = nullptr;
@@ -149,14 +149,24 @@ CAMBIUM_COLD Comparisons compare_against(std::vector<ResultGroup> const& old_gro
       left_out.push_back(group.set_label + ": " + group.label + " is only in " + new_name);
       continue;
     }
+    std::size_t common = 0;
+    detail::for_each_common(*found, group, [&](auto const&, auto const&) { ++common; });
+    if (common < found->rows.size())
+      missing.push_back(group.set_label + ": " + group.label + " lacks " + std::to_string(found->rows.size() - common) +
+                        " of " + std::to_string(found->rows.size()) + " scenarios of " + old_name);
     pairs.push_back({found, &group});
     used.push_back(found);
   }
-  for (auto const& old : old_groups)
-    if (std::find(used.begin(), used.end(), &old) == used.end())
-      left_out.push_back(old.set_label + ": " + old.label + " is only in " + old_name);
+  for (auto const& old : old_groups) {
+    if (std::find(used.begin(), used.end(), &old) != used.end()) continue;
+    bool const has_heir = std::any_of(used.begin(), used.end(), [&](auto const* other) {
+      return other->set_hash == old.set_hash && other->behavior == old.behavior;
+    });
+    (has_heir ? left_out : missing).push_back(old.set_label + ": " + old.label + " is only in " + old_name);
+  }
   auto result = detail::compare_pairs(pairs, new_name + " against " + old_name, level, detail::any_measure);
   result.left_out = std::move(left_out);
+  result.missing = std::move(missing);
   if (result.list.empty())
     throw Error(new_name, "has no scenario and behaviour in common with " + old_name,
                 "run the same set with behaviours of the same names: a set that was changed is another set");

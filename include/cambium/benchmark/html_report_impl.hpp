@@ -144,8 +144,7 @@ namespace detail {
   for (std::size_t g = 0; g < report.groups.size(); ++g) {
     auto const& group = report.groups[g];
     groups += (g == 0 ? "{\"set\":" : ",\n{\"set\":") + json_string(group.set_label) +
-              ",\"title\":" + json_string(group.set) +
-              ",\"source\":" + json_string(group.source) +
+              ",\"title\":" + json_string(group.set) + ",\"source\":" + json_string(group.source) +
               ",\"command\":" + json_string(group.command.empty() ? "examples/run benchmark" : group.command) +
               ",\"label\":" + json_string(group.label) + ",\"behavior\":" + json_string(group.behavior) +
               ",\"hash\":\"" + std::to_string(group.set_hash) + "\",\"file\":" +
@@ -216,6 +215,9 @@ CAMBIUM_COLD std::string html_report(Report const& report, HtmlReportOptions con
     page += std::string("<section class=\"verdict") + (comparisons.has_loss() ? " loss" : "") + "\">" +
             escape_markup(verdict_of(comparisons)) + "</section>\n";
   std::size_t next = 0;
+  if (!tables.empty() && tables[next].set.empty())
+    page += "<section>" + detail::html_table(tables[next], "Successes (collisions)") + "</section>\n";
+  ++next;
   for (std::size_t s = 0; s < sets.size(); ++s) {
     auto const& name = report.groups[sets[s].front()].set_label;
     page += "<section id=\"s" + std::to_string(s) + "\"><h2>" + escape_markup(name) + "</h2>\n" +

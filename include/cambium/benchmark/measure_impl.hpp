@@ -17,7 +17,8 @@ namespace detail {
 [[nodiscard]] inline Better better_of(std::string_view key) {
   for (char const* more : {"success", "rss_compliance", "closed_loop_score"})
     if (key == more) return Better::more;
-  for (char const* less : {"collision", "at_fault", "off_road", "off_route", "error", "hard_brakings", "others_collided"})
+  for (char const* less :
+       {"collision", "at_fault", "off_road", "off_route", "error", "hard_brakings", "others_collided"})
     if (key == less) return Better::less;
   return Better::neither;
 }

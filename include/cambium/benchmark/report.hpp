@@ -41,13 +41,17 @@ struct Table {
   std::string note{};
 };
 
-/// The tables of a report: for each set the outcomes, the means and the planning times of each behaviour, and the
-/// differences between each two; then the comparisons. Tables of means have at most `columns` measures.
+/// The tables of a report: an overview; for each set the outcomes, the means and the planning times of each behaviour,
+/// and the differences between each two; then the comparisons. Tables of means have at most `columns` measures.
 [[nodiscard]] std::vector<Table> tables_of(Report const& report, std::size_t columns = 7);
 
 /// One table a set of what matters most, without intervals: outcomes, duration, closed-loop score and planning time of
-/// each behaviour. Groups of a set are neighbours.
+/// each behaviour; then an overview, if there are several sets. Groups of a set are neighbours.
 [[nodiscard]] std::vector<Table> summary_of(std::vector<ResultGroup> const& groups);
+
+/// A sentence for each group with errors: how many, and the first: "merging, mine: 2 of 16 runs ended with an error,
+/// scenario 3 with: ...".
+[[nodiscard]] std::vector<std::string> errors_of(std::vector<ResultGroup> const& groups);
 
 /// What a comparison says in one line: "significant loss: merging, mobil: success".
 [[nodiscard]] std::string verdict_of(Comparisons const& comparisons);

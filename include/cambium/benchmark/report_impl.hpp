@@ -129,6 +129,50 @@ namespace detail {
   return table;
 }
 
+/// Successes and collisions of each behaviour on each set, and how long it thinks.
+[[nodiscard]] inline Table overview_of(std::vector<ResultGroup> const& groups) {
+  struct Sum {
+    std::size_t runs = 0, successes = 0, collisions = 0;
+    double decisions = 0.0, ms = 0.0;
+    [[nodiscard]] std::string text() const {
+      return std::to_string(successes) + "/" + std::to_string(runs) +
+             (collisions > 0 ? " (" + std::to_string(collisions) + ")" : "");
+    }
+  };
+  Table table{.title = "successes (collisions)", .head = {"behaviour"}};
+  std::vector<std::string> sets, labels;
+  for (auto const& group : groups) {
+    if (std::find(sets.begin(), sets.end(), group.set_label) == sets.end()) sets.push_back(group.set_label);
+    if (std::find(labels.begin(), labels.end(), group.label) == labels.end()) labels.push_back(group.label);
+  }
+  table.head.insert(table.head.end(), sets.begin(), sets.end());
+  table.head.insert(table.head.end(), {"all", "mean time of a plan [ms]"});
+  for (auto const& label : labels) {
+    Sum all;
+    std::vector<std::string> row{label};
+    for (auto const& set : sets) {
+      Sum sum;
+      for (auto const& group : groups) {
+        if (group.label != label || group.set_label != set) continue;
+        for (auto const& [scenario, seed, result, times] : group.rows) {
+          for (auto* const one : {&sum, &all}) {
+            ++one->runs;
+            one->successes += result.success;
+            one->collisions += result.collision;
+            one->decisions += static_cast<double>(times.decisions);
+            one->ms += static_cast<double>(times.decisions) * times.mean_ms;
+          }
+        }
+      }
+      row.push_back(sum.runs > 0 ? sum.text() : "-");
+    }
+    row.push_back(all.text());
+    row.push_back(all.decisions > 0.0 ? short_text(all.ms / all.decisions) : "-");
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
 [[nodiscard]] inline std::string numbers_text(std::vector<std::int64_t> const& numbers) {
   constexpr std::size_t most = 12;
   std::string text;
@@ -301,6 +345,7 @@ CAMBIUM_COLD std::vector<Table> tables_of(Report const& report, std::size_t colu
   }
   auto const parts = (means.size() + columns - 1) / columns;
   columns = (means.size() + parts - 1) / parts;  // tables of equal widths
+  tables.push_back(detail::overview_of(report.groups));
   for (auto const& set : detail::groups_by_set(report.groups)) {
     auto const& name = report.groups[set.front()].set_label;
     auto const add = [&](Table table, std::string const& title) {
@@ -337,7 +382,8 @@ CAMBIUM_COLD std::vector<Table> summary_of(std::vector<ResultGroup> const& group
         measure.key == "mean_ms")
       chosen.push_back(&measure);
   std::vector<Table> tables;
-  for (auto const& set : detail::groups_by_set(groups)) {
+  auto const sets = detail::groups_by_set(groups);
+  for (auto const& set : sets) {
     Table table{.title = groups[set.front()].set_label, .head = {"behaviour", "scenarios"}};
     for (auto const* const measure : chosen) table.head.push_back(detail::titled(*measure));
     for (auto const g : set) {
@@ -351,7 +397,26 @@ CAMBIUM_COLD std::vector<Table> summary_of(std::vector<ResultGroup> const& group
     }
     tables.push_back(std::move(table));
   }
+  if (sets.size() > 1) tables.push_back(detail::overview_of(groups));
   return tables;
+}
+
+CAMBIUM_COLD std::vector<std::string> errors_of(std::vector<ResultGroup> const& groups) {
+  std::vector<std::string> lines;
+  for (auto const& group : groups) {
+    ResultGroup::Row const* first = nullptr;
+    std::size_t errors = 0;
+    for (auto const& row : group.rows) {
+      if (row.result.error.empty()) continue;
+      ++errors;
+      if (first == nullptr) first = &row;
+    }
+    if (first == nullptr) continue;
+    lines.push_back(detail::printable(group.set_label + ", " + group.label + ": " + std::to_string(errors) + " of " +
+                                      std::to_string(group.rows.size()) + " runs ended with an error, scenario " +
+                                      std::to_string(first->scenario) + " with: " + first->result.error));
+  }
+  return lines;
 }
 
 CAMBIUM_COLD std::string verdict_of(Comparisons const& comparisons) {
@@ -364,6 +429,7 @@ CAMBIUM_COLD std::string verdict_of(Comparisons const& comparisons) {
     }
   auto text = (worse.empty() ? "no significant loss" : "significant loss: " + worse) +
               (better.empty() ? "" : "; significant gain: " + better);
+  if (!comparisons.missing.empty()) text = "results are missing; " + text;
   return comparisons.title + ": " + text + " (level " + detail::rounded_text(100 * comparisons.level) + " %)";
 }
 
@@ -411,18 +477,18 @@ CAMBIUM_COLD std::string latex_of(Table const& table) {
 }
 
 CAMBIUM_COLD std::string csv_of(Report const& report) {
-  auto text = detail::csv_line({"set", "behavior", "parameters", "version", "against", "measure", "unit", "better",
+  auto text = detail::csv_line({"set", "behavior", "parameters_hash", "version", "against", "measure", "unit", "better",
                                 "scenarios", "value", "low", "high", "p", "p_adjusted", "verdict"});
   for (std::size_t g = 0; g < report.groups.size(); ++g) {
     auto const& group = report.groups[g];
     for (std::size_t m = 0; m < measures().size(); ++m) {
       auto const& measure = measures()[m];
       auto const& estimate = report.estimates[g][m];
-      text += detail::csv_line({group.set_label, group.label, group.parameters, group.version, "", measure.key,
-                                measure.is_share ? "" : measure.unit, detail::text_of_better(measure.better),
-                                std::to_string(estimate.count), detail::csv_number(estimate.value),
-                                detail::csv_number(estimate.interval.low), detail::csv_number(estimate.interval.high),
-                                "", "", ""});
+      text += detail::csv_line({group.set_label, group.label, hash_text(group.parameters_hash), group.version, "",
+                                measure.key, measure.is_share ? "" : measure.unit,
+                                detail::text_of_better(measure.better), std::to_string(estimate.count),
+                                detail::csv_number(estimate.value), detail::csv_number(estimate.interval.low),
+                                detail::csv_number(estimate.interval.high), "", "", ""});
     }
   }
   auto const add = [&](Comparisons const& comparisons) {

@@ -52,13 +52,6 @@ struct ResultRow {
   RunTimes times{};
 };
 
-/// A hash as in the database: 16 hexadecimal digits.
-[[nodiscard]] inline std::string hash_text(std::uint64_t hash) {
-  std::string text(16, '0');
-  for (std::size_t i = 16; i-- > 0; hash >>= 4) text[i] = "0123456789abcdef"[hash & 15u];
-  return text;
-}
-
 /// A database that cannot be opened, read or written, or that another program has laid out.
 struct StoreError : Error {
   using Error::Error;

@@ -15,6 +15,13 @@ namespace cambium {
 inline constexpr char const *plans_too_long = "its plans took longer than ",
                             *process_died = "the process that ran it died";
 
+/// A hash as in the database: 16 hexadecimal digits.
+[[nodiscard]] inline std::string hash_text(std::uint64_t hash) {
+  std::string text(16, '0');
+  for (std::size_t i = 16; i-- > 0; hash >>= 4) text[i] = "0123456789abcdef"[hash & 15u];
+  return text;
+}
+
 /// What came of one scenario with one behaviour. It depends on nothing but these two and the library: not on threads,
 /// machine load or time of day (`RunTimes` does). Excepted are errors that begin with `plans_too_long` or
 /// `process_died`.
@@ -69,7 +76,8 @@ struct RunResult {
                   "either way"),
         parameter("hard_brakings", &P::hard_brakings, "-", non_negative, "number of brakings harder than 4 m/s^2"),
         parameter("rss_compliance", &P::rss_compliance, "-", share, "share of steps with a proper response"),
-        parameter("closed_loop_score", &P::closed_loop_score, "-", share, "nuPlan's, without progress; 0 without success"),
+        parameter("closed_loop_score", &P::closed_loop_score, "-", share,
+                  "nuPlan's, without progress; 0 without success"),
         parameter("others_collided", &P::others_collided, "-", non_negative,
                   "number of steps in which a collision without the ego began"),
         parameter("others_failed", &P::others_failed, "-", non_negative,

@@ -49,7 +49,7 @@ struct BenchmarkOptions {
   std::filesystem::path replay_folder = "replays";  ///< replays are `replay_folder`/`replay_file_name(...)`
   /// Of failures, the first of each contender and set in a call leave a replay, so that they do not fill the disk.
   std::size_t most_replays = 20;
-  std::string source{};    ///< what names the set on the command line, for reports: "--set merging --seed 3"
+  std::string source{};   ///< what names the set on the command line, for reports: "--set merging --seed 3"
   std::string command{};  ///< what runs these contenders there: "examples/run benchmark --parameters FILE"
   /// Called after each job with the numbers of jobs done and to do; one thread at a time.
   std::function<void(std::size_t done, std::size_t total)> progress{};

@@ -61,6 +61,11 @@ void complete(ScenarioSet<WorldType>& set, LaneTable const& lanes, std::filesyst
                           {agent.position.x(), agent.position.y(), *agent.heading},
                           agent.shape});
     detail::check_overlaps(bodies, place);
+    try {
+      static_cast<void>(scenario.make_world());
+    } catch (Error const& problem) {
+      throw WorldError(place, problem.what());
+    }
   }
   ScenarioRecipe<WorldType> const usual_recipe{};
   for (std::size_t i = 0; i < set.recipes.size(); ++i) {
@@ -100,7 +105,7 @@ template <class WorldType>
 /// Reads a set from JSON text, or from bytes as `to_bytes` gives them, and draws the scenarios of its recipes. Maps are
 /// loaded once each, relative to `folder`. Throws `ParameterError` as `read_json` and `from_binary` (also for a model
 /// that `WorldType` lacks, or a lane that the map lacks), `MapError` if a map is missing, and `WorldError` if two
-/// agents overlap; all with `where` and the scenario. The rest is checked by `Scenario::make_world`. `adjust` may
+/// agents overlap, or as `Scenario::make_world`; all with `where` and the scenario. `adjust` may
 /// change a recipe before its scenarios are drawn.
 template <class WorldType>
 [[nodiscard]] ScenarioSet<WorldType> parse_scenarios(

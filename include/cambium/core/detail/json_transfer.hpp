@@ -372,8 +372,10 @@ class JsonReader final : public ParameterTransfer {
     if (natural == nullptr && negative == nullptr) refuse("an integer");
     bool const is_below = negative != nullptr && (now.kind != ParameterValue::Kind::signed_integer ||
                                                   *negative < static_cast<std::int64_t>(lowest.bits));
-    bool const is_above = natural != nullptr && *natural > highest.bits;
-    if (is_below || is_above) refuse("an integer from " + value_text({}, lowest) + " to " + value_text({}, highest));
+    auto const most =
+        now.kind == ParameterValue::Kind::id ? with_bits(highest, highest.bits - 1) : highest;  // not none
+    bool const is_above = natural != nullptr && *natural > most.bits;
+    if (is_below || is_above) refuse("an integer from " + value_text({}, lowest) + " to " + value_text({}, most));
     auto value = with_bits(now, natural != nullptr ? *natural : static_cast<std::uint64_t>(*negative));
     if (negative != nullptr) value.number = static_cast<double>(*negative);
     return value;
