@@ -161,7 +161,7 @@ TEST_CASE("INTERACTION's rows become tracks by time, in the order of their first
   CHECK(traffic.track(4).states[0].speed == -3.0);  // backwards
   CHECK(traffic.track(4).type == TrackType::truck);
   CHECK(message_of([&] { (void)traffic.track(5); }) ==
-        "text: track 5: there is no such track; see RecordedTraffic::tracks");
+        "text: track 5: there is no such track; there are 3, 4");
 }
 
 TEST_CASE("pedestrians and cyclists have neither size nor heading: both follow from type and motion") {

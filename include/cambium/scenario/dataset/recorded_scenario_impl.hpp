@@ -131,7 +131,7 @@ class LaneMatcher {
 CAMBIUM_COLD void require_replayable(RecordedTraffic const& traffic, RecordingWindow const& window) {
   require_map(traffic.map, traffic.name.empty() ? "recording" : traffic.name);
   if (!(window.begin <= window.end))
-    throw Error(traffic.name, "the window ends before it begins", "give RecordingWindow::begin <= end");
+    throw Error(traffic.name, "the window ends before it begins", "let it end after its begin");
   bool found = !window.ego;
   for (auto const& track : traffic.tracks) {
     if (track.states.empty())
@@ -143,7 +143,7 @@ CAMBIUM_COLD void require_replayable(RecordedTraffic const& traffic, RecordingWi
   }
   if (!found)
     throw Error(traffic.name, "its ego, track " + std::to_string(*window.ego) + ", is not there",
-                "set RecordingWindow::ego to the id of a track");
+                "give the id of a track");
 }
 
 CAMBIUM_COLD Diagnostic about_track(RecordedTraffic const& traffic, Track const& track, std::string sentence) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <set>
@@ -45,7 +46,13 @@ CAMBIUM_COLD Goal PlanningProblem::goal() const {
 CAMBIUM_COLD Track const& RecordedTraffic::track(std::int64_t id) const {
   for (auto const& track : tracks)
     if (track.id == id) return track;
-  throw Error(name + ": track " + std::to_string(id), "there is no such track", "see RecordedTraffic::tracks");
+  constexpr std::size_t most = 12;
+  std::string ids;
+  for (std::size_t i = 0; i < std::min(most, tracks.size()); ++i)
+    ids += (i == 0 ? "" : ", ") + std::to_string(tracks[i].id);
+  if (tracks.size() > most) ids += " and " + std::to_string(tracks.size() - most) + " more";
+  throw Error(name + ": track " + std::to_string(id), "there is no such track",
+              ids.empty() ? "it has no tracks" : "there are " + ids);
 }
 
 CAMBIUM_COLD double RecordedTraffic::begin() const {
