@@ -41,7 +41,7 @@ std::vector<cb::ResultGroup> read(Settings const& settings) {
     if (fs::equivalent(file, settings.db, none))
       throw cb::Error("--merge " + file, "is the database itself", "name the others");
   }
-  auto store = fs::exists(settings.db) ? cb::ResultStore::existing(settings.db) : cb::ResultStore(settings.db);
+  cb::ResultStore store(settings.db);
   for (auto& other : others) store.merge(other);
   return cb::read_results(store);
 }
@@ -57,7 +57,7 @@ int report(Settings const& settings) {
     auto old = cb::ResultStore::existing(settings.against);
     report.comparisons.push_back(
         cb::compare_against(cb::read_results(old), report.groups, settings.against, settings.db, level));
-    has_loss = report.comparisons.back().has_loss() || !report.comparisons.back().missing.empty();
+    has_loss = report.comparisons.back().has_loss();
   }
   auto const tables = cb::tables_of(report);
   for (auto const& table : tables) std::printf("%s\n", cb::text_of(table).c_str());
@@ -76,10 +76,12 @@ int report(Settings const& settings) {
   if (!settings.html.empty()) {
     auto const folder = fs::absolute(settings.html).parent_path();
     std::error_code none;
-    fs::create_directories(folder / "replays", none);  // where the page's commands put replays
+    auto const replays = cb::replay_folder(fs::absolute(settings.db));
+    fs::create_directories(replays, none);  // where the page's commands put them
     cb::write_file(settings.html,
-                   cb::html_report(
-                       report, {.title = "Benchmark " + fs::path(settings.db).stem().string(), .page_folder = folder}));
+                   cb::html_report(report, {.title = "Benchmark " + fs::path(settings.db).stem().string(),
+                                            .replays = fs::relative(replays, folder),
+                                            .page_folder = folder}));
     std::printf("  %s opens in a browser\n", settings.html.c_str());
   }
   return has_loss ? 1 : 0;
@@ -105,9 +107,9 @@ void add_options(CLI::App& program, Settings& settings) {
       ->check(examples::not_empty());
   program.add_option("--level", settings.level, "level of significance in percent, for all tests together")
       ->type_name("PERCENT")
-      ->check(examples::number(1e-6, 50.0))
+      ->check(examples::number(0.01, 50.0))
       ->capture_default_str();
-  file("--html", settings.html, "writes a page for browsers; its rows open replays in the folder replays beside it");
+  file("--html", settings.html, "writes a page for browsers; its rows open the replays beside the database");
   file("--csv", settings.csv, "writes all figures, one row a measure");
   file("--latex", settings.latex, "writes the tables for LaTeX (booktabs)");
 }

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdint>
 #include <filesystem>
@@ -191,18 +192,18 @@ TEST_CASE("results do not depend on threads, shards or interruptions") {
 TEST_CASE("in processes, a behaviour that crashes or never returns costs its own runs only") {
   Folder folder;
   auto set = merging_set(6);
+  set.time_limit = 2.0;  // which also bounds the time of a job
   for (std::size_t i = 0; i < set.scenarios.size(); ++i) set.scenarios[i].seed = i + 1;
   auto const choose = [](auto const&, auto const& scenario) { return Hostile{.seed = scenario.seed}; };
   auto all = contenders();
   all.push_back(contender_by<Traffic>("hostile", "", 0, choose));
   ResultStore store(folder.path / "r.db"), peaceful(folder.path / "peaceful.db");
-  // limit of a run: twice the limit of its plans and 10 s
   CHECK(run_benchmark(set, all, store, {.executor = on_processes(2), .plan_limit = 1e-9}) == 36);
   int crashed = 0, endless = 0, other = 0;
   for (auto const& row : rows_of(store)) {
     if (row.key.behavior != "hostile") continue;
-    crashed += row.result.error.starts_with(process_died);
-    endless += row.result.error.find("did not return") != std::string::npos;
+    crashed += row.result.error.find("died, twice: signal 11") != std::string::npos;
+    endless += row.result.error.find("in which it gave no result") != std::string::npos;
     other += row.result.error.starts_with(plans_too_long) && row.result.steps == 1;
   }
   CHECK(crashed == 3);
@@ -246,8 +247,9 @@ TEST_CASE("a run that throws or fails is a result") {
   }
   CHECK(errors["throws: out of ideas"] == 1);
   CHECK(errors["idm_classic: "] == 1);
-  for (auto const& [text, count] : errors)
-    if (text.find("999") != std::string::npos) CHECK(text.find("is not among its agents") != std::string::npos);
+  CHECK(std::ranges::count_if(errors, [](auto const& entry) {
+          return entry.first.find("agent 999, is not among its agents") != std::string::npos;
+        }) == 5);
   CHECK(std::any_of(errors.begin(), errors.end(), [](auto const& entry) {
     return entry.first.find("gives_up: ") == 0 && entry.first.find("the behaviour found no plan") != std::string::npos;
   }));
@@ -464,6 +466,25 @@ TEST_CASE("an error names the agent that failed, and a failure of others is only
   auto const controlled = contender_by<Mixed>("either", "", 0, choose).run(scenario, {}, false).result;
   CHECK(controlled.error.find("agent " + to_string(others.back()) + " (controlled)") == 0);
   CHECK(controlled.steps == 1);
+}
+
+TEST_CASE("agents see what their observers let them see, and a lonely ego has no gap") {
+  using Noisy = World<BehaviorSet<IdmClassic>, InterpolateExecution, SingleTrack, ParametricObserver>;
+  auto scenario = with_behaviors<Noisy>(merging_set(1).scenarios[0], [](auto const& spec) -> Noisy::Behavior {
+    return std::get<IdmClassic>(spec.behavior.given());
+  });
+  auto const idm = contender<Noisy>(IdmClassic{.desired_speed = 22.0});
+  auto const clear = idm.run(scenario, {}, false).result;
+  for (auto& spec : scenario.agents) spec.observer = ParametricObserver{.others = {.along = 3.0}};
+  auto const blurred = idm.run(scenario, {}, false).result;
+  CHECK(blurred.error == "");
+  CHECK(to_string(blurred) != to_string(clear));
+
+  std::erase_if(scenario.agents, [&](auto const& spec) { return *spec.id != scenario.ego; });
+  auto const alone = idm.run(scenario, {}, false).result;
+  CHECK(alone.success);
+  CHECK(std::isinf(alone.least_gap));
+  CHECK(std::isinf(alone.least_time_to_collision));
 }
 
 TEST_CASE("what a behaviour throws is an error, whatever it is") {

@@ -34,6 +34,17 @@ std::string results_in(std::string const& file) {
   return text;
 }
 
+/// Number of results in a database; 0 if there is none yet.
+std::size_t rows_in(std::string const& file) {
+  std::size_t rows = 0;
+  try {
+    auto store = cambium::ResultStore::existing(file);
+    store.for_each([&](auto const&) { ++rows; });
+  } catch (cambium::StoreError const&) {
+  }
+  return rows;
+}
+
 }  // namespace
 
 TEST_CASE("the benchmark gives the same results on any number of threads, and goes on after it was killed") {
@@ -70,7 +81,8 @@ TEST_CASE("the benchmark gives the same results on any number of threads, and go
   CHECK(processes.out.find(" on 2 processes; ") != std::string::npos);
   CHECK(results_in(file("processes.db")) == expected);
 
-  for (int const milliseconds : {30, 90, 200}) {
+  std::size_t kept = 0;
+  for (std::size_t const wanted : {1u, 40u, 100u}) {
     pid_t const child = fork();
     REQUIRE(child >= 0);
     if (child == 0) {
@@ -83,12 +95,18 @@ TEST_CASE("the benchmark gives the same results on any number of threads, and go
       execv(argv[0], argv.data());
       _exit(1);
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(milliseconds));
+    for (int tries = 0; tries < 10'000 && rows_in(file("killed.db")) < wanted; ++tries)
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
     kill(child, SIGKILL);
     waitpid(child, nullptr, 0);
+    auto const rows = rows_in(file("killed.db"));
+    CHECK(rows >= wanted);
+    CHECK(rows >= kept);
+    kept = rows;
   }
   auto const again = program.run(with({"--db", file("killed.db")}));
   CHECK(again.code == 0);
+  CHECK(again.out.find("\n  " + std::to_string(240 - kept) + " run") != std::string::npos);  // those that it lacked
   CHECK(results_in(file("killed.db")) == expected);
   auto const nothing = program.run(with({"--db", file("killed.db")}));
   CHECK(nothing.out.find("0 runs") != std::string::npos);
@@ -115,12 +133,12 @@ TEST_CASE("failed runs leave replays that the report links, and a command that r
   std::vector<std::string> const words{"--set", "exit", "--behaviors", "idm", "--scenarios", "3", "--db", file("r.db")};
   REQUIRE(program.run(words).code == 0);
   std::vector<std::string> replays;
-  for (auto const& entry : std::filesystem::directory_iterator(folder.path() / "replays"))
+  for (auto const& entry : std::filesystem::directory_iterator(folder.path() / "r_replays"))
     replays.push_back(entry.path().filename().string());
   std::sort(replays.begin(), replays.end());
   REQUIRE(replays.size() == 3);
   CHECK(replays.front().find("exit_idm_") == 0);
-  CHECK(content_of(file(("replays/" + replays.front()).c_str())).find("exit, scenario 0, idm") != std::string::npos);
+  CHECK(content_of(file(("r_replays/" + replays.front()).c_str())).find("exit, scenario 0, idm") != std::string::npos);
   REQUIRE(report.run({"--db", file("r.db"), "--html", file("r.html")}).code == 0);
   auto const page = content_of(file("r.html"));
   CHECK(page.find("\"made\":[0,1,2]") != std::string::npos);
@@ -132,7 +150,7 @@ TEST_CASE("failed runs leave replays that the report links, and a command that r
   auto const none = program.run({"--set", "exit", "--behaviors", "idm", "--scenarios", "3", "--db", file("none/r.db"),
                                  "--replays", "none", "--plan-limit", "1e-9", "--json", file("r.json")});
   CHECK(none.code == 0);
-  CHECK_FALSE(std::filesystem::exists(file("none/replays")));
+  CHECK_FALSE(std::filesystem::exists(file("none/r_replays")));
   auto const row = nlohmann::json::parse(content_of(file("r.json")))[0];
   CHECK(row["error"] == 1.0);
   CHECK(row["mean_time_s"].is_null());

@@ -135,7 +135,11 @@ TEST_CASE("an error in a scenario file says where it is and what to do") {
       "f.json: scenario_set.scenarios[0].agents[0].behavior: there is no \"imd\" here; There are: idm_classic, mobil");
   CHECK(refusal(with_agents(R"({"position": {"x": 20, "y": -5.25}, "behavior": {"mobil": {"politness": 1}}})")) ==
         "f.json: scenario_set.scenarios[0].agents[0].behavior.mobil: has no field \"politness\"; is it politeness?");
-  CHECK(refusal(with_agents(good + "," + good)).find("agents") != std::string::npos);
+  CHECK(refusal(with_agents(good + "," + good)).find("f.json: scenarios[0]: agent 0: ") == 0);
+  CHECK(refusal(with_agents(good + R"(,{"id": 1, "position": {"x": 22, "y": -5.25}})")) ==
+        "f.json: scenarios[0]: agents 0 and 1 overlap at the start; move one of them");
+  CHECK(refusal(with_agents(good, R"(, "objects": [[{"x": 22, "y": -6}, {"x": 23, "y": -6}, {"x": 23, "y": -5}]])")) ==
+        "f.json: scenarios[0]: agent 0 overlaps a static object; move one of them");
   CHECK(refusal(with_agents(good + R"(,{"id": 1, "position": {"x": 22, "y": -5.25}, "heading": 0})")) ==
         "f.json: scenarios[0]: agents 0 and 1 overlap at the start; move one of them");
   CHECK(refusal(R"({"scenarios": [{"agents": []}]})").find("f.json: scenarios[0]: it names no map") == 0);
@@ -183,6 +187,8 @@ TEST_CASE("a recipe draws what its sampler draws") {
     auto drawn = site.sample(3, 2 + i);
     drawn.map_file = "merging.xodr";
     drawn.title = "m";
+    for (std::uint32_t other = 0; other < i; ++other) CHECK(set.scenarios[i].seed != set.scenarios[other].seed);
+    drawn.seed = set.scenarios[i].seed;  // of the world: each its own
     CHECK(equal_parameters(set.scenarios[i], drawn));
   }
   CHECK(

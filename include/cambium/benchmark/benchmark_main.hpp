@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <chrono>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstdio>
@@ -77,8 +78,8 @@ namespace detail {
        "ends a run whose plans take longer than that together: an error. With --processes, a plan that never "
        "returns is ended, too. Off without it, because the results then depend on the machine"},
       {"--replays", "failures|all|none",
-       "the runs that leave a replay in the folder replays beside the database; failures (usual): of those of each "
-       "behaviour and set, the first 20"},
+       "the runs that leave a replay in a folder beside the database (results_replays beside results.db); failures "
+       "(usual): of those of each behaviour and set, the first 20"},
       {"--again", "", "run also what the database has already"},
       {"--only", "SET:NUMBER:BEHAVIOR", "run one scenario and print what came of it"},
       {"--replay", "FILE", "with --only: write a replay that opens in a browser"},
@@ -142,10 +143,7 @@ namespace detail {
                                     {"mean_time_s", "mean_time_s"},
                                     {"closed_loop_score", "closed_loop_score"},
                                     {"ms_per_decision", "mean_ms"}})
-      row.push_back({name, {means.at(key)}});
-    if (successes.rows.empty())
-      for (auto& [name, value] : row)
-        if (name == "mean_time_s") value = {};
+      row.push_back({name, std::isfinite(means.at(key)) ? JsonValue{means.at(key)} : JsonValue{}});
     rows.push_back({std::move(row)});
   }
   return print_json({std::move(rows)});
@@ -196,15 +194,19 @@ template <class World>
 template <class World>
 int run_only(std::vector<ScenarioSet<World>> const& sets, std::vector<Contender<World>> const& contenders,
              double plan_limit, std::string const& only, std::optional<std::string> const& replay) {
-  auto const parts = split(only, ":");
-  if (parts.size() != 3) throw Error("--only " + only, "is no key", "write SET:NUMBER:BEHAVIOR, as merging:17:mobil");
-  auto const set = std::find_if(sets.begin(), sets.end(), [&](auto const& s) { return s.title == parts[0]; });
+  auto const parts = split(only, ":");  // a title may have colons
+  if (parts.size() < 3) throw Error("--only " + only, "is no key", "write SET:NUMBER:BEHAVIOR, as merging:17:mobil");
+  auto const title = only.substr(0, only.size() - parts.back().size() - parts[parts.size() - 2].size() - 2);
+  auto const is_meant = [&](auto const& one) { return one.title == title; };
+  auto const set = std::find_if(sets.begin(), sets.end(), is_meant);
+  if (std::count_if(sets.begin(), sets.end(), is_meant) > 1)
+    throw Error("--only " + only, "several sets have this title", "name one of them by --set FILE");
   if (set == sets.end()) throw Error("--only " + only, "there is no such set", "--list names them; --set reads others");
-  auto const number = parse_number<std::uint64_t>(parts[1]);
+  auto const number = parse_number<std::uint64_t>(parts[parts.size() - 2]);
   if (!number || *number >= set->scenarios.size())
     throw Error("--only " + only, "there is no such scenario",
                 "give a number from 0 to " + std::to_string(set->scenarios.size() - 1));
-  auto const contender = chosen(contenders, {std::string(parts[2])}).front();
+  auto const contender = chosen(contenders, {std::string(parts.back())}).front();
   auto run = contender.run(set->scenarios[*number], {set->time_step, set->time_limit, plan_limit}, replay.has_value());
   std::cout << only << "\n  " << contender.parameters << "\n  seed: " << set->scenarios[*number].seed << "\n";
   for_each_parameter<RunResult>([&](auto const& entry) {
@@ -215,7 +217,9 @@ int run_only(std::vector<ScenarioSet<World>> const& sets, std::vector<Contender<
     else
       std::cout << with_unit(value_text(entry, ParameterValue(run.result.*entry.field)), entry.unit) << "\n";
   });
-  if (replay && run.recording) {
+  if (replay && !run.recording)
+    throw Error("--replay " + *replay, "there is nothing to replay", "the run ended before it began: see its error");
+  if (replay) {
     write_html_replay(*replay, titled(std::move(*run.recording), set->title, *number, contender.name, run.result));
     std::cout << "  " << *replay << " plays it in a browser\n";
   }
@@ -234,10 +238,15 @@ int run_only(std::vector<ScenarioSet<World>> const& sets, std::vector<Contender<
     options.executor = on_processes(static_cast<std::size_t>(*processes));
   }
 #endif
-  if (executor.execute) options.executor = executor;
+  if (executor.execute) {
+    if (threads || arguments.has("--processes"))
+      throw Error(threads ? "--threads" : "--processes", "is given, but the jobs run on " + executor.name,
+                  "leave it out");
+    options.executor = executor;
+  }
   options.again = arguments.has("--again");
   options.plan_limit = arguments.seconds("--plan-limit").value_or(options.plan_limit);
-  options.replay_folder = database.parent_path() / "replays";
+  options.replay_folder = replay_folder(database);
   auto const replays = arguments.text("--replays").value_or("failures");
   if (replays != "failures" && replays != "all" && replays != "none")
     throw Error("--replays", "is '" + replays + "'", "write failures, all or none");

@@ -42,8 +42,9 @@ struct Comparisons {
   std::vector<std::string> left_out{};  ///< what had no counterpart: "merging: mobil is only in new.db"
   std::vector<std::string> missing{};   ///< older results without a counterpart, as of a behaviour that crashes now
 
-  /// Whether some measure became significantly worse.
+  /// Whether some measure became significantly worse, or results are missing.
   [[nodiscard]] bool has_loss() const {
+    if (!missing.empty()) return true;
     for (auto const& comparison : list)
       for (auto const& change : comparison.changes)
         if (change.verdict == Finding::worse) return true;

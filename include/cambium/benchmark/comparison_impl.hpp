@@ -14,10 +14,18 @@
 #include "cambium/benchmark/run_on_threads.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
+#include "cambium/core/text.hpp"
 
 namespace cambium {
 
 namespace detail {
+
+/// "0.10.2" as {0, 10, 2}.
+[[nodiscard]] inline std::vector<std::uint64_t> numbers_of(std::string const& version) {
+  std::vector<std::uint64_t> numbers;
+  for (auto const part : split(version, ".")) numbers.push_back(parse_number<std::uint64_t>(part).value_or(0));
+  return numbers;
+}
 
 /// Which groups to compare.
 struct GroupPair {
@@ -141,7 +149,7 @@ CAMBIUM_COLD Comparisons compare_against(std::vector<ResultGroup> const& old_gro
     for (auto const& old : old_groups) {
       if (old.set_hash != group.set_hash || old.behavior != group.behavior) continue;
       auto const rank = [&](ResultGroup const& other) {
-        return std::pair(other.parameters_hash == group.parameters_hash, other.version);
+        return std::pair(other.parameters_hash == group.parameters_hash, detail::numbers_of(other.version));
       };
       if (found == nullptr || rank(old) >= rank(*found)) found = &old;
     }

@@ -120,8 +120,12 @@ class RunJudge {
   RunJudge(World& world, Slot ego) : ego_(ego) { observe(world, 0.0); }
 
   void observe(World& world, double dt) {
-    gap_.observe(world, ego_, dt);
-    collision_time_.observe(world, ego_, dt);
+    if (auto const next = world.truth(ego_).ahead()) {
+      result_.least_gap = std::min(result_.least_gap, next->gap);
+      double const closing = world.frame().agents[ego_].state.speed - next->speed;
+      if (closing > 0.0)
+        result_.least_time_to_collision = std::min(result_.least_time_to_collision, std::max(0.0, next->gap / closing));
+    }
     encroachment_.observe(world, ego_, dt);
     speed_.observe(world, ego_, dt);
     progress_.observe(world, ego_, dt);
@@ -151,8 +155,6 @@ class RunJudge {
     result_.duration_s = world.time();
     result_.progress_m = progress_.value();
     result_.mean_speed = std::max(0.0, speed_.value());
-    result_.least_gap = gap_.value();
-    result_.least_time_to_collision = collision_time_.value();
     result_.post_encroachment_time = encroachment_.value();
     result_.hardest_braking = std::max(0.0, -braking_.value());
     result_.largest_jerk = std::max(0.0, jerk_.value());
@@ -175,8 +177,6 @@ class RunJudge {
   Slot ego_;
   RunResult result_;
   bool others_collide_ = false;
-  Least<Gap> gap_;
-  Least<TimeToCollision> collision_time_;
   PostEncroachmentTime encroachment_;
   MeanOf<Speed> speed_;
   Integral<Progress> progress_;

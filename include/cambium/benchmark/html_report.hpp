@@ -15,6 +15,11 @@ struct HtmlReportOptions {
   std::filesystem::path page_folder = ".";    ///< where the page will lie
 };
 
+/// The folder of the replays of a database: "results_replays" beside "results.db".
+[[nodiscard]] inline std::filesystem::path replay_folder(std::filesystem::path const& database) {
+  return database.parent_path() / (database.stem().string() + "_replays");
+}
+
 /// Name of the file with the replay of a run: "merging_mobil_1f00ba12_17.html"; the digits tell sets and parameters of
 /// the same names apart. Letters that are trouble in file names become _.
 [[nodiscard]] std::string replay_file_name(std::string const& set, std::string const& behavior, std::uint64_t set_hash,

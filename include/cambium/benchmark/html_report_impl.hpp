@@ -54,6 +54,13 @@ namespace detail {
          "</span></td>";
 }
 
+/// "<p>Missing: a; b</p>"; empty for no words.
+[[nodiscard]] inline std::string listed(std::string const& what, std::vector<std::string> const& words) {
+  std::string html;
+  for (auto const& one : words) html += (html.empty() ? "<p>" + what + ": " : "; ") + escape_markup(one);
+  return html.empty() ? html : html + "</p>";
+}
+
 [[nodiscard]] inline std::string html_table(Table const& table, std::string_view title) {
   std::string html = "<h3>" + escape_markup(title) + "</h3>\n";
   if (!table.rows.empty()) {
@@ -213,7 +220,8 @@ CAMBIUM_COLD std::string html_report(Report const& report, HtmlReportOptions con
   page += "<a href=\"#list\">all runs</a></nav></header>\n<main>\n";
   for (auto const& comparisons : report.comparisons)
     page += std::string("<section class=\"verdict") + (comparisons.has_loss() ? " loss" : "") + "\">" +
-            escape_markup(verdict_of(comparisons)) + "</section>\n";
+            escape_markup(verdict_of(comparisons)) + detail::listed("Missing", comparisons.missing) +
+            detail::listed("Not compared", comparisons.left_out) + "</section>\n";
   std::size_t next = 0;
   if (!tables.empty() && tables[next].set.empty())
     page += "<section>" + detail::html_table(tables[next], "Successes (collisions)") + "</section>\n";

@@ -39,7 +39,7 @@ namespace cambium {
     bool other_set = false, other_parameters = false, other_version = false;
     for (auto const& other : groups) {
       other_set |= other.set == group.set && other.set_hash != group.set_hash;
-      bool const rivals = other.set_hash == group.set_hash && other.behavior == group.behavior;
+      bool const rivals = other.behavior == group.behavior;
       other_parameters |= rivals && other.parameters_hash != group.parameters_hash;
       other_version |= rivals && other.version != group.version;
     }

@@ -391,8 +391,9 @@ CAMBIUM_COLD std::vector<Table> summary_of(std::vector<ResultGroup> const& group
       for (auto const* const measure : chosen) {
         double const value = detail::mean_of_measure(groups[g], *measure);
         bool const is_rounded = measure->is_share || measure->key == "duration_s";
-        table.rows.back().push_back(is_rounded ? detail::fixed_text(measure->is_share ? 100.0 * value : value, 1)
-                                               : detail::short_text(value));
+        table.rows.back().push_back(!std::isfinite(value) ? "-"
+                                    : is_rounded ? detail::fixed_text(measure->is_share ? 100.0 * value : value, 1)
+                                                 : detail::short_text(value));
       }
     }
     tables.push_back(std::move(table));

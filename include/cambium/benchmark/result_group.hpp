@@ -26,7 +26,7 @@ struct ResultGroup {
   std::string parameters{};  ///< as text
   std::string command{};     ///< what runs it, without the set: "examples/run benchmark"; empty: unknown
   std::string version{};
-  std::string label{};      ///< the behaviour's name, and what tells it from others of that name on this set
+  std::string label{};      ///< the behaviour's name, and what tells it from others of that name
   std::vector<Row> rows{};  ///< by scenario
 };
 

@@ -50,6 +50,7 @@ struct ResultRow {
   std::uint64_t seed = 0;
   RunResult result;
   RunTimes times{};
+  std::int64_t run = 0;  ///< the call of the runner that brought it; `ResultStore::add` puts the present one
 };
 
 /// A database that cannot be opened, read or written, or that another program has laid out.
@@ -58,32 +59,32 @@ struct StoreError : Error {
 };
 
 /// An open database of results. One object serves one thread; several processes may write to one file. What `add` has
-/// got is on disk after `commit`, and at the latest when the store is closed; a process that is killed loses only what
-/// came after the last `commit`.
+/// got is in the file after `commit`, and at the latest when the store is closed: a process that is killed loses only
+/// what came after the last `commit`, a machine without power perhaps more.
 class ResultStore {
  public:
   /// Opens or makes the file. Throws `StoreError` if that is impossible, or if its tables are others; then it stays as
   /// it is.
   explicit ResultStore(std::filesystem::path const& file) : ResultStore(file, nullptr) {}
 
-  /// Opens a database that is there already, also one that may only be read: then what is added is lost. Throws
-  /// `StoreError` if the file is missing or is none; then it stays as it is.
+  /// A copy in memory of a database that is there already, and stays as it is: what is added to the copy is lost.
+  /// Throws `StoreError` if the file is missing or is none. O(size of the file).
   [[nodiscard]] static ResultStore existing(std::filesystem::path const& file) {
-    auto db = open(file.string(), SQLITE_OPEN_READWRITE);
-    bool const is_frozen = sqlite3_db_readonly(db.get(), "main") == 1;
-    if (is_frozen) db = open(immutable(file.string()), SQLITE_OPEN_READONLY | SQLITE_OPEN_URI);
+    auto db = open(file.string(), SQLITE_OPEN_READONLY);
+    if (!is_ours(db.get()) && !std::filesystem::exists(file.string() + "-wal"))
+      db = open(immutable(file.string()), SQLITE_OPEN_READONLY | SQLITE_OPEN_URI);  // in a folder that may only be read
     if (!is_ours(db.get()))
       throw StoreError(file.string(), "is no database of results (" + std::string(sqlite3_errmsg(db.get())) + ")",
                        "name one that a benchmark has written");
-    if (!is_frozen) return ResultStore(file);
     auto copy = open(":memory:", SQLITE_OPEN_READWRITE);
     auto* const backup = sqlite3_backup_init(copy.get(), "main", db.get(), "main");
-    sqlite3_backup_step(backup, -1);
-    sqlite3_backup_finish(backup);
+    bool const is_whole = backup != nullptr && sqlite3_backup_step(backup, -1) == SQLITE_DONE;
+    if (backup != nullptr) sqlite3_backup_finish(backup);
+    if (!is_whole) throw StoreError(file.string(), "cannot be read", "it may be damaged or locked: try again");
     return ResultStore(file, std::move(copy));
   }
   ResultStore(ResultStore&&) = default;
-  ResultStore& operator=(ResultStore&&) = default;
+  ResultStore& operator=(ResultStore&&) = delete;
   ~ResultStore() {
     if (db_ && in_transaction_) sqlite3_exec(db_.get(), "COMMIT", nullptr, nullptr, nullptr);
   }
@@ -142,7 +143,7 @@ class ResultStore {
     step(add_times_.get());
   }
 
-  /// Puts all rows so far on disk.
+  /// Puts all rows so far into the file.
   void commit() {
     if (in_transaction_) execute("COMMIT");
     in_transaction_ = false;
@@ -151,7 +152,7 @@ class ResultStore {
   /// Calls `f(ResultRow)` for each result, by set, behaviour, parameters, version and scenario.
   void for_each(std::function<void(ResultRow const&)> const& f) {
     auto statement =
-        prepare("SELECT " + key_columns + "seed, " + columns<RunResult>(false) + ", " + columns<RunTimes>(false) +
+        prepare("SELECT " + key_columns + "seed, run, " + columns<RunResult>(false) + ", " + columns<RunTimes>(false) +
                 " FROM results LEFT JOIN times USING(set_hash, scenario, behavior, parameters_hash, version) ORDER BY "
                 "set_hash, behavior, parameters_hash, version, scenario");
     while (has_row(statement.get())) {
@@ -159,7 +160,8 @@ class ResultStore {
       row.key = {hash_of(text(statement.get(), 0)), sqlite3_column_int64(statement.get(), 1), text(statement.get(), 2),
                  hash_of(text(statement.get(), 3)), text(statement.get(), 4)};
       row.seed = std::strtoull(text(statement.get(), 5).c_str(), nullptr, 10);
-      int at = 6;
+      row.run = sqlite3_column_int64(statement.get(), 6);
+      int at = 7;
       read_fields(statement.get(), at, row.result);
       read_fields(statement.get(), at, row.times);
       f(row);
@@ -183,33 +185,45 @@ class ResultStore {
   [[nodiscard]] std::string source_of(std::uint64_t set_hash) { return of_set("source", set_hash); }
 
   /// Adds all rows of another database, or none if that fails, as after runs with `--shard`. Rows of one key are taken
-  /// from `other`. Throws `StoreError`.
+  /// from `other`, unless only that one has an error for which its machine may be to blame (see `has`). Throws
+  /// `StoreError`.
   void merge(ResultStore& other) {
-    auto attach = prepare("ATTACH DATABASE ? AS other");
     commit();
-    bind(attach.get(), 1, other.file_);
-    other.commit();
-    step(attach.get());
-    auto const copy = [this](std::string const& table, std::string const& fields, std::string const& values = {}) {
-      execute("INSERT OR REPLACE INTO " + table + "(" + fields + ") SELECT " + (values.empty() ? fields : values) +
-              " FROM other." + table);
-    };
+    execute("BEGIN");
+    auto const own_run = run_;
     try {
-      execute("BEGIN");
-      auto const runs = last_run();
-      copy("sets", "set_hash, title, scenarios, source");
-      copy("behaviors", "behavior, parameters_hash, parameters, command");
-      copy("runs", "run, started, command", "run + " + runs + ", started, command");
-      auto const fields = columns<RunResult>(false);
-      copy("results", key_columns + "seed, run, " + fields, key_columns + "seed, run + " + runs + ", " + fields);
-      copy("times", key_columns + columns<RunTimes>(false));
-      execute("COMMIT");
+      auto const offset = last_run();
+      auto runs = other.prepare("SELECT run, started, command FROM runs");
+      auto add_run = prepare("INSERT INTO runs(run, started, command) VALUES(?, ?, ?)");
+      while (other.has_row(runs.get())) {
+        bind(add_run.get(), 1, offset + sqlite3_column_int64(runs.get(), 0));
+        for (int const at : {1, 2}) bind(add_run.get(), at + 1, text(runs.get(), at));
+        step(add_run.get());
+      }
+      auto sets = other.prepare("SELECT set_hash, title, scenarios, source FROM sets");
+      while (other.has_row(sets.get()))
+        add_set(hash_of(text(sets.get(), 0)), text(sets.get(), 1),
+                static_cast<std::size_t>(sqlite3_column_int64(sets.get(), 2)), text(sets.get(), 3));
+      auto behaviors = other.prepare("SELECT behavior, parameters_hash, parameters, command FROM behaviors");
+      while (other.has_row(behaviors.get()))
+        add_behavior(text(behaviors.get(), 0), hash_of(text(behaviors.get(), 1)), text(behaviors.get(), 2),
+                     text(behaviors.get(), 3));
+      in_transaction_ = true;  // `add` begins none
+      other.for_each([&](ResultRow const& row) {
+        bool const may_be_the_machine =
+            row.result.error.starts_with(plans_too_long) || row.result.error.starts_with(process_died);
+        if (may_be_the_machine && has(row.key)) return;
+        run_ = offset + row.run;
+        add(row);
+      });
+      run_ = own_run;
+      commit();
     } catch (...) {
+      run_ = own_run;
+      in_transaction_ = false;
       sqlite3_exec(db_.get(), "ROLLBACK", nullptr, nullptr, nullptr);
-      sqlite3_exec(db_.get(), "DETACH DATABASE other", nullptr, nullptr, nullptr);
       throw;
     }
-    execute("DETACH DATABASE other");
   }
 
  private:
@@ -326,9 +340,9 @@ class ResultStore {
     bind(query.get(), 2, column.substr(0, column.find(' ')));
     if (!has_row(query.get())) execute("ALTER TABLE " + table + " ADD COLUMN " + column);
   }
-  [[nodiscard]] std::string last_run() {
-    auto query = prepare("SELECT COALESCE(MAX(run), 0) FROM main.runs");
-    return has_row(query.get()) ? text(query.get(), 0) : "0";
+  [[nodiscard]] std::int64_t last_run() {
+    auto query = prepare("SELECT COALESCE(MAX(run), 0) FROM runs");
+    return has_row(query.get()) ? sqlite3_column_int64(query.get(), 0) : 0;
   }
   void step(sqlite3_stmt* statement) {
     auto const code = sqlite3_step(statement);

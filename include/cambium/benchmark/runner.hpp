@@ -43,7 +43,7 @@ struct BenchmarkOptions {
   std::size_t shard = 0, shards = 1;  ///< runs only the jobs number `shard`, `shard + shards`, ...
   bool again = false;                 ///< runs also what the store has already
   /// See `RunOptions`. Where jobs run in other processes, a plan that never returns is ended, too: when its run takes
-  /// twice this time and 10 s [s].
+  /// twice this time, the set's `time_limit` and 10 s by the clock [s].
   double plan_limit = std::numeric_limits<double>::infinity();
   Replays replays = Replays::none;
   std::filesystem::path replay_folder = "replays";  ///< replays are `replay_folder`/`replay_file_name(...)`
@@ -73,8 +73,12 @@ template <class World>
   return set ^ (contender.parameters_hash * 0x9e3779b97f4a7c15u) ^ std::hash<std::string>{}(contender.name);
 }
 
-/// A run, and once more for its replay.
-[[nodiscard]] inline double job_limit(BenchmarkOptions const& options) { return 2.0 * options.plan_limit + 10.0; }
+/// Longest time of a job [s]: its plans twice, because it may be run again for its replay, and generously what else it
+/// does.
+template <class World>
+[[nodiscard]] double job_limit(ScenarioSet<World> const& set, BenchmarkOptions const& options) {
+  return 2.0 * options.plan_limit + set.time_limit + 10.0;
+}
 
 /// Runs jobs of a benchmark; job number = number of the contender × scenarios + number of the scenario. `hash`: of the
 /// set.
@@ -166,7 +170,6 @@ std::size_t run_benchmark(ScenarioSet<World> const& set, std::vector<Contender<W
   store.commit();
   detail::ReplayFolder replays(options, contenders.size());
   std::size_t done = 0;
-  auto last_commit = std::chrono::steady_clock::now();
   auto const take = [&](std::size_t job, JobOutcome outcome) {
     if (outcome.setup != 0 && outcome.setup != detail::setup_of(hash, contenders[job / count]))
       throw Error("benchmark", "a process that runs jobs has read other scenarios or parameters",
@@ -175,15 +178,11 @@ std::size_t run_benchmark(ScenarioSet<World> const& set, std::vector<Contender<W
     replays.take(outcome, replay_file_name(set.title, key.behavior, key.set_hash, key.parameters_hash, key.scenario),
                  job / count);
     store.add({std::move(key), set.scenarios[job % count].seed, std::move(outcome.result), outcome.times});
-    auto const now = std::chrono::steady_clock::now();
-    if (now - last_commit > std::chrono::milliseconds(250)) {
-      store.commit();
-      last_commit = now;
-    }
+    store.commit();
     if (options.progress) options.progress(++done, jobs.size());
   };
-  options.executor.execute(jobs, detail::job_runner(set, hash, contenders, options), take, detail::job_limit(options));
-  store.commit();
+  options.executor.execute(jobs, detail::job_runner(set, hash, contenders, options), take,
+                           detail::job_limit(set, options));
   return jobs.size();
 }
 
@@ -193,7 +192,7 @@ template <class World>
 void serve_benchmark(ScenarioSet<World> const& set, std::vector<Contender<World>> const& contenders,
                      BenchmarkOptions const& options) {
   options.executor.execute({}, detail::job_runner(set, set.hash(), contenders, options), {},
-                           detail::job_limit(options));
+                           detail::job_limit(set, options));
 }
 
 }  // namespace cambium

@@ -8,6 +8,7 @@
 
 #include "cambium/core/described.hpp"
 #include "cambium/core/error.hpp"
+#include "cambium/core/random.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/scenario/highway_site.hpp"
 #include "cambium/scenario/junction_site.hpp"
@@ -88,6 +89,8 @@ template <class World>
   auto const each = [&](auto const& sample) {
     for (std::uint32_t i = 0; i < recipe.scenarios; ++i) {
       scenarios.push_back(sample(recipe.first + i));
+      scenarios.back().seed =
+          RandomStream(recipe.seed, recipe.first + i, 0, 0x73656564)();  // of the world: each its own
       scenarios.back().map_file = recipe.map_file;
       scenarios.back().title = recipe.title;
     }

@@ -83,7 +83,7 @@ struct Scenario {
 };
 
 /// The same scenario for worlds of another type: `behavior(spec)` returns what drives each agent there. Executions and
-/// vehicle models are kept; observers are `OtherWorld`'s default. O(agents).
+/// vehicle models are kept, and observers where `OtherWorld` has such; else they are its default. O(agents).
 template <class OtherWorld, class WorldType, class ToBehavior>
 [[nodiscard]] Scenario<OtherWorld> with_behaviors(Scenario<WorldType> const& scenario, ToBehavior const& behavior) {
   static_assert(
@@ -104,7 +104,7 @@ template <class OtherWorld, class WorldType, class ToBehavior>
                              .map_file = scenario.map_file,
                              .title = scenario.title};
   other.agents.reserve(scenario.agents.size());
-  for (auto const& spec : scenario.agents)
+  for (auto const& spec : scenario.agents) {
     other.agents.push_back({.position = spec.position,
                             .heading = spec.heading,
                             .speed = spec.speed,
@@ -116,6 +116,9 @@ template <class OtherWorld, class WorldType, class ToBehavior>
                             .execution = spec.execution,
                             .dynamics = spec.dynamics,
                             .id = spec.id.given()});
+    if constexpr (std::is_convertible_v<typename WorldType::Observer, typename OtherWorld::Observer>)
+      other.agents.back().observer = spec.observer;
+  }
   return other;
 }
 

@@ -6,6 +6,7 @@
 #include <functional>
 #include <iterator>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "cambium/core/binary.hpp"
 #include "cambium/core/json.hpp"
 #include "cambium/core/write_file.hpp"
+#include "cambium/evaluation/collision.hpp"
 #include "cambium/scenario/detail/scenario_maps.hpp"
 #include "cambium/scenario/scenario_set.hpp"
 
@@ -54,18 +56,21 @@ void complete(ScenarioSet<WorldType>& set, LaneTable const& lanes, std::filesyst
     scenario.map = maps.load(folder, scenario.map_file, place);
     detail::exchange_lanes(&scenario, &usual, &detail::transfer_any<Scenario<WorldType>>, *scenario.map, lanes, true,
                            place);
-    std::vector<detail::StartingBody> bodies;
-    for (auto const& agent : scenario.agents)
-      if (agent.heading)
-        bodies.push_back({agent.id.given().value_or(none<AgentId>),
-                          {agent.position.x(), agent.position.y(), *agent.heading},
-                          agent.shape});
-    detail::check_overlaps(bodies, place);
+    std::optional<WorldType> world;
     try {
-      static_cast<void>(scenario.make_world());
+      world.emplace(scenario.make_world());
     } catch (Error const& problem) {
       throw WorldError(place, problem.what());
     }
+    std::vector<detail::StartingBody> bodies;
+    for (auto const& agent : world->roster().agents) {
+      auto const& state = world->state(agent.id);
+      bodies.push_back({agent.id, {state.x, state.y, state.heading}, agent.shape});
+    }
+    detail::check_overlaps(bodies, place);
+    for (auto const& agent : world->roster().agents)
+      if (Collision{}(*world, world->slot_of(agent.id)))
+        throw WorldError(place, "agent " + to_string(agent.id) + " overlaps a static object", "move one of them");
   }
   ScenarioRecipe<WorldType> const usual_recipe{};
   for (std::size_t i = 0; i < set.recipes.size(); ++i) {

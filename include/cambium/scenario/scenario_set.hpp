@@ -1,7 +1,7 @@
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -37,18 +37,23 @@ struct ScenarioSet {
         parameter("recipes", &P::recipes, "-", {}, "for more of them, drawn when the file is read"));
   }
 
-  /// Hash of everything that a run depends on, the maps' content included, see `content_hash`. O(scenarios *
-  /// agents + path segments of the maps).
+  /// Hash of everything that a run depends on, the maps' content included, see `content_hash`; not of names.
+  /// O(scenarios * agents + path segments of the maps).
   [[nodiscard]] std::uint64_t hash() const {
     auto plain = *this;
     plain.format = 0;
     plain.title.clear();
+    for (auto& scenario : plain.scenarios) {
+      scenario.title.clear();
+      scenario.map_file.clear();
+    }
     auto hash = hash_parameters(plain);
-    std::vector<Map const*> known;
+    std::map<cambium::Map const*, std::uint64_t> known;
     for (auto const& scenario : scenarios) {
-      if (!scenario.map || std::find(known.begin(), known.end(), scenario.map.get()) != known.end()) continue;
-      known.push_back(scenario.map.get());
-      hash = (hash ^ content_hash(*scenario.map)) * 0x100000001b3u;
+      if (!scenario.map) continue;
+      auto const [at, is_new] = known.emplace(scenario.map.get(), 0);
+      if (is_new) at->second = content_hash(*scenario.map);
+      hash = (hash ^ at->second) * 0x100000001b3u;
     }
     return hash;
   }

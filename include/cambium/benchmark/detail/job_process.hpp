@@ -63,7 +63,7 @@ class JobProcess {
       if (!is_busy_ || std::chrono::duration<double>(Clock::now() - begin_).count() <= limit_) return std::nullopt;
       kill(pid_, SIGKILL);
       static_cast<void>(end());
-      return failed(plans_too_long + rounded_text(limit_) + " s, and did not return: its process was ended");
+      return failed(process_died + (": it was ended after " + rounded_text(limit_) + " s, in which it gave no result"));
     }
     char buffer[1 << 16];
     auto const count = read(socket_, buffer, sizeof buffer);
@@ -104,14 +104,19 @@ class JobProcess {
     bytes_.clear();
     int ends[2];
     if (socketpair(AF_UNIX, SOCK_STREAM, 0, ends) != 0) fail();
+    auto const parent = getpid();
     for (int const end : ends) fcntl(end, F_SETFD, FD_CLOEXEC);  // else a program that a planner starts keeps it open
     std::fflush(nullptr);                                        // else the child writes it, too
     pid_ = fork();
-    if (pid_ < 0) fail();
+    if (pid_ < 0) {
+      for (int const end : ends) close(end);
+      fail();
+    }
     close(ends[pid_ == 0 ? 0 : 1]);
     if (pid_ == 0) {
 #ifdef __linux__
       prctl(PR_SET_PDEATHSIG, SIGKILL);  // also in the middle of a job
+      if (getppid() != parent) _exit(0);
 #endif
       work(ends[1]);
     }

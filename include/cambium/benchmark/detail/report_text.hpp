@@ -3,6 +3,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -39,7 +40,7 @@ namespace cambium::detail {
       sum += value;
       count += 1.0;
     }
-  return count > 0.0 ? sum / count : 0.0;
+  return count > 0.0 ? sum / count : std::numeric_limits<double>::quiet_NaN();
 }
 
 /// The groups of each set, in order.
