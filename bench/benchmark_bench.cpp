@@ -64,6 +64,20 @@ void bare_loop(benchmark::State& state) {
   });
 }
 
+/// The steps of these runs alone, without what judges them.
+void step_loop(benchmark::State& state) {
+  auto const set = merging(runs);
+  yardstick::measure_duration(state, [&] {
+    for (auto const& scenario : set.scenarios) {
+      auto world = scenario.make_world();
+      auto const ego = world.slot_of(scenario.ego);
+      while (!world.reached_goal(ego) && world.time() < set.time_limit && world.step(set.time_step)) {
+      }
+      benchmark::DoNotOptimize(world.time());
+    }
+  });
+}
+
 void runner(benchmark::State& state, std::size_t threads) {
   auto const set = merging(runs);
   auto const idm = cb::contender<Traffic>(cb::IdmClassic{.desired_speed = 22.0});
@@ -106,6 +120,8 @@ void print_ratios(yardstick::Results const& results) {
                                      {"scenario/flows_10000", 2000.0}});
   if (auto const ratio = yardstick::ratio(results, "benchmark/overhead", "benchmark/bare_loop"))
     std::printf("  runner over bare loop      %12.3f   target      1.05\n", *ratio);
+  if (auto const ratio = yardstick::ratio(results, "benchmark/overhead", "benchmark/step_loop"))
+    std::printf("  runner over steps alone    %12.2f   (judging included)\n", *ratio);
   if (auto const ratio = yardstick::ratio(results, "benchmark/overhead", "benchmark/threads_2"))
     std::printf("  2 threads over 1           %12.2f   target       1.9\n", *ratio);
 }
@@ -114,6 +130,7 @@ void print_ratios(yardstick::Results const& results) {
 
 int main(int argc, char** argv) {
   yardstick::add("benchmark/bare_loop", bare_loop)->UseRealTime();
+  yardstick::add("benchmark/step_loop", step_loop)->UseRealTime();
   yardstick::add("benchmark/overhead", [](benchmark::State& state) { runner(state, 1); })->UseRealTime();
   yardstick::add("benchmark/threads_2", [](benchmark::State& state) { runner(state, 2); })->UseRealTime();
   yardstick::add("benchmark/rows", rows)->UseRealTime();

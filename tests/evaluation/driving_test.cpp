@@ -251,8 +251,11 @@ TEST_CASE("gaps and times to collision are those of the next one ahead; one's ow
   double const gap = 40.0 - cb::geometry::car().front - cb::geometry::car().rear;
   CHECK(cb::Gap{}(world, ego) == doctest::Approx(gap));
   CHECK(cb::TimeToCollision{}(world, ego) == doctest::Approx(gap / 4.0));
+  CHECK(cb::RequiredDeceleration{}(world, ego) == doctest::Approx(16.0 / (2.0 * gap)));
+  CHECK(cb::RequiredDeceleration{.most = 0.1}(world, ego) == 0.1);
   CHECK(TimeHeadway{}(world, ego) == doctest::Approx(gap / 10.0));
   world.set_state(ahead, {.x = 80, .y = -1.75, .speed = 12});
+  CHECK(cb::RequiredDeceleration{}(world, ego) == 0.0);
   CHECK(cb::TimeToCollision{}(world, ego) == 60.0);
   CHECK(cb::Gap{.farthest = 10.0}(world, ego) == 10.0);
 }

@@ -127,6 +127,7 @@ class RunJudge {
         result_.least_time_to_collision = std::min(result_.least_time_to_collision, std::max(0.0, next->gap / closing));
     }
     encroachment_.observe(world, ego_, dt);
+    required_.observe(world, ego_, dt);
     speed_.observe(world, ego_, dt);
     progress_.observe(world, ego_, dt);
     braking_.observe(world, ego_, dt);
@@ -156,6 +157,7 @@ class RunJudge {
     result_.progress_m = progress_.value();
     result_.mean_speed = std::max(0.0, speed_.value());
     result_.post_encroachment_time = encroachment_.value();
+    result_.required_deceleration = std::max(0.0, required_.value());
     result_.hardest_braking = std::max(0.0, -braking_.value());
     result_.largest_jerk = std::max(0.0, jerk_.value());
     result_.largest_lateral_acceleration = std::max(0.0, lateral_.value());
@@ -178,6 +180,7 @@ class RunJudge {
   RunResult result_;
   bool others_collide_ = false;
   PostEncroachmentTime encroachment_;
+  Most<RequiredDeceleration> required_;
   MeanOf<Speed> speed_;
   Integral<Progress> progress_;
   Least<Acceleration> braking_;

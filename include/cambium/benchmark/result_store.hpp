@@ -264,6 +264,7 @@ class ResultStore {
     add_missing_column("behaviors", "command TEXT");
     add_missing_column("results", "others_failed INTEGER");
     add_missing_column("results", "off_route INTEGER");
+    add_missing_column("results", "required_deceleration REAL");
     execute("COMMIT");
     add_result_ = prepare("INSERT OR REPLACE INTO results(" + key_columns + "seed, run, " + columns<RunResult>(false) +
                           ") VALUES(" + marks(7 + count<RunResult>()) + ")");

@@ -40,6 +40,7 @@ struct RunResult {
   double least_gap = std::numeric_limits<double>::infinity();
   double least_time_to_collision = std::numeric_limits<double>::infinity();
   double post_encroachment_time = std::numeric_limits<double>::infinity();
+  double required_deceleration = 0.0;
   double hardest_braking = 0.0;
   double largest_jerk = 0.0;
   double largest_lateral_acceleration = 0.0;
@@ -70,6 +71,8 @@ struct RunResult {
         parameter("least_gap", &P::least_gap, "m", any_finite, "to the next road user ahead"),
         parameter("least_time_to_collision", &P::least_time_to_collision, "s", non_negative, "to it"),
         parameter("post_encroachment_time", &P::post_encroachment_time, "s", non_negative, "least, where ways cross"),
+        parameter("required_deceleration", &P::required_deceleration, "m/s^2", non_negative,
+                  "largest, to not hit the next road user ahead, which keeps its speed"),
         parameter("hardest_braking", &P::hardest_braking, "m/s^2", non_negative, "deceleration"),
         parameter("largest_jerk", &P::largest_jerk, "m/s^3", non_negative, "either way"),
         parameter("largest_lateral_acceleration", &P::largest_lateral_acceleration, "m/s^2", non_negative,

@@ -238,4 +238,26 @@ struct TimeToCollision {
   }
 };
 
+/// Deceleration at which the agent would just not hit the next road user ahead along its lane corridor, if that one
+/// keeps its speed, at most `most` [m/s^2]; 0 where the two do not close in (DRAC: Almqvist, Hyden, Risser 1991).
+struct RequiredDeceleration {
+  double most = 50.0;
+
+  static constexpr char const* name = "required_deceleration";
+  static constexpr char const* summary = "to not hit the next road user ahead, which keeps its speed [m/s^2]";
+  static constexpr char const* source = "Almqvist, Hyden, Risser 1991";
+  static constexpr auto parameters() {
+    return parameter_list(parameter("most", &RequiredDeceleration::most, "m/s^2", Range{0, 1e6},
+                                    "where more is required, or the two touch"));
+  }
+
+  template <class World>
+  [[nodiscard]] double operator()(World& world, Slot slot) const {
+    auto const next = world.truth(slot).ahead();
+    double const closing = next ? world.frame().agents[slot].state.speed - next->speed : 0.0;
+    if (!(closing > 0.0)) return 0.0;
+    return next->gap > 0.0 ? std::min(most, 0.5 * closing * closing / next->gap) : most;
+  }
+};
+
 }  // namespace cambium
