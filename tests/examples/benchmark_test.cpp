@@ -99,10 +99,10 @@ TEST_CASE("the benchmark gives the same results on any number of threads, and go
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     kill(child, SIGKILL);
     waitpid(child, nullptr, 0);
-    auto const rows = rows_in(file("killed.db"));
-    CHECK(rows >= wanted);
-    CHECK(rows >= kept);
-    kept = rows;
+    auto const found = rows_in(file("killed.db"));
+    CHECK(found >= wanted);
+    CHECK(found >= kept);
+    kept = found;
   }
   auto const again = program.run(with({"--db", file("killed.db")}));
   CHECK(again.code == 0);
