@@ -46,9 +46,10 @@ void add_measures(std::vector<Measure>& list, Struct ResultGroup::Row::*part) {
       measure.name = name_of_measure(measure.key, measure.unit);
       measure.is_share = is_share;
       measure.better = better_of(measure.key);
-      bool const needs_whole_run = !is_share && std::is_same_v<Struct, RunResult> && measure.key != "closed_loop_score";
-      measure.value = [part, field = entry.field, is_whole = needs_whole_run](ResultGroup::Row const& row) {
-        if (is_whole && !row.result.error.empty()) return std::numeric_limits<double>::quiet_NaN();
+      measure.value = [part, field = entry.field,
+                       needs_whole_run = !is_share && std::is_same_v<Struct, RunResult> &&
+                                         measure.key != "closed_loop_score"](ResultGroup::Row const& row) {
+        if (needs_whole_run && !row.result.error.empty()) return std::numeric_limits<double>::quiet_NaN();
         if constexpr (is_text)
           return (row.*part.*field).empty() ? 0.0 : 1.0;
         else
