@@ -168,8 +168,9 @@ class TrafficIndex {
     auto const visit = [&](List list, bool is_object) {
       if (list.empty()) return;
       double const longest = is_object ? longest_object : std::max(reach_.longest_front, reach_.longest_rear);
-      for (auto i = first_at(list, begin - longest); i < list.size() && list[i].position <= end + longest; ++i)
-        if (list[i].position + list[i].front >= begin && list[i].position - list[i].rear <= end) f(list[i], is_object);
+      auto const* const last = list.data() + list.size();
+      for (auto const* e = first_entry(list, begin - longest); e != last && e->position <= end + longest; ++e)
+        if (e->position + e->front >= begin && e->position - e->rear <= end) f(*e, is_object);
     };
     visit(agents(), false);
     visit(objects, true);
@@ -290,17 +291,22 @@ class TrafficIndex {
     return i;
   }
 
-  /// First entry at or beyond `position`: a binary search without unpredictable branches.
+  /// First entry at or beyond `position`.
   [[nodiscard]] static std::size_t first_at(List list, double position) {
+    return static_cast<std::size_t>(first_entry(list, position) - list.data());
+  }
+  /// The same as a pointer: a binary search without unpredictable branches.
+  [[nodiscard]] static TrafficEntry const* first_entry(List list, double position) {
     TrafficEntry const* base = list.data();
     std::size_t left = list.size();
-    if (left == 0) return 0;
+    if (left == 0) return base;
     while (left > 1) {
       std::size_t const half = left / 2;
-      base += base[half - 1].position < position ? half : 0;
+      TrafficEntry const* const middle = base + half;
+      base = middle[-1].position < position ? middle : base;
       left -= half;
     }
-    return static_cast<std::size_t>(base - list.data()) + (base->position < position ? 1 : 0);
+    return base + (base->position < position ? 1 : 0);
   }
 
   /// Next agent ahead on the corridor by reference point.
