@@ -230,9 +230,12 @@ struct RoadCorridor {
 
   /// Number of the first corridor that holds `lane`, `none<CorridorId>` if none does. O(lanes).
   [[nodiscard]] CorridorId corridor_of(LaneId lane) const {
-    for (std::size_t i = 0; i < corridors.size(); ++i)
-      for (auto const& piece : corridors[i].pieces)
-        if (piece.lane == lane) return static_cast<CorridorId>(i);
+    CorridorId number{};
+    for (auto const& corridor : corridors) {
+      for (auto const& piece : corridor.pieces)
+        if (piece.lane == lane) return number;
+      ++number;
+    }
     return none<CorridorId>;
   }
 
