@@ -170,26 +170,29 @@ template <class View>
 template <class View>
 [[nodiscard]] bool goes_first(View const& view, map::Conflict const& conflict, map::ConflictZone const& zone,
                               ConflictUser const& other, double way, double own_way, ConflictAsker const& own) {
-  constexpr double spread = 8.0;     // [s] range over which ids spread the end of patience
-  constexpr double later = 20.0;     // [s] more for the larger id, and if only one of the two is in the junction
-  constexpr double in_order = 10.0;  // [s] more where those who came earlier go first
+  constexpr double spread = 8.0;      // [s] range over which ids spread the end of patience
+  constexpr double later = 20.0;      // [s] more for the larger id, and if only one of the two is in the junction
+  constexpr double for_order = 10.0;  // [s] more where those who came earlier go first
   auto const& [user, at, reach, is_behind_slow, hold] = other;
   bool const stands = user.speed < standing_speed, own_stands = own.speed < standing_speed;
-  // Two drivers must not lose their patience together. Of two that wait for each other, the smaller id goes long before
-  // the other; the golden ratio spreads the ids of a ring of waiting drivers.
-  bool const is_smaller = view.id() < user.agent;
-  double const share = 0.6180339887498949 * static_cast<double>(static_cast<std::uint32_t>(view.id()));
-  double const turn = spread * (share - std::floor(share)) + (is_smaller ? 0.0 : later);  // [s]
+  bool const is_smaller = view.id() < user.agent, is_patient = own.waited < own.patience;
   bool const inside = other.is_inside(conflict, zone), own_inside = own.is_inside(conflict, zone);
-  if (!inside && !own_inside && is_by_arrival(view, conflict) && leaves_first(conflict, other, own, is_smaller))
-    return false;
-  bool const by_arrival = !inside && !own_inside && own.waited >= own.patience && is_by_arrival(view, conflict);
+  bool const in_order = !inside && !own_inside && is_by_arrival(view, conflict);
+  if (in_order && leaves_first(conflict, other, own, is_smaller)) return false;
+  bool const by_arrival = in_order && !is_patient;
   double const to_line = zone.other_line - at - user.front;
-  auto const arrival = own.stopped_before->arrival_of(user.agent);
+  // Without that order, all count as having come together.
+  auto const arrival = by_arrival ? own.stopped_before->arrival_of(user.agent) : Arrival::together;
   bool const has_to_stop = is_behind_slow || (user.speed < starting_speed && to_line < short_way);
-  if (by_arrival && arrival == Arrival::later && has_to_stop) return true;
-  double const extra = inside != own_inside ? later : by_arrival && arrival == Arrival::earlier ? in_order : 0.0;
-  if (stands && own.waited >= own.patience + turn + extra) return true;
+  if (arrival == Arrival::later && has_to_stop) return true;
+  if (stands && !is_patient) {
+    // Two drivers must not lose their patience together. Of two that wait for each other, the smaller id goes long
+    // before the other; the golden ratio spreads the ids of a ring of waiting drivers.
+    double const share = 0.6180339887498949 * static_cast<double>(static_cast<std::uint32_t>(view.id()));
+    double const turn = spread * (share - std::floor(share)) + (is_smaller ? 0.0 : later);  // [s]
+    double const extra = inside != own_inside ? later : arrival == Arrival::earlier ? for_order : 0.0;
+    if (own.waited >= own.patience + turn + extra) return true;
+  }
   bool const has_way = conflict.right_of_way == map::RightOfWay::first;
   bool const is_decided = conflict.right_of_way != map::RightOfWay::equal;
   bool const at_green = is_decided && go_together(view, conflict);
@@ -203,7 +206,7 @@ template <class View>
                             time_to_cover(conflict.lane_end - own.s, own.speed, pull_away, highest);
     return std::abs(later_by) > 1e-6 ? later_by > 0.0 : is_smaller;
   }
-  if (by_arrival && arrival == Arrival::earlier && to_line < short_way) return false;
+  if (arrival == Arrival::earlier && to_line < short_way) return false;
   if (own_stands && !stands && !at_green && user.speed < starting_speed && to_line < short_way) return false;
   if (is_decided) return has_way;
   return std::abs(own_way - way) > 2.0 ? own_way < way : is_smaller;

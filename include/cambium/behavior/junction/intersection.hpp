@@ -110,8 +110,7 @@ struct Intersection {
     Strictest ahead(law);
     rules.heed(view, ahead, memory.rules);
     heed_conflicts(view, own, ahead, dt);
-    auto const signals = rules.signals_ahead(view, own.front, own.speed, own.look_ahead, memory.rules);
-    remember(memory, own, signals.is_light, dt);
+    remember(memory, own, stops_at_light(view, own, memory), dt);
     auto motion = law.motion(ahead.constraint(), dt, tolerance);
     if (auto const& bound = own.wait().bound; bound.distance < motion.distance) motion = bound;
     motion = rules.bound(view, own.idm, own.s, own.speed, motion, dt, memory.rules);
@@ -131,21 +130,35 @@ struct Intersection {
   struct Wait {
     LongitudinalMotion<double> bound{infinite, infinite};  ///< longest motion of this step
     bool at_line = false;                                  ///< has arrived there
+
+    void heed(Wait const& other) {
+      if (other.bound.distance < bound.distance) bound = other.bound;
+      at_line = at_line || other.at_line;
+    }
   };
 
   /// The own vehicle: its place, and its motion as bounded so far.
   struct Own : detail::ConflictAsker {
     IdmParameters idm;
     double look_ahead{};                ///< [m]
-    double highest{};                   ///< highest speed within `look_ahead` [m/s]
+    double highest{};                   ///< highest speed within `look_ahead`, unless `is_far` [m/s]
     std::array<Wait, 2> waits{};        ///< by whether it has to leave room for large vehicles
     bool meets_large = false;           ///< a large vehicle is next on its way to one of the conflicts, see `claims_of`
     detail::StandingAgents standing{};  ///< others that stand at their lines
-    bool is_near_line = false;          ///< comes to a line within `detail::short_way`
-    bool is_inside_junction = false;
+    bool notes_standing = false;        ///< adds to `standing`
+    bool is_near_line = false;          ///< comes to a line within `detail::short_way`; asked if it has waited
+    bool is_inside_junction = false;    ///< asked if it has waited
+    bool is_far = false;                ///< no claim on a conflict can bound this step
 
     [[nodiscard]] Wait const& wait() const { return waits[meets_large]; }
   };
+
+  /// Whether it stands before a light that stops it.
+  template <class View>
+  [[nodiscard]] bool stops_at_light(View const& view, Own const& own, Memory& memory) const {
+    return own.speed < standing_speed &&
+           rules.signals_ahead(view, own.front, own.speed, own.look_ahead, memory.rules).is_light;
+  }
 
   /// Counts the time at a standstill, before the junction and within it. A driver that has begun to creep keeps its
   /// place in the order.
@@ -184,8 +197,10 @@ struct Intersection {
     auto const is_behind = [&](map::Conflict const& c) { return c.farthest_end < own.s; };
     auto const first = std::partition_point(conflicts.begin(), conflicts.end(), is_behind);
     if (first == conflicts.end()) return;
+    own.notes_standing = own.waited == 0.0 && own.speed < starting;
+    own.is_far = first->hold[1][1] - own.front > longest_stop(own, dt);
     own.highest = own.idm.desired_speed;
-    if (rules.slow_for_bends)
+    if (rules.slow_for_bends && !own.is_far)
       own.highest = detail::bends_ahead(view.corridor(), own.s, own.speed, own.highest, rules.lateral_acceleration,
                                         own.idm.comfortable_deceleration, hardest(own), dt)
                         .highest;
@@ -194,14 +209,17 @@ struct Intersection {
       auto const& conflict = *end;
       if (conflict.hull().end < own.s) continue;
       auto const& zones = conflict.zones[own.is_large];
-      own.is_near_line = own.is_near_line || zones[0].line - own.front < detail::short_way;
-      own.is_inside_junction = own.is_inside_junction || own.is_inside(conflict, zones[0]);
+      if (own.waited > 0.0) {
+        own.is_near_line = own.is_near_line || zones[0].line - own.front < detail::short_way;
+        own.is_inside_junction = own.is_inside_junction || own.is_inside(conflict, zones[0]);
+      }
+      if (own.is_far && !own.notes_standing && conflict.kind == map::OverlapKind::crossing) continue;
       auto const claims = claims_of(view, conflict, own, ahead);
       for (std::size_t other = 0; other < 2; ++other)
         if (claims[other] != Claim::free) obey(claims[other], conflict, zones[other], view, own, dt);
     }
     bool const has_waited = own.waited > own.patience + longest_wait;  // maybe for the end of its own queue
-    if (!keep_clear || has_waited || ahead.constraint().speed > starting) return;
+    if (own.is_far || !keep_clear || has_waited || !is_in_queue(ahead.constraint())) return;
     for (auto at = first; at != end; ++at) {
       auto const& zone = at->zones[own.is_large][0];
       if (!zone.empty() && is_full_behind(view, zone, own, ahead.constraint()))
@@ -209,7 +227,19 @@ struct Intersection {
     }
   }
 
+  [[nodiscard]] static bool is_in_queue(Constraint const& leader) {
+    return leader.gap < infinite && leader.speed <= starting;
+  }
+
   [[nodiscard]] static double hardest(Own const& own) { return -own.idm.lowest_acceleration; }
+
+  /// Distance from the front end [m] beyond which a place to stop does not bound the step: a vehicle that accelerates
+  /// as hard as it can over the step could still stop there, and is not at its line.
+  [[nodiscard]] double longest_stop(Own const& own, double dt) const {
+    double const end = own.speed + own.idm.maximum_acceleration * dt;
+    double const braking = std::min({rules.safe_deceleration, own.idm.comfortable_deceleration, hardest(own)});
+    return end * (dt + end / (2.0 * braking)) + rules.stop_margin + at_line_within;
+  }
 
   /// Bounds the step's motion by the claim on a conflict.
   template <class View>
@@ -220,16 +250,17 @@ struct Intersection {
     double const inside = conflict.right_of_way == map::RightOfWay::yields && detail::go_together(view, conflict)
                               ? place_inside(view, zone, own) - own.s
                               : -infinite;
-    for (std::size_t others : {0u, 1u}) {
-      double const outside = std::min(zone.line - own.front, conflict.hold[own.is_large][others] - own.s);
+    if (claim == Claim::yield && !can_stop(own.speed, to_conflict + air)) return;
+    double const braking = claim == Claim::watch ? rules.safe_deceleration : own.idm.comfortable_deceleration;
+    auto const wait_at = [&](double hold) -> Wait {
+      double const outside = std::min(zone.line - own.front, hold - own.s);
       double const to_stop = distance_to_stop(view, claim, std::max(outside, inside), own, to_conflict);
-      if (claim == Claim::yield && !can_stop(own.speed, to_conflict + air)) continue;
-      double const braking = claim == Claim::watch ? rules.safe_deceleration : own.idm.comfortable_deceleration;
-      auto const motion = motion_before_stop(own.speed, to_stop, braking, hardest(own), dt);
-      auto& wait = own.waits[others];
-      if (motion.distance < wait.bound.distance) wait.bound = motion;
-      wait.at_line = wait.at_line || to_stop < at_line_within;
-    }
+      return {motion_before_stop(own.speed, to_stop, braking, hardest(own), dt), to_stop < at_line_within};
+    };
+    auto const& hold = conflict.hold[own.is_large];
+    auto const wait = wait_at(hold[0]);
+    own.waits[0].heed(wait);
+    own.waits[1].heed(hold[1] == hold[0] ? wait : wait_at(hold[1]));
   }
 
   /// Where the vehicle waits at green for oncoming traffic that has green too: inside the junction, before the zones of
@@ -282,73 +313,99 @@ struct Intersection {
     return nearest;
   }
 
-  /// The strongest claims of the normal and of the large vehicles on their way to the conflict. Adds merging leaders to
-  /// the constraints.
+  /// The strongest claims of the normal and of the large vehicles on their way to the conflict, if they can bound the
+  /// step. Adds merging leaders to the constraints.
   template <class View>
   [[nodiscard]] std::array<Claim, 2> claims_of(View const& view, map::Conflict const& conflict, Own& own,
                                                Strictest<IdmLaw>& ahead) const {
     std::array<Claim, 2> claims{Claim::free, Claim::free};
-    auto const first = own.speed < starting ? first_before(view, conflict, own) : std::nullopt;
-    if (first && view.signals_way(*first, conflict.other) &&
-        (first->speed < standing_speed || own.stopped_before->holds(first->agent)))
-      own.standing.add(first->agent);
+    NextToEnter noted, asked;
+    bool is_known = own.speed >= starting;
+    auto const first = [&]() -> std::optional<RoadUser> const& {
+      if (!std::exchange(is_known, true)) asked = first_before(view, conflict, own);
+      return asked.user;
+    };
     for (auto const& way : conflict.ways)
       view.on_lane(way.index_begin, way.index_end, [&](RoadUser const& user) {
         if (user.s < way.index_begin || user.s > way.index_end || !is_valid(user.agent)) return;
         bool const large = detail::is_large(view, view.shape(user));
         auto const& zone = conflict.zones[own.is_large][large];
-        if (zone.empty()) return;
         double const at = way.begin + user.s - way.index_begin;
+        if (own.notes_standing) noted.offer(user, zone.other_line - at - user.front);
+        if (zone.empty()) return;
         // Where all go in the order in which they came, a truck in the queue of another way comes later.
         auto const comes_next = [&] {
-          bool const is_next = !first || first->agent == user.agent || at > zone.other_begin;
-          return is_next || own.is_large || !detail::is_by_arrival(view, conflict);
+          if (own.is_large || at > zone.other_begin || !detail::is_by_arrival(view, conflict)) return true;
+          return !first() || first()->agent == user.agent;
         };
         own.meets_large = own.meets_large || (large && comes_next());
+        auto const is_behind_slow = [&] {
+          return first() && first()->speed < starting && first()->agent != user.agent;
+        };
         Other const other{user, at, detail::extra_reach(view, large, user.front, user.rear),
-                          first && first->speed < starting && first->agent != user.agent};
-        claims[large] = std::max(claims[large], claim_of(view, conflict, large, other, own, ahead));
+                          own.waited >= own.patience && is_behind_slow()};
+        claims[large] = std::max(claims[large], claim_of(view, conflict, large, other, own, ahead, claims[large]));
       });
+    note_standing(view, conflict, noted.user, own);
     return claims;
   }
 
-  /// The vehicle that is next to enter the junction on the conflict's way, at most `detail::short_way` before its line.
+  /// Notes the vehicle that is next to enter the junction on the conflict's way if it stands, or has stood, at its
+  /// line.
   template <class View>
-  [[nodiscard]] static std::optional<RoadUser> first_before(View const& view, map::Conflict const& conflict,
-                                                            Own const& own) {
-    std::optional<RoadUser> first;
-    double nearest = detail::short_way;
+  static void note_standing(View const& view, map::Conflict const& conflict, std::optional<RoadUser> const& first,
+                            Own& own) {
+    if (first && (first->speed < standing_speed || own.stopped_before->holds(first->agent)) &&
+        view.signals_way(*first, conflict.other))
+      own.standing.add(first->agent);
+  }
+
+  /// The vehicle that is next to enter the junction on a conflict's way, at most `detail::short_way` before its line.
+  struct NextToEnter {
+    std::optional<RoadUser> user;
+    double to_line = detail::short_way;
+
+    void offer(RoadUser const& other, double other_to_line) {
+      if (other_to_line < -detail::over_line || other_to_line > to_line) return;
+      to_line = other_to_line;
+      user = other;
+    }
+  };
+
+  template <class View>
+  [[nodiscard]] static NextToEnter first_before(View const& view, map::Conflict const& conflict, Own const& own) {
+    NextToEnter first;
     for (auto const& way : conflict.ways)
       view.on_lane(way.index_begin, way.index_end, [&](RoadUser const& user) {
         if (user.s < way.index_begin || user.s > way.index_end || !is_valid(user.agent)) return;
         double const line = conflict.zones[own.is_large][detail::is_large(view, view.shape(user))].other_line;
-        double const to_line = line - (way.begin + user.s - way.index_begin) - user.front;
-        if (to_line < -detail::over_line || to_line > nearest) return;
-        nearest = to_line;
-        first = user;
+        first.offer(user, line - (way.begin + user.s - way.index_begin) - user.front);
       });
     return first;
   }
 
-  /// The claim of one vehicle on its way.
+  /// The claim of one vehicle on its way, if it is stronger than `known`.
   template <class View>
   [[nodiscard]] Claim claim_of(View const& view, map::Conflict const& conflict, bool large, Other other, Own const& own,
-                               Strictest<IdmLaw>& ahead) const {
+                               Strictest<IdmLaw>& ahead, Claim known) const {
     auto const& zone = conflict.zones[own.is_large][large];
     auto const& [user, at, reach, behind_slow, hold] = other;
     if (at > zone.other_end + reach.rear) return Claim::free;
-    double const way = zone.other_begin - reach.front - at;
+    double const way = zone.other_begin - reach.front - at, own_way = zone.begin - own.s;
+    bool const is_in = way <= 0.0, own_is_in = own_way <= 0.0, splits = conflict.kind == map::OverlapKind::split;
+    bool const may_lead = conflict.kind != map::OverlapKind::crossing && (is_in || splits);
+    if (own.is_far && !may_lead) return Claim::free;
     if (at < 0.0 && !view.signals_way(user, conflict.other)) return Claim::free;
-    double const own_way = zone.begin - own.s;
-    bool const is_in = way <= 0.0, own_is_in = own_way <= 0.0;
-    if (conflict.kind != map::OverlapKind::crossing && (is_in || conflict.kind == map::OverlapKind::split)) {
+    if (may_lead) {
       double const place = at + conflict.shift, gap = place - user.rear - own.front;
       if (place > own.s && (gap > 0.0 || own_is_in)) ahead.heed({gap, user.speed});
-      if (gap > 0.0 || conflict.kind == map::OverlapKind::split) return Claim::free;
+      if (gap > 0.0 || splits || own.is_far) return Claim::free;
     }
     if (own_is_in) return Claim::free;
+    bool const enters = is_in || !can_stop(user.speed, way);
+    if (!enters && known >= Claim::yield) return Claim::free;
     other.hold = view.waiting_place(user, conflict.other, large);
-    if (is_in || !can_stop(user.speed, way)) {
+    if (enters) {
       double end = zone.other_end + reach.rear;  // where it leaves room for the own vehicle
       if (conflict.kind == map::OverlapKind::merge)
         end = std::min(end, zone.begin + view.shape().front + own.idm.minimum_gap + user.rear - conflict.shift);
