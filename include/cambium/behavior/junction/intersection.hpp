@@ -149,6 +149,9 @@ struct Intersection {
     bool is_near_line = false;          ///< comes to a line within `detail::short_way`; asked if it has waited
     bool is_inside_junction = false;    ///< asked if it has waited
     bool is_far = false;                ///< no claim on a conflict can bound this step
+    bool is_settled = false;            ///< no claim on the conflict at hand can bound it further
+    map::Conflict const* stop{};        ///< a conflict before whose line it stops
+    double stop_line{};                 ///< that line [m]
 
     [[nodiscard]] Wait const& wait() const { return waits[meets_large]; }
   };
@@ -214,16 +217,17 @@ struct Intersection {
         own.is_inside_junction = own.is_inside_junction || own.is_inside(conflict, zones[0]);
       }
       if (own.is_far && !own.notes_standing && conflict.kind == map::OverlapKind::crossing) continue;
+      own.is_settled = own.is_far || stops_anyway(view, conflict, own);
       auto const claims = claims_of(view, conflict, own, ahead);
       for (std::size_t other = 0; other < 2; ++other)
-        if (claims[other] != Claim::free) obey(claims[other], conflict, zones[other], view, own, dt);
+        if (claims[other] != Claim::free) obey(claims[other], conflict, other, view, own, dt);
     }
     bool const has_waited = own.waited > own.patience + longest_wait;  // maybe for the end of its own queue
     if (own.is_far || !keep_clear || has_waited || !is_in_queue(ahead.constraint())) return;
     for (auto at = first; at != end; ++at) {
       auto const& zone = at->zones[own.is_large][0];
       if (!zone.empty() && is_full_behind(view, zone, own, ahead.constraint()))
-        obey(Claim::yield, *at, zone, view, own, dt);
+        obey(Claim::yield, *at, 0, view, own, dt);
     }
   }
 
@@ -241,26 +245,54 @@ struct Intersection {
     return end * (dt + end / (2.0 * braking)) + rules.stop_margin + at_line_within;
   }
 
-  /// Bounds the step's motion by the claim on a conflict.
+  /// Whether it stops anyway where a claim on this conflict would stop it, at the latest: before another conflict with
+  /// the same line and holds.
   template <class View>
-  void obey(Claim claim, map::Conflict const& conflict, map::ConflictZone const& zone, View const& view, Own& own,
+  [[nodiscard]] static bool stops_anyway(View const& view, map::Conflict const& conflict, Own const& own) {
+    auto const& hold = conflict.hold[own.is_large];
+    if (!own.stop || own.stop->hold[own.is_large] != hold || may_wait_inside(view, conflict)) return false;
+    double const farthest = way_to_line(own, own.stop_line, hold[0]);
+    for (auto const& zone : conflict.zones[own.is_large])
+      if (!zone.empty() && (zone.line != own.stop_line || zone.begin - air - own.s < farthest)) return false;
+    return true;
+  }
+
+  /// Distance [m] to where it waits outside of the junction.
+  [[nodiscard]] static double way_to_line(Own const& own, double line, double hold) {
+    return std::min(line - own.front, hold - own.s);
+  }
+
+  template <class View>
+  [[nodiscard]] static bool may_wait_inside(View const& view, map::Conflict const& conflict) {
+    return conflict.right_of_way == map::RightOfWay::yields && detail::go_together(view, conflict);
+  }
+
+  /// Bounds the step's motion by the claim of vehicles of the size `others` on a conflict.
+  template <class View>
+  void obey(Claim claim, map::Conflict const& conflict, std::size_t others, View const& view, Own& own,
             double dt) const {
+    auto const& zone = conflict.zones[own.is_large][others];
     double const to_conflict = zone.begin - air - own.s;
     if (to_conflict + air < 0.0) return;  // it is inside already
-    double const inside = conflict.right_of_way == map::RightOfWay::yields && detail::go_together(view, conflict)
-                              ? place_inside(view, zone, own) - own.s
-                              : -infinite;
+    bool const is_outside = !may_wait_inside(view, conflict);
+    double const inside = is_outside ? -infinite : place_inside(view, zone, own) - own.s;
     if (claim == Claim::yield && !can_stop(own.speed, to_conflict + air)) return;
     double const braking = claim == Claim::watch ? rules.safe_deceleration : own.idm.comfortable_deceleration;
     auto const wait_at = [&](double hold) -> Wait {
-      double const outside = std::min(zone.line - own.front, hold - own.s);
-      double const to_stop = distance_to_stop(view, claim, std::max(outside, inside), own, to_conflict);
+      double const to_hold = std::max(way_to_line(own, zone.line, hold), inside);
+      double const to_stop = distance_to_stop(view, claim, to_hold, own, to_conflict);
       return {motion_before_stop(own.speed, to_stop, braking, hardest(own), dt), to_stop < at_line_within};
     };
     auto const& hold = conflict.hold[own.is_large];
     auto const wait = wait_at(hold[0]);
     own.waits[0].heed(wait);
     own.waits[1].heed(hold[1] == hold[0] ? wait : wait_at(hold[1]));
+    double const nearer = way_to_line(own, zone.line, hold[1]), farther = way_to_line(own, zone.line, hold[0]);
+    bool const stops_at_line =
+        claim != Claim::watch && is_outside && nearer >= 0.0 && can_stop(own.speed, nearer) && farther <= to_conflict;
+    if (!stops_at_line || own.idm.comfortable_deceleration > rules.safe_deceleration) return;
+    own.stop = &conflict;
+    own.stop_line = zone.line;
   }
 
   /// Where the vehicle waits at green for oncoming traffic that has green too: inside the junction, before the zones of
@@ -394,12 +426,12 @@ struct Intersection {
     double const way = zone.other_begin - reach.front - at, own_way = zone.begin - own.s;
     bool const is_in = way <= 0.0, own_is_in = own_way <= 0.0, splits = conflict.kind == map::OverlapKind::split;
     bool const may_lead = conflict.kind != map::OverlapKind::crossing && (is_in || splits);
-    if (own.is_far && !may_lead) return Claim::free;
+    if (own.is_settled && !may_lead) return Claim::free;
     if (at < 0.0 && !view.signals_way(user, conflict.other)) return Claim::free;
     if (may_lead) {
       double const place = at + conflict.shift, gap = place - user.rear - own.front;
       if (place > own.s && (gap > 0.0 || own_is_in)) ahead.heed({gap, user.speed});
-      if (gap > 0.0 || splits || own.is_far) return Claim::free;
+      if (gap > 0.0 || splits || own.is_settled) return Claim::free;
     }
     if (own_is_in) return Claim::free;
     bool const enters = is_in || !can_stop(user.speed, way);

@@ -100,6 +100,7 @@ struct BendsAhead {
   BendsAhead ahead{desired_speed, {infinite, infinite}};
   double const reach = s + speed * (dt + speed / (2.0 * deceleration));
   auto const& bends = corridor.bends;
+  if (bends.empty() || bends.front().begin > reach || bends.back().end < s) return ahead;
   auto bend = std::partition_point(bends.begin(), bends.end(), [s](map::Bend const& b) { return b.end < s; });
   for (; bend != bends.end() && bend->begin <= reach; ++bend) {
     double const highest = std::sqrt(lateral_acceleration / bend->curvature);

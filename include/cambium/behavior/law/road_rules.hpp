@@ -298,7 +298,7 @@ struct RoadRules {
   template <class View>
   [[nodiscard]] detail::SignalStop signals_ahead(View const& view, double front, double speed, double look_ahead,
                                                  Memory& memory) const {
-    if (!obey_signals) return {};
+    if (!obey_signals || view.corridor().signals.empty()) return {};
     return detail::stop_at_signals(view, front, speed, look_ahead, stop_margin, safe_deceleration, late_at_red,
                                    memory.stopped_at);
   }
