@@ -447,8 +447,9 @@ class TrafficIndex {
     double const longest = is_object ? longest_object : reach_.longest_rear;
     double const from = query.s <= feeder.begin ? feeder.index_begin : feeder.index_at(query.s);
     // Rounding of the mapping must not lose an entry: start early, then skip entries that are not ahead.
-    for (auto i = first_at(list, from - 1e-6); i < list.size() && list[i].position <= feeder.index_end; ++i) {
-      auto const& entry = list[i];
+    auto const* const last = list.data() + list.size();
+    for (auto const* e = first_entry(list, from - 1e-6); e != last && e->position <= feeder.index_end; ++e) {
+      auto const& entry = *e;
       if (entry.position < feeder.index_begin) continue;
       double const s = feeder.image(entry.position);
       if (skips(query, entry, is_object, s - query.s)) continue;

@@ -95,8 +95,7 @@ struct Intersection {
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
     Own own;
     own.speed = std::max(0.0, view.state().speed);
-    own.idm = idm;
-    own.idm.desired_speed = rules.desired_speed(idm, view, own.speed);
+    own.desired_speed = rules.desired_speed(idm, view, own.speed);
     own.look_ahead = std::max(look_ahead, own.speed * own.speed / (2.0 * idm.comfortable_deceleration) + 20.0);
     own.s = view.place().s;
     own.front = own.s + view.shape().front;
@@ -106,14 +105,14 @@ struct Intersection {
     own.stopped_before = &memory.stopped_before;
     own.dt = dt;
     own.braking = rules.safe_deceleration;
-    IdmLaw const law(own.idm, own.speed);
+    IdmLaw const law(idm, own.speed, own.desired_speed);
     Strictest ahead(law);
     rules.heed(view, ahead, memory.rules);
     heed_conflicts(view, own, ahead, dt);
     remember(memory, own, stops_at_light(view, own, memory), dt);
     auto motion = law.motion(ahead.constraint(), dt, tolerance);
     if (auto const& bound = own.wait().bound; bound.distance < motion.distance) motion = bound;
-    motion = rules.bound(view, own.idm, own.s, own.speed, motion, dt, memory.rules);
+    motion = rules.bound(view, idm, own.s, own.speed, motion, dt, memory.rules);
     return rules.along_lane(view, motion, dt, memory.rules);
   }
 
@@ -139,7 +138,7 @@ struct Intersection {
 
   /// The own vehicle: its place, and its motion as bounded so far.
   struct Own : detail::ConflictAsker {
-    IdmParameters idm;
+    double desired_speed{};             ///< within the limits [m/s]
     double look_ahead{};                ///< [m]
     double highest{};                   ///< highest speed within `look_ahead`, unless `is_far` [m/s]
     std::array<Wait, 2> waits{};        ///< by whether it has to leave room for large vehicles
@@ -202,10 +201,10 @@ struct Intersection {
     if (first == conflicts.end()) return;
     own.notes_standing = own.waited == 0.0 && own.speed < starting;
     own.is_far = first->hold[1][1] - own.front > longest_stop(own, dt);
-    own.highest = own.idm.desired_speed;
+    own.highest = own.desired_speed;
     if (rules.slow_for_bends && !own.is_far)
       own.highest = detail::bends_ahead(view.corridor(), own.s, own.speed, own.highest, rules.lateral_acceleration,
-                                        own.idm.comfortable_deceleration, hardest(own), dt)
+                                        idm.comfortable_deceleration, hardest(), dt)
                         .highest;
     auto end = first;
     for (; end != conflicts.end() && end->hold[1][1] <= own.front + own.look_ahead; ++end) {
@@ -235,13 +234,13 @@ struct Intersection {
     return leader.gap < infinite && leader.speed <= starting;
   }
 
-  [[nodiscard]] static double hardest(Own const& own) { return -own.idm.lowest_acceleration; }
+  [[nodiscard]] double hardest() const { return -idm.lowest_acceleration; }
 
   /// Distance from the front end [m] beyond which a place to stop does not bound the step: a vehicle that accelerates
   /// as hard as it can over the step could still stop there, and is not at its line.
   [[nodiscard]] double longest_stop(Own const& own, double dt) const {
-    double const end = own.speed + own.idm.maximum_acceleration * dt;
-    double const braking = std::min({rules.safe_deceleration, own.idm.comfortable_deceleration, hardest(own)});
+    double const end = own.speed + idm.maximum_acceleration * dt;
+    double const braking = std::min({rules.safe_deceleration, idm.comfortable_deceleration, hardest()});
     return end * (dt + end / (2.0 * braking)) + rules.stop_margin + at_line_within;
   }
 
@@ -277,11 +276,11 @@ struct Intersection {
     bool const is_outside = !may_wait_inside(view, conflict);
     double const inside = is_outside ? -infinite : place_inside(view, zone, own) - own.s;
     if (claim == Claim::yield && !can_stop(own.speed, to_conflict + air)) return;
-    double const braking = claim == Claim::watch ? rules.safe_deceleration : own.idm.comfortable_deceleration;
+    double const braking = claim == Claim::watch ? rules.safe_deceleration : idm.comfortable_deceleration;
     auto const wait_at = [&](double hold) -> Wait {
       double const to_hold = std::max(way_to_line(own, zone.line, hold), inside);
       double const to_stop = distance_to_stop(view, claim, to_hold, own, to_conflict);
-      return {motion_before_stop(own.speed, to_stop, braking, hardest(own), dt), to_stop < at_line_within};
+      return {motion_before_stop(own.speed, to_stop, braking, hardest(), dt), to_stop < at_line_within};
     };
     auto const& hold = conflict.hold[own.is_large];
     auto const wait = wait_at(hold[0]);
@@ -290,7 +289,7 @@ struct Intersection {
     double const nearer = way_to_line(own, zone.line, hold[1]), farther = way_to_line(own, zone.line, hold[0]);
     bool const stops_at_line =
         claim != Claim::watch && is_outside && nearer >= 0.0 && can_stop(own.speed, nearer) && farther <= to_conflict;
-    if (!stops_at_line || own.idm.comfortable_deceleration > rules.safe_deceleration) return;
+    if (!stops_at_line || idm.comfortable_deceleration > rules.safe_deceleration) return;
     own.stop = &conflict;
     own.stop_line = zone.line;
   }
@@ -440,7 +439,7 @@ struct Intersection {
     if (enters) {
       double end = zone.other_end + reach.rear;  // where it leaves room for the own vehicle
       if (conflict.kind == map::OverlapKind::merge)
-        end = std::min(end, zone.begin + view.shape().front + own.idm.minimum_gap + user.rear - conflict.shift);
+        end = std::min(end, zone.begin + view.shape().front + idm.minimum_gap + user.rear - conflict.shift);
       // One that is in the zone, but has yet to enter the junction, may stop where it is.
       bool const goes = other.has_entered(zone) || !can_stop(user.speed, zone.other_line - at - user.front);
       bool const leaves = goes && user.speed >= standing_speed;
@@ -456,7 +455,7 @@ struct Intersection {
                                     double way, double own_way, Own const& own) const {
     auto const& [user, at, reach, behind_slow, hold] = other;
     Window const theirs{
-        time_to_cover(way, user.speed, assumed_acceleration, std::max(user.speed, own.idm.desired_speed)),
+        time_to_cover(way, user.speed, assumed_acceleration, std::max(user.speed, own.desired_speed)),
         (way + zone.other_end - zone.other_begin + reach.front + reach.rear) / std::max(user.speed, standing_speed)};
     Window const ours{arrival(own, own_way), arrival(own, zone.end - own.s)};
     bool const is_in = other.is_inside(conflict, zone);
@@ -470,17 +469,17 @@ struct Intersection {
   }
 
   /// Earliest time [s] at which the own vehicle has driven `distance` [m].
-  [[nodiscard]] static double arrival(Own const& own, double distance) {
-    return time_to_cover(distance, own.speed, own.idm.maximum_acceleration, std::max(own.speed, own.highest));
+  [[nodiscard]] double arrival(Own const& own, double distance) const {
+    return time_to_cover(distance, own.speed, idm.maximum_acceleration, std::max(own.speed, own.highest));
   }
 
   /// Whether the room behind the conflict is too small for the vehicle, as in a queue.
   template <class View>
-  [[nodiscard]] static bool is_full_behind(View const& view, map::ConflictZone const& zone, Own const& own,
-                                           Constraint const& leader) {
+  [[nodiscard]] bool is_full_behind(View const& view, map::ConflictZone const& zone, Own const& own,
+                                    Constraint const& leader) const {
     double const end = zone.end - view.shape().rear;  // end of the conflict for a rear end
     double const room = own.front + leader.gap - end;
-    return room < view.shape().length() + own.idm.minimum_gap;
+    return room < view.shape().length() + idm.minimum_gap;
   }
 };
 static_assert(BehaviorModel<Intersection>);

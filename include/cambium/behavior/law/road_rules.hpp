@@ -286,10 +286,16 @@ struct RoadRules {
     bool const crossing = crossing_time > 0.0 && view.anybody_off_lanes();
     if (!bends && !obey_signals && !crossing) [[likely]]
       return motion;
+    double const comfortable = driver.comfortable_deceleration, hardest = -driver.lowest_acceleration;
+    auto bounded = motion;
+    if (slow_for_bends)
+      bounded = nearer(
+          bounded,
+          detail::bends_ahead(view.corridor(), s, speed, speed, lateral_acceleration, comfortable, hardest, dt).bound);
+    if (!crossing && (!obey_signals || view.corridor().signals.empty())) return bounded;
     View const here = view;  // functions that are not inlined get copies, so that the originals can stay in registers
     Memory changed = memory;
-    auto const bounded = within_bounds(here, {driver.comfortable_deceleration, -driver.lowest_acceleration}, s, speed,
-                                       motion, dt, changed);
+    bounded = before_stops(here, {comfortable, hardest}, s, speed, bounded, dt, changed);
     memory = changed;
     return bounded;
   }
@@ -298,7 +304,7 @@ struct RoadRules {
   template <class View>
   [[nodiscard]] detail::SignalStop signals_ahead(View const& view, double front, double speed, double look_ahead,
                                                  Memory& memory) const {
-    if (!obey_signals || view.corridor().signals.empty()) return {};
+    if (!obey_signals) return {};
     return detail::stop_at_signals(view, front, speed, look_ahead, stop_margin, safe_deceleration, late_at_red,
                                    memory.stopped_at);
   }
@@ -352,18 +358,17 @@ struct RoadRules {
     double comfortable, hardest;  // [m/s^2]
   };
 
+  [[nodiscard]] static LongitudinalMotion<double> nearer(LongitudinalMotion<double> const& motion,
+                                                         LongitudinalMotion<double> const& bound) {
+    return bound.distance < motion.distance ? bound : motion;
+  }
+
   template <class View>
-  CAMBIUM_NOINLINE [[nodiscard]] LongitudinalMotion<double> within_bounds(View const& view, Braking const& braking,
-                                                                          double s, double speed,
-                                                                          LongitudinalMotion<double> motion, double dt,
-                                                                          Memory& memory) const {
-    auto const bound_by = [&motion](LongitudinalMotion<double> const& other) {
-      if (other.distance < motion.distance) motion = other;
-    };
-    if (slow_for_bends)
-      bound_by(detail::bends_ahead(view.corridor(), s, speed, speed, lateral_acceleration, braking.comfortable,
-                                   braking.hardest, dt)
-                   .bound);
+  CAMBIUM_NOINLINE [[nodiscard]] LongitudinalMotion<double> before_stops(View const& view, Braking const& braking,
+                                                                         double s, double speed,
+                                                                         LongitudinalMotion<double> motion, double dt,
+                                                                         Memory& memory) const {
+    auto const bound_by = [&motion](LongitudinalMotion<double> const& other) { motion = nearer(motion, other); };
     double const look_ahead = speed * (dt + speed / (2.0 * braking.comfortable)) + 20.0;
     auto const stop = signals_ahead(view, s + view.shape().front, speed, look_ahead, memory);
     if (std::isfinite(stop.distance))
