@@ -812,6 +812,24 @@ TEST_CASE("a record driven to the state of a step has the lane, the status and t
                             cb::AgentStatus::arrived});
 }
 
+TEST_CASE("the largest shape that a view knows holds those of all agents, in a predicted world too") {
+  Sim world(straight_road());
+  auto const car = world.add({.position = {10, -1.75}, .shape = cb::geometry::car()});
+  CHECK(world.observe(car).largest_shape() == cb::geometry::car());
+  cb::geometry::Shape const wide{.front = 1.0, .rear = 0.2, .left = 1.4, .right = 1.1}, truck = cb::geometry::truck();
+  world.add({.position = {40, -1.75}, .shape = wide});
+  world.add({.position = {80, -1.75}, .shape = truck});
+  auto const check = [&](auto const& view) {
+    CHECK(view.largest_shape().holds(truck));
+    CHECK(view.largest_shape().holds(wide));
+    CHECK(view.largest_shape().front == truck.front);
+  };
+  check(world.observe(car));
+  using Idm = cb::BehaviorSet<cb::IdmClassic>;
+  auto predicted = world.observe(car).predict(cb::predict_all_as<Idm>(cb::IdmClassic{}));
+  check(predicted.observe(car));
+}
+
 // Each agent's own corridor says where it waits; others see the same place, on the lane's path.
 TEST_CASE("where a vehicle waits before a junction others see on the way that it signals, and nowhere else") {
   auto const map = own_map("intersection_4way.xodr");

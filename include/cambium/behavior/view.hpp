@@ -93,6 +93,7 @@ struct ViewArchetype {
   void for_each_object(F&& f) const;  ///< `f(id, outline)` for each static object; the outline is a polygon
   [[nodiscard]] State const& state(RoadUser const& agent) const;  ///< as observed
   [[nodiscard]] geometry::Shape const& shape(RoadUser const& agent) const;
+  [[nodiscard]] geometry::Shape const& largest_shape() const;      ///< holds those of all agents in the world
   [[nodiscard]] double acceleration(RoadUser const& agent) const;  ///< over the last step, along its heading [m/s^2]
   [[nodiscard]] geometry::Polygon const& outline(RoadUser const& object) const;
   [[nodiscard]] bool signals_way(RoadUser const& user, LaneId lane) const;  ///< its turn signal permits that way

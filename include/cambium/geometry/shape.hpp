@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 
 #include "cambium/core/parameters.hpp"
@@ -40,6 +41,11 @@ struct Shape {
 
   friend bool operator==(Shape const&, Shape const&) = default;
 };
+
+/// The smallest shape that holds both where the reference points coincide.
+[[nodiscard]] constexpr Shape joined(Shape const& a, Shape const& b) {
+  return {std::max(a.front, b.front), std::max(a.rear, b.rear), std::max(a.left, b.left), std::max(a.right, b.right)};
+}
 
 /// Extent of a shape along an axis [m], measured from the reference point.
 struct Extent {

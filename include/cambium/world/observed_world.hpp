@@ -195,6 +195,8 @@ class ObservedWorld {
   [[nodiscard]] geometry::Shape const& shape(RoadUser const& agent) const {
     return world_->roster().agents[index_of(slot_of(agent))].shape;
   }
+  /// Holds the shapes of all agents in the world, seen or not. O(1).
+  [[nodiscard]] geometry::Shape const& largest_shape() const { return world_->roster().largest_shape; }
   /// Another agent's acceleration over the last step, along its heading [m/s^2], as brake lights would show it.
   [[nodiscard]] double acceleration(RoadUser const& agent) const {
     auto const slot = slot_of(agent);

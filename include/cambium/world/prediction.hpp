@@ -80,6 +80,7 @@ template <class Set, class World>
   assumed->assume_objects(roster, seen_objects);
   assumed->free_roads = roster.free_roads;
   assumed->lights = roster.lights;
+  assumed->largest_shape = roster.largest_shape;
   typename Predicted::FrameType seen{frame.time, frame.step, {}};
   for (Slot i{}; index_of(i) < roster.agents.size(); ++i) {
     auto const& agent = roster.agents[i];

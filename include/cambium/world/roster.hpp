@@ -34,8 +34,9 @@ struct RosterBase {
   bool has_sequences = false;          ///< a goal is, or was, a `GoalSequence`
   std::vector<map::LightPlan> lights;  ///< by `LightId`; lights beyond the end are off
   IdVector<StaticObject, Slot> objects;
-  std::vector<TrafficEntry> object_entries;  ///< objects on lanes; `slot` indexes `objects`
-  std::vector<FreeRoad> free_roads;          ///< free corridors that agents have entered on
+  std::vector<TrafficEntry> object_entries;           ///< objects on lanes; `slot` indexes `objects`
+  std::vector<FreeRoad> free_roads;                   ///< free corridors that agents have entered on
+  geometry::Shape largest_shape{0.0, 0.0, 0.0, 0.0};  ///< holds those of all agents that are, or were, in the world
 
   RosterBase();
   RosterBase(RosterBase const&);
@@ -90,6 +91,7 @@ struct Roster : RosterBase {
   Slot insert(Agent agent, Goal goal) {
     auto const slot = place_of(agent.id);
     next_agent_id = std::max(next_agent_id, static_cast<std::uint32_t>(agent.id) + 1);
+    largest_shape = geometry::joined(largest_shape, agent.shape);
     agents.insert(agents.begin() + static_cast<std::ptrdiff_t>(slot), std::move(agent));
     insert_goal(slot, std::move(goal));
     return slot;

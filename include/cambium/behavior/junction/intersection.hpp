@@ -100,6 +100,7 @@ struct Intersection {
     own.s = view.place().s;
     own.front = own.s + view.shape().front;
     own.is_large = detail::is_large(view, view.shape());
+    own.may_meet_large = detail::is_large(view, view.largest_shape());
     own.waited = memory.waited;
     own.patience = patience;
     own.stopped_before = &memory.stopped_before;
@@ -142,6 +143,7 @@ struct Intersection {
     double look_ahead{};                ///< [m]
     double highest{};                   ///< highest speed within `look_ahead`, unless `is_far` [m/s]
     std::array<Wait, 2> waits{};        ///< by whether it has to leave room for large vehicles
+    bool may_meet_large = false;        ///< large vehicles are, or were, in the world
     bool meets_large = false;           ///< a large vehicle is next on its way to one of the conflicts, see `claims_of`
     detail::StandingAgents standing{};  ///< others that stand at their lines
     bool notes_standing = false;        ///< adds to `standing`
@@ -215,8 +217,9 @@ struct Intersection {
         own.is_near_line = own.is_near_line || zones[0].line - own.front < detail::short_way;
         own.is_inside_junction = own.is_inside_junction || own.is_inside(conflict, zones[0]);
       }
-      if (own.is_far && !own.notes_standing && conflict.kind == map::OverlapKind::crossing) continue;
       own.is_settled = own.is_far || stops_anyway(view, conflict, own);
+      bool const may_skip = own.is_far || (own.is_settled && !own.may_meet_large);
+      if (may_skip && !own.notes_standing && conflict.kind == map::OverlapKind::crossing) continue;
       auto const claims = claims_of(view, conflict, own, ahead);
       for (std::size_t other = 0; other < 2; ++other)
         if (claims[other] != Claim::free) obey(claims[other], conflict, other, view, own, dt);
@@ -359,7 +362,7 @@ struct Intersection {
     for (auto const& way : conflict.ways)
       view.on_lane(way.index_begin, way.index_end, [&](RoadUser const& user) {
         if (user.s < way.index_begin || user.s > way.index_end || !is_valid(user.agent)) return;
-        bool const large = detail::is_large(view, view.shape(user));
+        bool const large = is_large(view, user, own);
         auto const& zone = conflict.zones[own.is_large][large];
         double const at = way.begin + user.s - way.index_begin;
         if (own.notes_standing) noted.offer(user, zone.other_line - at - user.front);
@@ -379,6 +382,11 @@ struct Intersection {
       });
     note_standing(view, conflict, noted.user, own);
     return claims;
+  }
+
+  template <class View>
+  [[nodiscard]] static bool is_large(View const& view, RoadUser const& user, Own const& own) {
+    return own.may_meet_large && detail::is_large(view, view.shape(user));
   }
 
   /// Notes the vehicle that is next to enter the junction on the conflict's way if it stands, or has stood, at its
@@ -409,7 +417,7 @@ struct Intersection {
     for (auto const& way : conflict.ways)
       view.on_lane(way.index_begin, way.index_end, [&](RoadUser const& user) {
         if (user.s < way.index_begin || user.s > way.index_end || !is_valid(user.agent)) return;
-        double const line = conflict.zones[own.is_large][detail::is_large(view, view.shape(user))].other_line;
+        double const line = conflict.zones[own.is_large][is_large(view, user, own)].other_line;
         first.offer(user, line - (way.begin + user.s - way.index_begin) - user.front);
       });
     return first;
