@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 #include "cambium/behavior/law/braking.hpp"
 #include "cambium/behavior/view.hpp"
@@ -95,6 +96,18 @@ class StandingAgents {
 
   std::array<std::uint16_t, 7> ids_{};
   std::uint8_t size_{}, together_{};
+};
+
+/// Among the vehicles offered, the one that is next to enter the junction, at most `short_way` before its line.
+struct NextToEnter {
+  std::optional<RoadUser> user;
+  double to_line = short_way;
+
+  void offer(RoadUser const& other, double other_to_line) {
+    if (other_to_line < -over_line || other_to_line > to_line) return;
+    to_line = other_to_line;
+    user = other;
+  }
 };
 
 /// The own vehicle before a conflict.

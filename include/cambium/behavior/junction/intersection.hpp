@@ -96,16 +96,10 @@ struct Intersection {
     Own own;
     own.speed = std::max(0.0, view.state().speed);
     own.desired_speed = rules.desired_speed(idm, view, own.speed);
-    own.look_ahead = std::max(look_ahead, own.speed * own.speed / (2.0 * idm.comfortable_deceleration) + 20.0);
     own.s = view.place().s;
     own.front = own.s + view.shape().front;
-    own.is_large = detail::is_large(view, view.shape());
-    own.may_meet_large = detail::is_large(view, view.largest_shape());
     own.waited = memory.waited;
-    own.patience = patience;
     own.stopped_before = &memory.stopped_before;
-    own.dt = dt;
-    own.braking = rules.safe_deceleration;
     IdmLaw const law(idm, own.speed, own.desired_speed);
     Strictest ahead(law);
     rules.heed(view, ahead, memory.rules);
@@ -140,8 +134,7 @@ struct Intersection {
   /// The own vehicle: its place, and its motion as bounded so far.
   struct Own : detail::ConflictAsker {
     double desired_speed{};             ///< within the limits [m/s]
-    double look_ahead{};                ///< [m]
-    double highest{};                   ///< highest speed within `look_ahead`, unless `is_far` [m/s]
+    double highest{};                   ///< highest speed within `view_ahead`, unless `is_far` [m/s]
     std::array<Wait, 2> waits{};        ///< by whether it has to leave room for large vehicles
     bool may_meet_large = false;        ///< large vehicles are, or were, in the world
     bool meets_large = false;           ///< a large vehicle is next on its way to one of the conflicts, see `claims_of`
@@ -161,7 +154,7 @@ struct Intersection {
   template <class View>
   [[nodiscard]] bool stops_at_light(View const& view, Own const& own, Memory& memory) const {
     return own.speed < standing_speed &&
-           rules.signals_ahead(view, own.front, own.speed, own.look_ahead, memory.rules).is_light;
+           rules.signals_ahead(view, own.front, own.speed, view_ahead(own), memory.rules).is_light;
   }
 
   /// Counts the time at a standstill, before the junction and within it. A driver that has begun to creep keeps its
@@ -201,15 +194,10 @@ struct Intersection {
     auto const is_behind = [&](map::Conflict const& c) { return c.farthest_end < own.s; };
     auto const first = std::partition_point(conflicts.begin(), conflicts.end(), is_behind);
     if (first == conflicts.end()) return;
-    own.notes_standing = own.waited == 0.0 && own.speed < starting;
-    own.is_far = first->hold[1][1] - own.front > longest_stop(own, dt);
-    own.highest = own.desired_speed;
-    if (rules.slow_for_bends && !own.is_far)
-      own.highest = detail::bends_ahead(view.corridor(), own.s, own.speed, own.highest, rules.lateral_acceleration,
-                                        idm.comfortable_deceleration, hardest(), dt)
-                        .highest;
+    prepare(view, *first, own, dt);
+    double const farthest = own.front + view_ahead(own);
     auto end = first;
-    for (; end != conflicts.end() && end->hold[1][1] <= own.front + own.look_ahead; ++end) {
+    for (; end != conflicts.end() && end->hold[1][1] <= farthest; ++end) {
       auto const& conflict = *end;
       if (conflict.hull().end < own.s) continue;
       auto const& zones = conflict.zones[own.is_large];
@@ -231,6 +219,28 @@ struct Intersection {
       if (!zone.empty() && is_full_behind(view, zone, own, ahead.constraint()))
         obey(Claim::yield, *at, 0, view, own, dt);
     }
+  }
+
+  /// Sets what is asked only where conflicts are ahead, `first` the nearest one.
+  template <class View>
+  void prepare(View const& view, map::Conflict const& first, Own& own, double dt) const {
+    own.is_large = detail::is_large(view, view.shape());
+    own.may_meet_large = detail::is_large(view, view.largest_shape());
+    own.patience = patience;
+    own.dt = dt;
+    own.braking = rules.safe_deceleration;
+    own.notes_standing = own.waited == 0.0 && own.speed < starting;
+    own.is_far = first.hold[1][1] - own.front > longest_stop(own, dt);
+    own.highest = own.desired_speed;
+    if (rules.slow_for_bends && !own.is_far)
+      own.highest = detail::bends_ahead(view.corridor(), own.s, own.speed, own.highest, rules.lateral_acceleration,
+                                        idm.comfortable_deceleration, hardest(), dt)
+                        .highest;
+  }
+
+  /// How far it looks ahead [m].
+  [[nodiscard]] double view_ahead(Own const& own) const {
+    return std::max(look_ahead, own.speed * own.speed / (2.0 * idm.comfortable_deceleration) + 20.0);
   }
 
   [[nodiscard]] static bool is_in_queue(Constraint const& leader) {
@@ -276,9 +286,9 @@ struct Intersection {
     auto const& zone = conflict.zones[own.is_large][others];
     double const to_conflict = zone.begin - air - own.s;
     if (to_conflict + air < 0.0) return;  // it is inside already
+    if (claim == Claim::yield && !can_stop(own.speed, to_conflict + air)) return;
     bool const is_outside = !may_wait_inside(view, conflict);
     double const inside = is_outside ? -infinite : place_inside(view, zone, own) - own.s;
-    if (claim == Claim::yield && !can_stop(own.speed, to_conflict + air)) return;
     double const braking = claim == Claim::watch ? rules.safe_deceleration : idm.comfortable_deceleration;
     auto const wait_at = [&](double hold) -> Wait {
       double const to_hold = std::max(way_to_line(own, zone.line, hold), inside);
@@ -353,7 +363,7 @@ struct Intersection {
   [[nodiscard]] std::array<Claim, 2> claims_of(View const& view, map::Conflict const& conflict, Own& own,
                                                Strictest<IdmLaw>& ahead) const {
     std::array<Claim, 2> claims{Claim::free, Claim::free};
-    NextToEnter noted, asked;
+    detail::NextToEnter noted, asked;
     bool is_known = own.speed >= starting;
     auto const first = [&]() -> std::optional<RoadUser> const& {
       if (!std::exchange(is_known, true)) asked = first_before(view, conflict, own);
@@ -399,21 +409,11 @@ struct Intersection {
       own.standing.add(first->agent);
   }
 
-  /// The vehicle that is next to enter the junction on a conflict's way, at most `detail::short_way` before its line.
-  struct NextToEnter {
-    std::optional<RoadUser> user;
-    double to_line = detail::short_way;
-
-    void offer(RoadUser const& other, double other_to_line) {
-      if (other_to_line < -detail::over_line || other_to_line > to_line) return;
-      to_line = other_to_line;
-      user = other;
-    }
-  };
-
+  /// The vehicle that is next to enter the junction on a conflict's way.
   template <class View>
-  [[nodiscard]] static NextToEnter first_before(View const& view, map::Conflict const& conflict, Own const& own) {
-    NextToEnter first;
+  [[nodiscard]] static detail::NextToEnter first_before(View const& view, map::Conflict const& conflict,
+                                                        Own const& own) {
+    detail::NextToEnter first;
     for (auto const& way : conflict.ways)
       view.on_lane(way.index_begin, way.index_end, [&](RoadUser const& user) {
         if (user.s < way.index_begin || user.s > way.index_end || !is_valid(user.agent)) return;
