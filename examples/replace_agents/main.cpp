@@ -9,7 +9,6 @@
 #include <filesystem>
 #include <iostream>
 #include <optional>
-#include <set>
 #include <span>
 #include <string>
 #include <thread>
@@ -302,7 +301,7 @@ int main(int argc, char** argv) {
       ->type_name("FILE");
   settings.parameters.add_options(program);
   return examples::run_program(program, argc, argv, [&] {
-    if (std::set<std::uint64_t>(settings.ids.begin(), settings.ids.end()).size() != 4)
+    if (settings.ids.size() != 4)
       throw cambium::Error("--ids", "these are not four different tracks", "give four numbers, such as 65,66,67,68");
     replace_agents::run_all(settings);
   });

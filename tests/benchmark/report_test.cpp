@@ -232,7 +232,7 @@ TEST_CASE("comparisons use equal scenarios only, and say what they left out") {
 TEST_CASE("hostile names are escaped in every format") {
   std::string const evil = "<img src=x onerror=alert(1)>,\"'&$%_{}\\</script>\x1b[2J";
   auto group = group_of(evil, 3, [&](RunResult& result, std::int64_t) { result.error = evil; });
-  group.set = group.set_label = group.parameters = evil;
+  group.set = group.set_label = group.parameters = group.command = group.source = evil;
   auto report = make_report({group, noisy(1, 0.5, 3)});
   report.comparisons.push_back({.title = evil, .left_out = {evil}});
   auto const page = html_report(report, {.title = evil});

@@ -192,7 +192,7 @@ TEST_CASE("results do not depend on threads, shards or interruptions") {
 TEST_CASE("in processes, a behaviour that crashes or never returns costs its own runs only") {
   Folder folder;
   auto set = merging_set(6);
-  set.time_limit = 2.0;  // which also bounds the time of a job
+  set.time_limit = 0.4;  // which also bounds the time of a job
   for (std::size_t i = 0; i < set.scenarios.size(); ++i) set.scenarios[i].seed = i + 1;
   auto const choose = [](auto const&, auto const& scenario) { return Hostile{.seed = scenario.seed}; };
   auto all = contenders();
@@ -366,8 +366,8 @@ TEST_CASE("the replay of a failure goes when it is a failure no more") {
   throws = false;
   options.again = true;
   run_benchmark(set, moody, store, options);
-  CHECK(rows_of(store).front().result.error == "");
-  CHECK(files_in(options.replay_folder).empty() == rows_of(store).front().result.success);
+  REQUIRE(rows_of(store).front().result.success);
+  CHECK(files_in(options.replay_folder).empty());
 }
 
 TEST_CASE("failures leave replays, up to a number of each contender") {

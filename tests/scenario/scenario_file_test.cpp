@@ -123,6 +123,10 @@ TEST_CASE("a recorded trajectory travels with its file") {
       {.position = {20, -5.25},
        .behavior = StaticTrajectory({{0.0, 20.0, -5.25, 0.0, 10.0}, {50.0, 520.0, -5.25, 0.0, 10.0}}),
        .id = AgentId{1}});
+  scenario.agents.push_back(
+      {.position = {20, -5.25},
+       .behavior = StaticTrajectory({{10.0, 20.0, -5.25, 0.0, 10.0}, {50.0, 420.0, -5.25, 0.0, 10.0}}),
+       .id = AgentId{2}});  // comes when the first is far away
   set.scenarios.push_back(scenario);
   check_round_trip(set);
 }

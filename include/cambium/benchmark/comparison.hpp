@@ -63,8 +63,8 @@ struct Comparisons {
                                           std::vector<ResultGroup> const& new_groups, std::string const& old_name,
                                           std::string const& new_name, double level = 0.05);
 
-/// Compares each behaviour with the one named `baseline` (its label) on the same set. As above otherwise. Throws
-/// `Error` if there is no such behaviour, or no other to compare it with.
+/// Compares each behaviour with the one named `baseline` (its label, or its name) on the same set. As above otherwise.
+/// Throws `Error` if there is no such behaviour, or no other to compare it with.
 [[nodiscard]] Comparisons compare_with_baseline(std::vector<ResultGroup> const& groups, std::string const& baseline,
                                                 double level = 0.05);
 

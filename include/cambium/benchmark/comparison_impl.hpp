@@ -177,7 +177,8 @@ CAMBIUM_COLD Comparisons compare_against(std::vector<ResultGroup> const& old_gro
   result.missing = std::move(missing);
   if (result.list.empty())
     throw Error(new_name, "has no scenario and behaviour in common with " + old_name,
-                "run the same set with behaviours of the same names: a set that was changed is another set");
+                "run the same set with behaviours of the same names: a set that was changed, or run by an older "
+                "cambium, may be another set");
   return result;
 }
 
@@ -186,8 +187,14 @@ CAMBIUM_COLD Comparisons compare_with_baseline(std::vector<ResultGroup> const& g
   std::vector<detail::GroupPair> pairs;
   std::string known;
   bool is_known = false;
+  auto const is_meant = [&](ResultGroup const& base) {  // by label, or by name where that is enough
+    return base.label == baseline ||
+           (base.behavior == baseline && std::ranges::count_if(groups, [&](auto const& other) {
+                                           return other.set_hash == base.set_hash && other.behavior == baseline;
+                                         }) == 1);
+  };
   for (auto const& base : groups) {
-    if (base.label != baseline) {
+    if (!is_meant(base)) {
       if (known.find("'" + base.label + "'") == known.npos) known += (known.empty() ? "'" : ", '") + base.label + "'";
       continue;
     }

@@ -232,7 +232,7 @@ template <class World, class AfterStep>
         has_goal ? world.reached_goal(slot)
                  : status == AgentStatus::arrived || status == AgentStatus::left_map || status == AgentStatus::expired;
     result.success = done && !result.collision && result.error.empty();
-    result.off_route = result.off_route || (has_goal && !done && status == AgentStatus::left_map);
+    result.off_route = result.off_route || (has_goal && !done && is_away && !result.collision && result.error.empty());
     is_over = !result.error.empty() || result.collision || done || is_away;
     result.timed_out = !is_over && world.frame().step >= most;
     is_over = is_over || result.timed_out;

@@ -71,7 +71,10 @@ class ResultStore {
   /// Throws `StoreError` if the file is missing or is none. O(size of the file).
   [[nodiscard]] static ResultStore existing(std::filesystem::path const& file) {
     auto db = open(file.string(), SQLITE_OPEN_READONLY);
-    if (!is_ours(db.get()) && !std::filesystem::exists(file.string() + "-wal"))
+    bool const may_be_read = is_ours(db.get());
+    int const code = sqlite3_errcode(db.get());
+    if (!may_be_read && (code == SQLITE_CANTOPEN || code == SQLITE_READONLY) &&
+        !std::filesystem::exists(file.string() + "-wal"))
       db = open(immutable(file.string()), SQLITE_OPEN_READONLY | SQLITE_OPEN_URI);  // in a folder that may only be read
     if (!is_ours(db.get()))
       throw StoreError(file.string(), "is no database of results (" + std::string(sqlite3_errmsg(db.get())) + ")",
@@ -189,7 +192,7 @@ class ResultStore {
   /// `StoreError`.
   void merge(ResultStore& other) {
     commit();
-    execute("BEGIN");
+    execute("BEGIN IMMEDIATE");
     auto const own_run = run_;
     try {
       auto const offset = last_run();
@@ -213,7 +216,7 @@ class ResultStore {
         bool const may_be_the_machine =
             row.result.error.starts_with(plans_too_long) || row.result.error.starts_with(process_died);
         if (may_be_the_machine && has(row.key)) return;
-        run_ = offset + row.run;
+        run_ = row.run > 0 ? offset + row.run : 0;
         add(row);
       });
       run_ = own_run;
@@ -241,10 +244,9 @@ class ResultStore {
     if (!db_) db_ = open(file_, SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE);
     if (sqlite3_errcode(db_.get()) != SQLITE_OK)
       fail("cannot be opened", "name a file in a folder that exists and that you may write to");
-    if (sqlite3_db_readonly(db_.get(), "main") == 1) fail("may not be written", "name another file");
-    sqlite3_busy_timeout(db_.get(), 60'000);
+    if (sqlite3_db_readonly(db_.get(), "main") == 1) throw StoreError(file_, "may not be written", "name another file");
     if (has_row(prepare("SELECT 1 FROM sqlite_master WHERE type = 'table'").get()) && !is_ours(db_.get()))
-      fail("holds tables of another program", "name another file");
+      throw StoreError(file_, "holds tables of another program", "name another file");
     execute("PRAGMA journal_mode=WAL");
     execute("PRAGMA synchronous=NORMAL");
     execute("BEGIN IMMEDIATE");
@@ -279,6 +281,7 @@ class ResultStore {
   [[nodiscard]] static Database open(std::string const& name, int flags) {
     sqlite3* db = nullptr;
     sqlite3_open_v2(name.c_str(), &db, flags, nullptr);
+    if (db != nullptr) sqlite3_busy_timeout(db, 60'000);
     return Database(db);
   }
   /// The name of a file that nobody changes: without that, one cannot read in a folder that one may not write to.

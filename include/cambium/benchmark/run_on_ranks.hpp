@@ -29,7 +29,9 @@ namespace cambium {
 
 /// How ranks look after each other.
 struct RankOptions {
-  double patience = 30.0;  ///< a rank that is silent for longer counts as lost, and others take its jobs [s]
+  /// A rank that is silent for longer counts as lost, and others take its jobs; before its first word, when it may
+  /// still read scenarios, ten times as long [s].
+  double patience = 30.0;
   /// Called on rank 0 with a sentence about each rank that was lost.
   std::function<void(std::string const& sentence)> warn = [](auto const& sentence) { std::cerr << sentence << "\n"; };
 };
@@ -107,8 +109,7 @@ class JobDispatcher {
       bool const says_alive = is_time();
       for (std::size_t w = 0; w < workers_.size(); ++w) look_after(w, says_alive);
       if (std::ranges::all_of(workers_, &Worker::is_lost))
-        throw Error("ranks", "none that runs jobs has been heard from for " + rounded_text(options_.patience) + " s",
-                    "the same command runs what is missing");
+        throw Error("ranks", "none that runs jobs is heard from any more", "the same command runs what is missing");
       if (is_idle) std::this_thread::sleep_for(std::chrono::microseconds(200));
     }
     for (std::size_t w = 0; w < workers_.size(); ++w)

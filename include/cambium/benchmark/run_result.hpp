@@ -60,7 +60,7 @@ struct RunResult {
         parameter("collision", &P::collision, "-", share, "the ego touched an agent or an object"),
         parameter("at_fault", &P::at_fault, "-", share, "it caused that: it moved, and the other was not behind it"),
         parameter("off_road", &P::off_road, "-", share, "a part of it left the drivable lanes"),
-        parameter("off_route", &P::off_route, "-", share, "it left its route, or the map before its goal"),
+        parameter("off_route", &P::off_route, "-", share, "it left its route, or traffic before its goal"),
         parameter("timed_out", &P::timed_out, "-", share, "the time limit passed"),
         parameter("error", &P::error, "-", {}, "why the run could not go on; empty: it could"),
         parameter("steps", &P::steps, "-", non_negative, "number of steps"),

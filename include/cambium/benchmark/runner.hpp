@@ -43,7 +43,7 @@ struct BenchmarkOptions {
   std::size_t shard = 0, shards = 1;  ///< runs only the jobs number `shard`, `shard + shards`, ...
   bool again = false;                 ///< runs also what the store has already
   /// See `RunOptions`. Where jobs run in other processes, a plan that never returns is ended, too: when its run takes
-  /// twice this time, the set's `time_limit` and 10 s by the clock [s].
+  /// twice this time and 20 times the set's `time_limit` by the clock [s].
   double plan_limit = std::numeric_limits<double>::infinity();
   Replays replays = Replays::none;
   std::filesystem::path replay_folder = "replays";  ///< replays are `replay_folder`/`replay_file_name(...)`
@@ -73,11 +73,11 @@ template <class World>
   return set ^ (contender.parameters_hash * 0x9e3779b97f4a7c15u) ^ std::hash<std::string>{}(contender.name);
 }
 
-/// Longest time of a job [s]: its plans twice, because it may be run again for its replay, and generously what else it
-/// does.
+/// Longest time of a job [s]: generous, because it ends only what never returns. A job runs its scenario twice if it
+/// leaves a replay.
 template <class World>
 [[nodiscard]] double job_limit(ScenarioSet<World> const& set, BenchmarkOptions const& options) {
-  return 2.0 * options.plan_limit + set.time_limit + 10.0;
+  return 2.0 * (options.plan_limit + 10.0 * set.time_limit);
 }
 
 /// Runs jobs of a benchmark; job number = number of the contender × scenarios + number of the scenario. `hash`: of the
@@ -117,8 +117,8 @@ class ReplayFolder {
     bool const is_enough = options_.replays == Replays::failures && written_[contender] >= options_.most_replays;
     if ((outcome.replay.empty() && outcome.problem.empty()) || is_enough) {
       std::error_code none_there;
-      std::filesystem::remove(options_.replay_folder / file, none_there);  // of an earlier result
-      return;
+      if (options_.replays != Replays::none) std::filesystem::remove(options_.replay_folder / file, none_there);
+      return;  // with the replay of an earlier result
     }
     ++written_[contender];
     auto problem = outcome.problem;

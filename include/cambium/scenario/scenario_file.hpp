@@ -64,6 +64,7 @@ void complete(ScenarioSet<WorldType>& set, LaneTable const& lanes, std::filesyst
     }
     std::vector<detail::StartingBody> bodies;
     for (auto const& agent : world->roster().agents) {
+      if (world->frame().agents[world->slot_of(agent.id)].status == AgentStatus::not_started) continue;
       auto const& state = world->state(agent.id);
       bodies.push_back({agent.id, {state.x, state.y, state.heading}, agent.shape});
     }

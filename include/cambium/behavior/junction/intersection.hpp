@@ -254,7 +254,7 @@ struct Intersection {
   [[nodiscard]] double longest_stop(Own const& own, double dt) const {
     double const end = own.speed + idm.maximum_acceleration * dt;
     double const braking = std::min({rules.safe_deceleration, idm.comfortable_deceleration, hardest()});
-    return end * (dt + end / (2.0 * braking)) + rules.stop_margin + at_line_within;
+    return end * (dt + end / (2.0 * braking)) + rules.stop_margin + at_line_within + air;
   }
 
   /// Whether it stops anyway where a claim on this conflict would stop it, at the latest: before another conflict with

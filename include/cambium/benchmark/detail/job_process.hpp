@@ -29,7 +29,7 @@
 namespace cambium::detail {
 
 /// A forked copy of this process that runs jobs, so that a job that crashes, or never ends, takes nothing with it. It
-/// ends when this process does.
+/// ends when this process does; elsewhere than on Linux, once its job has ended.
 class JobProcess {
  public:
   /// `limit`: a job that takes longer is ended [s].
@@ -106,7 +106,11 @@ class JobProcess {
     if (socketpair(AF_UNIX, SOCK_STREAM, 0, ends) != 0) fail();
     auto const parent = getpid();
     for (int const end : ends) fcntl(end, F_SETFD, FD_CLOEXEC);  // else a program that a planner starts keeps it open
-    std::fflush(nullptr);                                        // else the child writes it, too
+#ifdef SO_NOSIGPIPE
+    int const yes = 1;
+    for (int const end : ends) setsockopt(end, SOL_SOCKET, SO_NOSIGPIPE, &yes, sizeof yes);
+#endif
+    std::fflush(nullptr);  // else the child writes it, too
     pid_ = fork();
     if (pid_ < 0) {
       for (int const end : ends) close(end);
@@ -153,7 +157,11 @@ class JobProcess {
 
   [[nodiscard]] static bool send_all(int socket, std::string_view bytes) {
     while (!bytes.empty()) {
+#ifdef MSG_NOSIGNAL
       auto const sent = send(socket, bytes.data(), bytes.size(), MSG_NOSIGNAL);
+#else
+      auto const sent = send(socket, bytes.data(), bytes.size(), 0);
+#endif
       if (sent < 0 && errno == EINTR) continue;
       if (sent <= 0) return false;
       bytes.remove_prefix(static_cast<std::size_t>(sent));

@@ -120,7 +120,7 @@ fill('set', 'all sets', groups.map((g) => g.set));
 fill('behavior', 'all behaviours', groups.map((g) => g.label));
 fill('outcome', 'all outcomes', outcomes.filter((_, o) => rows.some((row) => row[2] === o)));
 let sorted = 1, down = false, shown = page, found = rows;
-const link = (row) => data.replays + '/' + encodeURIComponent(groups[row[0]].file + '_' + row[1] + '.html');
+const link = (row) => data.replays.split('/').map(encodeURIComponent).join('/') + '/' + encodeURIComponent(groups[row[0]].file + '_' + row[1] + '.html');
 const hasReplay = new Set(data.made);
 const quoted = (word) => /^[\w:.\/-]+$/.test(word) ? word : "'" + word.replaceAll("'", "'\\''") + "'";
 const command = (row) => groups[row[0]].command + (groups[row[0]].source ? ' ' + groups[row[0]].source : '') + ' --only ' + quoted(groups[row[0]].title + ':' + row[1] + ':' +
