@@ -8,6 +8,8 @@
 
 int main(int argc, char** argv) {
   boost::mpi::environment const environment(argc, argv);
+  boost::mpi::communicator const ranks;
   return benchmark::run_program(
-      argc, argv, [](auto const&... all) { return cambium::benchmark_on_ranks(boost::mpi::communicator(), all...); });
+      argc, argv, [&ranks](auto const&... all) { return cambium::benchmark_on_ranks(ranks, all...); },
+      ranks.rank() == 0);
 }
