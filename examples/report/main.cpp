@@ -77,6 +77,7 @@ int report(Settings const& settings) {
     auto const folder = fs::absolute(settings.html).parent_path();
     std::error_code none;
     auto const replays = cb::replay_folder(fs::absolute(settings.db));
+    fs::create_directories(folder, none);
     fs::create_directories(replays, none);  // where the page's commands put them
     cb::write_file(settings.html,
                    cb::html_report(report, {.title = "Benchmark " + fs::path(settings.db).stem().string(),

@@ -138,7 +138,7 @@ TEST_CASE("3 ranks give the rows of 1 thread and 8 threads, and a job that crash
   CHECK(rows.find("idm_classic 0 ") != std::string::npos);
   CHECK(rows.find("the process that ran it died, twice: signal 11") != std::string::npos);
   CHECK(rows.find("out of ideas") != std::string::npos);
-  CHECK(files_in(folder.path() / "r_replays") == 20);  // those that throw; a process that crashes leaves none
+  CHECK(files_in(folder.path() / "3_replays") == 20);  // those that throw; a process that crashes leaves none
   for (char const* threads : {"1", "8"}) {
     auto const name = std::string(threads) + "_threads.db";
     auto const other =
