@@ -32,7 +32,8 @@ std::vector<std::string> rooms() {
 /// Headers that stay out of the umbrellas: they need pugixml, Eigen or POSIX, are for those who read, check or write
 /// maps and files or watch traffic rules, or only declare what other headers define.
 bool needs_more(std::string const& header) {
-  std::set<std::string> const apart{"benchmark/run_on_ranks.hpp",
+  std::set<std::string> const apart{"benchmark/run_on_processes.hpp",
+                                    "benchmark/run_on_ranks.hpp",
                                     "core/binary.hpp",
                                     "core/json.hpp",
                                     "core/json_document.hpp",
