@@ -120,12 +120,8 @@ class RunJudge {
   RunJudge(World& world, Slot ego) : ego_(ego) { observe(world, 0.0); }
 
   void observe(World& world, double dt) {
-    if (auto const next = world.truth(ego_).ahead()) {
-      result_.least_gap = std::min(result_.least_gap, next->gap);
-      double const closing = world.frame().agents[ego_].state.speed - next->speed;
-      if (closing > 0.0)
-        result_.least_time_to_collision = std::min(result_.least_time_to_collision, std::max(0.0, next->gap / closing));
-    }
+    gap_.observe(world, ego_, dt);
+    collision_time_.observe(world, ego_, dt);
     encroachment_.observe(world, ego_, dt);
     required_.observe(world, ego_, dt);
     speed_.observe(world, ego_, dt);
@@ -157,6 +153,8 @@ class RunJudge {
     result_.progress_m = progress_.value();
     result_.mean_speed = std::max(0.0, speed_.value());
     result_.post_encroachment_time = encroachment_.value();
+    result_.least_gap = gap_.value();
+    result_.least_time_to_collision = collision_time_.value();
     result_.required_deceleration = std::max(0.0, required_.value());
     result_.hardest_braking = std::max(0.0, -braking_.value());
     result_.largest_jerk = std::max(0.0, jerk_.value());
@@ -180,6 +178,9 @@ class RunJudge {
   RunResult result_;
   bool others_collide_ = false;
   PostEncroachmentTime encroachment_;
+  static constexpr double infinite = std::numeric_limits<double>::infinity();
+  Least<Gap> gap_{Gap{infinite}};  // infinite where nobody is ahead
+  Least<TimeToCollision> collision_time_{TimeToCollision{infinite}};
   Most<RequiredDeceleration> required_;
   MeanOf<Speed> speed_;
   Integral<Progress> progress_;

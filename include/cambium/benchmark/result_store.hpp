@@ -127,7 +127,7 @@ class ResultStore {
   /// plans took too long, or whose process died. Throws `StoreError` if the file cannot be read.
   [[nodiscard]] bool has(ResultKey const& key) {
     bind_key(has_.get(), key);
-    bool const found = has_row(has_.get());
+    bool const found = has_row(has_.get()) && !may_be_the_machine(text(has_.get(), 0));
     sqlite3_reset(has_.get());
     return found;
   }
@@ -213,9 +213,7 @@ class ResultStore {
                      text(behaviors.get(), 3));
       in_transaction_ = true;  // `add` begins none
       other.for_each([&](ResultRow const& row) {
-        bool const may_be_the_machine =
-            row.result.error.starts_with(plans_too_long) || row.result.error.starts_with(process_died);
-        if (may_be_the_machine && has(row.key)) return;
+        if (may_be_the_machine(row.result.error) && has(row.key)) return;
         run_ = row.run > 0 ? offset + row.run : 0;
         add(row);
       });
@@ -273,9 +271,8 @@ class ResultStore {
     add_times_ = prepare("INSERT OR REPLACE INTO times(" + key_columns + columns<RunTimes>(false) + ") VALUES(" +
                          marks(5 + count<RunTimes>()) + ")");
     has_ = prepare(
-        "SELECT 1 FROM results WHERE set_hash=? AND scenario=? AND behavior=? AND parameters_hash=? AND version=? AND "
-        "error NOT GLOB '" +
-        std::string(plans_too_long) + "*' AND error NOT GLOB '" + process_died + "*'");
+        "SELECT error FROM results WHERE set_hash=? AND scenario=? AND behavior=? AND parameters_hash=? AND "
+        "version=?");
   }
 
   [[nodiscard]] static Database open(std::string const& name, int flags) {

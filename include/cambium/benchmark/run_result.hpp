@@ -11,9 +11,14 @@
 
 namespace cambium {
 
-/// How the errors begin for which the machine may be to blame; such runs are run again.
+/// How the errors begin for which the machine may be to blame. Such scenarios are run again.
 inline constexpr char const *plans_too_long = "its plans took longer than ",
                             *process_died = "the process that ran it died";
+
+/// Whether the machine may be to blame for an error.
+[[nodiscard]] inline bool may_be_the_machine(std::string const& error) {
+  return error.starts_with(plans_too_long) || error.starts_with(process_died);
+}
 
 /// A hash as in the database: 16 hexadecimal digits.
 [[nodiscard]] inline std::string hash_text(std::uint64_t hash) {
