@@ -10,19 +10,14 @@ namespace benchmark {
 /// What the tree searches choose from: macro actions, or to drive as one does at junctions.
 using Actions = cb::DriverActions<cb::Intersection>;
 
-/// A tree search that expects `Others` of the others. Its settings were tuned on seeds other than those of the sets.
+/// A tree search that expects `Others` of the others, with its usual settings.
 template <class Others>
-using Search = cb::Mcts<Prediction<Actions, Others>, Actions, cb::Reward<cb::LaneChangeUrgency>, Others>;
+using Search = cb::Mcts<Prediction<Actions, Others>, Actions, cb::TrafficReward, Others>;
 
 template <class Others>
 [[nodiscard]] Search<Others> search() {
   Search<Others> planner;
   planner.options.budget.iterations = 150;
-  planner.options.selection.exploration = 0.15;
-  planner.options.rollout.hold = 5;               // random actions that last a second, not 0.2 s
-  planner.reward.traffic.speed_deviation = -1.0;  // else nothing moves it before the goal is near
-  planner.reward.template term<cb::LaneChangeUrgency>() = {.weight = -40.0,
-                                                           .per_second = true};  // nor into the lane of its exit
   return planner;
 }
 
@@ -30,7 +25,7 @@ template <class Others>
 [[nodiscard]] Contender with_speed(examples::ParameterFile& file, Search<Others> const& planner,
                                    std::string const& name) {
   return with_speed(file, planner, name, [](Search<Others>& own, double speed) {
-    own.reward.traffic.desired_speed = speed;
+    own.reward.desired_speed = speed;
     own.actions.driver.idm.desired_speed = own.actions.macro.idm.desired_speed = speed;
     own.actions.macro.highest_speed = 1.1 * speed;
   });

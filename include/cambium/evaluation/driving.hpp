@@ -161,6 +161,36 @@ struct HardBraking {
   }
 };
 
+/// How hard others within `range` [m] brake: the sum of what their decelerations exceed `comfortable`, squared [m^2/s^4].
+/// As a term with a negative weight, it keeps a planner from making others brake, who may not do it.
+struct OthersBraking {
+  double comfortable = 1.0;  ///< [m/s^2]
+  double range = 60.0;       ///< [m]
+
+  static constexpr char const* name = "others_braking";
+  static constexpr char const* summary = "how hard others brake beyond what is comfortable, squared [m^2/s^4]";
+  static constexpr auto parameters() {
+    using P = OthersBraking;
+    return parameter_list(
+        parameter("comfortable", &P::comfortable, "m/s^2", Range{0, 50}, "harder braking counts"),
+        parameter("range", &P::range, "m", non_negative, "others farther away do not count"));
+  }
+
+  template <class World>
+  [[nodiscard]] double operator()(World const& world, Slot slot) const {
+    auto const& agents = world.frame().agents;
+    auto const& own = agents[slot].state;
+    double sum = 0.0;
+    for (Slot i{}; index_of(i) < agents.size(); ++i) {
+      double const excess = -agents[i].action.acceleration - comfortable;
+      if (excess <= 0.0 || i == slot || agents[i].status != AgentStatus::driving) continue;
+      double const dx = agents[i].state.x - own.x, dy = agents[i].state.y - own.y;
+      if (dx * dx + dy * dy <= range * range) sum += excess * excess;
+    }
+    return sum;
+  }
+};
+
 /// The agent's acceleration across its heading, left positive [m/s^2], from the turn over the last step. Needs a world
 /// that keeps a history (`World::keep_history`); 0 without one.
 struct LateralAcceleration {

@@ -101,6 +101,36 @@ template <class PredictionWorld, class Ego, class Others, class View>
   return world;
 }
 
+namespace detail {
+/// The desired speed of a driver, or of the driver that it wraps; null if it has none.
+template <class Driver>
+[[nodiscard]] double* desired_speed_of(Driver& driver) {
+  if constexpr (requires { driver.desired_speed; })
+    return &driver.desired_speed;
+  else if constexpr (requires { driver.idm.desired_speed; })
+    return &driver.idm.desired_speed;
+  else if constexpr (requires { driver.driver; })
+    return desired_speed_of(driver.driver);
+  else
+    return nullptr;
+}
+
+/// Lets those who are faster than `others` want to drive keep their speed: nobody is expected to slow down for no
+/// reason. O(agents).
+template <class World, class Others>
+void expect_to_keep_speed(World& world, Slot ego, Others others) {
+  auto* const desired = desired_speed_of(others);
+  if (desired == nullptr) return;
+  double const usual = *desired;
+  for (Slot slot{}; index_of(slot) < world.size(); ++slot) {
+    double const speed = world.frame().agents[slot].state.speed;
+    if (slot == ego || speed <= usual) continue;
+    *desired = std::min(speed, 100.0);
+    world.set_behavior(world.roster().agents[slot].id, others);
+  }
+}
+}  // namespace detail
+
 /// Extends a plan that ends before the time `end` [s], for example at the end of the map, at its last speed and
 /// heading.
 template <class View>

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "cambium/behavior/behavior_model.hpp"
+#include "cambium/behavior/behavior_set.hpp"
 #include "cambium/behavior/following/idm_classic.hpp"
 #include "cambium/behavior/following/idm_hypotheses.hpp"
 #include "cambium/core/distributions.hpp"
@@ -33,6 +34,28 @@ struct TrackedAgent {
 
   friend bool operator==(TrackedAgent const&, TrackedAgent const&) = default;
 };
+
+/// The first behaviour of the set that obeys the rules at junctions; without one, `IdmClassic`.
+template <class First, class... Rest>
+[[nodiscard]] constexpr auto usual_driver(std::type_identity<BehaviorSet<First, Rest...>>) {
+  if constexpr (heeds_conflicts<First>())
+    return std::type_identity<First>{};
+  else if constexpr (sizeof...(Rest) > 0)
+    return usual_driver(std::type_identity<BehaviorSet<Rest...>>{});
+  else
+    return std::type_identity<IdmClassic>{};
+}
+
+/// What an `Mcts` that predicts in `PredictionWorld` expects of the others unless told otherwise.
+template <class PredictionWorld>
+using UsualDriver =
+    typename decltype(usual_driver(std::type_identity<typename PredictionWorld::Behaviors>{}))::type;
+
+/// What it chooses from unless told otherwise: macro actions, or to drive like the usual driver if the set permits.
+template <class PredictionWorld>
+using UsualActions =
+    std::conditional_t<PredictionWorld::Behaviors::template contains<DriverActions<UsualDriver<PredictionWorld>>>,
+                       DriverActions<UsualDriver<PredictionWorld>>, MacroActions>;
 
 template <class PredictionWorld, class Actions, class Reward, class Others>
 [[nodiscard]] constexpr auto search_domain() {
@@ -82,8 +105,8 @@ struct BeliefMemory {
 ///   `IdmHypotheses`, whose time headway is unknown but lies in one of a few regions. The probabilities of the
 ///   hypotheses follow from what the agent does (Bayes). Each iteration draws one for each agent anew (root sampling:
 ///   Silver, Veness 2010), so nodes stand for ego's actions only.
-template <class PredictionWorld, class Actions = MacroActions, class Reward = TrafficReward, class Others = IdmClassic,
-          class Options = MctsOptions<>>
+template <class PredictionWorld, class Actions = detail::UsualActions<PredictionWorld>, class Reward = TrafficReward,
+          class Others = detail::UsualDriver<PredictionWorld>, class Options = MctsOptions<>>
 struct Mcts {
   static_assert(detail::check_planner<PredictionWorld, Others>());
   static_assert(
@@ -181,11 +204,12 @@ struct Mcts {
     if constexpr (learns) {
       std::vector<typename Domain::Unknown> unknowns;
       if (!slots.empty()) unknowns = learn(world, slots[0], memory, dt);
-      Domain domain(std::move(world), slots, actions, reward, options.step, weight);
+      Domain domain(std::move(world), slots, actions, reward, options.step, options.hold, weight);
       domain.set_unknowns(unknowns, others);
       return workspace.run(std::move(domain), timed, seed);
     } else {
-      return workspace.run(Domain(std::move(world), slots, actions, reward, options.step, weight), timed, seed);
+      return workspace.run(Domain(std::move(world), slots, actions, reward, options.step, options.hold, weight), timed,
+                           seed);
     }
   }
 

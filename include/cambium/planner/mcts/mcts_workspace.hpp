@@ -15,23 +15,25 @@
 #include "cambium/planner/predicted.hpp"
 #include "cambium/planner/mcts/traffic_domain.hpp"
 #include "cambium/planner/search/parallel_tree_search.hpp"
+#include "cambium/planner/search/puct.hpp"
 #include "cambium/planner/search/tree_search.hpp"
 
 namespace cambium {
 
 /// Settings of a tree search in traffic. Under a `TimeBudget` the result depends on the machine and its load.
-template <SelectionPolicy SelectionType = Ucb1, class RolloutType = RandomRollout,
+template <SelectionPolicy SelectionType = Puct, class RolloutType = PolicyRollout,
           SearchBudget BudgetType = IterationBudget>
 struct MctsOptions {
   using Selection = SelectionType;
   using Rollout = RolloutType;
   using Budget = BudgetType;
 
-  TreeSearchParameters search{.horizon = 30, .discount = 0.95};
+  TreeSearchParameters search{.horizon = 8, .discount = 0.9, .constraint = {.discount = 0.9}};
   Budget budget{};
   Selection selection{};
   Rollout rollout{};
   double step = 0.2;
+  int hold = 5;
   int threads = 1;
 
   static constexpr char const* name = "mcts_options";
@@ -42,7 +44,9 @@ struct MctsOptions {
                           parameter("budget", &P::budget, "-", {}, "how long the tree grows"),
                           parameter("selection", &P::selection, "-", {}, "how agents choose at the nodes"),
                           parameter("rollout", &P::rollout, "-", {}, "how courses continue from the leaves"),
-                          parameter("step", &P::step, "s", Range{0.01, 10}, "time between decisions"),
+                          parameter("step", &P::step, "s", Range{0.01, 10}, "time step of the predictions"),
+                          parameter("hold", &P::hold, "-", Range{1, 1000},
+                                    "steps for which an action is kept: between two decisions of the tree"),
                           parameter("threads", &P::threads, "-", Range{1, 64},
                                     "number of trees that share the budget, one per thread, merged at the end"));
   }
@@ -62,12 +66,6 @@ class MctsWorkspace {
       requires { MctsOptions<typename Options::Selection, typename Options::Rollout, typename Options::Budget>{}; },
       "cambium::MctsWorkspace<Domain, Options>: Options must be cambium::MctsOptions<Selection, Rollout, "
       "Budget>, as the last argument of the planner");
-
-  static_assert(
-      detail::HasPriors<DomainType> ||
-          !requires(typename Options::Selection::Statistics statistics) { statistics.prior; },
-      "cambium::MctsWorkspace: a search by priors (cambium::Puct) needs a reward with `double prior(World const&, "
-      "Slot slot, cambium::MacroAction const&) const` (see RewardModel)");
 
  public:
   using Domain = DomainType;
@@ -118,12 +116,16 @@ class MctsWorkspace {
     joint_.resize(agents);
     RandomStream none(0, 0, 0);
     for (std::size_t step = 0; state_.frame.time < end - 1e-9; ++step) {
-      for (std::size_t k = 0; k < agents; ++k)
-        joint_[k] = (step + 1) * agents <= result.variation.size() ? result.variation[step * agents + k]
-                                                                   : domain.policy_action(state_, k, none);
+      if (auto const hold = static_cast<std::size_t>(domain.hold()); step % hold == 0) {
+        auto const decision = step / hold;
+        for (std::size_t k = 0; k < agents; ++k)
+          joint_[k] = (decision + 1) * agents <= result.variation.size() ? result.variation[decision * agents + k]
+                                                                         : domain.policy_action(state_, k, none);
+        domain.choose(state_, joint_);
+      }
       // `end` may lie between two steps. The course may bend there: take a shorter step instead of interpolating.
       double const left = end - state_.frame.time;
-      domain.advance(state_, joint_, left < domain.dt() - 1e-9 ? left : domain.dt());
+      domain.advance(state_, left < domain.dt() - 1e-9 ? left : domain.dt());
       f(std::as_const(state_.frame));
     }
   }
@@ -154,7 +156,7 @@ class MctsWorkspace {
     report.chosen = report.result.best[0];
     report.decidedness = std::max(0.0, report.result.choice(0).share - second);
     report.course.push_back(world.frame());
-    play(world.time() + search().parameters().horizon * domain.dt(),
+    play(world.time() + search().parameters().horizon * domain.hold() * domain.dt(),
          [&](auto const& frame) { report.course.push_back(frame); });
     return report;
   }
@@ -187,6 +189,7 @@ template <class PredictionWorld, class Actions, class Others, class View>
   slots.clear();
   if (!ego) return world;
   slots.push_back(*ego);
+  expect_to_keep_speed(world, *ego, others);
   world.template memory<Behavior>(view.id()) = memory;
   return world;
 }

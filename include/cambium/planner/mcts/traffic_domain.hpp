@@ -19,8 +19,8 @@
 
 namespace cambium {
 
-/// Traffic as a game: a prediction world in which some agents, ego first, choose an action for each step of `dt` [s],
-/// while the others behave as predicted. A state is a frame; all states share the roster. When the course of one
+/// Traffic as a game: a prediction world in which some agents, ego first, choose an action for the next `hold` steps of
+/// `dt` [s], while the others behave as predicted. A state is a frame; all states share the roster. When the course of one
 /// choosing agent ends, the game is over for all.
 ///
 /// `step` copies nothing: it exchanges the state's frame with that of the one world, steps the world, judges it, and
@@ -66,12 +66,13 @@ class TrafficDomain {
   /// `slots`: the agents that choose, ego first; each must have the behaviour that carries out `actions`.
   /// `cooperation`, 0 to 1: weight of the other choosing agents' rewards in an agent's own (Lenz, Kessler, Knoll 2016).
   TrafficDomain(World world, std::span<Slot const> slots, Actions const& actions, Reward const& reward, double dt,
-                double cooperation = 0.0)
+                int hold = 1, double cooperation = 0.0)
       : world_(std::move(world)),
         slots_(slots.begin(), slots.end()),
         actions_(actions),
         reward_(reward),
         dt_(dt),
+        hold_(hold),
         cooperation_(cooperation) {}
 
   /// The world's frame as the root state. The game is over there if the reward ends a course.
@@ -83,6 +84,7 @@ class TrafficDomain {
   [[nodiscard]] std::span<Slot const> slots() const { return slots_; }
   [[nodiscard]] Actions const& action_set() const { return actions_; }
   [[nodiscard]] double dt() const { return dt_; }
+  [[nodiscard]] int hold() const { return hold_; }
 
   [[nodiscard]] std::size_t agents() const { return slots_.size(); }
   [[nodiscard]] bool is_terminal(State const& state) { return state.over || !all_drive(state); }
@@ -111,14 +113,19 @@ class TrafficDomain {
   [[nodiscard]] Action policy_action(State const&, std::size_t, RandomStream&) const { return Set::usual(actions_); }
 
   bool step(State& state, std::span<Action const> joint, RandomStream&, std::span<AgentOutcome> outcomes) {
-    enter(state, joint, dt_);
-    double sum = 0.0;
-    for (std::size_t k = 0; k < slots_.size(); ++k) {
-      auto const judgement = reward_.judge(world_, slots_[k], dt_);
-      outcomes[k] = {judgement.reward, judgement.cost};
-      sum += judgement.reward;
-      state.over = state.over || judgement.ends;
+    choose(state, joint);
+    world_.exchange(state.frame);
+    for (int i = 0; i < hold_ && !state.over; ++i) {
+      (void)world_.step(dt_);
+      for (std::size_t k = 0; k < slots_.size(); ++k) {
+        auto const judgement = reward_.judge(world_, slots_[k], dt_);
+        outcomes[k].reward += judgement.reward;
+        outcomes[k].cost = std::max(outcomes[k].cost, judgement.cost);
+        state.over = state.over || judgement.ends;
+      }
     }
+    double sum = 0.0;
+    for (auto const& outcome : outcomes) sum += outcome.reward;
     for (auto& outcome : outcomes) outcome.reward += cooperation_ * (sum - outcome.reward);
     world_.exchange(state.frame);
     state.over = state.over || !all_drive(state);
@@ -136,18 +143,32 @@ class TrafficDomain {
     });
   }
 
-  /// The reward's prior weight of each action.
-  void priors(State const& state, std::size_t agent, std::span<Action const> actions,
-              std::span<double> out) requires detail::HasPrior<Reward, World, Set> {
-    in_world(state, [&] {
+  /// The reward's prior weight of each action; without one, what a driver without any manoeuvre in mind would do is as
+  /// likely as all else together.
+  void priors([[maybe_unused]] State const& state, [[maybe_unused]] std::size_t agent, std::span<Action const> actions,
+              std::span<double> out) {
+    if constexpr (detail::HasPrior<Reward, World, Set>) {
+      in_world(state, [&] {
+        for (std::size_t i = 0; i < actions.size(); ++i)
+          out[i] = reward_.prior(world_, slots_[agent], Set::action(actions_, actions[i]));
+      });
+    } else {
+      auto const usual = Set::usual(actions_);
       for (std::size_t i = 0; i < actions.size(); ++i)
-        out[i] = reward_.prior(world_, slots_[agent], Set::action(actions_, actions[i]));
-    });
+        if (actions[i] == usual) out[i] = std::max<double>(1.0, static_cast<double>(actions.size()) - 1.0);
+    }
+  }
+
+  /// Lets the agents go on with these actions until they choose again.
+  void choose(State& state, std::span<Action const> joint) const {
+    for (std::size_t k = 0; k < slots_.size(); ++k)
+      Set::set(*std::get_if<behavior_index>(&state.frame.agents[slots_[k]].memory), joint[k]);
   }
 
   /// Steps `state` by `duration` [s], at most `dt`, without judging it.
-  void advance(State& state, std::span<Action const> joint, double duration) {
-    enter(state, joint, duration);
+  void advance(State& state, double duration) {
+    world_.exchange(state.frame);
+    (void)world_.step(duration);
     world_.exchange(state.frame);
   }
 
@@ -173,7 +194,7 @@ class TrafficDomain {
   /// same time step and for the same reward, and the worlds differ only in their frames.
   [[nodiscard]] bool is_same_game(TrafficDomain const& other) const {
     return std::ranges::equal(slots_, other.slots_) && equal_parameters(actions_, other.actions_) && dt_ == other.dt_ &&
-           cooperation_ == other.cooperation_ && detail::is_same_value(reward_, other.reward_) &&
+           hold_ == other.hold_ && cooperation_ == other.cooperation_ && detail::is_same_value(reward_, other.reward_) &&
            detail::is_same_scene(world_, other.world_);
   }
 
@@ -195,14 +216,6 @@ class TrafficDomain {
     return f();
   }
 
-  /// Steps the world from `state`; the result stays in the world until the frames are exchanged again.
-  void enter(State& state, std::span<Action const> joint, double duration) {
-    for (std::size_t k = 0; k < slots_.size(); ++k)
-      Set::set(*std::get_if<behavior_index>(&state.frame.agents[slots_[k]].memory), joint[k]);
-    world_.exchange(state.frame);
-    (void)world_.step(duration);
-  }
-
   [[nodiscard]] bool all_drive(State const& state) const {
     return std::ranges::all_of(slots_, [&](Slot slot) {
       return index_of(slot) < state.frame.agents.size() && state.frame.agents[slot].status == AgentStatus::driving;
@@ -214,6 +227,7 @@ class TrafficDomain {
   Actions actions_{};
   Reward reward_{};
   double dt_ = 0.2;
+  int hold_ = 1;
   double cooperation_ = 0.0;
 };
 

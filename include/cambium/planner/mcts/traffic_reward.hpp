@@ -44,30 +44,36 @@ concept HasPrior = requires(R const reward, World& world, typename Set::Choice c
 }  // namespace detail
 
 /// A weighted sum of evaluators: events that end a course (collision, leaving the road, goal) and terms for driving. A
-/// collision also counts as a cost of 1, see `AgentOutcome`.
+/// collision, or leaving the road, is a cost of 1 (see `AgentOutcome`): what must not happen has a channel of its own.
 struct TrafficReward {
   double goal = 100.0;
-  double collision = -1000.0;
-  double off_road = -1000.0;
+  double collision = 0.0;
+  double off_road = 0.0;
+  bool heeds_road = true;
   double progress = 0.0;
-  double speed_deviation = 0.0;
+  double speed_deviation = -1.0;
   double desired_speed = 15.0;
-  double acceleration = 0.0;
+  double acceleration = -0.1;
   double lateral_offset = 0.0;
+  double lane_change_urgency = -40.0;
+  double others_braking = -10.0;
   double lookahead = 2.0;
 
   static constexpr char const* name = "traffic_reward";
-  static constexpr char const* summary = "goal, collision, leaving the road; progress, speed, comfort, lane centre";
-  static constexpr char const* source = "weights as in Bernhard 2020";
+  static constexpr char const* summary =
+      "goal, collision, leaving the road; progress, speed, comfort, lane centre, lane changes to the goal";
+  static constexpr char const* source = "own; goal as in Bernhard 2020";
   static constexpr auto parameters() {
     using P = TrafficReward;
     return parameter_list(
         parameter("goal", &P::goal, "-", any_finite, "for reaching the goal, which ends the course"),
         parameter("collision", &P::collision, "-", any_finite,
-                  "for a collision with an agent or object, which ends the course"),
+                  "for a collision with an agent or object, which ends the course, besides its cost of 1"),
         parameter("off_road", &P::off_road, "-", any_finite,
-                  "for leaving the road or the route, or driving in an oncoming lane, which ends the course; the end "
-                  "of the map does not count"),
+                  "for leaving the road or the route, or driving in an oncoming lane, which ends the course, besides "
+                  "its cost of 1; the end of the map does not count"),
+        parameter("heeds_road", &P::heeds_road, "-", Range{0, 1},
+                  "whether leaving the road, or driving in an oncoming lane, ends the course"),
         parameter("progress", &P::progress, "1/m", any_finite, "per metre along the lane"),
         parameter("speed_deviation", &P::speed_deviation, "1/m", any_finite,
                   "per second, times the deviation from the desired speed"),
@@ -76,13 +82,17 @@ struct TrafficReward {
                   "per second, times the squared acceleration"),
         parameter("lateral_offset", &P::lateral_offset, "1/(m s)", any_finite,
                   "per second, times the distance from the lane's centre"),
+        parameter("lane_change_urgency", &P::lane_change_urgency, "1/s", any_finite,
+                  "per second, times the urgency of a lane change, see LaneChangeUrgency"),
+        parameter("others_braking", &P::others_braking, "s^3/m^2", any_finite,
+                  "per second, times how hard others brake, see OthersBraking"),
         parameter("lookahead", &P::lookahead, "s", Range{0, 1000},
                   "time for which a course that is cut off counts as unchanged; for TruncatedRollout and NoRollout"));
   }
 
   template <class World>
-  [[nodiscard]] Judgement judge(World const& world, Slot slot, double dt) const {
-    switch (course_end(world, slot, Collision{}, off_road != 0.0)) {
+  [[nodiscard]] Judgement judge(World& world, Slot slot, double dt) const {
+    switch (course_end(world, slot, Collision{}, heeds_road)) {
       case CourseEnd::none:
         break;
       case CourseEnd::over:
@@ -90,7 +100,7 @@ struct TrafficReward {
       case CourseEnd::collision:
         return {collision, 1.0, true};
       case CourseEnd::off_road:
-        return {off_road, 0.0, true};
+        return {off_road, 1.0, true};
     }
     bool const there = goal != 0.0 && AtGoal{}(world, slot);
     return {on_the_way(world, slot, dt) + (there ? goal : 0.0), 0.0, there};
@@ -98,19 +108,21 @@ struct TrafficReward {
 
   /// The terms for driving, as if nothing changed during `lookahead`.
   template <class World>
-  [[nodiscard]] double value(World const& world, Slot slot, double) const {
+  [[nodiscard]] double value(World& world, Slot slot, double) const {
     return on_the_way(world, slot, lookahead);
   }
 
  private:
   template <class World>
-  [[nodiscard]] double on_the_way(World const& world, Slot slot, double duration) const {
+  [[nodiscard]] double on_the_way(World& world, Slot slot, double duration) const {
     double const a = Acceleration{}(world, slot);
     double reward = 0.0;
     reward += progress * Progress{}(world, slot) * duration;
     reward += speed_deviation * SpeedDeviation{desired_speed}(world, slot) * duration;
     reward += acceleration * a * a * duration;
     reward += lateral_offset * LaneOffset{}(world, slot) * duration;
+    if (others_braking != 0.0) reward += others_braking * OthersBraking{}(world, slot) * duration;
+    if (lane_change_urgency != 0.0) reward += lane_change_urgency * LaneChangeUrgency{}(world, slot) * duration;
     return reward;
   }
 };

@@ -129,10 +129,7 @@ class ParallelTreeSearch {
       result_.kept_nodes += other.kept_nodes;
       result_.is_full = result_.is_full || other.is_full;
       for (std::size_t d = 0; d < result_.depths.size(); ++d) result_.depths[d] += other.depths[d];
-      for (std::size_t k = 0; k < scales.size(); ++k) {
-        scales[k].include(searches_[i].scales()[k].low);
-        scales[k].include(searches_[i].scales()[k].high);
-      }
+      for (std::size_t k = 0; k < scales.size(); ++k) scales[k].include(searches_[i].scales()[k]);
       add_arms(other);
     }
     auto const& parameters = searches_[0].parameters();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <vector>
@@ -19,7 +20,8 @@ struct RolloutRun {
   typename Domain::State& state;  ///< start of the roll-out, which advances it
   RandomStream& random;
   int steps;                                    ///< greatest number, up to the search's horizon
-  double discount;                              ///< per step
+  double discount;                              ///< of returns, per step
+  double cost_discount;                         ///< of costs
   std::span<double> returns;                    ///< out: per agent, from `state` on
   std::span<double> costs;                      ///< out
   std::span<typename Domain::Action> joint;     ///< working memory, one per agent
@@ -40,7 +42,7 @@ concept RolloutPolicy = std::copyable<R> && requires(R const rollout, RolloutRun
 /// the last one, or 0 if the game is over.
 template <class Run, class Choose>
 [[nodiscard]] double play(Run& run, int steps, Choose&& choose) {
-  double weight = 1.0;
+  double weight = 1.0, cost_weight = 1.0;
   for (int step = 0; step < steps; ++step) {
     for (std::size_t k = 0; k < run.joint.size(); ++k) run.joint[k] = choose(k, step);
     if (run.problem != SearchProblem::none) return 0.0;
@@ -51,10 +53,11 @@ template <class Run, class Choose>
     if (run.problem != SearchProblem::none) return 0.0;
     for (std::size_t k = 0; k < run.joint.size(); ++k) {
       run.returns[k] += weight * run.outcomes[k].reward;
-      run.costs[k] += run.outcomes[k].cost;
+      run.costs[k] += cost_weight * run.outcomes[k].cost;
     }
     if (over) return 0.0;
     weight *= run.discount;
+    cost_weight *= run.cost_discount;
   }
   return weight;
 }
@@ -95,16 +98,21 @@ struct RandomRollout {
   }
 };
 
-/// Follows the domain's `policy_action` to the horizon; in traffic, that is a behaviour model.
+/// Follows the domain's `policy_action` to the horizon; in traffic, that is a behaviour model. Every `hold` steps it may
+/// take a random action instead, which it then holds.
 struct PolicyRollout {
+  double random = 0.1;
+  int hold = 1;
   int steps = 1'000'000;
 
   static constexpr char const* name = "policy_rollout";
-  static constexpr char const* summary = "the domain's own policy to the horizon";
+  static constexpr char const* summary = "the domain's own policy to the horizon, sometimes a random action";
   static constexpr char const* source = "-";
   static constexpr auto parameters() {
-    return parameter_list(
-        parameter("steps", &PolicyRollout::steps, "-", Range{1, 1'000'000}, "greatest number of steps"));
+    using P = PolicyRollout;
+    return parameter_list(parameter("random", &P::random, "-", Range{0, 1}, "probability of a random action"),
+                          parameter("hold", &P::hold, "-", Range{1, 1'000'000}, "steps for which it is held"),
+                          parameter("steps", &P::steps, "-", Range{1, 1'000'000}, "greatest number of steps"));
   }
 
   template <class Run>
@@ -112,8 +120,19 @@ struct PolicyRollout {
     static_assert(detail::HasPolicy<std::remove_reference_t<decltype(run.domain)>>,
                   "cambium::PolicyRollout: the domain must have a policy: "
                   "`Action policy_action(State const&, std::size_t agent, RandomStream&)`");
-    return play(run, std::min(run.steps, steps),
-                [&](std::size_t agent, int) { return run.domain.policy_action(run.state, agent, run.random); }) == 0.0;
+    std::uint64_t wanders = 0;  // bit k: the agent k holds a random action; agents beyond 64 never do
+    return play(run, std::min(run.steps, steps), [&](std::size_t agent, int step) {
+             auto const bit = agent < 64 ? std::uint64_t{1} << agent : 0;
+             if (step % hold == 0) {
+               wanders &= ~bit;
+               if (bit != 0 && random > 0.0 && uniform01(run.random) < random) {
+                 wanders |= bit;
+                 return random_action(run, agent);
+               }
+             }
+             return (wanders & bit) != 0 ? run.joint[agent]
+                                         : run.domain.policy_action(run.state, agent, run.random);
+           }) == 0.0;
   }
 };
 

@@ -129,9 +129,9 @@ template <class Action>
   }
   double const log_visits = portable_log(std::max(1.0, visits));
   double const limit = std::max(cheapest, cost_limit);
-  scale.multiplier = 0.0;
+  if (cost_limit < 1.0) scale.multiplier = 0.0;  // within the limit, costs do not count
   auto const merit = [&](RootArm<Action> const& arm) {
-    double const score = scale.score(arm.mean_return, 0.0);
+    double const score = scale.score(arm.mean_return, arm.mean_cost);
     if (final_move == FinalMove::most_visits) return arm.visits + 0.5 * score;  // the score breaks ties
     return final_move == FinalMove::best_return ? score : score - std::sqrt(log_visits / arm.visits);
   };

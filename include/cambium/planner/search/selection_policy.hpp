@@ -27,24 +27,29 @@ struct Arm {
 };
 
 /// Maps an agent's returns and costs to scores in [0, 1]. It scales the return by the lowest and the highest seen so
-/// far, then subtracts `multiplier` times the cost and scales the result to [0, 1] again.
+/// far, then subtracts `multiplier` times the cost and scales the result to [0, 1] again by the highest cost seen.
 struct ReturnScale {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
-  double multiplier = 0.0;  ///< Lagrange multiplier of the cost, see `CostConstraint`
+  double highest_cost = 0.0;
+  double multiplier = 0.0;  ///< of the cost, see `CostConstraint`
 
-  void include(double value) {
+  void include(double value, double cost = 0.0) {
     low = std::min(low, value);
     high = std::max(high, value);
+    highest_cost = std::max(highest_cost, cost);
   }
-
+  void include(ReturnScale const& other) {
+    include(other.low);
+    include(other.high, other.highest_cost);
+  }
   /// Whether sums of 2^32 such returns, and differences of them, are finite.
   [[nodiscard]] bool can_be_summed() const { return low >= -1e290 && high <= 1e290; }
 
-  /// The score; without a multiplier it is 0.5 as long as all returns are equal.
+  /// The score; without costs it is 0.5 as long as all returns are equal.
   [[nodiscard]] double score(double value, double cost) const {
     double const share = high > low ? (value - low) / (high - low) : 0.5;
-    return multiplier > 0.0 ? (share + multiplier * (1.0 - cost)) / (1.0 + multiplier) : share;
+    return (share + multiplier * (highest_cost - cost)) / (1.0 + multiplier * highest_cost);
   }
 
   template <class Arm>

@@ -186,7 +186,7 @@ class TreeSearch {
       return;
     }
     tree_.reset(limits);
-    ReturnScale scale;
+    ReturnScale scale{.multiplier = parameters_.constraint.weight};
     if (parameters_.lowest_return < parameters_.highest_return) {
       scale.include(parameters_.lowest_return);
       scale.include(parameters_.highest_return);
@@ -403,8 +403,8 @@ class TreeSearch {
 
   void roll_out(int depth, RandomStream& random) {
     RolloutRun<Domain> run{
-        domain_, work_,     random,  parameters_.horizon - depth, parameters_.discount, returns_, costs_,
-        joint_,  outcomes_, options_};
+        domain_,  work_,  random, parameters_.horizon - depth, parameters_.discount, parameters_.constraint.discount,
+        returns_, costs_, joint_, outcomes_, options_};
     rollout_.roll_out(run);
     depth_ = depth + run.played;
     if (run.problem != SearchProblem::none) return stop(run.problem);
@@ -421,8 +421,8 @@ class TreeSearch {
       for (std::size_t k = 0; k < agents; ++k) {
         auto const& outcome = path_outcomes_[d * agents + k];
         returns_[k] = outcome.reward + parameters_.discount * returns_[k];
-        costs_[k] = std::min(1.0, costs_[k] + outcome.cost);
-        scales_[k].include(returns_[k]);
+        costs_[k] = std::min(1.0, outcome.cost + parameters_.constraint.discount * costs_[k]);
+        scales_[k].include(returns_[k], costs_[k]);
         auto const arms = tree_.arms(path_[d], k);
         auto& arm = arms[path_arms_[d * agents + k]];
         selection_.update(arms, path_arms_[d * agents + k], scales_[k].score(returns_[k], costs_[k]), scales_[k]);

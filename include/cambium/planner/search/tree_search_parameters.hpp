@@ -52,18 +52,26 @@ struct WideningSchedule {
 
 }  // namespace detail
 
-/// Keeps the expected cost of the chosen course below a limit. If an event that must not happen costs 1, this is a
-/// chance constraint. The search weighs costs by a Lagrange multiplier, which it learns (Lee et al. 2018, CC-POMCP).
+/// How costs count beside returns, which are scaled to [0, 1] without them: what must not happen neither stretches that
+/// scale nor drowns in it. With a limit, the weight is only where the search begins: it learns the Lagrange multiplier
+/// that keeps the expected cost of the chosen course within the limit (Lee et al. 2018, CC-POMCP). If an event that must
+/// not happen costs 1, this is a chance constraint.
 struct CostConstraint {
+  double weight = 2.0;
+  double discount = 1.0;
   double limit = 1.0;
   double step = 1.0;
 
   static constexpr char const* name = "cost_constraint";
   static constexpr char const* summary =
-      "keeps the expected cost of the chosen course below a limit, by a Lagrange multiplier";
+      "weighs costs beside returns, or keeps the expected cost of the chosen course below a limit, by a Lagrange "
+      "multiplier";
   static constexpr auto parameters() {
     return parameter_list(
-        parameter("limit", &CostConstraint::limit, "-", Range{0, 1}, "greatest expected cost; 1: costs do not count"),
+        parameter("weight", &CostConstraint::weight, "-", Range{0, 1e3},
+                  "of a cost of 1, in units of the range of all returns"),
+        parameter("discount", &CostConstraint::discount, "-", Range{0, 1}, "worth of a cost one step later"),
+        parameter("limit", &CostConstraint::limit, "-", Range{0, 1}, "greatest expected cost; 1: none"),
         parameter("step", &CostConstraint::step, "-", Range{0, 1e3},
                   "step size of the multiplier, divided by the square root of the iterations"));
   }
