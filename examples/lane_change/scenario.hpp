@@ -43,7 +43,8 @@ struct SameActionRollout {
 
 using PaperPlanner = cb::Mcts<Prediction, cb::MacroActions, cb::TrafficReward, cb::IdmClassic,
                               cb::MctsOptions<cb::Ucb1, SameActionRollout>>;
-using OwnPlanner = cb::Mcts<Prediction, cb::MacroActions, cb::TrafficReward, cb::IdmHypotheses>;
+using OwnPlanner = cb::Mcts<Prediction, cb::MacroActions, cb::TrafficReward, cb::IdmHypotheses,
+                            cb::MctsOptions<cb::Ucb1, cb::RandomRollout>>;
 using Sim =
     cb::World<cb::BehaviorSet<PaperPlanner, OwnPlanner, cb::IdmClassic>, cb::InterpolateExecution, cb::SingleTrack>;
 
@@ -103,26 +104,36 @@ inline cb::IdmClassic driver(Cell const& cell) {
   return usual;
 }
 
+/// The paper's reward: a collision is part of the return (the search gives costs no weight), and only events count.
+inline cb::TrafficReward paper_reward() {
+  auto reward = cb::TrafficReward::events();
+  reward.collision = reward.off_road = -1000.0;
+  return reward;
+}
+
 inline PaperPlanner paper_planner() {
-  PaperPlanner paper{.actions = paper_actions(), .others = driver(headway)};
+  PaperPlanner paper{.actions = paper_actions(), .others = driver(headway), .reward = paper_reward()};
   paper.options.search = {.horizon = most_steps,
                           .discount = 0.9,
                           .lowest_return = -1000.0,
                           .highest_return = 100.0,
-                          .final_move = cb::FinalMove::best_return};
+                          .final_move = cb::FinalMove::best_return,
+                          .constraint = {.weight = 0.0}};
+  paper.options.hold = 1;
   paper.options.selection.exploration = 2.0 * 0.7 * std::sqrt(2.0);
   return paper;
 }
 
 inline OwnPlanner own_planner() {
-  OwnPlanner own{.actions = own_actions()};
+  OwnPlanner own{.actions = own_actions(), .reward = paper_reward()};
   own.options.selection.exploration = 0.3;
   own.reward.desired_speed = 14.0;  // the goal requires 11 to 17 m/s
   own.reward.speed_deviation = -5.0;
   own.others = {.driver = driver(headway), .shortest_headway = 0.5, .longest_headway = 3.5, .regions = 4};
   // A decision lasts two steps of the world: the same 6 s at half the depth.
   own.options.step = 2.0 * step;
-  own.options.search = {.horizon = most_steps / 2, .discount = 0.9};
+  own.options.hold = 1;
+  own.options.search = {.horizon = most_steps / 2, .discount = 0.9, .constraint = {.weight = 0.0}};
   own.options.rollout.hold = 3;
   return own;
 }

@@ -27,7 +27,9 @@ using PredictionSet = BehaviorSet<MacroActions, IdmClassic, IdmHypotheses>;
 using PredictionWorld = World<PredictionSet, InterpolateExecution, SingleTrack>;
 using Search = Mcts<PredictionWorld>;
 using Learning = Mcts<PredictionWorld, MacroActions, TrafficReward, IdmHypotheses>;
-using Sim = World<BehaviorSet<Search, Learning, IdmClassic>, InterpolateExecution, SingleTrack>;
+using Wandering =
+    Mcts<PredictionWorld, MacroActions, TrafficReward, IdmClassic, MctsOptions<Ucb1, RandomRollout>>;
+using Sim = World<BehaviorSet<Search, Learning, Wandering, IdmClassic>, InterpolateExecution, SingleTrack>;
 
 /// Ego, agent 0, drives behind a slow vehicle in the right one of two lanes. Its goal is the middle of the left lane,
 /// where four other vehicles drive.
@@ -47,11 +49,10 @@ Sim lane_change(std::uint64_t seed, Sim::Behavior const& planner) {
   return world;
 }
 
-/// The planner with few iterations; roll-outs hold random actions for a second.
+/// The planner with few iterations.
 template <class Planner>
 Planner quick(Planner planner, std::size_t iterations = 300) {
   planner.options.budget.iterations = iterations;
-  planner.options.rollout.hold = 5;
   return planner;
 }
 
@@ -74,16 +75,22 @@ std::shared_ptr<Map const> narrowing() {
   return builder.build();
 }
 
-/// Drives on, speeds up or brakes; up to `most_agents` agents choose in the search.
-Search through_the_narrowing(int most_agents) {
-  auto planner = quick(Search{}, 1000);
+/// Drives on, speeds up or brakes; up to `most_agents` agents choose in the search. To go on as before is no solution
+/// here, so courses go on at random.
+Wandering through_the_narrowing(int most_agents) {
+  Wandering planner;
+  planner.options.budget.iterations = 1000;
   planner.most_agents = most_agents;
   planner.actions = MacroActions::of(
       {{MacroAction::Kind::stay, 0.0}, {MacroAction::Kind::stay, 1.5}, {MacroAction::Kind::stay, -3.0}});
   planner.others.desired_speed = 9.0;
-  planner.reward = {.goal = 0.0, .collision = -100.0, .off_road = -100.0, .progress = 1.0};
+  planner.reward = TrafficReward::events();
+  planner.reward.goal = 0.0;
+  planner.reward.collision = planner.reward.off_road = -100.0;
+  planner.reward.progress = 1.0;
   planner.options.step = 0.4;
-  planner.options.search.horizon = 25;
+  planner.options.hold = 1;
+  planner.options.search = {.horizon = 25, .discount = 0.95, .constraint = {.weight = 0.0}};
   planner.options.rollout.hold = 8;
   return planner;
 }
@@ -169,8 +176,9 @@ TEST_CASE("a planner reports what it found") {
   CHECK(report.course[1].time == doctest::Approx(world.time() + 0.2));
   // Played in the predicted world, the variation leads to the states that the report shows.
   auto predicted = world.observe(ego).predict(predict_as<PredictionSet>(MacroActions{}, IdmClassic{}));
-  for (std::size_t i = 0; i < report.result.variation.size(); ++i) {
-    predicted.memory<MacroActions>(ego).choose(report.result.variation[i]);
+  auto const hold = static_cast<std::size_t>(Search{}.options.hold);
+  for (std::size_t i = 0; i < report.result.variation.size() * hold; ++i) {
+    if (i % hold == 0) predicted.memory<MacroActions>(ego).choose(report.result.variation[i / hold]);
     REQUIRE(predicted.step(0.2));
     CHECK(predicted.frame().agents == report.course[i + 1].agents);
   }
@@ -185,6 +193,7 @@ TEST_CASE("a search continues its tree if the world turns out as predicted") {
     CAPTURE(threads);
     auto planner = quick(Search{}, 600);
     planner.options.threads = threads;
+    planner.options.hold = 1;
     for (bool const surprised : {false, true}) {
       // The stack's own world: ego moves as planned; the others move as predicted, or one does not.
       auto world = lane_change(0, IdmClassic{});
@@ -219,6 +228,9 @@ TEST_CASE("nothing is kept if anything has changed, or without a call of keep") 
     for (auto const& agent : world.roster().agents)
       if (agent.id != ego) world.set_behavior(agent.id, IdmClassic{});
     auto planner = quick(Search{}, 600);
+    planner.options.hold = 1;
+    planner.options.search = {.horizon = 30, .discount = 0.98};
+    planner.reward = TrafficReward::events();  // only the goal in the other lane counts
     planner.actions = MacroActions::of({{MacroAction::Kind::change_left, 0.0}, {MacroAction::Kind::stay, 0.0}});
     Search::Workspace workspace;
     auto report = planner.think(world.observe(ego), {}, workspace);
@@ -553,7 +565,8 @@ TEST_CASE("a constraint on risk overrules the reward") {
   using HurriedSim = World<BehaviorSet<Hurried>, InterpolateExecution, SingleTrack>;
   auto const driven = [](double risk) {
     auto planner = quick(Hurried{}, 500);
-    planner.options.search.constraint.limit = risk;
+    planner.options.search.constraint = {.weight = 0.0, .limit = risk};
+    planner.options.hold = 1;
     planner.options.search.horizon = 15;
     HurriedSim world(support::straight_road(1, 900.0));
     world.add({.position = {60, -1.75}, .speed = 12, .behavior = planner});
@@ -659,7 +672,7 @@ TEST_CASE("a planner does not fail if it leaves the map within a step or steps f
 
 TEST_CASE("an agent in an oncoming lane has left the road") {
   PredictionWorld world(support::two_way_road(300.0));
-  TrafficReward const reward{.off_road = -10.0, .progress = 0.1};
+  TrafficReward const reward{.off_road = -10.0, .progress = 0.1, .speed_deviation = 0.0};
   world.add({.position = {60, -1.75}, .heading = 0.0, .speed = 10});
   CHECK(reward.judge(world, cambium::Slot{}, 0.2).reward == doctest::Approx(0.2));
   world.set_state(ego, {.x = 60, .y = 1.75, .heading = 0.0, .speed = 10});

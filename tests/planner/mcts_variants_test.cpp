@@ -35,7 +35,7 @@ using Truncated = Single<MctsOptions<Ucb1, TruncatedRollout<RandomRollout>>>;
 using Policy = Single<MctsOptions<Ucb1, PolicyRollout>>;
 using Timed = Single<MctsOptions<Ucb1, RandomRollout, TimeBudget>>;
 using Expected = Single<MctsOptions<Puct>, Expecting>;
-using Sampled = Single<MctsOptions<>, TrafficReward, SampledInputs>;
+using Sampled = Mcts<PredictionWorld, SampledInputs, TrafficReward, IdmClassic>;
 using Sim = World<BehaviorSet<IdmClassic, Plain, Truncated, Policy, Timed, Expected, Sampled>, InterpolateExecution,
                   SingleTrack>;
 
@@ -54,7 +54,6 @@ Planner careful() {
                                         {MacroAction::Kind::stay, 1.5},
                                         {MacroAction::Kind::stay, -2.0},
                                         {MacroAction::Kind::stay, -5.0}});
-  if constexpr (requires { planner.options.rollout.hold; }) planner.options.rollout.hold = 5;
   return planner;
 }
 
@@ -64,7 +63,7 @@ TEST_CASE("every variant of the search stops behind a standing vehicle") {
   auto lower_bound = careful<Plain>();
   lower_bound.options.search.final_move = FinalMove::lower_bound;
   auto truncated = careful<Truncated>();
-  truncated.options.rollout.base = {.hold = 5, .steps = 12};
+  truncated.options.rollout.base = {.steps = 3};
   auto timed = careful<Timed>();
   timed.options.budget.duration = 60.0;  // so large that the iterations end it
   auto sampled = careful<Sampled>();
@@ -86,6 +85,12 @@ TEST_CASE("every variant of the search stops behind a standing vehicle") {
   }
 }
 
+constexpr TrafficReward only_progress = [] {
+  auto reward = TrafficReward::events();
+  reward.progress = 1.0;
+  return reward;
+}();
+
 TEST_CASE("a course that is cut off has the reward's value, with the others' weighted by the cooperation") {
   Sim world(support::straight_road(1, 300.0));
   world.add({.position = {30, -1.75}, .speed = 12, .behavior = IdmClassic{}});
@@ -94,8 +99,9 @@ TEST_CASE("a course that is cut off has the reward's value, with the others' wei
     using Cooperative = Mcts<PredictionWorld, MacroActions, TrafficReward, IdmClassic, MctsOptions<Ucb1, NoRollout>>;
     Cooperative planner{.most_agents = 4};
     planner.actions = MacroActions::of({{MacroAction::Kind::stay, 0.0}});
-    planner.reward.progress = 1.0;
+    planner.reward = only_progress;
     planner.reward.lookahead = lookahead;
+    planner.options.hold = 1;
     planner.options.search = {.horizon = 1, .discount = 0.9};
     Cooperative::Workspace workspace;
     auto const report = planner.think(world.observe(ego), {}, workspace);
@@ -105,6 +111,8 @@ TEST_CASE("a course that is cut off has the reward's value, with the others' wei
   }
   // Likewise after a roll-out: one step in the tree, 4 beyond it, then 2 s.
   auto planner = careful<Truncated>();
+  planner.reward = only_progress;
+  planner.options.hold = 1;
   planner.actions = MacroActions::of({{MacroAction::Kind::stay, 0.0}});
   planner.options.search = {.horizon = 20, .discount = 1.0};
   planner.options.budget.iterations = 1;
@@ -118,7 +126,7 @@ TEST_CASE("a user's prior guides a search in traffic and is checked") {
   Sim world(support::straight_road(1, 300.0));
   world.add({.position = {30, -1.75}, .speed = 12, .behavior = IdmClassic{}});
   auto planner = careful<Expected>();
-  planner.reward.progress = 0.0;
+  planner.reward = {TrafficReward::events()};  // all is worth as much
   planner.reward.braking = 50.0;
   planner.options.budget.iterations = 200;
   Expected::Workspace workspace;

@@ -65,9 +65,9 @@ Planner quick() {
   if constexpr (requires { planner.options; }) {
     planner.options.budget.iterations = 100;
     planner.options.step = 0.4;
-    planner.options.search.horizon = 12;
+    planner.options.hold = 2;
+    planner.options.search.horizon = 10;
     planner.reward.progress = 1.0;
-    planner.reward.collision = planner.reward.off_road = -100.0;
     planner.belief.interval = planner.options.step;
   }
   if constexpr (requires { planner.actions; }) planner.actions.rules.slow_for_bends = true;
@@ -216,18 +216,14 @@ TEST_CASE_TEMPLATE("it passes a slower leader, or follows it", Planner, STEADY_P
 
 namespace {
 
-/// A search that may drive by the rules at junctions, and expects the others to.
+/// A search that, by default, may drive by the rules at junctions and expects the others to.
 using Actions = DriverActions<Intersection>;
 using Ruled = World<BehaviorSet<Actions, Intersection>, InterpolateExecution, SingleTrack>;
-using RuledSearch = Mcts<Ruled, Actions, Reward<LaneChangeUrgency>, Intersection>;
+using RuledSearch = Mcts<Ruled>;
 
 RuledSearch ruled_search() {
   RuledSearch planner;
-  planner.options.budget.iterations = 100;
-  planner.options.rollout.hold = 5;
-  planner.options.selection.exploration = 0.2;
-  planner.reward.traffic.speed_deviation = -1.0;
-  planner.reward.term<LaneChangeUrgency>() = {.weight = -40.0, .per_second = true};
+  planner.options.budget.iterations = 200;
   return planner;
 }
 
@@ -276,7 +272,7 @@ TEST_CASE_TEMPLATE("it gets through traffic to its exit", Planner, RuledSearch, 
           ego.behavior = planner;
         } else {
           auto planner = ruled_search();
-          planner.reward.traffic.desired_speed = planner.actions.driver.idm.desired_speed =
+          planner.reward.desired_speed = planner.actions.driver.idm.desired_speed =
               planner.actions.macro.idm.desired_speed = speed;
           ego.behavior = planner;
         }
@@ -294,7 +290,7 @@ TEST_CASE("a search that may drive by the rules of junctions gets through them, 
         count, [&](std::uint32_t number) { return site.sample(3, number); },
         [](auto& ego) {
           auto planner = ruled_search();
-          planner.reward.traffic.desired_speed = planner.actions.driver.idm.desired_speed =
+          planner.reward.desired_speed = planner.actions.driver.idm.desired_speed =
               planner.actions.macro.idm.desired_speed = 10.0;
           ego.behavior = planner;
           return true;

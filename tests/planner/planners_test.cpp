@@ -181,7 +181,7 @@ P quick() {
 template <class P>
 std::pair<double, double> times(P const& planner) {
   if constexpr (requires { planner.options; })
-    return {planner.options.step, planner.options.step * planner.options.search.horizon};
+    return {planner.options.step, planner.options.step * planner.options.hold * planner.options.search.horizon};
   else if constexpr (requires { planner.layers; })
     return {planner.step, planner.layers * planner.layer_duration};
   else

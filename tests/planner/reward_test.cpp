@@ -73,8 +73,8 @@ TEST_CASE("a reward is the sum of its terms, some per second") {
   world.add({.position = {60, -5.25}, .speed = 12, .behavior = IdmClassic{}});
   world.add({.position = {80, -5.25}, .speed = 12, .behavior = IdmClassic{}});
   double const gap = 20.0 - geometry::car().front - geometry::car().rear;
-  Own reward;
-  reward.traffic = {.progress = 0.5};
+  Own reward{.traffic = TrafficReward::events()};
+  reward.traffic.progress = 0.5;
   CHECK(reward.judge(world, ego, 0.2).reward == doctest::Approx(0.5 * 12 * 0.2));
   reward.term<TooClose>() = {.weight = -2.0, .per_second = true};
   CHECK(reward.judge(world, ego, 0.2).reward == doctest::Approx(1.2 - 2.0 * (30.0 - gap) * 0.2));
@@ -228,7 +228,7 @@ TEST_CASE("evaluators see Frenet's courses as they see a world") {
 TEST_CASE_TEMPLATE("every shipped evaluator can be a term of a reward that a search plans by", Evaluator, Collision,
                    AtFaultCollision, AnyCollision, OffRoad, OncomingLane, AtGoal, PastJunctions, Progress,
                    SpeedDeviation, SpeedLimitExcess, LaneOffset, Acceleration, HardBraking, Gap, TimeToCollision,
-                   RequiredDeceleration) {
+                   RequiredDeceleration, LaneChangeUrgency, OthersBraking) {
   using Term = Reward<Evaluator>;
   using TermPlanner = Mcts<PredictionWorld, MacroActions, Term>;
   World<BehaviorSet<TermPlanner, IdmClassic>, InterpolateExecution, SingleTrack> world(
@@ -248,22 +248,24 @@ TEST_CASE_TEMPLATE("an event that ends the course counts as a term of its own, t
   PredictionWorld world(support::straight_road(2, 600.0));
   world.add({.position = {60, -5.25}, .speed = 12, .behavior = IdmClassic{}});
   world.add({.position = {90, -5.25}, .speed = 12, .behavior = IdmClassic{}});
-  Reward<Event> reward;
+  Reward<Event> reward{.traffic = TrafficReward::events()};
   reward.template term<Event>().weight = -7.0;
   CHECK(reward.judge(world, ego, 0.2).reward == 0.0);
   double const y = std::is_same_v<Event, OffRoad> ? 5.0 : -5.25;
   world.set_state(AgentId{0}, {.x = 88, .y = y, .speed = 12});
   auto const judged = reward.judge(world, ego, 0.2);
   CHECK(judged.ends);
-  CHECK(judged.reward == doctest::Approx(-1007.0));
+  CHECK(judged.reward == -7.0);
+  CHECK(judged.cost == 1.0);
 }
 
 TEST_CASE("a course that is cut off counts the terms per second for the lookahead, the user's too") {
   PredictionWorld world(support::straight_road(2, 600.0));
   world.add({.position = {60, -5.25}, .speed = 12, .behavior = IdmClassic{}});
-  Reward<SpeedDeviation> reward;
+  Reward<SpeedDeviation> reward{.traffic = TrafficReward::events()};
   reward.term<SpeedDeviation>() = {.evaluator = {.desired_speed = 15.0}, .weight = -2.0, .per_second = true};
-  reward.traffic = {.progress = 0.5, .lookahead = 4.0};
+  reward.traffic.progress = 0.5;
+  reward.traffic.lookahead = 4.0;
   CHECK(reward.value(world, ego, 0.2) == doctest::Approx(4.0 * (0.5 * 12.0 - 2.0 * 3.0)));
   reward.term<SpeedDeviation>().per_second = false;
   CHECK(reward.value(world, ego, 0.2) == doctest::Approx(4.0 * 0.5 * 12.0));

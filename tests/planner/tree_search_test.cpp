@@ -76,7 +76,9 @@ TEST_CASE_TEMPLATE("searches play noughts and crosses perfectly", Selection, Ucb
       (void)game.step(state, joint, none, outcomes);
     }
     if (game.is_terminal(state)) continue;
-    TreeSearch<TicTacToe, Selection> search(game, {.horizon = 9, .discount = 1.0}, {}, {}, {20'000});
+    Selection selection;
+    if constexpr (std::is_same_v<Selection, Puct>) selection.exploration = 6.0;  // a game without priors
+    TreeSearch<TicTacToe, Selection> search(game, {.horizon = 9, .discount = 1.0}, selection, {}, {20'000});
     auto const mover = static_cast<std::size_t>(state.moves % 2);
     auto next = state;
     next.board[static_cast<std::size_t>(search.run(state, 1).choice(mover).action)] = mover == 0 ? 1 : -1;
@@ -564,12 +566,19 @@ TEST_CASE("actions from a continuum are added gradually") {
 }
 
 TEST_CASE("unknowns at the root are drawn anew for each iteration") {
-  TreeSearch<Coin> search({}, {.horizon = 1}, {}, {}, {20'000});
+  TreeSearch<Coin> search({}, {.horizon = 1, .constraint = {.weight = 0.0}}, {}, {}, {20'000});
   auto const& result = search.run({}, 1);
   CHECK(result.of(0)[0].mean_return == doctest::Approx(0.4).epsilon(0.1));
   CHECK(result.of(0)[0].mean_cost == doctest::Approx(0.2).epsilon(0.1));
   CHECK(result.choice(0).action == 0);
   CHECK_FALSE(search.keep(std::array<int, 1>{0}));
+}
+
+TEST_CASE("costs count beside returns by their weight") {
+  for (double const weight : {0.1, 2.0}) {  // left pays 0.15 of the range of returns more, and costs 0.1
+    TreeSearch<Coin> search({.chance = 0.9}, {.horizon = 1, .constraint = {.weight = weight}}, {}, {}, {20'000});
+    CHECK(search.run({}, 1).choice(0).action == (weight < 1.0 ? 0 : 1));
+  }
 }
 
 TEST_CASE("a cost constraint rules out actions that pay but cost too much") {

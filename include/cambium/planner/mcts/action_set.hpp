@@ -44,7 +44,8 @@ struct SampledInputs {
 /// - `static std::size_t list(Actions const&, View const&, Behavior::Memory const&, std::span<Choice> out)` writes the
 ///   available choices to `out` and returns their number, at most `static constexpr std::size_t capacity`. For a
 ///   continuum instead: `static Choice sample(Actions const&, RandomStream&)`.
-/// - `static Choice usual(Actions const&)`: the choice of a driver without any manoeuvre in mind.
+/// - `static Choice usual(Actions const&)`: the choice of a driver without any manoeuvre in mind. If it drives safely by
+///   itself, `static constexpr bool usual_drives = true`: roll-outs then follow it.
 /// - `static auto action(Actions const&, Choice)`: the action behind a choice, as passed to `RewardModel::prior`.
 ///   `static std::string text(Actions const&, Choice)`: the same in words.
 /// - `static bool goes_on_alike(Behavior::Memory const&, Behavior::Memory const&)`: whether both are in the middle of
@@ -72,6 +73,7 @@ struct ActionSet<MacroActions> {
   using Behavior = MacroActions;
   using Choice = std::uint8_t;
   static constexpr std::size_t capacity = MacroActions::capacity;
+  static constexpr bool usual_drives = true;
 
   static MacroActions const& behavior(MacroActions const& actions) { return actions; }
   template <class View>
@@ -103,6 +105,7 @@ struct ActionSet<DriverActions<Driver>> {
   using Macro = ActionSet<MacroActions>;
   using Choice = Macro::Choice;
   static constexpr std::size_t capacity = Macro::capacity + 1;
+  static constexpr bool usual_drives = true;
 
   static Behavior const& behavior(Behavior const& actions) { return actions; }
   template <class View>

@@ -57,6 +57,15 @@ using UsualActions =
     std::conditional_t<PredictionWorld::Behaviors::template contains<DriverActions<UsualDriver<PredictionWorld>>>,
                        DriverActions<UsualDriver<PredictionWorld>>, MacroActions>;
 
+/// How it searches unless told otherwise: courses go on as a driver would, where the actions have one.
+template <class Actions>
+[[nodiscard]] constexpr auto usual_options() {
+  if constexpr (requires { ActionSet<Actions>::usual_drives; })
+    return std::type_identity<MctsOptions<>>{};
+  else
+    return std::type_identity<MctsOptions<Puct, RandomRollout>>{};
+}
+
 template <class PredictionWorld, class Actions, class Reward, class Others>
 [[nodiscard]] constexpr auto search_domain() {
   if constexpr (HypothesisModel<Others>)
@@ -106,7 +115,8 @@ struct BeliefMemory {
 ///   hypotheses follow from what the agent does (Bayes). Each iteration draws one for each agent anew (root sampling:
 ///   Silver, Veness 2010), so nodes stand for ego's actions only.
 template <class PredictionWorld, class Actions = detail::UsualActions<PredictionWorld>, class Reward = TrafficReward,
-          class Others = detail::UsualDriver<PredictionWorld>, class Options = MctsOptions<>>
+          class Others = detail::UsualDriver<PredictionWorld>,
+          class Options = typename decltype(detail::usual_options<Actions>())::type>
 struct Mcts {
   static_assert(detail::check_planner<PredictionWorld, Others>());
   static_assert(

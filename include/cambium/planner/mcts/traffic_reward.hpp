@@ -59,6 +59,11 @@ struct TrafficReward {
   double others_braking = -10.0;
   double lookahead = 2.0;
 
+  /// One for the goal, and nothing for driving: what a reward of one's own begins with.
+  [[nodiscard]] static constexpr TrafficReward events() {
+    return {.speed_deviation = 0.0, .acceleration = 0.0, .lane_change_urgency = 0.0, .others_braking = 0.0};
+  }
+
   static constexpr char const* name = "traffic_reward";
   static constexpr char const* summary =
       "goal, collision, leaving the road; progress, speed, comfort, lane centre, lane changes to the goal";
