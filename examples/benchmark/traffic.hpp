@@ -8,9 +8,13 @@
 #include "cambium/behavior/following/idm_classic.hpp"
 #include "cambium/behavior/junction/intersection.hpp"
 #include "cambium/behavior/lane_change/mobil.hpp"
+#include "cambium/behavior/pedestrian/pedestrian.hpp"
 #include "cambium/benchmark/contender.hpp"
 #include "cambium/dynamics/single_track.hpp"
 #include "cambium/execution/interpolate.hpp"
+#include "cambium/observer/observer_set.hpp"
+#include "cambium/observer/occluded.hpp"
+#include "cambium/observer/perfect.hpp"
 #include "cambium/world/world.hpp"
 
 #include "../common/parameter_file.hpp"
@@ -19,9 +23,10 @@ namespace benchmark {
 
 namespace cb = cambium;
 
-/// The drivers that scenario files may name.
-using Traffic = cb::World<cb::BehaviorSet<cb::IdmClassic, cb::Mobil, cb::Intersection, cb::ConstantAcceleration>,
-                          cb::InterpolateExecution, cb::SingleTrack>;
+/// The drivers that scenario files may name, and how these see.
+using Traffic =
+    cb::World<cb::BehaviorSet<cb::IdmClassic, cb::Mobil, cb::Intersection, cb::ConstantAcceleration, cb::Pedestrian>,
+              cb::InterpolateExecution, cb::SingleTrack, cb::ObserverSet<cb::PerfectObserver, cb::OccludedObserver>>;
 using Contender = cb::Contender<Traffic>;
 using Spec = Traffic::AgentSpec;
 

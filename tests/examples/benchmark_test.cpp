@@ -205,7 +205,7 @@ TEST_CASE("the benchmark names the fault in its options") {
   std::string const agents = R"("agents": [{"id": 0, "position": {"x": 20, "y": -5.25}, "heading": 0, "speed": 9}]})";
   says({"--set", own(R"({"scenarios": [{)" + map + ", " + agents + "]}")}, "own.json: scenario 0: has no ego");
   says({"--set", own(R"({"scenarios": [{)" + map + R"(, "ego": 0, )" + agents + "]}"), "--seed", "3"},
-       "has no recipes to which --scenarios and --seed could apply");
+       "has no recipes to which --scenarios, --seed and --split could apply");
   auto const replay = (folder.path() / "replay.html").string();
   REQUIRE(program.run({"--set", "merging", "--only", "merging:0:idm", "--replay", replay}).code == 0);
   says({"--set", "merging", "--db", replay + "/in_a_file.db"}, "in_a_file.db");

@@ -71,6 +71,8 @@ namespace detail {
       {"--behaviors", "A,B,...", "the behaviours to run; all without it"},
       {"--scenarios", "N", "number of scenarios that each recipe draws, instead of its own"},
       {"--seed", "S", "seed of the recipes, instead of their own"},
+      {"--split", "train|test",
+       "train: other scenarios of the recipes than usual, to tune a behaviour on; test: the usual ones, to report"},
       {"--threads", "T", "number of threads; the results do not depend on it"},
       {"--db", "FILE", "database of the results; what it has already is not run again"},
       {"--shard", "i/n", "run only the i-th of n parts, i from 0; merge the databases with examples/run report"},
@@ -83,11 +85,11 @@ namespace detail {
       {"--again", "", "run also what the database has already"},
       {"--only", "SET:NUMBER:BEHAVIOR", "run one scenario and print what came of it"},
       {"--replay", "FILE", "with --only: write a replay that opens in a browser"},
-      {"--json", "FILE", "write the table, a row a set and behaviour"},
+      {"--json", "FILE", "write the table, a row a set, title of its recipes, and behaviour"},
       {"--list", "", "list behaviours and sets, and exit"},
       {"--help", "", "print this and exit"}};
   if (CAMBIUM_HAS_PROCESSES)
-    options.insert(options.begin() + 5, {"--processes", "N",
+    options.insert(options.begin() + 6, {"--processes", "N",
                                          "in place of threads: each run in one of N processes. A behaviour that "
                                          "crashes then costs that run only"});
   return options;
@@ -118,17 +120,50 @@ namespace detail {
   return files;
 }
 
-/// The table as JSON, a row a set and behaviour.
-[[nodiscard]] inline std::string summary_json(std::vector<ResultGroup> const& groups) {
-  std::vector<JsonValue> rows;
+/// The results on the scenarios of a set that have one title; `traffic` is empty where that is no other than the set's.
+struct TrafficGroup {
+  std::string traffic{};
+  ResultGroup results{};
+};
+
+/// The groups by titles of scenarios, in their order.
+template <class World>
+[[nodiscard]] std::vector<TrafficGroup> by_traffic(std::vector<ResultGroup> const& groups,
+                                                   std::vector<ScenarioSet<World>> const& sets) {
+  std::map<std::uint64_t, ScenarioSet<World> const*> by_hash;
+  for (auto const& set : sets) by_hash.emplace(set.hash(), &set);
+  std::vector<TrafficGroup> parts;
   for (auto const& group : groups) {
+    auto const& set = *by_hash.at(group.set_hash);
+    auto whole = group;
+    whole.rows.clear();
+    auto const first = parts.size();
+    for (auto const& row : group.rows) {
+      std::string title = set.scenarios[static_cast<std::size_t>(row.scenario)].title;
+      if (title == set.title) title.clear();
+      auto part = std::find_if(parts.begin() + static_cast<std::ptrdiff_t>(first), parts.end(),
+                               [&](auto const& one) { return one.traffic == title; });
+      if (part == parts.end()) part = parts.insert(parts.end(), {title, whole});
+      part->results.rows.push_back(row);
+    }
+  }
+  return parts;
+}
+
+/// The table as JSON, a row a set, title of scenarios, and behaviour.
+[[nodiscard]] inline std::string summary_json(std::vector<TrafficGroup> const& parts) {
+  std::vector<JsonValue> rows;
+  for (auto const& [traffic, group] : parts) {
     std::map<std::string, double> means;
     for (auto const& measure : measures()) means[measure.key] = mean_of_measure(group, measure);
     auto successes = group;
     std::erase_if(successes.rows, [](auto const& row) { return !row.result.success; });
     for (auto const& measure : measures())
       if (measure.key == "duration_s") means["mean_time_s"] = mean_of_measure(successes, measure);
-    std::vector<JsonValue::Member> row{{"set", {group.set}},
+    std::vector<JsonValue::Member> row{{"planner", {group.behavior}},
+                                       {"situation", {group.set}},
+                                       {"traffic", traffic.empty() ? JsonValue{} : JsonValue{traffic}},
+                                       {"set", {group.set}},
                                        {"set_hash", {hash_text(group.set_hash)}},
                                        {"behavior", {group.behavior}},
                                        {"parameters_hash", {hash_text(group.parameters_hash)}},
@@ -269,7 +304,7 @@ int run_only(std::vector<ScenarioSet<World>> const& sets, std::vector<Contender<
   bool const is_below = !below.empty() && *below.begin() != "..";
   std::string source =
       "--set " + shell_word(is_below ? below.parent_path() / below.stem() : std::filesystem::absolute(file));
-  for (char const* option : {"--scenarios", "--seed", "--plan-limit"})
+  for (char const* option : {"--scenarios", "--seed", "--split", "--plan-limit"})
     if (auto const value = arguments.text(option)) source += std::string(" ") + option + " " + *value;
   return source;
 }
@@ -283,6 +318,9 @@ int run_benchmark_program(Arguments const& arguments, std::vector<Contender<Worl
   auto const contenders = chosen(all, arguments.list("--behaviors"));
   auto const count = arguments.whole("--scenarios", 1, 100'000),  // of each recipe; all are held in memory
       seed = arguments.whole("--seed", 0, ~std::uint64_t{0});
+  auto const split = arguments.text("--split").value_or("test");
+  if (split != "train" && split != "test") throw Error("--split", "is '" + split + "'", "write train or test");
+  constexpr std::uint32_t first_to_train = 1'000'000'000;  // beyond the scenarios of any recipe
   std::vector<ScenarioSet<World>> sets;
   std::vector<std::string> sources;
   auto names = arguments.list("--set");
@@ -293,6 +331,7 @@ int run_benchmark_program(Arguments const& arguments, std::vector<Contender<Worl
       is_drawn = true;
       if (count) recipe.scenarios = static_cast<std::uint32_t>(*count);
       if (seed) recipe.seed = *seed;
+      if (split == "train") recipe.first += first_to_train;
     }));
     if (sets.back().title.empty()) sets.back().title = file.stem().string();
     if (sets.back().scenarios.empty())
@@ -301,8 +340,9 @@ int run_benchmark_program(Arguments const& arguments, std::vector<Contender<Worl
       if (!is_valid(sets.back().scenarios[i].ego))
         throw Error(file.string() + ": scenario " + std::to_string(i), "has no ego",
                     "name the agent that the benchmark is about");
-    if ((count || seed) && !is_drawn)
-      throw Error(file.string(), "has no recipes to which --scenarios and --seed could apply", "leave them out");
+    if ((count || seed || split == "train") && !is_drawn)
+      throw Error(file.string(), "has no recipes to which --scenarios, --seed and --split could apply",
+                  "leave them out");
     sources.push_back(source_of(arguments, file, defaults.sets));
   }
   if (options.executor.is_worker) {
@@ -338,7 +378,7 @@ int run_benchmark_program(Arguments const& arguments, std::vector<Contender<Worl
   if (results > jobs)
     std::printf("  %zu results were there already; --again runs all anew, as after a change of a planner's code\n",
                 results - jobs);
-  if (auto const json = arguments.text("--json")) write_file(*json, summary_json(groups));
+  if (auto const json = arguments.text("--json")) write_file(*json, summary_json(by_traffic(groups, sets)));
   return 0;
 }
 

@@ -23,6 +23,7 @@
 #include "cambium/geometry/shape.hpp"
 #include "cambium/goal/goal.hpp"
 #include "cambium/map/corridor/build_corridor.hpp"
+#include "cambium/map/corridor/free_corridor.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/scenario/lane_traffic.hpp"
 #include "cambium/scenario/scenario.hpp"
@@ -47,7 +48,7 @@ struct DrawnParameter {
 /// Drivers of one kind: what they drive, and how.
 template <class World>
 struct DriverShare {
-  enum class Vehicle : std::uint8_t { any, car, van, truck, bus, bicycle };
+  enum class Vehicle : std::uint8_t { any, car, van, truck, bus, bicycle, pedestrian };
 
   double share = 1.0;
   Vehicle vehicle = Vehicle::any;
@@ -61,7 +62,7 @@ struct DriverShare {
     return join_parameters(
         parameter_list(
             parameter("share", &P::share, "-", non_negative, "of the drivers, relative to the others'"),
-            choice("vehicle", &P::vehicle, "any|car|van|truck|bus|bicycle", "any: by the mix of the traffic"),
+            choice("vehicle", &P::vehicle, "any|car|van|truck|bus|bicycle|pedestrian", "any: by the mix of the traffic"),
             parameter("behavior", &P::behavior, "-", {}, "of these drivers"),
             parameter("drawn", &P::drawn, "-", {}, "parameters of the behavior that differ by driver")),
         detail::if_described(parameter("observer", &P::observer, "-", {}, "how they see the others")));
@@ -77,6 +78,7 @@ struct LaneFlow {
   LaneId from = none<LaneId>;
   LaneId to = none<LaneId>;
   std::optional<geometry::Point> from_point{}, to_point{};
+  std::vector<geometry::Point> way{};
   LaneTraffic traffic{};
   std::vector<DriverShare<World>> drivers{};
   Goal goal{};
@@ -92,7 +94,9 @@ struct LaneFlow {
                        parameter("to", &P::to, "-", {},
                                  "sink: the lane where it ends; absent: it leads to the goal, else straight on"),
                        parameter("from_point", &P::from_point, "m", {}, "instead of from: a point in the lane"),
-                       parameter("to_point", &P::to_point, "m", {}, "instead of to: a point in the lane"));
+                       parameter("to_point", &P::to_point, "m", {}, "instead of to: a point in the lane"),
+                       parameter("way", &P::way, "m", any_finite,
+                                 "instead of from and to: points of a way that is no lane, as on foot"));
     auto const what = parameter_list(
         parameter("traffic", &P::traffic, "-", {}, "where on the way, speeds, gaps, vehicles"),
         parameter("drivers", &P::drivers, "-", {},
@@ -110,7 +114,7 @@ namespace detail {
 
 [[nodiscard]] inline geometry::Shape shape_of(std::uint8_t vehicle, VehicleMix const& mix, RandomStream& random) {
   using namespace geometry;
-  Shape const shapes[] = {car(), car(), van(), truck(), bus(), bicycle()};
+  Shape const shapes[] = {car(), car(), van(), truck(), bus(), bicycle(), pedestrian()};
   return vehicle == 0 ? mix(random) : shapes[vehicle];
 }
 
@@ -142,10 +146,28 @@ struct FlowPlan {
   return lanes;
 }
 
+/// The way of a flow that is no lane. Throws `ParameterError` at `plan.where` if it has a source or sink beside it, or
+/// if nobody would be on foot.
+template <class World>
+void plan_free_way(Map const& map, FlowPlan<World>& plan) {
+  auto const& flow = plan.flow;
+  if (is_valid(flow.from) || is_valid(flow.to) || flow.from_point || flow.to_point)
+    throw ParameterError(plan.where, "has a way beside from or to", "leave out one of them");
+  if (flow.drivers.empty())
+    throw ParameterError(plan.where, "has a way, but no drivers", "say who goes there, as {\"vehicle\": \"pedestrian\"}");
+  try {
+    plan.road = map::build_free_corridor(map, flow.way);
+  } catch (MapError const& problem) {
+    throw ParameterError(plan.where + ".way", problem.what());
+  }
+  plan.lanes = &plan.road->corridors.front();
+}
+
 /// The way of a flow. Throws `ParameterError` at `plan.where` if there is none.
 template <class World>
 void plan_way(std::shared_ptr<Map const> const& map, FlowPlan<World>& plan) {
   auto const& flow = plan.flow;
+  if (!flow.way.empty()) return plan_free_way(*map, plan);
   auto const sources = lanes_of(*map, flow.from, flow.from_point, "from", plan.where),
              sinks = lanes_of(*map, flow.to, flow.to_point, "to", plan.where);
   if (sources.empty())
@@ -230,7 +252,8 @@ template <class World>
 template <class World>
 [[nodiscard]] bool has_room(World& world, AgentId id, InflowRules const& rules) {
   auto const slot = world.slot_of(id);
-  if (Collision{}(world, slot) || OffRoad{}(world, slot)) return false;
+  bool const on_lanes = is_valid(world.roster().agents[slot].road->corridors.front().pieces.front().lane);
+  if (Collision{}(world, slot) || (on_lanes && OffRoad{}(world, slot))) return false;
   auto const view = world.observe(id);
   double const speed = view.state().speed;
   auto const is_safe = [&](double gap, double follower, double leader) {
@@ -250,7 +273,8 @@ template <class World>
                                  .heading = pose.heading,
                                  .speed = vehicle.speed,
                                  .shape = vehicle.shape,
-                                 .route = plan.route};
+                                 .way = plan.flow.way};
+  if (spec.way.empty()) spec.route = plan.route;
   if (plan.flow.goal_of == LaneFlow<World>::GoalOf::all) spec.goal = plan.flow.goal;
   if constexpr (std::is_assignable_v<decltype(spec.dynamics)&, SingleTrack>)
     if (vehicle.shape == geometry::bicycle()) spec.dynamics = presets::bicycle_dynamics();
@@ -313,15 +337,16 @@ void choose_ego(LaneFlow<World> const& flow, std::vector<AgentId> const& entered
     }
 }
 
-/// Scenario `number` of planned flows: the first of up to 100 draws in which all flows that shall have an ego have one.
+/// Scenario `number` of planned flows at `site`, a scenario without agents: the first of up to 100 draws in which all
+/// flows that shall have an ego have one.
 template <class World>
-[[nodiscard]] Scenario<World> draw_flows(std::shared_ptr<Map const> const& map,
-                                         std::vector<FlowPlan<World>> const& plans, InflowRules const& rules,
-                                         std::uint64_t seed, std::uint32_t number, std::string const& where) {
+[[nodiscard]] Scenario<World> draw_flows(Scenario<World> const& site, std::vector<FlowPlan<World>> const& plans,
+                                         InflowRules const& rules, std::uint32_t number, std::string const& where) {
+  auto const empty = site.make_world();
   for (std::uint32_t attempt = 0; attempt < 100; ++attempt) {
-    Scenario<World> scenario{.map = map, .seed = seed};
-    World world(map, {.seed = seed});
-    RandomStream random(seed, number, attempt, 0x666c6f77);
+    auto scenario = site;
+    auto world = empty;
+    RandomStream random(site.seed, number, attempt, 0x666c6f77);
     bool is_complete = true;
     for (auto const& plan : plans) {
       auto const entered = draw_flow(plan, rules, random, world, scenario);

@@ -9,6 +9,8 @@
 #include "cambium/core/described.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/random.hpp"
+#include "cambium/geometry/polygon.hpp"
+#include "cambium/map/lanes/signals.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/scenario/highway_site.hpp"
 #include "cambium/scenario/junction_site.hpp"
@@ -33,6 +35,8 @@ struct ScenarioRecipe {
   MergingTraffic merging{};
   JunctionTraffic junction{};
   std::vector<LaneFlow<World>> flows{};
+  std::vector<map::LightPlan> lights{};
+  std::vector<geometry::Polygon> objects{};
   InflowRules room{.headway = 0.8};
 
   static constexpr char const* name = "scenario_recipe";
@@ -50,6 +54,8 @@ struct ScenarioRecipe {
         parameter_list(parameter("merging", &P::merging, "-", {}, "what traffic consists of (merging)"),
                        parameter("junction", &P::junction, "-", {}, "what traffic consists of (junction)"),
                        parameter("flows", &P::flows, "-", {}, "traffic from sources to sinks (lanes)"),
+                       parameter("lights", &P::lights, "-", {}, "of the map's first traffic lights (lanes)"),
+                       parameter("objects", &P::objects, "m", any_finite, "corners of static objects (lanes)"),
                        parameter("room", &P::room, "-", {}, "that a vehicle needs; without, it is left out (lanes)"));
     return join_parameters(what, how);
   }
@@ -95,13 +101,19 @@ template <class World>
       scenarios.back().title = recipe.title;
     }
   };
+  if (recipe.kind != Kind::lanes && !(recipe.lights.empty() && recipe.objects.empty()))
+    throw ParameterError(where, "has lights or objects, but no flows", "leave them out, or make it of kind lanes");
   switch (recipe.kind) {
     case Kind::lanes: {
       check_parameters(recipe.room, where);
+      Scenario<World> const site{.map = map, .seed = recipe.seed, .lights = recipe.lights, .objects = recipe.objects};
+      try {
+        static_cast<void>(site.make_world());
+      } catch (Error const& problem) {
+        throw ParameterError(where, problem.what());
+      }
       auto const plans = detail::plan_flows(map, recipe.flows, where);
-      each([&](std::uint32_t number) {
-        return detail::draw_flows(map, plans, recipe.room, recipe.seed, number, where);
-      });
+      each([&](std::uint32_t number) { return detail::draw_flows(site, plans, recipe.room, number, where); });
       break;
     }
     case Kind::merging: {

@@ -113,6 +113,7 @@ template <class OtherWorld, class WorldType, class ToBehavior>
                             .goal = spec.goal.given(),
                             .route = spec.route,
                             .road = spec.road,
+                            .way = spec.way,
                             .execution = spec.execution,
                             .dynamics = spec.dynamics,
                             .id = spec.id.given()});

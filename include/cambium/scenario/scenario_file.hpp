@@ -100,7 +100,7 @@ template <class WorldType>
     require_map(scenario.map, place);
     for (auto const& agent : scenario.agents)
       if (agent.road)
-        throw ParameterError(place, "an agent has a road of its own", "give it a route: files hold no roads");
+        throw ParameterError(place, "an agent has a road of its own", "give it a route or a way: files hold no roads");
     exchange_lanes(&scenario, &usual, &transfer_any<Scenario<WorldType>>, *scenario.map, lanes, false, place);
   }
   return set;

@@ -5,6 +5,7 @@
 #include <optional>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include "cambium/core/described.hpp"
 #include "cambium/core/ids.hpp"
@@ -75,6 +76,7 @@ struct AgentSpecOf {
   detail::Given<Goal, detail::SpecPart::goal> goal{};
   std::optional<map::Route> route{};                ///< default: the shortest to the goal; straight on without a goal
   std::shared_ptr<map::RoadCorridor const> road{};  ///< instead of a route: see `map::build_free_corridor`
+  std::vector<geometry::Point> way{};               ///< instead of a road: its points; agents on equal ways share one
   Execution execution{};
   Dynamics dynamics{};
   Observer observer{};
@@ -92,7 +94,8 @@ struct AgentSpecOf {
         parameter("shape", &P::shape, "-", {}, "default: a car"),
         parameter("behavior", &P::behavior, "-", {}, "one of the world's behaviors"),
         parameter("goal", &P::goal, "-", {}, "absent: none"),
-        parameter("route", &P::route, "-", {}, "absent: the shortest to the goal, straight on without one"));
+        parameter("route", &P::route, "-", {}, "absent: the shortest to the goal, straight on without one"),
+        parameter("way", &P::way, "m", any_finite, "instead of a route: points of a way that is no lane, as on foot"));
     auto const models = join_parameters(
         detail::if_described(parameter("execution", &P::execution, "-", {}, "how it tracks its plans")),
         detail::if_described(parameter("dynamics", &P::dynamics, "-", {}, "the vehicle model")));

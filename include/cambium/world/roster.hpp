@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "cambium/core/ids.hpp"
+#include "cambium/geometry/pose.hpp"
 #include "cambium/geometry/shape.hpp"
 #include "cambium/goal/goal.hpp"
 #include "cambium/map/corridor/corridor.hpp"
@@ -21,6 +22,7 @@ namespace cambium {
 /// A free corridor as the user gave it, and a copy whose lane coordinates follow those of the map.
 struct FreeRoad {
   std::shared_ptr<map::RoadCorridor const> given, numbered;
+  std::vector<geometry::Point> way{};  ///< its points, if the user gave these
 };
 
 /// The part of a roster that does not depend on the world's models.

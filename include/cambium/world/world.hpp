@@ -170,10 +170,15 @@ class World {
   /// to -0.1 count as 0), if the position is more than 5 m outside the nearest lane (of the route, if the agent brings
   /// one), or if the heading points against the lane's direction. O(agents), plus routing.
   AgentId add(AgentSpec const& spec) {
+    if (!spec.way.empty() && !spec.road) {
+      auto on_road = spec;
+      on_road.road = detail::free_road_along(*map_, *roster_, spec.way);
+      return add(on_road);
+    }
     AgentId const id = spec.id.value_or(static_cast<AgentId>(roster_->next_agent_id));
     auto entrant = detail::entrant<World>(*map_, *roster_, spec, id, frame_.time);
     auto& roster = revised_roster();
-    if (spec.road) detail::enter_free_road(roster, spec.road, entrant.agent.road);
+    if (spec.road) detail::enter_free_road(roster, spec.road, entrant.agent.road, spec.way);
     auto const slot = roster.insert(std::move(entrant.agent), std::move(entrant.goal));
     frame_.agents.insert(frame_.agents.begin() + static_cast<std::ptrdiff_t>(slot), entrant.record);
     pass_goals(slot, frame_.agents[slot]);

@@ -59,9 +59,15 @@ void check_numbers(EnteringSpec const& spec, std::string const& where);
 /// sequence is too long. Throws `ParameterError` if a number is out of range or limits leave nothing between them.
 [[nodiscard]] Goal entering_goal(Map const& map, Goal const& goal, LaneId lane, std::string const& where);
 
-/// Registers a free corridor when its first agent enters, and adds index entries for the static objects on it.
+/// The free corridor through the points of `way`, which agents on equal ways share. Throws `MapError` as
+/// `map::build_free_corridor`.
+[[nodiscard]] std::shared_ptr<map::RoadCorridor const> free_road_along(Map const& map, RosterBase const& roster,
+                                                                       std::vector<geometry::Point> const& way);
+
+/// Registers a free corridor, built from `way` if that has points, when its first agent enters, and adds index entries
+/// for the static objects on it.
 void enter_free_road(RosterBase& roster, std::shared_ptr<map::RoadCorridor const> const& given,
-                     std::shared_ptr<map::RoadCorridor const> const& numbered);
+                     std::shared_ptr<map::RoadCorridor const> const& numbered, std::vector<geometry::Point> const& way);
 
 /// Throws `WorldError` if the outline is invalid.
 void check_outline(geometry::Polygon const& outline);

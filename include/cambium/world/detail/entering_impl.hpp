@@ -15,6 +15,7 @@
 #include "cambium/geometry/angle.hpp"
 #include "cambium/goal/goal.hpp"
 #include "cambium/map/corridor/build_corridor.hpp"
+#include "cambium/map/corridor/free_corridor.hpp"
 #include "cambium/map/corridor/lane_place.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/world/detail/entering.hpp"
@@ -127,11 +128,19 @@ CAMBIUM_COLD Goal entering_goal(Map const& map, Goal const& goal, LaneId lane, s
   return complete_goal(map, goal, lane, where, true);
 }
 
+CAMBIUM_COLD std::shared_ptr<map::RoadCorridor const> free_road_along(Map const& map, RosterBase const& roster,
+                                                                      std::vector<geometry::Point> const& way) {
+  for (auto const& known : roster.free_roads)
+    if (known.way == way) return known.given;
+  return map::build_free_corridor(map, way);
+}
+
 CAMBIUM_COLD void enter_free_road(RosterBase& roster, std::shared_ptr<map::RoadCorridor const> const& given,
-                                  std::shared_ptr<map::RoadCorridor const> const& numbered) {
+                                  std::shared_ptr<map::RoadCorridor const> const& numbered,
+                                  std::vector<geometry::Point> const& way) {
   for (auto const& known : roster.free_roads)
     if (known.numbered == numbered) return;
-  roster.free_roads.push_back({given, numbered});
+  roster.free_roads.push_back({given, numbered, way});
   for (Slot i{}; index_of(i) < roster.objects.size(); ++i)
     enter_object(numbered->corridors.front(), roster.objects[i], i, roster.object_entries);
   std::sort(roster.object_entries.begin(), roster.object_entries.end());
