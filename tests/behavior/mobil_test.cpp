@@ -151,6 +151,23 @@ TEST_CASE("MOBIL drivers do not collide in slow traffic of cars, trucks and buse
   CHECK(begun > 1000);
 }
 
+TEST_CASE("in a bend of narrow lanes a slow long vehicle changes lanes beside trucks in the lane beyond") {
+  for (bool const to_right : {true, false})
+    for (auto const& shape : {cb::geometry::truck(), cb::geometry::bus()}) {
+      double const curvature = to_right ? 0.005 : -0.005;  // the front swings out to the side of the change
+      Sim world(support::map_of({.id = "1",
+                                 .line = cb::map::lay_from({}, {{600.0, curvature, curvature}}),
+                                 .sections = {{.right = cb::map::equal_lanes(3, 3.0)}}}));
+      int const from = to_right ? 1 : 3, beyond = to_right ? 3 : 1;
+      auto const id = add(world, from, 100.0, 6.0, mobil(6.0), {}, shape);
+      add(world, from, 140.0, 3.0, cb::ConstantAcceleration{});
+      for (double s = 20.0; s < 300.0; s += 12.0)
+        add(world, beyond, s, 6.0, cb::ConstantAcceleration{}, {}, cb::geometry::truck());
+      drive_safely(world, 100);
+      CHECK(world.frame().agents[world.slot_of(id)].lane.corridor == cb::CorridorId{1});
+    }
+}
+
 TEST_CASE("of two drivers that enter the same gap from both sides in the same step, at most one continues") {
   int both_began = 0, aborted = 0, collided = 0;
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {

@@ -53,6 +53,8 @@ namespace detail {
 /// Extra length of a course for each metre that the vehicle's front is farther from its rear axle than a car's [-]. It
 /// keeps long vehicles from swinging out into the lane beyond, for lanes 3.5 m wide.
 inline constexpr double longer_by_front = 5.0;
+/// The same where there is room for more: for lanes 3 m wide in a bend, with a truck in the lane beyond.
+inline constexpr double longer_by_front_with_room = 8.0;
 
 /// The same for a course back to the middle of the own lane from `lateral` [m] beside it. It is smaller because the way
 /// is shorter, and because an early return is worth 0.1 m beyond the border.
@@ -78,8 +80,10 @@ struct LaneChangeCourse {
         parameter("duration", &LaneChangeCourse::duration, "s", Range{0.5, 30}, "from one centre line to the other"),
         parameter("shortest_duration", &LaneChangeCourse::shortest_duration, "s", Range{0.5, 30},
                   "if less room is left, and for the way back of an aborted change"),
-        parameter("minimum_length", &LaneChangeCourse::minimum_length, "m", Range{5, 200},
-                  "however slow a car drives; 5 m more for each metre that a longer vehicle's front is farther ahead"));
+        parameter(
+            "minimum_length", &LaneChangeCourse::minimum_length, "m", Range{5, 200},
+            "however slow a car drives; 5 m more for each metre that a longer vehicle's front is farther ahead, 8 m "
+            "where there is room"));
   }
 
   /// Shortest length of a change [m], however slow a vehicle of this shape drives.
@@ -87,11 +91,14 @@ struct LaneChangeCourse {
     return detail::least_course_length(minimum_length, shape, detail::longer_by_front);
   }
 
-  /// A new change to lane corridor `target` at `speed` [m/s], within `room` [m] if possible.
+  /// A new change to lane corridor `target` at `speed` [m/s], within `room` [m] if possible. A slow long vehicle takes
+  /// more than its shortest course where it has room.
   [[nodiscard]] LaneChange begin(CorridorId target, geometry::Shape const& shape, double speed,
                                  double room = std::numeric_limits<double>::infinity()) const {
     double const shortest = std::max(least_length(shape), speed * std::min(shortest_duration, duration));
-    return {target, static_cast<float>(std::max(shortest, std::min(speed * duration, room))), 0.0f};
+    double const roomy = detail::least_course_length(minimum_length, shape, detail::longer_by_front_with_room);
+    double const wanted = std::max(roomy, speed * duration);
+    return {target, static_cast<float>(std::max(shortest, std::min(wanted, room))), 0.0f};
   }
 
   /// The change that the motion of a vehicle shows, such as when it enters or is set in the middle of one; not active
