@@ -228,7 +228,7 @@ TEST_CASE("evaluators see Frenet's courses as they see a world") {
 TEST_CASE_TEMPLATE("every shipped evaluator can be a term of a reward that a search plans by", Evaluator, Collision,
                    AtFaultCollision, AnyCollision, OffRoad, OncomingLane, AtGoal, PastJunctions, Progress,
                    SpeedDeviation, SpeedLimitExcess, LaneOffset, Acceleration, HardBraking, Gap, TimeToCollision,
-                   RequiredDeceleration, LaneChangeUrgency, OthersBraking) {
+                   RequiredDeceleration, LaneChangeUrgency, OthersBraking, Closeness) {
   using Term = Reward<Evaluator>;
   using TermPlanner = Mcts<PredictionWorld, MacroActions, Term>;
   World<BehaviorSet<TermPlanner, IdmClassic>, InterpolateExecution, SingleTrack> world(

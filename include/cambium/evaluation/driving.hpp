@@ -248,6 +248,27 @@ struct Gap {
   }
 };
 
+/// How much of the gap that the agent should keep to the next road user ahead is missing: 0 to 1.
+struct Closeness {
+  double minimum_gap = 2.0;   ///< [m]
+  double time_headway = 0.6;  ///< [s]
+
+  static constexpr char const* name = "closeness";
+  static constexpr char const* summary = "missing share of the gap to keep to the next road user ahead";
+  static constexpr auto parameters() {
+    using P = Closeness;
+    return parameter_list(
+        parameter("minimum_gap", &P::minimum_gap, "m", Range{0.1, 100}, "to keep at standstill"),
+        parameter("time_headway", &P::time_headway, "s", Range{0, 20}, "to keep besides"));
+  }
+
+  template <class World>
+  [[nodiscard]] double operator()(World& world, Slot slot) const {
+    double const wanted = minimum_gap + time_headway * std::max(0.0, world.frame().agents[slot].state.speed);
+    return std::clamp(1.0 - Gap{wanted}(world, slot) / wanted, 0.0, 1.0);
+  }
+};
+
 /// Time until the agent hits the next road user ahead along its lane corridor if both keep their speeds, at most
 /// `longest` [s].
 struct TimeToCollision {

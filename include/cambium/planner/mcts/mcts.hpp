@@ -95,8 +95,9 @@ struct BeliefMemory {
 };
 
 /// Plans by Monte Carlo tree search over `Actions` in predicted worlds and maximises `Reward`; the other agents behave
-/// as `Others`. `PredictionWorld` is the type of the world in which it plans, with a behaviour set that contains
-/// `Others` and the model that carries out the actions. As a behaviour it searches anew in each step, because a copied
+/// as `Others`, but nobody is expected to leave a steady speed for the one that these like. `PredictionWorld` is the type of the world in which it plans, with a behaviour set that contains
+/// `Others` and the model that carries out the actions. If that set contains `Intersection`, the others are expected to
+/// drive by it, and with `DriverActions<Intersection>` ego may, too. As a behaviour it searches anew in each step, because a copied
 /// world has no tree.
 ///
 /// Its fields and template arguments select the variant; all of them combine:

@@ -57,11 +57,16 @@ struct TrafficReward {
   double lateral_offset = 0.0;
   double lane_change_urgency = -40.0;
   double others_braking = -10.0;
+  double closeness = -20.0;
   double lookahead = 2.0;
 
   /// One for the goal, and nothing for driving: what a reward of one's own begins with.
   [[nodiscard]] static constexpr TrafficReward events() {
-    return {.speed_deviation = 0.0, .acceleration = 0.0, .lane_change_urgency = 0.0, .others_braking = 0.0};
+    return {.speed_deviation = 0.0,
+            .acceleration = 0.0,
+            .lane_change_urgency = 0.0,
+            .others_braking = 0.0,
+            .closeness = 0.0};
   }
 
   static constexpr char const* name = "traffic_reward";
@@ -91,6 +96,8 @@ struct TrafficReward {
                   "per second, times the urgency of a lane change, see LaneChangeUrgency"),
         parameter("others_braking", &P::others_braking, "s^3/m^2", any_finite,
                   "per second, times how hard others brake, see OthersBraking"),
+        parameter("closeness", &P::closeness, "1/s", any_finite,
+                  "per second, times the missing share of the gap ahead, see Closeness"),
         parameter("lookahead", &P::lookahead, "s", Range{0, 1000},
                   "time for which a course that is cut off counts as unchanged; for TruncatedRollout and NoRollout"));
   }
@@ -126,6 +133,7 @@ struct TrafficReward {
     reward += speed_deviation * SpeedDeviation{desired_speed}(world, slot) * duration;
     reward += acceleration * a * a * duration;
     reward += lateral_offset * LaneOffset{}(world, slot) * duration;
+    if (closeness != 0.0) reward += closeness * Closeness{}(world, slot) * duration;
     if (others_braking != 0.0) reward += others_braking * OthersBraking{}(world, slot) * duration;
     if (lane_change_urgency != 0.0) reward += lane_change_urgency * LaneChangeUrgency{}(world, slot) * duration;
     return reward;
