@@ -27,8 +27,7 @@ using PredictionSet = BehaviorSet<MacroActions, IdmClassic, IdmHypotheses>;
 using PredictionWorld = World<PredictionSet, InterpolateExecution, SingleTrack>;
 using Search = Mcts<PredictionWorld>;
 using Learning = Mcts<PredictionWorld, MacroActions, TrafficReward, IdmHypotheses>;
-using Wandering =
-    Mcts<PredictionWorld, MacroActions, TrafficReward, IdmClassic, MctsOptions<Ucb1, RandomRollout>>;
+using Wandering = Mcts<PredictionWorld, MacroActions, TrafficReward, IdmClassic, MctsOptions<Ucb1, RandomRollout>>;
 using Sim = World<BehaviorSet<Search, Learning, Wandering, IdmClassic>, InterpolateExecution, SingleTrack>;
 
 /// Ego, agent 0, drives behind a slow vehicle in the right one of two lanes. Its goal is the middle of the left lane,

@@ -161,8 +161,8 @@ struct HardBraking {
   }
 };
 
-/// How hard others within `range` [m] brake: the sum of what their decelerations exceed `comfortable`, squared [m^2/s^4].
-/// As a term with a negative weight, it keeps a planner from making others brake, who may not do it.
+/// How hard others within `range` [m] brake: the sum of what their decelerations exceed `comfortable`, squared
+/// [m^2/s^4]. As a term with a negative weight, it keeps a planner from making others brake, who may not do it.
 struct OthersBraking {
   double comfortable = 1.0;  ///< [m/s^2]
   double range = 60.0;       ///< [m]
@@ -171,9 +171,8 @@ struct OthersBraking {
   static constexpr char const* summary = "how hard others brake beyond what is comfortable, squared [m^2/s^4]";
   static constexpr auto parameters() {
     using P = OthersBraking;
-    return parameter_list(
-        parameter("comfortable", &P::comfortable, "m/s^2", Range{0, 50}, "harder braking counts"),
-        parameter("range", &P::range, "m", non_negative, "others farther away do not count"));
+    return parameter_list(parameter("comfortable", &P::comfortable, "m/s^2", Range{0, 50}, "harder braking counts"),
+                          parameter("range", &P::range, "m", non_negative, "others farther away do not count"));
   }
 
   template <class World>
@@ -257,9 +256,8 @@ struct Closeness {
   static constexpr char const* summary = "missing share of the gap to keep to the next road user ahead";
   static constexpr auto parameters() {
     using P = Closeness;
-    return parameter_list(
-        parameter("minimum_gap", &P::minimum_gap, "m", Range{0.1, 100}, "to keep at standstill"),
-        parameter("time_headway", &P::time_headway, "s", Range{0, 20}, "to keep besides"));
+    return parameter_list(parameter("minimum_gap", &P::minimum_gap, "m", Range{0.1, 100}, "to keep at standstill"),
+                          parameter("time_headway", &P::time_headway, "s", Range{0, 20}, "to keep besides"));
   }
 
   template <class World>

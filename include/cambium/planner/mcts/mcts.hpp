@@ -48,8 +48,7 @@ template <class First, class... Rest>
 
 /// What an `Mcts` that predicts in `PredictionWorld` expects of the others unless told otherwise.
 template <class PredictionWorld>
-using UsualDriver =
-    typename decltype(usual_driver(std::type_identity<typename PredictionWorld::Behaviors>{}))::type;
+using UsualDriver = typename decltype(usual_driver(std::type_identity<typename PredictionWorld::Behaviors>{}))::type;
 
 /// What it chooses from unless told otherwise: macro actions, or to drive like the usual driver if the set permits.
 template <class PredictionWorld>
@@ -95,10 +94,11 @@ struct BeliefMemory {
 };
 
 /// Plans by Monte Carlo tree search over `Actions` in predicted worlds and maximises `Reward`; the other agents behave
-/// as `Others`, but nobody is expected to leave a steady speed for the one that these like. `PredictionWorld` is the type of the world in which it plans, with a behaviour set that contains
-/// `Others` and the model that carries out the actions. If that set contains `Intersection`, the others are expected to
-/// drive by it, and with `DriverActions<Intersection>` ego may, too. As a behaviour it searches anew in each step, because a copied
-/// world has no tree.
+/// as `Others`, but nobody is expected to leave a steady speed for the one that these like. `PredictionWorld` is the
+/// type of the world in which it plans, with a behaviour set that contains `Others` and the model that carries out the
+/// actions. If that set contains `Intersection`, the others are expected to drive by it, and with
+/// `DriverActions<Intersection>` ego may, too. As a behaviour it searches anew in each step, because a copied world has
+/// no tree.
 ///
 /// Its fields and template arguments select the variant; all of them combine:
 ///

@@ -85,8 +85,8 @@ class MctsWorkspace {
   }
 
   /// Keeps the subtree below the best actions for the next `think`; returns whether there is one. Call it before the
-  /// world advances by one decision of the search (`MctsOptions::hold` steps). The next `think`, with the `memory` of the last
-  /// report, continues the subtree if the world turns out as predicted, at the predicted time
+  /// world advances by one decision of the search (`MctsOptions::hold` steps). The next `think`, with the `memory` of
+  /// the last report, continues the subtree if the world turns out as predicted, at the predicted time
   /// (`TrafficDomain::same_state`), and nothing else has changed in the world, the reward or the actions
   /// (`TrafficDomain::is_same_game`). `result.kept_nodes` tells whether it did. If you fill a new world for each
   /// `think`, set its time (`WorldOptions::time`). Impossible with hypotheses about the others, because then nodes have

@@ -20,8 +20,8 @@
 namespace cambium {
 
 /// Traffic as a game: a prediction world in which some agents, ego first, choose an action for the next `hold` steps of
-/// `dt` [s], while the others behave as predicted. A state is a frame; all states share the roster. When the course of one
-/// choosing agent ends, the game is over for all.
+/// `dt` [s], while the others behave as predicted. A state is a frame; all states share the roster. When the course of
+/// one choosing agent ends, the game is over for all.
 ///
 /// `step` copies nothing: it exchanges the state's frame with that of the one world, steps the world, judges it, and
 /// exchanges the frames again.
@@ -194,8 +194,8 @@ class TrafficDomain {
   /// same time step and for the same reward, and the worlds differ only in their frames.
   [[nodiscard]] bool is_same_game(TrafficDomain const& other) const {
     return std::ranges::equal(slots_, other.slots_) && equal_parameters(actions_, other.actions_) && dt_ == other.dt_ &&
-           hold_ == other.hold_ && cooperation_ == other.cooperation_ && detail::is_same_value(reward_, other.reward_) &&
-           detail::is_same_scene(world_, other.world_);
+           hold_ == other.hold_ && cooperation_ == other.cooperation_ &&
+           detail::is_same_value(reward_, other.reward_) && detail::is_same_scene(world_, other.world_);
   }
 
   [[nodiscard]] std::size_t heap_bytes(State const& state) const {

@@ -16,7 +16,7 @@ namespace cambium {
 /// range of returns elsewhere in the tree. An untried arm has the mean score of its node.
 struct Puct {
   struct Statistics {
-    double prior = 1.0;  ///< set by the search; the sum over a node need not be 1
+    double prior = 1.0;                  ///< set by the search; the sum over a node need not be 1
     double scores = 0.0, squares = 0.0;  ///< sums: the scale moves, so the mean return would not match the squares
   };
 

@@ -98,8 +98,8 @@ struct RandomRollout {
   }
 };
 
-/// Follows the domain's `policy_action` to the horizon; in traffic, that is a behaviour model. Every `hold` steps it may
-/// take a random action instead, which it then holds.
+/// Follows the domain's `policy_action` to the horizon; in traffic, that is a behaviour model. Every `hold` steps it
+/// may take a random action instead, which it then holds.
 struct PolicyRollout {
   double random = 0.1;
   int hold = 1;
@@ -130,8 +130,7 @@ struct PolicyRollout {
                  return random_action(run, agent);
                }
              }
-             return (wanders & bit) != 0 ? run.joint[agent]
-                                         : run.domain.policy_action(run.state, agent, run.random);
+             return (wanders & bit) != 0 ? run.joint[agent] : run.domain.policy_action(run.state, agent, run.random);
            }) == 0.0;
   }
 };

@@ -402,9 +402,17 @@ class TreeSearch {
   }
 
   void roll_out(int depth, RandomStream& random) {
-    RolloutRun<Domain> run{
-        domain_,  work_,  random, parameters_.horizon - depth, parameters_.discount, parameters_.constraint.discount,
-        returns_, costs_, joint_, outcomes_, options_};
+    RolloutRun<Domain> run{domain_,
+                           work_,
+                           random,
+                           parameters_.horizon - depth,
+                           parameters_.discount,
+                           parameters_.constraint.discount,
+                           returns_,
+                           costs_,
+                           joint_,
+                           outcomes_,
+                           options_};
     rollout_.roll_out(run);
     depth_ = depth + run.played;
     if (run.problem != SearchProblem::none) return stop(run.problem);

@@ -54,8 +54,8 @@ struct WideningSchedule {
 
 /// How costs count beside returns, which are scaled to [0, 1] without them: what must not happen neither stretches that
 /// scale nor drowns in it. With a limit, the weight is only where the search begins: it learns the Lagrange multiplier
-/// that keeps the expected cost of the chosen course within the limit (Lee et al. 2018, CC-POMCP). If an event that must
-/// not happen costs 1, this is a chance constraint.
+/// that keeps the expected cost of the chosen course within the limit (Lee et al. 2018, CC-POMCP). If an event that
+/// must not happen costs 1, this is a chance constraint.
 struct CostConstraint {
   double weight = 2.0;
   double discount = 1.0;
