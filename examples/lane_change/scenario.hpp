@@ -112,7 +112,8 @@ inline cb::TrafficReward paper_reward() {
 }
 
 inline PaperPlanner paper_planner() {
-  PaperPlanner paper{.actions = paper_actions(), .others = driver(headway), .reward = paper_reward()};
+  PaperPlanner paper{
+      .actions = paper_actions(), .others = driver(headway), .others_keep_speed = false, .reward = paper_reward()};
   paper.options.search = {.horizon = most_steps,
                           .discount = 0.9,
                           .lowest_return = -1000.0,
@@ -125,7 +126,7 @@ inline PaperPlanner paper_planner() {
 }
 
 inline OwnPlanner own_planner() {
-  OwnPlanner own{.actions = own_actions(), .reward = paper_reward()};
+  OwnPlanner own{.actions = own_actions(), .others_keep_speed = false, .reward = paper_reward()};
   own.options.selection.exploration = 0.3;
   own.reward.desired_speed = 14.0;  // the goal requires 11 to 17 m/s
   own.reward.speed_deviation = -5.0;

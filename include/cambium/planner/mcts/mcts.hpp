@@ -94,7 +94,7 @@ struct BeliefMemory {
 };
 
 /// Plans by Monte Carlo tree search over `Actions` in predicted worlds and maximises `Reward`; the other agents behave
-/// as `Others`, but nobody is expected to leave a steady speed for the one that these like. `PredictionWorld` is the
+/// as `Others` (see `others_keep_speed`). `PredictionWorld` is the
 /// type of the world in which it plans, with a behaviour set that contains `Others` and the model that carries out the
 /// actions. If that set contains `Intersection`, the others are expected to drive by it, and with
 /// `DriverActions<Intersection>` ego may, too. As a behaviour it searches anew in each step, because a copied world has
@@ -136,6 +136,7 @@ struct Mcts {
 
   Actions actions{};
   Others others{};
+  bool others_keep_speed = true;
   Reward reward{};
   Options options{};
   int most_agents = 1;
@@ -154,6 +155,8 @@ struct Mcts {
     return parameter_list(
         parameter("actions", &P::actions, "-", {}, "what ego and the agents that choose with it may do"),
         parameter("others", &P::others, "-", {}, "how the others are expected to behave"),
+        parameter("others_keep_speed", &P::others_keep_speed, "-", Range{0, 1},
+                  "those who drive steadily, or faster than the others like, are expected to like the speed they have"),
         parameter("reward", &P::reward, "-", {}, "what ego and each agent that chooses with it wants"),
         parameter("options", &P::options, "-", {}, "settings of the search"),
         parameter("most_agents", &P::most_agents, "-", Range{1, 32}, "number of agents that choose, including ego"),
@@ -204,6 +207,7 @@ struct Mcts {
     timed.budget.start();
     std::vector<Slot> slots;
     auto world = detail::world_to_search<PredictionWorld>(view, actions, course_of(memory), others, slots);
+    if (others_keep_speed && !slots.empty()) detail::expect_to_keep_speed(world, slots[0], others);
     if (most_agents > 1 && !slots.empty())
       for (auto const slot : nearest_agents(world, slots[0], static_cast<std::size_t>(most_agents - 1), range)) {
         if (reward.judge(world, slot, options.step).ends) continue;  // its own course is over

@@ -189,7 +189,6 @@ template <class PredictionWorld, class Actions, class Others, class View>
   slots.clear();
   if (!ego) return world;
   slots.push_back(*ego);
-  expect_to_keep_speed(world, *ego, others);
   world.template memory<Behavior>(view.id()) = memory;
   return world;
 }
