@@ -1,11 +1,16 @@
 // The sets that ship beside the default one.
 #include <doctest/doctest.h>
 
+#include <algorithm>
+#include <cstdint>
+#include <iterator>
+#include <map>
 #include <set>
 #include <string>
 
 #include <nlohmann/json.hpp>
 
+#include "cambium/benchmark/result_store.hpp"
 #include "program.hpp"
 
 TEST_CASE(
@@ -30,4 +35,48 @@ TEST_CASE(
       CHECK(row["success"] > 0.0);
   }
   CHECK(sets == std::set<std::string>{"lane_change_0", "lane_change_20", "lane_change_40", "lane_change_80"});
+}
+
+TEST_CASE("the exam has twelve situations in traffic of three temperaments, and other scenarios to train on") {
+  program::Program const program("benchmark");
+  if (!program.is_there()) return;
+  browser::TemporaryFolder const folder;
+  auto const file = [&](std::string const& name) { return (folder.path() / name).string(); };
+  using Seeds = std::map<std::string, std::set<std::uint64_t>>;  // by set: a title has one hash for each split
+  auto const run = [&](std::string const& split, std::string const& name) {
+    auto const done = program.run({"--set", "planners", "--behaviors", "idm,intersection", "--scenarios", "3", "--split", split,
+                                   "--replays", "none", "--db", file(name + ".db"), "--json", file(name + ".json")});
+    CHECK(done.code == 0);
+    CHECK(done.err.empty());
+    Seeds seeds;
+    cambium::ResultStore::existing(file(name + ".db")).for_each([&](cambium::ResultRow const& row) {
+      seeds[cambium::hash_text(row.key.set_hash)].insert(row.seed);
+    });
+    return seeds;
+  };
+  auto const test = run("test", "test"), train = run("train", "train");
+  CHECK(test.size() == 12);
+  CHECK(train.size() == 12);
+  CHECK(run("train", "again") == train);
+  std::set<std::uint64_t> all;
+  for (auto const& seeds : {test, train})
+    for (auto const& [hash, of_set] : seeds) {
+      CHECK(of_set.size() == 9);
+      all.insert(of_set.begin(), of_set.end());
+    }
+  CHECK(all.size() == 2 * 12 * 9);  // no scenario is in both
+
+  std::set<std::string> kinds;
+  double idm = 0.0, intersection = 0.0;
+  for (auto const& row : nlohmann::json::parse(program::content_of(file("test.json")))) {
+    CAPTURE(row.dump());
+    CHECK(row["scenarios"] == 3);
+    CHECK(row["error"] == 0.0);
+    kinds.insert(std::string(row["situation"]) + ", " + std::string(row["traffic"]));
+    (row["planner"] == "idm" ? idm : intersection) += double(row["success"]) / 36.0;
+  }
+  CHECK(kinds.size() == 36);
+  CHECK(idm > 0.5);  // an exam that can be passed, but not by following the next vehicle
+  CHECK(idm < 0.9);
+  CHECK(intersection > idm);
 }

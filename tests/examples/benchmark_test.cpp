@@ -71,6 +71,9 @@ TEST_CASE("the benchmark gives the same results on any number of threads, and go
     CHECK(ends <= 1.0 + 1e-9);
   }
   CHECK(rows[0]["set"] == "merging");
+  CHECK(rows[0]["situation"] == "merging");
+  CHECK(rows[0]["planner"] == "idm");
+  CHECK(rows[0]["traffic"].is_null());
   CHECK(rows[0]["success"] == 1.0);
 
   auto const expected = results_in(file("one.db"));
@@ -192,6 +195,7 @@ TEST_CASE("the benchmark names the fault in its options") {
   says({"--set", "merging", "--only", "merging:99:idm"}, "give a number from 0 to 7");
   says({"--set", "merging", "--only", "merging"}, "write SET:NUMBER:BEHAVIOR");
   says({"--set", "merging", "--replay", "x.html"}, "needs --only");
+  says({"--split", "half"}, "write train or test");
   says({"--replays", "some"}, "write failures, all or none");
   says({"--plan-limit", "0"}, "give a number of seconds above 0");
   says({"--db", ""}, "--db: is empty; name a file");

@@ -264,3 +264,59 @@ TEST_CASE("flows draw traffic by lane that is dense, safe and reproducible") {
   CHECK(refusal(R"({"recipes": [{"map_file": "highway.xodr"}]})") ==
         "f.json: recipes[0]: draws no vehicle, or none for the ego; give longer or denser flows, or slower ones");
 }
+
+TEST_CASE("a recipe of flows has lights, objects and pedestrians, and what it draws is written and read again") {
+  using Walked = World<BehaviorSet<IdmClassic, Pedestrian>, InterpolateExecution, SingleTrack>;
+  auto const with = [](std::string const& flows, std::string const& rest) {
+    return R"({"recipes": [{"map_file": "intersection_4way.xodr", "scenarios": 5, "flows": [)" + flows + "]" + rest +
+           "}]}";
+  };
+  std::string const cars = R"({"from": "3/0/-2", "traffic": {"end": 95}, "ego": "last"})",
+                    walkers = R"({"way": [{"x": -40, "y": -14}, {"x": -40, "y": 10}], "traffic": {"end": 6, "speed":
+      {"uniform": {"low": 1, "high": 1}}, "gap": {"uniform": {"low": 1, "high": 3}}},
+      "drivers": [{"vehicle": "pedestrian", "behavior": "pedestrian"}]})",
+                    van = R"([{"x": -75, "y": -6}, {"x": -70, "y": -6}, {"x": -70, "y": -5}])",
+                    site = R"(, "lights": [{"cycle": 60, "green_end": 20}], "objects": [)" + van +
+                           R"(], "room": {"headway": 0.5, "minimum_gap": 0.5})";
+  auto const set = parse_scenarios<Walked>(with(cars + "," + walkers, site), maps);
+  std::size_t on_foot = 0;
+  for (auto const& scenario : set.scenarios) {
+    REQUIRE(scenario.lights.size() == 1);
+    CHECK(scenario.lights[0].green_end == 20.0);
+    REQUIRE(scenario.objects.size() == 1);
+    auto const world = scenario.make_world();
+    for (auto const& agent : scenario.agents) {
+      CHECK(!Collision{}(world, world.slot_of(*agent.id)));
+      if (agent.way.empty()) continue;
+      ++on_foot;
+      CHECK(agent.shape == geometry::pedestrian());
+      CHECK(agent.position.x() == doctest::Approx(-40.0));
+      CHECK(agent.position.y() < -8.0);
+    }
+  }
+  CHECK(on_foot > set.scenarios.size());
+  check_round_trip(set);
+  auto moved = set;
+  moved.scenarios[0].agents.back().way[1].x() += 1.0;
+  CHECK(moved.hash() != set.hash());
+
+  auto const refused = [&](std::string const& flows, std::string const& rest) {
+    try {
+      static_cast<void>(parse_scenarios<Walked>(with(flows, rest), maps, "f.json"));
+    } catch (Error const& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  auto const says = [&](std::string const& text, std::string const& words) {
+    CAPTURE(text);
+    CHECK(text.find("f.json: recipes[0]") == 0);
+    CHECK(text.find(words) != std::string::npos);
+  };
+  says(refused(R"({"way": [{"x": 0, "y": 0}], "drivers": [{}]})", ""), "flows[0].way");
+  says(refused(R"({"way": [{"x": 0, "y": 0}, {"x": 0, "y": 9}]})", ""), "has a way, but no drivers");
+  says(refused(R"({"way": [{"x": 0, "y": 0}, {"x": 0, "y": 9}], "from": "3/0/-1", "drivers": [{}]})", ""),
+       "has a way beside from or to");
+  says(refused(cars, R"(, "lights": [{}, {}, {}])"), "light");
+  says(refused(cars, R"(, "lights": [{}], "kind": "highway")"), "has lights or objects, but no flows");
+}

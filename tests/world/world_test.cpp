@@ -474,6 +474,21 @@ TEST_CASE("an agent on a free corridor is not re-routed: no lane leads on from t
   CHECK(world.frame() == before);
 }
 
+TEST_CASE("agents on equal ways share a free corridor") {
+  Sim world(three_and_one());
+  std::vector<cb::geometry::Point> const way{{50, -20}, {50, 20}}, other{{60, -20}, {60, 20}};
+  auto const add = [&](double x, double y, std::vector<cb::geometry::Point> const& points) {
+    return world.add({.position = {x, y}, .speed = 1, .behavior = cb::ConstantAcceleration{}, .way = points});
+  };
+  auto const behind = add(50, -18, way), ahead = add(50, -12, way);
+  auto const beside = add(60, -12, other);
+  auto const next = world.observe(behind).ahead();
+  REQUIRE(next);
+  CHECK(next->agent == ahead);
+  CHECK(!world.observe(beside).ahead());
+  CHECK(says(error_of([&] { add(90, -18, way); }), "m from its road"));
+}
+
 TEST_CASE("a state set where the route passes twice is taken for the pass that the agent is on") {
   // A road that crosses its own beginning: out to the east, round to the left, and back over it.
   auto const map = support::map_of({.line = cb::map::lay_from({}, {{100.0}, {235.619449, 0.02, 0.02}, {100.0}}),
