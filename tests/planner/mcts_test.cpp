@@ -159,9 +159,11 @@ TEST_CASE("it stays in its lane in a bend, however long the steps of the search 
 }
 
 TEST_CASE("a planner reports what it found") {
-  auto world = lane_change(0, quick(Search{}));
+  auto planner = quick(Search{}, 500);
+  planner.others_keep_speed = false;  // the same is expected of all
+  auto world = lane_change(0, planner);
   Search::Workspace workspace;
-  auto const report = quick(Search{}, 500).think(world.observe(ego), {}, workspace);
+  auto const report = planner.think(world.observe(ego), {}, workspace);
   CHECK(report.result.iterations == 500);
   CHECK(report.choosing == std::vector<AgentId>{ego});
   REQUIRE(report.candidates.size() == report.result.of(0).size());
@@ -182,7 +184,7 @@ TEST_CASE("a planner reports what it found") {
     CHECK(predicted.frame().agents == report.course[i + 1].agents);
   }
   // As a behaviour, it drives the start of that course.
-  auto stepping = lane_change(0, quick(Search{}, 500));
+  auto stepping = lane_change(0, planner);
   REQUIRE(stepping.step(0.2));
   CHECK(stepping.state(ego) == report.course[1].agents[0].state);
 }
@@ -192,6 +194,7 @@ TEST_CASE("a search continues its tree if the world turns out as predicted") {
     CAPTURE(threads);
     auto planner = quick(Search{}, 600);
     planner.options.threads = threads;
+    planner.others_keep_speed = false;
     planner.options.hold = 1;
     for (bool const surprised : {false, true}) {
       // The stack's own world: ego moves as planned; the others move as predicted, or one does not.
@@ -228,6 +231,7 @@ TEST_CASE("nothing is kept if anything has changed, or without a call of keep") 
       if (agent.id != ego) world.set_behavior(agent.id, IdmClassic{});
     auto planner = quick(Search{}, 600);
     planner.options.hold = 1;
+    planner.others_keep_speed = false;
     planner.options.search = {.horizon = 30, .discount = 0.98};
     planner.reward = TrafficReward::events();  // only the goal in the other lane counts
     planner.actions = MacroActions::of({{MacroAction::Kind::change_left, 0.0}, {MacroAction::Kind::stay, 0.0}});

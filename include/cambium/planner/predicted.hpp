@@ -115,18 +115,18 @@ template <class Driver>
     return nullptr;
 }
 
-/// Lets those keep their speed who are faster than `others` want to drive, or who drive steadily: nobody is expected to
-/// slow down, or to speed up, for no reason. O(agents).
+/// Lets those keep their speed, to a whole m/s, who are faster than `others` want to drive, or, if `heeds_steady`, who
+/// drive steadily: nobody is expected to slow down, or to speed up, for no reason. O(agents).
 template <class World, class Others>
-void expect_to_keep_speed(World& world, Slot ego, Others others) {
+void expect_to_keep_speed(World& world, Slot ego, Others others, bool heeds_steady) {
   auto* const desired = desired_speed_of(others);
   if (desired == nullptr) return;
   double const usual = *desired;
   for (Slot slot{}; index_of(slot) < world.size(); ++slot) {
     auto const& seen = world.frame().agents[slot];
-    bool const is_steady = seen.state.speed > 3.0 && std::abs(seen.action.acceleration) < 0.3;
+    bool const is_steady = heeds_steady && seen.state.speed > 3.0 && std::abs(seen.action.acceleration) < 0.3;
     if (slot == ego || (seen.state.speed <= usual && !is_steady)) continue;
-    *desired = std::min(seen.state.speed, 100.0);
+    *desired = std::clamp(std::round(seen.state.speed), 1.0, 100.0);
     world.set_behavior(world.roster().agents[slot].id, others);
   }
 }

@@ -155,8 +155,10 @@ struct Mcts {
     return parameter_list(
         parameter("actions", &P::actions, "-", {}, "what ego and the agents that choose with it may do"),
         parameter("others", &P::others, "-", {}, "how the others are expected to behave"),
-        parameter("others_keep_speed", &P::others_keep_speed, "-", Range{0, 1},
-                  "those who drive steadily, or faster than the others like, are expected to like the speed they have"),
+        parameter(
+            "others_keep_speed", &P::others_keep_speed, "-", Range{0, 1},
+            "those who drive faster than the others like, or steadily (unless it learns about them), are expected to "
+            "like the speed they have"),
         parameter("reward", &P::reward, "-", {}, "what ego and each agent that chooses with it wants"),
         parameter("options", &P::options, "-", {}, "settings of the search"),
         parameter("most_agents", &P::most_agents, "-", Range{1, 32}, "number of agents that choose, including ego"),
@@ -207,7 +209,7 @@ struct Mcts {
     timed.budget.start();
     std::vector<Slot> slots;
     auto world = detail::world_to_search<PredictionWorld>(view, actions, course_of(memory), others, slots);
-    if (others_keep_speed && !slots.empty()) detail::expect_to_keep_speed(world, slots[0], others);
+    if (others_keep_speed && !slots.empty()) detail::expect_to_keep_speed(world, slots[0], others, !learns);
     if (most_agents > 1 && !slots.empty())
       for (auto const slot : nearest_agents(world, slots[0], static_cast<std::size_t>(most_agents - 1), range)) {
         if (reward.judge(world, slot, options.step).ends) continue;  // its own course is over
