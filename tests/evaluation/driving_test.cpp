@@ -241,6 +241,26 @@ TEST_CASE("the lateral acceleration follows from the curve that was driven") {
   CHECK(cb::LateralAcceleration{}(world, ego) == doctest::Approx(100.0 / radius).epsilon(0.01));
 }
 
+TEST_CASE("closeness is the missing share of the gap to keep, and others' braking counts beyond what is comfortable") {
+  Sim world(straight_road(1, 300));
+  auto const ego = world.slot_of(world.add({.position = {40, -1.75}, .speed = 10}));
+  CHECK(cb::Closeness{}(world, ego) == 0.0);
+  double const bumpers = cb::geometry::car().front + cb::geometry::car().rear;
+  auto const ahead =
+      world.add({.position = {44 + bumpers, -1.75}, .speed = 10, .behavior = cb::ConstantAcceleration{-3.0}});
+  CHECK(cb::Closeness{}(world, ego) == doctest::Approx(0.5));  // 4 m in place of 2 m + 0.6 s
+  CHECK(cb::Closeness{.minimum_gap = 4.0, .time_headway = 0.0}(world, ego) == doctest::Approx(0.0));
+  world.set_state(ahead, {.x = 40.5 + bumpers, .y = -1.75, .speed = 10});
+  CHECK(cb::Closeness{}(world, ego) == doctest::Approx(1.0 - 0.5 / 8.0));
+  CHECK(cb::OthersBraking{}(world, ego) == 0.0);
+  world.set_state(ahead, {.x = 140, .y = -1.75, .speed = 10});
+  REQUIRE(world.step(0.2));
+  CHECK(cb::OthersBraking{.range = 120.0}(world, ego) == doctest::Approx(4.0));
+  CHECK(cb::OthersBraking{.comfortable = 3.5, .range = 120.0}(world, ego) == 0.0);
+  CHECK(cb::OthersBraking{}(world, ego) == 0.0);                                 // too far away
+  CHECK(cb::OthersBraking{.range = 120.0}(world, world.slot_of(ahead)) == 0.0);  // not its own
+}
+
 TEST_CASE("gaps and times to collision are those of the next one ahead; one's own evaluator looks likewise") {
   Sim world(straight_road(1, 300));
   auto const ego = world.slot_of(world.add({.position = {40, -1.75}, .speed = 10}));
