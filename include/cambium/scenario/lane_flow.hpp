@@ -60,11 +60,11 @@ struct DriverShare {
   static constexpr auto parameters() {
     using P = DriverShare;
     return join_parameters(
-        parameter_list(
-            parameter("share", &P::share, "-", non_negative, "of the drivers, relative to the others'"),
-            choice("vehicle", &P::vehicle, "any|car|van|truck|bus|bicycle|pedestrian", "any: by the mix of the traffic"),
-            parameter("behavior", &P::behavior, "-", {}, "of these drivers"),
-            parameter("drawn", &P::drawn, "-", {}, "parameters of the behavior that differ by driver")),
+        parameter_list(parameter("share", &P::share, "-", non_negative, "of the drivers, relative to the others'"),
+                       choice("vehicle", &P::vehicle, "any|car|van|truck|bus|bicycle|pedestrian",
+                              "any: by the mix of the traffic"),
+                       parameter("behavior", &P::behavior, "-", {}, "of these drivers"),
+                       parameter("drawn", &P::drawn, "-", {}, "parameters of the behavior that differ by driver")),
         detail::if_described(parameter("observer", &P::observer, "-", {}, "how they see the others")));
   }
 };
@@ -154,7 +154,8 @@ void plan_free_way(Map const& map, FlowPlan<World>& plan) {
   if (is_valid(flow.from) || is_valid(flow.to) || flow.from_point || flow.to_point)
     throw ParameterError(plan.where, "has a way beside from or to", "leave out one of them");
   if (flow.drivers.empty())
-    throw ParameterError(plan.where, "has a way, but no drivers", "say who goes there, as {\"vehicle\": \"pedestrian\"}");
+    throw ParameterError(plan.where, "has a way, but no drivers",
+                         "say who goes there, as {\"vehicle\": \"pedestrian\"}");
   try {
     plan.road = map::build_free_corridor(map, flow.way);
   } catch (MapError const& problem) {

@@ -96,9 +96,9 @@ struct AgentSpecOf {
         parameter("goal", &P::goal, "-", {}, "absent: none"),
         parameter("route", &P::route, "-", {}, "absent: the shortest to the goal, straight on without one"),
         parameter("way", &P::way, "m", any_finite, "instead of a route: points of a way that is no lane, as on foot"));
-    auto const models = join_parameters(
-        detail::if_described(parameter("execution", &P::execution, "-", {}, "how it tracks its plans")),
-        detail::if_described(parameter("dynamics", &P::dynamics, "-", {}, "the vehicle model")));
+    auto const models =
+        join_parameters(detail::if_described(parameter("execution", &P::execution, "-", {}, "how it tracks its plans")),
+                        detail::if_described(parameter("dynamics", &P::dynamics, "-", {}, "the vehicle model")));
     auto const observer = detail::if_described(parameter("observer", &P::observer, "-", {}, "how it sees the others"));
     return join_parameters(own, join_parameters(models, observer));
   }
