@@ -44,8 +44,9 @@ TEST_CASE("the exam has twelve situations in traffic of three temperaments, and 
   auto const file = [&](std::string const& name) { return (folder.path() / name).string(); };
   using Seeds = std::map<std::string, std::set<std::uint64_t>>;  // by set: a title has one hash for each split
   auto const run = [&](std::string const& split, std::string const& name) {
-    auto const done = program.run({"--set", "planners", "--behaviors", "idm,intersection", "--scenarios", "3", "--split", split,
-                                   "--replays", "none", "--db", file(name + ".db"), "--json", file(name + ".json")});
+    auto const done =
+        program.run({"--set", "planners", "--behaviors", "idm,intersection", "--scenarios", "3", "--split", split,
+                     "--replays", "none", "--db", file(name + ".db"), "--json", file(name + ".json")});
     CHECK(done.code == 0);
     CHECK(done.err.empty());
     Seeds seeds;
