@@ -99,7 +99,6 @@ void plan() {
 
   Planner planner;
   planner.options.budget.iterations = 2000;
-  planner.options.rollout.hold = 5;
   planner.reward.progress = 0.1;
   Planner::Workspace workspace;
   auto const report = planner.think(world.observe(cb::AgentId{0}), {}, workspace);

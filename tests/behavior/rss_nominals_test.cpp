@@ -93,7 +93,6 @@ TEST_CASE("a vehicle that passes its recording because it cannot brake as hard d
 TEST_CASE("a search as nominal behaviour drives to the bit when alone, and brakes before an object") {
   Search search;
   search.options.budget.iterations = 20;
-  search.options.rollout.hold = 5;
   Sim safe(support::straight_road(2, 1000.0)), nominal(safe.shared_map());
   auto const one = safe.add({.position = {100, -1.75}, .speed = 15, .behavior = Safe<Search>{search, {}}});
   auto const other = nominal.add({.position = {100, -1.75}, .speed = 15, .behavior = search});

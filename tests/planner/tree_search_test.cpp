@@ -551,6 +551,20 @@ struct Coin {
   }
 };
 
+/// One action; the third step costs 1.
+struct Debt {
+  using State = int;
+  using Action = int;
+  static constexpr std::size_t max_actions = 1;
+  std::size_t agents() const { return 1; }
+  bool is_terminal(State const& s) const { return s == 3; }
+  std::size_t actions(State const&, std::size_t, std::span<int> out) const { return out[0] = 0, 1; }
+  bool step(State& s, std::span<int const>, RandomStream&, std::span<AgentOutcome> out) const {
+    out[0].cost = ++s == 3 ? 1.0 : 0.0;
+    return s == 3;
+  }
+};
+
 }  // namespace
 
 TEST_CASE("actions from a continuum are added gradually") {
@@ -578,6 +592,13 @@ TEST_CASE("costs count beside returns by their weight") {
   for (double const weight : {0.1, 2.0}) {  // left pays 0.15 of the range of returns more, and costs 0.1
     TreeSearch<Coin> search({.chance = 0.9}, {.horizon = 1, .constraint = {.weight = weight}}, {}, {}, {20'000});
     CHECK(search.run({}, 1).choice(0).action == (weight < 1.0 ? 0 : 1));
+  }
+}
+
+TEST_CASE("costs are discounted in the tree and beyond it") {
+  for (std::size_t const iterations : {1, 20}) {
+    TreeSearch<Debt> search({}, {.horizon = 3, .constraint = {.discount = 0.5}}, {}, {}, {iterations});
+    CHECK(search.run(0, 1).of(0)[0].mean_cost == doctest::Approx(0.25));
   }
 }
 

@@ -44,9 +44,8 @@ struct SampledInputs {
 /// - `static std::size_t list(Actions const&, View const&, Behavior::Memory const&, std::span<Choice> out)` writes the
 ///   available choices to `out` and returns their number, at most `static constexpr std::size_t capacity`. For a
 ///   continuum instead: `static Choice sample(Actions const&, RandomStream&)`.
-/// - `static Choice usual(Actions const&)`: the choice of a driver without any manoeuvre in mind. If it drives safely
-/// by
-///   itself, `static constexpr bool usual_drives = true`: roll-outs then follow it.
+/// - `static Choice usual(Actions const&)`: the choice of a driver without any manoeuvre in mind. If such a driver is
+///   careful, `static constexpr bool usual_drives = true`: roll-outs then follow it.
 /// - `static auto action(Actions const&, Choice)`: the action behind a choice, as passed to `RewardModel::prior`.
 ///   `static std::string text(Actions const&, Choice)`: the same in words.
 /// - `static bool goes_on_alike(Behavior::Memory const&, Behavior::Memory const&)`: whether both are in the middle of

@@ -110,11 +110,10 @@ struct BeliefMemory {
 };
 
 /// Plans by Monte Carlo tree search over `Actions` in predicted worlds and maximises `Reward`; the other agents behave
-/// as `Others` (see `others_keep_speed`). `PredictionWorld` is the
-/// type of the world in which it plans, with a behaviour set that contains `Others` and the model that carries out the
-/// actions. If that set contains `Intersection`, the others are expected to drive by it, and with
-/// `DriverActions<Intersection>` ego may, too. As a behaviour it searches anew in each step, because a copied world has
-/// no tree.
+/// as `Others` (see `others_keep_speed`). `PredictionWorld` is the type of the world in which it plans, with a
+/// behaviour set that contains `Others` and the model that carries out the actions. If that set contains
+/// `Intersection`, the others are expected to drive by it, and with `DriverActions<Intersection>` ego may, too. As a
+/// behaviour it searches anew in each step, because a copied world has no tree.
 ///
 /// Its fields and template arguments select the variant; all of them combine:
 ///

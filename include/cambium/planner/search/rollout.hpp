@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstdint>
 #include <limits>
 #include <span>
 #include <vector>
@@ -98,11 +97,10 @@ struct RandomRollout {
   }
 };
 
-/// Follows the domain's `policy_action` to the horizon; in traffic, that is a behaviour model. Every `hold` steps it
-/// may take a random action instead, which it then holds.
+/// Follows the domain's `policy_action` to the horizon; in traffic, that is a behaviour model. In some steps it takes
+/// a random action instead.
 struct PolicyRollout {
   double random = 0.1;
-  int hold = 1;
   int steps = 1'000'000;
 
   static constexpr char const* name = "policy_rollout";
@@ -111,7 +109,6 @@ struct PolicyRollout {
   static constexpr auto parameters() {
     using P = PolicyRollout;
     return parameter_list(parameter("random", &P::random, "-", Range{0, 1}, "probability of a random action"),
-                          parameter("hold", &P::hold, "-", Range{1, 1'000'000}, "steps for which it is held"),
                           parameter("steps", &P::steps, "-", Range{1, 1'000'000}, "greatest number of steps"));
   }
 
@@ -120,17 +117,9 @@ struct PolicyRollout {
     static_assert(detail::HasPolicy<std::remove_reference_t<decltype(run.domain)>>,
                   "cambium::PolicyRollout: the domain must have a policy: "
                   "`Action policy_action(State const&, std::size_t agent, RandomStream&)`");
-    std::uint64_t wanders = 0;  // bit k: the agent k holds a random action; agents beyond 64 never do
-    return play(run, std::min(run.steps, steps), [&](std::size_t agent, int step) {
-             auto const bit = agent < 64 ? std::uint64_t{1} << agent : 0;
-             if (step % hold == 0) {
-               wanders &= ~bit;
-               if (bit != 0 && random > 0.0 && uniform01(run.random) < random) {
-                 wanders |= bit;
-                 return random_action(run, agent);
-               }
-             }
-             return (wanders & bit) != 0 ? run.joint[agent] : run.domain.policy_action(run.state, agent, run.random);
+    return play(run, std::min(run.steps, steps), [&](std::size_t agent, int) {
+             bool const wanders = random > 0.0 && uniform01(run.random) < random;
+             return wanders ? random_action(run, agent) : run.domain.policy_action(run.state, agent, run.random);
            }) == 0.0;
   }
 };

@@ -25,7 +25,7 @@ enum class SearchProblem : std::uint8_t {
 
 /// What a joint step yields for one agent. `reward`: any finite number, to be maximised. `cost`, from 0 to 1: a second
 /// channel, for example the probability of a collision, or 1 for a collision. The search sums the costs along a course
-/// without discount and caps the sum at 1.
+/// with a discount of their own (`CostConstraint`) and caps the sum at 1.
 struct AgentOutcome {
   double reward = 0.0;
   double cost = 0.0;
