@@ -5,10 +5,12 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "../support/corpus.hpp"
 #include "../support/maps.hpp"
+#include "cambium/behavior/presets.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/scenario/junction_site.hpp"
@@ -25,8 +27,10 @@ struct Flow {
   int collisions = 0;
 };
 
-/// Drives vehicles into the junction from everywhere, as soon as there is room for them.
-Flow saturate(JunctionSite const& site, double truck_share, bool lights, double dt, std::uint64_t seed) {
+/// Drives vehicles into the junction from everywhere, as soon as there is room for them, with one of the `drivers`
+/// each.
+Flow saturate(JunctionSite const& site, double truck_share, bool lights, double dt, std::uint64_t seed,
+              std::vector<Intersection> const& drivers = {{}}) {
   JunctionSite::World world(site.map, {.seed = seed});
   auto const plans = site.sample(seed, 0, {.lights = lights}).lights;
   for (std::size_t i = 0; i < plans.size(); ++i) world.set_light(site.map->lights()[i].id, plans[i]);
@@ -35,11 +39,10 @@ Flow saturate(JunctionSite const& site, double truck_share, bool lights, double 
     auto const route = site.random_route(source.lane, random);
     bool const fits = fits_route(*site.map, route, geometry::truck());  // a roundabout's ring is too narrow
     bool const large = uniform01(random) < truck_share && fits;
+    auto driver = drivers.size() > 1 ? drivers[random() % drivers.size()] : drivers.front();
+    driver.idm.desired_speed = 10.0 + 4.0 * uniform01(random);
     return JunctionSite::World::AgentSpec{
-        .speed = 10.0,
-        .shape = large ? geometry::truck() : geometry::car(),
-        .behavior = Intersection{.idm = {.desired_speed = 10.0 + 4.0 * uniform01(random)}},
-        .route = route};
+        .speed = 10.0, .shape = large ? geometry::truck() : geometry::car(), .behavior = driver, .route = route};
   };
   std::map<AgentId, double> stands;
   Flow flow;
@@ -85,6 +88,24 @@ TEST_CASE("a saturated crossing keeps flowing, with lights and without") {
   auto const map = support::own_map("intersection_4way.xodr");
   check_flow(map, {36.0, 28.0});
   check_flow(map, {41.0, 34.0}, true);
+}
+
+// Aggressive drivers brake for their lines harder than by their `safe_deceleration`. They seemed to be beyond the lines
+// then, and three or more gridlocked.
+TEST_CASE("a saturated crossing keeps flowing, whatever the drivers' temperaments") {
+  auto const site = find_junction_site(support::own_map("intersection_4way.xodr"));
+  auto const timid = presets::timid<Intersection>(), normal = presets::normal<Intersection>(),
+             aggressive = presets::aggressive<Intersection>();
+  for (auto const& [drivers, expected] : {std::pair{std::vector{timid}, 20.0},
+                                          {std::vector{aggressive}, 40.0},
+                                          {std::vector{timid, normal, aggressive}, 30.0}})
+    for (std::uint64_t const seed : {1u, 2u, 3u}) {
+      auto const flow = saturate(site, 0.1, false, 0.2, seed, drivers);
+      INFO(flow.per_minute, " vehicles a minute, longest stand ", flow.longest_stand, " s, seed ", seed);
+      CHECK(flow.collisions == 0);
+      CHECK(flow.longest_stand < 120.0);
+      CHECK(flow.per_minute > expected);
+    }
 }
 
 TEST_CASE("a saturated roundabout keeps flowing") { check_flow(support::own_map("roundabout.xodr"), {31.0, 31.0}); }

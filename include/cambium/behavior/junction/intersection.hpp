@@ -249,11 +249,18 @@ struct Intersection {
 
   [[nodiscard]] double hardest() const { return -idm.lowest_acceleration; }
 
+  /// How hard it brakes for a place where it waits [m/s^2]: less than `safe_deceleration`, by which drivers judge who
+  /// can no longer stop. Otherwise several that brake for their lines would seem to be beyond them, and meet in a ring
+  /// inside the junction.
+  [[nodiscard]] double waiting_deceleration() const {
+    return std::min(idm.comfortable_deceleration, 0.8 * rules.safe_deceleration);
+  }
+
   /// Distance from the front end [m] beyond which a place to stop does not bound the step: a vehicle that accelerates
   /// as hard as it can over the step could still stop there, and is not at its line.
   [[nodiscard]] double longest_stop(Own const& own, double dt) const {
     double const end = own.speed + idm.maximum_acceleration * dt;
-    double const braking = std::min({rules.safe_deceleration, idm.comfortable_deceleration, hardest()});
+    double const braking = std::min(waiting_deceleration(), hardest());
     return end * (dt + end / (2.0 * braking)) + rules.stop_margin + at_line_within + air;
   }
 
@@ -289,7 +296,7 @@ struct Intersection {
     if (claim == Claim::yield && !can_stop(own.speed, to_conflict + air)) return;
     bool const is_outside = !may_wait_inside(view, conflict);
     double const inside = is_outside ? -infinite : place_inside(view, zone, own) - own.s;
-    double const braking = claim == Claim::watch ? rules.safe_deceleration : idm.comfortable_deceleration;
+    double const braking = claim == Claim::watch ? rules.safe_deceleration : waiting_deceleration();
     auto const wait_at = [&](double hold) -> Wait {
       double const to_hold = std::max(way_to_line(own, zone.line, hold), inside);
       double const to_stop = distance_to_stop(view, claim, to_hold, own, to_conflict);
@@ -302,7 +309,7 @@ struct Intersection {
     double const nearer = way_to_line(own, zone.line, hold[1]), farther = way_to_line(own, zone.line, hold[0]);
     bool const stops_at_line =
         claim != Claim::watch && is_outside && nearer >= 0.0 && can_stop(own.speed, nearer) && farther <= to_conflict;
-    if (!stops_at_line || idm.comfortable_deceleration > rules.safe_deceleration) return;
+    if (!stops_at_line) return;
     own.stop = &conflict;
     own.stop_line = zone.line;
   }
