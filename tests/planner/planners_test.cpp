@@ -417,7 +417,7 @@ TEST_CASE_TEMPLATE("it reports when there is nothing to plan or a parameter is n
 
 TEST_CASE_TEMPLATE("a budget cuts it short, and it plans with what it has found", Planner,
                    ProposalPlanner<PredictionWorld COMMA ConstantAcceleration COMMA IterationBudget>,
-                   PolicyTreePlanner<PredictionWorld COMMA IterationBudget>,
+                   PolicyTreePlanner<PredictionWorld COMMA MacroActions COMMA IterationBudget>,
                    FrenetPlanner<PredictionWorld COMMA ConstantAcceleration COMMA IterationBudget>, Greedy) {
   Planner planner;
   auto world = traffic<Sim<Planner>>(1, planner);
@@ -441,7 +441,7 @@ TEST_CASE_TEMPLATE("with hardly any time it scores one candidate and plans", Pla
                    Mcts<PredictionWorld COMMA MacroActions COMMA TrafficReward COMMA IdmClassic COMMA
                             MctsOptions<Ucb1 COMMA RandomRollout COMMA TimeBudget>>,
                    ProposalPlanner<PredictionWorld COMMA ConstantAcceleration COMMA TimeBudget>,
-                   PolicyTreePlanner<PredictionWorld COMMA TimeBudget>,
+                   PolicyTreePlanner<PredictionWorld COMMA MacroActions COMMA TimeBudget>,
                    FrenetPlanner<PredictionWorld COMMA ConstantAcceleration COMMA TimeBudget>) {
   Planner planner;
   if constexpr (requires { planner.options; })

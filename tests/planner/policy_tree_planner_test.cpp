@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <numeric>
 #include <set>
 #include <vector>
 
@@ -47,8 +48,10 @@ void drive(Sim& world, int steps, double dt = 0.2) {
 TEST_CASE("the tree has each sequence with at most one change exactly once") {
   for (std::size_t const actions : {1, 2, 9})
     for (std::size_t const layers : {1, 2, 5})
-      for (std::size_t ongoing = 0; ongoing < actions; ++ongoing) {
-        auto const sequences = policy_sequences(actions, ongoing, layers);
+      for (std::uint8_t ongoing = 0; ongoing < actions; ++ongoing) {
+        std::vector<std::uint8_t> choices(actions);
+        std::iota(choices.begin(), choices.end(), std::uint8_t{0});
+        auto const sequences = policy_sequences(choices, ongoing, layers);
         CHECK(sequences.size() == (actions - 1) * layers + 1);
         std::set<std::vector<std::size_t>> spelled;
         for (auto const& s : sequences) {

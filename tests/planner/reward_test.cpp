@@ -118,7 +118,7 @@ TEST_CASE("a planner heeds a user's evaluator") {
 namespace {
 
 using OtherPlanners = BehaviorSet<ProposalPlanner<Predicted, ConstantAcceleration, NoBudget, Terms<Mixed>>,
-                                  PolicyTreePlanner<Predicted, NoBudget, Terms<Mixed>>,
+                                  PolicyTreePlanner<Predicted, MacroActions, NoBudget, Terms<Mixed>>,
                                   FrenetPlanner<Predicted, ConstantAcceleration, NoBudget, Terms<Mixed>>>;
 using OtherSim = World<OtherPlanners, InterpolateExecution, SingleTrack>;
 

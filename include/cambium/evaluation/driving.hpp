@@ -113,8 +113,9 @@ struct LaneOffset {
 };
 
 /// How urgent a lane change is for the agent, because its lane ends or does not lead to its goal: 0 if it may stay, and
-/// growing to 1 over the last `horizon` [m] for each lane to cross (see `lane_urgency`). As a term with a negative
-/// weight, it draws a planner into the lane of its exit long before the end of its prediction.
+/// growing to 1 over the last `horizon` [m] for each lane to cross: the sixth power of the driven share of this way
+/// (see `lane_urgency`). As a term with a negative weight, it draws a planner into the lane of its exit long before the
+/// end of its prediction, and still lets it leave that lane to pass somebody if there is room to return.
 struct LaneChangeUrgency {
   double horizon = 300.0;
 
@@ -128,7 +129,9 @@ struct LaneChangeUrgency {
   template <class World>
   [[nodiscard]] double operator()(World& world, Slot slot) const {
     auto const urgency = lane_urgency(world.truth(slot), horizon);
-    return std::max({0.0, urgency.left, urgency.right});
+    double const share = std::max({0.0, urgency.left, urgency.right});
+    double const cube = share * share * share;
+    return cube * cube;
   }
 };
 

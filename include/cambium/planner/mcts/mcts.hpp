@@ -35,43 +35,6 @@ struct TrackedAgent {
   friend bool operator==(TrackedAgent const&, TrackedAgent const&) = default;
 };
 
-/// The first behaviour of the set that obeys the rules at junctions; without one, `IdmClassic`.
-template <class First, class... Rest>
-[[nodiscard]] constexpr auto usual_driver(std::type_identity<BehaviorSet<First, Rest...>>) {
-  if constexpr (heeds_conflicts<First>())
-    return std::type_identity<First>{};
-  else if constexpr (sizeof...(Rest) > 0)
-    return usual_driver(std::type_identity<BehaviorSet<Rest...>>{});
-  else
-    return std::type_identity<IdmClassic>{};
-}
-
-/// What an `Mcts` that predicts in `PredictionWorld` expects of the others unless told otherwise.
-template <class PredictionWorld>
-[[nodiscard]] constexpr auto usual_others() {
-  if constexpr (is_world<PredictionWorld>)
-    return usual_driver(std::type_identity<typename PredictionWorld::Behaviors>{});
-  else
-    return std::type_identity<IdmClassic>{};  // `check_planner` reports it
-}
-template <class PredictionWorld>
-using UsualDriver = typename decltype(usual_others<PredictionWorld>())::type;
-
-/// What it chooses from unless told otherwise: macro actions, or to drive like the usual driver if the set permits.
-template <class PredictionWorld>
-[[nodiscard]] constexpr auto usual_actions() {
-  using Driving = DriverActions<UsualDriver<PredictionWorld>>;
-  constexpr bool has_it = [] {
-    if constexpr (is_world<PredictionWorld>)
-      return PredictionWorld::Behaviors::template contains<Driving>;
-    else
-      return false;
-  }();
-  return std::type_identity<std::conditional_t<has_it, Driving, MacroActions>>{};
-}
-template <class PredictionWorld>
-using UsualActions = typename decltype(usual_actions<PredictionWorld>())::type;
-
 /// How it searches unless told otherwise: courses go on as a driver would, where the actions have one.
 template <class Actions>
 [[nodiscard]] constexpr auto usual_options() {

@@ -89,9 +89,9 @@ class MctsWorkspace {
   /// the last report, continues the subtree if the world turns out as predicted, at the predicted time
   /// (`TrafficDomain::same_state`), and nothing else has changed in the world, the reward or the actions
   /// (`TrafficDomain::is_same_game`). What is expected of the others must not change either: without
-  /// `Mcts::others_keep_speed`. `result.kept_nodes` tells whether it continued. If you fill a new world for each `think`,
-  /// set its time (`WorldOptions::time`). Impossible with hypotheses about the others, because then nodes have no
-  /// states.
+  /// `Mcts::others_keep_speed`. `result.kept_nodes` tells whether it continued. If you fill a new world for each
+  /// `think`, set its time (`WorldOptions::time`). Impossible with hypotheses about the others, because then nodes have
+  /// no states.
   bool keep() {
     auto const& result = trees_.result();
     keeps_ = !result.variation.empty() && trees_.keep({result.variation.data(), result.agents});

@@ -4,8 +4,10 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "cambium/behavior/lane_change/driver_actions.hpp"
 #include "cambium/behavior/lane_change/macro_actions.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/parameters.hpp"
@@ -26,7 +28,7 @@ namespace cambium {
 
 /// What another driver may be about to do. The value is the number of its action in `intended_actions`.
 enum class Intention : std::uint8_t {
-  keep_lane,     ///< keeps its speed, but slows down behind others
+  keep_lane,     ///< keeps its speed, but slows down behind others; `DriverActions` drive like the driver instead
   not_yield,     ///< keeps its speed even if somebody cuts in
   change_left,   ///< changes lanes; slows down behind others
   change_right,  ///< likewise
@@ -44,6 +46,47 @@ enum class Intention : std::uint8_t {
   result.idm = idm;
   return result;
 }
+
+/// How a `PolicyTreePlanner` uses `Actions`: ego's semantic actions (`usual`), and those by which others, who keep gaps
+/// like `Others`, carry out their intentions (`intended`). `macro` gives the macro actions among actions, or the part
+/// of a memory that belongs to them.
+template <class Actions>
+struct SemanticActions;
+
+template <>
+struct SemanticActions<MacroActions> {
+  using Others = IdmParameters;
+  static constexpr bool drives = false;  ///< whether `MacroActions::nothing` is a choice: to drive like a driver
+
+  static MacroActions usual() { return semantic_actions(); }
+  static MacroActions intended(IdmParameters const& others) { return intended_actions(others); }
+  template <class Part>
+  static Part& macro(Part& part) {
+    return part;
+  }
+};
+
+template <class Driver>
+struct SemanticActions<DriverActions<Driver>> {
+  using Others = Driver;
+  static constexpr bool drives = true;
+
+  static DriverActions<Driver> usual() {
+    DriverActions<Driver> result{.macro = semantic_actions()};
+    result.macro.rules.obey_signals = true;
+    return result;
+  }
+  static DriverActions<Driver> intended(Driver const& others) {
+    if constexpr (requires { intended_actions(others.idm); })
+      return {.macro = intended_actions(others.idm), .driver = others};
+    else
+      return {.macro = intended_actions({}), .driver = others};
+  }
+  template <class Part>
+  static auto& macro(Part& part) {
+    return part.macro;
+  }
+};
 
 /// Prior probabilities of the others' intentions, and the lateral speeds by which a lane change is recognised.
 struct IntentionPrior {
@@ -87,7 +130,8 @@ struct ChangeProbabilities {
   return {l / (l + r + k), r / (l + r + k)};
 }
 
-/// A sequence of ego's actions: `first` for `layers_of_first` layers of the tree, `then` for the rest.
+/// A sequence of ego's actions, as choices of their `ActionSet`: `first` for `layers_of_first` layers of the tree,
+/// `then` for the rest.
 struct PolicySequence {
   std::uint8_t first{}, then{};
   std::uint8_t layers_of_first{};
@@ -95,17 +139,16 @@ struct PolicySequence {
   friend bool operator==(PolicySequence, PolicySequence) = default;
 };
 
-/// All sequences over `layers` >= 1 that leave the `ongoing` action at most once: the domain-specific closed-loop
-/// policy tree of Ding et al. 2020. There are (actions - 1) layers + 1; the first keeps the ongoing action throughout.
-[[nodiscard]] inline std::vector<PolicySequence> policy_sequences(std::size_t actions, std::size_t ongoing,
-                                                                  std::size_t layers) {
-  auto const first = static_cast<std::uint8_t>(ongoing);
-  std::vector<PolicySequence> sequences{{first, first, static_cast<std::uint8_t>(layers)}};
+/// All sequences of `choices` over `layers` >= 1 that leave the `ongoing` one at most once: the domain-specific
+/// closed-loop policy tree of Ding et al. 2020. There are (choices - 1) layers + 1; the first keeps the ongoing action
+/// throughout.
+[[nodiscard]] inline std::vector<PolicySequence> policy_sequences(std::span<std::uint8_t const> choices,
+                                                                  std::uint8_t ongoing, std::size_t layers) {
+  std::vector<PolicySequence> sequences{{ongoing, ongoing, static_cast<std::uint8_t>(layers)}};
   for (std::size_t kept = 0; kept < layers; ++kept)
-    for (std::size_t then = 0; then < actions; ++then)
+    for (auto const then : choices)
       if (then != ongoing)
-        sequences.push_back({kept == 0 ? static_cast<std::uint8_t>(then) : first, static_cast<std::uint8_t>(then),
-                             static_cast<std::uint8_t>(kept == 0 ? layers : kept)});
+        sequences.push_back({kept == 0 ? then : ongoing, then, static_cast<std::uint8_t>(kept == 0 ? layers : kept)});
   return sequences;
 }
 
@@ -121,7 +164,7 @@ struct IntentionBranch {
 struct PolicyCost {
   double efficiency{};  ///< mean deviation from the desired speed, as a share of it
   double safety{};      ///< share of the time with unsafe gaps, plus collisions and leaving the road
-  double navigation{};  ///< mean number of lane changes still needed to reach the destination
+  double navigation{};  ///< mean urgency of lane changes, see `LaneChangeUrgency`
   double terms{};       ///< negative sum of the planner's `terms`
 };
 
@@ -129,7 +172,7 @@ struct PolicyCost {
 struct PolicyWeights {
   double efficiency = 1.0;
   double safety = 1.0;
-  double navigation = 1.0;
+  double navigation = 4.0;
   double collision = 20.0;
   double change = 0.01;
   double worst_case = 0.2;
@@ -148,7 +191,7 @@ struct PolicyWeights {
         parameter("efficiency", &P::efficiency, "-", non_negative, "weight of the deviation from the desired speed"),
         parameter("safety", &P::safety, "-", non_negative, "weight of unsafe gaps"),
         parameter("navigation", &P::navigation, "-", non_negative,
-                  "weight of the lane changes still needed to reach the destination"),
+                  "weight of the urgency of lane changes to the destination"),
         parameter("collision", &P::collision, "-", non_negative,
                   "cost of a collision, or of leaving the road, in units of safety"),
         parameter("change", &P::change, "-", non_negative, "cost of leaving the ongoing action now"),

@@ -8,6 +8,8 @@
 #include <string>
 #include <vector>
 
+#include <boost/container/static_vector.hpp>
+
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/evaluation/driving.hpp"
 #include "cambium/planner/planner_model.hpp"
@@ -31,8 +33,8 @@ struct PolicyBranch {
 
 /// What a `PolicyTreePlanner` reports. Its candidates are the branches; a score is a negative cost. The course is that
 /// of the best branch if all others keep their lanes.
-template <class World>
-struct PolicyTreeReport : PlannerReport<World, MacroActions::Memory> {
+template <class World, class Memory = MacroActions::Memory>
+struct PolicyTreeReport : PlannerReport<World, Memory> {
   std::vector<PolicyBranch> branches;
   std::vector<IntentionBranch> intentions;  ///< of the others, as simulated
 };
@@ -40,23 +42,27 @@ struct PolicyTreeReport : PlannerReport<World, MacroActions::Memory> {
 /// EUDM (Ding, Zhang, Chen, Shen 2020, "Efficient uncertainty-aware decision-making for automated driving using guided
 /// branching"): plans by a tree of sequences of semantic actions with at most one change. It simulates each sequence
 /// closed loop in several scenarios: all others keep their lanes, or one of them deviates in a way that matters to the
-/// sequence. Scenarios count by their probabilities. `PredictionWorld` must have `MacroActions` in its behaviour set.
+/// sequence. Scenarios count by their probabilities. `Actions` are `MacroActions`, or `DriverActions`, which must be in
+/// the behaviour set of `PredictionWorld`. With `DriverActions<Intersection>`, the usual ones where the set has them,
+/// ego may drive by the rules at junctions, and others do unless they deviate.
 ///
 ///     layer       1          2          3            scenarios, each where it matters
 ///     ongoing    keep ----- keep ----- keep           all others keep their lanes
 ///     later      keep ----- keep ----- left           agent 4, on the left, does not yield
 ///     soon       keep ----- left ----- left           agent 7, on the right, changes left
 ///     now        left ----- left ----- left
-template <class PredictionWorld, SearchBudget Budget = NoBudget, class Own = Terms<>>
+template <class PredictionWorld, class Actions = detail::UsualActions<PredictionWorld>, SearchBudget Budget = NoBudget,
+          class Own = Terms<>>
 struct PolicyTreePlanner {
   static_assert(detail::check_planner<PredictionWorld>());
   static_assert(detail::check_terms<Own>());
-  static_assert(PredictionWorld::Behaviors::template contains<MacroActions>,
-                "cambium::PolicyTreePlanner<PredictionWorld>: the behaviour set of PredictionWorld must contain "
-                "cambium::MacroActions, which carries out ego's actions and the others' intentions");
+  static_assert(PredictionWorld::Behaviors::template contains<Actions>,
+                "cambium::PolicyTreePlanner<PredictionWorld>: the behaviour set of PredictionWorld must contain its "
+                "Actions, such as cambium::MacroActions, which carry out ego's actions and the others' intentions");
 
-  using Memory = MacroActions::Memory;  ///< the ongoing action and its lane change
-  using Report = PolicyTreeReport<PredictionWorld>;
+  using Semantic = SemanticActions<Actions>;
+  using Memory = typename Actions::Memory;  ///< the ongoing action and its lane change
+  using Report = PolicyTreeReport<PredictionWorld, Memory>;
 
   struct Workspace {
     std::optional<PredictionWorld> world;
@@ -69,8 +75,8 @@ struct PolicyTreePlanner {
     bool is_cut_short = false;
   };
 
-  MacroActions actions = semantic_actions();
-  IdmParameters others{};
+  Actions actions = Semantic::usual();
+  typename Semantic::Others others{};
   IntentionPrior intentions{};
   PolicyWeights weights{};
   int layers = 5;
@@ -90,7 +96,7 @@ struct PolicyTreePlanner {
     using P = PolicyTreePlanner;
     return parameter_list(
         parameter("actions", &P::actions, "-", {}, "what ego may do"),
-        parameter("others", &P::others, "-", {}, "how the others keep gaps"),
+        parameter("others", &P::others, "-", {}, "how the others keep gaps, or drive"),
         parameter("intentions", &P::intentions, "-", {}, "what the others may be about to do"),
         parameter("weights", &P::weights, "-", {}, "what makes a sequence good"),
         parameter("layers", &P::layers, "-", Range{1, 32}, "decisions in a sequence"),
@@ -139,30 +145,50 @@ struct PolicyTreePlanner {
   }
 
  private:
-  static constexpr auto index = PredictionWorld::Behaviors::template index<MacroActions>;
+  static constexpr auto index = PredictionWorld::Behaviors::template index<Actions>;
 
-  [[nodiscard]] static bool is_change(MacroAction const& action, int side) {
-    return action.kind == (side > 0 ? MacroAction::Kind::change_left : MacroAction::Kind::change_right);
+  [[nodiscard]] bool is_change(std::uint8_t choice, int side) const {
+    return ActionSet<Actions>::action(actions, choice).kind ==
+           (side > 0 ? MacroAction::Kind::change_left : MacroAction::Kind::change_right);
   }
 
   /// "keep_gap for 2 s, then change_left 0".
   [[nodiscard]] std::string text(PolicySequence const& sequence) const {
-    auto const words = [&](std::uint8_t action) { return ActionSet<MacroActions>::text(actions, action); };
+    auto const words = [&](std::uint8_t action) { return ActionSet<Actions>::text(actions, action); };
     if (sequence.first == sequence.then) return words(sequence.first);
     return words(sequence.first) + " for " + detail::rounded_text(sequence.layers_of_first * layer_duration) +
            " s, then " + words(sequence.then);
   }
 
   /// The ongoing action. After a completed lane change, that is to keep the lane at the same acceleration.
-  [[nodiscard]] std::size_t ongoing(Memory const& memory) const {
-    std::size_t const chosen = memory.chosen < actions.size() ? memory.chosen : 0;
-    auto const& action = actions.actions[chosen];
-    bool const changes = is_change(action, 1) || is_change(action, -1);
-    if (!changes || memory.change.active() || memory.is_new) return chosen;
-    for (std::size_t i = 0; i < actions.size(); ++i)
-      if (actions.actions[i].kind == MacroAction::Kind::stay && actions.actions[i].acceleration == action.acceleration)
+  [[nodiscard]] std::uint8_t ongoing(Memory const& memory) const {
+    if constexpr (Semantic::drives)
+      if (memory.drives) return Actions::drive;
+    auto const& macro = Semantic::macro(actions);
+    auto const& own = Semantic::macro(memory);
+    std::uint8_t const chosen = own.chosen < macro.size() ? own.chosen : 0;
+    bool const changes = is_change(chosen, 1) || is_change(chosen, -1);
+    if (!changes || own.change.active() || own.is_new) return chosen;
+    for (std::uint8_t i = 0; i < macro.size(); ++i)
+      if (macro.actions[i].kind == MacroAction::Kind::stay &&
+          macro.actions[i].acceleration == macro.actions[chosen].acceleration)
         return i;
     return chosen;
+  }
+
+  [[nodiscard]] auto choices() const {
+    boost::container::static_vector<std::uint8_t, MacroActions::capacity + 1> all;
+    for (std::uint8_t i = 0; i < Semantic::macro(actions).size(); ++i) all.push_back(i);
+    if constexpr (Semantic::drives) all.push_back(Actions::drive);
+    return all;
+  }
+
+  /// Whether `choice` could begin now, or is under way.
+  template <class View>
+  [[nodiscard]] bool is_available(View const& view, std::uint8_t choice, Memory const& memory) const {
+    auto const& own = Semantic::macro(memory);
+    if (Semantic::drives && choice == MacroActions::nothing) return true;
+    return (choice == ongoing(memory) && !own.is_new) || Semantic::macro(actions).available(view, choice, own.change);
   }
 
   template <class View>
@@ -170,8 +196,10 @@ struct PolicyTreePlanner {
     auto clock = budget;
     clock.start();
     std::optional<Slot> ego;
-    workspace.world = predicted_for<PredictionWorld>(view, actions, intended_actions(others), ego);
+    auto const intended = Semantic::intended(others);
+    workspace.world = predicted_for<PredictionWorld>(view, actions, intended, ego);
     if (!ego) return SearchProblem::not_in_world;
+    if constexpr (Semantic::drives) detail::expect_to_keep_speed(*workspace.world, *ego, intended, true);
     workspace.ego = *ego;
     workspace.start = workspace.world->frame();
     workspace.has_goal = view.has_goal();
@@ -179,9 +207,9 @@ struct PolicyTreePlanner {
     workspace.branches.clear();
     workspace.best = 0;
     auto const now = ongoing(memory);
-    for (auto const& sequence : policy_sequences(actions.size(), now, static_cast<std::size_t>(layers))) {
-      bool const is_under_way = sequence.first == now && !memory.is_new;
-      if (!is_under_way && !actions.available(view, sequence.first, memory.change)) continue;
+    auto const all = choices();
+    for (auto const& sequence : policy_sequences({all.data(), all.size()}, now, static_cast<std::size_t>(layers))) {
+      if (!is_available(view, sequence.first, memory)) continue;
       workspace.is_cut_short = !clock.goes_on(workspace.branches.size());
       if (workspace.is_cut_short) break;
       auto& branch = workspace.branches.emplace_back();
@@ -225,8 +253,7 @@ struct PolicyTreePlanner {
   void weigh(Workspace& workspace, Memory const& memory, PolicyBranch& branch) const {
     auto const& sequence = branch.sequence;
     auto const matters = [&](IntentionBranch const& other) {
-      return other.side == 0 || is_change(actions.actions[sequence.first], other.side) ||
-             is_change(actions.actions[sequence.then], other.side);
+      return other.side == 0 || is_change(sequence.first, other.side) || is_change(sequence.then, other.side);
     };
     double sum = 0.0;
     auto const add = [&](IntentionBranch const* deviation, double odds) {
@@ -259,15 +286,14 @@ struct PolicyTreePlanner {
     auto& world = *workspace.world;
     world.restore(workspace.start);
     auto const& agents = world.roster().agents;
-    auto& own = world.template memory<MacroActions>(agents[workspace.ego].id);
+    auto& own = world.template memory<Actions>(agents[workspace.ego].id);
     own = memory;
-    if (action == ongoing(memory))
-      own.chosen = action;
-    else
+    if (action != ongoing(memory))
       own.choose(action);
+    else if (!Semantic::drives || action != MacroActions::nothing)
+      Semantic::macro(own).chosen = action;
     if (deviation != nullptr)
-      world.template memory<MacroActions>(agents[deviation->slot].id)
-          .choose(static_cast<std::size_t>(deviation->intention));
+      world.template memory<Actions>(agents[deviation->slot].id).choose(static_cast<std::size_t>(deviation->intention));
   }
 
   /// The cost of a simulation to the end of ego's course; with `all` it continues to the horizon, at no further cost.
@@ -282,7 +308,7 @@ struct PolicyTreePlanner {
     PolicyCost cost;
     bool is_over = false;
     for (int k = 0; k < steps && (all || !is_over); ++k) {
-      if (k == change && !is_over) world.template memory<MacroActions>(id).choose(sequence.then);
+      if (k == change && !is_over) world.template memory<Actions>(id).choose(sequence.then);
       (void)world.step(step);
       visit(world.frame());
       if (is_over) continue;
@@ -304,14 +330,13 @@ struct PolicyTreePlanner {
   /// Adds the cost of the present state, which stands for `share` of the horizon.
   void add_step(Workspace& workspace, AgentId id, double share, PolicyCost& cost) const {
     auto const view = workspace.world->observe(id);
-    double const speed = view.state().speed, desired = actions.idm.desired_speed;
+    double const speed = view.state().speed, desired = Semantic::macro(actions).idm.desired_speed;
     cost.efficiency += share * SpeedDeviation{desired}(*workspace.world, workspace.ego) / desired;
     auto const front = view.ahead(), rear = view.behind();
     bool const unsafe = (front && front->gap < weights.safe_gap(speed, front->speed)) ||
                         (rear && rear->gap < weights.safe_gap(rear->speed, speed));
     cost.safety += unsafe ? share : 0.0;
-    auto const& at = view.place();
-    if (workspace.has_goal) cost.navigation += share * lanes_to_destination(view.road(), at.corridor, at.piece);
+    cost.navigation += share * LaneChangeUrgency{}(*workspace.world, workspace.ego);
   }
 };
 
