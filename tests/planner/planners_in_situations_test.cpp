@@ -220,6 +220,7 @@ namespace {
 using Actions = DriverActions<Intersection>;
 using Ruled = World<BehaviorSet<Actions, Intersection>, InterpolateExecution, SingleTrack>;
 using RuledSearch = Mcts<Ruled>;
+using RuledTree = PolicyTreePlanner<Ruled>;
 
 RuledSearch ruled_search() {
   RuledSearch planner;
@@ -281,20 +282,47 @@ TEST_CASE_TEMPLATE("it gets through traffic to its exit", Planner, RuledSearch, 
   CHECK(arrived >= count - count / 8);
 }
 
-TEST_CASE("a search that may drive by the rules of junctions gets through them, without a collision of its own") {
-  for (auto const* const name : {"intersection_4way.xodr", "roundabout.xodr"}) {
-    CAPTURE(name);
-    auto const site = find_junction_site(support::own_map(name));
-    auto const count = static_cast<int>(runs(4));
-    int const arrived = arrivals<RuledSearch, Intersection>(
-        count, [&](std::uint32_t number) { return site.sample(3, number); },
-        [](auto& ego) {
-          auto planner = ruled_search();
-          planner.reward.desired_speed = planner.actions.driver.idm.desired_speed =
-              planner.actions.macro.idm.desired_speed = 10.0;
-          ego.behavior = planner;
-          return true;
-        });
-    CHECK(arrived == count);
-  }
+TEST_CASE_TEMPLATE(
+    "a planner that may drive by the rules of junctions gets through them, without a collision of its own", Planner,
+    RuledSearch, RuledTree) {
+  for (auto const* const name : {"intersection_4way.xodr", "roundabout.xodr"})
+    for (bool const lights : {false, true}) {
+      CAPTURE(name);
+      CAPTURE(lights);
+      auto const site = find_junction_site(support::own_map(name));
+      if (lights && site.map->lights().empty()) continue;
+      auto const count = static_cast<int>(runs(4));
+      int const arrived = arrivals<Planner, Intersection>(
+          count, [&](std::uint32_t number) { return site.sample(3, number, {.lights = lights}); },
+          [](auto& ego) {
+            Planner planner;
+            if constexpr (std::is_same_v<Planner, RuledSearch>) {
+              planner = ruled_search();
+              planner.reward.desired_speed = 10.0;
+            }
+            planner.actions.driver.idm.desired_speed = planner.actions.macro.idm.desired_speed = 10.0;
+            ego.behavior = planner;
+            return true;
+          });
+      CHECK(arrived == count);
+    }
+}
+
+TEST_CASE("a policy tree stops at a red light, and may drive by the rules") {
+  auto const map = support::own_map("intersection_4way.xodr");
+  World<BehaviorSet<RuledTree>, InterpolateExecution, SingleTrack> world(map);
+  for (auto const& light : map->lights())
+    world.set_light(light.id, {.cycle = 100.0, .green_begin = 60.0, .green_end = 70.0});
+  auto const lane = map->find_lane("1", 50.0, -2);
+  auto const pose = map->lane(lane).path.pose(map->lane(lane).length() - 60.0);
+  auto const ego =
+      world.add({.position = pose.position(), .heading = pose.heading, .speed = 10.0, .behavior = RuledTree{}});
+  RuledTree::Workspace workspace;
+  auto const report = RuledTree{}.think(world.observe(ego), world.memory<RuledTree>(ego), workspace);
+  CHECK(report.candidates.front().name == "drive");
+  for (int i = 0; i < 100; ++i) REQUIRE(world.step(0.2));
+  CHECK(world.state(ego).speed < 0.1);
+  double const way = std::hypot(world.state(ego).x - pose.x, world.state(ego).y - pose.y);
+  CHECK(way > 45.0);
+  CHECK(way < 60.0);
 }
