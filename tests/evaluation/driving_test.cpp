@@ -151,12 +151,13 @@ TEST_CASE("a lane change grows urgent towards the end of a lane, and in a lane t
   Sim world(support::own_map("lane_drop.xodr"));
   auto const ends = [&](double x, double y) { return world.slot_of(world.add({.position = {x, y}, .speed = 10.0})); };
   auto const far = ends(300.0, -5.25), near = ends(340.0, -5.25), stays = ends(300.0, -1.75);
-  cb::LaneChangeUrgency const urgency, late{.horizon = 1.0};
+  cb::LaneChangeUrgency const urgency, late{.horizon = 1.0, .time_horizon = 0.0}, hurried{.time_horizon = 60.0};
   CHECK(urgency(world, stays) == 0.0);
   CHECK(urgency(world, far) > 0.0);
   auto const share = [&](cb::Slot slot) { return std::pow(urgency(world, slot), 1.0 / 6.0); };  // of the way
   CHECK(share(near) - share(far) == doctest::Approx(40.0 / 300.0).epsilon(0.05));
   CHECK(late(world, far) == 0.0);
+  CHECK(hurried(world, far) > urgency(world, far));
 
   auto const map = support::own_map("highway_exit.xodr");
   auto const site = cb::find_highway_site(map);

@@ -113,22 +113,27 @@ struct LaneOffset {
 };
 
 /// How urgent a lane change is for the agent, because its lane ends or does not lead to its goal: 0 if it may stay, and
-/// growing to 1 over the last `horizon` [m] for each lane to cross: the sixth power of the driven share of this way
-/// (see `lane_urgency`). As a term with a negative weight, it draws a planner into the lane of its exit long before the
-/// end of its prediction, and still lets it leave that lane to pass somebody if there is room to return.
+/// growing to 1 over the last `horizon` [m] for each lane to cross, or over those that it drives in `time_horizon` [s]
+/// if these are more: the sixth power of the driven share of this way (see `lane_urgency`). As a term with a negative
+/// weight, it draws a planner into the lane of its exit long before the end of its prediction, and still lets it leave
+/// that lane to pass somebody if there is room to return.
 struct LaneChangeUrgency {
   double horizon = 300.0;
+  double time_horizon = 25.0;
 
   static constexpr char const* name = "lane_change_urgency";
   static constexpr char const* summary = "how urgent a lane change is: 0 to 1";
   static constexpr auto parameters() {
     return parameter_list(parameter("horizon", &LaneChangeUrgency::horizon, "m", Range{1, 10'000},
-                                    "length for each lane to cross over which the urgency grows"));
+                                    "length for each lane to cross over which the urgency grows"),
+                          parameter("time_horizon", &LaneChangeUrgency::time_horizon, "s", Range{0, 1000},
+                                    "the same as a time, where that is the longer way"));
   }
 
   template <class World>
   [[nodiscard]] double operator()(World& world, Slot slot) const {
-    auto const urgency = lane_urgency(world.truth(slot), horizon);
+    double const fast = time_horizon * std::abs(world.frame().agents[slot].state.speed);
+    auto const urgency = lane_urgency(world.truth(slot), std::max(horizon, fast));
     double const share = std::max({0.0, urgency.left, urgency.right});
     double const cube = share * share * share;
     return cube * cube;

@@ -55,7 +55,7 @@ struct TrafficReward {
   double desired_speed = 15.0;
   double acceleration = -0.1;
   double lateral_offset = 0.0;
-  double lane_change_urgency = -20.0;
+  double lane_change_urgency = -40.0;
   double others_braking = -10.0;
   double closeness = -20.0;
   double lookahead = 2.0;
