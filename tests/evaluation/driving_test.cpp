@@ -166,7 +166,7 @@ TEST_CASE("a lane change grows urgent towards the end of a lane, and in a lane t
   auto const pose = begin.pose(50.0);
   cb::Slot const inner = motorway.slot_of(motorway.add({.position = pose.position(),
                                                         .heading = pose.heading,
-                                                        .speed = 20.0,
+                                                        .speed = 15.0,  // which it likes and keeps
                                                         .goal = cb::ReachLane{site.exits.front()}}));
   double const first = cb::LaneChangeUrgency{}(motorway, inner);
   for (int i = 0; i < 40; ++i) REQUIRE(motorway.step(0.2));
