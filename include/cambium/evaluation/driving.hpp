@@ -132,8 +132,8 @@ struct LaneChangeUrgency {
 
   template <class World>
   [[nodiscard]] double operator()(World& world, Slot slot) const {
-    double const fast = time_horizon * std::abs(world.frame().agents[slot].state.speed);
-    auto const urgency = lane_urgency(world.truth(slot), std::max(horizon, fast));
+    double const way = time_horizon * std::abs(world.frame().agents[slot].state.speed);
+    auto const urgency = lane_urgency(world.truth(slot), std::max(horizon, way));
     double const share = std::max({0.0, urgency.left, urgency.right});
     double const cube = share * share * share;
     return cube * cube;

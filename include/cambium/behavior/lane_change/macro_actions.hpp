@@ -139,12 +139,10 @@ struct MacroActions {
   /// The number of the first action that keeps the lane and a gap: `keep_gap`, or else to `stay` at about the same
   /// speed; `nothing` without one.
   [[nodiscard]] std::uint8_t keeping_gap() const {
-    auto const is_such = [](MacroAction const& a, bool exactly) {
-      return exactly ? a.kind == Kind::keep_gap : a.kind == Kind::stay && a.keeps_gap && a.acceleration == 0.0;
-    };
-    for (bool const exactly : {true, false})
-      for (std::size_t i = 0; i < size(); ++i)
-        if (is_such(actions[i], exactly)) return static_cast<std::uint8_t>(i);
+    for (std::size_t i = 0; i < size(); ++i)
+      if (actions[i].kind == Kind::keep_gap) return static_cast<std::uint8_t>(i);
+    for (std::size_t i = 0; i < size(); ++i)
+      if (actions[i] == MacroAction{Kind::stay, 0.0, true}) return static_cast<std::uint8_t>(i);
     return nothing;
   }
 
