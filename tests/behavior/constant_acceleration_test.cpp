@@ -70,3 +70,18 @@ TEST_CASE("a deceleration that stops within the step is reported as the average 
   CHECK(world.state(id).x == doctest::Approx(5.125));
   CHECK(world.record(id).action.acceleration == doctest::Approx(-2.0));
 }
+
+TEST_CASE("it ends a lane change that its heading shows, and keeps its offset if it is aligned") {
+  for (double const heading : {0.05, -0.05, 0.0}) {
+    CAPTURE(heading);
+    Sim world(straight_road(3, 800.0));
+    double const y = -5.25 + (heading > 0.0 ? 1.3 : heading < 0.0 ? -1.3 : 0.4);
+    auto const id =
+        world.add({.position = {50, y}, .heading = heading, .speed = 15, .behavior = cb::ConstantAcceleration{}});
+    for (int i = 0; i < 40; ++i) REQUIRE(world.step(0.2));
+    double const end = heading > 0.0 ? -1.75 : heading < 0.0 ? -8.75 : y;
+    CHECK(world.state(id).y == doctest::Approx(end).epsilon(0.02));
+    CHECK(world.state(id).heading == doctest::Approx(0.0).epsilon(1e-3).scale(1.0));
+    CHECK(world.state(id).speed == 15.0);
+  }
+}

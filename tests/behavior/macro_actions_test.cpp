@@ -1,5 +1,6 @@
 #include "cambium/behavior/lane_change/driver_actions.hpp"
 #include "cambium/behavior/lane_change/macro_actions.hpp"
+#include "cambium/evaluation/collision.hpp"
 
 #include <doctest/doctest.h>
 
@@ -240,6 +241,27 @@ TEST_CASE("keeping the gap equals IDM") {
     REQUIRE(world.step(0.25));
     REQUIRE(other.step(0.25));
     CHECK(world.state(cb::AgentId{0}).x == doctest::Approx(other.state(cb::AgentId{0}).x).epsilon(1e-12));
+  }
+}
+
+TEST_CASE("behind a standing vehicle, keeping the gap leaves room for a change where there is a lane beside") {
+  for (int const lanes : {1, 2}) {
+    CAPTURE(lanes);
+    double const y = lanes == 1 ? -1.75 : -5.25;
+    World world(straight_road(lanes, 2000.0));
+    auto const id = world.add({.position = {100, y}, .speed = 15, .behavior = cb::MacroActions{}});
+    world.add({.position = {250, y}, .behavior = cb::Safety{}});
+    for (int i = 0; i < 160; ++i) REQUIRE(world.step(0.25));
+    double const gap = world.observe(id).ahead()->gap;
+    CHECK(gap == doctest::Approx(lanes == 1 ? 2.0 : 12.5).epsilon(0.02));
+    if (lanes == 1) continue;
+    world.memory<cb::MacroActions>(id).choose(number_of(Kind::change_left));
+    for (int i = 0; i < 80; ++i) {
+      REQUIRE(world.step(0.25));
+      if (i == 0) world.memory<cb::MacroActions>(id).choose(number_of(Kind::stay, 1.5));
+      CHECK_FALSE(cb::Collision{}(world, world.slot_of(id)));
+    }
+    CHECK(world.state(id).x > 260.0);
   }
 }
 

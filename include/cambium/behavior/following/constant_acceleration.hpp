@@ -15,7 +15,8 @@ struct ConstantAcceleration {
 
   static constexpr char const* name = "constant_acceleration";
   static constexpr char const* summary =
-      "keeps its lane; v changes by a until the vehicle stands or has its highest speed";
+      "keeps its lane, or ends the lane change that its heading shows; v changes by a until the vehicle stands or has "
+      "its highest speed";
   static constexpr char const* source = "kinematics";
   static constexpr auto parameters() {
     return parameter_list(parameter("acceleration", &ConstantAcceleration::acceleration, "m/s^2", Range{-50, 50},
@@ -26,7 +27,9 @@ struct ConstantAcceleration {
 
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, NoMemory&, double dt) const {
-    return plan_along_lane(view, motion(std::max(0.0, view.state().speed), dt), dt);
+    constexpr double aslant = 1e-3;  // [rad]
+    bool adrift = std::abs(view.place().heading_error) > aslant;
+    return plan_into_lane(view, motion(std::max(0.0, view.state().speed), dt), dt, adrift);
   }
 
   /// Exact motion over `dt` [s] from `speed` [m/s].

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "cambium/behavior/law/braking.hpp"
 #include "cambium/behavior/law/follow_lane.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/core/parameters.hpp"
@@ -50,6 +51,9 @@ struct LaneChange {
 
 namespace detail {
 
+/// Share of a change after which the vehicle has left its old lane.
+inline constexpr double out_of_lane = 0.7;
+
 /// Extra length of a course for each metre that the vehicle's front is farther from its rear axle than a car's [-]. It
 /// keeps long vehicles from swinging out into the lane beyond, for lanes 3.5 m wide.
 inline constexpr double longer_by_front = 5.0;
@@ -59,6 +63,16 @@ inline constexpr double longer_by_front_with_room = 8.0;
 /// The same for a course back to the middle of the own lane from `lateral` [m] beside it. It is smaller because the way
 /// is shorter, and because an early return is worth 0.1 m beyond the border.
 [[nodiscard]] inline double longer_by_front_back(double lateral) { return 4.0 * std::min(1.0, std::abs(lateral)); }
+
+/// Whether there is a line at which one waits, of a signal or a junction, within 30 m beyond a road user in the lane of
+/// place `at`.
+template <class View>
+CAMBIUM_NOINLINE [[nodiscard]] bool waits_at_line(View const& view, map::LanePlace const& at, RoadUser const& user) {
+  auto const is_near = [&](double s) { return s > user.s && s < user.s + user.front + 30.0; };
+  auto const& corridor = view.road().corridors[at.corridor];
+  return std::ranges::any_of(corridor.signals, [&](auto const& signal) { return is_near(signal.line); }) ||
+         std::ranges::any_of(corridor.conflicts, [&](auto const& conflict) { return is_near(conflict.hold[1][1]); });
+}
 
 [[nodiscard]] constexpr double least_course_length(double of_car, geometry::Shape const& shape, double by_front) {
   return of_car + by_front * std::max(0.0, shape.front - geometry::car().front);
@@ -89,6 +103,23 @@ struct LaneChangeCourse {
   /// Shortest length of a change [m], however slow a vehicle of this shape drives.
   [[nodiscard]] double least_length(geometry::Shape const& shape) const {
     return detail::least_course_length(minimum_length, shape, detail::longer_by_front);
+  }
+
+  /// How much farther than it must be one stays behind `next` [m], so that the shortest change still fits where there
+  /// is a lane beside: behind an object, and as far as moderate braking permits behind an agent that stands, or is
+  /// about to, and does not wait at a junction. `at`: the own place in the lane of `next`.
+  template <class View>
+  [[nodiscard]] double room_behind(View const& view, map::LanePlace const& at, RoadUser const& next) const {
+    constexpr double slow = 4.0, moderate = 2.5, closest = 2.0;  // [m/s], [m/s^2], [m]
+    if (next.speed > slow) [[likely]]
+      return 0.0;
+    auto const& piece = view.road().corridors[at.corridor].pieces[at.piece];
+    if (piece.left == none<CorridorId> && piece.right == none<CorridorId>) return 0.0;
+    double const room = detail::out_of_lane * least_length(view.shape());
+    if (is_valid(next.object)) return room;
+    double const speed = view.state().speed, spare = next.gap - closest - speed * speed / (2.0 * moderate);
+    if (!(spare > 0.0) || detail::waits_at_line(view, at, next)) return 0.0;
+    return std::min(room * (1.0 - std::max(0.0, next.speed) / slow), spare);
   }
 
   /// A new change to lane corridor `target` at `speed` [m/s], within `room` [m] if possible. A slow long vehicle takes

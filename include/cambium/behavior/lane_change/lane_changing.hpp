@@ -61,6 +61,7 @@ struct LaneChanging {
   double safe_gap = 1.0;
   double rest = 3.0;
   bool heed_marks = true;
+  bool leaves_room = false;
   LaneChangeCourse course{};
 
   static constexpr char const* name = "lane_changing";
@@ -79,6 +80,8 @@ struct LaneChanging {
         parameter("safe_gap", &P::safe_gap, "m", Range{0, 100}, "smallest gap for a change, whatever the speeds"),
         parameter("rest", &P::rest, "s", Range{0, 600}, "from the end of a change to the next one"),
         parameter("heed_marks", &P::heed_marks, "-", Range{0, 1}, "change only where the road marks permit it"),
+        parameter("leaves_room", &P::leaves_room, "-", Range{0, 1},
+                  "stops early enough to change behind agents that stand alone, not only before objects"),
         parameter("course", &P::course, "-", {}, "how long a change takes"));
   }
 
@@ -96,8 +99,8 @@ struct LaneChanging {
 
   /// The plan of a driver who follows by IDM and changes lanes as `choose(LaneKeeping)` decides: it returns the lane
   /// corridor to change to, or none. It is not called during a change.
-  template <class View, class Choose>
-  [[nodiscard]] Plan<View> drive(View const& view, Memory& memory, IdmParameters const& idm, RoadRules const& rules,
+  template <class View, HasIdmParameters Idm, class Choose>
+  [[nodiscard]] Plan<View> drive(View const& view, Memory& memory, Idm const& idm, RoadRules const& rules,
                                  double tolerance, double dt, Choose const& choose) const {
     double const speed = std::max(0.0, view.state().speed);
     IdmLaw const law(idm, speed, rules.desired_speed(idm, view, speed));
@@ -199,8 +202,6 @@ struct LaneChanging {
   }
 
   static constexpr double infinite = std::numeric_limits<double>::infinity();
-  /// Share of a change after which the vehicle has left its old lane.
-  static constexpr double out_of_lane = 0.7;
 
   /// Goes on with the change that the vehicle is in when it enters.
   template <class View>
@@ -279,15 +280,17 @@ struct LaneChanging {
     auto const& at = view.place();
     double const until_end =
         std::min(dead_end(view, at.corridor, at.piece) - at.s, distance_to_stop(view, view.place(target)));
-    double const beside_object = (1.0 - out_of_lane) * course.least_length(view.shape());
-    return leader && is_object(*leader) ? std::min(until_end, leader->gap + beside_object) : until_end;
+    double const beside = (1.0 - detail::out_of_lane) * course.least_length(view.shape());
+    return leader && is_object(*leader) ? std::min(until_end, leader->gap + beside) : until_end;
   }
 
-  /// Adds a leader in a lane that the vehicle stays in; before an object it leaves room to change.
-  void add_leader(Strictest<IdmLaw>& ahead, geometry::Shape const& shape, std::optional<RoadUser> const& leader,
-                  bool has_side) const {
+  /// Adds the leader in a lane that the vehicle stays in, where its place is `at`; before an object it leaves room to
+  /// change.
+  template <class View>
+  void add_leader(View const& view, map::LanePlace const& at, Strictest<IdmLaw>& ahead,
+                  std::optional<RoadUser> const& leader) const {
     if (!leader) return;
-    double const room = is_object(*leader) && has_side ? out_of_lane * course.least_length(shape) : 0.0;
+    double const room = leaves_room || is_object(*leader) ? course.room_behind(view, at, *leader) : 0.0;
     ahead.heed({leader->gap - room, leader->speed});
   }
 
@@ -315,9 +318,8 @@ struct LaneChanging {
   [[nodiscard]] Strictest<IdmLaw> ahead_in_lane(View const& view, IdmLaw const& law,
                                                 std::optional<RoadUser> const& leader) const {
     auto const& at = view.place();
-    auto const& piece = view.corridor().pieces[at.piece];
     Strictest<IdmLaw> ahead(law);
-    add_leader(ahead, view.shape(), leader, piece.left != none<CorridorId> || piece.right != none<CorridorId>);
+    add_leader(view, at, ahead, leader);
     add_stop(ahead, distance_to_stop(view, at));
     return ahead;
   }
@@ -329,13 +331,13 @@ struct LaneChanging {
     auto const& at = view.place();
     auto const& corridor = view.corridor();
     auto const& piece = corridor.pieces[at.piece];
-    double const left = change.left, around = (1.0 - out_of_lane) * course.least_length(view.shape());
+    double const left = change.left, around = (1.0 - detail::out_of_lane) * course.least_length(view.shape());
     auto const is_passed = [&](RoadUser const& n, double until) {  // the course leads around it
       return n.speed < 0.5 && n.gap > until;
     };
     Strictest<IdmLaw> ahead(law);
     if (change.target == at.corridor) {
-      add_leader(ahead, view.shape(), leader, true);
+      add_leader(view, at, ahead, leader);
       add_stop(ahead, distance_to_stop(view, at));
       // While the body extends over the border, the leader there counts, too.
       auto const sides = corridor.widths_at(at.s, at.segment);
@@ -352,7 +354,7 @@ struct LaneChanging {
     double const until_end = dead_end(view, at.corridor, at.piece) - at.s;
     if (until_end < 0.6 * left) ahead.heed({until_end - view.shape().front, 0.0});
     auto const there = view.place(change.target);
-    add_leader(ahead, view.shape(), view.ahead(there), true);
+    add_leader(view, there, ahead, view.ahead(there));
     // The vehicle may enter the neighbouring lane even if that ends soon.
     add_stop(ahead, std::max(distance_to_stop(view, there), 0.6 * left + law.minimum_gap() + 1.0));
     return ahead;

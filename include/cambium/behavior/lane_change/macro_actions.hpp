@@ -154,6 +154,14 @@ struct MacroActions {
     return !is_change(actions[number].kind) || side_of(view, actions[number].kind, change) != none<CorridorId>;
   }
 
+  /// Room [m] to change lanes that it leaves behind the next road user when it keeps a gap, see
+  /// `LaneChangeCourse::room_behind`.
+  template <class View>
+  [[nodiscard]] double room_behind_next(View const& view) const {
+    auto const next = view.ahead({.merging = rules.merging});
+    return next ? course.room_behind(view, view.place(), *next) : 0.0;
+  }
+
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
     if (memory.chosen >= size() && memory.chosen != nothing) {
@@ -217,6 +225,8 @@ struct MacroActions {
     Strictest ahead(law);
     if (action.kind == Kind::keep_gap || action.keeps_gap) {
       rules.heed(view, ahead);
+      if (auto const next = view.ahead({.merging = rules.merging}); next && !change.active())
+        ahead.heed({next->gap - course.room_behind(view, view.place(), *next), next->speed});
       if (change.active() && change.target != view.place().corridor)
         if (auto const next = view.ahead(view.place(change.target), {.merging = rules.merging}))
           ahead.heed({next->gap, next->speed});

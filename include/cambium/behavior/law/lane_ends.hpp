@@ -95,14 +95,13 @@ CAMBIUM_NOINLINE [[nodiscard]] LanesToCross lanes_to_cross(View const& view, Cor
   return {};
 }
 
-/// Urgency of a lane change because of lane ends, merges and the goal's lane. It grows from 0 to 1 over the last
-/// `horizon` [m] before the lane end for each lane to cross. O(1) without an end ahead, else O(lanes beside), at worst
-/// for each piece up to the end.
+/// Urgency of a lane change from place `at` because of lane ends, merges and the goal's lane. It grows from 0 to 1 over
+/// the last `horizon` [m] before the lane end for each lane to cross. O(1) without an end ahead, else O(lanes beside),
+/// at worst for each piece up to the end.
 template <class View>
-CAMBIUM_NOINLINE [[nodiscard]] LaneUrgency lane_urgency(View const& view, double horizon) {
+CAMBIUM_NOINLINE [[nodiscard]] LaneUrgency lane_urgency(View const& view, map::LanePlace const& at, double horizon) {
   constexpr double infinite = std::numeric_limits<double>::infinity();
-  auto const& at = view.place();
-  auto const& piece = view.corridor().pieces[at.piece];
+  auto const& piece = view.road().corridors[at.corridor].pieces[at.piece];
   double const remaining = lane_end(view, at.corridor, at.piece) - at.s;
   auto const closeness = [&](double length, int lanes) {
     return std::clamp(1.0 - length / (lanes * horizon), 0.0, 1.0);
@@ -119,6 +118,11 @@ CAMBIUM_NOINLINE [[nodiscard]] LaneUrgency lane_urgency(View const& view, double
   if (lanes.left == 0 && lanes.right == 0) return {};
   double const urgency = closeness(remaining, lanes.left + lanes.right);
   return lanes.left > 0 ? LaneUrgency{urgency, -urgency} : LaneUrgency{-urgency, urgency};
+}
+/// The same from the own place.
+template <class View>
+[[nodiscard]] LaneUrgency lane_urgency(View const& view, double horizon) {
+  return lane_urgency(view, view.place(), horizon);
 }
 
 /// Number of lane changes from `piece` of lane corridor `number` to a corridor that reaches the destination; 0 if none
