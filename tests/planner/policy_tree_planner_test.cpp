@@ -107,6 +107,19 @@ TEST_CASE("it stops if the road is blocked and changes lanes if only its own lan
   }
 }
 
+TEST_CASE("before an object that appears close ahead, it stops hard and reports an emergency") {
+  Planner::Workspace workspace;
+  auto world = road(1, 0, 14.0);
+  CHECK_FALSE(Planner{}.think(world.observe(ego), {}, workspace).is_emergency(ego));
+  double const x = world.state(ego).x + 26.0;
+  world.add_object(geometry::Polygon({{x, -3.4}, {x + 4, -3.4}, {x + 4, -0.1}, {x, -0.1}}));
+  auto const report = Planner{}.think(world.observe(ego), {}, workspace);
+  CHECK(report.is_emergency(ego));
+  CHECK_FALSE(report.is_emergency(AgentId{99}));
+  drive(world, 40);
+  CHECK(world.state(ego).speed < 0.1);
+}
+
 TEST_CASE("branches are simulated under the intentions that matter to them") {
   auto world = road(2, 0);
   world.add({.position = {52, -1.75}, .speed = 11, .behavior = ConstantAcceleration{}});  // may cut in

@@ -53,7 +53,9 @@ TEST_CASE("it follows a slower leader and stops behind a standing one") {
   for (std::uint64_t seed = 0; seed < 6; ++seed) {
     CAPTURE(seed);
     double const slow = 2.0 * static_cast<double>(seed);
-    auto world = two_lanes(seed, 10.0 + static_cast<double>(seed));
+    Planner planner;
+    planner.lane_changes = false;
+    auto world = two_lanes(seed, 10.0 + static_cast<double>(seed), planner);
     world.add({.position = {100, -5.25}, .speed = slow, .behavior = ConstantAcceleration{}});
     drive(world, 150);
     CHECK(world.state(ego).speed == doctest::Approx(slow).epsilon(0.05).scale(1.0));
@@ -93,9 +95,9 @@ TEST_CASE("it stops once at a stop sign, and remembers that it did") {
   Sim world(support::road_with_signal("206"));
   world.add({.position = {100, -1.75}, .speed = 12, .behavior = planner});
   int stops = 0;
-  for (int i = 0; i < 250 && world.state(ego).x < 300.0; ++i) {
+  for (int i = 0; i < 500 && world.state(ego).x < 300.0; ++i) {
     bool const stood = world.state(ego).speed < standing_speed;
-    drive(world, 1);
+    drive(world, 1, planner.step);
     stops += !stood && world.state(ego).speed < standing_speed;
   }
   CHECK(stops == 1);
@@ -125,13 +127,56 @@ TEST_CASE("it stops at an object that blocks its lane and passes one that leaves
   }
 }
 
+TEST_CASE("it passes a standing vehicle in the lane beside, and waits with room for a gap there") {
+  for (double const spacing : {1e3, 24.0}) {
+    CAPTURE(spacing);
+    auto world = two_lanes(0);
+    world.add({.position = {200, -5.25}, .speed = 0, .behavior = ConstantAcceleration{}});
+    double const first = spacing < 100.0 ? 140.0 : -1e3;
+    for (double x = first; x > 0.0; x -= spacing)
+      world.add(
+          {.position = {x, -1.75}, .speed = 15, .behavior = IdmClassic{.desired_speed = 15, .time_headway = 1.0}});
+    double slowest = 1e9, closest = 1e9, hardest = 0.0;
+    for (int i = 0; i < 250 && world.state(ego).x < 260.0; ++i) {
+      drive(world, 1);
+      slowest = std::min(slowest, world.state(ego).speed);
+      for (auto const& agent : world.frame().agents) hardest = std::max(hardest, -agent.action.acceleration);
+      if (world.state(ego).y < -4.25) closest = std::min(closest, 200.0 - world.state(ego).x);
+    }
+    CHECK(world.state(ego).x >= 260.0);
+    CHECK(closest > 12.0);
+    CHECK(hardest < 4.5);
+    if (spacing > 100.0) CHECK(slowest > 9.0);
+  }
+}
+
+TEST_CASE("it changes into the lane of its goal, for which nobody has to brake hard") {
+  for (double const gap : {200.0, 60.0, 40.0}) {
+    CAPTURE(gap);
+    auto const map = support::straight_road(2, 600.0);
+    Sim world(map);
+    auto const left = map->find_lane("1", 500.0, -1);
+    world.add({.position = {40, -5.25}, .speed = 12.0, .behavior = Planner{}, .goal = ReachLane{left, 500.0}});
+    for (double x = 190.0; x > 0.0; x -= gap)
+      world.add(
+          {.position = {x, -1.75}, .speed = 15, .behavior = IdmClassic{.desired_speed = 16, .time_headway = 1.0}});
+    double hardest = 0.0;
+    for (int i = 0; i < 200 && !world.reached_goal(world.slot_of(ego)); ++i) {
+      drive(world, 1);
+      for (auto const& agent : world.frame().agents) hardest = std::max(hardest, -agent.action.acceleration);
+    }
+    CHECK(world.reached_goal(world.slot_of(ego)));
+    CHECK(hardest < 4.5);
+  }
+}
+
 TEST_CASE("a scored proposal reports its outcome, and the best is driven") {
   auto world = two_lanes(3);
   world.add({.position = {75, -5.25}, .speed = 4, .behavior = ConstantAcceleration{}});
   world.add_object(obstacle(90, -3.5, -1.0));
   Planner::Workspace workspace;
   auto const report = Planner{}.think(world.observe(ego), {}, workspace);
-  REQUIRE(report.proposals.size() == 15);
+  REQUIRE(report.proposals.size() == 20);  // 5 speeds at 3 offsets, and into the left lane
   auto const& best = report.proposals[report.best];
   for (auto const& p : report.proposals) {
     CHECK(p.score <= best.score + Planner{}.scoring.indifference);
@@ -141,6 +186,7 @@ TEST_CASE("a scored proposal reports its outcome, and the best is driven") {
   }
   CHECK(best.score > 0.0);
   CHECK(report.chosen == report.best);
+  CHECK_FALSE(report.is_emergency(ego));
 }
 
 TEST_CASE("an offset towards a vehicle alongside is a collision at fault; a hit from behind is not") {
@@ -194,6 +240,7 @@ TEST_CASE("it brakes as hard as it may if all proposals soon collide") {
   Planner::Workspace workspace;
   auto const report = Planner{}.think(world.observe(ego), {}, workspace);
   CHECK_FALSE(report.chosen);
+  CHECK(report.is_emergency(ego));
   CHECK(report.course.back().agents[0].state.speed == 0.0);
   for (auto const& frame : report.course) {  // it is where its state says
     auto const &now = frame.agents[0], &start = report.course[0].agents[0];

@@ -132,8 +132,15 @@ struct LaneChangeUrgency {
 
   template <class World>
   [[nodiscard]] double operator()(World& world, Slot slot) const {
-    double const way = time_horizon * std::abs(world.frame().agents[slot].state.speed);
-    auto const urgency = lane_urgency(world.truth(slot), std::max(horizon, way));
+    auto const view = world.truth(slot);
+    return at(view, view.place());
+  }
+
+  /// The same as if the agent of `view` were at a place in another lane.
+  template <class View>
+  [[nodiscard]] double at(View const& view, map::LanePlace const& place) const {
+    double const way = time_horizon * std::abs(view.state().speed);
+    auto const urgency = lane_urgency(view, place, std::max(horizon, way));
     double const share = std::max({0.0, urgency.left, urgency.right});
     double const cube = share * share * share;
     return cube * cube;

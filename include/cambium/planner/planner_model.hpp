@@ -35,6 +35,15 @@ struct PlannerReport {
   std::vector<typename World::FrameType> course;  ///< all agents as planned, step by step from now to the horizon
   std::vector<AgentId> agents;                    ///< to whom the records of each frame belong
   Memory memory{};                                ///< after the first step of the course: for the next `think`
+
+  /// Whether the plan of `ego` begins with an emergency stop: it brakes harder than `deceleration` [m/s^2].
+  [[nodiscard]] bool is_emergency(AgentId ego, double deceleration = 4.0) const {
+    auto const found = std::ranges::find(agents, ego);
+    if (found == agents.end() || course.size() < 2) return false;
+    auto const slot = static_cast<Slot>(found - agents.begin());
+    auto const &now = course[0].agents[slot].state, &next = course[1].agents[slot].state;
+    return now.speed - next.speed > deceleration * (next.time - now.time);
+  }
 };
 
 /// A planner: a behaviour that can also be called directly. `think(view, memory, workspace)` plans for the agent of

@@ -9,11 +9,13 @@
 #include <type_traits>
 #include <vector>
 
+#include "cambium/behavior/following/constant_acceleration.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/plan.hpp"
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/evaluation/course_end.hpp"
 #include "cambium/evaluation/terms.hpp"
+#include "cambium/geometry/angle.hpp"
 #include "cambium/world/driven_to.hpp"
 #include "cambium/world/prediction.hpp"
 
@@ -128,6 +130,25 @@ void expect_to_keep_speed(World& world, Slot ego, Others others, bool heeds_stea
     if (slot == ego || (seen.state.speed <= usual && !is_steady)) continue;
     *desired = std::clamp(std::round(seen.state.speed), 1.0, 100.0);
     world.set_behavior(world.roster().agents[slot].id, others);
+  }
+}
+
+/// Lets those who brake go on to do so where `others` would keep their speed, if they drive in ego's direction: one who
+/// crosses its way may have right of way and not stop. O(agents).
+template <class World, class Others>
+void expect_to_brake_on(World& world, Slot ego, Others others) {
+  if constexpr (std::is_same_v<Others, ConstantAcceleration>) {
+    constexpr double noticeable = 0.5, aligned = 0.5;  // [m/s^2], [rad]
+    auto const& agents = world.frame().agents;
+    for (Slot slot{}; index_of(slot) < world.size(); ++slot) {
+      double const seen = agents[slot].action.acceleration;
+      if (slot == ego || seen > others.acceleration - noticeable ||
+          std::abs(geometry::angle_difference(agents[slot].state.heading, agents[ego].state.heading)) > aligned)
+        continue;
+      auto braking = others;
+      braking.acceleration = seen;
+      world.set_behavior(world.roster().agents[slot].id, braking);
+    }
   }
 }
 }  // namespace detail

@@ -224,6 +224,7 @@ struct FrenetPlanner {
     std::optional<Slot> ego;
     auto world = predicted_for<PredictionWorld>(view, others, others, ego);
     if (!ego) return SearchProblem::not_in_world;
+    detail::expect_to_brake_on(world, *ego, others);
     workspace.ego = *ego;
     workspace.others.predict(std::move(world), *ego, horizon, step);
     workspace.candidates.clear();

@@ -124,7 +124,7 @@ struct Mcts {
 
   static constexpr char const* name = "mcts";
   static constexpr char const* summary =
-      "tree search (decoupled UCT) over ego's actions in predicted worlds; optionally with other agents that choose at "
+      "tree search over ego's actions in predicted worlds; optionally with other agents that choose at "
       "the same time, a limit on risk, and beliefs about the others";
   static constexpr char const* source =
       "Kocsis, Szepesvari 2006; Lenz, Kessler, Knoll 2016; Lee et al. 2018; Bernhard, Knoll 2020";

@@ -14,15 +14,16 @@
 
 namespace cambium {
 
-/// Nine actions: keep the lane, change left or change right, each at constant speed, faster or slower, but never faster
-/// than car following permits (Ding, Zhang, Chen, Shen 2020, section IV). `faster` and `slower` are accelerations
-/// [m/s^2].
-[[nodiscard]] inline MacroActions semantic_actions(double faster = 1.5, double slower = -2.0) {
+/// Ten actions: keep the lane, change left or change right, each at constant speed, faster or slower, but never faster
+/// than car following permits (Ding, Zhang, Chen, Shen 2020, section IV); and an emergency stop, so that one is always
+/// among what is simulated. `faster`, `slower` and `stop` are accelerations [m/s^2].
+[[nodiscard]] inline MacroActions semantic_actions(double faster = 1.5, double slower = -2.0, double stop = -6.0) {
   using Kind = MacroAction::Kind;
   MacroActions result;
   result.actions.clear();
   for (auto const kind : {Kind::stay, Kind::change_left, Kind::change_right})
     for (double const acceleration : {0.0, faster, slower}) result.actions.push_back({kind, acceleration, true});
+  result.actions.push_back({Kind::stay, stop, true});
   return result;
 }
 

@@ -31,6 +31,7 @@ struct ProposalScoring {
   double time_to_collision = 5.0;
   double speed_limit = 4.0;
   double comfort = 2.0;
+  double route = 20.0;
   double look_ahead = 0.9;
   double lowest_acceleration = -4.05;
   double highest_acceleration = 2.4;
@@ -51,6 +52,7 @@ struct ProposalScoring {
                   "weight of no collision within look_ahead"),
         parameter("speed_limit", &P::speed_limit, "-", non_negative, "weight of the share of time within the limit"),
         parameter("comfort", &P::comfort, "-", non_negative, "weight of staying within the limits below"),
+        parameter("route", &P::route, "-", non_negative, "weight of being in a lane that leads to the destination"),
         parameter("look_ahead", &P::look_ahead, "s", Range{0, 10},
                   "time to collision is tested this far, at constant velocities"),
         parameter("lowest_acceleration", &P::lowest_acceleration, "m/s^2", Range{-50, 0}, "limit of comfort"),
@@ -62,24 +64,30 @@ struct ProposalScoring {
   }
 
   void check(std::string const& where) const {
-    if (!(progress + time_to_collision + speed_limit + comfort > 0.0))
-      throw ParameterError(where, "has no weight above 0", "give one");
+    if (!(weights() > 0.0)) throw ParameterError(where, "has no weight above 0", "give one");
   }
+
+  /// Their sum.
+  [[nodiscard]] double weights() const { return progress + time_to_collision + speed_limit + comfort + route; }
 };
 
 /// A proposal and the outcome of its simulation.
 struct ProposalScore {
-  double speed_share{};  ///< of the desired speed
-  double offset{};       ///< from the middle of the lane [m]
-  double progress{};     ///< along the lane [m]
+  double speed_share{};                   ///< of the desired speed
+  double offset{};                        ///< from the middle of the lane [m]
+  CorridorId towards = none<CorridorId>;  ///< lane corridor beside its own into which it changes; none: it stays
+  bool left = false;                      ///< that is on the left
+  bool changes = false;                   ///< it gets there, or is on the way, before the horizon
+  double progress{};                      ///< along the lane [m]
   bool collides = false;
   bool leaves_road = false;
   double time_to_infraction = std::numeric_limits<double>::infinity();  ///< until one of these [s]
   double time_to_collision = 1.0;                                       ///< mark, 0 or 1
   double comfort = 1.0;                                                 ///< mark, 0 or 1
   double speed_limit = 1.0;                                             ///< mark: share of the time within the limit
-  double terms{};                                                       ///< sum of the planner's `terms`
-  double score{};                                                       ///< total of the marks, 0 to 1, plus `terms`
+  double route = 1.0;  ///< mark: 1 - `LaneChangeUrgency`, now, of its last lane
+  double terms{};      ///< sum of the planner's `terms`
+  double score{};      ///< total of the marks, 0 to 1, plus `terms`
 };
 
 /// What a `ProposalPlanner` reports. Its candidates are the proposals. It chooses none and brakes if even the best soon
@@ -93,8 +101,9 @@ struct ProposalReport : PlannerReport<World, IdmProposal::Memory> {
 /// PDM-Closed (Dauner, Hallgarten, Geiger, Chitta 2023, "Parting with misconceptions about learning-based vehicle
 /// motion planning"): simulates IDM drivers at several speeds and offsets from the middle of its lane, closed loop,
 /// while the others behave as `Others`. It scores them and drives like the best. It brakes if that one collides or
-/// leaves the road within `emergency_time`. It keeps its lane and drives on at its goal. `PredictionWorld` must have
-/// `IdmProposal` and `Others` in its behaviour set. `Own` are a user's own terms, which count beside the marks.
+/// leaves the road within `emergency_time`. Beyond the paper, with `lane_changes`, drivers who change into a lane
+/// beside are proposed, too. It drives on at its goal. `PredictionWorld` must have `IdmProposal` and `Others` in its
+/// behaviour set. `Own` are a user's own terms, which count beside the marks.
 template <class PredictionWorld, class Others = ConstantAcceleration, SearchBudget Budget = NoBudget,
           class Own = Terms<>>
 struct ProposalPlanner {
@@ -125,17 +134,18 @@ struct ProposalPlanner {
   boost::container::static_vector<double, 8> speed_shares{std::begin(usual_speed_shares), std::end(usual_speed_shares)};
   boost::container::static_vector<double, 8> offsets{std::begin(usual_offsets), std::end(usual_offsets)};
   ProposalScoring scoring{};
-  double horizon = 4.0;
+  double horizon = 6.0;
   double step = 0.1;
   double emergency_time = 2.0;
   double emergency_deceleration = 6.0;
+  bool lane_changes = true;
   Budget budget{};
   Own terms{};
 
   static constexpr char const* name = "proposal_planner";
   static constexpr char const* summary =
-      "simulates IDM drivers at several speeds and lateral offsets and drives like the one that scores best; brakes if "
-      "that one soon collides";
+      "simulates IDM drivers at several speeds, at lateral offsets and into the lanes beside, and drives like the one "
+      "that scores best; brakes if that one soon collides";
   static constexpr char const* source = "Dauner, Hallgarten, Geiger, Chitta 2023 (PDM-Closed)";
   static constexpr auto parameters() {
     using P = ProposalPlanner;
@@ -152,6 +162,8 @@ struct ProposalPlanner {
                   "it brakes if the best proposal fails sooner than this"),
         parameter("emergency_deceleration", &P::emergency_deceleration, "m/s^2", Range{0.01, 50},
                   "with which it then brakes"),
+        parameter("lane_changes", &P::lane_changes, "-", Range{0, 1},
+                  "also proposes to change into the lanes beside, at each speed"),
         parameter("budget", &P::budget, "-", {}, "how many proposals are simulated, in order of preference"),
         parameter("terms", &P::terms, "-", {}, "evaluators whose sum over a proposal is added to its score"));
   }
@@ -191,12 +203,13 @@ struct ProposalPlanner {
       return p.time_to_infraction >= emergency_time && p.time_to_infraction >= latest;
     };
     for (auto const& p : report.proposals)
-      report.candidates.push_back(
-          {detail::rounded_text(p.speed_share) + " of the desired speed at " + detail::rounded_text(p.offset) + " m",
-           p.score,
-           is_acceptable(p) ? ""
-           : p.collides     ? "collision"
-                            : "off road"});
+      report.candidates.push_back({detail::rounded_text(p.speed_share) + " of the desired speed " +
+                                       (is_valid(p.towards) ? p.left ? "to the left" : "to the right"
+                                                            : "at " + detail::rounded_text(p.offset) + " m"),
+                                   p.score,
+                                   is_acceptable(p) ? ""
+                                   : p.collides     ? "collision"
+                                                    : "off road"});
     for (auto const& agent : workspace.world->roster().agents) report.agents.push_back(agent.id);
     report.course.push_back(workspace.start);
     auto again = report.proposals[report.best];
@@ -218,11 +231,12 @@ struct ProposalPlanner {
   }
 
  private:
-  /// An emergency stop over the next `dt` [s], at the offset of a proposal.
+  /// An emergency stop over the next `dt` [s], in the lane change under way or at the offset of a proposal.
   template <class View>
   [[nodiscard]] Plan<View> brake(View const& view, ProposalScore const& proposal, Memory& memory, double dt) const {
     auto const motion = ConstantAcceleration{-emergency_deceleration}.motion(std::max(0.0, view.state().speed), dt);
-    return plan_to_center(view, memory.bend, motion, dt, proposal.offset);
+    if (memory.lane.change.active()) return plan_lane_change(view, memory.lane.change, motion, dt);
+    return plan_to_center(view, memory.lane.change.bend, motion, dt, proposal.offset);
   }
 
   static constexpr auto index = PredictionWorld::Behaviors::template index<IdmProposal>;
@@ -234,19 +248,41 @@ struct ProposalPlanner {
     std::optional<Slot> ego;
     workspace.world = predicted_for<PredictionWorld>(view, driver, others, ego);
     if (!ego) return SearchProblem::not_in_world;
+    detail::expect_to_brake_on(*workspace.world, *ego, others);
     workspace.ego = *ego;
     workspace.start = workspace.world->frame();
     agents_to_avoid(*workspace.world, *ego, workspace.to_avoid);
     workspace.proposals.clear();
-    for (double const offset : offsets)
+    workspace.is_cut_short = false;
+    double const urgency_here = LaneChangeUrgency{}.at(view, view.place());
+    auto const propose_at = [&](double offset, CorridorId towards, bool left) {
+      double const urgency_there = is_valid(towards) ? LaneChangeUrgency{}.at(view, view.place(towards)) : urgency_here;
       for (double const share : speed_shares) {
-        workspace.is_cut_short = !clock.goes_on(workspace.proposals.size());
-        if (workspace.is_cut_short) return choose(workspace);
+        workspace.is_cut_short = workspace.is_cut_short || !clock.goes_on(workspace.proposals.size());
+        if (workspace.is_cut_short) return;
         auto& proposal = workspace.proposals.emplace_back();
         proposal.speed_share = share;
         proposal.offset = offset;
+        proposal.towards = towards;
+        proposal.left = left;
         simulate<false>(workspace, proposal, memory, [](auto const&) {});
+        proposal.route = 1.0 - (proposal.changes ? urgency_there : urgency_here);
       }
+    };
+    auto const& at = workspace.start.agents[*ego].lane;
+    auto const& piece = workspace.world->roster().agents[*ego].road->corridors[at.corridor].pieces[at.piece];
+    auto const propose_change = [&](bool left) {
+      if (lane_changes && is_valid(piece.beside(left)) && driver.changing.marks_permit(view, left))
+        propose_at(0.0, piece.beside(left), left);
+    };
+    // The change under way first: among equals, it goes on.
+    auto const under_way = memory.lane.change.target;
+    bool const goes_left = is_valid(under_way) && under_way == piece.left,
+               goes_right = is_valid(under_way) && under_way == piece.right;
+    if (goes_left || goes_right) propose_change(goes_left);
+    for (double const offset : offsets) propose_at(offset, none<CorridorId>, false);
+    if (!goes_left) propose_change(true);
+    if (!goes_right) propose_change(false);
     return choose(workspace);
   }
 
@@ -254,8 +290,14 @@ struct ProposalPlanner {
   void begin(Workspace& workspace, ProposalScore const& proposal, Memory const& memory) const {
     auto& world = *workspace.world;
     world.restore(workspace.start);
-    world.template memory<IdmProposal>(world.roster().agents[workspace.ego].id) = {
-        static_cast<float>(proposal.speed_share), static_cast<float>(proposal.offset), memory.bend, memory.rules};
+    auto& own = world.template memory<IdmProposal>(world.roster().agents[workspace.ego].id);
+    own = {static_cast<float>(proposal.speed_share), static_cast<float>(proposal.offset), proposal.towards,
+           memory.lane};
+    auto const home = workspace.start.agents[workspace.ego].lane.corridor;
+    auto const wanted = is_valid(proposal.towards) ? proposal.towards : home;
+    auto& change = own.lane.change;
+    if (change.target != wanted || proposal.offset != 0.0) change = {none<CorridorId>, 0.0f, change.bend};
+    if (!change.active()) own.lane.rest = 0.0f;
   }
 
   /// Simulates a proposal until it collides, leaves the road or ends; with `all` the world is then stepped to the
@@ -292,6 +334,9 @@ struct ProposalPlanner {
       too_fast += SpeedLimitExcess{}(world, ego) > 1e-3 ? 1 : 0;
     }
     proposal.speed_limit = 1.0 - static_cast<double>(too_fast) / std::max(1, driven);
+    auto const& memory_then = world.template memory<IdmProposal>(world.roster().agents[ego].id);
+    proposal.changes = is_valid(proposal.towards) && (world.frame().agents[ego].lane.corridor == proposal.towards ||
+                                                      memory_then.lane.change.target == proposal.towards);
     if constexpr (all)
       for (++driven; driven < steps; ++driven) {
         (void)world.step(step);
@@ -327,13 +372,13 @@ struct ProposalPlanner {
     double farthest = 0.0;
     for (auto const& p : proposals)
       if (!p.collides && !p.leaves_road) farthest = std::max(farthest, p.progress);
-    double const weights = scoring.progress + scoring.time_to_collision + scoring.speed_limit + scoring.comfort;
+    double const weights = scoring.weights();
     workspace.best = 0;
     for (std::size_t i = 0; i < proposals.size(); ++i) {
       auto& p = proposals[i];
       double const progress = farthest > standing ? std::clamp(p.progress / farthest, 0.0, 1.0) : 1.0;
       double const sum = scoring.progress * progress + scoring.time_to_collision * p.time_to_collision +
-                         scoring.speed_limit * p.speed_limit + scoring.comfort * p.comfort;
+                         scoring.speed_limit * p.speed_limit + scoring.comfort * p.comfort + scoring.route * p.route;
       p.score = (p.collides || p.leaves_road ? 0.0 : sum / weights) + p.terms;
       if (!std::isfinite(p.score)) return SearchProblem::not_finite;
       auto const& best = proposals[workspace.best];
