@@ -170,6 +170,37 @@ TEST_CASE("it changes into the lane of its goal, for which nobody has to brake h
   }
 }
 
+TEST_CASE("it expects those who brake in its direction to go on, and the others to keep their speed") {
+  for (bool const oncoming : {false, true}) {
+    CAPTURE(oncoming);
+    Sim world(support::two_way_road(600.0));
+    world.add({.position = {40, -1.75}, .speed = 12, .behavior = Planner{}});
+    auto const other = world.add({.position = {oncoming ? 400.0 : 140.0, oncoming ? 1.75 : -1.75},
+                                  .heading = oncoming ? M_PI : 0.0,
+                                  .speed = 12,
+                                  .behavior = ConstantAcceleration{.acceleration = -3.0}});
+    REQUIRE(world.step(0.2));
+    Planner::Workspace workspace;
+    auto const report = Planner{}.think(world.observe(ego), {}, workspace);
+    auto const slot = static_cast<Slot>(std::ranges::find(report.agents, other) - report.agents.begin());
+    CHECK(report.course.back().agents[slot].state.speed == doctest::Approx(oncoming ? 11.4 : 0.0));
+  }
+}
+
+TEST_CASE("a change under way is the first proposal, and goes on if nothing is better") {
+  auto world = two_lanes(0);
+  Planner::Workspace workspace;
+  auto memory = Planner::Memory{};
+  world.set_state(ego, {.x = 100, .y = -4.5, .heading = 0.08, .speed = 12.0});
+  auto const at = world.record(ego).lane;
+  memory.lane.change = {world.observe(ego).corridor().pieces[at.piece].left, 30.0f, 0.0f};
+  auto const report = Planner{}.think(world.observe(ego), memory, workspace);
+  CHECK(report.proposals[0].towards == memory.lane.change.target);
+  CHECK(report.proposals[0].left);
+  CHECK(report.proposals[0].changes);
+  CHECK(report.best == 0);
+}
+
 TEST_CASE("a scored proposal reports its outcome, and the best is driven") {
   auto world = two_lanes(3);
   world.add({.position = {75, -5.25}, .speed = 4, .behavior = ConstantAcceleration{}});

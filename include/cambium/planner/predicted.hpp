@@ -138,7 +138,7 @@ void expect_to_keep_speed(World& world, Slot ego, Others others, bool heeds_stea
 template <class World, class Others>
 void expect_to_brake_on(World& world, Slot ego, Others others) {
   if constexpr (std::is_same_v<Others, ConstantAcceleration>) {
-    constexpr double noticeable = 0.5, aligned = 0.5;  // [m/s^2], [rad]
+    constexpr double noticeable = 0.5, hardest = 8.0, aligned = 0.5;  // [m/s^2], [rad]
     auto const& agents = world.frame().agents;
     for (Slot slot{}; index_of(slot) < world.size(); ++slot) {
       double const seen = agents[slot].action.acceleration;
@@ -146,7 +146,7 @@ void expect_to_brake_on(World& world, Slot ego, Others others) {
           std::abs(geometry::angle_difference(agents[slot].state.heading, agents[ego].state.heading)) > aligned)
         continue;
       auto braking = others;
-      braking.acceleration = seen;
+      braking.acceleration = std::max(seen, -hardest);
       world.set_behavior(world.roster().agents[slot].id, braking);
     }
   }

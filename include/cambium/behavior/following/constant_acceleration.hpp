@@ -1,14 +1,15 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/law/follow_lane.hpp"
 
 namespace cambium {
 
-/// Follows its lane with constant acceleration (0: constant speed) and ignores all others. It stops rather than
-/// reverses.
+/// Follows its lane with constant acceleration (0: constant speed) and ignores all others. It first ends the motion
+/// across the lane that its heading shows, such as a lane change. It stops rather than reverses.
 struct ConstantAcceleration {
   double acceleration = 0.0;
   double highest_speed = 50.0;

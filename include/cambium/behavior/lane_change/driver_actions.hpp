@@ -13,8 +13,7 @@ namespace cambium {
 
 /// `MacroActions`, and one more choice: to drive like `Driver`, by default what a search expects of ego where it has
 /// nothing else in mind. With `Intersection` as the driver, a search can give way, wait its turn and stop at red lights
-/// without finding out by itself how that is done. A lane change in progress is completed first, keeping the gap; room
-/// is left to change lanes behind whoever stands alone.
+/// without finding out by itself how that is done. A lane change in progress is completed first, keeping the gap.
 template <BehaviorModel Driver>
 struct DriverActions {
   static constexpr std::uint8_t drive = MacroActions::nothing;  ///< chosen instead of the number of a macro action
@@ -61,8 +60,7 @@ struct DriverActions {
 
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
-    if (memory.drives && !memory.macro.change.active() && !(macro.room_behind_next(view) > 0.0))
-      return driver.plan(view, memory.driver, dt);
+    if (memory.drives && !memory.macro.change.active()) return driver.plan(view, memory.driver, dt);
     if (memory.drives) memory.macro.choose(macro.keeping_gap());
     return macro.plan(view, memory.macro, dt);
   }

@@ -49,39 +49,52 @@ struct IdmProposal {
     auto idm = driver;
     idm.desired_speed =
         std::max(0.1, static_cast<double>(memory.speed_share) * driver.rules.desired_speed(driver, view, speed));
-    bool const is_there = memory.towards == none<CorridorId> || memory.towards == view.place().corridor;
-    if (memory.lane.change.active() || !is_there) return change_lane(view, memory, idm, dt);
-    double const offset = static_cast<double>(memory.offset);
     IdmLaw const law(idm, speed, idm.desired_speed);
+    bool const is_there = memory.towards == none<CorridorId> || memory.towards == view.place().corridor;
+    if (memory.lane.change.active() || !is_there)
+      return changing.drive(
+          view, memory.lane, idm, driver.rules, driver.tolerance, dt, [&](LaneKeeping<View> const& now) {
+            return now.may_change && may_change(view, memory.towards, law) ? memory.towards : none<CorridorId>;
+          });
+    memory.lane.rules.adrift = false;
+    memory.lane.rest = std::max(0.0f, memory.lane.rest - static_cast<float>(dt));
+    double const offset = static_cast<double>(memory.offset);
     Strictest ahead(law);
     auto const merging = driver.rules.merging;
-    auto next = detail::next_in_way(view, offset, clearance, merging);
-    if (next) next->gap -= changing.course.room_behind(view, view.place(), *next);
+    auto const next = detail::next_in_way(view, offset, clearance, merging);
     driver.rules.heed(view, next, ahead);
     if (!view.corridor().feeders.empty())
       detail::for_each_on_feeders(view, Look::horizon, merging, [&](RoadUser const& other) {
         if (!leaves_room(view, view.place().corridor, other, offset, clearance)) ahead.heed({other.gap, other.speed});
       });
-    auto const motion = driver.rules.bound(view, driver, view.place().s, speed,
-                                           law.motion(ahead.constraint(), dt, driver.tolerance), dt, memory.lane.rules);
+    auto motion = law.motion(ahead.constraint(), dt, driver.tolerance);
+    if (changing.leaves_room && next) motion = changing.course.leave_room(view, *next, motion, dt);
+    motion = driver.rules.bound(view, driver, view.place().s, speed, motion, dt, memory.lane.rules);
     return plan_to_center(view, memory.lane.change.bend, motion, dt, offset);
   }
 
  private:
+  /// Whether the lane beside on that side is of corridor `target` up to corridor position `until` [m].
   template <class View>
-  CAMBIUM_NOINLINE [[nodiscard]] Plan<View> change_lane(View const& view, Memory& memory, IdmClassic const& idm,
-                                                        double dt) const {
-    auto const choose = [&](LaneKeeping<View> const& now) {
-      auto const& piece = view.corridor().pieces[view.place().piece];
-      bool const left = memory.towards == piece.left;
-      if (!now.may_change || !is_valid(memory.towards) || (!left && memory.towards != piece.right))
-        return none<CorridorId>;
-      LaneOption option{view.place(memory.towards), left, {}, {}};
-      option.front = view.ahead(option.place);
-      option.rear = view.behind(option.place);
-      return changing.is_safe(view, now.law, option, changing.safe_deceleration) ? memory.towards : none<CorridorId>;
-    };
-    return changing.drive(view, memory.lane, idm, driver.rules, driver.tolerance, dt, choose);
+  [[nodiscard]] static bool stays_beside(View const& view, CorridorId target, bool left, double until) {
+    auto const& pieces = view.corridor().pieces;
+    for (auto p = view.place().piece; index_of(p) < pieces.size() && pieces[p].begin < until; ++p)
+      if (pieces[p].beside(left) != target) return false;
+    return view.corridor().length() >= until;
+  }
+
+  /// Whether a change into the lane beside of corridor `target` may begin.
+  template <class View>
+  CAMBIUM_NOINLINE [[nodiscard]] bool may_change(View const& view, CorridorId target, IdmLaw const& law) const {
+    auto const& piece = view.corridor().pieces[view.place().piece];
+    bool const left = target == piece.left;
+    if (!is_valid(target) || (!left && target != piece.right) || !changing.marks_permit(view, left)) return false;
+    double const length = changing.course.begin(target, view.shape(), law.speed(), 0.0).left;
+    if (!stays_beside(view, target, left, view.place().s + length)) return false;
+    LaneOption option{view.place(target), left, {}, {}};
+    option.front = view.ahead(option.place);
+    option.rear = view.behind(option.place);
+    return changing.is_safe(view, law, option, changing.safe_deceleration);
   }
 };
 static_assert(BehaviorModel<IdmProposal>);

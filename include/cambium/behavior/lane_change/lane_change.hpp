@@ -64,14 +64,17 @@ inline constexpr double longer_by_front_with_room = 8.0;
 /// is shorter, and because an early return is worth 0.1 m beyond the border.
 [[nodiscard]] inline double longer_by_front_back(double lateral) { return 4.0 * std::min(1.0, std::abs(lateral)); }
 
-/// Whether there is a line at which one waits, of a signal or a junction, within 30 m beyond a road user in the lane of
-/// place `at`.
+/// Whether there is a line at which one waits, of a signal or before others who cross, from a road user in the own lane
+/// to 30 m beyond it.
 template <class View>
-CAMBIUM_NOINLINE [[nodiscard]] bool waits_at_line(View const& view, map::LanePlace const& at, RoadUser const& user) {
-  auto const is_near = [&](double s) { return s > user.s && s < user.s + user.front + 30.0; };
-  auto const& corridor = view.road().corridors[at.corridor];
-  return std::ranges::any_of(corridor.signals, [&](auto const& signal) { return is_near(signal.line); }) ||
-         std::ranges::any_of(corridor.conflicts, [&](auto const& conflict) { return is_near(conflict.hold[1][1]); });
+CAMBIUM_NOINLINE [[nodiscard]] bool waits_at_line(View const& view, RoadUser const& user) {
+  double const far = user.s + user.front + 30.0;
+  auto const& corridor = view.corridor();
+  return std::ranges::any_of(corridor.signals,
+                             [&](auto const& signal) { return signal.line > user.s && signal.line < far; }) ||
+         std::ranges::any_of(corridor.conflicts, [&](auto const& conflict) {
+           return conflict.hull().end > user.s && conflict.hold[1][1] < far;
+         });
 }
 
 [[nodiscard]] constexpr double least_course_length(double of_car, geometry::Shape const& shape, double by_front) {
@@ -105,21 +108,22 @@ struct LaneChangeCourse {
     return detail::least_course_length(minimum_length, shape, detail::longer_by_front);
   }
 
-  /// How much farther than it must be one stays behind `next` [m], so that the shortest change still fits where there
-  /// is a lane beside: behind an object, and as far as moderate braking permits behind an agent that stands, or is
-  /// about to, and does not wait at a junction. `at`: the own place in the lane of `next`.
+  /// `motion` over `dt` [s], but with moderate braking wherever that keeps room for the shortest change behind `next`,
+  /// a road user in the own lane that stands or is about to. Only where there is a lane beside, and no line of a signal
+  /// or a junction within 30 m beyond `next`.
   template <class View>
-  [[nodiscard]] double room_behind(View const& view, map::LanePlace const& at, RoadUser const& next) const {
+  [[nodiscard]] LongitudinalMotion<double> leave_room(View const& view, RoadUser const& next,
+                                                      LongitudinalMotion<double> const& motion, double dt) const {
     constexpr double slow = 4.0, moderate = 2.5, closest = 2.0;  // [m/s], [m/s^2], [m]
     if (next.speed > slow) [[likely]]
-      return 0.0;
-    auto const& piece = view.road().corridors[at.corridor].pieces[at.piece];
-    if (piece.left == none<CorridorId> && piece.right == none<CorridorId>) return 0.0;
-    double const room = detail::out_of_lane * least_length(view.shape());
-    if (is_valid(next.object)) return room;
-    double const speed = view.state().speed, spare = next.gap - closest - speed * speed / (2.0 * moderate);
-    if (!(spare > 0.0) || detail::waits_at_line(view, at, next)) return 0.0;
-    return std::min(room * (1.0 - std::max(0.0, next.speed) / slow), spare);
+      return motion;
+    auto const& piece = view.corridor().pieces[view.place().piece];
+    if (piece.left == none<CorridorId> && piece.right == none<CorridorId>) return motion;
+    double const room =
+        detail::out_of_lane * least_length(view.shape()) * (1.0 - std::clamp(next.speed / slow, 0.0, 1.0));
+    auto const bound =
+        motion_before_stop(std::max(0.0, view.state().speed), next.gap - closest - room, moderate, moderate, dt);
+    return bound.speed < motion.speed && !detail::waits_at_line(view, next) ? bound : motion;
   }
 
   /// A new change to lane corridor `target` at `speed` [m/s], within `room` [m] if possible. A slow long vehicle takes

@@ -81,7 +81,7 @@ struct LaneChanging {
         parameter("rest", &P::rest, "s", Range{0, 600}, "from the end of a change to the next one"),
         parameter("heed_marks", &P::heed_marks, "-", Range{0, 1}, "change only where the road marks permit it"),
         parameter("leaves_room", &P::leaves_room, "-", Range{0, 1},
-                  "stops early enough to change behind agents that stand alone, not only before objects"),
+                  "stays far enough behind those who stand that a change fits, see `LaneChangeCourse::leave_room`"),
         parameter("course", &P::course, "-", {}, "how long a change takes"));
   }
 
@@ -134,7 +134,8 @@ struct LaneChanging {
       ahead = with_merging(View(view), rules, leader, memory.change.active() && memory.change.target != home,
                            Strictest<IdmLaw>(ahead));
     if (auto const end = rules.lane_end_ahead(view)) ahead.heed(*end);
-    auto const motion = law.motion(ahead.constraint(), dt, tolerance);
+    auto motion = law.motion(ahead.constraint(), dt, tolerance);
+    if (leaves_room && leader && !memory.change.active()) motion = course.leave_room(view, *leader, motion, dt);
     auto const bounded = rules.bound(view, idm, view.place().s, speed, motion, dt, memory.rules);
     if (memory.rules.aside != 0) [[unlikely]] {
       if (!memory.change.active()) return plan_in_lane(view, rules, bounded, dt, memory);
@@ -280,17 +281,15 @@ struct LaneChanging {
     auto const& at = view.place();
     double const until_end =
         std::min(dead_end(view, at.corridor, at.piece) - at.s, distance_to_stop(view, view.place(target)));
-    double const beside = (1.0 - detail::out_of_lane) * course.least_length(view.shape());
-    return leader && is_object(*leader) ? std::min(until_end, leader->gap + beside) : until_end;
+    double const beside_object = (1.0 - detail::out_of_lane) * course.least_length(view.shape());
+    return leader && is_object(*leader) ? std::min(until_end, leader->gap + beside_object) : until_end;
   }
 
-  /// Adds the leader in a lane that the vehicle stays in, where its place is `at`; before an object it leaves room to
-  /// change.
-  template <class View>
-  void add_leader(View const& view, map::LanePlace const& at, Strictest<IdmLaw>& ahead,
-                  std::optional<RoadUser> const& leader) const {
+  /// Adds a leader in a lane that the vehicle stays in; before an object it leaves room to change.
+  void add_leader(Strictest<IdmLaw>& ahead, geometry::Shape const& shape, std::optional<RoadUser> const& leader,
+                  bool has_side) const {
     if (!leader) return;
-    double const room = leaves_room || is_object(*leader) ? course.room_behind(view, at, *leader) : 0.0;
+    double const room = is_object(*leader) && has_side ? detail::out_of_lane * course.least_length(shape) : 0.0;
     ahead.heed({leader->gap - room, leader->speed});
   }
 
@@ -318,8 +317,9 @@ struct LaneChanging {
   [[nodiscard]] Strictest<IdmLaw> ahead_in_lane(View const& view, IdmLaw const& law,
                                                 std::optional<RoadUser> const& leader) const {
     auto const& at = view.place();
+    auto const& piece = view.corridor().pieces[at.piece];
     Strictest<IdmLaw> ahead(law);
-    add_leader(view, at, ahead, leader);
+    add_leader(ahead, view.shape(), leader, piece.left != none<CorridorId> || piece.right != none<CorridorId>);
     add_stop(ahead, distance_to_stop(view, at));
     return ahead;
   }
@@ -337,7 +337,7 @@ struct LaneChanging {
     };
     Strictest<IdmLaw> ahead(law);
     if (change.target == at.corridor) {
-      add_leader(view, at, ahead, leader);
+      add_leader(ahead, view.shape(), leader, true);
       add_stop(ahead, distance_to_stop(view, at));
       // While the body extends over the border, the leader there counts, too.
       auto const sides = corridor.widths_at(at.s, at.segment);
@@ -354,7 +354,7 @@ struct LaneChanging {
     double const until_end = dead_end(view, at.corridor, at.piece) - at.s;
     if (until_end < 0.6 * left) ahead.heed({until_end - view.shape().front, 0.0});
     auto const there = view.place(change.target);
-    add_leader(view, there, ahead, view.ahead(there));
+    add_leader(ahead, view.shape(), view.ahead(there), true);
     // The vehicle may enter the neighbouring lane even if that ends soon.
     add_stop(ahead, std::max(distance_to_stop(view, there), 0.6 * left + law.minimum_gap() + 1.0));
     return ahead;

@@ -28,12 +28,12 @@ struct MacroAction {
     stay,          ///< keeps the lane at `acceleration`
     change_left,   ///< changes to the lane on the left at `acceleration`
     change_right,  ///< likewise to the right
-    keep_gap,      ///< keeps the lane, and a gap by IDM; ignores `acceleration`
+    keep_gap,      ///< keeps the lane, and a gap by IDM and `leave_room`; ignores `acceleration`
   };
 
   Kind kind = Kind::stay;
   double acceleration = 0.0;  ///< [m/s^2]
-  bool keeps_gap = false;     ///< no faster than IDM permits; implied by `keep_gap`
+  bool keeps_gap = false;     ///< no faster than IDM and `LaneChangeCourse::leave_room` permit; implied by `keep_gap`
 
   static constexpr char const* name = "macro_action";
   static constexpr char const* summary = "one manoeuvre of `MacroActions`";
@@ -154,14 +154,6 @@ struct MacroActions {
     return !is_change(actions[number].kind) || side_of(view, actions[number].kind, change) != none<CorridorId>;
   }
 
-  /// Room [m] to change lanes that it leaves behind the next road user when it keeps a gap, see
-  /// `LaneChangeCourse::room_behind`.
-  template <class View>
-  [[nodiscard]] double room_behind_next(View const& view) const {
-    auto const next = view.ahead({.merging = rules.merging});
-    return next ? course.room_behind(view, view.place(), *next) : 0.0;
-  }
-
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
     if (memory.chosen >= size() && memory.chosen != nothing) {
@@ -225,8 +217,6 @@ struct MacroActions {
     Strictest ahead(law);
     if (action.kind == Kind::keep_gap || action.keeps_gap) {
       rules.heed(view, ahead);
-      if (auto const next = view.ahead({.merging = rules.merging}); next && !change.active())
-        ahead.heed({next->gap - course.room_behind(view, view.place(), *next), next->speed});
       if (change.active() && change.target != view.place().corridor)
         if (auto const next = view.ahead(view.place(change.target), {.merging = rules.merging}))
           ahead.heed({next->gap, next->speed});
@@ -236,7 +226,10 @@ struct MacroActions {
       return wanted;
     }
     auto const allowed = law.motion(ahead.constraint(), dt, tolerance);
-    return action.kind == Kind::keep_gap || allowed.speed < wanted.speed ? allowed : wanted;
+    auto const kept = action.kind == Kind::keep_gap || allowed.speed < wanted.speed ? allowed : wanted;
+    bool const keeps_gap = action.kind == Kind::keep_gap || action.keeps_gap;
+    auto const next = keeps_gap && !change.active() ? view.ahead({.merging = rules.merging}) : std::nullopt;
+    return next ? course.leave_room(view, *next, kept, dt) : kept;
   }
 };
 static_assert(BehaviorModel<MacroActions>);

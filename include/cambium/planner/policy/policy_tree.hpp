@@ -15,7 +15,7 @@
 namespace cambium {
 
 /// Ten actions: keep the lane, change left or change right, each at constant speed, faster or slower, but never faster
-/// than car following permits (Ding, Zhang, Chen, Shen 2020, section IV); and an emergency stop, so that one is always
+/// than car following permits (Ding, Zhang, Chen, Shen 2020, section IV); and an emergency stop, so that one is
 /// among what is simulated. `faster`, `slower` and `stop` are accelerations [m/s^2].
 [[nodiscard]] inline MacroActions semantic_actions(double faster = 1.5, double slower = -2.0, double stop = -6.0) {
   using Kind = MacroAction::Kind;

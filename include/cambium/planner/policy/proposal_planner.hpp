@@ -85,7 +85,7 @@ struct ProposalScore {
   double time_to_collision = 1.0;                                       ///< mark, 0 or 1
   double comfort = 1.0;                                                 ///< mark, 0 or 1
   double speed_limit = 1.0;                                             ///< mark: share of the time within the limit
-  double route = 1.0;  ///< mark: 1 - `LaneChangeUrgency`, now, of its last lane
+  double route = 1.0;  ///< mark: 1 - the present urgency of a change from the lane where it ends
   double terms{};      ///< sum of the planner's `terms`
   double score{};      ///< total of the marks, 0 to 1, plus `terms`
 };
@@ -181,7 +181,7 @@ struct ProposalPlanner {
     if constexpr (detail::Predicts<View, typename PredictionWorld::Behaviors, PredictionWorld>) {
       if (propose(view, memory, workspace) != SearchProblem::none) return plan;
       auto const& best = workspace.proposals[workspace.best];
-      if (best.time_to_infraction < emergency_time) return brake(view, best, memory, dt);
+      if (best.time_to_infraction < emergency_time) return brake(view, workspace, best, memory, dt);
       begin(workspace, best, memory);
       drive_predicted(*workspace.world, workspace.ego, dt, step, plan);
       memory = *std::get_if<index>(&workspace.world->frame().agents[workspace.ego].memory);
@@ -220,10 +220,10 @@ struct ProposalPlanner {
       report.chosen = report.best;
     } else {
       report.memory = memory;
-      (void)brake(view, best, report.memory, step);
+      (void)brake(view, workspace, best, report.memory, step);
       replace_course(*workspace.world, workspace.ego, report.course, [&](std::size_t k) {
         auto after = memory;
-        return brake(view, best, after, static_cast<double>(k) * step).trajectory.back();
+        return brake(view, workspace, best, after, static_cast<double>(k) * step).trajectory.back();
       });
     }
     report.decidedness = decidedness(report.candidates, report.chosen);
@@ -231,10 +231,12 @@ struct ProposalPlanner {
   }
 
  private:
-  /// An emergency stop over the next `dt` [s], in the lane change under way or at the offset of a proposal.
+  /// An emergency stop over the next `dt` [s], in the lane change or at the offset of a proposal.
   template <class View>
-  [[nodiscard]] Plan<View> brake(View const& view, ProposalScore const& proposal, Memory& memory, double dt) const {
+  [[nodiscard]] Plan<View> brake(View const& view, Workspace const& workspace, ProposalScore const& proposal,
+                                 Memory& memory, double dt) const {
     auto const motion = ConstantAcceleration{-emergency_deceleration}.motion(std::max(0.0, view.state().speed), dt);
+    memory.lane = lane_memory(workspace, proposal, memory);
     if (memory.lane.change.active()) return plan_lane_change(view, memory.lane.change, motion, dt);
     return plan_to_center(view, memory.lane.change.bend, motion, dt, proposal.offset);
   }
@@ -246,7 +248,9 @@ struct ProposalPlanner {
     auto clock = budget;
     clock.start();
     std::optional<Slot> ego;
-    workspace.world = predicted_for<PredictionWorld>(view, driver, others, ego);
+    auto simulated = driver;
+    simulated.changing.leaves_room = driver.changing.leaves_room && lane_changes;
+    workspace.world = predicted_for<PredictionWorld>(view, simulated, others, ego);
     if (!ego) return SearchProblem::not_in_world;
     detail::expect_to_brake_on(*workspace.world, *ego, others);
     workspace.ego = *ego;
@@ -271,18 +275,16 @@ struct ProposalPlanner {
     };
     auto const& at = workspace.start.agents[*ego].lane;
     auto const& piece = workspace.world->roster().agents[*ego].road->corridors[at.corridor].pieces[at.piece];
-    auto const propose_change = [&](bool left) {
-      if (lane_changes && is_valid(piece.beside(left)) && driver.changing.marks_permit(view, left))
-        propose_at(0.0, piece.beside(left), left);
+    auto const propose_change = [&](CorridorId towards, bool left) {
+      if (lane_changes && is_valid(towards)) propose_at(0.0, towards, left);
     };
     // The change under way first: among equals, it goes on.
-    auto const under_way = memory.lane.change.target;
-    bool const goes_left = is_valid(under_way) && under_way == piece.left,
-               goes_right = is_valid(under_way) && under_way == piece.right;
-    if (goes_left || goes_right) propose_change(goes_left);
+    auto const under_way = memory.lane.change.target != at.corridor ? memory.lane.change.target : none<CorridorId>;
+    if (is_valid(under_way)) propose_change(under_way, view.place(under_way).lateral < 0.0);
     for (double const offset : offsets) propose_at(offset, none<CorridorId>, false);
-    if (!goes_left) propose_change(true);
-    if (!goes_right) propose_change(false);
+    for (bool const left : {true, false})
+      if (piece.beside(left) != under_way && driver.changing.marks_permit(view, left))
+        propose_change(piece.beside(left), left);
     return choose(workspace);
   }
 
@@ -290,14 +292,22 @@ struct ProposalPlanner {
   void begin(Workspace& workspace, ProposalScore const& proposal, Memory const& memory) const {
     auto& world = *workspace.world;
     world.restore(workspace.start);
-    auto& own = world.template memory<IdmProposal>(world.roster().agents[workspace.ego].id);
-    own = {static_cast<float>(proposal.speed_share), static_cast<float>(proposal.offset), proposal.towards,
-           memory.lane};
+    world.template memory<IdmProposal>(world.roster().agents[workspace.ego].id) = {
+        static_cast<float>(proposal.speed_share), static_cast<float>(proposal.offset), proposal.towards,
+        lane_memory(workspace, proposal, memory)};
+  }
+
+  /// The driver's memory with which a proposal begins: a change under way goes on only if it leads where the proposal
+  /// does. No rest between changes: whether to change is the planner's choice.
+  [[nodiscard]] static LaneChanging::Memory lane_memory(Workspace const& workspace, ProposalScore const& proposal,
+                                                        Memory const& memory) {
     auto const home = workspace.start.agents[workspace.ego].lane.corridor;
     auto const wanted = is_valid(proposal.towards) ? proposal.towards : home;
-    auto& change = own.lane.change;
-    if (change.target != wanted || proposal.offset != 0.0) change = {none<CorridorId>, 0.0f, change.bend};
-    if (!change.active()) own.lane.rest = 0.0f;
+    auto lane = memory.lane;
+    if (lane.change.target != wanted || proposal.offset != 0.0)
+      lane.change = {none<CorridorId>, 0.0f, lane.change.bend};
+    if (!lane.change.active()) lane.rest = 0.0f;
+    return lane;
   }
 
   /// Simulates a proposal until it collides, leaves the road or ends; with `all` the world is then stepped to the
