@@ -83,7 +83,7 @@ struct ProposalScore {
   bool leaves_road = false;
   double time_to_infraction = std::numeric_limits<double>::infinity();  ///< until one of these [s]
   double time_to_collision = 1.0;                                       ///< mark, 0 or 1
-  double comfort = 1.0;                                                 ///< mark, 0 or 1
+  double comfort = 1.0;                                                 ///< mark: share of the time within its limits
   double speed_limit = 1.0;                                             ///< mark: share of the time within the limit
   double route = 1.0;  ///< mark: 1 - the present urgency of a change from the lane where it ends
   double terms{};      ///< sum of the planner's `terms`
@@ -372,7 +372,7 @@ struct ProposalPlanner {
     bool const jerks = std::abs(along - last_acceleration) > scoring.jerk * step;  // false in the first step (NaN)
     if (along < scoring.lowest_acceleration || along > scoring.highest_acceleration || jerks ||
         std::abs(across) > scoring.lateral_acceleration)
-      proposal.comfort = 0.0;
+      proposal.comfort -= step / horizon;
     last_acceleration = along;
   }
 
