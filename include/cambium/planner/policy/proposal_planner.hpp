@@ -372,7 +372,7 @@ struct ProposalPlanner {
     bool const jerks = std::abs(along - last_acceleration) > scoring.jerk * step;  // false in the first step (NaN)
     if (along < scoring.lowest_acceleration || along > scoring.highest_acceleration || jerks ||
         std::abs(across) > scoring.lateral_acceleration)
-      proposal.comfort -= step / horizon;
+      proposal.comfort = std::max(0.0, proposal.comfort - step / horizon);  // the last step may reach beyond it
     last_acceleration = along;
   }
 
