@@ -96,10 +96,8 @@ Sim::Behavior driver(std::size_t number, double minimum_distance, std::uint64_t 
     return zip;
   }
   Search search{.others = idm_classic(idm)};
+  search.actions.idm = idm;
   search.reward.desired_speed = idm.desired_speed;
-  search.reward.speed_deviation = -1.0;
-  search.options.step = 2.0 * dt;
-  search.options.search.horizon = 10;
   search.options.budget.iterations = iterations;
   return search;
 }
