@@ -26,7 +26,7 @@ namespace lane_change {
 
 namespace cb = cambium;
 
-using PredictionSet = cb::BehaviorSet<cb::MacroActions, cb::IdmClassic, cb::IdmHypotheses>;
+using PredictionSet = cb::BehaviorSet<cb::MacroActions, cb::IdmClassic, cb::HeadwayHypotheses<cb::IdmClassic>>;
 using Prediction = cb::World<PredictionSet, cb::InterpolateExecution, cb::SingleTrack>;
 
 /// The roll-out of the paper's planner. Its "random" heuristic drew the same action in every step, because each draw
@@ -43,7 +43,7 @@ struct SameActionRollout {
 
 using PaperPlanner = cb::Mcts<Prediction, cb::MacroActions, cb::TrafficReward, cb::IdmClassic,
                               cb::MctsOptions<cb::Ucb1, SameActionRollout>>;
-using OwnPlanner = cb::Mcts<Prediction, cb::MacroActions, cb::TrafficReward, cb::IdmHypotheses,
+using OwnPlanner = cb::Mcts<Prediction, cb::MacroActions, cb::TrafficReward, cb::HeadwayHypotheses<cb::IdmClassic>,
                             cb::MctsOptions<cb::Ucb1, cb::RandomRollout>>;
 using Sim =
     cb::World<cb::BehaviorSet<PaperPlanner, OwnPlanner, cb::IdmClassic>, cb::InterpolateExecution, cb::SingleTrack>;

@@ -48,14 +48,14 @@ std::vector<Model> behaviors() {
           model<cb::MacroActions>("MacroActions"),
           model<cb::RandomMacroActions>("RandomMacroActions"),
           model<cb::DriverActions<cb::Intersection>>("DriverActions<Driver>"),
-          model<cb::IdmHypotheses>("IdmHypotheses"),
+          model<cb::HeadwayHypotheses<cb::IdmClassic>>("HeadwayHypotheses<IdmClassic>"),
           model<cb::IdmProposal>("IdmProposal")};
 }
 
 /// Planners are behaviours, too; they search in a predicted world.
 std::vector<Model> planners() {
-  using Set =
-      cb::BehaviorSet<cb::MacroActions, cb::IdmClassic, cb::IdmHypotheses, cb::IdmProposal, cb::ConstantAcceleration>;
+  using Set = cb::BehaviorSet<cb::MacroActions, cb::IdmClassic, cb::HeadwayHypotheses<cb::IdmClassic>, cb::IdmProposal,
+                              cb::ConstantAcceleration>;
   using World = cb::World<Set, cb::InterpolateExecution, cb::SingleTrack>;
   return {model<cb::Mcts<World>>("Mcts<PredictionWorld>"),
           model<cb::ProposalPlanner<World>>("ProposalPlanner<PredictionWorld>"),

@@ -35,7 +35,7 @@
 #include "cambium/behavior/following/adaptive_cruise_control.hpp"
 #include "cambium/behavior/following/constant_acceleration.hpp"
 #include "cambium/behavior/following/idm_classic.hpp"
-#include "cambium/behavior/following/idm_hypotheses.hpp"
+#include "cambium/behavior/following/headway_hypotheses.hpp"
 #include "cambium/behavior/following/idm_lane_tracking.hpp"
 #include "cambium/behavior/following/idm_stochastic.hpp"
 #include "cambium/behavior/human/human_driver.hpp"

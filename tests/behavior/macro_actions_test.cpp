@@ -14,8 +14,8 @@ using Kind = cb::MacroAction::Kind;
 
 namespace {
 
-using Behaviors =
-    cb::BehaviorSet<cb::MacroActions, cb::RandomMacroActions, cb::MotionPrimitives, cb::Safety, cb::IdmClassic>;
+using Behaviors = cb::BehaviorSet<cb::MacroActions, cb::DriverActions<cb::IdmClassic>, cb::RandomMacroActions,
+                                  cb::MotionPrimitives, cb::Safety, cb::IdmClassic>;
 using World = cb::World<Behaviors, cb::InterpolateExecution, cb::SingleTrack>;
 
 /// Three lanes at -1.75, -5.25 and -8.75 m; one agent in the middle one at 100 m and 10 m/s.
@@ -254,7 +254,12 @@ TEST_CASE("behind a standing vehicle, keeping the gap leaves room for a change w
     for (int i = 0; i < 160; ++i) REQUIRE(world.step(0.25));
     double const gap = world.observe(id).ahead()->gap;
     CHECK(gap == doctest::Approx(lanes == 1 ? 2.0 : 12.5).epsilon(0.02));
+    world.set_behavior(id, cb::DriverActions<cb::IdmClassic>{});  // likewise, where it drives
+    world.set_state(id, {0.0, 100.0, y, 0.0, 15.0});
+    for (int i = 0; i < 160; ++i) REQUIRE(world.step(0.25));
+    CHECK(world.observe(id).ahead()->gap == doctest::Approx(gap).epsilon(0.05));
     if (lanes == 1) continue;
+    world.set_behavior(id, cb::MacroActions{});
     world.memory<cb::MacroActions>(id).choose(number_of(Kind::change_left));
     for (int i = 0; i < 80; ++i) {
       REQUIRE(world.step(0.25));

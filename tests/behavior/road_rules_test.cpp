@@ -73,9 +73,9 @@ struct Gipps {
 };
 static_assert(!cb::HasIdmParameters<Gipps>);
 
-#define DRIVERS                                                                                                   \
-  cb::IdmClassic, cb::AdaptiveCruiseControl, cb::IdmLaneTracking, cb::IdmStochastic, cb::Mobil, cb::Intersection, \
-      cb::LaneChangeRuleBased, cb::ZipMerge, cb::MacroActions, cb::IdmHypotheses, cb::IdmProposal,                \
+#define DRIVERS                                                                                                        \
+  cb::IdmClassic, cb::AdaptiveCruiseControl, cb::IdmLaneTracking, cb::IdmStochastic, cb::Mobil, cb::Intersection,      \
+      cb::LaneChangeRuleBased, cb::ZipMerge, cb::MacroActions, cb::HeadwayHypotheses<cb::IdmClassic>, cb::IdmProposal, \
       cb::RssConformant<cb::IdmClassic>, cb::HumanDriver<cb::IdmClassic>, Gipps
 
 template <class Behavior>

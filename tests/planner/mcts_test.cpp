@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -23,10 +24,10 @@ using namespace cambium;
 
 namespace {
 
-using PredictionSet = BehaviorSet<MacroActions, IdmClassic, IdmHypotheses>;
+using PredictionSet = BehaviorSet<MacroActions, IdmClassic, HeadwayHypotheses<IdmClassic>>;
 using PredictionWorld = World<PredictionSet, InterpolateExecution, SingleTrack>;
 using Search = Mcts<PredictionWorld>;
-using Learning = Mcts<PredictionWorld, MacroActions, TrafficReward, IdmHypotheses>;
+using Learning = Mcts<PredictionWorld, MacroActions, TrafficReward, HeadwayHypotheses<IdmClassic>>;
 using Wandering = Mcts<PredictionWorld, MacroActions, TrafficReward, IdmClassic, MctsOptions<Ucb1, RandomRollout>>;
 using Sim = World<BehaviorSet<Search, Learning, Wandering, IdmClassic>, InterpolateExecution, SingleTrack>;
 
@@ -472,6 +473,35 @@ TEST_CASE("it learns about agents that do not choose while others choose with it
   }
 }
 
+TEST_CASE("who drives slowly on a free road, or across its lane, does not choose, and is expected to go on so") {
+  auto const with_other = [](double speed, double heading, std::optional<double> leader = {}) {
+    Sim world(support::straight_road(2, 2000.0));
+    world.add({.position = {60, -5.25}, .speed = 12, .behavior = IdmClassic{}});
+    world.add({.position = {95, -5.25}, .heading = heading, .speed = speed, .behavior = IdmClassic{}});
+    if (leader) world.add({.position = {110, -5.25}, .speed = *leader, .behavior = IdmClassic{}});
+    return world;
+  };
+  auto cooperative = quick(Search{}, 50);
+  cooperative.most_agents = 2;
+  Search::Workspace workspace;
+  auto const chooses = [&](Sim world) {
+    return cooperative.think(world.observe(ego), {}, workspace).choosing.size() == 2;
+  };
+  CHECK(chooses(with_other(12.0, 0.0)));
+  CHECK_FALSE(chooses(with_other(5.0, 0.0)));
+  CHECK(chooses(with_other(5.0, 0.0, 5.0)));
+  CHECK_FALSE(chooses(with_other(12.0, 0.1)));
+
+  Learning::Workspace learning;
+  auto const speed_later = [&](std::optional<double> leader) {
+    auto world = with_other(5.0, 0.0, leader);
+    auto const course = quick(Learning{}, 50).think(world.observe(ego), {}, learning).course;
+    return course.back().agents[Slot{1}].state.speed;
+  };
+  CHECK(speed_later({}) == doctest::Approx(5.0).epsilon(0.05));
+  CHECK(speed_later(12.0) > 7.0);  // its leader may explain its speed
+}
+
 TEST_CASE("beliefs start anew if the number of headway regions changes") {
   auto world = lane_change(0, IdmClassic{});
   auto planner = quick(Learning{}, 20);
@@ -537,7 +567,8 @@ TEST_CASE("headways of unknown agents are drawn uniformly") {
     auto state = workspace.domain().root();
     workspace.domain().sample_root(state, random);
     for (std::size_t k = 1; k < 10; ++k) {
-      double const headway = std::get_if<IdmHypotheses::Memory>(&state.frame.agents[k].memory)->time_headway;
+      double const headway =
+          std::get_if<HeadwayHypotheses<IdmClassic>::Memory>(&state.frame.agents[k].memory)->time_headway;
       sums[k] += headway;
       squares[k] += headway * headway;
     }

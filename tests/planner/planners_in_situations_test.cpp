@@ -37,15 +37,17 @@ using namespace cambium;
 
 namespace {
 
-using PredictionWorld = World<BehaviorSet<MacroActions, IdmProposal, IdmClassic, IdmHypotheses, ConstantAcceleration>,
-                              InterpolateExecution, SingleTrack>;
+using PredictionWorld =
+    World<BehaviorSet<MacroActions, IdmProposal, IdmClassic, HeadwayHypotheses<IdmClassic>, ConstantAcceleration>,
+          InterpolateExecution, SingleTrack>;
 using Search = Mcts<PredictionWorld, MacroActions, TrafficReward, ConstantAcceleration>;
-using Learning = Mcts<PredictionWorld, MacroActions, TrafficReward, IdmHypotheses>;
+using Learning = Mcts<PredictionWorld, MacroActions, TrafficReward, HeadwayHypotheses<IdmClassic>>;
 using Proposal = ProposalPlanner<PredictionWorld>;
 using PolicyTree = PolicyTreePlanner<PredictionWorld>;
 using Frenet = FrenetPlanner<PredictionWorld>;
 #define ALL_PLANNERS Search, Learning, Proposal, PolicyTree, Frenet
-// Those who expect the others to go on as they do. `IdmHypotheses` expects that a standing vehicle drives off.
+// Those who expect the others to go on as they do. `HeadwayHypotheses<IdmClassic>` expects that a standing vehicle
+// drives off.
 #define STEADY_PLANNERS Search, Proposal, PolicyTree, Frenet
 
 template <class Planner>
@@ -215,12 +217,15 @@ namespace {
 
 /// A search that, by default, may drive by the rules at junctions and expects the others to.
 using Actions = DriverActions<Intersection>;
-using Ruled = World<BehaviorSet<Actions, Intersection>, InterpolateExecution, SingleTrack>;
+using Ruled =
+    World<BehaviorSet<Actions, Intersection, HeadwayHypotheses<Intersection>>, InterpolateExecution, SingleTrack>;
 using RuledSearch = Mcts<Ruled>;
+using RuledLearning = Mcts<Ruled, Actions, TrafficReward, HeadwayHypotheses<Intersection>>;
 using RuledTree = PolicyTreePlanner<Ruled>;
 
-RuledSearch ruled_search() {
-  RuledSearch planner;
+template <class Planner = RuledSearch>
+Planner ruled_search() {
+  Planner planner;
   planner.options.budget.iterations = 200;
   return planner;
 }
@@ -281,7 +286,7 @@ TEST_CASE_TEMPLATE("it gets through traffic to its exit", Planner, RuledSearch, 
 
 TEST_CASE_TEMPLATE(
     "a planner that may drive by the rules of junctions gets through them, without a collision of its own", Planner,
-    RuledSearch, RuledTree) {
+    RuledSearch, RuledLearning, RuledTree) {
   for (auto const* const name : {"intersection_4way.xodr", "roundabout.xodr"})
     for (bool const lights : {false, true}) {
       CAPTURE(name);
@@ -293,8 +298,8 @@ TEST_CASE_TEMPLATE(
           count, [&](std::uint32_t number) { return site.sample(3, number, {.lights = lights}); },
           [](auto& ego) {
             Planner planner;
-            if constexpr (std::is_same_v<Planner, RuledSearch>) {
-              planner = ruled_search();
+            if constexpr (requires { planner.reward; }) {
+              planner = ruled_search<Planner>();
               planner.reward.desired_speed = 10.0;
             }
             planner.actions.driver.idm.desired_speed = planner.actions.macro.idm.desired_speed = 10.0;

@@ -74,9 +74,9 @@ struct cambium::ActionSet<Speeds> {
 
 namespace {
 
-using PredictionWorld =
-    World<BehaviorSet<MacroActions, IdmProposal, IdmClassic, IdmHypotheses, ConstantAcceleration, ReachSpeed>,
-          InterpolateExecution, SingleTrack>;
+using PredictionWorld = World<
+    BehaviorSet<MacroActions, IdmProposal, IdmClassic, HeadwayHypotheses<IdmClassic>, ConstantAcceleration, ReachSpeed>,
+    InterpolateExecution, SingleTrack>;
 
 /// A user's planner: among a few constant accelerations it picks the one that gets farthest without a collision, or
 /// brakes by the first one.
@@ -159,7 +159,7 @@ struct OwnLimits {
 };
 
 using Search = Mcts<PredictionWorld>;
-using Learning = Mcts<PredictionWorld, MacroActions, TrafficReward, IdmHypotheses>;
+using Learning = Mcts<PredictionWorld, MacroActions, TrafficReward, HeadwayHypotheses<IdmClassic>>;
 using OwnActions = Mcts<PredictionWorld, Speeds>;
 using Proposal = ProposalPlanner<PredictionWorld>;
 using PolicyTree = PolicyTreePlanner<PredictionWorld>;

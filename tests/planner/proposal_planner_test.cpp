@@ -104,6 +104,15 @@ TEST_CASE("it stops once at a stop sign, and remembers that it did") {
   CHECK(world.state(ego).x >= 300.0);
 }
 
+TEST_CASE("in a roundabout it does not wait for those who wait for it") {
+  Sim world(support::own_map("roundabout.xodr"));
+  ReachLane const west{world.map().nearest_lane({-60.0, 2.0, 3.14})->lane};
+  world.add({.position = {60.0, 1.75}, .heading = 3.14, .speed = 7.0, .behavior = Planner{}, .goal = west});
+  world.add({.position = {-2.8, 35.0}, .heading = -1.57, .behavior = ConstantAcceleration{}});
+  drive(world, 100);
+  CHECK(world.state(ego).x < -10.0);
+}
+
 TEST_CASE("it stops at an object that blocks its lane and passes one that leaves room") {
   auto blocked = two_lanes(0);
   blocked.add_object(obstacle(120, -1.75, 1.75));

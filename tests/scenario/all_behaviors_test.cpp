@@ -93,7 +93,8 @@ void check_entering(bool reaches_lane) {
 TEST_CASE_TEMPLATE(
     "a vehicle that enters or is set on its way into a lane goes on into it, without a jerk of the wheel", Behavior,
     cb::IdmClassic, cb::AdaptiveCruiseControl, cb::IdmStochastic, cb::Mobil, cb::LaneChangeRuleBased, cb::Intersection,
-    cb::MacroActions, cb::HumanDriver<cb::IdmClassic>, cb::HumanDriver<cb::Mobil>, cb::IdmHypotheses) {
+    cb::MacroActions, cb::HumanDriver<cb::IdmClassic>, cb::HumanDriver<cb::Mobil>,
+    cb::HeadwayHypotheses<cb::IdmClassic>) {
   check_entering<Behavior>(true);
 }
 
@@ -107,7 +108,8 @@ TEST_CASE_TEMPLATE("every behaviour can predict, allocates nothing once warm, an
                    cb::Mobil, cb::LaneChangeRuleBased, cb::ZipMerge, cb::Intersection,
                    cb::RssConformant<cb::IdmClassic>, cb::RssConformant<cb::Mobil>, cb::HumanDriver<cb::IdmClassic>,
                    cb::HumanDriver<cb::Mobil>, cb::Safety, cb::ConstantAcceleration, cb::ExternalInput,
-                   cb::MotionPrimitives, cb::MacroActions, cb::RandomMacroActions, cb::IdmHypotheses, cb::IdmProposal) {
+                   cb::MotionPrimitives, cb::MacroActions, cb::RandomMacroActions,
+                   cb::HeadwayHypotheses<cb::IdmClassic>, cb::IdmProposal) {
   auto world = traffic<Behavior>();
   using Set = cb::BehaviorSet<Behavior>;
   auto const begin = world.observe(static_cast<cb::AgentId>(1)).predict(cb::predict_all_as<Set>(Behavior{}));

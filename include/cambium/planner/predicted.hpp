@@ -106,7 +106,7 @@ template <class PredictionWorld, class Ego, class Others, class View>
 namespace detail {
 /// The desired speed of a driver, or of the driver that it wraps; null if it has none.
 template <class Driver>
-[[nodiscard]] double* desired_speed_of(Driver& driver) {
+[[nodiscard]] auto* desired_speed_of(Driver& driver) {
   if constexpr (requires { driver.desired_speed; })
     return &driver.desired_speed;
   else if constexpr (requires { driver.idm.desired_speed; })
@@ -114,20 +114,42 @@ template <class Driver>
   else if constexpr (requires { driver.driver; })
     return desired_speed_of(driver.driver);
   else
-    return nullptr;
+    return static_cast<double*>(nullptr);
 }
 
-/// Lets those keep their speed, to a whole m/s, who are faster than `others` want to drive, or, if `heeds_steady`, who
-/// drive steadily: nobody is expected to slow down, or to speed up, for no reason. O(agents).
+/// Whether an agent moves at a constant speed.
+template <class Record>
+[[nodiscard]] bool is_steady(Record const& seen) {
+  return seen.state.speed > 3.0 && std::abs(seen.action.acceleration) < 0.3;
+}
+
+/// Whether an agent moves across its lane, as during a lane change.
+template <class Record>
+[[nodiscard]] bool moves_across(Record const& seen) {
+  return std::abs(seen.lane.heading_error) * seen.state.speed > 0.4;  // [m/s]
+}
+
+/// Whether an agent drives steadily although nothing ahead hinders it, so that it must like its speed.
+template <class World>
+[[nodiscard]] bool likes_its_speed(World& world, Slot slot) {
+  auto const& seen = world.frame().agents[slot];
+  if (!is_steady(seen)) return false;
+  auto const ahead = world.observe(slot).ahead();
+  return !ahead || ahead->gap > 5.0 + 4.0 * seen.state.speed;
+}
+
+/// Lets those keep their speed, to a whole m/s, who are faster than `others` want to drive, or who drive steadily:
+/// nobody is expected to slow down, or to speed up, for no reason. If `learns`, a follower's steady speed is no
+/// reason: it tells what gap it keeps. O(agents).
 template <class World, class Others>
-void expect_to_keep_speed(World& world, Slot ego, Others others, bool heeds_steady) {
+void expect_to_keep_speed(World& world, Slot ego, Others others, bool learns) {
   auto* const desired = desired_speed_of(others);
   if (desired == nullptr) return;
   double const usual = *desired;
   for (Slot slot{}; index_of(slot) < world.size(); ++slot) {
     auto const& seen = world.frame().agents[slot];
-    bool const is_steady = heeds_steady && seen.state.speed > 3.0 && std::abs(seen.action.acceleration) < 0.3;
-    if (slot == ego || (seen.state.speed <= usual && !is_steady)) continue;
+    if (slot == ego || (seen.state.speed <= usual && !(learns ? likes_its_speed(world, slot) : is_steady(seen))))
+      continue;
     *desired = std::clamp(std::round(seen.state.speed), 1.0, 100.0);
     world.set_behavior(world.roster().agents[slot].id, others);
   }

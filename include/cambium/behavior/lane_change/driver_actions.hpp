@@ -13,7 +13,8 @@ namespace cambium {
 
 /// `MacroActions`, and one more choice: to drive like `Driver`, by default what a search expects of ego where it has
 /// nothing else in mind. With `Intersection` as the driver, a search can give way, wait its turn and stop at red lights
-/// without finding out by itself how that is done. A lane change in progress is completed first, keeping the gap.
+/// without finding out by itself how that is done. A lane change in progress is completed first, keeping the gap; and
+/// behind one who stands it keeps a gap that leaves room for a change (`LaneChangeCourse::may_pass`).
 template <BehaviorModel Driver>
 struct DriverActions {
   static constexpr std::uint8_t drive = MacroActions::nothing;  ///< chosen instead of the number of a macro action
@@ -60,9 +61,17 @@ struct DriverActions {
 
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
-    if (memory.drives && !memory.macro.change.active()) return driver.plan(view, memory.driver, dt);
+    if (memory.drives && !memory.macro.change.active() && !may_pass_next(view))
+      return driver.plan(view, memory.driver, dt);
     if (memory.drives) memory.macro.choose(macro.keeping_gap());
     return macro.plan(view, memory.macro, dt);
+  }
+
+ private:
+  template <class View>
+  [[nodiscard]] bool may_pass_next(View const& view) const {
+    auto const next = view.ahead({.merging = macro.rules.merging});
+    return next && macro.course.may_pass(view, *next);
   }
 };
 

@@ -14,7 +14,7 @@ namespace cambium {
 /// Follows the next vehicle in its path by IDM, at a share of its desired speed and an offset from the middle of its
 /// lane, or changes into a lane beside it as soon as that is safe (see `LaneChanging`). Share, offset and lane are its
 /// memory, which a planner sets to try several proposals (see `ProposalPlanner`). It passes road users in its lane that
-/// leave enough room, and brakes in time for bends.
+/// leave enough room, and brakes in time for bends. In a junction it gives way to nobody: the planner judges that.
 struct IdmProposal {
   struct Memory {
     float speed_share = 1.0f;               ///< of the driver's desired speed
@@ -26,7 +26,7 @@ struct IdmProposal {
     friend bool operator==(Memory const&, Memory const&) = default;
   };
 
-  IdmClassic driver{.rules = {.slow_for_bends = true}};
+  IdmClassic driver{.rules = {.slow_for_bends = true, .merging = Merging::by_rule}};
   double clearance = 0.2;
   LaneChanging changing{.rest = 0.0, .leaves_room = true};
 

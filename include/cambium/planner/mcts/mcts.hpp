@@ -13,8 +13,8 @@
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/behavior_set.hpp"
+#include "cambium/behavior/following/headway_hypotheses.hpp"
 #include "cambium/behavior/following/idm_classic.hpp"
-#include "cambium/behavior/following/idm_hypotheses.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/planner/mcts/belief.hpp"
 #include "cambium/planner/mcts/mcts_workspace.hpp"
@@ -84,15 +84,16 @@ struct BeliefMemory {
 /// - Cooperative search (decoupled UCT: Tak, Lanctot, Winands 2014; Lenz, Kessler, Knoll 2016): `most_agents` above 1.
 ///   The agents nearest to ego choose at the same time, each for its own reward plus `cooperation` times the rewards of
 ///   the others. Their goals are unknown, so the reward should hold what everybody wants, such as speed and no
-///   collision.
+///   collision. Those whose choice shows do not choose: who drives slowly although the road is free, such as a cyclist,
+///   or across its lane.
 /// - Search under a chance constraint (CC-POMCP: Lee et al. 2018): `options.search.constraint.limit` below 1. It
 ///   maximises the reward among courses whose estimated probability of a collision is within the limit; if there is
 ///   none, it minimises that probability. It learns the weight of a collision (a Lagrange multiplier), so the reward
 ///   needs none.
 /// - Search with hypotheses about the others (RSBG: Bernhard, Knoll 2020): `Others` is a `HypothesisModel`, such as
-///   `IdmHypotheses`, whose time headway is unknown but lies in one of a few regions. The probabilities of the
-///   hypotheses follow from what the agent does (Bayes). Each iteration draws one for each agent anew (root sampling:
-///   Silver, Veness 2010), so nodes stand for ego's actions only.
+///   `HeadwayHypotheses<IdmClassic>` or `<Intersection>`, drivers whose time headway is unknown but lies in one of a
+///   few regions. The probabilities of the hypotheses follow from what the agent does (Bayes). Each iteration draws one
+///   for each agent anew (root sampling: Silver, Veness 2010), so nodes stand for ego's actions only.
 template <class PredictionWorld, class Actions = detail::UsualActions<PredictionWorld>, class Reward = TrafficReward,
           class Others = detail::UsualDriver<PredictionWorld>,
           class Options = typename decltype(detail::usual_options<Actions>())::type>
@@ -187,10 +188,11 @@ struct Mcts {
     timed.budget.start();
     std::vector<Slot> slots;
     auto world = detail::world_to_search<PredictionWorld>(view, actions, course_of(memory), others, slots);
-    if (others_keep_speed && !slots.empty()) detail::expect_to_keep_speed(world, slots[0], others, !learns);
+    if (others_keep_speed && !slots.empty()) detail::expect_to_keep_speed(world, slots[0], others, learns);
     if (most_agents > 1 && !slots.empty())
       for (auto const slot : nearest_agents(world, slots[0], static_cast<std::size_t>(most_agents - 1), range)) {
         if (reward.judge(world, slot, options.step).ends) continue;  // its own course is over
+        if (is_slow_by_choice(world, slot) || detail::moves_across(world.frame().agents[slot])) continue;
         world.set_behavior(world.roster().agents[slot].id, ActionSet<Actions>::behavior(actions));
         slots.push_back(slot);
       }
@@ -206,6 +208,13 @@ struct Mcts {
       return workspace.run(Domain(std::move(world), slots, actions, reward, options.step, options.hold, weight), timed,
                            seed);
     }
+  }
+
+  [[nodiscard]] bool is_slow_by_choice(PredictionWorld& world, Slot slot) const {
+    auto const* const usual = detail::desired_speed_of(others);
+    constexpr double slow = 0.7;  // of what others like
+    return usual != nullptr && world.frame().agents[slot].state.speed < slow * *usual &&
+           detail::likes_its_speed(world, slot);
   }
 
   [[nodiscard]] static MemoryOf<Others>* memory_at(typename PredictionWorld::FrameType& frame, Slot slot) {

@@ -199,7 +199,7 @@ struct PolicyTreePlanner {
     auto const intended = Semantic::intended(others);
     workspace.world = predicted_for<PredictionWorld>(view, actions, intended, ego);
     if (!ego) return SearchProblem::not_in_world;
-    if constexpr (Semantic::drives) detail::expect_to_keep_speed(*workspace.world, *ego, intended, true);
+    if constexpr (Semantic::drives) detail::expect_to_keep_speed(*workspace.world, *ego, intended, false);
     workspace.ego = *ego;
     workspace.start = workspace.world->frame();
     workspace.has_goal = view.has_goal();

@@ -6,7 +6,6 @@
 #include <string>
 
 #include "cambium/behavior/behavior_model.hpp"
-#include "cambium/behavior/following/idm_classic.hpp"
 #include "cambium/core/distributions.hpp"
 
 namespace cambium {
@@ -22,30 +21,49 @@ concept HypothesisModel = BehaviorModel<B> && requires(B const driver, MemoryOf<
   driver.assume(memory, std::size_t{}, double{});
 };
 
-/// An IDM driver whose time headway is unknown but lies in one of a few regions of equal width: a planner's belief
-/// about another driver, see `Mcts`. The assumed headway is its memory, which a search draws anew.
-struct IdmHypotheses {
+namespace detail {
+/// The time headway of a driver, or of the driver that it wraps.
+template <class Driver>
+[[nodiscard]] double& time_headway_of(Driver& driver) {
+  if constexpr (requires { driver.time_headway; })
+    return driver.time_headway;
+  else if constexpr (requires { driver.idm.time_headway; })
+    return driver.idm.time_headway;
+  else
+    return time_headway_of(driver.driver);
+}
+}  // namespace detail
+
+/// A `Driver` by IDM whose time headway is unknown but lies in one of a few regions of equal width: a planner's belief
+/// about another driver, see `Mcts`. The assumed headway is its memory, which a search draws anew. With `Intersection`
+/// as the driver, those about whom it learns obey the rules of junctions.
+template <BehaviorModel Driver>
+struct HeadwayHypotheses {
   static constexpr std::size_t most_regions = 8;
+  static constexpr bool looks_beside = detail::looks_beside<Driver>();
+  static constexpr bool looks_around = detail::looks_around<Driver>();
+  static constexpr bool heeds_conflicts = detail::heeds_conflicts<Driver>();
 
   struct Memory {
     float time_headway = 1.5f;  ///< assumed [s]
-    IdmClassic::Memory driver{};
+    MemoryOf<Driver> driver{};
 
-    void was_set() { driver.was_set(); }
+    void fell_short(double way, bool left_course) { cambium::fell_short(driver, way, left_course); }
+    void was_set() { cambium::was_set(driver); }
 
     friend bool operator==(Memory const&, Memory const&) = default;
   };
 
-  IdmClassic driver{};
+  Driver driver{};
   double shortest_headway = 0.5;
   double longest_headway = 3.5;
   int regions = 4;
 
-  static constexpr char const* name = "idm_hypotheses";
-  static constexpr char const* summary = "as idm_classic, with an assumed time headway from one of a few regions";
-  static constexpr char const* source = "Treiber 2000; regions after Bernhard 2020";
+  static constexpr char const* name = "headway_hypotheses";
+  static constexpr char const* summary = "as another driver, with an assumed time headway from one of a few regions";
+  static constexpr char const* source = "regions after Bernhard 2020";
   static constexpr auto parameters() {
-    using P = IdmHypotheses;
+    using P = HeadwayHypotheses;
     return parameter_list(
         parameter("driver", &P::driver, "-", {}, "everything except the time headway"),
         parameter("shortest_headway", &P::shortest_headway, "s", Range{0, 20}, "begin of the first region"),
@@ -71,11 +89,10 @@ struct IdmHypotheses {
 
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
-    IdmClassic assumed = driver;
-    assumed.time_headway = static_cast<double>(memory.time_headway);
+    auto assumed = driver;
+    detail::time_headway_of(assumed) = static_cast<double>(memory.time_headway);
     return assumed.plan(view, memory.driver, dt);
   }
 };
-static_assert(HypothesisModel<IdmHypotheses>);
 
 }  // namespace cambium
