@@ -94,7 +94,7 @@ constexpr TrafficReward only_progress = [] {
 TEST_CASE("a course that is cut off has the reward's value, with the others' weighted by the cooperation") {
   Sim world(support::straight_road(1, 300.0));
   world.add({.position = {30, -1.75}, .speed = 12, .behavior = IdmClassic{}});
-  world.add({.position = {60, -1.75}, .speed = 10, .behavior = IdmClassic{}});
+  world.add({.position = {60, -1.75}, .speed = 11, .behavior = IdmClassic{}});
   for (double const lookahead : {2.0, 0.0}) {
     using Cooperative = Mcts<PredictionWorld, MacroActions, TrafficReward, IdmClassic, MctsOptions<Ucb1, NoRollout>>;
     Cooperative planner{.most_agents = 4};
@@ -105,7 +105,7 @@ TEST_CASE("a course that is cut off has the reward's value, with the others' wei
     planner.options.search = {.horizon = 1, .discount = 0.9};
     Cooperative::Workspace workspace;
     auto const report = planner.think(world.observe(ego), {}, workspace);
-    double const own = 12.0 * (0.2 + 0.9 * lookahead), other = 10.0 * (0.2 + 0.9 * lookahead);
+    double const own = 12.0 * (0.2 + 0.9 * lookahead), other = 11.0 * (0.2 + 0.9 * lookahead);
     CHECK(report.result.choice(0).mean_return == doctest::Approx(own + 0.5 * other));
     CHECK(report.result.choice(1).mean_return == doctest::Approx(other + 0.5 * own));
   }
