@@ -29,8 +29,13 @@ template <class Driver>
     return driver.time_headway;
   else if constexpr (requires { driver.idm.time_headway; })
     return driver.idm.time_headway;
-  else
+  else {
+    static_assert(
+        requires { driver.driver; },
+        "cambium::HeadwayHypotheses<Driver>: Driver must have a time_headway, as IdmClassic does, an idm that has one, "
+        "as Intersection does, or a driver that has one");
     return time_headway_of(driver.driver);
+  }
 }
 }  // namespace detail
 
