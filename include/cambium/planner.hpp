@@ -22,7 +22,7 @@
 /// **Node.** A point of the search tree: the frame after all actions on the way from the root. The arms of a node are
 /// the actions that an agent can choose there, each with its visits and its mean return. Where the tree ends, a
 /// roll-out continues the course to the horizon. If the others' parameters are drawn anew in every iteration
-/// (`HeadwayHypotheses<IdmClassic>`), a node has no frame of its own and stands only for the actions.
+/// (`HeadwayHypotheses`), a node has no frame of its own and stands only for the actions.
 ///
 /// **Macro action** (`MacroAction`). What an agent chooses at a node: keep the gap to the leader, stay in the lane at
 /// some acceleration, change left or right. A behaviour of the prediction world, `MacroActions`, carries it out. A lane

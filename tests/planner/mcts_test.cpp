@@ -473,7 +473,9 @@ TEST_CASE("it learns about agents that do not choose while others choose with it
   }
 }
 
-TEST_CASE("who drives slowly on a free road, or across its lane, does not choose, and is expected to go on so") {
+TEST_CASE(
+    "slow drivers on a free road, and those that change lanes, do not choose; the slow ones are expected to stay "
+    "slow") {
   auto const with_other = [](double speed, double heading, std::optional<double> leader = {}) {
     Sim world(support::straight_road(2, 2000.0));
     world.add({.position = {60, -5.25}, .speed = 12, .behavior = IdmClassic{}});
@@ -499,7 +501,7 @@ TEST_CASE("who drives slowly on a free road, or across its lane, does not choose
     return course.back().agents[Slot{1}].state.speed;
   };
   CHECK(speed_later({}) == doctest::Approx(5.0).epsilon(0.05));
-  CHECK(speed_later(12.0) > 7.0);  // its leader may explain its speed
+  CHECK(speed_later(12.0) > 7.0);  // its leader may have slowed it down
 }
 
 TEST_CASE("beliefs start anew if the number of headway regions changes") {

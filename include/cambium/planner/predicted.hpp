@@ -120,7 +120,7 @@ template <class Driver>
 /// Whether an agent moves at a constant speed.
 template <class Record>
 [[nodiscard]] bool is_steady(Record const& seen) {
-  return seen.state.speed > 3.0 && std::abs(seen.action.acceleration) < 0.3;
+  return seen.state.speed > 3.0 && std::abs(seen.action.acceleration) < 0.3;  // [m/s], [m/s^2]
 }
 
 /// Whether an agent moves across its lane, as during a lane change.
@@ -135,12 +135,12 @@ template <class World>
   auto const& seen = world.frame().agents[slot];
   if (!is_steady(seen)) return false;
   auto const ahead = world.observe(slot).ahead();
-  return !ahead || ahead->gap > 5.0 + 4.0 * seen.state.speed;
+  return !ahead || ahead->gap > 5.0 + 4.0 * seen.state.speed;  // [m], [s]
 }
 
 /// Lets those keep their speed, to a whole m/s, who are faster than `others` want to drive, or who drive steadily:
-/// nobody is expected to slow down, or to speed up, for no reason. If `learns`, a follower's steady speed is no
-/// reason: it tells what gap it keeps. O(agents).
+/// nobody is expected to slow down, or to speed up, for no reason. With `learns`, a planner that learns headways, only
+/// those count as steady whom nobody ahead hinders: a follower's speed shows the gap that it keeps. O(agents).
 template <class World, class Others>
 void expect_to_keep_speed(World& world, Slot ego, Others others, bool learns) {
   auto* const desired = desired_speed_of(others);

@@ -21,29 +21,16 @@ concept HypothesisModel = BehaviorModel<B> && requires(B const driver, MemoryOf<
   driver.assume(memory, std::size_t{}, double{});
 };
 
-namespace detail {
-/// The time headway of a driver, or of the driver that it wraps.
-template <class Driver>
-[[nodiscard]] double& time_headway_of(Driver& driver) {
-  if constexpr (requires { driver.time_headway; })
-    return driver.time_headway;
-  else if constexpr (requires { driver.idm.time_headway; })
-    return driver.idm.time_headway;
-  else {
-    static_assert(
-        requires { driver.driver; },
-        "cambium::HeadwayHypotheses<Driver>: Driver must have a time_headway, as IdmClassic does, an idm that has one, "
-        "as Intersection does, or a driver that has one");
-    return time_headway_of(driver.driver);
-  }
-}
-}  // namespace detail
-
 /// A `Driver` by IDM whose time headway is unknown but lies in one of a few regions of equal width: a planner's belief
 /// about another driver, see `Mcts`. The assumed headway is its memory, which a search draws anew. With `Intersection`
 /// as the driver, those about whom it learns obey the rules of junctions.
 template <BehaviorModel Driver>
 struct HeadwayHypotheses {
+  static_assert(
+      requires(Driver driver) { driver.time_headway; } || requires(Driver driver) { driver.idm.time_headway; },
+      "cambium::HeadwayHypotheses<Driver>: Driver must have a time_headway, as IdmClassic does, or an idm with one, as "
+      "Intersection does");
+
   static constexpr std::size_t most_regions = 8;
   static constexpr bool looks_beside = detail::looks_beside<Driver>();
   static constexpr bool looks_around = detail::looks_around<Driver>();
@@ -95,7 +82,11 @@ struct HeadwayHypotheses {
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
     auto assumed = driver;
-    detail::time_headway_of(assumed) = static_cast<double>(memory.time_headway);
+    auto const headway = static_cast<double>(memory.time_headway);
+    if constexpr (requires { assumed.time_headway; })
+      assumed.time_headway = headway;
+    else
+      assumed.idm.time_headway = headway;
     return assumed.plan(view, memory.driver, dt);
   }
 };

@@ -114,20 +114,24 @@ struct LaneChangeCourse {
   [[nodiscard]] LongitudinalMotion<double> leave_room(View const& view, RoadUser const& next,
                                                       LongitudinalMotion<double> const& motion, double dt) const {
     constexpr double moderate = 3.5, closest = 2.0;  // [m/s^2], [m]
-    if (!is_in_the_way(view, next)) [[likely]]
+    if (!may_pass(view, next)) [[likely]]
       return motion;
     double const room =
         detail::out_of_lane * least_length(view.shape()) * (1.0 - std::clamp(next.speed / slow, 0.0, 1.0));
     auto const bound =
         motion_before_stop(std::max(0.0, view.state().speed), next.gap - closest - room, moderate, moderate, dt);
-    return bound.speed < motion.speed && !detail::waits_at_line(view, next) ? bound : motion;
+    return bound.speed < motion.speed ? bound : motion;
   }
 
   /// Whether `next`, a road user in the own lane, stands or is about to, with a lane beside, and no line of a signal or
   /// a junction within 30 m beyond it.
   template <class View>
   [[nodiscard]] bool may_pass(View const& view, RoadUser const& next) const {
-    return is_in_the_way(view, next) && !detail::waits_at_line(view, next);
+    if (next.speed > slow) [[likely]]
+      return false;
+    auto const& piece = view.corridor().pieces[view.place().piece];
+    bool const has_lane_beside = piece.left != none<CorridorId> || piece.right != none<CorridorId>;
+    return has_lane_beside && !detail::waits_at_line(view, next);
   }
 
   /// A new change to lane corridor `target` at `speed` [m/s], within `room` [m] if possible. A slow long vehicle takes
@@ -173,14 +177,6 @@ struct LaneChangeCourse {
 
  private:
   static constexpr double slow = 4.0;  // [m/s] of one who stands or is about to
-
-  template <class View>
-  [[nodiscard]] static bool is_in_the_way(View const& view, RoadUser const& next) {
-    if (next.speed > slow) [[likely]]
-      return false;
-    auto const& piece = view.corridor().pieces[view.place().piece];
-    return piece.left != none<CorridorId> || piece.right != none<CorridorId>;
-  }
 };
 
 namespace detail {

@@ -84,8 +84,8 @@ struct BeliefMemory {
 /// - Cooperative search (decoupled UCT: Tak, Lanctot, Winands 2014; Lenz, Kessler, Knoll 2016): `most_agents` above 1.
 ///   The agents nearest to ego choose at the same time, each for its own reward plus `cooperation` times the rewards of
 ///   the others. Their goals are unknown, so the reward should hold what everybody wants, such as speed and no
-///   collision. Those whose choice shows do not choose: who drives slowly although the road is free, such as a cyclist,
-///   or across its lane.
+///   collision. Those whose intention shows do not choose: slow drivers on a free road, such as cyclists,
+///   and whoever moves across its lane.
 /// - Search under a chance constraint (CC-POMCP: Lee et al. 2018): `options.search.constraint.limit` below 1. It
 ///   maximises the reward among courses whose estimated probability of a collision is within the limit; if there is
 ///   none, it minimises that probability. It learns the weight of a collision (a Lagrange multiplier), so the reward
