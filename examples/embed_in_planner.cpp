@@ -21,10 +21,10 @@ struct Point {
   double x, y;
 };
 
-/// An object that perception tracks: centre of its box, in m, rad, m/s.
+/// An object that perception tracks: centre of its box, in m, rad, m/s, m/s^2.
 struct TrackedObject {
   unsigned id;
-  double x, y, yaw, speed, length, width;
+  double x, y, yaw, speed, acceleration, length, width;
 };
 
 /// The vehicle's pose and speed from localisation, at the middle of its rear axle.
@@ -65,6 +65,7 @@ World world_of(std::shared_ptr<cb::Map const> const& map, stack::Ego const& ego,
     world.add({.position = {o.x, o.y},
                .heading = o.yaw,
                .speed = o.speed,
+               .acceleration = o.acceleration,
                .shape = shape,
                .behavior = cb::IdmClassic{},
                .id = cb::AgentId{o.id}});
@@ -86,7 +87,7 @@ std::vector<std::vector<stack::Point>> borders() {
 
 stack::TrackedObject object(unsigned id, double lane_radius, double along, double speed, double length) {
   double const angle = along / lane_radius;
-  return {id, lane_radius * std::sin(angle), 300.0 - lane_radius * std::cos(angle), angle, speed, length, 2.0};
+  return {id, lane_radius * std::sin(angle), 300.0 - lane_radius * std::cos(angle), angle, speed, 0.0, length, 2.0};
 }
 
 void plan() {

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "cambium/behavior/junction/intersection.hpp"
 #include "cambium/execution/interpolate.hpp"
 #include "cambium/map/build/map_builder.hpp"
 #include "cambium/map/build/polyline_roads.hpp"
@@ -502,6 +503,34 @@ TEST_CASE(
   };
   CHECK(speed_later({}) == doctest::Approx(5.0).epsilon(0.05));
   CHECK(speed_later(12.0) > 7.0);  // its leader may have slowed it down
+}
+
+TEST_CASE("who is on foot is expected to go on at a walk, and does not choose") {
+  Sim world(support::straight_road(2, 400.0));
+  world.add({.position = {60, -5.25}, .speed = 10, .behavior = IdmClassic{}});
+  auto const walker = world.add({.position = {95, -12},
+                                 .heading = M_PI / 2,
+                                 .speed = 1.4,
+                                 .behavior = IdmClassic{},
+                                 .way = {{95, -12}, {95, 12}}});
+  auto planner = quick(Search{}, 50);
+  planner.most_agents = 2;
+  Search::Workspace workspace;
+  auto const report = planner.think(world.observe(ego), {}, workspace);
+  CHECK(report.choosing == std::vector{ego});
+  auto const slot = world.slot_of(walker);
+  for (auto const& frame : report.course) CHECK(frame.agents[slot].state.speed <= 1.41);
+}
+
+TEST_CASE("it plans among vehicles that are too large for the conflicts that its others heed") {
+  Sim world(support::own_map("intersection_4way.xodr"));
+  world.add({.position = {-60, -1.75}, .speed = 8, .behavior = IdmClassic{}});
+  geometry::Shape const convoy{.front = 16.0, .rear = 8.0, .left = 1.4, .right = 1.4};
+  world.add({.position = {60, 1.75}, .heading = M_PI, .speed = 8, .shape = convoy, .behavior = IdmClassic{}});
+  using Ruled = Mcts<World<BehaviorSet<MacroActions, Intersection>, InterpolateExecution, SingleTrack>, MacroActions,
+                     TrafficReward, Intersection>;
+  Ruled::Workspace workspace;
+  CHECK(quick(Ruled{}, 20).think(world.observe(ego), {}, workspace).chosen);
 }
 
 TEST_CASE("beliefs start anew if the number of headway regions changes") {

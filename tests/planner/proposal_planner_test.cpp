@@ -196,6 +196,24 @@ TEST_CASE("it expects those who brake in its direction to go on, and the others 
   }
 }
 
+TEST_CASE("a braking that was measured from outside counts as one that was driven") {
+  for (bool const is_set : {false, true}) {
+    CAPTURE(is_set);
+    Sim world(support::two_way_road(600.0));
+    world.add({.position = {40, -1.75}, .speed = 12, .behavior = Planner{}});
+    auto const other = world.add({.position = {140, -1.75},
+                                  .speed = 12,
+                                  .acceleration = is_set ? 0.0 : -3.0,
+                                  .behavior = ConstantAcceleration{}});
+    if (is_set) world.set_state(other, {.x = 140, .y = -1.75, .speed = 12}, Reroute::no, -3.0);
+    CHECK(world.record(other).action.acceleration == -3.0);
+    Planner::Workspace workspace;
+    auto const report = Planner{}.think(world.observe(ego), {}, workspace);
+    auto const slot = static_cast<Slot>(std::ranges::find(report.agents, other) - report.agents.begin());
+    CHECK(report.course.back().agents[slot].state.speed == 0.0);
+  }
+}
+
 TEST_CASE("a change under way is the first proposal, and goes on if nothing is better") {
   auto world = two_lanes(0);
   Planner::Workspace workspace;

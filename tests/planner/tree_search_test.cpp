@@ -599,6 +599,9 @@ TEST_CASE("costs are discounted in the tree and beyond it") {
   for (std::size_t const iterations : {1, 20}) {
     TreeSearch<Debt> search({}, {.horizon = 3, .constraint = {.discount = 0.5}}, {}, {}, {iterations});
     CHECK(search.run(0, 1).of(0)[0].mean_cost == doctest::Approx(0.25));
+    // A limit bounds a probability: then they count in full.
+    TreeSearch<Debt> bounded({}, {.horizon = 3, .constraint = {.discount = 0.5, .limit = 0.4}}, {}, {}, {iterations});
+    CHECK(bounded.run(0, 1).of(0)[0].mean_cost == doctest::Approx(1.0));
   }
 }
 

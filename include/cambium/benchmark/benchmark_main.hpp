@@ -331,7 +331,11 @@ int run_benchmark_program(Arguments const& arguments, std::vector<Contender<Worl
       is_drawn = true;
       if (count) recipe.scenarios = static_cast<std::uint32_t>(*count);
       if (seed) recipe.seed = *seed;
-      if (split == "train") recipe.first += first_to_train;
+      if (split != "train") return;
+      if (recipe.first >= first_to_train)
+        throw Error(file.string(), "a recipe begins at scenario " + std::to_string(recipe.first),
+                    "give it a `first` below 1000000000: those beyond are the training split");
+      recipe.first += first_to_train;
     }));
     if (sets.back().title.empty()) sets.back().title = file.stem().string();
     if (sets.back().scenarios.empty())

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <type_traits>
@@ -11,11 +12,13 @@
 
 #include "cambium/behavior/following/constant_acceleration.hpp"
 #include "cambium/core/error.hpp"
+#include "cambium/core/parameters.hpp"
 #include "cambium/core/plan.hpp"
 #include "cambium/evaluation/collision.hpp"
 #include "cambium/evaluation/course_end.hpp"
 #include "cambium/evaluation/terms.hpp"
 #include "cambium/geometry/angle.hpp"
+#include "cambium/world/detail/entering.hpp"
 #include "cambium/world/driven_to.hpp"
 #include "cambium/world/prediction.hpp"
 
@@ -117,6 +120,36 @@ template <class Driver>
     return static_cast<double*>(nullptr);
 }
 
+/// The range of the field of `object`, or of a struct in it, at `place`; every number if there is no such field.
+template <Described T>
+[[nodiscard]] Range range_at(T const& object, double const* place) {
+  Range range{std::numeric_limits<double>::lowest(), std::numeric_limits<double>::max()};
+  for_each_parameter<T>([&](auto const& entry) {
+    auto const& field = object.*entry.field;
+    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(field)>, double>) {
+      if (&field == place) range = entry.range;
+    } else if constexpr (Described<std::remove_cvref_t<decltype(field)>>) {
+      auto const inner = range_at(field, place);
+      range = {std::max(range.low, inner.low), std::min(range.high, inner.high)};
+    }
+  });
+  return range;
+}
+
+/// Whether an agent goes a way of its own beside the lanes or across, as on foot.
+template <class World>
+[[nodiscard]] bool is_beside_lanes(World const& world, Slot slot) {
+  return !is_valid(world.roster().agents[slot].road->corridors.front().pieces.front().lane);
+}
+
+/// Gives an agent a behaviour of the same model, unless it is too large for the conflicts that this model heeds.
+template <class World, class Others>
+void assume(World& world, Slot slot, Others const& others) {
+  auto const& agent = world.roster().agents[slot];
+  if (!is_too_large(world.map(), typename World::Behavior(others), agent.shape, *agent.road))
+    world.set_behavior(agent.id, others);
+}
+
 /// Whether an agent moves at a constant speed.
 template <class Record>
 [[nodiscard]] bool is_steady(Record const& seen) {
@@ -138,20 +171,26 @@ template <class World>
   return !ahead || ahead->gap > 5.0 + 4.0 * seen.state.speed;  // [m], [s]
 }
 
-/// Lets those keep their speed, to a whole m/s, who are faster than `others` want to drive, or who drive steadily:
-/// nobody is expected to slow down, or to speed up, for no reason. With `learns`, a planner that learns headways, only
-/// those count as steady whom nobody ahead hinders: a follower's speed shows the gap that it keeps. O(agents).
+/// Lets those keep their speed who are faster than `others` want to drive, who drive steadily, or who are beside the
+/// lanes, as on foot: nobody is expected to slow down, or to speed up, for no reason. The speed is rounded to a whole
+/// m/s, so that what is expected does not change with every breath; beside the lanes it is not. With `learns`, a
+/// planner that learns headways, only those count as steady whom nobody ahead hinders: a follower's speed shows the gap
+/// that it keeps. O(agents).
 template <class World, class Others>
 void expect_to_keep_speed(World& world, Slot ego, Others others, bool learns) {
   auto* const desired = desired_speed_of(others);
   if (desired == nullptr) return;
   double const usual = *desired;
+  auto const range = range_at(others, desired);
   for (Slot slot{}; index_of(slot) < world.size(); ++slot) {
     auto const& seen = world.frame().agents[slot];
-    if (slot == ego || (seen.state.speed <= usual && !(learns ? likes_its_speed(world, slot) : is_steady(seen))))
+    bool const is_on_foot = is_beside_lanes(world, slot);
+    if (slot == ego ||
+        (!is_on_foot && seen.state.speed <= usual && !(learns ? likes_its_speed(world, slot) : is_steady(seen))))
       continue;
-    *desired = std::clamp(std::round(seen.state.speed), 1.0, 100.0);
-    world.set_behavior(world.roster().agents[slot].id, others);
+    double const speed = std::max(1.0, is_on_foot ? seen.state.speed : std::round(seen.state.speed));
+    *desired = std::clamp(speed, range.low, range.high);
+    assume(world, slot, others);
   }
 }
 
@@ -169,7 +208,7 @@ void expect_to_brake_on(World& world, Slot ego, Others others) {
         continue;
       auto braking = others;
       braking.acceleration = std::max(seen, -hardest);
-      world.set_behavior(world.roster().agents[slot].id, braking);
+      assume(world, slot, braking);
     }
   }
 }

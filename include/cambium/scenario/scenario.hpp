@@ -108,6 +108,7 @@ template <class OtherWorld, class WorldType, class ToBehavior>
     other.agents.push_back({.position = spec.position,
                             .heading = spec.heading,
                             .speed = spec.speed,
+                            .acceleration = spec.acceleration,
                             .shape = spec.shape,
                             .behavior = behavior(spec),
                             .goal = spec.goal.given(),

@@ -71,7 +71,8 @@ struct AgentSpecOf {
                            std::numeric_limits<double>::quiet_NaN()};  ///< of the reference point [m]
   std::optional<double> heading{};                                     ///< [rad]; default: along the lane
   double speed = 0.0;                                                  ///< [m/s]
-  geometry::Shape shape{};                                             ///< default: a car
+  double acceleration = 0.0;  ///< as measured [m/s^2]; planners expect who brakes to go on
+  geometry::Shape shape{};    ///< default: a car
   detail::Given<Behavior, detail::SpecPart::behavior> behavior{};
   detail::Given<Goal, detail::SpecPart::goal> goal{};
   std::optional<map::Route> route{};                ///< default: the shortest to the goal; straight on without a goal
@@ -83,7 +84,7 @@ struct AgentSpecOf {
   detail::Given<std::optional<AgentId>, detail::SpecPart::id> id{};  ///< default: the next free id
 
   static constexpr char const* name = "agent";
-  /// What a file holds of it: all but `road`.
+  /// What a file holds of it: all but `road` and `acceleration`.
   static constexpr auto parameters() {
     using P = AgentSpecOf;
     auto const own = parameter_list(

@@ -279,18 +279,20 @@ class World {
   /// Sets the agent's state, for example to a perceived one, and puts the agent (back) into traffic. The agent stays on
   /// its route: in its lane corridor if the position fits, else in the nearest one. With `Reroute::yes` it gets the
   /// route that `add` would find there, to the rest of its goal (straight on without one), and its behaviour's memory
-  /// is reset, because it refers to the old route. Throws `WorldError` (the world is unchanged) if the agent is
+  /// is reset, because it refers to the old route. `acceleration` [m/s^2], as measured along the heading, is what
+  /// planners see of it: who brakes is expected to go on. Throws `WorldError` (the world is unchanged) if the agent is
   /// unknown, if a number is not finite, if the speed is outside 0 to 1000 m/s (measured speeds down to -0.1 count as
   /// 0: speeds along the heading are never negative), if the position is more than 5 m outside the lanes of the route,
   /// or if the heading points against their direction; with `Reroute::yes` also if no route leads to the goal, or if
   /// the agent is on a free corridor. O(lanes of the route); with `Reroute::yes` O(agents), plus routing.
-  void set_state(AgentId id, State state, Reroute reroute = Reroute::no) {
+  void set_state(AgentId id, State state, Reroute reroute = Reroute::no, double acceleration = 0.0) {
     auto const slot = slot_of(id);
     auto const where = detail::name_of(id);
     state.time = frame_.time;
     if (!is_finite(state))
       throw WorldError(where, "its position, heading or speed is not a finite number", "give metres, radians, m/s");
     state.speed = detail::checked_speed(state.speed, where);
+    detail::check_acceleration(acceleration, where);
     auto const& agent = roster_->agents[slot];
     auto& record = frame_.agents[slot];
     if (reroute == Reroute::yes) {
@@ -309,7 +311,7 @@ class World {
       Set::was_set(record.memory);
     }
     record.state = state;
-    record.action = {};
+    record.action = {acceleration, 0.0};
     record.execution = {};
     if (record.status != AgentStatus::driving) detail::forget_past(record);
     record.status = AgentStatus::driving;

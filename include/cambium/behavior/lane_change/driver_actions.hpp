@@ -14,7 +14,7 @@ namespace cambium {
 /// `MacroActions`, and one more choice: to drive like `Driver`, by default what a search expects of ego where it has
 /// nothing else in mind. With `Intersection` as the driver, a search can give way, wait its turn and stop at red lights
 /// without finding out by itself how that is done. A lane change in progress is completed first, keeping the gap; and
-/// behind one who stands it keeps a gap that leaves room for a change (`LaneChangeCourse::may_pass`).
+/// close behind one who stands it keeps a gap that leaves room for a change (`LaneChangeCourse::may_pass`).
 template <BehaviorModel Driver>
 struct DriverActions {
   static constexpr std::uint8_t drive = MacroActions::nothing;  ///< chosen instead of the number of a macro action
@@ -54,24 +54,23 @@ struct DriverActions {
                           parameter("driver", &P::driver, "-", {}, "who drives otherwise"));
   }
 
-  void check(std::string const& where) const {
-    if (macro.keeping_gap() == MacroActions::nothing)
-      throw ParameterError(where + ".macro.actions", "has no keep_gap, by which a lane change is completed", "add it");
-  }
-
   template <class View>
   [[nodiscard]] Plan<View> plan(View const& view, Memory& memory, double dt) const {
-    if (memory.drives && !memory.macro.change.active() && !may_pass_next(view))
-      return driver.plan(view, memory.driver, dt);
-    if (memory.drives) memory.macro.choose(macro.keeping_gap());
-    return macro.plan(view, memory.macro, dt);
+    if (!memory.drives) return macro.plan(view, memory.macro, dt);
+    if (memory.macro.change.active() || needs_room(view)) return macro.keep_gap(view, memory.macro, dt);
+    return driver.plan(view, memory.driver, dt);
   }
 
  private:
+  /// Whether the next road user in the lane is one to pass, and so near that the driver may have to brake for it.
   template <class View>
-  [[nodiscard]] bool may_pass_next(View const& view) const {
+  [[nodiscard]] bool needs_room(View const& view) const {
+    constexpr double gentle = 1.5;  // [m/s^2]
     auto const next = view.ahead({.merging = macro.rules.merging});
-    return next && macro.course.may_pass(view, *next);
+    if (!next || next->speed > LaneChangeCourse::slow) return false;
+    double const speed = std::max(0.0, view.state().speed);
+    return next->gap < speed * speed / (2.0 * gentle) + macro.course.least_length(view.shape()) &&
+           macro.course.may_pass(view, *next);
   }
 };
 

@@ -64,16 +64,16 @@ inline constexpr double longer_by_front_with_room = 8.0;
 /// is shorter, and because an early return is worth 0.1 m beyond the border.
 [[nodiscard]] inline double longer_by_front_back(double lateral) { return 4.0 * std::min(1.0, std::abs(lateral)); }
 
-/// Whether there is a line at which one waits, of a signal or before others who cross, from a road user in the own lane
-/// to 30 m beyond it.
+/// Whether there is a line at which one waits, of a signal or before others who cross, on the way to a road user in the
+/// own lane and up to 30 m beyond it.
 template <class View>
 CAMBIUM_NOINLINE [[nodiscard]] bool waits_at_line(View const& view, RoadUser const& user) {
-  double const far = user.s + user.front + 30.0;
+  double const near = std::min(view.place().s, user.s), far = user.s + user.front + 30.0;
   auto const& corridor = view.corridor();
   return std::ranges::any_of(corridor.signals,
-                             [&](auto const& signal) { return signal.line > user.s && signal.line < far; }) ||
+                             [&](auto const& signal) { return signal.line > near && signal.line < far; }) ||
          std::ranges::any_of(corridor.conflicts, [&](auto const& conflict) {
-           return conflict.hull().end > user.s && conflict.hold[1][1] < far;
+           return conflict.hull().end > near && conflict.hold[1][1] < far;
          });
 }
 
@@ -124,7 +124,7 @@ struct LaneChangeCourse {
   }
 
   /// Whether `next`, a road user in the own lane, stands or is about to, with a lane beside, and no line of a signal or
-  /// a junction within 30 m beyond it.
+  /// a junction before it or within 30 m beyond it.
   template <class View>
   [[nodiscard]] bool may_pass(View const& view, RoadUser const& next) const {
     if (next.speed > slow) [[likely]]
@@ -175,8 +175,7 @@ struct LaneChangeCourse {
     return {home, static_cast<float>(std::max(least, speed * std::min(shortest_duration, duration))), bend};
   }
 
- private:
-  static constexpr double slow = 4.0;  // [m/s] of one who stands or is about to
+  static constexpr double slow = 4.0;  ///< highest speed of one who stands or is about to [m/s]
 };
 
 namespace detail {

@@ -161,7 +161,20 @@ struct MacroActions {
       failed.status = PlanStatus::failed;
       return failed;
     }
-    auto const action = memory.chosen != nothing ? actions[memory.chosen] : MacroAction{};
+    return carry_out(view, memory, memory.chosen != nothing ? actions[memory.chosen] : MacroAction{}, dt);
+  }
+
+  /// As `plan` with the action `keep_gap`, which need not be one of `actions`; a change in progress is completed.
+  template <class View>
+  [[nodiscard]] Plan<View> keep_gap(View const& view, Memory& memory, double dt) const {
+    return carry_out(view, memory, {Kind::keep_gap}, dt);
+  }
+
+ private:
+  [[nodiscard]] static bool is_change(Kind kind) { return kind == Kind::change_left || kind == Kind::change_right; }
+
+  template <class View>
+  [[nodiscard]] Plan<View> carry_out(View const& view, Memory& memory, MacroAction const& action, double dt) const {
     double const speed = std::max(0.0, view.state().speed);
     course.renew(memory.change, view.shape(), speed);
     if (memory.rules.adrift) [[unlikely]] {
@@ -183,9 +196,6 @@ struct MacroActions {
     return plan_lane_change(view, memory.change,
                             rules.bound(view, idm, view.place().s, speed, wanted, dt, memory.rules), dt);
   }
-
- private:
-  [[nodiscard]] static bool is_change(Kind kind) { return kind == Kind::change_left || kind == Kind::change_right; }
 
   /// Target lane corridor of a change: the own one if a change to the other side is in progress.
   template <class View>

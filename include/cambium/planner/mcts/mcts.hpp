@@ -38,7 +38,7 @@ struct TrackedAgent {
 /// How it searches unless told otherwise: courses go on as a driver would, where the actions have one.
 template <class Actions>
 [[nodiscard]] constexpr auto usual_options() {
-  if constexpr (requires { ActionSet<Actions>::usual_drives; })
+  if constexpr (requires { requires ActionSet<Actions>::usual_drives; })
     return std::type_identity<MctsOptions<>>{};
   else
     return std::type_identity<MctsOptions<Puct, RandomRollout>>{};
@@ -83,9 +83,9 @@ struct BeliefMemory {
 /// - Single-agent search (UCT: Kocsis, Szepesvari 2006): the defaults.
 /// - Cooperative search (decoupled UCT: Tak, Lanctot, Winands 2014; Lenz, Kessler, Knoll 2016): `most_agents` above 1.
 ///   The agents nearest to ego choose at the same time, each for its own reward plus `cooperation` times the rewards of
-///   the others. Their goals are unknown, so the reward should hold what everybody wants, such as speed and no
-///   collision. Those whose intention shows do not choose: slow drivers on a free road, such as cyclists,
-///   and whoever moves across its lane.
+///   the others; costs likewise, of which the greatest counts. Their goals are unknown, so the reward should hold what
+///   everybody wants, such as speed and no collision. Those whose intention shows do not choose: slow drivers on a free
+///   road, such as cyclists, whoever moves across its lane, and whoever is on foot.
 /// - Search under a chance constraint (CC-POMCP: Lee et al. 2018): `options.search.constraint.limit` below 1. It
 ///   maximises the reward among courses whose estimated probability of a collision is within the limit; if there is
 ///   none, it minimises that probability. It learns the weight of a collision (a Lagrange multiplier), so the reward
@@ -136,13 +136,14 @@ struct Mcts {
         parameter("others", &P::others, "-", {}, "how the others are expected to behave"),
         parameter(
             "others_keep_speed", &P::others_keep_speed, "-", Range{0, 1},
-            "those who drive faster than the others like, or steadily (unless it learns about them), are expected to "
-            "like the speed they have"),
+            "those who drive faster than the others like, or steadily (if it learns about them: with nobody close "
+            "ahead), or are on foot, are expected to like the speed they have"),
         parameter("reward", &P::reward, "-", {}, "what ego and each agent that chooses with it wants"),
         parameter("options", &P::options, "-", {}, "settings of the search"),
         parameter("most_agents", &P::most_agents, "-", Range{1, 32}, "number of agents that choose, including ego"),
         parameter("range", &P::range, "m", non_negative, "agents farther away do not choose"),
-        parameter("cooperation", &P::cooperation, "-", Range{0, 1}, "weight of the others' rewards in an agent's own"),
+        parameter("cooperation", &P::cooperation, "-", Range{0, 1},
+                  "weight of the others' rewards and costs in an agent's own"),
         parameter("belief", &P::belief, "-", {}, "how it learns about the others if there are hypotheses about them"));
   }
 
@@ -192,7 +193,9 @@ struct Mcts {
     if (most_agents > 1 && !slots.empty())
       for (auto const slot : nearest_agents(world, slots[0], static_cast<std::size_t>(most_agents - 1), range)) {
         if (reward.judge(world, slot, options.step).ends) continue;  // its own course is over
-        if (is_slow_by_choice(world, slot) || detail::moves_across(world.frame().agents[slot])) continue;
+        if (is_slow_by_choice(world, slot) || detail::moves_across(world.frame().agents[slot]) ||
+            detail::is_beside_lanes(world, slot))
+          continue;
         world.set_behavior(world.roster().agents[slot].id, ActionSet<Actions>::behavior(actions));
         slots.push_back(slot);
       }

@@ -85,7 +85,8 @@ class MctsWorkspace {
   }
 
   /// Keeps the subtree below the best actions for the next `think`; returns whether there is one. Call it before the
-  /// world advances by one decision of the search (`MctsOptions::hold` steps). The next `think`, with the `memory` of
+  /// world advances by one step of the search, with `MctsOptions::hold` 1: the memory in a report is that after one
+  /// step, and with longer decisions there is no tree to keep. The next `think`, with the `memory` of
   /// the last report, continues the subtree if the world turns out as predicted, at the predicted time
   /// (`TrafficDomain::same_state`), and nothing else has changed in the world, the reward or the actions
   /// (`TrafficDomain::is_same_game`). What is expected of the others must not change either: without
@@ -94,7 +95,7 @@ class MctsWorkspace {
   /// no states.
   bool keep() {
     auto const& result = trees_.result();
-    keeps_ = !result.variation.empty() && trees_.keep({result.variation.data(), result.agents});
+    keeps_ = !result.variation.empty() && domain().hold() == 1 && trees_.keep({result.variation.data(), result.agents});
     return keeps_;
   }
 

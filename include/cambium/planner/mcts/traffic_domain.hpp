@@ -124,9 +124,15 @@ class TrafficDomain {
         state.over = state.over || judgement.ends;
       }
     }
-    double sum = 0.0;
-    for (auto const& outcome : outcomes) sum += outcome.reward;
-    for (auto& outcome : outcomes) outcome.reward += cooperation_ * (sum - outcome.reward);
+    double sum = 0.0, highest = 0.0;
+    for (auto const& outcome : outcomes) {
+      sum += outcome.reward;
+      highest = std::max(highest, outcome.cost);
+    }
+    for (auto& outcome : outcomes) {
+      outcome.reward += cooperation_ * (sum - outcome.reward);
+      outcome.cost = std::max(outcome.cost, cooperation_ * highest);
+    }
     world_.exchange(state.frame);
     state.over = state.over || !all_drive(state);
     return state.over;

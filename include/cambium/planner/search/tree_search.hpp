@@ -407,7 +407,7 @@ class TreeSearch {
                            random,
                            parameters_.horizon - depth,
                            parameters_.discount,
-                           parameters_.constraint.discount,
+                           parameters_.constraint.effective_discount(),
                            returns_,
                            costs_,
                            joint_,
@@ -429,7 +429,7 @@ class TreeSearch {
       for (std::size_t k = 0; k < agents; ++k) {
         auto const& outcome = path_outcomes_[d * agents + k];
         returns_[k] = outcome.reward + parameters_.discount * returns_[k];
-        costs_[k] = std::min(1.0, outcome.cost + parameters_.constraint.discount * costs_[k]);
+        costs_[k] = std::min(1.0, outcome.cost + parameters_.constraint.effective_discount() * costs_[k]);
         scales_[k].include(returns_[k], costs_[k]);
         auto const arms = tree_.arms(path_[d], k);
         auto& arm = arms[path_arms_[d * agents + k]];

@@ -55,12 +55,17 @@ struct WideningSchedule {
 /// How costs count beside returns, which are scaled to [0, 1] without them: what must not happen neither stretches that
 /// scale nor drowns in it. With a limit, the weight is only where the search begins: it learns the Lagrange multiplier
 /// that keeps the expected cost of the chosen course within the limit (Lee et al. 2018, CC-POMCP). If an event that
-/// must not happen costs 1, this is a chance constraint.
+/// must not happen costs 1, this is a chance constraint: costs then count in full, whenever they come. Without a limit,
+/// a late event may count less than an early one. For the worst course without one to be better than that with one at
+/// the horizon, the weight must be above 1 / discount^(horizon - 1).
 struct CostConstraint {
-  double weight = 2.0;
+  double weight = 2.5;
   double discount = 1.0;
   double limit = 1.0;
   double step = 1.0;
+
+  /// The discount that counts.
+  [[nodiscard]] double effective_discount() const { return limit < 1.0 ? 1.0 : discount; }
 
   static constexpr char const* name = "cost_constraint";
   static constexpr char const* summary =
@@ -70,7 +75,8 @@ struct CostConstraint {
     return parameter_list(
         parameter("weight", &CostConstraint::weight, "-", Range{0, 1e3},
                   "of a cost of 1, in units of the range of all returns"),
-        parameter("discount", &CostConstraint::discount, "-", Range{0, 1}, "worth of a cost one step later"),
+        parameter("discount", &CostConstraint::discount, "-", Range{0, 1},
+                  "worth of a cost one step later; with a limit: 1"),
         parameter("limit", &CostConstraint::limit, "-", Range{0, 1}, "greatest expected cost; 1: none"),
         parameter("step", &CostConstraint::step, "-", Range{0, 1e3},
                   "step size of the multiplier, divided by the square root of the iterations"));
@@ -115,7 +121,7 @@ struct TreeSearchParameters {
         parameter("action_widening", &P::action_widening, "-", {}, "number of actions tried from a continuum"),
         parameter("outcome_widening", &P::outcome_widening, "-", {},
                   "number of outcomes of the same actions that become nodes, if steps are random"),
-        parameter("constraint", &P::constraint, "-", {}, "limit on the cost of the chosen course"));
+        parameter("constraint", &P::constraint, "-", {}, "what costs count for beside returns, and a limit on them"));
   }
 
   /// Throws `ParameterError` if the bounds of the returns are in the wrong order.

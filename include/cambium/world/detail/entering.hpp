@@ -117,6 +117,8 @@ template <class World>
   check_observer(spec.observer, where);
   auto const [road, lane, place] = entrance(map, roster, entering, where);
   if (is_too_large(map, spec.behavior.given(), spec.shape, *road)) refuse_too_large(where);
+  check_acceleration(spec.acceleration, where);
+  record.action.acceleration = spec.acceleration;
   record.lane = place;
   record.state.time = time;
   record.state.x = spec.position.x();

@@ -23,6 +23,9 @@ inline constexpr double standstill_noise = 0.1;
 /// negative beyond noise, or too large.
 [[nodiscard]] double checked_speed(double speed, std::string const& where);
 
+/// Throws `WorldError` unless `acceleration` [m/s^2] is a number within 100 m/s^2.
+void check_acceleration(double acceleration, std::string const& where);
+
 /// The distance of a place outside its lane corridor [m]; 0 inside.
 [[nodiscard]] double distance_outside(map::RoadCorridor const& road, map::LanePlace const& at);
 

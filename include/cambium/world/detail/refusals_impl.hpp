@@ -24,6 +24,12 @@ CAMBIUM_COLD double checked_speed(double speed, std::string const& where) {
                    "give metres per second along the heading, 0 for a vehicle that reverses");
 }
 
+CAMBIUM_COLD void check_acceleration(double acceleration, std::string const& where) {
+  if (std::abs(acceleration) <= 100.0) return;
+  throw WorldError(where, "its acceleration is " + rounded_text(acceleration) + ", not a number from -100 to 100 m/s^2",
+                   "give metres per second squared along the heading, 0 if it is unknown");
+}
+
 CAMBIUM_COLD double distance_outside(map::RoadCorridor const& road, map::LanePlace const& at) {
   auto const& corridor = road.corridors[at.corridor];
   auto const widths = corridor.widths_at(std::clamp(at.s, 0.0, corridor.length()), at.segment);
