@@ -171,7 +171,8 @@ TEST_CASE("a planner reports what it found") {
   REQUIRE(report.candidates.size() == report.result.of(0).size());
   CHECK(report.chosen == report.result.best[0]);
   for (std::size_t i = 0; i < report.candidates.size(); ++i)
-    CHECK(report.candidates[i].score == report.result.of(0)[i].mean_return);
+    CHECK(report.candidates[i].score ==
+          workspace.search().scales()[0].score(report.result.of(0)[i].mean_return, report.result.of(0)[i].mean_cost));
   CHECK(report.candidates.front().name == "keep_gap");
   CHECK(report.agents.size() == 6);
   REQUIRE(report.course.size() > report.result.variation.size());
@@ -383,6 +384,27 @@ TEST_CASE("beliefs are learnt from observations that come early or late, and the
       if (jitter == 0.0) on_time = belief->probability(right);
       CHECK(belief->probability(right) == doctest::Approx(on_time).epsilon(0.1));
     }
+  }
+}
+
+TEST_CASE("it learns however often it is called") {
+  for (double const period : {1.0 / 30.0, 0.05, 0.1, 0.3, 0.31, 0.5}) {
+    CAPTURE(period);
+    Sim world(support::straight_road(1, 2000.0));
+    world.add({.position = {60, -1.75}, .speed = 12, .behavior = IdmClassic{}});
+    world.add({.position = {90, -1.75}, .speed = 14, .behavior = IdmClassic{.time_headway = 2.5}});
+    world.add({.position = {115, -1.75}, .speed = 10, .behavior = IdmClassic{.desired_speed = 10}});
+    auto const planner = quick(Learning{}, 20);
+    Learning::Workspace workspace;
+    Learning::Memory memory;
+    while (world.time() < 3.0) {
+      memory = planner.think(world.observe(ego), memory, workspace).memory;
+      REQUIRE(world.step(period));
+    }
+    auto const* belief = memory.belief(AgentId{1});
+    REQUIRE(belief != nullptr);
+    CHECK(belief->most_likely() == 2);
+    CHECK(belief->probability(2) > 0.5);
   }
 }
 

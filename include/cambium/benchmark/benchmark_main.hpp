@@ -95,6 +95,20 @@ namespace detail {
   return options;
 }
 
+/// The file of that name in a folder of `folder`; nothing if there is none, or several.
+[[nodiscard]] inline std::optional<std::filesystem::path> nested_set(std::filesystem::path const& folder,
+                                                                     std::string const& name) {
+  std::optional<std::filesystem::path> found;
+  if (name.empty() || !std::filesystem::is_directory(folder)) return found;
+  for (auto const& inner : std::filesystem::directory_iterator(folder)) {
+    auto const file = inner.path() / (name + ".json");
+    if (!inner.is_directory() || !std::filesystem::is_regular_file(file)) continue;
+    if (found) return std::nullopt;
+    found = file;
+  }
+  return found;
+}
+
 /// The scenario files that `--set` names: files, or in `folder` those of a folder, or one of the folder `usual`.
 [[nodiscard]] inline std::vector<std::filesystem::path> set_files(std::vector<std::string> const& names,
                                                                   std::filesystem::path const& folder,
@@ -106,6 +120,10 @@ namespace detail {
         std::ranges::find_if(places, [](auto const& path) { return std::filesystem::is_regular_file(path); });
     if (place != std::end(places)) {
       files.push_back(*place);
+      continue;
+    }
+    if (auto const nested = nested_set(folder, name)) {
+      files.push_back(*nested);
       continue;
     }
     if (name.empty() || !std::filesystem::is_directory(folder / name))
@@ -352,6 +370,12 @@ int run_benchmark_program(Arguments const& arguments, std::vector<Contender<Worl
   if (options.executor.is_worker) {
     for (auto const& set : sets) serve_benchmark(set, contenders, options);
     return 0;
+  }
+  if (auto const json = arguments.text("--json")) {
+    if (arguments.has("--only")) throw Error("--json", "goes with runs of sets, not with --only", "leave it out");
+    if (auto const into = std::filesystem::absolute(*json).parent_path();
+        json->empty() || !std::filesystem::is_directory(into) || std::filesystem::is_directory(*json))
+      throw Error("--json '" + *json + "'", "names no file in a folder that exists", "name one");
   }
   if (auto const only = arguments.text("--only"))
     return run_only(sets, contenders, options.plan_limit, *only, arguments.text("--replay"));

@@ -11,10 +11,21 @@
 
 namespace cambium {
 
+namespace detail {
+/// A model with its defaults, but that it slows down for bends if it can.
+template <class Model>
+[[nodiscard]] Model slowing_for_bends() {
+  Model model{};
+  if constexpr (requires { model.rules.slow_for_bends; }) model.rules.slow_for_bends = true;
+  return model;
+}
+}  // namespace detail
+
 /// `MacroActions`, and one more choice: to drive like `Driver`, by default what a search expects of ego where it has
 /// nothing else in mind. With `Intersection` as the driver, a search can give way, wait its turn and stop at red lights
 /// without finding out by itself how that is done. A lane change in progress is completed first, keeping the gap; and
-/// close behind one who stands it keeps a gap that leaves room for a change (`LaneChangeCourse::may_pass`).
+/// close behind one who stands it keeps a gap that leaves room for a change (`LaneChangeCourse::may_pass`). By default
+/// both slow down for bends.
 template <BehaviorModel Driver>
 struct DriverActions {
   static constexpr std::uint8_t drive = MacroActions::nothing;  ///< chosen instead of the number of a macro action
@@ -42,8 +53,8 @@ struct DriverActions {
     friend bool operator==(Memory const&, Memory const&) = default;
   };
 
-  MacroActions macro{};
-  Driver driver{};
+  MacroActions macro = detail::slowing_for_bends<MacroActions>();
+  Driver driver = detail::slowing_for_bends<Driver>();
 
   static constexpr char const* name = "driver_actions";
   static constexpr char const* summary = "carries out what a search chooses: a macro action, or to drive like a driver";

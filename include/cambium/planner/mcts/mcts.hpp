@@ -160,8 +160,10 @@ struct Mcts {
   }
 
   /// See `PlannerModel`. The report's course is the principal variation; after its end, all agents drive on without a
-  /// manoeuvre. A candidate's score is its mean return; `decidedness` is the share of visits of the chosen action minus
-  /// that of the next best. After `workspace.keep()` the search continues the last tree, see there.
+  /// manoeuvre. A candidate's score is its mean return less what its costs count (see `CostConstraint`), both in shares
+  /// of their ranges in this search, from 0 to 1; 0 for one that was not tried. `decidedness` is the share of visits of
+  /// the chosen action minus that of the next best. After `workspace.keep()` the search continues the last tree, see
+  /// there.
   template <class View>
   [[nodiscard]] Report think(View const& view, Memory const& memory, Workspace& workspace) const {
     check_parameters(*this);
@@ -226,14 +228,20 @@ struct Mcts {
 
   /// Updates the beliefs by what the others did since the last observation, and predicts what they will do until the
   /// next one, in `dt` [s]. Returns the belief about each. An observation that comes early or late, by up to half of
-  /// `dt`, is compared with what was expected for its own time.
+  /// that, is compared with what was expected for its own time; one that comes even earlier is left for the next; after
+  /// one that comes even later, others are expected to come as late.
   [[nodiscard]] auto learn(PredictionWorld const& world, Slot ego, Memory& memory, double dt) const {
     auto frame = world.frame();
     auto near = nearest_agents(world, ego, Memory::capacity, belief.range);
     std::erase_if(near, [&](Slot slot) { return memory_at(frame, slot) == nullptr; });  // they choose themselves
     std::size_t const hypotheses = others.hypotheses();
+    bool const has_expected = memory.expected_at > memory.observed_at;
+    double const since = world.time() - memory.observed_at;
     double const delay = (world.time() - memory.expected_at) / (memory.expected_at - memory.observed_at);
-    bool const was_expected = memory.expected_at > memory.observed_at && std::abs(delay) <= 0.5;
+    constexpr double early = -0.5 - 1e-6, late = 0.5 + 1e-6, latest = 1.0;  // [-], [-], [s]
+    bool const is_too_early = has_expected && since >= 0.0 && delay < early;
+    bool const was_expected = has_expected && delay >= early && delay <= late;
+    if (has_expected && delay > late && since <= latest) dt = since;
     decltype(memory.tracked) tracked{};
     std::vector<typename Domain::Unknown> unknowns;
     for (std::size_t i = 0; i < near.size(); ++i) {
@@ -250,6 +258,7 @@ struct Mcts {
     for (Slot slot{}; index_of(slot) < world.size(); ++slot)
       if (memory_at(frame, slot) != nullptr && std::ranges::find(near, slot) == near.end())
         unknowns.push_back({slot, Belief(hypotheses)});
+    if (is_too_early) return unknowns;
     memory.tracked = tracked;
     expect(world, near, memory, dt);
     return unknowns;

@@ -152,7 +152,8 @@ class MctsWorkspace {
         refused = "not tried";
       else if (!is_chosen && detail::estimated_cost(arm) > limit)
         refused = "risk " + detail::rounded_text(detail::estimated_cost(arm)) + " above " + detail::rounded_text(limit);
-      report.candidates.push_back({Set::text(domain.action_set(), arm.action), arm.mean_return, std::move(refused)});
+      double const score = arm.visits == 0 ? 0.0 : search().scales()[0].score(arm.mean_return, arm.mean_cost);
+      report.candidates.push_back({Set::text(domain.action_set(), arm.action), score, std::move(refused)});
       report.is_cut_short = report.is_cut_short || arm.visits == 0;
     }
     report.chosen = report.result.best[0];
