@@ -74,7 +74,7 @@ struct SemanticActions<DriverActions<Driver>> {
 
   static DriverActions<Driver> usual() {
     DriverActions<Driver> result{.macro = semantic_actions()};
-    result.macro.rules.obey_signals = true;
+    result.macro.rules.obey_signals = result.macro.rules.slow_for_bends = true;
     return result;
   }
   static DriverActions<Driver> intended(Driver const& others) {
