@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <tuple>
 
+#include "cambium/core/described.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/line.hpp"
 #include "cambium/map/corridor/corridor.hpp"
@@ -21,6 +22,19 @@ struct LanePlace {
   std::uint32_t segment{};  ///< of the centre line: the hint for the next projection
   CorridorId corridor = none<CorridorId>;
   PieceId piece{};
+
+  static constexpr char const* name = "lane_place";
+  static constexpr auto parameters() {
+    using P = LanePlace;
+    return parameter_list(
+        parameter("s", &P::s, "m", any_finite, "along the centre line of the lane corridor"),
+        parameter("lateral", &P::lateral, "m", any_finite, "from the centre line, left positive"),
+        parameter("heading_error", &P::heading_error, "rad", any_finite, "vehicle's heading minus the lane's"),
+        parameter("index", &P::index, "-", any_finite, "the map-wide lane coordinate"),
+        parameter("segment", &P::segment, "-", Range{0, 4294967295.0}, "of the centre line: a hint"),
+        parameter("corridor", &P::corridor, "-", {}, "number of the lane corridor"),
+        parameter("piece", &P::piece, "-", {}, "number of its piece"));
+  }
 
   friend bool operator==(LanePlace const&, LanePlace const&) = default;
 };
