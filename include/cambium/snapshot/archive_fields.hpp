@@ -133,9 +133,14 @@ template <class Value>
 [[nodiscard]] constexpr auto stored(Value value) {
   if constexpr (std::is_enum_v<Value>)
     return static_cast<std::underlying_type_t<Value>>(value);
+  else if constexpr (std::is_same_v<Value, bool>)
+    return static_cast<unsigned char>(value);
   else
     return value;
 }
+
+template <class Value>
+inline constexpr bool is_long_unsigned = std::is_unsigned_v<decltype(stored(Value{}))> && sizeof(Value) >= 4;
 
 /// The nested tags of an archive that has some, for readers of the file.
 class ArchiveTags {
@@ -181,16 +186,18 @@ class FieldWriter {
     if constexpr (Described<Value>) {
       tagged(tags_, key, [&] { write_struct(value, like); });
     } else if constexpr (std::is_same_v<Value, std::string>) {
-      put(key, value);
+      put_text(key, value);
     } else if constexpr (Variant<Value>) {
       tagged(tags_, key, [&] { write_alternative(value); });
     } else if constexpr (Optional<Value>) {
       tagged(tags_, key, [&] {
-        put("present", value.has_value());
+        put("present", stored(value.has_value()));
         if (value) write("value", *value, like != nullptr && *like ? &**like : nullptr);
       });
     } else if constexpr (ParameterList<Value>) {
       tagged(tags_, key, [&] { write_list(value, like); });
+    } else if constexpr (is_long_unsigned<Value>) {
+      put_whole(key, static_cast<std::uint64_t>(value));
     } else {
       put(key, stored(value));
     }
@@ -202,17 +209,26 @@ class FieldWriter {
     archive_ << boost::serialization::make_nvp(key, value);
   }
 
-  void put_count(char const* key, std::size_t count) {
-    put(key, static_cast<unsigned char>(count < 255 ? count : 255));
-    if (count >= 255) put("count", static_cast<std::uint32_t>(count));
+  /// A whole number, of which most are small: in one byte, or in 9.
+  void put_whole(char const* key, std::uint64_t number) {
+    put(key, static_cast<unsigned char>(number < 255 ? number : 255));
+    if (number >= 255) put("whole", number);
+  }
+
+  /// Letter by letter where nobody reads it: of a text as a whole, Boost believes any length.
+  void put_text(char const* key, std::string const& text) {
+    if (tags_ != nullptr) return put(key, text);
+    put_whole(key, text.size());
+    for (char const letter : text) put(key, letter);
   }
 
   template <Described T>
   void write_struct(T const& object, T const* like) {
     constexpr std::size_t fields = field_count<T>();
+    static_assert(fields < 128, "cambium: a struct with more than 127 fields is too large for snapshots; nest some");
     if (types_.shape(&type_key<T>) == nullptr) {
-      put_count("version", version_of<T>());
-      put_count("fields", fields);
+      put("fields", static_cast<unsigned char>(fields + (version_of<T>() > 0 ? 128 : 0)));
+      if (version_of<T>() > 0) put_whole("version", version_of<T>());
       types_.add(ArchivedTypes::Shape{&type_key<T>, version_of<T>(), fields});
     }
     std::array<unsigned char, (fields + 7) / 8> differs{};
@@ -244,10 +260,10 @@ class FieldWriter {
                           "give it `name` and `parameters()`");
     auto const* const key = &type_key<std::variant<Models...>>;
     auto const number = types_.number_of(key, index);
-    put_count("alternative", number);
+    put_whole("alternative", number);
     if (number == types_.alternatives().size()) {
       types_.alternatives().push_back({key, index});
-      put("name", alternative_name(names, index));
+      put_text("name", alternative_name(names, index));
     }
     with_alternative(value, [&]<class Model>(Model const& model, auto) {
       if constexpr (Described<Model>) {
@@ -261,7 +277,7 @@ class FieldWriter {
   void write_list(Value const& value, Value const* like) {
     auto const elements = elements_of(value);
     auto const known = like != nullptr ? elements_of(*like) : std::span<ElementOf<Value> const>();
-    put_count("length", elements.size());
+    put_whole("length", elements.size());
     for (std::size_t i = 0; i < elements.size(); ++i)
       write("item", elements[i], i < known.size() ? &known[i] : i > 0 ? &elements[i - 1] : nullptr);
   }
@@ -284,23 +300,26 @@ class FieldReader {
     if constexpr (Described<Value>) {
       tagged(tags_, key, [&] { read_struct(value, like); });
     } else if constexpr (std::is_same_v<Value, std::string>) {
-      get(key, value);
+      value = text(key);
     } else if constexpr (Variant<Value>) {
       tagged(tags_, key, [&] { read_alternative(value); });
     } else if constexpr (Optional<Value>) {
       tagged(tags_, key, [&] {
-        bool present = false;
-        get("present", present);
-        if (!present) return value.reset();
+        if (whole("present", 1) == 0) return value.reset();
         if (!value) value.emplace();
         read("value", *value, info, like != nullptr && *like ? &**like : nullptr);
       });
     } else if constexpr (ParameterList<Value>) {
       tagged(tags_, key, [&] { read_list(value, info, like); });
     } else {
-      auto held = stored(Value{});
-      get(key, held);
-      value = static_cast<Value>(held);
+      if constexpr (is_long_unsigned<Value>) {
+        value = static_cast<Value>(whole(key, std::numeric_limits<decltype(stored(Value{}))>::max()));
+      } else {
+        auto held = stored(Value{});
+        get(key, held);
+        value = static_cast<Value>(held);
+        if (std::is_same_v<Value, bool> && held > stored(true)) damaged();
+      }
       if (!ParameterValue(value).in(info.range))
         throw ParameterError(where_ + ": " + key, "is " + value_text(info, ParameterValue(value)),
                              "it lies outside of " + range_text(info) + ": take another snapshot");
@@ -316,15 +335,28 @@ class FieldReader {
     archive_ >> boost::serialization::make_nvp(key, value);
   }
 
-  [[nodiscard]] std::size_t count(char const* key) {
+  [[nodiscard]] std::uint64_t whole(char const* key, std::uint64_t most) {
     unsigned char small = 0;
     get(key, small);
-    if (small < 255) return small;
-    std::uint32_t large = 0;
-    get("count", large);
-    if (large > longest) damaged();
-    return large;
+    std::uint64_t number = small;
+    if (small == 255) get("whole", number);
+    if (number > most) damaged();
+    return number;
   }
+  [[nodiscard]] std::string text(char const* key) {
+    std::string text;
+    if (tags_ != nullptr) {
+      get(key, text);
+      return text;
+    }
+    for (auto left = count(key); left > 0; --left) {
+      char letter = 0;
+      get(key, letter);
+      text += letter;
+    }
+    return text;
+  }
+  [[nodiscard]] std::size_t count(char const* key) { return static_cast<std::size_t>(whole(key, longest)); }
 
   [[noreturn]] void damaged() const {
     throw SnapshotError(where_, "its content contradicts itself", "it is damaged: take another copy");
@@ -333,8 +365,10 @@ class FieldReader {
   template <Described T>
   [[nodiscard]] ArchivedTypes::Shape shape() {
     if (auto const* known = types_.shape(&type_key<T>)) return *known;
-    auto const version = static_cast<unsigned>(count("version"));
-    auto const fields = count("fields");
+    unsigned char told = 0;
+    get("fields", told);
+    std::size_t const fields = told % 128;
+    auto const version = told < 128 ? 0u : static_cast<unsigned>(count("version"));
     if (version > version_of<T>() || fields > field_count<T>())
       throw SnapshotError(where_, std::string("its struct '") + struct_name<T>() + "' is of a newer version",
                           "read it with the program that wrote it, or a newer one");
@@ -361,6 +395,8 @@ class FieldReader {
     for_each_parameter<T>([&](auto const& p) {
       if (i < known.fields && (differs[i / 8] >> i % 8 & 1u) != 0)
         read(p.name, object.*p.field, p, like != nullptr ? &(like->*p.field) : nullptr);
+      else if (i >= known.fields)
+        object.*p.field = T {}.*p.field;
       ++i;
     });
     if constexpr (requires { object.upgrade(0u); })
@@ -375,8 +411,7 @@ class FieldReader {
     auto const number = count("alternative");
     if (number > types_.alternatives().size()) damaged();
     if (number == types_.alternatives().size()) {
-      std::string name;
-      get("name", name);
+      auto const name = text("name");
       std::size_t index = 0;
       while (index < names.size() && (names[index] == nullptr || alternative_name(names, index) != name)) ++index;
       if (index == names.size())

@@ -209,6 +209,24 @@ inline void require_consistent(bool condition, char const* what) {
   return index_of(at.piece) < corridor.pieces.size() && at.segment < corridor.center.segments().size();
 }
 
+/// Whether every lane corridor that `value` names is one of the `count` of its road.
+template <class Value>
+[[nodiscard]] bool names_corridors_below(Value const& value, std::size_t count) {
+  bool all = true;
+  if constexpr (std::is_same_v<Value, CorridorId>) {
+    return !is_valid(value) || index_of(value) < count;
+  } else if constexpr (Described<Value>) {
+    for_each_parameter<Value>([&](auto const& p) { all = all && names_corridors_below(value.*p.field, count); });
+  } else if constexpr (Variant<Value>) {
+    with_alternative(value, [&](auto const& model, auto) { all = names_corridors_below(model, count); });
+  } else if constexpr (Optional<Value>) {
+    if (value) all = names_corridors_below(*value, count);
+  } else if constexpr (ParameterList<Value>) {
+    for (auto const& element : elements_of(value)) all = all && names_corridors_below(element, count);
+  }
+  return all;
+}
+
 [[nodiscard]] inline std::shared_ptr<map::RoadCorridor const> restored_road(Map const& map, RosterBase& roster,
                                                                             ArchivedRoad const& road) {
   if (!road.way.empty()) {
@@ -246,6 +264,8 @@ template <class World>
     require_consistent(i == 0 || parts.agents[i - 1].id < agent.id, "its agents are not sorted");
     require_consistent(is_on(*roads[agent.road], record.lane), "an agent is on no lane of its road");
     require_consistent(record.memory.index() == agent.behavior.index(), "an agent has another model's memory");
+    require_consistent(names_corridors_below(record.memory, roads[agent.road]->corridors.size()),
+                       "an agent remembers a lane that its road lacks");
     static_cast<void>(roster->insert({agent.id, agent.shape, roads[agent.road], std::move(agent.behavior),
                                       std::move(agent.execution), std::move(agent.dynamics),
                                       std::move(agent.observer)},

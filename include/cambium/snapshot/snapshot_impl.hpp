@@ -280,12 +280,10 @@ struct OpenedSnapshot {
     throw SnapshotError(where, "is of version " + std::to_string(*number) + " of the format, newer than this program",
                         "read it with the program that wrote it, or a newer one");
   auto const seal = take_line(bytes).value_or("");
-  auto const space = std::min(seal.find(' '), seal.size());
-  auto const length = number_of(seal.substr(0, space), 10);
-  auto const checksum = space < seal.size() ? number_of(seal.substr(space + 1), 16) : std::nullopt;
-  if (!length || !checksum) damaged("its second line is no length and checksum");
-  if (*length != bytes.size()) damaged("is cut short, or longer than it should be");
-  if (checksum_of(bytes) != *checksum) damaged("has a wrong checksum");
+  auto const length = seal.substr(0, seal.find(' '));
+  if (length != std::to_string(bytes.size())) damaged("is cut short, or longer than it should be");
+  if (*version != std::to_string(snapshot_version) || seal.substr(length.size()) != " " + hex(checksum_of(bytes)))
+    damaged("has a wrong checksum");
   OpenedSnapshot opened;
   auto& info = opened.info;
   std::uint64_t map_bytes = 0;
@@ -347,8 +345,10 @@ CAMBIUM_COLD void read_snapshot(std::string_view bytes, std::string const& where
       case SnapshotFormat::text: load_parts<TextIn>(archive, parts); break;
       case SnapshotFormat::xml: load_parts<XmlIn>(archive, parts); break;
     }
-  } catch (Error const&) {
-    throw;
+  } catch (Error const& problem) {
+    std::string_view what = problem.what();
+    if (constexpr std::string_view place = "snapshot: "; what.starts_with(place)) what.remove_prefix(place.size());
+    throw SnapshotError(where, what);
   } catch (std::exception const& problem) {  // of Boost.Serialization, or of memory
     throw SnapshotError(where, std::string("its archive cannot be read (") + problem.what() + ")",
                         "restore the same types as were saved, or take another copy");
