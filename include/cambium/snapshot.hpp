@@ -14,3 +14,5 @@
 #include "cambium/snapshot/archive_world.hpp"
 #include "cambium/snapshot/snapshot.hpp"
 #include "cambium/snapshot/snapshot_error.hpp"
+#include "cambium/snapshot/snapshot_error.hpp"
+#include "cambium/snapshot/snapshot_recorder.hpp"

@@ -374,8 +374,9 @@ class FieldReader {
                           "read it with the program that wrote it, or a newer one");
     constexpr bool upgrades = requires(T & object) { object.upgrade(0u); };
     if (version < version_of<T>() && !upgrades)
-      throw SnapshotError(where_, std::string("its struct '") + struct_name<T>() + "' is of version " +
-                                      std::to_string(version) + ", and this program knows no way from there",
+      throw SnapshotError(where_,
+                          std::string("its struct '") + struct_name<T>() + "' is of version " +
+                              std::to_string(version) + ", and this program knows no way from there",
                           "give the struct a member `upgrade(unsigned from)`, or read it with an older program");
     types_.add(ArchivedTypes::Shape{&type_key<T>, version, fields});
     return {&type_key<T>, version, fields};
@@ -396,7 +397,7 @@ class FieldReader {
       if (i < known.fields && (differs[i / 8] >> i % 8 & 1u) != 0)
         read(p.name, object.*p.field, p, like != nullptr ? &(like->*p.field) : nullptr);
       else if (i >= known.fields)
-        object.*p.field = T {}.*p.field;
+        object.*p.field = T{}.*p.field;
       ++i;
     });
     if constexpr (requires { object.upgrade(0u); })
@@ -415,9 +416,9 @@ class FieldReader {
       std::size_t index = 0;
       while (index < names.size() && (names[index] == nullptr || alternative_name(names, index) != name)) ++index;
       if (index == names.size())
-        throw SnapshotError(where_, "holds the model '" + name + "', which is not among those of this program (" +
-                                        listed(names) + ")",
-                            "read it with the type that was saved");
+        throw SnapshotError(
+            where_, "holds the model '" + name + "', which is not among those of this program (" + listed(names) + ")",
+            "read it with the type that was saved");
       types_.alternatives().push_back({key, index});
     }
     if (types_.alternatives()[number].variant != key) damaged();

@@ -267,8 +267,7 @@ template <class World>
     require_consistent(names_corridors_below(record.memory, roads[agent.road]->corridors.size()),
                        "an agent remembers a lane that its road lacks");
     static_cast<void>(roster->insert({agent.id, agent.shape, roads[agent.road], std::move(agent.behavior),
-                                      std::move(agent.execution), std::move(agent.dynamics),
-                                      std::move(agent.observer)},
+                                      std::move(agent.execution), std::move(agent.dynamics), std::move(agent.observer)},
                                      std::move(agent.goal)));
   }
   roster->revision = parts.revision;

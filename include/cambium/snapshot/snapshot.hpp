@@ -3,7 +3,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -42,10 +44,10 @@ struct SnapshotOptions {
 /// What the head of a snapshot says.
 struct SnapshotInfo {
   SnapshotFormat format{};
-  std::string library;   ///< version of cambium
-  std::string build;     ///< compiler, and whether asserts were on
-  std::string platform;  ///< sizes and order of bytes
-  std::string parts;     ///< names, separated by commas
+  std::string library;                    ///< version of cambium
+  std::string build;                      ///< compiler, and whether asserts were on
+  std::string platform;                   ///< sizes and order of bytes
+  std::string parts;                      ///< names, separated by commas
   std::optional<double> time;             ///< of the first world [s]
   std::optional<std::uint64_t> map_hash;  ///< `content_hash` of its map
   std::string map_file, map_text, note;   ///< as in `SnapshotOptions`
@@ -113,8 +115,17 @@ template <class... Parts>
   return scene;
 }
 
-[[nodiscard]] std::string write_snapshot(SnapshotOptions const& options, SceneOfParts const& scene,
-                                         std::span<SavedPart const> parts);
+/// Parts in an archive, without the head that a snapshot has.
+struct ArchivedParts {
+  SnapshotFormat format;
+  std::string names;
+  std::optional<std::uint64_t> map_hash;
+  double time = 0.0;
+  std::string archive;
+};
+[[nodiscard]] ArchivedParts archive_parts(SnapshotFormat format, SceneOfParts const& scene,
+                                          std::span<SavedPart const> parts);
+[[nodiscard]] std::string with_head(ArchivedParts const& parts, SnapshotOptions const& options);
 void read_snapshot(std::string_view bytes, std::string const& where, SceneOfParts const& scene,
                    std::span<LoadedPart const> parts);
 [[nodiscard]] std::uint64_t hash_of_parts(std::span<SavedPart const> parts);
@@ -146,7 +157,7 @@ template <class... Parts>
 [[nodiscard]] std::string to_snapshot(SnapshotOptions const& options, Parts const&... parts) {
   static_assert(sizeof...(Parts) > 0, "cambium::to_snapshot: name what to save: worlds, planners, memories");
   std::array const saved{detail::saved_part(parts)...};
-  return detail::write_snapshot(options, detail::scene_of(parts...), saved);
+  return detail::with_head(detail::archive_parts(options.format, detail::scene_of(parts...), saved), options);
 }
 
 /// Restores `parts` from a snapshot of parts of the same names and order. A world keeps its map, which must be the one
@@ -184,7 +195,8 @@ void load_snapshot(std::string const& path, Parts&... parts) {
   from_snapshot(read_snapshot_file(path), path, parts...);
 }
 
-/// What the head of a snapshot says. Throws `SnapshotError` if the bytes are no snapshot, damaged or of a newer version.
+/// What the head of a snapshot says. Throws `SnapshotError` if the bytes are no snapshot, damaged or of a newer
+/// version.
 [[nodiscard]] SnapshotInfo snapshot_info(std::string_view bytes, std::string const& where = "snapshot");
 
 /// Hash of the state of `parts`: equal if and only if (but for chance) all that a snapshot holds of them is equal, bit

@@ -217,34 +217,46 @@ template <class Parts>
   return names;
 }
 
-CAMBIUM_COLD std::string write_snapshot(SnapshotOptions const& options, SceneOfParts const& scene,
-                                        std::span<SavedPart const> parts) {
+CAMBIUM_COLD ArchivedParts archive_parts(SnapshotFormat format, SceneOfParts const& scene,
+                                         std::span<SavedPart const> parts) {
+  ArchivedParts archived{format, names_of_parts(parts), std::nullopt, scene.time, {}};
+  if (scene.map != nullptr) archived.map_hash = map::content_hash(*scene.map);
+  archived.archive.reserve(8192);
+  switch (format) {
+    case SnapshotFormat::binary:
+      save_parts<boost::archive::polymorphic_binary_oarchive>(archived.archive, parts);
+      break;
+    case SnapshotFormat::text:
+      save_parts<TextOut>(archived.archive, parts);
+      break;
+    case SnapshotFormat::xml:
+      save_parts<XmlOut>(archived.archive, parts);
+      break;
+  }
+  return archived;
+}
+
+CAMBIUM_COLD std::string with_head(ArchivedParts const& parts, SnapshotOptions const& options) {
   static std::string const build = build_tag(), platform = platform_tag();
   std::string body;
-  body.reserve(8192 + options.map_text.size());
+  body.reserve(512 + options.map_text.size() + parts.archive.size());
   auto const line = [&body](char const* key, std::string_view value) {
     body.append(key).append(" ").append(value).append("\n");
   };
-  line("archive", format_names[static_cast<std::size_t>(options.format)]);
+  line("archive", format_names[static_cast<std::size_t>(parts.format)]);
   line("library", library_version);
   line("build", build);
   line("platform", platform);
-  line("parts", names_of_parts(parts));
-  if (scene.map != nullptr) {
-    line("time", exact_text(scene.time));
-    line("map", hex(map::content_hash(*scene.map)));
+  line("parts", parts.names);
+  if (parts.map_hash) {
+    line("time", exact_text(parts.time));
+    line("map", hex(*parts.map_hash));
   }
   if (!options.map_file.empty()) line("map_file", printable(options.map_file));
   if (!options.map_text.empty()) line("map_bytes", std::to_string(options.map_text.size()));
   if (!options.note.empty()) line("note", printable(options.note));
   if (options.result) line("result", hex(*options.result));
-  body += "\n";
-  body += options.map_text;
-  switch (options.format) {
-    case SnapshotFormat::binary: save_parts<boost::archive::polymorphic_binary_oarchive>(body, parts); break;
-    case SnapshotFormat::text: save_parts<TextOut>(body, parts); break;
-    case SnapshotFormat::xml: save_parts<XmlOut>(body, parts); break;
-  }
+  body.append("\n").append(options.map_text).append(parts.archive);
   std::string bytes(snapshot_magic);
   bytes += std::to_string(snapshot_version) + "\n" + std::to_string(body.size()) + " " + hex(checksum_of(body)) + "\n";
   return bytes + body;
@@ -341,9 +353,15 @@ CAMBIUM_COLD void read_snapshot(std::string_view bytes, std::string const& where
                                               : "give the world the map of '" + info.map_file + "'");
   try {
     switch (info.format) {
-      case SnapshotFormat::binary: load_parts<boost::archive::polymorphic_binary_iarchive>(archive, parts); break;
-      case SnapshotFormat::text: load_parts<TextIn>(archive, parts); break;
-      case SnapshotFormat::xml: load_parts<XmlIn>(archive, parts); break;
+      case SnapshotFormat::binary:
+        load_parts<boost::archive::polymorphic_binary_iarchive>(archive, parts);
+        break;
+      case SnapshotFormat::text:
+        load_parts<TextIn>(archive, parts);
+        break;
+      case SnapshotFormat::xml:
+        load_parts<XmlIn>(archive, parts);
+        break;
     }
   } catch (Error const& problem) {
     std::string_view what = problem.what();
