@@ -388,10 +388,9 @@ class FieldReader {
     auto const known = shape<T>();
     if (like != nullptr) object = *like;
     std::array<unsigned char, (field_count<T>() + 7) / 8> differs{};
-    for (std::size_t k = 0; k < (known.fields + 7) / 8; ++k) {
-      differs[k] = 0xff;
-      if (like != nullptr) get("differs", differs[k]);
-    }
+    differs.fill(0xff);
+    if (like != nullptr)
+      for (std::size_t k = 0; k < (known.fields + 7) / 8 && k < differs.size(); ++k) get("differs", differs[k]);
     std::size_t i = 0;
     for_each_parameter<T>([&](auto const& p) {
       if (i < known.fields && (differs[i / 8] >> i % 8 & 1u) != 0)

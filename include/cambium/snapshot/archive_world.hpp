@@ -259,10 +259,12 @@ template <class World>
   require_consistent(parts.agents.size() == parts.frame.agents.size(), "it has more agents than places, or fewer");
   for (std::size_t i = 0; i < parts.agents.size(); ++i) {
     auto& agent = parts.agents[i];
-    auto const& record = parts.frame.agents[i];
+    auto& record = parts.frame.agents[i];
     require_consistent(agent.road < roads.size(), "an agent has no road");
     require_consistent(i == 0 || parts.agents[i - 1].id < agent.id, "its agents are not sorted");
     require_consistent(is_on(*roads[agent.road], record.lane), "an agent is on no lane of its road");
+    auto const& pieces = roads[agent.road]->corridors[record.lane.corridor].pieces;
+    record.lane.index = map::lane_coordinate(pieces[record.lane.piece], record.lane.s);
     require_consistent(record.memory.index() == agent.behavior.index(), "an agent has another model's memory");
     require_consistent(names_corridors_below(record.memory, roads[agent.road]->corridors.size()),
                        "an agent remembers a lane that its road lacks");

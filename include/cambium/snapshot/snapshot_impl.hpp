@@ -168,11 +168,10 @@ void load_parts(std::string_view bytes, std::span<LoadedPart const> parts) {
   for (auto const& part : parts) part.load(archive, part.name, part.object);
 }
 
-/// What a binary archive depends on: size of pointers, longs and bools, order of bytes.
+/// What a binary archive depends on: order of bytes, size of pointers and longs.
 [[nodiscard]] inline std::string platform_tag() {
   std::string const order = std::endian::native == std::endian::little ? "little" : "big";
-  return order + "-endian " + std::to_string(sizeof(void*)) + " " + std::to_string(sizeof(long)) + " " +
-         std::to_string(sizeof(bool));
+  return order + "-endian " + std::to_string(sizeof(void*)) + "/" + std::to_string(sizeof(long));
 }
 
 [[nodiscard]] inline std::string build_tag() {
