@@ -115,6 +115,11 @@ class ArchivedTypes {
   }
   [[nodiscard]] std::vector<Alternative>& alternatives() { return alternatives_; }
 
+  ArchivedTypes() {
+    shapes_.reserve(64);
+    alternatives_.reserve(16);
+  }
+
  private:
   std::vector<Shape> shapes_;
   std::vector<Alternative> alternatives_;

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <charconv>
+#include <cstring>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -24,7 +26,6 @@
 #include <boost/archive/polymorphic_xml_iarchive.hpp>
 #include <boost/archive/polymorphic_xml_oarchive.hpp>
 
-#include "cambium/core/binary.hpp"
 #include "cambium/core/error.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/core/version.hpp"
@@ -201,10 +202,17 @@ void load_parts(std::string_view bytes, std::span<LoadedPart const> parts) {
   return number;
 }
 
+/// FNV-1a over words of 8 bytes, the lowest byte first; the last word is filled up by zeros. A change within one word
+/// always changes it.
 [[nodiscard]] inline std::uint64_t checksum_of(std::string_view bytes) {
-  ByteHash hash;
-  hash.add(bytes);
-  return hash.value();
+  std::uint64_t hash = 0xcbf29ce484222325u ^ bytes.size();
+  for (std::size_t at = 0; at < bytes.size(); at += 8) {
+    std::array<unsigned char, 8> word{};
+    std::memcpy(word.data(), bytes.data() + at, std::min<std::size_t>(8, bytes.size() - at));
+    if constexpr (std::endian::native == std::endian::big) std::reverse(word.begin(), word.end());
+    hash = (hash ^ std::bit_cast<std::uint64_t>(word)) * 0x100000001b3u;
+  }
+  return hash;
 }
 
 inline constexpr char const* format_names[] = {"binary", "text", "xml"};
