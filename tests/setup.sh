@@ -31,6 +31,15 @@ have_header() {
   return 1
 }
 
+# have_library NAME: whether the linker finds lib<NAME>.
+have_library() {
+  local folder
+  for folder in "${CMAKE_PREFIX_PATH:-}"/lib /usr/lib /usr/lib/*-linux-gnu /usr/lib64 /usr/local/lib /opt/homebrew/lib; do
+    if compgen -G "$folder/lib$1.*" >/dev/null; then return 0; fi
+  done
+  return 1
+}
+
 # have_package PACKAGE: looks for what the Debian package brings, wherever it comes from.
 have_package() {
   case $1 in
@@ -44,6 +53,7 @@ have_package() {
     nlohmann-json3-dev) have_header nlohmann/json.hpp ;;
     libcli11-dev) have_header CLI/CLI.hpp ;;
     libsqlite3-dev) have_header sqlite3.h ;;
+    libboost-serialization-dev) have_library boost_serialization ;;
     libboost-mpi-dev) have_header boost/mpi.hpp ;;
     openmpi-bin) have mpirun ;;
     doctest-dev) have_header doctest/doctest.h ;;

@@ -5,10 +5,15 @@
 #include <utility>
 #include <variant>
 
+#include "cambium/core/described.hpp"
+
 namespace cambium {
 
 /// The memory of a model that keeps nothing between steps; takes no space in a frame.
 struct NoMemory {
+  static constexpr char const* name = "no_memory";
+  static constexpr auto parameters() { return parameter_list(); }
+
   friend bool operator==(NoMemory, NoMemory) = default;
 };
 

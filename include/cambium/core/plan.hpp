@@ -5,6 +5,7 @@
 
 #include <boost/container/small_vector.hpp>
 
+#include "cambium/core/described.hpp"
 #include "cambium/core/state.hpp"
 
 namespace cambium {
@@ -13,6 +14,13 @@ namespace cambium {
 struct Action {
   double acceleration{};  ///< along the heading [m/s^2]
   double steering{};      ///< steering angle at the front axle, left positive [rad]; 0 where the model has none
+
+  static constexpr char const* name = "action";
+  static constexpr auto parameters() {
+    using P = Action;
+    return parameter_list(parameter("acceleration", &P::acceleration, "m/s^2", any_finite, "along the heading"),
+                          parameter("steering", &P::steering, "rad", any_finite, "steering angle, left positive"));
+  }
 
   friend bool operator==(Action const&, Action const&) = default;
 };

@@ -15,6 +15,18 @@ struct BasicSteeringState {
   Scalar time{}, x{}, y{}, heading{}, speed{};  ///< as in `BasicState`
   Scalar steering{};                            ///< angle at the front axle, left positive [rad]
 
+  static constexpr char const* name = "steering_state";
+  static constexpr auto parameters() {
+    using S = BasicSteeringState;
+    return parameter_list(
+        parameter("time", &S::time, "s", any_finite, "of the state"),
+        parameter("x", &S::x, "m", any_finite, "of the reference point, map frame"),
+        parameter("y", &S::y, "m", any_finite, "likewise"),
+        parameter("heading", &S::heading, "rad", any_finite, "counter-clockwise from +x"),
+        parameter("speed", &S::speed, "m/s", any_finite, "along the heading"),
+        parameter("steering", &S::steering, "rad", any_finite, "angle at the front axle, left positive"));
+  }
+
   friend bool operator==(BasicSteeringState const&, BasicSteeringState const&) = default;
 };
 

@@ -16,6 +16,19 @@ struct BasicAcceleratedState {
   Scalar acceleration{};                        ///< along the heading [m/s^2]
   Scalar lateral_acceleration{};                ///< across the heading, left positive [m/s^2]
 
+  static constexpr char const* name = "accelerated_state";
+  static constexpr auto parameters() {
+    using S = BasicAcceleratedState;
+    return parameter_list(
+        parameter("time", &S::time, "s", any_finite, "of the state"),
+        parameter("x", &S::x, "m", any_finite, "of the reference point, map frame"),
+        parameter("y", &S::y, "m", any_finite, "likewise"),
+        parameter("heading", &S::heading, "rad", any_finite, "counter-clockwise from +x"),
+        parameter("speed", &S::speed, "m/s", any_finite, "along the heading"),
+        parameter("acceleration", &S::acceleration, "m/s^2", any_finite, "along the heading"),
+        parameter("lateral_acceleration", &S::lateral_acceleration, "m/s^2", any_finite, "left positive"));
+  }
+
   friend bool operator==(BasicAcceleratedState const&, BasicAcceleratedState const&) = default;
 };
 

@@ -19,9 +19,9 @@ struct ExecutionSet : OneOf<Models...> {
   template <MotionState S, class Dynamics>
   [[nodiscard]] Executed<S> execute(BasicPlan<S> const& plan, S const& now, Dynamics const& dynamics, double time,
                                     Memory<S>& memory, RandomStream& random) const {
-    return this->visit([&](auto const& model, auto place) {
-      if (memory.index() != place) memory.template emplace<place>();
-      return cambium::execute(model, plan, now, dynamics, time, *std::get_if<place>(&memory),
+    return this->visit([&](auto const& model, auto number) {
+      if (memory.index() != number) memory.template emplace<number>();
+      return cambium::execute(model, plan, now, dynamics, time, *std::get_if<number>(&memory),
                               [&random] { return random; });
     });
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <string>
@@ -92,16 +93,27 @@ struct TrackingMemory {
   static constexpr std::size_t slots = Actuation::waiting + 1;  ///< the first in effect, the others waiting
 
   S reference{};
-  float acceleration[slots]{}, steering[slots]{};
+  std::array<float, slots> acceleration{}, steering{};
   float waited = 0.0f;  ///< since the last command was given [s]
   bool begun = false;
+
+  static constexpr char const* name = "tracking_memory";
+  static constexpr auto parameters() {
+    using P = TrackingMemory;
+    return parameter_list(
+        parameter("reference", &P::reference, "-", {}, "where the plan is now"),
+        parameter("acceleration", &P::acceleration, "m/s^2", any_finite, "commands, the first in effect"),
+        parameter("steering", &P::steering, "rad", any_finite, "likewise"),
+        parameter("waited", &P::waited, "s", any_finite, "since the last command"),
+        parameter("begun", &P::begun, "-", Range{0, 1}, "a command was given"));
+  }
 
   friend bool operator==(TrackingMemory const&, TrackingMemory const&) = default;
 
   /// Adds a command; the oldest waiting one takes effect.
   void give(Action const& command) {
-    std::copy(acceleration + 1, acceleration + slots, acceleration);
-    std::copy(steering + 1, steering + slots, steering);
+    std::copy(acceleration.begin() + 1, acceleration.end(), acceleration.begin());
+    std::copy(steering.begin() + 1, steering.end(), steering.begin());
     acceleration[slots - 1] = static_cast<float>(command.acceleration);
     steering[slots - 1] = static_cast<float>(command.steering);
     waited = 0.0f;

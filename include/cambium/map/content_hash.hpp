@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <bit>
 #include <cstdint>
 #include <string_view>
@@ -9,8 +10,10 @@
 namespace cambium::map {
 
 /// Hash of what traffic knows of a map: lanes, their paths, widths, links, limits, signals and conflicts' rules; not of
-/// the file's text. Equal files give equal hashes wherever the mathematical library is the same. O(path segments).
+/// the file's text. Equal files give equal hashes wherever the mathematical library is the same. O(path segments) at first, then
+/// O(1).
 [[nodiscard]] inline std::uint64_t content_hash(Map const& map) {
+  if (auto const known = map.known_content_hash().load(std::memory_order_relaxed); known != 0) return known;
   std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a
   auto const add = [&hash](std::uint64_t bits) {
     for (int shift = 0; shift < 64; shift += 8) hash = (hash ^ (bits >> shift & 0xffu)) * 0x100000001b3u;
@@ -69,6 +72,7 @@ namespace cambium::map {
       add(index_of(priority.low));
     }
   for (auto const& light : map.lights()) add_text(light.name);
+  map.known_content_hash().store(hash, std::memory_order_relaxed);
   return hash;
 }
 

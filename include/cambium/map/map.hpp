@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -247,6 +248,9 @@ class Map {
     return reachable(LaneStation{from}, budget, options);
   }
 
+  /// What `content_hash` has found, or 0: it is asked for often.
+  [[nodiscard]] std::atomic<std::uint64_t>& known_content_hash() const { return content_hash_; }
+
   /// What takes long to compile; see the functions that are named there.
   [[nodiscard]] MapQueries const& queries() const { return *queries_; }
 
@@ -257,6 +261,7 @@ class Map {
   LaneTree tree_;
   geometry::Box bounds_;
   std::unique_ptr<MapQueries const> queries_;
+  mutable std::atomic<std::uint64_t> content_hash_{0};
 };
 
 }  // namespace cambium::map

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "cambium/core/described.hpp"
 #include "cambium/core/ids.hpp"
 #include "cambium/core/random.hpp"
 #include "cambium/core/state.hpp"
@@ -61,6 +62,9 @@ template <class O>
 
 /// Replaces `PastStates` in worlds whose observers have no delay.
 struct NoPast {
+  static constexpr char const* name = "no_past";
+  static constexpr auto parameters() { return parameter_list(); }
+
   friend bool operator==(NoPast, NoPast) = default;
 };
 
@@ -82,6 +86,13 @@ struct PastStates {
   void fill(S const& state) {
     states.fill(state);
     accelerations.fill(0.0);
+  }
+
+  static constexpr char const* name = "past_states";
+  static constexpr auto parameters() {
+    using P = PastStates;
+    return parameter_list(parameter("states", &P::states, "-", {}, "latest first"),
+                          parameter("accelerations", &P::accelerations, "m/s^2", any_finite, "likewise"));
   }
 
   friend bool operator==(PastStates const&, PastStates const&) = default;

@@ -21,6 +21,7 @@
 #include "cambium/world/detail/entering.hpp"
 #include "cambium/world/driven_to.hpp"
 #include "cambium/world/prediction.hpp"
+#include "cambium/world/world.hpp"
 
 namespace cambium {
 
@@ -31,15 +32,6 @@ template <class View, class Set, class Other>
 concept Predicts = requires(View const view, Prediction<Set> const prediction) {
   view.predict(prediction);
   typename Other::FrameType;
-};
-
-/// Whether `W` is a `cambium::World` or derived from one.
-template <class W>
-inline constexpr bool is_world = requires {
-  typename W::Behaviors;
-  typename W::Execution;
-  typename W::FrameType;
-  typename W::View;
 };
 
 /// True. Else a compile error says what a planner's `PredictionWorld` lacks to predict behaviours `Others`.

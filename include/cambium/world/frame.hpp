@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <iterator>
 
+#include "cambium/core/described.hpp"
 #include "cambium/core/macros.hpp"
 #include "cambium/core/plan.hpp"
 #include "cambium/execution/execution_model.hpp"
@@ -44,6 +45,21 @@ struct AgentRecord {
   [[no_unique_address]] ExecutionMemory execution{};
   [[no_unique_address]] Past past{};
 
+  static constexpr char const* name = "agent_record";
+  static constexpr auto parameters() {
+    using P = AgentRecord;
+    return parameter_list(
+        parameter("state", &P::state, "-", {}, "where it is, and how fast"),
+        parameter("lane", &P::lane, "-", {}, "its place on its road"),
+        parameter("action", &P::action, "-", {}, "of the last step"),
+        parameter("memory", &P::memory, "-", {}, "what its behaviour remembers"),
+        choice("status", &P::status, "driving|not_started|arrived|off_route|left_map|expired|failed",
+               "whether it takes part in traffic"),
+        parameter("goals_passed", &P::goals_passed, "-", Range{0, 255}, "parts of its goal already reached"),
+        parameter("execution", &P::execution, "-", {}, "what its execution model remembers"),
+        parameter("past", &P::past, "-", {}, "for delayed observers"));
+  }
+
   friend bool operator==(AgentRecord const&, AgentRecord const&) = default;
 };
 
@@ -56,6 +72,16 @@ struct Frame {
   std::uint64_t step = 0;  ///< steps made since the world began
   IdVector<Record, Slot> agents;
   std::uint32_t roster_revision = 0;  ///< revision of the matching roster: see `RosterBase::revision`
+
+  static constexpr char const* name = "frame";
+  static constexpr auto parameters() {
+    using P = Frame;
+    return parameter_list(parameter("time", &P::time, "s", any_finite, "of the states"),
+                          parameter("step", &P::step, "-", Range{0, 1.9e19}, "steps made since the world began"),
+                          parameter("agents", &P::agents, "-", {}, "their records, in the order of the roster"),
+                          parameter("roster_revision", &P::roster_revision, "-", Range{0, 4294967295.0},
+                                    "revision of the matching roster"));
+  }
 
   /// Compares time, step and records; ignores the roster revision.
   friend bool operator==(Frame const& a, Frame const& b) {

@@ -22,7 +22,6 @@ namespace cambium {
 /// A free corridor as the user gave it, and a copy whose lane coordinates follow those of the map.
 struct FreeRoad {
   std::shared_ptr<map::RoadCorridor const> given, numbered;
-  std::vector<geometry::Point> way{};  ///< its points, if the user gave these
 };
 
 /// The part of a roster that does not depend on the world's models.

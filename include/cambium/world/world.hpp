@@ -178,7 +178,7 @@ class World {
     AgentId const id = spec.id.value_or(static_cast<AgentId>(roster_->next_agent_id));
     auto entrant = detail::entrant<World>(*map_, *roster_, spec, id, frame_.time);
     auto& roster = revised_roster();
-    if (spec.road) detail::enter_free_road(roster, spec.road, entrant.agent.road, spec.way);
+    if (spec.road) detail::enter_free_road(roster, spec.road, entrant.agent.road);
     auto const slot = roster.insert(std::move(entrant.agent), std::move(entrant.goal));
     frame_.agents.insert(frame_.agents.begin() + static_cast<std::ptrdiff_t>(slot), entrant.record);
     pass_goals(slot, frame_.agents[slot]);
@@ -523,5 +523,16 @@ class World {
   FrameType frame_;
   detail::Scratch<FrameType, typename Set::Workspaces> scratch_;
 };
+
+namespace detail {
+/// Whether `W` is a `cambium::World` or derived from one.
+template <class W>
+inline constexpr bool is_world = requires {
+  typename W::Behaviors;
+  typename W::Execution;
+  typename W::FrameType;
+  typename W::View;
+};
+}  // namespace detail
 
 }  // namespace cambium

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "cambium/behavior/behavior_model.hpp"
+#include "cambium/core/described.hpp"
 #include "cambium/core/distributions.hpp"
 
 namespace cambium {
@@ -42,6 +43,13 @@ struct HeadwayHypotheses {
 
     void fell_short(double way, bool left_course) { cambium::fell_short(driver, way, left_course); }
     void was_set() { cambium::was_set(driver); }
+
+    static constexpr char const* name = "headway_hypotheses_memory";
+    static constexpr auto parameters() {
+      using P = Memory;
+      return parameter_list(parameter("time_headway", &P::time_headway, "s", any_finite, "assumed"),
+                            parameter("driver", &P::driver, "-", {}, "the driver's"));
+    }
 
     friend bool operator==(Memory const&, Memory const&) = default;
   };

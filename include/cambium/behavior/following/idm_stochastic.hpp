@@ -8,6 +8,7 @@
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/law/idm.hpp"
 #include "cambium/behavior/law/road_rules.hpp"
+#include "cambium/core/described.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"
 
@@ -85,6 +86,16 @@ struct BasicIdmStochastic {
     RoadRules::Memory rules{};
 
     void was_set() { rules.was_set(); }
+
+    static constexpr char const* name = "idm_stochastic_memory";
+    static constexpr auto parameters() {
+      using P = Memory;
+      return parameter_list(parameter("person", &P::person, "-", Range{0, 4294967295.0},
+                                      "key of the agent's own draws; 0: not drawn yet"),
+                            parameter("left", &P::left, "s", any_finite, "of the current period"),
+                            parameter("yields", &P::yields, "-", Range{0, 1}, "to those who want in"),
+                            parameter("rules", &P::rules, "-", {}, "what the rules of the road remember"));
+    }
 
     friend bool operator==(Memory const&, Memory const&) = default;
   };

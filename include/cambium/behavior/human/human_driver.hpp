@@ -92,6 +92,19 @@ struct HumanDriver {
     void fell_short(double way, bool left_course) { cambium::fell_short(nominal, way, left_course); }
     void was_set() { cambium::was_set(nominal); }
 
+    static constexpr char const* name = "human_driver_memory";
+    static constexpr auto parameters() {
+      using P = Memory;
+      return parameter_list(parameter("nominal", &P::nominal, "-", {}, "the nominal driver's"),
+                            parameter("decided", &P::decided, "m/s^2", any_finite, "accelerations, latest first"),
+                            parameter("age", &P::age, "s", any_finite, "of the latest"),
+                            parameter("speed", &P::speed, "m/s", any_finite, "own, before the last step"),
+                            parameter("gap_error", &P::gap_error, "-", any_finite, "process of the error in gaps"),
+                            parameter("rate_error", &P::rate_error, "-", any_finite, "likewise in rates"),
+                            parameter("has_begun", &P::has_begun, "-", Range{0, 1}, "it has driven a step"),
+                            parameter("looks_away", &P::looks_away, "-", Range{0, 1}, "from the road"));
+    }
+
     friend bool operator==(Memory const&, Memory const&) = default;
   };
 

@@ -9,6 +9,7 @@
 
 #include "cambium/behavior/law/braking.hpp"
 #include "cambium/behavior/view.hpp"
+#include "cambium/core/described.hpp"
 #include "cambium/geometry/shape.hpp"
 #include "cambium/map/corridor/corridor.hpp"
 #include "cambium/map/lanes/signals.hpp"
@@ -86,6 +87,15 @@ class StandingAgents {
           before.ids_.begin() + before.size_)
         together_ = static_cast<std::uint8_t>(together_ | 1u << i);
   }
+  static constexpr char const* name = "standing_agents";
+  static constexpr auto parameters() {
+    using P = StandingAgents;
+    return parameter_list(
+        parameter("ids", &P::ids_, "-", Range{0, 65535}, "lower halves of their ids"),
+        parameter("size", &P::size_, "-", Range{0, 255}, "how many"),
+        parameter("together", &P::together_, "-", Range{0, 255}, "bits: who stopped in the same step"));
+  }
+
   friend bool operator==(StandingAgents const&, StandingAgents const&) = default;
 
  private:

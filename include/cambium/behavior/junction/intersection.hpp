@@ -12,6 +12,7 @@
 #include "cambium/behavior/law/braking.hpp"
 #include "cambium/behavior/law/idm.hpp"
 #include "cambium/behavior/law/road_rules.hpp"
+#include "cambium/core/described.hpp"
 
 namespace cambium {
 
@@ -87,6 +88,14 @@ struct Intersection {
     RoadRules::Memory rules{};
 
     void was_set() { rules.was_set(); }
+
+    static constexpr char const* name = "intersection_memory";
+    static constexpr auto parameters() {
+      using P = Memory;
+      return parameter_list(parameter("waited", &P::waited, "s", any_finite, "at a standstill before a junction"),
+                            parameter("stopped_before", &P::stopped_before, "-", {}, "those that stood there"),
+                            parameter("rules", &P::rules, "-", {}, "what the rules of the road remember"));
+    }
 
     friend bool operator==(Memory const&, Memory const&) = default;
   };

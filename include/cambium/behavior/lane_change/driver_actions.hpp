@@ -50,6 +50,14 @@ struct DriverActions {
       cambium::was_set(driver);
     }
 
+    static constexpr char const* name = "driver_actions_memory";
+    static constexpr auto parameters() {
+      using P = Memory;
+      return parameter_list(parameter("macro", &P::macro, "-", {}, "the macro action under way"),
+                            parameter("driver", &P::driver, "-", {}, "the driver's"),
+                            parameter("drives", &P::drives, "-", Range{0, 1}, "as the driver does"));
+    }
+
     friend bool operator==(Memory const&, Memory const&) = default;
   };
 

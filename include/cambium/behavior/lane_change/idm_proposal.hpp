@@ -7,6 +7,7 @@
 #include "cambium/behavior/lane_change/lane_change.hpp"
 #include "cambium/behavior/lane_change/lane_changing.hpp"
 #include "cambium/behavior/law/lane_reach.hpp"
+#include "cambium/core/described.hpp"
 #include "cambium/core/macros.hpp"
 
 namespace cambium {
@@ -23,6 +24,15 @@ struct IdmProposal {
     LaneChanging::Memory lane{};
 
     void fell_short(double way, bool left_course) { lane.fell_short(way, left_course); }
+    static constexpr char const* name = "idm_proposal_memory";
+    static constexpr auto parameters() {
+      using P = Memory;
+      return parameter_list(parameter("speed_share", &P::speed_share, "-", any_finite, "of the driver's desired speed"),
+                            parameter("offset", &P::offset, "m", any_finite, "from the middle of the lane"),
+                            parameter("towards", &P::towards, "-", {}, "lane corridor into which it changes"),
+                            parameter("lane", &P::lane, "-", {}, "of the driver's lane changes"));
+    }
+
     friend bool operator==(Memory const&, Memory const&) = default;
   };
 

@@ -11,6 +11,7 @@
 #include "cambium/behavior/law/idm.hpp"
 #include "cambium/behavior/law/lane_ends.hpp"
 #include "cambium/behavior/law/road_rules.hpp"
+#include "cambium/core/described.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/macros.hpp"
 
@@ -93,6 +94,14 @@ struct LaneChanging {
 
     void fell_short(double way, bool left_course) { change.fell_short(way, left_course); }
     void was_set() { rules.was_set(); }
+
+    static constexpr char const* name = "lane_changing_memory";
+    static constexpr auto parameters() {
+      using P = Memory;
+      return parameter_list(parameter("change", &P::change, "-", {}, "the change under way"),
+                            parameter("rest", &P::rest, "s", any_finite, "until the next change may begin"),
+                            parameter("rules", &P::rules, "-", {}, "what the rules of the road remember"));
+    }
 
     friend bool operator==(Memory const&, Memory const&) = default;
   };

@@ -87,6 +87,15 @@ struct MacroActions {
     void fell_short(double way, bool left_course) { change.fell_short(way, left_course); }
     void was_set() { rules.was_set(); }
 
+    static constexpr char const* name = "macro_actions_memory";
+    static constexpr auto parameters() {
+      using P = Memory;
+      return parameter_list(parameter("change", &P::change, "-", {}, "towards the target corridor"),
+                            parameter("rules", &P::rules, "-", {}, "what the rules of the road remember"),
+                            parameter("chosen", &P::chosen, "-", Range{0, 255}, "number of the action"),
+                            parameter("is_new", &P::is_new, "-", Range{0, 1}, "it has not begun yet"));
+    }
+
     friend bool operator==(Memory const&, Memory const&) = default;
   };
 

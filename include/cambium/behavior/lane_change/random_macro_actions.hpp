@@ -6,6 +6,7 @@
 
 #include "cambium/behavior/behavior_model.hpp"
 #include "cambium/behavior/lane_change/macro_actions.hpp"
+#include "cambium/core/described.hpp"
 #include "cambium/core/distributions.hpp"
 
 namespace cambium {
@@ -31,6 +32,13 @@ struct RandomMacroActions {
 
     void fell_short(double way, bool left_course) { macro.fell_short(way, left_course); }
     void was_set() { macro.was_set(); }
+
+    static constexpr char const* name = "random_macro_actions_memory";
+    static constexpr auto parameters() {
+      using P = Memory;
+      return parameter_list(parameter("macro", &P::macro, "-", {}, "the macro action under way"),
+                            parameter("left", &P::left, "s", any_finite, "until the next choice"));
+    }
 
     friend bool operator==(Memory const&, Memory const&) = default;
   };

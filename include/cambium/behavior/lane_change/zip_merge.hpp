@@ -58,6 +58,15 @@ struct ZipMerge {
       if (left_course) bend = 0.0f;
     }
 
+    static constexpr char const* name = "zip_merge_memory";
+    static constexpr auto parameters() {
+      using P = Memory;
+      return parameter_list(parameter("ahead", &P::ahead, "-", {}, "the last leader in the own lane before the merge"),
+                            parameter("stood", &P::stood, "s", any_finite, "at a standstill"),
+                            parameter("bend", &P::bend, "1/m", any_finite, "of its course"),
+                            parameter("rules", &P::rules, "-", {}, "what the rules of the road remember"));
+    }
+
     friend bool operator==(Memory const&, Memory const&) = default;
   };
 

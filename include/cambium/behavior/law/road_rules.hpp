@@ -149,6 +149,16 @@ struct RoadRules {
       aside = mm == 0.0 ? std::int16_t{1} : static_cast<std::int16_t>(mm);
     }
 
+    static constexpr char const* name = "road_rules_memory";
+    static constexpr auto parameters() {
+      using P = Memory;
+      return parameter_list(
+          parameter("stopped_at", &P::stopped_at, "m", any_finite,
+                    "corridor position of the stop sign at which it stopped last"),
+          parameter("aside", &P::aside, "mm", Range{-32768, 32767}, "offset to the left to which it steers; 0: none"),
+          parameter("adrift", &P::adrift, "-", Range{0, 1}, "it may still move across its lane"));
+    }
+
     friend bool operator==(Memory const&, Memory const&) = default;
   };
 

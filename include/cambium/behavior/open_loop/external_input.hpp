@@ -5,6 +5,7 @@
 #include <cstdint>
 
 #include "cambium/behavior/behavior_model.hpp"
+#include "cambium/core/described.hpp"
 #include "cambium/dynamics/integration.hpp"
 
 namespace cambium {
@@ -42,6 +43,13 @@ struct ExternalInput {
   struct Memory {
     double acceleration = 0.0;  ///< [m/s^2]
     double steering = 0.0;      ///< steering angle, left positive [rad]
+
+    static constexpr char const* name = "external_input_memory";
+    static constexpr auto parameters() {
+      using P = Memory;
+      return parameter_list(parameter("acceleration", &P::acceleration, "m/s^2", any_finite, "along the heading"),
+                            parameter("steering", &P::steering, "rad", any_finite, "steering angle, left positive"));
+    }
 
     friend bool operator==(Memory const&, Memory const&) = default;
   };

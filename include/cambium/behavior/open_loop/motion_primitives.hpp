@@ -41,6 +41,12 @@ struct MotionPrimitives {
   struct Memory {
     std::uint8_t chosen = 0;  ///< index in the list, or `nothing`; any other makes the plan fail
 
+    static constexpr char const* name = "motion_primitives_memory";
+    static constexpr auto parameters() {
+      using P = Memory;
+      return parameter_list(parameter("chosen", &P::chosen, "-", Range{0, 255}, "index in the list"));
+    }
+
     friend bool operator==(Memory, Memory) = default;
   };
 

@@ -227,6 +227,8 @@ struct RoadCorridor {
   std::vector<LaneId> route;  ///< the lanes from start to destination, lane changes included
   IdVector<LaneCorridor, CorridorId> corridors;
   CorridorId main{};  ///< the corridor that holds the route's last lane
+  std::vector<geometry::Point> way;  ///< of a free corridor: the points that it was built through
+  double view{};                     ///< likewise: `FreeCorridorOptions::view` [m]
 
   /// Number of the first corridor that holds `lane`, `none<CorridorId>` if none does. O(lanes).
   [[nodiscard]] CorridorId corridor_of(LaneId lane) const {

@@ -15,6 +15,8 @@ struct FreeCorridorOptions {
   double width = 2.0;                 ///< half of it to either side of the points [m]
   LaneType type = LaneType::walking;  ///< what it is for
   double view = 200.0;                ///< how far back the lanes that it crosses are looked along [m]
+
+  friend bool operator==(FreeCorridorOptions const&, FreeCorridorOptions const&) = default;
 };
 
 /// A way through `points` [m], its corners rounded, that belongs to no lane, as a road corridor of one lane corridor:
@@ -27,6 +29,12 @@ struct FreeCorridorOptions {
                                                                              std::span<geometry::Point const> points,
                                                                              FreeCorridorOptions const& options = {}) {
   return map.queries().free_corridor(map, points, options);
+}
+
+/// What `road` was built with by `build_free_corridor`.
+[[nodiscard]] inline FreeCorridorOptions free_corridor_options(RoadCorridor const& road) {
+  auto const& corridor = road.corridors.front();
+  return {.width = 2.0 * corridor.widths.front().left, .type = corridor.pieces.front().type, .view = road.view};
 }
 
 }  // namespace cambium::map

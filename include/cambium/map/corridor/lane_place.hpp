@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <tuple>
 
+#include "cambium/core/described.hpp"
 #include "cambium/geometry/angle.hpp"
 #include "cambium/geometry/line.hpp"
 #include "cambium/map/corridor/corridor.hpp"
@@ -22,8 +23,27 @@ struct LanePlace {
   CorridorId corridor = none<CorridorId>;
   PieceId piece{};
 
+  static constexpr char const* name = "lane_place";
+  /// All but `index`, which follows: see `lane_coordinate`.
+  static constexpr auto parameters() {
+    using P = LanePlace;
+    return parameter_list(
+        parameter("s", &P::s, "m", any_finite, "along the centre line of the lane corridor"),
+        parameter("lateral", &P::lateral, "m", any_finite, "from the centre line, left positive"),
+        parameter("heading_error", &P::heading_error, "rad", any_finite, "vehicle's heading minus the lane's"),
+        parameter("segment", &P::segment, "-", Range{0, 4294967295.0}, "of the centre line: a hint"),
+        parameter("corridor", &P::corridor, "-", {}, "number of the lane corridor"),
+        parameter("piece", &P::piece, "-", {}, "number of its piece"));
+  }
+
   friend bool operator==(LanePlace const&, LanePlace const&) = default;
 };
+
+/// The map-wide lane coordinate at `s` on a piece of a corridor. A vehicle beyond an end of its corridor stays in its
+/// lane's own range of it.
+[[nodiscard]] inline double lane_coordinate(CorridorPiece const& piece, double s) {
+  return std::min(std::max(s, piece.begin - 1.0), piece.end + 1.0) + piece.index_offset;
+}
 
 /// Places `pose` on lane corridor `number` of `road`; `hint` is the last position there. O(segments moved since).
 [[nodiscard]] inline LanePlace locate(RoadCorridor const& road, CorridorId number, geometry::Pose const& pose,
@@ -35,9 +55,7 @@ struct LanePlace {
   double error = pose.heading - (segment.heading + segment.curvature * inside);
   if (std::abs(error) > geometry::pi) error = geometry::normalize_angle(error);
   auto const piece = corridor.piece_at(foot.s, hint.piece);
-  auto const& on = corridor.pieces[piece];
-  // A vehicle beyond an end of its corridor stays in its lane's own range of the lane coordinate.
-  double const index = std::min(std::max(foot.s, on.begin - 1.0), on.end + 1.0) + on.index_offset;
+  double const index = lane_coordinate(corridor.pieces[piece], foot.s);
   return {foot.s, foot.lateral, error, index, foot.segment, number, piece};
 }
 

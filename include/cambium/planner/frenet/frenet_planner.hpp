@@ -19,6 +19,7 @@
 #include "cambium/behavior/lane_change/lane_change.hpp"
 #include "cambium/behavior/law/lane_reach.hpp"
 #include "cambium/behavior/law/lane_ends.hpp"
+#include "cambium/core/described.hpp"
 #include "cambium/core/stable_sort.hpp"
 #include "cambium/evaluation/off_road.hpp"
 #include "cambium/evaluation/terms.hpp"
@@ -39,6 +40,13 @@ struct FrenetMemory {
   void fell_short(double, bool left_course) {
     if (left_course) *this = {};
   }
+  static constexpr char const* name = "frenet_memory";
+  static constexpr auto parameters() {
+    using P = FrenetMemory;
+    return parameter_list(parameter("acceleration", &P::acceleration, "m/s^2", any_finite, "at the start"),
+                          parameter("curvature", &P::curvature, "1/m", any_finite, "likewise"));
+  }
+
   friend bool operator==(FrenetMemory const&, FrenetMemory const&) = default;
 };
 

@@ -97,6 +97,13 @@ class Belief {
     return h;
   }
 
+  static constexpr char const* name = "belief_about_agent";
+  static constexpr auto parameters() {
+    using P = Belief;
+    return parameter_list(parameter("weights", &P::weights_, "-", any_finite, "of the hypotheses"),
+                          parameter("size", &P::size_, "-", Range{1, 8}, "number of hypotheses"));
+  }
+
   friend bool operator==(Belief const&, Belief const&) = default;
 
  private:

@@ -15,6 +15,7 @@
 #include "cambium/behavior/behavior_set.hpp"
 #include "cambium/behavior/following/headway_hypotheses.hpp"
 #include "cambium/behavior/following/idm_classic.hpp"
+#include "cambium/core/described.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/planner/mcts/belief.hpp"
 #include "cambium/planner/mcts/mcts_workspace.hpp"
@@ -31,6 +32,15 @@ struct TrackedAgent {
   Belief belief{};
   float speed = 0.0f;                              ///< as last observed [m/s]
   std::array<float, Belief::capacity> expected{};  ///< next observed speed, by hypothesis [m/s]
+
+  static constexpr char const* name = "tracked_agent";
+  static constexpr auto parameters() {
+    using P = TrackedAgent;
+    return parameter_list(parameter("id", &P::id, "-", {}, "whom it is about"),
+                          parameter("belief", &P::belief, "-", {}, "probabilities of the hypotheses"),
+                          parameter("speed", &P::speed, "m/s", any_finite, "as last observed"),
+                          parameter("expected", &P::expected, "m/s", any_finite, "next observed speed, by hypothesis"));
+  }
 
   friend bool operator==(TrackedAgent const&, TrackedAgent const&) = default;
 };
@@ -69,6 +79,15 @@ struct BeliefMemory {
     auto const at = std::ranges::find(tracked, id, &detail::TrackedAgent::id);
     return is_valid(id) && at != tracked.end() ? &at->belief : nullptr;
   }
+  static constexpr char const* name = "belief_memory";
+  static constexpr auto parameters() {
+    using P = BeliefMemory;
+    return parameter_list(parameter("tracked", &P::tracked, "-", {}, "the agents about whom it learns"),
+                          parameter("observed_at", &P::observed_at, "s", any_finite, "time of the observed speeds"),
+                          parameter("expected_at", &P::expected_at, "s", any_finite, "time of the expected ones"),
+                          parameter("course", &P::course, "-", {}, "the manoeuvre under way"));
+  }
+
   friend bool operator==(BeliefMemory const&, BeliefMemory const&) = default;
 };
 

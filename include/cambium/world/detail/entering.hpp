@@ -64,10 +64,15 @@ void check_numbers(EnteringSpec const& spec, std::string const& where);
 [[nodiscard]] std::shared_ptr<map::RoadCorridor const> free_road_along(Map const& map, RosterBase const& roster,
                                                                        std::vector<geometry::Point> const& way);
 
-/// Registers a free corridor, built from `way` if that has points, when its first agent enters, and adds index entries
-/// for the static objects on it.
+/// The free corridor `given` with a range of lane coordinates of its own, beyond those of the map and of the free
+/// corridors `known` to the world. Throws `WorldError` if `given` contains lanes.
+[[nodiscard]] std::shared_ptr<map::RoadCorridor const> numbered_road(
+    Map const& map, std::span<FreeRoad const> known, std::shared_ptr<map::RoadCorridor const> const& given,
+    std::string const& where);
+
+/// Registers a free corridor when its first agent enters, and adds index entries for the static objects on it.
 void enter_free_road(RosterBase& roster, std::shared_ptr<map::RoadCorridor const> const& given,
-                     std::shared_ptr<map::RoadCorridor const> const& numbered, std::vector<geometry::Point> const& way);
+                     std::shared_ptr<map::RoadCorridor const> const& numbered);
 
 /// Throws `WorldError` if the outline is invalid.
 void check_outline(geometry::Polygon const& outline);

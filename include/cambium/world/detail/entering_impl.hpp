@@ -50,15 +50,18 @@ namespace cambium::detail {
   return at;
 }
 
-/// The free corridor `given` with a range of lane coordinates of its own, beyond those of the map and of the free
-/// corridors `known` to the world. Throws `WorldError` if `given` contains lanes.
-[[nodiscard]] inline std::shared_ptr<map::RoadCorridor const> numbered_road(
+/// Whether two free corridors were built through the same points with the same options.
+[[nodiscard]] inline bool is_same_way(map::RoadCorridor const& a, map::RoadCorridor const& b) {
+  return !a.way.empty() && a.way == b.way && map::free_corridor_options(a) == map::free_corridor_options(b);
+}
+
+CAMBIUM_COLD std::shared_ptr<map::RoadCorridor const> numbered_road(
     Map const& map, std::span<FreeRoad const> known, std::shared_ptr<map::RoadCorridor const> const& given,
     std::string const& where) {
   constexpr double apart = 10.0;  // [m]
   double begin = lane_coordinate_end(map);
   for (auto const& road : known) {
-    if (road.given == given || road.numbered == given) return road.numbered;
+    if (road.given == given || road.numbered == given || is_same_way(*road.given, *given)) return road.numbered;
     auto const& way = road.numbered->corridors.front();
     begin = std::max(begin, way.pieces.front().index_offset + std::ceil(way.length() + apart));
   }
@@ -131,16 +134,16 @@ CAMBIUM_COLD Goal entering_goal(Map const& map, Goal const& goal, LaneId lane, s
 CAMBIUM_COLD std::shared_ptr<map::RoadCorridor const> free_road_along(Map const& map, RosterBase const& roster,
                                                                       std::vector<geometry::Point> const& way) {
   for (auto const& known : roster.free_roads)
-    if (known.way == way) return known.given;
+    if (known.given->way == way && map::free_corridor_options(*known.given) == map::FreeCorridorOptions{})
+      return known.given;
   return map::build_free_corridor(map, way);
 }
 
 CAMBIUM_COLD void enter_free_road(RosterBase& roster, std::shared_ptr<map::RoadCorridor const> const& given,
-                                  std::shared_ptr<map::RoadCorridor const> const& numbered,
-                                  std::vector<geometry::Point> const& way) {
+                                  std::shared_ptr<map::RoadCorridor const> const& numbered) {
   for (auto const& known : roster.free_roads)
     if (known.numbered == numbered) return;
-  roster.free_roads.push_back({given, numbered, way});
+  roster.free_roads.push_back({given, numbered});
   for (Slot i{}; index_of(i) < roster.objects.size(); ++i)
     enter_object(numbered->corridors.front(), roster.objects[i], i, roster.object_entries);
   std::sort(roster.object_entries.begin(), roster.object_entries.end());

@@ -124,6 +124,8 @@ class CrossingFinder {
   corridor.continues = corridor.reaches_destination = true;  // who comes to its end has arrived
   auto road = std::make_shared<RoadCorridor>();
   road->corridors.push_back(std::move(corridor));
+  road->way.assign(points.begin(), points.end());
+  road->view = options.view;
   return road;
 }
 

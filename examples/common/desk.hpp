@@ -1,0 +1,111 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+#include "cambium/behavior/following/idm_classic.hpp"
+#include "cambium/behavior/junction/intersection.hpp"
+#include "cambium/behavior/lane_change/driver_actions.hpp"
+#include "cambium/behavior/lane_change/mobil.hpp"
+#include "cambium/behavior/law/follow_lane.hpp"
+#include "cambium/behavior/law/idm.hpp"
+#include "cambium/dynamics/single_track.hpp"
+#include "cambium/execution/interpolate.hpp"
+#include "cambium/planner/mcts/mcts.hpp"
+#include "cambium/world/world.hpp"
+
+// What `record_snapshots` drives and `debug_snapshot` takes apart.
+
+namespace desk {
+
+namespace cb = cambium;
+
+/// A follower with a defect, for the case study. It plans accelerations in steps of half a second, and in its next
+/// cycle goes on from the planned one, with limited jerk. Between two planned values it interpolates, wrongly if the
+/// cycle comes late: the share of the way from one to the other then counts from the begin of the plan.
+struct SmoothFollower {
+  static constexpr std::size_t knots = 5;
+  static constexpr double spacing = 0.5;  // [s]
+
+  struct Memory {
+    double planned_at = -1e9;             ///< [s]
+    std::array<double, knots> planned{};  ///< accelerations from then on [m/s^2]
+
+    static constexpr char const* name = "smooth_follower_memory";
+    static constexpr auto parameters() {
+      return cb::parameter_list(
+          cb::parameter("planned_at", &Memory::planned_at, "s", cb::any_finite, "time of the plan"),
+          cb::parameter("planned", &Memory::planned, "m/s^2", cb::any_finite, "accelerations from then on"));
+    }
+    friend bool operator==(Memory const&, Memory const&) = default;
+  };
+
+  cb::IdmParameters idm{};
+  double jerk = 0.8;
+  double mended = 0.0;
+
+  static constexpr char const* name = "smooth_follower";
+  static constexpr char const* summary = "IDM with limited jerk; has a defect, for practice";
+  static constexpr char const* source = "own";
+  static constexpr auto parameters() {
+    using P = SmoothFollower;
+    return cb::parameter_list(
+        cb::parameter("idm", &P::idm, "-", {}, "how it follows"),
+        cb::parameter("jerk", &P::jerk, "m/s^3", cb::positive, "limit"),
+        cb::parameter("mended", &P::mended, "-", cb::Range{0, 1}, "1: it interpolates as it should"));
+  }
+
+  /// The acceleration that was planned for `since` [s] after the plan was made.
+  [[nodiscard]] double interpolated(Memory const& memory, double since) const {
+    double const place = std::clamp(since / spacing, 0.0, knots - 1.001);
+    auto const i = static_cast<std::size_t>(place);
+    double const share = mended > 0.5 ? place - static_cast<double>(i) : place;  // the defect: not of this interval
+    return memory.planned[i] + share * (memory.planned[i + 1] - memory.planned[i]);
+  }
+
+  template <class View>
+  [[nodiscard]] cb::Plan<View> plan(View const& view, Memory& memory, double dt) const {
+    double const speed = std::max(0.0, view.state().speed);
+    auto const leader = view.ahead();
+    double const infinite = std::numeric_limits<double>::infinity();
+    double const wanted =
+        cb::idm_acceleration(idm, speed, leader ? leader->gap : infinite, leader ? leader->speed : speed);
+    double const since = view.time() - memory.planned_at;
+    double begin = since < 2.0 ? interpolated(memory, since) : wanted;
+    memory.planned_at = view.time();
+    for (auto& acceleration : memory.planned) {
+      acceleration = begin;
+      begin += std::clamp(wanted - begin, -jerk * spacing, jerk * spacing);
+    }
+    double const acceleration = std::max(interpolated(memory, 0.5 * dt), -speed / dt);
+    return cb::plan_along_lane(view, {(speed + 0.5 * acceleration * dt) * dt, speed + acceleration * dt}, dt);
+  }
+};
+
+using Predicted = cb::World<cb::BehaviorSet<cb::DriverActions<cb::Intersection>, cb::Intersection>,
+                            cb::InterpolateExecution, cb::SingleTrack>;
+using Planner = cb::Mcts<Predicted>;
+using World = cb::World<cb::BehaviorSet<SmoothFollower, Planner, cb::Intersection, cb::Mobil, cb::IdmClassic>,
+                        cb::InterpolateExecution, cb::SingleTrack>;
+
+/// The agent that plans.
+inline constexpr cb::AgentId ego{0};
+
+/// What a cycle needs besides the world.
+struct Cycle {
+  double duration = 0.2;
+
+  static constexpr char const* name = "cycle";
+  static constexpr auto parameters() {
+    return cb::parameter_list(
+        cb::parameter("duration", &Cycle::duration, "s", cb::Range{1e-3, 10}, "until the next one"));
+  }
+};
+
+/// One cycle of planning and driving.
+inline cb::StepResult run(World& world, Cycle const& cycle) { return world.step(cycle.duration); }
+
+}  // namespace desk

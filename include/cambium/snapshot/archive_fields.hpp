@@ -1,0 +1,528 @@
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <span>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <boost/serialization/level.hpp>
+#include <boost/serialization/nvp.hpp>
+#include <boost/serialization/string.hpp>
+#include <boost/serialization/tracking.hpp>
+
+#include "cambium/core/parameters.hpp"
+#include "cambium/core/transfer_parameters.hpp"
+#include "cambium/snapshot/snapshot_error.hpp"
+
+namespace cambium {
+
+/// Version of the fields of `T`: its `static constexpr unsigned version`, else 0.
+template <class T>
+[[nodiscard]] constexpr unsigned version_of() {
+  if constexpr (requires { T::version; })
+    return T::version;
+  else
+    return 0;
+}
+
+namespace detail {
+
+/// Calls `f(*get_if<i>(&value), i)` for the alternative that `value` holds, as a constant.
+template <std::size_t i = 0, class... Models, class F>
+void with_alternative(std::variant<Models...> const& value, F const& f) {
+  if constexpr (i < sizeof...(Models)) {
+    if (value.index() != i) return with_alternative<i + 1>(value, f);
+    f(*std::get_if<i>(&value), std::integral_constant<std::size_t, i>{});
+  }
+}
+
+template <class... Models>
+[[nodiscard]] bool same_alternative(std::variant<Models...> const& a, std::variant<Models...> const& b);
+
+/// Whether the bits of two fields are equal.
+template <class Value>
+[[nodiscard]] bool same_bits(Value const& a, Value const& b) {
+  if constexpr (Described<Value>) {
+    bool same = true;
+    for_each_parameter<Value>([&](auto const& p) { same = same && same_bits(a.*p.field, b.*p.field); });
+    return same;
+  } else if constexpr (std::is_same_v<Value, std::string>) {
+    return a == b;
+  } else if constexpr (Variant<Value>) {
+    return a.index() == b.index() && same_alternative(a, b);
+  } else if constexpr (Optional<Value>) {
+    return a.has_value() == b.has_value() && (!a || same_bits(*a, *b));
+  } else if constexpr (ParameterList<Value>) {
+    auto const left = elements_of(a), right = elements_of(b);
+    bool same = left.size() == right.size();
+    for (std::size_t i = 0; same && i < left.size(); ++i) same = same_bits(left[i], right[i]);
+    return same;
+  } else if constexpr (std::is_same_v<Value, double>) {
+    return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
+  } else if constexpr (std::is_same_v<Value, float>) {
+    return std::bit_cast<std::uint32_t>(a) == std::bit_cast<std::uint32_t>(b);
+  } else {
+    return a == b;
+  }
+}
+
+template <class... Models>
+[[nodiscard]] bool same_alternative(std::variant<Models...> const& a, std::variant<Models...> const& b) {
+  bool same = false;
+  with_alternative(a, [&]<class Model>(Model const& model, auto place) {
+    if constexpr (Described<Model>) same = same_bits(model, *std::get_if<place>(&b));
+  });
+  return same;
+}
+
+template <class T>
+inline constexpr char type_key{};  ///< its address stands for the type
+
+/// What one archive has told of types so far: on either side the same.
+class ArchivedTypes {
+ public:
+  struct Shape {
+    void const* type;
+    unsigned version;
+    std::size_t fields;  ///< that the archive has; of the others none is known
+  };
+  struct Alternative {
+    void const* variant;
+    std::size_t index;
+    std::shared_ptr<void const> last = {};  ///< the latest struct of it
+  };
+
+  [[nodiscard]] Shape const* shape(void const* type) const {
+    for (auto const& shape : shapes_)
+      if (shape.type == type) return &shape;
+    return nullptr;
+  }
+  void add(Shape const& shape) { shapes_.push_back(shape); }
+
+  /// The number of an alternative among those told of; how many these are if it is none of them.
+  [[nodiscard]] std::size_t number_of(void const* variant, std::size_t index) const {
+    std::size_t i = 0;
+    while (i < alternatives_.size() && !(alternatives_[i].variant == variant && alternatives_[i].index == index)) ++i;
+    return i;
+  }
+  [[nodiscard]] std::vector<Alternative>& alternatives() { return alternatives_; }
+
+  ArchivedTypes() {
+    shapes_.reserve(64);
+    alternatives_.reserve(16);
+  }
+
+ private:
+  std::vector<Shape> shapes_;
+  std::vector<Alternative> alternatives_;
+};
+
+/// Number of a struct's fields.
+template <Described T>
+[[nodiscard]] constexpr std::size_t field_count() {
+  std::size_t count = 0;
+  for_each_parameter<T>([&count](auto const&) { ++count; });
+  return count;
+}
+
+/// A field's value as archives hold it.
+template <class Value>
+[[nodiscard]] constexpr auto stored(Value value) {
+  if constexpr (std::is_enum_v<Value>)
+    return static_cast<std::underlying_type_t<Value>>(value);
+  else if constexpr (std::is_same_v<Value, bool>)
+    return static_cast<unsigned char>(value);
+  else
+    return value;
+}
+
+template <class Value>
+inline constexpr bool is_long_unsigned = std::is_unsigned_v<decltype(stored(Value{}))> && sizeof(Value) >= 4;
+
+/// The nested tags of an archive that has some, for readers of the file.
+class ArchiveTags {
+ public:
+  virtual void begin(char const* key) = 0;
+  virtual void end(char const* key) = 0;
+
+ protected:
+  ~ArchiveTags() = default;
+};
+
+/// Those of `archive`; null if it has none.
+template <class Archive>
+[[nodiscard]] ArchiveTags* tags_of(Archive& archive) {
+  if constexpr (std::is_polymorphic_v<Archive>)
+    return dynamic_cast<ArchiveTags*>(&archive);
+  else
+    return nullptr;
+}
+
+/// Calls `f` between the tags `key`.
+template <class F>
+void tagged(ArchiveTags* tags, char const* key, F const& f) {
+  if (tags != nullptr) tags->begin(key);
+  f();
+  if (tags != nullptr) tags->end(key);
+}
+
+/// Writes described structs to an archive of Boost.Serialization.
+///
+///     struct:       once a type its version and number of fields; then each field, or, where the reader has a similar
+///                   struct already, bits for the fields that differ, and these
+///     alternative:  a number; with a new one the name
+///     list:         the length, where that may change; each element by what differs from the one before
+template <class Archive>
+class FieldWriter {
+ public:
+  explicit FieldWriter(Archive& archive) : archive_(archive) {}
+
+  /// `like`: what the reader has already; null if nothing.
+  template <class Value>
+  void write(char const* key, Value const& value, Value const* like = nullptr) {
+    if constexpr (Described<Value>) {
+      tagged(tags_, key, [&] { write_struct(value, like); });
+    } else if constexpr (std::is_same_v<Value, std::string>) {
+      put_text(key, value);
+    } else if constexpr (Variant<Value>) {
+      tagged(tags_, key, [&] { write_alternative(value); });
+    } else if constexpr (Optional<Value>) {
+      tagged(tags_, key, [&] {
+        put("present", stored(value.has_value()));
+        if (value) write("value", *value, like != nullptr && *like ? &**like : nullptr);
+      });
+    } else if constexpr (ParameterList<Value>) {
+      tagged(tags_, key, [&] { write_list(value, like); });
+    } else if constexpr (is_long_unsigned<Value>) {
+      put_whole(key, static_cast<std::uint64_t>(value));
+    } else {
+      put(key, stored(value));
+    }
+  }
+
+ private:
+  template <class Value>
+  void put(char const* key, Value const& value) {
+    archive_ << boost::serialization::make_nvp(key, value);
+  }
+
+  /// A whole number, of which most are small: in one byte, or in 9.
+  void put_whole(char const* key, std::uint64_t number) {
+    put(key, static_cast<unsigned char>(number < 255 ? number : 255));
+    if (number >= 255) put("whole", number);
+  }
+
+  /// Letter by letter where nobody reads it: of a text as a whole, Boost believes any length.
+  void put_text(char const* key, std::string const& text) {
+    if (tags_ != nullptr) return put(key, text);
+    put_whole(key, text.size());
+    for (char const letter : text) put(key, letter);
+  }
+
+  template <Described T>
+  void write_struct(T const& object, T const* like) {
+    constexpr std::size_t fields = field_count<T>();
+    static_assert(fields < 128, "cambium: a struct with more than 127 fields is too large for snapshots; nest some");
+    if (types_.shape(&type_key<T>) == nullptr) {
+      put("fields", static_cast<unsigned char>(fields + (version_of<T>() > 0 ? 128 : 0)));
+      if (version_of<T>() > 0) put_whole("version", version_of<T>());
+      types_.add(ArchivedTypes::Shape{&type_key<T>, version_of<T>(), fields});
+    }
+    std::array<unsigned char, (fields + 7) / 8> differs{};
+    std::size_t i = 0;
+    if (like != nullptr) {
+      for_each_parameter<T>([&](auto const& p) {
+        if (!same_bits(object.*p.field, like->*p.field))
+          differs[i / 8] = static_cast<unsigned char>(differs[i / 8] | 1u << i % 8);
+        ++i;
+      });
+      for (auto const& bits : differs) put("differs", bits);
+    } else {
+      differs.fill(0xff);
+    }
+    i = 0;
+    for_each_parameter<T>([&](auto const& p) {
+      if ((differs[i / 8] >> i % 8 & 1u) != 0)
+        write(p.name, object.*p.field, like != nullptr ? &(like->*p.field) : nullptr);
+      ++i;
+    });
+  }
+
+  template <class... Models>
+  void write_alternative(std::variant<Models...> const& value) {
+    auto const names = names_of(value);
+    auto const index = value.index();
+    if (names[index] == nullptr)
+      throw SnapshotError("snapshot", "a struct is not described, or has no default: no archive can hold it",
+                          "give it `name` and `parameters()`");
+    auto const* const key = &type_key<std::variant<Models...>>;
+    auto const number = types_.number_of(key, index);
+    put_whole("alternative", number);
+    if (number == types_.alternatives().size()) {
+      types_.alternatives().push_back({key, index});
+      put_text("name", alternative_name(names, index));
+    }
+    with_alternative(value, [&]<class Model>(Model const& model, auto) {
+      if constexpr (Described<Model>) {
+        write(struct_name<Model>(), model, static_cast<Model const*>(types_.alternatives()[number].last.get()));
+        types_.alternatives()[number].last = std::shared_ptr<void const>(std::shared_ptr<void>(), &model);  // not owned
+      }
+    });
+  }
+
+  template <ParameterList Value>
+  void write_list(Value const& value, Value const* like) {
+    auto const elements = elements_of(value);
+    auto const known = like != nullptr ? elements_of(*like) : std::span<ElementOf<Value> const>();
+    put_whole("length", elements.size());
+    for (std::size_t i = 0; i < elements.size(); ++i)
+      write("item", elements[i], i < known.size() ? &known[i] : i > 0 ? &elements[i - 1] : nullptr);
+  }
+
+  Archive& archive_;
+  ArchiveTags* tags_ = tags_of(archive_);
+  ArchivedTypes types_;
+};
+
+/// Reads what a `FieldWriter` has written. Throws `SnapshotError` where the content contradicts itself or is newer than
+/// the structs, and `ParameterError` for a value out of its range. `where`: the source, for messages.
+template <class Archive>
+class FieldReader {
+ public:
+  explicit FieldReader(Archive& archive, std::string where = "snapshot")
+      : archive_(archive), where_(std::move(where)) {}
+
+  template <class Value>
+  void read(char const* key, Value& value, ParameterInfo const& info, Value const* like = nullptr) {
+    if constexpr (Described<Value>) {
+      tagged(tags_, key, [&] { read_struct(value, like); });
+    } else if constexpr (std::is_same_v<Value, std::string>) {
+      value = text(key);
+    } else if constexpr (Variant<Value>) {
+      tagged(tags_, key, [&] { read_alternative(value); });
+    } else if constexpr (Optional<Value>) {
+      tagged(tags_, key, [&] {
+        if (whole("present", 1) == 0) return value.reset();
+        if (!value) value.emplace();
+        read("value", *value, info, like != nullptr && *like ? &**like : nullptr);
+      });
+    } else if constexpr (ParameterList<Value>) {
+      tagged(tags_, key, [&] { read_list(value, info, like); });
+    } else {
+      if constexpr (is_long_unsigned<Value>) {
+        value = static_cast<Value>(whole(key, std::numeric_limits<decltype(stored(Value{}))>::max()));
+      } else {
+        auto held = stored(Value{});
+        get(key, held);
+        value = static_cast<Value>(held);
+        if (std::is_same_v<Value, bool> && held > stored(true)) damaged();
+      }
+      if (!ParameterValue(value).in(info.range))
+        throw ParameterError(where_ + ": " + key, "is " + value_text(info, ParameterValue(value)),
+                             "it lies outside of " + range_text(info) + ": take another snapshot");
+    }
+  }
+
+ private:
+  static constexpr std::size_t longest = std::size_t{1} << 24;  ///< elements of a list
+  static constexpr int deepest = 200;                           ///< nested structs
+
+  template <class Value>
+  void get(char const* key, Value& value) {
+    archive_ >> boost::serialization::make_nvp(key, value);
+  }
+
+  [[nodiscard]] std::uint64_t whole(char const* key, std::uint64_t most) {
+    unsigned char small = 0;
+    get(key, small);
+    std::uint64_t number = small;
+    if (small == 255) get("whole", number);
+    if (number > most) damaged();
+    return number;
+  }
+  [[nodiscard]] std::string text(char const* key) {
+    std::string text;
+    if (tags_ != nullptr) {
+      get(key, text);
+      return text;
+    }
+    for (auto left = count(key); left > 0; --left) {
+      char letter = 0;
+      get(key, letter);
+      text += letter;
+    }
+    return text;
+  }
+  [[nodiscard]] std::size_t count(char const* key) { return static_cast<std::size_t>(whole(key, longest)); }
+
+  [[noreturn]] void damaged() const {
+    throw SnapshotError(where_, "its content contradicts itself", "it is damaged: take another copy");
+  }
+
+  template <Described T>
+  [[nodiscard]] ArchivedTypes::Shape shape() {
+    if (auto const* known = types_.shape(&type_key<T>)) return *known;
+    unsigned char told = 0;
+    get("fields", told);
+    std::size_t const fields = told % 128;
+    auto const version = told < 128 ? 0u : static_cast<unsigned>(count("version"));
+    if (version > version_of<T>() || fields > field_count<T>())
+      throw SnapshotError(where_, std::string("its struct '") + struct_name<T>() + "' is of a newer version",
+                          "read it with the program that wrote it, or a newer one");
+    constexpr bool upgrades = requires(T & object) { object.upgrade(0u); };
+    if (version < version_of<T>() && !upgrades)
+      throw SnapshotError(where_,
+                          std::string("its struct '") + struct_name<T>() + "' is of version " +
+                              std::to_string(version) + ", and this program knows no way from there",
+                          "give the struct a member `upgrade(unsigned from)`, or read it with an older program");
+    types_.add(ArchivedTypes::Shape{&type_key<T>, version, fields});
+    return {&type_key<T>, version, fields};
+  }
+
+  template <Described T>
+  void read_struct(T& object, T const* like) {
+    if (++depth_ > deepest) damaged();
+    auto const known = shape<T>();
+    if (like != nullptr) object = *like;
+    std::array<unsigned char, (field_count<T>() + 7) / 8> differs{};
+    differs.fill(0xff);
+    if (like != nullptr)
+      for (std::size_t k = 0; k < (known.fields + 7) / 8 && k < differs.size(); ++k) get("differs", differs[k]);
+    std::size_t i = 0;
+    for_each_parameter<T>([&](auto const& p) {
+      if (i < known.fields && (differs[i / 8] >> i % 8 & 1u) != 0)
+        read(p.name, object.*p.field, p, like != nullptr ? &(like->*p.field) : nullptr);
+      else if (i >= known.fields)
+        object.*p.field = T{}.*p.field;
+      ++i;
+    });
+    if constexpr (requires { object.upgrade(0u); })
+      if (known.version < version_of<T>()) object.upgrade(known.version);
+    --depth_;
+  }
+
+  template <class... Models>
+  void read_alternative(std::variant<Models...>& value) {
+    auto const names = names_of(value);
+    auto const* const key = &type_key<std::variant<Models...>>;
+    auto const number = count("alternative");
+    if (number > types_.alternatives().size()) damaged();
+    if (number == types_.alternatives().size()) {
+      auto const name = text("name");
+      std::size_t index = 0;
+      while (index < names.size() && (names[index] == nullptr || alternative_name(names, index) != name)) ++index;
+      if (index == names.size())
+        throw SnapshotError(
+            where_, "holds the model '" + name + "', which is not among those of this program (" + listed(names) + ")",
+            "read it with the type that was saved");
+      types_.alternatives().push_back({key, index});
+    }
+    if (types_.alternatives()[number].variant != key) damaged();
+    read_chosen(types_.alternatives()[number].index, value, number);
+  }
+
+  [[nodiscard]] static std::string listed(std::span<char const* const> names) {
+    std::string text;
+    for (std::size_t i = 0; i < names.size(); ++i)
+      if (names[i] != nullptr) text += (text.empty() ? "" : ", ") + alternative_name(names, i);
+    return text;
+  }
+
+  template <std::size_t i = 0, class... Models>
+  void read_chosen(std::size_t chosen, std::variant<Models...>& value, std::size_t number) {
+    if constexpr (i < sizeof...(Models)) {
+      using Model = std::variant_alternative_t<i, std::variant<Models...>>;
+      if (i != chosen) return read_chosen<i + 1>(chosen, value, number);
+      if constexpr (Described<Model> && std::is_default_constructible_v<Model>) {
+        auto& model = value.template emplace<i>();
+        auto const last = std::static_pointer_cast<Model const>(types_.alternatives()[number].last);
+        read(struct_name<Model>(), model, {}, last.get());
+        types_.alternatives()[number].last = std::make_shared<Model const>(model);
+      }
+    }
+  }
+
+  template <ParameterList Value>
+  void read_list(Value& value, ParameterInfo const& info, Value const* like) {
+    using Element = ElementOf<Value>;
+    auto const known = like != nullptr ? elements_of(*like) : std::span<Element const>();
+    auto const length = count("length");
+    if constexpr (requires { Value::static_capacity; })
+      if (length > Value::static_capacity) damaged();
+    if constexpr (requires { value.push_back(Element{}); }) {
+      value.clear();
+      for (std::size_t i = 0; i < length; ++i) {
+        Element element{};
+        read("item", element, info, i < known.size() ? &known[i] : i > 0 ? &value[i - 1] : nullptr);
+        value.push_back(std::move(element));
+      }
+    } else if constexpr (PointsToElements<Value>) {
+      std::vector<Element> list, of_like(known.begin(), known.end());
+      read_elements(list, length, info, of_like);
+      value = std::make_shared<std::vector<Element> const>(std::move(list));
+    } else if constexpr (std::is_constructible_v<Value, std::span<Element const>, std::string>) {
+      std::vector<Element> list, of_like(known.begin(), known.end());
+      read_elements(list, length, info, of_like);
+      value = list.empty() ? Value{} : Value(std::span<Element const>(list), where_);
+    } else {
+      if (length != value.size()) damaged();
+      for (std::size_t i = 0; i < length; ++i)
+        read("item", value.data()[i], info, i < known.size() ? &known[i] : i > 0 ? &value.data()[i - 1] : nullptr);
+    }
+  }
+
+  template <class Element>
+  void read_elements(std::vector<Element>& list, std::size_t length, ParameterInfo const& info,
+                     std::vector<Element> const& known) {
+    for (std::size_t i = 0; i < length; ++i) {
+      Element element{};
+      read("item", element, info, i < known.size() ? &known[i] : i > 0 ? &list[i - 1] : nullptr);
+      list.push_back(std::move(element));
+    }
+  }
+
+  Archive& archive_;
+  ArchiveTags* tags_ = tags_of(archive_);
+  std::string where_;
+  ArchivedTypes types_;
+  int depth_ = 0;
+};
+
+}  // namespace detail
+
+}  // namespace cambium
+
+namespace boost::serialization {
+
+/// A described struct, also as a member of a class of one's own: `archive & driver_`.
+template <class Archive, cambium::Described T>
+void serialize(Archive& archive, T& object, unsigned) {
+  if constexpr (Archive::is_saving::value)
+    cambium::detail::FieldWriter(archive).write(cambium::detail::struct_name<T>(), object);
+  else
+    cambium::detail::FieldReader(archive).read(cambium::detail::struct_name<T>(), object, {});
+}
+
+template <cambium::Described T>
+struct implementation_level<T> {
+  using tag = mpl::integral_c_tag;
+  using type = mpl::int_<object_serializable>;
+  static constexpr int value = object_serializable;
+};
+
+template <cambium::Described T>
+struct tracking_level<T> {
+  using tag = mpl::integral_c_tag;
+  using type = mpl::int_<track_never>;
+  static constexpr int value = track_never;
+};
+
+}  // namespace boost::serialization

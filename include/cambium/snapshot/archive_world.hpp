@@ -1,0 +1,316 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "cambium/core/described.hpp"
+#include "cambium/core/ids.hpp"
+#include "cambium/geometry/polygon.hpp"
+#include "cambium/geometry/shape.hpp"
+#include "cambium/goal/goal.hpp"
+#include "cambium/map/corridor/build_corridor.hpp"
+#include "cambium/map/corridor/free_corridor.hpp"
+#include "cambium/map/lanes/signals.hpp"
+#include "cambium/map/map.hpp"
+#include "cambium/snapshot/archive_fields.hpp"
+#include "cambium/world/detail/entering.hpp"
+#include "cambium/world/world.hpp"
+
+namespace cambium {
+
+namespace detail {
+
+/// Whether a memory's description has all of its fields, in their order: then these fill the struct.
+template <class Memory>
+[[nodiscard]] constexpr bool describes_all() {
+  if constexpr (std::is_empty_v<Memory>) {
+    return true;
+  } else {
+    std::size_t end = 0;
+    for_each_parameter<Memory>([&end]<class Owner, class Field>(Parameter<Owner, Field> const&) {
+      end = (end + alignof(Field) - 1) / alignof(Field) * alignof(Field) + sizeof(Field);
+    });
+    return (end + alignof(Memory) - 1) / alignof(Memory) * alignof(Memory) == sizeof(Memory);
+  }
+}
+
+template <class Memory>
+[[nodiscard]] constexpr bool check_memory() {
+  static_assert(Described<Memory>,
+                "cambium: a behaviour's Memory must describe its fields, or a snapshot would lose them; give it "
+                "`static constexpr char const* name` and `static constexpr auto parameters()`, see Described");
+  if constexpr (Described<Memory>)
+    static_assert(describes_all<Memory>(),
+                  "cambium: the parameters() of a behaviour's Memory leave out a field, or name the fields in another "
+                  "order than the struct does; a snapshot would lose it");
+  return true;
+}
+
+template <class... Memories>
+[[nodiscard]] constexpr bool check_memories(std::variant<Memories...> const*) {
+  return (check_memory<Memories>() && ...);
+}
+
+template <class Model>
+[[nodiscard]] constexpr bool check_model() {
+  static_assert(Described<Model>,
+                "cambium: a snapshot holds only models that describe their parameters; give this one "
+                "`static constexpr char const* name` and `static constexpr auto parameters()`, see Described");
+  return true;
+}
+template <class... Models>
+[[nodiscard]] constexpr bool check_models(std::variant<Models...> const*) {
+  return (check_model<Models>() && ...);
+}
+
+/// What the road corridor of an agent is built from.
+struct ArchivedRoad {
+  std::vector<LaneId> route;
+  std::vector<geometry::Point> way;  ///< of a free corridor, as the following
+  double width = 0.0, view = 0.0;
+  map::LaneType type = map::LaneType::none;
+
+  static constexpr char const* name = "road";
+  static constexpr auto parameters() {
+    using P = ArchivedRoad;
+    return parameter_list(parameter("route", &P::route, "-", {}, "lanes in order; of a free corridor none"),
+                          parameter("way", &P::way, "m", any_finite, "points of a free corridor"),
+                          parameter("width", &P::width, "m", non_negative, "of a free corridor"),
+                          parameter("view", &P::view, "m", non_negative, "likewise"),
+                          parameter("type", &P::type, "-", Range{0, 255}, "likewise"));
+  }
+};
+
+/// An agent of a roster; `road` numbers the roads of the archive.
+template <class World>
+struct ArchivedAgent {
+  AgentId id = none<AgentId>;
+  std::uint32_t road = 0;
+  geometry::Shape shape{};
+  typename World::Behavior behavior{};
+  typename World::Execution execution{};
+  typename World::Dynamics dynamics{};
+  typename World::Observer observer{};
+  Goal goal{};
+
+  static constexpr char const* name = "agent";
+  static constexpr auto parameters() {
+    using P = ArchivedAgent;
+    return parameter_list(parameter("id", &P::id, "-", {}, "its name"),
+                          parameter("road", &P::road, "-", Range{0, 4294967295.0}, "number of its road"),
+                          parameter("shape", &P::shape, "-", {}, "its outline"),
+                          parameter("behavior", &P::behavior, "-", {}, "one of the world's behaviors"),
+                          parameter("execution", &P::execution, "-", {}, "how it tracks its plans"),
+                          parameter("dynamics", &P::dynamics, "-", {}, "the vehicle model"),
+                          parameter("observer", &P::observer, "-", {}, "how it sees the others"),
+                          parameter("goal", &P::goal, "-", {}, "where it wants to go"));
+  }
+};
+
+struct ArchivedObject {
+  ObjectId id = none<ObjectId>;
+  geometry::Polygon outline{};
+
+  static constexpr char const* name = "object";
+  static constexpr auto parameters() {
+    using P = ArchivedObject;
+    return parameter_list(parameter("id", &P::id, "-", {}, "its name"),
+                          parameter("outline", &P::outline, "m", any_finite, "corners"));
+  }
+};
+
+/// All that a world consists of, but for its map.
+template <class World>
+struct ArchivedWorld {
+  std::uint64_t seed = 0;
+  std::uint32_t revision = 0, next_agent_id = 0, next_object_id = 0;
+  geometry::Shape largest_shape{};
+  std::uint32_t free_roads = 0;
+  std::vector<ArchivedRoad> roads;
+  std::vector<ArchivedAgent<World>> agents;
+  std::vector<map::LightPlan> lights;
+  std::vector<ArchivedObject> objects;
+  typename World::FrameType frame{};
+
+  static constexpr char const* name = "world";
+  static constexpr auto parameters() {
+    using P = ArchivedWorld;
+    constexpr Range whole{0, 4294967295.0};
+    return parameter_list(parameter("seed", &P::seed, "-", Range{0, 1.9e19}, "of its random numbers"),
+                          parameter("revision", &P::revision, "-", whole, "of its roster"),
+                          parameter("next_agent_id", &P::next_agent_id, "-", whole, "of the next agent without one"),
+                          parameter("next_object_id", &P::next_object_id, "-", whole, "of the next object"),
+                          parameter("largest_shape", &P::largest_shape, "-", {}, "holds those of all agents so far"),
+                          parameter("free_roads", &P::free_roads, "-", whole, "how many roads are free corridors"),
+                          parameter("roads", &P::roads, "-", {}, "of the agents; free corridors first"),
+                          parameter("agents", &P::agents, "-", {}, "who they are"),
+                          parameter("lights", &P::lights, "-", {}, "plans of the map's traffic lights"),
+                          parameter("objects", &P::objects, "-", {}, "that stand in the way"),
+                          parameter("frame", &P::frame, "-", {}, "time, and where the agents are"));
+  }
+};
+
+/// What the archive holds of a world. Throws `SnapshotError` if a road was not built by this library.
+template <class World>
+[[nodiscard]] ArchivedWorld<World> archived(World const& world) {
+  static_assert(check_memories(static_cast<typename World::Behaviors::Memory const*>(nullptr)));
+  static_assert(check_models(static_cast<typename World::Behavior const*>(nullptr)));
+  auto const& roster = world.roster();
+  ArchivedWorld<World> parts;
+  parts.seed = roster.seed;
+  parts.revision = roster.revision;
+  parts.next_agent_id = roster.next_agent_id;
+  parts.next_object_id = roster.next_object_id;
+  parts.largest_shape = roster.largest_shape;
+  parts.free_roads = static_cast<std::uint32_t>(roster.free_roads.size());
+  parts.lights = roster.lights;
+  parts.frame = world.frame();
+  std::vector<map::RoadCorridor const*> roads;
+  for (auto const& road : roster.free_roads) {
+    if (road.given->way.empty())
+      throw SnapshotError("snapshot", "a free corridor of the world was not built by build_free_corridor",
+                          "build it so: only then can it be built again");
+    auto const options = map::free_corridor_options(*road.given);
+    parts.roads.push_back({{}, road.given->way, options.width, options.view, options.type});
+    roads.push_back(road.numbered.get());
+  }
+  parts.agents.reserve(roster.agents.size());
+  for (Slot slot{}; index_of(slot) < roster.agents.size(); ++slot) {
+    auto const& agent = roster.agents[slot];
+    auto const place = std::find(roads.begin(), roads.end(), agent.road.get());
+    auto const number = static_cast<std::uint32_t>(place - roads.begin());
+    if (place == roads.end()) {
+      roads.push_back(agent.road.get());
+      parts.roads.push_back({agent.road->route, {}, 0.0, 0.0, map::LaneType::none});
+    }
+    parts.agents.push_back({agent.id, number, agent.shape, agent.behavior, agent.execution, agent.dynamics,
+                            agent.observer, roster.goals[slot]});
+  }
+  for (auto const& object : roster.objects) parts.objects.push_back({object.id, object.outline});
+  return parts;
+}
+
+/// Throws `SnapshotError` unless `condition` holds.
+inline void require_consistent(bool condition, char const* what) {
+  if (!condition)
+    throw SnapshotError("snapshot", what, "it does not belong to this map, or is damaged: take another copy");
+}
+
+[[nodiscard]] inline bool is_on(map::RoadCorridor const& road, map::LanePlace const& at) {
+  if (index_of(at.corridor) >= road.corridors.size()) return false;
+  auto const& corridor = road.corridors[at.corridor];
+  return index_of(at.piece) < corridor.pieces.size() && at.segment < corridor.center.segments().size();
+}
+
+/// Whether every lane corridor that `value` names is one of the `count` of its road.
+template <class Value>
+[[nodiscard]] bool names_corridors_below(Value const& value, std::size_t count) {
+  bool all = true;
+  if constexpr (std::is_same_v<Value, CorridorId>) {
+    return !is_valid(value) || index_of(value) < count;
+  } else if constexpr (Described<Value>) {
+    for_each_parameter<Value>([&](auto const& p) { all = all && names_corridors_below(value.*p.field, count); });
+  } else if constexpr (Variant<Value>) {
+    with_alternative(value, [&](auto const& model, auto) { all = names_corridors_below(model, count); });
+  } else if constexpr (Optional<Value>) {
+    if (value) all = names_corridors_below(*value, count);
+  } else if constexpr (ParameterList<Value>) {
+    for (auto const& element : elements_of(value)) all = all && names_corridors_below(element, count);
+  }
+  return all;
+}
+
+[[nodiscard]] inline std::shared_ptr<map::RoadCorridor const> restored_road(Map const& map, RosterBase& roster,
+                                                                            ArchivedRoad const& road) {
+  if (!road.way.empty()) {
+    auto const given = map::build_free_corridor(map, road.way, {road.width, road.type, road.view});
+    auto const numbered = numbered_road(map, roster.free_roads, given, "snapshot");
+    enter_free_road(roster, given, numbered);
+    return numbered;
+  }
+  require_consistent(!road.route.empty(), "a road has no lanes");
+  for (auto const lane : road.route)
+    require_consistent(index_of(lane) < map.lanes().size(), "a route has a lane that the map lacks");
+  return map.queries().road_corridor(map, road.route);
+}
+
+/// The world of `parts` on `map`. Throws `SnapshotError` if they contradict each other or the map.
+template <class World>
+[[nodiscard]] World restored(std::shared_ptr<Map const> const& map, ArchivedWorld<World>&& parts) {
+  using Roster = typename World::RosterType;
+  auto roster = std::make_shared<Roster>();
+  roster->seed = parts.seed;
+  std::vector<std::shared_ptr<map::RoadCorridor const>> roads;
+  for (auto const& road : parts.roads) {
+    require_consistent((roads.size() < parts.free_roads) == !road.way.empty(), "its free corridors do not come first");
+    roads.push_back(restored_road(*map, *roster, road));
+  }
+  for (auto& object : parts.objects) {
+    roster->next_object_id = static_cast<std::uint32_t>(object.id);
+    static_cast<void>(enter_object(*map, *roster, std::move(object.outline)));
+  }
+  require_consistent(parts.agents.size() == parts.frame.agents.size(), "it has more agents than places, or fewer");
+  for (std::size_t i = 0; i < parts.agents.size(); ++i) {
+    auto& agent = parts.agents[i];
+    auto& record = parts.frame.agents[i];
+    require_consistent(agent.road < roads.size(), "an agent has no road");
+    require_consistent(i == 0 || parts.agents[i - 1].id < agent.id, "its agents are not sorted");
+    require_consistent(is_on(*roads[agent.road], record.lane), "an agent is on no lane of its road");
+    auto const& pieces = roads[agent.road]->corridors[record.lane.corridor].pieces;
+    record.lane.index = map::lane_coordinate(pieces[record.lane.piece], record.lane.s);
+    require_consistent(record.memory.index() == agent.behavior.index(), "an agent has another model's memory");
+    require_consistent(names_corridors_below(record.memory, roads[agent.road]->corridors.size()),
+                       "an agent remembers a lane that its road lacks");
+    static_cast<void>(roster->insert({agent.id, agent.shape, roads[agent.road], std::move(agent.behavior),
+                                      std::move(agent.execution), std::move(agent.dynamics), std::move(agent.observer)},
+                                     std::move(agent.goal)));
+  }
+  roster->revision = parts.revision;
+  roster->next_agent_id = parts.next_agent_id;
+  roster->next_object_id = parts.next_object_id;
+  roster->largest_shape = parts.largest_shape;
+  roster->lights = std::move(parts.lights);
+  return World(map, std::move(roster), std::move(parts.frame));
+}
+
+}  // namespace detail
+
+}  // namespace cambium
+
+namespace boost::serialization {
+
+/// A world, also as a member of a class of one's own. When it is loaded, it must have the map already.
+template <class Archive, class T>
+requires(cambium::detail::is_world<T>) void serialize(Archive& archive, T& world, unsigned) {
+  using Parts = cambium::detail::ArchivedWorld<T>;
+  if constexpr (Archive::is_saving::value) {
+    cambium::detail::FieldWriter(archive).write("world", cambium::detail::archived(world));
+  } else {
+    Parts parts;
+    cambium::detail::FieldReader(archive).read("world", parts, {});
+    world = cambium::detail::restored<T>(world.shared_map(), std::move(parts));
+  }
+}
+
+template <class T>
+requires(cambium::detail::is_world<T>) struct implementation_level<T> {
+  using tag = mpl::integral_c_tag;
+  using type = mpl::int_<object_serializable>;
+  static constexpr int value = object_serializable;
+};
+
+template <class T>
+requires(cambium::detail::is_world<T>) struct tracking_level<T> {
+  using tag = mpl::integral_c_tag;
+  using type = mpl::int_<track_never>;
+  static constexpr int value = track_never;
+};
+
+}  // namespace boost::serialization

@@ -1,0 +1,132 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <exception>
+#include <filesystem>
+#include <functional>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "cambium/snapshot/snapshot.hpp"
+#include "cambium/world/step_result.hpp"
+
+namespace cambium {
+
+/// When and where a `SnapshotRecorder` writes.
+struct SnapshotRecorderOptions {
+  std::filesystem::path folder{};  ///< of the files 00000001.snapshot, ...; is made if it is not there
+  SnapshotOptions snapshot{};      ///< of each file; the recorder adds to the note why it was taken, and the result
+  bool each_cycle = false;         ///< keeps every cycle, not only those with a reason
+  /// A cycle that takes longer is a reason [s].
+  double longest_cycle = std::numeric_limits<double>::infinity();
+  /// Asked after each cycle: a text is a reason, such as a collision or a traffic rule that was broken.
+  std::vector<std::function<std::string()>> watches{};
+  std::size_t most_files = 10'000;                    ///< beyond, the oldest files go
+  std::uint64_t most_bytes = std::uint64_t{1} << 30;  ///< likewise
+  /// Files written longer ago go [s].
+  double longest_kept = std::numeric_limits<double>::infinity();
+  bool in_background = false;      ///< writes on a thread of its own: a cycle never waits for the disk
+  std::size_t most_waiting = 256;  ///< snapshots that wait for that thread; beyond, new ones are dropped and counted
+};
+
+/// Keeps the state from just before a cycle of planning or simulation, if there turns out to be a reason: an exception,
+/// an invalid step, a cycle that takes too long, a watch, or whatever calls `trigger`, such as a log for errors. The
+/// files survive the end of the process; a failure to write is counted, never thrown. Its functions but `trigger` are
+/// for one thread.
+class SnapshotRecorder {
+ public:
+  /// Throws `SnapshotError` if the folder cannot be made. Numbers go on behind the files that are there.
+  explicit SnapshotRecorder(SnapshotRecorderOptions options);
+  SnapshotRecorder(SnapshotRecorder&&) noexcept;
+  SnapshotRecorder& operator=(SnapshotRecorder&&) noexcept;
+  /// Writes what waits.
+  ~SnapshotRecorder();
+
+  /// Runs `cycle` and keeps the state of `parts` before it if there is a reason. Returns what `cycle` returns; lets its
+  /// exceptions pass. The state of `parts` after it is the result that a repetition is compared with.
+  template <class Cycle, class... Parts>
+  decltype(auto) run(Cycle&& cycle, Parts const&... parts) {
+    begin(parts...);
+    auto const start = std::chrono::steady_clock::now();
+    try {
+      if constexpr (std::is_void_v<std::invoke_result_t<Cycle&>>) {
+        cycle();
+        finish(start, parts...);
+      } else {
+        decltype(auto) returned = cycle();
+        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(returned)>, StepResult>)
+          if (!returned) trigger(to_string(returned.problem));
+        finish(start, parts...);
+        return returned;
+      }
+    } catch (std::exception const& error) {
+      trigger(std::string("exception: ") + error.what());
+      end();
+      throw;
+    } catch (...) {
+      trigger("exception");
+      end();
+      throw;
+    }
+  }
+
+  /// The same in parts, for cycles that are no function: `begin`, the cycle, `end`.
+  template <class... Parts>
+  void begin(Parts const&... parts) {
+    std::array const saved{detail::saved_part(parts)...};
+    begin_parts(detail::scene_of(parts...), saved);
+  }
+  /// `results`: parts as they are after the cycle, to compare a repetition with; none: there is nothing to compare.
+  template <class... Results>
+  void end(Results const&... results) {
+    if (!is_kept()) return discard();
+    if constexpr (sizeof...(Results) > 0)
+      keep(snapshot_hash(results...));
+    else
+      keep({});
+  }
+
+  /// A reason to keep the cycle under way, or if there is none, the next one. From any thread.
+  void trigger(std::string const& reason);
+
+  /// Waits until everything is written.
+  void flush();
+
+  /// Numbers of snapshots written, dropped because too many waited, and not written because of the disk.
+  [[nodiscard]] std::size_t written() const;
+  [[nodiscard]] std::size_t dropped() const;
+  [[nodiscard]] std::size_t failed() const;
+  /// Why the last one was not written; empty if there is none.
+  [[nodiscard]] std::string problem() const;
+  /// The file of the last cycle that was kept.
+  [[nodiscard]] std::filesystem::path last_file() const;
+
+ private:
+  struct State;
+
+  template <class... Parts>
+  void finish(std::chrono::steady_clock::time_point start, Parts const&... parts) {
+    note_time(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+    end(parts...);
+  }
+  void begin_parts(detail::SceneOfParts const& scene, std::span<detail::SavedPart const> parts);
+  void note_time(double seconds);
+  [[nodiscard]] bool is_kept();
+  void keep(std::optional<std::uint64_t> result);
+  void discard();
+
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace cambium
+
+#ifndef CAMBIUM_COMPILED
+#include "cambium/snapshot/snapshot_recorder_impl.hpp"
+#endif

@@ -1,0 +1,205 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <condition_variable>
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <deque>
+#include <filesystem>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include "cambium/core/macros.hpp"
+#include "cambium/core/write_file.hpp"
+#include "cambium/snapshot/snapshot_recorder.hpp"
+
+namespace cambium {
+
+/// What the recorder and its thread share.
+struct SnapshotRecorder::State {
+  struct File {
+    std::filesystem::path path;
+    std::uintmax_t bytes;
+    std::chrono::steady_clock::time_point written;
+  };
+  struct Waiting {
+    std::filesystem::path path;
+    detail::ArchivedParts parts;
+    SnapshotOptions options;
+  };
+
+  SnapshotRecorderOptions options;
+  detail::ArchivedParts before{};
+  std::uint64_t number = 0;  ///< of the last file
+  std::filesystem::path last_file{};
+  std::deque<File> files{};  ///< oldest first; of the thread that writes
+  std::uint64_t bytes = 0;
+
+  mutable std::mutex mutex{};  ///< of the following
+  std::string reasons{}, problem{};
+  std::size_t written = 0, dropped = 0, failed = 0;
+  std::deque<Waiting> waiting{};
+  bool is_writing = false, is_over = false;
+  std::condition_variable changed{};
+  std::thread thread{};
+
+  explicit State(SnapshotRecorderOptions given) : options(std::move(given)) {
+    std::error_code problem_there;
+    std::filesystem::create_directories(options.folder, problem_there);
+    if (!std::filesystem::is_directory(options.folder, problem_there))
+      throw SnapshotError("'" + options.folder.string() + "'", "is no folder and cannot be made one",
+                          "name a folder that you may write to");
+    for (auto const& entry : std::filesystem::directory_iterator(options.folder, problem_there))
+      if (entry.path().extension() == ".snapshot")
+        files.push_back({entry.path(), entry.file_size(problem_there), std::chrono::steady_clock::now()});
+    std::sort(files.begin(), files.end(), [](File const& a, File const& b) { return a.path < b.path; });
+    for (auto const& file : files) bytes += file.bytes;
+    if (!files.empty()) number = std::strtoull(files.back().path.stem().string().c_str(), nullptr, 10);
+    if (options.in_background) thread = std::thread([this] { write_all(); });
+  }
+  ~State() {
+    if (!thread.joinable()) return;
+    {
+      std::lock_guard const lock(mutex);
+      is_over = true;
+    }
+    changed.notify_all();
+    thread.join();
+  }
+
+  void take(Waiting snapshot) {
+    if (!options.in_background) return write(snapshot);
+    {
+      std::lock_guard const lock(mutex);
+      if (waiting.size() >= options.most_waiting) {
+        ++dropped;
+        return;
+      }
+      waiting.push_back(std::move(snapshot));
+    }
+    changed.notify_all();
+  }
+
+  void write_all() {
+    std::unique_lock lock(mutex);
+    while (true) {
+      changed.wait(lock, [this] { return is_over || !waiting.empty(); });
+      if (waiting.empty()) return;
+      auto const next = std::move(waiting.front());
+      waiting.pop_front();
+      is_writing = true;
+      lock.unlock();
+      write(next);
+      lock.lock();
+      is_writing = false;
+      changed.notify_all();
+    }
+  }
+
+  void write(Waiting const& snapshot) {
+    std::string why;
+    try {
+      auto const text = detail::with_head(snapshot.parts, snapshot.options);
+      write_file(snapshot.path, text);
+      files.push_back({snapshot.path, text.size(), std::chrono::steady_clock::now()});
+      bytes += text.size();
+      remove_oldest();
+    } catch (std::exception const& error) {
+      why = error.what();
+    }
+    std::lock_guard const lock(mutex);
+    ++(why.empty() ? written : failed);
+    if (!why.empty()) problem = why;
+  }
+
+  void remove_oldest() {
+    auto const now = std::chrono::steady_clock::now();
+    std::error_code ignored;  // a file that somebody else has removed
+    while (files.size() > 1 &&
+           (files.size() > options.most_files || bytes > options.most_bytes ||
+            std::chrono::duration<double>(now - files.front().written).count() > options.longest_kept)) {
+      std::filesystem::remove(files.front().path, ignored);
+      bytes -= files.front().bytes;
+      files.pop_front();
+    }
+  }
+};
+
+CAMBIUM_COLD SnapshotRecorder::SnapshotRecorder(SnapshotRecorderOptions options)
+    : state_(std::make_unique<State>(std::move(options))) {}
+CAMBIUM_COLD SnapshotRecorder::SnapshotRecorder(SnapshotRecorder&&) noexcept = default;
+CAMBIUM_COLD SnapshotRecorder& SnapshotRecorder::operator=(SnapshotRecorder&&) noexcept = default;
+CAMBIUM_COLD SnapshotRecorder::~SnapshotRecorder() = default;
+
+CAMBIUM_COLD void SnapshotRecorder::begin_parts(detail::SceneOfParts const& scene,
+                                                std::span<detail::SavedPart const> parts) {
+  state_->before = detail::archive_parts(state_->options.snapshot.format, scene, parts);
+}
+
+CAMBIUM_COLD void SnapshotRecorder::trigger(std::string const& reason) {
+  constexpr std::size_t longest = 1000;  // of a note: a log may call in each line
+  std::lock_guard const lock(state_->mutex);
+  auto& reasons = state_->reasons;
+  if (reasons.size() < longest) reasons += (reasons.empty() ? "" : "; ") + reason.substr(0, longest);
+}
+
+CAMBIUM_COLD void SnapshotRecorder::note_time(double seconds) {
+  if (seconds > state_->options.longest_cycle) trigger("it took " + detail::rounded_text(seconds) + " s");
+}
+
+CAMBIUM_COLD bool SnapshotRecorder::is_kept() {
+  for (auto const& watch : state_->options.watches)
+    if (auto const reason = watch(); !reason.empty()) trigger(reason);
+  std::lock_guard const lock(state_->mutex);
+  return state_->options.each_cycle || !state_->reasons.empty();
+}
+
+CAMBIUM_COLD void SnapshotRecorder::keep(std::optional<std::uint64_t> result) {
+  auto options = state_->options.snapshot;
+  {
+    std::lock_guard const lock(state_->mutex);
+    if (!state_->reasons.empty()) options.note += (options.note.empty() ? "" : ": ") + state_->reasons;
+    state_->reasons.clear();
+  }
+  options.result = result;
+  std::array<char, 32> name{};
+  std::snprintf(name.data(), name.size(), "%08llu.snapshot", static_cast<unsigned long long>(++state_->number));
+  state_->last_file = state_->options.folder / name.data();
+  state_->take({state_->last_file, std::move(state_->before), std::move(options)});
+  state_->before = {};
+}
+
+CAMBIUM_COLD void SnapshotRecorder::discard() { state_->before = {}; }
+
+CAMBIUM_COLD void SnapshotRecorder::flush() {
+  std::unique_lock lock(state_->mutex);
+  state_->changed.wait(lock, [this] { return state_->waiting.empty() && !state_->is_writing; });
+}
+
+CAMBIUM_COLD std::size_t SnapshotRecorder::written() const {
+  std::lock_guard const lock(state_->mutex);
+  return state_->written;
+}
+CAMBIUM_COLD std::size_t SnapshotRecorder::dropped() const {
+  std::lock_guard const lock(state_->mutex);
+  return state_->dropped;
+}
+CAMBIUM_COLD std::size_t SnapshotRecorder::failed() const {
+  std::lock_guard const lock(state_->mutex);
+  return state_->failed;
+}
+CAMBIUM_COLD std::string SnapshotRecorder::problem() const {
+  std::lock_guard const lock(state_->mutex);
+  return state_->problem;
+}
+CAMBIUM_COLD std::filesystem::path SnapshotRecorder::last_file() const { return state_->last_file; }
+
+}  // namespace cambium

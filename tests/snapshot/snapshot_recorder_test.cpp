@@ -1,0 +1,196 @@
+// When a recorder keeps a cycle, and what is left of its files.
+#include "cambium/snapshot.hpp"
+
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#ifdef __unix__
+#include <csignal>
+#include <sys/wait.h>
+#include <unistd.h>
+#endif
+
+#include "cambium/cambium.hpp"
+#include "support/maps.hpp"
+
+using namespace cambium;
+namespace fs = std::filesystem;
+
+namespace {
+
+using Sim = World<BehaviorSet<IdmClassic>, InterpolateExecution, SingleTrack>;
+
+/// An empty folder of that name.
+fs::path folder(std::string const& name) {
+  auto const path = fs::path(CAMBIUM_BUILD_DIR) / "snapshot_recorder" / name;
+  fs::remove_all(path);
+  return path;
+}
+
+std::vector<fs::path> files_in(fs::path const& folder) {
+  std::vector<fs::path> files;
+  for (auto const& entry : fs::directory_iterator(folder)) files.push_back(entry.path());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+Sim one_car() {
+  Sim world(support::straight_road(1, 3000.0), {.seed = 1});
+  world.add({.position = {20, -1.75}, .speed = 5, .behavior = IdmClassic{}});
+  return world;
+}
+
+SnapshotInfo info_of(fs::path const& file) { return snapshot_info(read_snapshot_file(file.string()), file.string()); }
+
+}  // namespace
+
+TEST_CASE("without a reason nothing is kept; a trigger keeps the state before the cycle, and its result") {
+  auto const where = folder("trigger");
+  SnapshotRecorder recorder({.folder = where, .snapshot = {.note = "test drive"}});
+  auto world = one_car();
+  for (int i = 0; i < 5; ++i) REQUIRE(recorder.run([&] { return world.step(0.2); }, world));
+  CHECK(files_in(where).empty());
+  auto const before = world;
+  CHECK(recorder.run(
+      [&] {
+        recorder.trigger("the driver asked");
+        recorder.trigger("twice");
+        return world.step(0.2);
+      },
+      world));
+  REQUIRE(files_in(where) == std::vector{where / "00000001.snapshot"});
+  CHECK(recorder.last_file() == where / "00000001.snapshot");
+  CHECK(recorder.written() == 1);
+  auto const info = info_of(recorder.last_file());
+  CHECK(info.note == "test drive: the driver asked; twice");
+  CHECK(info.time == before.time());
+  CHECK(info.result == snapshot_hash(world));
+  auto thawed = Sim(world.shared_map());
+  load_snapshot(recorder.last_file().string(), thawed);
+  CHECK(thawed.frame() == before.frame());
+  REQUIRE(thawed.step(0.2));
+  CHECK(snapshot_hash(thawed) == info.result);
+  REQUIRE(recorder.run([&] { return world.step(0.2); }, world));
+  CHECK(files_in(where).size() == 1);
+}
+
+TEST_CASE("exceptions, invalid steps, slow cycles and watches are reasons") {
+  auto const where = folder("reasons");
+  bool collides = false;
+  SnapshotRecorder recorder({.folder = where,
+                             .longest_cycle = 10.0,
+                             .watches = {[&] { return collides ? std::string("a collision") : std::string(); }}});
+  auto world = one_car();
+  CHECK_THROWS_AS(recorder.run([&] { throw std::runtime_error("no path"); }, world), std::runtime_error);
+  CHECK(info_of(where / "00000001.snapshot").note == "exception: no path");
+  CHECK_FALSE(info_of(where / "00000001.snapshot").result);
+  CHECK_FALSE(recorder.run([&] { return world.step(-1.0); }, world));
+  CHECK(info_of(where / "00000002.snapshot").note == to_string(StepProblem::bad_duration));
+  collides = true;
+  CHECK(recorder.run([] { return 7; }, world) == 7);
+  CHECK(info_of(where / "00000003.snapshot").note == "a collision");
+  collides = false;
+  SnapshotRecorder hasty({.folder = where, .longest_cycle = 0.0});
+  hasty.run([&] { static_cast<void>(world.step(0.2)); }, world);
+  CHECK(info_of(where / "00000004.snapshot").note.find("it took ") == 0);  // numbers go on
+  recorder.begin(world);
+  recorder.trigger("in parts");
+  recorder.end();
+  CHECK(files_in(where).size() == 4);  // a second recorder there has its own count: it replaced the file of that number
+  CHECK(info_of(where / "00000004.snapshot").note == "in parts");
+}
+
+TEST_CASE("each cycle is kept in a ring that number, bytes and age bound") {
+  auto const where = folder("ring");
+  auto world = one_car();
+  {
+    SnapshotRecorder recorder({.folder = where, .each_cycle = true, .most_files = 5, .in_background = true});
+    for (int i = 0; i < 40; ++i) {
+      REQUIRE(recorder.run([&] { return world.step(0.2); }, world));
+      recorder.flush();
+    }
+    CHECK(recorder.written() == 40);
+  }
+  CHECK(files_in(where).size() == 5);
+  CHECK(files_in(where).front() == where / "00000036.snapshot");
+  auto const size = fs::file_size(where / "00000036.snapshot");
+  {
+    SnapshotRecorder recorder({.folder = where, .each_cycle = true, .most_bytes = 3 * size + 100});
+    REQUIRE(recorder.run([&] { return world.step(0.2); }, world));
+    CHECK(files_in(where).back() == where / "00000041.snapshot");
+    CHECK(files_in(where).size() == 3);
+  }
+  SnapshotRecorder recorder({.folder = where, .each_cycle = true, .longest_kept = 0.0});
+  REQUIRE(recorder.run([&] { return world.step(0.2); }, world));
+  CHECK(files_in(where) == std::vector{where / "00000042.snapshot"});
+}
+
+TEST_CASE("a disk that takes no more and a queue that is full are counted, and the cycles go on") {
+  auto world = one_car();
+  if (fs::exists("/dev/full")) {
+    auto const where = folder("full");
+    fs::create_directories(where);
+    SnapshotRecorder recorder({.folder = where, .each_cycle = true});
+    fs::create_symlink("/dev/full", where / "00000001.snapshot");
+    REQUIRE(recorder.run([&] { return world.step(0.2); }, world));
+    CHECK(recorder.failed() == 1);
+    CHECK(recorder.problem().find("00000001.snapshot: cannot be written") != std::string::npos);
+    REQUIRE(recorder.run([&] { return world.step(0.2); }, world));
+    CHECK(recorder.written() == 1);
+  }
+  SnapshotRecorder none({.folder = folder("none"), .each_cycle = true, .in_background = true, .most_waiting = 0});
+  REQUIRE(none.run([&] { return world.step(0.2); }, world));
+  CHECK(none.dropped() == 1);
+  CHECK_THROWS_AS(SnapshotRecorder({.folder = "/proc/none"}), SnapshotError);
+}
+
+TEST_CASE("a log of another thread may trigger") {
+  auto const where = folder("threads");
+  SnapshotRecorder recorder({.folder = where, .in_background = true});
+  auto world = one_car();
+  std::atomic<bool> is_over = false;
+  std::thread log([&] {
+    while (!is_over) recorder.trigger("error");
+  });
+  int cycles = 0;
+  for (; recorder.written() < 20; ++cycles) REQUIRE(recorder.run([&] { return world.step(0.001); }, world));
+  is_over = true;
+  log.join();
+  recorder.flush();
+  CHECK(recorder.written() + recorder.dropped() <= static_cast<std::size_t>(cycles));
+  for (auto const& file : files_in(where)) CHECK(info_of(file).note.starts_with("error"));
+}
+
+#ifdef __unix__
+TEST_CASE("after a kill, all files but perhaps the last are whole") {
+  auto const where = folder("killed");
+  auto const child = fork();
+  REQUIRE(child >= 0);
+  if (child == 0) {
+    auto world = one_car();
+    SnapshotRecorder recorder({.folder = where, .each_cycle = true, .most_files = 50});
+    while (true) static_cast<void>(recorder.run([&] { return world.step(0.001); }, world));
+  }
+  for (int i = 0; i < 1000 && (!fs::exists(where) || files_in(where).size() < 50); ++i) usleep(10'000);
+  kill(child, SIGKILL);
+  int status = 0;
+  waitpid(child, &status, 0);
+  std::size_t whole = 0;
+  for (auto const& file : files_in(where))
+    if (file.extension() == ".snapshot") {
+      CHECK_NOTHROW(static_cast<void>(info_of(file)));
+      ++whole;
+    }
+  CHECK(whole >= 49);
+}
+#endif

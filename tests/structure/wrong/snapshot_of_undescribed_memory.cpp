@@ -1,0 +1,24 @@
+// expect: cambium: a behaviour's Memory must describe its fields, or a snapshot would lose them
+#include <cambium/snapshot.hpp>
+#include <cambium/world.hpp>
+#include <cambium/dynamics.hpp>
+#include <cambium/execution.hpp>
+
+struct Counts {
+  struct Memory {
+    int steps = 0;
+    friend bool operator==(Memory const&, Memory const&) = default;
+  };
+  static constexpr char const* name = "counts";
+  static constexpr auto parameters() { return cambium::parameter_list(); }
+  template <class View>
+  cambium::Plan<View> plan(View const& view, Memory& memory, double) const {
+    ++memory.steps;
+    cambium::Plan<View> plan;
+    plan.trajectory.push_back(view.state());
+    return plan;
+  }
+};
+using Sim = cambium::World<cambium::BehaviorSet<Counts>, cambium::InterpolateExecution, cambium::SingleTrack>;
+
+std::string save(Sim const& world) { return cambium::to_snapshot({}, world); }
