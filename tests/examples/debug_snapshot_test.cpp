@@ -1,0 +1,97 @@
+// The examples record_snapshots and debug_snapshot as a user meets them.
+#include <doctest/doctest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "program.hpp"
+
+using program::content_of;
+using program::Program;
+namespace fs = std::filesystem;
+
+namespace {
+
+std::vector<std::string> snapshots_in(fs::path const& folder) {
+  std::vector<std::string> files;
+  for (auto const& entry : fs::directory_iterator(folder)) files.push_back(entry.path().string());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+bool has(std::string const& text, std::string const& word) { return text.find(word) != std::string::npos; }
+
+}  // namespace
+
+TEST_CASE("the defect of the case study is found by its snapshot, as the README tells") {
+  Program const record("record_snapshots"), debug("debug_snapshot");
+  if (!record.is_there() || !debug.is_there()) return;
+  browser::TemporaryFolder const folder;
+  auto const out = folder.path() / "snapshots";
+  auto const drive = record.run({"--out", out.string()});
+  CHECK(drive.code == 0);
+  CHECK(has(drive.out, "46 cycles, 12.7 s; 3 snapshots in"));
+  auto const files = snapshots_in(out);
+  REQUIRE(files.size() == 3);
+  auto const replay = folder.path() / "cycle.html";
+  auto const again = debug.run({files[0], "--replay", replay.string(), "--as-test"});
+  CHECK(again.code == 0);
+  CHECK(again.err.empty());
+  CHECK(has(again.out, "because   a jerk of 1.68889 m/s^3"));
+  CHECK(has(again.out, "remembers: smooth_follower_memory: planned_at=0.2 s"));
+  CHECK(has(again.out, "bit-equal to what was recorded"));
+  CHECK(has(again.out, "TEST_CASE(\"the cycle of 00000001.snapshot comes out as recorded\")"));
+  CHECK(has(content_of(replay), "00000001.snapshot"));
+  CHECK(has(content_of(folder.path() / "cycle.svg"), "<svg"));
+  auto const mended = debug.run({files[0], "--edit", "behavior.mended=1"});
+  CHECK(mended.code == 1);
+  CHECK(has(mended.out, "-3.121 m/s^2"));
+  auto const on = debug.run({files[0], "--into-simulation"});
+  CHECK(on.code == 0);
+  CHECK(has(on.out, "no collision"));
+  CHECK(debug.run({files[0], "--cycles", "5"}).code == 0);
+}
+
+TEST_CASE("a tree search's cycles come out bit-equal in every format, with the map embedded or not") {
+  Program const record("record_snapshots"), debug("debug_snapshot");
+  if (!record.is_there() || !debug.is_there()) return;
+  for (std::string const format : {"binary", "text", "xml"}) {
+    CAPTURE(format);
+    browser::TemporaryFolder const folder;
+    std::vector<std::string> words{
+        "--out", folder.path().string(), "--planner", "search",   "--each-cycle", "--seconds",
+        "1",     "--iterations",         "50",        "--format", format};
+    if (format != "binary") words.emplace_back("--embed-map");
+    REQUIRE(record.run(words).code == 0);
+    auto const files = snapshots_in(folder.path());
+    CHECK(files.size() >= 2);
+    for (auto const& file : files) CHECK(debug.run({file}).code == 0);
+  }
+}
+
+TEST_CASE("debug_snapshot names what is wrong with its file and options") {
+  Program const record("record_snapshots"), debug("debug_snapshot");
+  if (!record.is_there() || !debug.is_there()) return;
+  browser::TemporaryFolder const folder;
+  REQUIRE(record.run({"--out", folder.path().string(), "--each-cycle", "--seconds", "0.5"}).code == 0);
+  auto const file = snapshots_in(folder.path()).front();
+  auto const error = [&](std::vector<std::string> const& words) {
+    auto const run = debug.run(words);
+    CHECK(run.code == 2);
+    return run.err;
+  };
+  CHECK(has(error({"/nowhere.snapshot"}), "/nowhere.snapshot: the file cannot be opened"));
+  CHECK(has(error({CAMBIUM_SOURCE_DIR "/README.md"}), "is no snapshot of cambium"));
+  CHECK(has(error({file, "--edit", "behavior.jerk"}), "write behavior.KEY=NUMBER"));
+  CHECK(has(error({file, "--edit", "behavior.jerky=1"}), "jerky"));
+  CHECK(has(error({file, "--cycles", "0"}), "--cycles"));
+  auto const bytes = content_of(file);
+  auto const cut = (folder.path() / "cut").string();
+  std::ofstream(cut, std::ios::binary) << bytes.substr(0, bytes.size() / 2);
+  CHECK(has(error({cut}), "is cut short"));
+  CHECK(record.run({"--out", "/proc/none"}).code == 2);
+  CHECK(record.run({}).code == 2);
+}
