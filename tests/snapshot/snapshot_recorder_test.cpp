@@ -110,6 +110,36 @@ TEST_CASE("exceptions, invalid steps, slow cycles and watches are reasons") {
   CHECK(info_of(where / "00000004.snapshot").note == "in parts");
 }
 
+TEST_CASE("a watch that throws is a reason; after an exception of the cycle none is asked") {
+  auto const where = folder("watches");
+  int asked = 0;
+  SnapshotRecorder recorder({.folder = where, .watches = {[&]() -> std::string {
+                                                ++asked;
+                                                throw std::runtime_error("no ego");
+                                              }}});
+  auto world = one_car();
+  REQUIRE(recorder.run([&] { return world.step(0.2); }, world));
+  CHECK(info_of(where / "00000001.snapshot").note == "a watch failed: no ego");
+  CHECK_THROWS_WITH(recorder.run([&] { throw std::runtime_error("no path"); }, world), "no path");
+  CHECK(info_of(where / "00000002.snapshot").note == "exception: no path");
+  CHECK(asked == 1);
+  recorder.trigger("twice");
+  recorder.end();  // without `begin`
+  CHECK(recorder.written() == 2);
+}
+
+TEST_CASE("files of others in its folder stay as they are; what an earlier recorder left unfinished goes") {
+  auto const where = folder("shared");
+  fs::create_directories(where);
+  for (char const* name : {"merge_bug.snapshot", "7.snapshot", "00000012.snapshot", "00000013.snapshot.part"})
+    std::ofstream(where / name) << "mine";
+  SnapshotRecorder recorder({.folder = where, .each_cycle = true, .most_files = 1});
+  auto world = one_car();
+  REQUIRE(recorder.run([&] { return world.step(0.2); }, world));
+  CHECK(files_in(where) ==
+        std::vector{where / "00000013.snapshot", where / "7.snapshot", where / "merge_bug.snapshot"});
+}
+
 TEST_CASE("each cycle is kept in a ring that number, bytes and age bound") {
   auto const where = folder("ring");
   auto world = one_car();

@@ -66,7 +66,6 @@ Set one_of(std::size_t number) {
 
 TEST_CASE("traffic of all models goes on bit by bit after it was saved and restored, in each format") {
   auto const map = support::own_map("merging.xodr"), again = support::own_map("merging.xodr");
-  std::uint64_t differing = 0;
   for (std::uint32_t seed = 0; seed < 60; ++seed) {
     CAPTURE(seed);
     RandomStream random(seed, 0, 0);
@@ -79,9 +78,7 @@ TEST_CASE("traffic of all models goes on bit by bit after it was saved and resto
           {.position = {x, i % 2 == 0 ? -1.75 : -5.25}, .speed = Uniform{0.0, 15.0}(random), .behavior = behavior});
     }
     compare(world, again, 12, 0.2, static_cast<int>(seed));
-    ++differing;
   }
-  CHECK(differing == 60);
 }
 
 TEST_CASE("every execution, vehicle and observer model goes on bit by bit") {

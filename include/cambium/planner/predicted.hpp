@@ -18,7 +18,6 @@
 #include "cambium/evaluation/course_end.hpp"
 #include "cambium/evaluation/terms.hpp"
 #include "cambium/geometry/angle.hpp"
-#include "cambium/world/detail/entering.hpp"
 #include "cambium/world/driven_to.hpp"
 #include "cambium/world/prediction.hpp"
 #include "cambium/world/world.hpp"

@@ -27,7 +27,7 @@ namespace cambium {
 /// Version of the fields of `T`: its `static constexpr unsigned version`, else 0.
 template <class T>
 [[nodiscard]] constexpr unsigned version_of() {
-  if constexpr (requires { T::version; })
+  if constexpr (requires { typename std::integral_constant<unsigned, T::version>; })
     return T::version;
   else
     return 0;
@@ -89,6 +89,9 @@ inline constexpr char type_key{};  ///< its address stands for the type
 /// What one archive has told of types so far: on either side the same.
 class ArchivedTypes {
  public:
+  static constexpr std::size_t longest = std::size_t{1} << 24;  ///< elements of a list
+  static constexpr int deepest = 200;                           ///< nested structs
+
   struct Shape {
     void const* type;
     unsigned version;
@@ -123,6 +126,12 @@ class ArchivedTypes {
  private:
   std::vector<Shape> shapes_;
   std::vector<Alternative> alternatives_;
+};
+
+/// Whether a struct has a public member `serialize`, which then counts instead of its description.
+template <class T, class Archive>
+concept SerializesItself = requires(T object, Archive& archive) {
+  object.serialize(archive, 0u);
 };
 
 /// Number of a struct's fields.
@@ -179,7 +188,7 @@ void tagged(ArchiveTags* tags, char const* key, F const& f) {
 ///     struct:       once a type its version and number of fields; then each field, or, where the reader has a similar
 ///                   struct already, bits for the fields that differ, and these
 ///     alternative:  a number; with a new one the name
-///     list:         the length, where that may change; each element by what differs from the one before
+///     list:         the length; each element by what differs from the one before
 template <class Archive>
 class FieldWriter {
  public:
@@ -214,6 +223,12 @@ class FieldWriter {
     archive_ << boost::serialization::make_nvp(key, value);
   }
 
+  void put_count(char const* key, std::size_t count) {
+    if (count > ArchivedTypes::longest)
+      throw SnapshotError("snapshot", "a list has " + std::to_string(count) + " elements",
+                          "an archive holds 16 million");
+    put_whole(key, count);
+  }
   /// A whole number, of which most are small: in one byte, or in 9.
   void put_whole(char const* key, std::uint64_t number) {
     put(key, static_cast<unsigned char>(number < 255 ? number : 255));
@@ -223,7 +238,7 @@ class FieldWriter {
   /// Letter by letter where nobody reads it: of a text as a whole, Boost believes any length.
   void put_text(char const* key, std::string const& text) {
     if (tags_ != nullptr) return put(key, text);
-    put_whole(key, text.size());
+    put_count(key, text.size());
     for (char const letter : text) put(key, letter);
   }
 
@@ -282,7 +297,7 @@ class FieldWriter {
   void write_list(Value const& value, Value const* like) {
     auto const elements = elements_of(value);
     auto const known = like != nullptr ? elements_of(*like) : std::span<ElementOf<Value> const>();
-    put_whole("length", elements.size());
+    put_count("length", elements.size());
     for (std::size_t i = 0; i < elements.size(); ++i)
       write("item", elements[i], i < known.size() ? &known[i] : i > 0 ? &elements[i - 1] : nullptr);
   }
@@ -293,15 +308,24 @@ class FieldWriter {
 };
 
 /// Reads what a `FieldWriter` has written. Throws `SnapshotError` where the content contradicts itself or is newer than
-/// the structs, and `ParameterError` for a value out of its range. `where`: the source, for messages.
+/// the structs, and `ParameterError` for a whole number out of its range. Real numbers keep their bits, whatever they
+/// are: a planner that went wrong may remember NaN. `where`: the source, for messages.
 template <class Archive>
 class FieldReader {
  public:
   explicit FieldReader(Archive& archive, std::string where = "snapshot")
       : archive_(archive), where_(std::move(where)) {}
 
+  /// Reads `value`, and brings structs of older versions up to date.
   template <class Value>
-  void read(char const* key, Value& value, ParameterInfo const& info, Value const* like = nullptr) {
+  void read(char const* key, Value& value) {
+    read(key, value, {}, static_cast<Value const*>(nullptr));
+    if (is_old_) upgrade(value);
+  }
+
+ private:
+  template <class Value>
+  void read(char const* key, Value& value, ParameterInfo const& info, Value const* like) {
     if constexpr (Described<Value>) {
       tagged(tags_, key, [&] { read_struct(value, like); });
     } else if constexpr (std::is_same_v<Value, std::string>) {
@@ -325,15 +349,11 @@ class FieldReader {
         value = static_cast<Value>(held);
         if (std::is_same_v<Value, bool> && held > stored(true)) damaged();
       }
-      if (!ParameterValue(value).in(info.range))
+      if (std::is_integral_v<decltype(stored(value))> && !ParameterValue(value).in(info.range))
         throw ParameterError(where_ + ": " + key, "is " + value_text(info, ParameterValue(value)),
                              "it lies outside of " + range_text(info) + ": take another snapshot");
     }
   }
-
- private:
-  static constexpr std::size_t longest = std::size_t{1} << 24;  ///< elements of a list
-  static constexpr int deepest = 200;                           ///< nested structs
 
   template <class Value>
   void get(char const* key, Value& value) {
@@ -361,7 +381,9 @@ class FieldReader {
     }
     return text;
   }
-  [[nodiscard]] std::size_t count(char const* key) { return static_cast<std::size_t>(whole(key, longest)); }
+  [[nodiscard]] std::size_t count(char const* key) {
+    return static_cast<std::size_t>(whole(key, ArchivedTypes::longest));
+  }
 
   [[noreturn]] void damaged() const {
     throw SnapshotError(where_, "its content contradicts itself", "it is damaged: take another copy");
@@ -389,7 +411,7 @@ class FieldReader {
 
   template <Described T>
   void read_struct(T& object, T const* like) {
-    if (++depth_ > deepest) damaged();
+    if (++depth_ > ArchivedTypes::deepest) damaged();
     auto const known = shape<T>();
     if (like != nullptr) object = *like;
     std::array<unsigned char, (field_count<T>() + 7) / 8> differs{};
@@ -404,8 +426,9 @@ class FieldReader {
         object.*p.field = T{}.*p.field;
       ++i;
     });
-    if constexpr (requires { object.upgrade(0u); })
-      if (known.version < version_of<T>()) object.upgrade(known.version);
+    is_old_ = is_old_ || known.version < version_of<T>();
+    if constexpr (requires { object.check(where_); })
+      if (!is_old_) object.check(where_);
     --depth_;
   }
 
@@ -489,11 +512,34 @@ class FieldReader {
     }
   }
 
+  /// Calls `upgrade` of the structs in `value` that the archive had in an older version, the innermost first. A pass of
+  /// its own: until all is read, the next struct may refer to one as it was written.
+  template <class Value>
+  void upgrade(Value& value) {
+    if constexpr (Described<Value>) {
+      for_each_parameter<Value>([&](auto const& p) { upgrade(value.*p.field); });
+      if constexpr (requires { value.upgrade(0u); })
+        if (auto const* shape = types_.shape(&type_key<Value>);
+            shape != nullptr && shape->version < version_of<Value>())
+          value.upgrade(shape->version);
+    } else if constexpr (Variant<Value>) {
+      with_alternative(value, [&]<class Model>(Model const&, auto place) { upgrade(*std::get_if<place>(&value)); });
+    } else if constexpr (Optional<Value>) {
+      if (value) upgrade(*value);
+    } else if constexpr (requires {
+                           value.begin()->~ElementOf<Value>();
+                           requires !std::is_const_v<std::remove_reference_t<decltype(*value.begin())>>;
+                         }) {
+      for (auto& element : value) upgrade(element);
+    }
+  }
+
   Archive& archive_;
   ArchiveTags* tags_ = tags_of(archive_);
   std::string where_;
   ArchivedTypes types_;
   int depth_ = 0;
+  bool is_old_ = false;  ///< a struct was of an older version
 };
 
 }  // namespace detail
@@ -504,11 +550,11 @@ namespace boost::serialization {
 
 /// A described struct, also as a member of a class of one's own: `archive & driver_`.
 template <class Archive, cambium::Described T>
-void serialize(Archive& archive, T& object, unsigned) {
+requires(!cambium::detail::SerializesItself<T, Archive>) void serialize(Archive& archive, T& object, unsigned) {
   if constexpr (Archive::is_saving::value)
     cambium::detail::FieldWriter(archive).write(cambium::detail::struct_name<T>(), object);
   else
-    cambium::detail::FieldReader(archive).read(cambium::detail::struct_name<T>(), object, {});
+    cambium::detail::FieldReader(archive).read(cambium::detail::struct_name<T>(), object);
 }
 
 template <cambium::Described T>

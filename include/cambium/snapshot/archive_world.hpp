@@ -16,22 +16,41 @@
 #include "cambium/geometry/shape.hpp"
 #include "cambium/goal/goal.hpp"
 #include "cambium/map/corridor/build_corridor.hpp"
+#include "cambium/map/content_hash.hpp"
 #include "cambium/map/corridor/free_corridor.hpp"
 #include "cambium/map/lanes/signals.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/snapshot/archive_fields.hpp"
-#include "cambium/world/detail/entering.hpp"
 #include "cambium/world/world.hpp"
 
 namespace cambium {
 
 namespace detail {
 
+struct AnyValue {
+  template <class T>
+  operator T() const;  // never called
+};
+template <class T, std::size_t... i>
+[[nodiscard]] constexpr bool takes(std::index_sequence<i...>) {
+  return requires { T{(static_cast<void>(i), AnyValue{})...}; };
+}
+/// Whether aggregate `T` has more than `count` members.
+template <class T, std::size_t count>
+[[nodiscard]] constexpr bool has_more_members() {
+  if constexpr (std::is_aggregate_v<T>)
+    return takes<T>(std::make_index_sequence<count + 1>());
+  else
+    return false;
+}
+
 /// Whether a memory's description has all of its fields, in their order: then these fill the struct.
 template <class Memory>
 [[nodiscard]] constexpr bool describes_all() {
   if constexpr (std::is_empty_v<Memory>) {
     return true;
+  } else if constexpr (has_more_members<Memory, field_count<Memory>()>()) {
+    return false;
   } else {
     std::size_t end = 0;
     for_each_parameter<Memory>([&end]<class Owner, class Field>(Parameter<Owner, Field> const&) {
@@ -46,10 +65,14 @@ template <class Memory>
   static_assert(Described<Memory>,
                 "cambium: a behaviour's Memory must describe its fields, or a snapshot would lose them; give it "
                 "`static constexpr char const* name` and `static constexpr auto parameters()`, see Described");
-  if constexpr (Described<Memory>)
+  if constexpr (Described<Memory>) {
     static_assert(describes_all<Memory>(),
-                  "cambium: the parameters() of a behaviour's Memory leave out a field, or name the fields in another "
-                  "order than the struct does; a snapshot would lose it");
+                  "cambium: the parameters() of a behaviour's Memory, or of a struct in it, leave out a field, or name "
+                  "the fields in another order than the struct does; a snapshot would lose it");
+    for_each_parameter<Memory>([]<class Owner, class Field>(Parameter<Owner, Field> const&) {
+      if constexpr (Described<Field>) static_cast<void>(check_memory<Field>());
+    });
+  }
   return true;
 }
 
@@ -68,6 +91,11 @@ template <class Model>
 template <class... Models>
 [[nodiscard]] constexpr bool check_models(std::variant<Models...> const*) {
   return (check_model<Models>() && ...);
+}
+
+/// Hash of all that traffic knows of a map, and of what it was built with.
+[[nodiscard]] inline std::uint64_t hash_of_map(Map const& map) {
+  return map::content_hash(map) ^ hash_parameters(map.options());
 }
 
 /// What the road corridor of an agent is built from.
@@ -129,7 +157,7 @@ struct ArchivedObject {
 /// All that a world consists of, but for its map.
 template <class World>
 struct ArchivedWorld {
-  std::uint64_t seed = 0;
+  std::uint64_t map_hash = 0, seed = 0;
   std::uint32_t revision = 0, next_agent_id = 0, next_object_id = 0;
   geometry::Shape largest_shape{};
   std::uint32_t free_roads = 0;
@@ -143,7 +171,8 @@ struct ArchivedWorld {
   static constexpr auto parameters() {
     using P = ArchivedWorld;
     constexpr Range whole{0, 4294967295.0};
-    return parameter_list(parameter("seed", &P::seed, "-", Range{0, 1.9e19}, "of its random numbers"),
+    return parameter_list(parameter("map_hash", &P::map_hash, "-", Range{0, 1.9e19}, "of the map, see hash_of_map"),
+                          parameter("seed", &P::seed, "-", Range{0, 1.9e19}, "of its random numbers"),
                           parameter("revision", &P::revision, "-", whole, "of its roster"),
                           parameter("next_agent_id", &P::next_agent_id, "-", whole, "of the next agent without one"),
                           parameter("next_object_id", &P::next_object_id, "-", whole, "of the next object"),
@@ -164,6 +193,7 @@ template <class World>
   static_assert(check_models(static_cast<typename World::Behavior const*>(nullptr)));
   auto const& roster = world.roster();
   ArchivedWorld<World> parts;
+  parts.map_hash = hash_of_map(world.map());
   parts.seed = roster.seed;
   parts.revision = roster.revision;
   parts.next_agent_id = roster.next_agent_id;
@@ -245,6 +275,7 @@ template <class Value>
 template <class World>
 [[nodiscard]] World restored(std::shared_ptr<Map const> const& map, ArchivedWorld<World>&& parts) {
   using Roster = typename World::RosterType;
+  require_consistent(parts.map_hash == hash_of_map(*map), "a world in it was taken on another map");
   auto roster = std::make_shared<Roster>();
   roster->seed = parts.seed;
   std::vector<std::shared_ptr<map::RoadCorridor const>> roads;
@@ -253,6 +284,7 @@ template <class World>
     roads.push_back(restored_road(*map, *roster, road));
   }
   for (auto& object : parts.objects) {
+    check_outline(object.outline);
     roster->next_object_id = static_cast<std::uint32_t>(object.id);
     static_cast<void>(enter_object(*map, *roster, std::move(object.outline)));
   }
@@ -266,6 +298,7 @@ template <class World>
     auto const& pieces = roads[agent.road]->corridors[record.lane.corridor].pieces;
     record.lane.index = map::lane_coordinate(pieces[record.lane.piece], record.lane.s);
     require_consistent(record.memory.index() == agent.behavior.index(), "an agent has another model's memory");
+    static_cast<void>(entering_goal(*map, agent.goal, pieces[record.lane.piece].lane, "snapshot"));
     require_consistent(names_corridors_below(record.memory, roads[agent.road]->corridors.size()),
                        "an agent remembers a lane that its road lacks");
     static_cast<void>(roster->insert({agent.id, agent.shape, roads[agent.road], std::move(agent.behavior),
@@ -276,6 +309,8 @@ template <class World>
   roster->next_agent_id = parts.next_agent_id;
   roster->next_object_id = parts.next_object_id;
   roster->largest_shape = parts.largest_shape;
+  for (std::size_t i = 0; i < parts.lights.size(); ++i)
+    require_light_plan(*map, static_cast<LightId>(i), parts.lights[i]);
   roster->lights = std::move(parts.lights);
   return World(map, std::move(roster), std::move(parts.frame));
 }
@@ -294,7 +329,7 @@ requires(cambium::detail::is_world<T>) void serialize(Archive& archive, T& world
     cambium::detail::FieldWriter(archive).write("world", cambium::detail::archived(world));
   } else {
     Parts parts;
-    cambium::detail::FieldReader(archive).read("world", parts, {});
+    cambium::detail::FieldReader(archive).read("world", parts);
     world = cambium::detail::restored<T>(world.shared_map(), std::move(parts));
   }
 }

@@ -17,7 +17,6 @@
 
 #include "cambium/core/read_file.hpp"
 #include "cambium/core/write_file.hpp"
-#include "cambium/map/content_hash.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/snapshot/archive_fields.hpp"
 #include "cambium/snapshot/archive_world.hpp"
@@ -49,7 +48,7 @@ struct SnapshotInfo {
   std::string platform;                   ///< sizes and order of bytes
   std::string parts;                      ///< names, separated by commas
   std::optional<double> time;             ///< of the first world [s]
-  std::optional<std::uint64_t> map_hash;  ///< `content_hash` of its map
+  std::optional<std::uint64_t> map_hash;  ///< of its map, and of what that was built with
   std::string map_file, map_text, note;   ///< as in `SnapshotOptions`
   std::optional<std::uint64_t> result;    ///< likewise
 };
@@ -64,7 +63,7 @@ template <class T>
 [[nodiscard]] constexpr char const* part_name() {
   if constexpr (is_world<T>)
     return "world";
-  else if constexpr (requires { T::name; })
+  else if constexpr (requires { typename std::bool_constant<(T::name != nullptr)>; })
     return T::name;
   else
     return "component";
@@ -151,8 +150,8 @@ struct ReadPart {
 /// The state of `parts` as bytes: worlds, described structs such as a planner or its memory, and classes of one's own
 /// that Boost.Serialization can save (with a member `template <class Archive> void serialize(Archive&, unsigned)`, or
 /// for `boost::archive::polymorphic_oarchive` and `polymorphic_iarchive` only). What belongs to the environment, such
-/// as a logger, such a class leaves out. A world is saved with everything but its map, which is noted by its content
-/// hash, and its history. Throws `SnapshotError` if a part holds a struct that is not described. O(bytes).
+/// as a logger, such a class leaves out. A world is saved with everything but its map, which is noted by a hash, and
+/// its history. Throws `SnapshotError` if a part holds a struct that is not described. O(bytes).
 template <class... Parts>
 [[nodiscard]] std::string to_snapshot(SnapshotOptions const& options, Parts const&... parts) {
   static_assert(sizeof...(Parts) > 0, "cambium::to_snapshot: name what to save: worlds, planners, memories");

@@ -111,10 +111,15 @@ class TextIn final : public boost::archive::polymorphic_text_iarchive {
   using boost::archive::polymorphic_text_iarchive::polymorphic_text_iarchive;
 
  private:
+  /// Boost believes any length of a text; a number is short.
   template <class Number>
   void read(Number& value) {
-    std::string text;
-    boost::archive::text_iarchive::load(text);
+    std::size_t length = 0;
+    boost::archive::text_iarchive::load(length);
+    if (length > 40) throw SnapshotError("snapshot", "a number is too long", "it is damaged: take another copy");
+    std::string text(length, ' ');
+    is.get();
+    is.read(text.data(), static_cast<std::streamsize>(length));
     value = exact_number<Number>(text);
   }
   void load(double& value) override { read(value); }
@@ -165,8 +170,12 @@ template <class Archive>
 void load_parts(std::string_view bytes, std::span<LoadedPart const> parts) {
   StringSource source(bytes);
   std::istream stream(&source);
-  Archive archive(stream, plain_archive);
-  for (auto const& part : parts) part.load(archive, part.name, part.object);
+  {
+    Archive archive(stream, plain_archive);
+    for (auto const& part : parts) part.load(archive, part.name, part.object);
+  }
+  if (std::is_same_v<Archive, boost::archive::polymorphic_binary_iarchive> && !source.is_at_end())
+    throw SnapshotError("snapshot", "holds more than was read", "restore all that was saved, by the same `serialize`");
 }
 
 /// What a binary archive depends on: order of bytes, size of pointers and longs.
@@ -227,7 +236,7 @@ template <class Parts>
 CAMBIUM_COLD ArchivedParts archive_parts(SnapshotFormat format, SceneOfParts const& scene,
                                          std::span<SavedPart const> parts) {
   ArchivedParts archived{format, names_of_parts(parts), std::nullopt, scene.time, {}};
-  if (scene.map != nullptr) archived.map_hash = map::content_hash(*scene.map);
+  if (scene.map != nullptr) archived.map_hash = hash_of_map(*scene.map);
   archived.archive.reserve(8192);
   switch (format) {
     case SnapshotFormat::binary:
@@ -294,14 +303,14 @@ struct OpenedSnapshot {
   bytes.remove_prefix(snapshot_magic.size());
   auto const version = take_line(bytes);
   auto const number = version ? number_of(*version, 10) : std::nullopt;
-  if (!number) damaged("its first line is cut short");
+  if (!number || *number == 0) damaged("its first line names no version");
   if (*number > snapshot_version)
     throw SnapshotError(where, "is of version " + std::to_string(*number) + " of the format, newer than this program",
                         "read it with the program that wrote it, or a newer one");
   auto const seal = take_line(bytes).value_or("");
   auto const length = seal.substr(0, seal.find(' '));
   if (length != std::to_string(bytes.size())) damaged("is cut short, or longer than it should be");
-  if (*version != std::to_string(snapshot_version) || seal.substr(length.size()) != " " + hex(checksum_of(bytes)))
+  if (*version != std::to_string(*number) || seal.substr(length.size()) != " " + hex(checksum_of(bytes)))
     damaged("has a wrong checksum");
   OpenedSnapshot opened;
   auto& info = opened.info;
@@ -352,10 +361,10 @@ CAMBIUM_COLD void read_snapshot(std::string_view bytes, std::string const& where
   if (info.format == SnapshotFormat::binary && info.platform != platform_tag())
     throw SnapshotError(where, "is binary and of another platform (" + info.platform + "; here " + platform_tag() + ")",
                         "write it as text there");
-  if (scene.map != nullptr && info.map_hash && map::content_hash(*scene.map) != *info.map_hash)
+  if (scene.map != nullptr && info.map_hash && hash_of_map(*scene.map) != *info.map_hash)
     throw SnapshotError(where,
                         "was taken on another map: its hash is " + hex(*info.map_hash) + ", that of the given one " +
-                            hex(map::content_hash(*scene.map)),
+                            hex(hash_of_map(*scene.map)),
                         info.map_file.empty() ? "give the world the map that it was taken on"
                                               : "give the world the map of '" + info.map_file + "'");
   try {

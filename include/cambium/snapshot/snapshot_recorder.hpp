@@ -26,7 +26,8 @@ struct SnapshotRecorderOptions {
   bool each_cycle = false;         ///< keeps every cycle, not only those with a reason
   /// A cycle that takes longer is a reason [s].
   double longest_cycle = std::numeric_limits<double>::infinity();
-  /// Asked after each cycle: a text is a reason, such as a collision or a traffic rule that was broken.
+  /// Asked after each cycle: a text is a reason, such as a collision or a traffic rule that was broken; and so is an
+  /// exception.
   std::vector<std::function<std::string()>> watches{};
   std::size_t most_files = 10'000;                    ///< beyond, the oldest files go
   std::uint64_t most_bytes = std::uint64_t{1} << 30;  ///< likewise
@@ -52,28 +53,18 @@ class SnapshotRecorder {
   /// Runs `cycle` and keeps the state of `parts` before it if there is a reason. Returns what `cycle` returns; lets its
   /// exceptions pass. The state of `parts` after it is the result that a repetition is compared with.
   template <class Cycle, class... Parts>
-  decltype(auto) run(Cycle&& cycle, Parts const&... parts) {
+  auto run(Cycle&& cycle, Parts const&... parts) {
     begin(parts...);
     auto const start = std::chrono::steady_clock::now();
-    try {
-      if constexpr (std::is_void_v<std::invoke_result_t<Cycle&>>) {
-        cycle();
-        finish(start, parts...);
-      } else {
-        decltype(auto) returned = cycle();
-        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(returned)>, StepResult>)
-          if (!returned) trigger(to_string(returned.problem));
-        finish(start, parts...);
-        return returned;
-      }
-    } catch (std::exception const& error) {
-      trigger(std::string("exception: ") + error.what());
-      end();
-      throw;
-    } catch (...) {
-      trigger("exception");
-      end();
-      throw;
+    if constexpr (std::is_void_v<std::invoke_result_t<Cycle&>>) {
+      guarded(cycle);
+      finish(start, parts...);
+    } else {
+      auto returned = guarded(cycle);
+      if constexpr (std::is_same_v<decltype(returned), StepResult>)
+        if (!returned) trigger(to_string(returned.problem));
+      finish(start, parts...);
+      return returned;
     }
   }
 
@@ -105,12 +96,27 @@ class SnapshotRecorder {
   [[nodiscard]] std::size_t failed() const;
   /// Why the last one was not written; empty if there is none.
   [[nodiscard]] std::string problem() const;
-  /// The file of the last cycle that was kept.
+  /// The file of the last cycle that was kept; it may still wait, or have been refused by the disk.
   [[nodiscard]] std::filesystem::path last_file() const;
 
  private:
   struct State;
 
+  /// Runs the cycle; after an exception the state before it is kept, and nobody is asked any more.
+  template <class Cycle>
+  auto guarded(Cycle& cycle) {
+    try {
+      return cycle();
+    } catch (std::exception const& error) {
+      trigger(std::string("exception: ") + error.what());
+      keep({});
+      throw;
+    } catch (...) {
+      trigger("exception");
+      keep({});
+      throw;
+    }
+  }
   template <class... Parts>
   void finish(std::chrono::steady_clock::time_point start, Parts const&... parts) {
     note_time(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());

@@ -27,18 +27,20 @@ namespace cambium {
 struct SnapshotRecorder::State {
   struct File {
     std::filesystem::path path;
+    std::uint64_t number;
     std::uintmax_t bytes;
-    std::chrono::steady_clock::time_point written;
+    std::filesystem::file_time_type written;
   };
   struct Waiting {
     std::filesystem::path path;
+    std::uint64_t number;
     detail::ArchivedParts parts;
     SnapshotOptions options;
   };
 
   SnapshotRecorderOptions options;
-  detail::ArchivedParts before{};
-  std::uint64_t number = 0;  ///< of the last file
+  std::optional<detail::ArchivedParts> before{};  ///< of the cycle under way
+  std::uint64_t number = 0;                       ///< of the last file
   std::filesystem::path last_file{};
   std::deque<File> files{};  ///< oldest first; of the thread that writes
   std::uint64_t bytes = 0;
@@ -57,12 +59,9 @@ struct SnapshotRecorder::State {
     if (!std::filesystem::is_directory(options.folder, problem_there))
       throw SnapshotError("'" + options.folder.string() + "'", "is no folder and cannot be made one",
                           "name a folder that you may write to");
-    for (auto const& entry : std::filesystem::directory_iterator(options.folder, problem_there))
-      if (entry.path().extension() == ".snapshot")
-        files.push_back({entry.path(), entry.file_size(problem_there), std::chrono::steady_clock::now()});
-    std::sort(files.begin(), files.end(), [](File const& a, File const& b) { return a.path < b.path; });
-    for (auto const& file : files) bytes += file.bytes;
-    if (!files.empty()) number = std::strtoull(files.back().path.stem().string().c_str(), nullptr, 10);
+    for (auto const& entry : std::filesystem::directory_iterator(options.folder, problem_there)) adopt(entry.path());
+    std::sort(files.begin(), files.end(), [](File const& a, File const& b) { return a.number < b.number; });
+    if (!files.empty()) number = files.back().number;
     if (options.in_background) thread = std::thread([this] { write_all(); });
   }
   ~State() {
@@ -73,6 +72,26 @@ struct SnapshotRecorder::State {
     }
     changed.notify_all();
     thread.join();
+  }
+
+  /// Takes over a file of an earlier recorder, or removes what one had not finished.
+  void adopt(std::filesystem::path const& path) {
+    auto const name = path.filename().string();
+    auto const digits = std::min(name.find_first_not_of("0123456789"), name.size());
+    auto const rest = name.substr(digits);
+    std::error_code refused;
+    if (digits < 8 || digits > 18 || !rest.starts_with(".snapshot")) return;
+    if (rest.starts_with(".snapshot.part")) {
+      std::filesystem::remove(path, refused);
+      return;
+    }
+    if (rest != ".snapshot") return;
+    auto const size = std::filesystem::file_size(path, refused);
+    if (refused) return;
+    auto const written_at = std::filesystem::last_write_time(path, refused);
+    if (refused) return;
+    files.push_back({path, std::strtoull(name.c_str(), nullptr, 10), size, written_at});
+    bytes += size;
   }
 
   void take(Waiting snapshot) {
@@ -109,7 +128,7 @@ struct SnapshotRecorder::State {
     try {
       auto const text = detail::with_head(snapshot.parts, snapshot.options);
       write_file(snapshot.path, text);
-      files.push_back({snapshot.path, text.size(), std::chrono::steady_clock::now()});
+      files.push_back({snapshot.path, snapshot.number, text.size(), std::filesystem::file_time_type::clock::now()});
       bytes += text.size();
       remove_oldest();
     } catch (std::exception const& error) {
@@ -121,7 +140,7 @@ struct SnapshotRecorder::State {
   }
 
   void remove_oldest() {
-    auto const now = std::chrono::steady_clock::now();
+    auto const now = std::filesystem::file_time_type::clock::now();
     std::error_code ignored;  // a file that somebody else has removed
     while (files.size() > 1 &&
            (files.size() > options.most_files || bytes > options.most_bytes ||
@@ -156,8 +175,14 @@ CAMBIUM_COLD void SnapshotRecorder::note_time(double seconds) {
 }
 
 CAMBIUM_COLD bool SnapshotRecorder::is_kept() {
-  for (auto const& watch : state_->options.watches)
-    if (auto const reason = watch(); !reason.empty()) trigger(reason);
+  for (auto const& watch : state_->options.watches) {
+    try {
+      if (auto const reason = watch(); !reason.empty()) trigger(reason);
+    } catch (std::exception const& error) {
+      trigger(std::string("a watch failed: ") + error.what());
+    }
+  }
+  if (!state_->before) return false;  // there was no `begin`
   std::lock_guard const lock(state_->mutex);
   return state_->options.each_cycle || !state_->reasons.empty();
 }
@@ -173,11 +198,11 @@ CAMBIUM_COLD void SnapshotRecorder::keep(std::optional<std::uint64_t> result) {
   std::array<char, 32> name{};
   std::snprintf(name.data(), name.size(), "%08llu.snapshot", static_cast<unsigned long long>(++state_->number));
   state_->last_file = state_->options.folder / name.data();
-  state_->take({state_->last_file, std::move(state_->before), std::move(options)});
-  state_->before = {};
+  state_->take({state_->last_file, state_->number, std::move(*state_->before), std::move(options)});
+  state_->before.reset();
 }
 
-CAMBIUM_COLD void SnapshotRecorder::discard() { state_->before = {}; }
+CAMBIUM_COLD void SnapshotRecorder::discard() { state_->before.reset(); }
 
 CAMBIUM_COLD void SnapshotRecorder::flush() {
   std::unique_lock lock(state_->mutex);

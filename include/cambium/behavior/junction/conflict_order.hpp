@@ -92,7 +92,7 @@ class StandingAgents {
     using P = StandingAgents;
     return parameter_list(
         parameter("ids", &P::ids_, "-", Range{0, 65535}, "lower halves of their ids"),
-        parameter("size", &P::size_, "-", Range{0, 255}, "how many"),
+        parameter("size", &P::size_, "-", Range{0, 7}, "how many"),
         parameter("together", &P::together_, "-", Range{0, 255}, "bits: who stopped in the same step"));
   }
 
