@@ -123,11 +123,13 @@ int debug(Settings const& settings) {
               to_string(result.problem), to_string(desk::ego).c_str(), ego.state.x, ego.state.y, ego.state.speed,
               ego.action.acceleration);
   bool const is_equal = info.result && cb::snapshot_hash(world) == *info.result;
+  bool const is_of_other = info.library != cb::library_version;
   std::printf("%s\n", is_equal       ? "It came out bit-equal to what was recorded."
                       : !info.result ? "Its result was not recorded: there is nothing to compare with."
+                      : is_of_other  ? "It cannot be compared: another version of cambium recorded it."
                                      : "It came out otherwise than recorded.");
   double const end = settings.goes_on ? world.time() + 60.0 : 0.0;
-  bool collides = false;
+  bool collides = cb::Collision{}(world, world.slot_of(desk::ego));
   for (std::uint64_t i = 1; i < settings.cycles || world.time() < end; ++i) {
     if (world.status(desk::ego) != cb::AgentStatus::driving) break;
     cycle.duration = 0.2;
@@ -148,7 +150,7 @@ int debug(Settings const& settings) {
     cb::write_svg_picture(figure, recording, {.frame = 0});
     std::printf("replay: %s, figure: %s\n", settings.replay.c_str(), figure.string().c_str());
   }
-  if (settings.as_test) print_test(settings, info);
+  if (settings.as_test && info.result) print_test(settings, info);
   return is_equal ? 0 : 1;
 }
 
