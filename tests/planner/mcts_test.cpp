@@ -388,7 +388,7 @@ TEST_CASE("beliefs are learnt from observations that come early or late, and the
 }
 
 TEST_CASE("it learns however often it is called") {
-  for (double const period : {1.0 / 30.0, 0.05, 0.1, 0.3, 0.31, 0.5}) {
+  for (double const period : {1.0 / 30.0, 0.05, 0.1, 0.3, 0.31, 0.5, 1.0}) {
     CAPTURE(period);
     Sim world(support::straight_road(1, 2000.0));
     world.add({.position = {60, -1.75}, .speed = 12, .behavior = IdmClassic{}});
@@ -397,7 +397,7 @@ TEST_CASE("it learns however often it is called") {
     auto const planner = quick(Learning{}, 20);
     Learning::Workspace workspace;
     Learning::Memory memory;
-    while (world.time() < 3.0) {
+    while (world.time() < 5.0) {
       memory = planner.think(world.observe(ego), memory, workspace).memory;
       REQUIRE(world.step(period));
     }
@@ -542,6 +542,9 @@ TEST_CASE("who is on foot is expected to go on at a walk, and does not choose") 
   CHECK(report.choosing == std::vector{ego});
   auto const slot = world.slot_of(walker);
   for (auto const& frame : report.course) CHECK(frame.agents[slot].state.speed <= 1.41);
+  world.set_state(walker, {.x = 95, .y = -12, .heading = M_PI / 2, .speed = 0.0});
+  auto const waiting = planner.think(world.observe(ego), {}, workspace);
+  for (auto const& frame : waiting.course) CHECK(frame.agents[slot].state.speed <= 0.11);
 }
 
 TEST_CASE("it plans among vehicles that are too large for the conflicts that its others heed") {

@@ -122,7 +122,7 @@ namespace detail {
       files.push_back(*place);
       continue;
     }
-    if (auto const nested = nested_set(folder, name)) {
+    if (auto const nested = nested_set(folder, name); nested && !std::filesystem::is_directory(folder / name)) {
       files.push_back(*nested);
       continue;
     }
@@ -373,8 +373,8 @@ int run_benchmark_program(Arguments const& arguments, std::vector<Contender<Worl
   }
   if (auto const json = arguments.text("--json")) {
     if (arguments.has("--only")) throw Error("--json", "goes with runs of sets, not with --only", "leave it out");
-    if (auto const into = std::filesystem::absolute(*json).parent_path();
-        json->empty() || !std::filesystem::is_directory(into) || std::filesystem::is_directory(*json))
+    if (json->empty() || std::filesystem::is_directory(*json) ||
+        !std::filesystem::is_directory(std::filesystem::absolute(*json).parent_path()))
       throw Error("--json '" + *json + "'", "names no file in a folder that exists", "name one");
   }
   if (auto const only = arguments.text("--only"))

@@ -179,7 +179,7 @@ void expect_to_keep_speed(World& world, Slot ego, Others others, bool learns) {
     if (slot == ego ||
         (!is_on_foot && seen.state.speed <= usual && !(learns ? likes_its_speed(world, slot) : is_steady(seen))))
       continue;
-    double const speed = std::max(1.0, is_on_foot ? seen.state.speed : std::round(seen.state.speed));
+    double const speed = is_on_foot ? seen.state.speed : std::max(1.0, std::round(seen.state.speed));
     *desired = std::clamp(speed, range.low, range.high);
     assume(world, slot, others);
   }

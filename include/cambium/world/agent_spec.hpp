@@ -71,7 +71,7 @@ struct AgentSpecOf {
                            std::numeric_limits<double>::quiet_NaN()};  ///< of the reference point [m]
   std::optional<double> heading{};                                     ///< [rad]; default: along the lane
   double speed = 0.0;                                                  ///< [m/s]
-  double acceleration = 0.0;  ///< as measured [m/s^2]; planners expect who brakes to go on
+  double acceleration = 0.0;  ///< as measured [m/s^2]; planners see it as if driven
   geometry::Shape shape{};    ///< default: a car
   detail::Given<Behavior, detail::SpecPart::behavior> behavior{};
   detail::Given<Goal, detail::SpecPart::goal> goal{};

@@ -280,7 +280,7 @@ class World {
   /// its route: in its lane corridor if the position fits, else in the nearest one. With `Reroute::yes` it gets the
   /// route that `add` would find there, to the rest of its goal (straight on without one), and its behaviour's memory
   /// is reset, because it refers to the old route. `acceleration` [m/s^2], as measured along the heading, is what
-  /// planners see of it: who brakes is expected to go on. Throws `WorldError` (the world is unchanged) if the agent is
+  /// planners see of it, as if it had been driven. Throws `WorldError` (the world is unchanged) if the agent is
   /// unknown, if a number is not finite, if the speed is outside 0 to 1000 m/s (measured speeds down to -0.1 count as
   /// 0: speeds along the heading are never negative), if the position is more than 5 m outside the lanes of the route,
   /// or if the heading points against their direction; with `Reroute::yes` also if no route leads to the goal, or if

@@ -24,8 +24,8 @@ template <class Model>
 /// `MacroActions`, and one more choice: to drive like `Driver`, by default what a search expects of ego where it has
 /// nothing else in mind. With `Intersection` as the driver, a search can give way, wait its turn and stop at red lights
 /// without finding out by itself how that is done. A lane change in progress is completed first, keeping the gap; and
-/// close behind one who stands it keeps a gap that leaves room for a change (`LaneChangeCourse::may_pass`). By default
-/// both slow down for bends.
+/// close behind one who stands it keeps a gap that leaves room for a change (`LaneChangeCourse::may_pass`), unless
+/// somebody is about on foot. By default both slow down for bends.
 template <BehaviorModel Driver>
 struct DriverActions {
   static constexpr std::uint8_t drive = MacroActions::nothing;  ///< chosen instead of the number of a macro action
@@ -86,7 +86,7 @@ struct DriverActions {
   [[nodiscard]] bool needs_room(View const& view) const {
     constexpr double gentle = 1.5;  // [m/s^2]
     auto const next = view.ahead({.merging = macro.rules.merging});
-    if (!next || next->speed > LaneChangeCourse::slow) return false;
+    if (!next || next->speed > LaneChangeCourse::slow || view.anybody_off_lanes()) return false;
     double const speed = std::max(0.0, view.state().speed);
     return next->gap < speed * speed / (2.0 * gentle) + macro.course.least_length(view.shape()) &&
            macro.course.may_pass(view, *next);

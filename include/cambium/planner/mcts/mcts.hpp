@@ -102,9 +102,9 @@ struct BeliefMemory {
 /// - Single-agent search (UCT: Kocsis, Szepesvari 2006): the defaults.
 /// - Cooperative search (decoupled UCT: Tak, Lanctot, Winands 2014; Lenz, Kessler, Knoll 2016): `most_agents` above 1.
 ///   The agents nearest to ego choose at the same time, each for its own reward plus `cooperation` times the rewards of
-///   the others; costs likewise, of which the greatest counts. Their goals are unknown, so the reward should hold what
-///   everybody wants, such as speed and no collision. Those whose intention shows do not choose: slow drivers on a free
-///   road, such as cyclists, whoever moves across its lane, and whoever is on foot.
+///   the others; costs likewise, of which the greatest counts (also for a limit on them). Their goals are unknown, so
+///   the reward should hold what everybody wants, such as speed and no collision. Those whose intention shows do not
+///   choose: slow drivers on a free road, such as cyclists, whoever moves across its lane, and whoever is on foot.
 /// - Search under a chance constraint (CC-POMCP: Lee et al. 2018): `options.search.constraint.limit` below 1. It
 ///   maximises the reward among courses whose estimated probability of a collision is within the limit; if there is
 ///   none, it minimises that probability. It learns the weight of a collision (a Lagrange multiplier), so the reward
@@ -180,9 +180,9 @@ struct Mcts {
 
   /// See `PlannerModel`. The report's course is the principal variation; after its end, all agents drive on without a
   /// manoeuvre. A candidate's score is its mean return less what its costs count (see `CostConstraint`), both in shares
-  /// of their ranges in this search, from 0 to 1; 0 for one that was not tried. `decidedness` is the share of visits of
-  /// the chosen action minus that of the next best. After `workspace.keep()` the search continues the last tree, see
-  /// there.
+  /// of their ranges in the (first) tree: about from 0 to 1; 0 for one that was not tried. `decidedness` is the share
+  /// of visits of the chosen action minus that of the next best. After `workspace.keep()` the search continues the last
+  /// tree, see there.
   template <class View>
   [[nodiscard]] Report think(View const& view, Memory const& memory, Workspace& workspace) const {
     check_parameters(*this);
@@ -248,7 +248,7 @@ struct Mcts {
   /// Updates the beliefs by what the others did since the last observation, and predicts what they will do until the
   /// next one, in `dt` [s]. Returns the belief about each. An observation that comes early or late, by up to half of
   /// that, is compared with what was expected for its own time; one that comes even earlier is left for the next; after
-  /// one that comes even later, others are expected to come as late.
+  /// one that comes even later, by up to a second, others are expected to come as late.
   [[nodiscard]] auto learn(PredictionWorld const& world, Slot ego, Memory& memory, double dt) const {
     auto frame = world.frame();
     auto near = nearest_agents(world, ego, Memory::capacity, belief.range);
@@ -257,7 +257,7 @@ struct Mcts {
     bool const has_expected = memory.expected_at > memory.observed_at;
     double const since = world.time() - memory.observed_at;
     double const delay = (world.time() - memory.expected_at) / (memory.expected_at - memory.observed_at);
-    constexpr double early = -0.5 - 1e-6, late = 0.5 + 1e-6, latest = 1.0;  // [-], [-], [s]
+    constexpr double early = -0.5 - 1e-6, late = 0.5 + 1e-6, latest = 1.0 + 1e-6;  // [-], [-], [s]
     bool const is_too_early = has_expected && since >= 0.0 && delay < early;
     bool const was_expected = has_expected && delay >= early && delay <= late;
     if (has_expected && delay > late && since <= latest) dt = since;
