@@ -10,8 +10,8 @@
 namespace cambium::map {
 
 /// Hash of what traffic knows of a map: lanes, their paths, widths, links, limits, signals and conflicts' rules; not of
-/// the file's text. Equal files give equal hashes wherever the mathematical library is the same. O(path segments) at first, then
-/// O(1).
+/// the file's text. Equal files give equal hashes wherever the mathematical library is the same.
+/// O(path segments) at first, then O(1).
 [[nodiscard]] inline std::uint64_t content_hash(Map const& map) {
   if (auto const known = map.known_content_hash().load(std::memory_order_relaxed); known != 0) return known;
   std::uint64_t hash = 0xcbf29ce484222325u;  // FNV-1a

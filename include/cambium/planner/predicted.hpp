@@ -164,9 +164,9 @@ template <class World>
 
 /// Lets those keep their speed who are faster than `others` want to drive, who drive steadily, or who are beside the
 /// lanes, as on foot: nobody is expected to slow down, or to speed up, for no reason. The speed is rounded to a whole
-/// m/s, so that what is expected does not change with every breath; beside the lanes it is not. With `learns`, a
-/// planner that learns headways, only those count as steady whom nobody ahead hinders: a follower's speed shows the gap
-/// that it keeps. O(agents).
+/// m/s, so that small changes of speed do not change the prediction; beside the lanes it is not rounded. With `learns`,
+/// a planner that learns headways, only those count as steady whom nobody ahead hinders: a follower's speed shows the
+/// gap that it keeps. O(agents).
 template <class World, class Others>
 void expect_to_keep_speed(World& world, Slot ego, Others others, bool learns) {
   auto* const desired = desired_speed_of(others);

@@ -86,7 +86,7 @@ template <class... Models>
 template <class T>
 inline constexpr char type_key{};  ///< its address stands for the type
 
-/// What one archive has told of types so far: on either side the same.
+/// The types that an archive has described so far. Writer and reader hold the same.
 class ArchivedTypes {
  public:
   static constexpr std::size_t longest = std::size_t{1} << 24;  ///< elements of a list
@@ -95,7 +95,7 @@ class ArchivedTypes {
   struct Shape {
     void const* type;
     unsigned version;
-    std::size_t fields;  ///< that the archive has; of the others none is known
+    std::size_t fields;  ///< number of fields in the archive, the first ones of the description
   };
   struct Alternative {
     void const* variant;
@@ -235,7 +235,7 @@ class FieldWriter {
     if (number >= 255) put("whole", number);
   }
 
-  /// Letter by letter where nobody reads it: of a text as a whole, Boost believes any length.
+  /// Letter by letter, except in XML: for a whole text, Boost allocates whatever length a file claims.
   void put_text(char const* key, std::string const& text) {
     if (tags_ != nullptr) return put(key, text);
     put_count(key, text.size());
@@ -482,18 +482,14 @@ class FieldReader {
       if (length > Value::static_capacity) damaged();
     if constexpr (requires { value.push_back(Element{}); }) {
       value.clear();
-      for (std::size_t i = 0; i < length; ++i) {
-        Element element{};
-        read("item", element, info, i < known.size() ? &known[i] : i > 0 ? &value[i - 1] : nullptr);
-        value.push_back(std::move(element));
-      }
+      read_elements(value, length, info, known);
     } else if constexpr (PointsToElements<Value>) {
-      std::vector<Element> list, of_like(known.begin(), known.end());
-      read_elements(list, length, info, of_like);
+      std::vector<Element> list;
+      read_elements(list, length, info, known);
       value = std::make_shared<std::vector<Element> const>(std::move(list));
     } else if constexpr (std::is_constructible_v<Value, std::span<Element const>, std::string>) {
-      std::vector<Element> list, of_like(known.begin(), known.end());
-      read_elements(list, length, info, of_like);
+      std::vector<Element> list;
+      read_elements(list, length, info, known);
       value = list.empty() ? Value{} : Value(std::span<Element const>(list), where_);
     } else {
       if (length != value.size()) damaged();
@@ -502,9 +498,8 @@ class FieldReader {
     }
   }
 
-  template <class Element>
-  void read_elements(std::vector<Element>& list, std::size_t length, ParameterInfo const& info,
-                     std::vector<Element> const& known) {
+  template <class List, class Element>
+  void read_elements(List& list, std::size_t length, ParameterInfo const& info, std::span<Element const> known) {
     for (std::size_t i = 0; i < length; ++i) {
       Element element{};
       read("item", element, info, i < known.size() ? &known[i] : i > 0 ? &list[i - 1] : nullptr);

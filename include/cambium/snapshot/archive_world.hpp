@@ -93,6 +93,15 @@ template <class... Models>
   return (check_model<Models>() && ...);
 }
 
+/// As `check_model` for what is either one model or a set of them.
+template <class Slot>
+[[nodiscard]] constexpr bool check_slot() {
+  if constexpr (Variant<Slot>)
+    return check_models(static_cast<Slot const*>(nullptr));
+  else
+    return check_model<Slot>();
+}
+
 /// Hash of all that traffic knows of a map, and of what it was built with.
 [[nodiscard]] inline std::uint64_t hash_of_map(Map const& map) {
   return map::content_hash(map) ^ hash_parameters(map.options());
@@ -191,6 +200,8 @@ template <class World>
 [[nodiscard]] ArchivedWorld<World> archived(World const& world) {
   static_assert(check_memories(static_cast<typename World::Behaviors::Memory const*>(nullptr)));
   static_assert(check_models(static_cast<typename World::Behavior const*>(nullptr)));
+  static_assert(check_slot<typename World::Execution>() && check_slot<typename World::Dynamics>() &&
+                check_slot<typename World::Observer>());
   auto const& roster = world.roster();
   ArchivedWorld<World> parts;
   parts.map_hash = hash_of_map(world.map());

@@ -111,7 +111,7 @@ class TextIn final : public boost::archive::polymorphic_text_iarchive {
   using boost::archive::polymorphic_text_iarchive::polymorphic_text_iarchive;
 
  private:
-  /// Boost believes any length of a text; a number is short.
+  /// Boost allocates whatever length a file claims for a text; that of a number is short.
   template <class Number>
   void read(Number& value) {
     std::size_t length = 0;

@@ -56,8 +56,8 @@ struct WideningSchedule {
 /// scale nor drowns in it. With a limit, the weight is only where the search begins: it learns the Lagrange multiplier
 /// that keeps the expected cost of the chosen course within the limit (Lee et al. 2018, CC-POMCP). If an event that
 /// must not happen costs 1, this is a chance constraint: costs then count in full, whenever they come. Without a limit,
-/// a late event may count less than an early one. For the worst course without one to be better than the best with one at
-/// the horizon, the weight must be above 1 / discount^(horizon - 1).
+/// a late event may count less than an early one. For the worst course without one to be better than the best with one
+/// at the horizon, the weight must be above 1 / discount^(horizon - 1).
 struct CostConstraint {
   double weight = 2.5;
   double discount = 1.0;
