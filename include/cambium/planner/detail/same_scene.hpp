@@ -12,25 +12,30 @@
 
 namespace cambium::detail {
 
+template <class Choice>
+[[nodiscard]] bool is_same_choice(Choice const& a, Choice const& b);
+
 /// Whether two values are known to be equal: by their description, by ==, or because their type is empty.
 template <class T>
 [[nodiscard]] bool is_same_value(T const& a, T const& b) {
   if constexpr (Described<T>)
     return equal_parameters(a, b);
+  else if constexpr (Variant<T>)
+    return is_same_choice(a, b);
   else if constexpr (std::equality_comparable<T>)
     return a == b;
   else
     return std::is_empty_v<T>;
 }
 
-/// The same for variants: goals and behaviours.
-template <class Variant>
-[[nodiscard]] bool is_same_choice(Variant const& a, Variant const& b) {
+/// The same for variants: goals, behaviours, and sets of vehicle or execution models.
+template <class Choice>
+[[nodiscard]] bool is_same_choice(Choice const& a, Choice const& b) {
   auto const is_same_as_other = [&b]<class Model>(Model const& model) {
     auto const& other = *std::get_if<Model>(&b);
     if constexpr (requires { model.parts; })
       return std::equal(model.parts.begin(), model.parts.end(), other.parts.begin(), other.parts.end(),
-                        is_same_choice<Variant>);
+                        is_same_choice<Choice>);
     else if constexpr (requires { model.area; })
       return model.area == other.area;
     else
