@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -279,6 +280,38 @@ TEST_CASE("nothing is kept if anything has changed, or without a call of keep") 
                      .behavior = IdmClassic{},
                      .id = AgentId{3}});
         }) == 0);
+}
+
+namespace {
+
+/// A reward that fails at times.
+struct Failing : TrafficReward {
+  static inline bool fails = false;
+
+  template <class World>
+  [[nodiscard]] Judgement judge(World& world, Slot slot, double dt) const {
+    if (fails) throw std::runtime_error("failed");
+    return TrafficReward::judge(world, slot, dt);
+  }
+};
+
+}  // namespace
+
+TEST_CASE("a search that fails forgets its tree") {
+  auto planner = quick(Mcts<PredictionWorld, MacroActions, Failing>{}, 100);
+  planner.options.hold = 1;
+  planner.others_keep_speed = false;
+  auto world = lane_change(0, IdmClassic{});
+  decltype(planner)::Workspace workspace;
+  auto const report = planner.think(world.observe(ego), {}, workspace);
+  REQUIRE(workspace.keep());
+  REQUIRE(world.step(planner.options.step));
+  world.set_state(ego, report.course[1].agents[0].state);
+  Failing::fails = true;
+  CHECK_THROWS_AS(static_cast<void>(planner.think(world.observe(ego), report.memory, workspace)), std::runtime_error);
+  Failing::fails = false;
+  planner.reward.progress -= 1.0;  // another game
+  CHECK(planner.think(world.observe(ego), report.memory, workspace).result.kept_nodes == 0);
 }
 
 TEST_CASE("an agent whose course is over does not choose, and does not prevent ego from planning") {

@@ -77,7 +77,7 @@ class MctsWorkspace {
   /// Searches from the domain's world. The budget of `options` must have been started. Throws `ParameterError` if an
   /// option is out of range.
   Result const& run(Domain domain, Options const& options, std::uint64_t seed) {
-    if (std::exchange(keeps_, false) && !domain.is_same_game(this->domain())) trees_.forget();
+    if (!std::exchange(keeps_, false) || !domain.is_same_game(this->domain())) trees_.forget();
     auto const root = domain.root();
     trees_.set(std::move(domain), options.search, options.selection, options.rollout, options.budget,
                static_cast<std::size_t>(options.threads));
