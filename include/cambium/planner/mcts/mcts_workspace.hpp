@@ -74,6 +74,8 @@ class MctsWorkspace {
   using Search = TreeSearch<Domain, typename Options::Selection, typename Options::Rollout, typename Options::Budget>;
   using Result = SearchResult<Action>;
 
+  static constexpr char const* name = "workspace";
+
   /// Searches from the domain's world. The budget of `options` must have been started. Throws `ParameterError` if an
   /// option is out of range.
   Result const& run(Domain domain, Options const& options, std::uint64_t seed) {
@@ -97,6 +99,14 @@ class MctsWorkspace {
     auto const& result = trees_.result();
     keeps_ = !result.variation.empty() && domain().hold() == 1 && trees_.keep({result.variation.data(), result.agents});
     return keeps_;
+  }
+
+  /// The trees of which `keep` has kept something; null if there are none.
+  [[nodiscard]] ParallelTreeSearch<Search> const* kept() const { return keeps_ ? &trees_ : nullptr; }
+  /// Lets the next `think` continue trees that another workspace has kept.
+  void restore_kept(ParallelTreeSearch<Search> trees) {
+    trees_ = std::move(trees);
+    keeps_ = true;
   }
 
   /// The search after a run; the first one if there are several threads. Throws `SearchError` before the first run.

@@ -58,6 +58,12 @@ class TrafficDomain {
   struct State {
     typename World::FrameType frame;
     bool over = false;
+
+    static constexpr char const* name = "traffic_state";
+    static constexpr auto parameters() {
+      return parameter_list(parameter("frame", &State::frame, "-", {}, "time, and where the agents are"),
+                            parameter("over", &State::over, "-", Range{0, 1}, "a course has ended"));
+    }
   };
 
   /// A placeholder in which no agent chooses; assign another domain to it.
@@ -83,6 +89,8 @@ class TrafficDomain {
   [[nodiscard]] World const& world() const { return world_; }
   [[nodiscard]] std::span<Slot const> slots() const { return slots_; }
   [[nodiscard]] Actions const& action_set() const { return actions_; }
+  [[nodiscard]] Reward const& reward() const { return reward_; }
+  [[nodiscard]] double cooperation() const { return cooperation_; }
   [[nodiscard]] double dt() const { return dt_; }
   [[nodiscard]] int hold() const { return hold_; }
 

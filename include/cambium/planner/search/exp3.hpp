@@ -16,6 +16,11 @@ namespace cambium {
 struct Exp3 {
   struct Statistics {
     double gain = 0.0;  ///< G
+
+    static constexpr char const* name = "exp3_statistics";
+    static constexpr auto parameters() {
+      return parameter_list(parameter("gain", &Statistics::gain, "-", any_finite, "G in the paper"));
+    }
   };
 
   double exploration = 0.1;

@@ -18,6 +18,14 @@ struct Puct {
   struct Statistics {
     double prior = 1.0;                  ///< set by the search; the sum over a node need not be 1
     double scores = 0.0, squares = 0.0;  ///< sums: the scale moves, so the mean return would not match the squares
+
+    static constexpr char const* name = "puct_statistics";
+    static constexpr auto parameters() {
+      using P = Statistics;
+      return parameter_list(parameter("prior", &P::prior, "-", non_negative, "relative to the others of its node"),
+                            parameter("scores", &P::scores, "-", any_finite, "sum of the scores"),
+                            parameter("squares", &P::squares, "-", non_negative, "sum of their squares"));
+    }
   };
 
   double exploration = 2.0;

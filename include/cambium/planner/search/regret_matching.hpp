@@ -17,6 +17,11 @@ namespace cambium {
 struct RegretMatching {
   struct Statistics {
     double regret = 0.0;
+
+    static constexpr char const* name = "regret_matching_statistics";
+    static constexpr auto parameters() {
+      return parameter_list(parameter("regret", &Statistics::regret, "-", any_finite, "of not having played it"));
+    }
   };
 
   double exploration = 0.1;

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <span>
 
+#include "cambium/core/described.hpp"
 #include "cambium/core/random.hpp"
 
 namespace cambium {
@@ -29,6 +30,12 @@ enum class SearchProblem : std::uint8_t {
 struct AgentOutcome {
   double reward = 0.0;
   double cost = 0.0;
+
+  static constexpr char const* name = "agent_outcome";
+  static constexpr auto parameters() {
+    return parameter_list(parameter("reward", &AgentOutcome::reward, "-", any_finite, "to be maximised"),
+                          parameter("cost", &AgentOutcome::cost, "-", Range{0, 1}, "to be avoided"));
+  }
 
   friend bool operator==(AgentOutcome const&, AgentOutcome const&) = default;
 };

@@ -6,7 +6,9 @@
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <type_traits>
 
+#include "cambium/core/described.hpp"
 #include "cambium/core/distributions.hpp"
 #include "cambium/core/random.hpp"
 
@@ -22,6 +24,20 @@ struct Arm {
   double total_cost = 0.0;
   [[no_unique_address]] Statistics statistics{};
 
+  static constexpr char const* name = "arm";
+  static constexpr auto parameters() {
+    constexpr auto totals = parameter_list(
+        parameter("action", &Arm::action, "-", any_finite, "what it stands for"),
+        parameter("visits", &Arm::visits, "-", Range{0, 4294967295.0}, "how often it was chosen"),
+        parameter("total_return", &Arm::total_return, "-", any_finite, "over all courses that took it here"),
+        parameter("total_cost", &Arm::total_cost, "-", any_finite, "likewise"));
+    if constexpr (std::is_empty_v<Statistics>)
+      return totals;
+    else
+      return join_parameters(
+          totals, parameter_list(parameter("statistics", &Arm::statistics, "-", {}, "of the selection policy")));
+  }
+
   [[nodiscard]] double mean_return() const { return visits > 0 ? total_return / visits : 0.0; }
   [[nodiscard]] double mean_cost() const { return visits > 0 ? total_cost / visits : 0.0; }
 };
@@ -33,6 +49,16 @@ struct ReturnScale {
   double high = -std::numeric_limits<double>::infinity();
   double highest_cost = 0.0;
   double multiplier = 0.0;  ///< of the cost, see `CostConstraint`
+
+  static constexpr char const* name = "return_scale";
+  static constexpr auto parameters() {
+    using P = ReturnScale;
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    return parameter_list(parameter("low", &P::low, "-", Range{-infinity, infinity}, "lowest return seen"),
+                          parameter("high", &P::high, "-", Range{-infinity, infinity}, "highest return seen"),
+                          parameter("highest_cost", &P::highest_cost, "-", Range{0, 1}, "highest cost seen"),
+                          parameter("multiplier", &P::multiplier, "-", Range{0, 1e3}, "of the cost"));
+  }
 
   void include(double value, double cost = 0.0) {
     low = std::min(low, value);
@@ -60,7 +86,7 @@ struct ReturnScale {
 
 /// How an agent chooses at a node: a multi-armed bandit. A copyable struct of parameters with
 ///
-/// - `Statistics`, default constructible: what it keeps for each arm;
+/// - `Statistics`, default constructible: what it keeps for each arm; described, if a snapshot is to hold a kept tree;
 /// - `select(arms, visits, scale, random)`: returns the number of the arm to try. `visits` is the sum over all arms;
 ///   there is at least one arm.
 /// - `update(arms, chosen, score, scale)`: learns the score of the arm that it selected. It is called before that arm's

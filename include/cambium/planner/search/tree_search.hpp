@@ -117,6 +117,16 @@ class TreeSearch {
     return kept_ != detail::no_node;
   }
 
+  /// The node that `keep` has kept, in `tree`; `detail::no_node` if there is none.
+  [[nodiscard]] std::uint32_t kept() const { return kept_; }
+  /// Lets the next run continue `tree`, which another search has kept: its root is what that search had predicted.
+  /// `scales`: those of that search.
+  void restore_kept(Tree tree, std::vector<ReturnScale> scales) {
+    tree_ = std::move(tree);
+    scales_ = std::move(scales);
+    kept_ = 0;
+  }
+
   /// Lets the next run start with an empty tree.
   void forget() { kept_ = detail::no_node; }
 

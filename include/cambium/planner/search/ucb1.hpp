@@ -46,6 +46,13 @@ struct Ucb1Tuned {
   struct Statistics {
     double squares = 0.0;  ///< sum of the squared scores
     double scores = 0.0;   ///< sum of the scores: the scale moves, so mean returns would not match `squares`
+
+    static constexpr char const* name = "ucb1_tuned_statistics";
+    static constexpr auto parameters() {
+      using P = Statistics;
+      return parameter_list(parameter("squares", &P::squares, "-", non_negative, "sum of the squared scores"),
+                            parameter("scores", &P::scores, "-", any_finite, "sum of the scores"));
+    }
   };
 
   double exploration = 1.0;
