@@ -73,6 +73,20 @@ World traffic() {
   return world;
 }
 
+/// The planner of agent 8 with a tree that it has kept for the next cycle.
+struct Kept {
+  World world = traffic();
+  Planner planner{.others_keep_speed = false, .options = {.hold = 1}};
+  Planner::Workspace workspace{};
+  Planner::Memory memory = planner.think(world.observe(cb::AgentId{8}), {}, workspace).memory;
+  bool is_kept = workspace.keep();
+
+  void count(benchmark::State& state, std::string const& bytes) const {
+    state.counters["bytes"] = static_cast<double>(bytes.size());
+    state.counters["nodes"] = static_cast<double>(cb::detail::archived_trees(*workspace.kept()).trees[0].nodes.size());
+  }
+};
+
 /// Appends numbers as a line of CSV, with all their digits, as those who want to repeat a run record them.
 class Trace {
  public:
@@ -185,6 +199,19 @@ int main(int argc, char** argv) {
     auto const bytes = cb::to_snapshot({}, world);
     yardstick::measure_queries(state, 1, [&] { cb::from_snapshot(bytes, "snapshot", world); });
     state.counters["bytes"] = static_cast<double>(bytes.size());
+  });
+  yardstick::add("snapshot/save_kept_tree/20", [](benchmark::State& state) {
+    Kept const kept;
+    std::string bytes;
+    yardstick::measure_queries(state, 1, [&] { bytes = cb::to_snapshot({}, kept.world, kept.memory, kept.workspace); });
+    kept.count(state, bytes);
+  });
+  yardstick::add("snapshot/restore_kept_tree/20", [](benchmark::State& state) {
+    Kept kept;
+    auto const bytes = cb::to_snapshot({}, kept.world, kept.memory, kept.workspace);
+    yardstick::measure_queries(state, 1,
+                               [&] { cb::from_snapshot(bytes, "snapshot", kept.world, kept.memory, kept.workspace); });
+    kept.count(state, bytes);
   });
   yardstick::add("snapshot/copy_of_frame/20", [](benchmark::State& state) {
     auto const world = traffic();

@@ -11,6 +11,7 @@
 #include "cambium/core/macros.hpp"
 
 #include "cambium/snapshot/archive_fields.hpp"
+#include "cambium/snapshot/archive_workspace.hpp"
 #include "cambium/snapshot/archive_world.hpp"
 #include "cambium/snapshot/snapshot.hpp"
 #include "cambium/snapshot/snapshot_error.hpp"

@@ -4,7 +4,6 @@
 #include <doctest/doctest.h>
 
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <cstdint>
 #include <filesystem>
@@ -22,8 +21,10 @@
 #include "cambium/map/opendrive.hpp"
 #include "cambium/planner.hpp"
 #include "support/maps.hpp"
+#include "support/sealed.hpp"
 
 using namespace cambium;
+using support::hex, support::sealed_again;
 namespace fs = std::filesystem;
 
 namespace {
@@ -50,26 +51,6 @@ std::string message_of(auto const& run) {
     return std::string("another: ") + error.what();
   }
   return "no error";
-}
-
-std::string hex(std::uint64_t number) {
-  char text[17];
-  std::snprintf(text, sizeof text, "%016llx", static_cast<unsigned long long>(number));
-  return text;
-}
-
-/// The bytes with a right length and checksum again, after their body was changed.
-std::string sealed_again(std::string const& bytes) {
-  auto const second = bytes.find('\n') + 1, third = bytes.find('\n', second) + 1;
-  std::string const body = bytes.substr(third);
-  std::uint64_t checksum = 0xcbf29ce484222325u ^ body.size();
-  for (std::size_t at = 0; at < body.size(); at += 8) {
-    std::uint64_t word = 0;
-    for (std::size_t k = 0; k < 8 && at + k < body.size(); ++k)
-      word |= std::uint64_t{static_cast<unsigned char>(body[at + k])} << (8 * k);
-    checksum = (checksum ^ word) * 0x100000001b3u;
-  }
-  return bytes.substr(0, second) + std::to_string(body.size()) + " " + hex(checksum) + "\n" + body;
 }
 
 /// A planner of one's own: private state, a part of the library in it, and a log that belongs to where it runs.

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <type_traits>
 #include <utility>
@@ -268,10 +269,52 @@ template <class Value>
   return all;
 }
 
+/// Checks the record of an agent that behaves as `behavior` on `road`, and numbers its place.
+template <class Record, class Behavior>
+void place_on(map::RoadCorridor const& road, Behavior const& behavior, Record& record) {
+  require_consistent(is_on(road, record.lane), "an agent is on no lane of its road");
+  auto const& pieces = road.corridors[record.lane.corridor].pieces;
+  record.lane.index = map::lane_coordinate(pieces[record.lane.piece], record.lane.s);
+  require_consistent(record.memory.index() == behavior.index(), "an agent has another model's memory");
+  require_consistent(names_corridors_below(record.memory, road.corridors.size()),
+                     "an agent remembers a lane that its road lacks");
+}
+
+/// The maps and free corridors of the worlds that an archive has had so far. What is restored after them shares both.
+struct ArchivedScenes {
+  struct Scene {
+    std::shared_ptr<Map const> map;
+    std::vector<FreeRoad> free_roads;
+  };
+  std::vector<Scene> scenes;
+
+  /// The latest on a map of this hash; null if there is none.
+  [[nodiscard]] Scene const* on_map(std::uint64_t hash) const {
+    auto const found = std::find_if(scenes.rbegin(), scenes.rend(),
+                                    [&](auto const& scene) { return hash_of_map(*scene.map) == hash; });
+    return found != scenes.rend() ? &*found : nullptr;
+  }
+};
+
+/// Those of `archive`, which has them until its end.
+template <class Archive>
+requires requires(Archive& archive, void* id) { archive.template get_helper<ArchivedScenes>(id); }
+[[nodiscard]] ArchivedScenes& scenes_of(Archive& archive) {
+  return archive.template get_helper<ArchivedScenes>(const_cast<char*>(&type_key<ArchivedScenes>));
+}
+
+/// `known`: free corridors to be shared.
 [[nodiscard]] inline std::shared_ptr<map::RoadCorridor const> restored_road(Map const& map, RosterBase& roster,
-                                                                            ArchivedRoad const& road) {
+                                                                            ArchivedRoad const& road,
+                                                                            std::span<FreeRoad const> known) {
   if (!road.way.empty()) {
-    auto const given = map::build_free_corridor(map, road.way, {road.width, road.type, road.view});
+    map::FreeCorridorOptions const options{road.width, road.type, road.view};
+    for (auto const& [given, numbered] : known)
+      if (given->way == road.way && map::free_corridor_options(*given) == options) {
+        enter_free_road(roster, given, numbered);
+        return numbered;
+      }
+    auto const given = map::build_free_corridor(map, road.way, options);
     auto const numbered = numbered_road(map, roster.free_roads, given, "snapshot");
     enter_free_road(roster, given, numbered);
     return numbered;
@@ -282,9 +325,11 @@ template <class Value>
   return map.queries().road_corridor(map, road.route);
 }
 
-/// The world of `parts` on `map`. Throws `SnapshotError` if they contradict each other or the map.
+/// The world of `parts` on `map`, with the `known` free corridors. Throws `SnapshotError` if they contradict each other
+/// or the map.
 template <class World>
-[[nodiscard]] World restored(std::shared_ptr<Map const> const& map, ArchivedWorld<World>&& parts) {
+[[nodiscard]] World restored(std::shared_ptr<Map const> const& map, ArchivedWorld<World>&& parts,
+                             std::span<FreeRoad const> known = {}) {
   using Roster = typename World::RosterType;
   require_consistent(parts.map_hash == hash_of_map(*map), "a world in it was taken on another map");
   auto roster = std::make_shared<Roster>();
@@ -292,7 +337,7 @@ template <class World>
   std::vector<std::shared_ptr<map::RoadCorridor const>> roads;
   for (auto const& road : parts.roads) {
     require_consistent((roads.size() < parts.free_roads) == !road.way.empty(), "its free corridors do not come first");
-    roads.push_back(restored_road(*map, *roster, road));
+    roads.push_back(restored_road(*map, *roster, road, known));
   }
   for (auto& object : parts.objects) {
     check_outline(object.outline);
@@ -305,13 +350,9 @@ template <class World>
     auto& record = parts.frame.agents[i];
     require_consistent(agent.road < roads.size(), "an agent has no road");
     require_consistent(i == 0 || parts.agents[i - 1].id < agent.id, "its agents are not sorted");
-    require_consistent(is_on(*roads[agent.road], record.lane), "an agent is on no lane of its road");
-    auto const& pieces = roads[agent.road]->corridors[record.lane.corridor].pieces;
-    record.lane.index = map::lane_coordinate(pieces[record.lane.piece], record.lane.s);
-    require_consistent(record.memory.index() == agent.behavior.index(), "an agent has another model's memory");
-    static_cast<void>(entering_goal(*map, agent.goal, pieces[record.lane.piece].lane, "snapshot"));
-    require_consistent(names_corridors_below(record.memory, roads[agent.road]->corridors.size()),
-                       "an agent remembers a lane that its road lacks");
+    place_on(*roads[agent.road], agent.behavior, record);
+    auto const lane = roads[agent.road]->corridors[record.lane.corridor].pieces[record.lane.piece].lane;
+    static_cast<void>(entering_goal(*map, agent.goal, lane, "snapshot"));
     static_cast<void>(roster->insert({agent.id, agent.shape, roads[agent.road], std::move(agent.behavior),
                                       std::move(agent.execution), std::move(agent.dynamics), std::move(agent.observer)},
                                      std::move(agent.goal)));
@@ -342,6 +383,8 @@ requires(cambium::detail::is_world<T>) void serialize(Archive& archive, T& world
     Parts parts;
     cambium::detail::FieldReader(archive).read("world", parts);
     world = cambium::detail::restored<T>(world.shared_map(), std::move(parts));
+    if constexpr (requires { cambium::detail::scenes_of(archive); })
+      cambium::detail::scenes_of(archive).scenes.push_back({world.shared_map(), world.roster().free_roads});
   }
 }
 

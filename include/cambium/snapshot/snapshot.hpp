@@ -19,6 +19,7 @@
 #include "cambium/core/write_file.hpp"
 #include "cambium/map/map.hpp"
 #include "cambium/snapshot/archive_fields.hpp"
+#include "cambium/snapshot/archive_workspace.hpp"
 #include "cambium/snapshot/archive_world.hpp"
 #include "cambium/snapshot/snapshot_error.hpp"
 
@@ -129,16 +130,24 @@ void read_snapshot(std::string_view bytes, std::string const& where, SceneOfPart
                    std::span<LoadedPart const> parts);
 [[nodiscard]] std::uint64_t hash_of_parts(std::span<SavedPart const> parts);
 
-/// Whether a part is read into a copy first.
+/// Whether a part is read into another object first.
 template <class T>
-inline constexpr bool is_value_part = is_world<T> || (Described<T> && std::is_copy_assignable_v<T>);
+inline constexpr bool is_value_part = is_world<T> || is_mcts_workspace<T> ||
+                                      (Described<T> && std::is_copy_assignable_v<T>);
 
-/// What a part is read into: a copy, or the part itself.
+/// What a part is read into: a copy, a new workspace, or the part itself.
 template <class T>
 struct ReadPart {
   using Into = std::conditional_t<is_value_part<T>, T, T&>;
   T& part;
-  Into into = part;
+  Into into = begun(part);
+
+  [[nodiscard]] static Into begun(T& part) {
+    if constexpr (is_mcts_workspace<T>)
+      return T();
+    else
+      return part;
+  }
 
   void take() {
     if constexpr (is_value_part<T>) part = std::move(into);
@@ -147,11 +156,12 @@ struct ReadPart {
 
 }  // namespace detail
 
-/// The state of `parts` as bytes: worlds, described structs such as a planner or its memory, and classes of one's own
-/// that Boost.Serialization can save (with a member `template <class Archive> void serialize(Archive&, unsigned)`, or
-/// for `boost::archive::polymorphic_oarchive` and `polymorphic_iarchive` only). What belongs to the environment, such
-/// as a logger, such a class leaves out. A world is saved with everything but its map, which is noted by a hash, and
-/// its history. Throws `SnapshotError` if a part holds a struct that is not described. O(bytes).
+/// The state of `parts` as bytes: worlds, described structs such as a planner or its memory, the workspace of an `Mcts`
+/// with the trees that `keep` has kept, and classes of one's own that Boost.Serialization can save (with a member
+/// `template <class Archive> void serialize(Archive&, unsigned)`, or for `boost::archive::polymorphic_oarchive` and
+/// `polymorphic_iarchive` only). What belongs to the environment, such as a logger, such a class leaves out. A world is
+/// saved with everything but its map, which is noted by a hash, and its history. Throws `SnapshotError` if a part holds
+/// a struct that is not described. O(bytes).
 template <class... Parts>
 [[nodiscard]] std::string to_snapshot(SnapshotOptions const& options, Parts const&... parts) {
   static_assert(sizeof...(Parts) > 0, "cambium::to_snapshot: name what to save: worlds, planners, memories");
@@ -160,10 +170,12 @@ template <class... Parts>
 }
 
 /// Restores `parts` from a snapshot of parts of the same names and order. A world keeps its map, which must be the one
-/// of the snapshot; `snapshot_info` says where that is. A class of one's own keeps what it does not save. Throws
+/// of the snapshot; `snapshot_info` says where that is. A kept tree takes the map of its world, which must come before
+/// the workspace. A class of one's own keeps what it does not save. Throws
 /// `SnapshotError`, before anything is read, if the bytes are no snapshot, damaged, of a newer version, of another
-/// platform (binary ones), of other parts or of another map; and if the content does not fit the parts. Then worlds and
-/// described structs are unchanged; a class of one's own may be half read. `where`: the file, for messages. O(bytes).
+/// platform (binary ones), of other parts or of another map; and if the content does not fit the parts. Then worlds,
+/// workspaces and described structs are unchanged; a class of one's own may be half read. `where`: the file, for
+/// messages. O(bytes).
 template <class... Parts>
 void from_snapshot(std::string_view bytes, std::string const& where, Parts&... parts) {
   static_assert(sizeof...(Parts) > 0, "cambium::from_snapshot: name what to restore: worlds, planners, memories");
