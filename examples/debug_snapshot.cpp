@@ -1,28 +1,30 @@
 // The desk: restores a state that `record_snapshots` has kept, says what is in it, runs the cycle again and says
 // whether it came out bit-equal. Built to sit in a debugger: --break stops just before the cycle.
 
+#include <cctype>
 #include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
-#include "cambium/core/set_parameter.hpp"
+#include "cambium/core/nearest_names.hpp"
 #include "cambium/core/text.hpp"
-#include "cambium/evaluation/collision.hpp"
 #include "cambium/map/opendrive.hpp"
-#include "cambium/snapshot.hpp"
+#include "cambium/snapshot/snapshot.hpp"
 #include "cambium/viewer/html_replay.hpp"
-#include "cambium/viewer/record_world.hpp"
 #include "cambium/viewer/svg_picture.hpp"
 
+#include "benchmark/traffic.hpp"
 #include "common/command_line.hpp"
 #include "common/desk.hpp"
 #include "common/map_file.hpp"
+#include "common/parameter_file.hpp"
+#include "common/thawed.hpp"
 
 namespace cb = cambium;
 namespace fs = std::filesystem;
@@ -30,127 +32,140 @@ namespace fs = std::filesystem;
 namespace {
 
 struct Settings {
-  std::string file, edit, replay;
+  std::string file, map, edit, replay;
   std::uint64_t cycles = 1;
   bool breaks = false, goes_on = false, as_test = false;
 };
 
-/// The map of the snapshot: embedded, where it was, or of that name in maps/.
-std::shared_ptr<cb::Map const> map_of(cb::SnapshotInfo const& info, std::string const& file) {
-  if (!info.map_text.empty()) return cb::parse_opendrive(info.map_text).map;
+/// The file of the snapshot's map: the one given, where it was, or of that name in maps/; empty if it is embedded.
+std::string map_file_of(cb::SnapshotInfo const& info, Settings const& settings) {
+  if (!settings.map.empty() || !info.map_text.empty()) return settings.map;
   if (info.map_file.empty())
-    throw cb::SnapshotError(file, "does not say where its map is", "record it with a map_file, or embed the map");
-  if (fs::exists(info.map_file)) return examples::load_map(info.map_file);
+    throw cb::SnapshotError(settings.file, "does not say where its map is", "give the file by --map");
   auto const own = fs::path(CAMBIUM_SOURCE_DIR) / "maps" / fs::path(info.map_file).filename();
-  if (fs::exists(own)) return examples::load_map(own.string());
-  throw cb::SnapshotError(file, "needs the map '" + info.map_file + "', which is not there", "copy it there");
+  for (auto const& file : {fs::path(info.map_file), own})
+    if (fs::exists(file)) return file.string();
+  throw cb::SnapshotError(settings.file, "needs the map '" + info.map_file + "', which is not there",
+                          "give the file by --map");
 }
 
 void print_head(cb::SnapshotInfo const& info, std::string const& file) {
-  std::printf("%s\n  parts     %s\n  taken by  cambium %s, %s, %s\n", file.c_str(), info.parts.c_str(),
-              info.library.c_str(), info.build.c_str(), info.platform.c_str());
+  std::printf("%s\n  component %s\n  parts     %s\n  taken by  cambium %s, %s, %s\n", file.c_str(),
+              info.component.c_str(), info.parts.c_str(), info.library.c_str(), info.build.c_str(),
+              info.platform.c_str());
   if (info.map_hash)
     std::printf("  map       %s (%016llx)\n", info.map_text.empty() ? info.map_file.c_str() : "embedded",
                 static_cast<unsigned long long>(*info.map_hash));
   if (!info.note.empty()) std::printf("  because   %s\n", info.note.c_str());
 }
 
-void print_world(desk::World const& world) {
+void print_world(examples::Thawed const& thawed) {
   std::printf("  time      %.3f s\n\n  agent  model              x [m]    y [m]   v [m/s]  a [m/s^2]  status\n",
-              world.time());
-  for (cb::Slot slot{}; cb::index_of(slot) < world.size(); ++slot) {
-    auto const& agent = world.roster().agents[slot];
-    auto const& record = world.frame().agents[slot];
-    std::string const model = agent.behavior.visit([]<class B>(B const&) { return std::string(B::name); });
-    std::printf("  %5s  %-15s %8.2f %8.2f  %8.2f   %8.2f  %s\n", to_string(agent.id).c_str(), model.c_str(),
-                record.state.x, record.state.y, record.state.speed, record.action.acceleration,
-                to_string(record.status));
-  }
-  auto const& planner = world.roster().agents[world.slot_of(desk::ego)].behavior;
-  std::printf("\n  agent %s: %s\n", to_string(desk::ego).c_str(),
-              planner.visit([](auto const& b) { return cb::to_string(b); }).c_str());
-  std::visit([]<class M>(M const& memory) { std::printf("  remembers: %s\n", cb::to_string(memory).c_str()); },
-             world.record(desk::ego).memory);
+              thawed.time());
+  for (auto const& agent : thawed.agents())
+    std::printf("  %5s  %-15s %8.2f %8.2f  %8.2f   %8.2f  %s\n", agent.id.c_str(), agent.model.c_str(), agent.x,
+                agent.y, agent.speed, agent.acceleration, agent.status.c_str());
+  std::printf("\n  agent %s: %s\n  remembers: %s\n", thawed.ego().id.c_str(), thawed.behavior().c_str(),
+              thawed.memory().c_str());
 }
 
-/// Applies "behavior.KEY=VALUE" to the ego's behaviour.
-void edit(desk::World& world, std::string const& text) {
+/// Applies "behavior.KEY=VALUE" or "memory.KEY=VALUE" to the ego.
+void edit(examples::Thawed& thawed, std::string const& text) {
   auto const sign = text.find('=');
-  auto const key = text.substr(0, sign);
-  auto const value = sign == text.npos ? std::nullopt : cb::detail::parse_number<double>(text.substr(sign + 1));
-  constexpr std::string_view place = "behavior.";
-  if (!value || !key.starts_with(place))
-    throw cb::ParameterError("--edit", "is '" + text + "'", "write behavior.KEY=NUMBER, such as behavior.jerk=1");
-  auto const memory = world.record(desk::ego).memory;
-  desk::World::Behavior edited = world.roster().agents[world.slot_of(desk::ego)].behavior;
-  std::visit([&]<class B>(B& behavior) { cb::set_parameter(behavior, key.substr(place.size()), *value, "--edit"); },
-             static_cast<desk::World::Behavior::variant&>(edited));
-  world.set_behavior(desk::ego, edited);
-  auto frame = world.frame();
-  frame.agents[world.slot_of(desk::ego)].memory = memory;  // what it remembers stays
-  world.restore(frame);
+  auto const keys = cb::detail::split(text.substr(0, sign), ".");
+  auto const value = sign == text.npos ? "" : text.substr(sign + 1);
+  bool const is_memory = keys[0] == "memory";
+  if (keys.size() < 2 || value.empty() || !(is_memory || keys[0] == "behavior"))
+    throw cb::ParameterError("--edit", "is '" + text + "'",
+                             "write behavior.KEY=VALUE, such as behavior.jerk=1, or memory.KEY=VALUE");
+  bool const is_word = std::isalpha(static_cast<unsigned char>(value[0])) != 0 && value != "true" && value != "false";
+  auto json = is_word ? cb::detail::json_string(value) : value;
+  for (std::size_t i = keys.size() - 1; i > 0; --i)
+    json = "{" + cb::detail::json_string(std::string(keys[i])) + ": " + json + "}";
+  thawed.edit(json, is_memory);
 }
 
-void print_test(Settings const& settings, cb::SnapshotInfo const& info) {
+/// Where the types of a snapshot are: what thaws it, and how that is called in a test.
+struct Types {
+  examples::Thaw thaw;
+  std::string call;
+};
+
+Types types_of(cb::SnapshotInfo const& info, std::string const& file) {
+  if (info.component == desk::component)
+    return {&examples::thaw<desk::World, desk::Cycle>, "examples::thaw<desk::World, desk::Cycle>"};
+  examples::ParameterFile usual;
+  std::vector<std::string> known{desk::component};
+  for (auto const& driver : benchmark::shipped(usual)) {
+    auto const& name = driver.contender.name;
+    if (name == info.component) return {driver.thaw, "benchmark::" + name + "(usual).thaw"};
+    known.push_back(name);
+  }
+  throw cb::SnapshotError(file,
+                          "is the state of a component '" + info.component + "', which this program does not know",
+                          cb::detail::suggestion(info.component, known));
+}
+
+void print_test(std::string const& file, std::string const& map_file, std::string const& call, std::uint64_t result) {
+  auto const map = map_file.empty() ? "cambium::parse_opendrive(cambium::snapshot_info(bytes).map_text).map"
+                                    : "cambium::load_opendrive(\"" + map_file + "\").map";
   std::printf(
-      "\n// Needs common/desk.hpp of the examples, and the snapshot beside the test.\n"
+      "\n// Needs common/desk.hpp and benchmark/traffic.hpp of the examples, their sources, and the snapshot.\n"
       "TEST_CASE(\"the cycle of %s comes out as recorded\") {\n"
-      "  desk::World world(cambium::load_opendrive(\"%s\").map);\n  desk::Cycle cycle;\n"
-      "  cambium::load_snapshot(\"%s\", world, cycle);\n  REQUIRE(desk::run(world, cycle));\n"
-      "  CHECK(cambium::snapshot_hash(world) == 0x%016llxu);\n}\n",
-      fs::path(settings.file).filename().string().c_str(), info.map_file.c_str(), settings.file.c_str(),
-      static_cast<unsigned long long>(info.result.value_or(0)));
+      "  examples::ParameterFile usual;\n"
+      "  std::string const file = \"%s\", bytes = cambium::read_snapshot_file(file);\n"
+      "  auto const thawed = %s(\n      %s, bytes, file);\n"
+      "  REQUIRE(thawed->run());\n"
+      "  CHECK(thawed->hash() == 0x%016llxu);\n}\n",
+      fs::path(file).filename().string().c_str(), file.c_str(), call.c_str(), map.c_str(),
+      static_cast<unsigned long long>(result));
 }
 
 int debug(Settings const& settings) {
   auto const bytes = cb::read_snapshot_file(settings.file);
   auto const info = cb::snapshot_info(bytes, settings.file);
   print_head(info, settings.file);
-  desk::World world(map_of(info, settings.file));
-  desk::Cycle cycle;
-  cb::from_snapshot(bytes, settings.file, world, cycle);
-  print_world(world);
-  if (!settings.edit.empty()) edit(world, settings.edit);
-  cb::WorldRecorder recorder(world, fs::path(settings.file).filename().string());
-  recorder.show_as(desk::ego, cb::RecordedAgentKind::ego);
+  auto const types = types_of(info, settings.file);
+  auto const map_file = map_file_of(info, settings);
+  auto const map = map_file.empty() ? cb::parse_opendrive(info.map_text).map : examples::load_map(map_file);
+  auto const thawed = types.thaw(map, bytes, settings.file);
+  print_world(*thawed);
+  if (!settings.edit.empty()) edit(*thawed, settings.edit);
+  thawed->film(fs::path(settings.file).filename().string());
 
   if (settings.breaks) std::raise(SIGTRAP);
-  auto const result = desk::run(world, cycle);  // the cycle: step into it
-  recorder.record(world);
+  auto const result = thawed->run();  // the cycle: step into it
 
-  auto const& ego = world.record(desk::ego);
-  std::printf("\nthe cycle of %.3f s: %s; agent %s at (%.3f, %.3f), %.3f m/s, %.3f m/s^2\n", cycle.duration,
-              to_string(result.problem), to_string(desk::ego).c_str(), ego.state.x, ego.state.y, ego.state.speed,
-              ego.action.acceleration);
-  bool const is_equal = info.result && cb::snapshot_hash(world) == *info.result;
+  auto const ego = thawed->ego();
+  std::printf("\nthe cycle of %.3f s: %s; agent %s at (%.3f, %.3f), %.3f m/s, %.3f m/s^2\n", thawed->time_step(),
+              to_string(result.problem), ego.id.c_str(), ego.x, ego.y, ego.speed, ego.acceleration);
+  bool const is_equal = info.result && thawed->hash() == *info.result;
   bool const is_of_other = info.library != cb::library_version;
   std::printf("%s\n", is_equal       ? "It came out bit-equal to what was recorded."
                       : !info.result ? "Its result was not recorded: there is nothing to compare with."
                       : is_of_other  ? "It cannot be compared: another version of cambium recorded it."
                                      : "It came out otherwise than recorded.");
-  double const end = settings.goes_on ? world.time() + 60.0 : 0.0;
-  bool collides = cb::Collision{}(world, world.slot_of(desk::ego));
-  for (std::uint64_t i = 1; i < settings.cycles || world.time() < end; ++i) {
-    if (world.status(desk::ego) != cb::AgentStatus::driving) break;
-    cycle.duration = 0.2;
-    if (auto const next = desk::run(world, cycle); !next) {
-      std::printf("%.1f s: %s\n", world.time(), to_string(next.problem));
+  double const end = settings.goes_on ? thawed->time() + 60.0 : 0.0;
+  bool collides = thawed->ego_collides();
+  for (std::uint64_t i = 1; (i < settings.cycles || thawed->time() < end) && thawed->ego_drives(); ++i) {
+    if (auto const next = thawed->run(); !next) {
+      std::printf("%.1f s: %s\n", thawed->time(), to_string(next.problem));
       break;
     }
-    recorder.record(world);
-    collides = collides || cb::Collision{}(world, world.slot_of(desk::ego));
+    collides = collides || thawed->ego_collides();
   }
   if (settings.goes_on || settings.cycles > 1)
-    std::printf("until %.1f s: agent %s %s, %s\n", world.time(), to_string(desk::ego).c_str(),
-                to_string(world.status(desk::ego)), collides ? "after a collision" : "no collision");
+    std::printf("until %.1f s: agent %s %s, %s\n", thawed->time(), ego.id.c_str(), thawed->ego().status.c_str(),
+                collides ? "after a collision" : "no collision");
   if (!settings.replay.empty()) {
-    auto const recording = recorder.recording();
-    cb::write_html_replay(settings.replay, recording);
+    cb::write_html_replay(settings.replay, thawed->recording());
     auto const figure = fs::path(settings.replay).replace_extension(".svg");
-    cb::write_svg_picture(figure, recording, {.frame = 0});
+    cb::write_svg_picture(figure, thawed->recording(), {.frame = 0});
     std::printf("replay: %s, figure: %s\n", settings.replay.c_str(), figure.string().c_str());
   }
-  if (settings.as_test && info.result) print_test(settings, info);
+  if (settings.as_test && info.result)
+    print_test(fs::absolute(settings.file).string(), map_file.empty() ? "" : fs::absolute(map_file).string(),
+               types.call, *info.result);
   return is_equal ? 0 : 1;
 }
 
@@ -160,12 +175,14 @@ int main(int argc, char** argv) {
   Settings settings;
   CLI::App program("Restores a snapshot and runs its cycle again. Exit code 0: bit-equal, 1: not, 2: a bad file.",
                    "debug_snapshot");
-  program.add_option("FILE", settings.file, "a snapshot of record_snapshots")->required();
+  program.add_option("FILE", settings.file, "a snapshot of record_snapshots, or of a failure in the benchmark")
+      ->required();
+  program.add_option("--map", settings.map, "its map, if that is not where it was (OpenDRIVE)")->type_name("FILE");
   program.add_option("--cycles", settings.cycles, "how many to run")
       ->check(examples::whole_number(1, 100'000))
       ->capture_default_str();
   program.add_flag("--break", settings.breaks, "stop in the debugger before the cycle (without one, the program ends)");
-  program.add_option("--edit", settings.edit, "change a parameter of the ego first: behavior.jerk=1")
+  program.add_option("--edit", settings.edit, "change the ego first: behavior.jerk=1, memory.planned_at=0")
       ->type_name("KEY=VALUE");
   program.add_flag("--into-simulation", settings.goes_on, "go on for a minute");
   program.add_flag("--as-test", settings.as_test, "print a test that repeats the cycle");

@@ -60,6 +60,7 @@ void drive(Settings const& settings) {
                             : settings.format == "text" ? cb::SnapshotFormat::text
                                                         : cb::SnapshotFormat::binary;
   options.snapshot.map_file = settings.map;
+  options.snapshot.component = desk::component;
   if (settings.embeds_map) {
     std::ifstream file(settings.map);
     options.snapshot.map_text.assign(std::istreambuf_iterator<char>(file), {});
@@ -69,9 +70,10 @@ void drive(Settings const& settings) {
       [&] { return world.record(desk::ego).action.acceleration < -6.0 ? "ego brakes harder than 6 m/s^2" : ""; });
   options.watches.push_back([&]() -> std::string {  // passengers feel more jerk than the planner allows itself
     double const now = world.record(desk::ego).action.acceleration;
-    double const rate = std::abs(now - last) / (0.5 * (cycle.duration + last_duration));
+    double const duration = cycle.time_step + cycle.late;
+    double const rate = std::abs(now - last) / (0.5 * (duration + last_duration));
     last = now;
-    last_duration = cycle.duration;
+    last_duration = duration;
     constexpr double felt = 0.9;  // [m/s^3]
     return settings.planner == "follower" && rate > felt && !is_first
                ? "a jerk of " + cb::detail::rounded_text(rate) + " m/s^3"
@@ -81,9 +83,9 @@ void drive(Settings const& settings) {
   cb::RandomStream random(settings.seed, 1, 0);
   int cycles = 0;
   while (world.time() < settings.seconds && world.status(desk::ego) == cb::AgentStatus::driving) {
-    cycle.duration = cb::uniform01(random) < settings.late ? 0.7 : 0.2;  // now and then the machine is busy
+    cycle.late = cb::uniform01(random) < settings.late ? 0.5 : 0.0;  // now and then the machine is busy
     recorder.begin(world, cycle);
-    auto const result = desk::run(world, cycle);
+    auto const result = world.step(cycle.time_step + cycle.late);
     if (!result) recorder.trigger(to_string(result.problem));
     recorder.end(world);
     is_first = false;

@@ -17,13 +17,13 @@ double desired_speed(Spec const& ego) {
       ego.behavior.given());
 }
 
-Contender idm(examples::ParameterFile& file) {
+Driver idm(examples::ParameterFile& file) {
   return with_speed(file, cb::IdmClassic{}, "idm", [](auto& driver, double speed) { driver.desired_speed = speed; });
 }
-Contender mobil(examples::ParameterFile& file) {
+Driver mobil(examples::ParameterFile& file) {
   return with_speed(file, cb::Mobil{}, "mobil", [](auto& driver, double speed) { driver.idm.desired_speed = speed; });
 }
-Contender intersection(examples::ParameterFile& file) {
+Driver intersection(examples::ParameterFile& file) {
   return with_speed(file, cb::Intersection{}, "intersection",
                     [](auto& driver, double speed) { driver.idm.desired_speed = speed; });
 }

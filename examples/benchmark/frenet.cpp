@@ -2,7 +2,7 @@
 
 #include "traffic.hpp"
 
-benchmark::Contender benchmark::frenet(examples::ParameterFile& file) {
+benchmark::Driver benchmark::frenet(examples::ParameterFile& file) {
   using Planner = cb::FrenetPlanner<Prediction<cb::ConstantAcceleration>>;
   return with_speed(file, Planner{}, "frenet", [](Planner& planner, double speed) { planner.desired_speed = speed; });
 }

@@ -1,5 +1,5 @@
 #include "search.hpp"
 
-benchmark::Contender benchmark::mcts_hypothesis(examples::ParameterFile& file) {
+benchmark::Driver benchmark::mcts_hypothesis(examples::ParameterFile& file) {
   return with_speed(file, search<cb::HeadwayHypotheses<cb::Intersection>>(), "mcts_hypothesis");
 }

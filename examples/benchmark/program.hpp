@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "../common/command_line.hpp"
@@ -22,7 +23,8 @@ int run_program(int argc, char** argv, Run const& run, bool prints = true) {
   program.allow_extras();  // for `run`
   program.set_help_flag();
   return examples::run_program(program, argc, argv, [&] {
-    auto const contenders = shipped(file);
+    std::vector<cb::Contender<Traffic>> contenders;
+    for (auto& driver : shipped(file)) contenders.push_back(std::move(driver.contender));
     if (file.prints() && !prints) return 0;
     if (file.finish()) return 0;
     auto const rest = program.remaining();

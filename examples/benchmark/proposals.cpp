@@ -2,7 +2,7 @@
 
 #include "traffic.hpp"
 
-benchmark::Contender benchmark::proposals(examples::ParameterFile& file) {
+benchmark::Driver benchmark::proposals(examples::ParameterFile& file) {
   using Planner = cb::ProposalPlanner<Prediction<cb::IdmProposal, cb::ConstantAcceleration>>;
   return with_speed(file, Planner{}, "proposals",
                     [](Planner& planner, double speed) { planner.driver.driver.desired_speed = speed; });

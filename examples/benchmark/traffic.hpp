@@ -15,9 +15,11 @@
 #include "cambium/observer/observer_set.hpp"
 #include "cambium/observer/occluded.hpp"
 #include "cambium/observer/perfect.hpp"
+#include "cambium/snapshot/freeze_run.hpp"
 #include "cambium/world/world.hpp"
 
 #include "../common/parameter_file.hpp"
+#include "../common/thawed.hpp"
 
 namespace benchmark {
 
@@ -27,7 +29,12 @@ namespace cb = cambium;
 using Traffic =
     cb::World<cb::BehaviorSet<cb::IdmClassic, cb::Mobil, cb::Intersection, cb::ConstantAcceleration, cb::Pedestrian>,
               cb::InterpolateExecution, cb::SingleTrack, cb::ObserverSet<cb::PerfectObserver, cb::OccludedObserver>>;
-using Contender = cb::Contender<Traffic>;
+
+/// A behaviour under test, and how to thaw the snapshot of a run that it failed.
+struct Driver {
+  cb::Contender<Traffic> contender;
+  examples::Thaw thaw;
+};
 using Spec = Traffic::AgentSpec;
 
 /// What planners predict with.
@@ -37,33 +44,34 @@ using Prediction = Traffic::WithBehaviors<cb::BehaviorSet<Behaviors...>>;
 /// The speed that the scenario's driver of the ego likes: contenders drive in its place and have the same wish.
 [[nodiscard]] double desired_speed(Spec const& ego);
 
-/// A contender whose parameters are `planner` with what the file says of `name`, but for the ego's desired speed:
+/// A driver whose parameters are `planner` with what the file says of `name`, but for the ego's desired speed:
 /// `set_speed(planner, speed)`.
 template <class Planner, class SetSpeed>
-[[nodiscard]] Contender with_speed(examples::ParameterFile& file, Planner planner, std::string const& name,
-                                   SetSpeed set_speed) {
+[[nodiscard]] Driver with_speed(examples::ParameterFile& file, Planner planner, std::string const& name,
+                                SetSpeed set_speed) {
   file.take(planner, name);
-  return cb::contender_by<Traffic>(name, cb::to_string(planner), cb::hash_parameters(planner),
-                                   [planner, set_speed](Spec const& ego, cb::Scenario<Traffic> const&) {
-                                     auto own = planner;
-                                     set_speed(own, desired_speed(ego));
-                                     return own;
-                                   });
+  auto const choose = [planner, set_speed](Spec const& ego, cb::Scenario<Traffic> const&) {
+    auto own = planner;
+    set_speed(own, desired_speed(ego));
+    return own;
+  };
+  return {cb::contender_by<Traffic>(name, cb::to_string(planner), cb::hash_parameters(planner), choose, cb::freeze_run),
+          &examples::thaw<cb::ContenderWorld<Traffic, Planner>, cb::RunPosition>};
 }
 
 // The shipped behaviours, a source file each, because planners take long to compile.
-[[nodiscard]] Contender idm(examples::ParameterFile& file);
-[[nodiscard]] Contender mobil(examples::ParameterFile& file);
-[[nodiscard]] Contender intersection(examples::ParameterFile& file);
-[[nodiscard]] Contender proposals(examples::ParameterFile& file);
-[[nodiscard]] Contender policy_tree(examples::ParameterFile& file);
-[[nodiscard]] Contender frenet(examples::ParameterFile& file);
-[[nodiscard]] Contender mcts_single_agent(examples::ParameterFile& file);
-[[nodiscard]] Contender mcts_cooperative(examples::ParameterFile& file);
-[[nodiscard]] Contender mcts_hypothesis(examples::ParameterFile& file);
+[[nodiscard]] Driver idm(examples::ParameterFile& file);
+[[nodiscard]] Driver mobil(examples::ParameterFile& file);
+[[nodiscard]] Driver intersection(examples::ParameterFile& file);
+[[nodiscard]] Driver proposals(examples::ParameterFile& file);
+[[nodiscard]] Driver policy_tree(examples::ParameterFile& file);
+[[nodiscard]] Driver frenet(examples::ParameterFile& file);
+[[nodiscard]] Driver mcts_single_agent(examples::ParameterFile& file);
+[[nodiscard]] Driver mcts_cooperative(examples::ParameterFile& file);
+[[nodiscard]] Driver mcts_hypothesis(examples::ParameterFile& file);
 
 /// All of them.
-[[nodiscard]] inline std::vector<Contender> shipped(examples::ParameterFile& file) {
+[[nodiscard]] inline std::vector<Driver> shipped(examples::ParameterFile& file) {
   return {idm(file),
           mobil(file),
           intersection(file),

@@ -91,21 +91,24 @@ using Planner = cb::Mcts<Predicted>;
 using World = cb::World<cb::BehaviorSet<SmoothFollower, Planner, cb::Intersection, cb::Mobil, cb::IdmClassic>,
                         cb::InterpolateExecution, cb::SingleTrack>;
 
+/// Its name in snapshots.
+inline constexpr char const* component = "record_snapshots";
+
 /// The agent that plans.
 inline constexpr cb::AgentId ego{0};
 
 /// What a cycle needs besides the world.
 struct Cycle {
-  double duration = 0.2;
+  static constexpr cb::AgentId ego = desk::ego;
+  double time_step = 0.2;
+  double late = 0.0;
 
   static constexpr char const* name = "cycle";
   static constexpr auto parameters() {
     return cb::parameter_list(
-        cb::parameter("duration", &Cycle::duration, "s", cb::Range{1e-3, 10}, "until the next one"));
+        cb::parameter("time_step", &Cycle::time_step, "s", cb::Range{1e-3, 10}, "from one to the next"),
+        cb::parameter("late", &Cycle::late, "s", cb::Range{0, 10}, "how much later the next one comes"));
   }
 };
-
-/// One cycle of planning and driving.
-inline cb::StepResult run(World& world, Cycle const& cycle) { return world.step(cycle.duration); }
 
 }  // namespace desk

@@ -13,7 +13,7 @@
 #include "cambium/snapshot/archive_fields.hpp"
 #include "cambium/snapshot/archive_workspace.hpp"
 #include "cambium/snapshot/archive_world.hpp"
+#include "cambium/snapshot/freeze_run.hpp"
 #include "cambium/snapshot/snapshot.hpp"
-#include "cambium/snapshot/snapshot_error.hpp"
 #include "cambium/snapshot/snapshot_error.hpp"
 #include "cambium/snapshot/snapshot_recorder.hpp"

@@ -81,10 +81,11 @@ namespace detail {
        "returns is ended, too. Off without it, because the results then depend on the machine"},
       {"--replays", "failures|all|none",
        "the runs that leave a replay in a folder beside the database (results_replays beside results.db); failures "
-       "(usual): of those of each behaviour and set, the first 20"},
+       "(usual): of those of each behaviour and set, the first 20. A failure leaves a snapshot, too"},
       {"--again", "", "run also what the database has already"},
       {"--only", "SET:NUMBER:BEHAVIOR", "run one scenario and print what came of it"},
-      {"--replay", "FILE", "with --only: write a replay that opens in a browser"},
+      {"--replay", "FILE",
+       "with --only: write a replay that opens in a browser, and beside it the snapshot of a failure"},
       {"--json", "FILE", "write the table, a row a set, title of its recipes, and behaviour"},
       {"--list", "", "list behaviours and sets, and exit"},
       {"--help", "", "print this and exit"}};
@@ -260,7 +261,9 @@ int run_only(std::vector<ScenarioSet<World>> const& sets, std::vector<Contender<
     throw Error("--only " + only, "there is no such scenario",
                 "give a number from 0 to " + std::to_string(set->scenarios.size() - 1));
   auto const contender = chosen(contenders, {std::string(parts.back())}).front();
-  auto run = contender.run(set->scenarios[*number], {set->time_step, set->time_limit, plan_limit}, replay.has_value());
+  auto const label = set->title + ", scenario " + std::to_string(*number);
+  auto run =
+      contender.run(set->scenarios[*number], {set->time_step, set->time_limit, plan_limit, label}, replay.has_value());
   std::cout << only << "\n  " << contender.parameters << "\n  seed: " << set->scenarios[*number].seed << "\n";
   for_each_parameter<RunResult>([&](auto const& entry) {
     using Field = std::remove_cvref_t<decltype(run.result.*entry.field)>;
@@ -275,6 +278,12 @@ int run_only(std::vector<ScenarioSet<World>> const& sets, std::vector<Contender<
   if (replay) {
     write_html_replay(*replay, titled(std::move(*run.recording), set->title, *number, contender.name, run.result));
     std::cout << "  " << *replay << " plays it in a browser\n";
+    if (!run.problem.empty()) throw Error("--replay " + *replay, "there is no snapshot beside it", run.problem);
+    if (!run.snapshot.empty()) {
+      auto const snapshot = std::filesystem::path(*replay).replace_extension(".snapshot");
+      write_file(snapshot, run.snapshot);
+      std::cout << "  " << snapshot.string() << " is its state before the end\n";
+    }
   }
   return 0;
 }

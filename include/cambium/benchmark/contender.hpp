@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <deque>
+#include <exception>
 #include <functional>
 #include <limits>
 #include <optional>
@@ -38,14 +41,55 @@ struct RunOptions {
   /// Longest time that all plans of a run may take together, of the wall clock [s]. A run that exceeds it ends with an
   /// error after that plan. The outcome then depends on the machine.
   double plan_limit = std::numeric_limits<double>::infinity();
+  std::string label{};  ///< of the run, for notes: "merging, scenario 17"
 };
 
-/// What a run gives: the result, the times, and the recording if one was asked for.
+/// What a run gives: the result, the times, and if it was recorded, the recording and, of a failure, the snapshot that
+/// the contender keeps.
 struct Run {
   RunResult result;
   RunTimes times;
   std::optional<Recording> recording;
+  std::string snapshot{};  ///< empty: none
+  std::string problem{};   ///< why there is no snapshot though one was wanted
 };
+
+/// What a runner knows of a run under way, besides the world.
+struct RunPosition {
+  std::string contender{};
+  AgentId ego = none<AgentId>;
+  std::vector<AgentId> controlled{};
+  double time_step = 0.2;
+  double time_limit = 60.0;
+
+  static constexpr char const* name = "run";
+  static constexpr auto parameters() {
+    using P = RunPosition;
+    return parameter_list(parameter("contender", &P::contender, "-", {}, "who drives"),
+                          parameter("ego", &P::ego, "-", {}, "the agent that the run is about"),
+                          parameter("controlled", &P::controlled, "-", {}, "further agents that the contender drives"),
+                          parameter("time_step", &P::time_step, "s", Range{1e-6, 1e6}, "of the run"),
+                          parameter("time_limit", &P::time_limit, "s", Range{0, 1e12}, "of the run"));
+  }
+};
+
+/// A run that was no success, for what keeps it (`freeze_run`): the world `before` a cycle, and, unless that threw an
+/// exception, `after` it. The cycle is the one that ended the run by an error, and otherwise lies `freeze_lead` before
+/// the end, when that could still be averted.
+template <class World>
+struct FailedRun {
+  World const& before;
+  World const* after;
+  RunPosition position;
+  std::string map_file;
+  std::string note;  ///< "merging, scenario 17: collision in 15 cycles"
+};
+
+/// How long before the end of a run its snapshot is taken [s].
+inline constexpr double freeze_lead = 3.0;
+
+/// Keeps nothing of failed runs.
+struct KeepNothing {};
 
 /// A behaviour under test: its name, its parameters as text and hash, and how it runs a scenario as the ego (and as
 /// the other controlled agents). `run` throws nothing: what a behaviour throws is the result's error. Made by
@@ -102,6 +146,44 @@ struct WithBehavior;
 template <class... Models, class Behavior>
 struct WithBehavior<BehaviorSet<Models...>, Behavior> {
   using type = BehaviorSet<Models..., Behavior>;
+};
+
+/// The last worlds of a run, for what keeps failures.
+template <class World>
+class LastWorlds {
+ public:
+  explicit LastWorlds(double time_step)
+      : most_(static_cast<std::size_t>(std::clamp(std::round(freeze_lead / time_step), 1.0, 100.0))) {}
+
+  void add(World const& world) {
+    worlds_.push_back(world);
+    if (worlds_.size() > most_ + 1) worlds_.pop_front();
+  }
+
+  /// Lets `keep` write the snapshot of `run`, which has failed; `threw`: its last cycle has no result.
+  template <class Keep>
+  void freeze(Run& run, bool threw, RunPosition position, std::string const& label, std::string const& map_file,
+              Keep const& keep) const {
+    if (worlds_.empty()) return;
+    auto const& error = run.result.error;
+    bool const is_error = !error.empty();
+    std::size_t const left = threw ? 1 : std::min(worlds_.size() - 1, is_error ? std::size_t{1} : most_);
+    std::size_t const before = worlds_.size() - 1 - (threw ? 0 : left);
+    auto const note = label + (label.empty() ? "" : ": ") +
+                      (is_error ? "error: " + error : run_outcomes[outcome_of(run.result)]) + " in " +
+                      std::to_string(left) + (left == 1 ? " cycle" : " cycles");
+    try {
+      run.snapshot =
+          keep(FailedRun<World>{worlds_[before], before + 1 < worlds_.size() ? &worlds_[before + 1] : nullptr,
+                                std::move(position), map_file, note});
+    } catch (std::exception const& problem) {
+      run.problem = problem.what();
+    }
+  }
+
+ private:
+  std::size_t most_;
+  std::deque<World> worlds_{};
 };
 
 /// The size of what an evaluator says.
@@ -243,24 +325,31 @@ template <class World, class AfterStep>
 
 }  // namespace detail
 
+/// The world that a contender with this behaviour drives in: the type of its snapshots.
+template <class ScenarioWorld, class Behavior>
+using ContenderWorld =
+    World<typename detail::WithBehavior<typename ScenarioWorld::Behaviors, detail::Timed<Behavior>>::type,
+          typename ScenarioWorld::Execution, typename ScenarioWorld::Dynamics, typename ScenarioWorld::Observer>;
+
 /// A contender from a function that says, for the spec of an agent to be controlled, what drives it:
 /// `choose(spec, scenario)` returns a behaviour. `name`: for tables and the database; `parameters`: what tells it from
-/// contenders of that name.
-template <class ScenarioWorld, class Choose>
+/// contenders of that name. `keep(FailedRun)` returns the snapshot of a failure that is recorded: `freeze_run`.
+template <class ScenarioWorld, class Choose, class Keep = KeepNothing>
 [[nodiscard]] Contender<ScenarioWorld> contender_by(std::string name, std::string parameters,
-                                                    std::uint64_t parameters_hash, Choose choose) {
+                                                    std::uint64_t parameters_hash, Choose choose, Keep keep = {}) {
   using Behavior =
       std::invoke_result_t<Choose const&, typename ScenarioWorld::AgentSpec const&, Scenario<ScenarioWorld> const&>;
   using Timed = detail::Timed<Behavior>;
-  using World = cambium::World<typename detail::WithBehavior<typename ScenarioWorld::Behaviors, Timed>::type,
-                               typename ScenarioWorld::Execution, typename ScenarioWorld::Dynamics,
-                               typename ScenarioWorld::Observer>;
-  auto drive = [choose = std::move(choose)](Scenario<ScenarioWorld> const& scenario, RunOptions const& options,
-                                            bool records) {
+  using World = ContenderWorld<ScenarioWorld, Behavior>;
+  constexpr bool keeps = !std::is_same_v<Keep, KeepNothing>;
+  auto drive = [choose = std::move(choose), keep = std::move(keep), name](Scenario<ScenarioWorld> const& scenario,
+                                                                          RunOptions const& options, bool records) {
     Run run;
     detail::PlanClock clock;
     clock.step_ms = 1e3 * options.time_step;
     std::optional<WorldRecorder> film;
+    detail::LastWorlds<World> last(options.time_step);
+    bool threw = true;
     auto const begin = std::chrono::steady_clock::now();
     try {
       if (!is_valid(scenario.ego))
@@ -276,13 +365,16 @@ template <class ScenarioWorld, class Choose>
       if (records) {
         film.emplace(world);
         film->show_as(scenario.ego, RecordedAgentKind::ego, "ego");
+        if (keeps) last.add(world);
       }
       run.result = detail::run_world(world, own, options, [&](World const& now) -> std::string {
         if (film) film->record(now);
+        if (film && keeps) last.add(now);
         double const planned = 1e-3 * (clock.sum_ms + clock.others_ms);
         if (!(planned > options.plan_limit)) return {};
         return plans_too_long + detail::rounded_text(options.plan_limit) + " s together";
       });
+      threw = false;
     } catch (std::exception const& problem) {
       run.result = {};
       run.result.error = problem.what();
@@ -292,6 +384,10 @@ template <class ScenarioWorld, class Choose>
       run.result.error = "threw what is no std::exception";
     }
     if (film) run.recording = std::move(film->recording());
+    if constexpr (keeps)
+      if (!run.result.success)
+        last.freeze(run, threw, {name, scenario.ego, scenario.controlled, options.time_step, options.time_limit},
+                    options.label, scenario.map_file, keep);
     run.times = clock.times;
     run.times.mean_ms = clock.times.decisions > 0 ? clock.sum_ms / static_cast<double>(clock.times.decisions) : 0.0;
     run.times.run_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -300,15 +396,18 @@ template <class ScenarioWorld, class Choose>
   return {std::move(name), std::move(parameters), parameters_hash, std::move(drive)};
 }
 
-/// A contender that drives with the same parameters everywhere. `name`: by default that of the model.
-template <class ScenarioWorld, class Behavior>
-[[nodiscard]] Contender<ScenarioWorld> contender(Behavior const& behavior, std::string name = Behavior::name) {
+/// A contender that drives with the same parameters everywhere. `name`: by default that of the model; `keep` as for
+/// `contender_by`.
+template <class ScenarioWorld, class Behavior, class Keep = KeepNothing>
+[[nodiscard]] Contender<ScenarioWorld> contender(Behavior const& behavior, std::string name = Behavior::name,
+                                                 Keep keep = {}) {
   static_assert(Described<Behavior>,
                 "cambium::contender: describe the behaviour's parameters, so that results can be told apart: `static "
                 "constexpr auto parameters() { return cambium::parameter_list(); }`");
   return contender_by<ScenarioWorld>(
       std::move(name), to_string(behavior), hash_parameters(behavior),
-      [behavior](typename ScenarioWorld::AgentSpec const&, Scenario<ScenarioWorld> const&) { return behavior; });
+      [behavior](typename ScenarioWorld::AgentSpec const&, Scenario<ScenarioWorld> const&) { return behavior; },
+      std::move(keep));
 }
 
 }  // namespace cambium

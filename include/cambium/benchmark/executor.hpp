@@ -18,7 +18,8 @@ struct JobOutcome {
   RunResult result{};
   RunTimes times{};
   std::string replay{};     ///< page for browsers; empty: none
-  std::string problem{};    ///< why there is no replay though one was wanted
+  std::string snapshot{};   ///< as in `Run`
+  std::string problem{};    ///< why one of them is missing though it was wanted
   std::uint64_t setup = 0;  ///< hash of set and contender, as the process that ran it has them
 };
 

@@ -145,7 +145,7 @@ namespace detail {
         "largest_jerk", "rss_compliance", "closed_loop_score", "mean_ms", "longest_ms"})
     for (std::size_t m = 0; m < measures().size(); ++m)
       if (measures()[m].key == key) columns.push_back(m);
-  std::string names, groups, rows, errors, seeds, hits, made;
+  std::string names, groups, rows, errors, seeds, hits, made, frozen;
   for (auto const m : columns) names += (names.empty() ? "" : ",") + json_string(titled(measures()[m]));
   std::size_t index = 0;
   for (std::size_t g = 0; g < report.groups.size(); ++g) {
@@ -166,11 +166,12 @@ namespace detail {
       if (is_valid(row.result.hit)) hits += (hits.empty() ? "" : ",") + key + "\"" + to_string(row.result.hit) + "\"";
       seeds += (index == 0 ? "\"" : ",\"") + std::to_string(row.seed) + "\"";
       std::error_code ignored;
-      if (std::filesystem::exists(
-              options.page_folder / options.replays /
-                  replay_file_name(group.set, group.behavior, group.set_hash, group.parameters_hash, row.scenario),
-              ignored))
-        made += (made.empty() ? "" : ",") + std::to_string(index);
+      auto file = options.page_folder / options.replays /
+                  replay_file_name(group.set, group.behavior, group.set_hash, group.parameters_hash, row.scenario);
+      for (auto* const list : {&made, &frozen}) {
+        if (std::filesystem::exists(file, ignored)) *list += (list->empty() ? "" : ",") + std::to_string(index);
+        file.replace_extension(".snapshot");
+      }
       ++index;
     }
   }
@@ -179,8 +180,8 @@ namespace detail {
   return "{\"replays\":" + json_string(options.replays.generic_string()) +
          ",\"folder\":" + json_string((options.page_folder / options.replays).lexically_normal().generic_string()) +
          ",\"columns\":[" + names + "],\"outcomes\":[" + outcomes + "],\n\"groups\":[" + groups + "],\n\"rows\":[" +
-         rows + "],\n\"errors\":{" + errors + "},\n\"hits\":{" + hits + "},\n\"made\":[" + made + "],\n\"seeds\":[" +
-         seeds + "]}";
+         rows + "],\n\"errors\":{" + errors + "},\n\"hits\":{" + hits + "},\n\"made\":[" + made + "],\n\"frozen\":[" +
+         frozen + "],\n\"seeds\":[" + seeds + "]}";
 }
 
 }  // namespace detail

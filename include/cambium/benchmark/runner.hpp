@@ -47,7 +47,8 @@ struct BenchmarkOptions {
   double plan_limit = std::numeric_limits<double>::infinity();
   Replays replays = Replays::none;
   std::filesystem::path replay_folder = "replays";  ///< replays are `replay_folder`/`replay_file_name(...)`
-  /// Of failures, the first of each contender and set in a call leave a replay, so that they do not fill the disk.
+  /// Of failures, the first of each contender and set in a call leave a replay, so that they do not fill the disk. The
+  /// snapshot that a contender keeps of a failure lies beside its replay, as .snapshot.
   std::size_t most_replays = 20;
   std::string source{};   ///< what names the set on the command line, for reports: "--set merging --seed 3"
   std::string command{};  ///< what runs these contenders there: "examples/run benchmark --parameters FILE"
@@ -91,13 +92,16 @@ template <class World>
     if (job >= contenders.size() * set.scenarios.size()) return JobOutcome{.setup = 1};  // a worker that has other ones
     auto const c = job / set.scenarios.size(), i = job % set.scenarios.size();
     auto const& scenario = set.scenarios[i];
-    RunOptions const how{set.time_step, set.time_limit, options.plan_limit};
+    RunOptions const how{set.time_step, set.time_limit, options.plan_limit,
+                         set.title + ", scenario " + std::to_string(i)};
     bool const all = options.replays == Replays::all;
     auto run = contenders[c].run(scenario, how, all);
-    JobOutcome outcome{run.result, run.times, {}, {}, setup_of(hash, contenders[c])};
+    JobOutcome outcome{run.result, run.times, {}, {}, {}, setup_of(hash, contenders[c])};
     bool const wanted =
         options.replays == Replays::failures && !run.result.success && (*replays)[c]++ < options.most_replays;
     if (wanted) run = contenders[c].run(scenario, how, true);  // it is cheaper to run a failure again than to film all
+    outcome.snapshot = std::move(run.snapshot);
+    outcome.problem = std::move(run.problem);
     if (!run.recording) return outcome;
     try {
       outcome.replay = html_replay(titled(std::move(*run.recording), set.title, i, contenders[c].name, run.result));
@@ -115,23 +119,24 @@ class ReplayFolder {
 
   void take(JobOutcome const& outcome, std::string const& file, std::size_t contender) {
     bool const is_enough = options_.replays == Replays::failures && written_[contender] >= options_.most_replays;
-    if ((outcome.replay.empty() && outcome.problem.empty()) || is_enough) {
-      std::error_code none_there;
-      if (options_.replays != Replays::none) std::filesystem::remove(options_.replay_folder / file, none_there);
-      return;  // with the replay of an earlier result
-    }
+    auto const path = options_.replay_folder / file;
+    auto const snapshot = std::filesystem::path(path).replace_extension(".snapshot");
+    std::error_code refused;                // then the file says what is wrong
+    if (options_.replays != Replays::none)  // those of an earlier result
+      for (auto const& old : {path, snapshot}) std::filesystem::remove(old, refused);
+    if ((outcome.replay.empty() && outcome.problem.empty()) || is_enough) return;
     ++written_[contender];
     auto problem = outcome.problem;
     try {
-      std::error_code refused;  // then the file says what is wrong
       std::filesystem::create_directories(options_.replay_folder, refused);
-      if (problem.empty()) write_file(options_.replay_folder / file, outcome.replay);
+      if (!outcome.replay.empty()) write_file(path, outcome.replay);
+      if (!outcome.snapshot.empty()) write_file(snapshot, outcome.snapshot);
     } catch (std::exception const& failure) {
       problem = failure.what();
     }
     if (problem.empty() || has_warned_) return;
     has_warned_ = true;
-    if (options_.warn) options_.warn("a replay is missing, and perhaps others: " + problem);
+    if (options_.warn) options_.warn("a replay or a snapshot is missing, and perhaps others: " + problem);
   }
 
  private:

@@ -37,6 +37,7 @@ struct SnapshotOptions {
   SnapshotFormat format = SnapshotFormat::binary;
   std::string map_file{};                 ///< where the map can be found: path of an OpenDRIVE file
   std::string map_text{};                 ///< the map itself, as OpenDRIVE; empty: not in the snapshot
+  std::string component{};                ///< whose state it is, so that a desk knows what types to read
   std::string note{};                     ///< why it was taken
   std::optional<std::uint64_t> result{};  ///< `snapshot_hash` of what the next cycle made of these parts
 };
@@ -44,14 +45,14 @@ struct SnapshotOptions {
 /// What the head of a snapshot says.
 struct SnapshotInfo {
   SnapshotFormat format{};
-  std::string library;                    ///< version of cambium
-  std::string build;                      ///< compiler, and whether asserts were on
-  std::string platform;                   ///< sizes and order of bytes
-  std::string parts;                      ///< names, separated by commas
-  std::optional<double> time;             ///< of the first world [s]
-  std::optional<std::uint64_t> map_hash;  ///< of its map, and of what that was built with
-  std::string map_file, map_text, note;   ///< as in `SnapshotOptions`
-  std::optional<std::uint64_t> result;    ///< likewise
+  std::string library;                              ///< version of cambium
+  std::string build;                                ///< compiler, and whether asserts were on
+  std::string platform;                             ///< sizes and order of bytes
+  std::string parts;                                ///< names, separated by commas
+  std::optional<double> time;                       ///< of the first world [s]
+  std::optional<std::uint64_t> map_hash;            ///< of its map, and of what that was built with
+  std::string map_file, map_text, component, note;  ///< as in `SnapshotOptions`
+  std::optional<std::uint64_t> result;              ///< likewise
 };
 
 namespace detail {

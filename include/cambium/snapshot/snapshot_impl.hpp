@@ -270,6 +270,7 @@ CAMBIUM_COLD std::string with_head(ArchivedParts const& parts, SnapshotOptions c
   }
   if (!options.map_file.empty()) line("map_file", printable(options.map_file));
   if (!options.map_text.empty()) line("map_bytes", std::to_string(options.map_text.size()));
+  if (!options.component.empty()) line("component", printable(options.component));
   if (!options.note.empty()) line("note", printable(options.note));
   if (options.result) line("result", hex(*options.result));
   body.append("\n").append(options.map_text).append(parts.archive);
@@ -335,13 +336,14 @@ struct OpenedSnapshot {
     } else if (key == "result") {
       info.result = number_of(value, 16);
     } else {
-      auto* const text = key == "library"    ? &info.library
-                         : key == "build"    ? &info.build
-                         : key == "platform" ? &info.platform
-                         : key == "parts"    ? &info.parts
-                         : key == "map_file" ? &info.map_file
-                         : key == "note"     ? &info.note
-                                             : nullptr;
+      auto* const text = key == "library"     ? &info.library
+                         : key == "build"     ? &info.build
+                         : key == "platform"  ? &info.platform
+                         : key == "parts"     ? &info.parts
+                         : key == "map_file"  ? &info.map_file
+                         : key == "component" ? &info.component
+                         : key == "note"      ? &info.note
+                                              : nullptr;
       if (text != nullptr) *text = value;
     }
   }

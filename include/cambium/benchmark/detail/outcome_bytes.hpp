@@ -78,6 +78,7 @@ void read_fields(MessageReader& reader, Struct& object) {
   append_fields(bytes, outcome.result);
   append_fields(bytes, outcome.times);
   append_text(bytes, outcome.replay);
+  append_text(bytes, outcome.snapshot);
   append_text(bytes, outcome.problem);
   append_number(bytes, outcome.setup, 8);
   return bytes;
@@ -88,6 +89,7 @@ void read_fields(MessageReader& reader, Struct& object) {
   read_fields(reader, outcome.result);
   read_fields(reader, outcome.times);
   outcome.replay = reader.text();
+  outcome.snapshot = reader.text();
   outcome.problem = reader.text();
   outcome.setup = reader.number();
   return outcome;

@@ -80,7 +80,8 @@ label { display: inline-flex; align-items: center; gap: 6px; cursor: pointer; }
 
 /// The list of runs: body and script. It reads the JSON of the element `data`.
 inline constexpr std::string_view report_list = R"html(<section id="list"><h2>All runs</h2>
-<p class="soft">A click on a row opens its replay, or says how to make it. A click on a head sorts.</p>
+<p class="soft">A click on a row opens its replay, or says how to make it. A click on a head sorts. ❄ is the snapshot of a
+failure, its state before the end: open it with examples/run debug_snapshot.</p>
 <div class="controls"><input type="search" id="find" placeholder="scenario, behaviour, error ..." aria-label="Find runs">
 <select id="set" aria-label="Set"></select><select id="behavior" aria-label="Behaviour"></select>
 <select id="outcome" aria-label="Outcome"></select>
@@ -120,11 +121,12 @@ fill('set', 'all sets', groups.map((g) => g.set));
 fill('behavior', 'all behaviours', groups.map((g) => g.label));
 fill('outcome', 'all outcomes', outcomes.filter((_, o) => rows.some((row) => row[2] === o)));
 let sorted = 1, down = false, shown = page, found = rows;
-const link = (row) => data.replays.split('/').map(encodeURIComponent).join('/') + '/' + encodeURIComponent(groups[row[0]].file + '_' + row[1] + '.html');
-const hasReplay = new Set(data.made);
+const file = (row, kind) => groups[row[0]].file + '_' + row[1] + kind;
+const link = (row, kind) => data.replays.split('/').map(encodeURIComponent).join('/') + '/' + encodeURIComponent(file(row, kind));
+const hasReplay = new Set(data.made), hasSnapshot = new Set(data.frozen);
 const quoted = (word) => /^[\w:.\/-]+$/.test(word) ? word : "'" + word.replaceAll("'", "'\\''") + "'";
 const command = (row) => groups[row[0]].command + (groups[row[0]].source ? ' ' + groups[row[0]].source : '') + ' --only ' + quoted(groups[row[0]].title + ':' + row[1] + ':' +
-    groups[row[0]].behavior) + ' --replay ' + quoted(data.folder + '/' + groups[row[0]].file + '_' + row[1] + '.html');
+    groups[row[0]].behavior) + ' --replay ' + quoted(data.folder + '/' + file(row, '.html'));
 const explain = (line, row) => {
   if (line.nextSibling && line.nextSibling.className === 'more') { line.nextSibling.remove(); return; }
   const more = make('tr', undefined, 'more'), box = make('td');
@@ -135,7 +137,7 @@ const explain = (line, row) => {
   const copy = make('button', 'copy');
   copy.onclick = () => navigator.clipboard.writeText(command(row)).then(() => { copy.textContent = 'copied'; });
   const then = make('p', 'Then open ', 'soft'), anchor = make('a', 'the replay');
-  anchor.href = link(row);
+  anchor.href = link(row, '.html');
   then.append(anchor, '. ', copy);
   box.append(then);
   more.append(box);
@@ -155,14 +157,22 @@ const draw = () => {
         if (errors[row.index]) td.title = errors[row.index];
       } else if (c === 1 && hasReplay.has(row.index)) {
         const anchor = make('a', '▶ ' + value);
-        anchor.href = link(row);
+        anchor.href = link(row, '.html');
         td.append(anchor);
+        if (hasSnapshot.has(row.index)) {
+          const state = make('a', '❄');
+          state.href = link(row, '.snapshot');
+          state.download = file(row, '.snapshot');
+          state.title = 'snapshot before the end, for: examples/run debug_snapshot ' + quoted(data.folder + '/' + file(row, '.snapshot'));
+          state.onclick = (event) => event.stopPropagation();
+          td.append(' ', state);
+        }
       } else {
         td.textContent = value === null ? '–' : value;
       }
       line.append(td);
     });
-    const open = () => { if (hasReplay.has(row.index)) location.href = link(row); else explain(line, row); };
+    const open = () => { if (hasReplay.has(row.index)) location.href = link(row, '.html'); else explain(line, row); };
     line.onclick = open;
     line.onkeydown = (event) => { if (event.key === 'Enter') open(); };
     return line;

@@ -1,0 +1,8 @@
+#include "thawed.hpp"
+
+#include "cambium/core/json.hpp"
+
+void examples::read_edit(char const* name, void* object, void const* usual, cb::detail::TransferStruct transfer,
+                         std::string const& json) {
+  cb::detail::read_json_text(name, object, usual, transfer, json, "--edit", nullptr);
+}
