@@ -322,7 +322,8 @@ template <Described T>
 [[nodiscard]] std::string to_binary(T const& object) {
   T const usual{};
   detail::BinaryWriter writer;
-  detail::transfer_any<T>(const_cast<T*>(&object), &usual, writer);  // a writer hands back what it is given
+  auto copy = object;  // a transfer writes back what it was given
+  detail::transfer_any<T>(&copy, &usual, writer);
   return detail::sealed(writer.bytes(), detail::schema_of<T>());
 }
 

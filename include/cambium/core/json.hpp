@@ -25,7 +25,8 @@ template <Described T>
 [[nodiscard]] std::string to_json(T const& object, JsonDetail detail = JsonDetail::differences,
                                   LaneNames const* lanes = nullptr) {
   static T const usual{};
-  return detail::json_text(&object, &usual, &detail::transfer_any<T>, detail, lanes);
+  auto copy = object;  // a transfer writes back what it was given
+  return detail::json_text(&copy, &usual, &detail::transfer_any<T>, detail, lanes);
 }
 
 /// Reads JSON text into `object`; what the text does not say, stays. Throws `ParameterError`, and leaves the object as

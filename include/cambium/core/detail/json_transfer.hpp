@@ -396,10 +396,10 @@ class JsonReader final : public ParameterTransfer {
   std::vector<char const*> known_;  ///< keys of the structs that are being read
 };
 
-inline std::string json_text(void const* object, void const* usual, TransferStruct transfer, JsonDetail detail,
+inline std::string json_text(void* object, void const* usual, TransferStruct transfer, JsonDetail detail,
                              LaneNames const* lanes) {
   JsonWriter writer(detail, lanes);
-  transfer(const_cast<void*>(object), usual, writer);  // a writer hands back what it is given
+  transfer(object, usual, writer);
   return print_json(writer.root());
 }
 
